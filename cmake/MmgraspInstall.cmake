@@ -1,0 +1,1 @@
+# Placeholder replaced by the packaging work: install rules and package config for find_package(mmgrasp).

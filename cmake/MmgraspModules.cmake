@@ -1,0 +1,57 @@
+# mmgrasp_module(name [LINK targets...]): cpp/src/<name>/*.cpp as an object library that joins libmmgrasp.
+# mmgrasp_library(): the one shared library made of all modules.
+# mmgrasp_ompl_plugin(): the private plugin that alone links OMPL (docs/dependencies.md says why).
+set_property(GLOBAL PROPERTY MMGRASP_MODULES "")
+
+add_library(mmgrasp_flags INTERFACE)
+target_compile_options(mmgrasp_flags INTERFACE -Wall -Wextra -Wpedantic -Wno-psabi)
+if(MMGRASP_SANITIZE)
+  target_compile_options(mmgrasp_flags INTERFACE -fsanitize=${MMGRASP_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(mmgrasp_flags INTERFACE -fsanitize=${MMGRASP_SANITIZE})
+endif()
+
+function(mmgrasp_module name)
+  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cpp/src/${name}/*.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  add_library(mmgrasp_${name} OBJECT ${sources})
+  target_include_directories(mmgrasp_${name} PUBLIC ${CMAKE_SOURCE_DIR}/cpp/include
+                             PRIVATE ${CMAKE_SOURCE_DIR}/cpp/src)
+  target_compile_definitions(mmgrasp_${name} PRIVATE MMGRASP_BUILDING)
+  target_link_libraries(mmgrasp_${name} PUBLIC Eigen3::Eigen PRIVATE ${ARG_LINK} mmgrasp_flags)
+  set_property(GLOBAL APPEND PROPERTY MMGRASP_MODULES ${name})
+  set_property(GLOBAL APPEND PROPERTY MMGRASP_LINK ${ARG_LINK})
+endfunction()
+
+function(mmgrasp_library)
+  get_property(modules GLOBAL PROPERTY MMGRASP_MODULES)
+  get_property(link GLOBAL PROPERTY MMGRASP_LINK)
+  add_library(mmgrasp SHARED)
+  add_library(mmgrasp::mmgrasp ALIAS mmgrasp)
+  foreach(module ${modules})
+    target_sources(mmgrasp PRIVATE $<TARGET_OBJECTS:mmgrasp_${module}>)
+  endforeach()
+  target_include_directories(mmgrasp PUBLIC $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/cpp/include>
+                             $<INSTALL_INTERFACE:include>)
+  target_compile_features(mmgrasp PUBLIC cxx_std_17)
+  target_link_libraries(mmgrasp PUBLIC Eigen3::Eigen
+                        PRIVATE $<BUILD_INTERFACE:${link}> $<BUILD_INTERFACE:mmgrasp_flags>)
+  set_target_properties(mmgrasp PROPERTIES LINKER_LANGUAGE CXX
+                        VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}
+                        LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib BUILD_RPATH_USE_ORIGIN ON INSTALL_RPATH $ORIGIN)
+endfunction()
+
+function(mmgrasp_ompl_plugin)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cpp/src/plan/ompl_plugin/*.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  find_package(ompl REQUIRED)
+  add_library(mmgrasp_ompl MODULE ${sources})
+  target_include_directories(mmgrasp_ompl PRIVATE ${CMAKE_SOURCE_DIR}/cpp/src ${OMPL_INCLUDE_DIRS})
+  target_link_libraries(mmgrasp_ompl PRIVATE ${OMPL_LIBRARIES} Eigen3::Eigen mmgrasp_flags)
+  set_target_properties(mmgrasp_ompl PROPERTIES PREFIX "lib" LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+  add_dependencies(mmgrasp mmgrasp_ompl)
+endfunction()

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mmgrasp/collision/world.hpp"
+#include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/outcome.hpp"
+#include "mmgrasp/robot/joint_group.hpp"
+
+namespace mmgrasp {
+
+struct MMGRASP_EXPORT CheckerOptions {
+  double padding = 0;       ///< Robot shapes are grown by this [m] against the scene; >= 0.
+  bool check_self = true;   ///< Robot (and what it holds) against itself.
+  bool check_scene = true;  ///< Robot (and what it holds) against the scene.
+  void check() const;
+};
+
+/// Two bodies that touch. `a` is a robot link or a held object, `b` a link, a held object or a scene object.
+struct MMGRASP_EXPORT Contact {
+  std::string a, b;
+  bool with_scene = false;
+};
+
+struct MMGRASP_EXPORT DistanceResult {
+  double value = std::numeric_limits<double>::infinity();  ///< [m]; negative: penetration depth (approximate).
+  std::string a, b;                                        ///< The closest pair.
+  Eigen::Vector3d point_a = Eigen::Vector3d::Zero();       ///< Witness points, world frame.
+  Eigen::Vector3d point_b = Eigen::Vector3d::Zero();
+};
+
+/// Answers collision questions about one group of one robot in one snapshot of a world. Not thread-safe (scratch inside):
+/// `clone()` gives one per thread, sharing everything immutable. Closed meshes are solids, open ones surfaces.
+class MMGRASP_EXPORT CollisionChecker {
+ public:
+  CollisionChecker(const JointGroup& group, const World& world, const CheckerOptions& options = {});
+  CollisionChecker(CollisionChecker&&) noexcept;
+  CollisionChecker& operator=(CollisionChecker&&) noexcept;
+  ~CollisionChecker();
+  CollisionChecker clone() const;
+
+  const JointGroup& group() const;
+  const World& world() const;
+
+  /// The same checker with the group re-referenced (base stands elsewhere, fingers opened): geometry is not rebuilt.
+  CollisionChecker with_group(const JointGroup& group) const;
+  /// Cheap in-place variant of the above for loops over base poses.
+  void set_root(const Pose& T_world_root);
+
+  /// Limits, then self, then scene: the first cause found, or none. The hot query. `q` must have the right length and be
+  /// finite (checked; throws InvalidInput).
+  Rejection rejection(const Eigen::VectorXd& q);
+  bool is_free(const Eigen::VectorXd& q) { return rejection(q) == Rejection::none; }
+  /// Every touching pair (limits are not looked at).
+  std::vector<Contact> contacts(const Eigen::VectorXd& q);
+  /// Smallest distance over all checked pairs.
+  DistanceResult distance(const Eigen::VectorXd& q);
+
+  /// Straight joint-space edge, checked at steps in which no joint moves more than `step` (rad or m), ends included.
+  bool edge_is_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double step = 0.02);
+
+  std::size_t queries() const;  ///< Configurations checked so far.
+
+ private:
+  struct Impl;
+  explicit CollisionChecker(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mmgrasp

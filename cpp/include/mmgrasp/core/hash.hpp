@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+
+#include "mmgrasp/core/export.hpp"
+
+namespace mmgrasp {
+
+/// Incremental 64-bit content hash (FNV-1a) used for cache keys and file checksums; not cryptographic.
+class MMGRASP_EXPORT Hasher {
+ public:
+  Hasher& add(const void* bytes, std::size_t size);
+  Hasher& add(const std::string& text);
+  Hasher& add(double value);
+  Hasher& add(std::int64_t value);
+  Hasher& add(const Eigen::Ref<const Eigen::MatrixXd>& values);
+  std::uint64_t value() const { return hash_; }
+  std::string hex() const;  ///< 16 hexadecimal digits.
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325ull;
+};
+
+}  // namespace mmgrasp

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "mmgrasp/core/export.hpp"
+
+namespace mmgrasp {
+
+/// How a query ended. "No solution" is a value, not an exception.
+enum class Outcome {
+  solved,         ///< The answer is there and passed its check.
+  approximate,    ///< The best that was found; misses its tolerance or bound. Never used for a path in collision.
+  infeasible,     ///< Proven or exhausted: there is no answer.
+  timeout,        ///< The budget (samples, iterations or clock) ended first.
+  stopped,        ///< The caller's stop token ended it.
+  invalid_start,  ///< The start violates limits or is in collision.
+  invalid_goal,   ///< No goal is inside limits and collision-free.
+};
+
+MMGRASP_EXPORT const char* to_string(Outcome outcome);
+
+/// Why one candidate (a configuration, a grasp, a base pose) was turned down.
+enum class Rejection { none, reach, limits, self_collision, scene, grasp_filter };
+
+MMGRASP_EXPORT const char* to_string(Rejection cause);
+
+/// How many candidates fell at which filter.
+struct MMGRASP_EXPORT Rejections {
+  std::size_t reach = 0;           ///< No arm configuration reaches the pose.
+  std::size_t limits = 0;          ///< Reached only outside joint limits.
+  std::size_t self_collision = 0;  ///< Reached, but robot hits robot (or what it holds).
+  std::size_t scene = 0;           ///< Reached, but robot (or what it holds) hits the scene.
+  std::size_t grasp_filter = 0;    ///< Turned down before IK (gripper too small, hand hits its part, ...).
+
+  void add(Rejection cause, std::size_t count = 1);
+  Rejections& operator+=(const Rejections& other);
+  std::size_t total() const;
+  std::string summary() const;  ///< "reach 12, scene 3", or "none".
+  bool operator==(const Rejections& other) const;
+};
+
+}  // namespace mmgrasp

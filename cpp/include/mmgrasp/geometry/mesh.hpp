@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mmgrasp/core/export.hpp"
+
+namespace mmgrasp {
+
+/// Indexed triangles [m]. Immutable once shared (`std::shared_ptr<const TriangleMesh>`).
+struct MMGRASP_EXPORT TriangleMesh {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<std::array<int, 3>> triangles;
+  bool closed = false;   ///< Every edge is shared by exactly two triangles in opposite directions: a solid. Else a surface.
+  bool convex = false;   ///< Closed and equal to its hull: may be treated as a convex polytope.
+  std::string source;    ///< File it came from, or empty.
+};
+
+/// What the loader found and did, told to the user by `mmgrasp check`.
+struct MMGRASP_EXPORT MeshReport {
+  std::string path;
+  int vertices_read = 0;
+  int vertices_merged = 0;        ///< Removed because they coincide with another one.
+  int degenerate_triangles = 0;   ///< Removed: two equal corners or zero area.
+  int triangles = 0;              ///< Kept.
+  bool closed = false;
+  bool convex = false;
+};
+
+/// Reads STL, OBJ, DAE (unit and up axis honoured) or PLY; merges equal vertices, drops degenerate triangles, orients a
+/// closed mesh outwards. `scale` multiplies per axis. Throws IoError naming the file (and place) when it is missing,
+/// truncated, empty or holds a non-finite number.
+MMGRASP_EXPORT std::shared_ptr<const TriangleMesh> load_mesh(const std::string& path,
+                                                             const Eigen::Vector3d& scale = Eigen::Vector3d::Ones(),
+                                                             MeshReport* report = nullptr);
+
+/// Builds a mesh from raw arrays with the same cleaning as load_mesh. Throws InvalidInput on bad indices or NaN.
+MMGRASP_EXPORT std::shared_ptr<const TriangleMesh> make_mesh(std::vector<Eigen::Vector3d> vertices,
+                                                             std::vector<std::array<int, 3>> triangles,
+                                                             const std::string& source = "",
+                                                             MeshReport* report = nullptr);
+
+/// Convex hull, closed and convex. Throws InvalidInput for fewer than four points or all in one plane.
+MMGRASP_EXPORT std::shared_ptr<const TriangleMesh> convex_hull(const std::vector<Eigen::Vector3d>& points);
+
+/// Signed volume by the divergence theorem [m^3]; positive for a closed mesh oriented outwards.
+MMGRASP_EXPORT double mesh_volume(const TriangleMesh& mesh);
+
+/// True when the point lies inside a closed mesh (ray parity with a fixed generic direction). False for open meshes.
+MMGRASP_EXPORT bool mesh_contains(const TriangleMesh& mesh, const Eigen::Vector3d& point);
+
+}  // namespace mmgrasp

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/outcome.hpp"
+
+namespace mmgrasp {
+
+/// 0-1 programme of P1 (3.1): choose as few (or as cheap) sets as possible so that every element is covered.
+struct MMGRASP_EXPORT SetCoverProblem {
+  int elements = 0;
+  std::vector<std::vector<int>> sets;   ///< Elements of each set, in [0, elements).
+  std::vector<double> costs;            ///< One per set, > 0; empty means 1 each.
+  void check() const;
+};
+
+struct MMGRASP_EXPORT SetCoverResult {
+  Outcome outcome = Outcome::timeout;   ///< `solved` only with a proof of optimality; `approximate` with a cover but no proof.
+  std::vector<int> chosen;              ///< Set indices, ascending.
+  double cost = 0;
+  double lower_bound = 0;               ///< Proven: no cover costs less.
+  std::vector<int> uncoverable;         ///< Elements in no set; the outcome is then `infeasible`.
+};
+
+/// Reduces by dominance, then branch and bound with CBC. Deterministic; among equal optima the lexicographically smallest
+/// is not promised, but the same problem always gives the same answer.
+MMGRASP_EXPORT SetCoverResult solve_set_cover(const SetCoverProblem& problem, double time_limit = 60.0);
+
+}  // namespace mmgrasp

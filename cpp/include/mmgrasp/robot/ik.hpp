@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+
+#include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/monitor.hpp"
+#include "mmgrasp/core/outcome.hpp"
+#include "mmgrasp/core/pose.hpp"
+#include "mmgrasp/robot/joint_group.hpp"
+
+namespace mmgrasp {
+
+struct MMGRASP_EXPORT IkOptions {
+  double position_tolerance = 1e-5;   ///< [m], > 0
+  double rotation_tolerance = 1e-4;   ///< [rad], > 0
+  int max_iterations = 60;            ///< Per descent; > 0
+  int restarts = 30;                  ///< Random restarts after the seed; >= 0
+  double time_limit = 1.0;            ///< Wall-clock cap [s]; > 0
+  unsigned seed = 1;                  ///< Same seed, same answer.
+  void check() const;
+};
+
+struct MMGRASP_EXPORT IkResult {
+  Outcome outcome = Outcome::infeasible;
+  Eigen::VectorXd q;                  ///< Set if and only if solved; inside limits, verified by forward kinematics.
+  double position_error = 0;          ///< [m] of q, or of the best attempt.
+  double rotation_error = 0;          ///< [rad]
+  Rejections rejections;              ///< Descents that ended: reach, limits, or what `valid` said.
+  int iterations = 0;
+};
+
+/// Says why a configuration is turned down, or Rejection::none. Kept as a callback so that `robot` knows no collisions.
+using ConfigurationFilter = std::function<Rejection(const Eigen::VectorXd& q)>;
+
+/// Scratch of one descent, reusable: no allocation after the first use. One per thread.
+struct MMGRASP_EXPORT IkWorkspace {
+  Matrix6Xd J;
+  Eigen::VectorXd step, trial;
+};
+
+/// One damped least squares descent from q (in place), kept inside limits. Returns true when both tolerances hold.
+/// The hot loop of base regions: about 10 FK + Jacobian evaluations.
+MMGRASP_EXPORT bool refine_ik(const JointGroup& group, const Pose& T_world_tip, Eigen::VectorXd& q,
+                              const IkOptions& options, IkWorkspace& workspace);
+
+/// Descent from `seed`, then from random configurations until one passes limits and `valid`.
+MMGRASP_EXPORT IkResult solve_ik(const JointGroup& group, const Pose& T_world_tip, const Eigen::VectorXd& seed,
+                                 const IkOptions& options = {}, const ConfigurationFilter& valid = {},
+                                 const Monitor& monitor = {});
+
+/// Up to `count` distinct solutions (joint distance above 0.1 rad), in the order found.
+MMGRASP_EXPORT std::vector<Eigen::VectorXd> solve_ik_all(const JointGroup& group, const Pose& T_world_tip, int count,
+                                                         const IkOptions& options = {},
+                                                         const ConfigurationFilter& valid = {});
+
+}  // namespace mmgrasp

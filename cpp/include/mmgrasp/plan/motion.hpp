@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/monitor.hpp"
+#include "mmgrasp/core/outcome.hpp"
+#include "mmgrasp/robot/trajectory.hpp"
+
+namespace mmgrasp {
+
+struct MMGRASP_EXPORT MotionOptions {
+  std::string planner = "rrt_connect";  ///< A name of planner_names().
+  double time_limit = 5.0;       ///< Wall-clock cap [s]; > 0.
+  int max_iterations = 20000;    ///< Budget in validity checks of states drawn; > 0. Ends a run reproducibly.
+  double range = 0.0;            ///< Longest tree edge [rad]; 0: a fifth of the joint box's diagonal.
+  double edge_step = 0.02;       ///< Largest joint motion between two checks of an edge [rad or m]; > 0.
+  bool shorten = true;           ///< Shortcut the path (never leaves free space).
+  int shorten_iterations = 200;
+  unsigned seed = 1;
+  void check() const;
+};
+
+struct MMGRASP_EXPORT MotionStats {
+  double seconds = 0;
+  std::size_t collision_queries = 0;
+  double length_before_shortening = 0;
+};
+
+struct MMGRASP_EXPORT MotionResult {
+  Outcome outcome = Outcome::timeout;
+  std::optional<JointPath> path;     ///< Set if and only if solved; re-checked at a quarter of edge_step.
+  double cost = 0;                   ///< Its length.
+  int goal_index = -1;               ///< Which of the goals it reaches.
+  std::vector<Contact> contacts;     ///< With invalid_start or invalid_goal: what touches.
+  Rejections rejections;             ///< Of goals turned down.
+  MotionStats stats;
+};
+
+MMGRASP_EXPORT std::vector<std::string> planner_names();
+
+/// A collision-free path of the checker's group from `start` to any of `goals`. Throws InvalidInput on wrong lengths,
+/// non-finite numbers, an empty goal list or an unknown planner (the known ones are listed).
+MMGRASP_EXPORT MotionResult plan_motion(CollisionChecker& checker, const Eigen::VectorXd& start,
+                                        const std::vector<Eigen::VectorXd>& goals, const MotionOptions& options = {},
+                                        const Monitor& monitor = {});
+
+}  // namespace mmgrasp

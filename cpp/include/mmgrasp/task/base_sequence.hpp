@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/outcome.hpp"
+#include "mmgrasp/task/base_region.hpp"
+
+namespace mmgrasp {
+
+/// The largest disc inside a union of grid cells.
+struct MMGRASP_EXPORT InscribedCircle {
+  double radius = 0;                 ///< 0 when there is no cell.
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+};
+
+/// Exact on the cells' squares to 1e-6 m in radius (branch and bound on the distance to the complement). One layer.
+MMGRASP_EXPORT InscribedCircle inscribed_circle(const BaseGrid& grid, const CellMask& cells, int heading);
+
+/// Cells that several regions share, with their largest disc (P1 3.4.2).
+struct MMGRASP_EXPORT Intersection {
+  std::vector<int> trays;            ///< Indices into the regions, ascending.
+  int heading = 0;                   ///< Layer.
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  double radius = 0;
+  std::size_t cells = 0;
+};
+
+/// Every set of trays (first order included) whose shared cells hold a disc of at least `min_radius`, and how many sets were
+/// looked at and lost. Grown order by order: a set is tried only if all its subsets are robust.
+struct MMGRASP_EXPORT Intersections {
+  std::vector<Intersection> robust;
+  std::size_t sets_tried = 0;
+  std::size_t sets_too_small = 0;    ///< Shared cells, but the disc is too small.
+  std::vector<Intersection> lost;    ///< Those, up to 200, largest radius first: why each alternative lost.
+};
+
+MMGRASP_EXPORT Intersections robust_intersections(const BaseGrid& grid, const std::vector<BaseRegion>& regions,
+                                                  double min_radius, std::size_t max_sets = 200000);
+
+/// Where the base stops and which trays it serves there.
+struct MMGRASP_EXPORT Stop {
+  Eigen::Vector3d pose = Eigen::Vector3d::Zero();  ///< x, y, theta
+  double radius = 0;                 ///< Of the disc around it in which every target part stays graspable [m].
+  std::vector<int> trays;            ///< Trays picked here (each tray at one stop).
+  int intersection = -1;             ///< Index into the robust intersections.
+};
+
+struct MMGRASP_EXPORT StopSet {
+  Outcome outcome = Outcome::infeasible;
+  std::vector<Stop> stops;           ///< In no order yet.
+  int lower_bound = 0;               ///< Proven least number of stops.
+  std::vector<int> unreachable_trays;
+};
+
+/// The least number of robust intersections that cover all trays (P1 equation 3.1), by 0-1 programming with proof; among
+/// equally few, larger discs are preferred. Each tray goes to the chosen stop with the largest disc.
+MMGRASP_EXPORT StopSet minimal_stops(const BaseGrid& grid, const std::vector<Intersection>& intersections, int trays);
+
+}  // namespace mmgrasp

@@ -1,0 +1,86 @@
+#include "mmgrasp/core/parallel.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "mmgrasp/core/error.hpp"
+
+namespace mmgrasp {
+namespace {
+
+/// What the workers of one call share.
+struct Loop {
+  std::size_t count;
+  const std::function<void(std::size_t, int)>& work;
+  const Monitor& monitor;
+  const char* stage;
+  std::atomic<std::size_t> next{0};
+  std::atomic<std::size_t> done{0};
+  std::atomic<bool> failed{false};
+  std::mutex mutex;
+  std::exception_ptr exception;
+  std::size_t exception_item = 0;
+
+  /// Items are handed out in order and every one handed out is finished, so the lowest item that throws always runs:
+  /// keeping its exception makes the error the same at any thread count.
+  void keep_exception(std::size_t item) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (!exception || item < exception_item) {
+      exception = std::current_exception();
+      exception_item = item;
+    }
+    failed.store(true);
+  }
+
+  void run(int worker) {
+    double reported = -1;
+    while (!failed.load(std::memory_order_relaxed) && !monitor.stopped()) {
+      const std::size_t item = next.fetch_add(1);
+      if (item >= count) break;
+      try {
+        work(item, worker);
+      } catch (...) {
+        keep_exception(item);
+        break;
+      }
+      const double fraction = static_cast<double>(done.fetch_add(1) + 1) / static_cast<double>(count);
+      if (worker == 0 && fraction - reported >= 0.005) {
+        monitor.report(stage, fraction);
+        reported = fraction;
+      }
+    }
+  }
+};
+
+}  // namespace
+
+int resolve_threads(int threads) {
+  require(threads >= 0, "threads", threads, "must be 0 (all) or positive");
+  return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+bool parallel_for(std::size_t count, int threads, const std::function<void(std::size_t, int)>& work,
+                  const Monitor& monitor, const char* stage) {
+  const int workers = static_cast<int>(std::min<std::size_t>(resolve_threads(threads), count));
+  Loop loop{count, work, monitor, stage};
+  std::vector<std::thread> pool;
+  const auto join_all = [&pool] {
+    for (std::thread& thread : pool) thread.join();
+  };
+  try {
+    for (int worker = 1; worker < workers; ++worker) pool.emplace_back([&loop, worker] { loop.run(worker); });
+  } catch (...) {  // the system gives no more threads: go on with those that started
+  }
+  loop.run(0);
+  join_all();
+  if (loop.exception) std::rethrow_exception(loop.exception);
+  if (loop.done.load() < count) return false;
+  monitor.report(stage, 1.0);
+  return true;
+}
+
+}  // namespace mmgrasp

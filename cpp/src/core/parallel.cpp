@@ -21,8 +21,8 @@ struct Loop {
   std::atomic<std::size_t> next{0};
   std::atomic<std::size_t> done{0};
   std::atomic<bool> failed{false};
-  std::mutex mutex;
-  std::exception_ptr exception;
+  std::mutex mutex{};
+  std::exception_ptr exception{};
   std::size_t exception_item = 0;
 
   /// Items are handed out in order and every one handed out is finished, so the lowest item that throws always runs:
@@ -68,15 +68,12 @@ bool parallel_for(std::size_t count, int threads, const std::function<void(std::
   const int workers = static_cast<int>(std::min<std::size_t>(resolve_threads(threads), count));
   Loop loop{count, work, monitor, stage};
   std::vector<std::thread> pool;
-  const auto join_all = [&pool] {
-    for (std::thread& thread : pool) thread.join();
-  };
   try {
     for (int worker = 1; worker < workers; ++worker) pool.emplace_back([&loop, worker] { loop.run(worker); });
   } catch (...) {  // the system gives no more threads: go on with those that started
   }
   loop.run(0);
-  join_all();
+  for (std::thread& thread : pool) thread.join();
   if (loop.exception) std::rethrow_exception(loop.exception);
   if (loop.done.load() < count) return false;
   monitor.report(stage, 1.0);

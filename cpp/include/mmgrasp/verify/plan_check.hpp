@@ -1,0 +1,132 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/monitor.hpp"
+#include "mmgrasp/core/pose.hpp"
+#include "mmgrasp/robot/joint.hpp"
+#include "mmgrasp/robot/robot.hpp"
+
+namespace mmgrasp::verify {
+
+/// A scene body as the plan file describes it.
+struct MMGRASP_EXPORT CheckedBody {
+  std::string name;
+  std::vector<LinkShape> shapes;
+  Pose T_world_body = Pose::Identity();
+};
+
+struct MMGRASP_EXPORT CheckedGrasp {
+  Pose T_object_tcp = Pose::Identity();
+  double width = 0;
+};
+
+struct MMGRASP_EXPORT CheckedPart {
+  CheckedBody body;
+  std::string tray;
+  bool target = true;
+  std::vector<CheckedGrasp> grasps;
+};
+
+struct MMGRASP_EXPORT CheckedFinger { std::string joint; double closed = 0, open = 0; };
+
+struct MMGRASP_EXPORT CheckedMotion {
+  std::string kind;                  ///< reach, approach, lift, carry, retreat
+  double opening = 0;
+  bool holding = false;
+  std::vector<double> times;
+  std::vector<Eigen::VectorXd> positions, velocities;
+};
+
+struct MMGRASP_EXPORT CheckedPick {
+  int stop = -1;
+  std::string tray, part;
+  int grasp = -1;
+  std::vector<CheckedMotion> motions;
+};
+
+struct MMGRASP_EXPORT CheckedStop {
+  Eigen::Vector3d pose = Eigen::Vector3d::Zero();
+  double radius = 0;
+  std::vector<std::string> trays;
+};
+
+struct MMGRASP_EXPORT CheckedRegion {
+  std::string tray;
+  std::vector<std::uint8_t> cells;   ///< (heading * ny + iy) * nx + ix
+};
+
+struct MMGRASP_EXPORT CheckedGrid {
+  Eigen::Vector2d origin = Eigen::Vector2d::Zero();
+  double resolution = 0.05;
+  int nx = 0, ny = 0;
+  std::vector<double> headings;
+};
+
+/// A whole plan, as read from plan.json. Knows nothing of how it was made.
+struct MMGRASP_EXPORT PlanToCheck {
+  Robot robot;
+  std::vector<std::string> arm_joints;
+  std::vector<double> velocity_limits, acceleration_limits;   ///< One an arm joint.
+  std::string tip_link;
+  std::map<std::string, double> other_joints;
+  double max_opening = 0.1, clearance = 0.01;
+  Eigen::Vector3d approach = Eigen::Vector3d::UnitX();        ///< In the tip frame.
+  std::vector<CheckedFinger> fingers;
+  std::vector<std::string> finger_links;
+  Eigen::VectorXd home;
+  Eigen::Vector3d start = Eigen::Vector3d::Zero(), goal = Eigen::Vector3d::Zero();
+  double positioning_uncertainty = 0.1;
+  Pose T_base_bin = Pose::Identity();
+  Eigen::Vector2d bin_size = Eigen::Vector2d(0.3, 0.3);
+  double drop_gap = 0.03;
+  std::vector<CheckedBody> obstacles;
+  std::vector<CheckedPart> parts;
+  std::vector<std::string> trays;
+  CheckedGrid grid;
+  std::vector<CheckedRegion> regions;
+  std::vector<CheckedStop> stops;
+  std::vector<std::vector<Eigen::Vector3d>> route;            ///< stops.size() + 1 legs of base poses.
+  std::vector<CheckedPick> picks;
+  int lower_bound = 0;
+};
+
+struct MMGRASP_EXPORT PlanCheckOptions {
+  double joint_step = 0.01;          ///< Arm paths are checked at least this finely [rad or m]; > 0.
+  double base_step = 0.01;           ///< The route [m, and rad x 2]; > 0.
+  double position_tolerance = 1e-4;  ///< Of a grasp [m]; > 0.
+  double rotation_tolerance = 1e-3;  ///< Of a grasp [rad]; > 0.
+  int samples = 1000;                ///< Base poses drawn in the uncertainty disc of each stop; > 0.
+  double required_rate = 0.999;      ///< Share of them from which every target part has a grasp; in (0, 1].
+  unsigned seed = 20240607;
+  int threads = 0;
+  void check() const;
+};
+
+/// One thing that is physically wrong with the plan.
+struct MMGRASP_EXPORT Fault {
+  std::string code;                  ///< E.g. "arm-collision", "limit", "discontinuous", "grasp-missed", "part-forgotten".
+  std::string where;                 ///< E.g. "pick 3 (A/bracket_02), lift, t = 1.24 s".
+  std::string message;               ///< What is wrong, with the value and the bound.
+};
+
+struct MMGRASP_EXPORT StopRate { int stop = -1; int samples = 0; int good = 0; std::string worst_part; };
+
+struct MMGRASP_EXPORT PlanCheckResult {
+  std::vector<Fault> faults;         ///< Empty: the plan holds.
+  std::vector<StopRate> rates;
+  int minimal_stops = 0;             ///< Found again from the regions.
+  std::size_t configurations_checked = 0;
+};
+
+/// Checks a finished plan against its scenario: kinematics by KDL, collisions by FCL on the loaded shapes, the cover solved
+/// again by CBC on discs found by sampling the floor. Shares no code with the planners.
+MMGRASP_EXPORT PlanCheckResult check_plan(const PlanToCheck& plan, const PlanCheckOptions& options = {},
+                                          const Monitor& monitor = {});
+
+}  // namespace mmgrasp::verify

@@ -39,7 +39,7 @@ function(mmgrasp_library)
   target_link_libraries(mmgrasp PUBLIC Eigen3::Eigen
                         PRIVATE $<BUILD_INTERFACE:${link}> $<BUILD_INTERFACE:mmgrasp_flags>)
   set_target_properties(mmgrasp PROPERTIES LINKER_LANGUAGE CXX
-                        VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}
+                        VERSION ${MMGRASP_ABI} SOVERSION ${MMGRASP_ABI}
                         LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib BUILD_RPATH_USE_ORIGIN ON INSTALL_RPATH $ORIGIN)
 endfunction()
 

@@ -1,0 +1,23 @@
+"""Colours shared by every picture: a colour-blind-safe set (Okabe and Ito), the same colour for the same tray everywhere."""
+
+from __future__ import annotations
+
+TRAY_COLOURS = ["#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#B8A600", "#7A5195"]
+STOP = "#C1121F"
+ROUTE = "#333333"
+OBSTACLE = "#A8A29A"
+TRAY_BODY = "#D8C9A8"
+PART = "#E07A1F"
+ROBOT = "#C9D3DC"
+ROBOT_ARM = "#3E6FA8"
+FLOOR = "#F2F1ED"
+
+
+def tray_colour(index: int) -> str:
+    """Colour of the tray at this place in the plan's list of trays."""
+    return TRAY_COLOURS[index % len(TRAY_COLOURS)]
+
+
+def rgb(colour: str) -> tuple[float, float, float]:
+    """'#RRGGBB' as three numbers in [0, 1]."""
+    return tuple(int(colour[i : i + 2], 16) / 255.0 for i in (1, 3, 5))  # type: ignore[return-value]

@@ -1,0 +1,140 @@
+"""The whole plan on one clock: where base, arm, fingers and parts are at any time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+GRIP_TIME = 0.5  # Shown for closing and for opening the fingers [s].
+
+
+@dataclass
+class State:
+    """Everything that moves, at one time."""
+
+    base: np.ndarray  # x, y, theta
+    arm: np.ndarray  # configuration of the arm's joints
+    opening: float  # of the fingers [m]
+    held: tuple[str, np.ndarray] | None = None  # part name and T_tcp_part
+    gone: frozenset[str] = frozenset()  # parts in the bin
+
+
+@dataclass
+class Segment:
+    """A stretch of the clock in which one thing happens."""
+
+    label: str
+    start: float
+    duration: float
+    kind: str  # "drive", "motion" or "grip"
+    data: Any
+    held: tuple[str, np.ndarray] | None = None
+    gone: frozenset[str] = frozenset()
+    base: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    opening: float = 0.0
+
+
+def pose_matrix(pose: dict[str, Any]) -> np.ndarray:
+    """(4, 4) from {"xyz", "quat_xyzw"}."""
+    x, y, z, w = np.asarray(pose["quat_xyzw"], float) / np.linalg.norm(pose["quat_xyzw"])
+    T = np.eye(4)
+    T[:3, :3] = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    T[:3, 3] = pose["xyz"]
+    return T
+
+
+class Timeline:
+    """Segments of a plan (a dictionary as in plan.json) in the order in which they are carried out."""
+
+    def __init__(self, plan: dict[str, Any]):
+        self.plan = plan
+        self.home = np.asarray(plan["scenario"]["home"], float)
+        self.segments: list[Segment] = []
+        parts = {part["name"]: part for part in plan["scenario"]["parts"]}
+        gone: frozenset[str] = frozenset()
+        clock = 0.0
+        stops = plan["stops"]
+        for index, leg in enumerate(plan["route"]):
+            goal = "the goal" if index == len(stops) else f"stop {index + 1}"
+            poses = np.asarray(leg["poses"], float).reshape(-1, 3)
+            clock = self._add(Segment(f"drive to {goal}", clock, float(leg["duration"]), "drive", poses, gone=gone))
+            for pick in plan["picks"]:
+                if pick["stop"] == index:
+                    clock = self._add_pick(pick, np.asarray(stops[index]["pose"], float), parts, gone, clock)
+                    gone = gone | {pick["part"]}
+        self.duration = clock
+
+    def _add(self, segment: Segment) -> float:
+        self.segments.append(segment)
+        return segment.start + segment.duration
+
+    def _add_pick(self, pick, base, parts, gone, clock):
+        name = pick["part"]
+        grasp = parts[name]["grasps"][pick["grasp"]]
+        in_hand = (name, np.linalg.inv(pose_matrix(grasp["pose"])))
+        for motion in pick["motions"]:
+            held = in_hand if motion["holding"] else None
+            binned = gone | {name} if motion["kind"] == "retreat" else gone
+            label = f"{motion['kind']} {name}"
+            segment = Segment(label, clock, float(motion["times"][-1]), "motion", motion, held, binned, base)
+            segment.opening = float(motion["opening"])
+            clock = self._add(segment)
+            if motion["kind"] in ("approach", "carry"):
+                word = "grasp" if motion["kind"] == "approach" else "release"
+                grip = Segment(f"{word} {name}", clock, GRIP_TIME, "grip", motion, None, gone, base)
+                grip.held = in_hand if word == "release" else None
+                grip.opening = float(motion["opening"])
+                clock = self._add(grip)
+        return clock
+
+    def segment_at(self, time: float) -> Segment:
+        """The segment in which this time lies (clamped to the plan)."""
+        for segment in self.segments:
+            if time < segment.start + segment.duration:
+                return segment
+        return self.segments[-1]
+
+    def state_at(self, time: float) -> State:
+        """Where everything is at this time [s] (clamped to the plan)."""
+        segment = self.segment_at(max(0.0, min(time, self.duration)))
+        local = min(max(time - segment.start, 0.0), segment.duration)
+        if segment.kind == "drive":
+            share = local / segment.duration if segment.duration > 0 else 1.0
+            return State(along_route(segment.data, share), self.home, 0.0, None, segment.gone)
+        motion = segment.data
+        times = np.asarray(motion["times"], float)
+        positions = np.asarray(motion["positions"], float)
+        when = local if segment.kind == "motion" else times[-1]
+        arm = np.array([np.interp(when, times, positions[:, j]) for j in range(positions.shape[1])])
+        return State(segment.base, arm, segment.opening, segment.held, segment.gone)
+
+    def grasp_times(self) -> list[tuple[int, float]]:
+        """(stop index, time at which the part is reached), one for each pick."""
+        result = []
+        for segment in self.segments:
+            if segment.kind == "grip" and segment.label.startswith("grasp "):
+                name = segment.label.removeprefix("grasp ")
+                stop = next(p["stop"] for p in self.plan["picks"] if p["part"] == name)
+                result.append((stop, segment.start))
+        return result
+
+
+def along_route(poses: np.ndarray, share: float) -> np.ndarray:
+    """Base pose after this share of a leg, metres and radians of turning counted alike."""
+    if len(poses) == 1:
+        return poses[0]
+    steps = np.diff(poses, axis=0)
+    weights = np.hypot(steps[:, 0], steps[:, 1]) + np.abs(steps[:, 2])
+    reached = np.concatenate([[0.0], np.cumsum(weights)])
+    if reached[-1] <= 0:
+        return poses[-1]
+    where = share * reached[-1]
+    index = min(int(np.searchsorted(reached, where, side="right")) - 1, len(steps) - 1)
+    local = (where - reached[index]) / weights[index] if weights[index] > 0 else 1.0
+    return poses[index] + min(max(local, 0.0), 1.0) * steps[index]

@@ -1,0 +1,218 @@
+#include "geometry/mesh_topology.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace mmgrasp::detail {
+
+namespace {
+
+struct HalfEdge {
+  int low, high;      // the edge's vertices, low < high
+  int triangle, side; // side k goes from corner k to corner k + 1
+  bool forward;       // runs from low to high
+};
+
+std::vector<HalfEdge> sorted_half_edges(const std::vector<std::array<int, 3>>& triangles) {
+  std::vector<HalfEdge> edges;
+  edges.reserve(3 * triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = triangles[t][k], b = triangles[t][(k + 1) % 3];
+      edges.push_back({std::min(a, b), std::max(a, b), static_cast<int>(t), k, a < b});
+    }
+  }
+  std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
+    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+  });
+  return edges;
+}
+
+struct Neighbour {
+  int triangle = -1;
+  bool same_orientation = true;
+};
+using Neighbours = std::vector<std::array<Neighbour, 3>>;
+
+bool find_neighbours(const std::vector<std::array<int, 3>>& triangles, Neighbours& neighbours) {
+  const std::vector<HalfEdge> edges = sorted_half_edges(triangles);
+  neighbours.assign(triangles.size(), {});
+  for (std::size_t i = 0; i < edges.size(); i += 2) {
+    if (i + 1 >= edges.size()) return false;
+    const HalfEdge &a = edges[i], &b = edges[i + 1];
+    const bool pair = a.low == b.low && a.high == b.high;
+    const bool third = i + 2 < edges.size() && edges[i + 2].low == a.low && edges[i + 2].high == a.high;
+    if (!pair || third || a.triangle == b.triangle) return false;
+    const bool same = a.forward != b.forward;
+    neighbours[a.triangle][a.side] = {b.triangle, same};
+    neighbours[b.triangle][b.side] = {a.triangle, same};
+  }
+  return true;
+}
+
+// Flips triangles so that all of one shell agree with its first; false on a one-sided surface (a Klein bottle).
+bool make_consistent(std::vector<std::array<int, 3>>& triangles, const Neighbours& neighbours, Shells& shells) {
+  std::vector<signed char> flip(triangles.size(), -1);
+  shells.shell_of_triangle.assign(triangles.size(), -1);
+  std::vector<int> stack;
+  for (std::size_t seed = 0; seed < triangles.size(); ++seed) {
+    if (flip[seed] >= 0) continue;
+    flip[seed] = 0;
+    stack.push_back(static_cast<int>(seed));
+    while (!stack.empty()) {
+      const int t = stack.back();
+      stack.pop_back();
+      shells.shell_of_triangle[t] = shells.count;
+      for (const Neighbour& n : neighbours[t]) {
+        const signed char wanted = n.same_orientation ? flip[t] : 1 - flip[t];
+        if (flip[n.triangle] < 0) {
+          flip[n.triangle] = wanted;
+          stack.push_back(n.triangle);
+        } else if (flip[n.triangle] != wanted) {
+          return false;
+        }
+      }
+    }
+    ++shells.count;
+  }
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (flip[t] == 1) std::swap(triangles[t][1], triangles[t][2]);
+  }
+  return true;
+}
+
+double six_volumes(const std::vector<Eigen::Vector3d>& v, const std::array<int, 3>& t, const Eigen::Vector3d& origin) {
+  return (v[t[0]] - origin).dot((v[t[1]] - origin).cross(v[t[2]] - origin));
+}
+
+// A shell that lies in no other bounds material, so it must look outwards. Nested shells keep their sense relative to
+// that: inwards a cavity, outwards a solid inside a solid (which changes nothing).
+void orient_outwards(const std::vector<Eigen::Vector3d>& vertices, std::vector<std::array<int, 3>>& triangles,
+                     const Shells& shells) {
+  std::vector<double> volume(shells.count, 0);
+  std::vector<Eigen::AlignedBox3d> bounds(shells.count);
+  std::vector<int> first(shells.count, -1);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const int s = shells.shell_of_triangle[t];
+    volume[s] += six_volumes(vertices, triangles[t], vertices[0]);
+    for (const int corner : triangles[t]) bounds[s].extend(vertices[corner]);
+    if (first[s] < 0) first[s] = triangles[t][0];
+  }
+  const bool all_reversed = std::accumulate(volume.begin(), volume.end(), 0.0) < 0;
+  std::vector<bool> flip(shells.count, all_reversed);
+  for (int s = 0; s < shells.count; ++s) {
+    if ((volume[s] < 0) == all_reversed) continue;
+    bool nested = false;
+    for (int o = 0; o < shells.count && !nested; ++o) {
+      if (o == s || !bounds[o].contains(bounds[s])) continue;
+      int winding = 0;
+      for (std::size_t t = 0; t < triangles.size(); ++t) {
+        if (shells.shell_of_triangle[t] != o) continue;
+        const Eigen::Vector3d& p = vertices[first[s]];
+        winding += ray_crossing(vertices[triangles[t][0]] - p, vertices[triangles[t][1]] - p, vertices[triangles[t][2]] - p);
+      }
+      nested = winding != 0;
+    }
+    if (!nested) flip[s] = volume[s] < 0;
+  }
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (flip[shells.shell_of_triangle[t]]) std::swap(triangles[t][1], triangles[t][2]);
+  }
+}
+
+// Every neighbour bends backwards: measured as height over the larger triangle, which slivers do not spoil.
+bool locally_convex(const TriangleMesh& mesh, double tolerance) {
+  Neighbours neighbours;
+  if (!find_neighbours(mesh.triangles, neighbours)) return false;
+  const auto& v = mesh.vertices;
+  const auto normal = [&](int t) -> Eigen::Vector3d {
+    const auto& tri = mesh.triangles[t];
+    return (v[tri[1]] - v[tri[0]]).cross(v[tri[2]] - v[tri[0]]);
+  };
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Eigen::Vector3d n = normal(static_cast<int>(t));
+    for (int k = 0; k < 3; ++k) {
+      const int other = neighbours[t][k].triangle;
+      if (n.norm() < normal(other).norm()) continue;
+      for (const int corner : mesh.triangles[other]) {
+        if (n.dot(v[corner] - v[mesh.triangles[t][k]]) > tolerance * n.norm()) return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+Eigen::Vector3d ray_direction() { return {0.21132486540518713, 0.35682208977308993, 1.0}; }
+
+int ray_crossing(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  const Eigen::Vector3d d = ray_direction();
+  const auto shadow = [&](const Eigen::Vector3d& p) -> Eigen::Vector2d { return {p.x() - d.x() * p.z(), p.y() - d.y() * p.z()}; };
+  const Eigen::Vector2d sa = shadow(a), sb = shadow(b), sc = shadow(c);
+  const double ab = edge_side(sa, sb), bc = edge_side(sb, sc), ca = edge_side(sc, sa);
+  // A side of exactly zero needs a decision that the neighbour, who sees the edge reversed, takes the other way round.
+  const auto positive = [](double side, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+    if (side != 0) return side > 0;
+    return from.x() != to.x() ? from.x() < to.x() : from.y() < to.y();
+  };
+  const bool p = positive(ab, sa, sb);
+  if (positive(bc, sb, sc) != p || positive(ca, sc, sa) != p) return 0;
+  const double total = ab + bc + ca;
+  const double height = total != 0 ? (bc * a.z() + ca * b.z() + ab * c.z()) / total : a.z();
+  return height > 0 ? (p ? 1 : -1) : 0;
+}
+
+bool orient_closed(const std::vector<Eigen::Vector3d>& vertices, std::vector<std::array<int, 3>>& triangles) {
+  Neighbours neighbours;
+  if (triangles.size() < 4 || !find_neighbours(triangles, neighbours)) return false;
+  Shells shells;
+  std::vector<std::array<int, 3>> oriented = triangles;
+  if (!make_consistent(oriented, neighbours, shells)) return false;
+  orient_outwards(vertices, oriented, shells);
+  triangles = std::move(oriented);
+  return true;
+}
+
+Shells find_shells(const std::vector<std::array<int, 3>>& triangles) {
+  std::vector<int> parent(triangles.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto find = [&](int t) {
+    while (parent[t] != t) t = parent[t] = parent[parent[t]];
+    return t;
+  };
+  const std::vector<HalfEdge> edges = sorted_half_edges(triangles);
+  for (std::size_t i = 1; i < edges.size(); ++i) {
+    if (edges[i].low != edges[i - 1].low || edges[i].high != edges[i - 1].high) continue;
+    const int a = find(edges[i - 1].triangle), b = find(edges[i].triangle);
+    parent[std::max(a, b)] = std::min(a, b);
+  }
+  Shells shells;
+  shells.shell_of_triangle.resize(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const int root = find(static_cast<int>(t));
+    shells.shell_of_triangle[t] = root == static_cast<int>(t) ? shells.count++ : shells.shell_of_triangle[root];
+  }
+  return shells;
+}
+
+bool is_convex(const TriangleMesh& mesh) {
+  if (!mesh.closed || find_shells(mesh.triangles).count != 1) return false;
+  Eigen::AlignedBox3d bounds;
+  for (const Eigen::Vector3d& v : mesh.vertices) bounds.extend(v);
+  const double tolerance = 2e-7 * bounds.diagonal().norm();
+  if (!locally_convex(mesh, tolerance)) return false;
+  std::shared_ptr<const TriangleMesh> hull;
+  try {
+    hull = convex_hull(mesh.vertices);
+  } catch (const std::exception&) {
+    return false;
+  }
+  // A surface can be convex at every edge and still wind around itself: then its volume is off.
+  const double volume = mesh_volume(mesh), hull_volume = mesh_volume(*hull);
+  return std::abs(volume - hull_volume) <= 1e-5 * hull_volume;
+}
+
+}  // namespace mmgrasp::detail

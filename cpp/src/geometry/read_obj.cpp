@@ -1,0 +1,104 @@
+#include <algorithm>
+
+#include "geometry/mesh_readers.hpp"
+
+namespace mmgrasp::detail {
+
+namespace {
+
+// Statements that carry no triangles. A word outside this list means that the file is no OBJ or is damaged.
+constexpr const char* kIgnored[] = {"vt",    "vn",    "vp",   "p",    "l",    "g",    "o",    "s",     "mg",       "usemtl",
+                                    "mtllib", "usemap", "maplib", "cstype", "deg", "bmat", "step", "curv", "curv2", "surf",
+                                    "parm",  "trim",  "hole", "scrv", "sp",   "end",  "con",  "bevel", "c_interp", "d_interp",
+                                    "lod",   "shadow_obj", "trace_obj", "ctech", "stech", "call", "csh"};
+
+std::vector<std::string_view> split(std::string_view line) {
+  std::vector<std::string_view> words;
+  std::size_t at = 0;
+  while ((at = line.find_first_not_of(" \t\r", at)) != std::string_view::npos) {
+    const std::size_t end = std::min(line.find_first_of(" \t\r", at), line.size());
+    words.push_back(line.substr(at, end - at));
+    at = end;
+  }
+  return words;
+}
+
+class ObjReader {
+ public:
+  explicit ObjReader(const std::string& path) : path_(path) {}
+
+  RawMesh read(std::string_view content) {
+    std::size_t at = 0;
+    while (at < content.size()) {
+      const std::size_t end = std::min(content.find('\n', at), content.size());
+      ++line_;
+      read_line(content.substr(at, end - at));
+      at = end + 1;
+    }
+    check_indices();
+    return std::move(mesh_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& reason) const {
+    mesh_error(path_, "line " + std::to_string(line_) + ": " + reason);
+  }
+
+  void read_line(std::string_view line) {
+    const std::vector<std::string_view> words = split(line);
+    if (words.empty() || words[0][0] == '#') return;
+    if (words[0] == "v") {
+      read_vertex(words);
+    } else if (words[0] == "f") {
+      read_face(words);
+    } else if (std::find(std::begin(kIgnored), std::end(kIgnored), words[0]) == std::end(kIgnored)) {
+      fail("'" + std::string(words[0].substr(0, 40)) + "' is no OBJ statement");
+    }
+  }
+
+  void read_vertex(const std::vector<std::string_view>& words) {
+    if (words.size() < 4) fail("a vertex needs three numbers");
+    Eigen::Vector3d v;
+    for (int k = 0; k < 3; ++k) {
+      if (!parse_number(words[k + 1], v[k])) fail("'" + std::string(words[k + 1].substr(0, 40)) + "' is no number");
+    }
+    mesh_.vertices.push_back(v);
+  }
+
+  void read_face(const std::vector<std::string_view>& words) {
+    if (words.size() < 4) fail("a face needs three corners");
+    std::vector<int> corners;
+    for (std::size_t i = 1; i < words.size(); ++i) {
+      if (words[i][0] == '#') break;
+      const std::string_view index = words[i].substr(0, words[i].find('/'));
+      long value = 0;
+      if (!parse_integer(index, value) || value == 0) fail("'" + std::string(words[i].substr(0, 40)) + "' is no corner");
+      // Negative indices count back from the latest vertex.
+      corners.push_back(static_cast<int>(value > 0 ? value - 1 : static_cast<long>(mesh_.vertices.size()) + value));
+      if (corners.back() < 0) fail("corner " + std::to_string(value) + " points before the first vertex");
+    }
+    add_polygon(mesh_, corners);
+  }
+
+  // Faces may stand before their vertices, hence only at the end.
+  void check_indices() const {
+    for (const auto& triangle : mesh_.triangles) {
+      for (const int corner : triangle) {
+        if (corner >= static_cast<int>(mesh_.vertices.size())) {
+          mesh_error(path_, "a face names vertex " + std::to_string(corner + 1) + " of " +
+                                std::to_string(mesh_.vertices.size()) + " (truncated or damaged)");
+        }
+      }
+    }
+  }
+
+  const std::string& path_;
+  RawMesh mesh_;
+  int line_ = 0;
+};
+
+}  // namespace
+
+RawMesh read_obj(const std::string& path, std::string_view content) { return ObjReader(path).read(content); }
+
+}  // namespace mmgrasp::detail

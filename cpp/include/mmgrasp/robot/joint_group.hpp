@@ -63,6 +63,7 @@ class MMGRASP_EXPORT JointGroup {
 
   struct Data;
   explicit JointGroup(std::shared_ptr<const Data> data);
+  const Data& data() const { return *data_; }
 
  private:
   std::shared_ptr<const Data> data_;

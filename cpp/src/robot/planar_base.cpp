@@ -1,0 +1,35 @@
+#include "mmgrasp/robot/planar_base.hpp"
+
+#include <cmath>
+
+#include "mmgrasp/core/error.hpp"
+
+namespace mmgrasp {
+
+const char* to_string(BaseKind kind) {
+  switch (kind) {
+    case BaseKind::fixed: return "fixed";
+    case BaseKind::diff_drive: return "diff_drive";
+    case BaseKind::omni: return "omni";
+  }
+  return "unknown";
+}
+
+BaseKind base_kind_from_string(const std::string& name) {
+  for (const BaseKind kind : {BaseKind::fixed, BaseKind::diff_drive, BaseKind::omni})
+    if (name == to_string(kind)) return kind;
+  throw InvalidInput("base = \"" + name + "\": must be fixed, diff_drive or omni");
+}
+
+void BaseLimits::check() const {
+  const auto positive = [](double value, const char* field) {
+    require(std::isfinite(value) && value > 0, std::string("base_limits.") + field, value, "must be positive and finite");
+  };
+  positive(linear_velocity, "linear_velocity");
+  positive(angular_velocity, "angular_velocity");
+  positive(linear_acceleration, "linear_acceleration");
+  positive(angular_acceleration, "angular_acceleration");
+  positive(workspace, "workspace");
+}
+
+}  // namespace mmgrasp

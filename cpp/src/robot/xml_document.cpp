@@ -1,0 +1,187 @@
+#include "robot/xml_document.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "mmgrasp/core/error.hpp"
+
+namespace mmgrasp::detail {
+namespace {
+
+constexpr int kMaxNesting = 200;  // real robot files stay below 10; the parser recurses once per level
+
+bool starts_with_no_case(const std::string& text, std::size_t at, const char* word) {
+  for (; *word; ++word, ++at)
+    if (at >= text.size() || std::toupper(static_cast<unsigned char>(text[at])) != *word) return false;
+  return true;
+}
+
+/// Walks over the markup outside comments and CDATA without building anything.
+void check_markup(const std::string& text, const std::string& origin) {
+  int depth = 0;
+  for (std::size_t i = text.find('<'); i != std::string::npos; i = text.find('<', i + 1)) {
+    std::size_t end = std::string::npos;
+    if (text.compare(i, 4, "<!--") == 0) {
+      end = text.find("-->", i + 4);
+    } else if (text.compare(i, 9, "<![CDATA[") == 0) {
+      end = text.find("]]>", i + 9);
+    } else {
+      for (const char* declaration : {"<!DOCTYPE", "<!ENTITY"})
+        if (starts_with_no_case(text, i, declaration))
+          throw InvalidInput(origin + ": element " + declaration + ">: document type and entity declarations are refused");
+      if (text.compare(i, 2, "<?") == 0) {
+        end = text.find("?>", i);
+      } else {
+        // A '>' inside a quoted attribute does not end the tag.
+        char quote = 0;
+        for (end = i + 1; end < text.size(); ++end) {
+          if (quote) {
+            if (text[end] == quote) quote = 0;
+          } else if (text[end] == '"' || text[end] == '\'') {
+            quote = text[end];
+          } else if (text[end] == '>') {
+            break;
+          }
+        }
+        if (end >= text.size()) break;  // unfinished tag: the parser says where
+        if (text[i + 1] == '/') {
+          --depth;
+        } else if (text[end - 1] != '/') {
+          ++depth;
+        }
+        require(depth <= kMaxNesting, origin + ": nesting of elements", depth,
+                "must be at most " + std::to_string(kMaxNesting));
+      }
+    }
+    if (end == std::string::npos) break;
+    i = end;
+  }
+}
+
+std::string trimmed(const std::string& text) {
+  const char* blanks = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::vector<std::string> words(const std::string& text) {
+  std::vector<std::string> result;
+  std::size_t end = 0;
+  for (;;) {
+    const std::size_t begin = text.find_first_not_of(" \t\r\n", end);
+    if (begin == std::string::npos) return result;
+    end = text.find_first_of(" \t\r\n", begin);
+    if (end == std::string::npos) end = text.size();
+    result.push_back(text.substr(begin, end - begin));
+  }
+}
+
+}  // namespace
+
+XmlDocument::XmlDocument(const std::string& text, const std::string& origin)
+    : origin_(origin), document_(std::make_shared<TiXmlDocument>()) {
+  if (text.find('\0') != std::string::npos) throw InvalidInput(origin + ": holds a NUL byte: must be XML text");
+  check_markup(text, origin);
+  document_->Parse(text.c_str(), nullptr, TIXML_ENCODING_UTF8);
+  if (document_->Error())
+    throw InvalidInput(origin + ":" + std::to_string(document_->ErrorRow()) + ": not well-formed XML: " +
+                       document_->ErrorDesc());
+  root_ = document_->RootElement();
+  if (!root_) throw InvalidInput(origin + ": holds no XML element");
+}
+
+std::string XmlDocument::where(const TiXmlElement& element) const {
+  std::string text = origin_ + ":" + std::to_string(element.Row()) + ": <" + element.Value();
+  for (const char* key : {"name", "link1", "link2"})
+    if (const char* value = element.Attribute(key)) text += std::string(" ") + key + "=\"" + value + "\"";
+  text += ">";
+  // Inner elements (limit, origin, box, ...) rarely have names: say whose they are.
+  if (!element.Attribute("name")) {
+    for (const TiXmlNode* node = element.Parent(); node; node = node->Parent()) {
+      const TiXmlElement* owner = node->ToElement();
+      if (!owner || owner == root_) break;
+      if (const char* name = owner->Attribute("name")) {
+        text += std::string(" of ") + owner->Value() + " \"" + name + "\"";
+        break;
+      }
+    }
+  }
+  return text;
+}
+
+void XmlDocument::fail(const TiXmlElement& element, const std::string& what) const {
+  throw InvalidInput(where(element) + ": " + what);
+}
+
+std::optional<std::string> XmlDocument::text(const TiXmlElement& element, const char* attribute) const {
+  const char* value = element.Attribute(attribute);
+  if (!value) return std::nullopt;
+  return trimmed(value);
+}
+
+std::string XmlDocument::required_text(const TiXmlElement& element, const char* attribute) const {
+  const auto value = text(element, attribute);
+  if (!value) fail(element, std::string("attribute ") + attribute + " is missing");
+  if (value->empty()) fail(element, std::string("attribute ") + attribute + " = \"\": must not be empty");
+  return *value;
+}
+
+double XmlDocument::parse_number(const TiXmlElement& element, const char* attribute, const std::string& value) const {
+  // from_chars does not depend on the locale; unlike strtod it takes no leading plus.
+  const char* begin = value.c_str() + (value.size() > 1 && value[0] == '+' && value[1] != '-' ? 1 : 0);
+  const char* end = value.c_str() + value.size();
+  double number = 0;
+  const auto [stop, error] = std::from_chars(begin, end, number);
+  const bool underflow = error == std::errc::result_out_of_range && std::abs(std::strtod(begin, nullptr)) < 1;
+  if (underflow) return 0.0;
+  if (error != std::errc() || stop != end)
+    fail(element, std::string(attribute) + " = \"" + value + "\": must be a number");
+  if (!std::isfinite(number)) fail(element, std::string(attribute) + " = \"" + value + "\": must be finite");
+  return number;
+}
+
+double XmlDocument::number(const TiXmlElement& element, const char* attribute, double fallback) const {
+  const auto value = text(element, attribute);
+  return value ? parse_number(element, attribute, *value) : fallback;
+}
+
+double XmlDocument::required_number(const TiXmlElement& element, const char* attribute) const {
+  return parse_number(element, attribute, required_text(element, attribute));
+}
+
+Eigen::Vector3d XmlDocument::vector3(const TiXmlElement& element, const char* attribute,
+                                     const Eigen::Vector3d& fallback) const {
+  const auto value = text(element, attribute);
+  if (!value) return fallback;
+  const std::vector<std::string> parts = words(*value);
+  if (parts.size() != 3) fail(element, std::string(attribute) + " = \"" + *value + "\": must be three numbers");
+  Eigen::Vector3d result;
+  for (int i = 0; i < 3; ++i) result[i] = parse_number(element, attribute, parts[static_cast<std::size_t>(i)]);
+  return result;
+}
+
+std::string xml_escape(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&': result += "&amp;"; break;
+      case '<': result += "&lt;"; break;
+      case '>': result += "&gt;"; break;
+      case '"': result += "&quot;"; break;
+      case '\'': result += "&apos;"; break;
+      default: result += c;
+    }
+  }
+  return result;
+}
+
+std::string number_text(double value) {
+  char text[40];
+  const auto [end, error] = std::to_chars(text, text + sizeof(text), value);
+  return error == std::errc() ? std::string(text, end) : "0";
+}
+
+}  // namespace mmgrasp::detail

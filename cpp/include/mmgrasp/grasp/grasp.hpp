@@ -31,7 +31,16 @@ struct MMGRASP_EXPORT GraspSamplerOptions {
 
 /// Antipodal grasps of a rigid body (box, cylinder, sphere, mesh or several shapes; P1 3.4.1, Algorithm 3): contact pairs,
 /// tool centre point midway, approach directions across the closing axis. Pairs wider than the gripper are counted in
-/// `too_wide`. Sorted by quality, then by order of sampling. Collisions of the hand are not looked at here.
+/// `too_wide`: a pair is too wide when it exceeds max_opening; a part that leaves less than the wanted clearance is kept (the
+/// gap shrinks, see Gripper::pregrasp_opening) with a lower quality. Sorted by quality, then by order of sampling.
+///
+/// Both hands of a grasp are given: turned by half a turn about the approach axis the same contacts are another grasp.
+/// T_object_tcp turns Gripper::approach into the direction the hand moves in and Gripper::closing into the line of contact.
+/// A single box, cylinder, sphere or capsule is sampled in closed form; anything else by rays through its triangles: solids
+/// from outside to outside of their union, open surfaces from wall to wall. Quality is a product of factors in [0.5, 1]:
+/// normals along the contact line, line through the centre of mass, share of the pad on a flat face (boxes), little material
+/// behind the pads, clearance left. Collisions of the hand are not looked at here. Throws InvalidInput on an empty object,
+/// a plane, a bad shape, gripper or option.
 MMGRASP_EXPORT std::vector<Grasp> sample_grasps(const std::vector<LinkShape>& object, const Gripper& gripper,
                                                 const GraspSamplerOptions& options = {}, int* too_wide = nullptr);
 

@@ -1,0 +1,193 @@
+#include <algorithm>
+#include <cmath>
+
+#include "grasp/contact_pairs.hpp"
+#include "mmgrasp/core/random.hpp"
+
+namespace mmgrasp::detail {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+struct Triangle {
+  Eigen::Vector3d a, ab, ac, normal;  ///< normal: unit, by the winding.
+  double area = 0;
+};
+
+/// All shapes of the object as one heap of triangles in the object frame.
+struct Surface {
+  std::vector<Triangle> triangles;
+  std::vector<double> cumulative_area;
+  Eigen::AlignedBox3d bounds;
+  Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();
+  bool solid = true;     ///< Every shape is closed: the union's inside is well defined.
+  double tolerance = 0;  ///< Below this two hits are the same place [m].
+};
+
+/// Centre of volume for solids (shapes that overlap count twice there), of area for open surfaces.
+Eigen::Vector3d centre_of(const Surface& surface) {
+  Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
+  double total = 0;
+  const Eigen::Vector3d origin = surface.bounds.center();
+  for (const Triangle& t : surface.triangles) {
+    const Eigen::Vector3d corners = 3 * (t.a - origin) + t.ab + t.ac;
+    const double weight = surface.solid ? (t.a - origin).dot(t.ab.cross(t.ac)) / 6 : t.area;
+    weighted += weight * corners / (surface.solid ? 4 : 3);
+    total += weight;
+  }
+  return std::abs(total) > 1e-15 ? Eigen::Vector3d(origin + weighted / total) : origin;
+}
+
+Surface gather(const std::vector<LinkShape>& object) {
+  Surface surface;
+  double area = 0;
+  for (const LinkShape& shape : object) {
+    const auto mesh = shape_mesh(shape.shape);
+    surface.solid = surface.solid && mesh->closed;
+    for (const auto& [i, j, k] : mesh->triangles) {
+      Triangle t;
+      t.a = shape.T_link_shape * mesh->vertices[i];
+      t.ab = shape.T_link_shape * mesh->vertices[j] - t.a;
+      t.ac = shape.T_link_shape * mesh->vertices[k] - t.a;
+      const Eigen::Vector3d cross = t.ab.cross(t.ac);
+      t.area = cross.norm() / 2;
+      if (t.area <= 0) continue;
+      t.normal = cross / (2 * t.area);
+      surface.triangles.push_back(t);
+      surface.cumulative_area.push_back(area += t.area);
+      for (const Eigen::Vector3d& corner : {t.a, Eigen::Vector3d(t.a + t.ab), Eigen::Vector3d(t.a + t.ac)})
+        surface.bounds.extend(corner);
+    }
+  }
+  if (surface.triangles.empty()) return surface;
+  surface.tolerance = 1e-7 * surface.bounds.diagonal().norm();
+  surface.centre_of_mass = centre_of(surface);
+  return surface;
+}
+
+/// Where a line meets a triangle: point = origin + t * direction.
+struct Hit {
+  double t = 0;
+  const Triangle* triangle = nullptr;
+};
+
+/// All hits of the whole line (both ways), sorted along it (Moeller and Trumbore's test).
+std::vector<Hit> cast_line(const Surface& surface, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+  std::vector<Hit> hits;
+  for (const Triangle& triangle : surface.triangles) {
+    const Eigen::Vector3d p = direction.cross(triangle.ac);
+    const double determinant = triangle.ab.dot(p);
+    if (determinant == 0) continue;
+    const Eigen::Vector3d s = origin - triangle.a;
+    const double u = s.dot(p) / determinant;
+    if (u < 0 || u > 1) continue;
+    const Eigen::Vector3d q = s.cross(triangle.ab);
+    const double v = direction.dot(q) / determinant;
+    if (v < 0 || u + v > 1) continue;
+    hits.push_back({triangle.ac.dot(q) / determinant, &triangle});
+  }
+  std::stable_sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return a.t < b.t; });
+  return hits;
+}
+
+/// Hits at which the line leaves the union of solids, when it enters that union at t = 0; none when the start is buried in
+/// another shape, or when the line grazes an edge so that entries and exits do not balance.
+std::vector<Hit> solid_exits(const std::vector<Hit>& hits, const Eigen::Vector3d& direction, double tolerance) {
+  std::vector<Hit> exits;
+  bool entered_at_start = false;
+  int depth = 0;
+  for (std::size_t i = 0; i < hits.size();) {
+    const double t = hits[i].t;
+    const int before = depth;
+    const Hit* leaving = nullptr;
+    for (; i < hits.size() && hits[i].t - t <= tolerance; ++i) {
+      const bool leaves = direction.dot(hits[i].triangle->normal) > 0;
+      if (leaves) leaving = &hits[i];
+      depth += leaves ? -1 : 1;
+    }
+    if (depth < 0) return {};
+    if (before == 0 && depth > 0 && std::abs(t) <= tolerance) entered_at_start = true;
+    if (before > 0 && depth == 0 && t > tolerance && leaving) exits.push_back(*leaving);
+  }
+  if (depth != 0 || !entered_at_start) exits.clear();
+  return exits;
+}
+
+/// On open surfaces there is no inside: every other hit is an opposite wall.
+std::vector<Hit> other_hits(const std::vector<Hit>& hits, double tolerance) {
+  std::vector<Hit> others;
+  for (const Hit& hit : hits)
+    if (std::abs(hit.t) > tolerance) others.push_back(hit);
+  return others;
+}
+
+struct SurfacePoint {
+  Eigen::Vector3d point;
+  const Triangle* triangle;
+};
+
+SurfacePoint sample_point(const Surface& surface, Rng& rng) {
+  const double area = rng.uniform(0, surface.cumulative_area.back());
+  const auto found = std::upper_bound(surface.cumulative_area.begin(), surface.cumulative_area.end(), area);
+  const std::size_t index = std::min<std::size_t>(found - surface.cumulative_area.begin(), surface.triangles.size() - 1);
+  const Triangle& triangle = surface.triangles[index];
+  const double root = std::sqrt(rng.uniform()), v = rng.uniform();
+  return {triangle.a + triangle.ab * (root * (1 - v)) + triangle.ac * (root * v), &triangle};
+}
+
+/// Uniform over the cone of directions around `axis`.
+Eigen::Vector3d sample_in_cone(const Eigen::Vector3d& axis, double half_angle, Rng& rng) {
+  const double cosine = rng.uniform(std::cos(half_angle), 1), sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+  const double around = rng.uniform(0, 2 * kPi);
+  const Eigen::Vector3d u = orthogonal_to(axis), v = axis.cross(u);
+  return (cosine * axis + sine * (std::cos(around) * u + std::sin(around) * v)).normalized();
+}
+
+/// Angle between two lines [rad], in [0, pi / 2].
+double line_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), std::abs(a.dot(b)));
+}
+
+void add_pairs_from(const SurfacePoint& start, const Eigen::Vector3d& direction, const Surface& surface, double cone,
+                    std::vector<ContactPair>& pairs) {
+  const double start_angle = line_angle(direction, start.triangle->normal);
+  if (start_angle > cone) return;
+  const std::vector<Hit> hits = cast_line(surface, start.point, direction);
+  const std::vector<Hit> ends =
+      surface.solid ? solid_exits(hits, direction, surface.tolerance) : other_hits(hits, surface.tolerance);
+  for (const Hit& end : ends) {
+    const double end_angle = line_angle(direction, end.triangle->normal);
+    if (end_angle > cone) continue;
+    ContactPair pair;
+    pair.middle = start.point + direction * (end.t / 2);
+    pair.axis = direction;
+    pair.width = std::abs(end.t);
+    pair.alignment = 1 - std::max(start_angle, end_angle) / cone;
+    pair.first_approach = orthogonal_to(direction);
+    pairs.push_back(pair);
+  }
+}
+
+}  // namespace
+
+ContactPairs surface_pairs(const std::vector<LinkShape>& object, const GraspSamplerOptions& options) {
+  const Surface surface = gather(object);
+  ContactPairs result;
+  if (surface.triangles.empty()) return result;
+  result.centre_of_mass = surface.centre_of_mass;
+  for (int i = 0; i < 8; ++i)
+    result.corners.push_back(surface.bounds.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
+
+  const double cone = std::atan(options.friction);
+  for (int i = 0; i < options.mesh_samples; ++i) {
+    Rng rng(options.seed, static_cast<std::uint64_t>(i));
+    const SurfacePoint start = sample_point(surface, rng);
+    const Eigen::Vector3d inward = -start.triangle->normal;
+    // Along the normal the first contact is perfect; tilted lines also find wedges that need friction on both sides.
+    const Eigen::Vector3d direction = i % 2 == 0 ? inward : sample_in_cone(inward, cone, rng);
+    add_pairs_from(start, direction, surface, cone, result.pairs);
+  }
+  return result;
+}
+
+}  // namespace mmgrasp::detail

@@ -36,18 +36,33 @@ struct Neighbour {
 };
 using Neighbours = std::vector<std::array<Neighbour, 3>>;
 
-bool find_neighbours(const std::vector<std::array<int, 3>>& triangles, Neighbours& neighbours) {
-  const std::vector<HalfEdge> edges = sorted_half_edges(triangles);
-  neighbours.assign(triangles.size(), {});
-  for (std::size_t i = 0; i < edges.size(); i += 2) {
-    if (i + 1 >= edges.size()) return false;
-    const HalfEdge &a = edges[i], &b = edges[i + 1];
-    const bool pair = a.low == b.low && a.high == b.high;
-    const bool third = i + 2 < edges.size() && edges[i + 2].low == a.low && edges[i + 2].high == a.high;
-    if (!pair || third || a.triangle == b.triangle) return false;
+// Joins the half-edges of one edge in pairs. Two may run alike (one triangle is turned over); more than two, where solids
+// touch along an edge, must balance: each pairs with one that runs against it.
+bool pair_up(const HalfEdge* begin, const HalfEdge* end, Neighbours& neighbours) {
+  std::vector<const HalfEdge*> forward, backward;
+  for (const HalfEdge* e = begin; e != end; ++e) (e->forward ? forward : backward).push_back(e);
+  const auto join = [&](const HalfEdge& a, const HalfEdge& b) {
     const bool same = a.forward != b.forward;
     neighbours[a.triangle][a.side] = {b.triangle, same};
     neighbours[b.triangle][b.side] = {a.triangle, same};
+  };
+  if (end - begin == 2) {
+    join(begin[0], begin[1]);
+    return begin[0].triangle != begin[1].triangle;
+  }
+  if (forward.size() != backward.size()) return false;
+  for (std::size_t i = 0; i < forward.size(); ++i) join(*forward[i], *backward[i]);
+  return true;
+}
+
+bool find_neighbours(const std::vector<std::array<int, 3>>& triangles, Neighbours& neighbours) {
+  const std::vector<HalfEdge> edges = sorted_half_edges(triangles);
+  neighbours.assign(triangles.size(), {});
+  for (std::size_t i = 0; i < edges.size();) {
+    std::size_t end = i + 1;
+    while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high) ++end;
+    if (!pair_up(&edges[i], &edges[0] + end, neighbours)) return false;
+    i = end;
   }
   return true;
 }

@@ -11,7 +11,7 @@ struct Shells {
 };
 
 /// Orients the triangles of a mesh without boundary consistently and outwards (cavities inwards). False, with the triangles
-/// untouched, when an edge is not shared by exactly two triangles or the surface is one-sided.
+/// untouched, when an edge is not shared by pairs of triangles or the surface is one-sided.
 bool orient_closed(const std::vector<Eigen::Vector3d>& vertices, std::vector<std::array<int, 3>>& triangles);
 
 /// Triangles grouped by shared edges; works for open meshes too.

@@ -32,9 +32,10 @@ class ObjReader {
     while (at < content.size()) {
       const std::size_t end = std::min(content.find('\n', at), content.size());
       ++line_;
-      read_line(content.substr(at, end - at));
+      add_line(content.substr(at, end - at));
       at = end + 1;
     }
+    if (!continued_.empty()) fail("ends in a continued line (truncated)");
     check_indices();
     return std::move(mesh_);
   }
@@ -42,6 +43,19 @@ class ObjReader {
  private:
   [[noreturn]] void fail(const std::string& reason) const {
     mesh_error(path_, "line " + std::to_string(line_) + ": " + reason);
+  }
+
+  // A backslash at the end joins a line with the next.
+  void add_line(std::string_view line) {
+    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
+    const bool continues = !line.empty() && line.back() == '\\' && line.front() != '#';
+    if (continues) line.remove_suffix(1);
+    if (!continues && continued_.empty()) return read_line(line);
+    continued_ += std::string(line) + ' ';
+    if (continues) return;
+    const std::string whole = std::move(continued_);
+    continued_.clear();
+    read_line(whole);
   }
 
   void read_line(std::string_view line) {
@@ -94,6 +108,7 @@ class ObjReader {
 
   const std::string& path_;
   RawMesh mesh_;
+  std::string continued_;
   int line_ = 0;
 };
 

@@ -162,6 +162,8 @@ class PlyReader {
       }
     }
     if (is_vertex) mesh_.vertices.push_back(vertex);
+    // Writers exist that append undeclared values; a new record starts on a new line.
+    if (encoding_ == Encoding::ascii) words_.skip_line();
   }
 
   const std::string& path_;

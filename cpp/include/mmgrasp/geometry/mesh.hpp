@@ -14,8 +14,8 @@ namespace mmgrasp {
 struct MMGRASP_EXPORT TriangleMesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<int, 3>> triangles;
-  /// Every edge is shared by exactly two triangles in opposite directions (counting slivers without area, which are then
-  /// dropped) and the volume is positive: a solid. Else a surface.
+  /// Every edge is shared by two triangles in opposite directions, or by several such pairs where solids touch (counting
+  /// slivers without area, which are then dropped), and the volume is positive: a solid. Else a surface.
   bool closed = false;
   bool convex = false;   ///< Closed and equal to its hull: may be treated as a convex polytope.
   std::string source;    ///< File it came from, or empty.

@@ -1,0 +1,219 @@
+#include "mmgrasp/grasp/grasp.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "mmgrasp/core/error.hpp"
+
+namespace mmgrasp {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+LinkShape shape_at(const Shape& shape, const Pose& pose = Pose::Identity()) {
+  LinkShape result;
+  result.shape = shape;
+  result.T_link_shape = pose;
+  return result;
+}
+
+Gripper wide_gripper() {
+  Gripper gripper;
+  gripper.max_opening = 0.10;
+  gripper.finger_depth = 0.03;
+  gripper.finger_width = 0.02;
+  return gripper;
+}
+
+GraspSamplerOptions all_kept() {
+  GraspSamplerOptions options;
+  options.max_grasps = 1000000;
+  return options;
+}
+
+Eigen::Vector3d closing_in_object(const Grasp& grasp, const Gripper& gripper) {
+  return grasp.T_object_tcp.linear() * gripper.closing;
+}
+
+Eigen::Vector3d approach_in_object(const Grasp& grasp, const Gripper& gripper) {
+  return grasp.T_object_tcp.linear() * gripper.approach;
+}
+
+TEST(SampleGrasps, BoxContactsLieOnOppositeFacesAtTheBoxesSize) {
+  const Eigen::Vector3d size(0.03, 0.05, 0.08);
+  const Pose T = pose_from_xyz_rpy({0.1, -0.2, 0.3}, {0.4, -0.7, 1.1});
+  const Gripper gripper = wide_gripper();
+  int too_wide = -1;
+  const auto grasps = sample_grasps({shape_at(Box{size}, T)}, gripper, all_kept(), &too_wide);
+  ASSERT_EQ(grasps.size(), 3u * 9 * 8 * 2);
+  EXPECT_EQ(too_wide, 0);
+  std::set<int> axes;
+  for (const Grasp& grasp : grasps) {
+    const Eigen::Vector3d closing = T.linear().transpose() * closing_in_object(grasp, gripper);
+    Eigen::Index axis;
+    ASSERT_NEAR(closing.cwiseAbs().maxCoeff(&axis), 1, 1e-12);
+    axes.insert(static_cast<int>(axis));
+    EXPECT_NEAR(grasp.width, size[axis], 1e-12);
+    for (const double side : {-0.5, 0.5}) {
+      const Eigen::Vector3d contact = T.inverse() * grasp.T_object_tcp.translation() + side * grasp.width * closing;
+      EXPECT_NEAR(std::abs(contact[axis]), size[axis] / 2, 1e-12);
+      for (const int other : {(axis + 1) % 3, (axis + 2) % 3}) EXPECT_LT(std::abs(contact[other]), size[other] / 2);
+    }
+  }
+  EXPECT_EQ(axes.size(), 3u);
+}
+
+TEST(SampleGrasps, TcpAxesFollowTheGrippersConventions) {
+  Gripper gripper = wide_gripper();
+  gripper.approach = Eigen::Vector3d::UnitZ();
+  gripper.closing = -Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d size(0.03, 0.2, 0.2);  // only x can be held
+  const auto grasps = sample_grasps({shape_at(Box{size})}, gripper, all_kept());
+  ASSERT_FALSE(grasps.empty());
+  int from_above = 0;
+  for (const Grasp& grasp : grasps) {
+    const Eigen::Matrix3d R = grasp.T_object_tcp.linear();
+    EXPECT_LT((R.transpose() * R - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+    EXPECT_NEAR(R.determinant(), 1, 1e-12);
+    EXPECT_NEAR(std::abs(R.col(0).x()), 1, 1e-12);  // tcp x, the closing axis up to sign, joins the contacts
+    EXPECT_NEAR(R.col(2).x(), 0, 1e-12);            // tcp z is the approach, across it
+    from_above += (R.col(2) + Eigen::Vector3d::UnitZ()).norm() < 1e-9;
+  }
+  EXPECT_EQ(from_above, 9 * 2);  // every pad position, both flips
+}
+
+TEST(SampleGrasps, EveryGraspComesWithItsFlip) {
+  const Gripper gripper = wide_gripper();
+  const auto grasps = sample_grasps({shape_at(Cylinder{0.02, 0.06})}, gripper, all_kept());
+  ASSERT_FALSE(grasps.empty());
+  for (const Grasp& grasp : grasps) {
+    const Eigen::Matrix3d flipped =
+        grasp.T_object_tcp.linear() * Eigen::AngleAxisd(kPi, gripper.approach).toRotationMatrix();
+    const bool found = std::any_of(grasps.begin(), grasps.end(), [&](const Grasp& other) {
+      return (other.T_object_tcp.translation() - grasp.T_object_tcp.translation()).norm() < 1e-9 &&
+             (other.T_object_tcp.linear() - flipped).norm() < 1e-9 && other.quality == grasp.quality;
+    });
+    EXPECT_TRUE(found);
+  }
+}
+
+TEST(SampleGrasps, StandoffMovesTheTcpBackAlongTheApproach) {
+  const Gripper gripper = wide_gripper();
+  GraspSamplerOptions options = all_kept();
+  options.positions = 1;
+  options.standoff = 0.015;
+  for (const Grasp& grasp : sample_grasps({shape_at(Box{{0.04, 0.05, 0.06}})}, gripper, options)) {
+    EXPECT_LT((grasp.T_object_tcp.translation() + 0.015 * approach_in_object(grasp, gripper)).norm(), 1e-12);
+  }
+}
+
+TEST(SampleGrasps, CylinderWidthsAreDiameterOrLength) {
+  const double radius = 0.025, length = 0.09;
+  const Gripper gripper = wide_gripper();
+  const auto grasps = sample_grasps({shape_at(Cylinder{radius, length})}, gripper, all_kept());
+  int across = 0, along = 0;
+  for (const Grasp& grasp : grasps) {
+    const Eigen::Vector3d closing = closing_in_object(grasp, gripper), middle = grasp.T_object_tcp.translation();
+    if (std::abs(closing.z()) < 0.5) {
+      ++across;
+      EXPECT_NEAR(closing.z(), 0, 1e-12);
+      EXPECT_NEAR(grasp.width, 2 * radius, 1e-12);
+      EXPECT_NEAR(middle.head<2>().norm(), 0, 1e-12);
+      EXPECT_LT(std::abs(middle.z()), length / 2);
+    } else {
+      ++along;
+      EXPECT_NEAR(grasp.width, length, 1e-12);
+      EXPECT_LT(middle.head<2>().norm(), radius);
+      EXPECT_NEAR(middle.z(), 0, 1e-12);
+    }
+  }
+  EXPECT_EQ(across, 3 * 8 * 8 * 2);
+  EXPECT_EQ(along, 9 * 8 * 2);
+}
+
+TEST(SampleGrasps, SphereAndCapsuleMatchTheirClosedForms) {
+  const Gripper gripper = wide_gripper();
+  const Pose T = pose_from_xyz_rpy({0, 0, 0.5}, {0, 0, 0});
+  const auto sphere = sample_grasps({shape_at(Sphere{0.03}, T)}, gripper, all_kept());
+  ASSERT_EQ(sphere.size(), (3u + 8 * 3) * 8 * 2);
+  for (const Grasp& grasp : sphere) {
+    EXPECT_NEAR(grasp.width, 0.06, 1e-12);
+    EXPECT_NEAR((grasp.T_object_tcp.translation() - T.translation()).norm(), 0, 1e-12);
+  }
+  for (const Grasp& grasp : sample_grasps({shape_at(Capsule{0.02, 0.05})}, gripper, all_kept())) {
+    const bool across = std::abs(closing_in_object(grasp, gripper).z()) < 0.5;
+    EXPECT_NEAR(grasp.width, across ? 0.04 : 0.09, 1e-12);
+  }
+}
+
+TEST(SampleGrasps, CountsPairsWiderThanTheOpening) {
+  Gripper gripper = wide_gripper();
+  gripper.max_opening = 0.06;
+  int too_wide = -1;
+  const auto grasps = sample_grasps({shape_at(Box{{0.05, 0.061, 0.2}})}, gripper, all_kept(), &too_wide);
+  EXPECT_EQ(too_wide, 2 * 9);                    // nine pad positions on each of two pairs of faces
+  EXPECT_EQ(grasps.size(), 9u * 8 * 2);
+  for (const Grasp& grasp : grasps) EXPECT_LE(grasp.width, gripper.max_opening);
+  gripper.max_opening = 0.04;
+  EXPECT_TRUE(sample_grasps({shape_at(Box{{0.05, 0.061, 0.2}})}, gripper, {}, &too_wide).empty());
+  EXPECT_EQ(too_wide, 3 * 9);
+}
+
+TEST(SampleGrasps, QualityIsSortedAndPrefersTheMiddle) {
+  const Gripper gripper = wide_gripper();
+  const auto grasps = sample_grasps({shape_at(Box{{0.03, 0.15, 0.15}})}, gripper, all_kept());
+  for (std::size_t i = 1; i < grasps.size(); ++i) EXPECT_GE(grasps[i - 1].quality, grasps[i].quality);
+  for (const Grasp& grasp : grasps) {
+    EXPECT_GT(grasp.quality, 0);
+    EXPECT_LE(grasp.quality, 1);
+  }
+  // Same approach: through the centre of mass beats off to the side at the same depth.
+  const auto quality_at = [&](const Eigen::Vector3d& tcp) {
+    for (const Grasp& grasp : grasps)
+      if ((grasp.T_object_tcp.translation() - tcp).norm() < 1e-9 &&
+          (approach_in_object(grasp, gripper) + Eigen::Vector3d::UnitZ()).norm() < 1e-9)
+        return grasp.quality;
+    return -1.0;
+  };
+  const double edge = 0.075 - 0.03 / 2;  // the pad is flush with the edge
+  ASSERT_GT(quality_at({0, edge, 0}), 0);
+  EXPECT_GT(quality_at({0, 0, 0}), quality_at({0, edge, 0}));
+  // Less material between the palm and the pads is better than more, at the same distance from the centre.
+  EXPECT_GT(quality_at({0, 0, edge}), quality_at({0, 0, -edge}));
+}
+
+TEST(SampleGrasps, LimitKeepsDirectionsSpread) {
+  const Gripper gripper = wide_gripper();
+  GraspSamplerOptions options;
+  options.max_grasps = 48;  // three closing axes, eight approaches, two flips
+  const auto grasps = sample_grasps({shape_at(Box{{0.04, 0.05, 0.06}})}, gripper, options);
+  ASSERT_EQ(grasps.size(), 48u);
+  for (std::size_t i = 0; i < grasps.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      EXPECT_GT(rotation_distance(grasps[i].T_object_tcp, grasps[j].T_object_tcp), 0.5) << i << " " << j;
+}
+
+TEST(SampleGrasps, RefusesBadInput) {
+  const Gripper gripper = wide_gripper();
+  EXPECT_THROW(sample_grasps({}, gripper), InvalidInput);
+  EXPECT_THROW(sample_grasps({shape_at(Plane{})}, gripper), InvalidInput);
+  EXPECT_THROW(sample_grasps({shape_at(Box{{0.1, 0, 0.1}})}, gripper), InvalidInput);
+  Gripper crooked = gripper;
+  crooked.closing = crooked.approach;
+  EXPECT_THROW(sample_grasps({shape_at(Sphere{0.02})}, crooked), InvalidInput);
+  for (int field = 0; field < 5; ++field) {
+    GraspSamplerOptions options;
+    if (field == 0) options.approaches = 0;
+    if (field == 1) options.positions = 0;
+    if (field == 2) options.mesh_samples = -1;
+    if (field == 3) options.max_grasps = 0;
+    if (field == 4) options.friction = 0;
+    EXPECT_THROW(sample_grasps({shape_at(Sphere{0.02})}, gripper, options), InvalidInput) << field;
+  }
+}
+
+}  // namespace
+}  // namespace mmgrasp

@@ -1,0 +1,47 @@
+#include "plan/ompl_plugin/planners.hpp"
+
+#include <ompl/geometric/planners/est/BiEST.h>
+#include <ompl/geometric/planners/est/EST.h>
+#include <ompl/geometric/planners/informedtrees/BITstar.h>
+#include <ompl/geometric/planners/kpiece/BKPIECE1.h>
+#include <ompl/geometric/planners/kpiece/KPIECE1.h>
+#include <ompl/geometric/planners/prm/LazyPRMstar.h>
+#include <ompl/geometric/planners/rrt/InformedRRTstar.h>
+#include <ompl/geometric/planners/rrt/RRT.h>
+#include <ompl/geometric/planners/rrt/RRTConnect.h>
+#include <ompl/geometric/planners/rrt/RRTstar.h>
+
+#include "plan/ompl_plugin/repeatable_prm.hpp"
+
+namespace mmgrasp_ompl {
+namespace ob = ompl::base;
+namespace og = ompl::geometric;
+namespace {
+
+template <typename Planner>
+ob::PlannerPtr make(const ob::SpaceInformationPtr& si) {
+  return std::make_shared<Planner>(si);
+}
+
+ob::PlannerPtr make_prm(const ob::SpaceInformationPtr& si) { return std::make_shared<RepeatablePrm>(si, false, false); }
+ob::PlannerPtr make_prm_star(const ob::SpaceInformationPtr& si) { return std::make_shared<RepeatablePrm>(si, true, true); }
+
+}  // namespace
+
+const PlannerEntry kPlanners[] = {
+    {"rrt_connect", make<og::RRTConnect>, false, false},
+    {"rrt", make<og::RRT>, true, false},
+    {"est", make<og::EST>, true, true},
+    {"bi_est", make<og::BiEST>, true, true},
+    {"kpiece", make<og::KPIECE1>, true, true},
+    {"bkpiece", make<og::BKPIECE1>, true, true},
+    {"prm", make_prm, true, false},
+    {"prm_star", make_prm_star, true, false},
+    {"lazy_prm_star", make<og::LazyPRMstar>, true, true},
+    {"rrt_star", make<og::RRTstar>, true, true},
+    {"informed_rrt_star", make<og::InformedRRTstar>, true, true},
+    {"bit_star", make<og::BITstar>, true, true},
+};
+const std::size_t kPlannerCount = sizeof(kPlanners) / sizeof(kPlanners[0]);
+
+}  // namespace mmgrasp_ompl

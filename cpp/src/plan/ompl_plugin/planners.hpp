@@ -1,0 +1,22 @@
+#pragma once
+
+#include <ompl/base/Planner.h>
+
+#include <cstddef>
+
+namespace mmgrasp_ompl {
+
+/// How a planner is made and what it needs to repeat itself.
+struct PlannerEntry {
+  const char* name;
+  ompl::base::PlannerPtr (*make)(const ompl::base::SpaceInformationPtr& si);
+  /// Draws from OMPL's own generators, which are seeded process-wide: runs alone. Others run side by side.
+  bool runs_alone;
+  /// Spends rounds without drawing states: rounds count towards the budget, too.
+  bool count_rounds;
+};
+
+extern const PlannerEntry kPlanners[];
+extern const std::size_t kPlannerCount;
+
+}  // namespace mmgrasp_ompl

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+#include "plan/ompl_plugin/plugin_api.hpp"
+
+namespace mmgrasp_ompl {
+
+/// What one run has spent of its budget, shared by sampler, validity checker and termination condition.
+class RunContext {
+ public:
+  RunContext(const MmgraspOmplProblem& problem, bool count_rounds)
+      : problem_(problem),
+        count_rounds_(count_rounds),
+        deadline_(std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                                         std::chrono::duration<double>(problem.time_limit))) {}
+
+  const MmgraspOmplProblem& problem() const { return problem_; }
+
+  void restart() { draws_ = checks_ = rounds_ = 0; }
+  void count_draw() { ++draws_; }
+  /// Different for each sampler of a run, the same in every run.
+  std::uint64_t next_sampler_seed() { return (static_cast<std::uint64_t>(problem_.seed) << 16) + samplers_++; }
+
+  bool is_free(const double* q) {
+    ++checks_;
+    return !stopped() && problem_.is_free(problem_.user, q) != 0;
+  }
+  /// A stopped run refuses every edge, so that even a planner deep inside one iteration ends soon.
+  bool edge_is_free(const double* q0, const double* q1) {
+    return !stopped() && problem_.edge_is_free(problem_.user, q0, q1) != 0;
+  }
+
+  /// The termination condition: called by planners once per round or more often.
+  bool finished() {
+    ++rounds_;
+    const long budget = problem_.max_iterations;
+    return draws_ >= budget || checks_ >= budget || (count_rounds_ && rounds_ > budget) || stopped();
+  }
+
+ private:
+  bool stopped() const {
+    return problem_.stopped(problem_.user) != 0 || std::chrono::steady_clock::now() >= deadline_;
+  }
+
+  const MmgraspOmplProblem& problem_;
+  bool count_rounds_;
+  std::chrono::steady_clock::time_point deadline_;
+  long draws_ = 0, checks_ = 0, rounds_ = 0;
+  std::uint64_t samplers_ = 0;
+};
+
+}  // namespace mmgrasp_ompl

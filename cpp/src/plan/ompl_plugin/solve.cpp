@@ -1,0 +1,133 @@
+#include <ompl/base/ProblemDefinition.h>
+#include <ompl/base/goals/GoalStates.h>
+#include <ompl/geometric/PathGeometric.h>
+#include <ompl/util/Console.h>
+#include <ompl/util/RandomNumbers.h>
+
+#include <cstring>
+#include <exception>
+#include <mutex>
+#include <shared_mutex>
+#include <string>
+
+#include "plan/ompl_plugin/joint_space.hpp"
+#include "plan/ompl_plugin/planners.hpp"
+#include "plan/ompl_plugin/plugin_api.hpp"
+#include "plan/ompl_plugin/run_context.hpp"
+
+namespace mmgrasp_ompl {
+namespace ob = ompl::base;
+namespace og = ompl::geometric;
+namespace {
+
+const PlannerEntry* find_planner(const char* name) {
+  for (std::size_t i = 0; i < kPlannerCount; ++i) {
+    if (std::strcmp(kPlanners[i].name, name) == 0) return &kPlanners[i];
+  }
+  return nullptr;
+}
+
+/// Every run creates OMPL objects that draw seeds from the process-wide generator. Planners that depend on these seeds hold
+/// it exclusively from seeding to the end; the others share.
+std::shared_mutex& seed_mutex() {
+  static std::shared_mutex mutex;
+  return mutex;
+}
+
+class RunLock {
+ public:
+  RunLock(bool alone, unsigned seed) : alone_(alone) {
+    if (!alone_) {
+      seed_mutex().lock_shared();
+      return;
+    }
+    seed_mutex().lock();
+    // OMPL complains that seeds were drawn before (its log is off) and restarts its generator all the same; 0 it ignores.
+    ompl::RNG::setSeed(seed == 0 ? 0x9e3779b9u : seed);
+  }
+  ~RunLock() { alone_ ? seed_mutex().unlock() : seed_mutex().unlock_shared(); }
+  RunLock(const RunLock&) = delete;
+  RunLock& operator=(const RunLock&) = delete;
+
+ private:
+  bool alone_;
+};
+
+void copy_in(const double* from, int size, ob::State* to) { std::memcpy(values(to), from, sizeof(double) * size); }
+
+ob::ProblemDefinitionPtr make_definition(const ob::SpaceInformationPtr& si, const MmgraspOmplProblem& problem,
+                                         bool any_wraps) {
+  auto definition = std::make_shared<ob::ProblemDefinition>(si);
+  ob::State* state = si->allocState();
+  copy_in(problem.start, problem.size, state);
+  definition->addStartState(state);
+  auto goals = std::make_shared<ob::GoalStates>(si);
+  for (int g = 0; g < problem.goal_count; ++g) {
+    copy_in(problem.goals + g * problem.size, problem.size, state);
+    goals->addState(state);
+  }
+  si->freeState(state);
+  definition->setGoal(goals);
+  auto objective = std::make_shared<LengthObjective>(si, any_wraps);
+  objective->setCostToGoHeuristic(&ob::goalRegionCostToGo);
+  definition->setOptimizationObjective(objective);
+  return definition;
+}
+
+int run(const MmgraspOmplProblem& problem) {
+  const PlannerEntry* entry = find_planner(problem.planner);
+  if (!entry) {
+    problem.fail(problem.user, "unknown planner");
+    return MMGRASP_OMPL_FAILED;
+  }
+  const RunLock lock(entry->runs_alone, problem.seed);
+  const auto context = std::make_shared<RunContext>(problem, entry->count_rounds);
+  const auto space = std::make_shared<JointSpace>(context);
+  const auto si = std::make_shared<ob::SpaceInformation>(space);
+  si->setStateValidityChecker(std::make_shared<JointValidity>(si, context));
+  si->setMotionValidator(std::make_shared<EdgeValidity>(si, context));
+  si->setup();
+  const ob::ProblemDefinitionPtr definition = make_definition(si, problem, space->any_wraps());
+  const ob::PlannerPtr planner = entry->make(si);
+  if (problem.range > 0 && planner->params().hasParam("range")) {
+    planner->params().setParam("range", std::to_string(problem.range));
+  }
+  planner->setProblemDefinition(definition);
+  planner->setup();
+  // What setting up has drawn and checked is not the caller's budget.
+  context->restart();
+  planner->solve(ob::PlannerTerminationCondition([context] { return context->finished(); }));
+
+  if (!definition->hasExactSolution()) {
+    return context->finished() ? MMGRASP_OMPL_BUDGET_SPENT : MMGRASP_OMPL_EXHAUSTED;
+  }
+  const auto* path = definition->getSolutionPath()->as<og::PathGeometric>();
+  for (std::size_t i = 0; i < path->getStateCount(); ++i) problem.waypoint(problem.user, values(path->getState(i)));
+  return MMGRASP_OMPL_SOLVED;
+}
+
+int solve(const MmgraspOmplProblem* problem) {
+  try {
+    return run(*problem);
+  } catch (const std::exception& error) {
+    problem->fail(problem->user, error.what());
+  } catch (...) {
+    problem->fail(problem->user, "unknown exception");
+  }
+  return MMGRASP_OMPL_FAILED;
+}
+
+const char* planner_name(int index) { return kPlanners[index].name; }
+
+}  // namespace
+}  // namespace mmgrasp_ompl
+
+const MmgraspOmplApi* mmgrasp_ompl_api() {
+  static const MmgraspOmplApi api = [] {
+    ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
+    ompl::msg::noOutputHandler();
+    return MmgraspOmplApi{kMmgraspOmplApiVersion, static_cast<int>(mmgrasp_ompl::kPlannerCount),
+                          mmgrasp_ompl::planner_name, mmgrasp_ompl::solve};
+  }();
+  return &api;
+}

@@ -1,0 +1,181 @@
+#include "collision/convex.hpp"
+
+#include <limits>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+#include "collision/simplex.hpp"
+
+namespace mmgrasp::detail {
+
+namespace {
+
+constexpr int kMaxIterations = 128;
+
+int farthest_scalar(const double* x, int count, const Eigen::Vector3d& d) {
+  const double *y = x + count, *z = y + count;
+  int best = 0;
+  double top = -std::numeric_limits<double>::infinity();
+  for (int i = 0; i < count; ++i) {
+    const double value = x[i] * d[0] + y[i] * d[1] + z[i] * d[2];
+    if (value > top) top = value, best = i;
+  }
+  return best;
+}
+
+#if defined(__SSE2__)
+// Two points a step; indices ride along as doubles. Plain SSE2, so every x86-64 machine has it.
+int farthest_sse2(const double* x, int count, const Eigen::Vector3d& d) {
+  const double *y = x + count, *z = y + count;
+  const __m128d dx = _mm_set1_pd(d[0]), dy = _mm_set1_pd(d[1]), dz = _mm_set1_pd(d[2]);
+  __m128d top = _mm_set1_pd(-std::numeric_limits<double>::infinity()), best = _mm_setzero_pd();
+  __m128d index = _mm_set_pd(1, 0);
+  const __m128d two = _mm_set1_pd(2);
+  for (int i = 0; i < count; i += 2) {
+    const __m128d value = _mm_add_pd(_mm_add_pd(_mm_mul_pd(_mm_loadu_pd(x + i), dx), _mm_mul_pd(_mm_loadu_pd(y + i), dy)),
+                                     _mm_mul_pd(_mm_loadu_pd(z + i), dz));
+    const __m128d more = _mm_cmpgt_pd(value, top);
+    top = _mm_max_pd(value, top);
+    best = _mm_or_pd(_mm_and_pd(more, index), _mm_andnot_pd(more, best));
+    index = _mm_add_pd(index, two);
+  }
+  double tops[2], bests[2];
+  _mm_storeu_pd(tops, top);
+  _mm_storeu_pd(bests, best);
+  return static_cast<int>(tops[1] > tops[0] ? bests[1] : bests[0]);
+}
+#endif
+
+int farthest(const double* points, int count, const Eigen::Vector3d& d) {
+#if defined(__SSE2__)
+  if (count % 2 == 0) return farthest_sse2(points, count, d);
+#endif
+  return farthest_scalar(points, count, d);
+}
+
+inline double with_sign(double magnitude, double sign) { return sign >= 0 ? magnitude : -magnitude; }
+
+SimplexPoint difference(const Convex& a, const Convex& b, const Rigid& b_in_a, const Eigen::Vector3d& v) {
+  SimplexPoint p;
+  p.on_a = a.support(-v);
+  p.on_b = b_in_a * b.support(b_in_a.R.transpose() * v);
+  p.w = p.on_a - p.on_b;
+  return p;
+}
+
+// Length scale of the bodies, against which rounding is judged.
+double scale_of(const Convex& a, const Convex& b, const Rigid& b_in_a) {
+  return 1e-3 + (b_in_a * b.centre - a.centre).norm() + a.half.maxCoeff() + b.half.maxCoeff();
+}
+
+}  // namespace
+
+Eigen::Vector3d Convex::support(const Eigen::Vector3d& d) const {
+  switch (kind) {
+    case ConvexKind::point:
+      return centre;
+    case ConvexKind::segment:
+      return {centre[0], centre[1], centre[2] + with_sign(half[2], d[2])};
+    case ConvexKind::box:
+      return {centre[0] + with_sign(half[0], d[0]), centre[1] + with_sign(half[1], d[1]),
+              centre[2] + with_sign(half[2], d[2])};
+    case ConvexKind::cylinder: {
+      const double length = std::sqrt(d[0] * d[0] + d[1] * d[1]);
+      const double f = length > 0 ? half[0] / length : 0;
+      return {centre[0] + f * d[0], centre[1] + f * d[1], centre[2] + with_sign(half[2], d[2])};
+    }
+    case ConvexKind::hull: {
+      const int i = farthest(points, count, d);
+      return {points[i], points[count + i], points[2 * count + i]};
+    }
+  }
+  return centre;
+}
+
+bool convex_collide(const Convex& a, const Convex& b, const Rigid& b_in_a, double margin, Eigen::Vector3d& axis) {
+  const double reach = a.radius + b.radius + margin;
+  const double touching = 1e-11 * scale_of(a, b, b_in_a);
+  if (axis.squaredNorm() < 1e-20) axis = a.centre - b_in_a * b.centre;
+  if (axis.squaredNorm() < 1e-20) axis = Eigen::Vector3d::UnitX();
+  Simplex simplex;
+  double best = std::numeric_limits<double>::infinity();  // squared length of the simplex's closest point
+  for (int i = 0; i < kMaxIterations; ++i) {
+    const SimplexPoint p = difference(a, b, b_in_a, axis);
+    const double along = axis.dot(p.w);
+    // The whole difference lies beyond the plane through w: apart by along / |axis|.
+    if (along > 0 && along * along > reach * reach * axis.squaredNorm()) return false;
+    if (i > 0 && (best - along <= 1e-13 * best || simplex.holds(p.w))) break;  // converged: |axis| is the distance
+    simplex.add(p);
+    if (simplex.reduce()) return true;  // the origin lies inside
+    const Eigen::Vector3d closest = simplex.closest();
+    const double squared = closest.squaredNorm();
+    if (squared <= reach * reach || squared <= touching * touching) return true;
+    if (!(squared < best)) break;  // rounding stops the descent
+    best = squared;
+    axis = closest;
+  }
+  return best <= reach * reach;
+}
+
+ConvexGap convex_distance(const Convex& a, const Convex& b, const Rigid& b_in_a) {
+  const double touching = 1e-12 * scale_of(a, b, b_in_a);
+  Eigen::Vector3d axis = a.centre - b_in_a * b.centre;
+  if (axis.squaredNorm() < 1e-20) axis = Eigen::Vector3d::UnitX();
+  Simplex simplex, last;
+  double best = std::numeric_limits<double>::infinity();
+  ConvexGap gap;
+  for (int i = 0; i < kMaxIterations; ++i) {
+    const SimplexPoint p = difference(a, b, b_in_a, axis);
+    if (i > 0 && (best - axis.dot(p.w) <= 1e-13 * best || simplex.holds(p.w))) break;
+    simplex.add(p);
+    if (simplex.reduce()) return gap;
+    const Eigen::Vector3d closest = simplex.closest();
+    const double squared = closest.squaredNorm();
+    if (squared <= touching * touching) return gap;
+    if (!(squared < best)) break;
+    best = squared;
+    axis = closest;
+    last = simplex;
+  }
+  last.witness(gap.on_a, gap.on_b);
+  const double core = std::sqrt(best);
+  gap.distance = std::max(0.0, core - a.radius - b.radius);
+  const Eigen::Vector3d unit = axis / core;  // from b to a
+  gap.on_a -= a.radius * unit;
+  gap.on_b += b.radius * unit;
+  return gap;
+}
+
+ConvexGap convex_penetration(const Convex& a, const Convex& b, const Rigid& b_in_a) {
+  ConvexGap best;
+  best.distance = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d best_axis = Eigen::Vector3d::UnitX();
+  const auto attempt = [&](Eigen::Vector3d axis) {
+    if (!(axis.norm() > 1e-12)) return;
+    axis.normalize();
+    const SimplexPoint p = difference(a, b, b_in_a, axis);
+    const double depth = a.radius + b.radius - axis.dot(p.w);
+    if (depth >= best.distance) return;
+    best = {depth, p.on_a - a.radius * axis, p.on_b + b.radius * axis};
+    best_axis = axis;
+  };
+  attempt(a.centre - b_in_a * b.centre);
+  for (int k = 0; k < 3; ++k) {
+    for (const double sign : {-1.0, 1.0}) {
+      attempt(sign * Eigen::Vector3d::Unit(k));
+      attempt(sign * b_in_a.R.col(k));
+      for (int j = 0; j < 3; ++j) attempt(sign * Eigen::Vector3d::Unit(k).cross(b_in_a.R.col(j)));
+    }
+  }
+  for (double turn = 0.3; turn > 1e-4; turn *= 0.5) {
+    for (int k = 0; k < 3; ++k) {
+      for (const double sign : {-1.0, 1.0}) attempt(best_axis + sign * turn * Eigen::Vector3d::Unit(k));
+    }
+  }
+  best.distance = std::max(0.0, best.distance);
+  return best;
+}
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,136 @@
+#include "collision/narrow.hpp"
+
+namespace mmgrasp::detail {
+
+namespace {
+
+// Everything about a pair that its tests share: b seen from a.
+struct PairFrame {
+  PairFrame(const Rigid& T_a, const Rigid& T_b) : b_in_a(T_a.to(T_b)), abs_R(b_in_a.R.cwiseAbs()) {}
+  Rigid b_in_a;
+  Eigen::Matrix3d abs_R;
+};
+
+bool nodes_overlap(const BoxTree::Node& a, const BoxTree::Node& b, const PairFrame& frame, double margin) {
+  return boxes_overlap(a.half, b.half, frame.b_in_a.R, frame.abs_R, frame.b_in_a * b.centre - a.centre, margin);
+}
+
+bool pieces_collide(const Convex& a, const Convex& b, const Rigid& b_in_a, double margin) {
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  return convex_collide(a, b, b_in_a, margin, axis);
+}
+
+// Some triangle or voxel of a against the convex body b.
+bool tree_hits_convex(const Solid& a, const Solid& b, const PairFrame& frame, double margin) {
+  BoxTree::Node body;
+  body.centre = b.box_centre;
+  body.half = b.box_half;
+  int stack[64], size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const BoxTree::Node& node = a.tree.nodes()[stack[--size]];
+    if (!nodes_overlap(node, body, frame, margin)) continue;
+    if (node.count == 0) {
+      stack[size++] = node.first + 1;
+      stack[size++] = node.first;
+      continue;
+    }
+    for (int i = node.first; i < node.first + node.count; ++i) {
+      if (pieces_collide(a.piece(i), b.core, frame.b_in_a, margin)) return true;
+    }
+  }
+  return false;
+}
+
+bool leaves_collide(const Solid& a, const BoxTree::Node& na, const Solid& b, const BoxTree::Node& nb, const Rigid& b_in_a,
+                    double margin) {
+  for (int i = na.first; i < na.first + na.count; ++i) {
+    const Convex piece = a.piece(i);
+    for (int j = nb.first; j < nb.first + nb.count; ++j) {
+      if (pieces_collide(piece, b.piece(j), b_in_a, margin)) return true;
+    }
+  }
+  return false;
+}
+
+// Triangles and voxels of both, larger node first.
+bool tree_hits_tree(const Solid& a, const Solid& b, const PairFrame& frame, double margin) {
+  std::pair<int, int> stack[160];
+  int size = 0;
+  stack[size++] = {0, 0};
+  while (size > 0) {
+    const auto [ia, ib] = stack[--size];
+    const BoxTree::Node &na = a.tree.nodes()[ia], &nb = b.tree.nodes()[ib];
+    if (!nodes_overlap(na, nb, frame, margin)) continue;
+    if (na.count > 0 && nb.count > 0) {
+      if (leaves_collide(a, na, b, nb, frame.b_in_a, margin)) return true;
+    } else if (nb.count > 0 || (na.count == 0 && na.half.squaredNorm() > nb.half.squaredNorm())) {
+      stack[size++] = {na.first + 1, ib};
+      stack[size++] = {na.first, ib};
+    } else {
+      stack[size++] = {ia, nb.first + 1};
+      stack[size++] = {ia, nb.first};
+    }
+  }
+  return false;
+}
+
+// b inside the closed mesh a, given that their surfaces do not meet: then each connected part is in or out as a whole.
+bool inside(const Solid& a, const Solid& b, const Rigid& b_in_a) {
+  if (a.kind != SolidKind::mesh || !a.closed) return false;
+  if (b.kind == SolidKind::convex) return a.contains(b_in_a * b.core.centre);
+  for (const Eigen::Vector3d& point : b.part_points) {
+    if (a.contains(b_in_a * point)) return true;
+  }
+  return false;
+}
+
+double lowest_along(const Solid& body, const Eigen::Vector3d& normal) {
+  if (body.kind == SolidKind::convex) return normal.dot(body.core.support(-normal)) - body.core.radius * normal.norm();
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const auto& t : body.triangles) {
+    for (int c = 0; c < 3; ++c) lowest = std::min(lowest, normal[0] * t[c] + normal[1] * t[3 + c] + normal[2] * t[6 + c]);
+  }
+  const double half = body.cell_half * normal.lpNorm<1>();
+  for (const Eigen::Vector3d& cell : body.cells) lowest = std::min(lowest, normal.dot(cell) - half);
+  return lowest;
+}
+
+bool plane_collides(const Solid& plane, const Solid& b, const Rigid& b_in_a, double margin) {
+  const Eigen::Vector3d normal = b_in_a.R.transpose() * plane.normal;  // in the frame of b
+  const double shift = plane.normal.dot(b_in_a.t);
+  if (b.kind == SolidKind::plane) {
+    // Half-spaces miss each other only when they look away from each other with a gap between.
+    const bool opposite = (normal + b.normal).norm() < 1e-9;
+    return !opposite || shift - b.offset <= plane.offset + margin;
+  }
+  return lowest_along(b, normal) + shift <= plane.offset + margin;
+}
+
+}  // namespace
+
+bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b) {
+  if (a.never_collides() || b.never_collides()) return false;
+  if (a.kind != SolidKind::plane && b.kind == SolidKind::plane) return solids_collide(b, T_b, a, T_a);
+  const bool a_is_tree = a.kind == SolidKind::mesh || a.kind == SolidKind::voxels;
+  const bool b_is_tree = b.kind == SolidKind::mesh || b.kind == SolidKind::voxels;
+  if (!a_is_tree && b_is_tree && a.kind != SolidKind::plane) return solids_collide(b, T_b, a, T_a);
+
+  const PairFrame frame(T_a, T_b);
+  const double margin = a.margin + b.margin;
+  if (a.kind == SolidKind::plane) return plane_collides(a, b, frame.b_in_a, margin);
+
+  const Eigen::Vector3d between = frame.b_in_a * b.box_centre - a.box_centre;
+  if (!boxes_overlap(a.box_half, b.box_half, frame.b_in_a.R, frame.abs_R, between, margin)) return false;
+  if (a.is_box && b.is_box) return true;
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  const bool a_bounded = !a_is_tree || a.has_hull, b_bounded = !b_is_tree || b.has_hull;
+  if (a_bounded && b_bounded) {
+    const bool hit = convex_collide(a.core, b.core, frame.b_in_a, margin, axis);
+    if (!hit || (!a_is_tree && !b_is_tree)) return hit;
+  }
+  if (b_is_tree ? tree_hits_tree(a, b, frame, margin) : tree_hits_convex(a, b, frame, margin)) return true;
+  return inside(a, b, frame.b_in_a) || inside(b, a, T_b.to(T_a));
+}
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,81 @@
+#include "mmgrasp/collision/world.hpp"
+
+#include "mmgrasp/core/error.hpp"
+
+namespace mmgrasp {
+
+namespace {
+
+void check_pose(const Pose& T, const std::string& field) { checked_pose(T.matrix(), field); }
+
+void check_shapes(const std::vector<LinkShape>& shapes, const std::string& name) {
+  require(!shapes.empty(), "object '" + name + "' shapes", "0", "must hold at least one");
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const std::string field = "object '" + name + "' shape " + std::to_string(i);
+    check_shape(shapes[i].shape, field);
+    check_pose(shapes[i].T_link_shape, field + " pose");
+  }
+}
+
+}  // namespace
+
+void World::add(const std::string& name, const Shape& shape, const Pose& T_world_object) {
+  WorldObject object;
+  LinkShape only;
+  only.shape = shape;
+  object.shapes.push_back(only);
+  object.T_world_object = T_world_object;
+  add(name, std::move(object));
+}
+
+void World::add(const std::string& name, WorldObject object) {
+  require(!name.empty(), "object name", "\"\"", "must not be empty");
+  require(!has(name), "object name", name, "is in use already");
+  check_shapes(object.shapes, name);
+  check_pose(object.T_world_object, "object '" + name + "' pose");
+  objects_.emplace(name, std::move(object));
+}
+
+void World::move(const std::string& name, const Pose& T_world_object) {
+  const auto it = objects_.find(name);
+  require(it != objects_.end(), "object name", name, attached_.count(name) != 0 ? "is held; detach it first" : "is not in the world");
+  check_pose(T_world_object, "object '" + name + "' pose");
+  it->second.T_world_object = T_world_object;
+}
+
+void World::remove(const std::string& name) {
+  require(objects_.erase(name) + attached_.erase(name) > 0, "object name", name, "is not in the world");
+}
+
+void World::attach(const std::string& name, const std::string& link, const Pose& T_link_object,
+                   std::set<std::string> touch_links) {
+  const auto it = objects_.find(name);
+  require(it != objects_.end(), "object name", name, attached_.count(name) != 0 ? "is held already" : "is not in the world");
+  require(!link.empty(), "link", "\"\"", "must name the robot link that holds '" + name + "'");
+  check_pose(T_link_object, "object '" + name + "' pose on link '" + link + "'");
+  AttachedObject held;
+  held.shapes = it->second.shapes;
+  held.link = link;
+  held.T_link_object = T_link_object;
+  held.touch_links = std::move(touch_links);
+  for (const LinkShape& shape : held.shapes) {
+    require(!std::holds_alternative<Plane>(shape.shape), "object '" + name + "'", "plane", "cannot be held: it has no end");
+  }
+  attached_.emplace(name, std::move(held));
+  objects_.erase(it);
+}
+
+void World::detach(const std::string& name, const Pose& T_world_object) {
+  const auto it = attached_.find(name);
+  require(it != attached_.end(), "object name", name, objects_.count(name) != 0 ? "is not held" : "is not in the world");
+  check_pose(T_world_object, "object '" + name + "' pose");
+  WorldObject object;
+  object.shapes = it->second.shapes;
+  object.T_world_object = T_world_object;
+  objects_.emplace(name, std::move(object));
+  attached_.erase(it);
+}
+
+bool World::has(const std::string& name) const { return objects_.count(name) + attached_.count(name) > 0; }
+
+}  // namespace mmgrasp

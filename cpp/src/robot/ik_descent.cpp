@@ -12,7 +12,7 @@ namespace {
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-constexpr double kDampingPerError = 0.1;  // damping = this x squared error: gauss-newton near the goal, gradient far away
+constexpr double kDampingPerError = 0.03;  // damping = this x squared error: gauss-newton near the goal, gradient far away
 constexpr double kLeastDamping = 1e-10;
 constexpr double kLongestStep = 1.0;      // [rad or m] per joint and iteration
 constexpr int kPatience = 8;              // iterations in which the error must shrink ...

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <pybind11/eigen.h>
+#include <pybind11/native_enum.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "mmgrasp/core/pose.hpp"
+#include "mmgrasp/geometry/shape.hpp"
+#include "mmgrasp/robot/joint.hpp"
+
+namespace mmgrasp::python {
+
+namespace py = pybind11;
+
+/// Anything numpy can turn into an array of float64. The functions below check length and values, with the argument's
+/// name in the message, where pybind11's own conversion would only say "incompatible arguments".
+class ArrayLike : public py::object {
+  PYBIND11_OBJECT_DEFAULT(ArrayLike, py::object, [](PyObject* o) { return static_cast<int>(o != nullptr); })
+};
+
+/// (n,) with finite entries; size < 0 takes any length.
+Eigen::VectorXd vector_argument(const py::handle& value, const std::string& name, Eigen::Index size = -1);
+Eigen::Vector2d vector2_argument(const py::handle& value, const std::string& name);
+Eigen::Vector3d vector3_argument(const py::handle& value, const std::string& name);
+/// (m, columns) with finite entries; columns < 0 takes any number.
+Eigen::MatrixXd matrix_argument(const py::handle& value, const std::string& name, Eigen::Index columns = -1);
+/// (4, 4), a rigid transform; None is the identity.
+Pose pose_argument(const py::handle& value, const std::string& name);
+/// (m, n) rows as separate configurations.
+std::vector<Eigen::VectorXd> rows_argument(const py::handle& value, const std::string& name, Eigen::Index columns = -1);
+
+py::array_t<double> to_array(const Pose& T);
+py::array_t<double> to_array(const Poses& poses);                             ///< (m, 4, 4)
+py::array_t<double> rows_to_array(const std::vector<Eigen::VectorXd>& rows);  ///< (m, n)
+py::array_t<double> rows_to_array(const std::vector<Eigen::Vector3d>& rows);  ///< (m, 3)
+
+/// "[0.1, -0.2]", for messages and representations.
+std::string text(const Eigen::Ref<const Eigen::VectorXd>& values);
+
+}  // namespace mmgrasp::python
+
+namespace pybind11::detail {
+template <>
+struct handle_type_name<mmgrasp::python::ArrayLike> {
+  static constexpr auto name = const_name("numpy.typing.ArrayLike");
+};
+}  // namespace pybind11::detail

@@ -1,0 +1,133 @@
+#include <exception>
+
+#include "bindings.hpp"
+#include "mmgrasp/core/outcome.hpp"
+#include "mmgrasp/core/pose.hpp"
+
+namespace mmgrasp::python {
+namespace {
+
+/// The Python classes of the exceptions: kept for the life of the process, as the translator may run at any time.
+struct ErrorTypes {
+  PyObject* error = nullptr;
+  PyObject* invalid_input = nullptr;
+  PyObject* io_error = nullptr;
+};
+ErrorTypes error_types;
+
+PyObject* new_error(py::module_& m, const char* name, const py::tuple& bases, const char* doc) {
+  const std::string full_name = std::string("mmgrasp.") + name;
+  PyObject* type = PyErr_NewExceptionWithDoc(full_name.c_str(), doc, bases.ptr(), nullptr);
+  if (!type) throw py::error_already_set();
+  m.attr(name) = py::reinterpret_borrow<py::object>(type);
+  return type;
+}
+
+void bind_errors(py::module_& m) {
+  error_types.error =
+      new_error(m, "Error", py::make_tuple(py::handle(PyExc_Exception)), "Base of all errors of mmgrasp.");
+  const py::handle error(error_types.error);
+  error_types.invalid_input =
+      new_error(m, "InvalidInput", py::make_tuple(error, py::handle(PyExc_ValueError)),
+                "An argument or a file breaks a rule. The message names the field, the value and the rule.");
+  error_types.io_error = new_error(m, "IoError", py::make_tuple(error, py::handle(PyExc_OSError)),
+                                   "A file cannot be read or written. The message names it.");
+  py::register_exception_translator([](std::exception_ptr pointer) {
+    try {
+      if (pointer) std::rethrow_exception(pointer);
+    } catch (const InvalidInput& e) {
+      PyErr_SetString(error_types.invalid_input, e.what());
+    } catch (const IoError& e) {
+      PyErr_SetString(error_types.io_error, e.what());
+    } catch (const Error& e) {
+      PyErr_SetString(error_types.error, e.what());
+    }
+  });
+}
+
+void bind_outcomes(py::module_& m) {
+  py::native_enum<Outcome>(m, "Outcome", "enum.Enum",
+                           "How a query ended. \"No solution\" is a value, not an exception.")
+      .value("solved", Outcome::solved)
+      .value("approximate", Outcome::approximate)
+      .value("infeasible", Outcome::infeasible)
+      .value("timeout", Outcome::timeout)
+      .value("stopped", Outcome::stopped)
+      .value("invalid_start", Outcome::invalid_start)
+      .value("invalid_goal", Outcome::invalid_goal)
+      .finalize();
+  py::native_enum<Rejection>(m, "Rejection", "enum.Enum", "Why one candidate was turned down.")
+      .value("none", Rejection::none)
+      .value("reach", Rejection::reach)
+      .value("limits", Rejection::limits)
+      .value("self_collision", Rejection::self_collision)
+      .value("scene", Rejection::scene)
+      .value("grasp_filter", Rejection::grasp_filter)
+      .finalize();
+  py::class_<Rejections>(m, "Rejections", "How many candidates fell at which filter.")
+      .def_readonly("reach", &Rejections::reach, "No arm configuration reaches the pose.")
+      .def_readonly("limits", &Rejections::limits, "Reached only outside joint limits.")
+      .def_readonly("self_collision", &Rejections::self_collision, "Reached, but robot hits robot or what it holds.")
+      .def_readonly("scene", &Rejections::scene, "Reached, but robot (or what it holds) hits the scene.")
+      .def_readonly("grasp_filter", &Rejections::grasp_filter, "Turned down before inverse kinematics.")
+      .def_property_readonly("total", &Rejections::total)
+      .def("to_dict", [](const Rejections& r) { return to_dict(r); })
+      .def("__repr__", [](const Rejections& r) { return "Rejections(" + r.summary() + ")"; });
+}
+
+void bind_poses(py::module_& m) {
+  m.def(
+      "pose",
+      [](const ArrayLike& xyz, const py::object& rpy, const py::object& quat_xyzw) {
+        if (!rpy.is_none() && !quat_xyzw.is_none()) {
+          throw InvalidInput("pose(rpy=..., quat_xyzw=...): give one of the two");
+        }
+        const Eigen::Vector3d position = vector3_argument(xyz, "xyz");
+        if (!quat_xyzw.is_none()) {
+          return to_array(pose_from_xyz_quat(position, vector_argument(quat_xyzw, "quat_xyzw", 4)));
+        }
+        const Eigen::Vector3d angles = rpy.is_none() ? Eigen::Vector3d::Zero() : vector3_argument(rpy, "rpy");
+        return to_array(pose_from_xyz_rpy(position, angles));
+      },
+      py::arg("xyz"), py::arg("rpy") = py::none(), py::arg("quat_xyzw") = py::none(),
+      "A (4, 4) pose from a position [m] and roll-pitch-yaw (URDF's convention) [rad] or a quaternion (x, y, z, w).");
+  m.def(
+      "pose_to_xyz_quat",
+      [](const ArrayLike& T) {
+        const Pose pose = pose_argument(T, "T");
+        return py::make_tuple(Eigen::Vector3d(pose.translation()), quat_xyzw_from_rotation(pose.linear()));
+      },
+      py::arg("T"), "Position (3,) and quaternion (x, y, z, w) of a (4, 4) pose.");
+  m.def(
+      "pose_to_xyz_rpy",
+      [](const ArrayLike& T) {
+        const Pose pose = pose_argument(T, "T");
+        return py::make_tuple(Eigen::Vector3d(pose.translation()), rpy_from_rotation(pose.linear()));
+      },
+      py::arg("T"), "Position (3,) and roll-pitch-yaw (3,) of a (4, 4) pose.");
+}
+
+}  // namespace
+
+py::dict to_dict(const Rejections& r) {
+  using namespace py::literals;
+  return py::dict("reach"_a = r.reach, "limits"_a = r.limits, "self_collision"_a = r.self_collision,
+                  "scene"_a = r.scene, "grasp_filter"_a = r.grasp_filter);
+}
+
+std::string path_argument(const py::handle& value, const std::string& name) {
+  PyObject* bytes = nullptr;
+  if (!PyUnicode_FSConverter(value.ptr(), &bytes)) {
+    PyErr_Clear();
+    refuse_value(name, value, "a path (str or os.PathLike)");
+  }
+  return py::reinterpret_steal<py::bytes>(bytes);
+}
+
+void bind_core(py::module_& m) {
+  bind_errors(m);
+  bind_outcomes(m);
+  bind_poses(m);
+}
+
+}  // namespace mmgrasp::python

@@ -1,0 +1,169 @@
+#include <sstream>
+
+#include "bindings.hpp"
+#include "mmgrasp/geometry/mesh.hpp"
+#include "mmgrasp/geometry/shape.hpp"
+
+namespace mmgrasp::python {
+namespace {
+
+std::string number(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+template <typename S>
+S checked(S shape, const char* field) {
+  check_shape(Shape(shape), field);
+  return shape;
+}
+
+Eigen::Vector3d scale_argument(const py::object& scale) {
+  if (py::isinstance<py::float_>(scale) || py::isinstance<py::int_>(scale)) {
+    double value = 1;
+    convert(scale, "scale", value);
+    return Eigen::Vector3d::Constant(value);
+  }
+  return vector3_argument(scale, "scale");
+}
+
+void bind_primitives(py::module_& m) {
+  py::class_<Box>(m, "Box", "A box, centred; full lengths [m].")
+      .def(py::init([](const ArrayLike& size) { return checked(Box{vector3_argument(size, "size")}, "box"); }),
+           py::arg("size"))
+      .def_readonly("size", &Box::size)
+      .def("__repr__", [](const Box& s) { return "Box(size=" + text(s.size) + ")"; });
+  py::class_<Sphere>(m, "Sphere", "A sphere [m].")
+      .def(py::init([](double radius) { return checked(Sphere{radius}, "sphere"); }), py::arg("radius"))
+      .def_readonly("radius", &Sphere::radius)
+      .def("__repr__", [](const Sphere& s) { return "Sphere(radius=" + number(s.radius) + ")"; });
+  py::class_<Cylinder>(m, "Cylinder", "A cylinder along z, centred [m].")
+      .def(py::init([](double radius, double length) {
+             return checked(Cylinder{radius, length}, "cylinder");
+           }),
+           py::arg("radius"), py::arg("length"))
+      .def_readonly("radius", &Cylinder::radius)
+      .def_readonly("length", &Cylinder::length)
+      .def("__repr__", [](const Cylinder& s) {
+        return "Cylinder(radius=" + number(s.radius) + ", length=" + number(s.length) + ")";
+      });
+  py::class_<Capsule>(m, "Capsule", "A capsule along z, centred; `length` without the caps [m].")
+      .def(py::init([](double radius, double length) {
+             return checked(Capsule{radius, length}, "capsule");
+           }),
+           py::arg("radius"), py::arg("length"))
+      .def_readonly("radius", &Capsule::radius)
+      .def_readonly("length", &Capsule::length)
+      .def("__repr__", [](const Capsule& s) {
+        return "Capsule(radius=" + number(s.radius) + ", length=" + number(s.length) + ")";
+      });
+  py::class_<Plane>(m, "Plane", "A half space: solid where normal . x <= offset.")
+      .def(py::init([](const ArrayLike& normal, double offset) {
+             return checked(Plane{vector3_argument(normal, "normal"), offset}, "plane");
+           }),
+           py::arg("normal"), py::arg("offset"))
+      .def_readonly("normal", &Plane::normal)
+      .def_readonly("offset", &Plane::offset)
+      .def("__repr__",
+           [](const Plane& s) { return "Plane(normal=" + text(s.normal) + ", offset=" + number(s.offset) + ")"; });
+  py::class_<Voxels>(m, "Voxels", "Axis-aligned solid voxels of one edge length [m].")
+      .def(py::init([](const ArrayLike& centres, double resolution) {
+             const Eigen::MatrixXd rows = matrix_argument(centres, "centres", 3);
+             auto points = std::make_shared<std::vector<Eigen::Vector3d>>();
+             for (Eigen::Index i = 0; i < rows.rows(); ++i) points->push_back(rows.row(i).transpose());
+             return checked(Voxels{points, resolution}, "voxels");
+           }),
+           py::arg("centres"), py::arg("resolution"))
+      .def_property_readonly("centres", [](const Voxels& v) { return rows_to_array(*v.centres); })
+      .def_readonly("resolution", &Voxels::resolution)
+      .def("__repr__", [](const Voxels& v) {
+        return "Voxels(" + std::to_string(v.centres->size()) + " of " + number(v.resolution) + " m)";
+      });
+}
+
+void bind_mesh(py::module_& m) {
+  py::class_<MeshShape>(m, "Mesh", "A triangle mesh [m]; closed ones are solids, open ones surfaces.")
+      .def_static(
+          "load",
+          [](const py::object& path, const py::object& scale) {
+            return MeshShape{load_mesh(path_argument(path, "path"), scale_argument(scale))};
+          },
+          py::arg("path"), py::arg("scale") = 1.0,
+          "Reads STL, OBJ, DAE or PLY. `scale` is a number or one per axis. Raises IoError naming file and place.")
+      .def_property_readonly("closed", [](const MeshShape& s) { return s.mesh->closed; })
+      .def_property_readonly("convex", [](const MeshShape& s) { return s.mesh->convex; })
+      .def_property_readonly("source", [](const MeshShape& s) { return s.mesh->source; })
+      .def_property_readonly(
+          "volume", [](const MeshShape& s) { return mesh_volume(*s.mesh); },
+          "Signed volume [m^3]; meaningful for closed meshes.")
+      .def_property_readonly(
+          "vertices", [](const MeshShape& s) { return rows_to_array(s.mesh->vertices); }, "(n, 3) [m]")
+      .def_property_readonly(
+          "triangles",
+          [](const MeshShape& s) {
+            const auto& t = s.mesh->triangles;
+            py::array_t<int> out({static_cast<py::ssize_t>(t.size()), py::ssize_t{3}});
+            if (!t.empty()) std::copy(t[0].data(), t[0].data() + 3 * t.size(), out.mutable_data());
+            return out;
+          },
+          "(m, 3) vertex indices.")
+      .def("__repr__", [](const MeshShape& s) {
+        return "Mesh(" + std::to_string(s.mesh->triangles.size()) + " triangles, " +
+               (s.mesh->closed ? "closed" : "open") + ", '" + s.mesh->source + "')";
+      });
+}
+
+}  // namespace
+
+void bind_geometry(py::module_& m) {
+  bind_primitives(m);
+  bind_mesh(m);
+  py::class_<LinkShape>(m, "LinkShape", "A shape and its pose in the body (robot link, part, obstacle) it belongs to.")
+      .def(py::init([](const Shape& shape, const py::object& pose) {
+             LinkShape out;
+             check_shape(shape, "shape");
+             out.shape = shape;
+             out.T_link_shape = pose_argument(pose, "pose");
+             if (const auto* mesh = std::get_if<MeshShape>(&shape)) out.mesh_path = out.mesh_uri = mesh->mesh->source;
+             return out;
+           }),
+           py::arg("shape"), py::arg("pose") = py::none())
+      .def_static(
+          "mesh",
+          [](const py::object& path, const py::object& scale, const py::object& pose) {
+            LinkShape out;
+            out.mesh_path = out.mesh_uri = path_argument(path, "path");
+            out.mesh_scale = scale_argument(scale);
+            out.shape = MeshShape{load_mesh(out.mesh_path, out.mesh_scale)};
+            out.T_link_shape = pose_argument(pose, "pose");
+            return out;
+          },
+          py::arg("path"), py::arg("scale") = 1.0, py::arg("pose") = py::none(),
+          "A mesh read from a file, which is remembered so that robots and plans can be written out.")
+      .def_readonly("shape", &LinkShape::shape)
+      .def_property_readonly("pose", [](const LinkShape& s) { return to_array(s.T_link_shape); })
+      .def_readonly("mesh_path", &LinkShape::mesh_path)
+      .def_readonly("mesh_scale", &LinkShape::mesh_scale)
+      .def_property_readonly("kind", [](const LinkShape& s) { return shape_kind(s.shape); })
+      .def_property_readonly(
+          "bounds",
+          [](const LinkShape& s) {
+            const Eigen::AlignedBox3d box = shape_bounds(s.shape, s.T_link_shape);
+            return py::make_tuple(Eigen::Vector3d(box.min()), Eigen::Vector3d(box.max()));
+          },
+          "Lower and upper corner of its axis-aligned box in the body frame [m].")
+      .def(
+          "surface",
+          [](const LinkShape& s, int segments) {
+            LinkShape out;
+            out.shape = MeshShape{shape_mesh(s.shape, segments)};
+            return std::get<MeshShape>(out.shape);
+          },
+          py::arg("segments") = 24, "Its surface as triangles in the shape's own frame, for pictures.")
+      .def("__repr__", [](const LinkShape& s) {
+        return std::string("LinkShape(") + shape_kind(s.shape) + " at " + text(s.T_link_shape.translation()) + ")";
+      });
+}
+
+}  // namespace mmgrasp::python

@@ -1,0 +1,185 @@
+#include "bindings.hpp"
+#include "mmgrasp/plan/motion.hpp"
+#include "mmgrasp/plan/straight_line.hpp"
+#include "mmgrasp/plan/time_parameterization.hpp"
+
+namespace mmgrasp::python {
+namespace {
+
+using namespace py::literals;
+
+const std::vector<OptionField<MotionOptions>>& motion_fields() {
+  using O = MotionOptions;
+  static const std::vector<OptionField<O>> fields{
+      option<O>("planner", &O::planner, "a name of planner_names()"),
+      option<O>("time_limit", &O::time_limit, "wall-clock cap [s]"),
+      option<O>("max_iterations", &O::max_iterations, "budget in validity checks of states drawn"),
+      option<O>("range", &O::range, "longest tree edge [rad]; 0: a fifth of the joint box's diagonal"),
+      option<O>("edge_step", &O::edge_step, "largest joint motion between two checks [rad or m]"),
+      option<O>("shorten", &O::shorten, "shortcut the path"),
+      option<O>("shorten_iterations", &O::shorten_iterations, "tries of the shortening"),
+      option<O>("seed", &O::seed, "same seed, same path")};
+  return fields;
+}
+
+const std::vector<OptionField<TimingOptions>>& timing_fields() {
+  using O = TimingOptions;
+  static const std::vector<OptionField<O>> fields{
+      option<O>("max_deviation", &O::max_deviation, "corners are blended within this joint distance [rad]"),
+      option<O>("sample_period", &O::sample_period, "spacing of the samples [s]")};
+  return fields;
+}
+
+const std::vector<OptionField<StraightLineOptions>>& line_fields() {
+  using O = StraightLineOptions;
+  static const std::vector<OptionField<O>> fields{
+      option<O>("position_step", &O::position_step, "largest tool translation between two waypoints [m]"),
+      option<O>("rotation_step", &O::rotation_step, "largest tool rotation between two waypoints [rad]"),
+      option<O>("max_joint_step", &O::max_joint_step, "a larger joint motion between two waypoints is a jump"),
+      option<O>("edge_step", &O::edge_step, "largest joint motion between two checks [rad or m]")};
+  return fields;
+}
+
+py::object path_array(const std::optional<JointPath>& path) {
+  if (!path) return py::none();
+  return rows_to_array(path->waypoints);
+}
+
+/// One goal (n,) or several (m, n).
+std::vector<Eigen::VectorXd> goals_argument(const ArrayLike& goal, Eigen::Index size) {
+  const py::array array = py::array::ensure(goal);
+  PyErr_Clear();
+  if (array && array.ndim() == 2) return rows_argument(goal, "goal", size);
+  return {vector_argument(goal, "goal", size)};
+}
+
+MotionResult plan(const Robot& robot, const JointGroup& group, const World& world, const ArrayLike& start,
+                  const ArrayLike& goal, const py::object& progress, const py::kwargs& options) {
+  if (group.robot().hash() != robot.hash()) {
+    throw InvalidInput("group: belongs to another robot ('" + group.robot().name() + "') than the one given ('" +
+                       robot.name() + "')");
+  }
+  const MotionOptions read = read_options(motion_fields(), options, "plan_motion");
+  const Eigen::VectorXd from = vector_argument(start, "start", group.size());
+  const std::vector<Eigen::VectorXd> to = goals_argument(goal, group.size());
+  CollisionChecker checker(with_sampled_pairs(group), world);
+  return LongCall(progress).run([&](const Monitor& monitor) { return plan_motion(checker, from, to, read, monitor); });
+}
+
+void bind_motion(py::module_& m) {
+  py::class_<MotionStats>(m, "MotionStats")
+      .def_readonly("seconds", &MotionStats::seconds)
+      .def_readonly("collision_queries", &MotionStats::collision_queries)
+      .def_readonly("length_before_shortening", &MotionStats::length_before_shortening)
+      .def("to_dict",
+           [](const MotionStats& s) {
+             return py::dict("seconds"_a = s.seconds, "collision_queries"_a = s.collision_queries,
+                             "length_before_shortening"_a = s.length_before_shortening);
+           })
+      .def("__repr__", [](const MotionStats& s) {
+        return "MotionStats(" + std::string(py::repr(py::float_(s.seconds))) + " s, " +
+               std::to_string(s.collision_queries) + " queries)";
+      });
+  py::class_<MotionResult>(m, "MotionResult", "What plan_motion found.")
+      .def_readonly("outcome", &MotionResult::outcome)
+      .def_property_readonly(
+          "path", [](const MotionResult& r) { return path_array(r.path); },
+          "Waypoints (k, n), joined by straight lines; None unless solved.")
+      .def_readonly("cost", &MotionResult::cost, "Length of the path in joint space.")
+      .def_readonly("goal_index", &MotionResult::goal_index)
+      .def_readonly("contacts", &MotionResult::contacts, "With invalid_start or invalid_goal: what touches.")
+      .def_readonly("rejections", &MotionResult::rejections)
+      .def_readonly("stats", &MotionResult::stats)
+      .def("to_dict",
+           [](const MotionResult& r) {
+             py::object path = path_array(r.path);
+             if (!path.is_none()) path = path.attr("tolist")();
+             py::list contacts;
+             for (const Contact& c : r.contacts) contacts.append(py::cast(c).attr("to_dict")());
+             return py::dict("outcome"_a = to_string(r.outcome), "path"_a = path, "cost"_a = r.cost,
+                             "goal_index"_a = r.goal_index, "contacts"_a = contacts,
+                             "rejections"_a = to_dict(r.rejections), "stats"_a = py::cast(r.stats).attr("to_dict")());
+           })
+      .def("__repr__", [](const MotionResult& r) {
+        std::string out = std::string("MotionResult(") + to_string(r.outcome);
+        if (r.path) {
+          out += ", " + std::to_string(r.path->waypoints.size()) + " waypoints, cost " +
+                 std::string(py::repr(py::float_(r.cost)));
+        }
+        for (const Contact& c : r.contacts) out += ", '" + c.a + "' touches '" + c.b + "'";
+        return out + ")";
+      });
+  m.def("planner_names", &planner_names, "Names that plan_motion's `planner` takes.");
+  m.def("plan_motion", &plan, py::arg("robot"), py::arg("group"), py::arg("world"), py::kw_only(), py::arg("start"),
+        py::arg("goal"), py::arg("progress") = py::none(),
+        ("A collision-free path of the group from `start` (n,) to `goal`, (n,) or several as (m, n)." +
+         option_help(motion_fields()))
+            .c_str());
+}
+
+void bind_line(py::module_& m) {
+  py::class_<StraightLineResult>(m, "StraightLineResult", "What plan_straight_line found.")
+      .def_readonly("outcome", &StraightLineResult::outcome)
+      .def_property_readonly(
+          "path", [](const StraightLineResult& r) { return path_array(r.path); }, "(k, n) or None.")
+      .def_readonly("fraction", &StraightLineResult::fraction, "How far along the line it came, in [0, 1].")
+      .def_readonly("cause", &StraightLineResult::cause, "Why it ended there.")
+      .def("to_dict",
+           [](const StraightLineResult& r) {
+             py::object path = path_array(r.path);
+             if (!path.is_none()) path = path.attr("tolist")();
+             return py::dict("outcome"_a = to_string(r.outcome), "path"_a = path, "fraction"_a = r.fraction,
+                             "cause"_a = to_string(r.cause));
+           })
+      .def("__repr__", [](const StraightLineResult& r) {
+        return std::string("StraightLineResult(") + to_string(r.outcome) + ", fraction " +
+               std::string(py::repr(py::float_(r.fraction))) + ")";
+      });
+  m.def(
+      "plan_straight_line",
+      [](CollisionChecker& checker, const ArrayLike& start, const ArrayLike& T_world_to, const py::kwargs& options) {
+        const StraightLineOptions read = read_options(line_fields(), options, "plan_straight_line");
+        return plan_straight_line(checker, vector_argument(start, "start", checker.group().size()),
+                                  pose_argument(T_world_to, "T_world_to"), read);
+      },
+      py::arg("checker"), py::arg("start"), py::arg("T_world_to"),
+      ("The tool moves on a straight line from the pose of `start` to T_world_to." + option_help(line_fields()))
+          .c_str());
+}
+
+}  // namespace
+
+void bind_plan(py::module_& m) {
+  bind_motion(m);
+  bind_line(m);
+  m.def(
+      "time_parameterize",
+      [](const ArrayLike& path, const ArrayLike& velocity_limits, const ArrayLike& acceleration_limits,
+         const std::vector<std::string>& names, const py::kwargs& options) {
+        const TimingOptions read = read_options(timing_fields(), options, "time_parameterize");
+        const JointPath waypoints{rows_argument(path, "path")};
+        const Eigen::Index n = waypoints.waypoints.empty() ? -1 : waypoints.waypoints[0].size();
+        const Eigen::VectorXd velocity = vector_argument(velocity_limits, "velocity_limits", n);
+        const Eigen::VectorXd acceleration = vector_argument(acceleration_limits, "acceleration_limits", n);
+        py::gil_scoped_release release;
+        return time_parameterize(waypoints, velocity, acceleration, read, names);
+      },
+      py::arg("path"), py::arg("velocity_limits"), py::arg("acceleration_limits"), py::kw_only(),
+      py::arg("names") = std::vector<std::string>{},
+      ("Near time-optimal timing of waypoints (k, n), at rest at both ends; corners are blended, which may leave the "
+       "path\n"
+       "by max_deviation." +
+       option_help(timing_fields()))
+          .c_str());
+  m.def(
+      "time_parameterize_free",
+      [](CollisionChecker& checker, const ArrayLike& path, double edge_step, const py::kwargs& options) {
+        const TimingOptions read = read_options(timing_fields(), options, "time_parameterize_free");
+        return time_parameterize_free(checker, JointPath{rows_argument(path, "path", checker.group().size())}, read,
+                                      edge_step);
+      },
+      py::arg("checker"), py::arg("path"), py::kw_only(), py::arg("edge_step") = 0.01,
+      "time_parameterize under the group's limits, the blended corners checked for collisions too.");
+}
+
+}  // namespace mmgrasp::python

@@ -1,0 +1,453 @@
+#include <map>
+
+#include "bindings.hpp"
+#include "mmgrasp/collision/collision_ik.hpp"
+#include "mmgrasp/robot/ik.hpp"
+#include "mmgrasp/robot/joint_group.hpp"
+#include "mmgrasp/robot/robot.hpp"
+#include "mmgrasp/robot/trajectory.hpp"
+
+namespace mmgrasp::python {
+namespace {
+
+using namespace py::literals;
+
+const std::vector<OptionField<BaseLimits>>& base_limit_fields() {
+  static const std::vector<OptionField<BaseLimits>> fields{
+      option<BaseLimits>("linear_velocity", &BaseLimits::linear_velocity, "[m/s]"),
+      option<BaseLimits>("angular_velocity", &BaseLimits::angular_velocity, "[rad/s]"),
+      option<BaseLimits>("linear_acceleration", &BaseLimits::linear_acceleration, "[m/s^2]"),
+      option<BaseLimits>("angular_acceleration", &BaseLimits::angular_acceleration, "[rad/s^2]"),
+      option<BaseLimits>("workspace", &BaseLimits::workspace, "x and y lie in [-workspace, workspace] [m]")};
+  return fields;
+}
+
+const std::vector<OptionField<IkOptions>>& ik_fields() {
+  static const std::vector<OptionField<IkOptions>> fields{
+      option<IkOptions>("position_tolerance", &IkOptions::position_tolerance, "[m]"),
+      option<IkOptions>("rotation_tolerance", &IkOptions::rotation_tolerance, "[rad]"),
+      option<IkOptions>("max_iterations", &IkOptions::max_iterations, "per descent"),
+      option<IkOptions>("restarts", &IkOptions::restarts, "random restarts after the seed"),
+      option<IkOptions>("time_limit", &IkOptions::time_limit, "wall-clock cap [s]"),
+      option<IkOptions>("rng_seed", &IkOptions::seed, "same seed, same answer")};
+  return fields;
+}
+
+BaseLimits base_limits_argument(const py::object& value) {
+  if (value.is_none()) return {};
+  if (!py::isinstance<py::dict>(value)) refuse_value("base_limits", value, "a dict");
+  return read_options(base_limit_fields(), py::kwargs(py::reinterpret_borrow<py::object>(value)), "base_limits");
+}
+
+std::map<std::string, std::string> package_argument(const py::object& value) {
+  std::map<std::string, std::string> out;
+  if (value.is_none()) return out;
+  if (!py::isinstance<py::dict>(value)) refuse_value("package_dirs", value, "a dict from package name to folder");
+  for (const auto& [key, folder] : py::cast<py::dict>(value)) {
+    out[py::cast<std::string>(key)] = path_argument(folder, "package_dirs");
+  }
+  return out;
+}
+
+RobotOptions robot_options(const py::object& package_dirs, const std::string& base, const py::object& base_limits,
+                           bool load_meshes, bool allow_missing_meshes) {
+  RobotOptions options;
+  options.base = base_kind_from_string(base);
+  options.base_limits = base_limits_argument(base_limits);
+  options.package_dirs = package_argument(package_dirs);
+  options.load_meshes = load_meshes;
+  options.allow_missing_meshes = allow_missing_meshes;
+  return options;
+}
+
+const char* reason_name(DisabledReason reason) {
+  switch (reason) {
+    case DisabledReason::adjacent:
+      return "adjacent";
+    case DisabledReason::never:
+      return "never";
+    case DisabledReason::always:
+      return "always";
+    case DisabledReason::user:
+      return "user";
+    case DisabledReason::default_:
+      return "default";
+  }
+  return "user";
+}
+
+DisabledReason reason_from_name(const std::string& name) {
+  for (DisabledReason reason : {DisabledReason::adjacent, DisabledReason::never, DisabledReason::always,
+                                DisabledReason::user, DisabledReason::default_}) {
+    if (name == reason_name(reason)) return reason;
+  }
+  throw InvalidInput("reason = '" + name + "': must be adjacent, never, always, user or default");
+}
+
+py::dict report_dict(const RobotReport& report) {
+  py::list meshes;
+  for (const MeshReport& mesh : report.meshes) {
+    meshes.append(py::dict("path"_a = mesh.path, "vertices_read"_a = mesh.vertices_read,
+                           "vertices_merged"_a = mesh.vertices_merged,
+                           "degenerate_triangles"_a = mesh.degenerate_triangles, "triangles"_a = mesh.triangles,
+                           "closed"_a = mesh.closed, "convex"_a = mesh.convex));
+  }
+  return py::dict("warnings"_a = report.warnings, "meshes"_a = meshes, "missing"_a = report.missing);
+}
+
+py::dict joint_dict(const Robot& robot, const Joint& joint) {
+  py::object mimic = py::none();
+  if (joint.mimic_joint >= 0) mimic = py::cast(robot.joints()[joint.mimic_joint].name);
+  return py::dict("name"_a = joint.name, "type"_a = to_string(joint.type),
+                  "parent"_a = robot.links()[joint.parent_link].name, "child"_a = robot.links()[joint.child_link].name,
+                  "lower"_a = joint.lower, "upper"_a = joint.upper, "velocity"_a = joint.velocity, "mimic"_a = mimic);
+}
+
+std::vector<std::string> movable_joints(const Robot& robot) {
+  std::vector<std::string> names;
+  for (const Joint& joint : robot.joints()) {
+    if (joint.value_index >= 0) names.push_back(joint.name);
+  }
+  return names;
+}
+
+JointGroup make_group(const Robot& robot, const py::object& name, const py::object& tip, const py::object& base_link,
+                      bool with_base) {
+  const std::string tip_name = tip.is_none() ? "" : py::cast<std::string>(tip);
+  if (base_link.is_none()) {
+    if (name.is_none()) throw InvalidInput("group(): give the name of an SRDF group, or base_link and tip");
+    return robot.group(py::cast<std::string>(name), tip_name, with_base);
+  }
+  if (!name.is_none()) throw InvalidInput("group(): give a group name or base_link, not both");
+  if (tip.is_none()) throw InvalidInput("group(base_link=...): tip is missing");
+  return robot.chain(py::cast<std::string>(base_link), tip_name, with_base);
+}
+
+void bind_robot_class(py::module_& m) {
+  py::class_<Robot> robot(m, "Robot", "A robot as URDF and SRDF describe it. Immutable; joints and links by name.");
+  robot
+      .def_static(
+          "load",
+          [](const py::object& urdf, const py::object& srdf, const py::object& package_dirs, const std::string& base,
+             const py::object& base_limits, bool load_meshes, bool allow_missing_meshes) {
+            const RobotOptions options =
+                robot_options(package_dirs, base, base_limits, load_meshes, allow_missing_meshes);
+            const std::string urdf_path = path_argument(urdf, "urdf");
+            const std::string srdf_path = srdf.is_none() ? "" : path_argument(srdf, "srdf");
+            py::gil_scoped_release release;
+            return Robot::load(urdf_path, srdf_path, options);
+          },
+          py::arg("urdf"), py::arg("srdf") = py::none(), py::arg("package_dirs") = py::none(),
+          py::arg("base") = "fixed", py::kw_only(), py::arg("base_limits") = py::none(), py::arg("load_meshes") = true,
+          py::arg("allow_missing_meshes") = false,
+          "Reads a URDF and, if given, its SRDF. `base` is fixed, diff_drive or omni; `package_dirs` maps the names "
+          "in\n"
+          "package://NAME/... to folders. Raises IoError or InvalidInput naming file, element, value and rule.")
+      .def_static(
+          "from_strings",
+          [](const std::string& urdf, const std::string& srdf, const py::object& package_dirs, const std::string& base,
+             const py::object& base_limits, bool load_meshes, bool allow_missing_meshes, const std::string& origin) {
+            const RobotOptions options =
+                robot_options(package_dirs, base, base_limits, load_meshes, allow_missing_meshes);
+            py::gil_scoped_release release;
+            return Robot::from_strings(urdf, srdf, options, origin);
+          },
+          py::arg("urdf"), py::arg("srdf") = "", py::arg("package_dirs") = py::none(), py::arg("base") = "fixed",
+          py::kw_only(), py::arg("base_limits") = py::none(), py::arg("load_meshes") = true,
+          py::arg("allow_missing_meshes") = false, py::arg("origin") = "<string>",
+          "The same from the texts of URDF and SRDF; `origin` names the source in messages.")
+      .def_property_readonly("name", &Robot::name)
+      .def_property_readonly(
+          "base", [](const Robot& r) { return to_string(r.base()); }, "fixed, diff_drive or omni.")
+      .def_property_readonly("base_limits",
+                             [](const Robot& r) {
+                               py::dict out;
+                               for (const auto& field : base_limit_fields()) {
+                                 out[field.name.c_str()] = field.get(r.base_limits());
+                               }
+                               return out;
+                             })
+      .def_property_readonly(
+          "links",
+          [](const Robot& r) {
+            std::vector<std::string> names;
+            for (const Link& link : r.links()) names.push_back(link.name);
+            return names;
+          },
+          "Names, root first.")
+      .def_property_readonly(
+          "joints", [](const Robot& r) { return movable_joints(r); },
+          "Names of the movable joints that follow no other.")
+      .def_property_readonly(
+          "joint_table",
+          [](const Robot& r) {
+            py::list out;
+            for (const Joint& joint : r.joints()) out.append(joint_dict(r, joint));
+            return out;
+          },
+          "Every joint as a dict.")
+      .def_property_readonly(
+          "report", [](const Robot& r) { return report_dict(r.report()); }, "What loading found.")
+      .def_property_readonly(
+          "groups",
+          [](const Robot& r) {
+            py::dict out;
+            for (const GroupDescription& g : r.groups()) {
+              out[g.name.c_str()] =
+                  py::dict("joints"_a = g.joints, "base_link"_a = g.base_link, "tip_link"_a = g.tip_link);
+            }
+            return out;
+          },
+          "SRDF groups: name to joints, base_link, tip_link.")
+      .def_property_readonly("group_states", &Robot::group_states, "SRDF states: group, state, joint to value.")
+      .def_property_readonly(
+          "end_effectors",
+          [](const Robot& r) {
+            py::list out;
+            for (const EndEffectorDescription& e : r.end_effectors()) {
+              out.append(py::dict("name"_a = e.name, "group"_a = e.group, "parent_link"_a = e.parent_link));
+            }
+            return out;
+          })
+      .def_property_readonly("has_srdf", &Robot::has_srdf)
+      .def_property_readonly("hash", &Robot::hash, "Content hash: kinematics, shapes, limits, disabled pairs.")
+      .def(
+          "collisions",
+          [](const Robot& r, const std::string& link) { return r.links()[r.link_index(link)].collisions; },
+          py::arg("link"), "Collision shapes of a link (list of LinkShape).")
+      .def(
+          "link_poses",
+          [](const Robot& r, const std::map<std::string, double>& joints, const py::object& T_world_root) {
+            const Poses poses = r.link_poses(r.values(joints), pose_argument(T_world_root, "T_world_root"));
+            py::dict out;
+            for (std::size_t i = 0; i < poses.size(); ++i) out[r.links()[i].name.c_str()] = to_array(poses[i]);
+            return out;
+          },
+          py::arg("joints") = std::map<std::string, double>{}, py::arg("T_world_root") = py::none(),
+          "Pose (4, 4) of every link, other joints at their default values.")
+      .def(
+          "values", [](const Robot& r, const std::map<std::string, double>& joints) { return r.values(joints); },
+          py::arg("joints") = std::map<std::string, double>{},
+          "Full value vector (for with_reference) with the named joints set.");
+  robot
+      .def("group", &make_group, py::arg("name") = py::none(), py::arg("tip") = py::none(), py::kw_only(),
+           py::arg("base_link") = py::none(), py::arg("with_base") = false,
+           "An SRDF group by name, its tip moved to any link its last joint carries; or the chain base_link to tip.\n"
+           "`with_base` puts the virtual joints x, y, theta first.")
+      .def(
+          "mount",
+          [](const Robot& r, const Robot& other, const std::string& parent_link, const py::object& T,
+             const std::string& prefix) { return r.mount(other, parent_link, pose_argument(T, "T"), prefix); },
+          py::arg("other"), py::arg("parent_link"), py::arg("T") = py::none(), py::arg("prefix") = "",
+          "This robot with `other` put on one of its links; the names of `other` get the prefix, SRDFs are merged.")
+      .def(
+          "with_link",
+          [](const Robot& r, const std::string& name, const std::string& parent_link, const py::object& T,
+             const std::vector<LinkShape>& shapes) {
+            return r.with_link(name, parent_link, pose_argument(T, "T"), shapes);
+          },
+          py::arg("name"), py::arg("parent_link"), py::arg("T") = py::none(),
+          py::arg("shapes") = std::vector<LinkShape>{}, "This robot with one more fixed link.")
+      .def_property_readonly(
+          "disabled_pairs",
+          [](const Robot& r) {
+            py::list out;
+            for (const auto& [pair, reason] : r.disabled_pairs()) {
+              out.append(py::make_tuple(r.links()[pair.first].name, r.links()[pair.second].name, reason_name(reason)));
+            }
+            return out;
+          },
+          "Link pairs that need no collision check: (a, b, reason).")
+      .def(
+          "with_disabled_pairs",
+          [](const Robot& r, const std::vector<std::tuple<std::string, std::string, std::string>>& pairs) {
+            std::map<std::pair<int, int>, DisabledReason> out;
+            for (const auto& [a, b, reason] : pairs) {
+              const int i = r.link_index(a), j = r.link_index(b);
+              out[{std::min(i, j), std::max(i, j)}] = reason_from_name(reason);
+            }
+            return r.with_disabled_pairs(std::move(out));
+          },
+          py::arg("pairs"))
+      .def("to_urdf", &Robot::to_urdf, "The whole robot as one URDF; mesh files by absolute path.")
+      .def("to_srdf", &Robot::to_srdf)
+      .def("__repr__", [](const Robot& r) {
+        return "Robot('" + r.name() + "', " + std::to_string(r.links().size()) + " links, " +
+               std::to_string(movable_joints(r).size()) + " movable joints, base " + to_string(r.base()) + ")";
+      });
+}
+
+IkResult solve(const JointGroup& group, const Pose& T, const Eigen::VectorXd& seed, const World* world,
+               const IkOptions& options) {
+  if (!world) {
+    return LongCall(py::none()).run([&](const Monitor& monitor) {
+      return solve_ik(group, T, seed, options, {}, monitor);
+    });
+  }
+  CollisionChecker checker(with_sampled_pairs(group), *world);
+  return LongCall(py::none()).run([&](const Monitor& monitor) {
+    return solve_collision_free_ik(checker, T, seed, options, monitor);
+  });
+}
+
+void bind_ik(py::module_& m) {
+  py::class_<IkResult>(m, "IkResult", "Answer of inverse kinematics.")
+      .def_readonly("outcome", &IkResult::outcome)
+      .def_property_readonly(
+          "q",
+          [](const IkResult& r) -> py::object {
+            if (r.outcome != Outcome::solved) return py::none();
+            return py::cast(r.q);
+          },
+          "The configuration, inside limits and checked by forward kinematics; None unless solved.")
+      .def_readonly("position_error", &IkResult::position_error, "[m] of q, or of the best attempt.")
+      .def_readonly("rotation_error", &IkResult::rotation_error, "[rad]")
+      .def_readonly("rejections", &IkResult::rejections)
+      .def_readonly("iterations", &IkResult::iterations)
+      .def("to_dict",
+           [](const IkResult& r) {
+             py::object q = py::none();
+             if (r.outcome == Outcome::solved) q = py::cast(r.q).attr("tolist")();
+             return py::dict("outcome"_a = to_string(r.outcome), "q"_a = q, "position_error"_a = r.position_error,
+                             "rotation_error"_a = r.rotation_error, "rejections"_a = to_dict(r.rejections),
+                             "iterations"_a = r.iterations);
+           })
+      .def("__repr__", [](const IkResult& r) {
+        return std::string("IkResult(") + to_string(r.outcome) +
+               (r.outcome == Outcome::solved ? ", q=" + text(r.q) : ", rejected: " + r.rejections.summary()) + ")";
+      });
+}
+
+Eigen::VectorXd configuration(const JointGroup& g, const ArrayLike& q, const char* name = "q") {
+  return vector_argument(q, name, g.size());
+}
+
+void bind_group(py::module_& m) {
+  py::class_<JointGroup>(m, "JointGroup", "Joints that are planned together, and a tip. Immutable.")
+      .def_property_readonly("robot", &JointGroup::robot)
+      .def_property_readonly("name", &JointGroup::name)
+      .def_property_readonly("names", &JointGroup::names, "Joint names; x, y, theta first when the group has the base.")
+      .def_property_readonly("size", &JointGroup::size)
+      .def("__len__", &JointGroup::size)
+      .def_property_readonly("has_base", &JointGroup::has_base)
+      .def_property_readonly("tip", [](const JointGroup& g) { return g.robot().links()[g.tip_link()].name; })
+      .def_property_readonly("lower", &JointGroup::lower, "[rad or m], -inf for continuous joints.")
+      .def_property_readonly("upper", &JointGroup::upper)
+      .def_property_readonly("velocity_limits", &JointGroup::velocity_limits)
+      .def_property_readonly("acceleration_limits", &JointGroup::acceleration_limits)
+      .def_property_readonly("sample_lower", &JointGroup::sample_lower, "Finite bounds to sample from.")
+      .def_property_readonly("sample_upper", &JointGroup::sample_upper)
+      .def_property_readonly("T_world_root", [](const JointGroup& g) { return to_array(g.T_world_root()); })
+      .def(
+          "at", [](const JointGroup& g, const ArrayLike& T) { return g.at(pose_argument(T, "T_world_root")); },
+          py::arg("T_world_root"), "The same group with the robot's root standing elsewhere.")
+      .def(
+          "with_reference",
+          [](const JointGroup& g, const std::map<std::string, double>& joints) {
+            return g.with_reference(g.robot().values(joints));
+          },
+          py::arg("joints"), "The same group with the named other joints held at these values, the rest at default.")
+      .def(
+          "with_acceleration_limits",
+          [](const JointGroup& g, const ArrayLike& limits) {
+            return g.with_acceleration_limits(vector_argument(limits, "limits", g.size()));
+          },
+          py::arg("limits"))
+      .def(
+          "within_limits",
+          [](const JointGroup& g, const ArrayLike& q, double slack) {
+            return g.within_limits(configuration(g, q), slack);
+          },
+          py::arg("q"), py::arg("slack") = 0.0)
+      .def(
+          "fk", [](const JointGroup& g, const ArrayLike& q) { return to_array(g.fk(configuration(g, q))); },
+          py::arg("q"), "T_world_tip, (4, 4), of a configuration (n,).")
+      .def(
+          "fk_batch",
+          [](const JointGroup& g, const ArrayLike& Q) {
+            const Eigen::MatrixXd columns = matrix_argument(Q, "Q", g.size()).transpose();
+            Poses poses(columns.cols());
+            {
+              py::gil_scoped_release release;
+              for (Eigen::Index i = 0; i < columns.cols(); ++i) poses[i] = g.fk(columns.col(i));
+            }
+            return to_array(poses);
+          },
+          py::arg("Q"), "(m, 4, 4) for configurations (m, n).")
+      .def(
+          "jacobian",
+          [](const JointGroup& g, const ArrayLike& q) { return Eigen::MatrixXd(g.jacobian(configuration(g, q))); },
+          py::arg("q"), "(6, n), world-aligned at the tip's origin: linear rows, then angular.")
+      .def(
+          "link_poses",
+          [](const JointGroup& g, const ArrayLike& q) {
+            Poses poses;
+            g.link_poses(configuration(g, q), poses);
+            py::dict out;
+            for (std::size_t i = 0; i < poses.size(); ++i) out[g.robot().links()[i].name.c_str()] = to_array(poses[i]);
+            return out;
+          },
+          py::arg("q"), "World pose (4, 4) of every link of the robot.")
+      .def(
+          "manipulability",
+          [](const JointGroup& g, const ArrayLike& q) { return g.manipulability(configuration(g, q)); }, py::arg("q"))
+      .def(
+          "ik",
+          [](const JointGroup& g, const ArrayLike& T_world_tip, const py::object& seed, const World* world,
+             const py::kwargs& options) {
+            const Eigen::VectorXd q0 = seed.is_none() ? Eigen::VectorXd(0.5 * (g.sample_lower() + g.sample_upper()))
+                                                      : vector_argument(seed, "seed", g.size());
+            return solve(g, pose_argument(T_world_tip, "T_world_tip"), q0, world,
+                         read_options(ik_fields(), options, "ik"));
+          },
+          py::arg("T_world_tip"), py::arg("seed") = py::none(), py::arg("world") = py::none(),
+          ("Inverse kinematics from `seed` (default: middle of the limits), then random restarts. With a world the "
+           "answer is\n"
+           "free of collisions with it and of self-collision; without one, collisions are not looked at." +
+           option_help(ik_fields()))
+              .c_str())
+      .def("__repr__", [](const JointGroup& g) {
+        std::string names;
+        for (const std::string& name : g.names()) names += (names.empty() ? "" : ", ") + name;
+        return "JointGroup('" + g.name() + "', [" + names + "], tip '" + g.robot().links()[g.tip_link()].name + "')";
+      });
+}
+
+void bind_trajectory(py::module_& m) {
+  py::class_<JointTrajectory>(m, "JointTrajectory", "A path on a clock; cubic Hermite between samples.")
+      .def_readonly("names", &JointTrajectory::names)
+      .def_property_readonly(
+          "times",
+          [](const JointTrajectory& t) { return py::array_t<double>(py::ssize_t(t.times.size()), t.times.data()); },
+          "(k,) [s]")
+      .def_property_readonly(
+          "positions", [](const JointTrajectory& t) { return rows_to_array(t.positions); }, "(k, n)")
+      .def_property_readonly("velocities", [](const JointTrajectory& t) { return rows_to_array(t.velocities); })
+      .def_property_readonly("accelerations", [](const JointTrajectory& t) { return rows_to_array(t.accelerations); })
+      .def_property_readonly("duration", &JointTrajectory::duration, "[s]")
+      .def("at", &JointTrajectory::at, py::arg("time"), "Configuration (n,) at a time [s], clamped at the ends.")
+      .def("to_csv", &JointTrajectory::to_csv, "Header time, names, name.velocity ...; one line a sample.")
+      .def("to_dict",
+           [](const JointTrajectory& t) {
+             return py::dict("names"_a = t.names, "times"_a = t.times,
+                             "positions"_a = rows_to_array(t.positions).attr("tolist")(),
+                             "velocities"_a = rows_to_array(t.velocities).attr("tolist")(),
+                             "accelerations"_a = rows_to_array(t.accelerations).attr("tolist")());
+           })
+      .def("__len__", [](const JointTrajectory& t) { return t.times.size(); })
+      .def("__repr__", [](const JointTrajectory& t) {
+        return "JointTrajectory(" + std::to_string(t.times.size()) + " samples, " +
+               std::string(py::repr(py::float_(t.duration()))) + " s)";
+      });
+}
+
+}  // namespace
+
+void bind_robot(py::module_& m) {
+  bind_robot_class(m);
+  bind_ik(m);
+  bind_group(m);
+  bind_trajectory(m);
+}
+
+}  // namespace mmgrasp::python

@@ -1,0 +1,383 @@
+#include "bindings.hpp"
+#include "mmgrasp/task/base_region.hpp"
+#include "mmgrasp/task/base_route.hpp"
+#include "mmgrasp/task/base_sequence.hpp"
+#include "mmgrasp/task/part_supply.hpp"
+#include "mmgrasp/task/pick.hpp"
+#include "mmgrasp/task/problem.hpp"
+
+namespace mmgrasp::python {
+namespace {
+
+using namespace py::literals;
+using Options = PartSupplyOptions;
+
+const std::vector<OptionField<Options>>& supply_fields() {
+  static const std::vector<OptionField<Options>> fields{
+      option<Options>("grid_resolution", &Options::grid, &BaseGridOptions::resolution,
+                      "cell edge of the base grid [m]"),
+      option<Options>("grid_max_distance", &Options::grid, &BaseGridOptions::max_distance,
+                      "cells farther from the tray's middle are not tried [m]; 0: the arm's reach"),
+      option<Options>("ik_seeds", &Options::grid, &BaseGridOptions::ik_seeds,
+                      "database configurations refined for each grasp and base pose"),
+      option<Options>("positioning_uncertainty", &Options::positioning_uncertainty,
+                      "radius of the disc in which the base may come to stand [m]"),
+      option<Options>("approach_distance", &Options::approach_distance, "straight move from pre-grasp to grasp [m]"),
+      option<Options>("lift_height", &Options::lift_height, "straight upward move after closing [m]"),
+      option<Options>("motion_time_limit", &Options::motion_time_limit, "for each planned motion [s]"),
+      option<Options>("route_resolution", &Options::route_resolution, "cell edge of the base route's search [m]"),
+      option<Options>("robustness_samples", &Options::robustness_samples,
+                      "base poses drawn at each stop for the check before returning"),
+      option<Options>("seed", &Options::seed, "same seed, same plan"),
+      option<Options>("threads", &Options::threads, "0: all; does not change the answer")};
+  return fields;
+}
+
+py::array_t<std::uint8_t> mask_array(const BaseGrid& grid, const CellMask& cells) {
+  py::array_t<std::uint8_t> out({static_cast<py::ssize_t>(grid.headings.size()), static_cast<py::ssize_t>(grid.ny),
+                                 static_cast<py::ssize_t>(grid.nx)});
+  if (static_cast<std::size_t>(out.size()) != cells.size()) throw InvalidInput("cells: belong to another grid");
+  std::copy(cells.begin(), cells.end(), out.mutable_data());
+  return out;
+}
+
+CellMask mask_argument(const BaseGrid& grid,
+                       const py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>& cells) {
+  if (static_cast<std::size_t>(cells.size()) != grid.size()) {
+    throw InvalidInput("cells has " + std::to_string(cells.size()) + " entries: the grid has " +
+                       std::to_string(grid.size()));
+  }
+  return CellMask(cells.data(), cells.data() + cells.size());
+}
+
+void bind_problem(py::module_& m) {
+  m.def("_supply_option_table", [] { return option_table(supply_fields()); });
+  py::class_<Part>(m, "Part", "One part in a tray.")
+      .def(py::init([](std::string name, std::vector<LinkShape> shapes, const ArrayLike& T_world_part,
+                       std::vector<Grasp> grasps, bool target, int grasps_too_wide) {
+             return Part{std::move(name), std::move(shapes), pose_argument(T_world_part, "T_world_part"),
+                         target,          std::move(grasps), grasps_too_wide};
+           }),
+           py::arg("name"), py::arg("shapes"), py::arg("T_world_part"), py::arg("grasps") = std::vector<Grasp>{},
+           py::kw_only(), py::arg("target") = true, py::arg("grasps_too_wide") = 0)
+      .def_readonly("name", &Part::name)
+      .def_readonly("shapes", &Part::shapes)
+      .def_property_readonly("T_world_part", [](const Part& p) { return to_array(p.T_world_part); })
+      .def_readonly("target", &Part::target)
+      .def_readonly("grasps", &Part::grasps)
+      .def_readonly("grasps_too_wide", &Part::grasps_too_wide)
+      .def("__repr__", [](const Part& p) {
+        return "Part('" + p.name + "', " + std::to_string(p.grasps.size()) + " grasps" + (p.target ? ")" : ", stays)");
+      });
+  py::class_<Tray>(m, "Tray", "A tray and the parts in it; its walls are scene objects.")
+      .def(py::init([](std::string name, const ArrayLike& T_world_tray, const ArrayLike& size, std::vector<Part> parts,
+                       std::vector<double> headings) {
+             return Tray{std::move(name), pose_argument(T_world_tray, "T_world_tray"), vector3_argument(size, "size"),
+                         std::move(parts), std::move(headings)};
+           }),
+           py::arg("name"), py::arg("T_world_tray"), py::arg("size"), py::arg("parts"),
+           py::arg("headings") = std::vector<double>{})
+      .def_readonly("name", &Tray::name)
+      .def_property_readonly("T_world_tray", [](const Tray& t) { return to_array(t.T_world_tray); })
+      .def_readonly("size", &Tray::size, "Depth, width, height [m].")
+      .def_readonly("parts", &Tray::parts)
+      .def_readonly("headings", &Tray::headings)
+      .def("__repr__",
+           [](const Tray& t) { return "Tray('" + t.name + "', " + std::to_string(t.parts.size()) + " parts)"; });
+  py::class_<CarryPlace>(m, "CarryPlace", "Where picked parts go: a bin fixed to the robot.")
+      .def(py::init([](const ArrayLike& T_base_bin, const ArrayLike& size, double drop_gap) {
+             return CarryPlace{pose_argument(T_base_bin, "T_base_bin"), vector2_argument(size, "size"), drop_gap};
+           }),
+           py::arg("T_base_bin"), py::arg("size"), py::arg("drop_gap") = CarryPlace{}.drop_gap)
+      .def_property_readonly("T_base_bin", [](const CarryPlace& c) { return to_array(c.T_base_bin); })
+      .def_readonly("size", &CarryPlace::size)
+      .def_readonly("drop_gap", &CarryPlace::drop_gap);
+  py::class_<PartSupplyProblem>(m, "PartSupplyProblem", "Everything the part-supply planner needs.")
+      .def(py::init([](const Robot& robot, const JointGroup& arm, const Gripper& gripper, const World& scene,
+                       std::vector<Tray> trays, const ArrayLike& home, const ArrayLike& start, const ArrayLike& goal,
+                       const CarryPlace& carry, const py::kwargs& options) {
+             PartSupplyProblem problem{robot,
+                                       arm,
+                                       gripper,
+                                       scene,
+                                       std::move(trays),
+                                       vector_argument(home, "home", arm.size()),
+                                       vector3_argument(start, "start"),
+                                       vector3_argument(goal, "goal"),
+                                       carry,
+                                       read_options(supply_fields(), options, "PartSupplyProblem")};
+             problem.check();
+             return problem;
+           }),
+           py::arg("robot"), py::arg("arm"), py::arg("gripper"), py::arg("scene"), py::arg("trays"), py::arg("home"),
+           py::arg("start"), py::arg("goal"), py::arg("carry"), option_help(supply_fields()).c_str())
+      .def_readonly("robot", &PartSupplyProblem::robot)
+      .def_readonly("arm", &PartSupplyProblem::arm)
+      .def_readonly("gripper", &PartSupplyProblem::gripper)
+      .def_readonly("scene", &PartSupplyProblem::scene)
+      .def_readonly("trays", &PartSupplyProblem::trays)
+      .def_readonly("home", &PartSupplyProblem::home)
+      .def_readonly("start", &PartSupplyProblem::start)
+      .def_readonly("goal", &PartSupplyProblem::goal)
+      .def_readonly("carry", &PartSupplyProblem::carry)
+      .def_property_readonly("options", [](const PartSupplyProblem& p) {
+        py::dict out;
+        for (const auto& field : supply_fields()) out[field.name.c_str()] = field.get(p.options);
+        return out;
+      });
+}
+
+void bind_regions(py::module_& m) {
+  py::class_<BaseGrid>(m, "BaseGrid", "Square cells over the floor, one layer for each heading.")
+      .def(py::init([](const ArrayLike& origin, double resolution, int nx, int ny, std::vector<double> headings) {
+             if (!(resolution > 0) || nx <= 0 || ny <= 0 || headings.empty()) {
+               throw InvalidInput("BaseGrid: resolution, nx and ny must be > 0 and headings not empty");
+             }
+             return BaseGrid{vector2_argument(origin, "origin"), resolution, nx, ny, std::move(headings)};
+           }),
+           py::arg("origin"), py::arg("resolution"), py::arg("nx"), py::arg("ny"),
+           py::arg("headings") = std::vector<double>{0.0})
+      .def_readonly("origin", &BaseGrid::origin, "Lower corner of cell (0, 0) [m].")
+      .def_readonly("resolution", &BaseGrid::resolution)
+      .def_readonly("nx", &BaseGrid::nx)
+      .def_readonly("ny", &BaseGrid::ny)
+      .def_readonly("headings", &BaseGrid::headings)
+      .def("centre", &BaseGrid::centre, py::arg("heading"), py::arg("ix"), py::arg("iy"),
+           "x, y, theta of a cell's middle.")
+      .def("__repr__", [](const BaseGrid& g) {
+        return "BaseGrid(" + std::to_string(g.nx) + " x " + std::to_string(g.ny) + " cells, " +
+               std::to_string(g.headings.size()) + " headings)";
+      });
+  py::class_<PartExplanation>(m, "PartExplanation",
+                              "What became of the candidates for one part over all base poses tried.")
+      .def_readonly("part", &PartExplanation::part)
+      .def_readonly("grasps", &PartExplanation::grasps)
+      .def_readonly("base_poses_tried", &PartExplanation::base_poses_tried)
+      .def_readonly("base_poses_feasible", &PartExplanation::base_poses_feasible)
+      .def_readonly("rejections", &PartExplanation::rejections)
+      .def("to_dict",
+           [](const PartExplanation& e) {
+             return py::dict("part"_a = e.part, "grasps"_a = e.grasps, "base_poses_tried"_a = e.base_poses_tried,
+                             "base_poses_feasible"_a = e.base_poses_feasible, "rejections"_a = to_dict(e.rejections));
+           })
+      .def("__repr__", [](const PartExplanation& e) {
+        return "PartExplanation('" + e.part + "', feasible at " + std::to_string(e.base_poses_feasible) + " of " +
+               std::to_string(e.base_poses_tried) + " base poses, rejected: " + e.rejections.summary() + ")";
+      });
+  py::class_<BaseRegion>(m, "BaseRegion", "Base poses from which every target part of a tray can be grasped.")
+      .def_readonly("tray", &BaseRegion::tray)
+      .def(
+          "cells", [](const BaseRegion& r, const BaseGrid& grid) { return mask_array(grid, r.cells); }, py::arg("grid"),
+          "(headings, ny, nx) array of 0 and 1.")
+      .def(
+          "part_cells",
+          [](const BaseRegion& r, const BaseGrid& grid) {
+            py::list out;
+            for (const CellMask& cells : r.part_cells) out.append(mask_array(grid, cells));
+            return out;
+          },
+          py::arg("grid"), "The same for each target part alone.")
+      .def_readonly("explanations", &BaseRegion::explanations)
+      .def_readonly("base_poses_in_collision", &BaseRegion::base_poses_in_collision)
+      .def_property_readonly("count", &BaseRegion::count, "Number of cells.")
+      .def("__repr__",
+           [](const BaseRegion& r) { return "BaseRegion('" + r.tray + "', " + std::to_string(r.count()) + " cells)"; });
+  m.def("make_base_grid", &make_base_grid, py::arg("problem"), py::arg("database"),
+        "The grid that covers all base poses from which any tray could be reached.");
+  m.def(
+      "compute_base_regions",
+      [](const PartSupplyProblem& problem, const ReachDatabase& database, const BaseGrid& grid,
+         const py::object& progress) {
+        return LongCall(progress).run(
+            [&](const Monitor& monitor) { return compute_base_regions(problem, database, grid, monitor); });
+      },
+      py::arg("problem"), py::arg("database"), py::arg("grid"), py::kw_only(), py::arg("progress") = py::none(),
+      "P1 Algorithm 2 with exact inverse kinematics: one region for each tray with target parts.");
+}
+
+py::dict intersection_dict(const Intersection& i) {
+  return py::dict("trays"_a = i.trays, "heading"_a = i.heading, "centre"_a = py::make_tuple(i.centre.x(), i.centre.y()),
+                  "radius"_a = i.radius, "cells"_a = i.cells);
+}
+
+void bind_sequence(py::module_& m) {
+  m.def(
+      "inscribed_circle",
+      [](const BaseGrid& grid, const py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>& cells,
+         int heading) {
+        if (heading < 0 || heading >= static_cast<int>(grid.headings.size())) {
+          throw InvalidInput("heading = " + std::to_string(heading) + ": must be a layer of the grid");
+        }
+        const InscribedCircle circle = inscribed_circle(grid, mask_argument(grid, cells), heading);
+        return py::make_tuple(Eigen::Vector2d(circle.centre), circle.radius);
+      },
+      py::arg("grid"), py::arg("cells"), py::arg("heading") = 0,
+      "Centre (2,) and radius [m] of the largest disc inside the union of cells of one layer.");
+  py::class_<Intersection>(m, "Intersection", "Cells that several regions share, with their largest disc.")
+      .def_readonly("trays", &Intersection::trays)
+      .def_readonly("heading", &Intersection::heading)
+      .def_readonly("centre", &Intersection::centre)
+      .def_readonly("radius", &Intersection::radius)
+      .def_readonly("cells", &Intersection::cells)
+      .def("to_dict", &intersection_dict)
+      .def("__repr__", [](const Intersection& i) {
+        return "Intersection(trays " + std::string(py::repr(py::cast(i.trays))) + ", radius " +
+               std::string(py::repr(py::float_(i.radius))) + ")";
+      });
+  py::class_<Intersections>(m, "Intersections")
+      .def_readonly("robust", &Intersections::robust)
+      .def_readonly("lost", &Intersections::lost, "Shared cells whose disc is too small, largest first.")
+      .def_readonly("sets_tried", &Intersections::sets_tried)
+      .def_readonly("sets_too_small", &Intersections::sets_too_small)
+      .def("__repr__", [](const Intersections& i) {
+        return "Intersections(" + std::to_string(i.robust.size()) + " robust, " + std::to_string(i.sets_too_small) +
+               " too small, " + std::to_string(i.sets_tried) + " tried)";
+      });
+  m.def("robust_intersections", &robust_intersections, py::arg("grid"), py::arg("regions"), py::arg("min_radius"),
+        py::arg("max_sets") = std::size_t{200000},
+        "Every set of trays whose shared cells hold a disc of at least `min_radius` [m] (P1 3.4.2).");
+  py::class_<Stop>(m, "Stop", "Where the base stops and which trays it serves there.")
+      .def_readonly("pose", &Stop::pose, "x, y, theta.")
+      .def_readonly("radius", &Stop::radius, "Of the disc in which every target part stays graspable [m].")
+      .def_readonly("trays", &Stop::trays)
+      .def_readonly("intersection", &Stop::intersection)
+      .def("__repr__", [](const Stop& s) {
+        return "Stop(" + text(s.pose) + ", trays " + std::string(py::repr(py::cast(s.trays))) + ")";
+      });
+  py::class_<StopSet>(m, "StopSet")
+      .def_readonly("outcome", &StopSet::outcome)
+      .def_readonly("stops", &StopSet::stops)
+      .def_readonly("lower_bound", &StopSet::lower_bound, "Proven least number of stops.")
+      .def_readonly("unreachable_trays", &StopSet::unreachable_trays)
+      .def("__repr__", [](const StopSet& s) {
+        return std::string("StopSet(") + to_string(s.outcome) + ", " + std::to_string(s.stops.size()) + " stops)";
+      });
+  m.def("minimal_stops", &minimal_stops, py::arg("grid"), py::arg("intersections"), py::arg("trays"),
+        "The least number of intersections that cover all trays (P1 equation 3.1), with proof.");
+  py::class_<BasePath>(m, "BasePath", "A drive of the base.")
+      .def_readonly("outcome", &BasePath::outcome)
+      .def_property_readonly(
+          "poses", [](const BasePath& p) { return rows_to_array(p.poses); }, "(k, 3): x, y, theta.")
+      .def_readonly("length", &BasePath::length)
+      .def_readonly("turning", &BasePath::turning)
+      .def(
+          "duration", [](const BasePath& p, const Robot& robot) { return base_path_duration(p, robot.base_limits()); },
+          py::arg("robot"))
+      .def("__repr__", [](const BasePath& p) {
+        return std::string("BasePath(") + to_string(p.outcome) + ", " + std::string(py::repr(py::float_(p.length))) +
+               " m)";
+      });
+  m.def(
+      "plan_base_route",
+      [](const JointGroup& arm, const World& world, const ArrayLike& home, const ArrayLike& from, const ArrayLike& to,
+         double resolution) {
+        BaseRouteOptions options;
+        options.base = arm.robot().base();
+        options.resolution = resolution;
+        CollisionChecker checker(with_sampled_pairs(arm), world);
+        const Eigen::VectorXd q = vector_argument(home, "home", arm.size());
+        const Eigen::Vector3d a = vector3_argument(from, "start"), b = vector3_argument(to, "goal");
+        return LongCall(py::none()).run([&](const Monitor& monitor) {
+          return plan_base_route(checker, q, a, b, options, monitor);
+        });
+      },
+      py::arg("arm"), py::arg("world"), py::kw_only(), py::arg("home"), py::arg("start"), py::arg("goal"),
+      py::arg("resolution") = BaseRouteOptions{}.resolution,
+      "A driveable, collision-free way of the whole robot with its arm at `home`; poses are x, y, theta.");
+}
+
+void bind_picks(py::module_& m) {
+  py::class_<PickMotion>(m, "PickMotion", "One timed arm motion at a stop.")
+      .def_property_readonly("kind", [](const PickMotion& p) { return to_string(p.kind); })
+      .def_readonly("opening", &PickMotion::opening)
+      .def_readonly("holding", &PickMotion::holding)
+      .def_readonly("trajectory", &PickMotion::trajectory)
+      .def("__repr__", [](const PickMotion& p) {
+        return std::string("PickMotion(") + to_string(p.kind) + ", " +
+               std::string(py::repr(py::float_(p.trajectory.duration()))) + " s)";
+      });
+  py::class_<Pick>(m, "Pick", "Home, pre-grasp, grasp, lift, carry, home.")
+      .def_readonly("outcome", &Pick::outcome)
+      .def_readonly("stop", &Pick::stop)
+      .def_readonly("tray", &Pick::tray)
+      .def_readonly("part", &Pick::part)
+      .def_readonly("grasp", &Pick::grasp)
+      .def_readonly("motions", &Pick::motions)
+      .def_readonly("rejections", &Pick::rejections)
+      .def_readonly("failed_at", &Pick::failed_at)
+      .def_property_readonly("duration", &Pick::duration)
+      .def("__repr__", [](const Pick& p) {
+        return std::string("Pick(") + to_string(p.outcome) + ", tray " + std::to_string(p.tray) + ", part " +
+               std::to_string(p.part) + ")";
+      });
+  m.def(
+      "plan_pick",
+      [](const PartSupplyProblem& problem, const ReachDatabase& database, const ArrayLike& base_pose, int tray,
+         int part, const std::vector<std::pair<int, int>>& remaining) {
+        const Eigen::Vector3d base = vector3_argument(base_pose, "base_pose");
+        return LongCall(py::none()).run([&](const Monitor& monitor) {
+          return plan_pick(problem, database, base, tray, part, remaining, monitor);
+        });
+      },
+      py::arg("problem"), py::arg("database"), py::arg("base_pose"), py::arg("tray"), py::arg("part"),
+      py::arg("remaining"),
+      "One pick from a base pose; `remaining` are the (tray, part) still in place, the picked one among them.");
+}
+
+void bind_plan_result(py::module_& m) {
+  py::class_<Obstruction>(m, "Obstruction", "Why there is no plan, and what would help.")
+      .def_readonly("tray", &Obstruction::tray)
+      .def_readonly("part", &Obstruction::part)
+      .def_readonly("stage", &Obstruction::stage)
+      .def_readonly("message", &Obstruction::message)
+      .def_readonly("largest_uncertainty", &Obstruction::largest_uncertainty)
+      .def_readonly("missing_reach", &Obstruction::missing_reach)
+      .def("to_dict",
+           [](const Obstruction& o) {
+             return py::dict("tray"_a = o.tray, "part"_a = o.part, "stage"_a = o.stage, "message"_a = o.message,
+                             "largest_uncertainty"_a = o.largest_uncertainty, "missing_reach"_a = o.missing_reach);
+           })
+      .def("__repr__", [](const Obstruction& o) { return "Obstruction(" + o.stage + ": " + o.message + ")"; });
+  py::class_<PartSupplyPlan>(m, "PartSupplyResult", "The planner's answer; PartSupplyPlan joins it with its scenario.")
+      .def_readonly("outcome", &PartSupplyPlan::outcome)
+      .def_readonly("grid", &PartSupplyPlan::grid)
+      .def_readonly("regions", &PartSupplyPlan::regions)
+      .def_readonly("region_trays", &PartSupplyPlan::region_trays, "Tray index of each region.")
+      .def_readonly("intersections", &PartSupplyPlan::intersections)
+      .def_readonly("stops", &PartSupplyPlan::stops)
+      .def_readonly("lower_bound", &PartSupplyPlan::lower_bound)
+      .def_readonly("route", &PartSupplyPlan::route)
+      .def_readonly("picks", &PartSupplyPlan::picks)
+      .def_readonly("robustness_rate", &PartSupplyPlan::robustness_rate)
+      .def_readonly("obstructions", &PartSupplyPlan::obstructions)
+      .def_property_readonly("timings",
+                             [](const PartSupplyPlan& p) {
+                               std::vector<std::pair<std::string, double>> out;
+                               for (const StageTime& t : p.timings) out.emplace_back(t.stage, t.seconds);
+                               return out;
+                             })
+      .def("__repr__", [](const PartSupplyPlan& p) {
+        return std::string("PartSupplyResult(") + to_string(p.outcome) + ", " + std::to_string(p.stops.size()) +
+               " stops, " + std::to_string(p.picks.size()) + " picks)";
+      });
+  m.def(
+      "solve_part_supply",
+      [](const PartSupplyProblem& problem, const ReachDatabase& database, const py::object& progress) {
+        return LongCall(progress).run(
+            [&](const Monitor& monitor) { return plan_part_supply(problem, database, monitor); });
+      },
+      py::arg("problem"), py::arg("database"), py::kw_only(), py::arg("progress") = py::none(),
+      "The whole of P1's Algorithm 1 and the motions around it, for a problem given as objects.");
+}
+
+}  // namespace
+
+void bind_task(py::module_& m) {
+  bind_problem(m);
+  bind_regions(m);
+  bind_sequence(m);
+  bind_picks(m);
+  bind_plan_result(m);
+}
+
+}  // namespace mmgrasp::python

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <string>
+
+#include "arrays.hpp"
+#include "long_call.hpp"
+#include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/core/error.hpp"
+#include "options.hpp"
+
+namespace mmgrasp::python {
+
+void bind_core(py::module_& m);
+void bind_geometry(py::module_& m);
+void bind_optim(py::module_& m);
+void bind_robot(py::module_& m);
+void bind_collision(py::module_& m);
+void bind_reach(py::module_& m);
+void bind_grasp(py::module_& m);
+void bind_plan(py::module_& m);
+void bind_task(py::module_& m);
+void bind_verify(py::module_& m);
+
+py::dict to_dict(const Rejections& rejections);
+
+/// Path of a str or os.PathLike argument.
+std::string path_argument(const py::handle& value, const std::string& name);
+
+/// The group itself, or the same group on the robot with its collision pairs sampled when no SRDF gives any.
+JointGroup with_sampled_pairs(const JointGroup& group);
+
+}  // namespace mmgrasp::python

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "mmgrasp/core/monitor.hpp"
+
+namespace mmgrasp::python {
+
+namespace py = pybind11;
+
+/// Runs a long call on a thread of its own, without the GIL. The calling thread waits, hands progress to Python and
+/// looks for signals every 30 ms: Ctrl-C sets the stop token, waits for the call to end, and then raises
+/// KeyboardInterrupt.
+class LongCall {
+ public:
+  explicit LongCall(py::object progress) : progress_(std::move(progress)) {
+    monitor_.progress = [this](const std::string& stage, double fraction) {
+      std::lock_guard lock(mutex_);
+      latest_ = {stage, fraction};
+    };
+  }
+
+  template <typename Function>
+  auto run(Function&& work) -> decltype(work(std::declval<const Monitor&>())) {
+    std::optional<decltype(work(std::declval<const Monitor&>()))> result;
+    std::exception_ptr error;
+    std::thread thread([&] {
+      try {
+        result.emplace(work(monitor_));
+      } catch (...) {
+        error = std::current_exception();
+      }
+      std::lock_guard lock(mutex_);
+      done_ = true;
+      changed_.notify_all();
+    });
+    const bool python_error = !wait();
+    {
+      py::gil_scoped_release release;
+      thread.join();
+    }
+    if (python_error) throw py::error_already_set();
+    if (error) std::rethrow_exception(error);
+    hand_over_progress();
+    return std::move(*result);
+  }
+
+ private:
+  /// False when a signal handler or the progress callback raised; the Python error is then set and the call told to
+  /// stop.
+  bool wait();
+  void hand_over_progress();
+
+  py::object progress_;
+  Monitor monitor_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool done_ = false;
+  std::optional<std::pair<std::string, double>> latest_;
+};
+
+}  // namespace mmgrasp::python

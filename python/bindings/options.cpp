@@ -1,0 +1,62 @@
+#include "options.hpp"
+
+#include <cmath>
+
+namespace mmgrasp::python {
+
+std::string nearest_name(const std::string& wrong, const std::vector<std::string>& known) {
+  const py::list matches = py::module_::import("difflib").attr("get_close_matches")(wrong, known, 1, 0.5);
+  if (!matches.empty()) return "; did you mean " + py::cast<std::string>(matches[0]) + "?";
+  std::string all = "; known are ";
+  for (std::size_t i = 0; i < known.size(); ++i) all += (i ? ", " : "") + known[i];
+  return all;
+}
+
+void refuse_value(const std::string& name, const py::handle& value, const char* rule) {
+  throw InvalidInput(name + " = " + std::string(py::repr(value)) + ": must be " + rule);
+}
+
+void convert(const py::handle& value, const std::string& name, double& out) {
+  if (PyBool_Check(value.ptr()) ||
+      !(PyFloat_Check(value.ptr()) || PyIndex_Check(value.ptr()) || PyObject_HasAttrString(value.ptr(), "__float__"))) {
+    refuse_value(name, value, "a number");
+  }
+  out = py::cast<double>(value);
+  if (!std::isfinite(out)) refuse_value(name, value, "finite");
+}
+
+void convert(const py::handle& value, const std::string& name, std::int64_t& out) {
+  const bool whole =
+      PyFloat_Check(value.ptr()) && std::floor(PyFloat_AS_DOUBLE(value.ptr())) == PyFloat_AS_DOUBLE(value.ptr());
+  if (PyBool_Check(value.ptr()) || !(whole || PyIndex_Check(value.ptr()))) refuse_value(name, value, "a whole number");
+  const double number = py::cast<double>(value);
+  if (!(std::abs(number) < 9e15)) refuse_value(name, value, "a whole number below 9e15");
+  out = whole ? static_cast<std::int64_t>(number)
+              : py::cast<std::int64_t>(py::int_(py::reinterpret_borrow<py::object>(value)));
+}
+
+void convert(const py::handle& value, const std::string& name, int& out) {
+  std::int64_t wide = 0;
+  convert(value, name, wide);
+  if (wide < INT32_MIN || wide > INT32_MAX) refuse_value(name, value, "a 32-bit whole number");
+  out = static_cast<int>(wide);
+}
+
+void convert(const py::handle& value, const std::string& name, unsigned& out) {
+  std::int64_t wide = 0;
+  convert(value, name, wide);
+  if (wide < 0 || wide > UINT32_MAX) refuse_value(name, value, "a whole number in [0, 4294967295]");
+  out = static_cast<unsigned>(wide);
+}
+
+void convert(const py::handle& value, const std::string& name, bool& out) {
+  if (!PyBool_Check(value.ptr())) refuse_value(name, value, "True or False");
+  out = py::cast<bool>(value);
+}
+
+void convert(const py::handle& value, const std::string& name, std::string& out) {
+  if (!PyUnicode_Check(value.ptr())) refuse_value(name, value, "a string");
+  out = py::cast<std::string>(value);
+}
+
+}  // namespace mmgrasp::python

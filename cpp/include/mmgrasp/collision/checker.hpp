@@ -14,7 +14,7 @@
 namespace mmgrasp {
 
 struct MMGRASP_EXPORT CheckerOptions {
-  double padding = 0;       ///< Robot shapes are grown by this [m] against the scene; >= 0.
+  double padding = 0;       ///< Robot links (not what they hold) are grown by this [m] against the scene; >= 0.
   bool check_self = true;   ///< Robot (and what it holds) against itself.
   bool check_scene = true;  ///< Robot (and what it holds) against the scene.
   void check() const;
@@ -46,21 +46,23 @@ class MMGRASP_EXPORT CollisionChecker {
   const JointGroup& group() const;
   const World& world() const;
 
-  /// The same checker with the group re-referenced (base stands elsewhere, fingers opened): geometry is not rebuilt.
+  /// The same checker with the group re-referenced (base stands elsewhere, fingers opened) or another group of the same
+  /// robot: geometry is not rebuilt. Throws InvalidInput for a group of another robot.
   CollisionChecker with_group(const JointGroup& group) const;
   /// Cheap in-place variant of the above for loops over base poses.
   void set_root(const Pose& T_world_root);
 
-  /// Limits, then self, then scene: the first cause found, or none. The hot query. `q` must have the right length and be
+  /// Limits (with 1e-9 of slack for rounding), then self, then scene: the first cause found, or none. The hot query. `q` must have the right length and be
   /// finite (checked; throws InvalidInput).
   Rejection rejection(const Eigen::VectorXd& q);
-  bool is_free(const Eigen::VectorXd& q) { return rejection(q) == Rejection::none; }
+  /// rejection(q) == Rejection::none, quicker: what collided last is looked at first.
+  bool is_free(const Eigen::VectorXd& q);
   /// Every touching pair (limits are not looked at).
   std::vector<Contact> contacts(const Eigen::VectorXd& q);
-  /// Smallest distance over all checked pairs.
+  /// Smallest distance over all checked pairs; padding is not subtracted. Infinite when there is no pair.
   DistanceResult distance(const Eigen::VectorXd& q);
 
-  /// Straight joint-space edge, checked at steps in which no joint moves more than `step` (rad or m), ends included.
+  /// Straight joint-space edge (angles are not wrapped), checked at steps in which no joint moves more than `step` (rad or m), ends included.
   bool edge_is_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double step = 0.02);
 
   std::size_t queries() const;  ///< Configurations checked so far.

@@ -14,8 +14,9 @@ struct MMGRASP_EXPORT DisabledPairsOptions {
   void check() const;
 };
 
-/// The robot with its disabled pairs computed from random samples: adjacent (joined by a joint), always, never. Pairs that
-/// were set by an SRDF are kept.
+/// The robot with its disabled pairs computed from random samples: adjacent (joined by at most one movable joint with no shape
+/// in between), always, never. Pairs that are disabled already (by an SRDF) are kept. The same seed gives the same pairs at any
+/// thread count. Stopped early, only the adjacent ones are added.
 MMGRASP_EXPORT Robot compute_disabled_pairs(const Robot& robot, const DisabledPairsOptions& options = {},
                                             const Monitor& monitor = {});
 

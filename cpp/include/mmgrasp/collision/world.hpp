@@ -34,8 +34,9 @@ class MMGRASP_EXPORT World {
   void add(const std::string& name, WorldObject object);
   void move(const std::string& name, const Pose& T_world_object);
   void remove(const std::string& name);              ///< Takes an object, held or not, out of the world.
-  /// From the scene to a link. Empty touch_links: `link` and every link below it, and its siblings' fingers when `link`
-  /// belongs to an SRDF end effector (resolved by the checker).
+  /// From the scene to a link. Empty touch_links: `link`, every link below it and, when `link` lies in an SRDF end effector's
+  /// group or below its parent link, all links of that group (resolved by the checker, which also refuses unknown links).
+  /// Links that are rigidly joined to `link` are never checked against the object.
   void attach(const std::string& name, const std::string& link, const Pose& T_link_object,
               std::set<std::string> touch_links = {});
   void detach(const std::string& name, const Pose& T_world_object);  ///< Back into the scene.

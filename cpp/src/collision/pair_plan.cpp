@@ -1,0 +1,75 @@
+#include <algorithm>
+
+#include "collision/bodies.hpp"
+
+namespace mmgrasp::detail {
+
+namespace {
+
+// Numbers links so that two share a number when no joint for which `breaks` holds lies between them. Breadth-first order:
+// parents come before their children.
+template <class Breaks>
+std::vector<int> group_links(const Robot& robot, const Breaks& breaks) {
+  std::vector<int> number(robot.links().size());
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    const int joint = robot.links()[i].parent_joint;
+    const bool own = joint < 0 || breaks(joint);
+    number[i] = own ? static_cast<int>(i) : number[robot.joints()[joint].parent_link];
+  }
+  return number;
+}
+
+// Joints whose value the group sets, mimicking ones included.
+std::vector<char> active_joints(const Robot& robot, const JointGroup& group) {
+  const std::vector<std::string>& names = group.names();
+  std::vector<char> active(robot.joints().size(), 0);
+  for (std::size_t j = 0; j < active.size(); ++j) {
+    const Joint& joint = robot.joints()[j];
+    const int leader = joint.mimic_joint >= 0 ? joint.mimic_joint : static_cast<int>(j);
+    const auto first = names.begin() + (group.has_base() ? 3 : 0);
+    active[j] = std::find(first, names.end(), robot.joints()[leader].name) != names.end();
+  }
+  return active;
+}
+
+bool never_needs_check(const Snapshot& snapshot, const Body& a, const Body& b, const std::vector<int>& assembly) {
+  if (assembly[a.link] == assembly[b.link]) return true;
+  const auto may_touch = [](const Body& held, const Body& link) {
+    return std::binary_search(held.touch_links.begin(), held.touch_links.end(), link.link);
+  };
+  if (a.held && b.held) return false;
+  if (a.held) return may_touch(a, b);
+  if (b.held) return may_touch(b, a);
+  return snapshot.robot.pair_disabled(a.link, b.link);
+}
+
+}  // namespace
+
+std::vector<int> rigid_assemblies(const Robot& robot) {
+  return group_links(robot, [&](int joint) { return robot.joints()[joint].type != JointType::fixed; });
+}
+
+PairPlan::PairPlan(const Snapshot& snapshot, const JointGroup& group) {
+  const Robot& robot = snapshot.robot;
+  const std::vector<int> assembly = rigid_assemblies(robot);
+  const std::vector<char> active = active_joints(robot, group);
+  const std::vector<int> moved_by = group_links(robot, [&](int joint) { return active[joint] != 0; });
+
+  std::vector<char> link_moves(robot.links().size(), 0);
+  for (const int link : group.moving_links()) link_moves[link] = 1;
+  for (std::size_t s = 0; s < snapshot.shapes.size(); ++s) {
+    if (snapshot.shapes[s].solid->never_collides()) continue;
+    (link_moves[snapshot.shapes[s].link] ? moving : fixed).push_back(static_cast<int>(s));
+  }
+  for (std::size_t i = 0; i < snapshot.shapes.size(); ++i) {
+    for (std::size_t j = i + 1; j < snapshot.shapes.size(); ++j) {
+      const BodyShape &a = snapshot.shapes[i], &b = snapshot.shapes[j];
+      if (a.body == b.body || a.solid->never_collides() || b.solid->never_collides()) continue;
+      if (never_needs_check(snapshot, snapshot.bodies[a.body], snapshot.bodies[b.body], assembly)) continue;
+      const ShapePair pair{static_cast<int>(i), static_cast<int>(j), a.solid->ball_radius + b.solid->ball_radius};
+      (moved_by[a.link] == moved_by[b.link] ? constant : varying).push_back(pair);
+    }
+  }
+}
+
+}  // namespace mmgrasp::detail

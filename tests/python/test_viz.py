@@ -1,0 +1,142 @@
+"""Pictures and report of a plan written by hand: what they show is known."""
+
+import re
+import struct
+import zlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from plan_by_hand import plan_by_hand
+
+pytest.importorskip("mmgrasp")
+
+from mmgrasp.viz import png, raster, report, topview  # noqa: E402
+from mmgrasp.viz.scene import PlanScene  # noqa: E402
+from mmgrasp.viz.timeline import GRIP_TIME, State, Timeline, along_route  # noqa: E402
+
+
+def decode_png(data: bytes) -> np.ndarray:
+    """Reads back an 8-bit RGB PNG whose rows are unfiltered."""
+    width, height = struct.unpack(">II", data[16:24])
+    position, body = 8, b""
+    while position < len(data):
+        (size,) = struct.unpack(">I", data[position : position + 4])
+        if data[position + 4 : position + 8] == b"IDAT":
+            body += data[position + 8 : position + 8 + size]
+        position += 12 + size
+    rows = np.frombuffer(zlib.decompress(body), np.uint8).reshape(height, 1 + 3 * width)
+    assert not rows[:, 0].any()
+    return rows[:, 1:].reshape(height, width, 3)
+
+
+def test_png_round_trip():
+    image = np.random.default_rng(1).integers(0, 255, (7, 5, 3), dtype=np.uint8)
+    assert np.array_equal(decode_png(png.png_bytes(image)), image)
+
+
+def test_png_refuses_other_arrays():
+    with pytest.raises(ValueError, match="uint8"):
+        png.png_bytes(np.zeros((4, 4, 3)))
+
+
+def test_camera_projects_the_target_to_the_middle_and_halves_size_at_twice_the_distance():
+    camera = raster.Camera(np.array([0.0, -2.0, 0.0]), np.zeros(3), width=200, height=100, fov=90)
+    middle, near, far = camera.project(np.array([[0.0, 0, 0], [1.0, 0, 0], [1.0, 2.0, 0]]))
+    assert middle == pytest.approx([100, 50, 2])
+    assert near[0] - 100 == pytest.approx(50 / np.tan(np.pi / 4) * 1 / 2)
+    assert far[0] - 100 == pytest.approx((near[0] - 100) / 2)
+
+
+def test_renderer_shows_the_nearer_of_two_squares():
+    square = np.array([[-1.0, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]])
+    faces = np.array([[0, 1, 2], [0, 2, 3]])
+    scene = raster.Scene()
+    scene.add(square, faces, "#FF0000")
+    scene.add(square + [0, 1.0, 0], faces, "#0000FF")
+    camera = raster.Camera(np.array([0.0, -3.0, 0.0]), np.zeros(3), 60, 60, 60)
+    middle = raster.render(scene, camera)[30, 30]
+    assert middle[0] > 100 and middle[2] == 0
+    behind = raster.Camera(np.array([0.0, 5.0, 0.0]), np.zeros(3), 60, 60, 60)
+    middle = raster.render(scene, behind)[30, 30]
+    assert middle[2] > 100 and middle[0] == 0
+
+
+def test_timeline_adds_up_and_knows_where_things_are():
+    timeline = Timeline(plan_by_hand())
+    assert timeline.duration == pytest.approx(4.0 + 2 * (7.5 + 2 * GRIP_TIME) + 5.0)
+    assert timeline.state_at(0).base == pytest.approx([0.3, 0.3, 0.0])
+    assert timeline.state_at(1e9).base == pytest.approx([2.5, 0.3, 0.0])
+    reach_half = timeline.state_at(4.0 + 1.0)
+    assert reach_half.arm == pytest.approx([0.2, 0.25]) and reach_half.held is None
+    lifting = timeline.state_at(4.0 + 3.0 + GRIP_TIME + 0.5)
+    assert lifting.held is not None and lifting.held[0] == "A/brick_0"
+    assert timeline.state_at(timeline.duration).gone == {"A/brick_0", "B & C/brick_0"}
+    assert timeline.grasp_times() == [(0, pytest.approx(7.0)), (0, pytest.approx(15.5))]
+
+
+def test_along_route_turns_then_drives():
+    poses = np.array([[0, 0, 0], [0, 0, 1.0], [1.0, 0, 1.0]])
+    assert along_route(poses, 0.25) == pytest.approx([0, 0, 0.5])
+    assert along_route(poses, 0.75) == pytest.approx([0.5, 0, 1.0])
+    assert along_route(poses, 1.0) == pytest.approx([1, 0, 1])
+
+
+def test_scene_places_the_tool_by_closed_form_and_the_held_part_in_it():
+    scene = PlanScene(plan_by_hand())
+    state = State(np.array([1.0, 2.0, np.pi / 2]), np.array([0.2, 0.5]), 0.0)
+    T = scene.robot_poses(state)["tcp"]
+    angle = np.pi / 2 + 0.5
+    assert T[:3, 3] == pytest.approx([1 + 0.7 * np.cos(angle), 2 + 0.7 * np.sin(angle), 0.3 + 0.2 + 0.4])
+    held = State(state.base, state.arm, 0.0, ("A/brick_0", np.eye(4)))
+    assert scene.part_pose("A/brick_0", held, scene.robot_poses(held)) == pytest.approx(T)
+    assert scene.arm_links == {"column", "arm", "tcp"}
+
+
+def test_top_view_draws_every_cell_stop_and_name():
+    svg = topview.TopView(plan_by_hand()).svg()
+    assert re.findall(r'data-tray="([^"]*)" data-cells="(\d+)"', svg) == [("A", "80"), ("B &amp; C", "64")]
+    assert svg.count('class="disc"') == 1 and svg.count('class="route"') == 2
+    disc = re.search(r'r="([\d.]+)" class="disc"', svg)
+    assert disc and float(disc[1]) == pytest.approx(0.2 * topview.SCALE, abs=0.1)
+    assert "nan" not in svg.lower()
+
+
+def test_footprint_of_a_turned_box_is_its_outline():
+    quarter = {"xyz": [1.0, 2.0, 0.0], "quat_xyzw": [0, 0, np.sin(np.pi / 4), np.cos(np.pi / 4)]}
+    (outline,) = topview.footprint([{"type": "box", "size": [0.4, 0.2, 1.0], "pose": quarter}], quarter)
+    # Turned twice by 90 degrees: x stays along x; the shape's own offset is turned by the body's.
+    assert outline.max(axis=0) - outline.min(axis=0) == pytest.approx([0.4, 0.2])
+    assert outline.mean(axis=0) == pytest.approx([1.0 - 2.0, 2.0 + 1.0])
+
+
+def test_report_tells_the_plan_and_needs_nothing_from_outside(tmp_path: Path):
+    page = report.write_report(plan_by_hand(), tmp_path).read_text()
+    assert "1 stop serves 2 trays: 2 parts in 26.0 s" in page
+    assert not re.search(r'(?:src|href)="(?!data:)', page)
+    assert "B &amp; C" in page and "24 of 60" in page
+    assert not list(tmp_path.glob("*.part"))
+
+
+def test_report_of_no_plan_names_the_tray_and_the_advice():
+    plan = plan_by_hand()
+    plan.update(outcome="infeasible", stops=[], route=[], picks=[])
+    plan["obstructions"] = [{"tray": "A", "part": "A/brick_0", "stage": "robustness", "message": "no disc of 0.500 m fits",
+                             "largest_uncertainty": 0.21, "missing_reach": 0.0}]  # fmt: skip
+    page = report.report_html(plan)
+    assert "Tray A, part A/brick_0" in page and "no disc of 0.500 m fits" in page and "0.210 m" in page
+
+
+def test_pictures_show_regions_in_the_tray_colours(tmp_path: Path):
+    from mmgrasp.viz import pictures
+    from PIL import Image
+
+    paths = pictures.write_pictures(plan_by_hand(), tmp_path)
+    assert [p.name for p in paths] == ["topview.png", "regions.png", "stop_1.png", "pick_1_joints.png"]
+    regions = np.asarray(Image.open(tmp_path / "regions.png").convert("RGB")).reshape(-1, 3).astype(int)
+    blue = (regions[:, 2] > regions[:, 0] + 60).mean()
+    orange = (regions[:, 0] > regions[:, 2] + 60).mean()
+    assert blue > 0.01 and orange > 0.01
+    robot = decode_png((tmp_path / "stop_1.png").read_bytes()).astype(int)
+    arm_like = (robot[..., 2] - robot[..., 0] > 30).mean()
+    assert arm_like > 0.002

@@ -1,0 +1,249 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mmgrasp/core/parallel.hpp"
+#include "verify/context.hpp"
+#include "verify/hermite.hpp"
+#include "verify/motion_limits.hpp"
+#include "verify/tool_path.hpp"
+
+namespace mmgrasp::verify {
+namespace {
+
+enum Kind { kReach, kApproach, kLift, kCarry, kRetreat, kKinds };
+constexpr std::array<const char*, kKinds> kKindNames = {"reach", "approach", "lift", "carry", "retreat"};
+constexpr double kJoin = 1e-6;          // Ends that must coincide [rad or m].
+constexpr double kRest = 1e-3;          // Speed that counts as rest [rad/s or m/s].
+constexpr double kOpening = 1e-6;       // [m]
+constexpr double kMaxSteps = 200000;    // Configurations of one motion: 2000 rad at the default step.
+
+bool is_holding(int kind) { return kind == kLift || kind == kCarry; }
+
+/// Everything about one pick. Broken motions end the checks that need them, not the others.
+class PickCheck {
+ public:
+  PickCheck(const Context& context, std::size_t index, Judge& judge, Faults& faults)
+      : context_(context), plan_(context.plan), pick_(plan_.picks[index]), index_(index), judge_(judge), faults_(faults) {}
+
+  void run() {
+    bool usable = true;
+    for (const CheckedMotion& motion : pick_.motions) {
+      const std::string where = name(motion.kind);
+      if (check_motion_shape(motion, judge_.kinematics().arm_size(), where, faults_)) {
+        check_motion_limits(context_, judge_.kinematics(), motion, where, faults_);
+      } else {
+        usable = false;
+      }
+    }
+    if (!check_order() || !usable || !resolve()) return;
+    check_openings();
+    check_joins();
+    check_poses();
+    check_collisions();
+  }
+
+ private:
+  std::string name(const std::string& kind) const { return context_.pick_name(index_) + ", " + kind; }
+  std::string name(int kind) const { return name(kKindNames[kind]); }
+  const CheckedMotion& motion(int kind) const { return pick_.motions[kind]; }
+  void fault(const char* code, const std::string& where, const std::string& message) {
+    faults_.push_back({code, where, message});
+  }
+
+  bool check_order() {
+    std::string found;
+    bool good = pick_.motions.size() == kKinds;
+    for (std::size_t i = 0; i < pick_.motions.size(); ++i) {
+      found += (i ? ", " : "") + pick_.motions[i].kind;
+      good = good && pick_.motions[i].kind == kKindNames[i];
+    }
+    if (!good) {
+      fault("motion-order", context_.pick_name(index_),
+            "motions are [" + found + "], must be [reach, approach, lift, carry, retreat]");
+    }
+    return good;
+  }
+
+  /// The part, the grasp and the stop; false when one of them does not exist (said in picks.cpp).
+  bool resolve() {
+    const int part = context_.pick_part[index_];
+    if (part < 0 || pick_.stop < 0 || pick_.stop >= static_cast<int>(plan_.stops.size())) return false;
+    part_ = &plan_.parts[part];
+    if (pick_.grasp < 0 || pick_.grasp >= static_cast<int>(part_->grasps.size())) return false;
+    grasp_ = &part_->grasps[pick_.grasp];
+    body_ = context_.body_of_part(part);
+    judge_.drop();
+    judge_.set_base(plan_.stops[pick_.stop].pose);
+    context_.set_parts_before(judge_, index_);
+    return true;
+  }
+
+  void check_openings() {
+    for (int kind = 0; kind < kKinds; ++kind) {
+      const CheckedMotion& m = motion(kind);
+      const double width = grasp_->width;
+      if (!(m.opening >= -kOpening && m.opening <= plan_.max_opening + kOpening)) {
+        fault("opening", name(kind), text(m.opening) + " m is outside [0, " + text(plan_.max_opening) + "]");
+      } else if (is_holding(kind) && std::abs(m.opening - width) > kOpening) {
+        fault("opening", name(kind), text(m.opening) + " m while holding a part of width " + text(width) + " m");
+      } else if (!is_holding(kind) && m.opening < width - kOpening) {
+        fault("opening", name(kind), text(m.opening) + " m does not pass a part of width " + text(width) + " m");
+      }
+      if (m.holding != is_holding(kind)) {
+        fault("holding", name(kind), m.holding ? "says the part is held, it is not" : "says nothing is held, the part is");
+      }
+    }
+    if (std::abs(motion(kReach).opening - motion(kApproach).opening) > kOpening) {
+      fault("opening", name(kApproach), "the opening jumps between reach and approach");
+    }
+  }
+
+  /// Largest difference of two configurations; continuous joints are compared as angles.
+  double gap(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
+    double largest = 0;
+    for (Eigen::Index j = 0; j < a.size(); ++j) {
+      const double difference = a[j] - b[j];
+      largest = std::max(largest, std::abs(judge_.kinematics().continuous()[j] ? wrap_angle(difference) : difference));
+    }
+    return largest;
+  }
+
+  void check_joins() {
+    const auto join = [this](const Eigen::VectorXd& a, const Eigen::VectorXd& b, const std::string& where, const char* what) {
+      const double by = gap(a, b);
+      if (by > kJoin) fault("discontinuous", where, std::string(what) + ": a joint is off by " + text(by));
+    };
+    join(plan_.home, motion(kReach).positions.front(), name(kReach), "does not start at home");
+    join(motion(kRetreat).positions.back(), plan_.home, name(kRetreat), "does not end at home");
+    for (int kind = 1; kind < kKinds; ++kind) {
+      join(motion(kind - 1).positions.back(), motion(kind).positions.front(), name(kind), "does not start where the last ended");
+      const double jump = (motion(kind - 1).velocities.back() - motion(kind).velocities.front()).cwiseAbs().maxCoeff();
+      if (jump > kRest) fault("discontinuous", name(kind), "a velocity jumps by " + text(jump) + " at its start");
+    }
+    const auto rest = [this](const Eigen::VectorXd& v, int kind, const char* end) {
+      const double speed = v.cwiseAbs().maxCoeff();
+      if (speed > kRest) fault("not-at-rest", name(kind), "moves at " + text(speed) + " at its " + end);
+    };
+    rest(motion(kReach).velocities.front(), kReach, "start");
+    rest(motion(kApproach).velocities.back(), kApproach, "end");
+    rest(motion(kCarry).velocities.back(), kCarry, "end");
+    rest(motion(kRetreat).velocities.back(), kRetreat, "end");
+  }
+
+  void check_poses() {
+    const Pose& T_world_part = part_->body.T_world_body;
+    const Pose T_world_grasp = judge_.tip(motion(kApproach).positions.back());
+    T_tip_part_ = T_world_grasp.inverse() * T_world_part;
+    check_grasp_reached(context_, T_world_part * grasp_->T_object_tcp, T_world_grasp, name(kApproach), faults_);
+    check_lift(judge_.tip(motion(kLift).positions.front()), judge_.tip(motion(kLift).positions.back()), name(kLift), faults_);
+    const Pose T_world_released = judge_.tip(motion(kCarry).positions.back()) * T_tip_part_;
+    check_release(context_, *part_, judge_.T_world_root(), T_world_released, name(kCarry), faults_);
+  }
+
+  void check_collisions() {
+    check_fingers(plan_.home, 0, motion(kReach).opening, context_.pick_name(index_) + ", fingers opening at home");
+    walk(kReach);
+    walk(kApproach);
+    const Eigen::VectorXd& at_grasp = motion(kApproach).positions.back();
+    judge_.hold(body_, T_tip_part_);
+    check_grip(at_grasp);
+    check_fingers(at_grasp, motion(kApproach).opening, grasp_->width, context_.pick_name(index_) + ", fingers closing");
+    walk(kLift);
+    walk(kCarry);
+    judge_.drop();
+    check_fingers(motion(kCarry).positions.back(), grasp_->width, motion(kRetreat).opening,
+                  context_.pick_name(index_) + ", fingers opening over the bin");
+    walk(kRetreat);
+    check_fingers(plan_.home, motion(kRetreat).opening, 0, context_.pick_name(index_) + ", fingers closing at home");
+  }
+
+  bool collides(const Eigen::VectorXd& q, double opening, const std::string& where) {
+    const Touch touch = judge_.touch(q, opening);
+    if (!touch) return false;
+    const char* code = touch.kind == TouchKind::self ? "self-collision" : touch.kind == TouchKind::held ? "held-collision" : "scene-collision";
+    fault(code, where, "'" + touch.a + "' touches '" + touch.b + "'");
+    return true;
+  }
+
+  /// Fingers moving with the arm at rest.
+  void check_fingers(const Eigen::VectorXd& q, double from, double to, const std::string& where) {
+    double travel = 0;
+    for (const CheckedFinger& finger : plan_.fingers) {
+      travel = std::max(travel, std::abs((finger.open - finger.closed) * (to - from) / plan_.max_opening));
+    }
+    const int steps = static_cast<int>(std::min(std::ceil(travel / context_.options.joint_step), 1000.0));
+    for (int i = 0; i <= steps; ++i) {
+      const double opening = steps ? from + (to - from) * i / steps : from;
+      if (collides(q, opening, where + " at " + text(opening) + " m")) return;
+    }
+  }
+
+  /// Somewhere between the grasp's width and fully closed the fingers must meet the part, or nothing is held.
+  void check_grip(const Eigen::VectorXd& q) {
+    const Stage& stage = judge_.stage();
+    bool fingers = false;
+    for (std::size_t link = 0; link < stage.is_finger.size(); ++link) {
+      fingers = fingers || (stage.is_finger[link] && !stage.link_solids[link].empty());
+    }
+    if (!fingers) return;
+    constexpr int kSteps = 10;
+    for (int i = 0; i <= kSteps; ++i) {
+      if (judge_.fingers_touch_held(q, grasp_->width * (kSteps - i) / kSteps)) return;
+    }
+    fault("grasp-empty", context_.pick_name(index_), "the fingers close without touching the part");
+  }
+
+  void walk(int kind) {
+    const CheckedMotion& m = motion(kind);
+    const double opening = std::min(std::max(m.opening, 0.0), plan_.max_opening);
+    StraightnessCheck straight(plan_.approach, judge_.tip(motion(kApproach).positions.back()));
+    double taken = 0;
+    bool free = true, is_straight = true;
+    for (std::size_t i = 0; i + 1 < m.times.size() && free; ++i) {
+      const HermiteSegment segment(m, i);
+      double travel = 0;  // no joint moves farther than this in the segment
+      for (int j = 0; j < judge_.kinematics().arm_size(); ++j) {
+        const Range v = segment.velocity_range(j);
+        travel = std::max(travel, std::max(-v.low, v.high) * segment.duration());
+      }
+      const double steps = std::max(1.0, std::ceil(travel / context_.options.joint_step));
+      taken += steps;
+      if (!(taken <= kMaxSteps)) return fault("too-long", name(kind), "its joints travel farther than can be checked");
+      for (int step = i == 0 ? 0 : 1; step <= static_cast<int>(steps) && free; ++step) {
+        const double s = step / steps;
+        const Eigen::VectorXd q = segment.at(s);
+        const std::string where = name(kind) + ", t = " + text(m.times[i] + s * segment.duration()) + " s";
+        free = !collides(q, opening, where);
+        if (kind == kApproach && is_straight) is_straight = straight.check(judge_.tip(q), where, faults_);
+      }
+    }
+  }
+
+  const Context& context_;
+  const PlanToCheck& plan_;
+  const CheckedPick& pick_;
+  std::size_t index_;
+  Judge& judge_;
+  Faults& faults_;
+  const CheckedPart* part_ = nullptr;
+  const CheckedGrasp* grasp_ = nullptr;
+  std::size_t body_ = 0;
+  Pose T_tip_part_ = Pose::Identity();
+};
+
+}  // namespace
+
+void check_arm_motions(const Context& context, Faults& faults, std::size_t& configurations) {
+  const std::size_t picks = context.plan.picks.size();
+  std::vector<Judge> judges(resolve_threads(context.options.threads), Judge(context.stage));
+  std::vector<Faults> found(picks);
+  parallel_for(
+      picks, context.options.threads,
+      [&](std::size_t pick, int worker) { PickCheck(context, pick, judges[worker], found[pick]).run(); }, context.monitor,
+      "arm motions");
+  for (const Faults& some : found) faults.insert(faults.end(), some.begin(), some.end());
+  for (const Judge& judge : judges) configurations += judge.queries();
+}
+
+}  // namespace mmgrasp::verify

@@ -1,0 +1,207 @@
+#include "verify/judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace mmgrasp::verify {
+namespace {
+
+void place_solids(PlacedBody& body, const Pose& T_world_body) {
+  body.T_world_shape.resize(body.solids.size());
+  body.bounds.resize(body.solids.size());
+  body.total.setEmpty();
+  for (std::size_t i = 0; i < body.solids.size(); ++i) {
+    body.T_world_shape[i] = T_world_body * body.solids[i].T_body_shape;
+    body.bounds[i] = bounds_at(body.solids[i], body.T_world_shape[i]);
+    body.total.extend(body.bounds[i]);
+  }
+}
+
+/// How far the robot can get from its root, by adding up every joint's offset and stroke.
+double robot_reach(const Robot& robot, const std::vector<std::vector<Solid>>& link_solids) {
+  std::vector<double> origin(robot.links().size(), 0.0);
+  std::vector<int> queue{robot.root_link()};
+  double reach = 0;
+  for (std::size_t next = 0; next < queue.size(); ++next) {
+    const int link = queue[next];
+    if (!link_solids[link].empty()) reach = std::max(reach, origin[link] + radius_of(link_solids[link]));
+    for (const int index : robot.links()[link].child_joints) {
+      const Joint& joint = robot.joints()[index];
+      double stroke = 0;
+      // A mimic joint's own limits need not hold it: what it follows may drive it farther.
+      if (joint.type == JointType::prismatic) {
+        stroke = joint.mimic_joint >= 0 ? std::numeric_limits<double>::infinity()
+                                        : std::max(std::abs(joint.lower), std::abs(joint.upper));
+      }
+      origin[joint.child_link] = origin[link] + joint.T_parent_joint.translation().norm() + stroke;
+      queue.push_back(joint.child_link);
+    }
+  }
+  return reach;
+}
+
+}  // namespace
+
+PlacedBody place_body(const std::string& name, const std::vector<LinkShape>& shapes, const Pose& T_world_body) {
+  PlacedBody body;
+  body.name = name;
+  body.solids = make_solids(shapes);
+  place_solids(body, T_world_body);
+  return body;
+}
+
+Stage make_stage(const Robot& robot, const ArmSetup& setup, const std::vector<int>& finger_links) {
+  Stage stage{robot, setup, {}, {}, {}, {}, 0, 0};
+  for (const Link& link : robot.links()) stage.link_solids.push_back(make_solids(link.collisions));
+  const int links = static_cast<int>(robot.links().size());
+  for (int a = 0; a < links; ++a) {
+    for (int b = a + 1; b < links; ++b) {
+      const bool solid = !stage.link_solids[a].empty() && !stage.link_solids[b].empty();
+      if (solid && !robot.pair_disabled(a, b)) stage.self_pairs.emplace_back(a, b);
+    }
+  }
+  stage.is_finger.assign(links, false);
+  for (const int link : finger_links) stage.is_finger[link] = true;
+  stage.reach = robot_reach(robot, stage.link_solids);
+  return stage;
+}
+
+Judge::Judge(std::shared_ptr<const Stage> stage) : stage_(std::move(stage)), kinematics_(stage_->robot, stage_->setup) {
+  present_.assign(stage_->bodies.size(), true);
+  const std::size_t links = stage_->link_solids.size();
+  solid_poses_.resize(links);
+  solid_bounds_.resize(links);
+  link_bounds_.resize(links);
+  for (std::size_t link = 0; link < links; ++link) {
+    solid_poses_[link].resize(stage_->link_solids[link].size());
+    solid_bounds_[link].resize(stage_->link_solids[link].size());
+    if (!stage_->link_solids[link].empty()) solid_links_.push_back(static_cast<int>(link));
+  }
+  find_near_bodies();
+}
+
+void Judge::set_base(const Eigen::Vector3d& x_y_theta) {
+  T_world_root_ = pose_from_planar(x_y_theta);
+  find_near_bodies();
+}
+
+void Judge::find_near_bodies() {
+  near_.clear();
+  const Eigen::Vector3d root = T_world_root_.translation();
+  for (std::size_t i = 0; i < stage_->bodies.size(); ++i) {
+    if (stage_->bodies[i].total.exteriorDistance(root) <= stage_->reach) near_.push_back(i);
+  }
+}
+
+void Judge::set_present(std::size_t body, bool present) { present_[body] = present; }
+
+void Judge::hold(std::size_t body, const Pose& T_tip_body) {
+  present_[body] = false;
+  held_ = static_cast<int>(body);
+  held_body_ = stage_->bodies[body];
+  T_tip_held_ = T_tip_body;
+}
+
+void Judge::drop() { held_ = -1; }
+
+void Judge::place(const Eigen::VectorXd& arm, double opening) {
+  ++queries_;
+  const Poses& links = kinematics_.place(arm, opening);
+  for (const int link : solid_links_) {
+    const Pose T_world_link = T_world_root_ * links[link];
+    link_bounds_[link].setEmpty();
+    for (std::size_t i = 0; i < solid_poses_[link].size(); ++i) {
+      const Solid& solid = stage_->link_solids[link][i];
+      solid_poses_[link][i] = T_world_link * solid.T_body_shape;
+      solid_bounds_[link][i] = bounds_at(solid, solid_poses_[link][i]);
+      link_bounds_[link].extend(solid_bounds_[link][i]);
+    }
+  }
+  if (held_ >= 0) place_solids(held_body_, T_world_root_ * links[stage_->setup.tip_link] * T_tip_held_);
+}
+
+bool Judge::link_touches(int link, const Solid& solid, const Pose& T, const Bounds& bounds) const {
+  if (!link_bounds_[link].intersects(bounds)) return false;
+  for (std::size_t i = 0; i < solid_poses_[link].size(); ++i) {
+    if (solid_bounds_[link][i].intersects(bounds) &&
+        touches(stage_->link_solids[link][i], solid_poses_[link][i], solid, T)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+Touch Judge::self_touch() const {
+  const std::vector<Link>& links = stage_->robot.links();
+  for (const auto& [a, b] : stage_->self_pairs) {
+    if (!link_bounds_[a].intersects(link_bounds_[b])) continue;
+    for (std::size_t i = 0; i < solid_poses_[b].size(); ++i) {
+      if (link_touches(a, stage_->link_solids[b][i], solid_poses_[b][i], solid_bounds_[b][i])) {
+        return {TouchKind::self, links[a].name, links[b].name};
+      }
+    }
+  }
+  return {};
+}
+
+Touch Judge::scene_touch() const {
+  Bounds all;
+  for (const int link : solid_links_) all.extend(link_bounds_[link]);
+  for (const std::size_t index : near_) {
+    const PlacedBody& body = stage_->bodies[index];
+    if (!present_[index] || !all.intersects(body.total)) continue;
+    for (std::size_t i = 0; i < body.solids.size(); ++i) {
+      if (!all.intersects(body.bounds[i])) continue;
+      for (const int link : solid_links_) {
+        if (link_touches(link, body.solids[i], body.T_world_shape[i], body.bounds[i])) {
+          return {TouchKind::scene, stage_->robot.links()[link].name, body.name};
+        }
+      }
+    }
+  }
+  return {};
+}
+
+Touch Judge::held_touch() const {
+  for (std::size_t i = 0; i < held_body_.solids.size(); ++i) {
+    const Solid& solid = held_body_.solids[i];
+    for (const int link : solid_links_) {
+      if (!stage_->is_finger[link] && link_touches(link, solid, held_body_.T_world_shape[i], held_body_.bounds[i])) {
+        return {TouchKind::held, held_body_.name, stage_->robot.links()[link].name};
+      }
+    }
+    for (std::size_t index = 0; index < stage_->bodies.size(); ++index) {
+      const PlacedBody& body = stage_->bodies[index];
+      if (!present_[index] || !held_body_.bounds[i].intersects(body.total)) continue;
+      for (std::size_t j = 0; j < body.solids.size(); ++j) {
+        if (held_body_.bounds[i].intersects(body.bounds[j]) &&
+            touches(solid, held_body_.T_world_shape[i], body.solids[j], body.T_world_shape[j])) {
+          return {TouchKind::held, held_body_.name, body.name};
+        }
+      }
+    }
+  }
+  return {};
+}
+
+Touch Judge::touch(const Eigen::VectorXd& arm, double opening) {
+  place(arm, opening);
+  if (Touch found = self_touch()) return found;
+  if (Touch found = scene_touch()) return found;
+  return held_ >= 0 ? held_touch() : Touch{};
+}
+
+bool Judge::fingers_touch_held(const Eigen::VectorXd& arm, double opening) {
+  place(arm, opening);
+  if (held_ < 0) return false;
+  for (const int link : solid_links_) {
+    if (!stage_->is_finger[link]) continue;
+    for (std::size_t i = 0; i < held_body_.solids.size(); ++i) {
+      if (link_touches(link, held_body_.solids[i], held_body_.T_world_shape[i], held_body_.bounds[i])) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace mmgrasp::verify

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mmgrasp/robot/robot.hpp"
+#include "verify/kinematics.hpp"
+#include "verify/solid.hpp"
+
+namespace mmgrasp::verify {
+
+/// A scene body placed once and for all.
+struct PlacedBody {
+  std::string name;
+  std::vector<Solid> solids;
+  Poses T_world_shape;              ///< One a solid.
+  std::vector<Bounds> bounds;       ///< One a solid.
+  Bounds total;
+};
+
+PlacedBody place_body(const std::string& name, const std::vector<LinkShape>& shapes, const Pose& T_world_body);
+
+/// What does not change while a plan is checked: the robot's solids, the pairs of links to test, the scene.
+struct Stage {
+  Robot robot;
+  ArmSetup setup;
+  std::vector<std::vector<Solid>> link_solids;   ///< By link index.
+  std::vector<std::pair<int, int>> self_pairs;
+  std::vector<bool> is_finger;                   ///< By link index.
+  std::vector<PlacedBody> bodies;                ///< Obstacles, then parts.
+  std::size_t first_part = 0;
+  double reach = 0;                              ///< No point of the robot is farther than this from its root [m].
+};
+
+/// Solids of the links, pairs and reach. Bodies are added by the caller.
+Stage make_stage(const Robot& robot, const ArmSetup& setup, const std::vector<int>& finger_links);
+
+enum class TouchKind { none, self, scene, held };
+
+struct Touch {
+  TouchKind kind = TouchKind::none;
+  std::string a, b;
+  explicit operator bool() const { return kind != TouchKind::none; }
+};
+
+/// Answers "does anything touch?" for one robot in one state of the scene. One a thread.
+class Judge {
+ public:
+  explicit Judge(std::shared_ptr<const Stage> stage);
+
+  Kinematics& kinematics() { return kinematics_; }
+  const Stage& stage() const { return *stage_; }
+
+  void set_base(const Eigen::Vector3d& x_y_theta);
+  const Pose& T_world_root() const { return T_world_root_; }
+  void set_present(std::size_t body, bool present);
+  /// The body leaves the scene and moves with the tip from now on.
+  void hold(std::size_t body, const Pose& T_tip_body);
+  /// The held body vanishes.
+  void drop();
+
+  Touch touch(const Eigen::VectorXd& arm, double opening);
+  /// Whether a finger link touches the held body.
+  bool fingers_touch_held(const Eigen::VectorXd& arm, double opening);
+  Pose tip(const Eigen::VectorXd& arm) { return T_world_root_ * kinematics_.tip(arm); }
+  std::size_t queries() const { return queries_; }
+
+ private:
+  void place(const Eigen::VectorXd& arm, double opening);
+  void find_near_bodies();
+  Touch self_touch() const;
+  Touch scene_touch() const;
+  Touch held_touch() const;
+  bool link_touches(int link, const Solid& solid, const Pose& T, const Bounds& bounds) const;
+
+  std::shared_ptr<const Stage> stage_;
+  Kinematics kinematics_;
+  Pose T_world_root_ = Pose::Identity();
+  std::vector<bool> present_;
+  std::vector<std::size_t> near_;               ///< Bodies within the robot's reach of the base.
+  std::vector<Poses> solid_poses_;              ///< [link][solid], world.
+  std::vector<std::vector<Bounds>> solid_bounds_;
+  std::vector<Bounds> link_bounds_;
+  std::vector<int> solid_links_;                ///< Links that have solids.
+  int held_ = -1;
+  Pose T_tip_held_ = Pose::Identity();
+  PlacedBody held_body_;
+  std::size_t queries_ = 0;
+};
+
+}  // namespace mmgrasp::verify

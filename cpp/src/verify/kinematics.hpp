@@ -1,0 +1,68 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <kdl/segment.hpp>
+#include <map>
+#include <vector>
+
+#include "mmgrasp/core/pose.hpp"
+#include "mmgrasp/robot/robot.hpp"
+
+namespace mmgrasp::verify {
+
+/// A finger joint as a linear function of the opening.
+struct FingerMap {
+  int joint = -1;
+  double closed = 0, open = 0;
+};
+
+/// Which joints of a robot the plan moves, and where the others stand.
+struct ArmSetup {
+  std::vector<int> arm;            ///< Joint indices, in the order of a configuration.
+  int tip_link = -1;
+  std::map<int, double> others;    ///< Joint index -> value held.
+  std::vector<FingerMap> fingers;
+  double max_opening = 0.1;
+};
+
+/// Forward kinematics and Jacobian by KDL segments, all in the root link's frame. One a thread: KDL's joints remember
+/// their last pose. Planar and floating joints are held at zero.
+class Kinematics {
+ public:
+  Kinematics(const Robot& robot, const ArmSetup& setup);
+
+  int arm_size() const { return static_cast<int>(setup_.arm.size()); }
+  const Eigen::VectorXd& lower() const { return lower_; }
+  const Eigen::VectorXd& upper() const { return upper_; }
+  const std::vector<bool>& continuous() const { return continuous_; }
+
+  /// Pose of every link (by link index) with the fingers at `opening` [m].
+  const Poses& place(const Eigen::VectorXd& arm, double opening);
+  Pose tip(const Eigen::VectorXd& arm);
+  /// Twist of the tip (linear; angular) in root axes for unit joint speeds.
+  void tip_and_jacobian(const Eigen::VectorXd& arm, Pose& T_root_tip, Matrix6Xd& J);
+
+ private:
+  /// One joint with the link it carries.
+  struct Element {
+    int joint = -1, parent = -1, link = -1;
+    KDL::Segment segment;
+    int source = -1;               ///< Joint whose value it follows: itself, or what it mimics.
+    double multiplier = 1, offset = 0;
+    int column = -1;               ///< Arm joint that drives it; -1: none.
+  };
+  Element make_element(const Robot& robot, int joint) const;
+  void set_arm(const Eigen::VectorXd& arm);
+  double value(const Element& element) const;
+
+  ArmSetup setup_;
+  std::vector<Element> elements_;  ///< Parents first.
+  std::vector<int> chain_;         ///< Elements from the root to the tip.
+  std::vector<double> values_;     ///< By joint index.
+  std::vector<KDL::Frame> frames_; ///< By link index.
+  Poses poses_;
+  Eigen::VectorXd lower_, upper_;
+  std::vector<bool> continuous_;
+};
+
+}  // namespace mmgrasp::verify

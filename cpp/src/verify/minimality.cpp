@@ -1,0 +1,139 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "verify/context.hpp"
+#include "verify/floor.hpp"
+
+namespace mmgrasp::verify {
+namespace {
+
+// Inscribed radii are known to 1e-6 m: a disc that fits within this may be used by the plan, but need not be.
+constexpr double kRadiusBand = 2e-6;
+
+bool check_grid(const PlanToCheck& plan, Faults& faults) {
+  const CheckedGrid& grid = plan.grid;
+  const auto finite = [](double h) { return std::isfinite(h); };
+  const bool good = grid.nx > 0 && grid.ny > 0 && std::isfinite(grid.resolution) && grid.resolution > 0 &&
+                    grid.origin.allFinite() && !grid.headings.empty() &&
+                    std::all_of(grid.headings.begin(), grid.headings.end(), finite) &&
+                    plan.positioning_uncertainty < 1000 * grid.resolution;
+  if (!good) faults.push_back({"region-malformed", "grid", "sizes, resolution and headings must be positive and finite"});
+  return good;
+}
+
+/// Regions whose arrays fit the grid, in the plan's order.
+std::vector<const CheckedRegion*> usable_regions(const PlanToCheck& plan, Faults& faults) {
+  const std::size_t cells = plan.grid.headings.size() * static_cast<std::size_t>(plan.grid.nx) * static_cast<std::size_t>(plan.grid.ny);
+  std::vector<const CheckedRegion*> usable;
+  std::set<std::string> names;
+  for (const CheckedRegion& region : plan.regions) {
+    const std::string where = "region of tray '" + region.tray + "'";
+    if (region.cells.size() != cells) {
+      faults.push_back({"region-malformed", where, "has " + std::to_string(region.cells.size()) + " cells, the grid " +
+                                                       std::to_string(cells)});
+    } else if (!names.insert(region.tray).second) {
+      faults.push_back({"region-malformed", where, "is there twice"});
+    } else {
+      usable.push_back(&region);
+    }
+  }
+  return usable;
+}
+
+class StopsCheck {
+ public:
+  StopsCheck(const Context& context, std::vector<const CheckedRegion*> regions, Faults& faults)
+      : context_(context), plan_(context.plan), faults_(faults), floor_(plan_.grid, regions) {
+    for (std::size_t i = 0; i < regions.size(); ++i) region_of_tray_[regions[i]->tray] = static_cast<int>(i);
+    for (const CheckedPart& part : plan_.parts) {
+      if (!part.target) continue;
+      const auto region = region_of_tray_.find(part.tray);
+      if (region != region_of_tray_.end()) {
+        wanted_.insert(region->second);
+      } else if (missing_.insert(part.tray).second) {
+        faults_.push_back({"region-missing", "regions", "tray '" + part.tray + "' holds target parts and has no usable region"});
+      }
+    }
+  }
+
+  int run() {
+    std::vector<RegionSet> own;
+    for (std::size_t i = 0; i < plan_.stops.size(); ++i) check_stop(i, own);
+    if (!missing_.empty()) return 0;
+    std::vector<RegionSet> sets = common_discs(floor_, plan_.positioning_uncertainty + kRadiusBand, context_.monitor);
+    for (const RegionSet& set : own) add_maximal(sets, set);
+    const int minimal = smallest_cover(sets, wanted_);
+    judge_count(minimal);
+    return std::max(minimal, 0);
+  }
+
+ private:
+  /// The disc around the stop, in every region it claims; notes the regions that truly hold it.
+  void check_stop(std::size_t index, std::vector<RegionSet>& own) {
+    const CheckedStop& stop = plan_.stops[index];
+    const std::string where = "stop " + std::to_string(index);
+    const double needed = plan_.positioning_uncertainty;
+    const int layer = floor_.layer(stop.pose.z());
+    if (layer < 0) {
+      faults_.push_back({"stop-heading", where, "heading " + text(stop.pose.z()) + " is none of the grid's"});
+      return;
+    }
+    if (stop.radius < needed - kRadiusBand) {
+      faults_.push_back({"stop-radius", where, "radius " + text(stop.radius) + " m is below the positioning uncertainty " +
+                                                   text(needed) + " m"});
+    }
+    const double wanted = std::max(stop.radius, needed);
+    RegionSet holding;
+    for (int region = 0; region < floor_.regions(); ++region) {
+      if (clearance(region, layer, stop, needed) >= needed - kRadiusBand) holding.insert(region);
+    }
+    for (const std::string& tray : stop.trays) {
+      const auto region = region_of_tray_.find(tray);
+      if (region == region_of_tray_.end()) continue;
+      const double room = clearance(region->second, layer, stop, wanted);
+      if (room >= wanted - kRadiusBand) continue;
+      faults_.push_back({"stop-outside-region", where, "a disc of " + text(wanted) + " m is said to lie in the region of tray '" +
+                                                           tray + "', there is room for " + text(room) + " m"});
+    }
+    own.push_back(holding);
+  }
+
+  double clearance(int region, int layer, const CheckedStop& stop, double radius) const {
+    const double limit = 4 * plan_.grid.resolution * (plan_.grid.nx + plan_.grid.ny);  // a disc larger than the grid
+    return floor_.clearance(region, layer, stop.pose.head<2>(), std::min(radius + 1e-3, limit));
+  }
+
+  void judge_count(int minimal) {
+    const int stops = static_cast<int>(plan_.stops.size());
+    if (minimal < 0) {
+      faults_.push_back({"region-too-small", "regions", "some tray's region holds no disc of " +
+                                                            text(plan_.positioning_uncertainty) + " m anywhere"});
+      return;
+    }
+    if (minimal < stops) {
+      faults_.push_back({"not-minimal", "stops", std::to_string(stops) + " stops, " + std::to_string(minimal) + " are enough for these regions"});
+    }
+    if (plan_.lower_bound != minimal) {
+      faults_.push_back({"lower-bound", "lower_bound", "says " + std::to_string(plan_.lower_bound) + ", the least number of stops is " +
+                                                           std::to_string(minimal)});
+    }
+  }
+
+  const Context& context_;
+  const PlanToCheck& plan_;
+  Faults& faults_;
+  Floor floor_;
+  std::map<std::string, int> region_of_tray_;
+  RegionSet wanted_;
+  std::set<std::string> missing_;
+};
+
+}  // namespace
+
+void check_stops(const Context& context, Faults& faults, int& minimal_stops) {
+  if (!check_grid(context.plan, faults)) return;
+  minimal_stops = StopsCheck(context, usable_regions(context.plan, faults), faults).run();
+}
+
+}  // namespace mmgrasp::verify

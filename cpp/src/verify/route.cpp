@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <cmath>
+
+#include "verify/context.hpp"
+
+namespace mmgrasp::verify {
+namespace {
+
+constexpr double kJoin = 1e-6;         // [m, rad]
+constexpr double kMaxSteps = 1000000;  // Base poses of one leg.
+
+bool same_pose(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return (a - b).head<2>().norm() <= kJoin && std::abs(wrap_angle(a.z() - b.z())) <= kJoin;
+}
+
+/// Whether the base can get straight from one pose to the next; headings are taken as they stand, not modulo a turn.
+bool driveable(BaseKind base, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  const Eigen::Vector3d step = to - from;
+  const double driven = step.head<2>().norm(), turned = std::abs(step.z());
+  if (base == BaseKind::omni) return true;
+  if (base == BaseKind::fixed) return driven <= kJoin && turned <= kJoin;
+  if (driven <= kJoin) return true;
+  const double aside = std::abs(-std::sin(from.z()) * step.x() + std::cos(from.z()) * step.y());
+  return turned <= kJoin && aside <= kJoin;
+}
+
+class RouteCheck {
+ public:
+  RouteCheck(const Context& context, Judge& judge, Faults& faults)
+      : context_(context), plan_(context.plan), judge_(judge), faults_(faults) {}
+
+  void run() {
+    const std::size_t legs = plan_.stops.size() + 1;
+    if (plan_.route.size() != legs) {
+      faults_.push_back({"route-legs", "route", "has " + std::to_string(plan_.route.size()) + " legs, " +
+                                                    std::to_string(plan_.stops.size()) + " stops need " + std::to_string(legs)});
+    }
+    for (std::size_t leg = 0; leg < plan_.route.size(); ++leg) {
+      context_.monitor.report("route", static_cast<double>(leg) / static_cast<double>(plan_.route.size()));
+      if (context_.monitor.stopped()) return;
+      check_leg(leg);
+    }
+  }
+
+ private:
+  static std::string name(std::size_t leg) { return "route leg " + std::to_string(leg); }
+
+  void check_leg(std::size_t leg) {
+    const std::vector<Eigen::Vector3d>& poses = plan_.route[leg];
+    const bool finite = std::all_of(poses.begin(), poses.end(), [](const Eigen::Vector3d& p) { return p.allFinite(); });
+    if (poses.empty() || !finite) {
+      faults_.push_back({"route-ends", name(leg), "must hold at least one pose, all finite"});
+      return;
+    }
+    const Eigen::Vector3d from = leg == 0 ? plan_.start : stop_pose(leg - 1);
+    const Eigen::Vector3d to = leg + 1 >= plan_.route.size() ? plan_.goal : stop_pose(leg);
+    check_end(poses.front(), from, name(leg), "starts");
+    check_end(poses.back(), to, name(leg), "ends");
+    for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
+      if (driveable(plan_.robot.base(), poses[i], poses[i + 1])) continue;
+      faults_.push_back({"route-not-driveable", name(leg) + ", step " + std::to_string(i),
+                         std::string("a ") + to_string(plan_.robot.base()) + " base cannot go straight from " +
+                             text(poses[i]) + " to " + text(poses[i + 1])});
+      break;
+    }
+    set_parts_on_leg(leg);
+    check_free(poses, name(leg));
+  }
+
+  Eigen::Vector3d stop_pose(std::size_t stop) const {
+    return stop < plan_.stops.size() ? plan_.stops[stop].pose : plan_.goal;
+  }
+
+  void check_end(const Eigen::Vector3d& pose, const Eigen::Vector3d& wanted, const std::string& where, const char* verb) {
+    if (same_pose(pose, wanted)) return;
+    faults_.push_back({"route-ends", where, std::string(verb) + " at " + text(pose) + ", must be " + text(wanted)});
+  }
+
+  /// Parts picked at the stops before this leg are gone.
+  void set_parts_on_leg(std::size_t leg) {
+    for (std::size_t part = 0; part < plan_.parts.size(); ++part) {
+      const int by = context_.picked_by[part];
+      const bool gone = by >= 0 && plan_.picks[by].stop < static_cast<int>(leg);
+      judge_.set_present(context_.body_of_part(static_cast<int>(part)), !gone);
+    }
+  }
+
+  void check_free(const std::vector<Eigen::Vector3d>& poses, const std::string& where) {
+    double taken = 0;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const Eigen::Vector3d step = i ? Eigen::Vector3d(poses[i] - poses[i - 1]) : Eigen::Vector3d::Zero();
+      const double travel = std::max(step.head<2>().norm(), 0.5 * std::abs(step.z()));
+      const double steps = std::max(1.0, std::ceil(travel / context_.options.base_step));
+      taken += steps;
+      if (!(taken <= kMaxSteps)) {
+        faults_.push_back({"too-long", where, "is longer than can be checked"});
+        return;
+      }
+      for (int k = 1; k <= static_cast<int>(steps); ++k) {
+        const Eigen::Vector3d pose = poses[i] - step * (1 - k / steps);
+        judge_.set_base(pose);
+        const Touch touch = judge_.touch(plan_.home, 0);
+        if (!touch) continue;
+        faults_.push_back({"route-collision", where + ", base at " + text(pose), "'" + touch.a + "' touches '" + touch.b + "'"});
+        return;
+      }
+    }
+  }
+
+  const Context& context_;
+  const PlanToCheck& plan_;
+  Judge& judge_;
+  Faults& faults_;
+};
+
+/// The configuration in which the robot drives, where it stands first.
+void check_home(const Context& context, Judge& judge, Faults& faults) {
+  const Kinematics& kinematics = judge.kinematics();
+  for (int j = 0; j < kinematics.arm_size(); ++j) {
+    const double q = context.plan.home[j];
+    if (q >= kinematics.lower()[j] - kJoin && q <= kinematics.upper()[j] + kJoin) continue;
+    faults.push_back({"home-limit", "home", "'" + context.plan.arm_joints[j] + "' at " + text(q) + " is outside [" +
+                                                text(kinematics.lower()[j]) + ", " + text(kinematics.upper()[j]) + "]"});
+  }
+  judge.set_base(context.plan.start);
+  const Touch touch = judge.touch(context.plan.home, 0);
+  if (!touch) return;
+  const bool self = touch.kind == TouchKind::self;
+  faults.push_back({self ? "home-collision" : "start-collision", self ? "home" : "start " + text(context.plan.start),
+                    "'" + touch.a + "' touches '" + touch.b + "'"});
+}
+
+}  // namespace
+
+void check_route(const Context& context, Faults& faults, std::size_t& configurations) {
+  Judge judge(context.stage);
+  check_home(context, judge, faults);
+  RouteCheck(context, judge, faults).run();
+  configurations += judge.queries();
+}
+
+}  // namespace mmgrasp::verify

@@ -1,0 +1,215 @@
+#include "verify/solid.hpp"
+
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/halfspace.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/math/bv/OBBRSS.h>
+#include <fcl/narrowphase/collision.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <variant>
+
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/geometry/shape.hpp"
+
+namespace mmgrasp::verify {
+namespace {
+
+using BvhModel = fcl::BVHModel<fcl::OBBRSSd>;
+
+template <class... Ts>
+struct Overloaded : Ts... {
+  using Ts::operator()...;
+};
+template <class... Ts>
+Overloaded(Ts...) -> Overloaded<Ts...>;
+
+Bounds centred(const Eigen::Vector3d& size) { return {-0.5 * size, 0.5 * size}; }
+
+std::shared_ptr<BvhModel> bvh(const TriangleMesh& mesh) {
+  auto model = std::make_shared<BvhModel>();
+  model->beginModel(static_cast<int>(mesh.triangles.size()), static_cast<int>(mesh.vertices.size()));
+  std::vector<fcl::Vector3d> vertices(mesh.vertices.begin(), mesh.vertices.end());
+  std::vector<fcl::Triangle> triangles;
+  for (const auto& t : mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
+  model->addSubModel(vertices, triangles);
+  model->endModel();
+  model->computeLocalAABB();
+  return model;
+}
+
+/// A vertex of each connected piece: a piece that is swallowed whole shows in none of the others.
+std::vector<Eigen::Vector3d> piece_probes(const TriangleMesh& mesh) {
+  std::vector<int> parent(mesh.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&parent](int v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  std::vector<bool> used(mesh.vertices.size(), false);
+  for (const auto& t : mesh.triangles) {
+    parent[root(t[0])] = root(t[1]);
+    parent[root(t[1])] = root(t[2]);
+    for (const int v : t) used[v] = true;
+  }
+  std::vector<Eigen::Vector3d> probes;
+  for (int v = 0; v < static_cast<int>(parent.size()); ++v) {
+    if (used[v] && parent[v] == v) probes.push_back(mesh.vertices[v]);
+  }
+  return probes;
+}
+
+Solid primitive(std::shared_ptr<fcl::CollisionGeometryd> geometry, const Pose& T, const Bounds& local) {
+  geometry->computeLocalAABB();
+  Solid solid;
+  solid.geometry = std::move(geometry);
+  solid.T_body_shape = T;
+  solid.local = local;
+  solid.probes = {Eigen::Vector3d::Zero()};
+  return solid;
+}
+
+Solid mesh_solid(const std::shared_ptr<const TriangleMesh>& mesh, const Pose& T) {
+  Solid solid;
+  solid.geometry = bvh(*mesh);
+  solid.T_body_shape = T;
+  for (const Eigen::Vector3d& v : mesh->vertices) solid.local.extend(v);
+  if (mesh->closed) solid.closed_mesh = mesh;
+  solid.probes = piece_probes(*mesh);
+  return solid;
+}
+
+Solid plane_solid(const Plane& plane, const Pose& T) {
+  const Eigen::Vector3d normal = plane.normal.normalized();
+  Solid solid = primitive(std::make_shared<fcl::Halfspaced>(normal, plane.offset / plane.normal.norm()), T, Bounds());
+  solid.unbounded = true;
+  solid.probes.clear();
+  return solid;
+}
+
+void add_solids(const LinkShape& item, std::vector<Solid>& out) {
+  const Pose& T = item.T_link_shape;
+  std::visit(Overloaded{
+                 [&](const Box& s) { out.push_back(primitive(std::make_shared<fcl::Boxd>(s.size), T, centred(s.size))); },
+                 [&](const Sphere& s) {
+                   out.push_back(primitive(std::make_shared<fcl::Sphered>(s.radius), T,
+                                           centred(Eigen::Vector3d::Constant(2 * s.radius))));
+                 },
+                 [&](const Cylinder& s) {
+                   out.push_back(primitive(std::make_shared<fcl::Cylinderd>(s.radius, s.length), T,
+                                           centred({2 * s.radius, 2 * s.radius, s.length})));
+                 },
+                 [&](const Capsule& s) {
+                   out.push_back(primitive(std::make_shared<fcl::Capsuled>(s.radius, s.length), T,
+                                           centred({2 * s.radius, 2 * s.radius, s.length + 2 * s.radius})));
+                 },
+                 [&](const Plane& s) { out.push_back(plane_solid(s, T)); },
+                 [&](const MeshShape& s) { out.push_back(mesh_solid(s.mesh, T)); },
+                 [&](const Voxels& s) {
+                   const Eigen::Vector3d size = Eigen::Vector3d::Constant(s.resolution);
+                   const auto box = std::make_shared<fcl::Boxd>(size);
+                   for (const Eigen::Vector3d& centre : *s.centres) {
+                     out.push_back(primitive(box, T * Eigen::Translation3d(centre), centred(size)));
+                   }
+                 },
+             },
+             item.shape);
+}
+
+void check_item(const LinkShape& item) {
+  if (const auto* mesh = std::get_if<MeshShape>(&item.shape)) {
+    require(mesh->mesh && !mesh->mesh->triangles.empty(), "mesh", "empty", "must have triangles");
+  }
+  if (const auto* voxels = std::get_if<Voxels>(&item.shape)) {
+    require(voxels->centres != nullptr, "voxels", "null", "must have centres");
+  }
+  check_shape(item.shape, "shape");
+  require(item.T_link_shape.matrix().allFinite(), "shape pose", "NaN", "must be finite");
+}
+
+/// True when a piece of `inner` lies inside the closed mesh `outer`.
+bool swallows(const Solid& outer, const Pose& T_world_outer, const Solid& inner, const Pose& T_world_inner) {
+  if (!outer.closed_mesh) return false;
+  const Pose T_outer_inner = T_world_outer.inverse() * T_world_inner;
+  return std::any_of(inner.probes.begin(), inner.probes.end(), [&](const Eigen::Vector3d& probe) {
+    const Eigen::Vector3d point = T_outer_inner * probe;
+    return outer.local.contains(point) && mesh_contains(*outer.closed_mesh, point);
+  });
+}
+
+}  // namespace
+
+std::vector<Solid> make_solids(const std::vector<LinkShape>& shapes) {
+  std::vector<Solid> solids;
+  for (const LinkShape& item : shapes) {
+    check_item(item);
+    add_solids(item, solids);
+  }
+  return solids;
+}
+
+Bounds bounds_at(const Solid& solid, const Pose& T) {
+  if (solid.unbounded) {
+    const Eigen::Vector3d far = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+    return {-far, far};
+  }
+  const Eigen::Vector3d centre = T * solid.local.center();
+  const Eigen::Vector3d half = T.linear().cwiseAbs() * (0.5 * solid.local.sizes());
+  return {centre - half, centre + half};
+}
+
+bool touches(const Solid& a, const Pose& T_a, const Solid& b, const Pose& T_b) {
+  static const fcl::CollisionRequestd request(1, false);
+  fcl::CollisionResultd result;
+  fcl::collide(a.geometry.get(), T_a, b.geometry.get(), T_b, request, result);
+  return result.isCollision() || swallows(a, T_a, b, T_b) || swallows(b, T_b, a, T_a);
+}
+
+double radius_of(const std::vector<Solid>& solids) {
+  double radius = 0;
+  for (const Solid& solid : solids) {
+    if (solid.unbounded) return std::numeric_limits<double>::infinity();
+    const Eigen::Vector3d centre = solid.T_body_shape * solid.local.center();
+    radius = std::max(radius, centre.norm() + 0.5 * solid.local.diagonal().norm());
+  }
+  return radius;
+}
+
+double lowest_z(const std::vector<LinkShape>& shapes, const Pose& T_world_body) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const LinkShape& item : shapes) {
+    const Pose T = T_world_body * item.T_link_shape;
+    const Eigen::Vector3d up = T.linear().row(2);  // world z in the shape's axes
+    const double z = T.translation().z();
+    const double side = std::hypot(up.x(), up.y());
+    const double value = std::visit(
+        Overloaded{
+            [&](const Box& s) { return z - 0.5 * up.cwiseAbs().dot(s.size); },
+            [&](const Sphere& s) { return z - s.radius; },
+            [&](const Cylinder& s) { return z - 0.5 * s.length * std::abs(up.z()) - s.radius * side; },
+            [&](const Capsule& s) { return z - 0.5 * s.length * std::abs(up.z()) - s.radius; },
+            [&](const Plane&) { return -std::numeric_limits<double>::infinity(); },
+            [&](const MeshShape& s) {
+              double least = std::numeric_limits<double>::infinity();
+              for (const Eigen::Vector3d& v : s.mesh->vertices) least = std::min(least, z + up.dot(v));
+              return least;
+            },
+            [&](const Voxels& s) {
+              double least = std::numeric_limits<double>::infinity();
+              for (const Eigen::Vector3d& c : *s.centres) least = std::min(least, z + up.dot(c));
+              return least - 0.5 * s.resolution * up.cwiseAbs().sum();
+            },
+        },
+        item.shape);
+    lowest = std::min(lowest, value);
+  }
+  return lowest;
+}
+
+}  // namespace mmgrasp::verify

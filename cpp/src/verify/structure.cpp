@@ -1,0 +1,169 @@
+#include <cmath>
+#include <set>
+#include <sstream>
+
+#include "mmgrasp/core/error.hpp"
+#include "verify/context.hpp"
+
+namespace mmgrasp::verify {
+namespace {
+
+bool finite(double value) { return std::isfinite(value); }
+
+bool is_pose(const Pose& T) {
+  return T.matrix().allFinite() && (T.linear() * T.linear().transpose()).isIdentity(1e-6) && T.linear().determinant() > 0;
+}
+
+/// Collects structural faults; `ok` tells whether there were any.
+struct Structure {
+  const PlanToCheck& plan;
+  Faults& faults;
+  bool ok = true;
+
+  bool need(bool good, const std::string& where, const std::string& message) {
+    if (!good) {
+      faults.push_back({"malformed", where, message});
+      ok = false;
+    }
+    return good;
+  }
+
+  int joint(const std::string& name, const std::string& where) {
+    for (std::size_t i = 0; i < plan.robot.joints().size(); ++i) {
+      const Joint& joint = plan.robot.joints()[i];
+      if (joint.name != name) continue;
+      const bool drivable = joint.mimic_joint < 0 && joint.value_count() == 1;
+      return need(drivable, where, "joint '" + name + "' cannot be set: it is fixed, planar, floating or a mimic")
+                 ? static_cast<int>(i)
+                 : -1;
+    }
+    need(false, where, "the robot has no joint '" + name + "'");
+    return -1;
+  }
+
+  int link(const std::string& name, const std::string& where) {
+    for (std::size_t i = 0; i < plan.robot.links().size(); ++i) {
+      if (plan.robot.links()[i].name == name) return static_cast<int>(i);
+    }
+    need(false, where, "the robot has no link '" + name + "'");
+    return -1;
+  }
+
+  void arm(ArmSetup& setup);
+  void gripper(ArmSetup& setup, std::vector<int>& finger_links);
+  void scalars();
+  void body(const CheckedBody& body, const std::string& where, std::set<std::string>& names);
+  void scene();
+};
+
+void Structure::arm(ArmSetup& setup) {
+  const std::size_t count = plan.arm_joints.size();
+  need(count > 0, "arm_joints", "empty: the arm needs at least one joint");
+  std::set<std::string> seen;
+  for (const std::string& name : plan.arm_joints) {
+    need(seen.insert(name).second, "arm_joints", "joint '" + name + "' is listed twice");
+    setup.arm.push_back(joint(name, "arm_joints"));
+  }
+  setup.tip_link = link(plan.tip_link, "tip_link");
+  for (const auto& [name, value] : plan.other_joints) {
+    const int index = joint(name, "other_joints");
+    need(finite(value), "other_joints", "'" + name + "' is not a finite number");
+    need(!seen.count(name), "other_joints", "'" + name + "' is an arm joint");
+    if (index >= 0) setup.others[index] = value;
+  }
+  const auto limits = [&](const std::vector<double>& values, const char* field) {
+    need(values.size() == count, field, "has " + text(values.size()) + " values, the arm has " + text(count) + " joints");
+    for (const double value : values) need(value > 0, field, text(value) + ": must be positive");
+  };
+  limits(plan.velocity_limits, "velocity_limits");
+  limits(plan.acceleration_limits, "acceleration_limits");
+  need(static_cast<std::size_t>(plan.home.size()) == count && plan.home.allFinite(), "home",
+       "must hold one finite value an arm joint (" + text(count) + ")");
+}
+
+void Structure::gripper(ArmSetup& setup, std::vector<int>& finger_links) {
+  need(finite(plan.max_opening) && plan.max_opening > 0, "max_opening", text(plan.max_opening) + ": must be positive");
+  need(finite(plan.clearance) && plan.clearance >= 0, "clearance", text(plan.clearance) + ": must not be negative");
+  need(std::abs(plan.approach.norm() - 1) < 1e-6, "approach", "must be a unit vector");
+  setup.max_opening = plan.max_opening;
+  for (const CheckedFinger& finger : plan.fingers) {
+    const int index = joint(finger.joint, "fingers");
+    const bool finite_ends = need(finite(finger.closed) && finite(finger.open), "fingers",
+                                  "'" + finger.joint + "' has a value that is not a finite number");
+    if (index < 0 || !finite_ends) continue;
+    for (const int arm_joint : setup.arm) need(arm_joint != index, "fingers", "'" + finger.joint + "' is an arm joint");
+    setup.fingers.push_back({index, finger.closed, finger.open});
+    const Joint& limits = plan.robot.joints()[index];
+    for (const double value : {finger.closed, finger.open}) {
+      if (limits.type == JointType::continuous || (value >= limits.lower - 1e-6 && value <= limits.upper + 1e-6)) continue;
+      faults.push_back({"finger-limit", "fingers", "'" + finger.joint + "' at " + text(value) + " is outside [" +
+                                                       text(limits.lower) + ", " + text(limits.upper) + "]"});
+    }
+  }
+  for (const std::string& name : plan.finger_links) finger_links.push_back(link(name, "finger_links"));
+}
+
+void Structure::scalars() {
+  need(plan.start.allFinite(), "start", "must be finite");
+  need(plan.goal.allFinite(), "goal", "must be finite");
+  need(finite(plan.positioning_uncertainty) && plan.positioning_uncertainty >= 0, "positioning_uncertainty",
+       text(plan.positioning_uncertainty) + ": must be finite and not negative");
+  need(is_pose(plan.T_base_bin), "carry", "the bin's pose is not a finite rigid transform");
+  need(plan.bin_size.allFinite() && plan.bin_size.minCoeff() > 0, "carry", "the bin's size must be positive");
+  need(finite(plan.drop_gap) && plan.drop_gap >= 0, "carry", "drop_gap must not be negative");
+  for (std::size_t i = 0; i < plan.stops.size(); ++i) {
+    need(plan.stops[i].pose.allFinite() && finite(plan.stops[i].radius), "stop " + std::to_string(i), "must be finite");
+  }
+}
+
+void Structure::body(const CheckedBody& body, const std::string& where, std::set<std::string>& names) {
+  need(!body.name.empty() && names.insert(body.name).second, where, "'" + body.name + "' is empty or used twice as a name");
+  need(is_pose(body.T_world_body), where + " '" + body.name + "'", "its pose is not a finite rigid transform");
+  need(!body.shapes.empty(), where + " '" + body.name + "'", "has no shape");
+  try {
+    make_solids(body.shapes);
+  } catch (const Error& error) {
+    need(false, where + " '" + body.name + "'", error.what());
+  }
+}
+
+void Structure::scene() {
+  std::set<std::string> names;
+  for (const CheckedBody& obstacle : plan.obstacles) body(obstacle, "obstacle", names);
+  const std::set<std::string> trays(plan.trays.begin(), plan.trays.end());
+  need(trays.size() == plan.trays.size(), "trays", "a name is used twice");
+  for (const CheckedPart& part : plan.parts) {
+    const std::string where = "part '" + part.body.name + "'";
+    body(part.body, "part", names);
+    need(trays.count(part.tray) > 0, where, "its tray '" + part.tray + "' is unknown");
+    for (std::size_t i = 0; i < part.grasps.size(); ++i) {
+      const CheckedGrasp& grasp = part.grasps[i];
+      need(is_pose(grasp.T_object_tcp) && finite(grasp.width) && grasp.width >= 0, where,
+           "grasp " + std::to_string(i) + ": its pose is not rigid or its width is not a number >= 0");
+    }
+  }
+}
+
+}  // namespace
+
+std::string text(double value) {
+  std::ostringstream out;
+  out.precision(6);
+  out << value;
+  return out.str();
+}
+
+std::string text(const Eigen::Vector3d& pose) {
+  return "(" + text(pose.x()) + ", " + text(pose.y()) + ", " + text(pose.z()) + ")";
+}
+
+bool check_structure(const PlanToCheck& plan, Faults& faults, ArmSetup& setup, std::vector<int>& finger_links) {
+  Structure structure{plan, faults};
+  structure.arm(setup);
+  structure.gripper(setup, finger_links);
+  structure.scalars();
+  structure.scene();
+  return structure.ok;
+}
+
+}  // namespace mmgrasp::verify

@@ -1,0 +1,73 @@
+#include "verify/tool_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mmgrasp::verify {
+namespace {
+
+constexpr double kStraight = 1e-3;       // Deviation from the approach line [m].
+constexpr double kTurn = 0.01;           // And from the final orientation [rad].
+constexpr double kLeastLift = 0.01;      // [m]
+constexpr double kLevel = 0.01;          // Tilt of a released part [rad].
+constexpr double kBelowGap = 1e-3;       // A released part may be this far below the bin's top [m] ...
+constexpr double kAboveGap = 0.05;       // ... and this far above the drop gap [m].
+
+}  // namespace
+
+bool StraightnessCheck::check(const Pose& T_world_tip, const std::string& where, Faults& faults) {
+  const Eigen::Vector3d offset = T_world_tip.translation() - T_world_end_.translation();
+  const double along = offset.dot(axis_);
+  const double aside = (offset - along * axis_).norm();
+  const double turned = rotation_distance(T_world_tip, T_world_end_);
+  std::string message;
+  if (aside > kStraight) message = "the tool is " + text(aside) + " m off the approach line";
+  if (turned > kTurn) message = "the tool is turned by " + text(turned) + " rad from its pose at the grasp";
+  if (along > kStraight) message = "the tool is " + text(along) + " m past the grasp";
+  if (along < farthest_ - kStraight) message = "the tool goes back by " + text(farthest_ - along) + " m";
+  farthest_ = std::max(farthest_, along);
+  if (!message.empty()) faults.push_back({"not-straight", where, message});
+  return message.empty();
+}
+
+void check_grasp_reached(const Context& context, const Pose& T_world_wanted, const Pose& T_world_tip,
+                         const std::string& where, Faults& faults) {
+  const double distance = (T_world_wanted.translation() - T_world_tip.translation()).norm();
+  const double angle = rotation_distance(T_world_wanted, T_world_tip);
+  if (distance <= context.options.position_tolerance && angle <= context.options.rotation_tolerance) return;
+  faults.push_back({"grasp-missed", where, "the tool ends " + text(distance) + " m and " + text(angle) +
+                                               " rad from the grasp, allowed are " + text(context.options.position_tolerance) +
+                                               " m and " + text(context.options.rotation_tolerance) + " rad"});
+}
+
+void check_lift(const Pose& T_world_start, const Pose& T_world_end, const std::string& where, Faults& faults) {
+  const double rise = T_world_end.translation().z() - T_world_start.translation().z();
+  if (rise < kLeastLift) {
+    faults.push_back({"no-lift", where, "the tool rises by " + text(rise) + " m, must be at least " + text(kLeastLift)});
+  }
+}
+
+void check_release(const Context& context, const CheckedPart& part, const Pose& T_world_root, const Pose& T_world_released,
+                   const std::string& where, Faults& faults) {
+  const PlanToCheck& plan = context.plan;
+  const Pose T_world_bin = T_world_root * plan.T_base_bin;
+  const Eigen::Vector3d in_bin = T_world_bin.inverse() * T_world_released.translation();
+  if (std::abs(in_bin.x()) > 0.5 * plan.bin_size.x() || std::abs(in_bin.y()) > 0.5 * plan.bin_size.y()) {
+    faults.push_back({"release-outside", where, "the part is let go at (" + text(in_bin.x()) + ", " + text(in_bin.y()) +
+                                                    ") m from the bin's middle, the bin is " + text(plan.bin_size.x()) +
+                                                    " x " + text(plan.bin_size.y()) + " m"});
+  }
+  // The turn since it lay: about the vertical only, if the vertical is where it was.
+  const Eigen::Matrix3d turn = T_world_released.linear() * part.body.T_world_body.linear().transpose();
+  const double tilt = std::atan2(std::hypot(turn(0, 2), turn(1, 2)), turn(2, 2));
+  if (tilt > kLevel) {
+    faults.push_back({"release-tilted", where, "the part is let go tilted by " + text(tilt) + " rad from how it lay"});
+  }
+  const double height = lowest_z(part.body.shapes, T_world_bin.inverse() * T_world_released);
+  if (height < -kBelowGap || height > plan.drop_gap + kAboveGap) {
+    faults.push_back({"release-height", where, "the part's lowest point is " + text(height) + " m over the bin's top, allowed is [" +
+                                                   text(-kBelowGap) + ", " + text(plan.drop_gap + kAboveGap) + "]"});
+  }
+}
+
+}  // namespace mmgrasp::verify

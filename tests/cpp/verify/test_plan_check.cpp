@@ -1,0 +1,348 @@
+#include "mmgrasp/verify/plan_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/geometry/mesh.hpp"
+#include "verify/tiny_world.hpp"
+
+// The whole plan, its arm motions and its numbers; stops, route and regions are in test_plan_check_base.cpp.
+namespace tiny {
+namespace {
+
+enum { kReach, kApproach, kLift, kCarry, kRetreat };
+
+CheckedMotion& motion(PlanToCheck& plan, int pick, int kind) { return plan.picks[pick].motions[kind]; }
+
+std::string listed(const PlanCheckResult& result) {
+  std::string all;
+  for (const Fault& fault : result.faults) all += fault.code + " | " + fault.where + " | " + fault.message + "\n";
+  return all;
+}
+
+TEST(PlanCheck, GoodPlanHasNoFault) {
+  PlanCheckOptions options;
+  options.samples = 1000;
+  const PlanCheckResult result = check_plan(good_plan(), options);
+  EXPECT_TRUE(result.faults.empty()) << listed(result);
+  ASSERT_EQ(result.rates.size(), 2u);
+  for (const StopRate& rate : result.rates) {
+    EXPECT_EQ(rate.samples, 1000);
+    EXPECT_EQ(rate.good, 1000);
+  }
+  EXPECT_EQ(result.minimal_stops, 2);
+}
+
+TEST(PlanCheck, SameAnswerAtAnyThreadCount) {
+  const PlanToCheck plan = good_plan({0.45, 0, 0.12, 0, 0, 0, 0});
+  PlanCheckOptions options = quick();
+  options.threads = 1;
+  const PlanCheckResult one = check_plan(plan, options);
+  options.threads = 3;
+  const PlanCheckResult three = check_plan(plan, options);
+  EXPECT_EQ(one.configurations_checked, three.configurations_checked);
+  ASSERT_EQ(one.rates.size(), three.rates.size());
+  for (std::size_t i = 0; i < one.rates.size(); ++i) {
+    EXPECT_EQ(one.rates[i].samples, three.rates[i].samples);
+    EXPECT_EQ(one.rates[i].good, three.rates[i].good);
+  }
+  EXPECT_EQ(listed(one), listed(three));
+}
+
+TEST(PlanCheck, ChecksAtLeastAsFinelyAsAsked) {
+  // Pick 0 at stop 0 has to be looked at once in every hundredth of what its fastest joint travels.
+  const PlanToCheck plan = good_plan();
+  double travel = 0;
+  for (const CheckedPick& pick : plan.picks) {
+    for (const CheckedMotion& m : pick.motions) travel += (m.positions.back() - m.positions.front()).cwiseAbs().maxCoeff();
+  }
+  PlanCheckOptions options = quick();
+  options.samples = 1;
+  const std::size_t coarse = check_plan(plan, options).configurations_checked;
+  options.joint_step = 0.001;
+  const std::size_t fine = check_plan(plan, options).configurations_checked;
+  EXPECT_GE(static_cast<double>(fine), travel / 0.001);
+  EXPECT_GE(static_cast<double>(fine - coarse), travel / 0.001 - 2 * travel / 0.01 - 500);
+}
+
+TEST(PlanCheck, MovedJointBreaksLimits) {
+  PlanToCheck plan = good_plan();
+  motion(plan, 0, kReach).positions[10][1] += 0.02;
+  EXPECT_TRUE(codes_of(plan).count("acceleration-limit"));
+}
+
+TEST(PlanCheck, PositionLimit) {
+  PlanToCheck plan = good_plan();
+  for (Eigen::VectorXd& q : motion(plan, 1, kCarry).positions) q[4] += 3.2;
+  EXPECT_TRUE(codes_of(plan).count("position-limit"));
+}
+
+TEST(PlanCheck, PositionLimitBetweenSamples) {
+  // Both samples are inside, the cubic between them swings to 0.5 + 0.25 * v * h: out of the z joint's 0.5.
+  PlanToCheck plan = good_plan();
+  CheckedMotion& m = motion(plan, 0, kReach);
+  m.times = {0, 1};
+  m.positions = {joints(0.49, 0, 0), joints(0.49, 0, 0)};
+  m.velocities = {joints(0.5, 0, 0), joints(-0.5, 0, 0)};
+  EXPECT_TRUE(codes_of(plan).count("position-limit"));
+}
+
+TEST(PlanCheck, VelocityLimit) {
+  PlanToCheck plan = good_plan();
+  CheckedMotion& m = motion(plan, 0, kReach);
+  for (double& t : m.times) t *= 0.5;
+  for (Eigen::VectorXd& v : m.velocities) v *= 2;
+  EXPECT_TRUE(codes_of(plan).count("velocity-limit"));
+}
+
+TEST(PlanCheck, AccelerationLimitOnly) {
+  PlanToCheck plan = good_plan();
+  plan.acceleration_limits.assign(5, 1.0);
+  EXPECT_EQ(codes_of(plan), Codes{"acceleration-limit"});
+}
+
+TEST(PlanCheck, AccelerationIsTheLeastThatJoinsTheSamples) {
+  // From rest to rest over d in T under |a| <= A the shortest time is 2 sqrt(d / A): A = 4 d / T^2 is just enough.
+  PlanToCheck plan = good_plan();
+  CheckedMotion& m = motion(plan, 0, kLift);
+  const double T = 1.0, needed = 4 * 0.12 / (T * T);
+  m.times = {0, T};
+  m.positions = {m.positions.front(), m.positions.back()};
+  m.velocities = {joints(0, 0, 0), joints(0, 0, 0)};
+  const auto lift_fails = [&] {
+    for (const Fault& fault : check_plan(plan, quick()).faults) {
+      if (fault.code == "acceleration-limit" && fault.where.find("pick 0 (A/cube_0), lift") == 0) return true;
+    }
+    return false;
+  };
+  plan.acceleration_limits.assign(5, needed * 1.02);
+  EXPECT_FALSE(lift_fails());
+  plan.acceleration_limits.assign(5, needed * 0.98);
+  EXPECT_TRUE(lift_fails());
+}
+
+TEST(PlanCheck, TimesMustIncrease) {
+  PlanToCheck plan = good_plan();
+  std::swap(motion(plan, 0, kLift).times[3], motion(plan, 0, kLift).times[4]);
+  EXPECT_EQ(codes_of(plan), Codes{"times"});
+}
+
+TEST(PlanCheck, DiscontinuousMotion) {
+  PlanToCheck plan = good_plan();
+  const Eigen::VectorXd shifted = joints(0.3, 0.001, 0);
+  motion(plan, 0, kReach) = straight("reach", shifted, motion(plan, 0, kReach).positions.back(), 0.06, false);
+  EXPECT_EQ(codes_of(plan), Codes{"discontinuous"});
+  plan = good_plan();
+  motion(plan, 2, kRetreat) = straight("retreat", motion(plan, 2, kRetreat).positions.front(), shifted, 0.06, false);
+  EXPECT_EQ(codes_of(plan), Codes{"discontinuous"});
+}
+
+TEST(PlanCheck, NotAtRestWhereFingersMove) {
+  PlanToCheck plan = good_plan();
+  motion(plan, 0, kApproach).velocities.back()[0] = -0.01;
+  EXPECT_TRUE(codes_of(plan).count("not-at-rest"));
+}
+
+TEST(PlanCheck, SwappedMotions) {
+  PlanToCheck plan = good_plan();
+  std::swap(plan.picks[0].motions[2], plan.picks[0].motions[3]);
+  EXPECT_EQ(codes_of(plan), Codes{"motion-order"});
+  plan = good_plan();
+  plan.picks[0].motions.pop_back();
+  EXPECT_EQ(codes_of(plan), Codes{"motion-order"});
+}
+
+TEST(PlanCheck, MotionOfAnotherPart) {
+  PlanToCheck plan = good_plan();
+  std::swap(plan.picks[0].motions, plan.picks[1].motions);
+  EXPECT_TRUE(codes_of(plan).count("grasp-missed"));
+}
+
+TEST(PlanCheck, AddedObstacleIsHit) {
+  PlanToCheck plan = good_plan();
+  plan.obstacles.push_back(box("lamp", {0.05, 0.05, 0.05}, at(0.7, 0.05, 0.95)));
+  EXPECT_TRUE(codes_of(plan).count("scene-collision"));
+}
+
+TEST(PlanCheck, ObstacleThatOnlyTheHeldPartHits) {
+  // Under the carried cube, beside the fingers (20 mm wide), between table and bin: only the cube's edge (x +- 20 mm) reaches
+  // over it, and only when the arm is back at the release.
+  PlanToCheck plan = good_plan();
+  const Eigen::Vector3d bin(0.5, 0, kBinTop + kDropGap + 0.5 * kCube);
+  plan.obstacles.push_back(box("pin", {0.002, 0.002, 0.02}, at(bin.x() - 0.017, bin.y(), bin.z())));
+  const Codes found = codes_of(plan);
+  EXPECT_TRUE(found.count("held-collision"));
+  EXPECT_FALSE(found.count("self-collision"));
+}
+
+TEST(PlanCheck, NeighbourPartIsInTheWay) {
+  PlanToCheck plan = good_plan();
+  plan.parts[2].body.T_world_body = at(0.9, 0.1 + kCube + 0.005, kPartZ);  // where the open finger comes down
+  EXPECT_TRUE(codes_of(plan).count("scene-collision"));
+}
+
+TEST(PlanCheck, PickedPartIsGone) {
+  // The second cube is moved to where the first one lay, to a hair: free only because the first is in the bin.
+  PlanToCheck plan = good_plan();
+  plan.parts[1].body.T_world_body = at(0.9, 0.1 + kCube + 0.005, kPartZ);
+  plan.picks[1] = make_pick(plan, 0, 1, {});
+  const PlanCheckResult result = check_plan(plan, quick());
+  for (const Fault& fault : result.faults) EXPECT_EQ(fault.where.find("pick 1"), std::string::npos) << fault.where;
+  EXPECT_TRUE(codes(result).count("scene-collision")) << "pick 0 must hit the second cube";
+}
+
+TEST(PlanCheck, SelfCollision) {
+  // Fingers end at 0.43 m above the floor at the release, the base's top is at 0.35 m.
+  EXPECT_TRUE(codes_of(good_plan({0.8, 0, 0.12, 0, -0.085, 0, 0})).count("self-collision"));
+  EXPECT_FALSE(codes_of(good_plan({0.8, 0, 0.12, 0, -0.075, 0, 0})).count("self-collision"));
+}
+
+TEST(PlanCheck, LinkInsideClosedMeshCollides) {
+  // A hollow-looking box mesh around the hand at the start: no triangle is touched, the solid is.
+  std::vector<Eigen::Vector3d> corners;
+  for (int i = 0; i < 8; ++i) corners.emplace_back(i & 1 ? 0.2 : -0.2, i & 2 ? 0.2 : -0.2, i & 4 ? 0.2 : -0.2);
+  mmgrasp::LinkShape shape;
+  shape.shape = mmgrasp::MeshShape{mmgrasp::convex_hull(corners)};
+  PlanToCheck plan = good_plan();
+  plan.obstacles.push_back({"cage", {shape}, at(-0.9, 0, 1.25)});
+  EXPECT_TRUE(codes_of(plan).count("start-collision"));
+  plan.obstacles.back().T_world_body = at(-0.9, 0.4, 1.25);
+  EXPECT_TRUE(codes_of(plan).empty());
+}
+
+TEST(PlanCheck, GraspPoseMoved) {
+  PlanToCheck plan = good_plan();
+  plan.parts[0].grasps[0].T_object_tcp.translation().x() += 1.2e-4;  // the tolerance is 1e-4
+  EXPECT_EQ(codes_of(plan), Codes{"grasp-missed"});
+  plan = good_plan();
+  plan.parts[0].grasps[0].T_object_tcp.translation().x() += 0.8e-4;
+  EXPECT_TRUE(codes_of(plan).empty());
+  plan = good_plan();
+  plan.parts[0].grasps[0].T_object_tcp.rotate(Eigen::AngleAxisd(0.0012, Eigen::Vector3d::UnitZ()));
+  EXPECT_EQ(codes_of(plan), Codes{"grasp-missed"});
+}
+
+TEST(PlanCheck, FingersThatCloseOnNothing) {
+  EXPECT_TRUE(codes_of(good_plan({0.8, 0.06, 0.12, 0, 0, 0, 0})).count("grasp-empty"));
+}
+
+TEST(PlanCheck, ApproachFromTheSide) {
+  EXPECT_EQ(codes_of(good_plan({0.8, 0, 0.12, 0, 0, 0, 0.003})), Codes{"not-straight"});
+  EXPECT_TRUE(codes_of(good_plan({0.8, 0, 0.12, 0, 0, 0, 0.0009})).empty());
+}
+
+TEST(PlanCheck, LiftTooSmall) {
+  EXPECT_TRUE(codes_of(good_plan({0.8, 0, 0.008, 0, 0, 0, 0})).count("no-lift"));
+}
+
+TEST(PlanCheck, ReleaseOutsideBin) {
+  EXPECT_TRUE(codes_of(good_plan({0.8, 0, 0.12, 0.155, 0, 0, 0})).count("release-outside"));
+  EXPECT_FALSE(codes_of(good_plan({0.8, 0, 0.12, 0.145, 0, 0, 0})).count("release-outside"));
+  PlanToCheck plan = good_plan();
+  plan.T_base_bin = at(0.3, 0, kBinTop);
+  EXPECT_EQ(codes_of(plan), Codes{"release-outside"});
+}
+
+TEST(PlanCheck, ReleaseHeight) {
+  EXPECT_EQ(codes_of(good_plan({0.8, 0, 0.12, 0, -0.032, 0, 0})), Codes{"release-height"});
+  EXPECT_TRUE(codes_of(good_plan({0.8, 0, 0.12, 0, -0.0305, 0, 0})).empty());
+  EXPECT_EQ(codes_of(good_plan({0.8, 0, 0.12, 0, 0.051, 0, 0})), Codes{"release-height"});
+}
+
+TEST(PlanCheck, ReleaseTilted) {
+  EXPECT_EQ(codes_of(good_plan({0.8, 0, 0.12, 0, 0, 0.02, 0})), Codes{"release-tilted"});
+  EXPECT_TRUE(codes_of(good_plan({0.8, 0, 0.12, 0, 0, 0.008, 0})).empty());
+}
+
+TEST(PlanCheck, Openings) {
+  PlanToCheck plan = good_plan();
+  motion(plan, 0, kApproach).opening = motion(plan, 0, kReach).opening = 0.035;  // does not pass 0.04
+  EXPECT_TRUE(codes_of(plan).count("opening"));
+  plan = good_plan();
+  motion(plan, 0, kCarry).opening = 0.05;  // would let go
+  EXPECT_TRUE(codes_of(plan).count("opening"));
+  plan = good_plan();
+  motion(plan, 0, kRetreat).opening = 0.11;  // the gripper ends at 0.10
+  EXPECT_TRUE(codes_of(plan).count("opening"));
+}
+
+TEST(PlanCheck, HoldingFlag) {
+  PlanToCheck plan = good_plan();
+  motion(plan, 0, kLift).holding = false;
+  EXPECT_EQ(codes_of(plan), Codes{"holding"});
+}
+
+TEST(PlanCheck, FingerOutsideItsLimits) {
+  PlanToCheck plan = good_plan();
+  plan.fingers[0].open = 0.06;
+  EXPECT_TRUE(codes_of(plan).count("finger-limit"));
+}
+
+TEST(PlanCheck, BrokenSamplesAreFaultsNotCrashes) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<PlanToCheck> plans(6, good_plan());
+  motion(plans[0], 0, kLift).positions[5][2] = nan;
+  motion(plans[1], 0, kLift).positions[5].resize(3);
+  motion(plans[2], 0, kLift).velocities.pop_back();
+  motion(plans[3], 0, kLift) = {"lift", kCube, true, {}, {}, {}};
+  motion(plans[4], 0, kLift).times[5] = nan;
+  motion(plans[5], 0, kLift).positions.clear();
+  for (const PlanToCheck& plan : plans) EXPECT_EQ(codes_of(plan), Codes{"motion-shape"});
+}
+
+TEST(PlanCheck, UnusableDataIsMalformed) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<PlanToCheck> plans(14, good_plan());
+  plans[0].arm_joints[2] = "nothing";
+  plans[1].home[0] = nan;
+  plans[2].tip_link = "";
+  plans[3].velocity_limits.pop_back();
+  plans[4].acceleration_limits[1] = 0;
+  plans[5].parts[0].tray = "C";
+  plans[6].parts[1].body.name = plans[6].parts[0].body.name;
+  plans[7].obstacles[0].shapes[0].shape = mmgrasp::Box{Eigen::Vector3d(0, 1, 1)};
+  plans[8].obstacles[0].shapes[0].shape = mmgrasp::MeshShape{};
+  plans[9].parts[0].body.T_world_body.translation().x() = nan;
+  plans[10].finger_links = {"thumb"};
+  plans[11].stops[0].pose.z() = nan;
+  plans[12].parts[0].grasps[0].width = -1;
+  plans[13].arm_joints[0] = "finger_mirror";
+  for (std::size_t i = 0; i < plans.size(); ++i) EXPECT_EQ(codes_of(plans[i]), Codes{"malformed"}) << i;
+}
+
+TEST(PlanCheck, EmptyPlanForgetsEverything) {
+  PlanToCheck plan{good_plan().robot};
+  EXPECT_EQ(codes_of(plan), Codes{"malformed"});
+  plan = good_plan();
+  plan.picks.clear();
+  plan.stops.clear();
+  plan.regions.clear();
+  plan.route.clear();
+  EXPECT_EQ(codes_of(plan), (Codes{"part-forgotten", "region-missing", "route-legs", "tray-forgotten"}));
+}
+
+TEST(PlanCheck, EndlessMotionIsRefused) {
+  PlanToCheck plan = good_plan();
+  for (Eigen::VectorXd& v : motion(plan, 0, kReach).velocities) v *= 1e12;
+  EXPECT_TRUE(codes_of(plan).count("too-long"));
+}
+
+TEST(PlanCheck, StoppedCheckIsNoPass) {
+  mmgrasp::Monitor monitor;
+  monitor.stop.stop();
+  EXPECT_TRUE(codes(check_plan(good_plan(), quick(), monitor)).count("stopped"));
+}
+
+TEST(PlanCheckOptions, RefusesNonsense) {
+  PlanCheckOptions options;
+  options.joint_step = 0;
+  EXPECT_THROW(check_plan(good_plan(), options), mmgrasp::InvalidInput);
+  options = {};
+  options.required_rate = 1.1;
+  EXPECT_THROW(check_plan(good_plan(), options), mmgrasp::InvalidInput);
+}
+
+}  // namespace
+}  // namespace tiny

@@ -1,0 +1,326 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "mmgrasp/core/random.hpp"
+#include "mmgrasp/verify/plan_check.hpp"
+#include "verify/tiny_world.hpp"
+
+// Which part is picked where, the stops, their regions, the route, the sampled base poses.
+namespace tiny {
+namespace {
+
+TEST(PlanCheckPicks, ForgottenPart) {
+  PlanToCheck plan = good_plan();
+  plan.picks.erase(plan.picks.begin() + 1);
+  EXPECT_EQ(codes_of(plan), Codes{"part-forgotten"});
+}
+
+TEST(PlanCheckPicks, RepeatedPart) {
+  PlanToCheck plan = good_plan();
+  plan.picks.insert(plan.picks.begin() + 1, plan.picks[0]);
+  EXPECT_TRUE(codes_of(plan).count("part-repeated"));
+}
+
+TEST(PlanCheckPicks, PartThatIsToStay) {
+  PlanToCheck plan = good_plan();
+  plan.parts[1].target = false;
+  EXPECT_EQ(codes_of(plan), Codes{"part-not-target"});
+}
+
+TEST(PlanCheckPicks, UnknownPart) {
+  PlanToCheck plan = good_plan();
+  plan.picks[0].part = "A/cube_9";
+  EXPECT_EQ(codes_of(plan), (Codes{"part-unknown", "part-forgotten"}));
+}
+
+TEST(PlanCheckPicks, WrongTray) {
+  PlanToCheck plan = good_plan();
+  plan.picks[0].tray = "B";
+  EXPECT_EQ(codes_of(plan), Codes{"wrong-tray"});
+}
+
+TEST(PlanCheckPicks, WrongStop) {
+  PlanToCheck plan = good_plan();
+  plan.picks[1].stop = 1;
+  EXPECT_TRUE(codes_of(plan).count("wrong-stop"));
+  plan = good_plan();
+  plan.picks[2].stop = 7;
+  EXPECT_TRUE(codes_of(plan).count("wrong-stop"));
+  plan.picks[2].stop = -1;
+  EXPECT_TRUE(codes_of(plan).count("wrong-stop"));
+}
+
+TEST(PlanCheckPicks, StopsOutOfOrder) {
+  PlanToCheck plan = good_plan();
+  std::swap(plan.picks[1], plan.picks[2]);
+  EXPECT_TRUE(codes_of(plan).count("stop-order"));
+}
+
+TEST(PlanCheckPicks, GraspIndexOutside) {
+  for (const int index : {-1, 2, 1000000}) {
+    PlanToCheck plan = good_plan();
+    plan.picks[0].grasp = index;
+    EXPECT_EQ(codes_of(plan), Codes{"grasp-invalid"});
+  }
+}
+
+TEST(PlanCheckPicks, OtherGraspNamed) {
+  PlanToCheck plan = good_plan();
+  plan.picks[0].grasp = 1;  // turned by 90 degrees
+  EXPECT_EQ(codes_of(plan), Codes{"grasp-missed"});
+}
+
+TEST(PlanCheckStops, ShiftedStop) {
+  PlanToCheck plan = good_plan();
+  plan.stops[0].pose.y() += 0.005;
+  const Codes found = codes_of(plan);
+  EXPECT_TRUE(found.count("route-ends"));
+  EXPECT_TRUE(found.count("grasp-missed"));
+  EXPECT_TRUE(found.count("stop-outside-region")) << "its disc of 0.2 m fills the region to the last millimetre";
+}
+
+TEST(PlanCheckStops, TraysOfStops) {
+  PlanToCheck plan = good_plan();
+  plan.stops[1].trays = {"B", "A"};
+  EXPECT_TRUE(codes_of(plan).count("tray-repeated"));
+  plan = good_plan();
+  plan.stops[1].trays.clear();
+  EXPECT_TRUE(codes_of(plan).count("tray-forgotten"));
+  plan = good_plan();
+  plan.stops[1].trays = {"B", "C"};
+  EXPECT_EQ(codes_of(plan), Codes{"tray-unknown"});
+}
+
+TEST(PlanCheckStops, RadiusBelowUncertainty) {
+  PlanToCheck plan = good_plan();
+  plan.stops[0].radius = 0.09;
+  EXPECT_EQ(codes_of(plan), Codes{"stop-radius"});
+}
+
+TEST(PlanCheckStops, HeadingOffTheGrid) {
+  PlanToCheck plan = good_plan();
+  plan.grid.headings = {0.001};
+  EXPECT_TRUE(codes_of(plan).count("stop-heading"));
+}
+
+TEST(PlanCheckStops, MissingCellUnderTheDisc) {
+  // Nearest points of two border cells to the middle: (0.15, 0.15) at 0.212 m, (0.15, 0.10) at 0.180 m; the disc has 0.2 m.
+  const auto without_cell = [](int ix, int iy) {
+    PlanToCheck plan = good_plan();
+    std::uint8_t& cell = plan.regions[0].cells[iy * plan.grid.nx + ix];
+    EXPECT_EQ(cell, 1);
+    cell = 0;
+    return codes_of(plan);
+  };
+  const int x0 = 4, y0 = 6;  // lower corner of the region: (0.2, -0.2)
+  EXPECT_TRUE(without_cell(x0, y0).empty());
+  EXPECT_EQ(without_cell(x0, y0 + 1), Codes{"stop-outside-region"});
+}
+
+TEST(PlanCheckStops, TwoStopsWhereOneIsEnough) {
+  PlanToCheck plan = good_plan();
+  plan.regions[1].cells = plan.regions[0].cells;
+  EXPECT_TRUE(codes_of(plan).count("not-minimal"));
+}
+
+TEST(PlanCheckStops, LowerBoundMustHold) {
+  PlanToCheck plan = good_plan();
+  plan.lower_bound = 1;
+  EXPECT_EQ(codes_of(plan), Codes{"lower-bound"});
+}
+
+TEST(PlanCheckStops, BrokenRegions) {
+  PlanToCheck plan = good_plan();
+  plan.regions[0].cells.pop_back();
+  EXPECT_EQ(codes_of(plan), (Codes{"region-malformed", "region-missing"}));
+  plan = good_plan();
+  plan.regions.pop_back();
+  EXPECT_EQ(codes_of(plan), Codes{"region-missing"});
+  plan = good_plan();
+  plan.grid.nx = -3;
+  EXPECT_EQ(codes_of(plan), Codes{"region-malformed"});
+  plan = good_plan();
+  std::fill(plan.regions[1].cells.begin(), plan.regions[1].cells.end(), 0);
+  EXPECT_EQ(codes_of(plan), (Codes{"region-too-small", "stop-outside-region"}));
+}
+
+/// A region that is one rectangle of cells.
+struct Rectangle {
+  int x0, x1, y0, y1;
+};
+
+bool share_disc(const std::vector<Rectangle>& rectangles, unsigned members, double radius, double resolution) {
+  Rectangle common{0, 1000, 0, 1000};
+  for (std::size_t i = 0; i < rectangles.size(); ++i) {
+    if (!(members >> i & 1u)) continue;
+    common = {std::max(common.x0, rectangles[i].x0), std::min(common.x1, rectangles[i].x1),
+              std::max(common.y0, rectangles[i].y0), std::min(common.y1, rectangles[i].y1)};
+  }
+  return std::min(common.x1 - common.x0, common.y1 - common.y0) * resolution >= 2 * radius;
+}
+
+/// Least number of groups that share a disc each, over all ways to cover the trays (subset by subset).
+int least_stops(const std::vector<Rectangle>& rectangles, double radius, double resolution) {
+  const unsigned all = (1u << rectangles.size()) - 1;
+  std::vector<int> least(all + 1, 1000);
+  least[0] = 0;
+  for (unsigned covered = 0; covered <= all; ++covered) {
+    for (unsigned group = 1; group <= all; ++group) {
+      if (share_disc(rectangles, group, radius, resolution)) {
+        least[covered | group] = std::min(least[covered | group], least[covered] + 1);
+      }
+    }
+  }
+  return least[all];
+}
+
+TEST(PlanCheckStops, LeastNumberAgreesWithBruteForceOnRectangles) {
+  // Rectangles share a disc if and only if their intersection is a rectangle at least 2 r wide and high.
+  const double radius = 0.07, resolution = 0.05;
+  int several = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    mmgrasp::Rng rng(99, trial);
+    PlanToCheck plan = good_plan();
+    plan.picks.clear();
+    plan.parts.clear();
+    plan.regions.clear();
+    plan.trays.clear();
+    plan.stops.clear();
+    plan.route = {{plan.start}};
+    plan.positioning_uncertainty = radius;
+    plan.grid = {Eigen::Vector2d(-1, 2), resolution, 14, 12, {0.0}};
+    std::vector<Rectangle> rectangles;
+    for (int tray = 0; tray < 5; ++tray) {
+      const int w = 3 + static_cast<int>(rng.index(5)), h = 3 + static_cast<int>(rng.index(5));
+      const int x = static_cast<int>(rng.index(15 - w)), y = static_cast<int>(rng.index(13 - h));
+      rectangles.push_back({x, x + w, y, y + h});
+      const std::string name(1, static_cast<char>('A' + tray));
+      CheckedRegion region{name, std::vector<std::uint8_t>(14 * 12, 0)};
+      for (int iy = y; iy < y + h; ++iy) std::fill_n(region.cells.begin() + iy * 14 + x, w, std::uint8_t{1});
+      plan.regions.push_back(region);
+      plan.trays.push_back(name);
+      plan.parts.push_back(make_part(name + "/cube", name, 0.9, 0.2 * tray, true, 0));
+    }
+    const int expected = least_stops(rectangles, radius, resolution);
+    EXPECT_EQ(check_plan(plan, quick()).minimal_stops, expected) << "trial " << trial;
+    several += expected > 1 && expected < 5;
+  }
+  EXPECT_GT(several, 20) << "the trials must not be trivial";
+}
+
+TEST(PlanCheckRoute, MissingLeg) {
+  PlanToCheck plan = good_plan();
+  plan.route.pop_back();
+  EXPECT_TRUE(codes_of(plan).count("route-legs"));
+}
+
+TEST(PlanCheckRoute, LegThatEndsElsewhere) {
+  PlanToCheck plan = good_plan();
+  plan.route[0].back().x() += 2e-6;
+  EXPECT_TRUE(codes_of(plan).count("route-ends"));
+  plan = good_plan();
+  plan.route[2].back().z() += 2 * M_PI;  // a full turn later the base looks the same way; it must turn, though
+  EXPECT_EQ(codes_of(plan), Codes{"route-not-driveable"});
+  plan.route[2].insert(plan.route[2].begin() + 1, Eigen::Vector3d(0.4, 3, 2 * M_PI));
+  EXPECT_TRUE(codes_of(plan).empty());
+  plan.route[1].clear();
+  EXPECT_EQ(codes_of(plan), Codes{"route-ends"});
+}
+
+TEST(PlanCheckRoute, SidewaysDrive) {
+  PlanToCheck plan = good_plan();
+  plan.route[1] = {plan.stops[0].pose, plan.stops[1].pose};
+  EXPECT_EQ(codes_of(plan), Codes{"route-not-driveable"});
+}
+
+TEST(PlanCheckRoute, OmniMayDriveSidewaysFixedMayNot) {
+  PlanToCheck plan = good_plan();
+  mmgrasp::RobotOptions options;
+  options.base = mmgrasp::BaseKind::omni;
+  plan.robot = mmgrasp::Robot::from_strings(urdf(), srdf(), options);
+  plan.route[1] = {plan.stops[0].pose, plan.stops[1].pose};
+  EXPECT_TRUE(codes_of(plan).empty());
+  options.base = mmgrasp::BaseKind::fixed;
+  plan.robot = mmgrasp::Robot::from_strings(urdf(), srdf(), options);
+  EXPECT_EQ(codes_of(plan), Codes{"route-not-driveable"});
+}
+
+TEST(PlanCheckRoute, ObstacleOnTheWay) {
+  PlanToCheck plan = good_plan();
+  plan.obstacles.push_back(box("post", {0.02, 0.02, 1}, at(0.4, 1.5, 0.5)));
+  EXPECT_EQ(codes_of(plan), Codes{"route-collision"});
+}
+
+TEST(PlanCheckRoute, ThinObstacleBetweenPoses) {
+  PlanToCheck plan = good_plan();
+  plan.obstacles.push_back(box("sheet", {0.012, 0.012, 0.1}, at(-0.5, 0.195, 0.2)));  // only the base's corner passes it
+  EXPECT_EQ(codes_of(plan), Codes{"route-collision"});
+}
+
+TEST(PlanCheckRoute, StartAndHome) {
+  PlanToCheck plan = good_plan();
+  plan.obstacles.push_back(box("crate", {0.2, 0.2, 0.2}, at(-1.15, 0, 0.2)));
+  EXPECT_TRUE(codes_of(plan).count("start-collision"));
+  plan = good_plan();
+  plan.home[0] = 0.51;
+  EXPECT_TRUE(codes_of(plan).count("home-limit"));
+  plan = good_plan();
+  plan.home[0] = -0.6;  // fingers in the base
+  EXPECT_TRUE(codes_of(plan).count("home-collision"));
+}
+
+TEST(PlanCheckRobustness, ReachEndsInsideTheDisc) {
+  // At the stop joint x stands at 0.4; the disc asks for up to 0.5.
+  const PlanCheckResult result = check_plan(good_plan({0.45, 0, 0.12, 0, 0, 0, 0}), quick());
+  EXPECT_EQ(codes(result), Codes{"not-robust"});
+  ASSERT_EQ(result.rates.size(), 2u);
+  EXPECT_LT(result.rates[1].good, result.rates[1].samples);
+  EXPECT_EQ(result.rates[1].worst_part, "B/cube_0");
+}
+
+TEST(PlanCheckRobustness, ShareOfTheDiscIsRight) {
+  // Reachable base poses are those less than 0.05 m behind the stop: by area of the disc's segment, 0.8045 of it. With a
+  // required share of almost nothing no chunk ends early, so the share can be compared (3 sigma of 4000 samples: 0.019).
+  PlanCheckOptions options;
+  options.samples = 4000;
+  options.required_rate = 1e-6;
+  PlanToCheck plan = good_plan({0.45, 0, 0.12, 0, 0, 0, 0});
+  plan.parts[1].target = false;
+  plan.picks.erase(plan.picks.begin() + 1);
+  const PlanCheckResult result = check_plan(plan, options);
+  const double c = 0.5;  // distance of the cut from the middle over the radius
+  const double share = 1 - (std::acos(c) - c * std::sqrt(1 - c * c)) / M_PI;
+  for (const StopRate& rate : result.rates) {
+    EXPECT_EQ(rate.samples, 4000);
+    EXPECT_NEAR(static_cast<double>(rate.good) / rate.samples, share, 0.019);
+  }
+}
+
+TEST(PlanCheckRobustness, OtherGraspsCount) {
+  // The grasp that the plan takes is blocked by a neighbour while all parts are in place; the turned one is not.
+  PlanToCheck plan = good_plan();
+  plan.parts[2].body.T_world_body = at(0.9, 0.1 + kCube + 0.005, kPartZ);
+  Codes found = codes_of(plan);
+  EXPECT_TRUE(found.count("scene-collision"));
+  EXPECT_FALSE(found.count("not-robust"));
+  plan.parts[0].grasps.pop_back();
+  found = codes_of(plan);
+  EXPECT_TRUE(found.count("not-robust"));
+}
+
+TEST(PlanCheckRobustness, HomeBlockedNearTheStop) {
+  // A beam that the hand at home meets only when the base stands more than 0.06 m ahead of the stop.
+  PlanToCheck plan = good_plan();
+  plan.obstacles.push_back(box("beam", {0.04, 0.2, 0.03}, at(0.62, 0, 1.295)));
+  EXPECT_EQ(codes_of(plan), Codes{"not-robust"});
+}
+
+TEST(PlanCheckRobustness, PartWithoutGrasps) {
+  PlanToCheck plan = good_plan();
+  plan.parts[1].grasps.clear();
+  EXPECT_EQ(codes_of(plan), (Codes{"grasp-invalid", "not-robust"}));
+}
+
+}  // namespace
+}  // namespace tiny

@@ -154,8 +154,8 @@ class Builder {
       kept.keys.push_back(key);
       for (const double value : sampler.q()) kept.configurations.push_back(static_cast<float>(value));
       for (const double value : sampler.pose().translation()) kept.poses.push_back(static_cast<float>(value));
-      const Eigen::Quaterniond quaternion(sampler.pose().linear());
-      for (const double value : quaternion.normalized().coeffs()) kept.poses.push_back(static_cast<float>(value));
+      const Eigen::Vector4d quaternion = Eigen::Quaterniond(sampler.pose().linear()).normalized().coeffs();
+      for (const double value : quaternion) kept.poses.push_back(static_cast<float>(value));
     }
   }
 

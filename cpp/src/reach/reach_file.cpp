@@ -92,8 +92,9 @@ void check_header(const Header& header, std::uint64_t file_size, const std::stri
     refuse(path, "format version " + std::to_string(header.format) + ", this library reads " +
                      std::to_string(detail::kReachFormat));
   if (header.header_hash != hash_of(header)) refuse(path, "corrupt: the header's checksum differs");
-  if (header.joints <= 0 || header.joints > 1000 || header.position_count > file_size || header.cell_count > file_size ||
-      header.size > file_size)
+  constexpr std::uint64_t kMostCounted = std::uint64_t{1} << 40;  // keeps the sum below within 64 bits
+  if (header.joints <= 0 || header.joints > 1000 || header.position_count > kMostCounted ||
+      header.cell_count > kMostCounted || header.size > kMostCounted)
     refuse(path, "corrupt: impossible counts in the header");
   const std::uint64_t expected =
       sizeof(Header) + header.position_count * 8 + (header.position_count + 1) * 4 + header.cell_count * 4 +

@@ -52,6 +52,16 @@ CellMask mask_argument(const BaseGrid& grid,
 
 void bind_problem(py::module_& m) {
   m.def("_supply_option_table", [] { return option_table(supply_fields()); });
+  m.def(
+      "_check_options",
+      [](const std::string& section, const py::kwargs& options) {
+        if (section == "reach") {
+          check_reach_options(options);
+        } else {
+          read_options(supply_fields(), options, section.c_str());
+        }
+      },
+      py::arg("section"), "Raises InvalidInput when an option of a scenario's section is out of range.");
   py::class_<Part>(m, "Part", "One part in a tray.")
       .def(py::init([](std::string name, std::vector<LinkShape> shapes, const ArrayLike& T_world_part,
                        std::vector<Grasp> grasps, bool target, int grasps_too_wide) {

@@ -25,6 +25,9 @@ void bind_verify(py::module_& m);
 
 py::dict to_dict(const Rejections& rejections);
 
+/// Throws InvalidInput unless the keywords are reach options in range.
+void check_reach_options(const py::kwargs& options);
+
 /// Path of a str or os.PathLike argument.
 std::string path_argument(const py::handle& value, const std::string& name);
 

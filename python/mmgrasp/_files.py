@@ -1,0 +1,41 @@
+"""Files: written under a temporary name and renamed, found relative to the file that names them."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from pathlib import Path
+
+from ._core import IoError
+
+ASSETS = Path(__file__).parent / "assets"
+
+
+def write_file(path: Path, content: str | bytes) -> None:
+    """Writes all or nothing: a reader never sees half a file."""
+    data = content.encode() if isinstance(content, str) else content
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, draft = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    except OSError as error:
+        raise IoError(f"{path}: cannot be written: {error.strerror or error}") from None
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+        umask = os.umask(0)
+        os.umask(umask)
+        os.chmod(draft, 0o666 & ~umask)
+        os.replace(draft, path)
+    except OSError as error:
+        raise IoError(f"{path}: cannot be written: {error.strerror or error}") from None
+    finally:
+        if os.path.exists(draft):
+            os.unlink(draft)
+
+
+def sha256_of(path: str | Path) -> str:
+    try:
+        return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+    except OSError as error:
+        raise IoError(f"{path}: cannot be read: {error.strerror or error}") from None

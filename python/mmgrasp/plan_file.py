@@ -1,0 +1,285 @@
+"""plan.json: everything resolved, so that a plan can be read, shown and checked without its scenario (docs/plan_format.md)."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _core
+from ._core import PartSupplyResult, Robot
+from ._core import verify as checks
+from ._reading import Node, read_json
+from ._shapes import pose_to_dict, shape_from_node, shape_to_dict
+
+if TYPE_CHECKING:
+    from .scenario import Scenario
+
+VERSION = 1
+SCHEMA = Path(__file__).parent / "schemas" / "plan.schema.json"
+
+
+# --- writing ----------------------------------------------------------------------------------------------------------
+def plan_to_dict(scenario: Scenario, result: PartSupplyResult, timings: list[tuple[str, float]]) -> dict[str, Any]:
+    """The whole content of plan.json."""
+    names = [scenario.trays[tray].tray.name for tray in result.region_trays]
+    return {
+        "format": "mmgrasp-plan",
+        "version": VERSION,
+        "mmgrasp": _core.__version__,
+        "outcome": result.outcome.name,
+        "scenario": scenario_to_dict(scenario),
+        "grid": _grid(result),
+        "regions": [_region(region, result) for region in result.regions],
+        "intersections": [_intersection(i, names) for i in result.intersections.robust],
+        "lost_intersections": [_intersection(i, names) for i in result.intersections.lost],
+        "stops": [
+            {"pose": s.pose.tolist(), "radius": s.radius, "trays": [names[t] for t in s.trays], "intersection": s.intersection}
+            for s in result.stops
+        ],
+        "lower_bound": result.lower_bound,
+        "route": [
+            {"poses": leg.poses.tolist(), "length": leg.length, "turning": leg.turning,
+             "duration": leg.duration(scenario.setup.robot)}
+            for leg in result.route
+        ],
+        "picks": [_pick(pick, scenario) for pick in result.picks],
+        "robustness_rate": result.robustness_rate,
+        "obstructions": [o.to_dict() for o in result.obstructions],
+        "timings": [{"stage": stage, "seconds": seconds} for stage, seconds in timings],
+    }
+
+
+def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
+    """The part of the plan that the scenario alone decides."""
+    setup = scenario.setup
+    gripper, arm, robot, carry = setup.gripper, setup.arm, setup.robot, setup.carry
+    return {
+        "name": scenario.name,
+        "source": scenario.source,
+        "robot": {"urdf": robot.to_urdf(), "srdf": robot.to_srdf(), "base": robot.base, "base_limits": robot.base_limits},
+        "arm": {
+            "joints": arm.names,
+            "tip_link": arm.tip,
+            "velocity_limits": arm.velocity_limits.tolist(),
+            "acceleration_limits": arm.acceleration_limits.tolist(),
+        },
+        "gripper": {
+            "tcp_link": gripper.tcp_link,
+            "approach": gripper.approach.tolist(),
+            "closing": gripper.closing.tolist(),
+            "max_opening": gripper.max_opening,
+            "finger_depth": gripper.finger_depth,
+            "finger_width": gripper.finger_width,
+            "clearance": gripper.clearance,
+            "joints": [{"name": j.name, "closed": j.closed, "open": j.open} for j in gripper.joints],
+            "finger_links": gripper.finger_links,
+        },
+        "other_joints": setup.other_joints,
+        "home": setup.home.tolist(),
+        "start": scenario.start.tolist(),
+        "goal": scenario.goal.tolist(),
+        "positioning_uncertainty": scenario.positioning_uncertainty,
+        "carry": {"pose": pose_to_dict(carry.T_base_bin), "size": carry.size.tolist(), "drop_gap": carry.drop_gap},
+        "obstacles": [
+            {"name": o.name, "pose": pose_to_dict(o.pose), "shapes": [shape_to_dict(s) for s in o.shapes]}
+            for o in scenario.obstacles
+        ],
+        "trays": [
+            {"name": t.tray.name, "pose": pose_to_dict(t.tray.T_world_tray), "size": t.tray.size.tolist()}
+            for t in scenario.trays
+        ],
+        "parts": [_part(part, t.tray.name) for t in scenario.trays for part in t.tray.parts],
+        "options": dict(scenario.problem().options),
+    }
+
+
+def _part(part: _core.Part, tray: str) -> dict[str, Any]:
+    return {
+        "name": part.name,
+        "tray": tray,
+        "target": part.target,
+        "pose": pose_to_dict(part.T_world_part),
+        "shapes": [shape_to_dict(s) for s in part.shapes],
+        "grasps": [
+            {"pose": pose_to_dict(g.T_object_tcp), "width": g.width, "quality": g.quality} for g in part.grasps
+        ] if part.target else [],
+    }
+
+
+def _grid(result: PartSupplyResult) -> dict[str, Any]:
+    grid = result.grid
+    return {"origin": grid.origin.tolist(), "resolution": grid.resolution, "nx": grid.nx, "ny": grid.ny,
+            "headings": list(grid.headings)}
+
+
+def runs_of(layer: np.ndarray) -> list[list[int]]:
+    """Cells of one layer (ny, nx) as [iy, first ix, one past the last ix]."""
+    runs = []
+    for iy, row in enumerate(layer):
+        edges = np.flatnonzero(np.diff(np.concatenate(([0], row != 0, [0])).astype(np.int8)))
+        runs += [[iy, int(a), int(b)] for a, b in edges.reshape(-1, 2)]
+    return runs
+
+
+def _region(region: _core.BaseRegion, result: PartSupplyResult) -> dict[str, Any]:
+    layers = region.cells(result.grid)
+    return {
+        "tray": region.tray,
+        "cells": {str(k): runs for k, layer in enumerate(layers) if (runs := runs_of(layer))},
+        "base_poses_in_collision": region.base_poses_in_collision,
+        "explanations": [e.to_dict() for e in region.explanations],
+    }
+
+
+def _intersection(intersection: _core.Intersection, names: list[str]) -> dict[str, Any]:
+    return {
+        "trays": [names[t] for t in intersection.trays],
+        "heading": intersection.heading,
+        "centre": intersection.centre.tolist(),
+        "radius": intersection.radius,
+        "cells": intersection.cells,
+    }
+
+
+def _pick(pick: _core.Pick, scenario: Scenario) -> dict[str, Any]:
+    tray = scenario.trays[pick.tray].tray
+    motions = []
+    for motion in pick.motions:
+        t = motion.trajectory
+        motions.append({
+            "kind": motion.kind, "opening": motion.opening, "holding": motion.holding, "times": t.times.tolist(),
+            "positions": t.positions.tolist(), "velocities": t.velocities.tolist(), "accelerations": t.accelerations.tolist(),
+        })
+    return {"stop": pick.stop, "tray": tray.name, "part": tray.parts[pick.part].name, "grasp": pick.grasp, "motions": motions}
+
+
+# --- reading ----------------------------------------------------------------------------------------------------------
+def read_plan(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """The content of a plan.json; raises IoError or InvalidInput when it is not one."""
+    root = read_json(Path(path)).root
+    check_header(root)
+    return root.raw
+
+
+def check_header(root: Node) -> None:
+    root["format"].choice("mmgrasp-plan")
+    if root["version"].integer() != VERSION:
+        root["version"].fail(f"this version of mmgrasp reads version {VERSION}")
+
+
+def plan_schema() -> dict[str, Any]:
+    """The JSON Schema of plan.json."""
+    return json.loads(SCHEMA.read_text())
+
+
+def plan_to_check(root: Node) -> checks.PlanToCheck:
+    """The plan as the checker takes it; every value is read strictly."""
+    scenario = root["scenario"]
+    robot = scenario["robot"]
+    limits = {key: node.number(above=0) for key, node in robot["base_limits"].items()}
+    plan = checks.PlanToCheck(
+        Robot.from_strings(
+            robot["urdf"].string(), robot["srdf"].string(), None, robot["base"].choice("diff_drive", "omni"),
+            base_limits=limits, origin=root.document.source,
+        )
+    )
+    _read_arm(plan, scenario)
+    _read_scene(plan, scenario)
+    _read_answer(plan, root)
+    return plan
+
+
+def _read_arm(plan: checks.PlanToCheck, scenario: Node) -> None:
+    arm, gripper = scenario["arm"], scenario["gripper"]
+    plan.arm_joints = [name.string() for name in arm["joints"].elements()]
+    count = len(plan.arm_joints)
+    plan.velocity_limits = arm["velocity_limits"].numbers(count, above=0)
+    plan.acceleration_limits = arm["acceleration_limits"].numbers(count, above=0)
+    plan.tip_link = arm["tip_link"].string()
+    plan.other_joints = {name: value.number() for name, value in scenario["other_joints"].items()}
+    plan.max_opening = gripper["max_opening"].number(above=0)
+    plan.clearance = gripper["clearance"].number(least=0)
+    plan.approach = np.array(gripper["approach"].numbers(3))
+    plan.fingers = [
+        checks.CheckedFinger(j["name"].string(), j["closed"].number(), j["open"].number())
+        for j in gripper["joints"].elements()
+    ]
+    plan.finger_links = [link.string() for link in gripper["finger_links"].elements()]
+    plan.home = np.array(scenario["home"].numbers(count))
+
+
+def _read_body(node: Node) -> checks.CheckedBody:
+    shapes = [shape_from_node(shape) for shape in node["shapes"].elements()]
+    return checks.CheckedBody(node["name"].string(), shapes, node["pose"].pose())
+
+
+def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
+    plan.start, plan.goal = (np.array(scenario[key].numbers(3)) for key in ("start", "goal"))
+    plan.positioning_uncertainty = scenario["positioning_uncertainty"].number(least=0)
+    carry = scenario["carry"]
+    plan.T_base_bin = carry["pose"].pose()
+    plan.bin_size = np.array(carry["size"].numbers(2, above=0))
+    plan.drop_gap = carry["drop_gap"].number(least=0)
+    plan.obstacles = [_read_body(node) for node in scenario["obstacles"].elements()]
+    plan.trays = [tray["name"].string() for tray in scenario["trays"].elements()]
+    parts = []
+    for node in scenario["parts"].elements():
+        grasps = [checks.CheckedGrasp(g["pose"].pose(), g["width"].number(least=0)) for g in node["grasps"].elements()]
+        tray = node["tray"]
+        if tray.string() not in plan.trays:
+            tray.fail("no such tray")
+        parts.append(checks.CheckedPart(_read_body(node), tray.raw, node["target"].boolean(), grasps))
+    plan.parts = parts
+
+
+def _read_answer(plan: checks.PlanToCheck, root: Node) -> None:
+    grid = root["grid"]
+    nx, ny, headings = grid["nx"].integer(least=1), grid["ny"].integer(least=1), grid["headings"].numbers()
+    plan.grid = checks.CheckedGrid(grid["origin"].numbers(2), grid["resolution"].number(above=0), nx, ny, headings)
+    plan.regions = [
+        checks.CheckedRegion(region["tray"].string(), _cells(region["cells"], len(headings), ny, nx))
+        for region in root["regions"].elements()
+    ]
+    plan.stops = [
+        checks.CheckedStop(s["pose"].numbers(3), s["radius"].number(), [t.string() for t in s["trays"].elements()])
+        for s in root["stops"].elements()
+    ]
+    plan.route = [list(leg["poses"].array(3)) for leg in root["route"].elements()]
+    plan.picks = [_read_pick(node, len(plan.arm_joints)) for node in root["picks"].elements()]
+    plan.lower_bound = root["lower_bound"].integer(least=0)
+
+
+def _cells(node: Node, layers: int, ny: int, nx: int) -> np.ndarray:
+    if layers * ny * nx > 100_000_000:
+        node.fail("the grid has more than 100 million cells")
+    cells = np.zeros((layers, ny, nx), dtype=np.uint8)
+    for key, runs in node.items():
+        if not key.isdigit() or int(key) >= layers:
+            runs.fail("must belong to a heading of the grid")
+        for run in runs.elements():
+            iy, a, b = (value.integer(least=0) for value in run.elements()) if len(run.raw) == 3 else run.fail("needs 3 numbers")
+            if iy >= ny or not a < b <= nx:
+                run.fail("must lie inside the grid")
+            cells[int(key), iy, a:b] = 1
+    return cells.reshape(-1)
+
+
+def _read_pick(node: Node, joints: int) -> checks.CheckedPick:
+    motions = []
+    for motion in node["motions"].elements():
+        times = motion["times"].numbers()
+        if not times:
+            motion["times"].fail("must not be empty")
+        rows = [motion[key].array(joints) for key in ("positions", "velocities")]
+        if any(len(values) != len(times) for values in rows):
+            motion["times"].fail("must be as many as positions and velocities")
+        motions.append(checks.CheckedMotion(
+            motion["kind"].string(), motion["opening"].number(), motion["holding"].boolean(), times, *rows
+        ))
+    return checks.CheckedPick(
+        node["stop"].integer(), node["tray"].string(), node["part"].string(), node["grasp"].integer(), motions
+    )

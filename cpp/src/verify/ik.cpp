@@ -45,7 +45,7 @@ bool solve_tip_pose(Kinematics& kinematics, const Pose& T_root_tip, const IkTole
     const double squared = error.squaredNorm();
     stalled = squared < 0.9 * best ? 0 : stalled + 1;
     best = std::min(best, squared);
-    if (stalled > 12) return false;
+    if (stalled > 8) return false;
     Eigen::VectorXd step = bounded_step(kinematics, arm, J, error);
     const double largest = step.cwiseAbs().maxCoeff();
     if (largest > 1.0) step *= 1.0 / largest;

@@ -33,6 +33,7 @@ struct MMGRASP_EXPORT Intersections {
   std::vector<Intersection> robust;
   std::size_t sets_tried = 0;
   std::size_t sets_too_small = 0;    ///< Shared cells, but the disc is too small.
+  bool complete = true;              ///< False: `max_sets` ended the search; minimality then holds for the sets found only.
   std::vector<Intersection> lost;    ///< Those, up to 200, largest radius first: why each alternative lost.
 };
 

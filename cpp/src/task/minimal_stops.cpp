@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <cmath>
+
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/optim/set_cover.hpp"
+#include "mmgrasp/task/base_sequence.hpp"
+
+namespace mmgrasp {
+namespace {
+
+/// Costs that put the number of stops first and large discs second (see SetCoverProblem).
+std::vector<double> stop_costs(const std::vector<Intersection>& intersections) {
+  double largest = 0;
+  for (const Intersection& some : intersections) largest = std::max(largest, some.radius);
+  std::vector<double> costs;
+  for (const Intersection& some : intersections) {
+    const double loss = largest > 0 ? 1 - some.radius / largest : 0;
+    costs.push_back(1 + loss / (2.0 * static_cast<double>(intersections.size())));
+  }
+  return costs;
+}
+
+/// Serving fewer trays than the intersection allows, a stop may find a larger disc.
+int widest_for(const std::vector<Intersection>& intersections, const std::vector<int>& trays, int chosen) {
+  int best = chosen;
+  for (int i = 0; i < static_cast<int>(intersections.size()); ++i) {
+    const Intersection& some = intersections[static_cast<std::size_t>(i)];
+    if (some.radius <= intersections[static_cast<std::size_t>(best)].radius) continue;
+    if (std::includes(some.trays.begin(), some.trays.end(), trays.begin(), trays.end())) best = i;
+  }
+  return best;
+}
+
+}  // namespace
+
+StopSet minimal_stops(const BaseGrid& grid, const std::vector<Intersection>& intersections, int trays) {
+  require(trays >= 0, "trays", trays, "must not be negative");
+  StopSet result;
+  SetCoverProblem problem;
+  problem.elements = trays;
+  for (const Intersection& some : intersections) problem.sets.push_back(some.trays);
+  problem.costs = stop_costs(intersections);
+  const SetCoverResult cover = solve_set_cover(problem);
+  result.outcome = cover.outcome;
+  result.unreachable_trays = cover.uncoverable;
+  // All penalties together stay below 1/2.
+  result.lower_bound = std::max(0, static_cast<int>(std::ceil(cover.lower_bound - 0.5 - 1e-6)));
+  if (cover.outcome != Outcome::solved && cover.outcome != Outcome::approximate) return result;
+  if (cover.outcome == Outcome::solved) result.lower_bound = static_cast<int>(cover.chosen.size());
+
+  std::vector<std::vector<int>> served(cover.chosen.size());
+  for (int tray = 0; tray < trays; ++tray) {
+    int best = -1;
+    for (std::size_t c = 0; c < cover.chosen.size(); ++c) {
+      const Intersection& some = intersections[static_cast<std::size_t>(cover.chosen[c])];
+      if (!std::binary_search(some.trays.begin(), some.trays.end(), tray)) continue;
+      if (best < 0 || some.radius > intersections[static_cast<std::size_t>(cover.chosen[static_cast<std::size_t>(best)])].radius)
+        best = static_cast<int>(c);
+    }
+    served[static_cast<std::size_t>(best)].push_back(tray);
+  }
+  for (std::size_t c = 0; c < cover.chosen.size(); ++c) {
+    if (served[c].empty()) continue;  // only without a proof: a least cover has no idle set
+    Stop stop;
+    stop.trays = served[c];
+    stop.intersection = widest_for(intersections, stop.trays, cover.chosen[c]);
+    const Intersection& place = intersections[static_cast<std::size_t>(stop.intersection)];
+    stop.radius = place.radius;
+    stop.pose = Eigen::Vector3d(place.centre.x(), place.centre.y(), grid.headings[static_cast<std::size_t>(place.heading)]);
+    result.stops.push_back(stop);
+  }
+  return result;
+}
+
+}  // namespace mmgrasp

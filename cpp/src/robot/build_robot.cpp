@@ -159,6 +159,10 @@ std::vector<int> rigid_bodies(const Robot::Data& data) {
 }
 
 void disable_adjacent(Robot::Data& data) {
+  const auto is_bare = [&data](int link) {
+    const Link& l = data.links[static_cast<std::size_t>(link)];
+    return l.collisions.empty() && data.shapes_left_out.count(l.name) == 0;
+  };
   const auto disable = [&data](int a, int b) {
     if (a != b) data.disabled_pairs.emplace(std::minmax(a, b), DisabledReason::adjacent);
   };
@@ -166,7 +170,7 @@ void disable_adjacent(Robot::Data& data) {
     disable(joint.parent_link, joint.child_link);
     // Links without shapes (flanges, frames) join their neighbours as if these touched directly.
     int above = joint.parent_link;
-    while (above > 0 && data.links[static_cast<std::size_t>(above)].collisions.empty())
+    while (above > 0 && is_bare(above))
       above = data.joints[static_cast<std::size_t>(above - 1)].parent_link;
     disable(above, joint.child_link);
   }
@@ -195,6 +199,7 @@ std::shared_ptr<Robot::Data> build_robot(const RobotParts& parts) {
   data->end_effectors = parts.end_effectors;
   data->group_states = parts.group_states;
   data->has_srdf = parts.has_srdf;
+  data->shapes_left_out = parts.shapes_left_out;
   for (const int old_link : order) {
     Link link = parts.links[static_cast<std::size_t>(old_link)];
     const int index = static_cast<int>(data->links.size());
@@ -244,6 +249,7 @@ RobotParts to_parts(const Robot::Data& data) {
   parts.end_effectors = data.end_effectors;
   parts.group_states = data.group_states;
   parts.has_srdf = data.has_srdf;
+  parts.shapes_left_out = data.shapes_left_out;
   for (const auto& [pair, reason] : data.disabled_pairs) {
     const std::string& a = data.links[static_cast<std::size_t>(pair.first)].name;
     const std::string& b = data.links[static_cast<std::size_t>(pair.second)].name;

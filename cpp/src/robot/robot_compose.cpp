@@ -54,6 +54,9 @@ void add_prefix(RobotParts& parts, const std::string& prefix) {
   for (const auto& [pair, reason] : parts.disabled_pairs)
     pairs.emplace(ordered(prefix + pair.first, prefix + pair.second), reason);
   parts.disabled_pairs = std::move(pairs);
+  std::set<std::string> left_out;
+  for (const std::string& link : parts.shapes_left_out) left_out.insert(prefix + link);
+  parts.shapes_left_out = std::move(left_out);
 }
 
 template <typename T>
@@ -84,6 +87,7 @@ Robot Robot::mount(const Robot& other, const std::string& parent_link, const Pos
   append(parts.report.missing, mounted.report.missing);
   parts.group_states.insert(mounted.group_states.begin(), mounted.group_states.end());
   parts.disabled_pairs.insert(mounted.disabled_pairs.begin(), mounted.disabled_pairs.end());
+  parts.shapes_left_out.insert(mounted.shapes_left_out.begin(), mounted.shapes_left_out.end());
   parts.disabled_pairs.emplace(ordered(parent_link, mounted_root), DisabledReason::adjacent);
   parts.joints.push_back(fixed_joint(used + "mount_joint", parent_link, mounted_root, T_parent_other));
   parts.has_srdf = parts.has_srdf || mounted.has_srdf;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -25,6 +26,7 @@ struct Robot::Data {
   GroupStates group_states;
   bool has_srdf = false;
   std::map<std::pair<int, int>, DisabledReason> disabled_pairs;
+  std::set<std::string> shapes_left_out;  // links whose meshes were not loaded: without shapes here, but not in truth
 
   // Derived from the above.
   std::unordered_map<std::string, int> link_by_name;
@@ -58,6 +60,7 @@ struct RobotParts {
   GroupStates group_states;
   bool has_srdf = false;
   NamedPairs disabled_pairs;
+  std::set<std::string> shapes_left_out;
 };
 
 /// Orders links and joints breadth first, resolves mimic joints, numbers values, disables pairs that cannot collide in a

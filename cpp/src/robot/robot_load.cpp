@@ -69,12 +69,16 @@ void resolve_meshes(detail::RobotParts& parts, const RobotOptions& options) {
         kept.push_back(shape);
         continue;
       }
-      if (!options.load_meshes) continue;
+      if (!options.load_meshes) {
+        parts.shapes_left_out.insert(link.name);
+        continue;
+      }
       std::vector<std::string> looked;
       shape.mesh_path = locator.find(shape.mesh_uri, &looked);
       if (shape.mesh_path.empty()) {
         const std::string message = missing_message(parts.origin, link.name, shape.mesh_uri, looked);
         if (!options.allow_missing_meshes) throw IoError(message);
+        parts.shapes_left_out.insert(link.name);
         parts.report.missing.push_back(shape.mesh_uri);
         parts.report.warnings.push_back(message);
         continue;

@@ -84,7 +84,8 @@ class MMGRASP_EXPORT Robot {
   const std::map<std::string, std::map<std::string, std::map<std::string, double>>>& group_states() const;
   bool has_srdf() const;
 
-  /// True when the two links need no self-collision check.
+  /// True when the two links need no self-collision check: the SRDF says so, a joint joins them (also across links without
+  /// shapes), or they belong to one rigid body.
   bool pair_disabled(int link_a, int link_b) const;
   const std::map<std::pair<int, int>, DisabledReason>& disabled_pairs() const;  ///< Keys with first < second.
   Robot with_disabled_pairs(std::map<std::pair<int, int>, DisabledReason> pairs) const;
@@ -102,7 +103,8 @@ class MMGRASP_EXPORT Robot {
   Robot with_link(const std::string& name, const std::string& parent_link, const Pose& T_parent_link,
                   const std::vector<LinkShape>& collisions = {}) const;
 
-  /// The whole robot written out. Mesh URIs are written as absolute file paths.
+  /// The whole robot written out: what was read of it, so without visuals and inertias. Mesh URIs are written as absolute
+  /// file paths; meshes that were not loaded are left out. Throws InvalidInput for a mesh that came from no file.
   std::string to_urdf() const;
   std::string to_srdf() const;
   /// Content hash of kinematics, shapes (mesh contents included), limits and disabled pairs.

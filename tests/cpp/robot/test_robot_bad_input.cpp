@@ -1,0 +1,144 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/robot/robot.hpp"
+
+using namespace mmgrasp;
+
+namespace {
+
+struct BadCase {
+  const char* what;
+  std::string urdf;
+  std::vector<std::string> told;  ///< Every one must stand in the message.
+};
+
+std::string robot(const std::string& inside) { return "<robot name=\"r\">\n" + inside + "\n</robot>"; }
+
+std::string joint(const std::string& inside, const std::string& type = "revolute") {
+  return robot("<link name=\"a\"/><link name=\"b\"/>\n<joint name=\"j\" type=\"" + type +
+               "\"><parent link=\"a\"/><child link=\"b\"/>" + inside + "</joint>");
+}
+
+std::string shape(const std::string& inside) {
+  return robot("<link name=\"a\"><collision><geometry>" + inside + "</geometry></collision></link>");
+}
+
+std::string fixed(const std::string& name, const std::string& parent, const std::string& child) {
+  return "<joint name=\"" + name + "\" type=\"fixed\"><parent link=\"" + parent + "\"/><child link=\"" + child + "\"/></joint>";
+}
+
+const std::string kLimit = "<limit lower=\"-1\" upper=\"1\" velocity=\"1\" effort=\"1\"/>";
+
+std::vector<BadCase> bad_cases() {
+  std::string deep;
+  for (int i = 0; i < 100000; ++i) deep += "<a>";
+  return {
+      {"empty text", "", {"bad.urdf"}},
+      {"no XML", "hello", {"bad.urdf"}},
+      {"truncated", "<robot name=\"r\"><link name=\"a\">", {"bad.urdf"}},
+      {"NUL byte", std::string("<robot name=\"r\">\0</robot>", 25), {"NUL"}},
+      {"wrong root", "<sdf/>", {"<sdf>", "<robot>"}},
+      {"no robot name", "<robot><link name=\"a\"/></robot>", {"name", "missing"}},
+      {"no links", robot(""), {"\"r\"", "<link>"}},
+      {"entity bomb", "<!DOCTYPE robot [<!ENTITY a \"b\">]>" + robot("<link name=\"&a;\"/>"), {"DOCTYPE", "refused"}},
+      {"lower-case doctype", "<!doctype robot>" + robot("<link name=\"a\"/>"), {"refused"}},
+      {"deep nesting", robot(deep), {"nesting"}},
+      {"xacro left in", robot("<xacro:include filename=\"x\"/>"), {"xacro"}},
+      {"link without name", robot("<link/>"), {":2", "<link>", "name"}},
+      {"duplicate link", robot("<link name=\"a\"/>\n<link name=\"a\"/>"), {":3", "\"a\"", "unique"}},
+      {"duplicate joint", robot("<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" + fixed("j", "a", "b") + fixed("j", "a", "c")),
+       {"\"j\"", "unique"}},
+      {"two roots", robot("<link name=\"a\"/><link name=\"b\"/>"), {"\"a\", \"b\"", "root"}},
+      {"cycle without root", robot("<link name=\"a\"/><link name=\"b\"/>" + fixed("j", "a", "b") + fixed("k", "b", "a")), {"cycle"}},
+      {"cycle beside the root",
+       robot("<link name=\"o\"/><link name=\"a\"/><link name=\"b\"/>" + fixed("j", "a", "b") + fixed("k", "b", "a")),
+       {"\"a\"", "cycle"}},
+      {"own parent", robot("<link name=\"o\"/><link name=\"a\"/>" + fixed("j", "a", "a")), {"\"j\"", "differ"}},
+      {"two parents", robot("<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" + fixed("j", "a", "c") + fixed("k", "b", "c")),
+       {"\"k\"", "\"c\"", "\"j\"", "one parent"}},
+      {"unknown parent", robot("<link name=\"arm\"/><link name=\"b\"/>" + fixed("j", "amr", "b")),
+       {"\"j\"", "parent link = \"amr\"", "did you mean \"arm\""}},
+      {"unknown child", robot("<link name=\"a\"/>" + fixed("j", "a", "zzz")), {"child link = \"zzz\""}},
+      {"no parent element", robot("<link name=\"a\"/><joint name=\"j\" type=\"fixed\"><child link=\"a\"/></joint>"), {"<parent", "missing"}},
+      {"unknown type", joint(kLimit, "hinge"), {"type = \"hinge\"", "revolute"}},
+      {"no limit", joint(""), {"\"j\"", "<limit>", "missing"}},
+      {"no prismatic limit", joint("", "prismatic"), {"<limit>", "prismatic"}},
+      {"lower above upper", joint("<limit lower=\"2\" upper=\"1\" velocity=\"1\"/>"), {":3", "joint \"j\"", "lower = \"2\"", "must not exceed"}},
+      {"NaN limit", joint("<limit lower=\"nan\" upper=\"1\" velocity=\"1\"/>"), {"lower = \"nan\"", "finite"}},
+      {"infinite limit", joint("<limit lower=\"-inf\" upper=\"1\" velocity=\"1\"/>"), {"lower = \"-inf\"", "finite"}},
+      {"overflow", joint("<limit lower=\"-1e999\" upper=\"1\" velocity=\"1\"/>"), {"lower = \"-1e999\"", "number"}},
+      {"words for numbers", joint("<limit lower=\"-1,5\" upper=\"1\" velocity=\"1\"/>"), {"lower = \"-1,5\"", "number"}},
+      {"negative velocity", joint("<limit lower=\"0\" upper=\"1\" velocity=\"-1\"/>"), {"velocity = \"-1\"", "negative"}},
+      {"zero axis", joint(kLimit + "<axis xyz=\"0 0 0\"/>"), {"<axis>", "\"0 0 0\"", "zero"}},
+      {"short axis", joint(kLimit + "<axis xyz=\"0 1\"/>"), {"\"0 1\"", "three numbers"}},
+      {"NaN origin", joint(kLimit + "<origin xyz=\"0 nan 0\"/>"), {"<origin>", "joint \"j\"", "finite"}},
+      {"unknown mimic", joint(kLimit + "<mimic joint=\"q\"/>"), {"mimic joint = \"q\""}},
+      {"mimic of itself", joint(kLimit + "<mimic joint=\"j\"/>"), {"circle"}},
+      {"mimic of a fixed joint",
+       robot("<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" + fixed("k", "a", "c") +
+             "<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/>" + kLimit + "<mimic joint=\"k\"/></joint>"),
+       {"\"k\"", "fixed"}},
+      {"no geometry", robot("<link name=\"a\"><collision/></link>"), {"<geometry>", "link \"a\""}},
+      {"empty geometry", shape(""), {"geometry", "empty"}},
+      {"unknown shape", shape("<cone radius=\"1\"/>"), {"<cone>", "unknown"}},
+      {"zero box", shape("<box size=\"0.1 0 0.1\"/>"), {"<box>", "link \"a\"", "0.1 0 0.1", "positive"}},
+      {"negative sphere", shape("<sphere radius=\"-1\"/>"), {"radius = \"-1\"", "positive"}},
+      {"NaN cylinder", shape("<cylinder radius=\"0.1\" length=\"nan\"/>"), {"length = \"nan\"", "finite"}},
+      {"cylinder without length", shape("<cylinder radius=\"0.1\"/>"), {"length", "missing"}},
+      {"flat mesh", shape("<mesh filename=\"m.stl\" scale=\"1 0 1\"/>"), {"scale = \"1 0 1\"", "zero"}},
+      {"mesh without file", shape("<mesh/>"), {"filename", "missing"}},
+  };
+}
+
+}  // namespace
+
+TEST(RobotBadInput, EachIsRefusedWithFilePlaceValueAndRule) {
+  for (const BadCase& bad : bad_cases()) {
+    std::string message;
+    try {
+      Robot::from_strings(bad.urdf, "", {}, "bad.urdf");
+    } catch (const InvalidInput& error) {
+      message = error.what();
+    }
+    ASSERT_NE(message, "") << bad.what << " was accepted";
+    EXPECT_NE(message.find("bad.urdf"), std::string::npos) << bad.what << ": " << message;
+    for (const std::string& part : bad.told) EXPECT_NE(message.find(part), std::string::npos) << bad.what << ": " << message;
+  }
+}
+
+TEST(RobotBadInput, NothingIsPrinted) {
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  for (const BadCase& bad : bad_cases()) EXPECT_THROW(Robot::from_strings(bad.urdf), InvalidInput);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+}
+
+TEST(RobotBadInput, MissingFilesAreIoErrors) {
+  EXPECT_THROW(Robot::load("/nowhere/r.urdf"), IoError);
+  EXPECT_THROW(Robot::load("/tmp"), IoError);
+  EXPECT_THROW(Robot::from_strings(shape("<mesh filename=\"nowhere.stl\"/>")), IoError);
+}
+
+TEST(RobotBadInput, HarmlessOddities) {
+  // Comments may talk about declarations; numbers may carry a plus or an exponent; a joint may have no velocity.
+  const Robot robot = Robot::from_strings(
+      "<?xml version=\"1.0\"?><!-- <!DOCTYPE no> <a> -->" +
+      joint("<!-- <!ENTITY> --><limit lower=\" -1e-1\" upper=\"+2.5\"/><axis xyz=\"0 0\n 2\"/>"));
+  EXPECT_EQ(robot.joints()[0].lower, -0.1);
+  EXPECT_EQ(robot.joints()[0].upper, 2.5);
+  EXPECT_EQ(robot.joints()[0].velocity, 1.0);
+  EXPECT_EQ(robot.joints()[0].axis, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(robot.report().warnings.size(), 1u);
+}
+
+TEST(RobotBadInput, BaseLimitsAndKinds) {
+  RobotOptions options;
+  options.base_limits.linear_velocity = 0;
+  EXPECT_THROW(Robot::from_strings(robot("<link name=\"a\"/>"), "", options), InvalidInput);
+  EXPECT_EQ(base_kind_from_string("omni"), BaseKind::omni);
+  EXPECT_THROW(base_kind_from_string("wheels"), InvalidInput);
+}

@@ -125,7 +125,6 @@ class DiscSearch {
   Room make_room(const Cell& cell, const std::vector<Cell>& border) const {
     Room room;
     room.cell = cell;
-    const Point middle(cell.ix + 0.5, cell.iy + 0.5);
     double least = std::numeric_limits<double>::infinity();
     for (const Cell& b : border) {
       least = std::min(least, squared(std::max(std::abs(b.ix - cell.ix) - 0.5, 0.0)) +
@@ -139,7 +138,6 @@ class DiscSearch {
                        squared(std::max(std::abs(b.iy - cell.iy) - 0.5, 0.0));
       if (d <= bound) room.blocked.push_back(b);
     }
-    (void)middle;
     int ix = cell.ix, iy = cell.iy;
     while (free(ix - 1, cell.iy)) --ix;
     room.left = ix;
@@ -239,6 +237,7 @@ class DiscSearch {
   /// Best first on the distance to the centroid, over centres whose radius is the best one less twice the tolerance.
   Point nearest_centre() const {
     const double wanted = best_ - 2 * tolerance_;
+    const double enough = wanted - 0.01 * tolerance_;  // less than what is cut away, or roundings could keep boxes forever
     std::priority_queue<Node> queue;
     std::size_t order = 0;
     const auto push = [&](int index, Box2 box) {
@@ -255,7 +254,7 @@ class DiscSearch {
       queue.pop();
       const Room& room = rooms_[static_cast<std::size_t>(node.room)];
       for (const Point& p : {node.box.closest(centroid_), node.box.middle()}) {
-        if (radius_in(room, p) < wanted) continue;
+        if (radius_in(room, p) < enough) continue;
         // The middle is not the nearest point of the box; a box this small makes no difference.
         if (p == node.box.closest(centroid_) || node.box.size() < tolerance_) return p;
       }

@@ -14,7 +14,7 @@ Eigen::VectorXd bounded_step(const Kinematics& kinematics, const Eigen::VectorXd
   const double damping = 0.5 * error.squaredNorm() + kLeastDamping;
   Eigen::VectorXd step = Eigen::VectorXd::Zero(arm.size());
   for (Eigen::Index round = 0; round <= arm.size(); ++round) {
-    Eigen::Matrix<double, 6, 6> A = J * J.transpose();
+    Eigen::Matrix<double, 6, 6> A = J.lazyProduct(J.transpose());  // small: no blocking
     A.diagonal().array() += damping;
     step.noalias() = J.transpose() * A.llt().solve(error);
     bool held = false;

@@ -137,16 +137,16 @@ void Kinematics::tip_and_jacobian(const Eigen::VectorXd& arm, Pose& T_root_tip, 
   for (const int index : chain_) {
     const Element& element = elements_[index];
     const KDL::Frame next = frame * element.segment.pose(value(element));
-    // Columns gathered so far refer to the old end of the chain: move their reference point along.
-    const Eigen::Vector3d shift(next.p.x() - frame.p.x(), next.p.y() - frame.p.y(), next.p.z() - frame.p.z());
-    for (int column = 0; column < arm_size(); ++column) {
-      J.col(column).head<3>() += Eigen::Vector3d(J.col(column).tail<3>()).cross(shift);
-    }
     if (element.column >= 0) {
-      const KDL::Twist twist = frame.M * element.segment.twist(value(element), element.multiplier);
+      // KDL refers the twist to the segment's end; here first to the root's origin, where several joints' twists add up.
+      const KDL::Twist twist = (frame.M * element.segment.twist(value(element), element.multiplier)).RefPoint(-next.p);
       for (int row = 0; row < 6; ++row) J(row, element.column) += twist(row);
     }
     frame = next;
+  }
+  const Eigen::Vector3d tip(frame.p.x(), frame.p.y(), frame.p.z());
+  for (int column = 0; column < arm_size(); ++column) {
+    J.col(column).head<3>() += Eigen::Vector3d(J.col(column).tail<3>()).cross(tip);
   }
   T_root_tip = from_kdl(frame);
 }

@@ -12,6 +12,11 @@ namespace {
 // Solvers and interpolation leave rounding at the limits.
 constexpr double kLimitSlack = 1e-9;
 
+// The group's own check builds its message's words first: too slow for the hot path, so only when something is wrong.
+void check_configuration(const JointGroup& group, const Eigen::VectorXd& q, const char* field) {
+  if (q.size() != group.lower().size() || !q.allFinite()) group.check_configuration(q, field);
+}
+
 }  // namespace
 
 void CheckerOptions::check() const {
@@ -176,18 +181,18 @@ void CollisionChecker::set_root(const Pose& T_world_root) {
 }
 
 Rejection CollisionChecker::rejection(const Eigen::VectorXd& q) {
-  impl_->group.check_configuration(q, "q");
+  check_configuration(impl_->group, q, "q");
   return impl_->rejection(q);
 }
 
 bool CollisionChecker::is_free(const Eigen::VectorXd& q) {
-  impl_->group.check_configuration(q, "q");
+  check_configuration(impl_->group, q, "q");
   return impl_->is_free(q);
 }
 
 bool CollisionChecker::edge_is_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double step) {
-  impl_->group.check_configuration(q0, "q0");
-  impl_->group.check_configuration(q1, "q1");
+  check_configuration(impl_->group, q0, "q0");
+  check_configuration(impl_->group, q1, "q1");
   require(std::isfinite(step) && step > 0, "step", step, "must be finite and > 0 [rad or m]");
   if (!impl_->is_free(q0) || !impl_->is_free(q1)) return false;
   const double pieces = std::ceil((q1 - q0).cwiseAbs().maxCoeff() / step - 1e-9);

@@ -65,9 +65,9 @@ SimplexPoint difference(const Convex& a, const Convex& b, const Rigid& b_in_a, c
   return p;
 }
 
-// Length scale of the bodies, against which rounding is judged.
-double scale_of(const Convex& a, const Convex& b, const Rigid& b_in_a) {
-  return 1e-3 + (b_in_a * b.centre - a.centre).norm() + a.half.maxCoeff() + b.half.maxCoeff();
+// Gap taken for touching: rounding of coordinates as large as those of w, which spans both bodies when they overlap.
+double touching_gap(const SimplexPoint& p) {
+  return 1e-12 * (1e-3 + p.w.lpNorm<1>() + p.on_a.lpNorm<1>());
 }
 
 }  // namespace
@@ -96,7 +96,6 @@ Eigen::Vector3d Convex::support(const Eigen::Vector3d& d) const {
 
 bool convex_collide(const Convex& a, const Convex& b, const Rigid& b_in_a, double margin, Eigen::Vector3d& axis) {
   const double reach = a.radius + b.radius + margin;
-  const double touching = 1e-11 * scale_of(a, b, b_in_a);
   if (axis.squaredNorm() < 1e-20) axis = a.centre - b_in_a * b.centre;
   if (axis.squaredNorm() < 1e-20) axis = Eigen::Vector3d::UnitX();
   Simplex simplex;
@@ -111,7 +110,8 @@ bool convex_collide(const Convex& a, const Convex& b, const Rigid& b_in_a, doubl
     if (simplex.reduce()) return true;  // the origin lies inside
     const Eigen::Vector3d closest = simplex.closest();
     const double squared = closest.squaredNorm();
-    if (squared <= reach * reach || squared <= touching * touching) return true;
+    if (squared <= reach * reach) return true;
+    if (squared < 1e-16 && squared <= touching_gap(p) * touching_gap(p)) return true;
     if (!(squared < best)) break;  // rounding stops the descent
     best = squared;
     axis = closest;
@@ -120,7 +120,6 @@ bool convex_collide(const Convex& a, const Convex& b, const Rigid& b_in_a, doubl
 }
 
 ConvexGap convex_distance(const Convex& a, const Convex& b, const Rigid& b_in_a) {
-  const double touching = 1e-12 * scale_of(a, b, b_in_a);
   Eigen::Vector3d axis = a.centre - b_in_a * b.centre;
   if (axis.squaredNorm() < 1e-20) axis = Eigen::Vector3d::UnitX();
   Simplex simplex, last;
@@ -133,7 +132,7 @@ ConvexGap convex_distance(const Convex& a, const Convex& b, const Rigid& b_in_a)
     if (simplex.reduce()) return gap;
     const Eigen::Vector3d closest = simplex.closest();
     const double squared = closest.squaredNorm();
-    if (squared <= touching * touching) return gap;
+    if (squared <= touching_gap(p) * touching_gap(p)) return gap;
     if (!(squared < best)) break;
     best = squared;
     axis = closest;

@@ -129,6 +129,9 @@ bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigi
     const bool hit = convex_collide(a.core, b.core, frame.b_in_a, margin, axis);
     if (!hit || (!a_is_tree && !b_is_tree)) return hit;
   }
+  if ((!a_is_tree || a.has_inner) && (!b_is_tree || b.has_inner)) {
+    if (convex_collide(a_is_tree ? a.inner : a.core, b_is_tree ? b.inner : b.core, frame.b_in_a, margin, axis)) return true;
+  }
   if (b_is_tree ? tree_hits_tree(a, b, frame, margin) : tree_hits_convex(a, b, frame, margin)) return true;
   return inside(a, b, frame.b_in_a) || inside(b, a, T_b.to(T_a));
 }

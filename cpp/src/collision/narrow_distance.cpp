@@ -7,14 +7,6 @@ namespace mmgrasp::detail {
 
 namespace {
 
-Convex node_box(const BoxTree::Node& node) {
-  Convex box;
-  box.kind = ConvexKind::box;
-  box.centre = node.centre;
-  box.half = node.half;
-  return box;
-}
-
 Convex bounding_box(const Solid& solid) {
   Convex box;
   box.kind = ConvexKind::box;
@@ -28,7 +20,8 @@ bool is_tree(const Solid& s) { return s.kind == SolidKind::mesh || s.kind == Sol
 // Smallest gap between pieces below `best`; both bodies as trees, a convex body being a tree of one leaf.
 class GapSearch {
  public:
-  GapSearch(const Solid& a, const Solid& b, const Rigid& b_in_a, double bound) : a_(a), b_(b), b_in_a_(b_in_a) {
+  GapSearch(const Solid& a, const Solid& b, const Rigid& b_in_a, double bound)
+      : a_(a), b_(b), b_in_a_(b_in_a), abs_R_(b_in_a.R.cwiseAbs()) {
     best_.distance = bound;
   }
 
@@ -50,8 +43,12 @@ class GapSearch {
   }
   static Convex piece_of(const Solid& s, int i) { return is_tree(s) ? s.piece(i) : s.core; }
 
+  // Widest gap along the face normals of both boxes: cheap, and never more than the distance.
   double lower_bound(const BoxTree::Node& na, const BoxTree::Node& nb) const {
-    return convex_distance(node_box(na), node_box(nb), b_in_a_).distance;
+    const Eigen::Vector3d t = b_in_a_ * nb.centre - na.centre;
+    const Eigen::Vector3d along_a = t.cwiseAbs() - na.half - abs_R_ * nb.half;
+    const Eigen::Vector3d along_b = (b_in_a_.R.transpose() * t).cwiseAbs() - nb.half - abs_R_.transpose() * na.half;
+    return std::max(0.0, std::max(along_a.maxCoeff(), along_b.maxCoeff()));
   }
 
   void visit_leaves(const BoxTree::Node& na, const BoxTree::Node& nb) {
@@ -84,6 +81,7 @@ class GapSearch {
 
   const Solid &a_, &b_;
   Rigid b_in_a_;
+  Eigen::Matrix3d abs_R_;
   ConvexGap best_;
   bool found_ = false;
 };
@@ -131,12 +129,18 @@ SolidGap solids_distance(const Solid& a, const Rigid& T_a, const Solid& b, const
   if (a.kind == SolidKind::plane) {
     if (b.kind == SolidKind::plane) return out;
     gap = plane_gap(a, b, b_in_a);
-  } else if (solids_collide(a, T_a, b, T_b) && a.margin + b.margin == 0) {
+    return {gap.distance, T_a * gap.on_a, T_a * gap.on_b};
+  }
+  const bool bounded = (!is_tree(a) || a.has_hull) && (!is_tree(b) || b.has_hull);
+  if (bounded) gap = convex_distance(a.core, b.core, b_in_a);  // exact for convex bodies, from below for hulls
+  if (gap.distance >= bound) return out;
+  if (gap.distance == 0 && solids_collide(a, T_a, b, T_b)) {
     gap = overlap(a, b, b_in_a);
-  } else if (!is_tree(a) && !is_tree(b)) {
-    gap = convex_distance(a.core, b.core, b_in_a);
-  } else if (!GapSearch(a, b, b_in_a, bound).run(gap)) {
-    return out;
+  } else if (is_tree(a) || is_tree(b)) {
+    // The surfaces lie at most their dents behind their hulls, so no search beyond that.
+    const bool dents_known = bounded && (!is_tree(a) || a.has_inner) && (!is_tree(b) || b.has_inner);
+    if (dents_known) bound = std::min(bound, gap.distance + a.dent + b.dent + 1e-9);
+    if (!GapSearch(a, b, b_in_a, bound).run(gap)) return out;
   }
   return {gap.distance, T_a * gap.on_a, T_a * gap.on_b};
 }

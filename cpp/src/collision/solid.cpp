@@ -51,7 +51,51 @@ void set_mesh_bounds(Solid& solid, const TriangleMesh& mesh) {
   set_bounds(solid, box, radius);
 }
 
-void set_mesh(Solid& solid, const TriangleMesh& mesh, std::vector<double>& hull_points) {
+// How deep the mesh's surface dips below its hull, from above: over a triangle the depth under the nearest hull face is at
+// most the least, over faces, of the deepest corner.
+double deepest_dent(const TriangleMesh& mesh, const std::vector<Eigen::Vector4d>& planes) {
+  double deepest = 0;
+  for (const auto& t : mesh.triangles) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector4d& plane : planes) {
+      double corner_depth = 0;
+      for (const int corner : t) {
+        corner_depth = std::max(corner_depth, plane[3] - plane.head<3>().dot(mesh.vertices[corner]));
+      }
+      least = std::min(least, corner_depth);
+    }
+    deepest = std::max(deepest, least);
+  }
+  return deepest;
+}
+
+// The hull scaled down about its middle until no point of it is less deep than the deepest dent: no surface reaches it, so it
+// is inside as a whole when its middle is.
+bool set_inner(Solid& solid, const TriangleMesh& mesh, const TriangleMesh& hull, std::vector<double>& inner_points) {
+  const Eigen::Vector3d middle = solid.core.centre;
+  std::vector<Eigen::Vector4d> planes;
+  double middle_depth = std::numeric_limits<double>::infinity();
+  for (const auto& t : hull.triangles) {
+    const Eigen::Vector3d& a = hull.vertices[t[0]];
+    const Eigen::Vector3d normal = (hull.vertices[t[1]] - a).cross(hull.vertices[t[2]] - a).normalized();
+    planes.emplace_back(normal[0], normal[1], normal[2], normal.dot(a));
+    middle_depth = std::min(middle_depth, normal.dot(a - middle));
+  }
+  const double shrink = (deepest_dent(mesh, planes) + solid.core.radius) / middle_depth;
+  if (!(middle_depth > 0) || shrink > 0.5 || !solid.contains(middle)) return false;
+  std::vector<Eigen::Vector3d> points;
+  for (const Eigen::Vector3d& v : hull.vertices) {
+    points.push_back(middle + (1 - shrink) * (v - middle));
+    // From any point of the hull the way to the middle meets the mesh before it enters the inner body.
+    solid.dent = std::max(solid.dent, shrink * (v - middle).norm() + solid.core.radius);
+  }
+  inner_points = by_coordinate(points);
+  set_hull(solid.inner, inner_points);
+  solid.inner.half = solid.core.half;
+  return true;
+}
+
+void set_mesh(Solid& solid, const TriangleMesh& mesh, std::vector<double>& hull_points, std::vector<double>& inner_points) {
   set_mesh_bounds(solid, mesh);
   solid.core.half = solid.box_half;
   if (mesh.convex) {
@@ -92,6 +136,7 @@ void set_mesh(Solid& solid, const TriangleMesh& mesh, std::vector<double>& hull_
     // The hull's own rounding must not cut anything off.
     solid.core.radius = 1e-6 * solid.box_half.norm();
     solid.has_hull = true;
+    solid.has_inner = mesh.closed && set_inner(solid, mesh, *hull, inner_points);
   } catch (const InvalidInput&) {
     solid.has_hull = false;  // a flat sheet has no hull
   }
@@ -225,7 +270,7 @@ std::shared_ptr<const Solid> make_solid(const Shape& shape, double padding) {
   auto solid = std::make_shared<Solid>();
   if (const auto* s = std::get_if<MeshShape>(&shape)) {
     solid->margin = padding;
-    set_mesh(*solid, *s->mesh, solid->hull_points_);
+    set_mesh(*solid, *s->mesh, solid->hull_points_, solid->inner_points_);
   } else if (const auto* s = std::get_if<Voxels>(&shape)) {
     solid->margin = padding;
     set_voxels(*solid, *s);

@@ -19,6 +19,10 @@ struct Solid {
   /// Kind convex: the body. Kind mesh: its hull when `has_hull`, an outer bound. Frame of the shape.
   Convex core;
   bool has_hull = false;
+  /// Kind mesh: a convex body that lies wholly inside a closed, nearly convex mesh. What meets it collides for certain.
+  Convex inner;
+  bool has_inner = false;
+  double dent = 0;                  ///< With `has_inner`: no point of the hull is farther than this from the mesh [m].
   double margin = 0;                ///< Meshes and voxels grown by padding: they collide at this distance already [m].
 
   Eigen::Vector3d box_centre = Eigen::Vector3d::Zero();   ///< Bounding box in the shape's frame (margin not included).
@@ -47,7 +51,7 @@ struct Solid {
 
  private:
   friend std::shared_ptr<const Solid> make_solid(const Shape& shape, double padding);
-  std::vector<double> hull_points_;
+  std::vector<double> hull_points_, inner_points_;
 };
 
 /// `padding` grows the shape: primitives exactly (a box gets 2 x padding longer per axis), planes by their offset, meshes and

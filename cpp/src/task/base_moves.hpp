@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/robot/planar_base.hpp"
+
+namespace mmgrasp {
+
+/// Whether the whole robot, arm at home, may stand at a base pose; remembers what was asked at lattice poses.
+class BaseClearance {
+ public:
+  BaseClearance(CollisionChecker& checker, const Eigen::VectorXd& home, double check_step);
+
+  bool free(const Eigen::Vector3d& pose);
+  /// Straight in (x, y, theta), ends included, at steps of at most check_step and 0.05 rad.
+  bool segment_free(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+  /// Radius of the disc around the root that the robot at home never leaves [m].
+  double radius() const { return radius_; }
+
+ private:
+  bool nothing_near(const Eigen::Vector2d& position) const;
+
+  CollisionChecker& checker_;
+  const Eigen::VectorXd& home_;
+  double check_step_;
+  bool home_is_sound_ = true;                 // inside limits and without self-collision
+  double radius_ = 0;
+  std::vector<Eigen::AlignedBox2d> obstacles_;  // floor plans of the objects at the robot's height
+};
+
+/// Ways to get from one base pose to another by few primitive motions, cheapest first: turn - drive - turn (forwards or
+/// backwards, either way round) for diff_drive, one straight line for omni. Each is the list of poses after the first.
+std::vector<std::vector<Eigen::Vector3d>> direct_ways(BaseKind base, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                                      double turn_weight);
+
+/// Driven length plus turn_weight x turned angle.
+double way_cost(const Eigen::Vector3d& from, const std::vector<Eigen::Vector3d>& way, double turn_weight);
+
+}  // namespace mmgrasp

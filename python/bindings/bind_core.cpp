@@ -92,6 +92,16 @@ void bind_poses(py::module_& m) {
       py::arg("xyz"), py::arg("rpy") = py::none(), py::arg("quat_xyzw") = py::none(),
       "A (4, 4) pose from a position [m] and roll-pitch-yaw (URDF's convention) [rad] or a quaternion (x, y, z, w).");
   m.def(
+      "quat_xyzw_from_rotation",
+      [](const ArrayLike& R) {
+        const Eigen::MatrixXd rotation = matrix_argument(R, "R", 3);
+        if (rotation.rows() != 3) throw InvalidInput("R: must be (3, 3)");
+        Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
+        T.topLeftCorner<3, 3>() = rotation;
+        return quat_xyzw_from_rotation(checked_pose(T, "R").linear());
+      },
+      py::arg("R"), "Quaternion (x, y, z, w) of a (3, 3) rotation.");
+  m.def(
       "pose_to_xyz_quat",
       [](const ArrayLike& T) {
         const Pose pose = pose_argument(T, "T");

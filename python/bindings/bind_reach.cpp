@@ -20,7 +20,9 @@ const std::vector<OptionField<ReachOptions>>& reach_fields() {
 
 }  // namespace
 
-void check_reach_options(const py::kwargs& options) { read_options(reach_fields(), options, "reach"); }
+void check_reach_options(const py::kwargs& options) {
+  read_options(reach_fields(), options, "reach");
+}
 
 void bind_reach(py::module_& m) {
   m.def("_reach_option_table", [] { return option_table(reach_fields()); });

@@ -1,0 +1,95 @@
+#include <cmath>
+#include <sstream>
+
+#include "bindings.hpp"
+#include "mmgrasp/robot/trajectory.hpp"
+
+namespace mmgrasp::python {
+namespace {
+
+using namespace py::literals;
+
+/// The trajectory's CSV with the standing base in front of the joints: pose and (zero) twist on the same clock.
+std::string csv_with_base(const JointTrajectory& t, const Eigen::Vector3d& base) {
+  std::istringstream lines(t.to_csv());
+  std::ostringstream out, columns;
+  columns.precision(17);
+  columns << "," << base.x() << "," << base.y() << "," << base.z() << ",0,0,0";
+  bool header = true;
+  for (std::string line; std::getline(lines, line); header = false) {
+    const std::size_t comma = line.find(',');
+    out << line.substr(0, comma)
+        << (header ? ",base.x,base.y,base.theta,base.x.velocity,base.y.velocity,base.theta.velocity" : columns.str())
+        << (comma == std::string::npos ? "" : line.substr(comma)) << "\n";
+  }
+  return out.str();
+}
+
+/// The fields of a ROS trajectory_msgs/JointTrajectory, and base pose and twist for each point.
+py::dict joint_trajectory(const JointTrajectory& t, const Eigen::Vector3d& base) {
+  py::list points;
+  for (std::size_t i = 0; i < t.times.size(); ++i) {
+    const auto list = [](const Eigen::VectorXd& v) { return py::cast(v).attr("tolist")(); };
+    std::int64_t sec = static_cast<std::int64_t>(std::floor(t.times[i]));
+    std::int64_t nanosec = std::llround((t.times[i] - static_cast<double>(sec)) * 1e9);
+    if (nanosec == 1'000'000'000) {
+      ++sec;
+      nanosec = 0;
+    }
+    points.append(py::dict("positions"_a = list(t.positions[i]), "velocities"_a = list(t.velocities[i]),
+                           "accelerations"_a = list(t.accelerations[i]), "effort"_a = py::list(),
+                           "time_from_start"_a = py::dict("sec"_a = sec, "nanosec"_a = nanosec),
+                           "base_pose"_a = list(base), "base_twist"_a = std::vector<double>(3, 0.0)));
+  }
+  return py::dict("header"_a = py::dict("frame_id"_a = "world"), "joint_names"_a = t.names, "points"_a = points);
+}
+
+Eigen::Vector3d base_argument(const py::object& base_pose) {
+  return vector3_argument(base_pose, "base_pose");
+}
+
+}  // namespace
+
+void bind_trajectory(py::module_& m) {
+  py::class_<JointTrajectory>(m, "JointTrajectory", "A path on a clock; cubic Hermite between samples.")
+      .def_readonly("names", &JointTrajectory::names)
+      .def_property_readonly(
+          "times",
+          [](const JointTrajectory& t) { return py::array_t<double>(py::ssize_t(t.times.size()), t.times.data()); },
+          "(k,) [s]")
+      .def_property_readonly(
+          "positions", [](const JointTrajectory& t) { return rows_to_array(t.positions); }, "(k, n)")
+      .def_property_readonly("velocities", [](const JointTrajectory& t) { return rows_to_array(t.velocities); })
+      .def_property_readonly("accelerations", [](const JointTrajectory& t) { return rows_to_array(t.accelerations); })
+      .def_property_readonly("duration", &JointTrajectory::duration, "[s]")
+      .def("at", &JointTrajectory::at, py::arg("time"), "Configuration (n,) at a time [s], clamped at the ends.")
+      .def(
+          "to_csv",
+          [](const JointTrajectory& t, const py::object& base_pose) {
+            return base_pose.is_none() ? t.to_csv() : csv_with_base(t, base_argument(base_pose));
+          },
+          py::arg("base_pose") = py::none(),
+          "Header time, names, name.velocity, ...; one line a sample. With base_pose (x, y, theta) of the standing base, its\n"
+          "pose and twist follow the time.")
+      .def(
+          "to_joint_trajectory",
+          [](const JointTrajectory& t, const py::object& base_pose) {
+            return joint_trajectory(t, base_pose.is_none() ? Eigen::Vector3d::Zero() : base_argument(base_pose));
+          },
+          py::arg("base_pose") = py::none(),
+          "A dict shaped like a ROS trajectory_msgs/JointTrajectory, with base_pose and base_twist at every point.")
+      .def("to_dict",
+           [](const JointTrajectory& t) {
+             return py::dict("names"_a = t.names, "times"_a = t.times,
+                             "positions"_a = rows_to_array(t.positions).attr("tolist")(),
+                             "velocities"_a = rows_to_array(t.velocities).attr("tolist")(),
+                             "accelerations"_a = rows_to_array(t.accelerations).attr("tolist")());
+           })
+      .def("__len__", [](const JointTrajectory& t) { return t.times.size(); })
+      .def("__repr__", [](const JointTrajectory& t) {
+        return "JointTrajectory(" + std::to_string(t.times.size()) + " samples, " +
+               std::string(py::repr(py::float_(t.duration()))) + " s)";
+      });
+}
+
+}  // namespace mmgrasp::python

@@ -1,0 +1,49 @@
+"""Progress of long calls: bars on a terminal, one line a stage elsewhere."""
+
+from __future__ import annotations
+
+import sys
+import time
+from types import TracebackType
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+
+
+class Reporter:
+    """Called with (stage, fraction); shows each stage once, in the order they begin."""
+
+    def __init__(self, console: Console) -> None:
+        self._bars: Progress | None = None
+        self._tasks: dict[str, TaskID] = {}
+        self._seen: dict[str, float] = {}
+        self._begun = time.monotonic()
+        if sys.stderr.isatty():
+            columns = (TextColumn("{task.description:<24}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"), TimeElapsedColumn())
+            self._bars = Progress(*columns, console=Console(stderr=True, highlight=False))
+
+    def __enter__(self) -> Reporter:
+        if self._bars:
+            self._bars.start()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        if self._bars:
+            if kind is None:
+                for task in self._tasks.values():
+                    self._bars.update(task, completed=1.0)
+            self._bars.stop()
+
+    def __call__(self, stage: str, fraction: float) -> None:
+        if not stage:
+            return
+        if self._bars is None:
+            if stage not in self._seen:
+                print(f"[{time.monotonic() - self._begun:6.1f} s] {stage}", file=sys.stderr, flush=True)
+            self._seen[stage] = fraction
+            return
+        if stage not in self._tasks:
+            for task in self._tasks.values():
+                self._bars.update(task, completed=1.0)
+            self._tasks[stage] = self._bars.add_task(stage, total=1.0)
+        self._bars.update(self._tasks[stage], completed=fraction)

@@ -1,0 +1,24 @@
+"""Writes docs/options.md from the defaults of the C++ structs: python -m mmgrasp._options_page."""
+
+from __future__ import annotations
+
+from . import _core
+
+SECTIONS = (
+    ("options", "How to plan (`PartSupplyOptions`)", _core._supply_option_table, {"positioning_uncertainty"}),
+    ("reach", "The reachability database (`ReachOptions`)", _core._reach_option_table, set()),
+    ("grasp_options", "The grasp sampler of a part type (`GraspSamplerOptions`)", _core._grasp_option_table, set()),
+)
+
+
+def options_page() -> str:
+    lines = ["# Options of a scenario", "", "Written by `./dev docs` from the library's own defaults.", ""]
+    for section, title, table, elsewhere in SECTIONS:
+        lines += [f"## `{section}`: {title}", "", "| option | default | meaning |", "|---|---|---|"]
+        lines += [f"| `{name}` | {default} | {help_} |" for name, (default, help_) in table().items() if name not in elsewhere]
+        lines.append("")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    print(options_page(), end="")

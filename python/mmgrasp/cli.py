@@ -1,0 +1,218 @@
+"""The command `mmgrasp`.
+
+Exit codes: 0 done, 1 a plan has faults or a robot cannot be planned for, 2 bad input, 3 there is no plan, 130 Ctrl-C.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from . import _core
+from ._console import Reporter
+from ._core import Error, InvalidInput, Outcome
+from .check import check_robot, describe
+from .part_supply import PartSupplyPlan, plan_part_supply
+from .plan_file import read_plan
+from .scenario import load_scenario
+from .verification import PlanVerdict, verify_plan
+
+DONE, FAULTY, BAD_INPUT, NO_PLAN, INTERRUPTED = 0, 1, 2, 3, 130
+
+
+class _Parser(argparse.ArgumentParser):
+    """An argument parser whose options may not be abbreviated: a script keeps its meaning when options are added."""
+
+    def __init__(self, **keywords) -> None:
+        super().__init__(allow_abbrev=False, **keywords)
+
+
+def build_parser() -> argparse.ArgumentParser:
+    parser = _Parser(prog="mmgrasp", description="Planning for mobile manipulators.")
+    parser.add_argument("--version", action="version", version=f"mmgrasp {_core.__version__}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="command", parser_class=_Parser)
+
+    plan = commands.add_parser("plan", help="plan a part-supply round and write plan, report, pictures and trajectories")
+    plan.add_argument("scenario", type=Path, help="scenario file (YAML)")
+    plan.add_argument("-o", "--out", type=Path, required=True, metavar="DIR", help="folder to write into")
+    plan.add_argument("--robot", metavar="NAME", help="another robot: a shipped profile (tiago, ...) or a profile file")
+    plan.add_argument("--threads", type=_count, metavar="N", help="0: all (default); the plan does not depend on it")
+    plan.add_argument("--seed", type=_count, metavar="N", help="same seed, same plan")
+    plan.add_argument("--no-pictures", action="store_true", help="write plan.json and the trajectories only")
+    plan.set_defaults(run=run_plan)
+
+    verify = commands.add_parser("verify", help="check a finished plan without the planner")
+    verify.add_argument("plan", type=Path, help="plan.json")
+    verify.add_argument("--scenario", type=Path, metavar="FILE", help="compare with this scenario, read anew")
+    verify.add_argument("--robot", metavar="NAME", help="the robot profile the plan was made with")
+    verify.add_argument("--samples", type=_count, metavar="N", help="base poses drawn at each stop (default 1000)")
+    verify.add_argument("--threads", type=_count, metavar="N", help="0: all (default)")
+    verify.add_argument("--json", action="store_true", help="print the verdict as JSON")
+    verify.set_defaults(run=run_verify)
+
+    check = commands.add_parser("check", help="tell what mmgrasp understands of a robot")
+    check.add_argument("urdf", type=Path)
+    check.add_argument("--srdf", type=Path, metavar="FILE")
+    check.add_argument("--package", action="append", default=[], metavar="NAME=DIR", type=_package,
+                       help="where package://NAME/... lies; may be repeated")
+    check.add_argument("--base", choices=["fixed", "diff_drive", "omni"], default="fixed")
+    check.add_argument("--json", action="store_true")
+    check.set_defaults(run=run_check)
+
+    view = commands.add_parser("view", help="show a plan in the browser, or draw it")
+    view.add_argument("plan", type=Path, help="plan.json")
+    view.add_argument("--png", type=Path, metavar="FILE", help="write a picture instead of opening the browser")
+    view.add_argument("--port", type=_count, default=8080, metavar="N")
+    view.set_defaults(run=run_view)
+    return parser
+
+
+def _count(text: str) -> int:
+    try:
+        value = int(text)
+    except ValueError:
+        value = -1
+    if not 0 <= value <= 2**31 - 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is no whole number >= 0")
+    return value
+
+
+def _package(text: str) -> tuple[str, str]:
+    name, found, folder = text.partition("=")
+    if not found or not name or not folder:
+        raise argparse.ArgumentTypeError(f"{text!r} is not NAME=DIR")
+    if not Path(folder).is_dir():
+        raise argparse.ArgumentTypeError(f"{folder!r} is no folder")
+    return name, folder
+
+
+# --- commands ---------------------------------------------------------------------------------------------------------
+def run_plan(arguments: argparse.Namespace, console: Console) -> int:
+    with Reporter(console) as report:
+        scenario = load_scenario(arguments.scenario, robot=arguments.robot, seed=arguments.seed, threads=arguments.threads,
+                                 progress=report)
+        plan = plan_part_supply(scenario, progress=report)
+        written = write_outputs(plan, arguments.out, report, pictures=not arguments.no_pictures)
+    if plan.outcome != Outcome.solved:
+        console.print(f"no plan: {plan.outcome.name}", style="bold red", markup=False)
+        for obstruction in plan.obstructions:
+            console.print(f"- {obstruction.message}", markup=False, soft_wrap=True)
+    else:
+        console.print(summary(plan))
+    console.print(f"report: {written}", markup=False, soft_wrap=True)
+    return exit_code(plan.outcome)
+
+
+def exit_code(outcome: Outcome) -> int:
+    return {Outcome.solved: DONE, Outcome.stopped: INTERRUPTED, Outcome.invalid_start: BAD_INPUT,
+            Outcome.invalid_goal: BAD_INPUT}.get(outcome, NO_PLAN)
+
+
+def write_outputs(plan: PartSupplyPlan, out: Path, report: Callable[[str, float], None], pictures: bool) -> Path:
+    """Writes everything into the folder and returns the page to look at."""
+    report("writing", 0.0)
+    path = plan.save(out / "plan.json")
+    plan.save_trajectories(out / "trajectories")
+    if pictures:
+        from .viz.pictures import write_pictures
+        from .viz.report import write_report
+
+        content = plan.to_dict()
+        report("writing", 0.3)
+        write_pictures(content, out)
+        report("writing", 0.9)
+        path = Path(write_report(content, out) or out / "report.html")
+    report("writing", 1.0)
+    return path
+
+
+def summary(plan: PartSupplyPlan) -> Table:
+    table = Table(title=f"{plan.scenario.name}: {len(plan.stops)} stops (proven least {plan.result.lower_bound}), "
+                        f"{len(plan.picks)} picks")
+    for title in ("stop", "x [m]", "y [m]", "heading [deg]", "free disc [m]", "trays", "picks", "arm time [s]"):
+        table.add_column(title, justify="left" if title == "trays" else "right")
+    names = [plan.scenario.trays[t].tray.name for t in plan.result.region_trays]
+    for i, stop in enumerate(plan.stops):
+        picks = [pick for pick in plan.picks if pick.stop == i]
+        x, y, theta = stop.pose
+        table.add_row(str(i + 1), f"{x:.2f}", f"{y:.2f}", f"{theta * 57.29578:.0f}", f"{stop.radius:.3f}",
+                      ", ".join(names[t] for t in stop.trays), str(len(picks)), f"{sum(p.duration for p in picks):.1f}")
+    length = sum(leg.length for leg in plan.route)
+    seconds = sum(leg.duration(plan.scenario.setup.robot) for leg in plan.route)
+    planning = sum(seconds for _, seconds in plan.timings)
+    table.caption = f"drive {length:.2f} m in {seconds:.1f} s, planned in {planning:.1f} s"
+    return table
+
+
+def run_verify(arguments: argparse.Namespace, console: Console) -> int:
+    options = {key: value for key in ("samples", "threads") if (value := getattr(arguments, key)) is not None}
+    with Reporter(console) as report:
+        verdict = verify_plan(arguments.plan, scenario=arguments.scenario, robot=arguments.robot, progress=report, **options)
+    if arguments.json:
+        print(json.dumps(verdict.to_dict(), indent=1))
+    else:
+        _print_verdict(verdict, console)
+    return DONE if verdict.ok else FAULTY
+
+
+def _print_verdict(verdict: PlanVerdict, console: Console) -> None:
+    for fault in verdict.faults:
+        console.print(f"FAULT {fault.code}: {fault.where}: {fault.message}", markup=False, soft_wrap=True)
+    for rate in verdict.rates:
+        share = 100 * rate.good / max(rate.samples, 1)
+        worst = f" (worst: {rate.worst_part})" if rate.good < rate.samples else ""
+        console.print(f"stop {rate.stop + 1}: every part graspable from {rate.good} of {rate.samples} base poses, "
+                      f"{share:.2f} %{worst}", markup=False)
+    if verdict.ok:
+        console.print(f"the plan holds: {verdict.configurations_checked} configurations checked, "
+                      f"{verdict.minimal_stops} stops are the least", markup=False)
+    else:
+        count = len(verdict.faults)
+        console.print(f"the plan does not hold: {count} fault{'s' if count > 1 else ''}", markup=False)
+
+
+def run_check(arguments: argparse.Namespace, console: Console) -> int:
+    with Reporter(console) as report:
+        found = check_robot(arguments.urdf, arguments.srdf, dict(arguments.package), arguments.base, report)
+    print(json.dumps(found.to_dict(), indent=1, default=str) if arguments.json else describe(found))
+    return DONE if found.ok else FAULTY
+
+
+def run_view(arguments: argparse.Namespace, console: Console) -> int:
+    content = read_plan(arguments.plan)
+    if arguments.png:
+        from .viz.viewer import write_png
+
+        write_png(content, arguments.png)
+        console.print(str(arguments.png), markup=False)
+        return DONE
+    from .viz.viewer import view
+
+    try:
+        view(content, port=arguments.port)
+    except ImportError:
+        raise InvalidInput("the browser view needs viser: pip install 'mmgrasp[view]'") from None
+    return DONE
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    parsed = build_parser().parse_args(arguments)
+    console = Console(highlight=False)
+    try:
+        return parsed.run(parsed, console)
+    except (Error, OSError) as error:
+        print(f"mmgrasp: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        print("mmgrasp: interrupted", file=sys.stderr)
+        return INTERRUPTED
+
+
+if __name__ == "__main__":
+    sys.exit(main())

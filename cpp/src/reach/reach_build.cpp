@@ -24,14 +24,14 @@ constexpr const char* kStage = "reachability database";
 /// Configurations that passed, in the order of sampling.
 struct Kept {
   std::vector<std::uint64_t> keys;
-  std::vector<float> configurations, poses;
+  std::vector<float> configurations;
+  std::vector<detail::StoredPose> poses;
 
   void append(const Kept& other, std::size_t index, int joints) {
     keys.push_back(other.keys[index]);
     const auto q = other.configurations.begin() + index * joints;
     configurations.insert(configurations.end(), q, q + joints);
-    const auto pose = other.poses.begin() + index * Data::kPoseSize;
-    poses.insert(poses.end(), pose, pose + Data::kPoseSize);
+    poses.push_back(other.poses[index]);
   }
 };
 
@@ -133,11 +133,11 @@ class Builder {
     return true;
   }
 
-  std::uint64_t cell_key(const Pose& T) const {
+  detail::CellIndex checked_cell(const Pose& T) const {
     const auto index = detail::position_cell(T.translation(), options_.position_cell);
     require(index.has_value(), "position_cell", options_.position_cell,
             "too small: the arm reaches more than 8192 cells from the root [m]");
-    return (detail::position_key(*index) << detail::kRotationBits) | rotations_.id(T.linear());
+    return *index;
   }
 
   /// Reads the counter as the batches before left it; so what passes depends on the block alone, not on the threads.
@@ -148,14 +148,14 @@ class Builder {
     for (std::int64_t i = 0; i < block_size(block); ++i) {
       sampler.draw(rng);
       if (threshold_ > 0 && sampler.manipulability() < threshold_) continue;
-      const std::uint64_t key = cell_key(sampler.pose());
+      const detail::CellIndex cell = checked_cell(sampler.pose());
+      const std::uint64_t key =
+          (detail::position_key(cell) << detail::kRotationBits) | rotations_.id(sampler.pose().linear());
       if (counter_.count(key) >= options_.max_per_cell) continue;
       if (!checkers_[worker].is_free(sampler.q())) continue;
       kept.keys.push_back(key);
       for (const double value : sampler.q()) kept.configurations.push_back(static_cast<float>(value));
-      for (const double value : sampler.pose().translation()) kept.poses.push_back(static_cast<float>(value));
-      const Eigen::Vector4d quaternion = Eigen::Quaterniond(sampler.pose().linear()).normalized().coeffs();
-      for (const double value : quaternion) kept.poses.push_back(static_cast<float>(value));
+      kept.poses.emplace_back(sampler.pose(), cell, options_.position_cell);
     }
   }
 
@@ -180,10 +180,10 @@ class Builder {
         data.position_first.push_back(static_cast<std::uint32_t>(data.rotation_ids.size()));
       }
       data.rotation_ids.push_back(static_cast<std::uint32_t>(key & kRotationMask));
-      data.cell_first.push_back(i);
+      data.cell_first.push_back(static_cast<std::uint32_t>(i));
     }
     data.position_first.push_back(static_cast<std::uint32_t>(data.rotation_ids.size()));
-    data.cell_first.push_back(order.size());
+    data.cell_first.push_back(static_cast<std::uint32_t>(order.size()));
 
     const std::size_t cells = data.rotation_ids.size(), chunk = 4096;
     const auto spread = [&](std::size_t item, int) {
@@ -194,10 +194,10 @@ class Builder {
 
     const std::size_t joints = static_cast<std::size_t>(arm_.size());
     data.configurations.resize(order.size() * joints);
-    data.poses.resize(order.size() * Data::kPoseSize);
+    data.poses.resize(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
       std::copy_n(&kept_.configurations[order[i] * joints], joints, &data.configurations[i * joints]);
-      std::copy_n(&kept_.poses[order[i] * Data::kPoseSize], Data::kPoseSize, &data.poses[i * Data::kPoseSize]);
+      data.poses[i] = kept_.poses[order[i]];
     }
     return true;
   }

@@ -38,6 +38,22 @@ std::uint64_t position_key(const CellIndex& index) {
   return key;
 }
 
+CellIndex cell_of_key(std::uint64_t key) {
+  constexpr std::uint64_t kMask = (std::uint64_t{1} << kPositionBits) - 1;
+  CellIndex index;
+  for (int i = 2; i >= 0; --i, key >>= kPositionBits) index[i] = static_cast<std::int64_t>(key & kMask) - kPositionLimit;
+  return index;
+}
+
+StoredPose::StoredPose(const Pose& T, const CellIndex& cell, double edge) : unused(0) {
+  const Eigen::Vector4d rounded = (Eigen::Quaterniond(T.linear()).normalized().coeffs() * 32767).array().round();
+  for (int i = 0; i < 4; ++i) quaternion[i] = static_cast<std::int16_t>(rounded[i]);
+  for (int i = 0; i < 3; ++i) {
+    const double place = T.translation()[i] / edge - static_cast<double>(cell[i]);
+    position[i] = static_cast<std::uint16_t>(std::clamp(std::floor(place * 65536), 0.0, 65535.0));
+  }
+}
+
 }  // namespace detail
 
 void ReachDatabase::Data::complete() {
@@ -52,12 +68,27 @@ void ReachDatabase::Data::complete() {
   }
   bounds.setEmpty();
   double farthest = 0;
-  for (std::size_t i = 0; i < size(); ++i) {
-    const Eigen::Vector3d position = Eigen::Map<const Eigen::Vector3f>(&poses[i * kPoseSize]).cast<double>();
-    bounds.extend(position);
-    farthest = std::max(farthest, position.squaredNorm());
+  for (std::size_t p = 0; p < position_keys.size(); ++p) {
+    for (std::size_t i = cell_first[position_first[p]]; i < cell_first[position_first[p + 1]]; ++i) {
+      const Eigen::Vector3d position = position_of(i, p);
+      bounds.extend(position);
+      farthest = std::max(farthest, position.squaredNorm());
+    }
   }
-  reach = std::sqrt(farthest);
+  if (size() == 0) {
+    reach = 0;
+    return;
+  }
+  // Stored positions are rounded to the middle of 65536ths: half of one more holds what was sampled.
+  const double rounding = options.position_cell / 131072;
+  bounds.min().array() -= rounding;
+  bounds.max().array() += rounding;
+  reach = std::sqrt(farthest) + std::sqrt(3.0) * rounding;
+}
+
+Eigen::Vector3d ReachDatabase::Data::position_of(std::size_t index, std::size_t position_cell) const {
+  const Eigen::Vector3d corner = detail::cell_of_key(position_keys[position_cell]).cast<double>();
+  return options.position_cell * (corner + poses[index].place().cast<double>());
 }
 
 void ReachDatabase::Data::clear() {
@@ -120,10 +151,13 @@ Eigen::VectorXd ReachDatabase::configuration(std::int64_t index) const {
 Pose ReachDatabase::tool_pose(std::int64_t index) const {
   require(index >= 0 && index < size(), "index", static_cast<double>(index),
           "must lie in [0, " + std::to_string(size()) + ")");
-  const float* stored = &data_->poses[index * Data::kPoseSize];
+  const auto i = static_cast<std::size_t>(index);
+  const auto cell = std::upper_bound(data_->cell_first.begin(), data_->cell_first.end(), i) - data_->cell_first.begin() - 1;
+  const auto position = std::upper_bound(data_->position_first.begin(), data_->position_first.end(), cell) -
+                        data_->position_first.begin() - 1;
   Pose T = Pose::Identity();
-  T.translation() = Eigen::Map<const Eigen::Vector3f>(stored).cast<double>();
-  T.linear() = Eigen::Map<const Eigen::Quaternionf>(stored + 3).cast<double>().normalized().toRotationMatrix();
+  T.translation() = data_->position_of(i, static_cast<std::size_t>(position));
+  T.linear() = Eigen::Quaterniond(data_->poses[i].coefficients().cast<double>()).normalized().toRotationMatrix();
   return T;
 }
 

@@ -98,7 +98,7 @@ void check_header(const Header& header, std::uint64_t file_size, const std::stri
     refuse(path, "corrupt: impossible counts in the header");
   const std::uint64_t expected =
       sizeof(Header) + header.position_count * 8 + (header.position_count + 1) * 4 + header.cell_count * 4 +
-      (header.cell_count + 1) * 8 + header.size * 4 * (static_cast<std::uint64_t>(header.joints) + Data::kPoseSize);
+      (header.cell_count + 1) * 4 + header.size * (4 * static_cast<std::uint64_t>(header.joints) + sizeof(detail::StoredPose));
   if (file_size != expected)
     refuse(path, (file_size < expected ? "truncated: " : "bytes after the end: ") + std::to_string(file_size) +
                      " bytes, " + std::to_string(expected) + " expected");
@@ -175,7 +175,7 @@ ReachDatabase ReachDatabase::load(const std::string& path) {
   data->rotation_ids.resize(header.cell_count);
   data->cell_first.resize(header.cell_count + 1);
   data->configurations.resize(header.size * static_cast<std::uint64_t>(header.joints));
-  data->poses.resize(header.size * Data::kPoseSize);
+  data->poses.resize(header.size);
   Hasher hasher;
   for_each_array(*data, [&](auto& values) {
     file.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(byte_count(values)));

@@ -27,9 +27,8 @@ class Nearest {
     found_.clear();
     found_.reserve(count_);
   }
-  float worst() const {
-    return found_.size() < count_ ? std::numeric_limits<float>::infinity() : found_.back().distance;
-  }
+  /// Finite while there is room, so that cells out of bounds (at infinity) stay out.
+  float worst() const { return found_.size() < count_ ? std::numeric_limits<float>::max() : found_.back().distance; }
   void add(const Near& near) {
     if (found_.size() == count_) {
       if (!(near < found_.back())) return;
@@ -43,20 +42,15 @@ class Nearest {
   std::size_t count_;
 };
 
-/// A position cell next to the query's, and how far away it begins [cells].
+/// A non-empty position cell next to the query's.
 struct PositionCell {
-  std::uint64_t key;
-  float distance;
+  std::int64_t index;
+  float distance;            ///< From the query to where the cell begins [cells].
+  Eigen::Vector3f query;     ///< The query from the cell's lower corner [cells].
 };
 
-/// Rotation cells of one direction cell with rolls next to the query's: up to two runs of ids, and how far they begin.
-struct DirectionCell {
-  std::array<std::pair<std::uint32_t, std::uint32_t>, 2> runs;  ///< First and last id, both included.
-  int run_count;
-  float distance;                                               ///< [rotation cells]
-};
-
-int position_cells(const Eigen::Vector3d& position, double edge, std::array<PositionCell, 27>& cells) {
+int position_cells(const Data& data, const Eigen::Vector3d& position, std::array<PositionCell, 27>& cells) {
+  const double edge = data.options.position_cell;
   detail::CellIndex own;
   Eigen::Vector3d inside;
   for (int i = 0; i < 3; ++i) {
@@ -69,81 +63,114 @@ int position_cells(const Eigen::Vector3d& position, double edge, std::array<Posi
   for (int n = 0; n < 27; ++n) {
     const detail::CellIndex step(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1);
     if (!detail::in_range(own + step)) continue;
+    const std::int64_t index = data.find_position(detail::position_key(own + step));
+    if (index < 0) continue;
     double squared = 0;
     for (int i = 0; i < 3; ++i) {
       const double gap = step[i] < 0 ? inside[i] : step[i] > 0 ? 1 - inside[i] : 0;
       squared += gap * gap;
     }
-    cells[count++] = {detail::position_key(own + step), static_cast<float>(std::sqrt(squared))};
+    cells[count++] = {index, static_cast<float>(std::sqrt(squared)), (inside - step.cast<double>()).cast<float>()};
   }
   std::sort(cells.begin(), cells.begin() + count,
             [](const PositionCell& a, const PositionCell& b) { return a.distance < b.distance; });
   return count;
 }
 
-DirectionCell direction_cell(const detail::RotationCells& rotations, const Eigen::Matrix3d& R, std::uint32_t direction,
-                             bool own, double rotation_cell) {
-  const std::uint32_t rolls = rotations.rolls(), roll = rotations.roll_id(R, direction), base = direction * rolls;
-  DirectionCell cell;
-  cell.distance = own ? 0.0f : static_cast<float>(rotations.angle_to(R.col(2), direction) / rotation_cell);
-  cell.run_count = 1;
-  if (rolls == 3) {
-    cell.runs[0] = {base, base + 2};
-  } else if (roll == 0) {
-    cell.runs = {{{base, base + 1}, {base + rolls - 1, base + rolls - 1}}};
-    cell.run_count = 2;
-  } else if (roll == rolls - 1) {
-    cell.runs = {{{base + roll - 1, base + roll}, {base, base}}};
-    cell.run_count = 2;
-  } else {
-    cell.runs[0] = {base + roll - 1, base + roll + 1};
+/// Lower bounds of rotation distances [rotation cells], by rotation cell. A table, because looking every id of a position
+/// cell up is quicker than searching the ids for each of 27 rotation cells.
+class RotationBounds {
+ public:
+  void set(const Data& data, const Eigen::Matrix3d& R) {
+    for (int i = 0; i < count_; ++i) table_[cells_[i].id] = kFar;
+    if (table_.size() < data.rotations.count()) table_.resize(data.rotations.count(), kFar);
+    count_ = data.rotations.near_cells(R, cells_);
+    for (int i = 0; i < count_; ++i) {
+      cells_[i].angle /= data.options.rotation_cell;
+      table_[cells_[i].id] = static_cast<float>(cells_[i].angle);
+    }
   }
-  return cell;
-}
+  const float* table() const { return table_.data(); }
+  /// Nearest first.
+  const detail::RotationCells::NearCell* begin() const { return cells_.data(); }
+  const detail::RotationCells::NearCell* end() const { return cells_.data() + count_; }
 
-int direction_cells(const detail::RotationCells& rotations, const Eigen::Matrix3d& R, double rotation_cell,
-                    std::array<DirectionCell, detail::RotationCells::kMaxNeighbours>& cells) {
-  const std::uint32_t own = rotations.direction_id(R.col(2));
-  int count = 0;
-  for (const std::uint32_t* n = rotations.neighbours_begin(own); n != rotations.neighbours_end(own); ++n)
-    cells[count++] = direction_cell(rotations, R, *n, *n == own, rotation_cell);
-  std::sort(cells.begin(), cells.begin() + count,
-            [](const DirectionCell& a, const DirectionCell& b) { return a.distance < b.distance; });
-  return count;
-}
+ private:
+  static constexpr float kFar = std::numeric_limits<float>::infinity();
+  std::vector<float> table_;
+  detail::RotationCells::NearCells cells_;
+  int count_ = 0;
+};
+
+constexpr float kSlack = 2e-4f;  // bounds are exact, stored poses rounded
 
 /// Measures stored poses against the query.
 struct Query {
   const Data& data;
-  Eigen::Vector3f position;
   Eigen::Vector4f quaternion;
-  float per_metre, per_radian;
+  float per_radian;
 
-  void visit(std::size_t begin, std::size_t end, Nearest& nearest) const {
+  void measure(const PositionCell& position, std::size_t begin, std::size_t end, Nearest& nearest) const {
     for (std::size_t i = begin; i < end; ++i) {
-      const float* pose = &data.poses[i * Data::kPoseSize];
-      const float shift = (Eigen::Map<const Eigen::Vector3f>(pose) - position).norm() * per_metre;
-      const float worst = nearest.worst();
-      if (shift > worst) continue;
+      const detail::StoredPose& pose = data.poses[i];
+      const float shift = (pose.place() - position.query).norm();
       // q and -q are one rotation; the chord between unit quaternions is exact for small angles where 2 acos is not.
-      const Eigen::Vector4f other = Eigen::Map<const Eigen::Vector4f>(pose + 3);
+      const Eigen::Vector4f other = pose.coefficients();
       const float chord = std::sqrt(std::min((other - quaternion).squaredNorm(), (other + quaternion).squaredNorm()));
-      if (shift + 2 * chord * per_radian > worst) continue;
+      if (shift + 2 * chord * per_radian > nearest.worst()) continue;
       nearest.add({shift + 4 * std::asin(std::min(chord / 2, 1.0f)) * per_radian, i});
     }
   }
 
-  void visit(std::int64_t position_cell, const DirectionCell& direction, Nearest& nearest) const {
-    const auto begin = data.rotation_ids.begin() + data.position_first[position_cell];
-    const auto end = data.rotation_ids.begin() + data.position_first[position_cell + 1];
-    for (int run = 0; run < direction.run_count; ++run) {
-      const auto first = std::lower_bound(begin, end, direction.runs[run].first);
-      auto last = first;
-      while (last != end && *last <= direction.runs[run].second) ++last;
-      if (first == last) continue;
-      visit(data.cell_first[first - data.rotation_ids.begin()], data.cell_first[last - data.rotation_ids.begin()],
-            nearest);
+  /// Has the memory fetch a position cell's tables (their first lines) while another one is worked on.
+  void ask_for(const PositionCell& position) const {
+    constexpr std::uint32_t kLine = 16, kLines = 8;
+    const std::uint32_t begin = data.position_first[position.index];
+    const std::uint32_t end = std::min(begin + kLine * kLines, data.position_first[position.index + 1]);
+    for (std::uint32_t cell = begin; cell < end; cell += kLine) {
+      __builtin_prefetch(&data.rotation_ids[cell]);
+      __builtin_prefetch(&data.cell_first[cell]);
     }
+  }
+
+  /// Looks at every cell of a position cell, some at a time: first those within bounds are picked and their poses asked from
+  /// memory, then measured, so that the waits overlap.
+  void scan(const PositionCell& position, const float* bounds, Nearest& nearest) const {
+    constexpr std::size_t kChunk = 64;
+    std::array<std::uint32_t, kChunk> picked;
+    const std::uint32_t end = data.position_first[position.index + 1];
+    for (std::uint32_t cell = data.position_first[position.index]; cell < end;) {
+      const float limit = nearest.worst() + kSlack - position.distance;
+      std::size_t count = 0;
+      for (const std::uint32_t stop = std::min<std::uint32_t>(end, cell + kChunk); cell < stop; ++cell) {
+        picked[count] = cell;
+        count += bounds[data.rotation_ids[cell]] <= limit ? 1 : 0;
+      }
+      for (std::size_t i = 0; i < count; ++i) __builtin_prefetch(&data.poses[data.cell_first[picked[i]]]);
+      for (std::size_t i = 0; i < count; ++i)
+        measure(position, data.cell_first[picked[i]], data.cell_first[picked[i] + 1], nearest);
+    }
+  }
+
+  /// Searches the adjacent rotation cells one by one: for position cells with very many rotation cells.
+  void search(const PositionCell& position, const RotationBounds& bounds, Nearest& nearest) const {
+    const auto begin = data.rotation_ids.begin() + data.position_first[position.index];
+    const auto end = data.rotation_ids.begin() + data.position_first[position.index + 1];
+    for (const auto& rotation_cell : bounds) {
+      if (position.distance + static_cast<float>(rotation_cell.angle) > nearest.worst() + kSlack) break;
+      const auto found = std::lower_bound(begin, end, rotation_cell.id);
+      if (found == end || *found != rotation_cell.id) continue;
+      const std::size_t cell = static_cast<std::size_t>(found - data.rotation_ids.begin());
+      measure(position, data.cell_first[cell], data.cell_first[cell + 1], nearest);
+    }
+  }
+
+  void visit(const PositionCell& position, const RotationBounds& bounds, Nearest& nearest) const {
+    constexpr std::uint32_t kWorthScanning = 1024;
+    if (data.position_first[position.index + 1] - data.position_first[position.index] <= kWorthScanning)
+      scan(position, bounds.table(), nearest);
+    else
+      search(position, bounds, nearest);
   }
 };
 
@@ -157,26 +184,19 @@ int ReachDatabase::nearest(const Pose& T_base_tip, int count, Eigen::MatrixXd& o
   if (data_->size() == 0) return 0;
 
   std::array<PositionCell, 27> positions;
-  const int position_count = position_cells(T_base_tip.translation(), data_->options.position_cell, positions);
+  const int position_count = position_cells(*data_, T_base_tip.translation(), positions);
   if (position_count == 0) return 0;
-  std::array<DirectionCell, detail::RotationCells::kMaxNeighbours> directions;
-  const int direction_count =
-      direction_cells(data_->rotations, T_base_tip.linear(), data_->options.rotation_cell, directions);
+  thread_local RotationBounds bounds;
+  bounds.set(*data_, T_base_tip.linear());
 
-  const Query query{*data_, T_base_tip.translation().cast<float>(),
-                    Eigen::Quaterniond(T_base_tip.linear()).normalized().coeffs().cast<float>(),
-                    static_cast<float>(1 / data_->options.position_cell),
+  const Query query{*data_, Eigen::Quaterniond(T_base_tip.linear()).normalized().coeffs().cast<float>(),
                     static_cast<float>(1 / data_->options.rotation_cell)};
   thread_local std::vector<Near> found;
   Nearest nearest(found, count);
-  constexpr float kSlack = 1e-5f;  // the bounds are exact, the stored poses are rounded
+  query.ask_for(positions[0]);
   for (int p = 0; p < position_count && positions[p].distance <= nearest.worst() + kSlack; ++p) {
-    const std::int64_t cell = data_->find_position(positions[p].key);
-    if (cell < 0) continue;
-    for (int d = 0; d < direction_count; ++d) {
-      if (positions[p].distance + directions[d].distance > nearest.worst() + kSlack) break;
-      query.visit(cell, directions[d], nearest);
-    }
+    if (p + 1 < position_count) query.ask_for(positions[p + 1]);
+    query.visit(positions[p], bounds, nearest);
   }
   for (std::size_t i = 0; i < found.size(); ++i)
     out.col(static_cast<Eigen::Index>(i)) =

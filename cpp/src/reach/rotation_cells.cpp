@@ -45,10 +45,17 @@ Eigen::Vector3d RotationCells::direction_at(std::uint32_t face, double i, double
 void RotationCells::add_cell(std::uint32_t face, std::uint32_t i, std::uint32_t j) {
   const Eigen::Vector3d centre = direction_at(face, i + 0.5, j + 0.5);
   double radius = 0;
-  for (const std::uint32_t di : {0u, 1u})
-    for (const std::uint32_t dj : {0u, 1u}) radius = std::max(radius, angle_between(centre, direction_at(face, i + di, j + dj)));
+  const std::array<Eigen::Vector3d, 4> corners{direction_at(face, i, j), direction_at(face, i + 1, j),
+                                               direction_at(face, i + 1, j + 1), direction_at(face, i, j + 1)};
+  std::array<Eigen::Vector3d, 4> sides;
+  for (std::size_t k = 0; k < 4; ++k) {
+    radius = std::max(radius, angle_between(centre, corners[k]));
+    const Eigen::Vector3d normal = corners[k].cross(corners[(k + 1) % 4]).normalized();
+    sides[k] = normal.dot(centre) > 0 ? normal : Eigen::Vector3d(-normal);
+  }
+  sides_.push_back(sides);
   centres_.push_back(centre);
-  radii_.push_back(radius);
+  half_radius_tangents_.push_back(std::tan(radius / 2));
   roll_zero_.push_back(carry(Eigen::Vector3d::Unit((face / 2 + 1) % 3), face_normal(face), centre));
 }
 
@@ -85,21 +92,58 @@ std::uint32_t RotationCells::direction_id(const Eigen::Vector3d& direction) cons
   return (face * side_ + index(direction[(axis + 1) % 3])) * side_ + index(direction[(axis + 2) % 3]);
 }
 
-std::uint32_t RotationCells::roll_id(const Eigen::Matrix3d& R, std::uint32_t direction) const {
+double RotationCells::roll_at(const Eigen::Matrix3d& R, std::uint32_t direction) const {
   const Eigen::Vector3d &centre = centres_[direction], &zero = roll_zero_[direction];
   const Eigen::Vector3d x = carry(R.col(0), R.col(2), centre);
   const double roll = std::atan2(x.dot(centre.cross(zero)), x.dot(zero));
-  const double at = (roll / (2 * kPi) + 0.5) * rolls_;
-  return std::min(static_cast<std::uint32_t>(std::max(at, 0.0)), rolls_ - 1);
+  return (roll / (2 * kPi) + 0.5) * rolls_;
+}
+
+std::uint32_t RotationCells::roll_id(double roll) const {
+  return std::min(static_cast<std::uint32_t>(std::max(roll, 0.0)), rolls_ - 1);
 }
 
 std::uint32_t RotationCells::id(const Eigen::Matrix3d& R) const {
   const std::uint32_t direction = direction_id(R.col(2));
-  return direction * rolls_ + roll_id(R, direction);
+  return direction * rolls_ + roll_id(roll_at(R, direction));
 }
 
-double RotationCells::angle_to(const Eigen::Vector3d& direction, std::uint32_t cell) const {
-  return std::max(0.0, angle_between(direction, centres_[cell]) - radii_[cell]);
+/// Cosine of half the angle to the nearest direction of the cell, from above: taken from the side it is farthest outside of.
+double RotationCells::cos_half_gap(const Eigen::Vector3d& direction, std::uint32_t cell) const {
+  double sine = 0;
+  for (const Eigen::Vector3d& side : sides_[cell]) sine = std::max(sine, -side.dot(direction));
+  return std::sqrt(0.5 + 0.5 * std::sqrt(std::max(0.0, 1 - sine * sine)));
+}
+
+/// Upper bound of what carrying over the cell's middle changes a roll, against carrying straight to any point of the cell: the
+/// area of the largest spherical triangle with these two sides.
+double RotationCells::roll_error(const Eigen::Vector3d& direction, std::uint32_t cell) const {
+  const double cosine = direction.dot(centres_[cell]);
+  const double half_tangents = std::sqrt(std::max(0.0, 1 - cosine) / (1 + cosine)) * half_radius_tangents_[cell];
+  return 2 * std::asin(std::min(1.0, half_tangents));
+}
+
+int RotationCells::near_cells(const Eigen::Matrix3d& R, NearCells& cells) const {
+  const double roll_width = 2 * kPi / rolls_;
+  const Eigen::Vector3d z = R.col(2);
+  const std::uint32_t own = direction_id(z);
+  int count = 0;
+  for (std::uint32_t n = neighbours_first_[own]; n < neighbours_first_[own + 1]; ++n) {
+    const std::uint32_t direction = neighbours_[n];
+    const double roll = roll_at(R, direction), error = roll_error(z, direction);
+    const double cos_half = cos_half_gap(z, direction);
+    const std::uint32_t middle = roll_id(roll);
+    const auto add = [&](std::uint32_t roll_cell, double gap) {
+      // The angle of a rotation made of a swing and a roll about perpendicular axes: both halves' cosines multiply.
+      const double roll_gap = std::max(0.0, gap * roll_width - error);
+      cells[count++] = {direction * rolls_ + roll_cell, 2 * std::acos(std::min(1.0, cos_half * std::cos(roll_gap / 2)))};
+    };
+    add(middle, 0);
+    add((middle + rolls_ - 1) % rolls_, roll - middle);
+    add((middle + 1) % rolls_, middle + 1 - roll);
+  }
+  std::sort(cells.begin(), cells.begin() + count, [](const NearCell& a, const NearCell& b) { return a.angle < b.angle; });
+  return count;
 }
 
 }  // namespace mmgrasp::detail

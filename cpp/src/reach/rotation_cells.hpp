@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -20,22 +21,25 @@ class RotationCells {
   /// direction cell * rolls() + roll cell.
   std::uint32_t id(const Eigen::Matrix3d& R) const;
   std::uint32_t direction_id(const Eigen::Vector3d& direction) const;
-  /// Roll cell of R carried to the middle of a direction cell; the cell must not lie opposite R's z axis.
-  std::uint32_t roll_id(const Eigen::Matrix3d& R, std::uint32_t direction) const;
 
-  /// Direction cells that share a corner or an edge with this one, itself first.
-  const std::uint32_t* neighbours_begin(std::uint32_t direction) const {
-    return neighbours_.data() + neighbours_first_[direction];
-  }
-  const std::uint32_t* neighbours_end(std::uint32_t direction) const {
-    return neighbours_.data() + neighbours_first_[direction + 1];
-  }
-  static constexpr int kMaxNeighbours = 9;
-
-  /// Lower bound of the angle between a unit direction and any direction of the cell [rad].
-  double angle_to(const Eigen::Vector3d& direction, std::uint32_t cell) const;
+  /// A cell near a rotation, and a lower bound of the angle between that rotation and any in the cell [rad].
+  struct NearCell {
+    std::uint32_t id = 0;
+    double angle = 0;
+  };
+  /// Nine direction cells at most touch in a corner or an edge, three rolls each.
+  static constexpr int kMostNear = 27;
+  using NearCells = std::array<NearCell, kMostNear>;
+  /// The cell of R and those around it: direction cells that share a corner with R's, with the three nearest rolls each,
+  /// nearest bound first. Returns how many.
+  int near_cells(const Eigen::Matrix3d& R, NearCells& cells) const;
 
  private:
+  /// Roll of R carried to the middle of a direction cell, in [0, rolls()]; the cell must not lie opposite R's z axis.
+  double roll_at(const Eigen::Matrix3d& R, std::uint32_t direction) const;
+  std::uint32_t roll_id(double roll) const;
+  double cos_half_gap(const Eigen::Vector3d& direction, std::uint32_t cell) const;
+  double roll_error(const Eigen::Vector3d& direction, std::uint32_t cell) const;
   Eigen::Vector3d direction_at(std::uint32_t face, double i, double j) const;
   void add_cell(std::uint32_t face, std::uint32_t i, std::uint32_t j);
   void add_neighbours(std::uint32_t cell);
@@ -44,7 +48,8 @@ class RotationCells {
   std::uint32_t rolls_ = 3;
   std::vector<Eigen::Vector3d> centres_;
   std::vector<Eigen::Vector3d> roll_zero_;   ///< Unit, orthogonal to the centre: where the tool's x axis has roll 0.
-  std::vector<double> radii_;                ///< Largest angle between the centre and a point of the cell.
+  std::vector<double> half_radius_tangents_; ///< tan(r / 2), r the largest angle between the centre and a point of the cell.
+  std::vector<std::array<Eigen::Vector3d, 4>> sides_;  ///< Inward unit normals of the great circles around the cell.
   std::vector<std::uint32_t> neighbours_, neighbours_first_;
 };
 

@@ -15,6 +15,7 @@
 namespace mmgrasp {
 namespace {
 
+constexpr double kRounding = 3e-4;  // stored tool poses take 16 bytes each
 constexpr double kPi = 3.14159265358979323846;
 
 JointGroup gantry() { return Robot::from_strings(test::gantry_urdf()).chain("base", "c"); }
@@ -49,7 +50,8 @@ TEST(ReachDatabase, StoredConfigurationsLieInTheCellOfTheirToolPose) {
     const Eigen::VectorXd q = database.configuration(index);
     EXPECT_TRUE(arm.within_limits(q));
     EXPECT_TRUE(holds_column(database.cell(arm.fk(q)), q));
-    EXPECT_LT((database.tool_pose(index).matrix() - arm.fk(q).matrix()).norm(), 1e-6);
+    EXPECT_LT((database.tool_pose(index).matrix() - arm.fk(q).matrix()).norm(), 2e-4)
+        << "rounded to 16 bytes";
   }
 }
 
@@ -158,19 +160,19 @@ TEST(ReachDatabase, NearestIsTheTrueNearest) {
       double previous = 0;
       for (int k = 0; k < found; ++k) {
         const double distance = pose_distance(database.options(), T, arm.fk(out.col(k)));
-        EXPECT_GE(distance, previous - 1e-5);
-        EXPECT_GE(distance, all[k] - 1e-5);
+        EXPECT_GE(distance, previous - kRounding);
+        EXPECT_GE(distance, all[k] - kRounding);
         previous = distance;
       }
       for (int k = 0; k < 8 && all[k] < 0.5; ++k, ++exact) {
         ASSERT_GT(found, k);
-        EXPECT_NEAR(pose_distance(database.options(), T, arm.fk(out.col(k))), all[k], 1e-5);
+        EXPECT_NEAR(pose_distance(database.options(), T, arm.fk(out.col(k))), all[k], kRounding);
       }
       // Whatever shares the query's cell was looked at: it is among the answer or farther away.
       const Eigen::MatrixXd cell = database.cell(T), answer = out.leftCols(found);
       for (Eigen::Index k = 0; k < cell.cols(); ++k) {
         EXPECT_TRUE(holds_column(answer, cell.col(k)) ||
-                    (found == 8 && pose_distance(database.options(), T, arm.fk(cell.col(k))) >= previous - 1e-5));
+                    (found == 8 && pose_distance(database.options(), T, arm.fk(cell.col(k))) >= previous - kRounding));
       }
     }
     EXPECT_GT(exact, 20);
@@ -198,7 +200,7 @@ TEST(ReachDatabase, NeighbourhoodsHoldWhereAnglesWrapAndAtPitchNinety) {
       Eigen::MatrixXd out;
       ASSERT_EQ(database.nearest(T, 5, out), 5) << rpy.transpose();
       for (int k = 0; k < 5 && all[k] < 0.5; ++k, ++exact)
-        EXPECT_NEAR(pose_distance(options, T, arm.fk(out.col(k))), all[k], 1e-5) << rpy.transpose() << " " << k;
+        EXPECT_NEAR(pose_distance(options, T, arm.fk(out.col(k))), all[k], kRounding) << rpy.transpose() << " " << k;
     }
   }
   EXPECT_GT(exact, 100);
@@ -224,7 +226,7 @@ TEST(ReachDatabase, FinePositionAndRotationCellsAgreeWithBruteForceToo) {
       if (best >= 0.5) continue;
       Eigen::MatrixXd out;
       ASSERT_EQ(database.nearest(T, 1, out), 1);
-      EXPECT_NEAR(pose_distance(options, T, arm.fk(out.col(0))), best, 1e-5) << rotation_cell;
+      EXPECT_NEAR(pose_distance(options, T, arm.fk(out.col(0))), best, kRounding) << rotation_cell;
     }
   }
 }
@@ -267,7 +269,7 @@ TEST(ReachDatabase, KeepsNoSelfCollision) {
   EXPECT_NEAR(static_cast<double>(database.size()) / 20000, 2 * std::acos(0.2) / 3.0, 0.01);
   EXPECT_NEAR(database.reach(), 1.0, 1e-5);
   EXPECT_TRUE(database.bounds().contains(Eigen::Vector3d(0.9, 0, 0)));
-  EXPECT_LE(database.bounds().max().maxCoeff(), 1 + 1e-6);
+  EXPECT_LE(database.bounds().max().maxCoeff(), 1 + 2e-6);
 }
 
 TEST(ReachDatabase, DropsWhatIsNearlySingular) {

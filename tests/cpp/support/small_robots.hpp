@@ -36,10 +36,12 @@ inline std::string gantry_urdf() {
 }
 
 /// Two links of 0.5 m turning about z, a ball of 0.1 m radius on the base and on the tip: they touch when the tip comes
-/// within 0.2 m of the base. The middle link has no shape.
+/// within 0.2 m of the base. A small ball halfway along the upper link touches neither; it keeps base and tip from counting
+/// as adjacent.
 inline std::string two_balls_urdf() {
   const std::string ball = "<geometry><sphere radius='0.1'/></geometry>";
-  return "<robot name='two_balls'>" + urdf_link("base", ball) + urdf_link("upper") + urdf_link("lower") +
+  return "<robot name='two_balls'>" + urdf_link("base", ball) +
+         urdf_link("upper", "<origin xyz='0.25 0 0'/><geometry><sphere radius='0.05'/></geometry>") + urdf_link("lower") +
          urdf_link("tip", ball) + urdf_joint("shoulder", "revolute", "base", "upper", "0 0 0", "0 0 1") +
          urdf_joint("elbow", "revolute", "upper", "lower", "0.5 0 0", "0 0 1") +
          urdf_joint("flange", "fixed", "lower", "tip", "0.5 0 0", "0 0 1") + "</robot>";

@@ -60,15 +60,16 @@ class MMGRASP_EXPORT ReachDatabase {
   /// Up to `count` stored configurations near the pose, from its cell and the adjacent ones, nearest first (position
   /// distance in units of position_cell plus angle in units of rotation_cell). Adjacent are the 27 position cells around, the
   /// directions of the tool's z axis whose cells touch the pose's, and the three nearest rolls about it: nothing within half a
-  /// cell (0.5 of this distance) is ever missed. Columns of `out`; returns how many were written. `out` is resized only when
+  /// cell (0.5 of this distance) is ever missed. Distances are told apart down to about 2e-4. Columns of `out`; returns how many were written. `out` is resized only when
   /// too small: no allocation in the steady state.
   int nearest(const Pose& T_base_tip, int count, Eigen::MatrixXd& out) const;
-  /// The configuration at an index in [0, size()), sorted by cell; and its tool pose as stored (32-bit floats).
+  /// The configuration at an index in [0, size()), sorted by cell; and its tool pose as stored: rounded to
+  /// about 1e-5 position cells and 1e-4 rad.
   Eigen::VectorXd configuration(std::int64_t index) const;
   Pose tool_pose(std::int64_t index) const;
-  /// Largest distance from the root frame's origin to a stored tool position [m].
+  /// Largest distance from the root frame's origin to a stored tool position [m], rounded up by at most 2e-5 position cells.
   double reach() const;
-  /// Bounds of stored tool positions.
+  /// Bounds of stored tool positions, rounded outwards likewise; empty when the database is.
   Eigen::AlignedBox3d bounds() const;
 
   struct Data;

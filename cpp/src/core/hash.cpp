@@ -24,7 +24,9 @@ Hasher& Hasher::add(double value) {
   return add(&value, sizeof(value));
 }
 
-Hasher& Hasher::add(std::int64_t value) { return add(&value, sizeof(value)); }
+Hasher& Hasher::add(std::int64_t value) {
+  return add(&value, sizeof(value));
+}
 
 Hasher& Hasher::add(const Eigen::Ref<const Eigen::MatrixXd>& values) {
   add(static_cast<std::int64_t>(values.rows()));

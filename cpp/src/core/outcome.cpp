@@ -4,37 +4,61 @@ namespace mmgrasp {
 
 const char* to_string(Outcome outcome) {
   switch (outcome) {
-    case Outcome::solved: return "solved";
-    case Outcome::approximate: return "approximate";
-    case Outcome::infeasible: return "infeasible";
-    case Outcome::timeout: return "timeout";
-    case Outcome::stopped: return "stopped";
-    case Outcome::invalid_start: return "invalid_start";
-    case Outcome::invalid_goal: return "invalid_goal";
+    case Outcome::solved:
+      return "solved";
+    case Outcome::approximate:
+      return "approximate";
+    case Outcome::infeasible:
+      return "infeasible";
+    case Outcome::timeout:
+      return "timeout";
+    case Outcome::stopped:
+      return "stopped";
+    case Outcome::invalid_start:
+      return "invalid_start";
+    case Outcome::invalid_goal:
+      return "invalid_goal";
   }
   return "unknown";
 }
 
 const char* to_string(Rejection cause) {
   switch (cause) {
-    case Rejection::none: return "none";
-    case Rejection::reach: return "reach";
-    case Rejection::limits: return "limits";
-    case Rejection::self_collision: return "self_collision";
-    case Rejection::scene: return "scene";
-    case Rejection::grasp_filter: return "grasp_filter";
+    case Rejection::none:
+      return "none";
+    case Rejection::reach:
+      return "reach";
+    case Rejection::limits:
+      return "limits";
+    case Rejection::self_collision:
+      return "self_collision";
+    case Rejection::scene:
+      return "scene";
+    case Rejection::grasp_filter:
+      return "grasp_filter";
   }
   return "unknown";
 }
 
 void Rejections::add(Rejection cause, std::size_t count) {
   switch (cause) {
-    case Rejection::none: break;
-    case Rejection::reach: reach += count; break;
-    case Rejection::limits: limits += count; break;
-    case Rejection::self_collision: self_collision += count; break;
-    case Rejection::scene: scene += count; break;
-    case Rejection::grasp_filter: grasp_filter += count; break;
+    case Rejection::none:
+      break;
+    case Rejection::reach:
+      reach += count;
+      break;
+    case Rejection::limits:
+      limits += count;
+      break;
+    case Rejection::self_collision:
+      self_collision += count;
+      break;
+    case Rejection::scene:
+      scene += count;
+      break;
+    case Rejection::grasp_filter:
+      grasp_filter += count;
+      break;
   }
 }
 
@@ -47,7 +71,9 @@ Rejections& Rejections::operator+=(const Rejections& other) {
   return *this;
 }
 
-std::size_t Rejections::total() const { return reach + limits + self_collision + scene + grasp_filter; }
+std::size_t Rejections::total() const {
+  return reach + limits + self_collision + scene + grasp_filter;
+}
 
 std::string Rejections::summary() const {
   std::string text;

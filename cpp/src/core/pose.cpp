@@ -78,9 +78,8 @@ double rotation_distance(const Pose& a, const Pose& b) {
 Pose checked_pose(const Eigen::Matrix4d& T, const std::string& field) {
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column)
-      require(std::isfinite(T(row, column)),
-              field + "(" + std::to_string(row) + ", " + std::to_string(column) + ")", T(row, column),
-              "must be finite");
+      require(std::isfinite(T(row, column)), field + "(" + std::to_string(row) + ", " + std::to_string(column) + ")",
+              T(row, column), "must be finite");
   const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
   const double skew = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   require(skew <= 1e-6, field + " rotation, largest entry of R^T R - I", skew, "must be at most 1e-6");

@@ -12,7 +12,9 @@ std::uint64_t splitmix64(std::uint64_t& x) {
   return z ^ (z >> 31);
 }
 
-std::uint64_t rotate_left(std::uint64_t x, int bits) { return (x << bits) | (x >> (64 - bits)); }
+std::uint64_t rotate_left(std::uint64_t x, int bits) {
+  return (x << bits) | (x >> (64 - bits));
+}
 
 }  // namespace
 
@@ -36,9 +38,13 @@ std::uint64_t Rng::next() {
   return result;
 }
 
-double Rng::uniform() { return static_cast<double>(next() >> 11) * 0x1.0p-53; }
+double Rng::uniform() {
+  return static_cast<double>(next() >> 11) * 0x1.0p-53;
+}
 
-double Rng::uniform(double lower, double upper) { return lower + (upper - lower) * uniform(); }
+double Rng::uniform(double lower, double upper) {
+  return lower + (upper - lower) * uniform();
+}
 
 std::size_t Rng::index(std::size_t size) {
   // The product's high word; its bias is below size / 2^64.

@@ -195,7 +195,8 @@ JointGroup make_group(const Robot& robot, const std::string& name, const std::ve
   }
   const int size = static_cast<int>(model->names.size());
   require(size > 0, "group \"" + name + "\" size", size, "must have at least one movable joint");
-  require(size <= kMaxGroupSize, "group \"" + name + "\" size", size, "must be at most " + std::to_string(kMaxGroupSize));
+  require(size <= kMaxGroupSize, "group \"" + name + "\" size", size,
+          "must be at most " + std::to_string(kMaxGroupSize));
   model->lower = to_eigen(columns[0]);
   model->upper = to_eigen(columns[1]);
   model->velocity = to_eigen(columns[2]);

@@ -59,12 +59,14 @@ int find_root(const RobotParts& parts, const Tree& tree) {
     if (root < 0) root = static_cast<int>(i);
     roots.push_back("\"" + parts.links[i].name + "\"");
   }
-  if (roots.empty()) throw InvalidInput(parts.origin + ": joints form a cycle: exactly one link must have no parent joint");
+  if (roots.empty())
+    throw InvalidInput(parts.origin + ": joints form a cycle: exactly one link must have no parent joint");
   if (roots.size() > 1) {
     std::string list;
     for (std::size_t i = 0; i < std::min<std::size_t>(roots.size(), 5); ++i) list += (i ? ", " : "") + roots[i];
     if (roots.size() > 5) list += ", ...";
-    throw InvalidInput(parts.origin + ": links without a parent joint = " + list + ": exactly one link must be the root");
+    throw InvalidInput(parts.origin + ": links without a parent joint = " + list +
+                       ": exactly one link must be the root");
   }
   return root;
 }
@@ -120,10 +122,12 @@ void resolve_mimics(const RobotParts& parts, const NameIndex& part_joints, Robot
     double multiplier = 1, offset = 0;
     for (std::size_t hops = 0; !step->mimic.empty(); ++hops) {
       if (hops > parts.joints.size())
-        throw InvalidInput(place + ": mimic joint = \"" + step->mimic + "\": mimic joints must not follow each other in a circle");
+        throw InvalidInput(place + ": mimic joint = \"" + step->mimic +
+                           "\": mimic joints must not follow each other in a circle");
       const auto found = part_joints.find(step->mimic);
       if (found == part_joints.end())
-        throw InvalidInput(place + ": mimic joint = \"" + step->mimic + "\": must name a joint" + near_miss(step->mimic, names));
+        throw InvalidInput(place + ": mimic joint = \"" + step->mimic + "\": must name a joint" +
+                           near_miss(step->mimic, names));
       offset += multiplier * step->joint.mimic_offset;
       multiplier *= step->joint.mimic_multiplier;
       step = &parts.joints[static_cast<std::size_t>(found->second)];
@@ -170,8 +174,7 @@ void disable_adjacent(Robot::Data& data) {
     disable(joint.parent_link, joint.child_link);
     // Links without shapes (flanges, frames) join their neighbours as if these touched directly.
     int above = joint.parent_link;
-    while (above > 0 && is_bare(above))
-      above = data.joints[static_cast<std::size_t>(above - 1)].parent_link;
+    while (above > 0 && is_bare(above)) above = data.joints[static_cast<std::size_t>(above - 1)].parent_link;
     disable(above, joint.child_link);
   }
   // Two links of one rigid body never move against each other: whether they touch is no matter of configuration.
@@ -184,7 +187,8 @@ void disable_adjacent(Robot::Data& data) {
 }  // namespace
 
 std::shared_ptr<Robot::Data> build_robot(const RobotParts& parts) {
-  if (parts.links.empty()) throw InvalidInput(parts.origin + ": robot \"" + parts.name + "\" has no <link>: needs at least one");
+  if (parts.links.empty())
+    throw InvalidInput(parts.origin + ": robot \"" + parts.name + "\" has no <link>: needs at least one");
   const NameIndex part_links = index_links(parts);
   const NameIndex part_joints = index_joints(parts);
   const Tree tree = build_tree(parts, part_links);

@@ -43,7 +43,8 @@ void unwind(const JointGroup& group, const Eigen::VectorXd& seed, Eigen::VectorX
     if (group.wraps()[static_cast<std::size_t>(i)]) q[i] = seed[i] + wrap_angle(q[i] - seed[i]);
 }
 
-/// Tells "out of reach" from "reached only outside joint limits" by going on without limits from where a descent failed.
+/// Tells "out of reach" from "reached only outside joint limits" by going on without limits from where a descent
+/// failed.
 class FailureCause {
  public:
   Rejection of(const JointGroup& group, const Pose& T_world_tip, Eigen::VectorXd q, const IkOptions& options,
@@ -124,7 +125,8 @@ IkResult solve_ik(const JointGroup& group, const Pose& T_world_tip, const Eigen:
     if (attempt > 0) q = random_start(group, T_world_tip.translation(), rng);
     const detail::DescentEnd end = detail::descend(group, T_world_tip, q, options, workspace, true);
     result.iterations += end.iterations;
-    const double score = end.position_error / options.position_tolerance + end.rotation_error / options.rotation_tolerance;
+    const double score =
+        end.position_error / options.position_tolerance + end.rotation_error / options.rotation_tolerance;
     if (score < best) {
       best = score;
       result.position_error = end.position_error;

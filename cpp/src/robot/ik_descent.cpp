@@ -12,18 +12,20 @@ namespace {
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-constexpr double kDampingPerError = 0.03;  // damping = this x squared error: gauss-newton near the goal, gradient far away
+constexpr double kDampingPerError =
+    0.03;  // damping = this x squared error: gauss-newton near the goal, gradient far away
 constexpr double kLeastDamping = 1e-10;
-constexpr double kLongestStep = 1.0;      // [rad or m] per joint and iteration
-constexpr int kPatience = 8;              // iterations in which the error must shrink ...
-constexpr double kShrink = 0.8;           // ... to this part, else the descent sits in a local minimum
+constexpr double kLongestStep = 1.0;  // [rad or m] per joint and iteration
+constexpr int kPatience = 8;          // iterations in which the error must shrink ...
+constexpr double kShrink = 0.8;       // ... to this part, else the descent sits in a local minimum
 
 void clamp(const JointGroup& group, Eigen::VectorXd& q) {
   q = q.cwiseMax(group.lower()).cwiseMin(group.upper());
 }
 
 /// Solves (J J^T + damping) y = error over the joints that are free to move and puts the step into `step`. A joint that
-/// would cross its limit is set onto it; what it still contributes is taken off the error, and the others share the rest.
+/// would cross its limit is set onto it; what it still contributes is taken off the error, and the others share the
+/// rest.
 void limited_step(const JointGroup& group, const Eigen::VectorXd& q, const Vector6d& error, double damping,
                   bool keep_limits, IkWorkspace& workspace) {
   const Matrix6Xd& J = workspace.J;

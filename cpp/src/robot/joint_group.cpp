@@ -9,20 +9,48 @@ namespace mmgrasp {
 
 JointGroup::JointGroup(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
 
-const Robot& JointGroup::robot() const { return data_->model->robot; }
-const std::string& JointGroup::name() const { return data_->model->name; }
-const std::vector<std::string>& JointGroup::names() const { return data_->model->names; }
-int JointGroup::size() const { return static_cast<int>(data_->model->names.size()); }
-bool JointGroup::has_base() const { return data_->model->has_base; }
-int JointGroup::tip_link() const { return data_->model->tip_link; }
-const Eigen::VectorXd& JointGroup::lower() const { return data_->model->lower; }
-const Eigen::VectorXd& JointGroup::upper() const { return data_->model->upper; }
-const Eigen::VectorXd& JointGroup::velocity_limits() const { return data_->model->velocity; }
-const Eigen::VectorXd& JointGroup::acceleration_limits() const { return data_->model->acceleration; }
-const std::vector<bool>& JointGroup::wraps() const { return data_->model->wraps; }
-const Eigen::VectorXd& JointGroup::reference() const { return data_->model->reference; }
-const Pose& JointGroup::T_world_root() const { return data_->T_world_root; }
-const std::vector<int>& JointGroup::moving_links() const { return data_->model->moving_links; }
+const Robot& JointGroup::robot() const {
+  return data_->model->robot;
+}
+const std::string& JointGroup::name() const {
+  return data_->model->name;
+}
+const std::vector<std::string>& JointGroup::names() const {
+  return data_->model->names;
+}
+int JointGroup::size() const {
+  return static_cast<int>(data_->model->names.size());
+}
+bool JointGroup::has_base() const {
+  return data_->model->has_base;
+}
+int JointGroup::tip_link() const {
+  return data_->model->tip_link;
+}
+const Eigen::VectorXd& JointGroup::lower() const {
+  return data_->model->lower;
+}
+const Eigen::VectorXd& JointGroup::upper() const {
+  return data_->model->upper;
+}
+const Eigen::VectorXd& JointGroup::velocity_limits() const {
+  return data_->model->velocity;
+}
+const Eigen::VectorXd& JointGroup::acceleration_limits() const {
+  return data_->model->acceleration;
+}
+const std::vector<bool>& JointGroup::wraps() const {
+  return data_->model->wraps;
+}
+const Eigen::VectorXd& JointGroup::reference() const {
+  return data_->model->reference;
+}
+const Pose& JointGroup::T_world_root() const {
+  return data_->T_world_root;
+}
+const std::vector<int>& JointGroup::moving_links() const {
+  return data_->model->moving_links;
+}
 
 JointGroup JointGroup::with_reference(const Eigen::VectorXd& full_values) const {
   const int expected = robot().value_count();
@@ -38,7 +66,8 @@ JointGroup JointGroup::with_reference(const Eigen::VectorXd& full_values) const 
 
 JointGroup JointGroup::at(const Pose& T_world_root) const {
   if (has_base())
-    throw InvalidInput("group \"" + name() + "\": its base joints already say where the root stands, at() is for groups without");
+    throw InvalidInput("group \"" + name() +
+                       "\": its base joints already say where the root stands, at() is for groups without");
   return JointGroup(std::make_shared<Data>(Data{data_->model, T_world_root}));
 }
 

@@ -115,8 +115,7 @@ void JointGroup::fk_jacobian(const Eigen::Ref<const Eigen::VectorXd>& q, Pose& T
   }
   finish(frame, model, T_world_tip);
   const Eigen::Vector3d arm = T_world_tip.translation() - p_root;
-  for (Eigen::Index i = model.base_columns(); i < J.cols(); ++i)
-    J.col(i).head<3>() += J.col(i).tail<3>().cross(arm);
+  for (Eigen::Index i = model.base_columns(); i < J.cols(); ++i) J.col(i).head<3>() += J.col(i).tail<3>().cross(arm);
   if (model.has_base) {
     J(0, 0) = 1;
     J(1, 1) = 1;
@@ -137,7 +136,8 @@ void JointGroup::link_poses(const Eigen::Ref<const Eigen::VectorXd>& q, Poses& T
   if (all) {
     for (const LinkStep& step : model.steps) place_link(step, q.data(), T_world_link);
   } else {
-    for (const int step : model.moving_steps) place_link(model.steps[static_cast<std::size_t>(step)], q.data(), T_world_link);
+    for (const int step : model.moving_steps)
+      place_link(model.steps[static_cast<std::size_t>(step)], q.data(), T_world_link);
   }
 }
 

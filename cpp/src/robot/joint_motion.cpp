@@ -26,12 +26,19 @@ Pose floating_motion(const double* values) {
 Pose joint_motion(const Joint& joint, const double* values) {
   Pose T = Pose::Identity();
   switch (joint.type) {
-    case JointType::fixed: break;
+    case JointType::fixed:
+      break;
     case JointType::revolute:
-    case JointType::continuous: T.linear() = Eigen::AngleAxisd(values[0], joint.axis).toRotationMatrix(); break;
-    case JointType::prismatic: T.translation() = values[0] * joint.axis; break;
-    case JointType::planar: return planar_motion(joint.axis, values);
-    case JointType::floating: return floating_motion(values);
+    case JointType::continuous:
+      T.linear() = Eigen::AngleAxisd(values[0], joint.axis).toRotationMatrix();
+      break;
+    case JointType::prismatic:
+      T.translation() = values[0] * joint.axis;
+      break;
+    case JointType::planar:
+      return planar_motion(joint.axis, values);
+    case JointType::floating:
+      return floating_motion(values);
   }
   return T;
 }

@@ -57,8 +57,8 @@ bool is_package(const fs::path& folder, const std::string& name) {
 std::vector<fs::path> sorted_subfolders(const fs::path& folder) {
   std::vector<fs::path> result;
   std::error_code error;
-  for (fs::directory_iterator it(folder, fs::directory_options::skip_permission_denied, error), end; !error && it != end;
-       it.increment(error))
+  for (fs::directory_iterator it(folder, fs::directory_options::skip_permission_denied, error), end;
+       !error && it != end; it.increment(error))
     if (is_folder(it->path())) result.push_back(it->path());
   std::sort(result.begin(), result.end());  // the answer must not depend on the file system's order
   return result;

@@ -8,9 +8,12 @@ namespace mmgrasp {
 
 const char* to_string(BaseKind kind) {
   switch (kind) {
-    case BaseKind::fixed: return "fixed";
-    case BaseKind::diff_drive: return "diff_drive";
-    case BaseKind::omni: return "omni";
+    case BaseKind::fixed:
+      return "fixed";
+    case BaseKind::diff_drive:
+      return "diff_drive";
+    case BaseKind::omni:
+      return "omni";
   }
   return "unknown";
 }
@@ -23,7 +26,8 @@ BaseKind base_kind_from_string(const std::string& name) {
 
 void BaseLimits::check() const {
   const auto positive = [](double value, const char* field) {
-    require(std::isfinite(value) && value > 0, std::string("base_limits.") + field, value, "must be positive and finite");
+    require(std::isfinite(value) && value > 0, std::string("base_limits.") + field, value,
+            "must be positive and finite");
   };
   positive(linear_velocity, "linear_velocity");
   positive(angular_velocity, "angular_velocity");

@@ -22,12 +22,24 @@ std::vector<std::string> names_of(const std::vector<Named>& items) {
 
 Robot::Robot(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
 
-const std::string& Robot::name() const { return data_->name; }
-BaseKind Robot::base() const { return data_->base; }
-const BaseLimits& Robot::base_limits() const { return data_->base_limits; }
-const std::vector<Link>& Robot::links() const { return data_->links; }
-const std::vector<Joint>& Robot::joints() const { return data_->joints; }
-const RobotReport& Robot::report() const { return data_->report; }
+const std::string& Robot::name() const {
+  return data_->name;
+}
+BaseKind Robot::base() const {
+  return data_->base;
+}
+const BaseLimits& Robot::base_limits() const {
+  return data_->base_limits;
+}
+const std::vector<Link>& Robot::links() const {
+  return data_->links;
+}
+const std::vector<Joint>& Robot::joints() const {
+  return data_->joints;
+}
+const RobotReport& Robot::report() const {
+  return data_->report;
+}
 
 int Robot::link_index(const std::string& name) const {
   const auto found = data_->link_by_name.find(name);
@@ -45,10 +57,16 @@ int Robot::joint_index(const std::string& name) const {
   return found->second;
 }
 
-bool Robot::has_link(const std::string& name) const { return data_->link_by_name.count(name) > 0; }
+bool Robot::has_link(const std::string& name) const {
+  return data_->link_by_name.count(name) > 0;
+}
 
-int Robot::value_count() const { return data_->value_count; }
-Eigen::VectorXd Robot::default_values() const { return data_->default_values; }
+int Robot::value_count() const {
+  return data_->value_count;
+}
+Eigen::VectorXd Robot::default_values() const {
+  return data_->default_values;
+}
 
 Eigen::VectorXd Robot::values(const std::map<std::string, double>& by_name) const {
   constexpr double kSlack = 1e-9;  // printed limits lose their last digit
@@ -57,8 +75,8 @@ Eigen::VectorXd Robot::values(const std::map<std::string, double>& by_name) cons
     const Joint& joint = data_->joints[static_cast<std::size_t>(joint_index(name))];
     const std::string field = "joint \"" + name + "\"";
     if (joint.mimic_joint >= 0)
-      throw InvalidInput(field + ": follows joint \"" + data_->joints[static_cast<std::size_t>(joint.mimic_joint)].name +
-                         "\", set that one");
+      throw InvalidInput(field + ": follows joint \"" +
+                         data_->joints[static_cast<std::size_t>(joint.mimic_joint)].name + "\", set that one");
     if (joint.value_count() != 1)
       throw InvalidInput(field + ": is " + to_string(joint.type) + ", must be a joint with one value");
     require(std::isfinite(value) && value >= joint.lower - kSlack && value <= joint.upper + kSlack, field, value,
@@ -89,16 +107,26 @@ Poses Robot::link_poses(const Eigen::VectorXd& values, const Pose& T_world_root)
   return T_world_link;
 }
 
-const std::vector<GroupDescription>& Robot::groups() const { return data_->groups; }
-const std::vector<EndEffectorDescription>& Robot::end_effectors() const { return data_->end_effectors; }
-const GroupStates& Robot::group_states() const { return data_->group_states; }
-bool Robot::has_srdf() const { return data_->has_srdf; }
+const std::vector<GroupDescription>& Robot::groups() const {
+  return data_->groups;
+}
+const std::vector<EndEffectorDescription>& Robot::end_effectors() const {
+  return data_->end_effectors;
+}
+const GroupStates& Robot::group_states() const {
+  return data_->group_states;
+}
+bool Robot::has_srdf() const {
+  return data_->has_srdf;
+}
 
 bool Robot::pair_disabled(int link_a, int link_b) const {
   return link_a == link_b || data_->disabled_pairs.count(std::minmax(link_a, link_b)) > 0;
 }
 
-const std::map<std::pair<int, int>, DisabledReason>& Robot::disabled_pairs() const { return data_->disabled_pairs; }
+const std::map<std::pair<int, int>, DisabledReason>& Robot::disabled_pairs() const {
+  return data_->disabled_pairs;
+}
 
 Robot Robot::with_disabled_pairs(std::map<std::pair<int, int>, DisabledReason> pairs) const {
   const int count = static_cast<int>(data_->links.size());

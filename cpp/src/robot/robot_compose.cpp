@@ -11,7 +11,9 @@ using detail::NamedJoint;
 using detail::RobotParts;
 
 /// Throws unless T is a finite rotation and translation.
-void check_pose(const Pose& T, const std::string& field) { checked_pose(T.matrix(), field); }
+void check_pose(const Pose& T, const std::string& field) {
+  checked_pose(T.matrix(), field);
+}
 
 std::pair<std::string, std::string> ordered(const std::string& a, const std::string& b) {
   return a < b ? std::make_pair(a, b) : std::make_pair(b, a);
@@ -64,7 +66,9 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-const std::string& root_name(const RobotParts& parts) { return parts.links.front().name; }
+const std::string& root_name(const RobotParts& parts) {
+  return parts.links.front().name;
+}
 
 }  // namespace
 
@@ -108,7 +112,8 @@ Robot Robot::with_link(const std::string& name, const std::string& parent_link, 
     check_shape(shape.shape, field);
     check_pose(shape.T_link_shape, field + " pose");
     const std::string kind = shape_kind(shape.shape);
-    require(kind != "plane" && kind != "voxels", field, kind, "a link's shape must be box, sphere, cylinder, capsule or mesh");
+    require(kind != "plane" && kind != "voxels", field, kind,
+            "a link's shape must be box, sphere, cylinder, capsule or mesh");
   }
   RobotParts parts = detail::to_parts(*data_);
   parts.origin = "adding link \"" + name + "\" to robot \"" + data_->name + "\"";

@@ -18,7 +18,7 @@ struct Robot::Data {
   std::string name;
   BaseKind base = BaseKind::fixed;
   BaseLimits base_limits;
-  std::vector<Link> links;    // breadth first; joint i carries link i + 1
+  std::vector<Link> links;  // breadth first; joint i carries link i + 1
   std::vector<Joint> joints;
   RobotReport report;
   std::vector<GroupDescription> groups;
@@ -41,18 +41,18 @@ namespace detail {
 struct NamedJoint {
   Joint joint;
   std::string parent, child;
-  std::string mimic;       // name of the joint it follows; empty for none
-  std::string place;       // for messages, e.g. "robot.urdf:12: <joint name=...>"
+  std::string mimic;  // name of the joint it follows; empty for none
+  std::string place;  // for messages, e.g. "robot.urdf:12: <joint name=...>"
 };
 
 /// A robot by names: the common form of a parsed file, a mounted pair and an added link. build_robot turns it into
 /// indices, after checking that it is one tree.
 struct RobotParts {
   std::string name;
-  std::string origin;      // file, for messages
+  std::string origin;  // file, for messages
   BaseKind base = BaseKind::fixed;
   BaseLimits base_limits;
-  std::vector<Link> links;          // indices unset
+  std::vector<Link> links;  // indices unset
   std::vector<NamedJoint> joints;
   RobotReport report;
   std::vector<GroupDescription> groups;
@@ -63,8 +63,8 @@ struct RobotParts {
   std::set<std::string> shapes_left_out;
 };
 
-/// Orders links and joints breadth first, resolves mimic joints, numbers values, disables pairs that cannot collide in a
-/// meaningful way (joined by a joint or rigidly). Throws InvalidInput when the parts are no tree.
+/// Orders links and joints breadth first, resolves mimic joints, numbers values, disables pairs that cannot collide in
+/// a meaningful way (joined by a joint or rigidly). Throws InvalidInput when the parts are no tree.
 std::shared_ptr<Robot::Data> build_robot(const RobotParts& parts);
 RobotParts to_parts(const Robot::Data& data);
 

@@ -33,8 +33,8 @@ class MeshCache {
  public:
   MeshShape load(const LinkShape& shape, RobotReport& report) {
     const Eigen::Vector3d& s = shape.mesh_scale;
-    MeshShape& entry = meshes_[shape.mesh_path + "|" + detail::number_text(s[0]) + "|" + detail::number_text(s[1]) + "|" +
-                               detail::number_text(s[2])];
+    MeshShape& entry = meshes_[shape.mesh_path + "|" + detail::number_text(s[0]) + "|" + detail::number_text(s[1]) +
+                               "|" + detail::number_text(s[2])];
     if (!entry.mesh) {
       MeshReport mesh_report;
       entry.mesh = load_mesh(shape.mesh_path, s, &mesh_report);
@@ -50,7 +50,8 @@ class MeshCache {
 std::string missing_message(const std::string& origin, const std::string& link, const std::string& uri,
                             const std::vector<std::string>& looked) {
   std::string text = origin + ": link \"" + link + "\": mesh = \"" + uri + "\": file not found";
-  for (std::size_t i = 0; i < std::min<std::size_t>(looked.size(), 4); ++i) text += (i ? ", " : "; looked for ") + looked[i];
+  for (std::size_t i = 0; i < std::min<std::size_t>(looked.size(), 4); ++i)
+    text += (i ? ", " : "; looked for ") + looked[i];
   if (looked.size() > 4) text += " and " + std::to_string(looked.size() - 4) + " more places";
   if (uri.rfind("package://", 0) == 0) {
     const std::string name = uri.substr(10, uri.find('/', 10) - 10);

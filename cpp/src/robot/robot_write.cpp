@@ -25,16 +25,18 @@ std::string origin_text(const Pose& T) {
 }
 
 std::string geometry_text(const LinkShape& shape, const std::string& link) {
-  if (const auto* box = std::get_if<Box>(&shape.shape)) return "<box" + attribute("size", vector_text(box->size)) + "/>";
+  if (const auto* box = std::get_if<Box>(&shape.shape))
+    return "<box" + attribute("size", vector_text(box->size)) + "/>";
   if (const auto* sphere = std::get_if<Sphere>(&shape.shape))
     return "<sphere" + attribute("radius", number_text(sphere->radius)) + "/>";
   const auto round = [](const char* kind, double radius, double length) {
-    return std::string("<") + kind + attribute("radius", number_text(radius)) + attribute("length", number_text(length)) +
-           "/>";
+    return std::string("<") + kind + attribute("radius", number_text(radius)) +
+           attribute("length", number_text(length)) + "/>";
   };
   if (const auto* cylinder = std::get_if<Cylinder>(&shape.shape))
     return round("cylinder", cylinder->radius, cylinder->length);
-  if (const auto* capsule = std::get_if<Capsule>(&shape.shape)) return round("capsule", capsule->radius, capsule->length);
+  if (const auto* capsule = std::get_if<Capsule>(&shape.shape))
+    return round("capsule", capsule->radius, capsule->length);
   if (std::holds_alternative<MeshShape>(shape.shape) && !shape.mesh_path.empty())
     return "<mesh" + attribute("filename", shape.mesh_path) + attribute("scale", vector_text(shape.mesh_scale)) + "/>";
   throw InvalidInput("link \"" + link + "\": a " + shape_kind(shape.shape) +
@@ -90,11 +92,16 @@ void write_group(std::ostream& out, const GroupDescription& group) {
 
 const char* reason_text(DisabledReason reason) {
   switch (reason) {
-    case DisabledReason::adjacent: return "Adjacent";
-    case DisabledReason::never: return "Never";
-    case DisabledReason::always: return "Always";
-    case DisabledReason::user: return "User";
-    case DisabledReason::default_: return "Default";
+    case DisabledReason::adjacent:
+      return "Adjacent";
+    case DisabledReason::never:
+      return "Never";
+    case DisabledReason::always:
+      return "Always";
+    case DisabledReason::user:
+      return "User";
+    case DisabledReason::default_:
+      return "Default";
   }
   return "User";
 }

@@ -9,6 +9,8 @@
 namespace mmgrasp::detail {
 namespace {
 
+constexpr std::size_t kMaxGroupNesting = 100;
+
 /// A group's members while subgroups are being merged: joint indices, and the ends when one chain gave them.
 struct Members {
   std::set<int> joints;  // fixed and mimic ones included
@@ -81,7 +83,7 @@ class SrdfReader {
     }
     for (const std::string& name : group_order_) {
       std::set<std::string> visiting;
-      const Members members = collect(name, visiting);
+      const Members& members = collect(name, visiting);
       const GroupDescription group = describe(name, members);
       if (group.joints.empty() && members.joints.empty())
         warn(*group_elements_.at(name), "none of its joints and links is in the robot, the group is dropped");
@@ -90,8 +92,12 @@ class SrdfReader {
     }
   }
 
-  Members collect(const std::string& name, std::set<std::string>& visiting) {
+  /// Each group is worked out once, however often others contain it.
+  const Members& collect(const std::string& name, std::set<std::string>& visiting) {
+    const auto known = collected_.find(name);
+    if (known != collected_.end()) return known->second;
     const TiXmlElement& element = *group_elements_.at(name);
+    if (visiting.size() >= kMaxGroupNesting) xml_.fail(element, "subgroups are nested too deeply: at most 100 levels");
     Members members;
     int chains = 0;
     visiting.insert(name);
@@ -111,7 +117,7 @@ class SrdfReader {
     }
     if (chains != 1) members.only_chain = false;
     visiting.erase(name);
-    return members;
+    return collected_.emplace(name, std::move(members)).first->second;
   }
 
   void add_chain(const TiXmlElement& element, Members& members) {
@@ -153,7 +159,7 @@ class SrdfReader {
                     Members& members) {
     if (!group_elements_.count(name)) return warn(element, "names a group that the SRDF lacks");
     if (visiting.count(name)) xml_.fail(element, "subgroups must not contain each other in a circle");
-    const Members other = collect(name, visiting);
+    const Members& other = collect(name, visiting);
     members.joints.insert(other.joints.begin(), other.joints.end());
   }
 
@@ -173,7 +179,8 @@ class SrdfReader {
       return group;
     }
     if (members.joints.empty()) return group;
-    // The whole set (with fixed joints) may be a chain; else only its movable joints, as for a hand with one finger joint.
+    // The whole set (with fixed joints) may be a chain; else only its movable joints, as for a hand with one finger
+    // joint.
     for (const std::vector<int>& set : {std::vector<int>(members.joints.begin(), members.joints.end()), movable}) {
       if (set.empty() || !on_one_path(set)) continue;
       group.base_link = data_.links[static_cast<std::size_t>(joint(set.front()).parent_link)].name;
@@ -212,8 +219,8 @@ class SrdfReader {
     if (known.value_count() != 1) return warn(element, "is ignored: the joint has more than one value");
     const double value = xml_.required_number(element, "value");
     if (value < known.lower - 1e-3 || value > known.upper + 1e-3)
-      warn(element, "value = \"" + number_text(value) + "\" lies outside the joint's limits [" + number_text(known.lower) +
-                        ", " + number_text(known.upper) + "]");
+      warn(element, "value = \"" + number_text(value) + "\" lies outside the joint's limits [" +
+                        number_text(known.lower) + ", " + number_text(known.upper) + "]");
     state[name] = value;
   }
 
@@ -223,7 +230,8 @@ class SrdfReader {
       EndEffectorDescription effector{xml_.required_text(*e, "name"), xml_.required_text(*e, "group"),
                                       xml_.required_text(*e, "parent_link")};
       if (find_link(effector.parent_link) < 0) continue;
-      if (!group_elements_.count(effector.group)) warn(*e, "names group \"" + effector.group + "\", which the SRDF lacks");
+      if (!group_elements_.count(effector.group))
+        warn(*e, "names group \"" + effector.group + "\", which the SRDF lacks");
       data_.end_effectors.push_back(std::move(effector));
     }
   }
@@ -236,9 +244,8 @@ class SrdfReader {
       for (int other = 0; link >= 0 && other < static_cast<int>(data_.links.size()); ++other)
         if (other != link) data_.disabled_pairs[std::minmax(link, other)] = DisabledReason::default_;
     }
-    for_each_pair("enable_collisions", [this](const TiXmlElement&, std::pair<int, int> pair) {
-      data_.disabled_pairs.erase(pair);
-    });
+    for_each_pair("enable_collisions",
+                  [this](const TiXmlElement&, std::pair<int, int> pair) { data_.disabled_pairs.erase(pair); });
     for_each_pair("disable_collisions", [this](const TiXmlElement& element, std::pair<int, int> pair) {
       data_.disabled_pairs[pair] = reason_from(xml_.text(element, "reason").value_or("user"));
     });
@@ -257,13 +264,15 @@ class SrdfReader {
   void report_unknown_links() {
     for (const auto& [name, count] : unknown_links_)
       data_.report.warnings.push_back(xml_.origin() + ": link \"" + name + "\" (named " + std::to_string(count) +
-                                      (count == 1 ? " time" : " times") + ") is not in the robot, these entries are ignored");
+                                      (count == 1 ? " time" : " times") +
+                                      ") is not in the robot, these entries are ignored");
   }
 
   XmlDocument xml_;
   Robot::Data& data_;
   std::map<std::string, const TiXmlElement*> group_elements_;
   std::vector<std::string> group_order_;
+  std::map<std::string, Members> collected_;
   std::map<std::string, int> unknown_links_;
 };
 

@@ -42,7 +42,8 @@ Eigen::VectorXd JointTrajectory::at(double time) const {
   // Hermite basis; written around the end values so that both ends come out exactly.
   const double blend = s * s * (3 - 2 * s);
   const double start_slope = s * (1 - s) * (1 - s), end_slope = s * s * (s - 1);
-  return (1 - blend) * positions[a] + blend * positions[b] + h * (start_slope * velocities[a] + end_slope * velocities[b]);
+  return (1 - blend) * positions[a] + blend * positions[b] +
+         h * (start_slope * velocities[a] + end_slope * velocities[b]);
 }
 
 std::string JointTrajectory::to_csv() const {

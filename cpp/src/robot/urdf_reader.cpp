@@ -146,7 +146,8 @@ class UrdfReader {
     joint.velocity = kFallbackVelocity;
     const bool bounded = joint.type != JointType::continuous;
     if (!limit) {
-      if (bounded) xml_.fail(element, std::string("<limit> is missing: a ") + to_string(joint.type) + " joint needs one");
+      if (bounded)
+        xml_.fail(element, std::string("<limit> is missing: a ") + to_string(joint.type) + " joint needs one");
       warn(element, "no velocity limit, 1.0 is used");
       return;
     }
@@ -191,6 +192,8 @@ class UrdfReader {
 
 }  // namespace
 
-RobotParts read_urdf(const std::string& text, const std::string& origin) { return UrdfReader(text, origin).read(); }
+RobotParts read_urdf(const std::string& text, const std::string& origin) {
+  return UrdfReader(text, origin).read();
+}
 
 }  // namespace mmgrasp::detail

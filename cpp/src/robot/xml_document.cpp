@@ -30,7 +30,8 @@ void check_markup(const std::string& text, const std::string& origin) {
     } else {
       for (const char* declaration : {"<!DOCTYPE", "<!ENTITY"})
         if (starts_with_no_case(text, i, declaration))
-          throw InvalidInput(origin + ": element " + declaration + ">: document type and entity declarations are refused");
+          throw InvalidInput(origin + ": element " + declaration +
+                             ">: document type and entity declarations are refused");
       if (text.compare(i, 2, "<?") == 0) {
         end = text.find("?>", i);
       } else {
@@ -87,8 +88,8 @@ XmlDocument::XmlDocument(const std::string& text, const std::string& origin)
   check_markup(text, origin);
   document_->Parse(text.c_str(), nullptr, TIXML_ENCODING_UTF8);
   if (document_->Error())
-    throw InvalidInput(origin + ":" + std::to_string(document_->ErrorRow()) + ": not well-formed XML: " +
-                       document_->ErrorDesc());
+    throw InvalidInput(origin + ":" + std::to_string(document_->ErrorRow()) +
+                       ": not well-formed XML: " + document_->ErrorDesc());
   root_ = document_->RootElement();
   if (!root_) throw InvalidInput(origin + ": holds no XML element");
 }
@@ -167,12 +168,23 @@ std::string xml_escape(const std::string& text) {
   std::string result;
   for (const char c : text) {
     switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      case '"': result += "&quot;"; break;
-      case '\'': result += "&apos;"; break;
-      default: result += c;
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      case '\'':
+        result += "&apos;";
+        break;
+      default:
+        result += c;
     }
   }
   return result;

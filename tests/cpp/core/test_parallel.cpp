@@ -49,7 +49,12 @@ TEST(ParallelFor, RethrowsTheLowestItemThatThrew) {
 TEST(ParallelFor, StopsEarlyAndSaysSo) {
   Monitor monitor;
   std::atomic<int> calls{0};
-  EXPECT_FALSE(parallel_for(100000, 2, [&](std::size_t, int) { if (++calls == 10) monitor.stop.stop(); }, monitor));
+  EXPECT_FALSE(parallel_for(
+      100000, 2,
+      [&](std::size_t, int) {
+        if (++calls == 10) monitor.stop.stop();
+      },
+      monitor));
   EXPECT_LT(calls, 20);
 }
 
@@ -63,7 +68,8 @@ TEST(ParallelFor, ReportsFromTheCallingThreadUpToOne) {
     same_thread = same_thread && std::this_thread::get_id() == caller;
     last = fraction;
   };
-  EXPECT_TRUE(parallel_for(5000, 3, [](std::size_t, int) {}, monitor, "sampling"));
+  EXPECT_TRUE(parallel_for(
+      5000, 3, [](std::size_t, int) {}, monitor, "sampling"));
   EXPECT_TRUE(ordered);
   EXPECT_TRUE(same_thread);
   EXPECT_EQ(last, 1.0);

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <kdl/frames.hpp>
+#include <limits>
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"

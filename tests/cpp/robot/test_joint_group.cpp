@@ -49,7 +49,8 @@ const char* kMimicUrdf = R"(
   <joint name="j1" type="revolute"><parent link="root"/><child link="a"/><origin xyz="0 0 0.5" rpy="0.1 0 0"/>
     <axis xyz="0 0 1"/><limit lower="-2" upper="2" velocity="1" effort="1"/></joint>
   <joint name="j2" type="revolute"><parent link="a"/><child link="b"/><origin xyz="0.4 0 0" rpy="0 0.2 0"/>
-    <axis xyz="1 2 2"/><limit lower="-2" upper="2" velocity="1"/><mimic joint="j1" multiplier="-0.5" offset="0.3"/></joint>
+    <axis xyz="1 2 2"/><limit lower="-2" upper="2" velocity="1"/>
+    <mimic joint="j1" multiplier="-0.5" offset="0.3"/></joint>
   <joint name="j3" type="prismatic"><parent link="b"/><child link="c"/><origin xyz="0.1 0.2 0" rpy="0 0 0.3"/>
     <axis xyz="0 0 -1"/><limit lower="-1" upper="1" velocity="1"/></joint>
   <joint name="j4" type="prismatic"><parent link="c"/><child link="d"/>
@@ -70,7 +71,8 @@ TEST(JointGroup, MatchesPinocchioReference) {
     for (const Json& test : entry["cases"].array) {
       Eigen::VectorXd q(group.size());
       for (int i = 0; i < group.size(); ++i) {
-        EXPECT_EQ(group.names()[static_cast<std::size_t>(i)], entry["joints"].array[static_cast<std::size_t>(i)].string);
+        EXPECT_EQ(group.names()[static_cast<std::size_t>(i)],
+                  entry["joints"].array[static_cast<std::size_t>(i)].string);
         q[i] = test["q"][group.names()[static_cast<std::size_t>(i)]].number;
       }
       Pose T;
@@ -80,7 +82,9 @@ TEST(JointGroup, MatchesPinocchioReference) {
       const Pose expected = pose_from_xyz_quat({0, 0, 0}, test["quat"].vector());
       EXPECT_LT(rotation_distance(expected, T), 1e-8) << name;
       for (int row = 0; row < 6; ++row)
-        EXPECT_LT((J.row(row).transpose() - test["J"].array[static_cast<std::size_t>(row)].vector()).cwiseAbs().maxCoeff(), 1e-8)
+        EXPECT_LT(
+            (J.row(row).transpose() - test["J"].array[static_cast<std::size_t>(row)].vector()).cwiseAbs().maxCoeff(),
+            1e-8)
             << name;
       ++cases;
     }
@@ -91,7 +95,8 @@ TEST(JointGroup, MatchesPinocchioReference) {
 TEST(JointGroup, MatchesKdlOnRandomConfigurations) {
   MMGRASP_NEEDS_SHARED_DATA();
   const Robot ur = load_kinematics("robots/ur/expanded/ur5e.urdf");
-  for (const JointGroup& group : {panda().group("panda_arm"), tiago().group("arm_torso"), ur.chain("base_link", "tool0")}) {
+  for (const JointGroup& group :
+       {panda().group("panda_arm"), tiago().group("arm_torso"), ur.chain("base_link", "tool0")}) {
     const KDL::Chain chain = kdl_chain(group.robot(), group.tip_link());
     ASSERT_EQ(static_cast<int>(chain.getNrOfJoints()), group.size());
     KDL::ChainFkSolverPos_recursive fk(chain);
@@ -121,7 +126,8 @@ TEST(JointGroup, MatchesKdlOnRandomConfigurations) {
 
 TEST(JointGroup, JacobianMatchesFiniteDifferencesWithBaseAndMimic) {
   const Robot mimic = Robot::from_strings(kMimicUrdf);
-  std::vector<JointGroup> groups{mimic.chain("root", "tip"), mimic.chain("root", "tip").at(pose_from_xyz_rpy({30, -70, 1}, {1, 2, 3}))};
+  std::vector<JointGroup> groups{mimic.chain("root", "tip"),
+                                 mimic.chain("root", "tip").at(pose_from_xyz_rpy({30, -70, 1}, {1, 2, 3}))};
   RobotOptions omni;
   omni.base = BaseKind::omni;
   groups.push_back(Robot::from_strings(kMimicUrdf, "", omni).chain("root", "tip", true));

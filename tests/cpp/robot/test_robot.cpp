@@ -158,8 +158,10 @@ TEST(Robot, SrdfGroupsStatesAndPairs) {
 TEST(Robot, SrdfByLinksChainsSubgroupsAndUnknownNames) {
   const std::string urdf = R"(<robot name="r"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
     <joint name="j1" type="continuous"><parent link="a"/><child link="b"/><limit velocity="2" effort="3"/></joint>
-    <joint name="j2" type="prismatic"><parent link="b"/><child link="c"/><limit lower="0.1" upper="1" velocity="1" effort="1"/></joint>
-    <joint name="j3" type="continuous"><parent link="b"/><child link="d"/><limit velocity="2" effort="3"/></joint></robot>)";
+    <joint name="j2" type="prismatic"><parent link="b"/><child link="c"/>
+      <limit lower="0.1" upper="1" velocity="1" effort="1"/></joint>
+    <joint name="j3" type="continuous"><parent link="b"/><child link="d"/>
+      <limit velocity="2" effort="3"/></joint></robot>)";
   const std::string srdf = R"(<robot name="r">
     <group name="by_links"><link name="c"/><link name="b"/></group>
     <group name="by_chain"><chain base_link="a" tip_link="d"/></group>
@@ -167,7 +169,8 @@ TEST(Robot, SrdfByLinksChainsSubgroupsAndUnknownNames) {
     <group name="gone"><joint name="nope"/></group>
     <group_state name="home" group="by_links"><joint name="j2" value="0.4"/><joint name="nope" value="1"/></group_state>
     <end_effector name="tool" parent_link="c" group="by_chain"/>
-    <disable_collisions link1="a" link2="d" reason="Never"/><disable_collisions link1="a" link2="nowhere" reason="Never"/>
+    <disable_collisions link1="a" link2="d" reason="Never"/>
+      <disable_collisions link1="a" link2="nowhere" reason="Never"/>
     </robot>)";
   const Robot robot = Robot::from_strings(urdf, srdf);
   ASSERT_EQ(robot.groups().size(), 3u);
@@ -185,7 +188,8 @@ TEST(Robot, SrdfByLinksChainsSubgroupsAndUnknownNames) {
   EXPECT_THROW(robot.values({{"j9", 0.5}}), InvalidInput);
   EXPECT_EQ(robot.joints()[0].velocity, 2);
   EXPECT_EQ(robot.joints()[0].effort, 3);
-  EXPECT_THROW(Robot::from_strings(urdf, "<robot name='r'><group name='g'><group name='g'/></group></robot>"), InvalidInput);
+  EXPECT_THROW(Robot::from_strings(urdf, "<robot name='r'><group name='g'><group name='g'/></group></robot>"),
+               InvalidInput);
   EXPECT_THROW(Robot::from_strings(urdf, "<robot name='r'><group name='g'></robot>"), InvalidInput);
 }
 
@@ -220,9 +224,10 @@ TEST(Robot, FindsMeshesWhereAPackageMayLie) {
     EXPECT_LT((shape_bounds(shape.shape).sizes() - Eigen::Vector3d(0.5, 1, 2)).norm(), 1e-12);
     return std::filesystem::relative(shape.mesh_path, std::filesystem::canonical(folder.path())).string();
   };
-  EXPECT_EQ(found("package://robot_description/meshes/t.obj"), "ws/src/my_robot/meshes/t.obj");  // by package.xml's name
-  EXPECT_EQ(found("package://my_robot/meshes/t.obj"), "ws/src/my_robot/meshes/t.obj");           // by folder name
-  EXPECT_EQ(found("package://plain/meshes/t.obj"), "ws/src/plain/meshes/t.obj");                 // beside an ancestor
+  EXPECT_EQ(found("package://robot_description/meshes/t.obj"),
+            "ws/src/my_robot/meshes/t.obj");                                            // by package.xml's name
+  EXPECT_EQ(found("package://my_robot/meshes/t.obj"), "ws/src/my_robot/meshes/t.obj");  // by folder name
+  EXPECT_EQ(found("package://plain/meshes/t.obj"), "ws/src/plain/meshes/t.obj");        // beside an ancestor
   EXPECT_EQ(found("package://given_pkg/meshes/t.obj"), "given/meshes/t.obj");
   EXPECT_EQ(found("package://in_path/meshes/t.obj"), "ros/in_path/meshes/t.obj");
   EXPECT_EQ(found("package://own/t.obj"), "ws/src/my_robot/urdf/own/t.obj");
@@ -269,7 +274,7 @@ TEST(Robot, DisabledPairsCoverJointsFlangesAndRigidNeighbours) {
     return robot.pair_disabled(robot.link_index(a), robot.link_index(b));
   };
   EXPECT_TRUE(off("a", "flange"));
-  EXPECT_TRUE(off("a", "c"));  // across the flange, which has no shape
+  EXPECT_TRUE(off("a", "c"));       // across the flange, which has no shape
   EXPECT_TRUE(off("flange", "d"));  // one rigid body
   EXPECT_FALSE(off("a", "d"));
   EXPECT_FALSE(off("c", "e"));
@@ -279,7 +284,8 @@ TEST(Robot, DisabledPairsCoverJointsFlangesAndRigidNeighbours) {
   const Robot meshed = Robot::from_strings(R"(<robot name="r"><link name="a"/>
     <link name="b"><collision><geometry><mesh filename="m.stl"/></geometry></collision></link><link name="c"/>
     <joint name="j1" type="continuous"><parent link="a"/><child link="b"/></joint>
-    <joint name="j2" type="continuous"><parent link="b"/><child link="c"/></joint></robot>)", "", options);
+    <joint name="j2" type="continuous"><parent link="b"/><child link="c"/></joint></robot>)",
+                                           "", options);
   EXPECT_FALSE(meshed.pair_disabled(0, 2));
   const Robot none = robot.with_disabled_pairs({});
   EXPECT_FALSE(none.pair_disabled(0, 1));

@@ -15,7 +15,9 @@ struct BadCase {
   std::vector<std::string> told;  ///< Every one must stand in the message.
 };
 
-std::string robot(const std::string& inside) { return "<robot name=\"r\">\n" + inside + "\n</robot>"; }
+std::string robot(const std::string& inside) {
+  return "<robot name=\"r\">\n" + inside + "\n</robot>";
+}
 
 std::string joint(const std::string& inside, const std::string& type = "revolute") {
   return robot("<link name=\"a\"/><link name=\"b\"/>\n<joint name=\"j\" type=\"" + type +
@@ -27,7 +29,8 @@ std::string shape(const std::string& inside) {
 }
 
 std::string fixed(const std::string& name, const std::string& parent, const std::string& child) {
-  return "<joint name=\"" + name + "\" type=\"fixed\"><parent link=\"" + parent + "\"/><child link=\"" + child + "\"/></joint>";
+  return "<joint name=\"" + name + "\" type=\"fixed\"><parent link=\"" + parent + "\"/><child link=\"" + child +
+         "\"/></joint>";
 }
 
 const std::string kLimit = "<limit lower=\"-1\" upper=\"1\" velocity=\"1\" effort=\"1\"/>";
@@ -49,29 +52,42 @@ std::vector<BadCase> bad_cases() {
       {"xacro left in", robot("<xacro:include filename=\"x\"/>"), {"xacro"}},
       {"link without name", robot("<link/>"), {":2", "<link>", "name"}},
       {"duplicate link", robot("<link name=\"a\"/>\n<link name=\"a\"/>"), {":3", "\"a\"", "unique"}},
-      {"duplicate joint", robot("<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" + fixed("j", "a", "b") + fixed("j", "a", "c")),
+      {"duplicate joint",
+       robot("<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" + fixed("j", "a", "b") + fixed("j", "a", "c")),
        {"\"j\"", "unique"}},
       {"two roots", robot("<link name=\"a\"/><link name=\"b\"/>"), {"\"a\", \"b\"", "root"}},
-      {"cycle without root", robot("<link name=\"a\"/><link name=\"b\"/>" + fixed("j", "a", "b") + fixed("k", "b", "a")), {"cycle"}},
+      {"cycle without root",
+       robot("<link name=\"a\"/><link name=\"b\"/>" + fixed("j", "a", "b") + fixed("k", "b", "a")),
+       {"cycle"}},
       {"cycle beside the root",
        robot("<link name=\"o\"/><link name=\"a\"/><link name=\"b\"/>" + fixed("j", "a", "b") + fixed("k", "b", "a")),
        {"\"a\"", "cycle"}},
       {"own parent", robot("<link name=\"o\"/><link name=\"a\"/>" + fixed("j", "a", "a")), {"\"j\"", "differ"}},
-      {"two parents", robot("<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" + fixed("j", "a", "c") + fixed("k", "b", "c")),
+      {"two parents",
+       robot("<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" + fixed("j", "a", "c") + fixed("k", "b", "c")),
        {"\"k\"", "\"c\"", "\"j\"", "one parent"}},
-      {"unknown parent", robot("<link name=\"arm\"/><link name=\"b\"/>" + fixed("j", "amr", "b")),
+      {"unknown parent",
+       robot("<link name=\"arm\"/><link name=\"b\"/>" + fixed("j", "amr", "b")),
        {"\"j\"", "parent link = \"amr\"", "did you mean \"arm\""}},
       {"unknown child", robot("<link name=\"a\"/>" + fixed("j", "a", "zzz")), {"child link = \"zzz\""}},
-      {"no parent element", robot("<link name=\"a\"/><joint name=\"j\" type=\"fixed\"><child link=\"a\"/></joint>"), {"<parent", "missing"}},
+      {"no parent element",
+       robot("<link name=\"a\"/><joint name=\"j\" type=\"fixed\"><child link=\"a\"/></joint>"),
+       {"<parent", "missing"}},
       {"unknown type", joint(kLimit, "hinge"), {"type = \"hinge\"", "revolute"}},
       {"no limit", joint(""), {"\"j\"", "<limit>", "missing"}},
       {"no prismatic limit", joint("", "prismatic"), {"<limit>", "prismatic"}},
-      {"lower above upper", joint("<limit lower=\"2\" upper=\"1\" velocity=\"1\"/>"), {":3", "joint \"j\"", "lower = \"2\"", "must not exceed"}},
+      {"lower above upper",
+       joint("<limit lower=\"2\" upper=\"1\" velocity=\"1\"/>"),
+       {":3", "joint \"j\"", "lower = \"2\"", "must not exceed"}},
       {"NaN limit", joint("<limit lower=\"nan\" upper=\"1\" velocity=\"1\"/>"), {"lower = \"nan\"", "finite"}},
       {"infinite limit", joint("<limit lower=\"-inf\" upper=\"1\" velocity=\"1\"/>"), {"lower = \"-inf\"", "finite"}},
       {"overflow", joint("<limit lower=\"-1e999\" upper=\"1\" velocity=\"1\"/>"), {"lower = \"-1e999\"", "number"}},
-      {"words for numbers", joint("<limit lower=\"-1,5\" upper=\"1\" velocity=\"1\"/>"), {"lower = \"-1,5\"", "number"}},
-      {"negative velocity", joint("<limit lower=\"0\" upper=\"1\" velocity=\"-1\"/>"), {"velocity = \"-1\"", "negative"}},
+      {"words for numbers",
+       joint("<limit lower=\"-1,5\" upper=\"1\" velocity=\"1\"/>"),
+       {"lower = \"-1,5\"", "number"}},
+      {"negative velocity",
+       joint("<limit lower=\"0\" upper=\"1\" velocity=\"-1\"/>"),
+       {"velocity = \"-1\"", "negative"}},
       {"zero axis", joint(kLimit + "<axis xyz=\"0 0 0\"/>"), {"<axis>", "\"0 0 0\"", "zero"}},
       {"short axis", joint(kLimit + "<axis xyz=\"0 1\"/>"), {"\"0 1\"", "three numbers"}},
       {"NaN origin", joint(kLimit + "<origin xyz=\"0 nan 0\"/>"), {"<origin>", "joint \"j\"", "finite"}},
@@ -79,7 +95,8 @@ std::vector<BadCase> bad_cases() {
       {"mimic of itself", joint(kLimit + "<mimic joint=\"j\"/>"), {"circle"}},
       {"mimic of a fixed joint",
        robot("<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" + fixed("k", "a", "c") +
-             "<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/>" + kLimit + "<mimic joint=\"k\"/></joint>"),
+             "<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/>" + kLimit +
+             "<mimic joint=\"k\"/></joint>"),
        {"\"k\"", "fixed"}},
       {"no geometry", robot("<link name=\"a\"><collision/></link>"), {"<geometry>", "link \"a\""}},
       {"empty geometry", shape(""), {"geometry", "empty"}},
@@ -105,7 +122,8 @@ TEST(RobotBadInput, EachIsRefusedWithFilePlaceValueAndRule) {
     }
     ASSERT_NE(message, "") << bad.what << " was accepted";
     EXPECT_NE(message.find("bad.urdf"), std::string::npos) << bad.what << ": " << message;
-    for (const std::string& part : bad.told) EXPECT_NE(message.find(part), std::string::npos) << bad.what << ": " << message;
+    for (const std::string& part : bad.told)
+      EXPECT_NE(message.find(part), std::string::npos) << bad.what << ": " << message;
   }
 }
 
@@ -125,14 +143,25 @@ TEST(RobotBadInput, MissingFilesAreIoErrors) {
 
 TEST(RobotBadInput, HarmlessOddities) {
   // Comments may talk about declarations; numbers may carry a plus or an exponent; a joint may have no velocity.
-  const Robot robot = Robot::from_strings(
-      "<?xml version=\"1.0\"?><!-- <!DOCTYPE no> <a> -->" +
-      joint("<!-- <!ENTITY> --><limit lower=\" -1e-1\" upper=\"+2.5\"/><axis xyz=\"0 0\n 2\"/>"));
+  const Robot robot =
+      Robot::from_strings("<?xml version=\"1.0\"?><!-- <!DOCTYPE no> <a> -->" +
+                          joint("<!-- <!ENTITY> --><limit lower=\" -1e-1\" upper=\"+2.5\"/><axis xyz=\"0 0\n 2\"/>"));
   EXPECT_EQ(robot.joints()[0].lower, -0.1);
   EXPECT_EQ(robot.joints()[0].upper, 2.5);
   EXPECT_EQ(robot.joints()[0].velocity, 1.0);
   EXPECT_EQ(robot.joints()[0].axis, Eigen::Vector3d::UnitZ());
   EXPECT_EQ(robot.report().warnings.size(), 1u);
+}
+
+TEST(RobotBadInput, SubgroupsThatDoubleEachOtherStayCheap) {
+  std::string srdf = "<robot name=\"r\"><group name=\"g0\"><joint name=\"j\"/></group>";
+  for (int i = 1; i < 60; ++i) {
+    const std::string below = "<group name=\"g" + std::to_string(i - 1) + "\"/>";
+    srdf += "<group name=\"g" + std::to_string(i) + "\">" + below + below + "</group>";
+  }
+  const Robot robot = Robot::from_strings(joint(kLimit), srdf + "</robot>");  // 2^59 visits if each were expanded
+  ASSERT_EQ(robot.groups().size(), 60u);
+  EXPECT_EQ(robot.groups().back().joints, (std::vector<std::string>{"j"}));
 }
 
 TEST(RobotBadInput, BaseLimitsAndKinds) {

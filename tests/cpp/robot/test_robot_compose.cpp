@@ -16,8 +16,7 @@ Eigen::VectorXd random_values(const Robot& robot, Rng& rng) {
   Eigen::VectorXd values(robot.value_count());
   for (const Joint& joint : robot.joints())
     for (int i = 0; joint.value_index >= 0 && i < joint.value_count(); ++i)
-      values[joint.value_index + i] =
-          rng.uniform(std::max(joint.lower, -3.0), std::min(joint.upper, 3.0));
+      values[joint.value_index + i] = rng.uniform(std::max(joint.lower, -3.0), std::min(joint.upper, 3.0));
   return values;
 }
 
@@ -82,9 +81,11 @@ const char* kGripper2f85 = "robots/robotiq_2f85/robotiq_arg85_description/robots
 
 TEST(RobotCompose, WrittenRobotsReloadIdentically) {
   MMGRASP_NEEDS_SHARED_DATA();
-  const Robot panda = load_full("robots/panda/expanded/panda.urdf", "robots/panda/moveit_resources_panda_moveit_config/config/panda.srdf");
+  const Robot panda = load_full("robots/panda/expanded/panda.urdf",
+                                "robots/panda/moveit_resources_panda_moveit_config/config/panda.srdf");
   expect_same_robot(panda, reload(panda));
-  for (const char* urdf : {kGripper2f85, "robots/ur/expanded/ur5e.urdf", "robots/wsg50/wsg_50_simulation/urdf/wsg_50.urdf"}) {
+  for (const char* urdf :
+       {kGripper2f85, "robots/ur/expanded/ur5e.urdf", "robots/wsg50/wsg_50_simulation/urdf/wsg_50.urdf"}) {
     const Robot robot = load_full(urdf);
     expect_same_robot(robot, reload(robot));
   }
@@ -120,9 +121,14 @@ TEST(RobotCompose, GripperOnTiagoStandsWhereItWasPut) {
     const Pose T_world_gripper = below[static_cast<std::size_t>(base.link_index("arm_tool_link"))] * T_tool_gripper;
     const Poses above = gripper.link_poses(gripper_values, T_world_gripper);
     for (std::size_t l = 0; l < base.links().size(); ++l)
-      EXPECT_LT((whole[static_cast<std::size_t>(robot.link_index(base.links()[l].name))].matrix() - below[l].matrix()).norm(), 1e-12);
+      EXPECT_LT(
+          (whole[static_cast<std::size_t>(robot.link_index(base.links()[l].name))].matrix() - below[l].matrix()).norm(),
+          1e-12);
     for (std::size_t l = 0; l < gripper.links().size(); ++l)
-      EXPECT_LT((whole[static_cast<std::size_t>(robot.link_index("g_" + gripper.links()[l].name))].matrix() - above[l].matrix()).norm(), 1e-12);
+      EXPECT_LT((whole[static_cast<std::size_t>(robot.link_index("g_" + gripper.links()[l].name))].matrix() -
+                 above[l].matrix())
+                    .norm(),
+                1e-12);
   }
 
   // Disabled pairs of the base are kept, the mounting pair is adjacent, the rest between the two is checked.
@@ -135,7 +141,8 @@ TEST(RobotCompose, GripperOnTiagoStandsWhereItWasPut) {
   expect_same_robot(robot, reload(robot));
 
   // The arm's SRDF group takes its tip beyond its own end, and IK reaches with it.
-  const Robot with_tcp = robot.with_link("tcp", "g_" + gripper.links()[0].name, pose_from_xyz_rpy({0, 0, 0.15}, {0, 0, 0}));
+  const Robot with_tcp =
+      robot.with_link("tcp", "g_" + gripper.links()[0].name, pose_from_xyz_rpy({0, 0, 0.15}, {0, 0, 0}));
   const JointGroup arm = with_tcp.group("arm_torso", "tcp");
   EXPECT_EQ(arm.size(), 8);
   const Eigen::VectorXd q = rng.uniform(arm.sample_lower(), arm.sample_upper());
@@ -146,15 +153,20 @@ TEST(RobotCompose, TwoOfTheSameArmKeepTheirSrdf) {
   MMGRASP_NEEDS_SHARED_DATA();
   const Robot arm = load_full("robots/panda/expanded/panda.urdf",
                               "robots/panda/moveit_resources_panda_moveit_config/config/panda.srdf");
-  const Robot table = Robot::from_strings("<robot name='table'><link name='top'><collision><geometry><box size='1 1 0.1'/></geometry></collision></link></robot>");
+  const Robot table = Robot::from_strings(
+      "<robot name='table'><link name='top'><collision><geometry><box size='1 1 "
+      "0.1'/></geometry></collision></link></robot>");
   const Robot both = table.mount(arm, "top", pose_from_xyz_rpy({0, 0.4, 0.05}, {0, 0, 0}), "left_")
                          .mount(arm, "top", pose_from_xyz_rpy({0, -0.4, 0.05}, {0, 0, M_PI}), "right_");
   EXPECT_EQ(both.groups().size(), 6u);
-  const JointGroup left = both.group("left_panda_arm"), right = both.group("right_panda_arm"), alone = arm.group("panda_arm");
+  const JointGroup left = both.group("left_panda_arm"), right = both.group("right_panda_arm"),
+                   alone = arm.group("panda_arm");
   Rng rng(33);
   const Eigen::VectorXd q = rng.uniform(left.lower(), left.upper());
-  EXPECT_LT((left.fk(q).matrix() - (pose_from_xyz_rpy({0, 0.4, 0.05}, {0, 0, 0}) * alone.fk(q)).matrix()).norm(), 1e-12);
-  EXPECT_LT((right.fk(q).matrix() - (pose_from_xyz_rpy({0, -0.4, 0.05}, {0, 0, M_PI}) * alone.fk(q)).matrix()).norm(), 1e-12);
+  EXPECT_LT((left.fk(q).matrix() - (pose_from_xyz_rpy({0, 0.4, 0.05}, {0, 0, 0}) * alone.fk(q)).matrix()).norm(),
+            1e-12);
+  EXPECT_LT((right.fk(q).matrix() - (pose_from_xyz_rpy({0, -0.4, 0.05}, {0, 0, M_PI}) * alone.fk(q)).matrix()).norm(),
+            1e-12);
   EXPECT_EQ(both.group_states().at("right_panda_arm").at("ready").at("right_panda_joint4"), -2.356);
   EXPECT_TRUE(both.pair_disabled(both.link_index("left_panda_leftfinger"), both.link_index("left_panda_link3")));
   EXPECT_FALSE(both.pair_disabled(both.link_index("left_panda_link5"), both.link_index("right_panda_link5")));

@@ -11,7 +11,9 @@ using namespace mmgrasp;
 
 namespace {
 
-Eigen::VectorXd pair(double a, double b) { return Eigen::Vector2d(a, b); }
+Eigen::VectorXd pair(double a, double b) {
+  return Eigen::Vector2d(a, b);
+}
 
 /// Samples of a cubic and a parabola, which Hermite interpolation reproduces.
 JointTrajectory cubic() {

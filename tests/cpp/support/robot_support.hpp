@@ -15,13 +15,15 @@
 #include "mmgrasp/robot/robot.hpp"
 
 /// Shared test data; tests that need it skip when it is absent.
-#define MMGRASP_NEEDS_SHARED_DATA()                                  \
-  if (!std::filesystem::exists(std::string(MMGRASP_SHARED_DATA)))    \
+#define MMGRASP_NEEDS_SHARED_DATA()                               \
+  if (!std::filesystem::exists(std::string(MMGRASP_SHARED_DATA))) \
   GTEST_SKIP() << "no shared test data at " << MMGRASP_SHARED_DATA
 
 namespace mmgrasp::testing_support {
 
-inline std::string shared(const std::string& path) { return std::string(MMGRASP_SHARED_DATA) + "/" + path; }
+inline std::string shared(const std::string& path) {
+  return std::string(MMGRASP_SHARED_DATA) + "/" + path;
+}
 
 inline Robot load_kinematics(const std::string& urdf, const std::string& srdf = "", BaseKind base = BaseKind::fixed) {
   RobotOptions options;
@@ -50,7 +52,8 @@ inline KDL::Frame to_kdl(const Pose& T) {
 inline KDL::Chain kdl_chain(const Robot& robot, int tip) {
   std::vector<const Joint*> path;
   for (int link = tip; link > 0; link = path.back()->parent_link)
-    path.push_back(&robot.joints()[static_cast<std::size_t>(robot.links()[static_cast<std::size_t>(link)].parent_joint)]);
+    path.push_back(
+        &robot.joints()[static_cast<std::size_t>(robot.links()[static_cast<std::size_t>(link)].parent_joint)]);
   KDL::Chain chain;
   for (auto it = path.rbegin(); it != path.rend(); ++it) {
     const Joint& joint = **it;
@@ -90,7 +93,8 @@ struct Json {
 
  private:
   static void skip(const std::string& text, std::size_t& at) {
-    while (at < text.size() && (std::isspace(static_cast<unsigned char>(text[at])) || text[at] == ',' || text[at] == ':'))
+    while (at < text.size() &&
+           (std::isspace(static_cast<unsigned char>(text[at])) || text[at] == ',' || text[at] == ':'))
       ++at;
   }
   static std::string parse_string(const std::string& text, std::size_t& at) {

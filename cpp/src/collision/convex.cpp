@@ -107,7 +107,10 @@ bool convex_collide(const Convex& a, const Convex& b, const Rigid& b_in_a, doubl
     if (along > 0 && along * along > reach * reach * axis.squaredNorm()) return false;
     if (i > 0 && (best - along <= 1e-13 * best || simplex.holds(p.w))) break;  // converged: |axis| is the distance
     simplex.add(p);
-    if (simplex.reduce()) return true;  // the origin lies inside
+    if (simplex.reduce()) {
+      if (along > 0) break;  // apart for certain: only rounding put the origin inside a flat tetrahedron
+      return true;
+    }
     const Eigen::Vector3d closest = simplex.closest();
     const double squared = closest.squaredNorm();
     if (squared <= reach * reach) return true;
@@ -127,9 +130,13 @@ ConvexGap convex_distance(const Convex& a, const Convex& b, const Rigid& b_in_a)
   ConvexGap gap;
   for (int i = 0; i < kMaxIterations; ++i) {
     const SimplexPoint p = difference(a, b, b_in_a, axis);
-    if (i > 0 && (best - axis.dot(p.w) <= 1e-13 * best || simplex.holds(p.w))) break;
+    const double along = axis.dot(p.w);
+    if (i > 0 && (best - along <= 1e-13 * best || simplex.holds(p.w))) break;
     simplex.add(p);
-    if (simplex.reduce()) return gap;
+    if (simplex.reduce()) {
+      if (along > 0 && i > 0) break;  // as in convex_collide
+      return gap;
+    }
     const Eigen::Vector3d closest = simplex.closest();
     const double squared = closest.squaredNorm();
     if (squared <= touching_gap(p) * touching_gap(p)) return gap;

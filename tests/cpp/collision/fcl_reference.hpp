@@ -25,7 +25,8 @@ struct Part {
 struct Body {
   std::vector<Part> parts;
   std::shared_ptr<const mmgrasp::TriangleMesh> closed_mesh;
-  std::vector<Eigen::Vector3d> probes;  ///< A point of each connected piece.
+  Eigen::AlignedBox3d bounds;           ///< Of the closed mesh.
+  std::vector<Eigen::Vector3d> probes;  ///< At least a point of each connected piece.
 };
 
 inline Geometry mesh_geometry(const mmgrasp::TriangleMesh& mesh) {
@@ -50,6 +51,7 @@ inline Body make_body(const mmgrasp::Shape& shape) {
     // Every vertex is a probe: the reference need not know which triangles hang together.
     body.probes = s->mesh->vertices;
     if (s->mesh->closed) body.closed_mesh = s->mesh;
+    for (const Eigen::Vector3d& v : s->mesh->vertices) body.bounds.extend(v);
   }
   if (const auto* s = std::get_if<Voxels>(&shape)) {
     body.probes = *s->centres;
@@ -66,6 +68,7 @@ inline bool surfaces_touch(const Body& a, const Pose& T_a, const Body& b, const 
   for (const Part& pa : a.parts) {
     for (const Part& pb : b.parts) {
       fcl::CollisionObjectd oa(pa.geometry, Pose(T_a * pa.T)), ob(pb.geometry, Pose(T_b * pb.T));
+      if (!oa.getAABB().overlap(ob.getAABB())) continue;
       fcl::CollisionRequestd request(1, false);
       fcl::CollisionResultd result;
       if (fcl::collide(&oa, &ob, request, result) > 0) return true;
@@ -78,7 +81,7 @@ inline bool inside(const Body& outer, const Pose& T_outer, const Body& inner, co
   if (!outer.closed_mesh) return false;
   const Pose T = T_outer.inverse() * T_inner;
   for (const Eigen::Vector3d& probe : inner.probes) {
-    if (mmgrasp::mesh_contains(*outer.closed_mesh, T * probe)) return true;
+    if (outer.bounds.contains(T * probe) && mmgrasp::mesh_contains(*outer.closed_mesh, T * probe)) return true;
   }
   return false;
 }

@@ -1,0 +1,75 @@
+"""What the tests share: paths, a small scenario that plans in seconds, and its plan, made once."""
+
+from __future__ import annotations
+
+import copy
+import os
+from pathlib import Path
+
+import mmgrasp as mg
+import pytest
+import yaml
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+DATA = REPOSITORY.parent / "shared" / "data"
+ASSETS = Path(mg.__file__).parent / "assets"
+
+
+@pytest.fixture(scope="session", autouse=True)
+def own_cache(tmp_path_factory):
+    """Tests never read or write the user's cache, but share one of their own."""
+    os.environ["XDG_CACHE_HOME"] = str(tmp_path_factory.mktemp("cache"))
+
+
+@pytest.fixture(scope="session")
+def data() -> Path:
+    if not DATA.is_dir():
+        pytest.skip("the shared test data is not there")
+    return DATA
+
+
+@pytest.fixture(scope="session")
+def storeroom() -> dict:
+    """The shipped scenario as plain values."""
+    return yaml.safe_load((ASSETS / "scenarios" / "storeroom.yaml").read_text())
+
+
+@pytest.fixture(scope="session")
+def small(storeroom) -> dict:
+    """One tray of the storeroom with two parts to pick: everything a plan has, in a few seconds."""
+    scenario = copy.deepcopy(storeroom)
+    tray = copy.deepcopy(scenario["trays"][0])
+    tray["targets"] = tray["targets"][:2]
+    scenario["trays"] = [tray]
+    scenario["name"] = "small"
+    scenario["reach"] = {"samples": 500_000}
+    return scenario
+
+
+@pytest.fixture(scope="session")
+def write(tmp_path_factory):
+    """Writes a scenario given as values and returns its path."""
+
+    def write_scenario(values: dict | str, name: str = "scenario.yaml") -> Path:
+        path = tmp_path_factory.mktemp("scenario") / name
+        path.write_text(values if isinstance(values, str) else yaml.safe_dump(values, sort_keys=False))
+        return path
+
+    return write_scenario
+
+
+@pytest.fixture(scope="session")
+def small_path(small, write) -> Path:
+    return write(small)
+
+
+@pytest.fixture(scope="session")
+def small_plan(small_path) -> mg.PartSupplyPlan:
+    plan = mg.plan_part_supply(small_path)
+    assert plan.outcome == mg.Outcome.solved, plan
+    return plan
+
+
+@pytest.fixture(scope="session")
+def small_plan_dict(small_plan) -> dict:
+    return small_plan.to_dict()

@@ -1,0 +1,133 @@
+"""The command: what it writes, its exit codes, and that it never shows a traceback."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import subprocess
+import sys
+
+import jsonschema
+import mmgrasp as mg
+import numpy as np
+import pytest
+from conftest import ASSETS
+from mmgrasp.cli import main
+from mmgrasp.plan_file import plan_schema, read_plan
+
+FETCH = ASSETS / "robots" / "fetchlike"
+
+
+@pytest.fixture(scope="module")
+def out(small_path, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("out")
+    assert main(["plan", str(small_path), "-o", str(folder)]) == 0
+    return folder
+
+
+def test_plan_writes_everything(out):
+    assert (out / "report.html").stat().st_size > 10_000
+    assert sorted(out.rglob("*.png"))
+    plan = read_plan(out / "plan.json")
+    jsonschema.validate(plan, plan_schema())
+    motions = sum(len(pick["motions"]) for pick in plan["picks"])
+    assert len(list((out / "trajectories").glob("pick_*.csv"))) == motions
+    assert len(list((out / "trajectories").glob("drive_*.csv"))) == len(plan["route"]) == len(plan["stops"]) + 1
+    assert not [p for p in out.rglob(".*") if p.is_file()], "a temporary file was left"
+
+
+def test_csv_holds_the_plans_numbers(out):
+    plan = read_plan(out / "plan.json")
+    first = sorted((out / "trajectories").glob("pick_00_*_0_reach.csv"))[0]
+    rows = list(csv.reader(first.read_text().splitlines()))
+    motion = plan["picks"][0]["motions"][0]
+    assert rows[0][:4] == ["time", "base.x", "base.y", "base.theta"]
+    assert rows[0][7:7 + len(plan["scenario"]["home"])] == plan["scenario"]["arm"]["joints"]
+    values = np.array(rows[1:], dtype=float)
+    np.testing.assert_array_equal(values[:, 0], motion["times"])
+    np.testing.assert_array_equal(values[:, 7:7 + len(plan["scenario"]["home"])], motion["positions"])
+
+
+def test_verify_accepts_the_plan(out, small_path, capfd):
+    assert main(["verify", str(out / "plan.json"), "--scenario", str(small_path)]) == 0
+    assert "the plan holds" in capfd.readouterr().out
+    assert main(["verify", str(out / "plan.json"), "--json", "--samples", "50"]) == 0
+    assert json.loads(capfd.readouterr().out)["ok"] is True
+
+
+@pytest.mark.parametrize(
+    ("content", "piece"),
+    [
+        ("{", "is no valid JSON"),
+        ("[]", "format"),
+        ('{"format": "mmgrasp-scenario"}', "mmgrasp-plan"),
+        ('{"format": "mmgrasp-plan", "version": 7}', "version"),
+        ('{"format": "mmgrasp-plan", "version": 1, "outcome": "solved"}', "scenario"),
+    ],
+)
+def test_verify_refuses_what_is_no_plan(tmp_path, capfd, content, piece):
+    (tmp_path / "plan.json").write_text(content)
+    assert main(["verify", str(tmp_path / "plan.json")]) == 2
+    error = capfd.readouterr().err
+    assert piece in error
+    assert "plan.json" in error
+
+
+def test_check_describes_the_robot(capfd):
+    assert main(["check", str(FETCH / "fetchlike.urdf"), "--srdf", str(FETCH / "fetchlike.srdf"), "--base", "diff_drive"]) == 0
+    text = capfd.readouterr().out
+    for piece in ("arm_with_torso", "torso_lift_joint", "never touch", "can be planned for", "diff_drive"):
+        assert piece in text
+    assert main(["check", str(FETCH / "fetchlike.urdf"), "--json"]) == 0
+    assert json.loads(capfd.readouterr().out)["ok"] is True
+
+
+def test_check_of_a_robot_with_missing_mesh(tmp_path, capfd):
+    urdf = """<robot name="r"><link name="a"><collision><geometry><mesh filename="package://p/none.stl"/></geometry></collision>
+    </link><link name="b"/><joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
+    <limit lower="-1" upper="1" velocity="1" effort="1"/></joint></robot>"""
+    (tmp_path / "r.urdf").write_text(urdf)
+    assert main(["check", str(tmp_path / "r.urdf")]) == 1
+    text = capfd.readouterr().out
+    assert "mesh not found: package://p/none.stl" in text
+    assert "cannot be planned for" in text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "piece"),
+    [
+        (["--version"], 0, mg.__version__),
+        ([], 2, "command"),
+        (["plaan"], 2, "plaan"),
+        (["plan", "none.yaml", "-o", "x"], 2, "none.yaml"),
+        (["plan", "none.yaml"], 2, "--out"),
+        (["plan", "none.yaml", "-o", "x", "--threads", "-2"], 2, "-2"),
+        (["check", "none.urdf"], 2, "none.urdf"),
+        (["check", "none.urdf", "--package", "p"], 2, "NAME=DIR"),
+        (["verify", "none.json"], 2, "none.json"),
+        (["view", "none.json"], 2, "none.json"),
+    ],
+)
+def test_exit_codes(arguments, code, piece, tmp_path):
+    done = subprocess.run([sys.executable, "-m", "mmgrasp.cli", *arguments], capture_output=True, text=True, cwd=tmp_path,
+                          timeout=60, env={**os.environ, "COLUMNS": "200"})
+    assert done.returncode == code
+    assert piece in done.stdout + done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_unknown_robot_lists_the_known(small_path, tmp_path, capfd):
+    assert main(["plan", str(small_path), "-o", str(tmp_path), "--robot", "tiagoo"]) == 2
+    assert "tiago" in capfd.readouterr().err
+
+
+def test_output_folder_that_cannot_be(small_plan, tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(mg.IoError, match="file"):
+        small_plan.save(tmp_path / "file" / "plan.json")
+
+
+def test_view_draws_a_picture(out, tmp_path):
+    assert main(["view", str(out / "plan.json"), "--png", str(tmp_path / "plan.png")]) == 0
+    assert (tmp_path / "plan.png").read_bytes().startswith(b"\x89PNG")

@@ -1,0 +1,40 @@
+"""Every example runs and says what it should."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+from conftest import ASSETS, REPOSITORY
+
+EXAMPLES = REPOSITORY / "examples"
+BUILD = REPOSITORY / "build" / "dev"
+
+
+@pytest.mark.parametrize("name", sorted(p.name for p in EXAMPLES.glob("[0-9]*.py")))
+def test_python_example(name, tmp_path):
+    done = subprocess.run([sys.executable, str(EXAMPLES / name)], capture_output=True, text=True, cwd=tmp_path, timeout=300)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip()
+
+
+def test_stand_alone_cmake_project(tmp_path):
+    """Install the library, build a consumer that knows nothing but find_package(mmgrasp), and run all C++ examples in it."""
+    if shutil.which("cmake") is None or not (BUILD / "cmake_install.cmake").is_file():
+        pytest.skip(f"no build in {BUILD}: ./dev build makes it")
+    prefix = tmp_path / "prefix"
+
+    def run(*command: str) -> str:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=600, env=os.environ)
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout
+
+    run("cmake", "--install", str(BUILD), "--prefix", str(prefix), "--component", "development")
+    consumer = tmp_path / "build"
+    run("cmake", "-S", str(EXAMPLES / "cmake_project"), "-B", str(consumer), "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}")
+    run("cmake", "--build", str(consumer))
+    for source in sorted((EXAMPLES / "cmake_project").glob("[0-9]*.cpp")) + sorted(EXAMPLES.glob("[0-9]*.cpp")):
+        assert run(str(consumer / source.stem), str(ASSETS)).strip()

@@ -1,0 +1,57 @@
+"""Ctrl-C ends a long call and leaves nothing half written. (How fast is measured elsewhere; here it must only end.)"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import mmgrasp as mg
+import pytest
+
+
+def interrupt_soon() -> threading.Timer:
+    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    return timer
+
+
+def test_building_a_database_can_be_interrupted(small_path, tmp_path):
+    arm = mg.load_scenario(small_path).setup.arm
+    timer = interrupt_soon()
+    begun = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        mg.ReachDatabase.load_or_build(arm, tmp_path, samples=2_000_000_000)
+    timer.join()
+    assert time.monotonic() - begun < 60, "the whole build would take an hour"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_error_in_the_progress_callback_ends_the_call(small_path):
+    arm = mg.load_scenario(small_path).setup.arm
+
+    def fail(stage, fraction):
+        raise RuntimeError("no more")
+
+    with pytest.raises(RuntimeError, match="no more"):
+        mg.ReachDatabase.build(arm, samples=2_000_000_000, progress=fail)
+
+
+def test_the_command_ends_on_ctrl_c(small, write, tmp_path):
+    scenario = {**small, "reach": {"samples": 2_000_000_000}}
+    command = [sys.executable, "-m", "mmgrasp.cli", "plan", str(write(scenario)), "-o", str(tmp_path / "out")]
+    environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path / "cache")}
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment)
+    assert process.stderr is not None
+    for line in process.stderr:  # wait until the long stage has begun
+        if "reach" in line:
+            break
+    process.send_signal(signal.SIGINT)
+    error = process.communicate(timeout=60)[1]
+    assert process.returncode == 130
+    assert "Traceback" not in error
+    assert not (tmp_path / "out").exists()
+    assert not list((tmp_path / "cache").rglob("*.reach"))

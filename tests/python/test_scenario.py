@@ -1,0 +1,213 @@
+"""Bad scenarios: one clear message that names file, line, key, value and rule, and the right exit code. Never a traceback."""
+
+from __future__ import annotations
+
+import copy
+import json
+import math
+import re
+
+import jsonschema
+import mmgrasp as mg
+import numpy as np
+import pytest
+import yaml
+from conftest import ASSETS
+from mmgrasp.cli import main
+
+REMOVE = object()
+
+
+def edited(scenario: dict, path: str, value) -> dict:
+    """A copy with one value set; the path is written like trays.0.size."""
+    out = copy.deepcopy(scenario)
+    target = out
+    *parents, last = [int(key) if key.isdigit() else key for key in path.split(".")]
+    for key in parents:
+        target = target[key]
+    if value is REMOVE:
+        del target[last]
+    else:
+        target[last] = value
+    return out
+
+
+BAD = [
+    # path, value, pieces of the message
+    ("format", "mmgrasp-plan", ["format", "mmgrasp-scenario"]),
+    ("format", REMOVE, ["format"]),
+    ("version", 2, ["version", "2", "reads version 1"]),
+    ("traays", [], ["traays", "did you mean trays?"]),
+    ("start", REMOVE, ["start is missing"]),
+    ("start", [0, 0], ["start", "3 numbers"]),
+    ("start", [0, 0, math.nan], ["start[2]", "nan", "finite"]),
+    ("start", "here", ["start", "'here'", "list"]),
+    ("positioning_uncertainty", -0.1, ["positioning_uncertainty", "-0.1", ">= 0"]),
+    ("positioning_uncertainty", math.inf, ["positioning_uncertainty", "inf", "finite"]),
+    ("positioning_uncertainty", True, ["positioning_uncertainty", "True", "number"]),
+    ("robot.urdf", "asset:robots/nothing.urdf", ["robot.urdf", "no such file"]),
+    ("robot.srdf", "missing.srdf", ["robot.srdf", "missing.srdf", "no such file"]),
+    ("robot.base", "wheels", ["robot.base", "wheels", "diff_drive"]),
+    ("robot.base", "fixed", ["robot", "diff_drive"]),
+    ("robot.group", "arm_with_torsoo", ["robot.group", "did you mean arm_with_torso?"]),
+    ("robot.group", {"base_link": "nowhere"}, ["robot.group.base_link", "nowhere", "no such link"]),
+    ("robot.tcp", "gripper_tpc", ["robot.tcp", "did you mean gripper_tcp?"]),
+    ("robot.home.elbow", 1.0, ["robot.home.elbow", "elbow_flex_joint"]),
+    ("robot.home.elbow_flex_joint", REMOVE, ["robot.home", "elbow_flex_joint"]),
+    ("robot.home.shoulder_lift_joint", 9.0, ["shoulder_lift_joint", "9.0", "must be in"]),
+    ("robot.joints.head", 0.0, ["robot.joints.head", "head_"]),
+    ("robot.base_limits.speed", 1.0, ["robot.base_limits.speed", "unknown key"]),
+    ("robot.base_limits.linear_velocity", 0, ["linear_velocity", "> 0"]),
+    ("robot.mount", [{"urdf": "none.urdf", "parent_link": "x"}], ["robot.mount[0].urdf", "no such file"]),
+    ("robot.frames", [{"name": "tip2", "parent": "nope"}], ["robot.frames[0].parent", "nope"]),
+    ("gripper.approach", [1, 1, 0], ["gripper.approach", "unit"]),
+    ("gripper.closing", [1, 0, 0], ["gripper.closing", "orthogonal"]),
+    ("gripper.max_opening", 0, ["gripper.max_opening", "> 0"]),
+    ("gripper.joints.0.name", "finger", ["gripper.joints[0]", "finger"]),
+    ("gripper.joints.0.open", 5.0, ["gripper.joints[0].open", "5.0"]),
+    ("gripper.finger_links", ["thumb"], ["gripper.finger_links[0]", "thumb"]),
+    ("carry.size", [0.3, 0, 0.1], ["carry.size[1]", "0", "> 0"]),
+    ("carry.parent", "gripper_link", ["carry", "gripper_link"]),
+    ("carry.pose", {"xyz": [-0.1, 0, 0.6], "rpy": [0.3, 0, 0]}, ["carry.pose", "level"]),
+    ("obstacles.0.box", [0, 1, 1], ["obstacles[0].box[0]", "0", "> 0"]),
+    ("obstacles.0.boxx", [1, 1, 1], ["obstacles[0].boxx", "did you mean box?"]),
+    ("obstacles.0.pose", {"xyz": [1, 2]}, ["obstacles[0].pose.xyz", "3 numbers"]),
+    ("obstacles.0.pose", {"xyz": [1, 2, 3], "quat_xyzw": [0, 0, 0, 2]}, ["quat_xyzw", "norm"]),
+    ("obstacles.0.name", "wall north", ["wall north", "twice"]),
+    ("obstacles.0", {"name": "rack", "mesh": "rack.stl"}, ["obstacles[0].mesh", "rack.stl", "no such file"]),
+    ("obstacles.0", {"name": "rack", "mesh": "../bad.stl"}, ["obstacles[0].mesh", "bad.stl"]),
+    ("obstacles.0", {"name": "rack"}, ["obstacles[0]", "exactly one of", "box"]),
+    ("part_types.bracket.box", [0.03, 0.05, 0], ["part_types.bracket.box[2]", "> 0"]),
+    ("part_types.bracket.cylinder", {"radius": 1, "length": 1}, ["part_types.bracket", "exactly one of"]),
+    ("part_types.bracket.box", [0.14, 0.14, 0.14], ["bracket", "wall"]),
+    ("part_types.bracket.grasp_options", {"approachs": 4}, ["approachs", "did you mean approaches?"]),
+    ("part_types.bracket.grasp_options", {"friction": -1}, ["grasp_options", "friction"]),
+    ("trays.0.parts.type", "braket", ["trays[0].parts.type", "did you mean bracket?"]),
+    ("trays.0.parts.grid", [3, 0], ["trays[0].parts.grid[1]", ">= 1"]),
+    ("trays.0.parts.grid", [3, 40], ["trays[0].parts", "wall"]),
+    ("trays.0.parts.spacing", [0.08], ["trays[0].parts.spacing", "2 numbers"]),
+    ("trays.0.size", [0.3, 0.4, -1], ["trays[0].size[2]", "> 0"]),
+    ("trays.0.targets", [99], ["trays[0].targets[0]", "99"]),
+    ("trays.0.targets", ["bracket_99"], ["trays[0].targets[0]", "bracket_99"]),
+    ("trays.0.targets", [], ["trays", "at least one"]),
+    ("trays.0.pose", {"xyz": [2.78, -1.3, 0.706], "rpy": [0.2, 0, 0]}, ["trays[0].pose", "level"]),
+    ("trays", [], ["trays", "at least one"]),
+    ("options.grid_resolutoin", 0.05, ["did you mean grid_resolution?"]),
+    ("options.grid_resolution", 0, ["options", "resolution", "0"]),
+    ("options.grid_resolution", "fine", ["options.grid_resolution", "number"]),
+    ("options.seed", 1.5, ["options.seed", "1.5", "whole number"]),
+    ("reach.samples", 0, ["reach", "samples", "0"]),
+    ("reach.sample", 10, ["reach.sample", "did you mean samples?"]),
+    ("start", [2.8, -0.7, 0], ["start", "in collision", "touches"]),
+    ("goal", [2.8, -0.7, 0], ["goal", "in collision", "touches"]),
+]
+
+
+@pytest.mark.parametrize(("path", "value", "pieces"), BAD, ids=[f"{i:02d}-{entry[0]}" for i, entry in enumerate(BAD)])
+def test_bad_scenario_gets_one_message(small, write, capfd, tmp_path, path, value, pieces):
+    file = write(edited(small, path, value))
+    (file.parent.parent / "bad.stl").write_text("solid nothing\n")
+    assert main(["plan", str(file), "-o", str(tmp_path / "out")]) == 2
+    message = capfd.readouterr().err
+    error = [line for line in message.splitlines() if line.startswith("mmgrasp: ")]
+    assert len(error) == 1, message
+    assert "Traceback" not in message
+    assert file.name in error[0]
+    for piece in pieces:
+        assert piece in error[0]
+    assert not (tmp_path / "out").exists()
+
+
+def test_part_larger_than_the_gripper(small, write):
+    scenario = edited(small, "part_types.bracket.box", [0.12, 0.12, 0.07])
+    scenario["trays"][0]["parts"] = [{"type": "bracket", "xyz": [0, 0]}]
+    scenario["trays"][0]["targets"] = "all"
+    with pytest.raises(mg.InvalidInput, match=r"part_types\.bracket.*larger than the gripper.*0\.1 m"):
+        mg.load_scenario(write(scenario))
+
+
+def test_messages_name_the_line(small, write):
+    text = yaml.safe_dump(small, sort_keys=False)
+    number = next(i for i, line in enumerate(text.splitlines(), 1) if line.startswith("positioning_uncertainty"))
+    file = write(text.replace("positioning_uncertainty: 0.1", "positioning_uncertainty: -1"))
+    with pytest.raises(mg.InvalidInput, match=re.escape(f"{file}:{number}: positioning_uncertainty = -1")):
+        mg.load_scenario(file)
+
+
+@pytest.mark.parametrize(
+    ("text", "piece"),
+    [
+        ("", "format"),
+        ("just a word", "format"),
+        ("- a\n- list\n", "format"),
+        ("a: [1, 2\nb: 3\n", "is no valid YAML"),
+        ("format: mmgrasp-scenario\nformat: mmgrasp-scenario\n", ":2: format: is given twice"),
+        ("1: 2\n", "a key must be a name"),
+        ("a: !!python/object:os.system x\n", "is no valid YAML"),
+        ("a: " + "[" * 80 + "]" * 80, "deep"),
+    ],
+)
+def test_what_is_no_scenario(write, text, piece):
+    with pytest.raises(mg.InvalidInput, match=re.escape(piece)):
+        mg.load_scenario(write(text))
+
+
+def test_unreadable_files(tmp_path):
+    with pytest.raises(mg.IoError, match=r"none\.yaml"):
+        mg.load_scenario(tmp_path / "none.yaml")
+    (tmp_path / "binary.yaml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(mg.IoError, match="UTF-8"):
+        mg.load_scenario(tmp_path / "binary.yaml")
+    with pytest.raises(mg.IoError):
+        mg.load_scenario(tmp_path)
+
+
+def test_no_plan_is_explained(small, write, capfd, tmp_path):
+    file = write(edited(small, "positioning_uncertainty", 0.9))
+    assert main(["plan", str(file), "-o", str(tmp_path), "--no-pictures"]) == 3
+    assert "uncertainty" in capfd.readouterr().out
+    plan = json.loads((tmp_path / "plan.json").read_text())
+    assert plan["outcome"] != "solved"
+    assert plan["obstructions"]
+    assert main(["verify", str(tmp_path / "plan.json")]) == 1
+
+
+def test_tray_out_of_reach_is_explained(small, write, capfd, tmp_path):
+    scenario = edited(small, "trays.0.pose.xyz", [2.78, -1.3, 2.5])
+    assert main(["plan", str(write(scenario)), "-o", str(tmp_path), "--no-pictures"]) == 3
+    assert "A" in capfd.readouterr().out
+    assert any(o["tray"] == "A" for o in json.loads((tmp_path / "plan.json").read_text())["obstructions"])
+
+
+def test_parts_lie_where_the_grid_says(small_path):
+    scenario = mg.load_scenario(small_path)
+    tray = scenario.trays[0].tray
+    assert [p.name for p in tray.parts[:2]] == ["A/bracket_00", "A/bracket_01"]
+    first = np.linalg.inv(tray.T_world_tray) @ tray.parts[0].T_world_part
+    np.testing.assert_allclose(first[:3, 3], [-0.08, -0.12, 0.036], atol=1e-12)
+    assert [p.name for p in tray.parts if p.target] == ["A/bracket_00", "A/bracket_03"]
+    walls = scenario.world.shapes_of("tray A")
+    low = np.min([w.bounds[0] for w in walls], axis=0)
+    high = np.max([w.bounds[1] for w in walls], axis=0)
+    np.testing.assert_allclose(high - low, [0.30, 0.40, 0.10], atol=1e-12)
+
+
+def test_listed_parts_and_own_grasps(small, write):
+    scenario = copy.deepcopy(small)
+    pose = {"xyz": [0, 0, 0.01], "rpy": [0, math.pi / 2, 0]}
+    scenario["part_types"]["bracket"]["grasps"] = [{"pose": pose, "width": 0.03}, {"pose": pose, "width": 0.2}]
+    scenario["trays"][0]["parts"] = [
+        {"type": "bracket", "xyz": [0.05, 0.0], "rpy": [0, 0, 0.3], "name": "left"},
+        {"type": "bracket", "xyz": [-0.05, 0.0, 0.1]},
+    ]
+    scenario["trays"][0]["targets"] = ["left"]
+    parts = mg.load_scenario(write(scenario)).trays[0].tray.parts
+    assert [p.name for p in parts] == ["A/left", "A/bracket_01"]
+    assert [p.target for p in parts] == [True, False]
+    assert [g.width for g in parts[0].grasps] == [0.03]
+
+
+@pytest.mark.parametrize("name", sorted(p.name for p in (ASSETS / "scenarios").glob("*.yaml")))
+def test_shipped_scenarios_keep_the_schema(name):
+    schema = json.loads((ASSETS.parent / "schemas" / "scenario.schema.json").read_text())
+    jsonschema.validate(yaml.safe_load((ASSETS / "scenarios" / name).read_text()), schema)

@@ -1,0 +1,226 @@
+"""A real plan broken in one physical way at a time is refused, with a fault that names it."""
+
+from __future__ import annotations
+
+import copy
+import json
+
+import mmgrasp as mg
+import pytest
+from mmgrasp.plan_file import runs_of
+
+
+def motion(plan, kind, pick=0):
+    return next(m for m in plan["picks"][pick]["motions"] if m["kind"] == kind)
+
+
+def joint_moved(plan):
+    m = motion(plan, "reach")
+    m["positions"][len(m["positions"]) // 2][1] += 0.3
+
+
+def end_moved(plan):
+    motion(plan, "approach")["positions"][-1][3] += 0.02
+
+
+def joint_beyond_limit(plan):
+    m = motion(plan, "carry")
+    m["positions"][len(m["positions"]) // 2][2] += 7.0
+
+
+def too_fast(plan):
+    for m in plan["picks"][0]["motions"]:
+        m["times"] = [t / 3 for t in m["times"]]
+        m["velocities"] = [[3 * v for v in row] for row in m["velocities"]]
+
+
+def obstacle_added(plan):
+    x, y, _ = plan["stops"][0]["pose"]
+    shape = {"type": "box", "pose": {"xyz": [0, 0, 0], "quat_xyzw": [0, 0, 0, 1]}, "size": [0.5, 0.5, 2.0]}
+    plan["scenario"]["obstacles"].append(
+        {"name": "surprise", "pose": {"xyz": [x, y, 1.0], "quat_xyzw": [0, 0, 0, 1]}, "shapes": [shape]}
+    )
+
+
+def obstacle_on_the_route(plan):
+    poses = plan["route"][0]["poses"]
+    a, b = max(zip(poses[:-1], poses[1:], strict=True), key=lambda e: abs(e[0][0] - e[1][0]) + abs(e[0][1] - e[1][1]))
+    xyz = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, 0.2]
+    shape = {"type": "box", "pose": {"xyz": [0, 0, 0], "quat_xyzw": [0, 0, 0, 1]}, "size": [0.1, 0.1, 0.4]}
+    plan["scenario"]["obstacles"].append({"name": "box", "pose": {"xyz": xyz, "quat_xyzw": [0, 0, 0, 1]}, "shapes": [shape]})
+
+
+def stop_shifted(plan):
+    plan["stops"][0]["pose"][0] += 0.15
+
+
+def stop_turned(plan):
+    plan["stops"][0]["pose"][2] += 0.2
+
+
+def part_forgotten(plan):
+    del plan["picks"][-1]
+
+
+def part_picked_twice(plan):
+    plan["picks"].append(copy.deepcopy(plan["picks"][0]))
+
+
+def motions_swapped(plan):
+    m = plan["picks"][0]["motions"]
+    m[1], m[2] = m[2], m[1]
+
+
+def motion_missing(plan):
+    del plan["picks"][0]["motions"][2]
+
+
+def picks_exchanged_motions(plan):
+    a, b = plan["picks"][0], plan["picks"][1]
+    a["motions"], b["motions"] = b["motions"], a["motions"]
+
+
+def part_renamed(plan):
+    plan["picks"][0]["part"] = "A/bracket_99"
+
+
+def other_grasp(plan):
+    pick = plan["picks"][0]
+    part = next(p for p in plan["scenario"]["parts"] if p["name"] == pick["part"])
+    pick["grasp"] = (pick["grasp"] + 1) % len(part["grasps"])
+
+
+def grasp_out_of_range(plan):
+    plan["picks"][0]["grasp"] = 100000
+
+
+def part_moved(plan):
+    name = plan["picks"][0]["part"]
+    part = next(p for p in plan["scenario"]["parts"] if p["name"] == name)
+    part["pose"]["xyz"][0] += 0.01
+
+
+def route_cut(plan):
+    del plan["route"][-1]
+
+
+def route_jumps(plan):
+    leg = max(plan["route"], key=lambda leg: len(leg["poses"]))
+    leg["poses"][len(leg["poses"]) // 2][1] += 0.4
+
+
+def route_sideways(plan):
+    leg = plan["route"][0]
+    leg["poses"] = [leg["poses"][0], leg["poses"][-1]]
+
+
+def start_elsewhere(plan):
+    plan["scenario"]["start"][0] -= 0.3
+
+
+def fingers_closed_too_early(plan):
+    motion(plan, "approach")["opening"] = 0.0
+    motion(plan, "reach")["opening"] = 0.0
+
+
+def fingers_open_while_holding(plan):
+    motion(plan, "carry")["opening"] = plan["scenario"]["gripper"]["max_opening"]
+
+
+def not_holding(plan):
+    motion(plan, "carry")["holding"] = False
+
+
+def time_runs_backwards(plan):
+    times = motion(plan, "lift")["times"]
+    times[-1] = times[-2] - 0.01
+
+
+def time_stands(plan):
+    times = motion(plan, "reach")["times"]
+    times[3] = times[2]
+
+
+def stop_added(plan):
+    plan["stops"].append(copy.deepcopy(plan["stops"][0]))
+    last = plan["route"][-1]["poses"][0]
+    plan["route"].insert(-1, {"poses": [list(last), list(last)], "length": 0, "turning": 0, "duration": 0})
+
+
+def bound_lowered(plan):
+    plan["lower_bound"] = 0
+
+
+def uncertainty_grown(plan):
+    plan["scenario"]["positioning_uncertainty"] = 0.8
+
+
+def region_emptied(plan):
+    plan["regions"][0]["cells"] = {}
+
+
+def wrist_jumps(plan):
+    m = motion(plan, "carry")
+    for row in m["positions"][len(m["positions"]) // 2:]:
+        row[-1] += 0.5
+
+
+def robot_shrunk_arm_limits(plan):
+    plan["scenario"]["arm"]["velocity_limits"] = [v / 10 for v in plan["scenario"]["arm"]["velocity_limits"]]
+
+
+def bin_moved(plan):
+    plan["scenario"]["carry"]["pose"]["xyz"][0] -= 0.5
+
+
+BREAKS = [
+    joint_moved, end_moved, joint_beyond_limit, too_fast, obstacle_added, obstacle_on_the_route, stop_shifted, stop_turned,
+    part_forgotten, part_picked_twice, motions_swapped, motion_missing, picks_exchanged_motions, part_renamed, other_grasp,
+    grasp_out_of_range, part_moved, route_cut, route_jumps, route_sideways, start_elsewhere, fingers_closed_too_early,
+    fingers_open_while_holding, not_holding, time_runs_backwards, time_stands, stop_added, bound_lowered, uncertainty_grown,
+    region_emptied, wrist_jumps, robot_shrunk_arm_limits, bin_moved,
+]
+
+
+def test_the_plan_itself_holds(small_plan_dict):
+    verdict = mg.verify_plan(small_plan_dict)
+    assert verdict.ok, verdict.faults
+    assert verdict.configurations_checked > 100
+    assert all(rate.good >= 0.999 * rate.samples for rate in verdict.rates)
+    assert verdict.minimal_stops == len(small_plan_dict["stops"])
+
+
+@pytest.mark.parametrize("breaking", BREAKS, ids=lambda f: f.__name__)
+def test_broken_plans_are_refused(small_plan_dict, breaking):
+    plan = copy.deepcopy(small_plan_dict)
+    breaking(plan)
+    assert plan != small_plan_dict, "the break changed nothing"
+    verdict = mg.verify_plan(plan, samples=200)
+    assert not verdict.ok
+    assert all(fault.code and fault.message for fault in verdict.faults)
+
+
+def test_a_changed_scenario_is_named(small_plan_dict, small, write):
+    changed = copy.deepcopy(small)
+    changed["obstacles"][0]["box"][0] += 0.01
+    verdict = mg.verify_plan(small_plan_dict, scenario=write(changed), samples=50)
+    assert [f.code for f in verdict.faults] == ["scenario-changed"]
+    assert "obstacles[0]" in verdict.faults[0].where
+
+
+def test_values_that_are_no_numbers_are_refused(small_plan_dict):
+    for value in (None, "x", float("nan"), [1]):
+        plan = json.loads(json.dumps(small_plan_dict))
+        plan["picks"][0]["motions"][0]["positions"][0][0] = value
+        with pytest.raises(mg.InvalidInput, match=r"picks\[0\]\.motions\[0\]\.positions"):
+            mg.verify_plan(plan)
+
+
+def test_runs_hold_every_cell():
+    import numpy as np
+
+    layer = np.random.default_rng(1).integers(0, 2, (7, 11))
+    again = np.zeros_like(layer)
+    for iy, a, b in runs_of(layer):
+        again[iy, a:b] = 1
+    np.testing.assert_array_equal(layer, again)

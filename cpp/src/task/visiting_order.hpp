@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/task/base_route.hpp"
+#include "mmgrasp/task/base_sequence.hpp"
+#include "mmgrasp/task/problem.hpp"
+
+namespace mmgrasp {
+
+/// Plans drives between places and remembers them; keeps a little away from the scene where it can.
+class BaseRoutes {
+ public:
+  BaseRoutes(const PartSupplyProblem& problem, const Monitor& monitor);
+
+  /// A drive with all parts in place: it stays free when parts leave.
+  BasePath between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+  /// The same for many pairs at once, in parallel.
+  void prepare(const std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& pairs);
+
+ private:
+  using Key = std::array<double, 6>;
+  BasePath plan(CollisionChecker& padded, CollisionChecker& bare, const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+
+  const PartSupplyProblem& problem_;
+  const Monitor& monitor_;
+  CollisionChecker padded_, bare_;
+  std::map<Key, BasePath> known_;
+};
+
+/// Order in which the stops are visited from start to goal. Up to 6 stops by the lengths of planned drives, more by straight
+/// distances. Empty when some stop cannot be driven to (then `missing` names its index, -1 for the goal).
+std::vector<int> visiting_order(const PartSupplyProblem& problem, const std::vector<Stop>& stops, BaseRoutes& routes,
+                                int& missing);
+
+}  // namespace mmgrasp

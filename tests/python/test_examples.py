@@ -36,5 +36,5 @@ def test_stand_alone_cmake_project(tmp_path):
     consumer = tmp_path / "build"
     run("cmake", "-S", str(EXAMPLES / "cmake_project"), "-B", str(consumer), "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}")
     run("cmake", "--build", str(consumer))
-    for source in sorted((EXAMPLES / "cmake_project").glob("[0-9]*.cpp")) + sorted(EXAMPLES.glob("[0-9]*.cpp")):
+    for source in [*(EXAMPLES / "cmake_project").glob("*.cpp"), *sorted(EXAMPLES.glob("[0-9]*.cpp"))]:
         assert run(str(consumer / source.stem), str(ASSETS)).strip()

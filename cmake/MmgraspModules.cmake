@@ -1,6 +1,6 @@
 # mmgrasp_module(name [LINK targets...]): cpp/src/<name>/*.cpp as an object library that joins libmmgrasp.
 # mmgrasp_library(): the one shared library made of all modules.
-# mmgrasp_ompl_plugin(): the private plugin that alone links OMPL (docs/dependencies.md says why).
+# mmgrasp_ompl_plugin(): the private plugin that alone links OMPL (docs/methods/plan.md says why).
 set_property(GLOBAL PROPERTY MMGRASP_MODULES "")
 
 add_library(mmgrasp_flags INTERFACE)

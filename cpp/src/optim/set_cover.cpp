@@ -16,7 +16,9 @@
 namespace mmgrasp {
 namespace {
 
-double cost_of(const SetCoverProblem& problem, int set) { return problem.costs.empty() ? 1.0 : problem.costs[set]; }
+double cost_of(const SetCoverProblem& problem, int set) {
+  return problem.costs.empty() ? 1.0 : problem.costs[set];
+}
 
 double cost_of(const SetCoverProblem& problem, const std::vector<int>& sets) {
   double sum = 0;
@@ -63,7 +65,8 @@ SetCoverProblem restricted(const SetCoverProblem& problem, const detail::Reduced
   return small;
 }
 
-/// Cheapest set per newly covered element first, then sets that became superfluous leave: the answer when CBC has none in time.
+/// Cheapest set per newly covered element first, then sets that became superfluous leave: the answer when CBC has none
+/// in time.
 std::vector<int> greedy_cover(const SetCoverProblem& problem) {
   std::vector<int> times_covered(problem.elements, 0), chosen;
   int missing = problem.elements;
@@ -71,7 +74,8 @@ std::vector<int> greedy_cover(const SetCoverProblem& problem) {
     int best = -1, best_gain = 0;
     for (int s = 0; s < static_cast<int>(problem.sets.size()); ++s) {
       const auto& set = problem.sets[s];
-      const int gain = static_cast<int>(std::count_if(set.begin(), set.end(), [&](int e) { return times_covered[e] == 0; }));
+      const int gain =
+          static_cast<int>(std::count_if(set.begin(), set.end(), [&](int e) { return times_covered[e] == 0; }));
       if (gain > 0 && (best < 0 || cost_of(problem, s) * best_gain < cost_of(problem, best) * gain)) {
         best = s;
         best_gain = gain;
@@ -147,7 +151,8 @@ BranchAndBoundAnswer branch_and_bound(const SetCoverProblem& problem, double tim
   return answer;
 }
 
-/// A bound that rounding in the linear programmes cannot have lifted too far; whole-numbered costs allow rounding it up.
+/// A bound that rounding in the linear programmes cannot have lifted too far; whole-numbered costs allow rounding it
+/// up.
 double safe_bound(double bound, const std::vector<double>& costs) {
   if (!std::isfinite(bound) || bound < 0) return 0;
   const double lowered = bound - 1e-6 * std::max(1.0, std::abs(bound));

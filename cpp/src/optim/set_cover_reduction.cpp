@@ -100,7 +100,8 @@ class Reduction {
       bool dominated = element < 0;
       // A dominating set contains every element of s, so looking through the sets of one of them is enough.
       for (int t = 0; !dominated && t < set_count(); ++t) {
-        if (t == s || !sets_of_[element].test(t) || cost(t) > cost(s) || !elements_of_[s].subset_of(elements_of_[t])) continue;
+        if (t == s || !sets_of_[element].test(t) || cost(t) > cost(s) || !elements_of_[s].subset_of(elements_of_[t]))
+          continue;
         const bool twins = cost(t) == cost(s) && elements_of_[t].subset_of(elements_of_[s]);
         dominated = !twins || t < s;
       }
@@ -135,6 +136,8 @@ class Reduction {
 
 }  // namespace
 
-ReducedCover reduce_set_cover(const SetCoverProblem& problem) { return Reduction(problem).run(); }
+ReducedCover reduce_set_cover(const SetCoverProblem& problem) {
+  return Reduction(problem).run();
+}
 
 }  // namespace mmgrasp::detail

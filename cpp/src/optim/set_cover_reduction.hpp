@@ -29,8 +29,8 @@ struct ReducedCover {
   std::vector<int> elements;  ///< Elements not covered by `forced`, without those implied by others, ascending.
 };
 
-/// Repeats until nothing changes: take the only set of an element; drop a set whose elements another set covers for no more
-/// cost; drop an element that is covered whenever another one is. Every element must lie in some set.
+/// Repeats until nothing changes: take the only set of an element; drop a set whose elements another set covers for no
+/// more cost; drop an element that is covered whenever another one is. Every element must lie in some set.
 ReducedCover reduce_set_cover(const SetCoverProblem& problem);
 
 }  // namespace mmgrasp::detail

@@ -19,8 +19,8 @@ void check_lengths(const Eigen::MatrixXd& lengths) {
           "must be square, (stops + 2) x (stops + 2)");
   for (int i = 0; i < lengths.rows(); ++i) {
     for (int j = 0; j < lengths.cols(); ++j) {
-      require(lengths(i, j) >= 0 || i == j, "lengths(" + std::to_string(i) + ", " + std::to_string(j) + ")", lengths(i, j),
-              "must be 0 or more (infinite: no way)");
+      require(lengths(i, j) >= 0 || i == j, "lengths(" + std::to_string(i) + ", " + std::to_string(j) + ")",
+              lengths(i, j), "must be 0 or more (infinite: no way)");
     }
   }
 }

@@ -15,7 +15,8 @@ struct Corner {
   double radius = 0;  // 0: sharp.
 };
 
-/// With h half the turn: an arc of radius r touches both edges r tan(h) from the corner and misses it by r (1 / cos(h) - 1).
+/// With h half the turn: an arc of radius r touches both edges r tan(h) from the corner and misses it by r (1 / cos(h)
+/// - 1).
 Corner round_corner(const Eigen::VectorXd& before, const Eigen::VectorXd& after, double room, double deviation) {
   Corner corner;
   // Half-angle from chords, exact for small and for nearly opposite directions.
@@ -50,7 +51,8 @@ Eigen::VectorXd BlendedPath::Segment::second_derivative(double s) const {
   return (std::cos(s / radius) * normal - std::sin(s / radius) * tangent) / radius;
 }
 
-void BlendedPath::add_line(const Eigen::VectorXd& from, const Eigen::VectorXd& direction, double length, bool stop_before) {
+void BlendedPath::add_line(const Eigen::VectorXd& from, const Eigen::VectorXd& direction, double length,
+                           bool stop_before) {
   Segment segment;
   segment.start = this->length();
   segment.length = length;

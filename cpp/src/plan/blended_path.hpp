@@ -5,17 +5,18 @@
 
 namespace mmgrasp::detail {
 
-/// A joint path of straight edges whose corners are rounded by circular arcs, by arc length s. Each arc lies in the plane of
-/// its two edges, touches both, takes at most half of either, and passes its corner within a given distance. A corner with
-/// no room or no deviation stays sharp: the motion has to stop there.
+/// A joint path of straight edges whose corners are rounded by circular arcs, by arc length s. Each arc lies in the
+/// plane of its two edges, touches both, takes at most half of either, and passes its corner within a given distance. A
+/// corner with no room or no deviation stays sharp: the motion has to stop there.
 class BlendedPath {
  public:
   struct Segment {
-    double start = 0, length = 0;      // Arc length.
-    double radius = 0;                 // 0: straight.
-    Eigen::VectorXd origin;            // At its start.
-    Eigen::VectorXd tangent, normal;   // Unit, at its start; the normal points to the arc's centre (empty when straight).
-    bool stop_before = false;          // The path has a sharp corner at its start.
+    double start = 0, length = 0;  // Arc length.
+    double radius = 0;             // 0: straight.
+    Eigen::VectorXd origin;        // At its start.
+    Eigen::VectorXd tangent,
+        normal;                // Unit, at its start; the normal points to the arc's centre (empty when straight).
+    bool stop_before = false;  // The path has a sharp corner at its start.
 
     Eigen::VectorXd position(double s) const;    ///< `s` counts from the segment's start.
     Eigen::VectorXd derivative(double s) const;  ///< By arc length; of unit length.

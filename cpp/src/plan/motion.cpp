@@ -16,9 +16,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using detail::nearest_turn;
 
-constexpr int kAttempts = 4;                 // Searches, when paths fail the finer check.
+constexpr int kAttempts = 4;  // Searches, when paths fail the finer check.
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 void check_planner_name(const std::string& name) {
   const std::vector<std::string> names = planner_names();
@@ -33,8 +35,13 @@ class MotionSearch {
  public:
   MotionSearch(CollisionChecker& checker, const Eigen::VectorXd& start, const std::vector<Eigen::VectorXd>& goals,
                const MotionOptions& options, const Monitor& monitor)
-      : checker_(checker), wraps_(checker.group().wraps()), start_(start), goals_(goals), options_(options),
-        monitor_(monitor), queries_before_(checker.queries()) {}
+      : checker_(checker),
+        wraps_(checker.group().wraps()),
+        start_(start),
+        goals_(goals),
+        options_(options),
+        monitor_(monitor),
+        queries_before_(checker.queries()) {}
 
   MotionResult run() {
     find_path();
@@ -82,7 +89,7 @@ class MotionSearch {
   }
 
   double distance(int goal) const { return (nearest_turn(wraps_, start_, goals_[goal]) - start_).norm(); }
-  double fine_step() const { return options_.edge_step / 4; }
+  double fine_step() const { return options_.edge_step / 8; }
   double time_left() const { return options_.time_limit - seconds_since(begin_); }
 
   bool try_straight_edges() {
@@ -118,11 +125,11 @@ class MotionSearch {
   }
 
   detail::OmplAnswer ask_planner(double step, int attempt) {
-    const JointGroup& group = checker_.group();
     detail::OmplQuery query;
     query.planner = options_.planner;
-    query.lower = group.sample_lower();
-    query.upper = group.sample_upper();
+    query.lower = checker_.group().sample_lower();
+    query.upper = checker_.group().sample_upper();
+    if (checker_.group().has_base()) bound_base(query);
     query.wraps = wraps_;
     query.start = detail::wrapped(wraps_, start_);
     for (int goal : free_goals_) query.goals.push_back(detail::wrapped(wraps_, goals_[goal]));
@@ -136,6 +143,19 @@ class MotionSearch {
     };
     query.stopped = [&] { return monitor_.stopped(); };
     return detail::solve_with_ompl(query);
+  }
+
+  /// Base positions are drawn around start and goals only, not in the whole workspace.
+  void bound_base(detail::OmplQuery& query) const {
+    for (Eigen::Index i = 0; i < 2; ++i) {
+      double low = start_[i], high = start_[i];
+      for (int goal : free_goals_) {
+        low = std::min(low, goals_[goal][i]);
+        high = std::max(high, goals_[goal][i]);
+      }
+      query.lower[i] = std::max(query.lower[i], low - options_.base_margin);
+      query.upper[i] = std::min(query.upper[i], high + options_.base_margin);
+    }
   }
 
   /// The planner's waypoints as continuous numbers that begin at the caller's start and end at a goal up to full turns.
@@ -202,10 +222,13 @@ void MotionOptions::check() const {
   require(max_iterations > 0, "max_iterations", max_iterations, "must be > 0");
   require(std::isfinite(range) && range >= 0, "range", range, "must be finite and >= 0");
   require(std::isfinite(edge_step) && edge_step > 0, "edge_step", edge_step, "must be finite and > 0");
+  require(std::isfinite(base_margin) && base_margin > 0, "base_margin", base_margin, "must be finite and > 0");
   require(shorten_iterations >= 0, "shorten_iterations", shorten_iterations, "must be >= 0");
 }
 
-std::vector<std::string> planner_names() { return detail::ompl_planner_names(); }
+std::vector<std::string> planner_names() {
+  return detail::ompl_planner_names();
+}
 
 MotionResult plan_motion(CollisionChecker& checker, const Eigen::VectorXd& start,
                          const std::vector<Eigen::VectorXd>& goals, const MotionOptions& options,

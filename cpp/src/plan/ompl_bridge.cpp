@@ -88,7 +88,9 @@ struct Session {
   }
 };
 
-Session& session(void* user) { return *static_cast<Session*>(user); }
+Session& session(void* user) {
+  return *static_cast<Session*>(user);
+}
 
 int is_free(void* user, const double* q) {
   Session& s = session(user);
@@ -114,7 +116,9 @@ void waypoint(void* user, const double* q) {
   s.answer.waypoints.push_back(s.a);
 }
 
-void fail(void* user, const char* message) { session(user).failure = message; }
+void fail(void* user, const char* message) {
+  session(user).failure = message;
+}
 
 std::vector<double> flattened(const std::vector<Eigen::VectorXd>& rows) {
   std::vector<double> flat;

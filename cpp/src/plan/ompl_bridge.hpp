@@ -25,8 +25,8 @@ struct OmplQuery {
 
 struct OmplAnswer {
   bool solved = false;
-  bool exhausted = false;                   ///< The planner gave up before its budget was spent.
-  std::vector<Eigen::VectorXd> waypoints;   ///< From start to a goal; values that wrap in [-pi, pi].
+  bool exhausted = false;                  ///< The planner gave up before its budget was spent.
+  std::vector<Eigen::VectorXd> waypoints;  ///< From start to a goal; values that wrap in [-pi, pi].
 };
 
 /// Throws IoError when the plugin cannot be opened, and whatever the query's functions threw.

@@ -7,15 +7,15 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr int kGrid = 600;           // Intervals along the whole path, about.
+constexpr int kGrid = 600;  // Intervals along the whole path, about.
 constexpr int kIntervalsPerLine = 24;
 constexpr int kIntervalsPerArc = 16;
-constexpr double kTiny = 1e-12;      // Path derivatives below are taken for zero.
+constexpr double kTiny = 1e-12;  // Path derivatives below are taken for zero.
 
 }  // namespace
 
-/// The set of (x, u) of one interval: max(lower) <= u <= min(upper), lines in x, and 0 <= x <= largest. It is convex and
-/// contains (0, 0).
+/// The set of (x, u) of one interval: max(lower) <= u <= min(upper), lines in x, and 0 <= x <= largest. It is convex
+/// and contains (0, 0).
 struct PathTiming::Bounds {
   struct Line {
     double at_zero = 0, slope = 0;
@@ -35,10 +35,12 @@ struct PathTiming::Bounds {
   }
 
   const Line& highest_lower(double x) const {
-    return *std::max_element(lower.begin(), lower.end(), [x](const Line& l, const Line& r) { return l.at(x) < r.at(x); });
+    return *std::max_element(lower.begin(), lower.end(),
+                             [x](const Line& l, const Line& r) { return l.at(x) < r.at(x); });
   }
   const Line& lowest_upper(double x) const {
-    return *std::min_element(upper.begin(), upper.end(), [x](const Line& l, const Line& r) { return l.at(x) < r.at(x); });
+    return *std::min_element(upper.begin(), upper.end(),
+                             [x](const Line& l, const Line& r) { return l.at(x) < r.at(x); });
   }
 
   /// Largest x with some u: from above, to where the two lines that exclude x cross, until none do.
@@ -139,7 +141,8 @@ PathTiming::State PathTiming::state(std::size_t k, double time) const {
 
 PathTiming::State PathTiming::at(double time) const {
   const auto after = std::upper_bound(times_.begin(), times_.end(), time);
-  const auto k = std::clamp<std::ptrdiff_t>(after - times_.begin() - 1, 0, static_cast<std::ptrdiff_t>(intervals_.size()) - 1);
+  const auto k =
+      std::clamp<std::ptrdiff_t>(after - times_.begin() - 1, 0, static_cast<std::ptrdiff_t>(intervals_.size()) - 1);
   return state(static_cast<std::size_t>(k), std::clamp(time, times_[k], times_[k + 1]) - times_[k]);
 }
 

@@ -7,10 +7,11 @@
 
 namespace mmgrasp::detail {
 
-/// The fastest motion along a path that starts, ends and passes sharp corners at rest. On a grid of arc lengths the squared
-/// path speed x = (ds/dt)^2 is linear between neighbours, so that the path acceleration u is constant there. Joint velocity
-/// f' sqrt(x) and joint acceleration f' u + f'' x are bounded at both ends of every interval. A backward pass finds the largest x
-/// at each grid point from which the rest can be driven, a forward pass the largest x that can be reached.
+/// The fastest motion along a path that starts, ends and passes sharp corners at rest. On a grid of arc lengths the
+/// squared path speed x = (ds/dt)^2 is linear between neighbours, so that the path acceleration u is constant there.
+/// Joint velocity f' sqrt(x) and joint acceleration f' u + f'' x are bounded at both ends of every interval. A backward
+/// pass finds the largest x at each grid point from which the rest can be driven, a forward pass the largest x that can
+/// be reached.
 class PathTiming {
  public:
   struct State {
@@ -18,7 +19,8 @@ class PathTiming {
     double s = 0;
   };
 
-  PathTiming(const BlendedPath& path, const Eigen::VectorXd& velocity_limits, const Eigen::VectorXd& acceleration_limits);
+  PathTiming(const BlendedPath& path, const Eigen::VectorXd& velocity_limits,
+             const Eigen::VectorXd& acceleration_limits);
 
   double duration() const { return times_.back(); }
   State at(double time) const;

@@ -8,9 +8,9 @@
 namespace mmgrasp {
 namespace {
 
-constexpr double kAtLimit = 1e-6;          // A joint value this close to its limit [rad or m] counts as held back by it.
-constexpr double kLineTolerance = 5e-5;    // Tool's distance from the line halfway between two waypoints [m].
-constexpr int kHalvings = 6;               // Of a step, to keep the tool on the line between waypoints.
+constexpr double kAtLimit = 1e-6;        // A joint value this close to its limit [rad or m] counts as held back by it.
+constexpr double kLineTolerance = 5e-5;  // Tool's distance from the line halfway between two waypoints [m].
+constexpr int kHalvings = 6;             // Of a step, to keep the tool on the line between waypoints.
 
 /// Positions on a line, rotations by slerp.
 class ToolLine {
@@ -48,7 +48,8 @@ class LineFollower {
       result_.outcome = Outcome::invalid_start;
       return std::move(result_);
     }
-    const double steps = std::max(line_.translation() / options_.position_step, line_.rotation() / options_.rotation_step);
+    const double steps =
+        std::max(line_.translation() / options_.position_step, line_.rotation() / options_.rotation_step);
     const int count = std::max(1, static_cast<int>(std::ceil(steps - 1e-9)));
     smallest_step_ = 1.0 / count / (1 << kHalvings);
     for (int i = 1; i <= count; ++i) {
@@ -102,7 +103,7 @@ class LineFollower {
   }
 
   Rejection edge_rejection(const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
-    const double step = options_.edge_step / 4;
+    const double step = options_.edge_step / 8;
     const int count = std::max(1, static_cast<int>(std::ceil((to - from).cwiseAbs().maxCoeff() / step)));
     for (int i = 1; i <= count; ++i) {
       const Rejection cause = checker_.rejection(from + (static_cast<double>(i) / count) * (to - from));

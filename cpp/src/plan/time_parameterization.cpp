@@ -72,8 +72,10 @@ void check_samples(const JointTrajectory& trajectory, const Eigen::VectorXd& vel
 class TimedPath {
  public:
   TimedPath(Waypoints waypoints, Eigen::VectorXd velocity_limits, Eigen::VectorXd acceleration_limits, double period)
-      : waypoints_(std::move(waypoints)), velocity_limits_(std::move(velocity_limits)),
-        acceleration_limits_(std::move(acceleration_limits)), period_(period) {}
+      : waypoints_(std::move(waypoints)),
+        velocity_limits_(std::move(velocity_limits)),
+        acceleration_limits_(std::move(acceleration_limits)),
+        period_(period) {}
 
   /// One deviation per inner waypoint.
   JointTrajectory trajectory(const std::vector<double>& deviations) const {
@@ -106,8 +108,8 @@ class TimedPath {
   double period_;
 };
 
-/// Configurations at which the interpolated trajectory is not free, looked at in steps in which no joint moves more than
-/// `step`; within one interval the first is enough.
+/// Configurations at which the interpolated trajectory is not free, looked at in steps in which no joint moves more
+/// than `step`; within one interval the first is enough.
 Waypoints blocked_configurations(CollisionChecker& checker, const JointTrajectory& trajectory, double step) {
   const Eigen::VectorXd& lower = checker.group().lower();
   const Eigen::VectorXd& upper = checker.group().upper();
@@ -123,8 +125,8 @@ Waypoints blocked_configurations(CollisionChecker& checker, const JointTrajector
     double fastest = 0;
     for (Eigen::Index j = 0; j < lower.size(); ++j) {
       const double mean = (trajectory.positions[i + 1][j] - trajectory.positions[i][j]) / h;
-      fastest = std::max(fastest, detail::cubic_peak_speed(mean, trajectory.velocities[i][j],
-                                                           trajectory.velocities[i + 1][j], h));
+      fastest = std::max(
+          fastest, detail::cubic_peak_speed(mean, trajectory.velocities[i][j], trajectory.velocities[i + 1][j], h));
     }
     const int count = std::max(1, static_cast<int>(std::ceil(fastest * h / step)));
     for (int k = 1; k <= count; ++k) {

@@ -8,9 +8,9 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kJump = 0.004;         // Acceleration jumps above this part of a limit get a sample of their own.
-constexpr double kSmallestGap = 1e-5;   // Between samples at jumps [s].
-constexpr double kSmallestSplit = 2e-4; // Shorter intervals are not halved [s].
+constexpr double kJump = 0.004;          // Acceleration jumps above this part of a limit get a sample of their own.
+constexpr double kSmallestGap = 1e-5;    // Between samples at jumps [s].
+constexpr double kSmallestSplit = 2e-4;  // Shorter intervals are not halved [s].
 
 using State = PathTiming::State;
 
@@ -82,8 +82,8 @@ class Sampler {
       const auto [a0, a1] = cubic_end_accelerations(mean, v0, v1, h);
       const double fastest = cubic_peak_speed(mean, v0, v1, h);
       // The cubic's acceleration is linear: its extremes are at the ends.
-      const double hardest = std::max({std::abs(a0), std::abs(a1), std::abs(a.state.acceleration[i]),
-                                       std::abs(b.state.acceleration[i])});
+      const double hardest =
+          std::max({std::abs(a0), std::abs(a1), std::abs(a.state.acceleration[i]), std::abs(b.state.acceleration[i])});
       load.velocity = std::max(load.velocity, fastest / velocity_limits_[i]);
       load.acceleration = std::max(load.acceleration, hardest / acceleration_limits_[i]);
     }

@@ -13,7 +13,9 @@
 namespace mmgrasp {
 namespace {
 
-double cost_of(const SetCoverProblem& problem, int set) { return problem.costs.empty() ? 1.0 : problem.costs[set]; }
+double cost_of(const SetCoverProblem& problem, int set) {
+  return problem.costs.empty() ? 1.0 : problem.costs[set];
+}
 
 SetCoverProblem random_problem(Rng& rng, int case_index) {
   SetCoverProblem problem;
@@ -60,7 +62,8 @@ void expect_cover(const SetCoverProblem& problem, const SetCoverResult& result) 
   EXPECT_TRUE(std::is_sorted(result.chosen.begin(), result.chosen.end()));
 }
 
-/// OR-Library's layout: rows (elements), columns (sets), the costs, then for each row how many columns cover it and which.
+/// OR-Library's layout: rows (elements), columns (sets), the costs, then for each row how many columns cover it and
+/// which.
 SetCoverProblem read_orlib(std::istream& in) {
   SetCoverProblem problem;
   int sets = 0;
@@ -124,9 +127,9 @@ TEST_P(OrLibrary, ReachesThePublishedOptimum) {
 INSTANTIATE_TEST_SUITE_P(Beasley, OrLibrary,
                          ::testing::Values(OrLibraryCase{"scp41", 429}, OrLibraryCase{"scp42", 512},
                                            OrLibraryCase{"scp43", 516}, OrLibraryCase{"scp44", 494},
-                                           OrLibraryCase{"scp45", 512}, OrLibraryCase{"scp51", 253}, OrLibraryCase{"scp52", 302},
-                                           OrLibraryCase{"scp53", 226}, OrLibraryCase{"scp61", 138},
-                                           OrLibraryCase{"scpa1", 253}),
+                                           OrLibraryCase{"scp45", 512}, OrLibraryCase{"scp51", 253},
+                                           OrLibraryCase{"scp52", 302}, OrLibraryCase{"scp53", 226},
+                                           OrLibraryCase{"scp61", 138}, OrLibraryCase{"scpa1", 253}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 TEST(SetCover, FewestFirstThenTheLargerRadius) {

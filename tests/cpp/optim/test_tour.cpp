@@ -77,7 +77,8 @@ TEST(Tour, FifteenStopsOnALineAreExact) {
 }
 
 TEST(Tour, ManyStopsOnACircleComeInOrder) {
-  // Half a circle, start and goal at its ends: the optimum is known and every 2-opt optimum in the plane has no crossing.
+  // Half a circle, start and goal at its ends: the optimum is known and every 2-opt optimum in the plane has no
+  // crossing.
   const int n = 30;
   Eigen::MatrixXd points(n + 2, 2);
   for (int i = 0; i < n; ++i) {

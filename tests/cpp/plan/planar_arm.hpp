@@ -9,8 +9,8 @@
 
 namespace mmgrasp::test {
 
-/// An arm of equal links in the plane z = 0, built from text: thin capsule-like boxes of `length` along x, joints about z.
-/// Kinematics have a closed form, and what its links touch can be worked out with rulers.
+/// An arm of equal links in the plane z = 0, built from text: thin capsule-like boxes of `length` along x, joints about
+/// z. Kinematics have a closed form, and what its links touch can be worked out with rulers.
 class PlanarArm {
  public:
   explicit PlanarArm(int joints, double length = 0.5, double width = 0.02, bool continuous = false, double limit = 2.8)

@@ -23,7 +23,8 @@ double off_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eig
 }
 
 /// Every dense point's tool on the line, its rotation between the two ends', the motion continuous, the end reached.
-void expect_line(const JointGroup& group, const JointPath& path, const Pose& from, const Pose& to, double max_joint_step) {
+void expect_line(const JointGroup& group, const JointPath& path, const Pose& from, const Pose& to,
+                 double max_joint_step) {
   double last_progress = 0;
   for (std::size_t i = 0; i + 1 < path.waypoints.size(); ++i) {
     EXPECT_LE((path.waypoints[i + 1] - path.waypoints[i]).cwiseAbs().maxCoeff(), max_joint_step);
@@ -58,12 +59,12 @@ TEST(StraightLine, SixAxisArmFollowsLinesAndRotations) {
   int solved = 0;
   for (int repeat = 0; repeat < 30; ++repeat) {
     VectorXd q(6);
-    q << rng.uniform(-2, 2), rng.uniform(-1.4, -0.6), rng.uniform(1.2, 2.0), rng.uniform(-0.5, 0.5), rng.uniform(0.6, 1.2),
-        rng.uniform(-1, 1);
+    q << rng.uniform(-2, 2), rng.uniform(-1.4, -0.6), rng.uniform(1.2, 2.0), rng.uniform(-0.5, 0.5),
+        rng.uniform(0.6, 1.2), rng.uniform(-1, 1);
     const Pose from = arm.group().fk(q);
     const Eigen::Vector3d offset(rng.uniform(-0.15, 0.15), rng.uniform(-0.15, 0.15), rng.uniform(-0.15, 0.15));
-    const Eigen::Vector3d rotation = repeat % 2 ? Eigen::Vector3d(rng.uniform(-0.3, 0.3), rng.uniform(-0.3, 0.3), 0.2)
-                                                : Eigen::Vector3d::Zero();
+    const Eigen::Vector3d rotation =
+        repeat % 2 ? Eigen::Vector3d(rng.uniform(-0.3, 0.3), rng.uniform(-0.3, 0.3), 0.2) : Eigen::Vector3d::Zero();
     const Pose to = moved(from, offset, rotation);
     const StraightLineOptions options;
     const StraightLineResult result = plan_straight_line(checker, q, to, options);
@@ -123,7 +124,8 @@ TEST(StraightLine, StopsAtAJointLimit) {
   VectorXd q(6);
   q << 0.0, -1.0, 1.5, 0.0, 0.8, 0.0;
   const Pose from = arm.group().fk(q);
-  const StraightLineResult result = plan_straight_line(checker, q, moved(from, 0.2 * (Eigen::Vector3d(0, 0, 0.3) - from.translation()).normalized()));
+  const StraightLineResult result =
+      plan_straight_line(checker, q, moved(from, 0.2 * (Eigen::Vector3d(0, 0, 0.3) - from.translation()).normalized()));
   EXPECT_EQ(result.outcome, Outcome::infeasible);
   EXPECT_EQ(result.cause, Rejection::limits);
 }

@@ -60,8 +60,8 @@ double distance_to_path(const VectorXd& q, const JointPath& path) {
   return nearest;
 }
 
-void expect_sound(const JointTrajectory& trajectory, const JointPath& path, const VectorXd& v_max, const VectorXd& a_max,
-                  double deviation) {
+void expect_sound(const JointTrajectory& trajectory, const JointPath& path, const VectorXd& v_max,
+                  const VectorXd& a_max, double deviation) {
   ASSERT_GE(trajectory.times.size(), 2u);
   EXPECT_EQ(trajectory.times.front(), 0);
   EXPECT_EQ(trajectory.positions.front(), path.waypoints.front());
@@ -195,7 +195,8 @@ TEST(TimeParameterization, AQuarterCircleIsDrivenAtItsCentripetalLimit) {
   // sqrt(a r sqrt(2)), and a v of sqrt(a r) is possible all along: the duration lies between what these two allow.
   JointPath path;
   const double r = 1.0, acceleration = 0.5;
-  for (int i = 0; i <= 200; ++i) path.waypoints.push_back(r * vec({std::cos(M_PI * i / 200), std::sin(M_PI * i / 200)}));
+  for (int i = 0; i <= 200; ++i)
+    path.waypoints.push_back(r * vec({std::cos(M_PI * i / 200), std::sin(M_PI * i / 200)}));
   const VectorXd v = vec({10, 10}), a = vec({acceleration, acceleration});
   const JointTrajectory trajectory = time_parameterize(path, v, a);
   expect_sound(trajectory, path, v, a, 0.01);
@@ -216,7 +217,8 @@ TEST(TimeParameterization, AStandstillIsOneSample) {
 
 TEST(TimeParameterization, NamesComeAlong) {
   const JointPath path{{vec({0, 0}), vec({1, 0})}};
-  EXPECT_EQ(time_parameterize(path, vec({1, 1}), vec({1, 1}), {}, {"a", "b"}).names, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(time_parameterize(path, vec({1, 1}), vec({1, 1}), {}, {"a", "b"}).names,
+            (std::vector<std::string>{"a", "b"}));
 }
 
 TEST(TimeParameterization, RefusesBadInput) {
@@ -254,8 +256,8 @@ std::optional<CornerScene> corner_scene(const test::PlanarArm& arm, const Timing
   for (int attempt = 0; attempt < 2000; ++attempt) {
     CornerScene scene;
     for (int i = 0; i < 3; ++i) scene.path.waypoints.push_back(rng.uniform(low, high));
-    const JointTrajectory wide = time_parameterize(scene.path, arm.group().velocity_limits(),
-                                                   arm.group().acceleration_limits(), options);
+    const JointTrajectory wide =
+        time_parameterize(scene.path, arm.group().velocity_limits(), arm.group().acceleration_limits(), options);
     Pose ball = Pose::Identity();
     ball.translation() = arm.tip(wide.at(rng.uniform(0.2, 0.8) * wide.duration()));
     scene.world.add("ball", Sphere{0.01}, ball);

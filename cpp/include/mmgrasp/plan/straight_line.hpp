@@ -10,22 +10,25 @@
 namespace mmgrasp {
 
 struct MMGRASP_EXPORT StraightLineOptions {
-  double position_step = 0.005;   ///< Largest tool translation between two waypoints [m]; > 0.
-  double rotation_step = 0.02;    ///< Largest tool rotation between two waypoints [rad]; > 0.
-  double max_joint_step = 0.2;    ///< A larger joint motion between two waypoints is a jump [rad or m]; > 0.
-  double edge_step = 0.02;        ///< As in MotionOptions.
+  double position_step = 0.005;  ///< Largest tool translation between two waypoints [m]; > 0.
+  double rotation_step = 0.02;   ///< Largest tool rotation between two waypoints [rad]; > 0.
+  double max_joint_step = 0.2;   ///< A larger joint motion between two waypoints is a jump [rad or m]; > 0.
+  double edge_step = 0.02;       ///< As in MotionOptions.
   IkOptions ik;
   void check() const;
 };
 
 struct MMGRASP_EXPORT StraightLineResult {
   Outcome outcome = Outcome::infeasible;
-  std::optional<JointPath> path;  ///< From q_start, whose tool pose must be T_world_from, to T_world_to.
-  double fraction = 0;            ///< How far along the line the last good waypoint lies, in [0, 1].
+  std::optional<JointPath> path;      ///< From q_start to T_world_to; set if and only if solved.
+  double fraction = 0;                ///< How far along the line the last good waypoint lies, in [0, 1].
   Rejection cause = Rejection::none;  ///< Why it ended there: reach (also: a jump), limits, self_collision, scene.
 };
 
-/// The tool moves on a straight line (rotation by slerp) from the pose of q_start to T_world_to, by dense IK in small steps.
+/// The tool moves on a straight line (rotation by slerp) from the pose of q_start to T_world_to, by dense IK in small
+/// steps. Between waypoints, too, it stays within 1e-4 m of the line (with the default IK tolerance), and edges are
+/// free at an eighth of edge_step. The outcome is solved, infeasible or invalid_start. Throws InvalidInput on bad
+/// lengths, poses or options.
 MMGRASP_EXPORT StraightLineResult plan_straight_line(CollisionChecker& checker, const Eigen::VectorXd& q_start,
                                                      const Pose& T_world_to, const StraightLineOptions& options = {});
 

@@ -11,21 +11,26 @@
 namespace mmgrasp {
 
 struct MMGRASP_EXPORT TimingOptions {
-  double max_deviation = 0.01;   ///< Corners are blended within this joint distance [rad]; >= 0; 0 stops at every corner.
-  double sample_period = 0.02;   ///< Spacing of the samples returned [s]; > 0.
+  double max_deviation =
+      0.01;  ///< Corners are blended within this joint distance [rad]; >= 0; 0 stops at every corner.
+  double sample_period = 0.02;  ///< Largest spacing of the samples [s]; > 0. More stand where accelerations jump.
   void check() const;
 };
 
-/// Near time-optimal timing of a path under velocity and acceleration limits, at rest at both ends: corners are blended by
-/// circular arcs, then path velocity is maximised by forward and backward integration on a fine grid. Every sample keeps
-/// both limits (checked before return, slack 1e-6 relative). Throws InvalidInput on wrong lengths or limits <= 0.
+/// Near time-optimal timing of a path under velocity and acceleration limits, at rest at both ends: corners are blended
+/// by circular arcs, then path velocity is maximised by forward and backward integration on a fine grid. Every sample
+/// keeps both limits (checked before return, slack 1e-6 relative), and so does the cubic Hermite interpolation between
+/// them. A path that goes nowhere gives one sample at time 0. Names default to joint_1, joint_2, ... Throws
+/// InvalidInput on wrong lengths or limits that are not finite and > 0.
 MMGRASP_EXPORT JointTrajectory time_parameterize(const JointPath& path, const Eigen::VectorXd& velocity_limits,
                                                  const Eigen::VectorXd& acceleration_limits,
                                                  const TimingOptions& options = {},
                                                  const std::vector<std::string>& names = {});
 
-/// time_parameterize whose blended corners are checked for collisions: the deviation is halved (down to 0, stopping at the
-/// corners) until the whole trajectory is free at `edge_step`.
+/// time_parameterize whose interpolated trajectory is checked for collisions at `edge_step` [rad or m]: the deviation
+/// of a corner next to one is halved (down to 0, stopping there) until the whole trajectory is free. Returns an empty
+/// trajectory (no times) when the straight edges of the path themselves are not free. Limits and names are those of the
+/// checker's group.
 MMGRASP_EXPORT JointTrajectory time_parameterize_free(CollisionChecker& checker, const JointPath& path,
                                                       const TimingOptions& options = {}, double edge_step = 0.01);
 

@@ -1,5 +1,6 @@
 #include "plan/ompl_plugin/joint_space.hpp"
 
+#include <ompl/base/ProjectionEvaluator.h>
 #include <ompl/base/samplers/informed/RejectionInfSampler.h>
 
 #include <algorithm>
@@ -52,6 +53,29 @@ class SeededSampler : public ob::StateSampler {
   std::mt19937_64 generator_;
 };
 
+/// The first three values: of an arm those that move the tool most. OMPL's defaults for real vectors draw random
+/// planes, and the one for two values reads past its state.
+class FirstJointsProjection : public ob::ProjectionEvaluator {
+ public:
+  explicit FirstJointsProjection(const JointSpace* space) : ProjectionEvaluator(space), space_(space) {}
+
+  unsigned int getDimension() const override { return std::min(3u, space_->getDimension()); }
+
+  void defaultCellSizes() override {
+    cellSizes_.resize(getDimension());
+    for (unsigned int i = 0; i < getDimension(); ++i) {
+      cellSizes_[i] = (space_->getBounds().high[i] - space_->getBounds().low[i]) / 20;
+    }
+  }
+
+  void project(const ob::State* state, Eigen::Ref<Eigen::VectorXd> projection) const override {
+    for (unsigned int i = 0; i < getDimension(); ++i) projection[i] = values(state)[i];
+  }
+
+ private:
+  const JointSpace* space_;
+};
+
 }  // namespace
 
 JointSpace::JointSpace(std::shared_ptr<RunContext> context)
@@ -95,7 +119,9 @@ void JointSpace::enforceBounds(ob::State* state) const {
   }
 }
 
-bool JointSpace::equalStates(const ob::State* a, const ob::State* b) const { return distance(a, b) < 1e-12; }
+bool JointSpace::equalStates(const ob::State* a, const ob::State* b) const {
+  return distance(a, b) < 1e-12;
+}
 
 double JointSpace::getMaximumExtent() const {
   double sum = 0;
@@ -106,8 +132,18 @@ double JointSpace::getMaximumExtent() const {
   return std::sqrt(sum);
 }
 
+double JointSpace::box_diagonal() const {
+  double sum = 0;
+  for (unsigned int i = 0; i < dimension_; ++i) sum += std::pow(bounds_.high[i] - bounds_.low[i], 2);
+  return std::sqrt(sum);
+}
+
 ob::StateSamplerPtr JointSpace::allocDefaultStateSampler() const {
   return std::make_shared<SeededSampler>(this, context_);
+}
+
+void JointSpace::registerProjections() {
+  registerDefaultProjection(std::make_shared<FirstJointsProjection>(this));
 }
 
 bool JointValidity::isValid(const ob::State* state) const {
@@ -120,7 +156,8 @@ bool EdgeValidity::checkMotion(const ob::State* s1, const ob::State* s2) const {
   return free;
 }
 
-bool EdgeValidity::checkMotion(const ob::State* s1, const ob::State* s2, std::pair<ob::State*, double>& last_valid) const {
+bool EdgeValidity::checkMotion(const ob::State* s1, const ob::State* s2,
+                               std::pair<ob::State*, double>& last_valid) const {
   if (checkMotion(s1, s2)) return true;
   // Halving finds a free stretch from s1 within 1/64 of the edge, which is all the callers of this form use it for.
   ob::State* trial = si_->allocState();

@@ -13,8 +13,8 @@
 
 namespace mmgrasp_ompl {
 
-/// A box of joint values in which some are angles that wrap at +-pi. Distance is Euclidean over shortest differences, so
-/// that it equals the length of the joint-space edge that is checked and driven.
+/// A box of joint values in which some are angles that wrap at +-pi. Distance is Euclidean over shortest differences,
+/// so that it equals the length of the joint-space edge that is checked and driven.
 class JointSpace : public ompl::base::RealVectorStateSpace {
  public:
   explicit JointSpace(std::shared_ptr<RunContext> context);
@@ -26,7 +26,9 @@ class JointSpace : public ompl::base::RealVectorStateSpace {
   void enforceBounds(ompl::base::State* state) const override;
   bool equalStates(const ompl::base::State* a, const ompl::base::State* b) const override;
   double getMaximumExtent() const override;
+  double box_diagonal() const;  ///< Counting a value that wraps with its full turn.
   ompl::base::StateSamplerPtr allocDefaultStateSampler() const override;
+  void registerProjections() override;
 
  private:
   double difference(double from, double to, unsigned int index) const;
@@ -59,8 +61,8 @@ class EdgeValidity : public ompl::base::MotionValidator {
   std::shared_ptr<RunContext> context_;
 };
 
-/// Path length. In a space that wraps, OMPL's direct sampling of the informed set would miss paths that go round, so states
-/// are then drawn anywhere and rejected.
+/// Path length. In a space that wraps, OMPL's direct sampling of the informed set would miss paths that go round, so
+/// states are then drawn anywhere and rejected.
 class LengthObjective : public ompl::base::PathLengthOptimizationObjective {
  public:
   LengthObjective(const ompl::base::SpaceInformationPtr& si, bool any_wraps)

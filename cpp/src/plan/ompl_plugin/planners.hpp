@@ -14,6 +14,8 @@ struct PlannerEntry {
   bool runs_alone;
   /// Spends rounds without drawing states: rounds count towards the budget, too.
   bool count_rounds;
+  /// Longest tree edge when the caller names none, as a share of the joint box's diagonal; 0: OMPL's choice (a fifth).
+  double range_share;
 };
 
 extern const PlannerEntry kPlanners[];

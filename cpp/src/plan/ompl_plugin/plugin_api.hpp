@@ -1,7 +1,8 @@
 #pragma once
 
-/// The boundary between libmmgrasp and the private plugin that links OMPL: plain C structs, doubles and function pointers.
-/// Nothing of Eigen, OMPL or the standard library crosses it (docs/dependencies.md says why they are kept apart).
+/// The boundary between libmmgrasp and the private plugin that links OMPL: plain C structs, doubles and function
+/// pointers. Nothing of Eigen, OMPL or the standard library crosses it (docs/methods/plan.md says why they are kept
+/// apart).
 
 extern "C" {
 
@@ -22,14 +23,15 @@ struct MmgraspOmplProblem {
   const double* start;
   int goal_count;
   const double* goals;
-  double range;        ///< Longest tree edge; 0: the planner's own default.
+  double range;  ///< Longest tree edge; 0: the planner's own default.
   unsigned seed;
   int max_iterations;  ///< States drawn (or planner rounds, where rounds draw none).
   double time_limit;   ///< [s]
 
   void* user;  ///< Handed to every function below.
   int (*is_free)(void* user, const double* q);
-  int (*edge_is_free)(void* user, const double* q0, const double* q1);  ///< The shortest way round for values that wrap.
+  int (*edge_is_free)(void* user, const double* q0,
+                      const double* q1);  ///< The shortest way round for values that wrap.
   int (*stopped)(void* user);
   void (*waypoint)(void* user, const double* q);  ///< Called for each waypoint of the path, in order.
   void (*fail)(void* user, const char* message);

@@ -3,7 +3,6 @@
 #include <ompl/base/OptimizationObjective.h>
 #include <ompl/base/goals/GoalStates.h>
 
-
 namespace mmgrasp_ompl {
 namespace ob = ompl::base;
 

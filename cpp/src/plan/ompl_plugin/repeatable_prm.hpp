@@ -4,8 +4,8 @@
 
 namespace mmgrasp_ompl {
 
-/// OMPL's PRM searches its roadmap for a path in a second thread, so what it returns depends on the clock. This one grows
-/// and searches in turns, in one thread: the same seed gives the same roadmap and path.
+/// OMPL's PRM searches its roadmap for a path in a second thread, so what it returns depends on the clock. This one
+/// grows and searches in turns, in one thread: the same seed gives the same roadmap and path.
 class RepeatablePrm : public ompl::geometric::PRM {
  public:
   /// `keep_improving` spends the whole budget and returns the best path; otherwise the first path ends the run.

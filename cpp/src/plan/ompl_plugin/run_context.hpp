@@ -40,9 +40,7 @@ class RunContext {
   }
 
  private:
-  bool stopped() const {
-    return problem_.stopped(problem_.user) != 0 || std::chrono::steady_clock::now() >= deadline_;
-  }
+  bool stopped() const { return problem_.stopped(problem_.user) != 0 || std::chrono::steady_clock::now() >= deadline_; }
 
   const MmgraspOmplProblem& problem_;
   bool count_rounds_;

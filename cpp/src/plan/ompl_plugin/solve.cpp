@@ -27,8 +27,8 @@ const PlannerEntry* find_planner(const char* name) {
   return nullptr;
 }
 
-/// Every run creates OMPL objects that draw seeds from the process-wide generator. Planners that depend on these seeds hold
-/// it exclusively from seeding to the end; the others share.
+/// Every run creates OMPL objects that draw seeds from the process-wide generator. Planners that depend on these seeds
+/// hold it exclusively from seeding to the end; the others share.
 std::shared_mutex& seed_mutex() {
   static std::shared_mutex mutex;
   return mutex;
@@ -42,7 +42,8 @@ class RunLock {
       return;
     }
     seed_mutex().lock();
-    // OMPL complains that seeds were drawn before (its log is off) and restarts its generator all the same; 0 it ignores.
+    // OMPL complains that seeds were drawn before (its log is off) and restarts its generator all the same; 0 it
+    // ignores.
     ompl::RNG::setSeed(seed == 0 ? 0x9e3779b9u : seed);
   }
   ~RunLock() { alone_ ? seed_mutex().unlock() : seed_mutex().unlock_shared(); }
@@ -53,7 +54,9 @@ class RunLock {
   bool alone_;
 };
 
-void copy_in(const double* from, int size, ob::State* to) { std::memcpy(values(to), from, sizeof(double) * size); }
+void copy_in(const double* from, int size, ob::State* to) {
+  std::memcpy(values(to), from, sizeof(double) * size);
+}
 
 ob::ProblemDefinitionPtr make_definition(const ob::SpaceInformationPtr& si, const MmgraspOmplProblem& problem,
                                          bool any_wraps) {
@@ -89,9 +92,8 @@ int run(const MmgraspOmplProblem& problem) {
   si->setup();
   const ob::ProblemDefinitionPtr definition = make_definition(si, problem, space->any_wraps());
   const ob::PlannerPtr planner = entry->make(si);
-  if (problem.range > 0 && planner->params().hasParam("range")) {
-    planner->params().setParam("range", std::to_string(problem.range));
-  }
+  const double range = problem.range > 0 ? problem.range : entry->range_share * space->box_diagonal();
+  if (range > 0 && planner->params().hasParam("range")) planner->params().setParam("range", std::to_string(range));
   planner->setProblemDefinition(definition);
   planner->setup();
   // What setting up has drawn and checked is not the caller's budget.
@@ -117,7 +119,9 @@ int solve(const MmgraspOmplProblem* problem) {
   return MMGRASP_OMPL_FAILED;
 }
 
-const char* planner_name(int index) { return kPlanners[index].name; }
+const char* planner_name(int index) {
+  return kPlanners[index].name;
+}
 
 }  // namespace
 }  // namespace mmgrasp_ompl

@@ -1,0 +1,194 @@
+// What every planner of planner_names() promises.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <set>
+#include <thread>
+
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/plan/motion.hpp"
+#include "plan/fcl_planar.hpp"
+#include "plan/planar_arm.hpp"
+
+namespace mmgrasp {
+namespace {
+
+using Eigen::VectorXd;
+using test::SceneBox;
+
+constexpr double kLength = 0.4;
+
+VectorXd vec(double a, double b, double c) {
+  return Eigen::Vector3d(a, b, c);
+}
+
+/// Three links that must fold to pass a wall in front of the base.
+class Planner : public ::testing::TestWithParam<std::string> {
+ protected:
+  const test::PlanarArm arm{3, kLength};
+  const std::vector<SceneBox> wall{{{1.0, 0, 0}, {0.7, 0.1, 0.2}}};
+  // The first link cannot leave the sector between two posts.
+  const std::vector<SceneBox> posts{{{0.25, 0.25, 0}, {0.05, 0.05, 0.2}}, {{0.25, -0.25, 0}, {0.05, 0.05, 0.2}}};
+  const VectorXd start = vec(-1.0, 0.2, 0.2), goal = vec(1.0, -0.2, -0.2);
+
+  MotionOptions options() const {
+    MotionOptions options;
+    options.planner = GetParam();
+    // Those that improve on their first path spend all of it; roadmaps grow slower than trees.
+    const std::set<std::string> roadmaps{"prm_star", "lazy_prm_star"}, trees{"rrt_star", "informed_rrt_star"};
+    options.max_iterations = roadmaps.count(GetParam()) ? 800 : trees.count(GetParam()) ? 2000 : 5000;
+    options.time_limit = 100;  // Not to end a run: the iterations do.
+    options.seed = 3;
+    return options;
+  }
+
+  CollisionChecker checker(const std::vector<SceneBox>& scene) const {
+    return CollisionChecker(arm.group(), test::make_world(scene));
+  }
+
+  void expect_sound(const MotionResult& result, const VectorXd& from, const VectorXd& to,
+                    const std::vector<SceneBox>& scene) const {
+    ASSERT_TRUE(result.path);
+    EXPECT_EQ(result.path->waypoints.front(), from);
+    EXPECT_EQ(result.path->waypoints.back(), to);
+    EXPECT_NEAR(result.cost, result.path->length(), 1e-12);
+    EXPECT_GE(result.cost, (to - from).norm() - 1e-12);
+    for (const auto& q : result.path->waypoints) EXPECT_TRUE(arm.group().within_limits(q));
+    expect_free(arm, *result.path, scene);
+  }
+
+  /// At the promised fineness nothing touches; far finer, nothing enters by more than a corner can between two looks.
+  void expect_free(const test::PlanarArm& arm, const JointPath& path, const std::vector<SceneBox>& scene) const {
+    EXPECT_GT(test::fcl_path_clearance(arm, kLength, path, scene, MotionOptions{}.edge_step / 8), 0);
+    std::vector<SceneBox> core = scene;
+    for (auto& box : core) box.size.array() -= 1e-3;
+    EXPECT_GT(test::fcl_path_clearance(arm, kLength, path, core, 3e-4), 0);
+  }
+};
+
+TEST_P(Planner, SolvesAndThePathIsFreeByFcl) {
+  CollisionChecker checker = this->checker(wall);
+  ASSERT_FALSE(checker.edge_is_free(start, goal));
+  const MotionResult result = plan_motion(checker, start, {goal}, options());
+  ASSERT_EQ(result.outcome, Outcome::solved);
+  EXPECT_EQ(result.goal_index, 0);
+  EXPECT_GT(result.stats.collision_queries, 0u);
+  EXPECT_GE(result.stats.length_before_shortening, result.cost - 1e-9);
+  expect_sound(result, start, goal, wall);
+}
+
+TEST_P(Planner, SolvesWithoutShortening) {
+  CollisionChecker checker = this->checker(wall);
+  MotionOptions options = this->options();
+  options.shorten = false;
+  const MotionResult result = plan_motion(checker, start, {goal}, options);
+  ASSERT_EQ(result.outcome, Outcome::solved);
+  expect_sound(result, start, goal, wall);
+  EXPECT_NEAR(result.stats.length_before_shortening, result.cost, 1e-12);
+}
+
+TEST_P(Planner, SameSeedSamePathAlsoFromManyThreads) {
+  const auto plan = [&] {
+    CollisionChecker checker = this->checker(wall);
+    return plan_motion(checker, start, {goal}, options());
+  };
+  const MotionResult expected = plan();
+  ASSERT_TRUE(expected.path);
+  std::vector<MotionResult> results(3);
+  results[0] = plan();
+  std::vector<std::thread> threads;
+  for (std::size_t i = 1; i < results.size(); ++i) threads.emplace_back([&, i] { results[i] = plan(); });
+  for (auto& thread : threads) thread.join();
+  for (const auto& result : results) {
+    ASSERT_TRUE(result.path);
+    EXPECT_EQ(result.path->waypoints, expected.path->waypoints);
+    EXPECT_EQ(result.stats.collision_queries, expected.stats.collision_queries);
+  }
+}
+
+TEST_P(Planner, AnotherSeedGivesAnotherPath) {
+  CollisionChecker checker = this->checker(wall);
+  MotionOptions options = this->options();
+  options.shorten = false;
+  const MotionResult first = plan_motion(checker, start, {goal}, options);
+  options.seed = 4;
+  const MotionResult second = plan_motion(checker, start, {goal}, options);
+  ASSERT_TRUE(first.path && second.path);
+  EXPECT_NE(first.path->waypoints, second.path->waypoints);
+}
+
+TEST_P(Planner, AnImpossibleGoalEndsByTheBudget) {
+  CollisionChecker checker = this->checker(posts);
+  MotionOptions options = this->options();
+  options.max_iterations = 300;
+  const MotionResult result = plan_motion(checker, vec(2.0, 0, 0), {vec(0, 0, 0)}, options);
+  EXPECT_TRUE(result.outcome == Outcome::timeout || result.outcome == Outcome::infeasible);
+  EXPECT_FALSE(result.path);
+  const MotionResult again = plan_motion(checker, vec(2.0, 0, 0), {vec(0, 0, 0)}, options);
+  EXPECT_EQ(again.stats.collision_queries, result.stats.collision_queries);
+}
+
+TEST_P(Planner, TheStopTokenEndsIt) {
+  CollisionChecker checker = this->checker(posts);
+  MotionOptions options = this->options();
+  options.max_iterations = 2000000000;
+  Monitor monitor;
+  std::thread stopper([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    monitor.stop.stop();
+  });
+  const MotionResult result = plan_motion(checker, vec(2.0, 0, 0), {vec(0, 0, 0)}, options, monitor);
+  stopper.join();
+  EXPECT_EQ(result.outcome, Outcome::stopped);
+  EXPECT_FALSE(result.path);
+}
+
+TEST_P(Planner, TheClockIsACap) {
+  CollisionChecker checker = this->checker(posts);
+  MotionOptions options = this->options();
+  options.max_iterations = 2000000000;
+  options.time_limit = 0.05;
+  const MotionResult result = plan_motion(checker, vec(2.0, 0, 0), {vec(0, 0, 0)}, options);
+  EXPECT_EQ(result.outcome, Outcome::timeout);
+  EXPECT_FALSE(result.path);
+}
+
+TEST_P(Planner, TakesTheGoalItCanReach) {
+  CollisionChecker checker = this->checker(posts);
+  const VectorXd blocked = vec(0.785, 0, 0), inside = vec(0, 0, 0), outside = vec(-2.0, 0.4, 0);
+  ASSERT_FALSE(checker.is_free(blocked));
+  const VectorXd from = vec(2.0, 0, 0);
+  // The posts leave no way across the front, so a way round does not exist either: only `near` is on the same side.
+  const VectorXd near = vec(1.6, 1.2, -1.5);
+  const MotionResult result = plan_motion(checker, from, {blocked, inside, near, outside}, options());
+  ASSERT_EQ(result.outcome, Outcome::solved);
+  EXPECT_EQ(result.goal_index, 2);
+  EXPECT_EQ(result.rejections.scene, 1u);
+  EXPECT_EQ(result.rejections.total(), 1u);
+  expect_sound(result, from, near, posts);
+}
+
+TEST_P(Planner, ContinuousJointsRunOnPastHalfATurn) {
+  // A plate at half a turn is in the way of the straight edge.
+  const test::PlanarArm round(2, kLength, 0.02, true);
+  const std::vector<SceneBox> scene{{{-0.75, 0, 0}, {0.2, 0.02, 0.2}}};
+  CollisionChecker checker(round.group(), test::make_world(scene));
+  VectorXd from(2), to(2);
+  from << 2.9, 0.1;
+  to << -2.9, -0.1;
+  ASSERT_TRUE(checker.is_free(from));
+  ASSERT_TRUE(checker.is_free(to));
+  const MotionResult result = plan_motion(checker, from, {to}, options());
+  ASSERT_EQ(result.outcome, Outcome::solved);
+  EXPECT_EQ(result.path->waypoints.front(), from);
+  const VectorXd off = result.path->waypoints.back() - to;
+  for (Eigen::Index i = 0; i < 2; ++i) EXPECT_NEAR(std::remainder(off[i], 2 * M_PI), 0, 1e-12);
+  expect_free(round, *result.path, scene);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Planner, ::testing::ValuesIn(planner_names()),
+                         [](const auto& info) { return info.param; });
+
+}  // namespace
+}  // namespace mmgrasp

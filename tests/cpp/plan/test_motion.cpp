@@ -1,0 +1,193 @@
+#include "mmgrasp/plan/motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mmgrasp/core/error.hpp"
+#include "plan/fcl_planar.hpp"
+#include "plan/planar_arm.hpp"
+
+namespace mmgrasp {
+namespace {
+
+using Eigen::VectorXd;
+using test::SceneBox;
+
+constexpr double kLength = 0.4;
+
+VectorXd vec(std::initializer_list<double> values) {
+  VectorXd v(static_cast<Eigen::Index>(values.size()));
+  std::copy(values.begin(), values.end(), v.data());
+  return v;
+}
+
+TEST(PlanMotion, KnowsItsPlanners) {
+  const std::vector<std::string> names = planner_names();
+  for (const char* name : {"rrt_connect", "rrt_star", "informed_rrt_star", "bit_star", "prm", "prm_star",
+                           "lazy_prm_star", "est", "kpiece", "bkpiece"}) {
+    EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
+  }
+}
+
+TEST(PlanMotion, FreeSpaceIsCrossedInOneStraightEdge) {
+  const test::PlanarArm arm(3, kLength);
+  CollisionChecker checker(arm.group(), World{});
+  const VectorXd start = vec({-1, 0.2, 0.2}), goal = vec({1, -0.2, -0.2});
+  const MotionResult result = plan_motion(checker, start, {goal});
+  ASSERT_EQ(result.outcome, Outcome::solved);
+  EXPECT_EQ(result.path->waypoints, (std::vector<VectorXd>{start, goal}));
+  EXPECT_NEAR(result.cost, (goal - start).norm(), 1e-12);
+}
+
+TEST(PlanMotion, TheNearerOfTwoGoalsInSightWins) {
+  const test::PlanarArm arm(3, kLength);
+  CollisionChecker checker(arm.group(), World{});
+  const MotionResult result = plan_motion(checker, vec({0, 0, 0}), {vec({1, 1, 0}), vec({0.3, 0, 0})});
+  EXPECT_EQ(result.goal_index, 1);
+}
+
+TEST(PlanMotion, StartAtTheGoal) {
+  const test::PlanarArm arm(3, kLength);
+  CollisionChecker checker(arm.group(), World{});
+  const VectorXd q = vec({0.3, 0.2, 0.1});
+  const MotionResult result = plan_motion(checker, q, {vec({1, 1, 1}), q});
+  ASSERT_EQ(result.outcome, Outcome::solved);
+  EXPECT_EQ(result.goal_index, 1);
+  EXPECT_EQ(result.cost, 0);
+  EXPECT_EQ(result.path->waypoints.front(), q);
+  EXPECT_EQ(result.path->waypoints.back(), q);
+}
+
+TEST(PlanMotion, AnInvalidStartSaysWhatTouches) {
+  const test::PlanarArm arm(3, kLength);
+  CollisionChecker checker(arm.group(), test::make_world({{{1.0, 0, 0}, {0.1, 0.1, 0.1}}}));
+  const MotionResult result = plan_motion(checker, vec({0, 0, 0}), {vec({1, 0, 0})});
+  EXPECT_EQ(result.outcome, Outcome::invalid_start);
+  EXPECT_FALSE(result.path);
+  ASSERT_EQ(result.contacts.size(), 1u);
+  EXPECT_EQ(result.contacts[0].a, "l3");
+  EXPECT_EQ(result.contacts[0].b, "box 0");
+  EXPECT_TRUE(result.contacts[0].with_scene);
+  EXPECT_EQ(plan_motion(checker, vec({2.9, 0, 0}), {vec({1, 0, 0})}).outcome, Outcome::invalid_start);
+}
+
+TEST(PlanMotion, InvalidGoalsAreCountedByCause) {
+  const test::PlanarArm arm(3, kLength);
+  CollisionChecker checker(arm.group(), test::make_world({{{1.0, 0, 0}, {0.1, 0.1, 0.1}}}));
+  const MotionResult result =
+      plan_motion(checker, vec({1, 0, 0}), {vec({0, 0, 0}), vec({0.01, 0, 0}), vec({2.9, 0, 0})});
+  EXPECT_EQ(result.outcome, Outcome::invalid_goal);
+  EXPECT_FALSE(result.path);
+  EXPECT_EQ(result.goal_index, -1);
+  EXPECT_EQ(result.rejections.scene, 2u);
+  EXPECT_EQ(result.rejections.limits, 1u);
+  ASSERT_FALSE(result.contacts.empty());
+  EXPECT_EQ(result.contacts[0].b, "box 0");
+}
+
+TEST(PlanMotion, NarrowPassage) {
+  // Four links, 2 cm wide, thread a gap of 5 cm.
+  const test::PlanarArm arm(4, kLength, 0.02);
+  const std::vector<SceneBox> scene{{{1.0, 0.475, 0}, {0.05, 0.9, 0.2}}, {{1.0, -0.475, 0}, {0.05, 0.9, 0.2}}};
+  CollisionChecker checker(arm.group(), test::make_world(scene));
+  // Reaching through the gap, and standing in front of the wall.
+  const VectorXd through = vec({0.0, 0.0, 0.0, 0.0}), before = vec({1.2, -1.6, -1.0, -1.2});
+  ASSERT_TRUE(checker.is_free(through));
+  ASSERT_TRUE(checker.is_free(before));
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    MotionOptions options;
+    options.seed = seed;
+    options.time_limit = 60;
+    options.max_iterations = 200000;
+    const MotionResult result = plan_motion(checker, before, {through}, options);
+    ASSERT_EQ(result.outcome, Outcome::solved) << seed;
+    EXPECT_GT(test::fcl_path_clearance(arm, kLength, *result.path, scene, MotionOptions{}.edge_step / 8), 0);
+    EXPECT_LE(result.cost, result.stats.length_before_shortening + 1e-9);
+  }
+}
+
+TEST(PlanMotion, ThinObstaclesAreNotCut) {
+  // A plate far thinner than what the links move within a coarse edge_step: the finer check must catch what slips
+  // through.
+  const test::PlanarArm arm(2, kLength, 0.01);
+  const std::vector<SceneBox> scene{{{0.65, 0, 0}, {0.2, 0.001, 0.2}}};
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    CollisionChecker checker(arm.group(), test::make_world(scene));
+    MotionOptions options;
+    options.edge_step = 0.08;
+    options.seed = seed;
+    const MotionResult result = plan_motion(checker, vec({-0.5, 0.1}), {vec({0.5, -0.1})}, options);
+    if (!result.path) {
+      EXPECT_NE(result.outcome, Outcome::solved);
+      continue;
+    }
+    for (std::size_t i = 0; i + 1 < result.path->waypoints.size(); ++i) {
+      EXPECT_TRUE(
+          checker.edge_is_free(result.path->waypoints[i], result.path->waypoints[i + 1], options.edge_step / 8));
+    }
+  }
+}
+
+TEST(PlanMotion, ContinuousJointsCrossHalfATurn) {
+  // The front is barred to the first link, so the only way from 2.4 to -2.4 leads over pi, past a plate that asks for
+  // folding.
+  const test::PlanarArm arm(2, kLength, 0.02, true);
+  const std::vector<SceneBox> scene{{{0.25, 0, 0}, {0.1, 0.1, 0.2}}, {{-0.7, 0, 0}, {0.3, 0.02, 0.2}}};
+  CollisionChecker checker(arm.group(), test::make_world(scene));
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    MotionOptions options;
+    options.seed = seed;
+    const VectorXd start = vec({2.4, 0.1}), goal = vec({-2.4, -0.1});
+    const MotionResult result = plan_motion(checker, start, {goal}, options);
+    ASSERT_EQ(result.outcome, Outcome::solved) << seed;
+    EXPECT_EQ(result.path->waypoints.front(), start);
+    // The first joint went on upwards; how often the elbow turned is its own business.
+    EXPECT_NEAR(result.path->waypoints.back()[0], goal[0] + 2 * M_PI, 1e-12);
+    EXPECT_NEAR(std::remainder(result.path->waypoints.back()[1] - goal[1], 2 * M_PI), 0, 1e-12);
+    EXPECT_GT(test::fcl_path_clearance(arm, kLength, *result.path, scene, MotionOptions{}.edge_step / 8), 0);
+  }
+}
+
+TEST(PlanMotion, AStartBeyondOneTurnKeepsItsNumbers) {
+  const test::PlanarArm arm(2, kLength, 0.02, true);
+  CollisionChecker checker(arm.group(), World{});
+  const MotionResult result = plan_motion(checker, vec({7.0, -4.0}), {vec({7.3 - 2 * M_PI, -4.1 + 4 * M_PI})});
+  ASSERT_EQ(result.outcome, Outcome::solved);
+  EXPECT_EQ(result.path->waypoints.front(), vec({7.0, -4.0}));
+  EXPECT_LT((result.path->waypoints.back() - vec({7.3, -4.1})).norm(), 1e-12);
+}
+
+TEST(PlanMotion, RefusesBadInput) {
+  const test::PlanarArm arm(2, kLength);
+  CollisionChecker checker(arm.group(), World{});
+  const VectorXd q = vec({0, 0});
+  EXPECT_THROW(plan_motion(checker, vec({0}), {q}), InvalidInput);
+  EXPECT_THROW(plan_motion(checker, q, {}), InvalidInput);
+  EXPECT_THROW(plan_motion(checker, q, {vec({0, std::nan("")})}), InvalidInput);
+  MotionOptions options;
+  options.planner = "rrtconnect";
+  try {
+    plan_motion(checker, q, {q}, options);
+    FAIL() << "an unknown planner was taken";
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("rrt_connect"), std::string::npos);
+  }
+  options = {};
+  options.max_iterations = 0;
+  EXPECT_THROW(plan_motion(checker, q, {q}, options), InvalidInput);
+  options = {};
+  options.base_margin = -1;
+  EXPECT_THROW(plan_motion(checker, q, {q}, options), InvalidInput);
+  options = {};
+  options.edge_step = 0;
+  EXPECT_THROW(plan_motion(checker, q, {q}, options), InvalidInput);
+  options = {};
+  options.time_limit = std::nan("");
+  EXPECT_THROW(plan_motion(checker, q, {q}, options), InvalidInput);
+}
+
+}  // namespace
+}  // namespace mmgrasp

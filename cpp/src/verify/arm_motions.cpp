@@ -13,18 +13,25 @@ namespace {
 
 enum Kind { kReach, kApproach, kLift, kCarry, kRetreat, kKinds };
 constexpr std::array<const char*, kKinds> kKindNames = {"reach", "approach", "lift", "carry", "retreat"};
-constexpr double kJoin = 1e-6;          // Ends that must coincide [rad or m].
-constexpr double kRest = 1e-3;          // Speed that counts as rest [rad/s or m/s].
-constexpr double kOpening = 1e-6;       // [m]
-constexpr double kMaxSteps = 200000;    // Configurations of one motion: 2000 rad at the default step.
+constexpr double kJoin = 1e-6;        // Ends that must coincide [rad or m].
+constexpr double kRest = 1e-3;        // Speed that counts as rest [rad/s or m/s].
+constexpr double kOpening = 1e-6;     // [m]
+constexpr double kMaxSteps = 200000;  // Configurations of one motion: 2000 rad at the default step.
 
-bool is_holding(int kind) { return kind == kLift || kind == kCarry; }
+bool is_holding(int kind) {
+  return kind == kLift || kind == kCarry;
+}
 
 /// Everything about one pick. Broken motions end the checks that need them, not the others.
 class PickCheck {
  public:
   PickCheck(const Context& context, std::size_t index, Judge& judge, Faults& faults)
-      : context_(context), plan_(context.plan), pick_(plan_.picks[index]), index_(index), judge_(judge), faults_(faults) {}
+      : context_(context),
+        plan_(context.plan),
+        pick_(plan_.picks[index]),
+        index_(index),
+        judge_(judge),
+        faults_(faults) {}
 
   void run() {
     bool usable = true;
@@ -91,7 +98,8 @@ class PickCheck {
         fault("opening", name(kind), text(m.opening) + " m does not pass a part of width " + text(width) + " m");
       }
       if (m.holding != is_holding(kind)) {
-        fault("holding", name(kind), m.holding ? "says the part is held, it is not" : "says nothing is held, the part is");
+        fault("holding", name(kind),
+              m.holding ? "says the part is held, it is not" : "says nothing is held, the part is");
       }
     }
     if (std::abs(motion(kReach).opening - motion(kApproach).opening) > kOpening) {
@@ -110,14 +118,16 @@ class PickCheck {
   }
 
   void check_joins() {
-    const auto join = [this](const Eigen::VectorXd& a, const Eigen::VectorXd& b, const std::string& where, const char* what) {
+    const auto join = [this](const Eigen::VectorXd& a, const Eigen::VectorXd& b, const std::string& where,
+                             const char* what) {
       const double by = gap(a, b);
       if (by > kJoin) fault("discontinuous", where, std::string(what) + ": a joint is off by " + text(by));
     };
     join(plan_.home, motion(kReach).positions.front(), name(kReach), "does not start at home");
     join(motion(kRetreat).positions.back(), plan_.home, name(kRetreat), "does not end at home");
     for (int kind = 1; kind < kKinds; ++kind) {
-      join(motion(kind - 1).positions.back(), motion(kind).positions.front(), name(kind), "does not start where the last ended");
+      join(motion(kind - 1).positions.back(), motion(kind).positions.front(), name(kind),
+           "does not start where the last ended");
       const double jump = (motion(kind - 1).velocities.back() - motion(kind).velocities.front()).cwiseAbs().maxCoeff();
       if (jump > kRest) fault("discontinuous", name(kind), "a velocity jumps by " + text(jump) + " at its start");
     }
@@ -136,7 +146,8 @@ class PickCheck {
     const Pose T_world_grasp = judge_.tip(motion(kApproach).positions.back());
     T_tip_part_ = T_world_grasp.inverse() * T_world_part;
     check_grasp_reached(context_, T_world_part * grasp_->T_object_tcp, T_world_grasp, name(kApproach), faults_);
-    check_lift(judge_.tip(motion(kLift).positions.front()), judge_.tip(motion(kLift).positions.back()), name(kLift), faults_);
+    check_lift(judge_.tip(motion(kLift).positions.front()), judge_.tip(motion(kLift).positions.back()), name(kLift),
+               faults_);
     const Pose T_world_released = judge_.tip(motion(kCarry).positions.back()) * T_tip_part_;
     check_release(context_, *part_, judge_.T_world_root(), T_world_released, name(kCarry), faults_);
   }
@@ -161,7 +172,9 @@ class PickCheck {
   bool collides(const Eigen::VectorXd& q, double opening, const std::string& where) {
     const Touch touch = judge_.touch(q, opening);
     if (!touch) return false;
-    const char* code = touch.kind == TouchKind::self ? "self-collision" : touch.kind == TouchKind::held ? "held-collision" : "scene-collision";
+    const char* code = touch.kind == TouchKind::self   ? "self-collision"
+                       : touch.kind == TouchKind::held ? "held-collision"
+                                                       : "scene-collision";
     fault(code, where, "'" + touch.a + "' touches '" + touch.b + "'");
     return true;
   }
@@ -240,8 +253,8 @@ void check_arm_motions(const Context& context, Faults& faults, std::size_t& conf
   std::vector<Faults> found(picks);
   parallel_for(
       picks, context.options.threads,
-      [&](std::size_t pick, int worker) { PickCheck(context, pick, judges[worker], found[pick]).run(); }, context.monitor,
-      "arm motions");
+      [&](std::size_t pick, int worker) { PickCheck(context, pick, judges[worker], found[pick]).run(); },
+      context.monitor, "arm motions");
   for (const Faults& some : found) faults.insert(faults.end(), some.begin(), some.end());
   for (const Judge& judge : judges) configurations += judge.queries();
 }

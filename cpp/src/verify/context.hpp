@@ -17,16 +17,16 @@ using Faults = std::vector<Fault>;
 std::string text(double value);
 std::string text(const Eigen::Vector3d& x_y_theta);
 
-/// A plan whose names are resolved, with everything the checks share. Made only for plans without a structural fault, so
-/// every index in it is good; what may still be missing is said at the field.
+/// A plan whose names are resolved, with everything the checks share. Made only for plans without a structural fault,
+/// so every index in it is good; what may still be missing is said at the field.
 struct Context {
   const PlanToCheck& plan;
   const PlanCheckOptions& options;
   const Monitor& monitor;
   std::shared_ptr<const Stage> stage;
-  std::map<std::string, int> part_index;        ///< Name -> index into plan.parts.
-  std::vector<int> pick_part;                   ///< Part of each pick; -1: unknown name.
-  std::vector<int> picked_by;                   ///< First good pick of each part; -1: never picked.
+  std::map<std::string, int> part_index;  ///< Name -> index into plan.parts.
+  std::vector<int> pick_part;             ///< Part of each pick; -1: unknown name.
+  std::vector<int> picked_by;             ///< First good pick of each part; -1: never picked.
 
   std::size_t body_of_part(int part) const { return stage->first_part + static_cast<std::size_t>(part); }
   double pregrasp_opening(double width) const;
@@ -45,7 +45,8 @@ void check_arm_motions(const Context& context, Faults& faults, std::size_t& conf
 /// Base route, home and start (route.cpp).
 void check_route(const Context& context, Faults& faults, std::size_t& configurations);
 /// Every target part graspable from everywhere in the uncertainty discs (robustness.cpp).
-void check_robustness(const Context& context, Faults& faults, std::vector<StopRate>& rates, std::size_t& configurations);
+void check_robustness(const Context& context, Faults& faults, std::vector<StopRate>& rates,
+                      std::size_t& configurations);
 /// Stops inside their regions, and no smaller cover (minimality.cpp).
 void check_stops(const Context& context, Faults& faults, int& minimal_stops);
 

@@ -15,54 +15,77 @@ bool holds(const RegionSet& outer, const RegionSet& inner) {
   return std::includes(outer.begin(), outer.end(), inner.begin(), inner.end());
 }
 
-/// Depth-first halving of squares over the floor.
+/// Halving of squares over the floor, level by level: what the coarse levels find spares most of the fine ones.
 class DiscSearch {
  public:
-  DiscSearch(const Floor& floor, double radius, const Monitor& monitor) : floor_(floor), radius_(radius), monitor_(monitor) {}
+  DiscSearch(const Floor& floor, double radius, const Monitor& monitor)
+      : floor_(floor), radius_(radius), monitor_(monitor) {}
 
   std::vector<RegionSet> run() {
-    RegionSet all;
-    for (int region = 0; region < floor_.regions(); ++region) all.insert(region);
-    const CheckedGrid& grid = floor_.grid();
-    for (int layer = 0; layer < static_cast<int>(grid.headings.size()); ++layer) {
-      layer_ = layer;
-      for (int iy = 0; iy < grid.ny && !monitor_.stopped(); ++iy) {
-        for (int ix = 0; ix < grid.nx; ++ix) {
-          const Eigen::Vector2d centre = grid.origin + grid.resolution * Eigen::Vector2d(ix + 0.5, iy + 0.5);
-          visit(centre, 0.5 * grid.resolution, all, 0);
-        }
-      }
+    if (floor_.regions() == 0) return {};  // nor is anything known then about the grid's size
+    double half = 0.5 * floor_.grid().resolution;
+    std::vector<Square> squares = cells();
+    for (int depth = 0; !squares.empty() && !monitor_.stopped(); ++depth, half *= 0.5) {
+      for (Square& square : squares) look(square, half);
+      if (depth == kHalvings) break;
+      squares = halved(squares, half);
     }
     return found_;
   }
 
  private:
-  /// `possible`: regions that may hold a disc centred somewhere in the square.
-  void visit(const Eigen::Vector2d& centre, double half, const RegionSet& possible, int depth) {
-    const double diagonal = half * std::sqrt(2.0);
-    RegionSet certain, still_possible;
-    for (const int region : possible) {
-      const double clearance = floor_.clearance(region, layer_, centre, radius_ + diagonal);
-      if (clearance >= radius_) certain.insert(region);
-      if (clearance + diagonal >= radius_) still_possible.insert(region);
-    }
-    if (!certain.empty()) add_maximal(found_, certain);
-    const bool known = still_possible.empty() || std::any_of(found_.begin(), found_.end(), [&](const RegionSet& set) {
-      return holds(set, still_possible);
-    });
-    if (known || depth == kHalvings) return;
-    const double quarter = 0.5 * half;
-    for (const double dx : {-quarter, quarter}) {
-      for (const double dy : {-quarter, quarter}) {
-        visit(centre + Eigen::Vector2d(dx, dy), quarter, still_possible, depth + 1);
+  struct Square {
+    int layer = 0;
+    Eigen::Vector2d centre;
+    RegionSet possible;  // regions that may hold a disc centred somewhere in the square
+  };
+
+  std::vector<Square> cells() const {
+    RegionSet all;
+    for (int region = 0; region < floor_.regions(); ++region) all.insert(region);
+    const CheckedGrid& grid = floor_.grid();
+    std::vector<Square> squares;
+    for (int layer = 0; layer < static_cast<int>(grid.headings.size()); ++layer) {
+      for (int iy = 0; iy < grid.ny; ++iy) {
+        for (int ix = 0; ix < grid.nx; ++ix) {
+          squares.push_back({layer, grid.origin + grid.resolution * Eigen::Vector2d(ix + 0.5, iy + 0.5), all});
+        }
       }
     }
+    return squares;
+  }
+
+  /// Notes the discs at the square's middle and narrows down what may be in the rest of it.
+  void look(Square& square, double half) {
+    const double diagonal = half * std::sqrt(2.0);
+    RegionSet certain, possible;
+    for (const int region : square.possible) {
+      const double clearance = floor_.clearance(region, square.layer, square.centre, radius_ + diagonal);
+      if (clearance >= radius_) certain.insert(region);
+      if (clearance + diagonal >= radius_) possible.insert(region);
+    }
+    if (!certain.empty()) add_maximal(found_, certain);
+    square.possible = std::move(possible);
+  }
+
+  std::vector<Square> halved(const std::vector<Square>& squares, double half) const {
+    const double quarter = 0.5 * half;
+    std::vector<Square> next;
+    for (const Square& square : squares) {
+      const auto known = [&square](const RegionSet& set) { return holds(set, square.possible); };
+      if (square.possible.empty() || std::any_of(found_.begin(), found_.end(), known)) continue;
+      for (const double dx : {-quarter, quarter}) {
+        for (const double dy : {-quarter, quarter}) {
+          next.push_back({square.layer, square.centre + Eigen::Vector2d(dx, dy), square.possible});
+        }
+      }
+    }
+    return next;
   }
 
   const Floor& floor_;
   double radius_;
   const Monitor& monitor_;
-  int layer_ = 0;
   std::vector<RegionSet> found_;
 };
 
@@ -84,19 +107,24 @@ bool Floor::inside(int region, int layer, int ix, int iy) const {
 double Floor::clearance(int region, int layer, const Eigen::Vector2d& point, double cap) const {
   const Eigen::Vector2d cell = (point - grid_.origin) / grid_.resolution;  // in cells
   const double reach = cap / grid_.resolution;
-  if (!cell.allFinite() || cell.minCoeff() < 0 || cell.x() > grid_.nx || cell.y() > grid_.ny) return 0;
-  const int x0 = static_cast<int>(std::floor(cell.x() - reach)), x1 = static_cast<int>(std::floor(cell.x() + reach));
-  const int y0 = static_cast<int>(std::floor(cell.y() - reach)), y1 = static_cast<int>(std::floor(cell.y() + reach));
-  double least = reach * reach;
+  if (!cell.allFinite()) return -cap;
+  // One ring of cells around the grid stands for all that lies outside.
+  const auto index = [](double value, int size) {
+    return static_cast<int>(std::floor(std::clamp(value, -1.0, size + 0.5)));
+  };
+  const int x0 = index(cell.x() - reach, grid_.nx), x1 = index(cell.x() + reach, grid_.nx);
+  const int y0 = index(cell.y() - reach, grid_.ny), y1 = index(cell.y() + reach, grid_.ny);
+  double to_outside = reach * reach, to_inside = reach * reach;
+  if (cell.minCoeff() < 0 || cell.x() > grid_.nx || cell.y() > grid_.ny) to_outside = 0;
   for (int iy = y0; iy <= y1; ++iy) {
     const double dy = std::max({iy - cell.y(), cell.y() - (iy + 1), 0.0});
     for (int ix = x0; ix <= x1; ++ix) {
       const double dx = std::max({ix - cell.x(), cell.x() - (ix + 1), 0.0});
-      const double squared = dx * dx + dy * dy;
-      if (squared < least && !inside(region, layer, ix, iy)) least = squared;
+      double& least = inside(region, layer, ix, iy) ? to_inside : to_outside;
+      least = std::min(least, dx * dx + dy * dy);
     }
   }
-  return std::sqrt(least) * grid_.resolution;
+  return (std::sqrt(to_outside) - (to_outside > 0 ? 0.0 : std::sqrt(to_inside))) * grid_.resolution;
 }
 
 std::vector<RegionSet> common_discs(const Floor& floor, double radius, const Monitor& monitor) {
@@ -105,7 +133,8 @@ std::vector<RegionSet> common_discs(const Floor& floor, double radius, const Mon
 
 void add_maximal(std::vector<RegionSet>& sets, const RegionSet& set) {
   if (std::any_of(sets.begin(), sets.end(), [&](const RegionSet& other) { return holds(other, set); })) return;
-  sets.erase(std::remove_if(sets.begin(), sets.end(), [&](const RegionSet& other) { return holds(set, other); }), sets.end());
+  sets.erase(std::remove_if(sets.begin(), sets.end(), [&](const RegionSet& other) { return holds(set, other); }),
+             sets.end());
   sets.push_back(set);
 }
 

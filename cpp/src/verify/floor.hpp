@@ -13,13 +13,15 @@ using RegionSet = std::set<int>;
 /// The regions of a plan as flags over one grid, read through exact distances.
 class Floor {
  public:
-  Floor(const CheckedGrid& grid, std::vector<const CheckedRegion*> regions) : grid_(grid), regions_(std::move(regions)) {}
+  Floor(const CheckedGrid& grid, std::vector<const CheckedRegion*> regions)
+      : grid_(grid), regions_(std::move(regions)) {}
 
   const CheckedGrid& grid() const { return grid_; }
   int regions() const { return static_cast<int>(regions_.size()); }
   /// Layer with this heading (modulo a full turn, to 1e-6 rad); -1: none.
   int layer(double heading) const;
-  /// Distance from a point to the nearest place that is not in the region; `cap` when it is at least `cap`. Zero outside.
+  /// Distance from a point in the region to the nearest place that is not in it; for a point outside, minus the
+  /// distance to the region. Not looked at beyond `cap`.
   double clearance(int region, int layer, const Eigen::Vector2d& point, double cap) const;
 
  private:
@@ -28,8 +30,8 @@ class Floor {
   std::vector<const CheckedRegion*> regions_;
 };
 
-/// Every maximal set of regions whose shared floor holds a disc of this radius somewhere, by halving squares until nothing
-/// new can hide in one; sets whose discs fit only in places smaller than 1/256 of a cell are not found.
+/// Every maximal set of regions whose shared floor holds a disc of this radius somewhere, by halving squares until
+/// nothing new can hide in one; sets whose discs fit only in places smaller than 1/256 of a cell are not found.
 std::vector<RegionSet> common_discs(const Floor& floor, double radius, const Monitor& monitor);
 
 /// Adds a set unless one in the list holds it; drops those that it holds.

@@ -18,7 +18,8 @@ HermiteSegment::HermiteSegment(const CheckedMotion& motion, std::size_t index)
 
 double HermiteSegment::position(int j, double s) const {
   const double s2 = s * s, s3 = s2 * s;
-  return (2 * s3 - 3 * s2 + 1) * p0(j) + (s3 - 2 * s2 + s) * h_ * v0(j) + (3 * s2 - 2 * s3) * p1(j) + (s3 - s2) * h_ * v1(j);
+  return (2 * s3 - 3 * s2 + 1) * p0(j) + (s3 - 2 * s2 + s) * h_ * v0(j) + (3 * s2 - 2 * s3) * p1(j) +
+         (s3 - s2) * h_ * v1(j);
 }
 
 Eigen::VectorXd HermiteSegment::at(double s) const {

@@ -18,11 +18,11 @@ class HermiteSegment {
   HermiteSegment(const CheckedMotion& motion, std::size_t index);
 
   double duration() const { return h_; }
-  Eigen::VectorXd at(double s) const;      ///< s in [0, 1].
-  Range position_range(int joint) const;   ///< Exact: ends and the roots of the velocity.
-  Range velocity_range(int joint) const;   ///< Exact: ends and the vertex.
-  /// The least constant bound on acceleration with which any motion can join the two samples: |v1 - v0| / h, and more when
-  /// the positions do not fit the velocities. Zero when the samples say exactly uniform motion.
+  Eigen::VectorXd at(double s) const;     ///< s in [0, 1].
+  Range position_range(int joint) const;  ///< Exact: ends and the roots of the velocity.
+  Range velocity_range(int joint) const;  ///< Exact: ends and the vertex.
+  /// The least constant bound on acceleration with which any motion can join the two samples: |v1 - v0| / h, and more
+  /// when the positions do not fit the velocities. Zero when the samples say exactly uniform motion.
   double needed_acceleration(int joint) const;
 
  private:

@@ -10,7 +10,8 @@ constexpr double kLeastDamping = 1e-9;
 
 /// Damped least-squares step that pushes no joint through a limit: joints that would leave are held and the rest
 /// take over.
-Eigen::VectorXd bounded_step(const Kinematics& kinematics, const Eigen::VectorXd& arm, Matrix6Xd J, const Vector6d& error) {
+Eigen::VectorXd bounded_step(const Kinematics& kinematics, const Eigen::VectorXd& arm, Matrix6Xd J,
+                             const Vector6d& error) {
   const double damping = 0.5 * error.squaredNorm() + kLeastDamping;
   Eigen::VectorXd step = Eigen::VectorXd::Zero(arm.size());
   for (Eigen::Index round = 0; round <= arm.size(); ++round) {
@@ -19,7 +20,8 @@ Eigen::VectorXd bounded_step(const Kinematics& kinematics, const Eigen::VectorXd
     step.noalias() = J.transpose() * A.llt().solve(error);
     bool held = false;
     for (Eigen::Index j = 0; j < arm.size(); ++j) {
-      const bool at_limit = (arm[j] <= kinematics.lower()[j] && step[j] < 0) || (arm[j] >= kinematics.upper()[j] && step[j] > 0);
+      const bool at_limit =
+          (arm[j] <= kinematics.lower()[j] && step[j] < 0) || (arm[j] >= kinematics.upper()[j] && step[j] > 0);
       if (!at_limit || J.col(j).isZero(0)) continue;
       J.col(j).setZero();
       held = true;
@@ -31,7 +33,8 @@ Eigen::VectorXd bounded_step(const Kinematics& kinematics, const Eigen::VectorXd
 
 }  // namespace
 
-bool solve_tip_pose(Kinematics& kinematics, const Pose& T_root_tip, const IkTolerance& tolerance, Eigen::VectorXd& arm) {
+bool solve_tip_pose(Kinematics& kinematics, const Pose& T_root_tip, const IkTolerance& tolerance,
+                    Eigen::VectorXd& arm) {
   // Aim well inside the tolerance: the last step is quadratic and costs one iteration.
   const double near_position = 0.1 * tolerance.position, near_rotation = 0.1 * tolerance.rotation;
   Pose T_now;

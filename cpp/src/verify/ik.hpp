@@ -5,8 +5,8 @@
 namespace mmgrasp::verify {
 
 struct IkTolerance {
-  double position = 1e-4;   ///< [m]
-  double rotation = 1e-3;   ///< [rad]
+  double position = 1e-4;  ///< [m]
+  double rotation = 1e-3;  ///< [rad]
   int iterations = 60;
 };
 

@@ -94,7 +94,9 @@ void Judge::find_near_bodies() {
   }
 }
 
-void Judge::set_present(std::size_t body, bool present) { present_[body] = present; }
+void Judge::set_present(std::size_t body, bool present) {
+  present_[body] = present;
+}
 
 void Judge::hold(std::size_t body, const Pose& T_tip_body) {
   present_[body] = false;
@@ -103,7 +105,9 @@ void Judge::hold(std::size_t body, const Pose& T_tip_body) {
   T_tip_held_ = T_tip_body;
 }
 
-void Judge::drop() { held_ = -1; }
+void Judge::drop() {
+  held_ = -1;
+}
 
 void Judge::place(const Eigen::VectorXd& arm, double opening) {
   ++queries_;

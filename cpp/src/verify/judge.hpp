@@ -15,8 +15,8 @@ namespace mmgrasp::verify {
 struct PlacedBody {
   std::string name;
   std::vector<Solid> solids;
-  Poses T_world_shape;              ///< One a solid.
-  std::vector<Bounds> bounds;       ///< One a solid.
+  Poses T_world_shape;         ///< One a solid.
+  std::vector<Bounds> bounds;  ///< One a solid.
   Bounds total;
 };
 
@@ -26,12 +26,12 @@ PlacedBody place_body(const std::string& name, const std::vector<LinkShape>& sha
 struct Stage {
   Robot robot;
   ArmSetup setup;
-  std::vector<std::vector<Solid>> link_solids;   ///< By link index.
+  std::vector<std::vector<Solid>> link_solids;  ///< By link index.
   std::vector<std::pair<int, int>> self_pairs;
-  std::vector<bool> is_finger;                   ///< By link index.
-  std::vector<PlacedBody> bodies;                ///< Obstacles, then parts.
+  std::vector<bool> is_finger;     ///< By link index.
+  std::vector<PlacedBody> bodies;  ///< Obstacles, then parts.
   std::size_t first_part = 0;
-  double reach = 0;                              ///< No point of the robot is farther than this from its root [m].
+  double reach = 0;  ///< No point of the robot is farther than this from its root [m].
 };
 
 /// Solids of the links, pairs and reach. Bodies are added by the caller.
@@ -79,11 +79,11 @@ class Judge {
   Kinematics kinematics_;
   Pose T_world_root_ = Pose::Identity();
   std::vector<bool> present_;
-  std::vector<std::size_t> near_;               ///< Bodies within the robot's reach of the base.
-  std::vector<Poses> solid_poses_;              ///< [link][solid], world.
+  std::vector<std::size_t> near_;   ///< Bodies within the robot's reach of the base.
+  std::vector<Poses> solid_poses_;  ///< [link][solid], world.
   std::vector<std::vector<Bounds>> solid_bounds_;
   std::vector<Bounds> link_bounds_;
-  std::vector<int> solid_links_;                ///< Links that have solids.
+  std::vector<int> solid_links_;  ///< Links that have solids.
   int held_ = -1;
   Pose T_tip_held_ = Pose::Identity();
   PlacedBody held_body_;

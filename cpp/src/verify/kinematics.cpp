@@ -8,7 +8,9 @@
 namespace mmgrasp::verify {
 namespace {
 
-KDL::Vector to_kdl(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+KDL::Vector to_kdl(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
 
 KDL::Frame to_kdl(const Pose& T) {
   const Eigen::Matrix3d R = T.linear();
@@ -67,7 +69,8 @@ Kinematics::Kinematics(const Robot& robot, const ArmSetup& setup) : setup_(setup
       queue.push_back(elements_.back().link);
     }
   }
-  for (int element = element_of_link[setup.tip_link]; element >= 0; element = element_of_link[elements_[element].parent]) {
+  for (int element = element_of_link[setup.tip_link]; element >= 0;
+       element = element_of_link[elements_[element].parent]) {
     chain_.insert(chain_.begin(), element);
   }
 
@@ -138,7 +141,8 @@ void Kinematics::tip_and_jacobian(const Eigen::VectorXd& arm, Pose& T_root_tip, 
     const Element& element = elements_[index];
     const KDL::Frame next = frame * element.segment.pose(value(element));
     if (element.column >= 0) {
-      // KDL refers the twist to the segment's end; here first to the root's origin, where several joints' twists add up.
+      // KDL refers the twist to the segment's end; here first to the root's origin, where several joints' twists add
+      // up.
       const KDL::Twist twist = (frame.M * element.segment.twist(value(element), element.multiplier)).RefPoint(-next.p);
       for (int row = 0; row < 6; ++row) J(row, element.column) += twist(row);
     }

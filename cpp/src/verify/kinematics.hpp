@@ -18,9 +18,9 @@ struct FingerMap {
 
 /// Which joints of a robot the plan moves, and where the others stand.
 struct ArmSetup {
-  std::vector<int> arm;            ///< Joint indices, in the order of a configuration.
+  std::vector<int> arm;  ///< Joint indices, in the order of a configuration.
   int tip_link = -1;
-  std::map<int, double> others;    ///< Joint index -> value held.
+  std::map<int, double> others;  ///< Joint index -> value held.
   std::vector<FingerMap> fingers;
   double max_opening = 0.1;
 };
@@ -47,19 +47,19 @@ class Kinematics {
   struct Element {
     int joint = -1, parent = -1, link = -1;
     KDL::Segment segment;
-    int source = -1;               ///< Joint whose value it follows: itself, or what it mimics.
+    int source = -1;  ///< Joint whose value it follows: itself, or what it mimics.
     double multiplier = 1, offset = 0;
-    int column = -1;               ///< Arm joint that drives it; -1: none.
+    int column = -1;  ///< Arm joint that drives it; -1: none.
   };
   Element make_element(const Robot& robot, int joint) const;
   void set_arm(const Eigen::VectorXd& arm);
   double value(const Element& element) const;
 
   ArmSetup setup_;
-  std::vector<Element> elements_;  ///< Parents first.
-  std::vector<int> chain_;         ///< Elements from the root to the tip.
-  std::vector<double> values_;     ///< By joint index.
-  std::vector<KDL::Frame> frames_; ///< By link index.
+  std::vector<Element> elements_;   ///< Parents first.
+  std::vector<int> chain_;          ///< Elements from the root to the tip.
+  std::vector<double> values_;      ///< By joint index.
+  std::vector<KDL::Frame> frames_;  ///< By link index.
   Poses poses_;
   Eigen::VectorXd lower_, upper_;
   std::vector<bool> continuous_;

@@ -18,20 +18,22 @@ bool check_grid(const PlanToCheck& plan, Faults& faults) {
                     grid.origin.allFinite() && !grid.headings.empty() &&
                     std::all_of(grid.headings.begin(), grid.headings.end(), finite) &&
                     plan.positioning_uncertainty < 1000 * grid.resolution;
-  if (!good) faults.push_back({"region-malformed", "grid", "sizes, resolution and headings must be positive and finite"});
+  if (!good)
+    faults.push_back({"region-malformed", "grid", "sizes, resolution and headings must be positive and finite"});
   return good;
 }
 
 /// Regions whose arrays fit the grid, in the plan's order.
 std::vector<const CheckedRegion*> usable_regions(const PlanToCheck& plan, Faults& faults) {
-  const std::size_t cells = plan.grid.headings.size() * static_cast<std::size_t>(plan.grid.nx) * static_cast<std::size_t>(plan.grid.ny);
+  const std::size_t cells =
+      plan.grid.headings.size() * static_cast<std::size_t>(plan.grid.nx) * static_cast<std::size_t>(plan.grid.ny);
   std::vector<const CheckedRegion*> usable;
   std::set<std::string> names;
   for (const CheckedRegion& region : plan.regions) {
     const std::string where = "region of tray '" + region.tray + "'";
     if (region.cells.size() != cells) {
-      faults.push_back({"region-malformed", where, "has " + std::to_string(region.cells.size()) + " cells, the grid " +
-                                                       std::to_string(cells)});
+      faults.push_back({"region-malformed", where,
+                        "has " + std::to_string(region.cells.size()) + " cells, the grid " + std::to_string(cells)});
     } else if (!names.insert(region.tray).second) {
       faults.push_back({"region-malformed", where, "is there twice"});
     } else {
@@ -52,7 +54,8 @@ class StopsCheck {
       if (region != region_of_tray_.end()) {
         wanted_.insert(region->second);
       } else if (missing_.insert(part.tray).second) {
-        faults_.push_back({"region-missing", "regions", "tray '" + part.tray + "' holds target parts and has no usable region"});
+        faults_.push_back(
+            {"region-missing", "regions", "tray '" + part.tray + "' holds target parts and has no usable region"});
       }
     }
   }
@@ -80,8 +83,9 @@ class StopsCheck {
       return;
     }
     if (stop.radius < needed - kRadiusBand) {
-      faults_.push_back({"stop-radius", where, "radius " + text(stop.radius) + " m is below the positioning uncertainty " +
-                                                   text(needed) + " m"});
+      faults_.push_back(
+          {"stop-radius", where,
+           "radius " + text(stop.radius) + " m is below the positioning uncertainty " + text(needed) + " m"});
     }
     const double wanted = std::max(stop.radius, needed);
     RegionSet holding;
@@ -93,8 +97,9 @@ class StopsCheck {
       if (region == region_of_tray_.end()) continue;
       const double room = clearance(region->second, layer, stop, wanted);
       if (room >= wanted - kRadiusBand) continue;
-      faults_.push_back({"stop-outside-region", where, "a disc of " + text(wanted) + " m is said to lie in the region of tray '" +
-                                                           tray + "', there is room for " + text(room) + " m"});
+      faults_.push_back({"stop-outside-region", where,
+                         "a disc of " + text(wanted) + " m is said to lie in the region of tray '" + tray +
+                             "', there is room for " + text(room) + " m"});
     }
     own.push_back(holding);
   }
@@ -107,16 +112,19 @@ class StopsCheck {
   void judge_count(int minimal) {
     const int stops = static_cast<int>(plan_.stops.size());
     if (minimal < 0) {
-      faults_.push_back({"region-too-small", "regions", "some tray's region holds no disc of " +
-                                                            text(plan_.positioning_uncertainty) + " m anywhere"});
+      faults_.push_back({"region-too-small", "regions",
+                         "some tray's region holds no disc of " + text(plan_.positioning_uncertainty) + " m anywhere"});
       return;
     }
     if (minimal < stops) {
-      faults_.push_back({"not-minimal", "stops", std::to_string(stops) + " stops, " + std::to_string(minimal) + " are enough for these regions"});
+      faults_.push_back(
+          {"not-minimal", "stops",
+           std::to_string(stops) + " stops, " + std::to_string(minimal) + " are enough for these regions"});
     }
     if (plan_.lower_bound != minimal) {
-      faults_.push_back({"lower-bound", "lower_bound", "says " + std::to_string(plan_.lower_bound) + ", the least number of stops is " +
-                                                           std::to_string(minimal)});
+      faults_.push_back(
+          {"lower-bound", "lower_bound",
+           "says " + std::to_string(plan_.lower_bound) + ", the least number of stops is " + std::to_string(minimal)});
     }
   }
 

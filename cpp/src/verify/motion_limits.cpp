@@ -8,9 +8,15 @@
 namespace mmgrasp::verify {
 namespace {
 
-constexpr double kPositionSlack = 1e-6;      // [rad] or [m]
-constexpr double kRateSlack = 0.01;          // Relative, velocities at samples and accelerations.
-constexpr double kBetweenSlack = 0.05;       // Relative, velocities between samples: a cubic overshoots a trapezoid's corner.
+constexpr double kPositionSlack = 1e-6;  // [rad] or [m]
+constexpr double kRateSlack = 0.01;      // Relative, velocities at samples and accelerations.
+constexpr double kLargest = 1e6;  // No position [rad, m] or speed is beyond this: it would only break the arithmetic.
+constexpr double kBetweenSlack =
+    0.05;  // Relative, velocities between samples: a cubic overshoots a trapezoid's corner.
+
+bool usable(const Eigen::VectorXd& values, int joints) {
+  return values.size() == joints && (values.array().abs() <= kLargest).all();  // false for NaN
+}
 
 /// The worst excess over a bound that was seen.
 struct Worst {
@@ -31,8 +37,8 @@ void report(const Worst& worst, const char* code, const char* quantity, const ch
             const std::string& where, Faults& faults) {
   if (worst.joint < 0) return;
   faults.push_back({code, where + ", t = " + text(worst.time) + " s",
-                    std::string(quantity) + " of '" + context.plan.arm_joints[worst.joint] + "' is " + text(worst.value) +
-                        ", the limit " + text(worst.bound) + " " + unit});
+                    std::string(quantity) + " of '" + context.plan.arm_joints[worst.joint] + "' is " +
+                        text(worst.value) + ", the limit " + text(worst.bound) + " " + unit});
 }
 
 }  // namespace
@@ -40,21 +46,24 @@ void report(const Worst& worst, const char* code, const char* quantity, const ch
 bool check_motion_shape(const CheckedMotion& motion, int joints, const std::string& where, Faults& faults) {
   const std::size_t samples = motion.times.size();
   if (samples < 2 || motion.positions.size() != samples || motion.velocities.size() != samples) {
-    faults.push_back({"motion-shape", where, "has " + text(samples) + " times, " + text(motion.positions.size()) + " positions, " +
-                                                 text(motion.velocities.size()) + " velocities: must be equally many, at least 2"});
+    faults.push_back({"motion-shape", where,
+                      "has " + text(samples) + " times, " + text(motion.positions.size()) + " positions, " +
+                          text(motion.velocities.size()) + " velocities: must be equally many, at least 2"});
     return false;
   }
   for (std::size_t i = 0; i < samples; ++i) {
-    const Eigen::VectorXd& q = motion.positions[i];
-    const Eigen::VectorXd& v = motion.velocities[i];
-    if (q.size() != joints || v.size() != joints || !q.allFinite() || !v.allFinite() || !std::isfinite(motion.times[i])) {
-      faults.push_back({"motion-shape", where, "sample " + std::to_string(i) + " does not hold a finite time and " +
-                                                   std::to_string(joints) + " finite positions and velocities"});
+    const bool good = usable(motion.positions[i], joints) && usable(motion.velocities[i], joints) &&
+                      std::abs(motion.times[i]) <= kLargest;
+    if (!good) {
+      faults.push_back({"motion-shape", where,
+                        "sample " + std::to_string(i) + " does not hold a time and " + std::to_string(joints) +
+                            " positions and velocities, all finite and at most 1e6"});
       return false;
     }
     if (i > 0 && !(motion.times[i] > motion.times[i - 1])) {
-      faults.push_back({"times", where, "time " + std::to_string(i) + " (" + text(motion.times[i]) + " s) does not come after " +
-                                            text(motion.times[i - 1]) + " s"});
+      faults.push_back({"times", where,
+                        "time " + std::to_string(i) + " (" + text(motion.times[i]) + " s) does not come after " +
+                            text(motion.times[i - 1]) + " s"});
       return false;
     }
   }

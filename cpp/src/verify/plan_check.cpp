@@ -6,9 +6,12 @@
 namespace mmgrasp::verify {
 namespace {
 
-std::shared_ptr<const Stage> build_stage(const PlanToCheck& plan, const ArmSetup& setup, const std::vector<int>& finger_links) {
+std::shared_ptr<const Stage> build_stage(const PlanToCheck& plan, const ArmSetup& setup,
+                                         const std::vector<int>& finger_links) {
   auto stage = std::make_shared<Stage>(make_stage(plan.robot, setup, finger_links));
-  const auto add = [&](const CheckedBody& body) { stage->bodies.push_back(place_body(body.name, body.shapes, body.T_world_body)); };
+  const auto add = [&](const CheckedBody& body) {
+    stage->bodies.push_back(place_body(body.name, body.shapes, body.T_world_body));
+  };
   for (const CheckedBody& obstacle : plan.obstacles) add(obstacle);
   stage->first_part = stage->bodies.size();
   for (const CheckedPart& part : plan.parts) add(part.body);

@@ -11,9 +11,9 @@
 namespace mmgrasp::verify {
 namespace {
 
-constexpr int kChunks = 20;            // Pieces of a stop's samples that are worked on independently.
-constexpr std::size_t kPool = 24;      // Configurations remembered for a part.
-constexpr int kTries = 1500;           // IK solutions tried from other seeds before a part counts as lost.
+constexpr int kChunks = 20;        // Pieces of a stop's samples that are worked on independently.
+constexpr std::size_t kPool = 24;  // Configurations remembered for a part.
+constexpr int kTries = 1500;       // IK solutions tried from other seeds before a part counts as lost.
 
 /// A grasp with an arm configuration that once reached it.
 struct Hold {
@@ -27,11 +27,12 @@ using Pools = std::vector<std::deque<Hold>>;
 /// What one piece of one stop's samples gave.
 struct ChunkResult {
   int samples = 0, good = 0;
-  std::vector<int> lost;               ///< By wanted part: at how many samples it was the one that failed.
+  std::vector<int> lost;  ///< By wanted part: at how many samples it was the one that failed.
   int home_blocked = 0;
 };
 
-/// The samples of a stop along a winding path over the disc, so that neighbours in the list are neighbours on the floor.
+/// The samples of a stop along a winding path over the disc, so that neighbours in the list are neighbours on the
+/// floor.
 std::vector<Eigen::Vector3d> sorted_samples(const Context& context, std::size_t stop) {
   const double radius = context.plan.positioning_uncertainty;
   const Eigen::Vector3d& pose = context.plan.stops[stop].pose;
@@ -45,7 +46,8 @@ std::vector<Eigen::Vector3d> sorted_samples(const Context& context, std::size_t 
   };
   std::sort(offsets.begin(), offsets.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
   std::vector<Eigen::Vector3d> poses;
-  for (const Eigen::Vector2d& offset : offsets) poses.emplace_back(pose.x() + offset.x(), pose.y() + offset.y(), pose.z());
+  for (const Eigen::Vector2d& offset : offsets)
+    poses.emplace_back(pose.x() + offset.x(), pose.y() + offset.y(), pose.z());
   return poses;
 }
 
@@ -145,8 +147,8 @@ Pools planned_holds(const Context& context) {
 }
 
 /// One piece of a stop. It ends early once it alone has lost more samples than the whole stop may lose.
-ChunkResult run_chunk(const Context& context, const std::vector<Eigen::Vector3d>& poses, std::size_t begin, std::size_t end,
-                      const std::vector<int>& wanted, Judge& judge, GraspSearch search) {
+ChunkResult run_chunk(const Context& context, const std::vector<Eigen::Vector3d>& poses, std::size_t begin,
+                      std::size_t end, const std::vector<int>& wanted, Judge& judge, GraspSearch search) {
   ChunkResult result;
   result.lost.assign(wanted.size(), 0);
   const double allowed = (1 - context.options.required_rate) * context.options.samples;
@@ -160,7 +162,8 @@ ChunkResult run_chunk(const Context& context, const std::vector<Eigen::Vector3d>
       ++result.home_blocked;
       continue;
     }
-    const auto failed = std::find_if(order.begin(), order.end(), [&](std::size_t k) { return !search.find(wanted[k]); });
+    const auto failed =
+        std::find_if(order.begin(), order.end(), [&](std::size_t k) { return !search.find(wanted[k]); });
     if (failed == order.end()) {
       ++result.good;
     } else {
@@ -189,14 +192,16 @@ StopRate summarize(const Context& context, std::size_t stop, const std::vector<i
   std::string why = rate.worst_part.empty() ? "" : "; most often '" + rate.worst_part + "' has no free grasp";
   if (home_blocked > 0) why += "; at " + std::to_string(home_blocked) + " the robot collides at home";
   faults.push_back({"not-robust", "stop " + std::to_string(stop),
-                    "all parts can be grasped from " + std::to_string(rate.good) + " of " + std::to_string(rate.samples) +
-                        " base poses, required is a share of " + text(context.options.required_rate) + why});
+                    "all parts can be grasped from " + std::to_string(rate.good) + " of " +
+                        std::to_string(rate.samples) + " base poses, required is a share of " +
+                        text(context.options.required_rate) + why});
   return rate;
 }
 
 }  // namespace
 
-void check_robustness(const Context& context, Faults& faults, std::vector<StopRate>& rates, std::size_t& configurations) {
+void check_robustness(const Context& context, Faults& faults, std::vector<StopRate>& rates,
+                      std::size_t& configurations) {
   const std::size_t stops = context.plan.stops.size();
   std::vector<std::vector<Eigen::Vector3d>> poses;
   std::vector<std::vector<int>> wanted;

@@ -7,6 +7,7 @@ namespace mmgrasp::verify {
 namespace {
 
 constexpr double kJoin = 1e-6;         // [m, rad]
+constexpr double kLargest = 1e6;       // Beyond this a pose is no number to compute with [m, rad].
 constexpr double kMaxSteps = 1000000;  // Base poses of one leg.
 
 bool same_pose(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -32,8 +33,9 @@ class RouteCheck {
   void run() {
     const std::size_t legs = plan_.stops.size() + 1;
     if (plan_.route.size() != legs) {
-      faults_.push_back({"route-legs", "route", "has " + std::to_string(plan_.route.size()) + " legs, " +
-                                                    std::to_string(plan_.stops.size()) + " stops need " + std::to_string(legs)});
+      faults_.push_back({"route-legs", "route",
+                         "has " + std::to_string(plan_.route.size()) + " legs, " + std::to_string(plan_.stops.size()) +
+                             " stops need " + std::to_string(legs)});
     }
     for (std::size_t leg = 0; leg < plan_.route.size(); ++leg) {
       context_.monitor.report("route", static_cast<double>(leg) / static_cast<double>(plan_.route.size()));
@@ -47,9 +49,11 @@ class RouteCheck {
 
   void check_leg(std::size_t leg) {
     const std::vector<Eigen::Vector3d>& poses = plan_.route[leg];
-    const bool finite = std::all_of(poses.begin(), poses.end(), [](const Eigen::Vector3d& p) { return p.allFinite(); });
+    const bool finite = std::all_of(poses.begin(), poses.end(), [](const Eigen::Vector3d& p) {
+      return p.allFinite() && p.cwiseAbs().maxCoeff() <= kLargest;
+    });
     if (poses.empty() || !finite) {
-      faults_.push_back({"route-ends", name(leg), "must hold at least one pose, all finite"});
+      faults_.push_back({"route-ends", name(leg), "must hold at least one pose, all finite and at most 1e6"});
       return;
     }
     const Eigen::Vector3d from = leg == 0 ? plan_.start : stop_pose(leg - 1);
@@ -71,7 +75,8 @@ class RouteCheck {
     return stop < plan_.stops.size() ? plan_.stops[stop].pose : plan_.goal;
   }
 
-  void check_end(const Eigen::Vector3d& pose, const Eigen::Vector3d& wanted, const std::string& where, const char* verb) {
+  void check_end(const Eigen::Vector3d& pose, const Eigen::Vector3d& wanted, const std::string& where,
+                 const char* verb) {
     if (same_pose(pose, wanted)) return;
     faults_.push_back({"route-ends", where, std::string(verb) + " at " + text(pose) + ", must be " + text(wanted)});
   }
@@ -101,7 +106,8 @@ class RouteCheck {
         judge_.set_base(pose);
         const Touch touch = judge_.touch(plan_.home, 0);
         if (!touch) continue;
-        faults_.push_back({"route-collision", where + ", base at " + text(pose), "'" + touch.a + "' touches '" + touch.b + "'"});
+        faults_.push_back(
+            {"route-collision", where + ", base at " + text(pose), "'" + touch.a + "' touches '" + touch.b + "'"});
         return;
       }
     }
@@ -119,8 +125,9 @@ void check_home(const Context& context, Judge& judge, Faults& faults) {
   for (int j = 0; j < kinematics.arm_size(); ++j) {
     const double q = context.plan.home[j];
     if (q >= kinematics.lower()[j] - kJoin && q <= kinematics.upper()[j] + kJoin) continue;
-    faults.push_back({"home-limit", "home", "'" + context.plan.arm_joints[j] + "' at " + text(q) + " is outside [" +
-                                                text(kinematics.lower()[j]) + ", " + text(kinematics.upper()[j]) + "]"});
+    faults.push_back({"home-limit", "home",
+                      "'" + context.plan.arm_joints[j] + "' at " + text(q) + " is outside [" +
+                          text(kinematics.lower()[j]) + ", " + text(kinematics.upper()[j]) + "]"});
   }
   judge.set_base(context.plan.start);
   const Touch touch = judge.touch(context.plan.home, 0);

@@ -30,7 +30,9 @@ struct Overloaded : Ts... {
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
 
-Bounds centred(const Eigen::Vector3d& size) { return {-0.5 * size, 0.5 * size}; }
+Bounds centred(const Eigen::Vector3d& size) {
+  return {-0.5 * size, 0.5 * size};
+}
 
 std::shared_ptr<BvhModel> bvh(const TriangleMesh& mesh) {
   auto model = std::make_shared<BvhModel>();
@@ -95,31 +97,32 @@ Solid plane_solid(const Plane& plane, const Pose& T) {
 
 void add_solids(const LinkShape& item, std::vector<Solid>& out) {
   const Pose& T = item.T_link_shape;
-  std::visit(Overloaded{
-                 [&](const Box& s) { out.push_back(primitive(std::make_shared<fcl::Boxd>(s.size), T, centred(s.size))); },
-                 [&](const Sphere& s) {
-                   out.push_back(primitive(std::make_shared<fcl::Sphered>(s.radius), T,
-                                           centred(Eigen::Vector3d::Constant(2 * s.radius))));
-                 },
-                 [&](const Cylinder& s) {
-                   out.push_back(primitive(std::make_shared<fcl::Cylinderd>(s.radius, s.length), T,
-                                           centred({2 * s.radius, 2 * s.radius, s.length})));
-                 },
-                 [&](const Capsule& s) {
-                   out.push_back(primitive(std::make_shared<fcl::Capsuled>(s.radius, s.length), T,
-                                           centred({2 * s.radius, 2 * s.radius, s.length + 2 * s.radius})));
-                 },
-                 [&](const Plane& s) { out.push_back(plane_solid(s, T)); },
-                 [&](const MeshShape& s) { out.push_back(mesh_solid(s.mesh, T)); },
-                 [&](const Voxels& s) {
-                   const Eigen::Vector3d size = Eigen::Vector3d::Constant(s.resolution);
-                   const auto box = std::make_shared<fcl::Boxd>(size);
-                   for (const Eigen::Vector3d& centre : *s.centres) {
-                     out.push_back(primitive(box, T * Eigen::Translation3d(centre), centred(size)));
-                   }
-                 },
-             },
-             item.shape);
+  std::visit(
+      Overloaded{
+          [&](const Box& s) { out.push_back(primitive(std::make_shared<fcl::Boxd>(s.size), T, centred(s.size))); },
+          [&](const Sphere& s) {
+            out.push_back(primitive(std::make_shared<fcl::Sphered>(s.radius), T,
+                                    centred(Eigen::Vector3d::Constant(2 * s.radius))));
+          },
+          [&](const Cylinder& s) {
+            out.push_back(primitive(std::make_shared<fcl::Cylinderd>(s.radius, s.length), T,
+                                    centred({2 * s.radius, 2 * s.radius, s.length})));
+          },
+          [&](const Capsule& s) {
+            out.push_back(primitive(std::make_shared<fcl::Capsuled>(s.radius, s.length), T,
+                                    centred({2 * s.radius, 2 * s.radius, s.length + 2 * s.radius})));
+          },
+          [&](const Plane& s) { out.push_back(plane_solid(s, T)); },
+          [&](const MeshShape& s) { out.push_back(mesh_solid(s.mesh, T)); },
+          [&](const Voxels& s) {
+            const Eigen::Vector3d size = Eigen::Vector3d::Constant(s.resolution);
+            const auto box = std::make_shared<fcl::Boxd>(size);
+            for (const Eigen::Vector3d& centre : *s.centres) {
+              out.push_back(primitive(box, T * Eigen::Translation3d(centre), centred(size)));
+            }
+          },
+      },
+      item.shape);
 }
 
 void check_item(const LinkShape& item) {
@@ -188,25 +191,25 @@ double lowest_z(const std::vector<LinkShape>& shapes, const Pose& T_world_body) 
     const Eigen::Vector3d up = T.linear().row(2);  // world z in the shape's axes
     const double z = T.translation().z();
     const double side = std::hypot(up.x(), up.y());
-    const double value = std::visit(
-        Overloaded{
-            [&](const Box& s) { return z - 0.5 * up.cwiseAbs().dot(s.size); },
-            [&](const Sphere& s) { return z - s.radius; },
-            [&](const Cylinder& s) { return z - 0.5 * s.length * std::abs(up.z()) - s.radius * side; },
-            [&](const Capsule& s) { return z - 0.5 * s.length * std::abs(up.z()) - s.radius; },
-            [&](const Plane&) { return -std::numeric_limits<double>::infinity(); },
-            [&](const MeshShape& s) {
-              double least = std::numeric_limits<double>::infinity();
-              for (const Eigen::Vector3d& v : s.mesh->vertices) least = std::min(least, z + up.dot(v));
-              return least;
-            },
-            [&](const Voxels& s) {
-              double least = std::numeric_limits<double>::infinity();
-              for (const Eigen::Vector3d& c : *s.centres) least = std::min(least, z + up.dot(c));
-              return least - 0.5 * s.resolution * up.cwiseAbs().sum();
-            },
-        },
-        item.shape);
+    const double value =
+        std::visit(Overloaded{
+                       [&](const Box& s) { return z - 0.5 * up.cwiseAbs().dot(s.size); },
+                       [&](const Sphere& s) { return z - s.radius; },
+                       [&](const Cylinder& s) { return z - 0.5 * s.length * std::abs(up.z()) - s.radius * side; },
+                       [&](const Capsule& s) { return z - 0.5 * s.length * std::abs(up.z()) - s.radius; },
+                       [&](const Plane&) { return -std::numeric_limits<double>::infinity(); },
+                       [&](const MeshShape& s) {
+                         double least = std::numeric_limits<double>::infinity();
+                         for (const Eigen::Vector3d& v : s.mesh->vertices) least = std::min(least, z + up.dot(v));
+                         return least;
+                       },
+                       [&](const Voxels& s) {
+                         double least = std::numeric_limits<double>::infinity();
+                         for (const Eigen::Vector3d& c : *s.centres) least = std::min(least, z + up.dot(c));
+                         return least - 0.5 * s.resolution * up.cwiseAbs().sum();
+                       },
+                   },
+                   item.shape);
     lowest = std::min(lowest, value);
   }
   return lowest;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <fcl/geometry/collision_geometry.h>
+#include <Eigen/Geometry>
 #include <memory>
 #include <vector>
 

@@ -8,10 +8,20 @@
 namespace mmgrasp::verify {
 namespace {
 
-bool finite(double value) { return std::isfinite(value); }
+// Lengths and angles beyond this are no part of a room; they would only break the arithmetic.
+constexpr double kLargest = 1e6;
+
+bool finite(double value) {
+  return std::abs(value) <= kLargest;
+}  // false for NaN
+
+bool finite(const Eigen::VectorXd& values) {
+  return (values.array().abs() <= kLargest).all();
+}
 
 bool is_pose(const Pose& T) {
-  return T.matrix().allFinite() && (T.linear() * T.linear().transpose()).isIdentity(1e-6) && T.linear().determinant() > 0;
+  return finite(Eigen::VectorXd(T.translation())) && T.linear().allFinite() &&
+         (T.linear() * T.linear().transpose()).isIdentity(1e-6) && T.linear().determinant() > 0;
 }
 
 /// Collects structural faults; `ok` tells whether there were any.
@@ -72,12 +82,14 @@ void Structure::arm(ArmSetup& setup) {
     if (index >= 0) setup.others[index] = value;
   }
   const auto limits = [&](const std::vector<double>& values, const char* field) {
-    need(values.size() == count, field, "has " + text(values.size()) + " values, the arm has " + text(count) + " joints");
-    for (const double value : values) need(value > 0, field, text(value) + ": must be positive");
+    need(values.size() == count, field,
+         "has " + text(values.size()) + " values, the arm has " + text(count) + " joints");
+    for (const double value : values)
+      need(value > 0 && finite(value), field, text(value) + ": must be positive and finite");
   };
   limits(plan.velocity_limits, "velocity_limits");
   limits(plan.acceleration_limits, "acceleration_limits");
-  need(static_cast<std::size_t>(plan.home.size()) == count && plan.home.allFinite(), "home",
+  need(static_cast<std::size_t>(plan.home.size()) == count && finite(plan.home), "home",
        "must hold one finite value an arm joint (" + text(count) + ")");
 }
 
@@ -95,29 +107,34 @@ void Structure::gripper(ArmSetup& setup, std::vector<int>& finger_links) {
     setup.fingers.push_back({index, finger.closed, finger.open});
     const Joint& limits = plan.robot.joints()[index];
     for (const double value : {finger.closed, finger.open}) {
-      if (limits.type == JointType::continuous || (value >= limits.lower - 1e-6 && value <= limits.upper + 1e-6)) continue;
-      faults.push_back({"finger-limit", "fingers", "'" + finger.joint + "' at " + text(value) + " is outside [" +
-                                                       text(limits.lower) + ", " + text(limits.upper) + "]"});
+      if (limits.type == JointType::continuous || (value >= limits.lower - 1e-6 && value <= limits.upper + 1e-6))
+        continue;
+      faults.push_back({"finger-limit", "fingers",
+                        "'" + finger.joint + "' at " + text(value) + " is outside [" + text(limits.lower) + ", " +
+                            text(limits.upper) + "]"});
     }
   }
   for (const std::string& name : plan.finger_links) finger_links.push_back(link(name, "finger_links"));
 }
 
 void Structure::scalars() {
-  need(plan.start.allFinite(), "start", "must be finite");
-  need(plan.goal.allFinite(), "goal", "must be finite");
+  need(finite(Eigen::VectorXd(plan.start)), "start", "must be finite");
+  need(finite(Eigen::VectorXd(plan.goal)), "goal", "must be finite");
   need(finite(plan.positioning_uncertainty) && plan.positioning_uncertainty >= 0, "positioning_uncertainty",
        text(plan.positioning_uncertainty) + ": must be finite and not negative");
   need(is_pose(plan.T_base_bin), "carry", "the bin's pose is not a finite rigid transform");
-  need(plan.bin_size.allFinite() && plan.bin_size.minCoeff() > 0, "carry", "the bin's size must be positive");
+  need(finite(Eigen::VectorXd(plan.bin_size)) && plan.bin_size.minCoeff() > 0, "carry",
+       "the bin's size must be positive");
   need(finite(plan.drop_gap) && plan.drop_gap >= 0, "carry", "drop_gap must not be negative");
   for (std::size_t i = 0; i < plan.stops.size(); ++i) {
-    need(plan.stops[i].pose.allFinite() && finite(plan.stops[i].radius), "stop " + std::to_string(i), "must be finite");
+    need(finite(Eigen::VectorXd(plan.stops[i].pose)) && finite(plan.stops[i].radius), "stop " + std::to_string(i),
+         "must be finite");
   }
 }
 
 void Structure::body(const CheckedBody& body, const std::string& where, std::set<std::string>& names) {
-  need(!body.name.empty() && names.insert(body.name).second, where, "'" + body.name + "' is empty or used twice as a name");
+  need(!body.name.empty() && names.insert(body.name).second, where,
+       "'" + body.name + "' is empty or used twice as a name");
   need(is_pose(body.T_world_body), where + " '" + body.name + "'", "its pose is not a finite rigid transform");
   need(!body.shapes.empty(), where + " '" + body.name + "'", "has no shape");
   try {

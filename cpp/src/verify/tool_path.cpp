@@ -6,12 +6,12 @@
 namespace mmgrasp::verify {
 namespace {
 
-constexpr double kStraight = 1e-3;       // Deviation from the approach line [m].
-constexpr double kTurn = 0.01;           // And from the final orientation [rad].
-constexpr double kLeastLift = 0.01;      // [m]
-constexpr double kLevel = 0.01;          // Tilt of a released part [rad].
-constexpr double kBelowGap = 1e-3;       // A released part may be this far below the bin's top [m] ...
-constexpr double kAboveGap = 0.05;       // ... and this far above the drop gap [m].
+constexpr double kStraight = 1e-3;   // Deviation from the approach line [m].
+constexpr double kTurn = 0.01;       // And from the final orientation [rad].
+constexpr double kLeastLift = 0.01;  // [m]
+constexpr double kLevel = 0.01;      // Tilt of a released part [rad].
+constexpr double kBelowGap = 1e-3;   // A released part may be this far below the bin's top [m] ...
+constexpr double kAboveGap = 0.05;   // ... and this far above the drop gap [m].
 
 }  // namespace
 
@@ -35,27 +35,30 @@ void check_grasp_reached(const Context& context, const Pose& T_world_wanted, con
   const double distance = (T_world_wanted.translation() - T_world_tip.translation()).norm();
   const double angle = rotation_distance(T_world_wanted, T_world_tip);
   if (distance <= context.options.position_tolerance && angle <= context.options.rotation_tolerance) return;
-  faults.push_back({"grasp-missed", where, "the tool ends " + text(distance) + " m and " + text(angle) +
-                                               " rad from the grasp, allowed are " + text(context.options.position_tolerance) +
-                                               " m and " + text(context.options.rotation_tolerance) + " rad"});
+  faults.push_back({"grasp-missed", where,
+                    "the tool ends " + text(distance) + " m and " + text(angle) + " rad from the grasp, allowed are " +
+                        text(context.options.position_tolerance) + " m and " +
+                        text(context.options.rotation_tolerance) + " rad"});
 }
 
 void check_lift(const Pose& T_world_start, const Pose& T_world_end, const std::string& where, Faults& faults) {
   const double rise = T_world_end.translation().z() - T_world_start.translation().z();
   if (rise < kLeastLift) {
-    faults.push_back({"no-lift", where, "the tool rises by " + text(rise) + " m, must be at least " + text(kLeastLift)});
+    faults.push_back(
+        {"no-lift", where, "the tool rises by " + text(rise) + " m, must be at least " + text(kLeastLift)});
   }
 }
 
-void check_release(const Context& context, const CheckedPart& part, const Pose& T_world_root, const Pose& T_world_released,
-                   const std::string& where, Faults& faults) {
+void check_release(const Context& context, const CheckedPart& part, const Pose& T_world_root,
+                   const Pose& T_world_released, const std::string& where, Faults& faults) {
   const PlanToCheck& plan = context.plan;
   const Pose T_world_bin = T_world_root * plan.T_base_bin;
   const Eigen::Vector3d in_bin = T_world_bin.inverse() * T_world_released.translation();
   if (std::abs(in_bin.x()) > 0.5 * plan.bin_size.x() || std::abs(in_bin.y()) > 0.5 * plan.bin_size.y()) {
-    faults.push_back({"release-outside", where, "the part is let go at (" + text(in_bin.x()) + ", " + text(in_bin.y()) +
-                                                    ") m from the bin's middle, the bin is " + text(plan.bin_size.x()) +
-                                                    " x " + text(plan.bin_size.y()) + " m"});
+    faults.push_back({"release-outside", where,
+                      "the part is let go at (" + text(in_bin.x()) + ", " + text(in_bin.y()) +
+                          ") m from the bin's middle, the bin is " + text(plan.bin_size.x()) + " x " +
+                          text(plan.bin_size.y()) + " m"});
   }
   // The turn since it lay: about the vertical only, if the vertical is where it was.
   const Eigen::Matrix3d turn = T_world_released.linear() * part.body.T_world_body.linear().transpose();
@@ -65,8 +68,9 @@ void check_release(const Context& context, const CheckedPart& part, const Pose& 
   }
   const double height = lowest_z(part.body.shapes, T_world_bin.inverse() * T_world_released);
   if (height < -kBelowGap || height > plan.drop_gap + kAboveGap) {
-    faults.push_back({"release-height", where, "the part's lowest point is " + text(height) + " m over the bin's top, allowed is [" +
-                                                   text(-kBelowGap) + ", " + text(plan.drop_gap + kAboveGap) + "]"});
+    faults.push_back({"release-height", where,
+                      "the part's lowest point is " + text(height) + " m over the bin's top, allowed is [" +
+                          text(-kBelowGap) + ", " + text(plan.drop_gap + kAboveGap) + "]"});
   }
 }
 

@@ -17,7 +17,7 @@ class StraightnessCheck {
  private:
   Eigen::Vector3d axis_;
   Pose T_world_end_;
-  double farthest_ = -1e9;   ///< Largest progress so far along the axis, 0 at the end [m].
+  double farthest_ = -1e9;  ///< Largest progress so far along the axis, 0 at the end [m].
 };
 
 /// "grasp-missed".
@@ -28,7 +28,7 @@ void check_grasp_reached(const Context& context, const Pose& T_world_wanted, con
 void check_lift(const Pose& T_world_start, const Pose& T_world_end, const std::string& where, Faults& faults);
 
 /// "release-outside", "release-tilted", "release-height".
-void check_release(const Context& context, const CheckedPart& part, const Pose& T_world_root, const Pose& T_world_released,
-                   const std::string& where, Faults& faults);
+void check_release(const Context& context, const CheckedPart& part, const Pose& T_world_root,
+                   const Pose& T_world_released, const std::string& where, Faults& faults);
 
 }  // namespace mmgrasp::verify

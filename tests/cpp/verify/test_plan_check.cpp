@@ -14,7 +14,9 @@ namespace {
 
 enum { kReach, kApproach, kLift, kCarry, kRetreat };
 
-CheckedMotion& motion(PlanToCheck& plan, int pick, int kind) { return plan.picks[pick].motions[kind]; }
+CheckedMotion& motion(PlanToCheck& plan, int pick, int kind) {
+  return plan.picks[pick].motions[kind];
+}
 
 std::string listed(const PlanCheckResult& result) {
   std::string all;
@@ -56,7 +58,8 @@ TEST(PlanCheck, ChecksAtLeastAsFinelyAsAsked) {
   const PlanToCheck plan = good_plan();
   double travel = 0;
   for (const CheckedPick& pick : plan.picks) {
-    for (const CheckedMotion& m : pick.motions) travel += (m.positions.back() - m.positions.front()).cwiseAbs().maxCoeff();
+    for (const CheckedMotion& m : pick.motions)
+      travel += (m.positions.back() - m.positions.front()).cwiseAbs().maxCoeff();
   }
   PlanCheckOptions options = quick();
   options.samples = 1;
@@ -167,8 +170,8 @@ TEST(PlanCheck, AddedObstacleIsHit) {
 }
 
 TEST(PlanCheck, ObstacleThatOnlyTheHeldPartHits) {
-  // Under the carried cube, beside the fingers (20 mm wide), between table and bin: only the cube's edge (x +- 20 mm) reaches
-  // over it, and only when the arm is back at the release.
+  // Under the carried cube, beside the fingers (20 mm wide), between table and bin: only the cube's edge (x +- 20 mm)
+  // reaches over it, and only when the arm is back at the release.
   PlanToCheck plan = good_plan();
   const Eigen::Vector3d bin(0.5, 0, kBinTop + kDropGap + 0.5 * kCube);
   plan.obstacles.push_back(box("pin", {0.002, 0.002, 0.02}, at(bin.x() - 0.017, bin.y(), bin.z())));
@@ -325,8 +328,58 @@ TEST(PlanCheck, EmptyPlanForgetsEverything) {
 
 TEST(PlanCheck, EndlessMotionIsRefused) {
   PlanToCheck plan = good_plan();
-  for (Eigen::VectorXd& v : motion(plan, 0, kReach).velocities) v *= 1e12;
+  for (Eigen::VectorXd& v : motion(plan, 0, kReach).velocities) v *= 1e5;
   EXPECT_TRUE(codes_of(plan).count("too-long"));
+}
+
+/// Every number and index of a plan that a file could get wrong.
+std::vector<double*> numbers_of(PlanToCheck& plan) {
+  std::vector<double*> numbers{&plan.max_opening,
+                               &plan.clearance,
+                               &plan.positioning_uncertainty,
+                               &plan.drop_gap,
+                               &plan.bin_size.x(),
+                               &plan.start.x(),
+                               &plan.goal.z(),
+                               &plan.home[1],
+                               &plan.grid.resolution,
+                               &plan.grid.origin.x(),
+                               &plan.grid.headings[0],
+                               &plan.fingers[0].open,
+                               &plan.velocity_limits[0],
+                               &plan.acceleration_limits[1],
+                               &plan.approach.z(),
+                               &plan.T_base_bin.matrix()(0, 3),
+                               &plan.T_base_bin.matrix()(1, 1),
+                               &plan.parts[0].body.T_world_body.matrix()(2, 3),
+                               &plan.parts[0].grasps[0].width,
+                               &plan.parts[0].grasps[0].T_object_tcp.matrix()(0, 0),
+                               &plan.obstacles[1].T_world_body.matrix()(1, 3),
+                               &plan.stops[0].pose.x(),
+                               &plan.stops[1].radius,
+                               &plan.route[1][1].y(),
+                               &plan.route[2][0].z()};
+  for (CheckedMotion& m : plan.picks[1].motions) {
+    numbers.insert(numbers.end(),
+                   {&m.opening, &m.times[4], &m.positions[7][1], &m.positions.back()[4], &m.velocities[9][0]});
+  }
+  return numbers;
+}
+
+TEST(PlanCheck, NoNumberMakesItThrow) {
+  PlanToCheck model = good_plan();
+  const std::size_t count = numbers_of(model).size();
+  for (std::size_t i = 0; i < count; ++i) {
+    for (const double value : {std::numeric_limits<double>::quiet_NaN(), -1e9, 1e300}) {
+      PlanToCheck plan = good_plan();
+      *numbers_of(plan)[i] = value;
+      PlanCheckOptions options = quick();
+      options.samples = 1;
+      PlanCheckResult result;
+      EXPECT_NO_THROW(result = check_plan(plan, options)) << "number " << i << " = " << value;
+      EXPECT_FALSE(result.faults.empty()) << "number " << i << " = " << value;
+    }
+  }
 }
 
 TEST(PlanCheck, StoppedCheckIsNoPass) {

@@ -16,15 +16,15 @@ namespace tiny {
 using mmgrasp::Pose;
 using namespace mmgrasp::verify;
 
-constexpr double kCube = 0.04;         // Edge of a part [m].
+constexpr double kCube = 0.04;  // Edge of a part [m].
 constexpr double kTableTop = 0.50;
 constexpr double kPartZ = kTableTop + 0.001 + 0.5 * kCube;
 constexpr double kBinTop = 0.40;
 constexpr double kDropGap = 0.03;
-constexpr double kHandAbove = 0.02;    // Origin of the hand over the tcp [m].
+constexpr double kHandAbove = 0.02;  // Origin of the hand over the tcp [m].
 
-/// Joints z, x, y (prismatic), tilt (about y), yaw (about z): the hand's origin lies at (0.1 + x, y, 0.9 + z) in the root
-/// frame. The z joint's frame is turned so that a wrong frame order shows. The right finger follows the left one.
+/// Joints z, x, y (prismatic), tilt (about y), yaw (about z): the hand's origin lies at (0.1 + x, y, 0.9 + z) in the
+/// root frame. The z joint's frame is turned so that a wrong frame order shows. The right finger follows the left one.
 inline std::string urdf(double x_upper = 0.8) {
   return R"(<robot name="gantry">
   <link name="base"><collision><origin xyz="0 0 0.2"/><geometry><box size="0.4 0.4 0.3"/></geometry></collision></link>
@@ -73,8 +73,8 @@ inline CheckedBody box(const std::string& name, const Eigen::Vector3d& size, con
 }
 
 /// Straight in joint space along 3 u^2 - 2 u^3: at rest at both ends, and a cubic, so that interpolation is exact.
-inline CheckedMotion straight(const std::string& kind, const Eigen::VectorXd& from, const Eigen::VectorXd& to, double opening,
-                              bool holding) {
+inline CheckedMotion straight(const std::string& kind, const Eigen::VectorXd& from, const Eigen::VectorXd& to,
+                              double opening, bool holding) {
   CheckedMotion motion{kind, opening, holding, {}, {}, {}};
   const Eigen::VectorXd d = to - from;
   const double length = d.cwiseAbs().maxCoeff();
@@ -91,11 +91,11 @@ inline CheckedMotion straight(const std::string& kind, const Eigen::VectorXd& fr
 
 /// What a test may do differently from the good plan.
 struct Variation {
-  double x_upper = 0.8;          // Upper limit of joint x.
-  double grasp_height = 0;       // The tcp stays this far over the part's middle.
+  double x_upper = 0.8;     // Upper limit of joint x.
+  double grasp_height = 0;  // The tcp stays this far over the part's middle.
   double lift = 0.12;
   double release_dx = 0, release_dz = 0, release_tilt = 0;
-  double approach_dx = 0;        // The pre-grasp is this far aside.
+  double approach_dx = 0;  // The pre-grasp is this far aside.
 };
 
 inline Eigen::VectorXd joints(double z, double x, double y, double tilt = 0, double yaw = 0) {
@@ -119,7 +119,10 @@ inline CheckedPick make_pick(const PlanToCheck& plan, int stop, int part_index, 
   Eigen::VectorXd release = joints(kBinTop + kDropGap + 0.5 * kCube + how.grasp_height + kHandAbove - 0.9, 0, 0);
   release += joints(how.release_dz, how.release_dx, 0, how.release_tilt);
   const double width = part.grasps[0].width, wide = width + 0.02;
-  return {stop, part.tray, part.body.name, 0,
+  return {stop,
+          part.tray,
+          part.body.name,
+          0,
           {straight("reach", plan.home, above, wide, false), straight("approach", above, at_grasp, wide, false),
            straight("lift", at_grasp, lifted, width, true), straight("carry", lifted, release, width, true),
            straight("retreat", release, plan.home, wide, false)}};
@@ -164,10 +167,13 @@ inline void add_robot_data(PlanToCheck& plan) {
 
 inline void add_scene(PlanToCheck& plan, const Variation& how) {
   plan.obstacles = {box("table A", {0.4, 0.8, 0.02}, at(0.9, 0, kTableTop - 0.01)),
-                    box("table B", {0.4, 0.8, 0.02}, at(0.9, 3, kTableTop - 0.01)), box("wall", {0.1, 6, 2}, at(2, 1.5, 1))};
+                    box("table B", {0.4, 0.8, 0.02}, at(0.9, 3, kTableTop - 0.01)),
+                    box("wall", {0.1, 6, 2}, at(2, 1.5, 1))};
   plan.trays = {"A", "B"};
-  plan.parts = {make_part("A/cube_0", "A", 0.9, 0.1, true, how.grasp_height), make_part("A/cube_1", "A", 0.9, -0.1, true, how.grasp_height),
-                make_part("A/stay_0", "A", 0.9, 0.25, false, how.grasp_height), make_part("B/cube_0", "B", 0.9, 3, true, how.grasp_height)};
+  plan.parts = {make_part("A/cube_0", "A", 0.9, 0.1, true, how.grasp_height),
+                make_part("A/cube_1", "A", 0.9, -0.1, true, how.grasp_height),
+                make_part("A/stay_0", "A", 0.9, 0.25, false, how.grasp_height),
+                make_part("B/cube_0", "B", 0.9, 3, true, how.grasp_height)};
 }
 
 inline void add_stops_and_route(PlanToCheck& plan) {
@@ -204,7 +210,9 @@ inline std::set<std::string> codes(const PlanCheckResult& result) {
   return found;
 }
 
-inline std::set<std::string> codes_of(const PlanToCheck& plan) { return codes(check_plan(plan, quick())); }
+inline std::set<std::string> codes_of(const PlanToCheck& plan) {
+  return codes(check_plan(plan, quick()));
+}
 
 using Codes = std::set<std::string>;
 

@@ -114,24 +114,24 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 /// One thing that is physically wrong with the plan. The codes, by what they are about:
 /// - the data: `malformed` (names, lengths, numbers; nothing else is checked then), `stopped` (ended by the monitor);
 /// - home: `home-limit`, `home-collision` (robot with itself), `start-collision`, `finger-limit`;
-/// - which part is picked: `part-unknown`, `part-forgotten`, `part-repeated`, `part-not-target`, `wrong-tray`, `wrong-stop`,
-///   `stop-order`, `grasp-invalid` (no such index), `tray-unknown`, `tray-forgotten`, `tray-repeated`;
-/// - one arm motion: `motion-order`, `motion-shape` (lengths, NaN), `times`, `too-long`, `position-limit`, `velocity-limit`,
-///   `acceleration-limit`, `discontinuous`, `not-at-rest`, `opening`, `holding`, `self-collision`, `scene-collision`,
-///   `held-collision`;
-/// - what it is for: `not-straight` (approach), `grasp-missed`, `grasp-empty` (the fingers close on nothing), `no-lift`,
-///   `release-outside`, `release-tilted`, `release-height`;
+/// - which part is picked: `part-unknown`, `part-forgotten`, `part-repeated`, `part-not-target`, `wrong-tray`,
+///   `wrong-stop`, `stop-order`, `grasp-invalid` (no such index), `tray-unknown`, `tray-forgotten`, `tray-repeated`;
+/// - one arm motion: `motion-order`, `motion-shape` (lengths, NaN), `times`, `too-long`, `position-limit`,
+///   `velocity-limit`, `acceleration-limit`, `discontinuous`, `not-at-rest`, `opening`, `holding`, `self-collision`,
+///   `scene-collision`, `held-collision`;
+/// - what it is for: `not-straight` (approach), `grasp-missed`, `grasp-empty` (the fingers close on nothing),
+///   `no-lift`, `release-outside`, `release-tilted`, `release-height`;
 /// - the route: `route-legs` (their number), `route-ends`, `route-not-driveable`, `route-collision`, `too-long`;
-/// - stops: `region-malformed`, `region-missing`, `region-too-small`, `stop-heading`, `stop-radius`, `stop-outside-region`,
-///   `not-minimal`, `lower-bound`, `not-robust`.
+/// - stops: `region-malformed`, `region-missing`, `region-too-small`, `stop-heading`, `stop-radius`,
+///   `stop-outside-region`, `not-minimal`, `lower-bound`, `not-robust`.
 struct MMGRASP_EXPORT Fault {
   std::string code;
   std::string where;                 ///< E.g. "pick 3 (A/bracket_02), lift, t = 1.24 s".
   std::string message;               ///< What is wrong, with the value and the bound.
 };
 
-/// How often every target part of a stop's trays could be grasped. `samples` is lower than asked when so many were lost that
-/// the rest could not have changed the verdict.
+/// How often every target part of a stop's trays could be grasped. `samples` is lower than asked when so many were lost
+/// that the rest could not have changed the verdict.
 struct MMGRASP_EXPORT StopRate { int stop = -1; int samples = 0; int good = 0; std::string worst_part; };
 
 struct MMGRASP_EXPORT PlanCheckResult {
@@ -141,14 +141,14 @@ struct MMGRASP_EXPORT PlanCheckResult {
   std::size_t configurations_checked = 0;
 };
 
-/// Checks a finished plan against its scenario: kinematics by KDL, collisions by FCL on the loaded shapes, the cover solved
-/// again by CBC on discs found by searching the floor. Shares no code with the planners. A broken plan gives faults, never
-/// an exception; only unusable options throw (InvalidInput). Same answer at any thread count.
+/// Checks a finished plan against its scenario: kinematics by KDL, collisions by FCL on the loaded shapes, the cover
+/// solved again by CBC on discs found by searching the floor. Shares no code with the planners. A broken plan gives
+/// faults, never an exception; only unusable options throw (InvalidInput). Same answer at any thread count.
 ///
-/// Between samples a motion is the cubic through positions and velocities; limits on positions hold on all of it (slack 1e-6),
-/// on velocities at the samples (1 %) and between them (5 %), and some motion within 1 % of the acceleration limits must join
-/// each two samples. Discs are known to 2e-6 m: within that a stop may use one, but a smaller cover may not rest on one.
-/// Pairs of links that the robot's own description disables are not tested against each other.
+/// Between samples a motion is the cubic through positions and velocities. Limits on positions hold on all of it (slack
+/// 1e-6), on velocities at the samples (1 %) and between them (5 %), and some motion within 1 % of the acceleration
+/// limits must join each two samples. Discs are known to 2e-6 m: a stop may use one that fits within this, a smaller
+/// cover may not rest on one. Pairs of links that the robot's own description disables are not tested.
 MMGRASP_EXPORT PlanCheckResult check_plan(const PlanToCheck& plan, const PlanCheckOptions& options = {},
                                           const Monitor& monitor = {});
 

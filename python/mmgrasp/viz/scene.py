@@ -18,12 +18,34 @@ def transformed(T: np.ndarray, vertices: np.ndarray) -> np.ndarray:
     return vertices @ T[:3, :3].T + T[:3, 3]
 
 
+def shape_mesh(shape: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices (n, 3) and faces (m, 3) of one shape of the plan file, in the body's frame."""
+    T = pose_matrix(shape["pose"])
+    kind = shape["type"]
+    if kind == "mesh":
+        placed = mmgrasp.LinkShape.mesh(shape["file"], shape["scale"], T)
+    elif kind == "box":
+        placed = mmgrasp.LinkShape(mmgrasp.Box(shape["size"]), T)
+    elif kind == "sphere":
+        placed = mmgrasp.LinkShape(mmgrasp.Sphere(shape["radius"]), T)
+    else:
+        make = mmgrasp.Cylinder if kind == "cylinder" else mmgrasp.Capsule
+        placed = mmgrasp.LinkShape(make(shape["radius"], shape["length"]), T)
+    return placed_triangles(placed)
+
+
+def placed_triangles(shape: mmgrasp.LinkShape) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices and faces of a shape in the frame of the body it belongs to."""
+    mesh = shape.surface()
+    return transformed(shape.pose, mesh.vertices), mesh.triangles
+
+
 def body_mesh(shapes: list[dict[str, Any]]) -> tuple[np.ndarray, np.ndarray]:
     """Vertices and faces of a body of the plan file, in the body's frame."""
     vertices, faces, count = [], [], 0
     for shape in shapes:
-        V, F = mmgrasp.shape_triangles(shape)
-        vertices.append(transformed(pose_matrix(shape["pose"]), V))
+        V, F = shape_mesh(shape)
+        vertices.append(V)
         faces.append(F + count)
         count += len(V)
     return np.concatenate(vertices), np.concatenate(faces)
@@ -39,7 +61,9 @@ class PlanScene:
         self.robot = mmgrasp.Robot.from_strings(
             scenario["robot"]["urdf"], scenario["robot"]["srdf"], base=scenario["robot"]["base"]
         )
-        self.link_meshes = [(name, V, F) for name, V, F in self.robot.collision_triangles()]
+        self.link_meshes = [
+            (link, *placed_triangles(shape)) for link in self.robot.links for shape in self.robot.collisions(link)
+        ]
         self.arm_links = self._links_moved_by(scenario["arm"]["joints"])
         self.obstacles = [(o["name"], pose_matrix(o["pose"]), body_mesh(o["shapes"])) for o in scenario["obstacles"]]
         self.parts = {p["name"]: (pose_matrix(p["pose"]), body_mesh(p["shapes"])) for p in scenario["parts"]}

@@ -90,7 +90,7 @@ def test_scene_places_the_tool_by_closed_form_and_the_held_part_in_it():
     assert T[:3, 3] == pytest.approx([1 + 0.7 * np.cos(angle), 2 + 0.7 * np.sin(angle), 0.3 + 0.2 + 0.4])
     held = State(state.base, state.arm, 0.0, ("A/brick_0", np.eye(4)))
     assert scene.part_pose("A/brick_0", held, scene.robot_poses(held)) == pytest.approx(T)
-    assert scene.arm_links == {"column", "arm", "tcp"}
+    assert scene.arm_links == {"arm", "tcp"}
 
 
 def test_top_view_draws_every_cell_stop_and_name():

@@ -80,8 +80,9 @@ def _draw_body(camera, vertices, faces, colour, body, image, depth, body_of):
     towards = camera.eye - corners.mean(axis=1)
     facing = np.einsum("ij,ij->i", normals, towards) < 0
     normals[facing] *= -1  # both sides are shaded: open meshes have no inside
-    shade = 0.52 + 0.48 * np.clip(normals @ (LIGHT / np.linalg.norm(LIGHT)), 0, 1)
-    shade += 0.06 * np.clip(-normals[:, 0], 0, 1)
+    view = towards / np.linalg.norm(towards, axis=1, keepdims=True)
+    headlight = np.abs(np.einsum("ij,ij->i", normals, view))
+    shade = 0.56 + 0.26 * np.clip(normals @ (LIGHT / np.linalg.norm(LIGHT)), 0, 1) + 0.2 * headlight
     screen = camera.project(corners.reshape(-1, 3)).reshape(-1, 3, 3)
     low = np.floor(screen[:, :, :2].min(axis=1)).astype(int)
     high = np.ceil(screen[:, :, :2].max(axis=1)).astype(int)

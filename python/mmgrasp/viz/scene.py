@@ -64,15 +64,20 @@ class PlanScene:
         self.link_meshes = [
             (link, *placed_triangles(shape)) for link in self.robot.links for shape in self.robot.collisions(link)
         ]
-        self.arm_links = self._links_moved_by(scenario["arm"]["joints"])
+        self.arm_links = self._arm_links()
         self.obstacles = [(o["name"], pose_matrix(o["pose"]), body_mesh(o["shapes"])) for o in scenario["obstacles"]]
         self.parts = {p["name"]: (pose_matrix(p["pose"]), body_mesh(p["shapes"])) for p in scenario["parts"]}
 
-    def _links_moved_by(self, joints: list[str]) -> set[str]:
-        start = self.robot_poses(self.home_state())
-        moved = State(np.zeros(3), self.timeline.home + 0.1, 0.0)
-        end = self.robot_poses(moved)
-        return {name for name in start if not np.allclose(start[name], end[name], atol=1e-9)}
+    def _arm_links(self) -> set[str]:
+        """Links beyond the first turning joint of the arm: a lift below it counts as the body."""
+        joints = self.robot.joint_table
+        arm = set(self.plan["scenario"]["arm"]["joints"])
+        moved: set[str] = set()
+        for joint in joints:  # parents come before children
+            turning = joint["name"] in arm and joint["type"] != "prismatic"
+            if turning or joint["parent"] in moved:
+                moved.add(joint["child"])
+        return moved
 
     def home_state(self) -> State:
         """The robot at the origin in its home configuration."""

@@ -119,7 +119,7 @@ def test_bad_scenario_gets_one_message(small, write, capfd, tmp_path, path, valu
 
 
 def test_part_larger_than_the_gripper(small, write):
-    scenario = edited(small, "part_types.bracket.box", [0.12, 0.12, 0.07])
+    scenario = edited(small, "part_types.bracket.box", [0.12, 0.12, 0.12])
     scenario["trays"][0]["parts"] = [{"type": "bracket", "xyz": [0, 0]}]
     scenario["trays"][0]["targets"] = "all"
     with pytest.raises(mg.InvalidInput, match=r"part_types\.bracket.*larger than the gripper.*0\.1 m"):

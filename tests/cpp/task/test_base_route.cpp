@@ -1,0 +1,126 @@
+#include "mmgrasp/task/base_route.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/small_storeroom.hpp"
+
+namespace mmgrasp {
+namespace {
+
+struct Room {
+  PartSupplyProblem problem = test::small_storeroom();
+  World world;
+
+  BasePath plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to, BaseKind base = BaseKind::diff_drive) {
+    CollisionChecker checker(problem.arm, world);
+    BaseRouteOptions options;
+    options.base = base;
+    return plan_base_route(checker, problem.home, from, to, options);
+  }
+
+  /// By the definition: ends, primitives, and a fresh checker every 5 mm or 0.02 rad.
+  void expect_driveable(const BasePath& path, const Eigen::Vector3d& from, const Eigen::Vector3d& to, BaseKind base) {
+    ASSERT_EQ(path.outcome, Outcome::solved);
+    ASSERT_FALSE(path.poses.empty());
+    EXPECT_LT((path.poses.front() - from).norm(), 1e-9);
+    EXPECT_LT((path.poses.back() - to).head<2>().norm(), 1e-9);
+    EXPECT_NEAR(wrap_angle(path.poses.back().z() - to.z()), 0, 1e-9);
+    double length = 0, turning = 0;
+    for (std::size_t i = 1; i < path.poses.size(); ++i) {
+      const Eigen::Vector3d a = path.poses[i - 1], d = path.poses[i] - a;
+      length += d.head<2>().norm();
+      turning += std::abs(d.z());
+      if (base == BaseKind::diff_drive && d.head<2>().norm() > 1e-9) {
+        EXPECT_NEAR(d.z(), 0, 1e-9);
+        EXPECT_NEAR(-std::sin(a.z()) * d.x() + std::cos(a.z()) * d.y(), 0, 1e-9);
+      }
+      const int steps = 1 + static_cast<int>(std::max(d.head<2>().norm() / 0.005, std::abs(d.z()) / 0.02));
+      for (int k = 0; k <= steps; ++k) {
+        const Pose root = pose_from_planar(a + d * (static_cast<double>(k) / steps));
+        CollisionChecker checker(problem.arm.at(root), world);
+        ASSERT_TRUE(checker.is_free(problem.home));
+      }
+    }
+    EXPECT_NEAR(path.length, length, 1e-9);
+    EXPECT_NEAR(path.turning, turning, 1e-9);
+  }
+};
+
+TEST(BaseRoute, OpenFloorIsTurnDriveTurn) {
+  Room room;
+  const Eigen::Vector3d from(0, 0, 0), to(2, 1, M_PI / 2);
+  const BasePath path = room.plan(from, to);
+  room.expect_driveable(path, from, to, BaseKind::diff_drive);
+  EXPECT_EQ(path.poses.size(), 4u);
+  EXPECT_NEAR(path.length, std::sqrt(5.0), 1e-9);
+  EXPECT_NEAR(path.turning, M_PI / 2, 1e-9);
+}
+
+TEST(BaseRoute, StraightBackwardsNeedsNoTurn) {
+  Room room;
+  const BasePath path = room.plan({1, 0, 0}, {-1, 0, 0});
+  ASSERT_EQ(path.poses.size(), 2u);
+  EXPECT_NEAR(path.turning, 0, 1e-9);
+}
+
+TEST(BaseRoute, StayingIsAPath) {
+  Room room;
+  const BasePath path = room.plan({1, 2, 0.5}, {1, 2, 0.5});
+  EXPECT_EQ(path.outcome, Outcome::solved);
+  EXPECT_EQ(path.length, 0);
+}
+
+TEST(BaseRoute, ThroughADoorInAWall) {
+  for (BaseKind base : {BaseKind::diff_drive, BaseKind::omni}) {
+    Room room;
+    room.world.add("wall left", test::box_shape(0.1, 4.0, 1.0), test::at(1.5, 2.5, 0.5));
+    room.world.add("wall right", test::box_shape(0.1, 3.0, 1.0), test::at(1.5, -1.9, 0.5));  // a gap from -0.4 to 0.5
+    const Eigen::Vector3d from(0, 1.5, 0.3), to(3, 1.5, 1.2);
+    const BasePath path = room.plan(from, to, base);
+    room.expect_driveable(path, from, to, base);
+    EXPECT_LT(path.length, 6.0);
+    EXPECT_LE(path.poses.size(), 14u);
+  }
+}
+
+TEST(BaseRoute, OutOfANicheTooTightToTurnIn) {
+  Room room;
+  for (double y : {-0.30, 0.30}) room.world.add("side " + std::to_string(y), test::box_shape(0.8, 0.1, 1.0), test::at(0, y, 0.5));
+  room.world.add("back", test::box_shape(0.1, 0.7, 1.0), test::at(-0.55, 0, 0.5));
+  const Eigen::Vector3d from(0, 0, 0), to(0, 1.5, -2.0);
+  const BasePath path = room.plan(from, to);
+  room.expect_driveable(path, from, to, BaseKind::diff_drive);
+}
+
+TEST(BaseRoute, WalledInHasNoRoute) {
+  Room room;
+  for (double s : {-1.0, 1.0}) {
+    room.world.add("x " + std::to_string(s), test::box_shape(0.1, 2.1, 1.0), test::at(s, 0, 0.5));
+    room.world.add("y " + std::to_string(s), test::box_shape(2.1, 0.1, 1.0), test::at(0, s, 0.5));
+  }
+  EXPECT_EQ(room.plan({0, 0, 0}, {3, 0, 0}).outcome, Outcome::infeasible);
+}
+
+TEST(BaseRoute, EndsInCollisionAreNamed) {
+  Room room;
+  room.world.add("post", test::box_shape(0.1, 0.1, 1.0), test::at(2, 0, 0.5));
+  EXPECT_EQ(room.plan({0, 0, 0}, {2, 0, 0}).outcome, Outcome::invalid_goal);
+  EXPECT_EQ(room.plan({2, 0, 0}, {0, 0, 0}).outcome, Outcome::invalid_start);
+}
+
+TEST(BaseRoute, DurationOfTrapezoids) {
+  BaseLimits limits;
+  limits.linear_velocity = 0.5;
+  limits.linear_acceleration = 0.25;
+  limits.angular_velocity = 1.0;
+  limits.angular_acceleration = 2.0;
+  BasePath path;
+  path.poses = {{0, 0, 0}, {2, 0, 0}, {2, 0, 0.25}, {2.5, 0, 0.25}};
+  // 2 m: 2 / 0.5 + 0.5 / 0.25 = 6 s. 0.25 rad never reaches 1 rad/s: 2 sqrt(0.25 / 2). 0.5 m: 2 sqrt(0.5 / 0.25).
+  EXPECT_NEAR(base_path_duration(path, limits), 6.0 + 2 * std::sqrt(0.125) + 2 * std::sqrt(2.0), 1e-9);
+}
+
+}  // namespace
+}  // namespace mmgrasp

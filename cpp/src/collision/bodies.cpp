@@ -34,7 +34,7 @@ bool is_below(const Robot& robot, int link, int ancestor) {
   return true;
 }
 
-// The SRDF names a group's joints; its links are those the joints join and all below them. A group of links alone has no
+// The SRDF names a group's joints; its links are those that they, or joints that mimic them, join, and all below. A group of links alone has no
 // joints: then it is what hangs on the end effector's parent.
 std::vector<char> end_effector_links(const Robot& robot, const EndEffectorDescription& effector) {
   std::vector<char> in(robot.links().size(), 0);
@@ -47,9 +47,13 @@ std::vector<char> end_effector_links(const Robot& robot, const EndEffectorDescri
   for (const GroupDescription& group : robot.groups()) {
     if (group.name != effector.group) continue;
     for (const std::string& name : group.joints) {
-      const Joint& joint = robot.joints()[robot.joint_index(name)];
-      add(joint.parent_link);
-      add(joint.child_link);
+      const int leader = robot.joint_index(name);
+      for (std::size_t j = 0; j < robot.joints().size(); ++j) {
+        const Joint& joint = robot.joints()[j];
+        if (static_cast<int>(j) != leader && joint.mimic_joint != leader) continue;
+        add(joint.parent_link);
+        add(joint.child_link);
+      }
     }
     if (!group.base_link.empty()) add(robot.link_index(group.base_link));
     if (!group.tip_link.empty()) add(robot.link_index(group.tip_link));

@@ -41,15 +41,17 @@ TEST(Shape, BadDimensionsAreNamed) {
 TEST(Shape, BoundsAreTightForRandomPoses) {
   Rng rng(1);
   const Shape shapes[] = {Box{{1, 2, 3}}, Sphere{0.7}, Cylinder{0.5, 2}, Capsule{0.4, 1}, two_voxels()};
+  // A fine tessellation is inscribed, so its bounds come close from inside.
+  std::vector<std::shared_ptr<const TriangleMesh>> meshes;
+  for (const Shape& shape : shapes) meshes.push_back(shape_mesh(shape, 120));
   for (int i = 0; i < 50; ++i) {
     Pose T = Pose::Identity();
     T.translation() = Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal());
     T.linear() = rng.rotation().toRotationMatrix();
-    for (const Shape& shape : shapes) {
-      // A fine tessellation is inscribed, so its bounds come close from inside.
+    for (std::size_t k = 0; k < meshes.size(); ++k) {
+      const Shape& shape = shapes[k];
       Eigen::AlignedBox3d fine;
-      const auto mesh = shape_mesh(shape, 200);
-      for (const auto& v : mesh->vertices) fine.extend(T * v);
+      for (const auto& v : meshes[k]->vertices) fine.extend(T * v);
       const Eigen::AlignedBox3d box = shape_bounds(shape, T);
       EXPECT_LT((box.min() - fine.min()).cwiseAbs().maxCoeff(), 2e-3) << shape_kind(shape);
       EXPECT_LT((box.max() - fine.max()).cwiseAbs().maxCoeff(), 2e-3) << shape_kind(shape);

@@ -1,0 +1,291 @@
+#include "mmgrasp/collision/checker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "collision/fcl_reference.hpp"
+#include "collision/free_body.hpp"
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/random.hpp"
+
+using namespace mmgrasp;
+
+namespace {
+
+Eigen::VectorXd at(double x, double y, double z, double yaw = 0) {
+  Eigen::VectorXd q(6);
+  q << x, y, z, yaw, 0, 0;
+  return q;
+}
+
+Pose shifted(double x, double y, double z) { return pose_from_xyz_rpy({x, y, z}, {0, 0, 0}); }
+
+// A box mesh with one vertex pushed in: closed, concave, so that it is no convex body.
+MeshShape dented_box(const Eigen::Vector3d& size) {
+  std::vector<Eigen::Vector3d> v;
+  for (int i = 0; i < 8; ++i) v.push_back(0.5 * size.cwiseProduct(Eigen::Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
+  v.push_back({0, 0, 0.3 * size.z()});
+  return {make_mesh(v, {{0, 2, 3}, {0, 3, 1}, {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5},
+                        {4, 5, 8}, {5, 7, 8}, {7, 6, 8}, {6, 4, 8}})};
+}
+
+MeshShape opened(const MeshShape& shape) {
+  auto triangles = shape.mesh->triangles;
+  triangles.pop_back();
+  return {make_mesh(shape.mesh->vertices, triangles)};
+}
+
+CollisionChecker make_checker(const Shape& body, const Shape& object, const Pose& T, const CheckerOptions& options = {}) {
+  World world;
+  world.add("object", object, T);
+  return CollisionChecker(free_body::group({free_body::link_shape(body)}), world, options);
+}
+
+// A base with a two-link arm and a two-finger gripper declared as an end effector.
+const char* kGripperUrdf = R"(<robot name="r">
+  <link name="base"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+  <link name="arm"><collision><origin xyz="0.3 0 0"/><geometry><box size="0.3 0.05 0.05"/></geometry></collision></link>
+  <link name="hand"><collision><geometry><box size="0.05 0.2 0.05"/></geometry></collision></link>
+  <link name="left"><collision><origin xyz="0.05 0 0"/><geometry><box size="0.1 0.02 0.02"/></geometry></collision></link>
+  <link name="right"><collision><origin xyz="0.05 0 0"/><geometry><box size="0.1 0.02 0.02"/></geometry></collision></link>
+  <link name="tcp"/>
+  <joint name="shoulder" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/><limit lower="-3" upper="3" velocity="1" effort="1"/></joint>
+  <joint name="wrist" type="revolute"><parent link="arm"/><child link="hand"/><origin xyz="0.5 0 0"/><axis xyz="0 0 1"/><limit lower="-3" upper="3" velocity="1" effort="1"/></joint>
+  <joint name="l" type="prismatic"><parent link="hand"/><child link="left"/><axis xyz="0 1 0"/><origin xyz="0.03 0.04 0"/><limit lower="0" upper="0.05" velocity="1" effort="1"/></joint>
+  <joint name="r" type="prismatic"><parent link="hand"/><child link="right"/><axis xyz="0 -1 0"/><origin xyz="0.03 -0.04 0"/><limit lower="0" upper="0.05" velocity="1" effort="1"/><mimic joint="l"/></joint>
+  <joint name="tcp_joint" type="fixed"><parent link="hand"/><child link="tcp"/><origin xyz="0.08 0 0"/></joint>
+</robot>)";
+const char* kGripperSrdf = R"(<robot name="r">
+  <group name="arm"><chain base_link="base" tip_link="hand"/></group>
+  <group name="gripper"><joint name="l"/></group>
+  <end_effector name="gripper" parent_link="hand" group="gripper"/>
+  <disable_collisions link1="base" link2="arm" reason="Adjacent"/><disable_collisions link1="arm" link2="hand" reason="Adjacent"/>
+  <disable_collisions link1="hand" link2="left" reason="Adjacent"/><disable_collisions link1="hand" link2="right" reason="Adjacent"/>
+</robot>)";
+
+}  // namespace
+
+TEST(Checker, ClosedMeshesAreSolids) {
+  const MeshShape big = dented_box({2, 2, 2}), small = dented_box({0.1, 0.1, 0.1});
+  ASSERT_TRUE(big.mesh->closed);
+  ASSERT_FALSE(big.mesh->convex);
+  const Shape inner[] = {Box{{0.1, 0.1, 0.1}}, Sphere{0.1}, Cylinder{0.1, 0.1}, Capsule{0.1, 0.1}, small, opened(small)};
+  for (const Shape& body : inner) {
+    CollisionChecker inside = make_checker(body, big, shifted(0, 0, 0));
+    EXPECT_EQ(inside.rejection(at(0.3, 0.2, -0.5)), Rejection::scene) << shape_kind(body);
+    EXPECT_EQ(inside.rejection(at(0.3, 0.2, 5)), Rejection::none) << shape_kind(body);
+    EXPECT_EQ(inside.rejection(at(0, 0, 0.9)), Rejection::none) << "in the dent, " << shape_kind(body);
+    // And the other way round: the robot's link is the big one.
+    CollisionChecker around = make_checker(big, body, shifted(0, 0, 0));
+    EXPECT_EQ(around.rejection(at(-0.3, -0.2, 0.5)), Rejection::scene) << shape_kind(body);
+    // An open mesh is a surface: what is within does not touch it.
+    CollisionChecker open = make_checker(body, opened(big), shifted(0, 0, 0));
+    EXPECT_EQ(open.rejection(at(0.3, 0.2, -0.5)), Rejection::none) << shape_kind(body);
+  }
+  // Convex bodies hold each other without any of it.
+  EXPECT_FALSE(make_checker(Box{{0.1, 0.1, 0.1}}, MeshShape{shape_mesh(Box{{2, 2, 2}})}, shifted(0, 0, 0)).is_free(at(0, 0, 0)));
+}
+
+TEST(Checker, BoxesTouchWhereTheirFacesMeet) {
+  CollisionChecker checker = make_checker(Box{{1, 1, 1}}, Box{{1, 1, 1}}, shifted(0, 0, 0));
+  CollisionChecker ball = make_checker(Sphere{0.5}, Box{{1, 1, 1}}, shifted(0, 0, 0));
+  CollisionChecker plane = make_checker(Cylinder{0.5, 1}, Plane{Eigen::Vector3d::UnitZ(), 0.25}, shifted(0, 0, 0));
+  for (const double gap : {1e-6, 1e-8}) {
+    EXPECT_TRUE(checker.is_free(at(1 + gap, 0, 0)));
+    EXPECT_FALSE(checker.is_free(at(1 - gap, 0, 0)));
+    const double corner = 0.5 + 0.5 / std::sqrt(3.0);
+    EXPECT_TRUE(ball.is_free(at(corner + gap, corner + gap, corner + gap)));
+    EXPECT_FALSE(ball.is_free(at(corner - gap, corner - gap, corner - gap)));
+    EXPECT_TRUE(plane.is_free(at(3, 4, 0.75 + gap)));
+    EXPECT_FALSE(plane.is_free(at(3, 4, 0.75 - gap)));
+    // Edge against edge: the box turned by 45 degrees about z.
+    EXPECT_TRUE(checker.is_free(at(0.5 + std::sqrt(0.5) + gap, 0, 0, M_PI / 4)));
+    EXPECT_FALSE(checker.is_free(at(0.5 + std::sqrt(0.5) - gap, 0, 0, M_PI / 4)));
+  }
+}
+
+TEST(Checker, FclAgreesJustBeforeAndAfterContact) {
+  // Bisects to where the answer changes and asks FCL on both sides of it, well outside the band.
+  const Shape shapes[] = {Box{{0.3, 0.2, 0.5}}, Sphere{0.2}, Cylinder{0.15, 0.4}, Capsule{0.1, 0.4}, dented_box({0.4, 0.3, 0.5})};
+  Rng rng(3);
+  int judged = 0;
+  for (const Shape& body : shapes) {
+    for (const Shape& object : shapes) {
+      CollisionChecker checker = make_checker(body, object, shifted(0, 0, 0));
+      const auto a = fcl_reference::make_body(body), b = fcl_reference::make_body(object);
+      for (int i = 0; i < 20; ++i) {
+        Eigen::VectorXd q(6);
+        const Eigen::Vector3d direction = Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
+        q << Eigen::Vector3d::Zero(), rng.uniform(-3, 3), rng.uniform(-3, 3), rng.uniform(-3, 3);
+        double near = 0, far = 2;
+        while (far - near > 1e-10) {
+          q.head<3>() = 0.5 * (near + far) * direction;
+          (checker.is_free(q) ? far : near) = 0.5 * (near + far);
+        }
+        // Moving by 2e-5 along the direction opens the gap by 2e-5 times the cosine to the contact's normal.
+        q.head<3>() = (far + 2e-5) * direction;
+        const bool out = fcl_reference::touch(a, free_body::pose(q), b, Pose::Identity());
+        const double gap = checker.distance(q).value;
+        q.head<3>() = (near - 2e-5) * direction;
+        const bool in = fcl_reference::touch(a, free_body::pose(q), b, Pose::Identity());
+        if (gap < 4e-6) continue;  // grazing
+        EXPECT_FALSE(out) << shape_kind(body) << " " << shape_kind(object);
+        EXPECT_TRUE(in) << shape_kind(body) << " " << shape_kind(object);
+        ++judged;
+      }
+    }
+  }
+  EXPECT_GT(judged, 400);
+}
+
+TEST(Checker, PaddingGrowsTheRobotOnly) {
+  CheckerOptions options;
+  options.padding = 0.1;
+  const Shape bodies[] = {Box{{1, 1, 1}}, Cylinder{0.5, 1}, MeshShape{shape_mesh(Box{{1, 1, 1}})}, dented_box({1, 1, 1})};
+  for (const Shape& body : bodies) {
+    CollisionChecker checker = make_checker(body, Box{{1, 1, 1}}, shifted(0, 0, 0), options);
+    EXPECT_TRUE(checker.is_free(at(0, 0, -1.1 - 1e-6))) << shape_kind(body);
+    EXPECT_FALSE(checker.is_free(at(0, 0, -1.1 + 1e-6))) << shape_kind(body);
+    EXPECT_NEAR(checker.distance(at(0, 0, -1.2)).value, 0.2, 1e-9) << shape_kind(body);
+  }
+  CollisionChecker ball = make_checker(Sphere{0.5}, Sphere{0.5}, shifted(0, 0, 0), options);
+  EXPECT_TRUE(ball.is_free(at(1.1 + 1e-9, 0, 0)));
+  EXPECT_FALSE(ball.is_free(at(1.1 - 1e-9, 0, 0)));
+  options.padding = -1;
+  EXPECT_THROW(make_checker(Sphere{0.5}, Sphere{0.5}, shifted(0, 0, 0), options), InvalidInput);
+}
+
+TEST(Checker, DistanceInClosedForm) {
+  CollisionChecker balls = make_checker(Sphere{0.5}, Sphere{0.25}, shifted(1, 2, 3));
+  const DistanceResult d = balls.distance(at(4, 6, 3));
+  EXPECT_NEAR(d.value, 5 - 0.75, 1e-12);
+  EXPECT_EQ(d.a, "body");
+  EXPECT_EQ(d.b, "object");
+  EXPECT_TRUE(d.point_a.isApprox(Eigen::Vector3d(4 - 0.3, 6 - 0.4, 3), 1e-9));
+  EXPECT_TRUE(d.point_b.isApprox(Eigen::Vector3d(1 + 0.15, 2 + 0.2, 3), 1e-9));
+  EXPECT_NEAR(balls.distance(at(1, 2.5, 3)).value, -0.25, 1e-9);
+  CollisionChecker boxes = make_checker(Box{{1, 1, 1}}, Box{{1, 1, 1}}, shifted(0, 0, 0));
+  EXPECT_NEAR(boxes.distance(at(4, 5, 0)).value, 5, 1e-12);
+  EXPECT_NEAR(boxes.distance(at(0.9, 0.1, 0.2)).value, -0.1, 1e-9);
+  CollisionChecker plane = make_checker(Capsule{0.5, 1}, Plane{Eigen::Vector3d::UnitZ(), 1}, shifted(0, 0, 1));
+  EXPECT_NEAR(plane.distance(at(0, 0, 5)).value, 2, 1e-12);
+  EXPECT_EQ(CollisionChecker(free_body::group({free_body::link_shape(Sphere{1})}), World()).distance(at(0, 0, 0)).value,
+            std::numeric_limits<double>::infinity());
+}
+
+TEST(Checker, HeldObjectsTouchTheirGripperAndNothingElse) {
+  const Robot robot = Robot::from_strings(kGripperUrdf, kGripperSrdf);
+  const JointGroup arm = robot.group("arm");
+  Eigen::VectorXd q(2);
+  q << 0, 0;
+  World world;
+  world.add("part", Box{{0.1, 0.08, 0.02}}, shifted(0.6, 0, 0));
+  EXPECT_EQ(CollisionChecker(arm, world).rejection(q), Rejection::scene);
+  world.attach("part", "tcp", Pose::Identity());  // overlaps hand and both fingers: all of the end effector
+  CollisionChecker held(arm, world);
+  EXPECT_EQ(held.rejection(q), Rejection::none);
+  EXPECT_TRUE(held.contacts(q).empty());
+  // The arm folded back: the part hits the base, the hand does not yet.
+  q << 0, 2.9;
+  World bar = world;
+  bar.remove("part");
+  bar.add("part", Box{{0.9, 0.16, 0.02}}, shifted(0, 0, 0));
+  bar.attach("part", "tcp", Pose::Identity());
+  CollisionChecker folded(arm, bar);
+  EXPECT_EQ(folded.rejection(q), Rejection::self_collision);
+  bool base = false;
+  for (const Contact& c : folded.contacts(q)) base = base || (c.a == "base" && c.b == "part" && !c.with_scene);
+  EXPECT_TRUE(base);
+  // Explicit touch links replace the default: the fingers are then hit.
+  World strict;
+  strict.add("part", Box{{0.1, 0.12, 0.02}}, shifted(0, 0, 0));
+  strict.attach("part", "tcp", Pose::Identity(), {"hand"});
+  q << 0, 0;
+  EXPECT_EQ(CollisionChecker(arm, strict).rejection(q), Rejection::self_collision);
+  strict.detach("part", shifted(9, 9, 9));
+  EXPECT_EQ(CollisionChecker(arm, strict).rejection(q), Rejection::none);
+  // Held part against the scene.
+  world.add("wall", Box{{0.1, 1, 1}}, shifted(0.675, 0, 0));
+  CollisionChecker walled(arm, world);
+  EXPECT_EQ(walled.rejection(q), Rejection::scene);
+  bool wall = false;
+  for (const Contact& c : walled.contacts(q)) wall = wall || (c.a == "part" && c.b == "wall" && c.with_scene);
+  EXPECT_TRUE(wall);
+}
+
+TEST(Checker, OpeningTheFingersKeepsTheChecker) {
+  const Robot robot = Robot::from_strings(kGripperUrdf, kGripperSrdf);
+  const JointGroup arm = robot.group("arm");
+  World world;
+  world.add("post", Box{{0.02, 0.02, 0.2}}, shifted(0.6, 0.085, 0));
+  CollisionChecker closed(arm, world);
+  const CollisionChecker& ref = closed;
+  CollisionChecker open = ref.with_group(arm.with_reference(robot.values({{"l", 0.05}})));
+  Eigen::VectorXd q(2);
+  q << 0, 0;
+  EXPECT_EQ(closed.rejection(q), Rejection::none);   // finger at y = 0.04
+  EXPECT_EQ(open.rejection(q), Rejection::scene);    // finger at y = 0.09
+  const Robot other = Robot::from_strings(kGripperUrdf, kGripperSrdf);
+  EXPECT_THROW(closed.with_group(other.group("arm")), InvalidInput);
+}
+
+TEST(Checker, CausesComeInOrder) {
+  const Robot robot = Robot::from_strings(kGripperUrdf, kGripperSrdf);
+  World world;
+  world.add("everything", Sphere{5}, Pose::Identity());
+  CollisionChecker checker(robot.group("arm"), world);
+  Eigen::VectorXd q(2);
+  q << 3.1, 2.99;
+  EXPECT_EQ(checker.rejection(q), Rejection::limits);
+  q << 0, 2.99;  // fingers reach back to the arm
+  EXPECT_EQ(checker.rejection(q), Rejection::self_collision);
+  q << 0, 0;
+  EXPECT_EQ(checker.rejection(q), Rejection::scene);
+  EXPECT_EQ(checker.queries(), 3u);
+  CheckerOptions options;
+  options.check_scene = false;
+  EXPECT_TRUE(CollisionChecker(robot.group("arm"), world, options).is_free(q));
+}
+
+TEST(Checker, EdgesSeeThinWallsBetweenFreeEnds) {
+  CollisionChecker checker = make_checker(Sphere{0.02}, Box{{0.01, 2, 2}}, shifted(0.37, 0, 0));
+  EXPECT_TRUE(checker.is_free(at(-1, 0, 0)));
+  EXPECT_TRUE(checker.is_free(at(1, 0, 0)));
+  EXPECT_FALSE(checker.edge_is_free(at(-1, 0, 0), at(1, 0, 0)));
+  EXPECT_TRUE(checker.edge_is_free(at(-1, 0, 0), at(0.34, 0.5, 0)));
+  EXPECT_FALSE(checker.edge_is_free(at(0.37, 0, 0), at(0.37, 0, 0)));
+  // Every step is looked at: 100 of them with both ends make 101 configurations.
+  const std::size_t before = checker.queries();
+  EXPECT_TRUE(checker.edge_is_free(at(-1, 0, 0), at(-1, 2, 0), 0.02));
+  EXPECT_EQ(checker.queries() - before, 101u);
+  // A wall thinner than a step, where only one sample of the fine grid hits it.
+  int found = 0;
+  for (int i = 0; i < 100; ++i) {
+    CollisionChecker thin = make_checker(Sphere{0.005}, Box{{0.001, 2, 2}}, shifted(-0.99 + 0.0198 * i, 0, 0));
+    found += !thin.edge_is_free(at(-1, 0, 0), at(1, 0, 0), 0.01);
+  }
+  EXPECT_EQ(found, 100);
+  EXPECT_THROW(checker.edge_is_free(at(0, 0, 0), at(1, 0, 0), 0), InvalidInput);
+}
+
+TEST(Checker, BadInputIsNamed) {
+  CollisionChecker checker = make_checker(Sphere{0.1}, Sphere{0.1}, shifted(1, 0, 0));
+  EXPECT_THROW(checker.rejection(Eigen::VectorXd::Zero(5)), InvalidInput);
+  Eigen::VectorXd q = at(0, 0, 0);
+  q[2] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(checker.rejection(q), InvalidInput);
+  EXPECT_THROW(checker.is_free(q), InvalidInput);
+  EXPECT_THROW(checker.distance(q), InvalidInput);
+  EXPECT_THROW(checker.contacts(q), InvalidInput);
+  World world;
+  world.add("part", Sphere{0.1}, Pose::Identity());
+  world.attach("part", "gripper_of_another_robot", Pose::Identity());
+  try {
+    CollisionChecker(checker.group(), world);
+    FAIL();
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("gripper_of_another_robot"), std::string::npos);
+  }
+}

@@ -19,4 +19,11 @@ print(shared)
 stops = mg.minimal_stops(grid, shared.robust, len(regions))
 print(stops, "- at least", stops.lower_bound, "are needed")
 for stop in stops.stops:
-    print("  stand at", stop.pose.round(2), "within", round(stop.radius, 3), "m for", [regions[t].tray for t in stop.trays])
+    print(
+        "  stand at",
+        stop.pose.round(2),
+        "within",
+        round(stop.radius, 3),
+        "m for",
+        [regions[t].tray for t in stop.trays],
+    )

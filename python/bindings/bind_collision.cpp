@@ -109,8 +109,7 @@ std::vector<std::string> attached_keys(const World& world) {
 }
 
 void bind_world(py::module_& m) {
-  py::class_<World>(m, "World",
-                    "Named rigid bodies around the robot, and what it holds. Poses are T_world_object, (4, 4).")
+  declared<World>(m, "World")
       .def(py::init<>())
       .def("copy", [](const World& w) { return World(w); })
       .def(

@@ -67,7 +67,7 @@ Eigen::VectorXd configuration(const JointGroup& g, const ArrayLike& q, const cha
 }
 
 void bind_group_class(py::module_& m) {
-  py::class_<JointGroup>(m, "JointGroup", "Joints that are planned together, and a tip. Immutable.")
+  declared<JointGroup>(m, "JointGroup")
       .def_property_readonly("robot", &JointGroup::robot)
       .def_property_readonly("name", &JointGroup::name)
       .def_property_readonly("names", &JointGroup::names, "Joint names; x, y, theta first when the group has the base.")

@@ -110,7 +110,7 @@ JointGroup make_group(const Robot& robot, const py::object& name, const py::obje
 }
 
 void bind_robot_class(py::module_& m) {
-  py::class_<Robot> robot(m, "Robot", "A robot as URDF and SRDF describe it. Immutable; joints and links by name.");
+  auto robot = declared<Robot>(m, "Robot");
   robot
       .def_static(
           "load",

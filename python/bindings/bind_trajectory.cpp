@@ -69,7 +69,8 @@ void bind_trajectory(py::module_& m) {
             return base_pose.is_none() ? t.to_csv() : csv_with_base(t, base_argument(base_pose));
           },
           py::arg("base_pose") = py::none(),
-          "Header time, names, name.velocity, ...; one line a sample. With base_pose (x, y, theta) of the standing base, its\n"
+          "Header time, names, name.velocity, ...; one line a sample. With base_pose (x, y, theta) of the standing "
+          "base, its\n"
           "pose and twist follow the time.")
       .def(
           "to_joint_trajectory",

@@ -12,6 +12,15 @@
 
 namespace mmgrasp::python {
 
+/// Makes the classes that others' signatures name, so that docstrings and stubs show Python names; members follow
+/// later.
+void declare_classes(py::module_& m);
+/// A class made by declare_classes.
+template <typename T>
+py::class_<T> declared(py::module_& m, const char* name) {
+  return py::reinterpret_borrow<py::class_<T>>(m.attr(name));
+}
+
 void bind_core(py::module_& m);
 void bind_geometry(py::module_& m);
 void bind_optim(py::module_& m);

@@ -1,9 +1,23 @@
 #include "bindings.hpp"
+#include "mmgrasp/collision/world.hpp"
+#include "mmgrasp/robot/joint_group.hpp"
+
+namespace mmgrasp::python {
+
+void declare_classes(py::module_& m) {
+  py::class_<Robot>(m, "Robot", "A robot as URDF and SRDF describe it. Immutable; joints and links by name.");
+  py::class_<JointGroup>(m, "JointGroup", "Joints that are planned together, and a tip. Immutable.");
+  py::class_<World>(m, "World",
+                    "Named rigid bodies around the robot, and what it holds. Poses are T_world_object, (4, 4).");
+}
+
+}  // namespace mmgrasp::python
 
 PYBIND11_MODULE(_core, m) {
   using namespace mmgrasp::python;
   m.doc() = "The C++ library behind mmgrasp. Import names from mmgrasp itself.";
   m.attr("__version__") = MMGRASP_VERSION;
+  declare_classes(m);
   bind_core(m);
   bind_geometry(m);
   bind_optim(m);

@@ -15,7 +15,9 @@ def options_page() -> str:
     lines = ["# Options of a scenario", "", "Written by `./dev docs` from the library's own defaults.", ""]
     for section, title, table, elsewhere in SECTIONS:
         lines += [f"## `{section}`: {title}", "", "| option | default | meaning |", "|---|---|---|"]
-        lines += [f"| `{name}` | {default} | {help_} |" for name, (default, help_) in table().items() if name not in elsewhere]
+        lines += [
+            f"| `{name}` | {default} | {help_} |" for name, (default, help_) in table().items() if name not in elsewhere
+        ]
         lines.append("")
     return "\n".join(lines)
 

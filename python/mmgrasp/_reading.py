@@ -21,7 +21,7 @@ Key = str | int
 
 
 def near_miss(wrong: str, known: list[str]) -> str:
-    """"; did you mean x?", or the list of what is known."""
+    """ "; did you mean x?", or the list of what is known."""
     close = difflib.get_close_matches(wrong, known, 1, 0.5)
     return f"; did you mean {close[0]}?" if close else "; known are " + ", ".join(known)
 

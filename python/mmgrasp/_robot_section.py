@@ -131,7 +131,9 @@ def _compose(node: Node) -> Robot:
         frame.mapping("name parent", "pose box cylinder sphere mesh shapes scale")
         _link(robot, frame["parent"])
         T = frame["pose"].pose() if "pose" in frame else np.eye(4)
-        robot = robot.with_link(frame["name"].string(), frame["parent"].string(), T, read_shapes(frame, find_file, required=False))
+        robot = robot.with_link(
+            frame["name"].string(), frame["parent"].string(), T, read_shapes(frame, find_file, required=False)
+        )
     return robot
 
 
@@ -202,7 +204,9 @@ def _read_gripper(node: Node, robot: Robot, tcp: str) -> Gripper:
     for joint in node["joints"].elements():
         joint.mapping("name closed open")
         name = joint["name"].string()
-        joints.append(FingerJoint(name, _joint_value(robot, name, joint["closed"]), _joint_value(robot, name, joint["open"])))
+        joints.append(
+            FingerJoint(name, _joint_value(robot, name, joint["closed"]), _joint_value(robot, name, joint["open"]))
+        )
     for link in node["finger_links"].elements():
         _link(robot, link)
     sizes = {key: node[key].number(above=0) for key in ("max_opening", "finger_depth", "finger_width")}
@@ -216,7 +220,9 @@ def _read_gripper(node: Node, robot: Robot, tcp: str) -> Gripper:
         axes[key] = axis
     if abs(axes["approach"] @ axes["closing"]) > 1e-6:
         node["closing"].fail("must be orthogonal to approach")
-    return Gripper(tcp, joints=joints, finger_links=[link.raw for link in node["finger_links"].elements()], **axes, **sizes)
+    return Gripper(
+        tcp, joints=joints, finger_links=[link.raw for link in node["finger_links"].elements()], **axes, **sizes
+    )
 
 
 def _add_bin(robot: Robot, node: Node) -> tuple[Robot, np.ndarray]:

@@ -25,7 +25,10 @@ def read_shapes(node: Node, find_file: Callable[[Node], Path], required: bool = 
         elements = node["shapes"].elements()
         if not elements:
             node["shapes"].fail("must not be empty")
-        return [_one(element.mapping("", "box cylinder sphere mesh scale pose"), find_file, placed=True) for element in elements]
+        return [
+            _one(element.mapping("", "box cylinder sphere mesh scale pose"), find_file, placed=True)
+            for element in elements
+        ]
     return [_one(node, find_file, placed=False)] if given else []
 
 
@@ -47,7 +50,9 @@ def _one(node: Node, find_file: Callable[[Node], Path], placed: bool) -> LinkSha
         return LinkShape(Sphere(radius.number(above=0)), pose)
     scale: Any = 1.0
     if "scale" in node:
-        scale = node["scale"].numbers(3, above=0) if isinstance(node["scale"].raw, list) else node["scale"].number(above=0)
+        scale = (
+            node["scale"].numbers(3, above=0) if isinstance(node["scale"].raw, list) else node["scale"].number(above=0)
+        )
     try:
         return LinkShape.mesh(find_file(value).resolve(), scale, pose)
     except _core.Error as error:
@@ -73,7 +78,9 @@ def shape_to_dict(link_shape: LinkShape) -> dict[str, Any]:
         path = link_shape.mesh_path
         out |= {"file": path, "scale": link_shape.mesh_scale.tolist(), "sha256": sha256_of(path)}
     else:
-        raise InvalidInput(f"a {link_shape.kind} cannot be written to a plan: use boxes, cylinders, spheres or mesh files")
+        raise InvalidInput(
+            f"a {link_shape.kind} cannot be written to a plan: use boxes, cylinders, spheres or mesh files"
+        )
     return out
 
 

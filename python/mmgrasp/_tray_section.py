@@ -108,8 +108,14 @@ def read_tray(node: Node, types: dict[str, PartType], gripper: Gripper) -> TrayS
         if full in targets:
             _check_graspable(full, types[kind], gripper)
         parts.append(
-            Part(full, types[kind].shapes, T_world_tray @ T_tray_part, types[kind].grasps, target=full in targets,
-                 grasps_too_wide=types[kind].too_wide)
+            Part(
+                full,
+                types[kind].shapes,
+                T_world_tray @ T_tray_part,
+                types[kind].grasps,
+                target=full in targets,
+                grasps_too_wide=types[kind].too_wide,
+            )
         )
     headings = node["headings"].numbers() if "headings" in node else []
     return TraySetup(Tray(name, T_world_tray, size, parts, headings), tray_walls(size), targets)
@@ -190,7 +196,9 @@ def _check_inside(node: Node, name: str, kind: PartType, T: np.ndarray, size: li
     low, high = _bounds(kind, T)
     inner = np.array(size[:2]) / 2 - WALL
     if (low[:2] < -inner).any() or (high[:2] > inner).any():
-        node["parts"].fail(f"part {name} reaches through the tray's wall (inner size {2 * inner[0]:g} x {2 * inner[1]:g} m)")
+        node["parts"].fail(
+            f"part {name} reaches through the tray's wall (inner size {2 * inner[0]:g} x {2 * inner[1]:g} m)"
+        )
     if low[2] <= 0:
         node["parts"].fail(f"part {name} reaches {-low[2]:.4g} m through the tray's floor")
 
@@ -199,6 +207,8 @@ def _check_graspable(name: str, kind: PartType, gripper: Gripper) -> None:
     if kind.grasps:
         return
     if kind.too_wide:
-        kind.node.fail(f"part {name} is larger than the gripper: none of {kind.too_wide} grasps fits its opening of "
-                       f"{gripper.max_opening:g} m")
+        kind.node.fail(
+            f"part {name} is larger than the gripper: none of {kind.too_wide} grasps fits its opening of "
+            f"{gripper.max_opening:g} m"
+        )
     kind.node.fail(f"part {name} has no grasp: no two opposite surfaces were found for the gripper")

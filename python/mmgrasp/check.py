@@ -64,7 +64,11 @@ def check_robot(
     if not any(robot.collisions(link) for link in robot.links):
         problems.append("no link has a collision shape: collisions cannot be checked")
     for joint in robot.joint_table:
-        if joint["type"] in ("revolute", "prismatic") and not joint["upper"] > joint["lower"] and joint["mimic"] is None:
+        if (
+            joint["type"] in ("revolute", "prismatic")
+            and not joint["upper"] > joint["lower"]
+            and joint["mimic"] is None
+        ):
             problems.append(f"joint {joint['name']}: limits [{joint['lower']:g}, {joint['upper']:g}] leave no room")
         if joint["type"] in ("planar", "floating"):
             problems.append(f"joint {joint['name']} is {joint['type']}: cannot be part of an arm")
@@ -73,7 +77,9 @@ def check_robot(
     shaped = sum(1 for link in robot.links if robot.collisions(link))
     always = [(a, b) for a, b, reason in reasons if reason == "always"]
     never = sum(1 for *_, reason in reasons if reason == "never")
-    return RobotCheck(robot, problems, [*robot.report["warnings"], *_doubts(robot)], always, never, shaped * (shaped - 1) // 2)
+    return RobotCheck(
+        robot, problems, [*robot.report["warnings"], *_doubts(robot)], always, never, shaped * (shaped - 1) // 2
+    )
 
 
 def _doubts(robot: Robot) -> list[str]:
@@ -88,8 +94,14 @@ def _doubts(robot: Robot) -> list[str]:
             doubts.append(f"link {link} is {largest:g} m large: are its shapes scaled twice?")
     for joint in robot.joint_table:
         if joint["type"] == "revolute" and max(abs(joint["lower"]), abs(joint["upper"])) > 8 * math.pi:
-            doubts.append(f"joint {joint['name']}: limits [{joint['lower']:g}, {joint['upper']:g}] rad look like degrees")
-        if joint["type"] in ("revolute", "prismatic", "continuous") and joint["mimic"] is None and not joint["velocity"] > 0:
+            doubts.append(
+                f"joint {joint['name']}: limits [{joint['lower']:g}, {joint['upper']:g}] rad look like degrees"
+            )
+        if (
+            joint["type"] in ("revolute", "prismatic", "continuous")
+            and joint["mimic"] is None
+            and not joint["velocity"] > 0
+        ):
             doubts.append(f"joint {joint['name']}: velocity limit {joint['velocity']:g} lets it not move")
     return doubts
 
@@ -119,7 +131,9 @@ def describe(check: RobotCheck) -> str:
         kind = ("convex solid" if mesh["convex"] else "solid") if mesh["closed"] else "open surface"
         repaired = mesh["vertices_merged"] + mesh["degenerate_triangles"]
         note = f", {mesh['degenerate_triangles']} degenerate triangles dropped" if mesh["degenerate_triangles"] else ""
-        lines.append(f"mesh       {Path(mesh['path']).name}: {mesh['triangles']} triangles, {kind}{note if repaired else ''}")
+        lines.append(
+            f"mesh       {Path(mesh['path']).name}: {mesh['triangles']} triangles, {kind}{note if repaired else ''}"
+        )
     lines.append(f"pairs      {check.never} of {check.pairs} link pairs never touch, {len(check.always)} always touch")
     lines += [f"always     {a} and {b} touch in every configuration" for a, b in check.always]
     lines += [f"doubt      {doubt}" for doubt in check.doubts]

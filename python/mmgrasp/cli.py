@@ -38,7 +38,9 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"mmgrasp {_core.__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="command", parser_class=_Parser)
 
-    plan = commands.add_parser("plan", help="plan a part-supply round and write plan, report, pictures and trajectories")
+    plan = commands.add_parser(
+        "plan", help="plan a part-supply round and write plan, report, pictures and trajectories"
+    )
     plan.add_argument("scenario", type=Path, help="scenario file (YAML)")
     plan.add_argument("-o", "--out", type=Path, required=True, metavar="DIR", help="folder to write into")
     plan.add_argument("--robot", metavar="NAME", help="another robot: a shipped profile (tiago, ...) or a profile file")
@@ -59,8 +61,14 @@ def build_parser() -> argparse.ArgumentParser:
     check = commands.add_parser("check", help="tell what mmgrasp understands of a robot")
     check.add_argument("urdf", type=Path)
     check.add_argument("--srdf", type=Path, metavar="FILE")
-    check.add_argument("--package", action="append", default=[], metavar="NAME=DIR", type=_package,
-                       help="where package://NAME/... lies; may be repeated")
+    check.add_argument(
+        "--package",
+        action="append",
+        default=[],
+        metavar="NAME=DIR",
+        type=_package,
+        help="where package://NAME/... lies; may be repeated",
+    )
     check.add_argument("--base", choices=["fixed", "diff_drive", "omni"], default="fixed")
     check.add_argument("--json", action="store_true")
     check.set_defaults(run=run_check)
@@ -95,8 +103,9 @@ def _package(text: str) -> tuple[str, str]:
 # --- commands ---------------------------------------------------------------------------------------------------------
 def run_plan(arguments: argparse.Namespace, console: Console) -> int:
     with Reporter(console) as report:
-        scenario = load_scenario(arguments.scenario, robot=arguments.robot, seed=arguments.seed, threads=arguments.threads,
-                                 progress=report)
+        scenario = load_scenario(
+            arguments.scenario, robot=arguments.robot, seed=arguments.seed, threads=arguments.threads, progress=report
+        )
         plan = plan_part_supply(scenario, progress=report)
         written = write_outputs(plan, arguments.out, report, pictures=not arguments.no_pictures)
     if plan.outcome != Outcome.solved:
@@ -110,8 +119,12 @@ def run_plan(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def exit_code(outcome: Outcome) -> int:
-    return {Outcome.solved: DONE, Outcome.stopped: INTERRUPTED, Outcome.invalid_start: BAD_INPUT,
-            Outcome.invalid_goal: BAD_INPUT}.get(outcome, NO_PLAN)
+    return {
+        Outcome.solved: DONE,
+        Outcome.stopped: INTERRUPTED,
+        Outcome.invalid_start: BAD_INPUT,
+        Outcome.invalid_goal: BAD_INPUT,
+    }.get(outcome, NO_PLAN)
 
 
 def write_outputs(plan: PartSupplyPlan, out: Path, report: Callable[[str, float], None], pictures: bool) -> Path:
@@ -133,16 +146,26 @@ def write_outputs(plan: PartSupplyPlan, out: Path, report: Callable[[str, float]
 
 
 def summary(plan: PartSupplyPlan) -> Table:
-    table = Table(title=f"{plan.scenario.name}: {len(plan.stops)} stops (proven least {plan.result.lower_bound}), "
-                        f"{len(plan.picks)} picks")
+    table = Table(
+        title=f"{plan.scenario.name}: {len(plan.stops)} stops (proven least {plan.result.lower_bound}), "
+        f"{len(plan.picks)} picks"
+    )
     for title in ("stop", "x [m]", "y [m]", "heading [deg]", "free disc [m]", "trays", "picks", "arm time [s]"):
         table.add_column(title, justify="left" if title == "trays" else "right")
     names = [plan.scenario.trays[t].tray.name for t in plan.result.region_trays]
     for i, stop in enumerate(plan.stops):
         picks = [pick for pick in plan.picks if pick.stop == i]
         x, y, theta = stop.pose
-        table.add_row(str(i + 1), f"{x:.2f}", f"{y:.2f}", f"{theta * 57.29578:.0f}", f"{stop.radius:.3f}",
-                      ", ".join(names[t] for t in stop.trays), str(len(picks)), f"{sum(p.duration for p in picks):.1f}")
+        table.add_row(
+            str(i + 1),
+            f"{x:.2f}",
+            f"{y:.2f}",
+            f"{theta * 57.29578:.0f}",
+            f"{stop.radius:.3f}",
+            ", ".join(names[t] for t in stop.trays),
+            str(len(picks)),
+            f"{sum(p.duration for p in picks):.1f}",
+        )
     length = sum(leg.length for leg in plan.route)
     seconds = sum(leg.duration(plan.scenario.setup.robot) for leg in plan.route)
     planning = sum(seconds for _, seconds in plan.timings)
@@ -153,7 +176,9 @@ def summary(plan: PartSupplyPlan) -> Table:
 def run_verify(arguments: argparse.Namespace, console: Console) -> int:
     options = {key: value for key in ("samples", "threads") if (value := getattr(arguments, key)) is not None}
     with Reporter(console) as report:
-        verdict = verify_plan(arguments.plan, scenario=arguments.scenario, robot=arguments.robot, progress=report, **options)
+        verdict = verify_plan(
+            arguments.plan, scenario=arguments.scenario, robot=arguments.robot, progress=report, **options
+        )
     if arguments.json:
         print(json.dumps(verdict.to_dict(), indent=1))
     else:
@@ -167,11 +192,17 @@ def _print_verdict(verdict: PlanVerdict, console: Console) -> None:
     for rate in verdict.rates:
         share = 100 * rate.good / max(rate.samples, 1)
         worst = f" (worst: {rate.worst_part})" if rate.good < rate.samples else ""
-        console.print(f"stop {rate.stop + 1}: every part graspable from {rate.good} of {rate.samples} base poses, "
-                      f"{share:.2f} %{worst}", markup=False)
+        console.print(
+            f"stop {rate.stop + 1}: every part graspable from {rate.good} of {rate.samples} base poses, "
+            f"{share:.2f} %{worst}",
+            markup=False,
+        )
     if verdict.ok:
-        console.print(f"the plan holds: {verdict.configurations_checked} configurations checked, "
-                      f"{verdict.minimal_stops} stops are the least", markup=False)
+        console.print(
+            f"the plan holds: {verdict.configurations_checked} configurations checked, "
+            f"{verdict.minimal_stops} stops are the least",
+            markup=False,
+        )
     else:
         count = len(verdict.faults)
         console.print(f"the plan does not hold: {count} fault{'s' if count > 1 else ''}", markup=False)

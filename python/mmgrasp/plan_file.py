@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._core import PartSupplyResult, Robot
+from ._core import InvalidInput, PartSupplyResult, Robot
 from ._core import verify as checks
 from ._reading import Node, read_json
 from ._shapes import pose_to_dict, shape_from_node, shape_to_dict
@@ -37,13 +37,22 @@ def plan_to_dict(scenario: Scenario, result: PartSupplyResult, timings: list[tup
         "intersections": [_intersection(i, names) for i in result.intersections.robust],
         "lost_intersections": [_intersection(i, names) for i in result.intersections.lost],
         "stops": [
-            {"pose": s.pose.tolist(), "radius": s.radius, "trays": [names[t] for t in s.trays], "intersection": s.intersection}
+            {
+                "pose": s.pose.tolist(),
+                "radius": s.radius,
+                "trays": [names[t] for t in s.trays],
+                "intersection": s.intersection,
+            }
             for s in result.stops
         ],
         "lower_bound": result.lower_bound,
         "route": [
-            {"poses": leg.poses.tolist(), "length": leg.length, "turning": leg.turning,
-             "duration": leg.duration(scenario.setup.robot)}
+            {
+                "poses": leg.poses.tolist(),
+                "length": leg.length,
+                "turning": leg.turning,
+                "duration": leg.duration(scenario.setup.robot),
+            }
             for leg in result.route
         ],
         "picks": [_pick(pick, scenario) for pick in result.picks],
@@ -60,7 +69,12 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
     return {
         "name": scenario.name,
         "source": scenario.source,
-        "robot": {"urdf": robot.to_urdf(), "srdf": robot.to_srdf(), "base": robot.base, "base_limits": robot.base_limits},
+        "robot": {
+            "urdf": robot.to_urdf(),
+            "srdf": robot.to_srdf(),
+            "base": robot.base,
+            "base_limits": robot.base_limits,
+        },
         "arm": {
             "joints": arm.names,
             "tip_link": arm.tip,
@@ -104,16 +118,21 @@ def _part(part: _core.Part, tray: str) -> dict[str, Any]:
         "target": part.target,
         "pose": pose_to_dict(part.T_world_part),
         "shapes": [shape_to_dict(s) for s in part.shapes],
-        "grasps": [
-            {"pose": pose_to_dict(g.T_object_tcp), "width": g.width, "quality": g.quality} for g in part.grasps
-        ] if part.target else [],
+        "grasps": [{"pose": pose_to_dict(g.T_object_tcp), "width": g.width, "quality": g.quality} for g in part.grasps]
+        if part.target
+        else [],
     }
 
 
 def _grid(result: PartSupplyResult) -> dict[str, Any]:
     grid = result.grid
-    return {"origin": grid.origin.tolist(), "resolution": grid.resolution, "nx": grid.nx, "ny": grid.ny,
-            "headings": list(grid.headings)}
+    return {
+        "origin": grid.origin.tolist(),
+        "resolution": grid.resolution,
+        "nx": grid.nx,
+        "ny": grid.ny,
+        "headings": list(grid.headings),
+    }
 
 
 def runs_of(layer: np.ndarray) -> list[list[int]]:
@@ -150,11 +169,24 @@ def _pick(pick: _core.Pick, scenario: Scenario) -> dict[str, Any]:
     motions = []
     for motion in pick.motions:
         t = motion.trajectory
-        motions.append({
-            "kind": motion.kind, "opening": motion.opening, "holding": motion.holding, "times": t.times.tolist(),
-            "positions": t.positions.tolist(), "velocities": t.velocities.tolist(), "accelerations": t.accelerations.tolist(),
-        })
-    return {"stop": pick.stop, "tray": tray.name, "part": tray.parts[pick.part].name, "grasp": pick.grasp, "motions": motions}
+        motions.append(
+            {
+                "kind": motion.kind,
+                "opening": motion.opening,
+                "holding": motion.holding,
+                "times": t.times.tolist(),
+                "positions": t.positions.tolist(),
+                "velocities": t.velocities.tolist(),
+                "accelerations": t.accelerations.tolist(),
+            }
+        )
+    return {
+        "stop": pick.stop,
+        "tray": tray.name,
+        "part": tray.parts[pick.part].name,
+        "grasp": pick.grasp,
+        "motions": motions,
+    }
 
 
 # --- reading ----------------------------------------------------------------------------------------------------------
@@ -166,6 +198,8 @@ def read_plan(path: str | os.PathLike[str]) -> dict[str, Any]:
 
 
 def check_header(root: Node) -> None:
+    if not isinstance(root.raw, dict) or "format" not in root.raw:
+        raise InvalidInput(f"{root.document.source}: is no plan: the key format: mmgrasp-plan is missing")
     root["format"].choice("mmgrasp-plan")
     if root["version"].integer() != VERSION:
         root["version"].fail(f"this version of mmgrasp reads version {VERSION}")
@@ -183,8 +217,12 @@ def plan_to_check(root: Node) -> checks.PlanToCheck:
     limits = {key: node.number(above=0) for key, node in robot["base_limits"].items()}
     plan = checks.PlanToCheck(
         Robot.from_strings(
-            robot["urdf"].string(), robot["srdf"].string(), None, robot["base"].choice("diff_drive", "omni"),
-            base_limits=limits, origin=root.document.source,
+            robot["urdf"].string(),
+            robot["srdf"].string(),
+            None,
+            robot["base"].choice("diff_drive", "omni"),
+            base_limits=limits,
+            origin=root.document.source,
         )
     )
     _read_arm(plan, scenario)
@@ -261,7 +299,11 @@ def _cells(node: Node, layers: int, ny: int, nx: int) -> np.ndarray:
         if not key.isdigit() or int(key) >= layers:
             runs.fail("must belong to a heading of the grid")
         for run in runs.elements():
-            iy, a, b = (value.integer(least=0) for value in run.elements()) if len(run.raw) == 3 else run.fail("needs 3 numbers")
+            iy, a, b = (
+                (value.integer(least=0) for value in run.elements())
+                if len(run.raw) == 3
+                else run.fail("needs 3 numbers")
+            )
             if iy >= ny or not a < b <= nx:
                 run.fail("must lie inside the grid")
             cells[int(key), iy, a:b] = 1
@@ -277,9 +319,11 @@ def _read_pick(node: Node, joints: int) -> checks.CheckedPick:
         rows = [motion[key].array(joints) for key in ("positions", "velocities")]
         if any(len(values) != len(times) for values in rows):
             motion["times"].fail("must be as many as positions and velocities")
-        motions.append(checks.CheckedMotion(
-            motion["kind"].string(), motion["opening"].number(), motion["holding"].boolean(), times, *rows
-        ))
+        motions.append(
+            checks.CheckedMotion(
+                motion["kind"].string(), motion["opening"].number(), motion["holding"].boolean(), times, *rows
+            )
+        )
     return checks.CheckedPick(
         node["stop"].integer(), node["tray"].string(), node["part"].string(), node["grasp"].integer(), motions
     )

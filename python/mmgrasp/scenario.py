@@ -66,8 +66,17 @@ class Scenario:
         """The same as objects for the planner."""
         setup = self.setup
         return PartSupplyProblem(
-            setup.robot, setup.arm, setup.gripper, self.world, [t.tray for t in self.trays], setup.home, self.start, self.goal,
-            setup.carry, positioning_uncertainty=self.positioning_uncertainty, **self.options,
+            setup.robot,
+            setup.arm,
+            setup.gripper,
+            self.world,
+            [t.tray for t in self.trays],
+            setup.home,
+            self.start,
+            self.goal,
+            setup.carry,
+            positioning_uncertainty=self.positioning_uncertainty,
+            **self.options,
         )
 
     def reach_database(self, progress: Progress = None) -> ReachDatabase:
@@ -77,7 +86,9 @@ class Scenario:
 
     def __repr__(self) -> str:
         parts = sum(len(t.targets) for t in self.trays)
-        return f"Scenario({self.name!r}, robot {self.setup.robot.name!r}, {len(self.trays)} trays, {parts} parts to pick)"
+        return (
+            f"Scenario({self.name!r}, robot {self.setup.robot.name!r}, {len(self.trays)} trays, {parts} parts to pick)"
+        )
 
 
 def load_scenario(
@@ -112,7 +123,16 @@ def load_scenario(
     if threads is not None:
         options["threads"] = threads
     scenario = Scenario(
-        root["name"].string(), str(Path(path).resolve()), setup, obstacles, trays, start, goal, uncertainty, options, reach
+        root["name"].string(),
+        str(Path(path).resolve()),
+        setup,
+        obstacles,
+        trays,
+        start,
+        goal,
+        uncertainty,
+        options,
+        reach,
     )
     for key in ("start", "goal"):
         _check_stands_free(root[key], scenario)
@@ -164,7 +184,9 @@ def _check_names(root: Node, obstacles: list[Obstacle], trays: list[TraySetup]) 
     seen: set[str] = set()
     for name in [o.name for o in obstacles] + [p.name for t in trays for p in t.tray.parts]:
         if name in seen:
-            raise InvalidInput(f"{root.document.source}: the name {name!r} is used twice (obstacles, trays and parts share names)")
+            raise InvalidInput(
+                f"{root.document.source}: the name {name!r} is used twice (obstacles, trays and parts share names)"
+            )
         seen.add(name)
 
 

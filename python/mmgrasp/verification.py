@@ -67,7 +67,9 @@ def verify_plan(
 
 
 def _changed(path: str, was: Any, now: Any) -> checks.Fault:
-    return checks.Fault("scenario-changed", f"scenario{path}", f"the plan was made for {_short(was)}, the file says {_short(now)}")
+    return checks.Fault(
+        "scenario-changed", f"scenario{path}", f"the plan was made for {_short(was)}, the file says {_short(now)}"
+    )
 
 
 def _short(value: Any) -> str:
@@ -106,5 +108,3 @@ def _walk(was: Any, now: Any, path: str) -> Iterator[tuple[str, Any, Any]]:
 
 def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
-
-

@@ -6,9 +6,10 @@ import copy
 import os
 from pathlib import Path
 
-import mmgrasp as mg
 import pytest
 import yaml
+
+import mmgrasp as mg
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 DATA = REPOSITORY.parent / "shared" / "data"

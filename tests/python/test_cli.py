@@ -9,9 +9,10 @@ import subprocess
 import sys
 
 import jsonschema
-import mmgrasp as mg
 import numpy as np
 import pytest
+
+import mmgrasp as mg
 from conftest import ASSETS
 from mmgrasp.cli import main
 from mmgrasp.plan_file import plan_schema, read_plan
@@ -43,10 +44,10 @@ def test_csv_holds_the_plans_numbers(out):
     rows = list(csv.reader(first.read_text().splitlines()))
     motion = plan["picks"][0]["motions"][0]
     assert rows[0][:4] == ["time", "base.x", "base.y", "base.theta"]
-    assert rows[0][7:7 + len(plan["scenario"]["home"])] == plan["scenario"]["arm"]["joints"]
+    assert rows[0][7 : 7 + len(plan["scenario"]["home"])] == plan["scenario"]["arm"]["joints"]
     values = np.array(rows[1:], dtype=float)
     np.testing.assert_array_equal(values[:, 0], motion["times"])
-    np.testing.assert_array_equal(values[:, 7:7 + len(plan["scenario"]["home"])], motion["positions"])
+    np.testing.assert_array_equal(values[:, 7 : 7 + len(plan["scenario"]["home"])], motion["positions"])
 
 
 def test_verify_accepts_the_plan(out, small_path, capfd):
@@ -75,7 +76,10 @@ def test_verify_refuses_what_is_no_plan(tmp_path, capfd, content, piece):
 
 
 def test_check_describes_the_robot(capfd):
-    assert main(["check", str(FETCH / "fetchlike.urdf"), "--srdf", str(FETCH / "fetchlike.srdf"), "--base", "diff_drive"]) == 0
+    assert (
+        main(["check", str(FETCH / "fetchlike.urdf"), "--srdf", str(FETCH / "fetchlike.srdf"), "--base", "diff_drive"])
+        == 0
+    )
     text = capfd.readouterr().out
     for piece in ("arm_with_torso", "torso_lift_joint", "never touch", "can be planned for", "diff_drive"):
         assert piece in text
@@ -110,8 +114,14 @@ def test_check_of_a_robot_with_missing_mesh(tmp_path, capfd):
     ],
 )
 def test_exit_codes(arguments, code, piece, tmp_path):
-    done = subprocess.run([sys.executable, "-m", "mmgrasp.cli", *arguments], capture_output=True, text=True, cwd=tmp_path,
-                          timeout=60, env={**os.environ, "COLUMNS": "200"})
+    done = subprocess.run(
+        [sys.executable, "-m", "mmgrasp.cli", *arguments],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        timeout=60,
+        env={**os.environ, "COLUMNS": "200"},
+    )
     assert done.returncode == code
     assert piece in done.stdout + done.stderr
     assert "Traceback" not in done.stderr

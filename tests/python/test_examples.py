@@ -8,6 +8,7 @@ import subprocess
 import sys
 
 import pytest
+
 from conftest import ASSETS, REPOSITORY
 
 EXAMPLES = REPOSITORY / "examples"
@@ -16,7 +17,9 @@ BUILD = REPOSITORY / "build" / "dev"
 
 @pytest.mark.parametrize("name", sorted(p.name for p in EXAMPLES.glob("[0-9]*.py")))
 def test_python_example(name, tmp_path):
-    done = subprocess.run([sys.executable, str(EXAMPLES / name)], capture_output=True, text=True, cwd=tmp_path, timeout=300)
+    done = subprocess.run(
+        [sys.executable, str(EXAMPLES / name)], capture_output=True, text=True, cwd=tmp_path, timeout=300
+    )
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip()
 
@@ -34,7 +37,16 @@ def test_stand_alone_cmake_project(tmp_path):
 
     run("cmake", "--install", str(BUILD), "--prefix", str(prefix), "--component", "development")
     consumer = tmp_path / "build"
-    run("cmake", "-S", str(EXAMPLES / "cmake_project"), "-B", str(consumer), "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}")
+    run(
+        "cmake",
+        "-S",
+        str(EXAMPLES / "cmake_project"),
+        "-B",
+        str(consumer),
+        "-G",
+        "Ninja",
+        f"-DCMAKE_PREFIX_PATH={prefix}",
+    )
     run("cmake", "--build", str(consumer))
     for source in [*(EXAMPLES / "cmake_project").glob("*.cpp"), *sorted(EXAMPLES.glob("[0-9]*.cpp"))]:
         assert run(str(consumer / source.stem), str(ASSETS)).strip()

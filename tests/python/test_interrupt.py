@@ -9,8 +9,9 @@ import sys
 import threading
 import time
 
-import mmgrasp as mg
 import pytest
+
+import mmgrasp as mg
 
 
 def interrupt_soon() -> threading.Timer:

@@ -7,6 +7,7 @@ import tomllib
 from graphlib import TopologicalSorter
 
 import pytest
+
 from conftest import REPOSITORY
 
 LAYERS = tomllib.loads((REPOSITORY / "layers.toml").read_text())

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 
-import mmgrasp as mg
 import numpy as np
 import pytest
+
+import mmgrasp as mg
 from conftest import ASSETS, DATA
 
 REFERENCE = DATA / "reference" / "transcribed" / "fk_pinocchio.json"
@@ -35,7 +36,7 @@ def test_kinematics_equal_pinocchio(name):
     columns = [entry["joints"].index(joint) for joint in group.names]
     for q, T, case in zip(configurations, poses, entry["cases"], strict=True):
         np.testing.assert_allclose(T[:3, 3], case["p"], atol=2e-9)
-        xyz, quat = mg.pose_to_xyz_quat(T)
+        _, quat = mg.pose_to_xyz_quat(T)
         assert abs(abs(np.dot(quat, case["quat"])) - 1) < 1e-8
         np.testing.assert_array_equal(T, group.fk(q))
         np.testing.assert_allclose(group.jacobian(q), np.array(case["J"])[:, columns], atol=2e-9)
@@ -153,7 +154,9 @@ def test_motion_is_free_and_repeats(fetch, arm):
     for a, b in zip(first.path[:-1], first.path[1:], strict=True):
         assert checker.edge_is_free(a, b, 0.005)
     np.testing.assert_array_equal(first.path[0], start)
-    np.testing.assert_allclose(np.exp(1j * first.path[-1]), np.exp(1j * goal), atol=1e-9)  # continuous joints may wind back
+    np.testing.assert_allclose(
+        np.exp(1j * first.path[-1]), np.exp(1j * goal), atol=1e-9
+    )  # continuous joints may wind back
     length = sum(np.linalg.norm(b - a) for a, b in zip(first.path[:-1], first.path[1:], strict=True))
     assert first.cost == pytest.approx(length)
     again = mg.plan_motion(fetch, arm, world, start=start, goal=goal, seed=1)
@@ -213,7 +216,7 @@ def test_exact_small_programmes():
     assert tour.order == [0, 2, 1]
     assert tour.length == pytest.approx(4)
     grid = mg.BaseGrid([0, 0], 0.1, 8, 6)
-    centre, radius = mg.inscribed_circle(grid, np.ones((1, 6, 8), dtype=np.uint8))
+    _, radius = mg.inscribed_circle(grid, np.ones((1, 6, 8), dtype=np.uint8))
     assert radius == pytest.approx(0.3, abs=1e-5)
 
 

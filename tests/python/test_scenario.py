@@ -8,10 +8,11 @@ import math
 import re
 
 import jsonschema
-import mmgrasp as mg
 import numpy as np
 import pytest
 import yaml
+
+import mmgrasp as mg
 from conftest import ASSETS
 from mmgrasp.cli import main
 

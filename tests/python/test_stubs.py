@@ -11,8 +11,16 @@ STUBS = Path(__file__).resolve().parents[2] / "python" / "mmgrasp" / "_core"
 
 def generate(folder: Path) -> dict[str, str]:
     """File name to text, as pybind11-stubgen writes it."""
-    command = [sys.executable, "-m", "pybind11_stubgen", "mmgrasp._core", "-o", str(folder), "--numpy-array-use-type-var",
-               "--exit-code"]
+    command = [
+        sys.executable,
+        "-m",
+        "pybind11_stubgen",
+        "mmgrasp._core",
+        "-o",
+        str(folder),
+        "--numpy-array-use-type-var",
+        "--exit-code",
+    ]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr
     made = folder / "mmgrasp" / "_core"

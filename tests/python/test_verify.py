@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import copy
+import itertools
 import json
 
-import mmgrasp as mg
 import pytest
+
+import mmgrasp as mg
 from mmgrasp.plan_file import runs_of
 
 
@@ -44,10 +46,12 @@ def obstacle_added(plan):
 
 def obstacle_on_the_route(plan):
     poses = plan["route"][0]["poses"]
-    a, b = max(zip(poses[:-1], poses[1:], strict=True), key=lambda e: abs(e[0][0] - e[1][0]) + abs(e[0][1] - e[1][1]))
+    a, b = max(itertools.pairwise(poses), key=lambda e: abs(e[0][0] - e[1][0]) + abs(e[0][1] - e[1][1]))
     xyz = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, 0.2]
     shape = {"type": "box", "pose": {"xyz": [0, 0, 0], "quat_xyzw": [0, 0, 0, 1]}, "size": [0.1, 0.1, 0.4]}
-    plan["scenario"]["obstacles"].append({"name": "box", "pose": {"xyz": xyz, "quat_xyzw": [0, 0, 0, 1]}, "shapes": [shape]})
+    plan["scenario"]["obstacles"].append(
+        {"name": "box", "pose": {"xyz": xyz, "quat_xyzw": [0, 0, 0, 1]}, "shapes": [shape]}
+    )
 
 
 def stop_shifted(plan):
@@ -161,7 +165,7 @@ def region_emptied(plan):
 
 def wrist_jumps(plan):
     m = motion(plan, "carry")
-    for row in m["positions"][len(m["positions"]) // 2:]:
+    for row in m["positions"][len(m["positions"]) // 2 :]:
         row[-1] += 0.5
 
 
@@ -174,11 +178,39 @@ def bin_moved(plan):
 
 
 BREAKS = [
-    joint_moved, end_moved, joint_beyond_limit, too_fast, obstacle_added, obstacle_on_the_route, stop_shifted, stop_turned,
-    part_forgotten, part_picked_twice, motions_swapped, motion_missing, picks_exchanged_motions, part_renamed, other_grasp,
-    grasp_out_of_range, part_moved, route_cut, route_jumps, route_sideways, start_elsewhere, fingers_closed_too_early,
-    fingers_open_while_holding, not_holding, time_runs_backwards, time_stands, stop_added, bound_lowered, uncertainty_grown,
-    region_emptied, wrist_jumps, robot_shrunk_arm_limits, bin_moved,
+    joint_moved,
+    end_moved,
+    joint_beyond_limit,
+    too_fast,
+    obstacle_added,
+    obstacle_on_the_route,
+    stop_shifted,
+    stop_turned,
+    part_forgotten,
+    part_picked_twice,
+    motions_swapped,
+    motion_missing,
+    picks_exchanged_motions,
+    part_renamed,
+    other_grasp,
+    grasp_out_of_range,
+    part_moved,
+    route_cut,
+    route_jumps,
+    route_sideways,
+    start_elsewhere,
+    fingers_closed_too_early,
+    fingers_open_while_holding,
+    not_holding,
+    time_runs_backwards,
+    time_stands,
+    stop_added,
+    bound_lowered,
+    uncertainty_grown,
+    region_emptied,
+    wrist_jumps,
+    robot_shrunk_arm_limits,
+    bin_moved,
 ]
 
 

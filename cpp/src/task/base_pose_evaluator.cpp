@@ -12,7 +12,9 @@
 namespace mmgrasp {
 namespace {
 
-constexpr int kFruitless = 3;       // Descents without an arrival after which a grasp counts as out of reach.
+constexpr int kFruitless = 2;       // Descents without an arrival after which a grasp counts as out of reach.
+constexpr int kIterations = 20;     // Of one descent: from a stored configuration near by, one that arrives takes 4 to 10.
+constexpr double kFar = 1.2;        // Cells of the database beyond which only one descent is tried.
 constexpr double kSame = 1e-3;      // Configurations nearer than this are one [rad or m].
 constexpr int kCheckRestarts = 12;
 
@@ -62,7 +64,9 @@ struct BasePoseEvaluator::Impl {
 
   Impl(std::shared_ptr<const EvaluatorTables> shared, CollisionChecker rest, std::vector<CollisionChecker> open)
       : tables(std::move(shared)), at_rest(std::move(rest)), opened(std::move(open)),
-        opened_at(opened.size(), Eigen::Vector3d::Constant(std::nan(""))) {}
+        opened_at(opened.size(), Eigen::Vector3d::Constant(std::nan(""))) {
+    ik.max_iterations = kIterations;
+  }
 
   std::unique_ptr<Impl> clone() const {
     std::vector<CollisionChecker> copies;
@@ -79,23 +83,28 @@ struct BasePoseEvaluator::Impl {
     return checker;
   }
 
-  /// The configuration's cause; none also fills `solution`.
-  Rejection try_seed(CollisionChecker& checker, const Pose& T_base_tcp, Eigen::VectorXd& q, bool& arrived) {
-    arrived = refine_ik(tables->arm, T_base_tcp, q, ik, workspace);
-    if (!arrived) return Rejection::reach;
+  /// Remembers a solution; false when it was judged already.
+  bool is_new(const Eigen::VectorXd& q) {
     for (const Eigen::VectorXd& other : seen) {
-      if ((other - q).cwiseAbs().maxCoeff() < kSame) return Rejection::reach;  // judged already
+      if ((other - q).cwiseAbs().maxCoeff() < kSame) return false;
     }
     seen.push_back(q);
-    return checker.rejection(q);
+    return true;
   }
 
-  /// `reached` outside the limits only, or not at all.
-  Rejection unreached(const Pose& T_base_tcp) {
+  /// One descent from a stored configuration that, failing, also tells whether the pose is reached outside the limits only.
+  IkResult descent(const Pose& T_base_tcp, int seed) {
     IkOptions one = ik;
     one.restarts = 0;
-    const IkResult result = solve_ik(tables->arm, T_base_tcp, seeds.col(0), one);
-    return result.rejections.limits > 0 ? Rejection::limits : Rejection::reach;
+    return solve_ik(tables->arm, T_base_tcp, seeds.col(seed).head(tables->arm.size()), one);
+  }
+
+  /// Distance of a stored configuration's tool from the pose, in cells of the database.
+  double cells_away(const Pose& T_base_tcp, int seed) const {
+    const ReachOptions& cells = tables->database->options();
+    const Pose T = tables->arm.fk(seeds.col(seed).head(tables->arm.size()));
+    return (T.translation() - T_base_tcp.translation()).norm() / cells.position_cell +
+           rotation_distance(T, T_base_tcp) / cells.rotation_cell;
   }
 
   Rejection grasp(const Eigen::Vector3d& base_pose, const Pose& T_base_tcp, int opening, Eigen::VectorXd& q) {
@@ -104,15 +113,23 @@ struct BasePoseEvaluator::Impl {
     CollisionChecker& checker = checker_at(opening, base_pose);
     seen.clear();
     Rejection worst = Rejection::reach;
+    // A pose that no stored configuration is near to is hardly ever reached: one descent is enough there.
+    const int fruitless = std::min(count, cells_away(T_base_tcp, 0) > kFar ? 1 : kFruitless);
     for (int i = 0; i < count; ++i) {
-      if (seen.empty() && i == kFruitless) break;
-      q = seeds.col(i).head(tables->arm.size());
-      bool arrived = false;
-      const Rejection cause = try_seed(checker, T_base_tcp, q, arrived);
-      if (arrived && cause == Rejection::none) return cause;
+      if (seen.empty() && i + 1 == fruitless) {
+        const IkResult last = descent(T_base_tcp, i);
+        if (last.outcome != Outcome::solved) return last.rejections.limits > 0 ? Rejection::limits : Rejection::reach;
+        q = last.q;
+      } else {
+        q = seeds.col(i).head(tables->arm.size());
+        if (!refine_ik(tables->arm, T_base_tcp, q, ik, workspace)) continue;
+      }
+      if (!is_new(q)) continue;
+      const Rejection cause = checker.rejection(q);
+      if (cause == Rejection::none) return cause;
       if (stage(cause) > stage(worst)) worst = cause;
     }
-    return seen.empty() ? unreached(T_base_tcp) : worst;
+    return worst;
   }
 };
 

@@ -1,0 +1,212 @@
+#include "mmgrasp/task/part_supply.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/verify/plan_check.hpp"
+#include "support/small_storeroom.hpp"
+
+namespace mmgrasp {
+namespace {
+
+const ReachDatabase& database() {
+  static const ReachDatabase shared = test::small_database(test::small_storeroom());
+  return shared;
+}
+
+/// The plan as the independent checker wants it: it shares no code with the planners.
+verify::PlanToCheck to_check(const PartSupplyProblem& problem, const PartSupplyPlan& plan) {
+  verify::PlanToCheck check{problem.robot};
+  check.arm_joints = problem.arm.names();
+  for (int i = 0; i < problem.arm.size(); ++i) {
+    check.velocity_limits.push_back(problem.arm.velocity_limits()[i]);
+    check.acceleration_limits.push_back(problem.arm.acceleration_limits()[i]);
+  }
+  check.tip_link = problem.gripper.tcp_link;
+  check.max_opening = problem.gripper.max_opening;
+  check.clearance = problem.gripper.clearance;
+  check.approach = problem.gripper.approach;
+  for (const FingerJoint& finger : problem.gripper.joints) check.fingers.push_back({finger.name, finger.closed, finger.open});
+  check.finger_links = problem.gripper.finger_links;
+  check.home = problem.home;
+  check.start = problem.start;
+  check.goal = problem.goal;
+  check.positioning_uncertainty = problem.options.positioning_uncertainty;
+  check.T_base_bin = problem.carry.T_base_bin;
+  check.bin_size = problem.carry.size;
+  check.drop_gap = problem.carry.drop_gap;
+  for (const auto& [name, object] : problem.scene.objects()) check.obstacles.push_back({name, object.shapes, object.T_world_object});
+  for (const Tray& tray : problem.trays) {
+    check.trays.push_back(tray.name);
+    for (const Part& part : tray.parts) {
+      verify::CheckedPart checked{{part.name, part.shapes, part.T_world_part}, tray.name, part.target, {}};
+      for (const Grasp& grasp : part.grasps) checked.grasps.push_back({grasp.T_object_tcp, grasp.width});
+      check.parts.push_back(checked);
+    }
+  }
+  check.grid = {plan.grid.origin, plan.grid.resolution, plan.grid.nx, plan.grid.ny, plan.grid.headings};
+  for (const BaseRegion& region : plan.regions) check.regions.push_back({region.tray, region.cells});
+  for (const Stop& stop : plan.stops) {
+    verify::CheckedStop checked{stop.pose, stop.radius, {}};
+    for (int region : stop.trays) checked.trays.push_back(plan.regions[static_cast<std::size_t>(region)].tray);
+    check.stops.push_back(checked);
+  }
+  for (const BasePath& leg : plan.route) check.route.push_back(leg.poses);
+  for (const Pick& pick : plan.picks) {
+    const Tray& tray = problem.trays[static_cast<std::size_t>(pick.tray)];
+    verify::CheckedPick checked{pick.stop, tray.name, tray.parts[static_cast<std::size_t>(pick.part)].name, pick.grasp, {}};
+    for (const PickMotion& motion : pick.motions) {
+      checked.motions.push_back({to_string(motion.kind), motion.opening, motion.holding, motion.trajectory.times,
+                                 motion.trajectory.positions, motion.trajectory.velocities});
+    }
+    check.picks.push_back(checked);
+  }
+  check.lower_bound = plan.lower_bound;
+  return check;
+}
+
+std::string all_messages(const PartSupplyPlan& plan) {
+  std::string text;
+  for (const Obstruction& some : plan.obstructions) text += some.stage + ": " + some.message + "\n";
+  return text;
+}
+
+TEST(PartSupply, SmallStoreroomIsSolvedAndHoldsForTheIndependentChecker) {
+  const PartSupplyProblem problem = test::small_storeroom();
+  const PartSupplyPlan plan = plan_part_supply(problem, database());
+  ASSERT_EQ(plan.outcome, Outcome::solved) << all_messages(plan);
+  EXPECT_TRUE(plan.obstructions.empty());
+  EXPECT_EQ(plan.stops.size(), 1u);
+  EXPECT_EQ(plan.lower_bound, 1);
+  EXPECT_EQ(plan.route.size(), 2u);
+  ASSERT_EQ(plan.picks.size(), 4u);
+  EXPECT_GE(plan.robustness_rate, 0.999);
+  verify::PlanCheckOptions options;
+  options.samples = 100;
+  const verify::PlanCheckResult result = verify::check_plan(to_check(problem, plan), options);
+  for (const verify::Fault& fault : result.faults) ADD_FAILURE() << fault.code << ", " << fault.where << ": " << fault.message;
+  EXPECT_EQ(result.minimal_stops, 1);
+}
+
+TEST(PartSupply, TheSamePlanAtAnyThreadCount) {
+  PartSupplyProblem problem = test::small_storeroom(1);
+  problem.options.grid.resolution = 0.08;
+  problem.options.robustness_samples = 40;
+  std::vector<PartSupplyPlan> plans;
+  for (int threads : {1, 3}) {
+    problem.options.threads = threads;
+    plans.push_back(plan_part_supply(problem, database()));
+  }
+  ASSERT_EQ(plans[0].outcome, Outcome::solved) << all_messages(plans[0]);
+  ASSERT_EQ(plans[1].outcome, Outcome::solved);
+  ASSERT_EQ(plans[0].picks.size(), plans[1].picks.size());
+  for (std::size_t i = 0; i < plans[0].picks.size(); ++i) {
+    EXPECT_EQ(plans[0].picks[i].grasp, plans[1].picks[i].grasp);
+    for (std::size_t m = 0; m < plans[0].picks[i].motions.size(); ++m) {
+      EXPECT_EQ(plans[0].picks[i].motions[m].trajectory.positions, plans[1].picks[i].motions[m].trajectory.positions);
+    }
+  }
+  for (std::size_t leg = 0; leg < plans[0].route.size(); ++leg) EXPECT_EQ(plans[0].route[leg].poses, plans[1].route[leg].poses);
+}
+
+/// The advised uncertainty works, a little more does not.
+TEST(PartSupply, TooLargeAnUncertaintyAdvisesOneThatWorks) {
+  PartSupplyProblem problem = test::small_storeroom(1);
+  problem.options.robustness_samples = 40;
+  problem.options.positioning_uncertainty = 0.5;
+  const PartSupplyPlan failed = plan_part_supply(problem, database());
+  ASSERT_EQ(failed.outcome, Outcome::infeasible);
+  ASSERT_FALSE(failed.obstructions.empty());
+  double advised = 1;
+  for (const Obstruction& some : failed.obstructions) {
+    EXPECT_EQ(some.stage, "robustness");
+    EXPECT_FALSE(some.part.empty());
+    advised = std::min(advised, some.largest_uncertainty);
+  }
+  ASSERT_GT(advised, 0.01);
+  problem.options.positioning_uncertainty = advised;
+  const PartSupplyPlan fixed = plan_part_supply(problem, database());
+  EXPECT_EQ(fixed.outcome, Outcome::solved) << all_messages(fixed);
+  problem.options.positioning_uncertainty = advised + 1e-4;
+  EXPECT_EQ(plan_part_supply(problem, database()).outcome, Outcome::infeasible);
+}
+
+TEST(PartSupply, APartWithoutGraspsIsNamed) {
+  PartSupplyProblem problem = test::small_storeroom(1);
+  problem.options.grid.resolution = 0.1;
+  problem.trays[1].parts[0].grasps.clear();
+  problem.trays[1].parts[0].grasps_too_wide = 7;
+  const PartSupplyPlan plan = plan_part_supply(problem, database());
+  EXPECT_EQ(plan.outcome, Outcome::infeasible);
+  ASSERT_EQ(plan.obstructions.size(), 1u);
+  EXPECT_EQ(plan.obstructions[0].tray, "B");
+  EXPECT_EQ(plan.obstructions[0].part, "B/block_0");
+  EXPECT_EQ(plan.obstructions[0].stage, "grasp");
+  EXPECT_NE(plan.obstructions[0].message.find("7"), std::string::npos);
+  EXPECT_LT(plan.obstructions[0].largest_uncertainty, 0);
+}
+
+/// A low step keeps the base away; bringing tray and table nearer by the missing reach (and room for the disc) helps.
+TEST(PartSupply, MissingReachSaysHowFarToMove) {
+  PartSupplyProblem problem = test::small_storeroom(1);
+  problem.options.robustness_samples = 40;
+  problem.trays.pop_back();
+  problem.scene.add("step", test::box_shape(2.0, 4.0, 0.10), test::at(0.75, 0, 0.05));
+  const PartSupplyPlan failed = plan_part_supply(problem, database());
+  ASSERT_EQ(failed.outcome, Outcome::infeasible);
+  ASSERT_EQ(failed.obstructions.size(), 1u);
+  const Obstruction& told = failed.obstructions[0];
+  EXPECT_EQ(told.stage, "region");
+  ASSERT_GT(told.missing_reach, 0.0);
+  const double nearer = told.missing_reach + 0.45;
+  Tray& tray = problem.trays[0];
+  tray.T_world_tray.translation().x() -= nearer;
+  tray.parts[0].T_world_part.translation().x() -= nearer;
+  problem.scene.move("table", test::at(0.9 - nearer, 0, 0.42));
+  const PartSupplyPlan fixed = plan_part_supply(problem, database());
+  EXPECT_EQ(fixed.outcome, Outcome::solved) << all_messages(fixed);
+}
+
+TEST(PartSupply, AStartInCollisionIsRefusedByName) {
+  PartSupplyProblem problem = test::small_storeroom(1);
+  problem.start = Eigen::Vector3d(0.9, 0, 0);
+  try {
+    plan_part_supply(problem, database());
+    FAIL() << "was accepted";
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("start"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("table"), std::string::npos);
+  }
+}
+
+TEST(PartSupply, BadOptionsAreRefusedByName) {
+  const auto message = [](auto change) {
+    PartSupplyProblem problem = test::small_storeroom(1);
+    change(problem);
+    try {
+      problem.check();
+    } catch (const InvalidInput& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(message([](auto& p) { p.options.grid.resolution = 0; }).find("grid.resolution"), std::string::npos);
+  EXPECT_NE(message([](auto& p) { p.options.positioning_uncertainty = -0.1; }).find("positioning_uncertainty"), std::string::npos);
+  EXPECT_NE(message([](auto& p) { p.home[2] = 9; }).find("elbow"), std::string::npos);
+  EXPECT_NE(message([](auto& p) { p.trays[1].name = "A"; }).find("tray name"), std::string::npos);
+  EXPECT_NE(message([](auto& p) { p.trays[1].parts[0].name = "table"; }).find("table"), std::string::npos);
+  EXPECT_NE(message([](auto& p) { p.trays[0].parts[0].grasps[0].width = 0.2; }).find("max_opening"), std::string::npos);
+  EXPECT_EQ(message([](auto&) {}), "");
+}
+
+TEST(PartSupply, AStoppedMonitorEndsThePlan) {
+  const PartSupplyProblem problem = test::small_storeroom(1);
+  Monitor monitor;
+  monitor.stop.stop();
+  EXPECT_EQ(plan_part_supply(problem, database(), monitor).outcome, Outcome::stopped);
+}
+
+}  // namespace
+}  // namespace mmgrasp

@@ -92,7 +92,8 @@ inline PartSupplyProblem small_storeroom(int parts_per_tray = 2) {
   gripper.finger_links = {"left_finger", "right_finger"};
   Eigen::VectorXd home(6);
   home << 0.0, -0.9, 2.2, 0.0, 0.9, 0.0;
-  PartSupplyProblem problem{robot, robot.chain("base_link", "tcp"), gripper, World(), {}, home};
+  PartSupplyProblem problem{robot, robot.chain("base_link", "tcp"), gripper, World(), {}, home,
+                            Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), CarryPlace(), PartSupplyOptions()};
   problem.scene.add("table", box_shape(0.30, 1.2, 0.04), at(0.9, 0.0, 0.42));
   problem.trays = {small_tray("A", 0.88, -0.15, parts_per_tray), small_tray("B", 0.88, 0.15, parts_per_tray)};
   problem.start = Eigen::Vector3d(-0.8, 0.5, 0);

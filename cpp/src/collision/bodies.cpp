@@ -34,13 +34,15 @@ bool is_below(const Robot& robot, int link, int ancestor) {
   return true;
 }
 
-// The SRDF names a group's joints; its links are those that they, or joints that mimic them, join, and all below. A group of links alone has no
-// joints: then it is what hangs on the end effector's parent.
+// The SRDF names a group's joints; its links are those that they, or joints that mimic them, join, and all below. A
+// group of links alone has no joints: then it is what hangs on the end effector's parent.
 std::vector<char> end_effector_links(const Robot& robot, const EndEffectorDescription& effector) {
   std::vector<char> in(robot.links().size(), 0);
   bool any = false;
   const auto add = [&](int link) {
-    if (link == robot.link_index(effector.parent_link) || !is_below(robot, link, robot.link_index(effector.parent_link))) return;
+    if (link == robot.link_index(effector.parent_link) ||
+        !is_below(robot, link, robot.link_index(effector.parent_link)))
+      return;
     add_subtree(robot, link, in);
     any = true;
   };
@@ -109,7 +111,8 @@ void Snapshot::add_robot() {
 void Snapshot::add_held() {
   for (const auto& [name, object] : world.attached()) {
     if (!robot.has_link(object.link)) {
-      throw InvalidInput("held object '" + name + "': link = " + object.link + ": is no link of robot '" + robot.name() + "'");
+      throw InvalidInput("held object '" + name + "': link = " + object.link + ": is no link of robot '" +
+                         robot.name() + "'");
     }
     Body body;
     body.name = name;

@@ -10,7 +10,8 @@
 
 namespace mmgrasp::detail {
 
-/// make_solid, kept as long as the mesh or cloud it was made from lives: a new checker for a changed world is then cheap.
+/// make_solid, kept as long as the mesh or cloud it was made from lives: a new checker for a changed world is then
+/// cheap.
 std::shared_ptr<const Solid> shared_solid(const Shape& shape, double padding);
 
 /// One shape that moves with a robot link, whether of the link itself or of a held object.
@@ -18,9 +19,9 @@ struct BodyShape {
   int body = 0;
   int link = 0;
   Rigid in_link;
-  std::shared_ptr<const Solid> solid;    ///< Against the robot itself.
-  std::shared_ptr<const Solid> padded;   ///< Against the scene.
-  Eigen::Vector3d ball = Eigen::Vector3d::Zero();   ///< Centre of the bounding sphere in the link.
+  std::shared_ptr<const Solid> solid;              ///< Against the robot itself.
+  std::shared_ptr<const Solid> padded;             ///< Against the scene.
+  Eigen::Vector3d ball = Eigen::Vector3d::Zero();  ///< Centre of the bounding sphere in the link.
 };
 
 /// A robot link with shapes, or a held object.
@@ -28,14 +29,14 @@ struct Body {
   std::string name;
   int link = 0;
   bool held = false;
-  std::vector<int> touch_links;          ///< Held objects: links that may touch it, ascending.
+  std::vector<int> touch_links;  ///< Held objects: links that may touch it, ascending.
 };
 
 struct SceneShape {
   int object = 0;
   Rigid T_world;
   std::shared_ptr<const Solid> solid;
-  Eigen::Vector3d ball = Eigen::Vector3d::Zero();   ///< World frame.
+  Eigen::Vector3d ball = Eigen::Vector3d::Zero();  ///< World frame.
 };
 
 /// Robot and world prepared for checking. Immutable; shared by all clones.
@@ -48,9 +49,9 @@ struct Snapshot {
   std::vector<Body> bodies;
   std::vector<BodyShape> shapes;
   std::vector<std::string> object_names;
-  std::vector<SceneShape> scene;         ///< Bounded shapes, then unbounded ones (planes).
+  std::vector<SceneShape> scene;  ///< Bounded shapes, then unbounded ones (planes).
   int bounded = 0;
-  BoxTree scene_tree;                    ///< Over the bounded shapes.
+  BoxTree scene_tree;  ///< Over the bounded shapes.
 
  private:
   void add_robot();
@@ -58,21 +59,22 @@ struct Snapshot {
   void add_scene();
 };
 
-/// Links that a held object may touch when nobody said: its link, all links below it, and the whole end effector it belongs to.
+/// Links that a held object may touch when nobody said: its link, all links below it, and the whole end effector it
+/// belongs to.
 std::vector<int> default_touch_links(const Robot& robot, int link);
 
 struct ShapePair {
   int a = 0, b = 0;
-  double reach = 0;                      ///< Sum of the bounding spheres' radii.
+  double reach = 0;  ///< Sum of the bounding spheres' radii.
 };
 
 /// Which pairs one group must look at.
 struct PairPlan {
   PairPlan(const Snapshot& snapshot, const JointGroup& group);
 
-  std::vector<int> moving, fixed;        ///< Shapes the group moves, and the others.
-  std::vector<ShapePair> varying;        ///< Relative pose depends on the configuration.
-  std::vector<ShapePair> constant;       ///< It does not: one look per reference is enough.
+  std::vector<int> moving, fixed;   ///< Shapes the group moves, and the others.
+  std::vector<ShapePair> varying;   ///< Relative pose depends on the configuration.
+  std::vector<ShapePair> constant;  ///< It does not: one look per reference is enough.
 };
 
 /// Link of each rigid assembly: links joined by fixed joints share a number.

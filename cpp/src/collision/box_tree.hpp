@@ -10,8 +10,8 @@ class BoxTree {
  public:
   struct Node {
     Eigen::Vector3d centre, half;
-    int first = 0;   ///< Leaf: first position in items(). Inner node: left child; the right one is next to it.
-    int count = 0;   ///< Items of a leaf; 0 for inner nodes.
+    int first = 0;  ///< Leaf: first position in items(). Inner node: left child; the right one is next to it.
+    int count = 0;  ///< Items of a leaf; 0 for inner nodes.
   };
 
   BoxTree() = default;

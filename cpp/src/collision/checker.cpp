@@ -159,11 +159,19 @@ CollisionChecker::CollisionChecker(CollisionChecker&&) noexcept = default;
 CollisionChecker& CollisionChecker::operator=(CollisionChecker&&) noexcept = default;
 CollisionChecker::~CollisionChecker() = default;
 
-CollisionChecker CollisionChecker::clone() const { return CollisionChecker(std::make_unique<Impl>(*impl_)); }
+CollisionChecker CollisionChecker::clone() const {
+  return CollisionChecker(std::make_unique<Impl>(*impl_));
+}
 
-const JointGroup& CollisionChecker::group() const { return impl_->group; }
-const World& CollisionChecker::world() const { return impl_->snapshot->world; }
-std::size_t CollisionChecker::queries() const { return impl_->queries; }
+const JointGroup& CollisionChecker::group() const {
+  return impl_->group;
+}
+const World& CollisionChecker::world() const {
+  return impl_->snapshot->world;
+}
+std::size_t CollisionChecker::queries() const {
+  return impl_->queries;
+}
 
 CollisionChecker CollisionChecker::with_group(const JointGroup& group) const {
   if (&group.robot().data() != &impl_->snapshot->robot.data()) {

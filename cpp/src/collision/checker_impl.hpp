@@ -35,17 +35,17 @@ struct CollisionChecker::Impl {
   JointGroup group;
   std::size_t queries = 0;
 
-  Poses links;                                ///< Of the last configuration.
+  Poses links;  ///< Of the last configuration.
   bool links_valid = false;
-  std::vector<Eigen::Vector3d> balls;         ///< World frame, per shape.
-  std::vector<detail::Rigid> poses;           ///< World frame, per shape; made when first asked for.
+  std::vector<Eigen::Vector3d> balls;  ///< World frame, per shape.
+  std::vector<detail::Rigid> poses;    ///< World frame, per shape; made when first asked for.
   std::vector<std::uint64_t> pose_stamp;
   std::uint64_t stamp = 0, fixed_stamp = 0;
-  std::vector<char> moves;                    ///< Per shape.
+  std::vector<char> moves;  ///< Per shape.
 
-  std::optional<bool> constant_self;          ///< Pairs whose relative pose no configuration changes.
-  std::optional<bool> fixed_scene;            ///< Links that no configuration moves, against the scene.
-  int last_pair = -1;                         ///< What collided last tends to collide again.
+  std::optional<bool> constant_self;  ///< Pairs whose relative pose no configuration changes.
+  std::optional<bool> fixed_scene;    ///< Links that no configuration moves, against the scene.
+  int last_pair = -1;                 ///< What collided last tends to collide again.
   int last_shape = -1, last_scene = -1;
 };
 

@@ -11,7 +11,7 @@ namespace {
 struct Candidate {
   double bound;
   int shape;
-  int other;        // shape, or scene shape
+  int other;  // shape, or scene shape
   bool with_scene;
 };
 
@@ -25,7 +25,7 @@ std::vector<Contact> CollisionChecker::contacts(const Eigen::VectorXd& q) {
   ++impl_->queries;
   impl_->place(q);
   const detail::Snapshot& snapshot = *impl_->snapshot;
-  std::set<std::tuple<bool, int, int>> found;   // one entry per pair of bodies, self contacts first
+  std::set<std::tuple<bool, int, int>> found;  // one entry per pair of bodies, self contacts first
   if (snapshot.options.check_self) {
     for (const auto* pairs : {&impl_->plan->constant, &impl_->plan->varying}) {
       for (const detail::ShapePair& pair : *pairs) {
@@ -45,7 +45,8 @@ std::vector<Contact> CollisionChecker::contacts(const Eigen::VectorXd& q) {
   }
   std::vector<Contact> out;
   for (const auto& [with_scene, a, b] : found) {
-    out.push_back({snapshot.bodies[a].name, with_scene ? snapshot.object_names[b] : snapshot.bodies[b].name, with_scene});
+    out.push_back(
+        {snapshot.bodies[a].name, with_scene ? snapshot.object_names[b] : snapshot.bodies[b].name, with_scene});
   }
   return out;
 }

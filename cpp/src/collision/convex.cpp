@@ -34,8 +34,9 @@ int farthest_sse2(const double* x, int count, const Eigen::Vector3d& d) {
   __m128d index = _mm_set_pd(1, 0);
   const __m128d two = _mm_set1_pd(2);
   for (int i = 0; i < count; i += 2) {
-    const __m128d value = _mm_add_pd(_mm_add_pd(_mm_mul_pd(_mm_loadu_pd(x + i), dx), _mm_mul_pd(_mm_loadu_pd(y + i), dy)),
-                                     _mm_mul_pd(_mm_loadu_pd(z + i), dz));
+    const __m128d value =
+        _mm_add_pd(_mm_add_pd(_mm_mul_pd(_mm_loadu_pd(x + i), dx), _mm_mul_pd(_mm_loadu_pd(y + i), dy)),
+                   _mm_mul_pd(_mm_loadu_pd(z + i), dz));
     const __m128d more = _mm_cmpgt_pd(value, top);
     top = _mm_max_pd(value, top);
     best = _mm_or_pd(_mm_and_pd(more, index), _mm_andnot_pd(more, best));
@@ -55,7 +56,9 @@ int farthest(const double* points, int count, const Eigen::Vector3d& d) {
   return farthest_scalar(points, count, d);
 }
 
-inline double with_sign(double magnitude, double sign) { return sign >= 0 ? magnitude : -magnitude; }
+inline double with_sign(double magnitude, double sign) {
+  return sign >= 0 ? magnitude : -magnitude;
+}
 
 SimplexPoint difference(const Convex& a, const Convex& b, const Rigid& b_in_a, const Eigen::Vector3d& v) {
   SimplexPoint p;

@@ -26,28 +26,30 @@ enum class ConvexKind { point, segment, box, cylinder, hull };
 struct Convex {
   ConvexKind kind = ConvexKind::point;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< Inner point; the core's middle except for hulls.
-  Eigen::Vector3d half = Eigen::Vector3d::Zero();    ///< Box: half lengths. Cylinder: (radius, radius, half length). Segment: z.
-  double radius = 0;                                 ///< Rounding [m]; spheres and capsules are made of it.
-  const double* points = nullptr;                    ///< Hull: x of all points, then y, then z. Owned by someone else.
-  int count = 0;                                     ///< Hull: points; a multiple of 2 unless it is 3 (a triangle).
+  Eigen::Vector3d half =
+      Eigen::Vector3d::Zero();     ///< Box: half lengths. Cylinder: (radius, radius, half length). Segment: z.
+  double radius = 0;               ///< Rounding [m]; spheres and capsules are made of it.
+  const double* points = nullptr;  ///< Hull: x of all points, then y, then z. Owned by someone else.
+  int count = 0;                   ///< Hull: points; a multiple of 2 unless it is 3 (a triangle).
 
   /// A point of the core farthest along d (d need not be a unit vector).
   Eigen::Vector3d support(const Eigen::Vector3d& d) const;
 };
 
-/// True when the bodies, b placed at `b_in_a`, come within `margin` of each other. `axis` (frame of a, from b to a) is where the
-/// search starts; on return it is the last search direction, which separates the bodies when the answer is false.
+/// True when the bodies, b placed at `b_in_a`, come within `margin` of each other. `axis` (frame of a, from b to a) is
+/// where the search starts; on return it is the last search direction, which separates the bodies when the answer is
+/// false.
 bool convex_collide(const Convex& a, const Convex& b, const Rigid& b_in_a, double margin, Eigen::Vector3d& axis);
 
 struct ConvexGap {
-  double distance = 0;                                    ///< [m]; 0 when the bodies overlap.
-  Eigen::Vector3d on_a = Eigen::Vector3d::Zero();         ///< Witness points, frame of a.
+  double distance = 0;                             ///< [m]; 0 when the bodies overlap.
+  Eigen::Vector3d on_a = Eigen::Vector3d::Zero();  ///< Witness points, frame of a.
   Eigen::Vector3d on_b = Eigen::Vector3d::Zero();
 };
 ConvexGap convex_distance(const Convex& a, const Convex& b, const Rigid& b_in_a);
 
-/// Distance by which b must at most be moved to part the overlapping bodies, with the points that lie deepest: the best of
-/// many directions, an upper bound of the true depth.
+/// Distance by which b must at most be moved to part the overlapping bodies, with the points that lie deepest: the best
+/// of many directions, an upper bound of the true depth.
 ConvexGap convex_penetration(const Convex& a, const Convex& b, const Rigid& b_in_a);
 
 /// Separating axis test of two boxes: false only if they are apart by more than `margin` along one of the 15 axes.

@@ -13,14 +13,16 @@ namespace mmgrasp {
 namespace {
 
 struct BodyPair {
-  int a, b;                 // bodies
-  std::vector<int> hits;    // one counter per worker, so that counting needs no lock
+  int a, b;               // bodies
+  std::vector<int> hits;  // one counter per worker, so that counting needs no lock
 };
 
-std::pair<int, int> ordered(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
+std::pair<int, int> ordered(int a, int b) {
+  return {std::min(a, b), std::max(a, b)};
+}
 
-// Two links touch by construction when one joint at most lets them move against each other and nothing with a shape sits
-// between them.
+// Two links touch by construction when one joint at most lets them move against each other and nothing with a shape
+// sits between them.
 bool adjacent(const Robot& robot, int link_a, int link_b) {
   const auto climb = [&](int from, int to) {
     int movable = 0;
@@ -53,7 +55,8 @@ Eigen::VectorXd random_values(const Robot& robot, Rng& rng) {
 class Sampler {
  public:
   Sampler(const detail::Snapshot& snapshot) : snapshot_(snapshot), shapes_of_(snapshot.bodies.size()) {
-    for (std::size_t s = 0; s < snapshot.shapes.size(); ++s) shapes_of_[snapshot.shapes[s].body].push_back(static_cast<int>(s));
+    for (std::size_t s = 0; s < snapshot.shapes.size(); ++s)
+      shapes_of_[snapshot.shapes[s].body].push_back(static_cast<int>(s));
   }
 
   void count(const Eigen::VectorXd& values, int worker, std::vector<BodyPair>& pairs) const {
@@ -68,7 +71,8 @@ class Sampler {
   }
 
  private:
-  bool collide(const BodyPair& pair, const std::vector<detail::Rigid>& poses, const std::vector<Eigen::Vector3d>& balls) const {
+  bool collide(const BodyPair& pair, const std::vector<detail::Rigid>& poses,
+               const std::vector<Eigen::Vector3d>& balls) const {
     for (const int i : shapes_of_[pair.a]) {
       for (const int j : shapes_of_[pair.b]) {
         const detail::Solid &a = *snapshot_.shapes[i].solid, &b = *snapshot_.shapes[j].solid;

@@ -42,8 +42,8 @@ bool tree_hits_convex(const Solid& a, const Solid& b, const PairFrame& frame, do
   return false;
 }
 
-bool leaves_collide(const Solid& a, const BoxTree::Node& na, const Solid& b, const BoxTree::Node& nb, const Rigid& b_in_a,
-                    double margin) {
+bool leaves_collide(const Solid& a, const BoxTree::Node& na, const Solid& b, const BoxTree::Node& nb,
+                    const Rigid& b_in_a, double margin) {
   for (int i = na.first; i < na.first + na.count; ++i) {
     const Convex piece = a.piece(i);
     for (int j = nb.first; j < nb.first + nb.count; ++j) {
@@ -89,7 +89,8 @@ double lowest_along(const Solid& body, const Eigen::Vector3d& normal) {
   if (body.kind == SolidKind::convex) return normal.dot(body.core.support(-normal)) - body.core.radius * normal.norm();
   double lowest = std::numeric_limits<double>::infinity();
   for (const auto& t : body.triangles) {
-    for (int c = 0; c < 3; ++c) lowest = std::min(lowest, normal[0] * t[c] + normal[1] * t[3 + c] + normal[2] * t[6 + c]);
+    for (int c = 0; c < 3; ++c)
+      lowest = std::min(lowest, normal[0] * t[c] + normal[1] * t[3 + c] + normal[2] * t[6 + c]);
   }
   const double half = body.cell_half * normal.lpNorm<1>();
   for (const Eigen::Vector3d& cell : body.cells) lowest = std::min(lowest, normal.dot(cell) - half);
@@ -130,7 +131,8 @@ bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigi
     if (!hit || (!a_is_tree && !b_is_tree)) return hit;
   }
   if ((!a_is_tree || a.has_inner) && (!b_is_tree || b.has_inner)) {
-    if (convex_collide(a_is_tree ? a.inner : a.core, b_is_tree ? b.inner : b.core, frame.b_in_a, margin, axis)) return true;
+    if (convex_collide(a_is_tree ? a.inner : a.core, b_is_tree ? b.inner : b.core, frame.b_in_a, margin, axis))
+      return true;
   }
   if (b_is_tree ? tree_hits_tree(a, b, frame, margin) : tree_hits_convex(a, b, frame, margin)) return true;
   return inside(a, b, frame.b_in_a) || inside(b, a, T_b.to(T_a));

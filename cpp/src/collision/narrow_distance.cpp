@@ -15,7 +15,9 @@ Convex bounding_box(const Solid& solid) {
   return box;
 }
 
-bool is_tree(const Solid& s) { return s.kind == SolidKind::mesh || s.kind == SolidKind::voxels; }
+bool is_tree(const Solid& s) {
+  return s.kind == SolidKind::mesh || s.kind == SolidKind::voxels;
+}
 
 // Smallest gap between pieces below `best`; both bodies as trees, a convex body being a tree of one leaf.
 class GapSearch {

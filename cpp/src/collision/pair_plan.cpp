@@ -6,8 +6,8 @@ namespace mmgrasp::detail {
 
 namespace {
 
-// Numbers links so that two share a number when no joint for which `breaks` holds lies between them. Breadth-first order:
-// parents come before their children.
+// Numbers links so that two share a number when no joint for which `breaks` holds lies between them. Breadth-first
+// order: parents come before their children.
 template <class Breaks>
 std::vector<int> group_links(const Robot& robot, const Breaks& breaks) {
   std::vector<int> number(robot.links().size());

@@ -44,7 +44,8 @@ Foot on_segment(const SimplexPoint* p, int i, int j) {
   return foot;
 }
 
-// Inside the triangle when the origin's shadow is on the inner side of every edge; else on the closest edge it is outside of.
+// Inside the triangle when the origin's shadow is on the inner side of every edge; else on the closest edge it is
+// outside of.
 Foot on_triangle(const SimplexPoint* p, int i, int j, int k) {
   const Eigen::Vector3d &a = p[i].w, &b = p[j].w, &c = p[k].w;
   const Eigen::Vector3d n = (b - a).cross(c - a);

@@ -51,8 +51,8 @@ void set_mesh_bounds(Solid& solid, const TriangleMesh& mesh) {
   set_bounds(solid, box, radius);
 }
 
-// How deep the mesh's surface dips below its hull, from above: over a triangle the depth under the nearest hull face is at
-// most the least, over faces, of the deepest corner.
+// How deep the mesh's surface dips below its hull, from above: over a triangle the depth under the nearest hull face is
+// at most the least, over faces, of the deepest corner.
 double deepest_dent(const TriangleMesh& mesh, const std::vector<Eigen::Vector4d>& planes) {
   double deepest = 0;
   for (const auto& t : mesh.triangles) {
@@ -69,8 +69,8 @@ double deepest_dent(const TriangleMesh& mesh, const std::vector<Eigen::Vector4d>
   return deepest;
 }
 
-// The hull scaled down about its middle until no point of it is less deep than the deepest dent: no surface reaches it, so it
-// is inside as a whole when its middle is.
+// The hull scaled down about its middle until no point of it is less deep than the deepest dent: no surface reaches it,
+// so it is inside as a whole when its middle is.
 bool set_inner(Solid& solid, const TriangleMesh& mesh, const TriangleMesh& hull, std::vector<double>& inner_points) {
   const Eigen::Vector3d middle = solid.core.centre;
   std::vector<Eigen::Vector4d> planes;
@@ -95,7 +95,8 @@ bool set_inner(Solid& solid, const TriangleMesh& mesh, const TriangleMesh& hull,
   return true;
 }
 
-void set_mesh(Solid& solid, const TriangleMesh& mesh, std::vector<double>& hull_points, std::vector<double>& inner_points) {
+void set_mesh(Solid& solid, const TriangleMesh& mesh, std::vector<double>& hull_points,
+              std::vector<double>& inner_points) {
   set_mesh_bounds(solid, mesh);
   solid.core.half = solid.box_half;
   if (mesh.convex) {
@@ -210,8 +211,8 @@ void set_primitive(Solid& solid, const Shape& shape, double padding) {
     core.radius = s->radius + padding;
   }
   solid.box_half = core.half + Eigen::Vector3d::Constant(core.radius);
-  solid.ball_radius = core.kind == ConvexKind::cylinder ? std::hypot(core.half[0], core.half[2])
-                                                        : core.half.norm() + core.radius;
+  solid.ball_radius =
+      core.kind == ConvexKind::cylinder ? std::hypot(core.half[0], core.half[2]) : core.half.norm() + core.radius;
 }
 
 // Signed crossings of the generic ray from the point with the triangles of the tree.

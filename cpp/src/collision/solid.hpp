@@ -12,7 +12,8 @@ namespace mmgrasp::detail {
 
 enum class SolidKind { convex, mesh, voxels, plane };
 
-/// A shape prepared for collision queries: what takes time is done once here. Immutable, shared between checkers and threads.
+/// A shape prepared for collision queries: what takes time is done once here. Immutable, shared between checkers and
+/// threads.
 struct Solid {
   SolidKind kind = SolidKind::convex;
 
@@ -22,24 +23,26 @@ struct Solid {
   /// Kind mesh: a convex body that lies wholly inside a closed, nearly convex mesh. What meets it collides for certain.
   Convex inner;
   bool has_inner = false;
-  double dent = 0;                  ///< With `has_inner`: no point of the hull is farther than this from the mesh [m].
-  double margin = 0;                ///< Meshes and voxels grown by padding: they collide at this distance already [m].
+  double dent = 0;    ///< With `has_inner`: no point of the hull is farther than this from the mesh [m].
+  double margin = 0;  ///< Meshes and voxels grown by padding: they collide at this distance already [m].
 
-  Eigen::Vector3d box_centre = Eigen::Vector3d::Zero();   ///< Bounding box in the shape's frame (margin not included).
+  Eigen::Vector3d box_centre = Eigen::Vector3d::Zero();  ///< Bounding box in the shape's frame (margin not included).
   Eigen::Vector3d box_half = Eigen::Vector3d::Zero();
-  Eigen::Vector3d ball_centre = Eigen::Vector3d::Zero();  ///< Bounding sphere (margin included); radius infinite for planes.
+  Eigen::Vector3d ball_centre =
+      Eigen::Vector3d::Zero();  ///< Bounding sphere (margin included); radius infinite for planes.
   double ball_radius = 0;
-  bool is_box = false;              ///< The bounding box is the shape.
+  bool is_box = false;  ///< The bounding box is the shape.
 
-  BoxTree tree;                     ///< Over triangles or voxels.
-  std::vector<std::array<double, 9>> triangles;   ///< In tree order: x of three corners, y, z.
-  std::vector<Eigen::Vector3d> cells;             ///< Voxel centres in tree order.
+  BoxTree tree;                                  ///< Over triangles or voxels.
+  std::vector<std::array<double, 9>> triangles;  ///< In tree order: x of three corners, y, z.
+  std::vector<Eigen::Vector3d> cells;            ///< Voxel centres in tree order.
   double cell_half = 0;
-  bool closed = false;              ///< Mesh with an inside.
-  /// One point of each connected part: with no contact of surfaces, the part is inside a solid if and only if its point is.
+  bool closed = false;  ///< Mesh with an inside.
+  /// One point of each connected part: with no contact of surfaces, the part is inside a solid if and only if its point
+  /// is.
   std::vector<Eigen::Vector3d> part_points;
 
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();      ///< Plane: solid where normal . x <= offset.
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< Plane: solid where normal . x <= offset.
   double offset = 0;
 
   /// Point inside a closed mesh (winding number along a generic ray, by the tree).
@@ -54,8 +57,8 @@ struct Solid {
   std::vector<double> hull_points_, inner_points_;
 };
 
-/// `padding` grows the shape: primitives exactly (a box gets 2 x padding longer per axis), planes by their offset, meshes and
-/// voxels through `margin`.
+/// `padding` grows the shape: primitives exactly (a box gets 2 x padding longer per axis), planes by their offset,
+/// meshes and voxels through `margin`.
 std::shared_ptr<const Solid> make_solid(const Shape& shape, double padding = 0);
 
 }  // namespace mmgrasp::detail

@@ -10,7 +10,7 @@ namespace {
 using Key = std::tuple<const void*, double, double>;
 
 struct Entry {
-  std::weak_ptr<const void> source;   // tells a new mesh at an old address from the one the solid was made of
+  std::weak_ptr<const void> source;  // tells a new mesh at an old address from the one the solid was made of
   std::shared_ptr<const Solid> solid;
 };
 
@@ -28,7 +28,8 @@ std::shared_ptr<const Solid> look_up(const Key& key, const std::shared_ptr<const
 
 void keep(const Key& key, const std::shared_ptr<const void>& source, const std::shared_ptr<const Solid>& solid) {
   const std::lock_guard<std::mutex> lock(cache_mutex);
-  for (auto it = cache().begin(); it != cache().end();) it = it->second.source.expired() ? cache().erase(it) : std::next(it);
+  for (auto it = cache().begin(); it != cache().end();)
+    it = it->second.source.expired() ? cache().erase(it) : std::next(it);
   cache()[key] = {source, solid};
 }
 

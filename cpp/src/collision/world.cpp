@@ -6,7 +6,9 @@ namespace mmgrasp {
 
 namespace {
 
-void check_pose(const Pose& T, const std::string& field) { checked_pose(T.matrix(), field); }
+void check_pose(const Pose& T, const std::string& field) {
+  checked_pose(T.matrix(), field);
+}
 
 void check_shapes(const std::vector<LinkShape>& shapes, const std::string& name) {
   require(!shapes.empty(), "object '" + name + "' shapes", "0", "must hold at least one");
@@ -38,7 +40,8 @@ void World::add(const std::string& name, WorldObject object) {
 
 void World::move(const std::string& name, const Pose& T_world_object) {
   const auto it = objects_.find(name);
-  require(it != objects_.end(), "object name", name, attached_.count(name) != 0 ? "is held; detach it first" : "is not in the world");
+  require(it != objects_.end(), "object name", name,
+          attached_.count(name) != 0 ? "is held; detach it first" : "is not in the world");
   check_pose(T_world_object, "object '" + name + "' pose");
   it->second.T_world_object = T_world_object;
 }
@@ -50,7 +53,8 @@ void World::remove(const std::string& name) {
 void World::attach(const std::string& name, const std::string& link, const Pose& T_link_object,
                    std::set<std::string> touch_links) {
   const auto it = objects_.find(name);
-  require(it != objects_.end(), "object name", name, attached_.count(name) != 0 ? "is held already" : "is not in the world");
+  require(it != objects_.end(), "object name", name,
+          attached_.count(name) != 0 ? "is held already" : "is not in the world");
   require(!link.empty(), "link", "\"\"", "must name the robot link that holds '" + name + "'");
   check_pose(T_link_object, "object '" + name + "' pose on link '" + link + "'");
   AttachedObject held;
@@ -59,7 +63,8 @@ void World::attach(const std::string& name, const std::string& link, const Pose&
   held.T_link_object = T_link_object;
   held.touch_links = std::move(touch_links);
   for (const LinkShape& shape : held.shapes) {
-    require(!std::holds_alternative<Plane>(shape.shape), "object '" + name + "'", "plane", "cannot be held: it has no end");
+    require(!std::holds_alternative<Plane>(shape.shape), "object '" + name + "'", "plane",
+            "cannot be held: it has no end");
   }
   attached_.emplace(name, std::move(held));
   objects_.erase(it);
@@ -67,7 +72,8 @@ void World::attach(const std::string& name, const std::string& link, const Pose&
 
 void World::detach(const std::string& name, const Pose& T_world_object) {
   const auto it = attached_.find(name);
-  require(it != attached_.end(), "object name", name, objects_.count(name) != 0 ? "is not held" : "is not in the world");
+  require(it != attached_.end(), "object name", name,
+          objects_.count(name) != 0 ? "is not held" : "is not in the world");
   check_pose(T_world_object, "object '" + name + "' pose");
   WorldObject object;
   object.shapes = it->second.shapes;
@@ -76,6 +82,8 @@ void World::detach(const std::string& name, const Pose& T_world_object) {
   attached_.erase(it);
 }
 
-bool World::has(const std::string& name) const { return objects_.count(name) + attached_.count(name) > 0; }
+bool World::has(const std::string& name) const {
+  return objects_.count(name) + attached_.count(name) > 0;
+}
 
 }  // namespace mmgrasp

@@ -15,7 +15,7 @@ struct Face {
   std::array<int, 3> neighbour{};  // across the side from corner k to corner k + 1
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   double offset = 0;
-  std::vector<int> outside;        // points in front of it that no other face has taken
+  std::vector<int> outside;  // points in front of it that no other face has taken
   bool alive = true;
 };
 
@@ -120,7 +120,9 @@ class HullBuilder {
     }
   }
 
-  struct HorizonEdge { int from, to, outer; };
+  struct HorizonEdge {
+    int from, to, outer;
+  };
 
   bool add_point(int start) {
     const std::vector<int>& outside = faces_[start].outside;

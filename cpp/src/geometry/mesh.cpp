@@ -66,7 +66,9 @@ void drop_unused_vertices(std::vector<Eigen::Vector3d>& vertices, Triangles& tri
   vertices = std::move(kept);
 }
 
-bool has_equal_corners(const std::array<int, 3>& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+bool has_equal_corners(const std::array<int, 3>& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
 
 bool has_no_area(const std::vector<Eigen::Vector3d>& v, const std::array<int, 3>& t) {
   const Eigen::Vector3d a = v[t[1]] - v[t[0]], b = v[t[2]] - v[t[0]], c = v[t[2]] - v[t[1]];
@@ -88,11 +90,12 @@ std::shared_ptr<const TriangleMesh> clean_mesh(detail::RawMesh raw, const std::s
   found.vertices_merged = merge_vertices(mesh->vertices, mesh->triangles);
   Triangles& triangles = mesh->triangles;
   triangles.erase(std::remove_if(triangles.begin(), triangles.end(), has_equal_corners), triangles.end());
-  // Slivers without area may be what closes the mesh over a T-shaped seam, so they go only after the question is answered.
+  // Slivers without area may be what closes the mesh over a T-shaped seam, so they go only after the question is
+  // answered.
   mesh->closed = detail::orient_closed(mesh->vertices, triangles);
-  triangles.erase(std::remove_if(triangles.begin(), triangles.end(),
-                                 [&](const auto& t) { return has_no_area(mesh->vertices, t); }),
-                  triangles.end());
+  triangles.erase(
+      std::remove_if(triangles.begin(), triangles.end(), [&](const auto& t) { return has_no_area(mesh->vertices, t); }),
+      triangles.end());
   if (!mesh->closed) mesh->closed = detail::orient_closed(mesh->vertices, triangles);
   drop_unused_vertices(mesh->vertices, triangles);
   // Two coincident sheets are closed edge by edge but bound nothing.
@@ -122,7 +125,8 @@ std::string read_file(const std::string& path) {
 
 detail::RawMesh read_mesh(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   const std::string content = read_file(path);
   if (extension == ".stl") return detail::read_stl(path, content);
   if (extension == ".obj") return detail::read_obj(path, content);
@@ -133,9 +137,11 @@ detail::RawMesh read_mesh(const std::string& path) {
 
 }  // namespace
 
-std::shared_ptr<const TriangleMesh> load_mesh(const std::string& path, const Eigen::Vector3d& scale, MeshReport* report) {
+std::shared_ptr<const TriangleMesh> load_mesh(const std::string& path, const Eigen::Vector3d& scale,
+                                              MeshReport* report) {
   for (int k = 0; k < 3; ++k) {
-    require(std::isfinite(scale[k]) && scale[k] != 0, "mesh scale of '" + path + "'", scale[k], "must be finite and not zero");
+    require(std::isfinite(scale[k]) && scale[k] != 0, "mesh scale of '" + path + "'", scale[k],
+            "must be finite and not zero");
   }
   detail::RawMesh raw = read_mesh(path);
   if (raw.triangles.empty()) detail::mesh_error(path, "holds no triangle");
@@ -162,8 +168,9 @@ std::shared_ptr<const TriangleMesh> make_mesh(std::vector<Eigen::Vector3d> verti
   }
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     for (const int corner : triangles[i]) {
-      require(corner >= 0 && corner < static_cast<int>(vertices.size()), name + ": corner of triangle " + std::to_string(i),
-              std::to_string(corner), "must be in [0, " + std::to_string(vertices.size()) + ")");
+      require(corner >= 0 && corner < static_cast<int>(vertices.size()),
+              name + ": corner of triangle " + std::to_string(i), std::to_string(corner),
+              "must be in [0, " + std::to_string(vertices.size()) + ")");
     }
   }
   auto mesh = clean_mesh({std::move(vertices), std::move(triangles)}, source, report);
@@ -186,7 +193,8 @@ bool mesh_contains(const TriangleMesh& mesh, const Eigen::Vector3d& point) {
   if (!mesh.closed) return false;
   int winding = 0;
   for (const auto& t : mesh.triangles) {
-    winding += detail::ray_crossing(mesh.vertices[t[0]] - point, mesh.vertices[t[1]] - point, mesh.vertices[t[2]] - point);
+    winding +=
+        detail::ray_crossing(mesh.vertices[t[0]] - point, mesh.vertices[t[1]] - point, mesh.vertices[t[2]] - point);
   }
   return winding > 0;
 }

@@ -10,9 +10,9 @@ namespace mmgrasp::detail {
 namespace {
 
 struct HalfEdge {
-  int low, high;      // the edge's vertices, low < high
-  int triangle, side; // side k goes from corner k to corner k + 1
-  bool forward;       // runs from low to high
+  int low, high;       // the edge's vertices, low < high
+  int triangle, side;  // side k goes from corner k to corner k + 1
+  bool forward;        // runs from low to high
 };
 
 std::vector<HalfEdge> sorted_half_edges(const std::vector<std::array<int, 3>>& triangles) {
@@ -36,8 +36,8 @@ struct Neighbour {
 };
 using Neighbours = std::vector<std::array<Neighbour, 3>>;
 
-// Joins the half-edges of one edge in pairs. Two may run alike (one triangle is turned over); more than two, where solids
-// touch along an edge, must balance: each pairs with one that runs against it.
+// Joins the half-edges of one edge in pairs. Two may run alike (one triangle is turned over); more than two, where
+// solids touch along an edge, must balance: each pairs with one that runs against it.
 bool pair_up(const HalfEdge* begin, const HalfEdge* end, Neighbours& neighbours) {
   std::vector<const HalfEdge*> forward, backward;
   for (const HalfEdge* e = begin; e != end; ++e) (e->forward ? forward : backward).push_back(e);
@@ -126,7 +126,8 @@ void orient_outwards(const std::vector<Eigen::Vector3d>& vertices, std::vector<s
       for (std::size_t t = 0; t < triangles.size(); ++t) {
         if (shells.shell_of_triangle[t] != o) continue;
         const Eigen::Vector3d& p = vertices[first[s]];
-        winding += ray_crossing(vertices[triangles[t][0]] - p, vertices[triangles[t][1]] - p, vertices[triangles[t][2]] - p);
+        winding +=
+            ray_crossing(vertices[triangles[t][0]] - p, vertices[triangles[t][1]] - p, vertices[triangles[t][2]] - p);
       }
       nested = winding != 0;
     }
@@ -161,11 +162,15 @@ bool locally_convex(const TriangleMesh& mesh, double tolerance) {
 
 }  // namespace
 
-Eigen::Vector3d ray_direction() { return {0.21132486540518713, 0.35682208977308993, 1.0}; }
+Eigen::Vector3d ray_direction() {
+  return {0.21132486540518713, 0.35682208977308993, 1.0};
+}
 
 int ray_crossing(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const Eigen::Vector3d d = ray_direction();
-  const auto shadow = [&](const Eigen::Vector3d& p) -> Eigen::Vector2d { return {p.x() - d.x() * p.z(), p.y() - d.y() * p.z()}; };
+  const auto shadow = [&](const Eigen::Vector3d& p) -> Eigen::Vector2d {
+    return {p.x() - d.x() * p.z(), p.y() - d.y() * p.z()};
+  };
   const Eigen::Vector2d sa = shadow(a), sb = shadow(b), sc = shadow(c);
   const double ab = edge_side(sa, sb), bc = edge_side(sb, sc), ca = edge_side(sc, sa);
   // A side of exactly zero needs a decision that the neighbour, who sees the edge reversed, takes the other way round.

@@ -10,8 +10,8 @@ struct Shells {
   int count = 0;
 };
 
-/// Orients the triangles of a mesh without boundary consistently and outwards (cavities inwards). False, with the triangles
-/// untouched, when an edge is not shared by pairs of triangles or the surface is one-sided.
+/// Orients the triangles of a mesh without boundary consistently and outwards (cavities inwards). False, with the
+/// triangles untouched, when an edge is not shared by pairs of triangles or the surface is one-sided.
 bool orient_closed(const std::vector<Eigen::Vector3d>& vertices, std::vector<std::array<int, 3>>& triangles);
 
 /// Triangles grouped by shared edges; works for open meshes too.
@@ -21,11 +21,13 @@ Shells find_shells(const std::vector<std::array<int, 3>>& triangles);
 bool is_convex(const TriangleMesh& mesh);
 
 /// Twice the signed area of the shadow triangle (a, b) with the origin; exactly antisymmetric in a and b.
-inline double edge_side(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+inline double edge_side(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
-/// Signed count of how often triangle (a, b, c) is crossed by the ray from the origin along the generic direction: +1 when
-/// the ray leaves through its front, -1 when it enters, 0 when it misses. Neighbours decide alike on a shared edge, so
-/// that the sum over a closed mesh is its winding number around the origin.
+/// Signed count of how often triangle (a, b, c) is crossed by the ray from the origin along the generic direction: +1
+/// when the ray leaves through its front, -1 when it enters, 0 when it misses. Neighbours decide alike on a shared
+/// edge, so that the sum over a closed mesh is its winding number around the origin.
 int ray_crossing(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
 
 /// Direction of that ray, not normalised: z is 1.

@@ -6,7 +6,9 @@ namespace mmgrasp::detail {
 
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f'; }
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
+}
 
 // std::from_chars knows no leading plus sign, which some writers print.
 std::string_view without_plus(std::string_view word) {
@@ -36,7 +38,9 @@ bool parse_number(std::string_view word, double& value) {
   return error == std::errc() && end == word.data() + word.size();
 }
 
-bool parse_integer(std::string_view word, long& value) { return parse_whole(word, value); }
+bool parse_integer(std::string_view word, long& value) {
+  return parse_whole(word, value);
+}
 
 std::string_view WordReader::next() {
   while (position_ < text_.size() && is_blank(text_[position_])) {

@@ -48,7 +48,8 @@ RawMesh read_dae(const std::string& path, std::string_view content) {
   // URDF tools show DAE coordinates as they stand, whatever <up_axis> says; the unit scales the root node.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* scene = importer.ReadFileFromMemory(content.data(), content.size(), aiProcess_Triangulate, "dae");
-  if (scene == nullptr || scene->mRootNode == nullptr) mesh_error(path, std::string("no valid DAE: ") + importer.GetErrorString());
+  if (scene == nullptr || scene->mRootNode == nullptr)
+    mesh_error(path, std::string("no valid DAE: ") + importer.GetErrorString());
   RawMesh mesh;
   add_node(*scene, *scene->mRootNode, Eigen::Matrix4d::Identity(), mesh);
   return mesh;

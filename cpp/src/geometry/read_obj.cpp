@@ -7,10 +7,11 @@ namespace mmgrasp::detail {
 namespace {
 
 // Statements that carry no triangles. A word outside this list means that the file is no OBJ or is damaged.
-constexpr const char* kIgnored[] = {"vt",    "vn",    "vp",   "p",    "l",    "g",    "o",    "s",     "mg",       "usemtl",
-                                    "mtllib", "usemap", "maplib", "cstype", "deg", "bmat", "step", "curv", "curv2", "surf",
-                                    "parm",  "trim",  "hole", "scrv", "sp",   "end",  "con",  "bevel", "c_interp", "d_interp",
-                                    "lod",   "shadow_obj", "trace_obj", "ctech", "stech", "call", "csh"};
+constexpr const char* kIgnored[] = {
+    "vt",     "vn",         "vp",        "p",      "l",     "g",    "o",    "s",     "mg",       "usemtl",
+    "mtllib", "usemap",     "maplib",    "cstype", "deg",   "bmat", "step", "curv",  "curv2",    "surf",
+    "parm",   "trim",       "hole",      "scrv",   "sp",    "end",  "con",  "bevel", "c_interp", "d_interp",
+    "lod",    "shadow_obj", "trace_obj", "ctech",  "stech", "call", "csh"};
 
 std::vector<std::string_view> split(std::string_view line) {
   std::vector<std::string_view> words;
@@ -86,7 +87,8 @@ class ObjReader {
       if (words[i][0] == '#') break;
       const std::string_view index = words[i].substr(0, words[i].find('/'));
       long value = 0;
-      if (!parse_integer(index, value) || value == 0) fail("'" + std::string(words[i].substr(0, 40)) + "' is no corner");
+      if (!parse_integer(index, value) || value == 0)
+        fail("'" + std::string(words[i].substr(0, 40)) + "' is no corner");
       // Negative indices count back from the latest vertex.
       corners.push_back(static_cast<int>(value > 0 ? value - 1 : static_cast<long>(mesh_.vertices.size()) + value));
       if (corners.back() < 0) fail("corner " + std::to_string(value) + " points before the first vertex");
@@ -114,6 +116,8 @@ class ObjReader {
 
 }  // namespace
 
-RawMesh read_obj(const std::string& path, std::string_view content) { return ObjReader(path).read(content); }
+RawMesh read_obj(const std::string& path, std::string_view content) {
+  return ObjReader(path).read(content);
+}
 
 }  // namespace mmgrasp::detail

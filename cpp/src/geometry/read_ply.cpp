@@ -25,8 +25,9 @@ struct Element {
 };
 
 bool parse_scalar(std::string_view word, Scalar& type) {
-  constexpr const char* names[][2] = {{"char", "int8"},   {"uchar", "uint8"}, {"short", "int16"},   {"ushort", "uint16"},
-                                      {"int", "int32"},   {"uint", "uint32"}, {"float", "float32"}, {"double", "float64"}};
+  constexpr const char* names[][2] = {{"char", "int8"},     {"uchar", "uint8"},   {"short", "int16"},
+                                      {"ushort", "uint16"}, {"int", "int32"},     {"uint", "uint32"},
+                                      {"float", "float32"}, {"double", "float64"}};
   for (int i = 0; i < 8; ++i) {
     if (word == names[i][0] || word == names[i][1]) {
       type = static_cast<Scalar>(i);
@@ -48,7 +49,8 @@ double decode(const char* bytes, bool swap) {
 
 class PlyReader {
  public:
-  PlyReader(const std::string& path, std::string_view content) : path_(path), content_(content), words_(path, content) {}
+  PlyReader(const std::string& path, std::string_view content)
+      : path_(path), content_(content), words_(path, content) {}
 
   RawMesh read() {
     read_header();
@@ -59,8 +61,8 @@ class PlyReader {
     for (const auto& triangle : mesh_.triangles) {
       for (const int corner : triangle) {
         if (corner < 0 || corner >= static_cast<int>(mesh_.vertices.size())) {
-          mesh_error(path_, "a face names vertex " + std::to_string(corner) + " of " +
-                                std::to_string(mesh_.vertices.size()));
+          mesh_error(path_,
+                     "a face names vertex " + std::to_string(corner) + " of " + std::to_string(mesh_.vertices.size()));
         }
       }
     }
@@ -97,10 +99,14 @@ class PlyReader {
 
   void read_format() {
     const std::string_view word = words_.next();
-    if (word == "ascii") encoding_ = Encoding::ascii;
-    else if (word == "binary_little_endian") encoding_ = Encoding::little;
-    else if (word == "binary_big_endian") encoding_ = Encoding::big;
-    else words_.fail("format '" + std::string(word.substr(0, 40)) + "' is unknown");
+    if (word == "ascii")
+      encoding_ = Encoding::ascii;
+    else if (word == "binary_little_endian")
+      encoding_ = Encoding::little;
+    else if (word == "binary_big_endian")
+      encoding_ = Encoding::big;
+    else
+      words_.fail("format '" + std::string(word.substr(0, 40)) + "' is unknown");
     words_.skip_line();
   }
 
@@ -113,7 +119,8 @@ class PlyReader {
       if (!parse_scalar(words_.next(), property.count_type)) words_.fail("unknown list count type");
       word = words_.next();
     }
-    if (!parse_scalar(word, property.type)) words_.fail("property type '" + std::string(word.substr(0, 40)) + "' is unknown");
+    if (!parse_scalar(word, property.type))
+      words_.fail("property type '" + std::string(word.substr(0, 40)) + "' is unknown");
     property.name = std::string(words_.next());
     elements_.back().properties.push_back(property);
   }
@@ -127,14 +134,22 @@ class PlyReader {
     at_ += size;
     const bool swap = encoding_ == Encoding::big;
     switch (type) {
-      case Scalar::int8: return decode<std::int8_t>(bytes, swap);
-      case Scalar::uint8: return decode<std::uint8_t>(bytes, swap);
-      case Scalar::int16: return decode<std::int16_t>(bytes, swap);
-      case Scalar::uint16: return decode<std::uint16_t>(bytes, swap);
-      case Scalar::int32: return decode<std::int32_t>(bytes, swap);
-      case Scalar::uint32: return decode<std::uint32_t>(bytes, swap);
-      case Scalar::float32: return decode<float>(bytes, swap);
-      case Scalar::float64: return decode<double>(bytes, swap);
+      case Scalar::int8:
+        return decode<std::int8_t>(bytes, swap);
+      case Scalar::uint8:
+        return decode<std::uint8_t>(bytes, swap);
+      case Scalar::int16:
+        return decode<std::int16_t>(bytes, swap);
+      case Scalar::uint16:
+        return decode<std::uint16_t>(bytes, swap);
+      case Scalar::int32:
+        return decode<std::int32_t>(bytes, swap);
+      case Scalar::uint32:
+        return decode<std::uint32_t>(bytes, swap);
+      case Scalar::float32:
+        return decode<float>(bytes, swap);
+      case Scalar::float64:
+        return decode<double>(bytes, swap);
     }
     return 0;
   }
@@ -177,6 +192,8 @@ class PlyReader {
 
 }  // namespace
 
-RawMesh read_ply(const std::string& path, std::string_view content) { return PlyReader(path, content).read(); }
+RawMesh read_ply(const std::string& path, std::string_view content) {
+  return PlyReader(path, content).read();
+}
 
 }  // namespace mmgrasp::detail

@@ -7,7 +7,7 @@ namespace mmgrasp::detail {
 
 namespace {
 
-constexpr std::size_t kHeaderBytes = 84;   // 80 of free text, 4 of triangle count
+constexpr std::size_t kHeaderBytes = 84;  // 80 of free text, 4 of triangle count
 constexpr std::size_t kTriangleBytes = 50;
 
 RawMesh read_binary_stl(const std::string& path, std::string_view content) {

@@ -95,7 +95,8 @@ std::shared_ptr<const TriangleMesh> voxel_mesh(const Voxels& voxels) {
         const Eigen::Vector3d n = sign * Eigen::Vector3d::Unit(axis), u = Eigen::Vector3d::Unit((axis + 1) % 3);
         const Eigen::Vector3d v = n.cross(u);
         const int first = static_cast<int>(vertices.size());
-        for (const auto& corner : {Eigen::Vector2d(-1, -1), Eigen::Vector2d(1, -1), Eigen::Vector2d(1, 1), Eigen::Vector2d(-1, 1)}) {
+        for (const auto& corner :
+             {Eigen::Vector2d(-1, -1), Eigen::Vector2d(1, -1), Eigen::Vector2d(1, 1), Eigen::Vector2d(-1, 1)}) {
           vertices.push_back(centre + 0.5 * h * (n + corner.x() * u + corner.y() * v));
         }
         add_quad(triangles, first, first + 1, first + 2, first + 3);

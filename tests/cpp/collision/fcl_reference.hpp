@@ -32,7 +32,8 @@ struct Body {
 inline Geometry mesh_geometry(const mmgrasp::TriangleMesh& mesh) {
   auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
   model->beginModel();
-  for (const auto& t : mesh.triangles) model->addTriangle(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+  for (const auto& t : mesh.triangles)
+    model->addTriangle(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
   model->endModel();
   return model;
 }
@@ -43,9 +44,12 @@ inline Body make_body(const mmgrasp::Shape& shape) {
   body.probes = {Eigen::Vector3d::Zero()};
   if (const auto* s = std::get_if<Box>(&shape)) body.parts.push_back({std::make_shared<fcl::Boxd>(s->size)});
   if (const auto* s = std::get_if<Sphere>(&shape)) body.parts.push_back({std::make_shared<fcl::Sphered>(s->radius)});
-  if (const auto* s = std::get_if<Cylinder>(&shape)) body.parts.push_back({std::make_shared<fcl::Cylinderd>(s->radius, s->length)});
-  if (const auto* s = std::get_if<Capsule>(&shape)) body.parts.push_back({std::make_shared<fcl::Capsuled>(s->radius, s->length)});
-  if (const auto* s = std::get_if<Plane>(&shape)) body.parts.push_back({std::make_shared<fcl::Halfspaced>(s->normal, s->offset)});
+  if (const auto* s = std::get_if<Cylinder>(&shape))
+    body.parts.push_back({std::make_shared<fcl::Cylinderd>(s->radius, s->length)});
+  if (const auto* s = std::get_if<Capsule>(&shape))
+    body.parts.push_back({std::make_shared<fcl::Capsuled>(s->radius, s->length)});
+  if (const auto* s = std::get_if<Plane>(&shape))
+    body.parts.push_back({std::make_shared<fcl::Halfspaced>(s->normal, s->offset)});
   if (const auto* s = std::get_if<MeshShape>(&shape)) {
     body.parts.push_back({mesh_geometry(*s->mesh)});
     // Every vertex is a probe: the reference need not know which triangles hang together.

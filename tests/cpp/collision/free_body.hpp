@@ -4,13 +4,15 @@
 
 #include "mmgrasp/robot/joint_group.hpp"
 
-/// A robot that is one body flying freely: q = (x, y, z, yaw, pitch, roll), so that T_world_body is known in closed form.
+/// A robot that is one body flying freely: q = (x, y, z, yaw, pitch, roll), so that T_world_body is known in closed
+/// form.
 namespace free_body {
 
-inline std::string joint(const std::string& name, const std::string& type, const std::string& axis, const std::string& parent,
-                         const std::string& child) {
-  return "<link name='" + child + "'/><joint name='" + name + "' type='" + type + "'><parent link='" + parent + "'/><child link='" +
-         child + "'/><axis xyz='" + axis + "'/><limit lower='-10' upper='10' velocity='1' effort='1'/></joint>";
+inline std::string joint(const std::string& name, const std::string& type, const std::string& axis,
+                         const std::string& parent, const std::string& child) {
+  return "<link name='" + child + "'/><joint name='" + name + "' type='" + type + "'><parent link='" + parent +
+         "'/><child link='" + child + "'/><axis xyz='" + axis +
+         "'/><limit lower='-10' upper='10' velocity='1' effort='1'/></joint>";
 }
 
 inline mmgrasp::Robot robot(const std::vector<mmgrasp::LinkShape>& shapes) {
@@ -36,7 +38,8 @@ inline mmgrasp::Pose pose(const Eigen::VectorXd& q) {
   mmgrasp::Pose T = mmgrasp::Pose::Identity();
   T.translation() = q.head<3>();
   T.linear() = (Eigen::AngleAxisd(q[3], Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(q[4], Eigen::Vector3d::UnitY()) *
-                Eigen::AngleAxisd(q[5], Eigen::Vector3d::UnitX())).toRotationMatrix();
+                Eigen::AngleAxisd(q[5], Eigen::Vector3d::UnitX()))
+                   .toRotationMatrix();
   return T;
 }
 

@@ -20,15 +20,30 @@ Eigen::VectorXd at(double x, double y, double z, double yaw = 0) {
   return q;
 }
 
-Pose shifted(double x, double y, double z) { return pose_from_xyz_rpy({x, y, z}, {0, 0, 0}); }
+Pose shifted(double x, double y, double z) {
+  return pose_from_xyz_rpy({x, y, z}, {0, 0, 0});
+}
 
 // A box mesh with one vertex pushed in: closed, concave, so that it is no convex body.
 MeshShape dented_box(const Eigen::Vector3d& size) {
   std::vector<Eigen::Vector3d> v;
-  for (int i = 0; i < 8; ++i) v.push_back(0.5 * size.cwiseProduct(Eigen::Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
+  for (int i = 0; i < 8; ++i)
+    v.push_back(0.5 * size.cwiseProduct(Eigen::Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
   v.push_back({0, 0, 0.3 * size.z()});
-  return {make_mesh(v, {{0, 2, 3}, {0, 3, 1}, {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5},
-                        {4, 5, 8}, {5, 7, 8}, {7, 6, 8}, {6, 4, 8}})};
+  return {make_mesh(v, {{0, 2, 3},
+                        {0, 3, 1},
+                        {0, 1, 5},
+                        {0, 5, 4},
+                        {2, 6, 7},
+                        {2, 7, 3},
+                        {0, 4, 6},
+                        {0, 6, 2},
+                        {1, 3, 7},
+                        {1, 7, 5},
+                        {4, 5, 8},
+                        {5, 7, 8},
+                        {7, 6, 8},
+                        {6, 4, 8}})};
 }
 
 MeshShape opened(const MeshShape& shape) {
@@ -37,7 +52,8 @@ MeshShape opened(const MeshShape& shape) {
   return {make_mesh(shape.mesh->vertices, triangles)};
 }
 
-CollisionChecker make_checker(const Shape& body, const Shape& object, const Pose& T, const CheckerOptions& options = {}) {
+CollisionChecker make_checker(const Shape& body, const Shape& object, const Pose& T,
+                              const CheckerOptions& options = {}) {
   World world;
   world.add("object", object, T);
   return CollisionChecker(free_body::group({free_body::link_shape(body)}), world, options);
@@ -71,7 +87,8 @@ TEST(Checker, ClosedMeshesAreSolids) {
   const MeshShape big = dented_box({2, 2, 2}), small = dented_box({0.1, 0.1, 0.1});
   ASSERT_TRUE(big.mesh->closed);
   ASSERT_FALSE(big.mesh->convex);
-  const Shape inner[] = {Box{{0.1, 0.1, 0.1}}, Sphere{0.1}, Cylinder{0.1, 0.1}, Capsule{0.1, 0.1}, small, opened(small)};
+  const Shape inner[] = {Box{{0.1, 0.1, 0.1}}, Sphere{0.1}, Cylinder{0.1, 0.1},
+                         Capsule{0.1, 0.1},    small,       opened(small)};
   for (const Shape& body : inner) {
     CollisionChecker inside = make_checker(body, big, shifted(0, 0, 0));
     EXPECT_EQ(inside.rejection(at(0.3, 0.2, -0.5)), Rejection::scene) << shape_kind(body);
@@ -85,7 +102,8 @@ TEST(Checker, ClosedMeshesAreSolids) {
     EXPECT_EQ(open.rejection(at(0.3, 0.2, -0.5)), Rejection::none) << shape_kind(body);
   }
   // Convex bodies hold each other without any of it.
-  EXPECT_FALSE(make_checker(Box{{0.1, 0.1, 0.1}}, MeshShape{shape_mesh(Box{{2, 2, 2}})}, shifted(0, 0, 0)).is_free(at(0, 0, 0)));
+  EXPECT_FALSE(
+      make_checker(Box{{0.1, 0.1, 0.1}}, MeshShape{shape_mesh(Box{{2, 2, 2}})}, shifted(0, 0, 0)).is_free(at(0, 0, 0)));
 }
 
 TEST(Checker, BoxesTouchWhereTheirFacesMeet) {
@@ -108,7 +126,8 @@ TEST(Checker, BoxesTouchWhereTheirFacesMeet) {
 
 TEST(Checker, FclAgreesJustBeforeAndAfterContact) {
   // Bisects to where the answer changes and asks FCL on both sides of it, well outside the band.
-  const Shape shapes[] = {Box{{0.3, 0.2, 0.5}}, Sphere{0.2}, Cylinder{0.15, 0.4}, Capsule{0.1, 0.4}, dented_box({0.4, 0.3, 0.5})};
+  const Shape shapes[] = {Box{{0.3, 0.2, 0.5}}, Sphere{0.2}, Cylinder{0.15, 0.4}, Capsule{0.1, 0.4},
+                          dented_box({0.4, 0.3, 0.5})};
   Rng rng(3);
   int judged = 0;
   for (const Shape& body : shapes) {
@@ -143,7 +162,8 @@ TEST(Checker, FclAgreesJustBeforeAndAfterContact) {
 TEST(Checker, PaddingGrowsTheRobotOnly) {
   CheckerOptions options;
   options.padding = 0.1;
-  const Shape bodies[] = {Box{{1, 1, 1}}, Cylinder{0.5, 1}, MeshShape{shape_mesh(Box{{1, 1, 1}})}, dented_box({1, 1, 1})};
+  const Shape bodies[] = {Box{{1, 1, 1}}, Cylinder{0.5, 1}, MeshShape{shape_mesh(Box{{1, 1, 1}})},
+                          dented_box({1, 1, 1})};
   for (const Shape& body : bodies) {
     CollisionChecker checker = make_checker(body, Box{{1, 1, 1}}, shifted(0, 0, 0), options);
     EXPECT_TRUE(checker.is_free(at(0, 0, -1.1 - 1e-6))) << shape_kind(body);
@@ -225,8 +245,8 @@ TEST(Checker, OpeningTheFingersKeepsTheChecker) {
   CollisionChecker open = ref.with_group(arm.with_reference(robot.values({{"l", 0.05}})));
   Eigen::VectorXd q(2);
   q << 0, 0;
-  EXPECT_EQ(closed.rejection(q), Rejection::none);   // finger at y = 0.04
-  EXPECT_EQ(open.rejection(q), Rejection::scene);    // finger at y = 0.09
+  EXPECT_EQ(closed.rejection(q), Rejection::none);  // finger at y = 0.04
+  EXPECT_EQ(open.rejection(q), Rejection::scene);   // finger at y = 0.09
   const Robot other = Robot::from_strings(kGripperUrdf, kGripperSrdf);
   EXPECT_THROW(closed.with_group(other.group("arm")), InvalidInput);
 }

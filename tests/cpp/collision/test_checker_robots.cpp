@@ -18,7 +18,8 @@ namespace {
 
 Robot load_panda() {
   RobotOptions options;
-  options.package_dirs["moveit_resources_panda_description"] = shared("robots/panda/moveit_resources_panda_description");
+  options.package_dirs["moveit_resources_panda_description"] =
+      shared("robots/panda/moveit_resources_panda_description");
   return Robot::load(shared("robots/panda/expanded/panda.urdf"),
                      shared("robots/panda/moveit_resources_panda_moveit_config/config/panda.srdf"), options);
 }
@@ -81,7 +82,8 @@ std::vector<Placed> reference_scene(const World& world) {
 // Links joined by fixed joints only.
 bool rigid_pair(const Robot& robot, int a, int b) {
   const auto top = [&](int link) {
-    while (robot.links()[link].parent_joint >= 0 && robot.joints()[robot.links()[link].parent_joint].type == JointType::fixed) {
+    while (robot.links()[link].parent_joint >= 0 &&
+           robot.joints()[robot.links()[link].parent_joint].type == JointType::fixed) {
       link = robot.joints()[robot.links()[link].parent_joint].parent_link;
     }
     return link;
@@ -145,8 +147,8 @@ void expect_agreement(const JointGroup& group, int worlds, int count, double rea
   for (int i = 0; i < worlds && !::testing::Test::HasFatalFailure(); ++i) {
     compare(group, random_world(rng, reach, height), count, rng, tally);
   }
-  std::printf("agreement with FCL: %d free, %d self, %d scene, %d in the 1e-6 m band\n", tally.none, tally.self, tally.scene,
-              tally.unjudged);
+  std::printf("agreement with FCL: %d free, %d self, %d scene, %d in the 1e-6 m band\n", tally.none, tally.self,
+              tally.scene, tally.unjudged);
   EXPECT_GT(tally.none, worlds * count / 10);
   EXPECT_GT(tally.self, worlds * count / 50);
   EXPECT_GT(tally.scene, worlds * count / 20);

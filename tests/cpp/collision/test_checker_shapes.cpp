@@ -74,7 +74,8 @@ Voxels random_voxels() {
   Rng rng(3);
   auto centres = std::make_shared<std::vector<Eigen::Vector3d>>();
   for (int i = 0; i < 60; ++i) {
-    centres->emplace_back(0.05 * std::floor(rng.uniform(-5, 5)), 0.05 * std::floor(rng.uniform(-5, 5)), 0.05 * std::floor(rng.uniform(-3, 3)));
+    centres->emplace_back(0.05 * std::floor(rng.uniform(-5, 5)), 0.05 * std::floor(rng.uniform(-5, 5)),
+                          0.05 * std::floor(rng.uniform(-3, 3)));
   }
   return {centres, 0.05};
 }
@@ -85,15 +86,9 @@ struct Case {
 };
 
 std::vector<Case> all_shapes() {
-  return {{"box", Box{{0.3, 0.2, 0.5}}},
-          {"plate", Box{{0.6, 0.4, 0.002}}},
-          {"sphere", Sphere{0.2}},
-          {"cylinder", Cylinder{0.15, 0.4}},
-          {"capsule", Capsule{0.1, 0.4}},
-          {"hull", MeshShape{random_hull(1)}},
-          {"l_shape", MeshShape{l_shape()}},
-          {"torus", MeshShape{torus()}},
-          {"open_bin", MeshShape{open_bin()}},
+  return {{"box", Box{{0.3, 0.2, 0.5}}},     {"plate", Box{{0.6, 0.4, 0.002}}}, {"sphere", Sphere{0.2}},
+          {"cylinder", Cylinder{0.15, 0.4}}, {"capsule", Capsule{0.1, 0.4}},    {"hull", MeshShape{random_hull(1)}},
+          {"l_shape", MeshShape{l_shape()}}, {"torus", MeshShape{torus()}},     {"open_bin", MeshShape{open_bin()}},
           {"voxels", random_voxels()}};
 }
 
@@ -126,7 +121,8 @@ TEST(CheckerShapes, EveryPairAgreesWithFcl) {
   for (const Case& mover : all_shapes()) {
     // A link cannot be made of voxels, a held object can.
     const bool held = mover.name == "voxels";
-    const JointGroup group = free_body::group(held ? std::vector<LinkShape>{} : std::vector<LinkShape>{free_body::link_shape(mover.shape)});
+    const JointGroup group =
+        free_body::group(held ? std::vector<LinkShape>{} : std::vector<LinkShape>{free_body::link_shape(mover.shape)});
     const fcl_reference::Body body = fcl_reference::make_body(mover.shape);
     std::vector<Case> others = all_shapes();
     others.push_back({"plane", Plane{Eigen::Vector3d(0.6, 0, 0.8), 0.1}});

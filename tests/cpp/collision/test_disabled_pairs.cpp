@@ -57,7 +57,8 @@ TEST(DisabledPairs, PandaAgreesWithCountingByFcl) {
   std::map<std::pair<int, int>, int> hits;
   std::vector<fcl_reference::Body> bodies;
   for (const Link& link : bare.links()) {
-    bodies.push_back(link.collisions.empty() ? fcl_reference::Body() : fcl_reference::make_body(link.collisions[0].shape));
+    bodies.push_back(link.collisions.empty() ? fcl_reference::Body()
+                                             : fcl_reference::make_body(link.collisions[0].shape));
   }
   for (int s = 0; s < options.samples; ++s) {
     // The same draws as the function makes: stream s of the seed, joints in order.

@@ -49,7 +49,10 @@ TEST(World, BadInputIsNamed) {
   skewed.linear() *= 1.1;
   Pose lost = Pose::Identity();
   lost.translation().x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(message_of([&] { world.add("box", Box{{1, 0, 1}}, Pose::Identity()); }).find("'box' shape 0.size.y"), std::string::npos);
+  EXPECT_NE(message_of([&] {
+              world.add("box", Box{{1, 0, 1}}, Pose::Identity());
+            }).find("'box' shape 0.size.y"),
+            std::string::npos);
   EXPECT_NE(message_of([&] { world.add("box", Sphere{1}, skewed); }).find("'box' pose"), std::string::npos);
   EXPECT_NE(message_of([&] { world.add("box", Sphere{1}, lost); }).find("'box' pose"), std::string::npos);
   EXPECT_NE(message_of([&] { world.add("", Sphere{1}, Pose::Identity()); }), "");

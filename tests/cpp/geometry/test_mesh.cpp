@@ -96,8 +96,10 @@ std::string ply(const TriangleMesh& mesh, const std::string& format) {
     out << bytes;
   };
   for (const auto& v : mesh.vertices) {
-    if (format == "ascii") out << v.transpose() << "\n";
-    else for (int k = 0; k < 3; ++k) put(v[k]);
+    if (format == "ascii")
+      out << v.transpose() << "\n";
+    else
+      for (int k = 0; k < 3; ++k) put(v[k]);
   }
   for (const auto& t : mesh.triangles) {
     if (format == "ascii") {
@@ -111,14 +113,19 @@ std::string ply(const TriangleMesh& mesh, const std::string& format) {
 }
 
 std::string dae(const std::string& unit, const std::string& up_axis, const std::string& node_transform) {
-  return "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\"><asset>" +
+  return "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" "
+         "version=\"1.4.1\"><asset>" +
          unit + "<up_axis>" + up_axis +
-         "</up_axis></asset><library_geometries><geometry id=\"g\"><mesh><source id=\"p\"><float_array id=\"a\" count=\"12\">"
-         "0 0 0 1 0 0 0 2 0 0 0 3</float_array><technique_common><accessor source=\"#a\" count=\"4\" stride=\"3\"><param name=\"X\" "
-         "type=\"float\"/><param name=\"Y\" type=\"float\"/><param name=\"Z\" type=\"float\"/></accessor></technique_common></source>"
+         "</up_axis></asset><library_geometries><geometry id=\"g\"><mesh><source id=\"p\"><float_array id=\"a\" "
+         "count=\"12\">"
+         "0 0 0 1 0 0 0 2 0 0 0 3</float_array><technique_common><accessor source=\"#a\" count=\"4\" "
+         "stride=\"3\"><param name=\"X\" "
+         "type=\"float\"/><param name=\"Y\" type=\"float\"/><param name=\"Z\" "
+         "type=\"float\"/></accessor></technique_common></source>"
          "<vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices><triangles count=\"4\"><input "
          "semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>0 2 1 0 1 3 1 2 3 0 3 2</p></triangles></mesh></geometry>"
-         "</library_geometries><library_visual_scenes><visual_scene id=\"s\"><node id=\"n\">" + node_transform +
+         "</library_geometries><library_visual_scenes><visual_scene id=\"s\"><node id=\"n\">" +
+         node_transform +
          "<instance_geometry url=\"#g\"/></node></visual_scene></library_visual_scenes><scene><instance_visual_scene "
          "url=\"#s\"/></scene></COLLADA>";
 }
@@ -149,9 +156,12 @@ std::shared_ptr<const TriangleMesh> shells(const std::vector<std::pair<Box, bool
 
 TEST(Mesh, EveryFormatGivesTheSameSolid) {
   const auto box = shape_mesh(Box{{0.5, 0.25, 1}});  // exact in single precision
-  const std::pair<std::string, std::string> files[] = {
-      {"a.stl", binary_stl(*box)}, {"b.stl", ascii_stl(*box)},          {"c.obj", obj(*box)},
-      {"d.ply", ply(*box, "ascii")}, {"e.ply", ply(*box, "binary_little_endian")}, {"f.ply", ply(*box, "binary_big_endian")}};
+  const std::pair<std::string, std::string> files[] = {{"a.stl", binary_stl(*box)},
+                                                       {"b.stl", ascii_stl(*box)},
+                                                       {"c.obj", obj(*box)},
+                                                       {"d.ply", ply(*box, "ascii")},
+                                                       {"e.ply", ply(*box, "binary_little_endian")},
+                                                       {"f.ply", ply(*box, "binary_big_endian")}};
   for (const auto& [name, content] : files) {
     const TempFile file(name, content);
     MeshReport report;
@@ -179,14 +189,17 @@ TEST(Mesh, DaeUnitAndNodesCountButNotTheUpAxis) {
   };
   EXPECT_TRUE(size(dae("", "Z_UP", "")).isApprox(Eigen::Vector3d(1, 2, 3)));
   EXPECT_TRUE(size(dae("", "Y_UP", "")).isApprox(Eigen::Vector3d(1, 2, 3)));
-  EXPECT_TRUE(size(dae("<unit name=\"centimeter\" meter=\"0.01\"/>", "Y_UP", "")).isApprox(Eigen::Vector3d(0.01, 0.02, 0.03), 1e-6));
-  EXPECT_TRUE(size(dae("", "Z_UP", "<matrix>0 0 1 10 1 0 0 20 0 1 0 30 0 0 0 1</matrix>")).isApprox(Eigen::Vector3d(13, 21, 32)));
+  EXPECT_TRUE(size(dae("<unit name=\"centimeter\" meter=\"0.01\"/>", "Y_UP", ""))
+                  .isApprox(Eigen::Vector3d(0.01, 0.02, 0.03), 1e-6));
+  EXPECT_TRUE(size(dae("", "Z_UP", "<matrix>0 0 1 10 1 0 0 20 0 1 0 30 0 0 0 1</matrix>"))
+                  .isApprox(Eigen::Vector3d(13, 21, 32)));
 }
 
 TEST(Mesh, TruncatedFilesAreRefusedAtEveryLength) {
   const auto box = shape_mesh(Box{{0.5, 0.25, 1}});
   const std::string binary = binary_stl(*box), ascii = ascii_stl(*box), big = ply(*box, "binary_big_endian");
-  for (std::size_t length = 1; length < binary.size(); length += 13) expect_refused("t.stl", binary.substr(0, length), "truncated");
+  for (std::size_t length = 1; length < binary.size(); length += 13)
+    expect_refused("t.stl", binary.substr(0, length), "truncated");
   for (std::size_t length = 20; length < ascii.size() - 15; length += 37) {
     const TempFile file("t.stl", ascii.substr(0, length));
     EXPECT_NE(message_of(file.path()).find(file.path()), std::string::npos) << length;
@@ -229,10 +242,11 @@ TEST(Mesh, CleaningMergesDropsAndOrients) {
   for (const auto& triangle : box.triangles) {  // every corner its own vertex, every second triangle turned over
     for (const int corner : triangle) v.push_back(box.vertices[corner]);
     const int n = static_cast<int>(v.size());
-    t.push_back(rng.uniform() < 0.5 ? std::array<int, 3>{n - 3, n - 2, n - 1} : std::array<int, 3>{n - 2, n - 3, n - 1});
+    t.push_back(rng.uniform() < 0.5 ? std::array<int, 3>{n - 3, n - 2, n - 1}
+                                    : std::array<int, 3>{n - 2, n - 3, n - 1});
   }
-  v.push_back({9, 9, 9});      // used by nobody
-  t.push_back({0, 0, 1});      // two equal corners
+  v.push_back({9, 9, 9});  // used by nobody
+  t.push_back({0, 0, 1});  // two equal corners
   MeshReport report;
   const auto mesh = make_mesh(v, t, "", &report);
   EXPECT_EQ(mesh->vertices.size(), 8u);
@@ -274,7 +288,9 @@ TEST(Mesh, ContainmentAgreesWithClosedForms) {
     const Eigen::Vector3d p(rng.uniform(-2, 2), rng.uniform(-2, 2), rng.uniform(-2, 2));
     EXPECT_EQ(mesh_contains(*box, p), std::abs(p.x()) < 0.5 && std::abs(p.y()) < 1 && std::abs(p.z()) < 1.5);
     EXPECT_EQ(mesh_contains(*tetra, p), p.minCoeff() > 0 && p.sum() < 1);
-    if (p.norm() < 0.995 || p.norm() > 1) { EXPECT_EQ(mesh_contains(*ball, p), p.norm() < 1); }
+    if (p.norm() < 0.995 || p.norm() > 1) {
+      EXPECT_EQ(mesh_contains(*ball, p), p.norm() < 1);
+    }
   }
   // Rays through vertices and along edges: points right below a corner in the ray's direction.
   for (const Eigen::Vector3d& corner : box->vertices) {
@@ -337,7 +353,9 @@ TEST(MeshData, EveryMeshLoadsOrIsRefusedByName) {
       const auto mesh = load_mesh(entry.path().string());
       ++loaded;
       EXPECT_FALSE(mesh->triangles.empty());
-      if (mesh->closed) { EXPECT_GT(mesh_volume(*mesh), 0) << entry.path(); }
+      if (mesh->closed) {
+        EXPECT_GT(mesh_volume(*mesh), 0) << entry.path();
+      }
     } catch (const IoError& error) {
       EXPECT_NE(std::string(error.what()).find(entry.path().string()), std::string::npos) << error.what();
       EXPECT_TRUE(extension == ".3mf" || extension == ".step") << error.what();
@@ -357,14 +375,11 @@ TEST(MeshData, TiagoCollisionMeshesMatchTheirVisualOnes) {
   MMGRASP_NEEDS_SHARED_DATA();
   const std::string folder = shared("robots/tiago/example-robot-data/robots/tiago_description/meshes/");
   // Collision DAE (Y_UP, no unit) and visual STL of the same part fill the same box within a few millimetres.
-  const std::pair<const char*, const char*> pairs[] = {{"arm/arm_1_collision.dae", "arm/arm_1.stl"},
-                                                       {"arm/arm_2_collision.dae", "arm/arm_2.stl"},
-                                                       {"arm/arm_3_collision.dae", "arm/arm_3.stl"},
-                                                       {"arm/arm_4_collision.dae", "arm/arm_4.stl"},
-                                                       {"arm/arm_5_collision.dae", "arm/arm_5.stl"},
-                                                       {"arm/arm_6_collision.dae", "arm/arm_6.stl"},
-                                                       {"head/head_1_collision.dae", "head/head_1.stl"},
-                                                       {"head/head_2_collision.dae", "head/head_2.stl"}};
+  const std::pair<const char*, const char*> pairs[] = {
+      {"arm/arm_1_collision.dae", "arm/arm_1.stl"},     {"arm/arm_2_collision.dae", "arm/arm_2.stl"},
+      {"arm/arm_3_collision.dae", "arm/arm_3.stl"},     {"arm/arm_4_collision.dae", "arm/arm_4.stl"},
+      {"arm/arm_5_collision.dae", "arm/arm_5.stl"},     {"arm/arm_6_collision.dae", "arm/arm_6.stl"},
+      {"head/head_1_collision.dae", "head/head_1.stl"}, {"head/head_2_collision.dae", "head/head_2.stl"}};
   for (const auto& [collision, visual] : pairs) {
     const Eigen::AlignedBox3d a = bounds(*load_mesh(folder + collision)), b = bounds(*load_mesh(folder + visual));
     EXPECT_LT((a.min() - b.min()).cwiseAbs().maxCoeff(), 0.006) << collision;

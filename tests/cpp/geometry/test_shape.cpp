@@ -22,9 +22,20 @@ Voxels two_voxels() {
 }  // namespace
 
 TEST(Shape, BadDimensionsAreNamed) {
-  const Shape bad[] = {Box{{1, 0, 1}},  Box{{1, -1, 1}},  Box{{kNan, 1, 1}}, Sphere{0},          Sphere{kInf},
-                       Cylinder{1, 0},  Cylinder{kNan, 1}, Capsule{1, -1},    Capsule{0, 1},      Plane{{0, 0, 2}, 0},
-                       Plane{{0, 0, 1}, kNan}, MeshShape{}, Voxels{},         Voxels{two_voxels().centres, 0}};
+  const Shape bad[] = {Box{{1, 0, 1}},
+                       Box{{1, -1, 1}},
+                       Box{{kNan, 1, 1}},
+                       Sphere{0},
+                       Sphere{kInf},
+                       Cylinder{1, 0},
+                       Cylinder{kNan, 1},
+                       Capsule{1, -1},
+                       Capsule{0, 1},
+                       Plane{{0, 0, 2}, 0},
+                       Plane{{0, 0, 1}, kNan},
+                       MeshShape{},
+                       Voxels{},
+                       Voxels{two_voxels().centres, 0}};
   for (const Shape& shape : bad) {
     try {
       check_shape(shape, "table");

@@ -33,8 +33,8 @@ struct MMGRASP_EXPORT DistanceResult {
   Eigen::Vector3d point_b = Eigen::Vector3d::Zero();
 };
 
-/// Answers collision questions about one group of one robot in one snapshot of a world. Not thread-safe (scratch inside):
-/// `clone()` gives one per thread, sharing everything immutable. Closed meshes are solids, open ones surfaces.
+/// Answers collision questions about one group of one robot in one snapshot of a world. Not thread-safe (scratch
+/// inside): `clone()` gives one per thread, sharing everything immutable. Closed meshes are solids, open ones surfaces.
 class MMGRASP_EXPORT CollisionChecker {
  public:
   CollisionChecker(const JointGroup& group, const World& world, const CheckerOptions& options = {});
@@ -52,8 +52,8 @@ class MMGRASP_EXPORT CollisionChecker {
   /// Cheap in-place variant of the above for loops over base poses.
   void set_root(const Pose& T_world_root);
 
-  /// Limits (with 1e-9 of slack for rounding), then self, then scene: the first cause found, or none. The hot query. `q` must have the right length and be
-  /// finite (checked; throws InvalidInput).
+  /// Limits (with 1e-9 of slack for rounding), then self, then scene: the first cause found, or none. The hot query.
+  /// `q` must have the right length and be finite (checked; throws InvalidInput).
   Rejection rejection(const Eigen::VectorXd& q);
   /// rejection(q) == Rejection::none, quicker: what collided last is looked at first.
   bool is_free(const Eigen::VectorXd& q);
@@ -62,7 +62,8 @@ class MMGRASP_EXPORT CollisionChecker {
   /// Smallest distance over all checked pairs; padding is not subtracted. Infinite when there is no pair.
   DistanceResult distance(const Eigen::VectorXd& q);
 
-  /// Straight joint-space edge (angles are not wrapped), checked at steps in which no joint moves more than `step` (rad or m), ends included.
+  /// Straight joint-space edge (angles are not wrapped), checked at steps in which no joint moves more than `step` (rad
+  /// or m), ends included.
   bool edge_is_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double step = 0.02);
 
   std::size_t queries() const;  ///< Configurations checked so far.

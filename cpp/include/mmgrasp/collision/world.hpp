@@ -14,14 +14,14 @@ namespace mmgrasp {
 
 /// A named rigid body of the scene; several shapes may make one (a tray is five boxes).
 struct MMGRASP_EXPORT WorldObject {
-  std::vector<LinkShape> shapes;      ///< T_link_shape is here T_object_shape.
+  std::vector<LinkShape> shapes;  ///< T_link_shape is here T_object_shape.
   Pose T_world_object = Pose::Identity();
 };
 
 /// A body held by the robot.
 struct MMGRASP_EXPORT AttachedObject {
   std::vector<LinkShape> shapes;
-  std::string link;                   ///< It moves with this robot link.
+  std::string link;  ///< It moves with this robot link.
   Pose T_link_object = Pose::Identity();
   std::set<std::string> touch_links;  ///< Robot links it may touch (the fingers).
 };
@@ -33,10 +33,10 @@ class MMGRASP_EXPORT World {
   void add(const std::string& name, const Shape& shape, const Pose& T_world_object);
   void add(const std::string& name, WorldObject object);
   void move(const std::string& name, const Pose& T_world_object);
-  void remove(const std::string& name);              ///< Takes an object, held or not, out of the world.
-  /// From the scene to a link. Empty touch_links: `link`, every link below it and, when `link` lies in an SRDF end effector's
-  /// group or below its parent link, all links of that group (resolved by the checker, which also refuses unknown links).
-  /// Links that are rigidly joined to `link` are never checked against the object.
+  void remove(const std::string& name);  ///< Takes an object, held or not, out of the world.
+  /// From the scene to a link. Empty touch_links: `link`, every link below it and, when `link` lies in an SRDF end
+  /// effector's group or below its parent link, all links of that group (resolved by the checker, which also refuses
+  /// unknown links). Links that are rigidly joined to `link` are never checked against the object.
   void attach(const std::string& name, const std::string& link, const Pose& T_link_object,
               std::set<std::string> touch_links = {});
   void detach(const std::string& name, const Pose& T_world_object);  ///< Back into the scene.

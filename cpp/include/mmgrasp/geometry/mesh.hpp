@@ -14,28 +14,29 @@ namespace mmgrasp {
 struct MMGRASP_EXPORT TriangleMesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<int, 3>> triangles;
-  /// Every edge is shared by two triangles in opposite directions, or by several such pairs where solids touch (counting
-  /// slivers without area, which are then dropped), and the volume is positive: a solid. Else a surface.
+  /// Every edge is shared by two triangles in opposite directions, or by several such pairs where solids touch
+  /// (counting slivers without area, which are then dropped), and the volume is positive: a solid. Else a surface.
   bool closed = false;
-  bool convex = false;   ///< Closed and equal to its hull: may be treated as a convex polytope.
-  std::string source;    ///< File it came from, or empty.
+  bool convex = false;  ///< Closed and equal to its hull: may be treated as a convex polytope.
+  std::string source;   ///< File it came from, or empty.
 };
 
 /// What the loader found and did, told to the user by `mmgrasp check`.
 struct MMGRASP_EXPORT MeshReport {
   std::string path;
   int vertices_read = 0;
-  int vertices_merged = 0;        ///< Removed because they coincide with another one.
-  int degenerate_triangles = 0;   ///< Removed: two equal corners or zero area.
-  int triangles = 0;              ///< Kept.
+  int vertices_merged = 0;       ///< Removed because they coincide with another one.
+  int degenerate_triangles = 0;  ///< Removed: two equal corners or zero area.
+  int triangles = 0;             ///< Kept.
   bool closed = false;
   bool convex = false;
 };
 
-/// Reads STL, OBJ, PLY or DAE; merges equal vertices, drops degenerate triangles, orients a closed mesh outwards (cavities
-/// inwards). `scale` multiplies per axis. Files without a unit count as metres; a DAE's unit and node transforms are honoured,
-/// its up axis is not: URDF tools show DAE coordinates as they stand. Throws IoError naming the file (and line where there
-/// are lines) when it is missing, truncated, empty, no mesh or holds a non-finite number; InvalidInput for a bad scale.
+/// Reads STL, OBJ, PLY or DAE; merges equal vertices, drops degenerate triangles, orients a closed mesh outwards
+/// (cavities inwards). `scale` multiplies per axis. Files without a unit count as metres; a DAE's unit and node
+/// transforms are honoured, its up axis is not: URDF tools show DAE coordinates as they stand. Throws IoError naming
+/// the file (and line where there are lines) when it is missing, truncated, empty, no mesh or holds a non-finite
+/// number; InvalidInput for a bad scale.
 MMGRASP_EXPORT std::shared_ptr<const TriangleMesh> load_mesh(const std::string& path,
                                                              const Eigen::Vector3d& scale = Eigen::Vector3d::Ones(),
                                                              MeshReport* report = nullptr);
@@ -52,8 +53,8 @@ MMGRASP_EXPORT std::shared_ptr<const TriangleMesh> convex_hull(const std::vector
 /// Signed volume by the divergence theorem [m^3]; positive for a closed mesh oriented outwards.
 MMGRASP_EXPORT double mesh_volume(const TriangleMesh& mesh);
 
-/// True when the point lies inside a closed mesh (winding number along a ray of a fixed generic direction, so overlapping
-/// shells count once and cavities are empty). False for open meshes.
+/// True when the point lies inside a closed mesh (winding number along a ray of a fixed generic direction, so
+/// overlapping shells count once and cavities are empty). False for open meshes.
 MMGRASP_EXPORT bool mesh_contains(const TriangleMesh& mesh, const Eigen::Vector3d& point);
 
 }  // namespace mmgrasp

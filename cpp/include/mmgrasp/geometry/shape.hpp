@@ -12,14 +12,32 @@
 
 namespace mmgrasp {
 
-struct Box { Eigen::Vector3d size = Eigen::Vector3d::Ones(); };   ///< Full lengths [m], centred.
-struct Sphere { double radius = 1; };                             ///< [m]
-struct Cylinder { double radius = 1; double length = 1; };        ///< Along z, centred [m].
-struct Capsule { double radius = 1; double length = 1; };         ///< Along z, centred; `length` without the caps [m].
-struct Plane { Eigen::Vector3d normal = Eigen::Vector3d::UnitZ(); double offset = 0; };  ///< Solid where normal . x <= offset.
-struct MeshShape { std::shared_ptr<const TriangleMesh> mesh; };
+struct Box {
+  Eigen::Vector3d size = Eigen::Vector3d::Ones();
+};  ///< Full lengths [m], centred.
+struct Sphere {
+  double radius = 1;
+};  ///< [m]
+struct Cylinder {
+  double radius = 1;
+  double length = 1;
+};  ///< Along z, centred [m].
+struct Capsule {
+  double radius = 1;
+  double length = 1;
+};  ///< Along z, centred; `length` without the caps [m].
+struct Plane {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  double offset = 0;
+};  ///< Solid where normal . x <= offset.
+struct MeshShape {
+  std::shared_ptr<const TriangleMesh> mesh;
+};
 /// Axis-aligned solid voxels of one edge length, e.g. leaves of an OctoMap or a point cloud's cells [m].
-struct Voxels { std::shared_ptr<const std::vector<Eigen::Vector3d>> centres; double resolution = 0.01; };
+struct Voxels {
+  std::shared_ptr<const std::vector<Eigen::Vector3d>> centres;
+  double resolution = 0.01;
+};
 
 using Shape = std::variant<Box, Sphere, Cylinder, Capsule, Plane, MeshShape, Voxels>;
 

@@ -12,6 +12,12 @@ from ._core import IoError
 ASSETS = Path(__file__).parent / "assets"
 
 
+def shipped(path: str | os.PathLike[str]) -> Path:
+    """The path itself, or with `asset:` in front the file of that name in the shipped assets."""
+    text = os.fspath(path)
+    return ASSETS / text.removeprefix("asset:") if text.startswith("asset:") else Path(text)
+
+
 def write_file(path: Path, content: str | bytes) -> None:
     """Writes all or nothing: a reader never sees half a file."""
     data = content.encode() if isinstance(content, str) else content

@@ -15,6 +15,8 @@ import yaml
 
 from ._core import InvalidInput, IoError, pose
 
+LARGEST = 1e6  # no length, angle or time in a file is larger [SI]
+LARGEST_INTEGER = 2**31 - 1
 _EXPONENT = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)[eE][-+]?\d+")
 
 Key = str | int
@@ -119,8 +121,10 @@ class Node:
             value = float(value)  # YAML 1.1 takes 1e-3 for a string
         if isinstance(value, bool) or not isinstance(value, int | float):
             self.fail("must be a number")
-        if not math.isfinite(value):
+        if isinstance(value, float) and not math.isfinite(value):
             self.fail("must be finite")
+        if not -LARGEST <= value <= LARGEST:
+            self.fail(f"must lie between -{LARGEST:g} and {LARGEST:g}")
         if above is not None and not value > above:
             self.fail(f"must be > {above:g}")
         if least is not None and not value >= least:
@@ -131,6 +135,8 @@ class Node:
         value = self.raw
         if isinstance(value, bool) or not isinstance(value, int):
             self.fail("must be a whole number")
+        if abs(value) > LARGEST_INTEGER:
+            self.fail(f"must lie between -{LARGEST_INTEGER} and {LARGEST_INTEGER}")
         if least is not None and value < least:
             self.fail(f"must be >= {least}")
         return value

@@ -11,7 +11,7 @@ import numpy as np
 
 from . import _core
 from ._core import Box, CarryPlace, FingerJoint, Gripper, InvalidInput, JointGroup, LinkShape, Robot
-from ._files import ASSETS
+from ._files import ASSETS, shipped
 from ._reading import Node, near_miss, read_yaml
 from ._shapes import read_shapes
 
@@ -47,7 +47,7 @@ def find_file(node: Node) -> Path:
     """A path relative to its file, `asset:...` in the shipped assets, or `robot-data:...` in example-robot-data."""
     text = node.string()
     if text.startswith("asset:"):
-        path = ASSETS / text.removeprefix("asset:")
+        path = shipped(text)
     elif text.startswith("robot-data:"):
         path = robot_data_folder(node) / text.removeprefix("robot-data:")
     else:

@@ -148,6 +148,8 @@ def _grid(node: Node, types: dict[str, PartType]) -> list[Placed]:
     counts = [entry.integer(least=1) for entry in node["grid"].elements()]
     if len(counts) != 2:
         node["grid"].fail("must be two numbers: how many along x and along y")
+    if counts[0] * counts[1] > 1000:
+        node["grid"].fail("must not place more than 1000 parts in one tray")
     spacing = node["spacing"].numbers(2, above=0)
     yaw = node["yaw"].number() if "yaw" in node else 0.0
     placed = []

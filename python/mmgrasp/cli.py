@@ -17,9 +17,10 @@ from rich.table import Table
 from . import _core
 from ._console import Reporter
 from ._core import Error, InvalidInput, Outcome
+from ._reading import read_json
 from .check import check_robot, describe
 from .part_supply import PartSupplyPlan, plan_part_supply
-from .plan_file import read_plan
+from .plan_file import plan_to_check, read_plan
 from .scenario import load_scenario
 from .verification import PlanVerdict, verify_plan
 
@@ -217,6 +218,8 @@ def run_check(arguments: argparse.Namespace, console: Console) -> int:
 
 def run_view(arguments: argparse.Namespace, console: Console) -> int:
     content = read_plan(arguments.plan)
+    if content.get("outcome") == "solved":
+        plan_to_check(read_json(arguments.plan).root)  # says what is wrong with a damaged plan before anything is drawn
     if arguments.png:
         from .viz.viewer import write_png
 
@@ -239,6 +242,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return parsed.run(parsed, console)
     except (Error, OSError) as error:
         print(f"mmgrasp: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except MemoryError:
+        print("mmgrasp: out of memory: use a coarser grid, fewer samples or fewer parts", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
         print("mmgrasp: interrupted", file=sys.stderr)

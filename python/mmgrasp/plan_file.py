@@ -296,7 +296,7 @@ def _cells(node: Node, layers: int, ny: int, nx: int) -> np.ndarray:
         node.fail("the grid has more than 100 million cells")
     cells = np.zeros((layers, ny, nx), dtype=np.uint8)
     for key, runs in node.items():
-        if not key.isdigit() or int(key) >= layers:
+        if not (key.isascii() and key.isdigit() and len(key) < 6) or int(key) >= layers:
             runs.fail("must belong to a heading of the grid")
         for run in runs.elements():
             iy, a, b = (

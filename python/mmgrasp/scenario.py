@@ -12,6 +12,7 @@ import numpy as np
 
 from . import _core
 from ._core import CollisionChecker, InvalidInput, LinkShape, PartSupplyProblem, ReachDatabase, World
+from ._files import shipped
 from ._reading import Node, read_yaml
 from ._robot_section import RobotSetup, choose_sections, find_file, read_setup
 from ._shapes import read_shapes
@@ -99,11 +100,11 @@ def load_scenario(
     threads: int | None = None,
     progress: Progress = None,
 ) -> Scenario:
-    """Reads a scenario; `robot` puts a robot profile (name or file) in place of the scenario's robot, gripper and bin.
+    """Reads a scenario (`asset:scenarios/...` for a shipped one); `robot` puts a robot profile (name or file) in place of the scenario's robot, gripper and bin.
 
     Raises InvalidInput or IoError with one message that names file, line, key, value and rule.
     """
-    root = read_yaml(Path(path)).root
+    root = read_yaml(shipped(path)).root
     _check_header(root)
     start, goal = np.array(root["start"].numbers(3)), np.array(root["goal"].numbers(3))
     uncertainty = root["positioning_uncertainty"].number(least=0)

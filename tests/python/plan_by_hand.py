@@ -40,7 +40,13 @@ def motion(kind: str, start: list[float], end: list[float], holding: bool, secon
 def region(tray: str, iy: range, start: int, end: int) -> dict[str, Any]:
     """A rectangular region of layer 0 with one explanation."""
     causes = {"reach": 40, "limits": 3, "self_collision": 2, "scene": 15, "grasp_filter": 7}
-    explanation = {"part": f"{tray}/brick_0", "grasps": 6, "base_poses_tried": 60, "base_poses_feasible": 24, "rejections": causes}
+    explanation = {
+        "part": f"{tray}/brick_0",
+        "grasps": 6,
+        "base_poses_tried": 60,
+        "base_poses_feasible": 24,
+        "rejections": causes,
+    }
     return {"tray": tray, "cells": {"0": [[y, start, end] for y in iy]}, "explanations": [explanation]}
 
 
@@ -56,7 +62,9 @@ def plan_by_hand() -> dict[str, Any]:
     motions = [motion("reach", home, high, False, 2.0), motion("approach", high, low, False, 1.0),
                motion("lift", low, high, True, 1.0), motion("carry", high, [0.4, -1.0], True, 2.0),
                motion("retreat", [0.4, -1.0], home, False, 1.5)]  # fmt: skip
-    picks = [{"stop": 0, "tray": p["tray"], "part": p["name"], "grasp": 0, "motions": copy.deepcopy(motions)} for p in parts]
+    picks = [
+        {"stop": 0, "tray": p["tray"], "part": p["name"], "grasp": 0, "motions": copy.deepcopy(motions)} for p in parts
+    ]
     return {
         "format": "mmgrasp-plan", "version": 1, "mmgrasp": "0.0.0", "outcome": "solved",
         "scenario": {

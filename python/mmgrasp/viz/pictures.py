@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import io
 import os
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from .._files import write_file
 from . import png
 from .raster import Camera, render
 from .scene import PlanScene
@@ -45,9 +47,9 @@ def _pyplot():
 
 
 def _save(figure, path: Path) -> Path:
-    temporary = path.with_name(path.name + ".part")
-    figure.savefig(temporary, format="png")
-    temporary.replace(path)
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png")
+    write_file(path, buffer.getvalue())
     return path
 
 

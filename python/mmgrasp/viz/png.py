@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+from .._files import write_file
+
 
 def png_bytes(image: np.ndarray) -> bytes:
     """A uint8 picture (height, width, 3) as the bytes of a PNG file."""
@@ -32,7 +34,5 @@ def png_bytes(image: np.ndarray) -> bytes:
 def write_png(path: str | Path, image: np.ndarray) -> Path:
     """Writes the picture under a temporary name and renames it."""
     path = Path(path)
-    temporary = path.with_name(path.name + ".part")
-    temporary.write_bytes(png_bytes(image))
-    temporary.replace(path)
+    write_file(path, png_bytes(image))
     return path

@@ -7,6 +7,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from .._files import write_file
 from .style import tray_colour
 from .timeline import Timeline
 from .topview import TOPVIEW_CSS, TopView
@@ -54,12 +55,8 @@ summary { cursor: pointer; font-weight: 600; }
 
 def write_report(plan: dict[str, Any], out_dir: str | Path) -> Path:
     """Writes report.html beside the pictures (those already in `out_dir` are embedded). Returns its path."""
-    out_dir = Path(out_dir)
-    out_dir.mkdir(parents=True, exist_ok=True)
-    path = out_dir / "report.html"
-    temporary = path.with_name(path.name + ".part")
-    temporary.write_text(report_html(plan, out_dir), encoding="utf-8")
-    temporary.replace(path)
+    path = Path(out_dir) / "report.html"
+    write_file(path, report_html(plan, Path(out_dir)))
     return path
 
 
@@ -223,7 +220,11 @@ def _alternatives(plan) -> str:
     if not shown:
         return ""
     more = f"<p class='lead'>{len(rows) - 60} more are in plan.json.</p>" if len(rows) > 60 else ""
-    return "<h2>Alternatives, and why each lost</h2>" + table(["trays shared", "disc [m]", "cells", "verdict"], shown, {1, 2}) + more
+    return (
+        "<h2>Alternatives, and why each lost</h2>"
+        + table(["trays shared", "disc [m]", "cells", "verdict"], shown, {1, 2})
+        + more
+    )
 
 
 def _candidates(plan) -> str:

@@ -102,6 +102,8 @@ class Timeline:
 
     def state_at(self, time: float) -> State:
         """Where everything is at this time [s] (clamped to the plan)."""
+        if not self.segments:  # a plan that was not found: the robot waits at the start
+            return State(np.asarray(self.plan["scenario"]["start"], float), self.home, 0.0)
         segment = self.segment_at(max(0.0, min(time, self.duration)))
         local = min(max(time - segment.start, 0.0), segment.duration)
         if segment.kind == "drive":

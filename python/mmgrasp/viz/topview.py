@@ -170,8 +170,12 @@ class TopView:
         x, y = self.point(pose)
         theta = float(pose[2])
         tip = self.point((pose[0] + length * np.cos(theta), pose[1] + length * np.sin(theta)))
-        left = self.point((pose[0] + 0.72 * length * np.cos(theta + 0.25), pose[1] + 0.72 * length * np.sin(theta + 0.25)))
-        right = self.point((pose[0] + 0.72 * length * np.cos(theta - 0.25), pose[1] + 0.72 * length * np.sin(theta - 0.25)))
+        left = self.point(
+            (pose[0] + 0.72 * length * np.cos(theta + 0.25), pose[1] + 0.72 * length * np.sin(theta + 0.25))
+        )
+        right = self.point(
+            (pose[0] + 0.72 * length * np.cos(theta - 0.25), pose[1] + 0.72 * length * np.sin(theta - 0.25))
+        )
         return (
             f'<path d="M{x:.1f} {y:.1f}L{tip[0]:.1f} {tip[1]:.1f}M{left[0]:.1f} {left[1]:.1f}L{tip[0]:.1f} {tip[1]:.1f}'
             f'L{right[0]:.1f} {right[1]:.1f}" stroke="{colour}" stroke-width="3.5" fill="none" stroke-linecap="round"/>'

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -152,5 +151,3 @@ def view(plan: dict[str, Any], port: int = 8080, open_browser: bool = True, bloc
         except KeyboardInterrupt:
             viewer.server.stop()
     return viewer
-
-

@@ -1,0 +1,15 @@
+"""The README's Python lines do what they say."""
+
+import re
+from pathlib import Path
+
+README = Path(__file__).parents[2] / "README.md"
+
+
+def test_the_ten_lines_of_python_run(tmp_path, monkeypatch, capsys):
+    (code,) = re.findall(r"```python\n(.*?)```", README.read_text(), re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    exec(compile(code, "README.md", "exec"), {})
+    printed = capsys.readouterr().out
+    assert "PartSupplyPlan(solved" in printed and printed.strip().endswith("the plan holds")
+    assert (tmp_path / "plan.json").exists()

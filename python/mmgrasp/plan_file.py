@@ -12,6 +12,7 @@ import numpy as np
 from . import _core
 from ._core import InvalidInput, PartSupplyResult, Robot
 from ._core import verify as checks
+from ._files import sha256_of
 from ._reading import Node, read_json
 from ._shapes import pose_to_dict, shape_from_node, shape_to_dict
 
@@ -74,6 +75,7 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
             "srdf": robot.to_srdf(),
             "base": robot.base,
             "base_limits": robot.base_limits,
+            "meshes": [{"file": path, "sha256": sha256_of(path)} for path in _mesh_files(robot)],
         },
         "arm": {
             "joints": arm.names,
@@ -109,6 +111,11 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
         "parts": [_part(part, t.tray.name) for t in scenario.trays for part in t.tray.parts],
         "options": dict(scenario.problem().options),
     }
+
+
+def _mesh_files(robot: Robot) -> list[str]:
+    """The robot's collision meshes, each once."""
+    return sorted({s.mesh_path for link in robot.links for s in robot.collisions(link) if s.mesh_path})
 
 
 def _part(part: _core.Part, tray: str) -> dict[str, Any]:
@@ -215,6 +222,9 @@ def plan_to_check(root: Node) -> checks.PlanToCheck:
     scenario = root["scenario"]
     robot = scenario["robot"]
     limits = {key: node.number(above=0) for key, node in robot["base_limits"].items()}
+    for mesh in robot["meshes"].elements():
+        if sha256_of(mesh["file"].string()) != mesh["sha256"].string():
+            mesh["file"].fail("the mesh file has changed since the plan was made")
     plan = checks.PlanToCheck(
         Robot.from_strings(
             robot["urdf"].string(),

@@ -69,7 +69,7 @@ def plan_by_hand() -> dict[str, Any]:
         "format": "mmgrasp-plan", "version": 1, "mmgrasp": "0.0.0", "outcome": "solved",
         "scenario": {
             "name": "by hand", "source": "",
-            "robot": {"urdf": URDF, "srdf": "", "base": "diff_drive", "base_limits": {}},
+            "robot": {"urdf": URDF, "srdf": "", "base": "diff_drive", "base_limits": {}, "meshes": []},
             "arm": {"joints": ["lift", "turn"], "tip_link": "tcp", "velocity_limits": [0.2, 1.0], "acceleration_limits": [1, 4]},
             "gripper": {"tcp_link": "tcp", "approach": [1, 0, 0], "closing": [0, 1, 0], "max_opening": 0.1, "finger_depth": 0.03,
                         "finger_width": 0.02, "clearance": 0.005, "joints": [], "finger_links": []},

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mmgrasp/robot/ik.hpp"
+#include "task/full_turns.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -57,6 +58,7 @@ std::vector<Eigen::VectorXd> release_configurations(const ReachDatabase& databas
       Eigen::VectorXd q = seeds.col(i).head(arm.size());
       const Rejection cause = refine_ik(arm, T_world_tcp, q, ik, workspace) ? holding.rejection(q) : Rejection::reach;
       if (cause == Rejection::none) {
+        turn_towards(arm, from, q);
         found.push_back(q);
         break;
       }

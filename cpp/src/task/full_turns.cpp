@@ -1,0 +1,21 @@
+#include "task/full_turns.hpp"
+
+#include <cmath>
+
+namespace mmgrasp {
+
+void turn_towards(const JointGroup& group, const Eigen::VectorXd& reference, Eigen::VectorXd& q) {
+  constexpr double kTurn = 2 * M_PI;
+  const Robot& robot = group.robot();
+  for (int j = 0; j < group.size(); ++j) {
+    const JointType type = robot.joints()[robot.joint_index(group.names()[j])].type;
+    if (type != JointType::revolute && type != JointType::continuous) continue;
+    const double step = reference[j] > q[j] ? kTurn : -kTurn;
+    while (std::abs(q[j] + step - reference[j]) < std::abs(q[j] - reference[j]) && q[j] + step >= group.lower()[j] &&
+           q[j] + step <= group.upper()[j]) {
+      q[j] += step;
+    }
+  }
+}
+
+}  // namespace mmgrasp

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "mmgrasp/core/error.hpp"
+#include "task/joined_motions.hpp"
 #include "task/obstructions.hpp"
 #include "task/other_places.hpp"
 #include "task/scene.hpp"
@@ -159,6 +160,7 @@ class PartSupply {
     for (int stop = 0; stop < static_cast<int>(plan_.stops.size()); ++stop) {
       if (!picks_at(stop, gone)) return false;
     }
+    join_picks();
     return plan_legs(routes);
   }
 
@@ -220,6 +222,12 @@ class PartSupply {
       plan_.picks.push_back(std::move(pick));
     }
     return true;
+  }
+
+  /// Joints without limits may come home some turns further: the next pick goes on from there.
+  void join_picks() {
+    Eigen::VectorXd at = problem_.home;
+    for (Pick& pick : plan_.picks) at = join_motions(problem_.arm.wraps(), at, pick.motions);
   }
 
   bool still_robust(const Stop& place) {

@@ -8,6 +8,8 @@
 #include "mmgrasp/plan/straight_line.hpp"
 #include "mmgrasp/plan/time_parameterization.hpp"
 #include "mmgrasp/robot/ik.hpp"
+#include "task/full_turns.hpp"
+#include "task/joined_motions.hpp"
 #include "task/pick_scene.hpp"
 #include "task/release.hpp"
 
@@ -73,7 +75,8 @@ class PickPlanner {
   std::vector<Eigen::VectorXd> grasp_configurations(int grasp, int round, CollisionChecker& checker) {
     const Pose T = T_world_tcp(grasp);
     std::vector<Eigen::VectorXd> found;
-    const auto judge = [&](const Eigen::VectorXd& q) {
+    const auto judge = [&](Eigen::VectorXd q) {
+      turn_towards(checker.group(), problem_.home, q);
       for (const Eigen::VectorXd& other : found) {
         if ((q - other).cwiseAbs().maxCoeff() < kSame) return;
       }
@@ -188,6 +191,7 @@ class PickPlanner {
                      {MotionKind::lift, width, true, timed(holding, paths.lift, line)},
                      {MotionKind::carry, width, true, timed(holding, paths.carry, {})},
                      {MotionKind::retreat, opening, false, timed(after, paths.retreat, {})}};
+    join_motions(problem_.arm.wraps(), problem_.home, pick_.motions);
     const std::array<CollisionChecker*, 5> checkers = {&before, &before, &holding, &holding, &after};
     const std::array<Stage, 5> stages = {kReaching, kApproaching, kLifting, kCarrying, kRetreating};
     for (std::size_t i = 0; i < checkers.size(); ++i) {

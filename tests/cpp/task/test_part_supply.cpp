@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/verify/plan_check.hpp"
@@ -88,6 +89,33 @@ TEST(PartSupply, SmallStoreroomIsSolvedAndHoldsForTheIndependentChecker) {
   const verify::PlanCheckResult result = verify::check_plan(to_check(problem, plan), options);
   for (const verify::Fault& fault : result.faults) ADD_FAILURE() << fault.code << ", " << fault.where << ": " << fault.message;
   EXPECT_EQ(result.minimal_stops, 1);
+}
+
+/// `twist` has no limits: its numbers run on from motion to motion and from pick to pick. Home is reached up to its turns.
+TEST(PartSupply, MotionsJoinAsPlainNumbersOverTheWholePlan) {
+  PartSupplyProblem problem = test::small_storeroom();
+  problem.options.robustness_samples = 40;
+  for (double home : {0.0, 3.0}) {
+    problem.home[5] = home;
+    const PartSupplyPlan plan = plan_part_supply(problem, database());
+    ASSERT_EQ(plan.outcome, Outcome::solved) << all_messages(plan);
+    ASSERT_EQ(plan.picks.size(), 4u);
+    Eigen::VectorXd at = problem.home;
+    for (const Pick& pick : plan.picks) {
+      ASSERT_EQ(pick.motions.size(), 5u);
+      for (const PickMotion& motion : pick.motions) {
+        EXPECT_LE((motion.trajectory.positions.front() - at).cwiseAbs().maxCoeff(), 1e-9) << to_string(motion.kind);
+        for (std::size_t i = 1; i < motion.trajectory.positions.size(); ++i) {
+          const double moved = (motion.trajectory.positions[i] - motion.trajectory.positions[i - 1]).cwiseAbs().maxCoeff();
+          EXPECT_LE(moved, 1.5 * (motion.trajectory.times[i] - motion.trajectory.times[i - 1]) + 1e-6);
+        }
+        at = motion.trajectory.positions.back();
+      }
+      EXPECT_LE((at - problem.home).head(5).cwiseAbs().maxCoeff(), 1e-9);
+      const double turns = (at[5] - home) / (2 * M_PI);
+      EXPECT_NEAR(turns, std::round(turns), 1e-9);
+    }
+  }
 }
 
 TEST(PartSupply, TheSamePlanAtAnyThreadCount) {

@@ -262,7 +262,8 @@ void bind_sequence(py::module_& m) {
       .def("__repr__", [](const StopSet& s) {
         return std::string("StopSet(") + to_string(s.outcome) + ", " + std::to_string(s.stops.size()) + " stops)";
       });
-  m.def("minimal_stops", &minimal_stops, py::arg("grid"), py::arg("intersections"), py::arg("trays"),
+  m.def("minimal_stops",
+        py::overload_cast<const BaseGrid&, const std::vector<Intersection>&, int>(&minimal_stops), py::arg("grid"), py::arg("intersections"), py::arg("trays"),
         "The least number of intersections that cover all trays (P1 equation 3.1), with proof.");
   py::class_<BasePath>(m, "BasePath", "A drive of the base.")
       .def_readonly("outcome", &BasePath::outcome)
@@ -342,10 +343,17 @@ void bind_plan_result(py::module_& m) {
       .def_readonly("message", &Obstruction::message)
       .def_readonly("largest_uncertainty", &Obstruction::largest_uncertainty)
       .def_readonly("missing_reach", &Obstruction::missing_reach)
+      .def_readonly("advised_move", &Obstruction::advised_move, "Translation of the tray in the world's x and y [m].")
+      .def_readonly("move_trays", &Obstruction::move_trays, "Trays that move together by advised_move.")
+      .def_readonly("move_objects", &Obstruction::move_objects, "Objects of the scene that move with them.")
+      .def_readonly("needed_opening", &Obstruction::needed_opening, "Gripper opening that would do [m]; 0: not it.")
       .def("to_dict",
            [](const Obstruction& o) {
              return py::dict("tray"_a = o.tray, "part"_a = o.part, "stage"_a = o.stage, "message"_a = o.message,
-                             "largest_uncertainty"_a = o.largest_uncertainty, "missing_reach"_a = o.missing_reach);
+                             "largest_uncertainty"_a = o.largest_uncertainty, "missing_reach"_a = o.missing_reach,
+                             "advised_move"_a = std::vector<double>{o.advised_move.x(), o.advised_move.y()},
+                             "move_trays"_a = o.move_trays, "move_objects"_a = o.move_objects,
+                             "needed_opening"_a = o.needed_opening);
            })
       .def("__repr__", [](const Obstruction& o) { return "Obstruction(" + o.stage + ": " + o.message + ")"; });
   py::class_<PartSupplyPlan>(m, "PartSupplyResult", "The planner's answer; PartSupplyPlan joins it with its scenario.")
@@ -356,6 +364,7 @@ void bind_plan_result(py::module_& m) {
       .def_readonly("intersections", &PartSupplyPlan::intersections)
       .def_readonly("stops", &PartSupplyPlan::stops)
       .def_readonly("lower_bound", &PartSupplyPlan::lower_bound)
+      .def_readonly("proven_minimal", &PartSupplyPlan::proven_minimal, "No fewer stops can serve the regions.")
       .def_readonly("route", &PartSupplyPlan::route)
       .def_readonly("picks", &PartSupplyPlan::picks)
       .def_readonly("robustness_rate", &PartSupplyPlan::robustness_rate)

@@ -126,9 +126,10 @@ class PartSupply {
   bool solve_stops() {
     const StageClock clock(plan_, "intersections and stops");
     plan_.intersections = robust_intersections(plan_.grid, plan_.regions, problem_.options.positioning_uncertainty);
-    StopSet set = minimal_stops(plan_.grid, plan_.intersections.robust, static_cast<int>(plan_.regions.size()));
+    StopSet set = minimal_stops(plan_.grid, plan_.intersections, static_cast<int>(plan_.regions.size()));
     plan_.stops = std::move(set.stops);
     plan_.lower_bound = set.lower_bound;
+    plan_.proven_minimal = set.outcome == Outcome::solved;
     unreachable_ = std::move(set.unreachable_trays);
     return set.outcome == Outcome::solved || set.outcome == Outcome::approximate;
   }
@@ -137,7 +138,7 @@ class PartSupply {
     for (int region : unreachable_) {
       plan_.obstructions.push_back(explain_region(problem_, database_, evaluator, plan_.grid,
                                                   plan_.region_trays[static_cast<std::size_t>(region)],
-                                                  plan_.regions[static_cast<std::size_t>(region)]));
+                                                  plan_.regions[static_cast<std::size_t>(region)], plan_.obstructions));
     }
   }
 
@@ -158,7 +159,7 @@ class PartSupply {
     if (!order_stops(routes)) return false;
     std::set<std::pair<int, int>> gone;
     for (int stop = 0; stop < static_cast<int>(plan_.stops.size()); ++stop) {
-      if (!picks_at(stop, gone)) return false;
+      if (!picks_at(stop, routes, gone)) return false;
     }
     join_picks();
     return plan_legs(routes);
@@ -198,7 +199,7 @@ class PartSupply {
   }
 
   /// Picks at one stop; when some motion fails there, at other places of the same region.
-  bool picks_at(int index, std::set<std::pair<int, int>>& gone) {
+  bool picks_at(int index, BaseRoutes& routes, std::set<std::pair<int, int>>& gone) {
     const StageClock clock(plan_, "picks");
     Stop& stop = plan_.stops[static_cast<std::size_t>(index)];
     std::vector<int> trays;
@@ -208,6 +209,7 @@ class PartSupply {
       const StopPicks first = found;
       for (const Stop& place : other_places(plan_.grid, plan_.regions, stop, problem_.options.positioning_uncertainty,
                                             2 * plan_.grid.resolution, kOtherPlaces)) {
+        if (routes.between(problem_.start, place.pose).outcome != Outcome::solved) continue;
         found = plan_stop_picks(problem_, database_, place.pose, trays, remaining(gone), monitor_);
         if (found.outcome == Outcome::solved && !still_robust(place)) found.outcome = Outcome::infeasible;
         if (found.outcome == Outcome::solved) stop = place;
@@ -234,8 +236,9 @@ class PartSupply {
     const BasePoseEvaluator evaluator(problem_, database_);
     std::vector<BaseRegion> scratch = plan_.regions;
     const RobustnessResult check = check_robustness(problem_, evaluator, plan_.grid, {place}, plan_.region_trays, scratch, monitor_);
+    if (check.stopped || check.rate() < kRequiredRate) return false;
     plan_.robustness_rate = std::min(plan_.robustness_rate, check.rate());
-    return !check.stopped && check.rate() >= kRequiredRate;
+    return true;
   }
 
   bool no_motion(const Stop& stop, const StopPicks& failed) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <map>
 #include <string>
 #include <vector>
@@ -18,13 +19,25 @@ namespace mmgrasp {
 /// Seconds of wall time a stage took.
 struct MMGRASP_EXPORT StageTime { std::string stage; double seconds = 0; };
 
-/// Why there is no plan, and what would help.
+/// Why there is no plan, and what would help. The fields after `message` are advice that can be applied as it stands.
 struct MMGRASP_EXPORT Obstruction {
   std::string tray, part;           ///< What blocks; part empty when the whole tray does.
   std::string stage;                ///< "grasp", "region", "robustness", "motion", "route".
   std::string message;              ///< One sentence a person can act on.
   double largest_uncertainty = -1;  ///< Largest positioning uncertainty that still works [m]; < 0: none does.
-  double missing_reach = 0;         ///< How far the nearest allowed base pose falls short of the part [m]; 0: reach is not it.
+  /// How far the nearest base pose at which the robot may stand falls short of the part at a single grasp [m]; 0: reach is
+  /// not it. It only brings that grasp to the edge of the reach: the move that suffices is `advised_move`.
+  double missing_reach = 0;
+  /// Shortest translation found, in the world's x and y [m], after which a disc of the positioning uncertainty has room:
+  /// `move_trays` (this tray first) with their parts and `move_objects` of the scene move together by it. It was checked in
+  /// the moved scene for base poses, start and goal; not for arm motions and the drive. Zero: moving does not help or is not
+  /// needed. Obstructions of trays that move together tell the same move: apply it once.
+  Eigen::Vector2d advised_move = Eigen::Vector2d::Zero();
+  std::vector<std::string> move_trays;    ///< Empty when advised_move is zero.
+  std::vector<std::string> move_objects;  ///< What carries the trays, and what else stands on that.
+  /// Gripper opening at which a part that is too wide can be held with the gripper's clearance on both sides [m]; 0: width is not
+  /// it. From the bounds of the part's shapes along its own axes, those that stand upright in the world left out.
+  double needed_opening = 0;
 };
 
 struct MMGRASP_EXPORT PartSupplyPlan {
@@ -34,7 +47,10 @@ struct MMGRASP_EXPORT PartSupplyPlan {
   std::vector<int> region_trays;            ///< Tray index of each region.
   Intersections intersections;              ///< Tray indices in it refer to regions.
   std::vector<Stop> stops;                  ///< In visiting order; tray indices refer to regions.
-  int lower_bound = 0;                      ///< Proven least number of stops for these regions.
+  int lower_bound = 0;                      ///< Proven: fewer stops cannot serve these regions.
+  /// The stops are as few as the regions allow. False when that is not proven: the search for shared regions or for the least
+  /// cover ended early, or no stops were found.
+  bool proven_minimal = false;
   std::vector<BasePath> route;              ///< stops.size() + 1 legs, from start to goal.
   std::vector<Pick> picks;                  ///< In the order carried out.
   double robustness_rate = 0;               ///< Share of sampled base poses at the stops from which all parts stay graspable.

@@ -16,10 +16,19 @@ constexpr std::array<const char*, kKinds> kKindNames = {"reach", "approach", "li
 constexpr double kJoin = 1e-6;        // Ends that must coincide [rad or m].
 constexpr double kRest = 1e-3;        // Speed that counts as rest [rad/s or m/s].
 constexpr double kOpening = 1e-6;     // [m]
+constexpr double kGripPlay = 0.01;    // Fingers may close this far below a grasp's width to meet the part [m],
+constexpr double kGripShare = 0.25;   // or this share of it.
 constexpr double kMaxSteps = 200000;  // Configurations of one motion: 2000 rad at the default step.
 
 bool is_holding(int kind) {
   return kind == kLift || kind == kCarry;
+}
+
+/// One motion after another: a controller takes the numbers as they stand, so a whole turn between them is a step, too.
+void check_join(const CheckedMotion& before, const CheckedMotion& after, const std::string& where, Faults& faults) {
+  const double by = (before.positions.back() - after.positions.front()).cwiseAbs().maxCoeff();
+  if (by <= kJoin) return;
+  faults.push_back({"discontinuous", where, "does not start where the last ended: a joint is off by " + text(by)});
 }
 
 /// Everything about one pick. Broken motions end the checks that need them, not the others.
@@ -33,7 +42,8 @@ class PickCheck {
         judge_(judge),
         faults_(faults) {}
 
-  void run() {
+  /// False when its motions hold no usable numbers.
+  bool run() {
     bool usable = true;
     for (const CheckedMotion& motion : pick_.motions) {
       const std::string where = name(motion.kind);
@@ -43,11 +53,13 @@ class PickCheck {
         usable = false;
       }
     }
-    if (!check_order() || !usable || !resolve()) return;
+    usable = check_order() && usable;
+    if (!usable || !resolve()) return usable;
     check_openings();
     check_joins();
     check_poses();
     check_collisions();
+    return true;
   }
 
  private:
@@ -107,27 +119,25 @@ class PickCheck {
     }
   }
 
-  /// Largest difference of two configurations; continuous joints are compared as angles.
-  double gap(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
+  /// Largest difference from home. Home is a pose of the arm: whole turns of a continuous joint lead to it as well.
+  double gap_to_home(const Eigen::VectorXd& q) const {
     double largest = 0;
-    for (Eigen::Index j = 0; j < a.size(); ++j) {
-      const double difference = a[j] - b[j];
+    for (Eigen::Index j = 0; j < q.size(); ++j) {
+      const double difference = q[j] - plan_.home[j];
       largest = std::max(largest, std::abs(judge_.kinematics().continuous()[j] ? wrap_angle(difference) : difference));
     }
     return largest;
   }
 
   void check_joins() {
-    const auto join = [this](const Eigen::VectorXd& a, const Eigen::VectorXd& b, const std::string& where,
-                             const char* what) {
-      const double by = gap(a, b);
-      if (by > kJoin) fault("discontinuous", where, std::string(what) + ": a joint is off by " + text(by));
+    const auto at_home = [this](const Eigen::VectorXd& q, int kind, const char* what) {
+      const double by = gap_to_home(q);
+      if (by > kJoin) fault("discontinuous", name(kind), std::string(what) + ": a joint is off by " + text(by));
     };
-    join(plan_.home, motion(kReach).positions.front(), name(kReach), "does not start at home");
-    join(motion(kRetreat).positions.back(), plan_.home, name(kRetreat), "does not end at home");
+    at_home(motion(kReach).positions.front(), kReach, "does not start at home");
+    at_home(motion(kRetreat).positions.back(), kRetreat, "does not end at home");
     for (int kind = 1; kind < kKinds; ++kind) {
-      join(motion(kind - 1).positions.back(), motion(kind).positions.front(), name(kind),
-           "does not start where the last ended");
+      check_join(motion(kind - 1), motion(kind), name(kind), faults_);
       const double jump = (motion(kind - 1).velocities.back() - motion(kind).velocities.front()).cwiseAbs().maxCoeff();
       if (jump > kRest) fault("discontinuous", name(kind), "a velocity jumps by " + text(jump) + " at its start");
     }
@@ -192,19 +202,19 @@ class PickCheck {
     }
   }
 
-  /// Somewhere between the grasp's width and fully closed the fingers must meet the part, or nothing is held.
+  /// Two fingers must meet the part at once, at the grasp's width or somewhat below it: collision shapes may stand back a
+  /// little from the pads that the width is meant for. Otherwise nothing is held.
   void check_grip(const Eigen::VectorXd& q) {
-    const Stage& stage = judge_.stage();
-    bool fingers = false;
-    for (std::size_t link = 0; link < stage.is_finger.size(); ++link) {
-      fingers = fingers || (stage.is_finger[link] && !stage.link_solids[link].empty());
+    constexpr int kSteps = 20;
+    const double below = std::min(grasp_->width, std::max(kGripPlay, kGripShare * grasp_->width));
+    int most = 0;
+    for (int i = 0; i <= kSteps && most < 2; ++i) {
+      most = std::max(most, judge_.fingers_touching_held(q, grasp_->width - below * i / kSteps));
     }
-    if (!fingers) return;
-    constexpr int kSteps = 10;
-    for (int i = 0; i <= kSteps; ++i) {
-      if (judge_.fingers_touch_held(q, grasp_->width * (kSteps - i) / kSteps)) return;
-    }
-    fault("grasp-empty", context_.pick_name(index_), "the fingers close without touching the part");
+    if (most >= 2) return;
+    fault("grasp-empty", context_.pick_name(index_),
+          "closing from " + text(grasp_->width) + " m to " + text(grasp_->width - below) + " m, " +
+              (most == 0 ? "no finger touches the part" : "only one finger link touches the part"));
   }
 
   void walk(int kind) {
@@ -245,17 +255,30 @@ class PickCheck {
   Pose T_tip_part_ = Pose::Identity();
 };
 
+/// The arm keeps its numbers while the base drives: each pick starts where the last one ended.
+void check_picks_join(const Context& context, const std::vector<char>& usable, Faults& faults) {
+  for (std::size_t pick = 1; pick < usable.size(); ++pick) {
+    if (!usable[pick - 1] || !usable[pick]) continue;
+    const std::vector<CheckedPick>& picks = context.plan.picks;
+    check_join(picks[pick - 1].motions.back(), picks[pick].motions.front(), context.pick_name(pick) + ", reach", faults);
+  }
+}
+
 }  // namespace
 
 void check_arm_motions(const Context& context, Faults& faults, std::size_t& configurations) {
   const std::size_t picks = context.plan.picks.size();
   std::vector<Judge> judges(resolve_threads(context.options.threads), Judge(context.stage));
   std::vector<Faults> found(picks);
+  std::vector<char> usable(picks, 0);
   parallel_for(
       picks, context.options.threads,
-      [&](std::size_t pick, int worker) { PickCheck(context, pick, judges[worker], found[pick]).run(); },
+      [&](std::size_t pick, int worker) {
+        usable[pick] = PickCheck(context, pick, judges[worker], found[pick]).run();
+      },
       context.monitor, "arm motions");
   for (const Faults& some : found) faults.insert(faults.end(), some.begin(), some.end());
+  check_picks_join(context, usable, faults);
   for (const Judge& judge : judges) configurations += judge.queries();
 }
 

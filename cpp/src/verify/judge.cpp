@@ -41,6 +41,39 @@ double robot_reach(const Robot& robot, const std::vector<std::vector<Solid>>& li
   return reach;
 }
 
+int parent_of(const Robot& robot, int link) {
+  const int joint = robot.links()[link].parent_joint;
+  return joint < 0 ? -1 : robot.joints()[joint].parent_link;
+}
+
+/// The link that `link` is joined to, looking through links without shapes.
+int carrier_of(const Robot& robot, int link) {
+  int above = parent_of(robot, link);
+  while (above >= 0 && robot.links()[above].collisions.empty()) above = parent_of(robot, above);
+  return above;
+}
+
+/// First link of the rigid body that this link belongs to.
+int rigid_body_of(const Robot& robot, int link) {
+  int joint = robot.links()[link].parent_joint;
+  while (joint >= 0 && robot.joints()[joint].type == JointType::fixed) {
+    link = robot.joints()[joint].parent_link;
+    joint = robot.links()[link].parent_joint;
+  }
+  return link;
+}
+
+bool joined(const Robot& robot, int a, int b) {
+  return carrier_of(robot, a) == b || carrier_of(robot, b) == a || rigid_body_of(robot, a) == rigid_body_of(robot, b);
+}
+
+/// Links that are said to touch never must not touch: testing them shows whether that is true. Links joined by a joint
+/// or rigidly touch by construction, others for a reason that this check cannot know.
+bool needs_test(const Robot& robot, int a, int b) {
+  if (!robot.pair_disabled(a, b)) return true;
+  return robot.disabled_pairs().at({a, b}) == DisabledReason::never && !joined(robot, a, b);
+}
+
 }  // namespace
 
 PlacedBody place_body(const std::string& name, const std::vector<LinkShape>& shapes, const Pose& T_world_body) {
@@ -58,7 +91,7 @@ Stage make_stage(const Robot& robot, const ArmSetup& setup, const std::vector<in
   for (int a = 0; a < links; ++a) {
     for (int b = a + 1; b < links; ++b) {
       const bool solid = !stage.link_solids[a].empty() && !stage.link_solids[b].empty();
-      if (solid && !robot.pair_disabled(a, b)) stage.self_pairs.emplace_back(a, b);
+      if (solid && needs_test(robot, a, b)) stage.self_pairs.emplace_back(a, b);
     }
   }
   stage.is_finger.assign(links, false);
@@ -196,16 +229,19 @@ Touch Judge::touch(const Eigen::VectorXd& arm, double opening) {
   return held_ >= 0 ? held_touch() : Touch{};
 }
 
-bool Judge::fingers_touch_held(const Eigen::VectorXd& arm, double opening) {
+int Judge::fingers_touching_held(const Eigen::VectorXd& arm, double opening) {
   place(arm, opening);
-  if (held_ < 0) return false;
+  if (held_ < 0) return 0;
+  int touching = 0;
   for (const int link : solid_links_) {
     if (!stage_->is_finger[link]) continue;
     for (std::size_t i = 0; i < held_body_.solids.size(); ++i) {
-      if (link_touches(link, held_body_.solids[i], held_body_.T_world_shape[i], held_body_.bounds[i])) return true;
+      if (!link_touches(link, held_body_.solids[i], held_body_.T_world_shape[i], held_body_.bounds[i])) continue;
+      ++touching;
+      break;
     }
   }
-  return false;
+  return touching;
 }
 
 }  // namespace mmgrasp::verify

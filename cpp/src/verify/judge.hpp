@@ -62,8 +62,8 @@ class Judge {
   void drop();
 
   Touch touch(const Eigen::VectorXd& arm, double opening);
-  /// Whether a finger link touches the held body.
-  bool fingers_touch_held(const Eigen::VectorXd& arm, double opening);
+  /// How many finger links touch the held body.
+  int fingers_touching_held(const Eigen::VectorXd& arm, double opening);
   Pose tip(const Eigen::VectorXd& arm) { return T_world_root_ * kinematics_.tip(arm); }
   std::size_t queries() const { return queries_; }
 

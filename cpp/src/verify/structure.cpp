@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -89,6 +90,14 @@ void Structure::arm(ArmSetup& setup) {
   };
   limits(plan.velocity_limits, "velocity_limits");
   limits(plan.acceleration_limits, "acceleration_limits");
+  for (std::size_t i = 0; i < std::min(plan.velocity_limits.size(), count); ++i) {
+    if (setup.arm[i] < 0 || !finite(plan.velocity_limits[i])) continue;
+    const double most = plan.robot.joints()[setup.arm[i]].velocity;
+    if (plan.velocity_limits[i] <= most * (1 + 1e-9)) continue;
+    faults.push_back({"limit-exceeds-robot", "velocity_limits",
+                      text(plan.velocity_limits[i]) + " for '" + plan.arm_joints[i] + "', the robot itself allows " +
+                          text(most) + " rad/s or m/s"});
+  }
   need(static_cast<std::size_t>(plan.home.size()) == count && finite(plan.home), "home",
        "must hold one finite value an arm joint (" + text(count) + ")");
 }
@@ -115,6 +124,10 @@ void Structure::gripper(ArmSetup& setup, std::vector<int>& finger_links) {
     }
   }
   for (const std::string& name : plan.finger_links) finger_links.push_back(link(name, "finger_links"));
+  const std::size_t different = std::set<std::string>(plan.finger_links.begin(), plan.finger_links.end()).size();
+  if (ok && different < 2) {
+    faults.push_back({"finger-links", "finger_links", "names " + text(different) + " links: a gripper has at least two"});
+  }
 }
 
 void Structure::scalars() {

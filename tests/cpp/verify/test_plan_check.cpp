@@ -142,6 +142,117 @@ TEST(PlanCheck, DiscontinuousMotion) {
   EXPECT_EQ(codes_of(plan), Codes{"discontinuous"});
 }
 
+/// The good plan on a robot whose URDF and SRDF are changed: texts are replaced by others.
+PlanToCheck on_other_robot(const PlanToCheck& good, std::string urdf_text, const std::string& srdf_text) {
+  mmgrasp::RobotOptions options;
+  options.base = mmgrasp::BaseKind::diff_drive;
+  PlanToCheck plan = good;
+  plan.robot = mmgrasp::Robot::from_strings(urdf_text, srdf_text, options);
+  return plan;
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  text.replace(text.find(what), what.size(), by);
+  return text;
+}
+
+/// The gantry with a yaw that turns without end.
+PlanToCheck endless_yaw_plan() {
+  std::string text = replaced(urdf(), "\"yaw\" type=\"revolute\"", "\"yaw\" type=\"continuous\"");
+  return on_other_robot(good_plan(), replaced(text, "lower=\"-3.1\" upper=\"3.1\" ", ""), srdf());
+}
+
+void turn_yaw(CheckedMotion& motion, double by) {
+  for (Eigen::VectorXd& q : motion.positions) q[4] += by;
+}
+
+TEST(PlanCheck, WholeTurnsBetweenMotionsAreSteps) {
+  EXPECT_EQ(codes_of(endless_yaw_plan()), Codes{});
+  for (int pick = 0; pick < 3; ++pick) {
+    for (const int kind : {kReach, kApproach, kLift, kCarry, kRetreat}) {
+      PlanToCheck plan = endless_yaw_plan();
+      turn_yaw(motion(plan, pick, kind), 2 * M_PI);
+      EXPECT_EQ(codes_of(plan), Codes{"discontinuous"}) << pick << " " << kind;
+    }
+  }
+  PlanToCheck plan = endless_yaw_plan();
+  for (CheckedMotion& m : plan.picks[1].motions) turn_yaw(m, -2 * M_PI);  // the arm's numbers persist over the drive
+  EXPECT_EQ(codes_of(plan), Codes{"discontinuous"});
+}
+
+TEST(PlanCheck, HomeMayBeWholeTurnsAway) {
+  PlanToCheck plan = endless_yaw_plan();
+  for (CheckedPick& pick : plan.picks) {
+    for (CheckedMotion& m : pick.motions) turn_yaw(m, 4 * M_PI);
+  }
+  EXPECT_EQ(codes_of(plan), Codes{});
+  for (CheckedPick& pick : plan.picks) {
+    for (CheckedMotion& m : pick.motions) turn_yaw(m, 0.1);
+  }
+  EXPECT_TRUE(codes_of(plan).count("discontinuous"));
+}
+
+TEST(PlanCheck, VelocityLimitAboveTheRobots) {
+  PlanToCheck plan = good_plan();
+  plan.velocity_limits[3] = 1.001;  // the URDF says 1
+  EXPECT_EQ(codes_of(plan), Codes{"limit-exceeds-robot"});
+  plan.velocity_limits[3] = 0.999;
+  plan.acceleration_limits[3] = 1e3;
+  EXPECT_EQ(codes_of(plan), Codes{});
+}
+
+TEST(PlanCheck, FingerLinksAreAtLeastTwo) {
+  PlanToCheck plan = good_plan();
+  for (const std::vector<std::string>& links :
+       {std::vector<std::string>{}, std::vector<std::string>{"left"}, std::vector<std::string>{"left", "left"}}) {
+    plan.finger_links = links;
+    EXPECT_TRUE(codes_of(plan).count("finger-links"));
+  }
+}
+
+TEST(PlanCheck, OneFingerHoldsNothing) {
+  // The right finger's shape shrinks to a stub up at the hand: only the left one meets the part.
+  const std::string stub = replaced(urdf(), "<origin xyz=\"0 -0.005 0\"/><geometry><box size=\"0.02 0.01 0.08\"/>",
+                                    "<origin xyz=\"0 -0.005 0.035\"/><geometry><box size=\"0.02 0.01 0.01\"/>");
+  EXPECT_EQ(codes_of(on_other_robot(good_plan(), stub, srdf())), Codes{"grasp-empty"});
+  // Said to be the fingers, the hand does not help: it stays away from the part.
+  PlanToCheck plan = on_other_robot(good_plan(), stub, srdf());
+  plan.finger_links = {"left", "hand"};
+  EXPECT_TRUE(codes_of(plan).count("grasp-empty"));
+  // Fingers that meet the part only when nearly closed do not hold it at its width.
+  plan = good_plan();
+  plan.fingers[0].closed = -0.02;  // outside its limits as well, which is another fault
+  plan.fingers[0].open = 0.05;
+  EXPECT_FALSE(codes_of(plan).count("grasp-empty"));
+  for (CheckedPart& part : plan.parts) {
+    for (CheckedGrasp& grasp : part.grasps) grasp.width = 0.08;
+  }
+  EXPECT_TRUE(codes_of(plan).count("grasp-empty"));
+}
+
+TEST(PlanCheck, PairsThatNeverTouchAreTested) {
+  PlanToCheck plan = good_plan();
+  plan.home = joints(-0.6, 0, 0);
+  ASSERT_TRUE(codes_of(plan).count("home-collision"));
+  const auto doctored = [&plan](const std::string& reason) {
+    const std::string pair = " link2=\"hand\" reason=\"" + reason + "\"/>";
+    std::string text = "<disable_collisions link1=\"left\" link2=\"right\" reason=\"Never\"/>";
+    for (const char* link : {"left", "right"}) {
+      text += std::string("<disable_collisions link1=\"base\" link2=\"") + link + "\" reason=\"User\"/>";
+    }
+    text += "<disable_collisions link1=\"base\"" + pair;
+    return on_other_robot(plan, urdf(), "<robot name=\"gantry\">" + text + "</robot>");
+  };
+  EXPECT_TRUE(codes_of(doctored("Never")).count("home-collision"));
+  // What a user disabled is believed; so the fingers, closed against each other, are the only fault left.
+  const PlanCheckResult result = check_plan(doctored("User"), quick());
+  ASSERT_TRUE(codes(result).count("home-collision")) << listed(result);
+  for (const Fault& fault : result.faults) {
+    if (fault.code != "home-collision") continue;
+    EXPECT_EQ(fault.message, "'left' touches 'right'");
+  }
+}
+
 TEST(PlanCheck, NotAtRestWhereFingersMove) {
   PlanToCheck plan = good_plan();
   motion(plan, 0, kApproach).velocities.back()[0] = -0.01;

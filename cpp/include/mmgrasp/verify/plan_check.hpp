@@ -113,13 +113,14 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 
 /// One thing that is physically wrong with the plan. The codes, by what they are about:
 /// - the data: `malformed` (names, lengths, numbers; nothing else is checked then), `stopped` (ended by the monitor);
-/// - home: `home-limit`, `home-collision` (robot with itself), `start-collision`, `finger-limit`;
+/// - home: `home-limit`, `home-collision` (robot with itself), `start-collision`, `finger-limit`,
+///   `finger-links` (fewer than two), `limit-exceeds-robot` (velocity limits above the URDF's);
 /// - which part is picked: `part-unknown`, `part-forgotten`, `part-repeated`, `part-not-target`, `wrong-tray`,
 ///   `wrong-stop`, `stop-order`, `grasp-invalid` (no such index), `tray-unknown`, `tray-forgotten`, `tray-repeated`;
 /// - one arm motion: `motion-order`, `motion-shape` (lengths, NaN), `times`, `too-long`, `position-limit`,
 ///   `velocity-limit`, `acceleration-limit`, `discontinuous`, `not-at-rest`, `opening`, `holding`, `self-collision`,
 ///   `scene-collision`, `held-collision`;
-/// - what it is for: `not-straight` (approach), `grasp-missed`, `grasp-empty` (the fingers close on nothing),
+/// - what it is for: `not-straight` (approach), `grasp-missed`, `grasp-empty` (fewer than two fingers close on it),
 ///   `no-lift`, `release-outside`, `release-tilted`, `release-height`;
 /// - the route: `route-legs` (their number), `route-ends`, `route-not-driveable`, `route-collision`, `too-long`;
 /// - stops: `region-malformed`, `region-missing`, `region-too-small`, `stop-heading`, `stop-radius`,
@@ -148,7 +149,9 @@ struct MMGRASP_EXPORT PlanCheckResult {
 /// Between samples a motion is the cubic through positions and velocities. Limits on positions hold on all of it (slack
 /// 1e-6), on velocities at the samples (1 %) and between them (5 %), and some motion within 1 % of the acceleration
 /// limits must join each two samples. Discs are known to 2e-6 m: a stop may use one that fits within this, a smaller
-/// cover may not rest on one. Pairs of links that the robot's own description disables are not tested.
+/// cover may not rest on one. Motions join in the numbers as they stand, within a pick and from pick to pick; only home
+/// may be reached whole turns away. Pairs of links that the robot's own description disables are not tested, except those
+/// said to touch never.
 MMGRASP_EXPORT PlanCheckResult check_plan(const PlanToCheck& plan, const PlanCheckOptions& options = {},
                                           const Monitor& monitor = {});
 

@@ -47,6 +47,7 @@ def plan_to_dict(scenario: Scenario, result: PartSupplyResult, timings: list[tup
             for s in result.stops
         ],
         "lower_bound": result.lower_bound,
+        "proven_minimal": result.proven_minimal,
         "route": [
             {
                 "poses": leg.poses.tolist(),

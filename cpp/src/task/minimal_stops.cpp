@@ -72,4 +72,14 @@ StopSet minimal_stops(const BaseGrid& grid, const std::vector<Intersection>& int
   return result;
 }
 
+StopSet minimal_stops(const BaseGrid& grid, const Intersections& intersections, int trays) {
+  StopSet result = minimal_stops(grid, intersections.robust, trays);
+  if (!intersections.complete) result.lower_bound = std::min(result.lower_bound, 1);
+  if (result.outcome == Outcome::solved || result.outcome == Outcome::approximate) {
+    const bool proven = static_cast<int>(result.stops.size()) <= result.lower_bound;
+    result.outcome = proven ? Outcome::solved : Outcome::approximate;
+  }
+  return result;
+}
+
 }  // namespace mmgrasp

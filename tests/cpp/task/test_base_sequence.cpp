@@ -232,6 +232,24 @@ TEST(MinimalStops, TraysWithoutAPlaceAreNamed) {
   EXPECT_EQ(stops.unreachable_trays, (std::vector<int>{1, 3}));
 }
 
+/// Two trays that share all their cells, but the search ends before their pair is looked at.
+TEST(MinimalStops, AnIncompleteSearchIsNoProof) {
+  const BaseGrid grid = make_grid(10, 10);
+  std::vector<BaseRegion> regions(2);
+  for (BaseRegion& region : regions) region.cells.assign(grid.size(), 1);
+  const StopSet all = minimal_stops(grid, robust_intersections(grid, regions, 0.0), 2);
+  EXPECT_EQ(all.outcome, Outcome::solved);
+  EXPECT_EQ(all.stops.size(), 1u);
+  const Intersections some = robust_intersections(grid, regions, 0.0, 2);
+  ASSERT_FALSE(some.complete);
+  const StopSet stops = minimal_stops(grid, some, 2);
+  EXPECT_EQ(stops.outcome, Outcome::approximate);
+  EXPECT_EQ(stops.stops.size(), 2u);
+  EXPECT_EQ(stops.lower_bound, 1);
+  const StopSet single = minimal_stops(grid, robust_intersections(grid, {regions[0]}, 0.0, 1), 1);
+  EXPECT_EQ(single.outcome, Outcome::solved);  // one stop is needed anyway
+}
+
 /// Least count, and of those the largest sum of radii, by trying all subsets of intersections.
 TEST(MinimalStops, TwoHundredRandomInstancesAgainstEnumeration) {
   for (int instance = 0; instance < 200; ++instance) {

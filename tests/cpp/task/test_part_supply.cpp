@@ -81,6 +81,7 @@ TEST(PartSupply, SmallStoreroomIsSolvedAndHoldsForTheIndependentChecker) {
   EXPECT_TRUE(plan.obstructions.empty());
   EXPECT_EQ(plan.stops.size(), 1u);
   EXPECT_EQ(plan.lower_bound, 1);
+  EXPECT_TRUE(plan.proven_minimal);
   EXPECT_EQ(plan.route.size(), 2u);
   ASSERT_EQ(plan.picks.size(), 4u);
   EXPECT_GE(plan.robustness_rate, 0.999);
@@ -146,6 +147,7 @@ TEST(PartSupply, TooLargeAnUncertaintyAdvisesOneThatWorks) {
   problem.options.positioning_uncertainty = 0.5;
   const PartSupplyPlan failed = plan_part_supply(problem, database());
   ASSERT_EQ(failed.outcome, Outcome::infeasible);
+  EXPECT_FALSE(failed.proven_minimal);
   ASSERT_FALSE(failed.obstructions.empty());
   double advised = 1;
   for (const Obstruction& some : failed.obstructions) {

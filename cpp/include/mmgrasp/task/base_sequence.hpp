@@ -49,7 +49,7 @@ struct MMGRASP_EXPORT Stop {
 };
 
 struct MMGRASP_EXPORT StopSet {
-  Outcome outcome = Outcome::infeasible;
+  Outcome outcome = Outcome::infeasible;  ///< Solved: proven least; approximate: a cover that may have too many stops.
   std::vector<Stop> stops;           ///< In no order yet.
   int lower_bound = 0;               ///< Proven least number of stops.
   std::vector<int> unreachable_trays;
@@ -58,5 +58,9 @@ struct MMGRASP_EXPORT StopSet {
 /// The least number of robust intersections that cover all trays (P1 equation 3.1), by 0-1 programming with proof; among
 /// equally few, larger discs are preferred. Each tray goes to the chosen stop with the largest disc.
 MMGRASP_EXPORT StopSet minimal_stops(const BaseGrid& grid, const std::vector<Intersection>& intersections, int trays);
+
+/// The same over what robust_intersections() found. When that is not complete, sets of trays that were never looked at could
+/// save stops: all that is proven then is that one stop is needed, and more than one stop is an approximate answer.
+MMGRASP_EXPORT StopSet minimal_stops(const BaseGrid& grid, const Intersections& intersections, int trays);
 
 }  // namespace mmgrasp

@@ -4,18 +4,49 @@
 #include <CoinPackedMatrix.hpp>
 #include <OsiClpSolverInterface.hpp>
 #include <algorithm>
+#include <bitset>
 #include <cmath>
+#include <cstdint>
 
 namespace mmgrasp::verify {
 namespace {
 
 constexpr int kHalvings = 8;
+constexpr double kMaxWork = 1e8;  // Cells read and sets compared in a search for discs: below a second.
 
 bool holds(const RegionSet& outer, const RegionSet& inner) {
   return std::includes(outer.begin(), outer.end(), inner.begin(), inner.end());
 }
 
-/// Halving of squares over the floor, level by level: what the coarse levels find spares most of the fine ones.
+/// A set of regions as bits: the search asks for supersets far too often for trees.
+class Bits {
+ public:
+  explicit Bits(int size = 0) : words_((static_cast<std::size_t>(size) + 63) / 64, 0) {}
+  void insert(int i) { words_[static_cast<std::size_t>(i) / 64] |= std::uint64_t{1} << (i % 64); }
+  bool has(int i) const { return words_[static_cast<std::size_t>(i) / 64] >> (i % 64) & 1u; }
+  bool empty() const {
+    return std::all_of(words_.begin(), words_.end(), [](std::uint64_t word) { return word == 0; });
+  }
+  bool holds(const Bits& inner) const {
+    for (std::size_t i = 0; i < words_.size(); ++i) {
+      if (inner.words_[i] & ~words_[i]) return false;
+    }
+    return true;
+  }
+  int count() const {
+    std::size_t bits = 0;
+    for (const std::uint64_t word : words_) bits += std::bitset<64>(word).count();
+    return static_cast<int>(bits);
+  }
+  bool operator<(const Bits& other) const { return words_ < other.words_; }
+
+ private:
+  std::vector<std::uint64_t> words_;
+};
+
+/// Where discs are that lie in several regions. A disc of at most half a cell's size fits into a single cell, and no disc
+/// lies in cells that its middle's cell is not one of: then the cells themselves are the answer. Larger ones are found by
+/// halving squares, level by level: what the coarse levels find spares most of the fine ones.
 class DiscSearch {
  public:
   DiscSearch(const Floor& floor, double radius, const Monitor& monitor)
@@ -23,48 +54,97 @@ class DiscSearch {
 
   std::vector<RegionSet> run() {
     if (floor_.regions() == 0) return {};  // nor is anything known then about the grid's size
-    double half = 0.5 * floor_.grid().resolution;
     std::vector<Square> squares = cells();
+    if (radius_ > 0 && radius_ <= 0.5 * floor_.grid().resolution) {
+      note_all(squares);
+      return sets();
+    }
+    double half = 0.5 * floor_.grid().resolution, work = 0;
     for (int depth = 0; !squares.empty() && !monitor_.stopped(); ++depth, half *= 0.5) {
       for (Square& square : squares) look(square, half);
       if (depth == kHalvings) break;
       squares = halved(squares, half);
+      work += cells_read(squares, half);
+      if (work > kMaxWork) break;
     }
-    return found_;
+    return sets();
   }
 
  private:
   struct Square {
     int layer = 0;
     Eigen::Vector2d centre;
-    RegionSet possible;  // regions that may hold a disc centred somewhere in the square
+    Bits possible;  // regions that may hold a disc centred somewhere in the square
   };
 
+  /// The cells that lie in some region: for a disc in a region, its middle's cell has to be there.
   std::vector<Square> cells() const {
-    RegionSet all;
-    for (int region = 0; region < floor_.regions(); ++region) all.insert(region);
     const CheckedGrid& grid = floor_.grid();
     std::vector<Square> squares;
     for (int layer = 0; layer < static_cast<int>(grid.headings.size()); ++layer) {
       for (int iy = 0; iy < grid.ny; ++iy) {
         for (int ix = 0; ix < grid.nx; ++ix) {
-          squares.push_back({layer, grid.origin + grid.resolution * Eigen::Vector2d(ix + 0.5, iy + 0.5), all});
+          Bits here(floor_.regions());
+          for (int region = 0; region < floor_.regions(); ++region) {
+            if (floor_.inside(region, layer, ix, iy)) here.insert(region);
+          }
+          if (here.empty()) continue;
+          squares.push_back(
+              {layer, grid.origin + grid.resolution * Eigen::Vector2d(ix + 0.5, iy + 0.5), std::move(here)});
         }
       }
     }
     return squares;
   }
 
+  void note(const Bits& set) {
+    if (std::any_of(found_.begin(), found_.end(), [&](const Bits& other) { return other.holds(set); })) return;
+    found_.erase(std::remove_if(found_.begin(), found_.end(), [&](const Bits& other) { return set.holds(other); }),
+                 found_.end());
+    found_.push_back(set);
+  }
+
+  /// Large sets first: they settle most of the small ones.
+  void note_all(const std::vector<Square>& squares) {
+    std::set<Bits> different;
+    for (const Square& square : squares) different.insert(square.possible);
+    std::vector<Bits> by_size(different.begin(), different.end());
+    std::stable_sort(by_size.begin(), by_size.end(),
+                     [](const Bits& a, const Bits& b) { return a.count() > b.count(); });
+    for (const Bits& set : by_size) note(set);
+  }
+
+  std::vector<RegionSet> sets() const {
+    std::vector<RegionSet> sets;
+    for (const Bits& bits : found_) {
+      RegionSet set;
+      for (int region = 0; region < floor_.regions(); ++region) {
+        if (bits.has(region)) set.insert(set.end(), region);
+      }
+      sets.push_back(std::move(set));
+    }
+    return sets;
+  }
+
+  /// What looking at these squares costs.
+  double cells_read(const std::vector<Square>& squares, double half) const {
+    const double reach = (radius_ + half * std::sqrt(2.0)) / floor_.grid().resolution;
+    double regions = 0;
+    for (const Square& square : squares) regions += square.possible.count();
+    return regions * (2 * reach + 1) * (2 * reach + 1) + static_cast<double>(squares.size() * found_.size());
+  }
+
   /// Notes the discs at the square's middle and narrows down what may be in the rest of it.
   void look(Square& square, double half) {
     const double diagonal = half * std::sqrt(2.0);
-    RegionSet certain, possible;
-    for (const int region : square.possible) {
+    Bits certain(floor_.regions()), possible(floor_.regions());
+    for (int region = 0; region < floor_.regions(); ++region) {
+      if (!square.possible.has(region)) continue;
       const double clearance = floor_.clearance(region, square.layer, square.centre, radius_ + diagonal);
       if (clearance >= radius_) certain.insert(region);
       if (clearance + diagonal >= radius_) possible.insert(region);
     }
-    if (!certain.empty()) add_maximal(found_, certain);
+    if (!certain.empty()) note(certain);
     square.possible = std::move(possible);
   }
 
@@ -72,7 +152,7 @@ class DiscSearch {
     const double quarter = 0.5 * half;
     std::vector<Square> next;
     for (const Square& square : squares) {
-      const auto known = [&square](const RegionSet& set) { return holds(set, square.possible); };
+      const auto known = [&square](const Bits& set) { return set.holds(square.possible); };
       if (square.possible.empty() || std::any_of(found_.begin(), found_.end(), known)) continue;
       for (const double dx : {-quarter, quarter}) {
         for (const double dy : {-quarter, quarter}) {
@@ -86,7 +166,7 @@ class DiscSearch {
   const Floor& floor_;
   double radius_;
   const Monitor& monitor_;
-  std::vector<RegionSet> found_;
+  std::vector<Bits> found_;
 };
 
 }  // namespace

@@ -23,15 +23,18 @@ class Floor {
   /// Distance from a point in the region to the nearest place that is not in it; for a point outside, minus the
   /// distance to the region. Not looked at beyond `cap`.
   double clearance(int region, int layer, const Eigen::Vector2d& point, double cap) const;
+  /// Whether a cell is in a region; false outside the grid.
+  bool inside(int region, int layer, int ix, int iy) const;
 
  private:
-  bool inside(int region, int layer, int ix, int iy) const;
   const CheckedGrid& grid_;
   std::vector<const CheckedRegion*> regions_;
 };
 
-/// Every maximal set of regions whose shared floor holds a disc of this radius somewhere, by halving squares until
-/// nothing new can hide in one; sets whose discs fit only in places smaller than 1/256 of a cell are not found.
+/// Every maximal set of regions whose shared floor holds a disc of this radius (> 0) somewhere. Exact for discs of at
+/// most a cell's size. Larger ones are found by halving squares until nothing new can hide in one, down to 1/256 of a
+/// cell, or less far where regions are so ragged that this would take seconds: sets whose discs fit only in places
+/// smaller than that are not found.
 std::vector<RegionSet> common_discs(const Floor& floor, double radius, const Monitor& monitor);
 
 /// Adds a set unless one in the list holds it; drops those that it holds.

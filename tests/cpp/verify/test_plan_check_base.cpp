@@ -211,6 +211,65 @@ TEST(PlanCheckStops, LeastNumberAgreesWithBruteForceOnRectangles) {
   EXPECT_GT(several, 20) << "the trials must not be trivial";
 }
 
+/// Twenty trays on a large floor, their regions full of holes; the first eight trays are wanted.
+PlanToCheck ragged_plan(double uncertainty, double share) {
+  PlanToCheck plan = good_plan();
+  plan.picks.clear();
+  plan.parts.clear();
+  plan.regions.clear();
+  plan.trays.clear();
+  plan.stops.clear();
+  plan.route = {{plan.start}};
+  plan.positioning_uncertainty = uncertainty;
+  plan.grid = {Eigen::Vector2d(-1, 2), 0.05, 100, 100, {0.0, 1.0, 2.0, 3.0}};
+  mmgrasp::Rng rng(7, 0);
+  for (int tray = 0; tray < 20; ++tray) {
+    const std::string name(1, static_cast<char>('A' + tray));
+    CheckedRegion region{name, std::vector<std::uint8_t>(4 * 100 * 100, 0)};
+    for (std::uint8_t& cell : region.cells) cell = rng.uniform() < share;
+    plan.regions.push_back(region);
+    plan.trays.push_back(name);
+    if (tray < 8) plan.parts.push_back(make_part(name + "/cube", name, 0.9, 0.2 * tray, true, 0));
+  }
+  return plan;
+}
+
+/// Least number of cells such that every wanted tray's region holds one: a disc smaller than a cell fits into each.
+int least_cells(const PlanToCheck& plan) {
+  std::set<unsigned> groups;
+  for (std::size_t cell = 0; cell < plan.regions[0].cells.size(); ++cell) {
+    unsigned group = 0;
+    for (unsigned tray = 0; tray < 8; ++tray) group |= plan.regions[tray].cells[cell] ? 1u << tray : 0u;
+    groups.insert(group);
+  }
+  std::vector<int> least(256, 1000);
+  least[0] = 0;
+  for (unsigned covered = 0; covered < 256; ++covered) {
+    for (const unsigned group : groups) least[covered | group] = std::min(least[covered | group], least[covered] + 1);
+  }
+  return least[255];
+}
+
+TEST(PlanCheckStops, SmallUncertaintyOnRaggedRegions) {
+  for (const double share : {0.002, 0.02, 0.2}) {
+    int expected = 0;
+    for (const double uncertainty : {0.0, 0.001, 0.01}) {
+      const PlanToCheck plan = ragged_plan(uncertainty, share);
+      expected = least_cells(plan);
+      EXPECT_EQ(check_plan(plan, quick()).minimal_stops, expected) << share << " " << uncertainty;
+    }
+    EXPECT_GT(expected, 1) << "must not be trivial";
+  }
+}
+
+TEST(PlanCheckStops, RaggedRegionsDoNotHoldUpTheSearch) {
+  // Discs larger than a cell: never fewer stops than with points instead of discs.
+  for (const double share : {0.5, 0.95}) {
+    const PlanToCheck plan = ragged_plan(0.03, share);
+    EXPECT_GE(check_plan(plan, quick()).minimal_stops, least_cells(plan)) << share;
+  }
+}
+
 TEST(PlanCheckRoute, MissingLeg) {
   PlanToCheck plan = good_plan();
   plan.route.pop_back();

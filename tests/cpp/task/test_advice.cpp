@@ -39,6 +39,7 @@ PartSupplyProblem coarse_storeroom() {
   PartSupplyProblem problem = test::small_storeroom(1);
   problem.options.grid.resolution = 0.08;
   problem.options.robustness_samples = 40;
+  problem.scene.add("floor", test::box_shape(8, 8, 0.10), test::at(0, 0, -0.05));
   return problem;
 }
 

@@ -18,6 +18,43 @@ std::shared_ptr<const Stage> build_stage(const PlanToCheck& plan, const ArmSetup
   return stage;
 }
 
+bool bodies_touch(const PlacedBody& a, const PlacedBody& b, const Eigen::Vector3d& shift) {
+  for (std::size_t i = 0; i < a.solids.size(); ++i) {
+    const Pose T_a = Eigen::Translation3d(shift) * a.T_world_shape[i];
+    const Bounds bounds = bounds_at(a.solids[i], T_a);
+    for (std::size_t j = 0; j < b.solids.size(); ++j) {
+      if (bounds.intersects(b.bounds[j]) && touches(a.solids[i], T_a, b.solids[j], b.T_world_shape[j])) return true;
+    }
+  }
+  return false;
+}
+
+/// Whether no small move sets them apart. Works for any shapes, where a depth of penetration is not defined for all.
+bool bodies_overlap(const PlacedBody& a, const PlacedBody& b) {
+  constexpr double kDepth = 1e-4;  // [m]
+  if (!a.total.intersects(b.total) || !bodies_touch(a, b, Eigen::Vector3d::Zero())) return false;
+  for (int x = -1; x <= 1; ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int z = -1; z <= 1; ++z) {
+        const Eigen::Vector3d way(x, y, z);
+        if (way.squaredNorm() > 0 && !bodies_touch(a, b, kDepth * way.normalized())) return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// Parts stand where nothing else is.
+void check_scene_at_rest(const Stage& stage, Faults& faults) {
+  for (std::size_t part = stage.first_part; part < stage.bodies.size(); ++part) {
+    for (std::size_t other = 0; other < part; ++other) {
+      const PlacedBody &a = stage.bodies[part], &b = stage.bodies[other];
+      if (!bodies_overlap(a, b)) continue;
+      faults.push_back({"part-overlap", "part '" + a.name + "'", "overlaps '" + b.name + "' by more than 1e-4 m"});
+    }
+  }
+}
+
 }  // namespace
 
 void PlanCheckOptions::check() const {
@@ -39,6 +76,7 @@ PlanCheckResult check_plan(const PlanToCheck& plan, const PlanCheckOptions& opti
 
   Context context{plan, options, monitor, build_stage(plan, setup, finger_links), {}, {}, {}};
   for (std::size_t i = 0; i < plan.parts.size(); ++i) context.part_index[plan.parts[i].body.name] = static_cast<int>(i);
+  check_scene_at_rest(*context.stage, result.faults);
   check_pick_list(context, result.faults);
   check_stops(context, result.faults, result.minimal_stops);
   check_route(context, result.faults, result.configurations_checked);

@@ -297,6 +297,19 @@ TEST(PlanCheck, NeighbourPartIsInTheWay) {
   EXPECT_TRUE(codes_of(plan).count("scene-collision"));
 }
 
+TEST(PlanCheck, PartsThatOverlapAtRest) {
+  // The part that stays sinks into the table, or moves into its neighbour; contact and 0.05 mm of rounding are no fault.
+  for (const double into : {-1e-4, 0.0, 5e-5, 2e-4, 0.005}) {
+    const bool overlaps = into > 1e-4;
+    PlanToCheck plan = good_plan();
+    plan.parts[2].body.T_world_body.translation().z() = kTableTop + 0.5 * kCube - into;
+    EXPECT_EQ(codes_of(plan).count("part-overlap"), overlaps) << into;
+    plan = good_plan();
+    plan.parts[2].body.T_world_body.translation().y() = 0.1 + kCube - into;
+    EXPECT_EQ(codes_of(plan).count("part-overlap"), overlaps) << into;
+  }
+}
+
 TEST(PlanCheck, PickedPartIsGone) {
   // The second cube is moved to where the first one lay, to a hair: free only because the first is in the bin.
   PlanToCheck plan = good_plan();

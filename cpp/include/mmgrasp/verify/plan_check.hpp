@@ -113,6 +113,7 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 
 /// One thing that is physically wrong with the plan. The codes, by what they are about:
 /// - the data: `malformed` (names, lengths, numbers; nothing else is checked then), `stopped` (ended by the monitor);
+/// - the scene: `part-overlap` (a part in another one or in an obstacle, deeper than 1e-4 m);
 /// - home: `home-limit`, `home-collision` (robot with itself), `start-collision`, `finger-limit`,
 ///   `finger-links` (fewer than two), `limit-exceeds-robot` (velocity limits above the URDF's);
 /// - which part is picked: `part-unknown`, `part-forgotten`, `part-repeated`, `part-not-target`, `wrong-tray`,

@@ -1,0 +1,1499 @@
+"""
+The C++ library behind mmgrasp. Import names from mmgrasp itself.
+"""
+from __future__ import annotations
+import collections.abc
+import enum
+from mmgrasp import Error
+from mmgrasp import InvalidInput
+from mmgrasp import IoError
+import numpy
+import numpy.typing
+import typing
+from . import verify
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BaseRegion', 'Box', 'Capsule', 'CarryPlace', 'CollisionChecker', 'Contact', 'Cylinder', 'DistanceResult', 'Error', 'FingerJoint', 'Grasp', 'Gripper', 'IkResult', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'Mesh', 'MotionResult', 'MotionStats', 'Obstruction', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyProblem', 'PartSupplyResult', 'Pick', 'PickMotion', 'Plane', 'ReachDatabase', 'Rejection', 'Rejections', 'Robot', 'SetCoverResult', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'TourResult', 'Tray', 'Voxels', 'World', 'cache_folder', 'compute_base_regions', 'compute_disabled_pairs', 'inscribed_circle', 'make_base_grid', 'minimal_stops', 'plan_base_route', 'plan_motion', 'plan_pick', 'plan_straight_line', 'planner_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'quat_xyzw_from_rotation', 'robust_intersections', 'sample_grasps', 'shortest_visiting_tour', 'solve_part_supply', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'verify', 'with_sampled_pairs']
+class Robot:
+    """
+    A robot as URDF and SRDF describe it. Immutable; joints and links by name.
+    """
+    @staticmethod
+    def from_strings(urdf: str, srdf: str = '', package_dirs: typing.Any = None, base: str = 'fixed', *, base_limits: typing.Any = None, load_meshes: bool = True, allow_missing_meshes: bool = False, origin: str = '<string>') -> Robot:
+        """
+        The same from the texts of URDF and SRDF; `origin` names the source in messages.
+        """
+    @staticmethod
+    def load(urdf: typing.Any, srdf: typing.Any = None, package_dirs: typing.Any = None, base: str = 'fixed', *, base_limits: typing.Any = None, load_meshes: bool = True, allow_missing_meshes: bool = False) -> Robot:
+        """
+        Reads a URDF and, if given, its SRDF. `base` is fixed, diff_drive or omni; `package_dirs` maps the names in
+        package://NAME/... to folders. Raises IoError or InvalidInput naming file, element, value and rule.
+        """
+    def __repr__(self) -> str:
+        ...
+    def collisions(self, link: str) -> list[LinkShape]:
+        """
+        Collision shapes of a link (list of LinkShape).
+        """
+    def group(self, name: typing.Any = None, tip: typing.Any = None, *, base_link: typing.Any = None, with_base: bool = False) -> JointGroup:
+        """
+        An SRDF group by name, its tip moved to any link its last joint carries; or the chain base_link to tip.
+        `with_base` puts the virtual joints x, y, theta first.
+        """
+    def link_poses(self, joints: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}, T_world_root: typing.Any = None) -> dict:
+        """
+        Pose (4, 4) of every link, other joints at their default values.
+        """
+    def mount(self, other: Robot, parent_link: str, T: typing.Any = None, prefix: str = '') -> Robot:
+        """
+        This robot with `other` put on one of its links; the names of `other` get the prefix, SRDFs are merged.
+        """
+    def to_srdf(self) -> str:
+        ...
+    def to_urdf(self) -> str:
+        """
+        The whole robot as one URDF; mesh files by absolute path.
+        """
+    def values(self, joints: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Full value vector (for with_reference) with the named joints set.
+        """
+    def with_disabled_pairs(self, pairs: collections.abc.Sequence[tuple[str, str, str]]) -> Robot:
+        ...
+    def with_link(self, name: str, parent_link: str, T: typing.Any = None, shapes: collections.abc.Sequence[LinkShape] = []) -> Robot:
+        """
+        This robot with one more fixed link.
+        """
+    @property
+    def base(self) -> str:
+        """
+        fixed, diff_drive or omni.
+        """
+    @property
+    def base_limits(self) -> dict:
+        ...
+    @property
+    def disabled_pairs(self) -> list:
+        """
+        Link pairs that need no collision check: (a, b, reason).
+        """
+    @property
+    def end_effectors(self) -> list:
+        ...
+    @property
+    def group_states(self) -> dict[str, dict[str, dict[str, float]]]:
+        """
+        SRDF states: group, state, joint to value.
+        """
+    @property
+    def groups(self) -> dict:
+        """
+        SRDF groups: name to joints, base_link, tip_link.
+        """
+    @property
+    def has_srdf(self) -> bool:
+        ...
+    @property
+    def hash(self) -> str:
+        """
+        Content hash: kinematics, shapes, limits, disabled pairs.
+        """
+    @property
+    def joint_table(self) -> list:
+        """
+        Every joint as a dict.
+        """
+    @property
+    def joints(self) -> list[str]:
+        """
+        Names of the movable joints that follow no other.
+        """
+    @property
+    def links(self) -> list[str]:
+        """
+        Names, root first.
+        """
+    @property
+    def name(self) -> str:
+        ...
+    @property
+    def report(self) -> dict:
+        """
+        What loading found.
+        """
+class JointGroup:
+    """
+    Joints that are planned together, and a tip. Immutable.
+    """
+    def __len__(self) -> int:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def at(self, T_world_root: numpy.typing.ArrayLike) -> JointGroup:
+        """
+        The same group with the robot's root standing elsewhere.
+        """
+    def fk(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        T_world_tip, (4, 4), of a configuration (n,).
+        """
+    def fk_batch(self, Q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (m, 4, 4) for configurations (m, n).
+        """
+    def ik(self, T_world_tip: numpy.typing.ArrayLike, seed: typing.Any = None, world: World = None, **kwargs) -> IkResult:
+        """
+        Inverse kinematics from `seed` (default: middle of the limits), then random restarts. With a world the answer is
+        free of collisions with it and of self-collision; without one, collisions are not looked at.
+        
+        Keyword options:
+            position_tolerance = 1e-05: [m]
+            rotation_tolerance = 0.0001: [rad]
+            max_iterations = 60: per descent
+            restarts = 30: random restarts after the seed
+            time_limit = 1.0: wall-clock cap [s]
+            rng_seed = 1: same seed, same answer
+        """
+    def jacobian(self, q: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (6, n), world-aligned at the tip's origin: linear rows, then angular.
+        """
+    def link_poses(self, q: numpy.typing.ArrayLike) -> dict:
+        """
+        World pose (4, 4) of every link of the robot.
+        """
+    def manipulability(self, q: numpy.typing.ArrayLike) -> float:
+        ...
+    def with_acceleration_limits(self, limits: numpy.typing.ArrayLike) -> JointGroup:
+        ...
+    def with_reference(self, joints: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex]) -> JointGroup:
+        """
+        The same group with the named other joints held at these values, the rest at default.
+        """
+    def within_limits(self, q: numpy.typing.ArrayLike, slack: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> bool:
+        ...
+    @property
+    def T_world_root(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def acceleration_limits(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        ...
+    @property
+    def has_base(self) -> bool:
+        ...
+    @property
+    def lower(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        [rad or m], -inf for continuous joints.
+        """
+    @property
+    def name(self) -> str:
+        ...
+    @property
+    def names(self) -> list[str]:
+        """
+        Joint names; x, y, theta first when the group has the base.
+        """
+    @property
+    def robot(self) -> Robot:
+        ...
+    @property
+    def sample_lower(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Finite bounds to sample from.
+        """
+    @property
+    def sample_upper(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        ...
+    @property
+    def size(self) -> int:
+        ...
+    @property
+    def tip(self) -> str:
+        ...
+    @property
+    def upper(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        ...
+    @property
+    def velocity_limits(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        ...
+class World:
+    """
+    Named rigid bodies around the robot, and what it holds. Poses are T_world_object, (4, 4).
+    """
+    def __contains__(self, arg0: str) -> bool:
+        ...
+    def __init__(self) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def add(self, name: str, shape: typing.Any, pose: typing.Any = None) -> None:
+        """
+        A shape, or a list of LinkShape as one body.
+        """
+    def add_box(self, name: str, size: numpy.typing.ArrayLike, pose: typing.Any = None) -> None:
+        """
+        Full lengths [m], centred.
+        """
+    def add_cylinder(self, name: str, radius: typing.SupportsFloat | typing.SupportsIndex, length: typing.SupportsFloat | typing.SupportsIndex, pose: typing.Any = None) -> None:
+        """
+        Along z, centred [m].
+        """
+    def add_mesh(self, name: str, path: typing.Any, pose: typing.Any = None, scale: typing.Any = 1.0) -> None:
+        """
+        STL, OBJ, DAE or PLY; closed meshes are solids, open ones surfaces.
+        """
+    def add_octree(self, name: str, path: typing.Any, pose: typing.Any = None) -> None:
+        """
+        Occupied leaves of an OctoMap file (.bt or .ot) as solid voxels.
+        """
+    def add_points(self, name: str, points: numpy.typing.ArrayLike, resolution: typing.SupportsFloat | typing.SupportsIndex, pose: typing.Any = None) -> None:
+        """
+        Points (m, 3) as the solid cells of edge `resolution` [m] that hold one.
+        """
+    def add_sphere(self, name: str, radius: typing.SupportsFloat | typing.SupportsIndex, pose: typing.Any = None) -> None:
+        ...
+    def attach(self, name: str, link: str, pose: typing.Any = None, touch_links: collections.abc.Set[str] = set()) -> None:
+        """
+        From the scene to a link, at T_link_object. Empty touch_links: the link, all below it, and its gripper's fingers.
+        """
+    def copy(self) -> World:
+        ...
+    def detach(self, name: str, pose: typing.Any = None) -> None:
+        """
+        Puts a held object back into the scene at T_world_object; without a pose it leaves the world.
+        """
+    def move(self, name: str, pose: numpy.typing.ArrayLike) -> None:
+        ...
+    def pose_of(self, name: str) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    def remove(self, name: str) -> None:
+        """
+        Takes an object, held or not, out of the world.
+        """
+    def shapes_of(self, name: str) -> list[LinkShape]:
+        ...
+    @property
+    def attached(self) -> list[str]:
+        """
+        Names of the held objects.
+        """
+    @property
+    def objects(self) -> list[str]:
+        """
+        Names of the scene's objects.
+        """
+class Outcome(enum.Enum):
+    """
+    How a query ended. "No solution" is a value, not an exception.
+    """
+    approximate: typing.ClassVar[Outcome]
+    infeasible: typing.ClassVar[Outcome]
+    invalid_goal: typing.ClassVar[Outcome]
+    invalid_start: typing.ClassVar[Outcome]
+    solved: typing.ClassVar[Outcome]
+    stopped: typing.ClassVar[Outcome]
+    timeout: typing.ClassVar[Outcome]
+    @classmethod
+    def __new__(cls, value):
+        ...
+class Rejection(enum.Enum):
+    """
+    Why one candidate was turned down.
+    """
+    grasp_filter: typing.ClassVar[Rejection]
+    limits: typing.ClassVar[Rejection]
+    none: typing.ClassVar[Rejection]
+    reach: typing.ClassVar[Rejection]
+    scene: typing.ClassVar[Rejection]
+    self_collision: typing.ClassVar[Rejection]
+    @classmethod
+    def __new__(cls, value):
+        ...
+class Rejections:
+    """
+    How many candidates fell at which filter.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def grasp_filter(self) -> int:
+        """
+        Turned down before inverse kinematics.
+        """
+    @property
+    def limits(self) -> int:
+        """
+        Reached only outside joint limits.
+        """
+    @property
+    def reach(self) -> int:
+        """
+        No arm configuration reaches the pose.
+        """
+    @property
+    def scene(self) -> int:
+        """
+        Reached, but robot (or what it holds) hits the scene.
+        """
+    @property
+    def self_collision(self) -> int:
+        """
+        Reached, but robot hits robot or what it holds.
+        """
+    @property
+    def total(self) -> int:
+        ...
+class Box:
+    """
+    A box, centred; full lengths [m].
+    """
+    def __init__(self, size: numpy.typing.ArrayLike) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def size(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        ...
+class Sphere:
+    """
+    A sphere [m].
+    """
+    def __init__(self, radius: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def radius(self) -> float:
+        ...
+class Cylinder:
+    """
+    A cylinder along z, centred [m].
+    """
+    def __init__(self, radius: typing.SupportsFloat | typing.SupportsIndex, length: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def length(self) -> float:
+        ...
+    @property
+    def radius(self) -> float:
+        ...
+class Capsule:
+    """
+    A capsule along z, centred; `length` without the caps [m].
+    """
+    def __init__(self, radius: typing.SupportsFloat | typing.SupportsIndex, length: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def length(self) -> float:
+        ...
+    @property
+    def radius(self) -> float:
+        ...
+class Plane:
+    """
+    A half space: solid where normal . x <= offset.
+    """
+    def __init__(self, normal: numpy.typing.ArrayLike, offset: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def normal(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        ...
+    @property
+    def offset(self) -> float:
+        ...
+class Voxels:
+    """
+    Axis-aligned solid voxels of one edge length [m].
+    """
+    def __init__(self, centres: numpy.typing.ArrayLike, resolution: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def centres(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def resolution(self) -> float:
+        ...
+class Mesh:
+    """
+    A triangle mesh [m]; closed ones are solids, open ones surfaces.
+    """
+    @staticmethod
+    def load(path: typing.Any, scale: typing.Any = 1.0) -> Mesh:
+        """
+        Reads STL, OBJ, DAE or PLY. `scale` is a number or one per axis. Raises IoError naming file and place.
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def closed(self) -> bool:
+        ...
+    @property
+    def convex(self) -> bool:
+        ...
+    @property
+    def source(self) -> str:
+        ...
+    @property
+    def triangles(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        (m, 3) vertex indices.
+        """
+    @property
+    def vertices(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) [m]
+        """
+    @property
+    def volume(self) -> float:
+        """
+        Signed volume [m^3]; meaningful for closed meshes.
+        """
+class LinkShape:
+    """
+    A shape and its pose in the body (robot link, part, obstacle) it belongs to.
+    """
+    @staticmethod
+    def mesh(path: typing.Any, scale: typing.Any = 1.0, pose: typing.Any = None) -> LinkShape:
+        """
+        A mesh read from a file, which is remembered so that robots and plans can be written out.
+        """
+    def __init__(self, shape: Box | Sphere | Cylinder | Capsule | Plane | Mesh | Voxels, pose: typing.Any = None) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def surface(self, segments: typing.SupportsInt | typing.SupportsIndex = 24) -> Mesh:
+        """
+        Its surface as triangles in the shape's own frame, for pictures.
+        """
+    @property
+    def bounds(self) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"], typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]]:
+        """
+        Lower and upper corner of its axis-aligned box in the body frame [m].
+        """
+    @property
+    def kind(self) -> str:
+        ...
+    @property
+    def mesh_path(self) -> str:
+        ...
+    @property
+    def mesh_scale(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        ...
+    @property
+    def pose(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def shape(self) -> Box | Sphere | Cylinder | Capsule | Plane | Mesh | Voxels:
+        ...
+class SetCoverResult:
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def chosen(self) -> list[int]:
+        """
+        Indices of the chosen sets, ascending.
+        """
+    @property
+    def cost(self) -> float:
+        ...
+    @property
+    def lower_bound(self) -> float:
+        """
+        Proven: no cover costs less.
+        """
+    @property
+    def outcome(self) -> Outcome:
+        """
+        `solved` only with a proof of optimality.
+        """
+    @property
+    def uncoverable(self) -> list[int]:
+        """
+        Elements in no set.
+        """
+class TourResult:
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def length(self) -> float:
+        ...
+    @property
+    def order(self) -> list[int]:
+        """
+        Visiting order of the stops.
+        """
+    @property
+    def outcome(self) -> Outcome:
+        ...
+    @property
+    def proven(self) -> bool:
+        """
+        True when exact.
+        """
+class IkResult:
+    """
+    Answer of inverse kinematics.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def iterations(self) -> int:
+        ...
+    @property
+    def outcome(self) -> Outcome:
+        ...
+    @property
+    def position_error(self) -> float:
+        """
+        [m] of q, or of the best attempt.
+        """
+    @property
+    def q(self) -> typing.Any:
+        """
+        The configuration, inside limits and checked by forward kinematics; None unless solved.
+        """
+    @property
+    def rejections(self) -> Rejections:
+        ...
+    @property
+    def rotation_error(self) -> float:
+        """
+        [rad]
+        """
+class JointTrajectory:
+    """
+    A path on a clock; cubic Hermite between samples.
+    """
+    def __len__(self) -> int:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def at(self, time: typing.SupportsFloat | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Configuration (n,) at a time [s], clamped at the ends.
+        """
+    def to_csv(self, base_pose: typing.Any = None) -> str:
+        """
+        Header time, names, name.velocity, ...; one line a sample. With base_pose (x, y, theta) of the standing base, its
+        pose and twist follow the time.
+        """
+    def to_dict(self) -> dict:
+        ...
+    def to_joint_trajectory(self, base_pose: typing.Any = None) -> dict:
+        """
+        A dict shaped like a ROS trajectory_msgs/JointTrajectory, with base_pose and base_twist at every point.
+        """
+    @property
+    def accelerations(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def duration(self) -> float:
+        """
+        [s]
+        """
+    @property
+    def names(self) -> list[str]:
+        ...
+    @property
+    def positions(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k, n)
+        """
+    @property
+    def times(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k,) [s]
+        """
+    @property
+    def velocities(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+class Contact:
+    """
+    Two bodies that touch.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def a(self) -> str:
+        ...
+    @property
+    def b(self) -> str:
+        ...
+    @property
+    def with_scene(self) -> bool:
+        ...
+class DistanceResult:
+    """
+    The smallest distance and where it is.
+    """
+    def __float__(self) -> float:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def a(self) -> str:
+        ...
+    @property
+    def b(self) -> str:
+        ...
+    @property
+    def point_a(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) in the world frame.
+        """
+    @property
+    def point_b(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        ...
+    @property
+    def value(self) -> float:
+        """
+        [m]; negative: penetration depth (approximate).
+        """
+class CollisionChecker:
+    """
+    Collision questions about one group in a snapshot of the world: later changes of the world
+    are not seen. Links pairs are sampled (and cached) when no SRDF says which never touch.
+    """
+    def __init__(self, robot: Robot, world: World, group: JointGroup, **kwargs) -> None:
+        """
+        Keyword options:
+            padding = 0.0: robot shapes are grown by this against the scene [m]
+            check_self = True: robot (and what it holds) against itself
+            check_scene = True: robot (and what it holds) against the scene
+        """
+    def __repr__(self) -> str:
+        ...
+    def contacts(self, q: numpy.typing.ArrayLike) -> list[Contact]:
+        """
+        Every touching pair; limits are not looked at.
+        """
+    def distance(self, q: numpy.typing.ArrayLike) -> DistanceResult:
+        """
+        Smallest distance over all checked pairs.
+        """
+    def edge_is_free(self, q0: numpy.typing.ArrayLike, q1: numpy.typing.ArrayLike, step: typing.SupportsFloat | typing.SupportsIndex = 0.02) -> bool:
+        """
+        The straight joint-space edge, checked so finely that no joint moves more than `step` [rad or m].
+        """
+    def is_free(self, q: numpy.typing.ArrayLike) -> bool:
+        """
+        Inside limits and without any contact.
+        """
+    def rejection(self, q: numpy.typing.ArrayLike) -> Rejection:
+        """
+        The first cause found (limits, self_collision, scene), or Rejection.none.
+        """
+    @property
+    def group(self) -> JointGroup:
+        ...
+class ReachDatabase:
+    """
+    Sampled arm configurations free of self-collision, in cells of the tool pose (P1 3.2.1).
+    """
+    @staticmethod
+    def build(arm: JointGroup, *, progress: typing.Any = None, **kwargs) -> ReachDatabase:
+        """
+        Samples the arm. `progress` is called with (stage, fraction).
+        
+        Keyword options:
+            samples = 2000000: arm configurations drawn
+            position_cell = 0.1: edge of a position cell [m]
+            rotation_cell = 0.55: approximate diameter of a rotation cell [rad]
+            max_per_cell = 16: configurations kept in a cell
+            min_manipulability = 0.02: least manipulability kept, as a fraction of the largest
+            seed = 1: same seed, same database
+            threads = 0: 0: all; does not change the answer
+        """
+    @staticmethod
+    def load(path: typing.Any) -> ReachDatabase:
+        """
+        Raises IoError on a truncated, foreign or corrupt file.
+        """
+    @staticmethod
+    def load_or_build(arm: JointGroup, cache_dir: typing.Any, *, progress: typing.Any = None, **kwargs) -> ReachDatabase:
+        """
+        The database of this arm and these options from the cache folder; built and stored when it is not there.
+        """
+    def __len__(self) -> int:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def nearest(self, T_base_tip: numpy.typing.ArrayLike, count: typing.SupportsInt | typing.SupportsIndex = 8) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Up to `count` stored configurations (k, n) near the pose, nearest first.
+        """
+    def query(self, T_base_tip: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Stored configurations (k, n) whose tool pose lies in the pose's cell; k may be 0.
+        """
+    def save(self, path: typing.Any) -> None:
+        ...
+    @property
+    def cell_count(self) -> int:
+        """
+        Non-empty cells.
+        """
+    @property
+    def joint_count(self) -> int:
+        ...
+    @property
+    def key(self) -> str:
+        ...
+    @property
+    def reach(self) -> float:
+        """
+        Largest distance of a stored tool position from the root [m].
+        """
+class FingerJoint:
+    """
+    A finger joint, linear in the opening.
+    """
+    def __init__(self, name: str, closed: typing.SupportsFloat | typing.SupportsIndex, open: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def closed(self) -> float:
+        ...
+    @property
+    def name(self) -> str:
+        ...
+    @property
+    def open(self) -> float:
+        ...
+class Gripper:
+    """
+    A parallel-jaw gripper; the tool centre point lies midway between the pads' centres.
+    """
+    def __init__(self, tcp_link: str, *, approach: numpy.typing.ArrayLike, closing: numpy.typing.ArrayLike, max_opening: typing.SupportsFloat | typing.SupportsIndex, finger_depth: typing.SupportsFloat | typing.SupportsIndex, finger_width: typing.SupportsFloat | typing.SupportsIndex, clearance: typing.SupportsFloat | typing.SupportsIndex = 0.01, joints: collections.abc.Sequence[FingerJoint] = [], finger_links: collections.abc.Sequence[str] = []) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def joint_values(self, opening: typing.SupportsFloat | typing.SupportsIndex) -> dict[str, float]:
+        """
+        Finger joint values at an opening [m].
+        """
+    def pregrasp_opening(self, width: typing.SupportsFloat | typing.SupportsIndex) -> float:
+        ...
+    @property
+    def approach(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        ...
+    @property
+    def clearance(self) -> float:
+        ...
+    @property
+    def closing(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        ...
+    @property
+    def finger_depth(self) -> float:
+        ...
+    @property
+    def finger_links(self) -> list[str]:
+        ...
+    @property
+    def finger_width(self) -> float:
+        ...
+    @property
+    def joints(self) -> list[FingerJoint]:
+        ...
+    @property
+    def max_opening(self) -> float:
+        ...
+    @property
+    def tcp_link(self) -> str:
+        ...
+class Grasp:
+    """
+    One way to hold an object.
+    """
+    def __init__(self, T_object_tcp: numpy.typing.ArrayLike, width: typing.SupportsFloat | typing.SupportsIndex, quality: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def T_object_tcp(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def quality(self) -> float:
+        ...
+    @property
+    def width(self) -> float:
+        """
+        Opening of the fingers while holding [m].
+        """
+class MotionStats:
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def collision_queries(self) -> int:
+        ...
+    @property
+    def length_before_shortening(self) -> float:
+        ...
+    @property
+    def seconds(self) -> float:
+        ...
+class MotionResult:
+    """
+    What plan_motion found.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def contacts(self) -> list[Contact]:
+        """
+        With invalid_start or invalid_goal: what touches.
+        """
+    @property
+    def cost(self) -> float:
+        """
+        Length of the path in joint space.
+        """
+    @property
+    def goal_index(self) -> int:
+        ...
+    @property
+    def outcome(self) -> Outcome:
+        ...
+    @property
+    def path(self) -> typing.Any:
+        """
+        Waypoints (k, n), joined by straight lines; None unless solved.
+        """
+    @property
+    def rejections(self) -> Rejections:
+        ...
+    @property
+    def stats(self) -> MotionStats:
+        ...
+class StraightLineResult:
+    """
+    What plan_straight_line found.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def cause(self) -> Rejection:
+        """
+        Why it ended there.
+        """
+    @property
+    def fraction(self) -> float:
+        """
+        How far along the line it came, in [0, 1].
+        """
+    @property
+    def outcome(self) -> Outcome:
+        ...
+    @property
+    def path(self) -> typing.Any:
+        """
+        (k, n) or None.
+        """
+class Part:
+    """
+    One part in a tray.
+    """
+    def __init__(self, name: str, shapes: collections.abc.Sequence[LinkShape], T_world_part: numpy.typing.ArrayLike, grasps: collections.abc.Sequence[Grasp] = [], *, target: bool = True, grasps_too_wide: typing.SupportsInt | typing.SupportsIndex = 0) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def T_world_part(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def grasps(self) -> list[Grasp]:
+        ...
+    @property
+    def grasps_too_wide(self) -> int:
+        ...
+    @property
+    def name(self) -> str:
+        ...
+    @property
+    def shapes(self) -> list[LinkShape]:
+        ...
+    @property
+    def target(self) -> bool:
+        ...
+class Tray:
+    """
+    A tray and the parts in it; its walls are scene objects.
+    """
+    def __init__(self, name: str, T_world_tray: numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, parts: collections.abc.Sequence[Part], headings: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = []) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def T_world_tray(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def headings(self) -> list[float]:
+        ...
+    @property
+    def name(self) -> str:
+        ...
+    @property
+    def parts(self) -> list[Part]:
+        ...
+    @property
+    def size(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        Depth, width, height [m].
+        """
+class CarryPlace:
+    """
+    Where picked parts go: a bin fixed to the robot.
+    """
+    def __init__(self, T_base_bin: numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, drop_gap: typing.SupportsFloat | typing.SupportsIndex = 0.03) -> None:
+        ...
+    @property
+    def T_base_bin(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def drop_gap(self) -> float:
+        ...
+    @property
+    def size(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"]:
+        ...
+class PartSupplyProblem:
+    """
+    Everything the part-supply planner needs.
+    """
+    def __init__(self, robot: Robot, arm: JointGroup, gripper: Gripper, scene: World, trays: collections.abc.Sequence[Tray], home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, carry: CarryPlace, **kwargs) -> None:
+        """
+        Keyword options:
+            grid_resolution = 0.05: cell edge of the base grid [m]
+            grid_max_distance = 0.0: cells farther from the tray's middle are not tried [m]; 0: the arm's reach
+            ik_seeds = 8: database configurations refined for each grasp and base pose
+            positioning_uncertainty = 0.1: radius of the disc in which the base may come to stand [m]
+            approach_distance = 0.08: straight move from pre-grasp to grasp [m]
+            lift_height = 0.12: straight upward move after closing [m]
+            motion_time_limit = 5.0: for each planned motion [s]
+            route_resolution = 0.1: cell edge of the base route's search [m]
+            robustness_samples = 2000: base poses drawn at each stop for the check before returning
+            seed = 1: same seed, same plan
+            threads = 0: 0: all; does not change the answer
+        """
+    @property
+    def arm(self) -> JointGroup:
+        ...
+    @property
+    def carry(self) -> CarryPlace:
+        ...
+    @property
+    def goal(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        ...
+    @property
+    def gripper(self) -> Gripper:
+        ...
+    @property
+    def home(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        ...
+    @property
+    def options(self) -> dict:
+        ...
+    @property
+    def robot(self) -> Robot:
+        ...
+    @property
+    def scene(self) -> World:
+        ...
+    @property
+    def start(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        ...
+    @property
+    def trays(self) -> list[Tray]:
+        ...
+class BaseGrid:
+    """
+    Square cells over the floor, one layer for each heading.
+    """
+    def __init__(self, origin: numpy.typing.ArrayLike, resolution: typing.SupportsFloat | typing.SupportsIndex, nx: typing.SupportsInt | typing.SupportsIndex, ny: typing.SupportsInt | typing.SupportsIndex, headings: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [0.0]) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def centre(self, heading: typing.SupportsInt | typing.SupportsIndex, ix: typing.SupportsInt | typing.SupportsIndex, iy: typing.SupportsInt | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        x, y, theta of a cell's middle.
+        """
+    @property
+    def headings(self) -> list[float]:
+        ...
+    @property
+    def nx(self) -> int:
+        ...
+    @property
+    def ny(self) -> int:
+        ...
+    @property
+    def origin(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"]:
+        """
+        Lower corner of cell (0, 0) [m].
+        """
+    @property
+    def resolution(self) -> float:
+        ...
+class PartExplanation:
+    """
+    What became of the candidates for one part over all base poses tried.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def base_poses_feasible(self) -> int:
+        ...
+    @property
+    def base_poses_tried(self) -> int:
+        ...
+    @property
+    def grasps(self) -> int:
+        ...
+    @property
+    def part(self) -> str:
+        ...
+    @property
+    def rejections(self) -> Rejections:
+        ...
+class BaseRegion:
+    """
+    Base poses from which every target part of a tray can be grasped.
+    """
+    def __repr__(self) -> str:
+        ...
+    def cells(self, grid: BaseGrid) -> numpy.typing.NDArray[numpy.uint8]:
+        """
+        (headings, ny, nx) array of 0 and 1.
+        """
+    def part_cells(self, grid: BaseGrid) -> list:
+        """
+        The same for each target part alone.
+        """
+    @property
+    def base_poses_in_collision(self) -> int:
+        ...
+    @property
+    def count(self) -> int:
+        """
+        Number of cells.
+        """
+    @property
+    def explanations(self) -> list[PartExplanation]:
+        ...
+    @property
+    def tray(self) -> str:
+        ...
+class Intersection:
+    """
+    Cells that several regions share, with their largest disc.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def cells(self) -> int:
+        ...
+    @property
+    def centre(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"]:
+        ...
+    @property
+    def heading(self) -> int:
+        ...
+    @property
+    def radius(self) -> float:
+        ...
+    @property
+    def trays(self) -> list[int]:
+        ...
+class Intersections:
+    def __repr__(self) -> str:
+        ...
+    @property
+    def lost(self) -> list[Intersection]:
+        """
+        Shared cells whose disc is too small, largest first.
+        """
+    @property
+    def robust(self) -> list[Intersection]:
+        ...
+    @property
+    def sets_too_small(self) -> int:
+        ...
+    @property
+    def sets_tried(self) -> int:
+        ...
+class Stop:
+    """
+    Where the base stops and which trays it serves there.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def intersection(self) -> int:
+        ...
+    @property
+    def pose(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        x, y, theta.
+        """
+    @property
+    def radius(self) -> float:
+        """
+        Of the disc in which every target part stays graspable [m].
+        """
+    @property
+    def trays(self) -> list[int]:
+        ...
+class StopSet:
+    def __repr__(self) -> str:
+        ...
+    @property
+    def lower_bound(self) -> int:
+        """
+        Proven least number of stops.
+        """
+    @property
+    def outcome(self) -> Outcome:
+        ...
+    @property
+    def stops(self) -> list[Stop]:
+        ...
+    @property
+    def unreachable_trays(self) -> list[int]:
+        ...
+class BasePath:
+    """
+    A drive of the base.
+    """
+    def __repr__(self) -> str:
+        ...
+    def duration(self, robot: Robot) -> float:
+        ...
+    @property
+    def length(self) -> float:
+        ...
+    @property
+    def outcome(self) -> Outcome:
+        ...
+    @property
+    def poses(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k, 3): x, y, theta.
+        """
+    @property
+    def turning(self) -> float:
+        ...
+class PickMotion:
+    """
+    One timed arm motion at a stop.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def holding(self) -> bool:
+        ...
+    @property
+    def kind(self) -> str:
+        ...
+    @property
+    def opening(self) -> float:
+        ...
+    @property
+    def trajectory(self) -> JointTrajectory:
+        ...
+class Pick:
+    """
+    Home, pre-grasp, grasp, lift, carry, home.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def duration(self) -> float:
+        ...
+    @property
+    def failed_at(self) -> str:
+        ...
+    @property
+    def grasp(self) -> int:
+        ...
+    @property
+    def motions(self) -> list[PickMotion]:
+        ...
+    @property
+    def outcome(self) -> Outcome:
+        ...
+    @property
+    def part(self) -> int:
+        ...
+    @property
+    def rejections(self) -> Rejections:
+        ...
+    @property
+    def stop(self) -> int:
+        ...
+    @property
+    def tray(self) -> int:
+        ...
+class Obstruction:
+    """
+    Why there is no plan, and what would help.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def advised_move(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"]:
+        """
+        Translation of the tray in the world's x and y [m].
+        """
+    @property
+    def largest_uncertainty(self) -> float:
+        ...
+    @property
+    def message(self) -> str:
+        ...
+    @property
+    def missing_reach(self) -> float:
+        ...
+    @property
+    def move_objects(self) -> list[str]:
+        """
+        Objects of the scene that move with them.
+        """
+    @property
+    def move_trays(self) -> list[str]:
+        """
+        Trays that move together by advised_move.
+        """
+    @property
+    def needed_opening(self) -> float:
+        """
+        Gripper opening that would do [m]; 0: not it.
+        """
+    @property
+    def part(self) -> str:
+        ...
+    @property
+    def stage(self) -> str:
+        ...
+    @property
+    def tray(self) -> str:
+        ...
+class PartSupplyResult:
+    """
+    The planner's answer; PartSupplyPlan joins it with its scenario.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def grid(self) -> BaseGrid:
+        ...
+    @property
+    def intersections(self) -> Intersections:
+        ...
+    @property
+    def lower_bound(self) -> int:
+        ...
+    @property
+    def obstructions(self) -> list[Obstruction]:
+        ...
+    @property
+    def outcome(self) -> Outcome:
+        ...
+    @property
+    def picks(self) -> list[Pick]:
+        ...
+    @property
+    def region_trays(self) -> list[int]:
+        """
+        Tray index of each region.
+        """
+    @property
+    def regions(self) -> list[BaseRegion]:
+        ...
+    @property
+    def robustness_rate(self) -> float:
+        ...
+    @property
+    def route(self) -> list[BasePath]:
+        ...
+    @property
+    def stops(self) -> list[Stop]:
+        ...
+    @property
+    def timings(self) -> list[tuple[str, float]]:
+        ...
+def _check_options(section: str, **kwargs) -> None:
+    """
+    Raises InvalidInput when an option of a scenario's section is out of range.
+    """
+def _grasp_option_table() -> dict:
+    ...
+def _reach_option_table() -> dict:
+    ...
+def _sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Gripper, **kwargs) -> tuple[list[Grasp], int]:
+    """
+    (grasps, too_wide): as sample_grasps, with the number dropped as too wide.
+    """
+def _supply_option_table() -> dict:
+    ...
+def cache_folder() -> str:
+    """
+    $XDG_CACHE_HOME/mmgrasp, or ~/.cache/mmgrasp.
+    """
+def compute_base_regions(problem: PartSupplyProblem, database: ReachDatabase, grid: BaseGrid, *, progress: typing.Any = None) -> list[BaseRegion]:
+    """
+    P1 Algorithm 2 with exact inverse kinematics: one region for each tray with target parts.
+    """
+def compute_disabled_pairs(robot: Robot, *, progress: typing.Any = None, **kwargs) -> Robot:
+    """
+    The robot with the link pairs that always or never touch found by sampling; those of an SRDF are kept.
+    
+    Keyword options:
+        samples = 10000: random configurations
+        always_fraction = 0.95: a pair in collision at least this often is called always
+        seed = 1: same seed, same pairs
+        threads = 0: 0: all
+    """
+def inscribed_circle(grid: BaseGrid, cells: typing.Annotated[numpy.typing.ArrayLike, numpy.uint8], heading: typing.SupportsInt | typing.SupportsIndex = 0) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"], float]:
+    """
+    Centre (2,) and radius [m] of the largest disc inside the union of cells of one layer.
+    """
+def make_base_grid(problem: PartSupplyProblem, database: ReachDatabase) -> BaseGrid:
+    """
+    The grid that covers all base poses from which any tray could be reached.
+    """
+def minimal_stops(grid: BaseGrid, intersections: collections.abc.Sequence[Intersection], trays: typing.SupportsInt | typing.SupportsIndex) -> StopSet:
+    """
+    The least number of intersections that cover all trays (P1 equation 3.1), with proof.
+    """
+def plan_base_route(arm: JointGroup, world: World, *, home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, resolution: typing.SupportsFloat | typing.SupportsIndex = 0.1) -> BasePath:
+    """
+    A driveable, collision-free way of the whole robot with its arm at `home`; poses are x, y, theta.
+    """
+def plan_motion(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, progress: typing.Any = None, **kwargs) -> MotionResult:
+    """
+    A collision-free path of the group from `start` (n,) to `goal`, (n,) or several as (m, n).
+    
+    Keyword options:
+        planner = 'rrt_connect': a name of planner_names()
+        time_limit = 5.0: wall-clock cap [s]
+        max_iterations = 20000: budget in validity checks of states drawn
+        range = 0.0: longest tree edge [rad]; 0: a fifth of the joint box's diagonal
+        edge_step = 0.02: largest joint motion between two checks [rad or m]
+        shorten = True: shortcut the path
+        shorten_iterations = 200: tries of the shortening
+        seed = 1: same seed, same path
+    """
+def plan_pick(problem: PartSupplyProblem, database: ReachDatabase, base_pose: numpy.typing.ArrayLike, tray: typing.SupportsInt | typing.SupportsIndex, part: typing.SupportsInt | typing.SupportsIndex, remaining: collections.abc.Sequence[tuple[typing.SupportsInt | typing.SupportsIndex, typing.SupportsInt | typing.SupportsIndex]]) -> Pick:
+    """
+    One pick from a base pose; `remaining` are the (tray, part) still in place, the picked one among them.
+    """
+def plan_straight_line(checker: CollisionChecker, start: numpy.typing.ArrayLike, T_world_to: numpy.typing.ArrayLike, **kwargs) -> StraightLineResult:
+    """
+    The tool moves on a straight line from the pose of `start` to T_world_to.
+    
+    Keyword options:
+        position_step = 0.005: largest tool translation between two waypoints [m]
+        rotation_step = 0.02: largest tool rotation between two waypoints [rad]
+        max_joint_step = 0.2: a larger joint motion between two waypoints is a jump
+        edge_step = 0.02: largest joint motion between two checks [rad or m]
+    """
+def planner_names() -> list[str]:
+    """
+    Names that plan_motion's `planner` takes.
+    """
+def pose(xyz: numpy.typing.ArrayLike, rpy: typing.Any = None, quat_xyzw: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    A (4, 4) pose from a position [m] and roll-pitch-yaw (URDF's convention) [rad] or a quaternion (x, y, z, w).
+    """
+def pose_to_xyz_quat(T: numpy.typing.ArrayLike) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"], typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 1]"]]:
+    """
+    Position (3,) and quaternion (x, y, z, w) of a (4, 4) pose.
+    """
+def pose_to_xyz_rpy(T: numpy.typing.ArrayLike) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"], typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]]:
+    """
+    Position (3,) and roll-pitch-yaw (3,) of a (4, 4) pose.
+    """
+def quat_xyzw_from_rotation(R: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 1]"]:
+    """
+    Quaternion (x, y, z, w) of a (3, 3) rotation.
+    """
+def robust_intersections(grid: BaseGrid, regions: collections.abc.Sequence[BaseRegion], min_radius: typing.SupportsFloat | typing.SupportsIndex, max_sets: typing.SupportsInt | typing.SupportsIndex = 200000) -> Intersections:
+    """
+    Every set of trays whose shared cells hold a disc of at least `min_radius` [m] (P1 3.4.2).
+    """
+def sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Gripper, **kwargs) -> list[Grasp]:
+    """
+    Antipodal grasps of a body given as a list of LinkShape (P1 3.4.1), best first.
+    
+    Keyword options:
+        approaches = 8: approach directions around each closing axis
+        positions = 3: pad positions along each free direction
+        mesh_samples = 400: surface points tried on a mesh
+        max_grasps = 200: best kept, spread over approach directions
+        friction = 0.5: Coulomb coefficient
+        standoff = 0.0: how far the tool centre point stays outside the object's middle [m]
+        seed = 1: same seed, same grasps
+    """
+def shortest_visiting_tour(lengths: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"]) -> TourResult:
+    """
+    Shortest way from start over all n stops to goal. `lengths` is (n + 2, n + 2): stops, start, goal; infinite: no way.
+    """
+def solve_part_supply(problem: PartSupplyProblem, database: ReachDatabase, *, progress: typing.Any = None) -> PartSupplyResult:
+    """
+    The whole of P1's Algorithm 1 and the motions around it, for a problem given as objects.
+    """
+def solve_set_cover(elements: typing.SupportsInt | typing.SupportsIndex, sets: collections.abc.Sequence[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]], costs: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [], *, time_limit: typing.SupportsFloat | typing.SupportsIndex = 60.0, progress: typing.Any = None) -> SetCoverResult:
+    """
+    Fewest (or cheapest) sets that cover all of 0..elements-1, with a proof (P1, equation 3.1).
+    """
+def time_parameterize(path: numpy.typing.ArrayLike, velocity_limits: numpy.typing.ArrayLike, acceleration_limits: numpy.typing.ArrayLike, *, names: collections.abc.Sequence[str] = [], **kwargs) -> JointTrajectory:
+    """
+    Near time-optimal timing of waypoints (k, n), at rest at both ends; corners are blended, which may leave the path
+    by max_deviation.
+    
+    Keyword options:
+        max_deviation = 0.01: corners are blended within this joint distance [rad]
+        sample_period = 0.02: spacing of the samples [s]
+    """
+def time_parameterize_free(checker: CollisionChecker, path: numpy.typing.ArrayLike, *, edge_step: typing.SupportsFloat | typing.SupportsIndex = 0.01, **kwargs) -> JointTrajectory:
+    """
+    time_parameterize under the group's limits, the blended corners checked for collisions too.
+    """
+def with_sampled_pairs(robot: Robot, *, progress: typing.Any = None) -> Robot:
+    """
+    compute_disabled_pairs with default options, its result cached on disk under the robot's hash.
+    """
+__version__: str = '0.1.0'

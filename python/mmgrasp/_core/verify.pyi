@@ -1,0 +1,267 @@
+"""
+Checks finished plans; shares no code with the planners.
+"""
+from __future__ import annotations
+import collections.abc
+import mmgrasp._core
+import numpy
+import numpy.typing
+import typing
+__all__: list[str] = ['CheckedBody', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'Fault', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'check_plan']
+class CheckedBody:
+    def __init__(self, name: str, shapes: collections.abc.Sequence[mmgrasp._core.LinkShape], pose: numpy.typing.ArrayLike) -> None:
+        ...
+class CheckedGrasp:
+    def __init__(self, pose: numpy.typing.ArrayLike, width: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+class CheckedPart:
+    def __init__(self, body: CheckedBody, tray: str, target: bool, grasps: collections.abc.Sequence[CheckedGrasp]) -> None:
+        ...
+class CheckedFinger:
+    def __init__(self, joint: str, closed: typing.SupportsFloat | typing.SupportsIndex, open: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+class CheckedMotion:
+    def __init__(self, kind: str, opening: typing.SupportsFloat | typing.SupportsIndex, holding: bool, times: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], positions: numpy.typing.ArrayLike, velocities: numpy.typing.ArrayLike) -> None:
+        ...
+class CheckedPick:
+    def __init__(self, stop: typing.SupportsInt | typing.SupportsIndex, tray: str, part: str, grasp: typing.SupportsInt | typing.SupportsIndex, motions: collections.abc.Sequence[CheckedMotion]) -> None:
+        ...
+class CheckedStop:
+    def __init__(self, pose: numpy.typing.ArrayLike, radius: typing.SupportsFloat | typing.SupportsIndex, trays: collections.abc.Sequence[str]) -> None:
+        ...
+class CheckedRegion:
+    def __init__(self, tray: str, cells: typing.Annotated[numpy.typing.ArrayLike, numpy.uint8]) -> None:
+        ...
+class CheckedGrid:
+    def __init__(self, origin: numpy.typing.ArrayLike, resolution: typing.SupportsFloat | typing.SupportsIndex, nx: typing.SupportsInt | typing.SupportsIndex, ny: typing.SupportsInt | typing.SupportsIndex, headings: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]) -> None:
+        ...
+class PlanToCheck:
+    """
+    A whole plan as read from plan.json.
+    """
+    grid: CheckedGrid
+    tip_link: str
+    def __init__(self, robot: mmgrasp._core.Robot) -> None:
+        ...
+    @property
+    def T_base_bin(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @T_base_bin.setter
+    def T_base_bin(self, arg1: numpy.typing.ArrayLike) -> None:
+        ...
+    @property
+    def acceleration_limits(self) -> list[float]:
+        ...
+    @acceleration_limits.setter
+    def acceleration_limits(self, arg0: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]) -> None:
+        ...
+    @property
+    def approach(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        ...
+    @approach.setter
+    def approach(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None:
+        ...
+    @property
+    def arm_joints(self) -> list[str]:
+        ...
+    @arm_joints.setter
+    def arm_joints(self, arg0: collections.abc.Sequence[str]) -> None:
+        ...
+    @property
+    def bin_size(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"]:
+        ...
+    @bin_size.setter
+    def bin_size(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[2, 1]"]) -> None:
+        ...
+    @property
+    def clearance(self) -> float:
+        ...
+    @clearance.setter
+    def clearance(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def drop_gap(self) -> float:
+        ...
+    @drop_gap.setter
+    def drop_gap(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def finger_links(self) -> list[str]:
+        ...
+    @finger_links.setter
+    def finger_links(self, arg0: collections.abc.Sequence[str]) -> None:
+        ...
+    @property
+    def fingers(self) -> list[CheckedFinger]:
+        ...
+    @fingers.setter
+    def fingers(self, arg0: collections.abc.Sequence[CheckedFinger]) -> None:
+        ...
+    @property
+    def goal(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        ...
+    @goal.setter
+    def goal(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None:
+        ...
+    @property
+    def home(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        ...
+    @home.setter
+    def home(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None:
+        ...
+    @property
+    def lower_bound(self) -> int:
+        ...
+    @lower_bound.setter
+    def lower_bound(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def max_opening(self) -> float:
+        ...
+    @max_opening.setter
+    def max_opening(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def obstacles(self) -> list[CheckedBody]:
+        ...
+    @obstacles.setter
+    def obstacles(self, arg0: collections.abc.Sequence[CheckedBody]) -> None:
+        ...
+    @property
+    def other_joints(self) -> dict[str, float]:
+        ...
+    @other_joints.setter
+    def other_joints(self, arg0: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex]) -> None:
+        ...
+    @property
+    def parts(self) -> list[CheckedPart]:
+        ...
+    @parts.setter
+    def parts(self, arg0: collections.abc.Sequence[CheckedPart]) -> None:
+        ...
+    @property
+    def picks(self) -> list[CheckedPick]:
+        ...
+    @picks.setter
+    def picks(self, arg0: collections.abc.Sequence[CheckedPick]) -> None:
+        ...
+    @property
+    def positioning_uncertainty(self) -> float:
+        ...
+    @positioning_uncertainty.setter
+    def positioning_uncertainty(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def regions(self) -> list[CheckedRegion]:
+        ...
+    @regions.setter
+    def regions(self, arg0: collections.abc.Sequence[CheckedRegion]) -> None:
+        ...
+    @property
+    def route(self) -> list[list[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]]]:
+        ...
+    @route.setter
+    def route(self, arg0: collections.abc.Sequence[collections.abc.Sequence[typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]]]) -> None:
+        ...
+    @property
+    def start(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        ...
+    @start.setter
+    def start(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None:
+        ...
+    @property
+    def stops(self) -> list[CheckedStop]:
+        ...
+    @stops.setter
+    def stops(self, arg0: collections.abc.Sequence[CheckedStop]) -> None:
+        ...
+    @property
+    def trays(self) -> list[str]:
+        ...
+    @trays.setter
+    def trays(self, arg0: collections.abc.Sequence[str]) -> None:
+        ...
+    @property
+    def velocity_limits(self) -> list[float]:
+        ...
+    @velocity_limits.setter
+    def velocity_limits(self, arg0: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]) -> None:
+        ...
+class Fault:
+    """
+    One thing that is physically wrong with a plan.
+    """
+    def __init__(self, code: str, where: str, message: str) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def code(self) -> str:
+        ...
+    @property
+    def message(self) -> str:
+        ...
+    @property
+    def where(self) -> str:
+        ...
+class StopRate:
+    """
+    How often every target part stayed graspable around a stop.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def good(self) -> int:
+        ...
+    @property
+    def samples(self) -> int:
+        ...
+    @property
+    def stop(self) -> int:
+        ...
+    @property
+    def worst_part(self) -> str:
+        ...
+class PlanCheckResult:
+    """
+    What the check of a plan found.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def configurations_checked(self) -> int:
+        ...
+    @property
+    def faults(self) -> list[Fault]:
+        """
+        Empty: the plan holds.
+        """
+    @property
+    def minimal_stops(self) -> int:
+        ...
+    @property
+    def ok(self) -> bool:
+        ...
+    @property
+    def rates(self) -> list[StopRate]:
+        ...
+def check_plan(plan: PlanToCheck, *, progress: typing.Any = None, **kwargs) -> PlanCheckResult:
+    """
+    Checks a finished plan against its scenario.
+    
+    Keyword options:
+        joint_step = 0.01: arm paths are checked at least this finely [rad or m]
+        base_step = 0.01: the route [m, and rad x 2]
+        position_tolerance = 0.0001: of a grasp [m]
+        rotation_tolerance = 0.001: of a grasp [rad]
+        samples = 1000: base poses drawn in the uncertainty disc of each stop
+        required_rate = 0.999: share of them from which every target part has a grasp
+        seed = 20240607: of the base poses drawn
+        threads = 0: 0: all
+    """

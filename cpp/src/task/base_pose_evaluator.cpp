@@ -7,6 +7,7 @@
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/robot/ik.hpp"
 #include "mmgrasp/task/base_region.hpp"
+#include "task/no_clock.hpp"
 #include "task/scene.hpp"
 
 namespace mmgrasp {
@@ -66,6 +67,7 @@ struct BasePoseEvaluator::Impl {
       : tables(std::move(shared)), at_rest(std::move(rest)), opened(std::move(open)),
         opened_at(opened.size(), Eigen::Vector3d::Constant(std::nan(""))) {
     ik.max_iterations = kIterations;
+    ik.time_limit = kNoClock;
   }
 
   std::unique_ptr<Impl> clone() const {
@@ -258,6 +260,7 @@ bool BasePoseEvaluator::part_with_restarts(const Eigen::Vector3d& base_pose, int
     CollisionChecker& checker = impl_->checker_at(openings[static_cast<std::size_t>(g)], base_pose);
     IkOptions options;
     options.restarts = kCheckRestarts;
+    options.time_limit = kNoClock;
     options.seed = static_cast<unsigned>(g) + 1;
     const IkResult found = solve_ik(tables.arm, T_base_part * part.grasps[static_cast<std::size_t>(g)].T_object_tcp,
                                     tables.problem->home, options,

@@ -10,6 +10,7 @@
 #include "mmgrasp/robot/ik.hpp"
 #include "task/full_turns.hpp"
 #include "task/joined_motions.hpp"
+#include "task/no_clock.hpp"
 #include "task/pick_scene.hpp"
 #include "task/release.hpp"
 
@@ -22,6 +23,8 @@ constexpr int kMotionTries = 12;             // Grasp configurations that may re
 constexpr std::size_t kReleases = 6;         // Goals of a carry.
 constexpr double kLineDeviation = 2e-4;      // Blending of straight tool motions [rad]: the tool stays on its line.
 constexpr double kEdgeStep = 0.02;
+constexpr double kStatesPerSecond = 2000;    // Of motion_time_limit: slow enough that this budget ends before the clock.
+constexpr double kMostStates = 1e8;
 constexpr double kTimedStep = 0.01;
 
 enum Stage { kAtGrasp, kApproaching, kClosing, kLifting, kReleasing, kReaching, kCarrying, kRetreating, kStages };
@@ -99,7 +102,7 @@ class PickPlanner {
     } else {
       IkOptions options;
       options.restarts = 4;
-      options.time_limit = 0.2;
+      options.time_limit = kNoClock;
       options.seed = seed_ + static_cast<unsigned>(grasp);
       for (const Eigen::VectorXd& q : solve_ik_all(checker.group(), T, kConfigurations, options)) judge(q);
     }
@@ -164,6 +167,8 @@ class PickPlanner {
               JointPath& path) {
     MotionOptions options;
     options.time_limit = problem_.options.motion_time_limit;
+    options.max_iterations =
+        static_cast<int>(std::clamp(std::ceil(kStatesPerSecond * options.time_limit), 1.0, kMostStates));
     options.seed = seed_ * 31u + static_cast<unsigned>(stage) + 7u * static_cast<unsigned>(motion_tries_);
     options.edge_step = kEdgeStep;
     MotionResult result = plan_motion(checker, from, to, options, monitor_);

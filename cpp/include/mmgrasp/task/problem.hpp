@@ -52,7 +52,9 @@ struct MMGRASP_EXPORT PartSupplyOptions {
   double positioning_uncertainty = 0.10;  ///< Radius of the disc in which the base may come to stand [m]; >= 0.
   double approach_distance = 0.08;        ///< Straight move from pre-grasp to grasp, along the approach axis [m]; > 0.
   double lift_height = 0.12;              ///< Straight upward move after closing [m]; > 0.
-  double motion_time_limit = 5.0;         ///< For each planned motion [s]; > 0.
+  /// Wall-clock cap of each planned motion [s]; > 0. A budget of 2000 states drawn for each of these seconds normally ends
+  /// the search earlier, so that the load of the machine does not change a plan.
+  double motion_time_limit = 5.0;
   double route_resolution = 0.10;         ///< Cell edge of the base route's search [m]; > 0.
   int robustness_samples = 2000;          ///< Base poses drawn at each stop for the check before returning; >= 0.
   unsigned seed = 1;

@@ -44,16 +44,19 @@ void bind_parts(py::module_& m) {
            py::arg("joint"), py::arg("closed"), py::arg("open"));
   py::class_<CheckedMotion>(m, "CheckedMotion")
       .def(py::init([](std::string kind, double opening, bool holding, std::vector<double> times,
-                       const ArrayLike& positions, const ArrayLike& velocities) {
+                       const ArrayLike& positions, const ArrayLike& velocities, const py::object& accelerations) {
              return CheckedMotion{std::move(kind),
                                   opening,
                                   holding,
                                   std::move(times),
                                   rows_argument(positions, "positions"),
-                                  rows_argument(velocities, "velocities")};
+                                  rows_argument(velocities, "velocities"),
+                                  accelerations.is_none()
+                                      ? std::vector<Eigen::VectorXd>{}
+                                      : rows_argument(accelerations.cast<ArrayLike>(), "accelerations")};
            }),
            py::arg("kind"), py::arg("opening"), py::arg("holding"), py::arg("times"), py::arg("positions"),
-           py::arg("velocities"));
+           py::arg("velocities"), py::arg("accelerations") = py::none());
   py::class_<CheckedPick>(m, "CheckedPick")
       .def(py::init([](int stop, std::string tray, std::string part, int grasp, std::vector<CheckedMotion> motions) {
              return CheckedPick{stop, std::move(tray), std::move(part), grasp, std::move(motions)};
@@ -69,6 +72,16 @@ void bind_parts(py::module_& m) {
              return CheckedRegion{std::move(tray), {cells.data(), cells.data() + cells.size()}};
            }),
            py::arg("tray"), py::arg("cells"));
+  py::class_<CheckedLegFigures>(m, "CheckedLegFigures")
+      .def(py::init([](double length, double turning, double duration) {
+             return CheckedLegFigures{length, turning, duration};
+           }),
+           py::arg("length"), py::arg("turning"), py::arg("duration"));
+  py::class_<CheckedIntersection>(m, "CheckedIntersection")
+      .def(py::init([](std::vector<std::string> trays, double heading, const ArrayLike& centre, double radius) {
+             return CheckedIntersection{std::move(trays), heading, vector2_argument(centre, "centre"), radius};
+           }),
+           py::arg("trays"), py::arg("heading"), py::arg("centre"), py::arg("radius"));
   py::class_<CheckedGrid>(m, "CheckedGrid")
       .def(py::init([](const ArrayLike& origin, double resolution, int nx, int ny, std::vector<double> headings) {
              return CheckedGrid{vector2_argument(origin, "grid origin"), resolution, nx, ny, std::move(headings)};
@@ -110,7 +123,10 @@ void bind_plan_to_check(py::module_& m) {
       .def_readwrite("stops", &PlanToCheck::stops)
       .def_readwrite("route", &PlanToCheck::route)
       .def_readwrite("picks", &PlanToCheck::picks)
-      .def_readwrite("lower_bound", &PlanToCheck::lower_bound);
+      .def_readwrite("lower_bound", &PlanToCheck::lower_bound)
+      .def_readwrite("route_figures", &PlanToCheck::route_figures)
+      .def_readwrite("intersections", &PlanToCheck::intersections)
+      .def_readwrite("robustness_rate", &PlanToCheck::robustness_rate);
 }
 
 }  // namespace

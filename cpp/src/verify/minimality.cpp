@@ -63,6 +63,10 @@ class StopsCheck {
   int run() {
     std::vector<RegionSet> own;
     for (std::size_t i = 0; i < plan_.stops.size(); ++i) check_stop(i, own);
+    for (std::size_t i = 0; i < plan_.intersections.size(); ++i) check_intersection(i);
+    if (plan_.robustness_rate < 0 || plan_.robustness_rate > 1) {
+      faults_.push_back({"bad-figures", "robustness_rate", text(plan_.robustness_rate) + ": must be in [0, 1]"});
+    }
     if (!missing_.empty()) return 0;
     std::vector<RegionSet> sets = common_discs(floor_, plan_.positioning_uncertainty + kRadiusBand, context_.monitor);
     for (const RegionSet& set : own) add_maximal(sets, set);
@@ -104,9 +108,28 @@ class StopsCheck {
     own.push_back(holding);
   }
 
+  /// A disc that is said to lie in the regions of some trays.
+  void check_intersection(std::size_t index) {
+    const CheckedIntersection& said = plan_.intersections[index];
+    const int layer = std::isfinite(said.heading) ? floor_.layer(said.heading) : -1;
+    bool good = layer >= 0 && said.centre.allFinite() && said.radius >= 0 && std::isfinite(said.radius);
+    for (std::size_t i = 0; good && i < said.trays.size(); ++i) {
+      const auto region = region_of_tray_.find(said.trays[i]);
+      good = region != region_of_tray_.end() &&
+             clearance(region->second, layer, said.centre, said.radius) >= said.radius - kRadiusBand;
+    }
+    if (good) return;
+    faults_.push_back({"bad-figures", "intersection " + std::to_string(index),
+                       "its disc of " + text(said.radius) + " m does not lie in the regions of all its trays"});
+  }
+
   double clearance(int region, int layer, const CheckedStop& stop, double radius) const {
+    return clearance(region, layer, Eigen::Vector2d(stop.pose.head<2>()), radius);
+  }
+
+  double clearance(int region, int layer, const Eigen::Vector2d& point, double radius) const {
     const double limit = 4 * plan_.grid.resolution * (plan_.grid.nx + plan_.grid.ny);  // a disc larger than the grid
-    return floor_.clearance(region, layer, stop.pose.head<2>(), std::min(radius + 1e-3, limit));
+    return floor_.clearance(region, layer, point, std::min(radius + 1e-3, limit));
   }
 
   void judge_count(int minimal) {

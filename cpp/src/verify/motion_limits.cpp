@@ -41,6 +41,23 @@ void report(const Worst& worst, const char* code, const char* quantity, const ch
                         text(worst.value) + ", the limit " + text(worst.bound) + " " + unit});
 }
 
+/// The accelerations a plan stores besides: as many as samples, and within the limits.
+void check_stored_accelerations(const Context& context, const CheckedMotion& motion, const std::string& where,
+                                Faults& faults) {
+  if (motion.accelerations.empty()) return;
+  const std::vector<double>& limits = context.plan.acceleration_limits;
+  bool good = motion.accelerations.size() == motion.times.size();
+  for (const Eigen::VectorXd& a : motion.accelerations) {
+    good = good && static_cast<std::size_t>(a.size()) == limits.size();
+    for (std::size_t j = 0; good && j < limits.size(); ++j) {
+      good = std::abs(a[static_cast<Eigen::Index>(j)]) <= (1 + kRateSlack) * limits[j];  // false for NaN
+    }
+  }
+  if (good) return;
+  faults.push_back({"acceleration", where,
+                    "the stored accelerations must be one a sample and joint, each within the acceleration limits"});
+}
+
 }  // namespace
 
 bool check_motion_shape(const CheckedMotion& motion, int joints, const std::string& where, Faults& faults) {
@@ -72,6 +89,7 @@ bool check_motion_shape(const CheckedMotion& motion, int joints, const std::stri
 
 void check_motion_limits(const Context& context, const Kinematics& kinematics, const CheckedMotion& motion,
                          const std::string& where, Faults& faults) {
+  check_stored_accelerations(context, motion, where, faults);
   Worst position, velocity, acceleration;
   for (std::size_t i = 0; i + 1 < motion.times.size(); ++i) {
     const HermiteSegment segment(motion, i);

@@ -25,6 +25,29 @@ bool driveable(BaseKind base, const Eigen::Vector3d& from, const Eigen::Vector3d
   return turned <= kJoin && aside <= kJoin;
 }
 
+/// Least time from rest to rest over a distance.
+double least_time(double distance, double velocity, double acceleration) {
+  const double ramps = velocity * velocity / acceleration;  // [m] or [rad] to full speed and back
+  if (distance < ramps) return 2 * std::sqrt(distance / acceleration);
+  return distance / velocity + velocity / acceleration;
+}
+
+/// Length and turning must be the poses'; the time at least what one drive and one turn of that size take.
+bool figures_hold(const CheckedLegFigures& said, const std::vector<Eigen::Vector3d>& poses, BaseKind base,
+                  const BaseLimits& limits) {
+  double length = 0, turning = 0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    length += (poses[i] - poses[i - 1]).head<2>().norm();
+    turning += std::abs(poses[i].z() - poses[i - 1].z());
+  }
+  const double drive = least_time(length, limits.linear_velocity, limits.linear_acceleration);
+  const double turn = least_time(turning, limits.angular_velocity, limits.angular_acceleration);
+  const double least = base == BaseKind::omni ? std::max(drive, turn) : drive + turn;
+  return std::abs(said.length - length) <= 1e-6 * (1 + length) &&
+         std::abs(said.turning - turning) <= 1e-6 * (1 + turning) && std::isfinite(said.duration) &&
+         said.duration >= 0.99 * least - 1e-9;
+}
+
 class RouteCheck {
  public:
   RouteCheck(const Context& context, Judge& judge, Faults& faults)
@@ -36,6 +59,9 @@ class RouteCheck {
       faults_.push_back({"route-legs", "route",
                          "has " + std::to_string(plan_.route.size()) + " legs, " + std::to_string(plan_.stops.size()) +
                              " stops need " + std::to_string(legs)});
+    }
+    if (!plan_.route_figures.empty() && plan_.route_figures.size() != plan_.route.size()) {
+      faults_.push_back({"route-figures", "route", "figures must be given for each leg"});
     }
     for (std::size_t leg = 0; leg < plan_.route.size(); ++leg) {
       context_.monitor.report("route", static_cast<double>(leg) / static_cast<double>(plan_.route.size()));
@@ -66,6 +92,11 @@ class RouteCheck {
                          std::string("a ") + to_string(plan_.robot.base()) + " base cannot go straight from " +
                              text(poses[i]) + " to " + text(poses[i + 1])});
       break;
+    }
+    const bool told = leg < plan_.route_figures.size();
+    if (told && !figures_hold(plan_.route_figures[leg], poses, plan_.robot.base(), plan_.robot.base_limits())) {
+      faults_.push_back({"route-figures", name(leg),
+                         "length or turning are not those of its poses, or the duration is below what the base needs"});
     }
     set_parts_on_leg(leg);
     check_free(poses, name(leg));

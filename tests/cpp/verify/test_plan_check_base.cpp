@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/verify/plan_check.hpp"
@@ -287,6 +288,39 @@ TEST(PlanCheckRoute, LegThatEndsElsewhere) {
   EXPECT_TRUE(codes_of(plan).empty());
   plan.route[1].clear();
   EXPECT_EQ(codes_of(plan), Codes{"route-ends"});
+}
+
+TEST(PlanCheckFigures, WhatDescribesMustNotLie) {
+  PlanToCheck good = good_plan();
+  // 1.4 m; 3 m with two quarter turns; 1.4 m. Durations far above what any base needs.
+  good.route_figures = {{1.4, 0, 60}, {3, M_PI, 60}, {1.4, 0, 60}};
+  good.intersections = {{{"A"}, 0, Eigen::Vector2d(0.4, 0), 0.2}, {{"B"}, 0, Eigen::Vector2d(0.4, 3), 0.1}};
+  good.robustness_rate = 1;
+  for (CheckedPick& pick : good.picks) {
+    for (CheckedMotion& m : pick.motions) m.accelerations.assign(m.times.size(), Eigen::VectorXd::Constant(5, 2.0));
+  }
+  EXPECT_EQ(codes_of(good), Codes{});
+  std::vector<PlanToCheck> lies(6, good);
+  lies[0].route_figures[1].length = 2.99;
+  lies[1].route_figures[1].turning = 0;
+  lies[2].route_figures[0].duration = 1.39 / good.robot.base_limits().linear_velocity;  // no time to speed up and brake
+  lies[3].route_figures.pop_back();
+  lies[4].route_figures[2].duration = -1;
+  lies[5].route_figures[2].length = std::nan("");
+  for (const PlanToCheck& lie : lies) EXPECT_EQ(codes_of(lie), Codes{"route-figures"}) << &lie - lies.data();
+  lies.assign(6, good);
+  lies[0].intersections[0].radius = 0.21;
+  lies[1].intersections[1].trays.push_back("A");
+  lies[2].intersections[1].centre.x() = 0.55;
+  lies[3].intersections[1].heading = 1;
+  lies[4].robustness_rate = 1.1;
+  lies[5].robustness_rate = -0.1;
+  for (const PlanToCheck& lie : lies) EXPECT_EQ(codes_of(lie), Codes{"bad-figures"}) << &lie - lies.data();
+  lies.assign(3, good);
+  lies[0].picks[1].motions[2].accelerations[3][4] = 2.1;  // the limit is 2
+  lies[1].picks[1].motions[2].accelerations.pop_back();
+  lies[2].picks[1].motions[2].accelerations[3][4] = std::nan("");
+  for (const PlanToCheck& lie : lies) EXPECT_EQ(codes_of(lie), Codes{"acceleration"}) << &lie - lies.data();
 }
 
 TEST(PlanCheckRoute, SidewaysDrive) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -42,6 +43,7 @@ struct MMGRASP_EXPORT CheckedMotion {
   bool holding = false;
   std::vector<double> times;
   std::vector<Eigen::VectorXd> positions, velocities;
+  std::vector<Eigen::VectorXd> accelerations = {};   ///< Empty: not given.
 };
 
 struct MMGRASP_EXPORT CheckedPick {
@@ -67,6 +69,17 @@ struct MMGRASP_EXPORT CheckedGrid {
   double resolution = 0.05;
   int nx = 0, ny = 0;
   std::vector<double> headings;
+};
+
+/// What a plan says about a leg of its route.
+struct MMGRASP_EXPORT CheckedLegFigures { double length = 0, turning = 0, duration = 0; };
+
+/// A place that a plan says lies in the regions of several trays.
+struct MMGRASP_EXPORT CheckedIntersection {
+  std::vector<std::string> trays;
+  double heading = 0;
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  double radius = 0;
 };
 
 /// A whole plan, as read from plan.json. Knows nothing of how it was made.
@@ -97,6 +110,9 @@ struct MMGRASP_EXPORT PlanToCheck {
   std::vector<std::vector<Eigen::Vector3d>> route;            ///< stops.size() + 1 legs of base poses.
   std::vector<CheckedPick> picks;
   int lower_bound = 0;
+  std::vector<CheckedLegFigures> route_figures;               ///< One a leg; empty: not given.
+  std::vector<CheckedIntersection> intersections;
+  double robustness_rate = std::numeric_limits<double>::quiet_NaN();   ///< NaN: not given.
 };
 
 struct MMGRASP_EXPORT PlanCheckOptions {
@@ -125,7 +141,9 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 ///   `no-lift`, `release-outside`, `release-tilted`, `release-height`;
 /// - the route: `route-legs` (their number), `route-ends`, `route-not-driveable`, `route-collision`, `too-long`;
 /// - stops: `region-malformed`, `region-missing`, `region-too-small`, `stop-heading`, `stop-radius`,
-///   `stop-outside-region`, `not-minimal`, `lower-bound`, `not-robust`.
+///   `stop-outside-region`, `not-minimal`, `lower-bound`, `not-robust`;
+/// - what only describes: `route-figures` (length, turning, duration), `acceleration` (stored ones above the limits),
+///   `bad-figures` (robustness rate outside [0, 1], intersections that lie elsewhere).
 struct MMGRASP_EXPORT Fault {
   std::string code;
   std::string where;                 ///< E.g. "pick 3 (A/bracket_02), lift, t = 1.24 s".

@@ -300,6 +300,20 @@ def _read_answer(plan: checks.PlanToCheck, root: Node) -> None:
     plan.route = [list(leg["poses"].array(3)) for leg in root["route"].elements()]
     plan.picks = [_read_pick(node, len(plan.arm_joints)) for node in root["picks"].elements()]
     plan.lower_bound = root["lower_bound"].integer(least=0)
+    plan.route_figures = [
+        checks.CheckedLegFigures(*(leg[key].number() for key in ("length", "turning", "duration")))
+        for leg in root["route"].elements()
+    ]
+    plan.intersections = [_read_intersection(node, headings) for node in root["intersections"].elements()]
+    plan.robustness_rate = root["robustness_rate"].number()
+
+
+def _read_intersection(node: Node, headings: list[float]) -> checks.CheckedIntersection:
+    index = node["heading"].integer(least=0)
+    if index >= len(headings):
+        node["heading"].fail("must be the index of a heading of the grid")
+    trays = [tray.string() for tray in node["trays"].elements()]
+    return checks.CheckedIntersection(trays, headings[index], node["centre"].numbers(2), node["radius"].number())
 
 
 def _cells(node: Node, layers: int, ny: int, nx: int) -> np.ndarray:
@@ -327,9 +341,9 @@ def _read_pick(node: Node, joints: int) -> checks.CheckedPick:
         times = motion["times"].numbers()
         if not times:
             motion["times"].fail("must not be empty")
-        rows = [motion[key].array(joints) for key in ("positions", "velocities")]
+        rows = [motion[key].array(joints) for key in ("positions", "velocities", "accelerations")]
         if any(len(values) != len(times) for values in rows):
-            motion["times"].fail("must be as many as positions and velocities")
+            motion["times"].fail("must be as many as positions, velocities and accelerations")
         motions.append(
             checks.CheckedMotion(
                 motion["kind"].string(), motion["opening"].number(), motion["holding"].boolean(), times, *rows

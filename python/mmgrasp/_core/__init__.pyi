@@ -1335,6 +1335,11 @@ class PartSupplyResult:
     def picks(self) -> list[Pick]:
         ...
     @property
+    def proven_minimal(self) -> bool:
+        """
+        No fewer stops can serve the regions.
+        """
+    @property
     def region_trays(self) -> list[int]:
         """
         Tray index of each region.

@@ -7,7 +7,7 @@ import mmgrasp._core
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['CheckedBody', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'Fault', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'check_plan']
+__all__: list[str] = ['CheckedBody', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegFigures', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'Fault', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'check_plan']
 class CheckedBody:
     def __init__(self, name: str, shapes: collections.abc.Sequence[mmgrasp._core.LinkShape], pose: numpy.typing.ArrayLike) -> None:
         ...
@@ -21,7 +21,7 @@ class CheckedFinger:
     def __init__(self, joint: str, closed: typing.SupportsFloat | typing.SupportsIndex, open: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
 class CheckedMotion:
-    def __init__(self, kind: str, opening: typing.SupportsFloat | typing.SupportsIndex, holding: bool, times: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], positions: numpy.typing.ArrayLike, velocities: numpy.typing.ArrayLike) -> None:
+    def __init__(self, kind: str, opening: typing.SupportsFloat | typing.SupportsIndex, holding: bool, times: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], positions: numpy.typing.ArrayLike, velocities: numpy.typing.ArrayLike, accelerations: typing.Any = None) -> None:
         ...
 class CheckedPick:
     def __init__(self, stop: typing.SupportsInt | typing.SupportsIndex, tray: str, part: str, grasp: typing.SupportsInt | typing.SupportsIndex, motions: collections.abc.Sequence[CheckedMotion]) -> None:
@@ -31,6 +31,12 @@ class CheckedStop:
         ...
 class CheckedRegion:
     def __init__(self, tray: str, cells: typing.Annotated[numpy.typing.ArrayLike, numpy.uint8]) -> None:
+        ...
+class CheckedLegFigures:
+    def __init__(self, length: typing.SupportsFloat | typing.SupportsIndex, turning: typing.SupportsFloat | typing.SupportsIndex, duration: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+class CheckedIntersection:
+    def __init__(self, trays: collections.abc.Sequence[str], heading: typing.SupportsFloat | typing.SupportsIndex, centre: numpy.typing.ArrayLike, radius: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
 class CheckedGrid:
     def __init__(self, origin: numpy.typing.ArrayLike, resolution: typing.SupportsFloat | typing.SupportsIndex, nx: typing.SupportsInt | typing.SupportsIndex, ny: typing.SupportsInt | typing.SupportsIndex, headings: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]) -> None:
@@ -110,6 +116,12 @@ class PlanToCheck:
     def home(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None:
         ...
     @property
+    def intersections(self) -> list[CheckedIntersection]:
+        ...
+    @intersections.setter
+    def intersections(self, arg0: collections.abc.Sequence[CheckedIntersection]) -> None:
+        ...
+    @property
     def lower_bound(self) -> int:
         ...
     @lower_bound.setter
@@ -158,10 +170,22 @@ class PlanToCheck:
     def regions(self, arg0: collections.abc.Sequence[CheckedRegion]) -> None:
         ...
     @property
+    def robustness_rate(self) -> float:
+        ...
+    @robustness_rate.setter
+    def robustness_rate(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
     def route(self) -> list[list[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]]]:
         ...
     @route.setter
     def route(self, arg0: collections.abc.Sequence[collections.abc.Sequence[typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]]]) -> None:
+        ...
+    @property
+    def route_figures(self) -> list[CheckedLegFigures]:
+        ...
+    @route_figures.setter
+    def route_figures(self, arg0: collections.abc.Sequence[CheckedLegFigures]) -> None:
         ...
     @property
     def start(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:

@@ -262,8 +262,8 @@ void bind_sequence(py::module_& m) {
       .def("__repr__", [](const StopSet& s) {
         return std::string("StopSet(") + to_string(s.outcome) + ", " + std::to_string(s.stops.size()) + " stops)";
       });
-  m.def("minimal_stops",
-        py::overload_cast<const BaseGrid&, const std::vector<Intersection>&, int>(&minimal_stops), py::arg("grid"), py::arg("intersections"), py::arg("trays"),
+  m.def("minimal_stops", py::overload_cast<const BaseGrid&, const std::vector<Intersection>&, int>(&minimal_stops),
+        py::arg("grid"), py::arg("intersections"), py::arg("trays"),
         "The least number of intersections that cover all trays (P1 equation 3.1), with proof.");
   py::class_<BasePath>(m, "BasePath", "A drive of the base.")
       .def_readonly("outcome", &BasePath::outcome)

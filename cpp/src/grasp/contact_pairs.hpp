@@ -10,25 +10,25 @@ namespace mmgrasp::detail {
 
 /// The flat rectangle a pad presses on: needed to judge how much of the pad rests on it.
 struct ContactFace {
-  Eigen::Vector3d u, v;                ///< Unit axes of the face, orthogonal to the closing axis.
-  double half_u = 0, half_v = 0;       ///< Half sizes [m].
-  double offset_u = 0, offset_v = 0;   ///< Of the contact from the face's middle [m].
+  Eigen::Vector3d u, v;               ///< Unit axes of the face, orthogonal to the closing axis.
+  double half_u = 0, half_v = 0;      ///< Half sizes [m].
+  double offset_u = 0, offset_v = 0;  ///< Of the contact from the face's middle [m].
 };
 
 /// Two opposed contacts: middle -+ axis * width / 2, in the object frame.
 struct ContactPair {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();   ///< Unit, from one contact to the other.
-  double width = 0;                                  ///< [m]
-  double alignment = 1;                              ///< 1: both normals along the axis; 0: at the edge of the friction cone.
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< Unit, from one contact to the other.
+  double width = 0;                                 ///< [m]
+  double alignment = 1;  ///< 1: both normals along the axis; 0: at the edge of the friction cone.
   Eigen::Vector3d first_approach = Eigen::Vector3d::UnitZ();  ///< Unit, orthogonal to axis: where approaches start.
   std::optional<ContactFace> face;
 };
 
 struct ContactPairs {
-  std::vector<ContactPair> pairs;                    ///< In the order of sampling, too wide ones included.
+  std::vector<ContactPair> pairs;                            ///< In the order of sampling, too wide ones included.
   Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();  ///< Uniform density.
-  std::vector<Eigen::Vector3d> corners;              ///< Points whose hull holds the object.
+  std::vector<Eigen::Vector3d> corners;                      ///< Points whose hull holds the object.
 };
 
 /// Analytic pairs of one box, sphere, cylinder or capsule; nothing for other shapes.

@@ -8,8 +8,9 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Pad positions along a free direction of half length `half`, the middle first. The outermost ones put a pad flush with
-/// the edge, or half a pad's way out when the part is shorter than the pad: fingertips must not always reach through.
+/// Pad positions along a free direction of half length `half`, the middle first. The outermost ones put a pad flush
+/// with the edge, or half a pad's way out when the part is shorter than the pad: fingertips must not always reach
+/// through.
 std::vector<double> pad_positions(double half, int count, double pad) {
   const double outermost = std::max(half / 2, half - pad / 2);
   std::vector<double> positions;
@@ -48,7 +49,8 @@ ContactPairs box_pairs(const Box& box, double pad, const GraspSamplerOptions& op
       pair.middle[u] = offset[0];
       pair.middle[v] = offset[1];
       pair.width = box.size[axis];
-      pair.face = ContactFace{Eigen::Vector3d::Unit(u), Eigen::Vector3d::Unit(v), half[u], half[v], offset[0], offset[1]};
+      pair.face =
+          ContactFace{Eigen::Vector3d::Unit(u), Eigen::Vector3d::Unit(v), half[u], half[v], offset[0], offset[1]};
       result.pairs.push_back(pair);
     }
   }

@@ -16,7 +16,7 @@ constexpr double kPi = 3.14159265358979323846;
 
 struct Candidate {
   Grasp grasp;
-  int bin = 0;   ///< Coarse direction of approach and closing axis.
+  int bin = 0;  ///< Coarse direction of approach and closing axis.
 };
 
 /// Rotation with R * from_a = to_a and R * from_b = to_b for two orthonormal pairs.

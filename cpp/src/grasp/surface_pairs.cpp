@@ -90,8 +90,8 @@ std::vector<Hit> cast_line(const Surface& surface, const Eigen::Vector3d& origin
   return hits;
 }
 
-/// Hits at which the line leaves the union of solids, when it enters that union at t = 0; none when the start is buried in
-/// another shape, or when the line grazes an edge so that entries and exits do not balance.
+/// Hits at which the line leaves the union of solids, when it enters that union at t = 0; none when the start is buried
+/// in another shape, or when the line grazes an edge so that entries and exits do not balance.
 std::vector<Hit> solid_exits(const std::vector<Hit>& hits, const Eigen::Vector3d& direction, double tolerance) {
   std::vector<Hit> exits;
   bool entered_at_start = false;
@@ -129,7 +129,8 @@ struct SurfacePoint {
 SurfacePoint sample_point(const Surface& surface, Rng& rng) {
   const double area = rng.uniform(0, surface.cumulative_area.back());
   const auto found = std::upper_bound(surface.cumulative_area.begin(), surface.cumulative_area.end(), area);
-  const std::size_t index = std::min<std::size_t>(found - surface.cumulative_area.begin(), surface.triangles.size() - 1);
+  const std::size_t index =
+      std::min<std::size_t>(found - surface.cumulative_area.begin(), surface.triangles.size() - 1);
   const Triangle& triangle = surface.triangles[index];
   const double root = std::sqrt(rng.uniform()), v = rng.uniform();
   return {triangle.a + triangle.ab * (root * (1 - v)) + triangle.ac * (root * v), &triangle};

@@ -16,8 +16,8 @@ namespace {
 
 using Data = ReachDatabase::Data;
 
-constexpr std::int64_t kBlock = 2048;           // samples of one random stream: the unit of parallel work
-constexpr std::int64_t kBlocksABatch = 32;      // between batches the counts of full cells are brought up to date
+constexpr std::int64_t kBlock = 2048;       // samples of one random stream: the unit of parallel work
+constexpr std::int64_t kBlocksABatch = 32;  // between batches the counts of full cells are brought up to date
 constexpr std::int64_t kManipulabilityBlocks = 8;
 constexpr const char* kStage = "reachability database";
 
@@ -227,7 +227,7 @@ class Builder {
   int threads_;
   detail::RotationCells rotations_;
   detail::CellCounter counter_;
-  Eigen::VectorXf joint_scale_;   ///< One over each joint's range.
+  Eigen::VectorXf joint_scale_;  ///< One over each joint's range.
   std::vector<CollisionChecker> checkers_;
   std::vector<Sampler> samplers_;
   double threshold_ = 0;

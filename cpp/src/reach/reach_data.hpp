@@ -22,8 +22,8 @@ constexpr std::uint32_t kReachFormat = 1;
 
 using CellIndex = Eigen::Matrix<std::int64_t, 3, 1>;
 
-/// A tool pose in 16 bytes, so that searching reads four from one cache line: the place within the position cell in 65536ths
-/// of its edge, and the unit quaternion (x, y, z, w) in 32767ths. Right to about 1e-5 cells and 1e-4 rad.
+/// A tool pose in 16 bytes, so that searching reads four from one cache line: the place within the position cell in
+/// 65536ths of its edge, and the unit quaternion (x, y, z, w) in 32767ths. Right to about 1e-5 cells and 1e-4 rad.
 struct StoredPose {
   std::array<std::uint16_t, 3> position;
   std::uint16_t unused;
@@ -56,22 +56,23 @@ CellIndex cell_of_key(std::uint64_t key);
 
 namespace mmgrasp {
 
-/// Configurations sorted by position cell, then rotation cell, then diversity: everything of one position cell lies together.
+/// Configurations sorted by position cell, then rotation cell, then diversity: everything of one position cell lies
+/// together.
 struct ReachDatabase::Data {
   ReachOptions options;
   std::string key;
   int joints = 0;
 
-  std::vector<std::uint64_t> position_keys;    ///< Non-empty position cells, ascending.
-  std::vector<std::uint32_t> position_first;   ///< First cell of each position cell, and the end.
-  std::vector<std::uint32_t> rotation_ids;     ///< One a cell, ascending within a position cell.
-  std::vector<std::uint32_t> cell_first;       ///< First configuration of each cell, and the end.
-  std::vector<float> configurations;           ///< `joints` numbers each.
-  std::vector<detail::StoredPose> poses;       ///< Tool pose of each.
+  std::vector<std::uint64_t> position_keys;   ///< Non-empty position cells, ascending.
+  std::vector<std::uint32_t> position_first;  ///< First cell of each position cell, and the end.
+  std::vector<std::uint32_t> rotation_ids;    ///< One a cell, ascending within a position cell.
+  std::vector<std::uint32_t> cell_first;      ///< First configuration of each cell, and the end.
+  std::vector<float> configurations;          ///< `joints` numbers each.
+  std::vector<detail::StoredPose> poses;      ///< Tool pose of each.
 
   // Derived when complete() is called.
   detail::RotationCells rotations{3.0};
-  std::vector<std::uint32_t> slots;            ///< Open addressing: position cell + 1, or 0 for a free slot.
+  std::vector<std::uint32_t> slots;  ///< Open addressing: position cell + 1, or 0 for a free slot.
   Eigen::AlignedBox3d bounds;
   double reach = 0;
 

@@ -41,7 +41,8 @@ std::uint64_t position_key(const CellIndex& index) {
 CellIndex cell_of_key(std::uint64_t key) {
   constexpr std::uint64_t kMask = (std::uint64_t{1} << kPositionBits) - 1;
   CellIndex index;
-  for (int i = 2; i >= 0; --i, key >>= kPositionBits) index[i] = static_cast<std::int64_t>(key & kMask) - kPositionLimit;
+  for (int i = 2; i >= 0; --i, key >>= kPositionBits)
+    index[i] = static_cast<std::int64_t>(key & kMask) - kPositionLimit;
   return index;
 }
 
@@ -134,13 +135,27 @@ void ReachOptions::check() const {
 
 ReachDatabase::ReachDatabase(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
 
-const std::string& ReachDatabase::key() const { return data_->key; }
-int ReachDatabase::joint_count() const { return data_->joints; }
-std::int64_t ReachDatabase::size() const { return static_cast<std::int64_t>(data_->size()); }
-std::int64_t ReachDatabase::cell_count() const { return static_cast<std::int64_t>(data_->cell_count()); }
-const ReachOptions& ReachDatabase::options() const { return data_->options; }
-double ReachDatabase::reach() const { return data_->reach; }
-Eigen::AlignedBox3d ReachDatabase::bounds() const { return data_->bounds; }
+const std::string& ReachDatabase::key() const {
+  return data_->key;
+}
+int ReachDatabase::joint_count() const {
+  return data_->joints;
+}
+std::int64_t ReachDatabase::size() const {
+  return static_cast<std::int64_t>(data_->size());
+}
+std::int64_t ReachDatabase::cell_count() const {
+  return static_cast<std::int64_t>(data_->cell_count());
+}
+const ReachOptions& ReachDatabase::options() const {
+  return data_->options;
+}
+double ReachDatabase::reach() const {
+  return data_->reach;
+}
+Eigen::AlignedBox3d ReachDatabase::bounds() const {
+  return data_->bounds;
+}
 
 Eigen::VectorXd ReachDatabase::configuration(std::int64_t index) const {
   require(index >= 0 && index < size(), "index", static_cast<double>(index),
@@ -152,7 +167,8 @@ Pose ReachDatabase::tool_pose(std::int64_t index) const {
   require(index >= 0 && index < size(), "index", static_cast<double>(index),
           "must lie in [0, " + std::to_string(size()) + ")");
   const auto i = static_cast<std::size_t>(index);
-  const auto cell = std::upper_bound(data_->cell_first.begin(), data_->cell_first.end(), i) - data_->cell_first.begin() - 1;
+  const auto cell =
+      std::upper_bound(data_->cell_first.begin(), data_->cell_first.end(), i) - data_->cell_first.begin() - 1;
   const auto position = std::upper_bound(data_->position_first.begin(), data_->position_first.end(), cell) -
                         data_->position_first.begin() - 1;
   Pose T = Pose::Identity();

@@ -34,7 +34,7 @@ struct Header {
   std::int64_t joints;
   std::uint64_t position_count, cell_count, size;
   std::uint64_t payload_hash;
-  std::uint64_t header_hash;   ///< Of everything before it.
+  std::uint64_t header_hash;  ///< Of everything before it.
 };
 static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 120, "written byte for byte: no padding");
 
@@ -98,7 +98,8 @@ void check_header(const Header& header, std::uint64_t file_size, const std::stri
     refuse(path, "corrupt: impossible counts in the header");
   const std::uint64_t expected =
       sizeof(Header) + header.position_count * 8 + (header.position_count + 1) * 4 + header.cell_count * 4 +
-      (header.cell_count + 1) * 4 + header.size * (4 * static_cast<std::uint64_t>(header.joints) + sizeof(detail::StoredPose));
+      (header.cell_count + 1) * 4 +
+      header.size * (4 * static_cast<std::uint64_t>(header.joints) + sizeof(detail::StoredPose));
   if (file_size != expected)
     refuse(path, (file_size < expected ? "truncated: " : "bytes after the end: ") + std::to_string(file_size) +
                      " bytes, " + std::to_string(expected) + " expected");

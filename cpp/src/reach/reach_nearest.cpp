@@ -45,8 +45,8 @@ class Nearest {
 /// A non-empty position cell next to the query's.
 struct PositionCell {
   std::int64_t index;
-  float distance;            ///< From the query to where the cell begins [cells].
-  Eigen::Vector3f query;     ///< The query from the cell's lower corner [cells].
+  float distance;         ///< From the query to where the cell begins [cells].
+  Eigen::Vector3f query;  ///< The query from the cell's lower corner [cells].
 };
 
 int position_cells(const Data& data, const Eigen::Vector3d& position, std::array<PositionCell, 27>& cells) {
@@ -77,8 +77,8 @@ int position_cells(const Data& data, const Eigen::Vector3d& position, std::array
   return count;
 }
 
-/// Lower bounds of rotation distances [rotation cells], by rotation cell. A table, because looking every id of a position
-/// cell up is quicker than searching the ids for each of 27 rotation cells.
+/// Lower bounds of rotation distances [rotation cells], by rotation cell. A table, because looking every id of a
+/// position cell up is quicker than searching the ids for each of 27 rotation cells.
 class RotationBounds {
  public:
   void set(const Data& data, const Eigen::Matrix3d& R) {
@@ -133,8 +133,8 @@ struct Query {
     }
   }
 
-  /// Looks at every cell of a position cell, some at a time: first those within bounds are picked and their poses asked from
-  /// memory, then measured, so that the waits overlap.
+  /// Looks at every cell of a position cell, some at a time: first those within bounds are picked and their poses asked
+  /// from memory, then measured, so that the waits overlap.
   void scan(const PositionCell& position, const float* bounds, Nearest& nearest) const {
     constexpr std::size_t kChunk = 64;
     std::array<std::uint32_t, kChunk> picked;

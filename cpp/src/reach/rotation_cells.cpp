@@ -20,7 +20,9 @@ Eigen::Vector3d face_normal(std::uint32_t face) {
   return (face % 2 == 0 ? 1.0 : -1.0) * Eigen::Vector3d::Unit(face / 2);
 }
 
-double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
 
 }  // namespace
 
@@ -62,7 +64,8 @@ void RotationCells::add_cell(std::uint32_t face, std::uint32_t i, std::uint32_t 
 void RotationCells::add_neighbours(std::uint32_t cell) {
   const std::uint32_t face = cell / (side_ * side_), i = cell / side_ % side_, j = cell % side_;
   std::vector<std::uint32_t> found;
-  // Every cell that touches this one has a corner in common with it: look around the corners, over the cube's edges too.
+  // Every cell that touches this one has a corner in common with it: look around the corners, over the cube's edges
+  // too.
   for (const std::uint32_t di : {0u, 1u}) {
     for (const std::uint32_t dj : {0u, 1u}) {
       const Eigen::Vector3d corner = direction_at(face, i + di, j + dj);
@@ -108,15 +111,16 @@ std::uint32_t RotationCells::id(const Eigen::Matrix3d& R) const {
   return direction * rolls_ + roll_id(roll_at(R, direction));
 }
 
-/// Cosine of half the angle to the nearest direction of the cell, from above: taken from the side it is farthest outside of.
+/// Cosine of half the angle to the nearest direction of the cell, from above: taken from the side it is farthest
+/// outside of.
 double RotationCells::cos_half_gap(const Eigen::Vector3d& direction, std::uint32_t cell) const {
   double sine = 0;
   for (const Eigen::Vector3d& side : sides_[cell]) sine = std::max(sine, -side.dot(direction));
   return std::sqrt(0.5 + 0.5 * std::sqrt(std::max(0.0, 1 - sine * sine)));
 }
 
-/// Upper bound of what carrying over the cell's middle changes a roll, against carrying straight to any point of the cell: the
-/// area of the largest spherical triangle with these two sides.
+/// Upper bound of what carrying over the cell's middle changes a roll, against carrying straight to any point of the
+/// cell: the area of the largest spherical triangle with these two sides.
 double RotationCells::roll_error(const Eigen::Vector3d& direction, std::uint32_t cell) const {
   const double cosine = direction.dot(centres_[cell]);
   const double half_tangents = std::sqrt(std::max(0.0, 1 - cosine) / (1 + cosine)) * half_radius_tangents_[cell];
@@ -136,13 +140,15 @@ int RotationCells::near_cells(const Eigen::Matrix3d& R, NearCells& cells) const 
     const auto add = [&](std::uint32_t roll_cell, double gap) {
       // The angle of a rotation made of a swing and a roll about perpendicular axes: both halves' cosines multiply.
       const double roll_gap = std::max(0.0, gap * roll_width - error);
-      cells[count++] = {direction * rolls_ + roll_cell, 2 * std::acos(std::min(1.0, cos_half * std::cos(roll_gap / 2)))};
+      cells[count++] = {direction * rolls_ + roll_cell,
+                        2 * std::acos(std::min(1.0, cos_half * std::cos(roll_gap / 2)))};
     };
     add(middle, 0);
     add((middle + rolls_ - 1) % rolls_, roll - middle);
     add((middle + 1) % rolls_, middle + 1 - roll);
   }
-  std::sort(cells.begin(), cells.begin() + count, [](const NearCell& a, const NearCell& b) { return a.angle < b.angle; });
+  std::sort(cells.begin(), cells.begin() + count,
+            [](const NearCell& a, const NearCell& b) { return a.angle < b.angle; });
   return count;
 }
 

@@ -8,8 +8,9 @@
 namespace mmgrasp::detail {
 
 /// Cells of nearly equal size over all rotations: the direction of the tool's z axis on a cube whose six faces carry an
-/// equiangular grid (solid angles differ by at most sqrt 2), times the roll about it. Roll is measured at the cell's middle,
-/// where the rotation is carried along the shortest arc: two rotations close to each other get close rolls everywhere.
+/// equiangular grid (solid angles differ by at most sqrt 2), times the roll about it. Roll is measured at the cell's
+/// middle, where the rotation is carried along the shortest arc: two rotations close to each other get close rolls
+/// everywhere.
 class RotationCells {
  public:
   explicit RotationCells(double cell);
@@ -30,8 +31,8 @@ class RotationCells {
   /// Nine direction cells at most touch in a corner or an edge, three rolls each.
   static constexpr int kMostNear = 27;
   using NearCells = std::array<NearCell, kMostNear>;
-  /// The cell of R and those around it: direction cells that share a corner with R's, with the three nearest rolls each,
-  /// nearest bound first. Returns how many.
+  /// The cell of R and those around it: direction cells that share a corner with R's, with the three nearest rolls
+  /// each, nearest bound first. Returns how many.
   int near_cells(const Eigen::Matrix3d& R, NearCells& cells) const;
 
  private:
@@ -44,11 +45,12 @@ class RotationCells {
   void add_cell(std::uint32_t face, std::uint32_t i, std::uint32_t j);
   void add_neighbours(std::uint32_t cell);
 
-  std::uint32_t side_ = 1;    ///< Cells along the edge of a face.
+  std::uint32_t side_ = 1;  ///< Cells along the edge of a face.
   std::uint32_t rolls_ = 3;
   std::vector<Eigen::Vector3d> centres_;
-  std::vector<Eigen::Vector3d> roll_zero_;   ///< Unit, orthogonal to the centre: where the tool's x axis has roll 0.
-  std::vector<double> half_radius_tangents_; ///< tan(r / 2), r the largest angle between the centre and a point of the cell.
+  std::vector<Eigen::Vector3d> roll_zero_;  ///< Unit, orthogonal to the centre: where the tool's x axis has roll 0.
+  std::vector<double>
+      half_radius_tangents_;  ///< tan(r / 2), r the largest angle between the centre and a point of the cell.
   std::vector<std::array<Eigen::Vector3d, 4>> sides_;  ///< Inward unit normals of the great circles around the cell.
   std::vector<std::uint32_t> neighbours_, neighbours_first_;
 };

@@ -8,12 +8,14 @@
 namespace mmgrasp {
 namespace {
 
-constexpr double kTurnStep = 0.05;   // [rad]
-constexpr double kNear = 1e-9;       // [m]
-constexpr double kMargin = 1e-3;     // [m] on the quick test with boxes
+constexpr double kTurnStep = 0.05;  // [rad]
+constexpr double kNear = 1e-9;      // [m]
+constexpr double kMargin = 1e-3;    // [m] on the quick test with boxes
 
 /// The robot's extent around its root's vertical axis with the arm at home.
-struct Extent { double radius = 0, low = 0, high = 0; };
+struct Extent {
+  double radius = 0, low = 0, high = 0;
+};
 
 Extent robot_extent(const JointGroup& arm, const Eigen::VectorXd& home) {
   Poses poses;

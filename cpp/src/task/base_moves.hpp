@@ -26,7 +26,7 @@ class BaseClearance {
   CollisionChecker& checker_;
   const Eigen::VectorXd& home_;
   double check_step_;
-  bool home_is_sound_ = true;                 // inside limits and without self-collision
+  bool home_is_sound_ = true;  // inside limits and without self-collision
   double radius_ = 0;
   std::vector<Eigen::AlignedBox2d> obstacles_;  // floor plans of the objects at the robot's height
 };

@@ -13,10 +13,10 @@
 namespace mmgrasp {
 namespace {
 
-constexpr int kFruitless = 2;       // Descents without an arrival after which a grasp counts as out of reach.
-constexpr int kIterations = 20;     // Of one descent: from a stored configuration near by, one that arrives takes 4 to 10.
-constexpr double kFar = 1.2;        // Cells of the database beyond which only one descent is tried.
-constexpr double kSame = 1e-3;      // Configurations nearer than this are one [rad or m].
+constexpr int kFruitless = 2;    // Descents without an arrival after which a grasp counts as out of reach.
+constexpr int kIterations = 20;  // Of one descent: from a stored configuration near by, one that arrives takes 4 to 10.
+constexpr double kFar = 1.2;     // Cells of the database beyond which only one descent is tried.
+constexpr double kSame = 1e-3;   // Configurations nearer than this are one [rad or m].
 constexpr int kCheckRestarts = 12;
 
 /// Links that stand still in the tool's frame while the arm moves: those behind the last arm joint.
@@ -35,10 +35,14 @@ std::set<std::string> hand_links(const JointGroup& arm) {
 
 int stage(Rejection cause) {
   switch (cause) {
-    case Rejection::limits: return 1;
-    case Rejection::self_collision: return 2;
-    case Rejection::scene: return 3;
-    default: return 0;
+    case Rejection::limits:
+      return 1;
+    case Rejection::self_collision:
+      return 2;
+    case Rejection::scene:
+      return 3;
+    default:
+      return 0;
   }
 }
 
@@ -64,7 +68,9 @@ struct BasePoseEvaluator::Impl {
   std::vector<Eigen::VectorXd> seen;
 
   Impl(std::shared_ptr<const EvaluatorTables> shared, CollisionChecker rest, std::vector<CollisionChecker> open)
-      : tables(std::move(shared)), at_rest(std::move(rest)), opened(std::move(open)),
+      : tables(std::move(shared)),
+        at_rest(std::move(rest)),
+        opened(std::move(open)),
         opened_at(opened.size(), Eigen::Vector3d::Constant(std::nan(""))) {
     ik.max_iterations = kIterations;
     ik.time_limit = kNoClock;
@@ -94,7 +100,8 @@ struct BasePoseEvaluator::Impl {
     return true;
   }
 
-  /// One descent from a stored configuration that, failing, also tells whether the pose is reached outside the limits only.
+  /// One descent from a stored configuration that, failing, also tells whether the pose is reached outside the limits
+  /// only.
   IkResult descent(const Pose& T_base_tcp, int seed) {
     IkOptions one = ik;
     one.restarts = 0;
@@ -140,8 +147,8 @@ namespace {
 /// Indices of checkers by opening; openings that differ by rounding share one.
 std::shared_ptr<EvaluatorTables> make_tables(const PartSupplyProblem& problem, const ReachDatabase& database,
                                              std::vector<double>& openings) {
-  auto tables = std::make_shared<EvaluatorTables>(
-      EvaluatorTables{&problem, &database, problem.arm.at(Pose::Identity()), {}, {}});
+  auto tables =
+      std::make_shared<EvaluatorTables>(EvaluatorTables{&problem, &database, problem.arm.at(Pose::Identity()), {}, {}});
   std::map<long, int> known;
   for (const Tray& tray : problem.trays) {
     tables->opening.emplace_back();
@@ -161,7 +168,8 @@ std::shared_ptr<EvaluatorTables> make_tables(const PartSupplyProblem& problem, c
   return tables;
 }
 
-/// The robot is lifted, as a whole, so that its tool is at the grasp: what the hand touches there it touches with any arm.
+/// The robot is lifted, as a whole, so that its tool is at the grasp: what the hand touches there it touches with any
+/// arm.
 bool hand_touches(CollisionChecker& checker, const Pose& T_tcp_root, const Eigen::VectorXd& q,
                   const std::set<std::string>& hand, const Pose& T_world_tcp) {
   checker.set_root(T_world_tcp * T_tcp_root);
@@ -192,8 +200,9 @@ void find_blocked_grasps(const PartSupplyProblem& problem, const World& world, c
     }
     for (std::size_t g = 0; g < part.grasps.size(); ++g) {
       const int opening = tables.opening[static_cast<std::size_t>(tray)][static_cast<std::size_t>(index)][g];
-      tables.blocked[static_cast<std::size_t>(tray)][static_cast<std::size_t>(index)][g] = hand_touches(
-          own[static_cast<std::size_t>(opening)], T_tcp_root, problem.home, hand, part.T_world_part * part.grasps[g].T_object_tcp);
+      tables.blocked[static_cast<std::size_t>(tray)][static_cast<std::size_t>(index)][g] =
+          hand_touches(own[static_cast<std::size_t>(opening)], T_tcp_root, problem.home, hand,
+                       part.T_world_part * part.grasps[g].T_object_tcp);
     }
   });
 }
@@ -216,7 +225,9 @@ BasePoseEvaluator::BasePoseEvaluator(BasePoseEvaluator&&) noexcept = default;
 BasePoseEvaluator& BasePoseEvaluator::operator=(BasePoseEvaluator&&) noexcept = default;
 BasePoseEvaluator::~BasePoseEvaluator() = default;
 
-BasePoseEvaluator BasePoseEvaluator::clone() const { return BasePoseEvaluator(impl_->clone()); }
+BasePoseEvaluator BasePoseEvaluator::clone() const {
+  return BasePoseEvaluator(impl_->clone());
+}
 
 Rejection BasePoseEvaluator::home(const Eigen::Vector3d& base_pose) {
   impl_->at_rest.set_root(pose_from_planar(base_pose));
@@ -262,16 +273,17 @@ bool BasePoseEvaluator::part_with_restarts(const Eigen::Vector3d& base_pose, int
     options.restarts = kCheckRestarts;
     options.time_limit = kNoClock;
     options.seed = static_cast<unsigned>(g) + 1;
-    const IkResult found = solve_ik(tables.arm, T_base_part * part.grasps[static_cast<std::size_t>(g)].T_object_tcp,
-                                    tables.problem->home, options,
-                                    [&](const Eigen::VectorXd& q) { return checker.rejection(q); });
+    const IkResult found =
+        solve_ik(tables.arm, T_base_part * part.grasps[static_cast<std::size_t>(g)].T_object_tcp, tables.problem->home,
+                 options, [&](const Eigen::VectorXd& q) { return checker.rejection(q); });
     if (found.outcome == Outcome::solved) return true;
   }
   return false;
 }
 
 bool BasePoseEvaluator::hand_blocked(int tray, int part, int grasp) const {
-  return impl_->tables->blocked[static_cast<std::size_t>(tray)][static_cast<std::size_t>(part)][static_cast<std::size_t>(grasp)];
+  return impl_->tables
+      ->blocked[static_cast<std::size_t>(tray)][static_cast<std::size_t>(part)][static_cast<std::size_t>(grasp)];
 }
 
 double BasePoseEvaluator::missing_reach(const Eigen::Vector3d& base_pose, int tray, int index) const {

@@ -18,7 +18,9 @@ struct Lattice {
   int nx() const { return grid.nx + (corners ? 1 : 0); }
   int ny() const { return grid.ny + (corners ? 1 : 0); }
   std::size_t size() const { return static_cast<std::size_t>(nx()) * static_cast<std::size_t>(ny()); }
-  std::size_t index(int ix, int iy) const { return static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx()) + static_cast<std::size_t>(ix); }
+  std::size_t index(int ix, int iy) const {
+    return static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx()) + static_cast<std::size_t>(ix);
+  }
   Eigen::Vector3d pose(int ix, int iy) const {
     Eigen::Vector3d p = grid.centre(heading, ix, iy);
     if (corners) p.head<2>().array() -= 0.5 * grid.resolution;
@@ -29,7 +31,9 @@ struct Lattice {
 using Marks = std::vector<std::uint8_t>;
 
 /// A flag a base pose, for both lattices of one layer.
-struct LayerMarks { Marks centres, corners; };
+struct LayerMarks {
+  Marks centres, corners;
+};
 
 /// What one row of base poses adds to a part's explanation.
 struct RowCount {
@@ -41,14 +45,15 @@ struct RowCount {
 struct Task {
   int tray;
   int heading;
-  std::vector<int> parts;           // its target parts
-  std::vector<LayerMarks> marks;    // one a part: 1 where it can be grasped
-  Marks in_range;                   // cells whose centre is within the search radius
+  std::vector<int> parts;         // its target parts
+  std::vector<LayerMarks> marks;  // one a part: 1 where it can be grasped
+  Marks in_range;                 // cells whose centre is within the search radius
 };
 
 class RegionSearch {
  public:
-  RegionSearch(const PartSupplyProblem& problem, const ReachDatabase& database, const BaseGrid& grid, const Monitor& monitor)
+  RegionSearch(const PartSupplyProblem& problem, const ReachDatabase& database, const BaseGrid& grid,
+               const Monitor& monitor)
       : problem_(problem), grid_(grid), monitor_(monitor), threads_(resolve_threads(problem.options.threads)) {
     BasePoseEvaluator first(problem, database);
     for (int i = 1; i < threads_; ++i) evaluators_.push_back(first.clone());
@@ -60,7 +65,8 @@ class RegionSearch {
     std::vector<BaseRegion> regions;
     for (const Tray& tray : problem_.trays) regions.push_back(empty_region(tray));
     home_.resize(grid_.headings.size());
-    const bool done = check_home(false) && check_parts(false, regions) && check_home(true) && check_parts(true, regions);
+    const bool done =
+        check_home(false) && check_parts(false, regions) && check_home(true) && check_parts(true, regions);
     if (!done) return {};
     for (const Task& task : tasks_) fill(task, regions[static_cast<std::size_t>(task.tray)]);
     return regions;
@@ -116,14 +122,16 @@ class RegionSearch {
       for (int dx = -1; dx <= 0; ++dx) {
         const int cx = ix + dx, cy = iy + dy;
         if (cx < 0 || cy < 0 || cx >= grid.nx || cy >= grid.ny) continue;
-        if (centres[static_cast<std::size_t>(cy) * static_cast<std::size_t>(grid.nx) + static_cast<std::size_t>(cx)]) return true;
+        if (centres[static_cast<std::size_t>(cy) * static_cast<std::size_t>(grid.nx) + static_cast<std::size_t>(cx)])
+          return true;
       }
     }
     return false;
   }
 
   bool wanted(const Task& task, std::size_t part, const Lattice& lattice, int ix, int iy) const {
-    return lattice.corners ? beside(task.marks[part].centres, grid_, ix, iy) : task.in_range[lattice.index(ix, iy)] != 0;
+    return lattice.corners ? beside(task.marks[part].centres, grid_, ix, iy)
+                           : task.in_range[lattice.index(ix, iy)] != 0;
   }
 
   /// Where the robot at home is free: the same for all trays of a layer.
@@ -143,31 +151,40 @@ class RegionSearch {
           }
         }
       }
-      (corners ? home_[static_cast<std::size_t>(h)].corners : home_[static_cast<std::size_t>(h)].centres).assign(lattice.size(), 0);
+      (corners ? home_[static_cast<std::size_t>(h)].corners : home_[static_cast<std::size_t>(h)].centres)
+          .assign(lattice.size(), 0);
     }
     const int rows = grid_.ny + (corners ? 1 : 0);
-    return parallel_for(grid_.headings.size() * static_cast<std::size_t>(rows), threads_, [&](std::size_t item, int worker) {
-      const int h = static_cast<int>(item) / rows, iy = static_cast<int>(item) % rows;
-      const Lattice lattice{grid_, h, corners};
-      LayerMarks& home = home_[static_cast<std::size_t>(h)];
-      for (int ix = 0; ix < lattice.nx(); ++ix) {
-        const std::size_t i = lattice.index(ix, iy);
-        if (!wanted_here[static_cast<std::size_t>(h)][i]) continue;
-        const bool free = evaluators_[static_cast<std::size_t>(worker)].home(lattice.pose(ix, iy)) == Rejection::none;
-        (corners ? home.corners : home.centres)[i] = free;
-      }
-    }, monitor_, corners ? "home at corners" : "home at centres");
+    return parallel_for(
+        grid_.headings.size() * static_cast<std::size_t>(rows), threads_,
+        [&](std::size_t item, int worker) {
+          const int h = static_cast<int>(item) / rows, iy = static_cast<int>(item) % rows;
+          const Lattice lattice{grid_, h, corners};
+          LayerMarks& home = home_[static_cast<std::size_t>(h)];
+          for (int ix = 0; ix < lattice.nx(); ++ix) {
+            const std::size_t i = lattice.index(ix, iy);
+            if (!wanted_here[static_cast<std::size_t>(h)][i]) continue;
+            const bool free =
+                evaluators_[static_cast<std::size_t>(worker)].home(lattice.pose(ix, iy)) == Rejection::none;
+            (corners ? home.corners : home.centres)[i] = free;
+          }
+        },
+        monitor_, corners ? "home at corners" : "home at centres");
   }
 
   /// One item a row of base poses, so that nothing depends on the number of threads.
   bool check_parts(bool corners, std::vector<BaseRegion>& regions) {
     const int rows = grid_.ny + (corners ? 1 : 0);
     std::vector<std::vector<RowCount>> counts(tasks_.size() * static_cast<std::size_t>(rows));
-    const bool done = parallel_for(counts.size(), threads_, [&](std::size_t item, int worker) {
-      // Rows are dealt out tray by tray in turn: a tray's rows near its middle cost most.
-      Task& task = tasks_[item % tasks_.size()];
-      check_row(task, static_cast<int>(item / tasks_.size()), corners, counts[item], evaluators_[static_cast<std::size_t>(worker)]);
-    }, monitor_, corners ? "base regions, corners" : "base regions, centres");
+    const bool done = parallel_for(
+        counts.size(), threads_,
+        [&](std::size_t item, int worker) {
+          // Rows are dealt out tray by tray in turn: a tray's rows near its middle cost most.
+          Task& task = tasks_[item % tasks_.size()];
+          check_row(task, static_cast<int>(item / tasks_.size()), corners, counts[item],
+                    evaluators_[static_cast<std::size_t>(worker)]);
+        },
+        monitor_, corners ? "base regions, corners" : "base regions, centres");
     if (!done) return false;
     for (std::size_t item = 0; item < counts.size(); ++item) {
       BaseRegion& region = regions[static_cast<std::size_t>(tasks_[item % tasks_.size()].tray)];

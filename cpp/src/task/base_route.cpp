@@ -10,13 +10,13 @@
 namespace mmgrasp {
 namespace {
 
-constexpr double kMargin = 2.0;        // [m] around what is in the scene
-constexpr int kShorteningChecks = 400; // Direct ways tried for shortening.
+constexpr double kMargin = 2.0;         // [m] around what is in the scene
+constexpr int kShorteningChecks = 400;  // Direct ways tried for shortening.
 
 using Poses3 = std::vector<Eigen::Vector3d>;
 
-Eigen::AlignedBox2d search_bounds(const CollisionChecker& checker, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
-                                  const BaseRouteOptions& options) {
+Eigen::AlignedBox2d search_bounds(const CollisionChecker& checker, const Eigen::Vector3d& from,
+                                  const Eigen::Vector3d& to, const BaseRouteOptions& options) {
   if (!options.bounds.isEmpty()) return options.bounds;
   Eigen::AlignedBox2d bounds(Eigen::Vector2d(from.head<2>()));
   bounds.extend(Eigen::Vector2d(to.head<2>()));
@@ -39,7 +39,9 @@ bool path_free(BaseClearance& clearance, const Poses3& poses, std::size_t first,
 }
 
 double path_cost(const Poses3& poses, std::size_t first, std::size_t last, double turn_weight) {
-  return way_cost(poses[first], Poses3(poses.begin() + static_cast<std::ptrdiff_t>(first) + 1, poses.begin() + static_cast<std::ptrdiff_t>(last) + 1),
+  return way_cost(poses[first],
+                  Poses3(poses.begin() + static_cast<std::ptrdiff_t>(first) + 1,
+                         poses.begin() + static_cast<std::ptrdiff_t>(last) + 1),
                   turn_weight);
 }
 

@@ -11,12 +11,26 @@ namespace mmgrasp {
 namespace {
 
 constexpr int kHeadings = 16;
-constexpr int kPortals = 15;           // Poses before and behind each end on its own heading line.
+constexpr int kPortals = 15;  // Poses before and behind each end on its own heading line.
 constexpr std::size_t kMaxExpansions = 400000;
 
 /// Drives that end on lattice points again, one a heading, counterclockwise.
-constexpr std::array<std::array<int, 2>, kHeadings> kDrives = {{{1, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 1}, {-1, 2}, {-1, 1}, {-2, 1},
-                                                                {-1, 0}, {-2, -1}, {-1, -1}, {-1, -2}, {0, -1}, {1, -2}, {1, -1}, {2, -1}}};
+constexpr std::array<std::array<int, 2>, kHeadings> kDrives = {{{1, 0},
+                                                                {2, 1},
+                                                                {1, 1},
+                                                                {1, 2},
+                                                                {0, 1},
+                                                                {-1, 2},
+                                                                {-1, 1},
+                                                                {-2, 1},
+                                                                {-1, 0},
+                                                                {-2, -1},
+                                                                {-1, -1},
+                                                                {-1, -2},
+                                                                {0, -1},
+                                                                {1, -2},
+                                                                {1, -1},
+                                                                {2, -1}}};
 
 /// A state of the search: a lattice pose, or a portal on the heading line of the start or the goal.
 struct Key {
@@ -43,7 +57,9 @@ struct Entry {
   std::uint64_t parent;
   std::vector<Eigen::Vector3d> way;
   bool checked;
-  bool operator<(const Entry& other) const { return estimate != other.estimate ? estimate > other.estimate : order > other.order; }
+  bool operator<(const Entry& other) const {
+    return estimate != other.estimate ? estimate > other.estimate : order > other.order;
+  }
 };
 
 class BaseSearch {
@@ -74,7 +90,9 @@ class BaseSearch {
   }
 
  private:
-  struct Span { int back = 0, ahead = 0; };
+  struct Span {
+    int back = 0, ahead = 0;
+  };
 
   Eigen::Vector3d portal(const Eigen::Vector3d& end, int k) const {
     const double s = k * settings_.resolution;
@@ -84,8 +102,10 @@ class BaseSearch {
   Span free_span(const Eigen::Vector3d& end) {
     Span span;
     if (settings_.base != BaseKind::diff_drive) return span;
-    while (span.ahead < kPortals && clearance_.segment_free(portal(end, span.ahead), portal(end, span.ahead + 1))) ++span.ahead;
-    while (-span.back < kPortals && clearance_.segment_free(portal(end, span.back), portal(end, span.back - 1))) --span.back;
+    while (span.ahead < kPortals && clearance_.segment_free(portal(end, span.ahead), portal(end, span.ahead + 1)))
+      ++span.ahead;
+    while (-span.back < kPortals && clearance_.segment_free(portal(end, span.back), portal(end, span.back - 1)))
+      --span.back;
     return span;
   }
 
@@ -104,7 +124,8 @@ class BaseSearch {
     return true;
   }
 
-  void push(const Key& key, const Node& parent, std::uint64_t parent_id, std::vector<Eigen::Vector3d> way, bool checked) {
+  void push(const Key& key, const Node& parent, std::uint64_t parent_id, std::vector<Eigen::Vector3d> way,
+            bool checked) {
     if (closed_.count(key.packed())) return;
     const double cost = parent.cost + way_cost(parent.pose, way, settings_.turn_weight);
     const Eigen::Vector3d& end = way.back();
@@ -156,7 +177,8 @@ class BaseSearch {
     if (!is_near || settings_.base != BaseKind::diff_drive) return;
     for (int k = goal_span_.back; k <= goal_span_.ahead; ++k) {
       const Eigen::Vector3d target = portal(to_, k);
-      if (k != 0 && (node.pose - target).head<2>().norm() < 2.5 * settings_.resolution) connect({Key::goal, k, 0, 0}, target, node, id);
+      if (k != 0 && (node.pose - target).head<2>().norm() < 2.5 * settings_.resolution)
+        connect({Key::goal, k, 0, 0}, target, node, id);
     }
   }
 
@@ -218,7 +240,8 @@ class BaseSearch {
 
 std::optional<std::vector<Eigen::Vector3d>> search_base_path(BaseClearance& clearance, const Eigen::Vector3d& from,
                                                              const Eigen::Vector3d& to,
-                                                             const BaseSearchSettings& settings, const Monitor& monitor) {
+                                                             const BaseSearchSettings& settings,
+                                                             const Monitor& monitor) {
   return BaseSearch(clearance, from, to, settings, monitor).run();
 }
 

@@ -19,9 +19,13 @@ struct Box2 {
   Point closest(const Point& p) const { return {std::clamp(p.x(), x0, x1), std::clamp(p.y(), y0, y1)}; }
 };
 
-struct Cell { int ix, iy; };
+struct Cell {
+  int ix, iy;
+};
 
-double squared(double v) { return v * v; }
+double squared(double v) {
+  return v * v;
+}
 
 double distance_to(const Cell& blocked, const Point& p) {
   const double dx = std::max({blocked.ix - p.x(), 0.0, p.x() - blocked.ix - 1});
@@ -39,9 +43,9 @@ double farthest(const Cell& blocked, const Box2& box) {
 /// One cell of the region with what limits a disc centred in it.
 struct Room {
   Cell cell;
-  double at_centre = 0;            // distance from its middle to the complement
-  double left, right, down, up;    // free interval through the cell along its row and its column
-  std::vector<Cell> blocked;       // complement cells that are nearest to some point of the cell
+  double at_centre = 0;          // distance from its middle to the complement
+  double left, right, down, up;  // free interval through the cell along its row and its column
+  std::vector<Cell> blocked;     // complement cells that are nearest to some point of the cell
 };
 
 class DiscSearch {
@@ -159,14 +163,16 @@ class DiscSearch {
   double radius_at(const Point& p) const {
     double best = 0;
     for (const Room& room : rooms_) {
-      if (p.x() < room.cell.ix || p.x() > room.cell.ix + 1 || p.y() < room.cell.iy || p.y() > room.cell.iy + 1) continue;
+      if (p.x() < room.cell.ix || p.x() > room.cell.ix + 1 || p.y() < room.cell.iy || p.y() > room.cell.iy + 1)
+        continue;
       best = std::max(best, radius_in(room, p));
     }
     return best;
   }
 
-  /// What is left of the box for centres of discs of radius r. The walls at the ends of the cell's own row and column span
-  /// the whole box, so they cut straight: this ends the search along corridors, where a continuum of centres is equally good.
+  /// What is left of the box for centres of discs of radius r. The walls at the ends of the cell's own row and column
+  /// span the whole box, so they cut straight: this ends the search along corridors, where a continuum of centres is
+  /// equally good.
   static Box2 cut(const Room& room, Box2 box, double r) {
     box.x0 = std::max(box.x0, room.left + r);
     box.x1 = std::min(box.x1, room.right - r);
@@ -237,7 +243,8 @@ class DiscSearch {
   /// Best first on the distance to the centroid, over centres whose radius is the best one less twice the tolerance.
   Point nearest_centre() const {
     const double wanted = best_ - 2 * tolerance_;
-    const double enough = wanted - 0.01 * tolerance_;  // less than what is cut away, or roundings could keep boxes forever
+    const double enough =
+        wanted - 0.01 * tolerance_;  // less than what is cut away, or roundings could keep boxes forever
     std::priority_queue<Node> queue;
     std::size_t order = 0;
     const auto push = [&](int index, Box2 box) {

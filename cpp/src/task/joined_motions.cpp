@@ -17,7 +17,8 @@ Eigen::VectorXd whole_turns(const std::vector<bool>& wraps, const Eigen::VectorX
 
 }  // namespace
 
-Eigen::VectorXd join_motions(const std::vector<bool>& wraps, const Eigen::VectorXd& from, std::vector<PickMotion>& motions) {
+Eigen::VectorXd join_motions(const std::vector<bool>& wraps, const Eigen::VectorXd& from,
+                             std::vector<PickMotion>& motions) {
   Eigen::VectorXd at = from;
   for (PickMotion& motion : motions) {
     std::vector<Eigen::VectorXd>& positions = motion.trajectory.positions;

@@ -54,7 +54,8 @@ StopSet minimal_stops(const BaseGrid& grid, const std::vector<Intersection>& int
     for (std::size_t c = 0; c < cover.chosen.size(); ++c) {
       const Intersection& some = intersections[static_cast<std::size_t>(cover.chosen[c])];
       if (!std::binary_search(some.trays.begin(), some.trays.end(), tray)) continue;
-      if (best < 0 || some.radius > intersections[static_cast<std::size_t>(cover.chosen[static_cast<std::size_t>(best)])].radius)
+      if (best < 0 ||
+          some.radius > intersections[static_cast<std::size_t>(cover.chosen[static_cast<std::size_t>(best)])].radius)
         best = static_cast<int>(c);
     }
     served[static_cast<std::size_t>(best)].push_back(tray);
@@ -66,7 +67,8 @@ StopSet minimal_stops(const BaseGrid& grid, const std::vector<Intersection>& int
     stop.intersection = widest_for(intersections, stop.trays, cover.chosen[c]);
     const Intersection& place = intersections[static_cast<std::size_t>(stop.intersection)];
     stop.radius = place.radius;
-    stop.pose = Eigen::Vector3d(place.centre.x(), place.centre.y(), grid.headings[static_cast<std::size_t>(place.heading)]);
+    stop.pose =
+        Eigen::Vector3d(place.centre.x(), place.centre.y(), grid.headings[static_cast<std::size_t>(place.heading)]);
     result.stops.push_back(stop);
   }
   return result;

@@ -26,7 +26,8 @@ int blocking_part(const BaseRegion& region) {
   for (int p = 0; p < static_cast<int>(region.part_cells.size()); ++p) {
     const CellMask& cells = region.part_cells[static_cast<std::size_t>(p)];
     const std::size_t feasible = region.explanations[static_cast<std::size_t>(p)].base_poses_feasible;
-    const std::size_t size = feasible == 0 ? 0 : 1 + static_cast<std::size_t>(std::count(cells.begin(), cells.end(), std::uint8_t{1}));
+    const std::size_t size =
+        feasible == 0 ? 0 : 1 + static_cast<std::size_t>(std::count(cells.begin(), cells.end(), std::uint8_t{1}));
     if (size < least) {
       least = size;
       worst = p;
@@ -81,13 +82,13 @@ std::string move_advice(const Obstruction& o) {
   others.insert(others.end(), o.move_trays.begin() + 1, o.move_trays.end());
   std::ostringstream text;
   text.precision(4);
-  text << "move the tray" << (others.empty() ? "" : " together with " + listed(others, 0)) << " by (" << o.advised_move.x() << ", "
-       << o.advised_move.y() << ") m";
+  text << "move the tray" << (others.empty() ? "" : " together with " + listed(others, 0)) << " by ("
+       << o.advised_move.x() << ", " << o.advised_move.y() << ") m";
   return text.str();
 }
 
-std::string advice(const PartExplanation& part, const Obstruction& o, std::size_t in_collision, const PartSupplyProblem& problem,
-                   int too_wide) {
+std::string advice(const PartExplanation& part, const Obstruction& o, std::size_t in_collision,
+                   const PartSupplyProblem& problem, int too_wide) {
   const Rejections& r = part.rejections;
   const std::size_t collisions = r.scene + r.self_collision;
   if (!o.move_trays.empty()) return move_advice(o);
@@ -100,12 +101,15 @@ std::string advice(const PartExplanation& part, const Obstruction& o, std::size_
            " base poses around it: clear the floor in front of the tray or choose another home configuration";
   }
   if (r.grasp_filter == r.total()) {
-    return "the open hand touches the scene or a neighbour at every grasp: give grasps from above, lower the tray's walls or leave "
+    return "the open hand touches the scene or a neighbour at every grasp: give grasps from above, lower the tray's "
+           "walls or leave "
            "more room between the parts (gripper opens to " +
-           metres(problem.gripper.max_opening) + (too_wide > 0 ? ", " + std::to_string(too_wide) + " grasps were too wide)" : ")");
+           metres(problem.gripper.max_opening) +
+           (too_wide > 0 ? ", " + std::to_string(too_wide) + " grasps were too wide)" : ")");
   }
   if (r.reach + r.limits >= collisions) {
-    return "bring the part nearer to where the robot can stand, allow other base headings, or give grasps from other directions";
+    return "bring the part nearer to where the robot can stand, allow other base headings, or give grasps from other "
+           "directions";
   }
   return "move obstacles away from the part, allow other base headings, or give grasps from other directions";
 }
@@ -131,14 +135,15 @@ Obstruction without_grasps(Obstruction obstruction, const Part& part, const Grip
     return obstruction;
   }
   obstruction.needed_opening = needed_opening(part, gripper);
-  obstruction.message += ": all " + std::to_string(part.grasps_too_wide) + " candidates are wider than the gripper opens (" +
-                         metres(gripper.max_opening) + ")";
-  if (obstruction.needed_opening > 0) obstruction.message += ": take a gripper that opens to " + metres(obstruction.needed_opening);
+  obstruction.message += ": all " + std::to_string(part.grasps_too_wide) +
+                         " candidates are wider than the gripper opens (" + metres(gripper.max_opening) + ")";
+  if (obstruction.needed_opening > 0)
+    obstruction.message += ": take a gripper that opens to " + metres(obstruction.needed_opening);
   return obstruction;
 }
 
-void add_advised_move(Obstruction& obstruction, const PartSupplyProblem& problem, const ReachDatabase& database, const BaseGrid& grid,
-                 int tray, const std::vector<Obstruction>& earlier) {
+void add_advised_move(Obstruction& obstruction, const PartSupplyProblem& problem, const ReachDatabase& database,
+                      const BaseGrid& grid, int tray, const std::vector<Obstruction>& earlier) {
   for (const Obstruction& other : earlier) {
     if (std::count(other.move_trays.begin(), other.move_trays.end(), obstruction.tray) == 0) continue;
     obstruction.advised_move = other.advised_move;
@@ -165,8 +170,8 @@ double largest_radius(const BaseGrid& grid, const BaseRegion& region) {
   return largest;
 }
 
-Obstruction explain_region(const PartSupplyProblem& problem, const ReachDatabase& database, BasePoseEvaluator& evaluator,
-                           const BaseGrid& grid, int tray, const BaseRegion& region,
+Obstruction explain_region(const PartSupplyProblem& problem, const ReachDatabase& database,
+                           BasePoseEvaluator& evaluator, const BaseGrid& grid, int tray, const BaseRegion& region,
                            const std::vector<Obstruction>& earlier) {
   Obstruction obstruction;
   obstruction.tray = region.tray;
@@ -175,9 +180,12 @@ Obstruction explain_region(const PartSupplyProblem& problem, const ReachDatabase
     obstruction.stage = "robustness";
     obstruction.largest_uncertainty = radius;
     obstruction.part = region.explanations[static_cast<std::size_t>(blocking_part(region))].part;
-    obstruction.message = "tray '" + region.tray + "': the largest disc of base poses from which every part can be grasped has a radius of " +
-                          metres(radius) + ", positioning_uncertainty is " + metres(problem.options.positioning_uncertainty) +
-                          ": lower it to that radius or position the base better (the part with the smallest region is '" + obstruction.part + "')";
+    obstruction.message =
+        "tray '" + region.tray +
+        "': the largest disc of base poses from which every part can be grasped has a radius of " + metres(radius) +
+        ", positioning_uncertainty is " + metres(problem.options.positioning_uncertainty) +
+        ": lower it to that radius or position the base better (the part with the smallest region is '" +
+        obstruction.part + "')";
     return obstruction;
   }
   const int blocking = blocking_part(region);
@@ -193,13 +201,15 @@ Obstruction explain_region(const PartSupplyProblem& problem, const ReachDatabase
   obstruction.stage = all_blocked ? "grasp" : "region";
   if (!all_blocked) obstruction.missing_reach = missing_reach(problem, database, evaluator, grid, tray, index);
   add_advised_move(obstruction, problem, database, grid, tray, earlier);
-  const std::string fix = advice(explanation, obstruction, region.base_poses_in_collision, problem, part.grasps_too_wide);
+  const std::string fix =
+      advice(explanation, obstruction, region.base_poses_in_collision, problem, part.grasps_too_wide);
   if (explanation.base_poses_feasible > 0) {
     obstruction.message = "tray '" + region.tray + "': no cell of base poses serves all its parts; part '" + part.name +
                           "' can be grasped from the fewest: " + fix;
   } else {
-    obstruction.message = "part '" + part.name + "' cannot be grasped from any of " + std::to_string(explanation.base_poses_tried) +
-                          " base poses, mostly for " + main_cause(explanation.rejections) + " (" + explanation.rejections.summary() + "): " + fix;
+    obstruction.message = "part '" + part.name + "' cannot be grasped from any of " +
+                          std::to_string(explanation.base_poses_tried) + " base poses, mostly for " +
+                          main_cause(explanation.rejections) + " (" + explanation.rejections.summary() + "): " + fix;
   }
   return obstruction;
 }

@@ -4,10 +4,10 @@
 
 namespace mmgrasp {
 
-/// What to say about a tray whose region is empty or too small for the uncertainty. A move that `earlier` obstructions advise
-/// for this tray is repeated.
-Obstruction explain_region(const PartSupplyProblem& problem, const ReachDatabase& database, BasePoseEvaluator& evaluator,
-                           const BaseGrid& grid, int tray, const BaseRegion& region,
+/// What to say about a tray whose region is empty or too small for the uncertainty. A move that `earlier` obstructions
+/// advise for this tray is repeated.
+Obstruction explain_region(const PartSupplyProblem& problem, const ReachDatabase& database,
+                           BasePoseEvaluator& evaluator, const BaseGrid& grid, int tray, const BaseRegion& region,
                            const std::vector<Obstruction>& earlier = {});
 
 /// Largest disc in any layer of the region [m]; 0 when it is empty.

@@ -34,7 +34,8 @@ std::vector<Stop> other_places(const BaseGrid& grid, const std::vector<BaseRegio
   if (heading == static_cast<int>(grid.headings.size())) return {};
   CellMask shared(grid.size(), 1);
   for (int tray : stop.trays) {
-    for (std::size_t i = 0; i < shared.size(); ++i) shared[i] = shared[i] && regions[static_cast<std::size_t>(tray)].cells[i];
+    for (std::size_t i = 0; i < shared.size(); ++i)
+      shared[i] = shared[i] && regions[static_cast<std::size_t>(tray)].cells[i];
   }
   std::vector<Stop> candidates;
   for (int iy = 0; iy < grid.ny; ++iy) {
@@ -46,7 +47,8 @@ std::vector<Stop> other_places(const BaseGrid& grid, const std::vector<BaseRegio
       if (place.radius >= min_radius) candidates.push_back(place);
     }
   }
-  std::stable_sort(candidates.begin(), candidates.end(), [](const Stop& a, const Stop& b) { return a.radius > b.radius; });
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Stop& a, const Stop& b) { return a.radius > b.radius; });
   std::vector<Stop> chosen;
   for (const Stop& place : candidates) {
     bool is_far = (place.pose - stop.pose).head<2>().norm() >= apart;

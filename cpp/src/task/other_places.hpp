@@ -7,8 +7,8 @@
 
 namespace mmgrasp {
 
-/// Other places for a stop: cell centres of the same layer whose disc inside the shared region of the stop's trays is at
-/// least `min_radius`, widest first, no two nearer than `apart`. Their `radius` is that of the disc around them.
+/// Other places for a stop: cell centres of the same layer whose disc inside the shared region of the stop's trays is
+/// at least `min_radius`, widest first, no two nearer than `apart`. Their `radius` is that of the disc around them.
 std::vector<Stop> other_places(const BaseGrid& grid, const std::vector<BaseRegion>& regions, const Stop& stop,
                                double min_radius, double apart, std::size_t count);
 

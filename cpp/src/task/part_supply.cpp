@@ -26,7 +26,8 @@ constexpr std::size_t kNamedContacts = 3;
 /// Adds up the wall time of a stage.
 class StageClock {
  public:
-  StageClock(PartSupplyPlan& plan, const char* stage) : plan_(plan), stage_(stage), start_(std::chrono::steady_clock::now()) {}
+  StageClock(PartSupplyPlan& plan, const char* stage)
+      : plan_(plan), stage_(stage), start_(std::chrono::steady_clock::now()) {}
   ~StageClock() {
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     for (StageTime& time : plan_.timings) {
@@ -68,7 +69,8 @@ void check_ends(const PartSupplyProblem& problem) {
       self = self || !contact.with_scene;
     }
     if (self) throw InvalidInput("home: " + pairs + "; the robot must be free of self-collision at home");
-    throw InvalidInput(std::string(name) + " = " + text(pose) + ": " + pairs + "; the robot at home must be free there");
+    throw InvalidInput(std::string(name) + " = " + text(pose) + ": " + pairs +
+                       "; the robot at home must be free there");
   }
 }
 
@@ -113,8 +115,8 @@ class PartSupply {
         return false;
       }
       const StageClock clock(plan_, "robustness");
-      const RobustnessResult check = check_robustness(problem_, evaluator, plan_.grid, plan_.stops, plan_.region_trays,
-                                                      plan_.regions, monitor_);
+      const RobustnessResult check =
+          check_robustness(problem_, evaluator, plan_.grid, plan_.stops, plan_.region_trays, plan_.regions, monitor_);
       if (check.stopped) return false;
       plan_.robustness_rate = check.rate();
       if (check.cells_removed == 0 || round + 1 == kRobustnessRounds) {
@@ -147,8 +149,9 @@ class PartSupply {
     obstruction.stage = "robustness";
     obstruction.part = check.worst_part;
     std::ostringstream message;
-    message << "only " << check.good << " of " << check.samples << " base poses drawn in the uncertainty discs reach every part (worst: '"
-            << check.worst_part << "'): use a finer grid.resolution or a smaller positioning_uncertainty";
+    message << "only " << check.good << " of " << check.samples
+            << " base poses drawn in the uncertainty discs reach every part (worst: '" << check.worst_part
+            << "'): use a finer grid.resolution or a smaller positioning_uncertainty";
     obstruction.message = message.str();
     plan_.obstructions.push_back(obstruction);
     return false;
@@ -177,14 +180,19 @@ class PartSupply {
     return true;
   }
 
-  bool no_stops_route(BaseRoutes& routes) { return routes.between(problem_.start, problem_.goal).outcome == Outcome::solved; }
+  bool no_stops_route(BaseRoutes& routes) {
+    return routes.between(problem_.start, problem_.goal).outcome == Outcome::solved;
+  }
 
   bool no_route(int stop) {
     Obstruction obstruction;
     obstruction.stage = "route";
     const Eigen::Vector3d pose = stop >= 0 ? plan_.stops[static_cast<std::size_t>(stop)].pose : problem_.goal;
-    if (stop >= 0) obstruction.tray = plan_.regions[static_cast<std::size_t>(plan_.stops[static_cast<std::size_t>(stop)].trays.front())].tray;
-    obstruction.message = std::string("no drive from the start leads to ") + (stop >= 0 ? "the stop at " : "the goal at ") + text(pose) +
+    if (stop >= 0)
+      obstruction.tray =
+          plan_.regions[static_cast<std::size_t>(plan_.stops[static_cast<std::size_t>(stop)].trays.front())].tray;
+    obstruction.message = std::string("no drive from the start leads to ") +
+                          (stop >= 0 ? "the stop at " : "the goal at ") + text(pose) +
                           " with the arm at home: widen the way, choose a narrower home, or a finer route_resolution";
     plan_.obstructions.push_back(obstruction);
     return false;
@@ -235,7 +243,8 @@ class PartSupply {
   bool still_robust(const Stop& place) {
     const BasePoseEvaluator evaluator(problem_, database_);
     std::vector<BaseRegion> scratch = plan_.regions;
-    const RobustnessResult check = check_robustness(problem_, evaluator, plan_.grid, {place}, plan_.region_trays, scratch, monitor_);
+    const RobustnessResult check =
+        check_robustness(problem_, evaluator, plan_.grid, {place}, plan_.region_trays, scratch, monitor_);
     if (check.stopped || check.rate() < kRequiredRate) return false;
     plan_.robustness_rate = std::min(plan_.robustness_rate, check.rate());
     return true;
@@ -292,7 +301,8 @@ class PartSupply {
 
 }  // namespace
 
-PartSupplyPlan plan_part_supply(const PartSupplyProblem& problem, const ReachDatabase& database, const Monitor& monitor) {
+PartSupplyPlan plan_part_supply(const PartSupplyProblem& problem, const ReachDatabase& database,
+                                const Monitor& monitor) {
   return PartSupply(problem, database, monitor).run();
 }
 

@@ -17,19 +17,19 @@
 namespace mmgrasp {
 namespace {
 
-constexpr double kSame = 1e-2;               // Configurations nearer than this are one [rad or m].
-constexpr int kConfigurations = 6;           // Tried for one grasp.
-constexpr int kMotionTries = 12;             // Grasp configurations that may reach the costly stage.
-constexpr std::size_t kReleases = 6;         // Goals of a carry.
-constexpr double kLineDeviation = 2e-4;      // Blending of straight tool motions [rad]: the tool stays on its line.
+constexpr double kSame = 1e-2;           // Configurations nearer than this are one [rad or m].
+constexpr int kConfigurations = 6;       // Tried for one grasp.
+constexpr int kMotionTries = 12;         // Grasp configurations that may reach the costly stage.
+constexpr std::size_t kReleases = 6;     // Goals of a carry.
+constexpr double kLineDeviation = 2e-4;  // Blending of straight tool motions [rad]: the tool stays on its line.
 constexpr double kEdgeStep = 0.02;
-constexpr double kStatesPerSecond = 2000;    // Of motion_time_limit: slow enough that this budget ends before the clock.
+constexpr double kStatesPerSecond = 2000;  // Of motion_time_limit: slow enough that this budget ends before the clock.
 constexpr double kMostStates = 1e8;
 constexpr double kTimedStep = 0.01;
 
 enum Stage { kAtGrasp, kApproaching, kClosing, kLifting, kReleasing, kReaching, kCarrying, kRetreating, kStages };
-constexpr std::array<const char*, kStages> kStageNames = {"grasp", "approach", "close", "lift", "release",
-                                                          "reach", "carry", "retreat"};
+constexpr std::array<const char*, kStages> kStageNames = {"grasp",   "approach", "close", "lift",
+                                                          "release", "reach",    "carry", "retreat"};
 
 JointPath reversed(const JointPath& path) {
   JointPath back = path;
@@ -38,14 +38,19 @@ JointPath reversed(const JointPath& path) {
 }
 
 /// The paths of one pick before timing.
-struct Paths { JointPath reach, approach, lift, carry, retreat; };
+struct Paths {
+  JointPath reach, approach, lift, carry, retreat;
+};
 
 class PickPlanner {
  public:
-  PickPlanner(const PartSupplyProblem& problem, const ReachDatabase& database, const Eigen::Vector3d& base_pose, int tray,
-              int part, const std::vector<std::pair<int, int>>& remaining, const Monitor& monitor)
-      : problem_(problem), database_(database), part_(part_of(problem, tray, part)),
-        scene_(problem, base_pose, tray, part, remaining), monitor_(monitor) {
+  PickPlanner(const PartSupplyProblem& problem, const ReachDatabase& database, const Eigen::Vector3d& base_pose,
+              int tray, int part, const std::vector<std::pair<int, int>>& remaining, const Monitor& monitor)
+      : problem_(problem),
+        database_(database),
+        part_(part_of(problem, tray, part)),
+        scene_(problem, base_pose, tray, part, remaining),
+        monitor_(monitor) {
     pick_.tray = tray;
     pick_.part = part;
     seed_ = problem.options.seed * 1000003u + static_cast<unsigned>(tray) * 1009u + static_cast<unsigned>(part);
@@ -72,7 +77,9 @@ class PickPlanner {
     return false;
   }
 
-  Pose T_world_tcp(int grasp) const { return part_.T_world_part * part_.grasps[static_cast<std::size_t>(grasp)].T_object_tcp; }
+  Pose T_world_tcp(int grasp) const {
+    return part_.T_world_part * part_.grasps[static_cast<std::size_t>(grasp)].T_object_tcp;
+  }
 
   /// Free configurations at the grasp, nearest to home first. Second round: from random starts instead of the database.
   std::vector<Eigen::VectorXd> grasp_configurations(int grasp, int round, CollisionChecker& checker) {
@@ -89,7 +96,8 @@ class PickPlanner {
     };
     const Pose T_base_tcp = scene_.T_world_root().inverse() * T;
     if (round == 0) {
-      const int count = database_.nearest(T_base_tcp, std::max(kConfigurations, problem_.options.grid.ik_seeds), seeds_);
+      const int count =
+          database_.nearest(T_base_tcp, std::max(kConfigurations, problem_.options.grid.ik_seeds), seeds_);
       if (count == 0) pick_.rejections.add(Rejection::reach);
       for (int i = 0; i < count; ++i) {
         Eigen::VectorXd q = seeds_.col(i).head(problem_.arm.size());
@@ -145,13 +153,15 @@ class PickPlanner {
 
     CollisionChecker& after = scene_.after(opening);
     std::vector<Eigen::VectorXd> releases;
-    for (const Eigen::VectorXd& some : release_configurations(
-             database_, holding, release_poses(problem_, scene_.T_world_root(), part_, T_tcp_part),
-             paths.lift.waypoints.back(), kReleases, pick_.rejections)) {
-      if (PickScene::fingers_free(problem_, scene_.T_world_root(), after, some, width, opening)) releases.push_back(some);
+    for (const Eigen::VectorXd& some :
+         release_configurations(database_, holding, release_poses(problem_, scene_.T_world_root(), part_, T_tcp_part),
+                                paths.lift.waypoints.back(), kReleases, pick_.rejections)) {
+      if (PickScene::fingers_free(problem_, scene_.T_world_root(), after, some, width, opening))
+        releases.push_back(some);
     }
     if (releases.empty()) return fell(kReleasing);
-    if (!PickScene::fingers_free(problem_, scene_.T_world_root(), before, problem_.home, 0, opening)) return fell(kReaching);
+    if (!PickScene::fingers_free(problem_, scene_.T_world_root(), before, problem_.home, 0, opening))
+      return fell(kReaching);
     ++motion_tries_;
     if (!plan_motions(before, holding, after, releases, paths)) return false;
     return finish(grasp, width, opening, before, holding, after, paths);
@@ -163,8 +173,8 @@ class PickPlanner {
     return options;
   }
 
-  bool motion(CollisionChecker& checker, const Eigen::VectorXd& from, const std::vector<Eigen::VectorXd>& to, Stage stage,
-              JointPath& path) {
+  bool motion(CollisionChecker& checker, const Eigen::VectorXd& from, const std::vector<Eigen::VectorXd>& to,
+              Stage stage, JointPath& path) {
     MotionOptions options;
     options.time_limit = problem_.options.motion_time_limit;
     options.max_iterations =
@@ -243,11 +253,16 @@ class PickPlanner {
 
 const char* to_string(MotionKind kind) {
   switch (kind) {
-    case MotionKind::reach: return "reach";
-    case MotionKind::approach: return "approach";
-    case MotionKind::lift: return "lift";
-    case MotionKind::carry: return "carry";
-    case MotionKind::retreat: return "retreat";
+    case MotionKind::reach:
+      return "reach";
+    case MotionKind::approach:
+      return "approach";
+    case MotionKind::lift:
+      return "lift";
+    case MotionKind::carry:
+      return "carry";
+    case MotionKind::retreat:
+      return "retreat";
   }
   return "unknown";
 }
@@ -258,8 +273,8 @@ double Pick::duration() const {
   return sum;
 }
 
-Pick plan_pick(const PartSupplyProblem& problem, const ReachDatabase& database, const Eigen::Vector3d& base_pose, int tray,
-               int part, const std::vector<std::pair<int, int>>& remaining, const Monitor& monitor) {
+Pick plan_pick(const PartSupplyProblem& problem, const ReachDatabase& database, const Eigen::Vector3d& base_pose,
+               int tray, int part, const std::vector<std::pair<int, int>>& remaining, const Monitor& monitor) {
   // Only the calling thread may report progress; here it only listens for the end.
   Monitor quiet;
   quiet.stop = monitor.stop;

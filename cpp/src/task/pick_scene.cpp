@@ -11,8 +11,11 @@ constexpr double kOpeningStep = 0.004;  // [m] between two looks at moving finge
 
 PickScene::PickScene(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose, int tray, int part,
                      const std::vector<std::pair<int, int>>& remaining)
-    : problem_(problem), T_world_root_(pose_from_planar(base_pose)), part_name_(part_of(problem, tray, part).name),
-      in_place_(world_with_parts(problem, remaining)), gone_(in_place_) {
+    : problem_(problem),
+      T_world_root_(pose_from_planar(base_pose)),
+      part_name_(part_of(problem, tray, part).name),
+      in_place_(world_with_parts(problem, remaining)),
+      gone_(in_place_) {
   gone_.remove(part_name_);
 }
 
@@ -31,18 +34,23 @@ CollisionChecker& PickScene::kept(Checkers& checkers, const World& world, double
   return *slot;
 }
 
-CollisionChecker& PickScene::before(double opening) { return kept(before_, in_place_, opening); }
-CollisionChecker& PickScene::after(double opening) { return kept(after_, gone_, opening); }
+CollisionChecker& PickScene::before(double opening) {
+  return kept(before_, in_place_, opening);
+}
+CollisionChecker& PickScene::after(double opening) {
+  return kept(after_, gone_, opening);
+}
 
 CollisionChecker PickScene::holding(double opening, const Pose& T_tcp_part) const {
   World world = in_place_;
   const std::vector<std::string>& fingers = problem_.gripper.finger_links;
-  world.attach(part_name_, problem_.gripper.tcp_link, T_tcp_part, std::set<std::string>(fingers.begin(), fingers.end()));
+  world.attach(part_name_, problem_.gripper.tcp_link, T_tcp_part,
+               std::set<std::string>(fingers.begin(), fingers.end()));
   return CollisionChecker(arm(opening), world);
 }
 
-bool PickScene::fingers_free(const PartSupplyProblem& problem, const Pose& T_world_root, const CollisionChecker& checker,
-                             const Eigen::VectorXd& q, double from, double to) {
+bool PickScene::fingers_free(const PartSupplyProblem& problem, const Pose& T_world_root,
+                             const CollisionChecker& checker, const Eigen::VectorXd& q, double from, double to) {
   const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(to - from) / kOpeningStep)));
   for (int i = 0; i <= steps; ++i) {
     const JointGroup arm = arm_with_opening(problem, from + (to - from) * i / steps).at(T_world_root);

@@ -37,12 +37,15 @@ void check_trays(const PartSupplyProblem& problem) {
             "must not be empty or used twice");
     const std::string field = "tray '" + tray.name + "'";
     checked_pose(tray.T_world_tray.matrix(), field + " pose");
-    require(tray.size.allFinite() && tray.size.minCoeff() > 0, field + " size", tray.size.minCoeff(), "must be positive");
-    for (double heading : tray.headings) require(std::isfinite(heading), field + " headings", heading, "must be finite");
+    require(tray.size.allFinite() && tray.size.minCoeff() > 0, field + " size", tray.size.minCoeff(),
+            "must be positive");
+    for (double heading : tray.headings)
+      require(std::isfinite(heading), field + " headings", heading, "must be finite");
     for (const Part& part : tray.parts) {
       require(!part.name.empty() && part_names.insert(part.name).second, "part name", "'" + part.name + "'",
               "must not be empty or used twice");
-      require(!problem.scene.has(part.name), "part name", "'" + part.name + "'", "is in use for an object of the scene");
+      require(!problem.scene.has(part.name), "part name", "'" + part.name + "'",
+              "is in use for an object of the scene");
       check_part(part, tray.name);
       for (const Grasp& grasp : part.grasps) {
         require(grasp.width <= problem.gripper.max_opening + 1e-9, "part '" + part.name + "' grasp width", grasp.width,

@@ -15,7 +15,8 @@ constexpr double kInside = 0.4;  // Places lie within this part of the bin's siz
 
 double lowest(const Part& part, const Pose& T) {
   double z = std::numeric_limits<double>::infinity();
-  for (const LinkShape& shape : part.shapes) z = std::min(z, shape_bounds(shape.shape, T * shape.T_link_shape).min().z());
+  for (const LinkShape& shape : part.shapes)
+    z = std::min(z, shape_bounds(shape.shape, T * shape.T_link_shape).min().z());
   return z;
 }
 
@@ -30,8 +31,8 @@ std::vector<Pose> release_poses(const PartSupplyProblem& problem, const Pose& T_
   for (const auto& [x, y] : {std::pair{0, 0}, {0, 1}, {0, -1}, {1, 0}, {-1, 0}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}) {
     for (int k = 0; k < kYaws; ++k) {
       Pose T_world_part = Pose::Identity();
-      T_world_part.linear() =
-          Eigen::AngleAxisd(2 * M_PI * k / kYaws, Eigen::Vector3d::UnitZ()).toRotationMatrix() * part.T_world_part.linear();
+      T_world_part.linear() = Eigen::AngleAxisd(2 * M_PI * k / kYaws, Eigen::Vector3d::UnitZ()).toRotationMatrix() *
+                              part.T_world_part.linear();
       Pose T_bin_part = T_world_bin.inverse() * T_world_part;
       T_bin_part.translation() = Eigen::Vector3d(kInside * x * carry.size.x(), kInside * y * carry.size.y(), 0);
       T_bin_part.translation().z() = carry.drop_gap - lowest(part, T_bin_part);
@@ -41,9 +42,9 @@ std::vector<Pose> release_poses(const PartSupplyProblem& problem, const Pose& T_
   return poses;
 }
 
-std::vector<Eigen::VectorXd> release_configurations(const ReachDatabase& database,
-                                                    CollisionChecker& holding, const std::vector<Pose>& poses,
-                                                    const Eigen::VectorXd& from, std::size_t count, Rejections& rejections) {
+std::vector<Eigen::VectorXd> release_configurations(const ReachDatabase& database, CollisionChecker& holding,
+                                                    const std::vector<Pose>& poses, const Eigen::VectorXd& from,
+                                                    std::size_t count, Rejections& rejections) {
   const JointGroup& arm = holding.group();
   const Pose T_root_world = arm.T_world_root().inverse();
   IkOptions ik;
@@ -65,8 +66,9 @@ std::vector<Eigen::VectorXd> release_configurations(const ReachDatabase& databas
       rejections.add(cause);
     }
   }
-  std::stable_sort(found.begin(), found.end(),
-                   [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return (a - from).norm() < (b - from).norm(); });
+  std::stable_sort(found.begin(), found.end(), [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+    return (a - from).norm() < (b - from).norm();
+  });
   return found;
 }
 

@@ -10,7 +10,7 @@
 namespace mmgrasp {
 namespace {
 
-constexpr double kRadiusSlack = 1e-9;   // [m]: a disc of exactly the least radius counts.
+constexpr double kRadiusSlack = 1e-9;  // [m]: a disc of exactly the least radius counts.
 constexpr std::size_t kLostKept = 200;
 
 using Words = std::vector<std::uint64_t>;
@@ -61,7 +61,8 @@ class LayerGrowth {
       for (std::size_t b = a + 1; b < level.size(); ++b) {
         const std::vector<int>& first = level[a].trays;
         const std::vector<int>& second = level[b].trays;
-        if (!std::equal(first.begin(), first.end() - 1, second.begin())) break;  // sorted: no later one shares it either
+        if (!std::equal(first.begin(), first.end() - 1, second.begin()))
+          break;  // sorted: no later one shares it either
         if (out_.sets_tried >= max_sets_) return {};
         Candidate both;
         both.trays = first;
@@ -129,7 +130,8 @@ Intersections robust_intersections(const BaseGrid& grid, const std::vector<BaseR
                                    std::size_t max_sets) {
   require(std::isfinite(min_radius) && min_radius >= 0, "min_radius", min_radius, "must be finite and not negative");
   for (const BaseRegion& region : regions) {
-    require(region.cells.size() == grid.size(), "region '" + region.tray + "' cells", static_cast<double>(region.cells.size()),
+    require(region.cells.size() == grid.size(), "region '" + region.tray + "' cells",
+            static_cast<double>(region.cells.size()),
             "must be one flag a cell of the grid (" + std::to_string(grid.size()) + ")");
   }
   Intersections result;

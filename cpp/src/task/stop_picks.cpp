@@ -13,7 +13,8 @@ namespace {
 using PartId = std::pair<int, int>;  // tray, part
 constexpr int kRounds = 6;
 
-std::vector<PartId> first_order(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose, const std::vector<int>& trays) {
+std::vector<PartId> first_order(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose,
+                                const std::vector<int>& trays) {
   std::vector<PartId> order;
   for (int tray : trays) {
     const std::vector<Part>& parts = problem.trays[static_cast<std::size_t>(tray)].parts;
@@ -24,7 +25,8 @@ std::vector<PartId> first_order(const PartSupplyProblem& problem, const Eigen::V
     const auto distance = [&](const PartId& id) {
       return (part_of(problem, id.first, id.second).T_world_part.translation().head<2>() - base_pose.head<2>()).norm();
     };
-    std::stable_sort(here.begin(), here.end(), [&](const PartId& a, const PartId& b) { return distance(a) < distance(b) - 1e-9; });
+    std::stable_sort(here.begin(), here.end(),
+                     [&](const PartId& a, const PartId& b) { return distance(a) < distance(b) - 1e-9; });
     order.insert(order.end(), here.begin(), here.end());
   }
   return order;
@@ -40,9 +42,9 @@ std::vector<PartId> without(const std::vector<PartId>& parts, const std::set<Par
 
 }  // namespace
 
-StopPicks plan_stop_picks(const PartSupplyProblem& problem, const ReachDatabase& database, const Eigen::Vector3d& base_pose,
-                          const std::vector<int>& trays, const std::vector<std::pair<int, int>>& remaining,
-                          const Monitor& monitor) {
+StopPicks plan_stop_picks(const PartSupplyProblem& problem, const ReachDatabase& database,
+                          const Eigen::Vector3d& base_pose, const std::vector<int>& trays,
+                          const std::vector<std::pair<int, int>>& remaining, const Monitor& monitor) {
   StopPicks result;
   std::vector<PartId> order = first_order(problem, base_pose, trays);
   std::map<PartId, std::pair<std::set<PartId>, Pick>> known;  // with the parts that were gone when it was planned
@@ -55,10 +57,14 @@ StopPicks plan_stop_picks(const PartSupplyProblem& problem, const ReachDatabase&
       gone.insert(id);
     }
     std::vector<Pick> planned(open.size());
-    const bool done = parallel_for(open.size(), problem.options.threads, [&](std::size_t item, int) {
-      const auto& [id, before] = open[item];
-      planned[item] = plan_pick(problem, database, base_pose, id.first, id.second, without(remaining, before), monitor);
-    }, monitor, "picks");
+    const bool done = parallel_for(
+        open.size(), problem.options.threads,
+        [&](std::size_t item, int) {
+          const auto& [id, before] = open[item];
+          planned[item] =
+              plan_pick(problem, database, base_pose, id.first, id.second, without(remaining, before), monitor);
+        },
+        monitor, "picks");
     if (!done || monitor.stopped()) {
       result.outcome = Outcome::stopped;
       return result;

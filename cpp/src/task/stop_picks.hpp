@@ -7,15 +7,16 @@
 
 namespace mmgrasp {
 
-/// All picks at one stop, in the order in which they work: nearest part first; a part that its neighbours block comes later.
+/// All picks at one stop, in the order in which they work: nearest part first; a part that its neighbours block comes
+/// later.
 struct StopPicks {
   Outcome outcome = Outcome::infeasible;
-  std::vector<Pick> picks;   ///< In order; with no solution: those that failed.
+  std::vector<Pick> picks;  ///< In order; with no solution: those that failed.
 };
 
 /// `remaining` are the parts in place when the base arrives. Planned in parallel; the same answer at any thread count.
-StopPicks plan_stop_picks(const PartSupplyProblem& problem, const ReachDatabase& database, const Eigen::Vector3d& base_pose,
-                          const std::vector<int>& trays, const std::vector<std::pair<int, int>>& remaining,
-                          const Monitor& monitor);
+StopPicks plan_stop_picks(const PartSupplyProblem& problem, const ReachDatabase& database,
+                          const Eigen::Vector3d& base_pose, const std::vector<int>& trays,
+                          const std::vector<std::pair<int, int>>& remaining, const Monitor& monitor);
 
 }  // namespace mmgrasp

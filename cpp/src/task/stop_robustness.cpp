@@ -13,7 +13,11 @@ namespace {
 
 constexpr std::size_t kBlock = 20;  // Samples of one work item; the grasp that worked last is tried first within it.
 
-struct Miss { int region; std::string part; Eigen::Vector3d pose; };
+struct Miss {
+  int region;
+  std::string part;
+  Eigen::Vector3d pose;
+};
 
 struct Block {
   std::size_t samples = 0, good = 0;
@@ -75,9 +79,10 @@ bool remove_cell(const BaseGrid& grid, const Eigen::Vector3d& pose, BaseRegion& 
 
 }  // namespace
 
-RobustnessResult check_robustness(const PartSupplyProblem& problem, const BasePoseEvaluator& evaluator, const BaseGrid& grid,
-                                  const std::vector<Stop>& stops, const std::vector<int>& region_trays,
-                                  std::vector<BaseRegion>& regions, const Monitor& monitor) {
+RobustnessResult check_robustness(const PartSupplyProblem& problem, const BasePoseEvaluator& evaluator,
+                                  const BaseGrid& grid, const std::vector<Stop>& stops,
+                                  const std::vector<int>& region_trays, std::vector<BaseRegion>& regions,
+                                  const Monitor& monitor) {
   RobustnessResult result;
   const std::size_t wanted = static_cast<std::size_t>(problem.options.robustness_samples);
   const std::size_t per_stop = (wanted + kBlock - 1) / kBlock;
@@ -85,12 +90,16 @@ RobustnessResult check_robustness(const PartSupplyProblem& problem, const BasePo
   const int threads = resolve_threads(problem.options.threads);
   std::vector<BasePoseEvaluator> evaluators;
   for (int i = 0; i < threads; ++i) evaluators.push_back(evaluator.clone());
-  const bool done = parallel_for(blocks.size(), threads, [&](std::size_t item, int worker) {
-    Rng rng(problem.options.seed + 77, item);
-    const std::size_t first = item % per_stop * kBlock;
-    BlockCheck check{problem, stops[item / per_stop], region_trays, evaluators[static_cast<std::size_t>(worker)], blocks[item]};
-    check.run(rng, std::min(kBlock, wanted - first), monitor);
-  }, monitor, "robustness");
+  const bool done = parallel_for(
+      blocks.size(), threads,
+      [&](std::size_t item, int worker) {
+        Rng rng(problem.options.seed + 77, item);
+        const std::size_t first = item % per_stop * kBlock;
+        BlockCheck check{problem, stops[item / per_stop], region_trays, evaluators[static_cast<std::size_t>(worker)],
+                         blocks[item]};
+        check.run(rng, std::min(kBlock, wanted - first), monitor);
+      },
+      monitor, "robustness");
   result.stopped = !done || monitor.stopped();
   std::map<std::string, std::size_t> missed;
   for (const Block& block : blocks) {

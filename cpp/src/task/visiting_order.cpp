@@ -27,7 +27,8 @@ CheckerOptions with_padding(double padding) {
 }  // namespace
 
 BaseRoutes::BaseRoutes(const PartSupplyProblem& problem, const Monitor& monitor)
-    : problem_(problem), monitor_(monitor),
+    : problem_(problem),
+      monitor_(monitor),
       padded_(problem.arm, world_with_parts(problem, all_parts(problem)), with_padding(kPadding)),
       bare_(problem.arm, world_with_parts(problem, all_parts(problem))) {}
 
@@ -58,10 +59,13 @@ void BaseRoutes::prepare(const std::vector<std::pair<Eigen::Vector3d, Eigen::Vec
     if (!known_.count(key_of(from, to))) open.emplace_back(from, to);
   }
   std::vector<BasePath> paths(open.size());
-  const bool done = parallel_for(open.size(), problem_.options.threads, [&](std::size_t item, int) {
-    CollisionChecker padded = padded_.clone(), bare = bare_.clone();
-    paths[item] = plan(padded, bare, open[item].first, open[item].second);
-  }, monitor_, "route");
+  const bool done = parallel_for(
+      open.size(), problem_.options.threads,
+      [&](std::size_t item, int) {
+        CollisionChecker padded = padded_.clone(), bare = bare_.clone();
+        paths[item] = plan(padded, bare, open[item].first, open[item].second);
+      },
+      monitor_, "route");
   if (!done) return;
   for (std::size_t i = 0; i < open.size(); ++i) {
     const auto& [from, to] = open[i];
@@ -82,7 +86,8 @@ std::vector<int> visiting_order(const PartSupplyProblem& problem, const std::vec
   const bool planned = stops.size() <= kPlannedStops;
   std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> pairs;
   for (int i = 0; i < n + 2; ++i) {
-    for (int j = i + 1; j < n + 2; ++j) pairs.emplace_back(places[static_cast<std::size_t>(i)], places[static_cast<std::size_t>(j)]);
+    for (int j = i + 1; j < n + 2; ++j)
+      pairs.emplace_back(places[static_cast<std::size_t>(i)], places[static_cast<std::size_t>(j)]);
   }
   if (planned) routes.prepare(pairs);
   Eigen::MatrixXd lengths = Eigen::MatrixXd::Zero(n + 2, n + 2);

@@ -24,7 +24,8 @@ class BaseRoutes {
 
  private:
   using Key = std::array<double, 6>;
-  BasePath plan(CollisionChecker& padded, CollisionChecker& bare, const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+  BasePath plan(CollisionChecker& padded, CollisionChecker& bare, const Eigen::Vector3d& from,
+                const Eigen::Vector3d& to) const;
 
   const PartSupplyProblem& problem_;
   const Monitor& monitor_;
@@ -32,8 +33,8 @@ class BaseRoutes {
   std::map<Key, BasePath> known_;
 };
 
-/// Order in which the stops are visited from start to goal. Up to 6 stops by the lengths of planned drives, more by straight
-/// distances. Empty when some stop cannot be driven to (then `missing` names its index, -1 for the goal).
+/// Order in which the stops are visited from start to goal. Up to 6 stops by the lengths of planned drives, more by
+/// straight distances. Empty when some stop cannot be driven to (then `missing` names its index, -1 for the goal).
 std::vector<int> visiting_order(const PartSupplyProblem& problem, const std::vector<Stop>& stops, BaseRoutes& routes,
                                 int& missing);
 

@@ -202,8 +202,8 @@ class PickCheck {
     }
   }
 
-  /// Two fingers must meet the part at once, at the grasp's width or somewhat below it: collision shapes may stand back a
-  /// little from the pads that the width is meant for. Otherwise nothing is held.
+  /// Two fingers must meet the part at once, at the grasp's width or somewhat below it: collision shapes may stand back
+  /// a little from the pads that the width is meant for. Otherwise nothing is held.
   void check_grip(const Eigen::VectorXd& q) {
     constexpr int kSteps = 20;
     const double below = std::min(grasp_->width, std::max(kGripPlay, kGripShare * grasp_->width));
@@ -260,7 +260,8 @@ void check_picks_join(const Context& context, const std::vector<char>& usable, F
   for (std::size_t pick = 1; pick < usable.size(); ++pick) {
     if (!usable[pick - 1] || !usable[pick]) continue;
     const std::vector<CheckedPick>& picks = context.plan.picks;
-    check_join(picks[pick - 1].motions.back(), picks[pick].motions.front(), context.pick_name(pick) + ", reach", faults);
+    check_join(picks[pick - 1].motions.back(), picks[pick].motions.front(), context.pick_name(pick) + ", reach",
+               faults);
   }
 }
 
@@ -273,9 +274,7 @@ void check_arm_motions(const Context& context, Faults& faults, std::size_t& conf
   std::vector<char> usable(picks, 0);
   parallel_for(
       picks, context.options.threads,
-      [&](std::size_t pick, int worker) {
-        usable[pick] = PickCheck(context, pick, judges[worker], found[pick]).run();
-      },
+      [&](std::size_t pick, int worker) { usable[pick] = PickCheck(context, pick, judges[worker], found[pick]).run(); },
       context.monitor, "arm motions");
   for (const Faults& some : found) faults.insert(faults.end(), some.begin(), some.end());
   check_picks_join(context, usable, faults);

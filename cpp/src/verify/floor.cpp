@@ -44,9 +44,9 @@ class Bits {
   std::vector<std::uint64_t> words_;
 };
 
-/// Where discs are that lie in several regions. A disc of at most half a cell's size fits into a single cell, and no disc
-/// lies in cells that its middle's cell is not one of: then the cells themselves are the answer. Larger ones are found by
-/// halving squares, level by level: what the coarse levels find spares most of the fine ones.
+/// Where discs are that lie in several regions. A disc of at most half a cell's size fits into a single cell, and no
+/// disc lies in cells that its middle's cell is not one of: then the cells themselves are the answer. Larger ones are
+/// found by halving squares, level by level: what the coarse levels find spares most of the fine ones.
 class DiscSearch {
  public:
   DiscSearch(const Floor& floor, double radius, const Monitor& monitor)

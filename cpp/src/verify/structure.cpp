@@ -126,7 +126,8 @@ void Structure::gripper(ArmSetup& setup, std::vector<int>& finger_links) {
   for (const std::string& name : plan.finger_links) finger_links.push_back(link(name, "finger_links"));
   const std::size_t different = std::set<std::string>(plan.finger_links.begin(), plan.finger_links.end()).size();
   if (ok && different < 2) {
-    faults.push_back({"finger-links", "finger_links", "names " + text(different) + " links: a gripper has at least two"});
+    faults.push_back(
+        {"finger-links", "finger_links", "names " + text(different) + " links: a gripper has at least two"});
   }
 }
 

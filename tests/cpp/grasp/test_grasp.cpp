@@ -154,7 +154,7 @@ TEST(SampleGrasps, CountsPairsWiderThanTheOpening) {
   gripper.max_opening = 0.06;
   int too_wide = -1;
   const auto grasps = sample_grasps({shape_at(Box{{0.05, 0.061, 0.2}})}, gripper, all_kept(), &too_wide);
-  EXPECT_EQ(too_wide, 2 * 9);                    // nine pad positions on each of two pairs of faces
+  EXPECT_EQ(too_wide, 2 * 9);  // nine pad positions on each of two pairs of faces
   EXPECT_EQ(grasps.size(), 9u * 8 * 2);
   for (const Grasp& grasp : grasps) EXPECT_LE(grasp.width, gripper.max_opening);
   gripper.max_opening = 0.04;

@@ -68,8 +68,9 @@ TEST(SurfaceGrasps, PairsOnRealMeshesAreAntipodalByBruteForce) {
   options.friction = 0.4;
   options.max_grasps = 1000000;
   options.approaches = 1;
-  for (const char* name : {"ycb/YcbMustardBottle/textured_simple_reoriented.obj",
-                           "ycb/YcbBanana/textured_simple_reoriented.obj", "ariac/battery/meshes/battery_collision.stl"}) {
+  for (const char* name :
+       {"ycb/YcbMustardBottle/textured_simple_reoriented.obj", "ycb/YcbBanana/textured_simple_reoriented.obj",
+        "ariac/battery/meshes/battery_collision.stl"}) {
     const auto mesh = load_mesh((folder / name).string());
     ASSERT_TRUE(mesh->closed) << name;
     const auto grasps = sample_grasps({shape_at(MeshShape{mesh})}, gripper, options);
@@ -171,9 +172,9 @@ TEST(SurfaceGrasps, ShapesThatOverlapAreOneSolid) {
 
 TEST(SurfaceGrasps, OpenSurfacesAreHeldFromWallToWall) {
   // Two parallel square plates 4 cm apart, no sides.
-  const auto mesh = make_mesh({{0, 0, 0}, {.05, 0, 0}, {.05, .05, 0}, {0, .05, 0},
-                               {0, 0, .04}, {.05, 0, .04}, {.05, .05, .04}, {0, .05, .04}},
-                              {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}});
+  const auto mesh = make_mesh(
+      {{0, 0, 0}, {.05, 0, 0}, {.05, .05, 0}, {0, .05, 0}, {0, 0, .04}, {.05, 0, .04}, {.05, .05, .04}, {0, .05, .04}},
+      {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}});
   ASSERT_FALSE(mesh->closed);
   Gripper gripper;
   const auto grasps = sample_grasps({shape_at(MeshShape{mesh})}, gripper);

@@ -16,8 +16,12 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-JointGroup gantry() { return Robot::from_strings(test::gantry_urdf()).chain("base", "c"); }
-JointGroup seven_joints() { return Robot::from_strings(test::seven_joint_urdf()).chain("column", "tool"); }
+JointGroup gantry() {
+  return Robot::from_strings(test::gantry_urdf()).chain("base", "c");
+}
+JointGroup seven_joints() {
+  return Robot::from_strings(test::seven_joint_urdf()).chain("column", "tool");
+}
 
 ReachOptions with_samples(std::int64_t samples, double min_manipulability = 0.02) {
   ReachOptions options;
@@ -42,8 +46,7 @@ TEST(ReachDatabase, StoredConfigurationsLieInTheCellOfTheirToolPose) {
     const Eigen::VectorXd q = database.configuration(index);
     EXPECT_TRUE(arm.within_limits(q));
     EXPECT_TRUE(holds_column(database.cell(arm.fk(q)), q));
-    EXPECT_LT((database.tool_pose(index).matrix() - arm.fk(q).matrix()).norm(), 2e-4)
-        << "rounded to 16 bytes";
+    EXPECT_LT((database.tool_pose(index).matrix() - arm.fk(q).matrix()).norm(), 2e-4) << "rounded to 16 bytes";
   }
 }
 
@@ -148,8 +151,8 @@ TEST(ReachDatabase, KeepsNoSelfCollision) {
 }
 
 TEST(ReachDatabase, DropsWhatIsNearlySingular) {
-  // Two joints in a plane: sqrt(det(J^T J)) at the tip has a closed form with translation and rotation rows; for arms of six
-  // and more joints it is JointGroup::manipulability.
+  // Two joints in a plane: sqrt(det(J^T J)) at the tip has a closed form with translation and rotation rows; for arms
+  // of six and more joints it is JointGroup::manipulability.
   const JointGroup arm = seven_joints();
   const auto range = [&](double share) {
     const auto database = ReachDatabase::build(arm, with_samples(40000, share));

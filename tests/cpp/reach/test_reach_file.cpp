@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <unistd.h>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <unistd.h>
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/reach/reach_database.hpp"
@@ -18,9 +18,8 @@ namespace fs = std::filesystem;
 class ReachFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("mmgrasp_reach_" + std::to_string(::getpid()) + "_" +
-               ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    folder_ = fs::temp_directory_path() / ("mmgrasp_reach_" + std::to_string(::getpid()) + "_" +
+                                           ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }
@@ -120,15 +119,16 @@ TEST_F(ReachFile, RefusesDamagedFiles) {
   options.samples = 5000;
   ReachDatabase::build(seven_joints(), options).save(file);
   const std::string sound = read(file);
-  for (const std::size_t offset : {std::size_t{20}, std::size_t{40}, std::size_t{80}, std::size_t{110}, std::size_t{119}, std::size_t{120},
-                                   sound.size() / 3, sound.size() / 2, sound.size() - 1}) {
+  for (const std::size_t offset :
+       {std::size_t{20}, std::size_t{40}, std::size_t{80}, std::size_t{110}, std::size_t{119}, std::size_t{120},
+        sound.size() / 3, sound.size() / 2, sound.size() - 1}) {
     std::string bytes = sound;
     bytes[offset] = static_cast<char>(bytes[offset] ^ 0x10);
     write(file, bytes);
     expect_refused(file, "corrupt");
   }
-  for (const std::size_t size : {std::size_t{0}, std::size_t{8}, std::size_t{119}, std::size_t{120}, sound.size() / 2,
-                                 sound.size() - 1}) {
+  for (const std::size_t size :
+       {std::size_t{0}, std::size_t{8}, std::size_t{119}, std::size_t{120}, sound.size() / 2, sound.size() - 1}) {
     write(file, sound.substr(0, size));
     expect_refused(file, "truncated");
   }

@@ -16,8 +16,12 @@ namespace {
 constexpr double kRounding = 3e-4;  // stored tool poses take 16 bytes each
 constexpr double kPi = 3.14159265358979323846;
 
-JointGroup gantry() { return Robot::from_strings(test::gantry_urdf()).chain("base", "c"); }
-JointGroup seven_joints() { return Robot::from_strings(test::seven_joint_urdf()).chain("column", "tool"); }
+JointGroup gantry() {
+  return Robot::from_strings(test::gantry_urdf()).chain("base", "c");
+}
+JointGroup seven_joints() {
+  return Robot::from_strings(test::seven_joint_urdf()).chain("column", "tool");
+}
 
 ReachOptions with_samples(std::int64_t samples, double min_manipulability = 0.02) {
   ReachOptions options;
@@ -178,8 +182,8 @@ TEST(ReachNearest, MoreSamplesReachMore) {
     }
     solved.push_back(count);
   }
-  RecordProperty("solved_of_400", std::to_string(solved[0]) + " " + std::to_string(solved[1]) + " " +
-                                      std::to_string(solved[2]));
+  RecordProperty("solved_of_400",
+                 std::to_string(solved[0]) + " " + std::to_string(solved[1]) + " " + std::to_string(solved[2]));
   EXPECT_LT(solved[0], solved[1]);
   EXPECT_LE(solved[1], solved[2]);
   EXPECT_GE(solved[2], 390);
@@ -196,7 +200,8 @@ TEST(ReachNearest, SeedsInverseKinematicsOfTheRealPanda) {
   const JointGroup arm = robot.chain("panda_link0", "panda_link8");
   const auto database = ReachDatabase::build(arm, with_samples(30000));
   ASSERT_GT(database.size(), 5000);
-  EXPECT_LT(database.reach(), 0.333 + 0.316 + 0.384 + 0.088 + 0.107 + 0.1);  // the links stretched out, elbow offset included
+  EXPECT_LT(database.reach(),
+            0.333 + 0.316 + 0.384 + 0.088 + 0.107 + 0.1);  // the links stretched out, elbow offset included
   Rng rng(4);
   Eigen::MatrixXd out;
   IkWorkspace workspace;

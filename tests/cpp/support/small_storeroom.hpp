@@ -6,24 +6,30 @@
 
 namespace mmgrasp::test {
 
-/// A robot made of boxes and cylinders: a diff-drive base with a bin, six joints, two fingers; the tcp's z is the approach.
+/// A robot made of boxes and cylinders: a diff-drive base with a bin, six joints, two fingers; the tcp's z is the
+/// approach.
 inline std::string small_robot_urdf() {
   const auto link = [](const std::string& name, const std::string& geometry, const std::string& xyz) {
-    return "<link name='" + name + "'><collision><origin xyz='" + xyz + "'/><geometry>" + geometry + "</geometry></collision></link>";
+    return "<link name='" + name + "'><collision><origin xyz='" + xyz + "'/><geometry>" + geometry +
+           "</geometry></collision></link>";
   };
   const auto box = [](const std::string& size) { return "<box size='" + size + "'/>"; };
-  const auto joint = [](const std::string& name, const std::string& type, const std::string& parent, const std::string& child,
-                        const std::string& xyz, const std::string& axis, const std::string& lower, const std::string& upper) {
-    return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent + "'/><child link='" + child + "'/><origin xyz='" +
-           xyz + "'/><axis xyz='" + axis + "'/><limit lower='" + lower + "' upper='" + upper + "' velocity='1.5' effort='50'/></joint>";
+  const auto joint = [](const std::string& name, const std::string& type, const std::string& parent,
+                        const std::string& child, const std::string& xyz, const std::string& axis,
+                        const std::string& lower, const std::string& upper) {
+    return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent + "'/><child link='" + child +
+           "'/><origin xyz='" + xyz + "'/><axis xyz='" + axis + "'/><limit lower='" + lower + "' upper='" + upper +
+           "' velocity='1.5' effort='50'/></joint>";
   };
   return "<robot name='small'>" + link("base_link", box("0.40 0.40 0.30"), "0 0 0.20") +
-         link("bin", box("0.20 0.24 0.10"), "0 0 -0.05") + link("shoulder", "<cylinder radius='0.05' length='0.10'/>", "0 0 0.06") +
+         link("bin", box("0.20 0.24 0.10"), "0 0 -0.05") +
+         link("shoulder", "<cylinder radius='0.05' length='0.10'/>", "0 0 0.06") +
          link("upper", box("0.06 0.06 0.30"), "0 0 0.17") + link("fore", box("0.05 0.05 0.26"), "0 0 0.14") +
          link("wrist", box("0.05 0.05 0.06"), "0 0 0.03") + link("knuckle", box("0.05 0.05 0.05"), "0 0 0.03") +
          link("hand", box("0.05 0.12 0.03"), "0 0 0.02") + link("left_finger", box("0.02 0.01 0.05"), "0 0.006 0.065") +
          link("right_finger", box("0.02 0.01 0.05"), "0 -0.006 0.065") + "<link name='tcp'/>" +
-         "<joint name='bin_mount' type='fixed'><parent link='base_link'/><child link='bin'/><origin xyz='-0.10 0 0.46'/></joint>" +
+         "<joint name='bin_mount' type='fixed'><parent link='base_link'/><child link='bin'/><origin xyz='-0.10 0 "
+         "0.46'/></joint>" +
          joint("pan", "revolute", "base_link", "shoulder", "0.10 0 0.35", "0 0 1", "-2.9", "2.9") +
          joint("lift", "revolute", "shoulder", "upper", "0 0 0.14", "0 1 0", "-1.8", "1.8") +
          joint("elbow", "revolute", "upper", "fore", "0 0 0.35", "0 1 0", "-2.5", "2.5") +
@@ -32,10 +38,13 @@ inline std::string small_robot_urdf() {
          joint("twist", "continuous", "knuckle", "hand", "0 0 0.07", "0 0 1", "0", "0") +
          joint("left", "prismatic", "hand", "left_finger", "0 0 0", "0 1 0", "0", "0.04") +
          joint("right", "prismatic", "hand", "right_finger", "0 0 0", "0 -1 0", "0", "0.04") +
-         "<joint name='tcp_mount' type='fixed'><parent link='hand'/><child link='tcp'/><origin xyz='0 0 0.075'/></joint></robot>";
+         "<joint name='tcp_mount' type='fixed'><parent link='hand'/><child link='tcp'/><origin xyz='0 0 "
+         "0.075'/></joint></robot>";
 }
 
-inline Shape box_shape(double x, double y, double z) { return Box{Eigen::Vector3d(x, y, z)}; }
+inline Shape box_shape(double x, double y, double z) {
+  return Box{Eigen::Vector3d(x, y, z)};
+}
 
 inline Pose at(double x, double y, double z) {
   Pose T = Pose::Identity();
@@ -51,7 +60,8 @@ inline std::vector<Grasp> grasps_from_above(double width) {
       Grasp grasp;
       grasp.width = width;
       grasp.T_object_tcp.linear() = (Eigen::AngleAxisd(0.5 * M_PI * quarter, Eigen::Vector3d::UnitZ()) *
-                                     Eigen::AngleAxisd(M_PI + tilt, Eigen::Vector3d::UnitY())).toRotationMatrix();
+                                     Eigen::AngleAxisd(M_PI + tilt, Eigen::Vector3d::UnitY()))
+                                        .toRotationMatrix();
       grasp.T_object_tcp.translation().z() = 0.01;
       grasp.quality = tilt == 0 ? 1 : 0.5;
       grasps.push_back(grasp);
@@ -92,8 +102,16 @@ inline PartSupplyProblem small_storeroom(int parts_per_tray = 2) {
   gripper.finger_links = {"left_finger", "right_finger"};
   Eigen::VectorXd home(6);
   home << 0.0, -0.9, 2.2, 0.0, 0.9, 0.0;
-  PartSupplyProblem problem{robot, robot.chain("base_link", "tcp"), gripper, World(), {}, home,
-                            Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), CarryPlace(), PartSupplyOptions()};
+  PartSupplyProblem problem{robot,
+                            robot.chain("base_link", "tcp"),
+                            gripper,
+                            World(),
+                            {},
+                            home,
+                            Eigen::Vector3d::Zero(),
+                            Eigen::Vector3d::Zero(),
+                            CarryPlace(),
+                            PartSupplyOptions()};
   problem.scene.add("table", box_shape(0.30, 1.2, 0.04), at(0.9, 0.0, 0.42));
   problem.trays = {small_tray("A", 0.88, -0.15, parts_per_tray), small_tray("B", 0.88, 0.15, parts_per_tray)};
   problem.start = Eigen::Vector3d(-0.8, 0.5, 0);

@@ -81,7 +81,8 @@ TEST_F(BaseRegions, CountersEqualABruteForceRecount) {
       };
       for (int iy = 0; iy <= grid_->ny; ++iy) {
         for (int ix = 0; ix <= grid_->nx; ++ix) {
-          if (!centre_at(ix, iy) && !centre_at(ix - 1, iy) && !centre_at(ix, iy - 1) && !centre_at(ix - 1, iy - 1)) continue;
+          if (!centre_at(ix, iy) && !centre_at(ix - 1, iy) && !centre_at(ix, iy - 1) && !centre_at(ix - 1, iy - 1))
+            continue;
           Eigen::Vector3d pose = grid_->centre(0, ix, iy);
           pose.head<2>().array() -= 0.5 * h;
           corners[static_cast<std::size_t>(iy * (grid_->nx + 1) + ix)] = look(pose);
@@ -92,14 +93,16 @@ TEST_F(BaseRegions, CountersEqualABruteForceRecount) {
       EXPECT_EQ(told.grasps, 12);
       EXPECT_EQ(told.base_poses_tried, recount.base_poses_tried);
       EXPECT_EQ(told.base_poses_feasible, recount.base_poses_feasible);
-      EXPECT_EQ(told.rejections, recount.rejections) << told.rejections.summary() << " against " << recount.rejections.summary();
+      EXPECT_EQ(told.rejections, recount.rejections)
+          << told.rejections.summary() << " against " << recount.rejections.summary();
       EXPECT_EQ(told.rejections.total(), 12 * (told.base_poses_tried - told.base_poses_feasible));
       EXPECT_EQ(region.base_poses_in_collision, at_home);
       for (int iy = 0; iy < grid_->ny; ++iy) {
         for (int ix = 0; ix < grid_->nx; ++ix) {
           const int row = iy * (grid_->nx + 1) + ix;
           const auto corner = [&](int i) { return corners[static_cast<std::size_t>(i)] != 0; };
-          const bool good = centre_at(ix, iy) && corner(row) && corner(row + 1) && corner(row + grid_->nx + 1) && corner(row + grid_->nx + 2);
+          const bool good = centre_at(ix, iy) && corner(row) && corner(row + 1) && corner(row + grid_->nx + 1) &&
+                            corner(row + grid_->nx + 2);
           EXPECT_EQ(region.part_cells[static_cast<std::size_t>(part)][grid_->index(0, ix, iy)] != 0, good);
         }
       }
@@ -107,7 +110,8 @@ TEST_F(BaseRegions, CountersEqualABruteForceRecount) {
   }
 }
 
-/// No false cells: from sampled points of the region another IK (random restarts, no database) and a fresh checker agree.
+/// No false cells: from sampled points of the region another IK (random restarts, no database) and a fresh checker
+/// agree.
 TEST_F(BaseRegions, CellsAreFeasibleForAnotherIk) {
   Rng rng(5);
   World world = problem_->scene;
@@ -133,8 +137,8 @@ TEST_F(BaseRegions, CellsAreFeasibleForAnotherIk) {
       for (std::size_t g = 0; g < part.grasps.size() && !any; ++g) {
         IkOptions options;
         options.restarts = 60;
-        const IkResult ik = solve_ik(checker.group(), part.T_world_part * part.grasps[g].T_object_tcp, problem_->home, options,
-                                     [&](const Eigen::VectorXd& q) { return checker.rejection(q); });
+        const IkResult ik = solve_ik(checker.group(), part.T_world_part * part.grasps[g].T_object_tcp, problem_->home,
+                                     options, [&](const Eigen::VectorXd& q) { return checker.rejection(q); });
         any = ik.outcome == Outcome::solved;
       }
       all = all && any;
@@ -156,8 +160,9 @@ TEST_F(BaseRegions, ConfigurationsReachTheirGrasps) {
       ++seen_feasible;
       const Part& part = problem_->trays[0].parts[0];
       const Pose wanted = part.T_world_part * part.grasps[static_cast<std::size_t>(seen.grasp)].T_object_tcp;
-      const Pose tool = problem_->robot.link_poses(problem_->arm.full_values(seen.q), pose_from_planar(pose))
-                            [static_cast<std::size_t>(problem_->robot.link_index("tcp"))];
+      const Pose tool = problem_->robot.link_poses(
+          problem_->arm.full_values(seen.q),
+          pose_from_planar(pose))[static_cast<std::size_t>(problem_->robot.link_index("tcp"))];
       EXPECT_LT((tool.translation() - wanted.translation()).norm(), 1e-4);
       EXPECT_LT(rotation_distance(tool, wanted), 1e-3);
     }

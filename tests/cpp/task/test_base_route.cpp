@@ -87,7 +87,8 @@ TEST(BaseRoute, ThroughADoorInAWall) {
 
 TEST(BaseRoute, OutOfANicheTooTightToTurnIn) {
   Room room;
-  for (double y : {-0.30, 0.30}) room.world.add("side " + std::to_string(y), test::box_shape(0.8, 0.1, 1.0), test::at(0, y, 0.5));
+  for (double y : {-0.30, 0.30})
+    room.world.add("side " + std::to_string(y), test::box_shape(0.8, 0.1, 1.0), test::at(0, y, 0.5));
   room.world.add("back", test::box_shape(0.1, 0.7, 1.0), test::at(-0.55, 0, 0.5));
   const Eigen::Vector3d from(0, 0, 0), to(0, 1.5, -2.0);
   const BasePath path = room.plan(from, to);

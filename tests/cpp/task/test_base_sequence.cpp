@@ -27,7 +27,8 @@ CellMask from_picture(const BaseGrid& grid, const std::vector<std::string>& rows
   CellMask cells(grid.size(), 0);
   for (int iy = 0; iy < grid.ny; ++iy) {
     for (int ix = 0; ix < grid.nx; ++ix) {
-      cells[grid.index(0, ix, iy)] = rows[static_cast<std::size_t>(grid.ny - 1 - iy)][static_cast<std::size_t>(ix)] == '#';
+      cells[grid.index(0, ix, iy)] =
+          rows[static_cast<std::size_t>(grid.ny - 1 - iy)][static_cast<std::size_t>(ix)] == '#';
     }
   }
   return cells;
@@ -210,7 +211,8 @@ TEST(RobustIntersections, RandomRegionsAgainstAllSubsets) {
       for (int i = 0; i < 5; ++i) {
         if (!(subset >> i & 1u)) continue;
         trays.push_back(i);
-        for (std::size_t c = 0; c < shared.size(); ++c) shared[c] = shared[c] && regions[static_cast<std::size_t>(i)].cells[c];
+        for (std::size_t c = 0; c < shared.size(); ++c)
+          shared[c] = shared[c] && regions[static_cast<std::size_t>(i)].cells[c];
       }
       if (inscribed_circle(grid, shared, 0).radius >= 0.12) expected.push_back(trays);
     }

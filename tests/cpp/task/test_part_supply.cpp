@@ -29,7 +29,8 @@ verify::PlanToCheck to_check(const PartSupplyProblem& problem, const PartSupplyP
   check.max_opening = problem.gripper.max_opening;
   check.clearance = problem.gripper.clearance;
   check.approach = problem.gripper.approach;
-  for (const FingerJoint& finger : problem.gripper.joints) check.fingers.push_back({finger.name, finger.closed, finger.open});
+  for (const FingerJoint& finger : problem.gripper.joints)
+    check.fingers.push_back({finger.name, finger.closed, finger.open});
   check.finger_links = problem.gripper.finger_links;
   check.home = problem.home;
   check.start = problem.start;
@@ -38,7 +39,8 @@ verify::PlanToCheck to_check(const PartSupplyProblem& problem, const PartSupplyP
   check.T_base_bin = problem.carry.T_base_bin;
   check.bin_size = problem.carry.size;
   check.drop_gap = problem.carry.drop_gap;
-  for (const auto& [name, object] : problem.scene.objects()) check.obstacles.push_back({name, object.shapes, object.T_world_object});
+  for (const auto& [name, object] : problem.scene.objects())
+    check.obstacles.push_back({name, object.shapes, object.T_world_object});
   for (const Tray& tray : problem.trays) {
     check.trays.push_back(tray.name);
     for (const Part& part : tray.parts) {
@@ -57,7 +59,8 @@ verify::PlanToCheck to_check(const PartSupplyProblem& problem, const PartSupplyP
   for (const BasePath& leg : plan.route) check.route.push_back(leg.poses);
   for (const Pick& pick : plan.picks) {
     const Tray& tray = problem.trays[static_cast<std::size_t>(pick.tray)];
-    verify::CheckedPick checked{pick.stop, tray.name, tray.parts[static_cast<std::size_t>(pick.part)].name, pick.grasp, {}};
+    verify::CheckedPick checked{
+        pick.stop, tray.name, tray.parts[static_cast<std::size_t>(pick.part)].name, pick.grasp, {}};
     for (const PickMotion& motion : pick.motions) {
       checked.motions.push_back({to_string(motion.kind), motion.opening, motion.holding, motion.trajectory.times,
                                  motion.trajectory.positions, motion.trajectory.velocities});
@@ -88,11 +91,13 @@ TEST(PartSupply, SmallStoreroomIsSolvedAndHoldsForTheIndependentChecker) {
   verify::PlanCheckOptions options;
   options.samples = 100;
   const verify::PlanCheckResult result = verify::check_plan(to_check(problem, plan), options);
-  for (const verify::Fault& fault : result.faults) ADD_FAILURE() << fault.code << ", " << fault.where << ": " << fault.message;
+  for (const verify::Fault& fault : result.faults)
+    ADD_FAILURE() << fault.code << ", " << fault.where << ": " << fault.message;
   EXPECT_EQ(result.minimal_stops, 1);
 }
 
-/// `twist` has no limits: its numbers run on from motion to motion and from pick to pick. Home is reached up to its turns.
+/// `twist` has no limits: its numbers run on from motion to motion and from pick to pick. Home is reached up to its
+/// turns.
 TEST(PartSupply, MotionsJoinAsPlainNumbersOverTheWholePlan) {
   PartSupplyProblem problem = test::small_storeroom();
   problem.options.robustness_samples = 40;
@@ -107,7 +112,8 @@ TEST(PartSupply, MotionsJoinAsPlainNumbersOverTheWholePlan) {
       for (const PickMotion& motion : pick.motions) {
         EXPECT_LE((motion.trajectory.positions.front() - at).cwiseAbs().maxCoeff(), 1e-9) << to_string(motion.kind);
         for (std::size_t i = 1; i < motion.trajectory.positions.size(); ++i) {
-          const double moved = (motion.trajectory.positions[i] - motion.trajectory.positions[i - 1]).cwiseAbs().maxCoeff();
+          const double moved =
+              (motion.trajectory.positions[i] - motion.trajectory.positions[i - 1]).cwiseAbs().maxCoeff();
           EXPECT_LE(moved, 1.5 * (motion.trajectory.times[i] - motion.trajectory.times[i - 1]) + 1e-6);
         }
         at = motion.trajectory.positions.back();
@@ -137,7 +143,8 @@ TEST(PartSupply, TheSamePlanAtAnyThreadCount) {
       EXPECT_EQ(plans[0].picks[i].motions[m].trajectory.positions, plans[1].picks[i].motions[m].trajectory.positions);
     }
   }
-  for (std::size_t leg = 0; leg < plans[0].route.size(); ++leg) EXPECT_EQ(plans[0].route[leg].poses, plans[1].route[leg].poses);
+  for (std::size_t leg = 0; leg < plans[0].route.size(); ++leg)
+    EXPECT_EQ(plans[0].route[leg].poses, plans[1].route[leg].poses);
 }
 
 /// The advised uncertainty works, a little more does not.
@@ -223,7 +230,8 @@ TEST(PartSupply, BadOptionsAreRefusedByName) {
     return std::string();
   };
   EXPECT_NE(message([](auto& p) { p.options.grid.resolution = 0; }).find("grid.resolution"), std::string::npos);
-  EXPECT_NE(message([](auto& p) { p.options.positioning_uncertainty = -0.1; }).find("positioning_uncertainty"), std::string::npos);
+  EXPECT_NE(message([](auto& p) { p.options.positioning_uncertainty = -0.1; }).find("positioning_uncertainty"),
+            std::string::npos);
   EXPECT_NE(message([](auto& p) { p.home[2] = 9; }).find("elbow"), std::string::npos);
   EXPECT_NE(message([](auto& p) { p.trays[1].name = "A"; }).find("tray name"), std::string::npos);
   EXPECT_NE(message([](auto& p) { p.trays[1].parts[0].name = "table"; }).find("table"), std::string::npos);

@@ -298,7 +298,8 @@ TEST(PlanCheck, NeighbourPartIsInTheWay) {
 }
 
 TEST(PlanCheck, PartsThatOverlapAtRest) {
-  // The part that stays sinks into the table, or moves into its neighbour; contact and 0.05 mm of rounding are no fault.
+  // The part that stays sinks into the table, or moves into its neighbour; contact and 0.05 mm of rounding are no
+  // fault.
   for (const double into : {-1e-4, 0.0, 5e-5, 2e-4, 0.005}) {
     const bool overlaps = into > 1e-4;
     PlanToCheck plan = good_plan();

@@ -15,13 +15,13 @@ class MMGRASP_EXPORT Rng {
   explicit Rng(std::uint64_t seed, std::uint64_t stream = 0);
 
   std::uint64_t next();
-  double uniform();                                ///< In [0, 1).
-  double uniform(double lower, double upper);      ///< In [lower, upper).
-  std::size_t index(std::size_t size);             ///< In [0, size); size > 0.
-  double normal();                                 ///< Standard normal.
+  double uniform();                            ///< In [0, 1).
+  double uniform(double lower, double upper);  ///< In [lower, upper).
+  std::size_t index(std::size_t size);         ///< In [0, size); size > 0.
+  double normal();                             ///< Standard normal.
   Eigen::VectorXd uniform(const Eigen::VectorXd& lower, const Eigen::VectorXd& upper);
-  Eigen::Quaterniond rotation();                   ///< Uniform over rotations.
-  Eigen::Vector2d in_disc(double radius);          ///< Uniform over the disc.
+  Eigen::Quaterniond rotation();           ///< Uniform over rotations.
+  Eigen::Vector2d in_disc(double radius);  ///< Uniform over the disc.
 
  private:
   std::uint64_t state_[4];

@@ -14,60 +14,63 @@
 namespace mmgrasp {
 
 struct MMGRASP_EXPORT ReachOptions {
-  std::int64_t samples = 2'000'000;    ///< Arm configurations drawn; > 0.
-  double position_cell = 0.10;         ///< Edge of a position cell [m]; > 0.
-  double rotation_cell = 0.55;         ///< Approximate diameter of a rotation cell [rad]; in (0.05, 3].
-  int max_per_cell = 16;               ///< Configurations kept a cell: the first drawn; > 0.
-  double min_manipulability = 0.02;    ///< Dropped below this fraction of the largest manipulability sampled; in [0, 1).
+  std::int64_t samples = 2'000'000;  ///< Arm configurations drawn; > 0.
+  double position_cell = 0.10;       ///< Edge of a position cell [m]; > 0.
+  double rotation_cell = 0.55;       ///< Approximate diameter of a rotation cell [rad]; in (0.05, 3].
+  int max_per_cell = 16;             ///< Configurations kept a cell: the first drawn; > 0.
+  double min_manipulability = 0.02;  ///< Dropped below this fraction of the largest manipulability sampled; in [0, 1).
   unsigned seed = 1;
-  int threads = 0;                     ///< 0: all. Does not change the answer.
+  int threads = 0;  ///< 0: all. Does not change the answer.
   void check() const;
 };
 
 /// Sampled arm configurations, free of self-collision, binned by tool pose into six-dimensional cells (P1 3.2.1).
-/// Positions are floored (the cell at 0 is no wider than the others); rotations are binned in cells of nearly equal size
-/// that stay neighbourhoods everywhere, unlike roll-pitch-yaw voxels near pitch +-90 degrees. Configurations are stored as
-/// 32-bit floats, and it is the stored (rounded) ones that are binned and lie inside the joint limits. Immutable after build
-/// or load; safe to share between threads.
+/// Positions are floored (the cell at 0 is no wider than the others); rotations are binned in cells of nearly equal
+/// size that stay neighbourhoods everywhere, unlike roll-pitch-yaw voxels near pitch +-90 degrees. Configurations are
+/// stored as 32-bit floats, and it is the stored (rounded) ones that are binned and lie inside the joint limits.
+/// Immutable after build or load; safe to share between threads.
 class MMGRASP_EXPORT ReachDatabase {
  public:
-  /// `arm` must not have base joints; poses are in the robot's root frame, wherever the arm's root stands. Samples whose
-  /// manipulability is below the threshold, whose cell is full or who are in self-collision are dropped, in this order. The
-  /// largest manipulability is taken from the first samples. Throws InvalidInput. Returns an empty database when stopped.
+  /// `arm` must not have base joints; poses are in the robot's root frame, wherever the arm's root stands. Samples
+  /// whose manipulability is below the threshold, whose cell is full or who are in self-collision are dropped, in this
+  /// order. The largest manipulability is taken from the first samples. Throws InvalidInput. Returns an empty database
+  /// when stopped.
   static ReachDatabase build(const JointGroup& arm, const ReachOptions& options = {}, const Monitor& monitor = {});
   /// Writes to a temporary name and renames. Throws IoError.
   void save(const std::string& path) const;
-  /// Throws IoError on a truncated, foreign or corrupt file (checksum), naming it and what is wrong. The options loaded are
-  /// those of the build (threads: 0).
+  /// Throws IoError on a truncated, foreign or corrupt file (checksum), naming it and what is wrong. The options loaded
+  /// are those of the build (threads: 0).
   static ReachDatabase load(const std::string& path);
   /// Key under which a database of this arm with these options is cached: a hash of the robot (shapes, limits, disabled
   /// pairs), the group's joints and tip, the values at which the other joints are held, and every option but threads.
   static std::string cache_key(const JointGroup& arm, const ReachOptions& options);
-  /// Loads `cache_dir`/<key>.reach when it is there and sound, else builds and saves it (not when stopped). The folder is
-  /// made when missing; throws IoError before building when that is impossible.
+  /// Loads `cache_dir`/<key>.reach when it is there and sound, else builds and saves it (not when stopped). The folder
+  /// is made when missing; throws IoError before building when that is impossible.
   static ReachDatabase load_or_build(const JointGroup& arm, const ReachOptions& options, const std::string& cache_dir,
                                      const Monitor& monitor = {});
 
   const std::string& key() const;
   int joint_count() const;
-  std::int64_t size() const;         ///< Configurations stored.
-  std::int64_t cell_count() const;   ///< Non-empty cells.
+  std::int64_t size() const;        ///< Configurations stored.
+  std::int64_t cell_count() const;  ///< Non-empty cells.
   const ReachOptions& options() const;
 
   /// Stored configurations whose tool pose lies in the pose's cell (one column each, the most different ones first); no
   /// columns when the cell is empty.
   Eigen::MatrixXd cell(const Pose& T_base_tip) const;
   /// Up to `count` stored configurations near the pose, from its cell and the adjacent ones, nearest first (position
-  /// distance in units of position_cell plus angle in units of rotation_cell). Adjacent are the 27 position cells around, the
-  /// directions of the tool's z axis whose cells touch the pose's, and the three nearest rolls about it: nothing within half a
-  /// cell (0.5 of this distance) is ever missed. Distances are told apart down to about 2e-4. Columns of `out`; returns how many were written. `out` is resized only when
-  /// too small: no allocation in the steady state.
+  /// distance in units of position_cell plus angle in units of rotation_cell). Adjacent are the 27 position cells
+  /// around, the directions of the tool's z axis whose cells touch the pose's, and the three nearest rolls about it:
+  /// nothing within half a cell (0.5 of this distance) is ever missed. Distances are told apart down to about 2e-4.
+  /// Columns of `out`; returns how many were written. `out` is resized only when too small: no allocation in the steady
+  /// state.
   int nearest(const Pose& T_base_tip, int count, Eigen::MatrixXd& out) const;
   /// The configuration at an index in [0, size()), sorted by cell; and its tool pose as stored: rounded to
   /// about 1e-5 position cells and 1e-4 rad.
   Eigen::VectorXd configuration(std::int64_t index) const;
   Pose tool_pose(std::int64_t index) const;
-  /// Largest distance from the root frame's origin to a stored tool position [m], rounded up by at most 2e-5 position cells.
+  /// Largest distance from the root frame's origin to a stored tool position [m], rounded up by at most 2e-5 position
+  /// cells.
   double reach() const;
   /// Bounds of stored tool positions, rounded outwards likewise; empty when the database is.
   Eigen::AlignedBox3d bounds() const;

@@ -12,21 +12,21 @@
 namespace mmgrasp {
 
 struct MMGRASP_EXPORT IkOptions {
-  double position_tolerance = 1e-5;   ///< [m], > 0
-  double rotation_tolerance = 1e-4;   ///< [rad], > 0
-  int max_iterations = 60;            ///< Per descent; > 0
-  int restarts = 30;                  ///< Random restarts after the seed; >= 0
-  double time_limit = 1.0;            ///< Wall-clock cap [s]; > 0
-  unsigned seed = 1;                  ///< Same seed, same answer.
+  double position_tolerance = 1e-5;  ///< [m], > 0
+  double rotation_tolerance = 1e-4;  ///< [rad], > 0
+  int max_iterations = 60;           ///< Per descent; > 0
+  int restarts = 30;                 ///< Random restarts after the seed; >= 0
+  double time_limit = 1.0;           ///< Wall-clock cap [s]; > 0
+  unsigned seed = 1;                 ///< Same seed, same answer.
   void check() const;
 };
 
 struct MMGRASP_EXPORT IkResult {
   Outcome outcome = Outcome::infeasible;
-  Eigen::VectorXd q;                  ///< Set if and only if solved; inside limits, verified by forward kinematics.
-  double position_error = 0;          ///< [m] of q, or of the best attempt.
-  double rotation_error = 0;          ///< [rad]
-  Rejections rejections;              ///< Descents that ended: reach, limits, or what `valid` said.
+  Eigen::VectorXd q;          ///< Set if and only if solved; inside limits, verified by forward kinematics.
+  double position_error = 0;  ///< [m] of q, or of the best attempt.
+  double rotation_error = 0;  ///< [rad]
+  Rejections rejections;      ///< Descents that ended: reach, limits, or what `valid` said.
   int iterations = 0;
 };
 

@@ -11,22 +11,22 @@
 
 namespace mmgrasp {
 
-/// Some joints of a robot that are planned together, and a tip. Configuration: base joints x, y, theta first when the group
-/// has them, then the chain in order. All other joints stay at the group's reference values; without base joints the root
-/// stands at `T_world_root`. Immutable, cheap to copy, safe to share between threads.
+/// Some joints of a robot that are planned together, and a tip. Configuration: base joints x, y, theta first when the
+/// group has them, then the chain in order. All other joints stay at the group's reference values; without base joints
+/// the root stands at `T_world_root`. Immutable, cheap to copy, safe to share between threads.
 class MMGRASP_EXPORT JointGroup {
  public:
   const Robot& robot() const;
   const std::string& name() const;
-  const std::vector<std::string>& names() const;    ///< "x", "y", "theta" first when the group has the base.
+  const std::vector<std::string>& names() const;  ///< "x", "y", "theta" first when the group has the base.
   int size() const;
   bool has_base() const;
   int tip_link() const;
-  const Eigen::VectorXd& lower() const;             ///< +-infinite for continuous joints.
+  const Eigen::VectorXd& lower() const;  ///< +-infinite for continuous joints.
   const Eigen::VectorXd& upper() const;
   const Eigen::VectorXd& velocity_limits() const;
   const Eigen::VectorXd& acceleration_limits() const;  ///< URDF has none: 4 x velocity limit unless set.
-  const std::vector<bool>& wraps() const;           ///< True for values that are angles without limits.
+  const std::vector<bool>& wraps() const;              ///< True for values that are angles without limits.
 
   /// The same group with other joints held elsewhere, e.g. fingers opened (full value vector, Robot::values()).
   JointGroup with_reference(const Eigen::VectorXd& full_values) const;
@@ -52,8 +52,8 @@ class MMGRASP_EXPORT JointGroup {
   Matrix6Xd jacobian(const Eigen::Ref<const Eigen::VectorXd>& q) const;
   /// Both at once into caller's storage: the hot path of IK. J must be 6 x size(). No allocation.
   void fk_jacobian(const Eigen::Ref<const Eigen::VectorXd>& q, Pose& T_world_tip, Eigen::Ref<Matrix6Xd> J) const;
-  /// Pose of every link of the robot into caller's storage (resized once). Only links the group moves are recomputed when
-  /// `T_world_link` was filled by this same group before and `moved_only` is set.
+  /// Pose of every link of the robot into caller's storage (resized once). Only links the group moves are recomputed
+  /// when `T_world_link` was filled by this same group before and `moved_only` is set.
   void link_poses(const Eigen::Ref<const Eigen::VectorXd>& q, Poses& T_world_link, bool moved_only = false) const;
   /// Links whose pose depends on q, ascending.
   const std::vector<int>& moving_links() const;

@@ -15,11 +15,11 @@ MMGRASP_EXPORT BaseKind base_kind_from_string(const std::string& name);
 
 /// Limits of the virtual base joints.
 struct MMGRASP_EXPORT BaseLimits {
-  double linear_velocity = 0.6;        ///< [m/s], > 0
-  double angular_velocity = 1.0;       ///< [rad/s], > 0
-  double linear_acceleration = 0.5;    ///< [m/s^2], > 0
-  double angular_acceleration = 1.0;   ///< [rad/s^2], > 0
-  double workspace = 100.0;            ///< x and y lie in [-workspace, workspace] [m], > 0
+  double linear_velocity = 0.6;       ///< [m/s], > 0
+  double angular_velocity = 1.0;      ///< [rad/s], > 0
+  double linear_acceleration = 0.5;   ///< [m/s^2], > 0
+  double angular_acceleration = 1.0;  ///< [rad/s^2], > 0
+  double workspace = 100.0;           ///< x and y lie in [-workspace, workspace] [m], > 0
   void check() const;
 };
 

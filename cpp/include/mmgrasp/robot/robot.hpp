@@ -21,27 +21,29 @@ struct MMGRASP_EXPORT RobotOptions {
   std::map<std::string, std::string> package_dirs;  ///< package://NAME/... -> folder. Looked at first.
   std::string mesh_dir;                             ///< Folder that relative mesh paths refer to; default: the URDF's.
   bool load_meshes = true;                          ///< false: kinematics only, links with meshes get no shape.
-  bool allow_missing_meshes = false;                ///< true: a missing mesh is a warning in the report, not an IoError.
+  bool allow_missing_meshes = false;  ///< true: a missing mesh is a warning in the report, not an IoError.
 };
 
 enum class DisabledReason { adjacent, never, always, user, default_ };
 
 /// What loading found: shown by `mmgrasp check`.
 struct MMGRASP_EXPORT RobotReport {
-  std::vector<std::string> warnings;     ///< One sentence each (link over 5 m, SRDF names an unknown link, ...).
-  std::vector<MeshReport> meshes;        ///< Collision meshes that were read.
-  std::vector<std::string> missing;      ///< Mesh URIs that could not be found (only with allow_missing_meshes).
+  std::vector<std::string> warnings;  ///< One sentence each (link over 5 m, SRDF names an unknown link, ...).
+  std::vector<MeshReport> meshes;     ///< Collision meshes that were read.
+  std::vector<std::string> missing;   ///< Mesh URIs that could not be found (only with allow_missing_meshes).
 };
 
 /// A group of the SRDF, resolved: joints in chain order; `tip` empty when the group is no chain.
 struct MMGRASP_EXPORT GroupDescription {
   std::string name;
-  std::vector<std::string> joints;   ///< Movable, non-mimic joints in order from base to tip.
+  std::vector<std::string> joints;  ///< Movable, non-mimic joints in order from base to tip.
   std::string base_link;
   std::string tip_link;
 };
 
-struct MMGRASP_EXPORT EndEffectorDescription { std::string name, group, parent_link; };
+struct MMGRASP_EXPORT EndEffectorDescription {
+  std::string name, group, parent_link;
+};
 
 class JointGroup;
 
@@ -49,9 +51,9 @@ class JointGroup;
 /// Immutable and cheap to copy (shared data). Links and joints are indexed in breadth-first order, root link first.
 class MMGRASP_EXPORT Robot {
  public:
-  /// Reads files. Throws IoError / InvalidInput naming file, element, value and rule. An empty srdf_path means none; the
-  /// disabled pairs are then computed by sampling when a collision checker first needs them (see collision/disabled_pairs.hpp);
-  /// here only adjacent ones are set.
+  /// Reads files. Throws IoError / InvalidInput naming file, element, value and rule. An empty srdf_path means none;
+  /// the disabled pairs are then computed by sampling when a collision checker first needs them (see
+  /// collision/disabled_pairs.hpp); here only adjacent ones are set.
   static Robot load(const std::string& urdf_path, const std::string& srdf_path = "", const RobotOptions& options = {});
   /// The same from text; `origin` names the source in messages and gives the folder for relative meshes.
   static Robot from_strings(const std::string& urdf, const std::string& srdf = "", const RobotOptions& options = {},
@@ -75,7 +77,8 @@ class MMGRASP_EXPORT Robot {
   Eigen::VectorXd default_values() const;
   /// default_values() with the named joints set. Throws InvalidInput on unknown names or values outside limits.
   Eigen::VectorXd values(const std::map<std::string, double>& by_name) const;
-  /// Pose of every link for full values, root at T_world_root. The slow general reference; JointGroup has the fast path.
+  /// Pose of every link for full values, root at T_world_root. The slow general reference; JointGroup has the fast
+  /// path.
   Poses link_poses(const Eigen::VectorXd& values, const Pose& T_world_root = Pose::Identity()) const;
 
   const std::vector<GroupDescription>& groups() const;
@@ -84,27 +87,30 @@ class MMGRASP_EXPORT Robot {
   const std::map<std::string, std::map<std::string, std::map<std::string, double>>>& group_states() const;
   bool has_srdf() const;
 
-  /// True when the two links need no self-collision check: the SRDF says so, a joint joins them (also across links without
-  /// shapes), or they belong to one rigid body.
+  /// True when the two links need no self-collision check: the SRDF says so, a joint joins them (also across links
+  /// without shapes), or they belong to one rigid body.
   bool pair_disabled(int link_a, int link_b) const;
   const std::map<std::pair<int, int>, DisabledReason>& disabled_pairs() const;  ///< Keys with first < second.
   Robot with_disabled_pairs(std::map<std::pair<int, int>, DisabledReason> pairs) const;
 
   /// An SRDF group by name, or a chain given by its ends. `tip` moves the tip to any link that the last joint carries;
-  /// empty: the chain's last link. With `with_base`, the virtual joints x, y, theta come first (base kind must not be fixed).
+  /// empty: the chain's last link. With `with_base`, the virtual joints x, y, theta come first (base kind must not be
+  /// fixed).
   JointGroup group(const std::string& name, const std::string& tip = "", bool with_base = false) const;
   JointGroup chain(const std::string& base_link, const std::string& tip_link, bool with_base = false) const;
 
-  /// Puts `other` on `parent_link`, its root link at T_parent_other; names of `other` get "prefix" in front (chosen from its
-  /// robot name when empty: "name_"). SRDFs are merged; pairs between the two are not disabled except the mounting pair.
+  /// Puts `other` on `parent_link`, its root link at T_parent_other; names of `other` get "prefix" in front (chosen
+  /// from its robot name when empty: "name_"). SRDFs are merged; pairs between the two are not disabled except the
+  /// mounting pair.
   Robot mount(const Robot& other, const std::string& parent_link, const Pose& T_parent_other,
               const std::string& prefix = "") const;
   /// Adds a fixed link (a tool centre point, a carry bin): with or without shapes.
   Robot with_link(const std::string& name, const std::string& parent_link, const Pose& T_parent_link,
                   const std::vector<LinkShape>& collisions = {}) const;
 
-  /// The whole robot written out: what was read of it, so without visuals and inertias. Mesh URIs are written as absolute
-  /// file paths; meshes that were not loaded are left out. Throws InvalidInput for a mesh that came from no file.
+  /// The whole robot written out: what was read of it, so without visuals and inertias. Mesh URIs are written as
+  /// absolute file paths; meshes that were not loaded are left out. Throws InvalidInput for a mesh that came from no
+  /// file.
   std::string to_urdf() const;
   std::string to_srdf() const;
   /// Content hash of kinematics, shapes (mesh contents included), limits and disabled pairs.

@@ -11,20 +11,20 @@ namespace mmgrasp {
 /// Configurations joined by straight lines in joint space.
 struct MMGRASP_EXPORT JointPath {
   std::vector<Eigen::VectorXd> waypoints;
-  double length() const;   ///< Sum of Euclidean joint distances.
+  double length() const;  ///< Sum of Euclidean joint distances.
 };
 
 /// A path on a clock.
 struct MMGRASP_EXPORT JointTrajectory {
-  std::vector<std::string> names;              ///< One per column of the configurations.
-  std::vector<double> times;                   ///< [s], from 0, strictly increasing.
+  std::vector<std::string> names;  ///< One per column of the configurations.
+  std::vector<double> times;       ///< [s], from 0, strictly increasing.
   std::vector<Eigen::VectorXd> positions;
   std::vector<Eigen::VectorXd> velocities;
   std::vector<Eigen::VectorXd> accelerations;
 
   double duration() const { return times.empty() ? 0.0 : times.back(); }
-  Eigen::VectorXd at(double time) const;       ///< Cubic Hermite between samples; clamped at the ends.
-  std::string to_csv() const;                  ///< Header "time,<name>,...,<name>.velocity,..."; 17 digits.
+  Eigen::VectorXd at(double time) const;  ///< Cubic Hermite between samples; clamped at the ends.
+  std::string to_csv() const;             ///< Header "time,<name>,...,<name>.velocity,..."; 17 digits.
 };
 
 }  // namespace mmgrasp

@@ -13,12 +13,13 @@
 
 namespace mmgrasp {
 
-/// Square cells over the floor, one layer for each heading; all trays share one grid so that regions intersect cell by cell.
+/// Square cells over the floor, one layer for each heading; all trays share one grid so that regions intersect cell by
+/// cell.
 struct MMGRASP_EXPORT BaseGrid {
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< Lower corner of cell (0, 0) [m].
   double resolution = 0.05;
   int nx = 0, ny = 0;
-  std::vector<double> headings;                      ///< [rad], distinct.
+  std::vector<double> headings;  ///< [rad], distinct.
 
   int cells_per_layer() const { return nx * ny; }
   std::size_t size() const { return headings.size() * static_cast<std::size_t>(nx) * ny; }
@@ -31,36 +32,37 @@ struct MMGRASP_EXPORT BaseGrid {
 /// One flag a cell of a BaseGrid.
 using CellMask = std::vector<std::uint8_t>;
 
-/// What became of the candidates for one part, over all base poses tried. The rejections count grasp x base pose pairs at the
-/// base poses from which the part cannot be grasped: there every grasp fell, each to one cause, so that their total is
-/// grasps x (base_poses_tried - base_poses_feasible). Where one grasp works the others are not looked at. The cause of a
-/// pair is the last filter that any of its arm configurations got to: reach, limits, self-collision, scene;
+/// What became of the candidates for one part, over all base poses tried. The rejections count grasp x base pose pairs
+/// at the base poses from which the part cannot be grasped: there every grasp fell, each to one cause, so that their
+/// total is grasps x (base_poses_tried - base_poses_feasible). Where one grasp works the others are not looked at. The
+/// cause of a pair is the last filter that any of its arm configurations got to: reach, limits, self-collision, scene;
 /// `grasp_filter` when the open hand alone touches the scene or a part at the grasp, whatever the arm does.
 struct MMGRASP_EXPORT PartExplanation {
   std::string part;
-  int grasps = 0;                     ///< Candidates.
-  /// Centres of cells within the search radius, and corners of those cells whose centre is feasible for the part; without
-  /// the base poses at which the robot at home touches the scene.
+  int grasps = 0;  ///< Candidates.
+  /// Centres of cells within the search radius, and corners of those cells whose centre is feasible for the part;
+  /// without the base poses at which the robot at home touches the scene.
   std::size_t base_poses_tried = 0;
   std::size_t base_poses_feasible = 0;  ///< Base poses from which the part has a collision-free grasp.
-  Rejections rejections;              ///< Grasp x base pose pairs by the cause that turned them down.
+  Rejections rejections;                ///< Grasp x base pose pairs by the cause that turned them down.
 };
 
 struct MMGRASP_EXPORT BaseRegion {
   std::string tray;
-  CellMask cells;                     ///< 1: from everywhere in this cell every target part can be grasped.
-  std::vector<CellMask> part_cells;   ///< The same for each target part alone, in the tray's order.
+  CellMask cells;                    ///< 1: from everywhere in this cell every target part can be grasped.
+  std::vector<CellMask> part_cells;  ///< The same for each target part alone, in the tray's order.
   std::vector<PartExplanation> explanations;
-  std::size_t base_poses_in_collision = 0;  ///< Cell centres within the search radius at which the robot at home touches the scene.
+  std::size_t base_poses_in_collision =
+      0;  ///< Cell centres within the search radius at which the robot at home touches the scene.
   std::size_t count() const;
 };
 
 /// One part seen from one base pose.
 struct MMGRASP_EXPORT PartAtPose {
   bool feasible = false;
-  int grasp = -1;                     ///< A grasp that works.
-  Eigen::VectorXd q;                  ///< A collision-free arm configuration for it.
-  std::vector<Rejection> causes;      ///< When not feasible: one a grasp.
+  int grasp = -1;                 ///< A grasp that works.
+  Eigen::VectorXd q;              ///< A collision-free arm configuration for it.
+  std::vector<Rejection> causes;  ///< When not feasible: one a grasp.
 };
 
 /// Asks for single base poses what compute_base_regions asks for all of them: the same base pose gives the same answer,
@@ -76,14 +78,15 @@ class MMGRASP_EXPORT BasePoseEvaluator {
 
   /// What the robot at home with fingers at rest runs into when its base stands there (x, y, theta).
   Rejection home(const Eigen::Vector3d& base_pose);
-  /// Grasps are tried in order, `first_grasp` (when >= 0) before the others: that saves time and changes only which grasp is
-  /// named. The robot at home is not looked at.
+  /// Grasps are tried in order, `first_grasp` (when >= 0) before the others: that saves time and changes only which
+  /// grasp is named. The robot at home is not looked at.
   PartAtPose part(const Eigen::Vector3d& base_pose, int tray, int part, int first_grasp = -1);
   /// The same with random restarts of IK: slower, finds a configuration in more cases. For checks, not for regions.
   bool part_with_restarts(const Eigen::Vector3d& base_pose, int tray, int part, int first_grasp = -1);
   /// True when the open hand alone touches the scene or a part at the grasp: no arm configuration can be free.
   bool hand_blocked(int tray, int part, int grasp) const;
-  /// Distance by which the tool at its nearest usable grasp lies beyond the arm's reach from a base pose [m]; 0: within.
+  /// Distance by which the tool at its nearest usable grasp lies beyond the arm's reach from a base pose [m]; 0:
+  /// within.
   double missing_reach(const Eigen::Vector3d& base_pose, int tray, int part) const;
 
  private:
@@ -96,9 +99,10 @@ class MMGRASP_EXPORT BasePoseEvaluator {
 MMGRASP_EXPORT BaseGrid make_base_grid(const PartSupplyProblem& problem, const ReachDatabase& database);
 
 /// P1 Algorithm 2, with exact IK: a base pose is feasible when every target part has a grasp with a collision-free arm
-/// configuration (all parts still in place, fingers at the pre-grasp opening) and the robot at home is free there. A tray
-/// without target parts gives an empty region, and so does a part without grasps. A cell belongs to the region when its centre and
-/// its four corners are feasible, so that the guarantee holds between cell centres too. Same answer at any thread count.
+/// configuration (all parts still in place, fingers at the pre-grasp opening) and the robot at home is free there. A
+/// tray without target parts gives an empty region, and so does a part without grasps. A cell belongs to the region
+/// when its centre and its four corners are feasible, so that the guarantee holds between cell centres too. Same answer
+/// at any thread count.
 MMGRASP_EXPORT std::vector<BaseRegion> compute_base_regions(const PartSupplyProblem& problem,
                                                             const ReachDatabase& database, const BaseGrid& grid,
                                                             const Monitor& monitor = {});

@@ -13,9 +13,9 @@ namespace mmgrasp {
 
 struct MMGRASP_EXPORT BaseRouteOptions {
   BaseKind base = BaseKind::diff_drive;
-  double resolution = 0.10;          ///< Cell edge of the search [m]; > 0.
-  double check_step = 0.02;          ///< Largest motion of the base between two collision checks [m]; > 0.
-  Eigen::AlignedBox2d bounds;        ///< Search stays in here; empty: the scene's bounds plus start and goal, grown by 2 m.
+  double resolution = 0.10;    ///< Cell edge of the search [m]; > 0.
+  double check_step = 0.02;    ///< Largest motion of the base between two collision checks [m]; > 0.
+  Eigen::AlignedBox2d bounds;  ///< Search stays in here; empty: the scene's bounds plus start and goal, grown by 2 m.
   void check() const;
 };
 
@@ -23,12 +23,13 @@ struct MMGRASP_EXPORT BaseRouteOptions {
 /// (forwards or backwards) or a turn on the spot; for omni any straight line in (x, y, theta).
 struct MMGRASP_EXPORT BasePath {
   Outcome outcome = Outcome::infeasible;
-  std::vector<Eigen::Vector3d> poses;   ///< x, y, theta; theta is continuous (not wrapped) along the path.
-  double length = 0;                    ///< Driven distance [m].
-  double turning = 0;                   ///< Sum of absolute heading changes [rad].
+  std::vector<Eigen::Vector3d> poses;  ///< x, y, theta; theta is continuous (not wrapped) along the path.
+  double length = 0;                   ///< Driven distance [m].
+  double turning = 0;                  ///< Sum of absolute heading changes [rad].
 };
 
-/// A driveable path for the whole robot with its arm at `home`, collision-checked in 3-D. The checker's group is the arm.
+/// A driveable path for the whole robot with its arm at `home`, collision-checked in 3-D. The checker's group is the
+/// arm.
 MMGRASP_EXPORT BasePath plan_base_route(CollisionChecker& checker, const Eigen::VectorXd& home,
                                         const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                                         const BaseRouteOptions& options, const Monitor& monitor = {});

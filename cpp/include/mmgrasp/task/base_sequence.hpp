@@ -11,7 +11,7 @@ namespace mmgrasp {
 
 /// The largest disc inside a union of grid cells.
 struct MMGRASP_EXPORT InscribedCircle {
-  double radius = 0;                 ///< 0 when there is no cell.
+  double radius = 0;  ///< 0 when there is no cell.
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
 };
 
@@ -20,21 +20,21 @@ MMGRASP_EXPORT InscribedCircle inscribed_circle(const BaseGrid& grid, const Cell
 
 /// Cells that several regions share, with their largest disc (P1 3.4.2).
 struct MMGRASP_EXPORT Intersection {
-  std::vector<int> trays;            ///< Indices into the regions, ascending.
-  int heading = 0;                   ///< Layer.
+  std::vector<int> trays;  ///< Indices into the regions, ascending.
+  int heading = 0;         ///< Layer.
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   double radius = 0;
   std::size_t cells = 0;
 };
 
-/// Every set of trays (first order included) whose shared cells hold a disc of at least `min_radius`, and how many sets were
-/// looked at and lost. Grown order by order: a set is tried only if all its subsets are robust.
+/// Every set of trays (first order included) whose shared cells hold a disc of at least `min_radius`, and how many sets
+/// were looked at and lost. Grown order by order: a set is tried only if all its subsets are robust.
 struct MMGRASP_EXPORT Intersections {
   std::vector<Intersection> robust;
   std::size_t sets_tried = 0;
-  std::size_t sets_too_small = 0;    ///< Shared cells, but the disc is too small.
-  bool complete = true;              ///< False: `max_sets` ended the search; minimality then holds for the sets found only.
-  std::vector<Intersection> lost;    ///< Those, up to 200, largest radius first: why each alternative lost.
+  std::size_t sets_too_small = 0;  ///< Shared cells, but the disc is too small.
+  bool complete = true;  ///< False: `max_sets` ended the search; minimality then holds for the sets found only.
+  std::vector<Intersection> lost;  ///< Those, up to 200, largest radius first: why each alternative lost.
 };
 
 MMGRASP_EXPORT Intersections robust_intersections(const BaseGrid& grid, const std::vector<BaseRegion>& regions,
@@ -43,24 +43,25 @@ MMGRASP_EXPORT Intersections robust_intersections(const BaseGrid& grid, const st
 /// Where the base stops and which trays it serves there.
 struct MMGRASP_EXPORT Stop {
   Eigen::Vector3d pose = Eigen::Vector3d::Zero();  ///< x, y, theta
-  double radius = 0;                 ///< Of the disc around it in which every target part stays graspable [m].
-  std::vector<int> trays;            ///< Trays picked here (each tray at one stop).
-  int intersection = -1;             ///< Index into the robust intersections.
+  double radius = 0;       ///< Of the disc around it in which every target part stays graspable [m].
+  std::vector<int> trays;  ///< Trays picked here (each tray at one stop).
+  int intersection = -1;   ///< Index into the robust intersections.
 };
 
 struct MMGRASP_EXPORT StopSet {
   Outcome outcome = Outcome::infeasible;  ///< Solved: proven least; approximate: a cover that may have too many stops.
-  std::vector<Stop> stops;           ///< In no order yet.
-  int lower_bound = 0;               ///< Proven least number of stops.
+  std::vector<Stop> stops;                ///< In no order yet.
+  int lower_bound = 0;                    ///< Proven least number of stops.
   std::vector<int> unreachable_trays;
 };
 
-/// The least number of robust intersections that cover all trays (P1 equation 3.1), by 0-1 programming with proof; among
-/// equally few, larger discs are preferred. Each tray goes to the chosen stop with the largest disc.
+/// The least number of robust intersections that cover all trays (P1 equation 3.1), by 0-1 programming with proof;
+/// among equally few, larger discs are preferred. Each tray goes to the chosen stop with the largest disc.
 MMGRASP_EXPORT StopSet minimal_stops(const BaseGrid& grid, const std::vector<Intersection>& intersections, int trays);
 
-/// The same over what robust_intersections() found. When that is not complete, sets of trays that were never looked at could
-/// save stops: all that is proven then is that one stop is needed, and more than one stop is an approximate answer.
+/// The same over what robust_intersections() found. When that is not complete, sets of trays that were never looked at
+/// could save stops: all that is proven then is that one stop is needed, and more than one stop is an approximate
+/// answer.
 MMGRASP_EXPORT StopSet minimal_stops(const BaseGrid& grid, const Intersections& intersections, int trays);
 
 }  // namespace mmgrasp

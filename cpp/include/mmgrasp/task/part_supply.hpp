@@ -17,7 +17,10 @@
 namespace mmgrasp {
 
 /// Seconds of wall time a stage took.
-struct MMGRASP_EXPORT StageTime { std::string stage; double seconds = 0; };
+struct MMGRASP_EXPORT StageTime {
+  std::string stage;
+  double seconds = 0;
+};
 
 /// Why there is no plan, and what would help. The fields after `message` are advice that can be applied as it stands.
 struct MMGRASP_EXPORT Obstruction {
@@ -25,36 +28,37 @@ struct MMGRASP_EXPORT Obstruction {
   std::string stage;                ///< "grasp", "region", "robustness", "motion", "route".
   std::string message;              ///< One sentence a person can act on.
   double largest_uncertainty = -1;  ///< Largest positioning uncertainty that still works [m]; < 0: none does.
-  /// How far the nearest base pose at which the robot may stand falls short of the part at a single grasp [m]; 0: reach is
-  /// not it. It only brings that grasp to the edge of the reach: the move that suffices is `advised_move`.
+  /// How far the nearest base pose at which the robot may stand falls short of the part at a single grasp [m]; 0: reach
+  /// is not it. It only brings that grasp to the edge of the reach: the move that suffices is `advised_move`.
   double missing_reach = 0;
-  /// Shortest translation found, in the world's x and y [m], after which a disc of the positioning uncertainty has room:
-  /// `move_trays` (this tray first) with their parts and `move_objects` of the scene move together by it. It was checked in
-  /// the moved scene for base poses, start and goal; not for arm motions and the drive. Zero: moving does not help or is not
-  /// needed. Obstructions of trays that move together tell the same move: apply it once.
+  /// Shortest translation found, in the world's x and y [m], after which a disc of the positioning uncertainty has
+  /// room: `move_trays` (this tray first) with their parts and `move_objects` of the scene move together by it. It was
+  /// checked in the moved scene for base poses, start and goal; not for arm motions and the drive. Zero: moving does
+  /// not help or is not needed. Obstructions of trays that move together tell the same move: apply it once.
   Eigen::Vector2d advised_move = Eigen::Vector2d::Zero();
   std::vector<std::string> move_trays;    ///< Empty when advised_move is zero.
   std::vector<std::string> move_objects;  ///< What carries the trays, and what else stands on that.
-  /// Gripper opening at which a part that is too wide can be held with the gripper's clearance on both sides [m]; 0: width is not
-  /// it. From the bounds of the part's shapes along its own axes, those that stand upright in the world left out.
+  /// Gripper opening at which a part that is too wide can be held with the gripper's clearance on both sides [m]; 0:
+  /// width is not it. From the bounds of the part's shapes along its own axes, those that stand upright in the world
+  /// left out.
   double needed_opening = 0;
 };
 
 struct MMGRASP_EXPORT PartSupplyPlan {
   Outcome outcome = Outcome::infeasible;
   BaseGrid grid;
-  std::vector<BaseRegion> regions;          ///< One a tray with target parts (see region_trays).
-  std::vector<int> region_trays;            ///< Tray index of each region.
-  Intersections intersections;              ///< Tray indices in it refer to regions.
-  std::vector<Stop> stops;                  ///< In visiting order; tray indices refer to regions.
-  int lower_bound = 0;                      ///< Proven: fewer stops cannot serve these regions.
-  /// The stops are as few as the regions allow. False when that is not proven: the search for shared regions or for the least
-  /// cover ended early, or no stops were found.
+  std::vector<BaseRegion> regions;  ///< One a tray with target parts (see region_trays).
+  std::vector<int> region_trays;    ///< Tray index of each region.
+  Intersections intersections;      ///< Tray indices in it refer to regions.
+  std::vector<Stop> stops;          ///< In visiting order; tray indices refer to regions.
+  int lower_bound = 0;              ///< Proven: fewer stops cannot serve these regions.
+  /// The stops are as few as the regions allow. False when that is not proven: the search for shared regions or for the
+  /// least cover ended early, or no stops were found.
   bool proven_minimal = false;
-  std::vector<BasePath> route;              ///< stops.size() + 1 legs, from start to goal.
-  std::vector<Pick> picks;                  ///< In the order carried out.
-  double robustness_rate = 0;               ///< Share of sampled base poses at the stops from which all parts stay graspable.
-  std::vector<Obstruction> obstructions;    ///< Empty if and only if solved.
+  std::vector<BasePath> route;  ///< stops.size() + 1 legs, from start to goal.
+  std::vector<Pick> picks;      ///< In the order carried out.
+  double robustness_rate = 0;   ///< Share of sampled base poses at the stops from which all parts stay graspable.
+  std::vector<Obstruction> obstructions;  ///< Empty if and only if solved.
   std::vector<StageTime> timings;
 };
 

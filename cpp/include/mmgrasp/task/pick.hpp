@@ -17,12 +17,13 @@ MMGRASP_EXPORT const char* to_string(MotionKind kind);
 /// One timed arm motion at a stop.
 struct MMGRASP_EXPORT PickMotion {
   MotionKind kind = MotionKind::reach;
-  double opening = 0;               ///< Of the fingers during the motion [m].
-  bool holding = false;             ///< The part is attached during the motion.
+  double opening = 0;    ///< Of the fingers during the motion [m].
+  bool holding = false;  ///< The part is attached during the motion.
   JointTrajectory trajectory;
 };
 
-/// Home - reach the pre-grasp - approach straight - (close) - lift straight - carry to the bin - (open) - retreat to home.
+/// Home - reach the pre-grasp - approach straight - (close) - lift straight - carry to the bin - (open) - retreat to
+/// home.
 struct MMGRASP_EXPORT Pick {
   Outcome outcome = Outcome::infeasible;
   int stop = -1;

@@ -16,35 +16,36 @@ namespace mmgrasp {
 
 /// One part in a tray.
 struct MMGRASP_EXPORT Part {
-  std::string name;                  ///< Unique over the problem.
-  std::vector<LinkShape> shapes;     ///< In the part's frame.
+  std::string name;               ///< Unique over the problem.
+  std::vector<LinkShape> shapes;  ///< In the part's frame.
   Pose T_world_part = Pose::Identity();
-  bool target = true;                ///< False: it stays, and is an obstacle.
-  std::vector<Grasp> grasps;         ///< Candidates, best first. The opening is Grasp::width.
-  int grasps_too_wide = 0;           ///< Candidates dropped before planning because the gripper does not open so far.
+  bool target = true;         ///< False: it stays, and is an obstacle.
+  std::vector<Grasp> grasps;  ///< Candidates, best first. The opening is Grasp::width.
+  int grasps_too_wide = 0;    ///< Candidates dropped before planning because the gripper does not open so far.
 };
 
 /// A tray and the parts in it. The tray's own walls are scene objects.
 struct MMGRASP_EXPORT Tray {
   std::string name;
-  Pose T_world_tray = Pose::Identity();   ///< Middle of the tray's floor; a robot in front of it looks along its +x.
+  Pose T_world_tray = Pose::Identity();  ///< Middle of the tray's floor; a robot in front of it looks along its +x.
   Eigen::Vector3d size = Eigen::Vector3d(0.3, 0.4, 0.1);  ///< Depth (x), width (y), height (z) [m].
   std::vector<Part> parts;
-  std::vector<double> headings;      ///< Base headings tried [rad]; empty: the one that faces the tray (its +x).
+  std::vector<double> headings;  ///< Base headings tried [rad]; empty: the one that faces the tray (its +x).
 };
 
 /// Where picked parts go: a bin fixed to the robot. A part is released level (as it lay in the tray, turned about the
 /// vertical only) with its lowest point `drop_gap` above the bin's top plane and its origin inside the bin's rectangle.
 struct MMGRASP_EXPORT CarryPlace {
-  Pose T_base_bin = Pose::Identity();   ///< Middle of the bin's top plane in the root frame, z up.
+  Pose T_base_bin = Pose::Identity();                ///< Middle of the bin's top plane in the root frame, z up.
   Eigen::Vector2d size = Eigen::Vector2d(0.3, 0.3);  ///< Inner x and y [m], > 0.
-  double drop_gap = 0.03;               ///< [m], >= 0
+  double drop_gap = 0.03;                            ///< [m], >= 0
 };
 
 struct MMGRASP_EXPORT BaseGridOptions {
-  double resolution = 0.05;          ///< Cell edge [m]; > 0.
-  double max_distance = 0.0;         ///< Cells whose centre is farther than this from the tray's middle are not tried [m]; 0: the arm's reach.
-  int ik_seeds = 8;                  ///< Database configurations refined for each grasp and base pose; > 0.
+  double resolution = 0.05;  ///< Cell edge [m]; > 0.
+  double max_distance =
+      0.0;  ///< Cells whose centre is farther than this from the tray's middle are not tried [m]; 0: the arm's reach.
+  int ik_seeds = 8;  ///< Database configurations refined for each grasp and base pose; > 0.
 };
 
 struct MMGRASP_EXPORT PartSupplyOptions {
@@ -52,25 +53,25 @@ struct MMGRASP_EXPORT PartSupplyOptions {
   double positioning_uncertainty = 0.10;  ///< Radius of the disc in which the base may come to stand [m]; >= 0.
   double approach_distance = 0.08;        ///< Straight move from pre-grasp to grasp, along the approach axis [m]; > 0.
   double lift_height = 0.12;              ///< Straight upward move after closing [m]; > 0.
-  /// Wall-clock cap of each planned motion [s]; > 0. A budget of 2000 states drawn for each of these seconds normally ends
-  /// the search earlier, so that the load of the machine does not change a plan.
+  /// Wall-clock cap of each planned motion [s]; > 0. A budget of 2000 states drawn for each of these seconds normally
+  /// ends the search earlier, so that the load of the machine does not change a plan.
   double motion_time_limit = 5.0;
-  double route_resolution = 0.10;         ///< Cell edge of the base route's search [m]; > 0.
-  int robustness_samples = 2000;          ///< Base poses drawn at each stop for the check before returning; >= 0.
+  double route_resolution = 0.10;  ///< Cell edge of the base route's search [m]; > 0.
+  int robustness_samples = 2000;   ///< Base poses drawn at each stop for the check before returning; >= 0.
   unsigned seed = 1;
   int threads = 0;
   void check() const;
 };
 
-/// Everything the part-supply planner needs. The scene holds obstacles, tables, trays; parts are kept apart because they
-/// leave. `arm` has no base joints; its reference holds the other joints (head, ...) and the fingers at rest.
+/// Everything the part-supply planner needs. The scene holds obstacles, tables, trays; parts are kept apart because
+/// they leave. `arm` has no base joints; its reference holds the other joints (head, ...) and the fingers at rest.
 struct MMGRASP_EXPORT PartSupplyProblem {
   Robot robot;
   JointGroup arm;
   Gripper gripper;
   World scene;
   std::vector<Tray> trays;
-  Eigen::VectorXd home;                    ///< Arm configuration while driving, fingers closed.
+  Eigen::VectorXd home;                             ///< Arm configuration while driving, fingers closed.
   Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< Base pose x, y, theta [m, m, rad].
   Eigen::Vector3d goal = Eigen::Vector3d::Zero();
   CarryPlace carry;

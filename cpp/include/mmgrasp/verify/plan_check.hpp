@@ -35,15 +35,18 @@ struct MMGRASP_EXPORT CheckedPart {
   std::vector<CheckedGrasp> grasps;
 };
 
-struct MMGRASP_EXPORT CheckedFinger { std::string joint; double closed = 0, open = 0; };
+struct MMGRASP_EXPORT CheckedFinger {
+  std::string joint;
+  double closed = 0, open = 0;
+};
 
 struct MMGRASP_EXPORT CheckedMotion {
-  std::string kind;                  ///< reach, approach, lift, carry, retreat
+  std::string kind;  ///< reach, approach, lift, carry, retreat
   double opening = 0;
   bool holding = false;
   std::vector<double> times;
   std::vector<Eigen::VectorXd> positions, velocities;
-  std::vector<Eigen::VectorXd> accelerations = {};   ///< Empty: not given.
+  std::vector<Eigen::VectorXd> accelerations = {};  ///< Empty: not given.
 };
 
 struct MMGRASP_EXPORT CheckedPick {
@@ -61,7 +64,7 @@ struct MMGRASP_EXPORT CheckedStop {
 
 struct MMGRASP_EXPORT CheckedRegion {
   std::string tray;
-  std::vector<std::uint8_t> cells;   ///< (heading * ny + iy) * nx + ix
+  std::vector<std::uint8_t> cells;  ///< (heading * ny + iy) * nx + ix
 };
 
 struct MMGRASP_EXPORT CheckedGrid {
@@ -72,7 +75,9 @@ struct MMGRASP_EXPORT CheckedGrid {
 };
 
 /// What a plan says about a leg of its route.
-struct MMGRASP_EXPORT CheckedLegFigures { double length = 0, turning = 0, duration = 0; };
+struct MMGRASP_EXPORT CheckedLegFigures {
+  double length = 0, turning = 0, duration = 0;
+};
 
 /// A place that a plan says lies in the regions of several trays.
 struct MMGRASP_EXPORT CheckedIntersection {
@@ -88,11 +93,11 @@ struct MMGRASP_EXPORT PlanToCheck {
 
   Robot robot;
   std::vector<std::string> arm_joints;
-  std::vector<double> velocity_limits, acceleration_limits;   ///< One an arm joint.
+  std::vector<double> velocity_limits, acceleration_limits;  ///< One an arm joint.
   std::string tip_link;
   std::map<std::string, double> other_joints;
   double max_opening = 0.1, clearance = 0.01;
-  Eigen::Vector3d approach = Eigen::Vector3d::UnitX();        ///< In the tip frame.
+  Eigen::Vector3d approach = Eigen::Vector3d::UnitX();  ///< In the tip frame.
   std::vector<CheckedFinger> fingers;
   std::vector<std::string> finger_links;
   Eigen::VectorXd home;
@@ -107,12 +112,12 @@ struct MMGRASP_EXPORT PlanToCheck {
   CheckedGrid grid;
   std::vector<CheckedRegion> regions;
   std::vector<CheckedStop> stops;
-  std::vector<std::vector<Eigen::Vector3d>> route;            ///< stops.size() + 1 legs of base poses.
+  std::vector<std::vector<Eigen::Vector3d>> route;  ///< stops.size() + 1 legs of base poses.
   std::vector<CheckedPick> picks;
   int lower_bound = 0;
-  std::vector<CheckedLegFigures> route_figures;               ///< One a leg; empty: not given.
+  std::vector<CheckedLegFigures> route_figures;  ///< One a leg; empty: not given.
   std::vector<CheckedIntersection> intersections;
-  double robustness_rate = std::numeric_limits<double>::quiet_NaN();   ///< NaN: not given.
+  double robustness_rate = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not given.
 };
 
 struct MMGRASP_EXPORT PlanCheckOptions {
@@ -146,18 +151,23 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 ///   `bad-figures` (robustness rate outside [0, 1], intersections that lie elsewhere).
 struct MMGRASP_EXPORT Fault {
   std::string code;
-  std::string where;                 ///< E.g. "pick 3 (A/bracket_02), lift, t = 1.24 s".
-  std::string message;               ///< What is wrong, with the value and the bound.
+  std::string where;    ///< E.g. "pick 3 (A/bracket_02), lift, t = 1.24 s".
+  std::string message;  ///< What is wrong, with the value and the bound.
 };
 
 /// How often every target part of a stop's trays could be grasped. `samples` is lower than asked when so many were lost
 /// that the rest could not have changed the verdict.
-struct MMGRASP_EXPORT StopRate { int stop = -1; int samples = 0; int good = 0; std::string worst_part; };
+struct MMGRASP_EXPORT StopRate {
+  int stop = -1;
+  int samples = 0;
+  int good = 0;
+  std::string worst_part;
+};
 
 struct MMGRASP_EXPORT PlanCheckResult {
-  std::vector<Fault> faults;         ///< Empty: the plan holds.
+  std::vector<Fault> faults;  ///< Empty: the plan holds.
   std::vector<StopRate> rates;
-  int minimal_stops = 0;             ///< Found again from the regions.
+  int minimal_stops = 0;  ///< Found again from the regions.
   std::size_t configurations_checked = 0;
 };
 
@@ -169,8 +179,8 @@ struct MMGRASP_EXPORT PlanCheckResult {
 /// 1e-6), on velocities at the samples (1 %) and between them (5 %), and some motion within 1 % of the acceleration
 /// limits must join each two samples. Discs are known to 2e-6 m: a stop may use one that fits within this, a smaller
 /// cover may not rest on one. Motions join in the numbers as they stand, within a pick and from pick to pick; only home
-/// may be reached whole turns away. Pairs of links that the robot's own description disables are not tested, except those
-/// said to touch never.
+/// may be reached whole turns away. Pairs of links that the robot's own description disables are not tested, except
+/// those said to touch never.
 MMGRASP_EXPORT PlanCheckResult check_plan(const PlanToCheck& plan, const PlanCheckOptions& options = {},
                                           const Monitor& monitor = {});
 

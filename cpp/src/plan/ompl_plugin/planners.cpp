@@ -33,7 +33,8 @@ ob::PlannerPtr make_prm_star(const ob::SpaceInformationPtr& si) {
 }  // namespace
 
 const PlannerEntry kPlanners[] = {
-    // Measured on the 7-joint arm problems of docs/methods/plan.md: a fifth of the diagonal takes two to three times as long.
+    // Measured on the 7-joint arm problems of docs/methods/plan.md: a fifth of the diagonal takes two to three times as
+    // long.
     {"rrt_connect", make<og::RRTConnect>, false, false, 0.05},
     {"rrt", make<og::RRT>, true, false, 0},
     {"est", make<og::EST>, true, true, 0},

@@ -17,6 +17,11 @@ from mmgrasp.viz.scene import PlanScene
 from mmgrasp.viz.timeline import GRIP_TIME, State, Timeline, along_route
 
 
+def re_edges(path: str) -> list[list[float]]:
+    """Numbers of each line in an SVG path of separate lines."""
+    return [[float(v) for v in re.findall(r"[-\d.]+", piece)] for piece in path.split("M")[1:]]
+
+
 def decode_png(data: bytes) -> np.ndarray:
     """Reads back an 8-bit RGB PNG whose rows are unfiltered."""
     width, height = struct.unpack(">II", data[16:24])
@@ -101,6 +106,11 @@ def test_top_view_draws_every_cell_stop_and_name():
     disc = re.search(r'r="([\d.]+)" class="disc"', svg)
     assert disc and float(disc[1]) == pytest.approx(0.2 * topview.SCALE, abs=0.1)
     assert "nan" not in svg.lower()
+    shared = re.search(r'<path d="([^"]*)" class="intersection"><title>shared by trays A, B &amp; C: 48 cells', svg)
+    # The regions share x from 0.6 to 1.4 and y from 0.8 to 1.4: a rectangle, four joined edges.
+    assert shared and shared[1].count("M") == 4
+    lengths = [np.hypot(c - a, d - b) for a, b, c, d in re_edges(shared[1])]
+    assert sorted(lengths) == pytest.approx([0.6 * topview.SCALE] * 2 + [0.8 * topview.SCALE] * 2, abs=0.2)
 
 
 def test_footprint_of_a_turned_box_is_its_outline():

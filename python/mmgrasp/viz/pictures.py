@@ -14,7 +14,7 @@ from . import png
 from .raster import Camera, render
 from .scene import PlanScene
 from .style import FLOOR, OBSTACLE, PART, ROUTE, STOP, TRAY_BODY, rgb, tray_colour
-from .topview import footprint
+from .topview import footprint, outline_edges, shared_cells, stop_intersections
 
 
 def write_pictures(plan: dict[str, Any], out_dir: str | Path) -> list[Path]:
@@ -132,6 +132,10 @@ def write_topview(plan: dict[str, Any], path: Path) -> Path:
         index = names.index(region["tray"])
         _draw_mask(axes, plan, region_mask(plan, region), tray_colour(index), 0.32)
         legend.append(Patch(color=tray_colour(index), alpha=0.45, label=f"base region of tray {region['tray']}"))
+    for item in stop_intersections(plan):
+        for edge in outline_edges(shared_cells(plan, item)):
+            corners = np.array(edge).reshape(2, 2) * plan["grid"]["resolution"] + plan["grid"]["origin"]
+            axes.plot(corners[:, 0], corners[:, 1], color=ROUTE, linewidth=1.0, zorder=4)
     _draw_bodies(axes, plan)
     for leg in plan["route"]:
         poses = np.asarray(leg["poses"], float).reshape(-1, 3)
@@ -153,6 +157,8 @@ def write_topview(plan: dict[str, Any], path: Path) -> Path:
         axes.plot(pose[0], pose[1], "o", color="white", markeredgecolor=ROUTE, markeredgewidth=2.2, zorder=7)
         _draw_arrow(axes, pose, ROUTE)
         axes.annotate(word, pose[:2], xytext=(8, -14), textcoords="offset points", fontsize=10, weight="bold", zorder=8)
+    if stop_intersections(plan):
+        legend.append(Line2D([], [], color=ROUTE, linewidth=1.0, label="cells that a stop's trays share"))
     legend.append(Line2D([], [], color=ROUTE, linestyle="--", label="route of the base"))
     legend.append(Line2D([], [], color=STOP, linestyle=":", label="positioning uncertainty"))
     legend.append(Patch(facecolor=STOP, alpha=0.25, edgecolor=STOP, label="disc that stays inside the region"))

@@ -154,7 +154,7 @@ def _obstructions(plan) -> str:
 
 def _top_view(plan) -> str:
     note = (
-        "Coloured cells: the base can stand anywhere in them and reach every part of that tray. Red disc: room around the "
+        "Coloured cells: the base can stand anywhere in them and reach every part of that tray. Outlined: cells that the trays of a stop share. Red disc: room around the "
         "stop; dotted: the positioning uncertainty. Rest the pointer on anything for its name."
     )
     return f"<h2>From above</h2>{TopView(plan).svg()}<p class='lead'>{note}</p>"

@@ -61,6 +61,42 @@ def _turn(o, a, b) -> float:
     return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
 
 
+def layer_mask(plan: dict[str, Any], region: dict[str, Any], layer: int) -> np.ndarray:
+    """Cells (ny, nx) of one region at one heading."""
+    mask = np.zeros((plan["grid"]["ny"], plan["grid"]["nx"]), dtype=bool)
+    for iy, start, end in region["cells"].get(str(layer), []):
+        mask[iy, start:end] = True
+    return mask
+
+
+def shared_cells(plan: dict[str, Any], intersection: dict[str, Any]) -> np.ndarray:
+    """Cells (ny, nx) that all regions of an intersection share."""
+    regions = {region["tray"]: region for region in plan["regions"]}
+    masks = [layer_mask(plan, regions[tray], intersection["heading"]) for tray in intersection["trays"]]
+    return np.logical_and.reduce(masks)
+
+
+def outline_edges(mask: np.ndarray) -> list[tuple[int, int, int, int]]:
+    """Edges (ix0, iy0, ix1, iy1) between cells inside and outside, in cell corners; runs along a line are joined."""
+    padded = np.pad(mask, 1)
+    edges = []
+    for vertical in (False, True):
+        grid = padded.T if vertical else padded
+        change = grid[1:, :] != grid[:-1, :]
+        for line, row in enumerate(change):
+            steps = np.flatnonzero(np.diff(np.concatenate([[False], row, [False]]).astype(int)))
+            for start, end in zip(steps[::2] - 1, steps[1::2] - 1, strict=True):
+                a, b, c, d = int(start), line, int(end), line
+                edges.append((b, a, d, c) if vertical else (a, b, c, d))
+    return edges
+
+
+def stop_intersections(plan: dict[str, Any]) -> list[dict[str, Any]]:
+    """The intersections of two or more regions that the stops use."""
+    used = [plan["intersections"][stop["intersection"]] for stop in plan["stops"] if stop["intersection"] >= 0]
+    return [item for item in used if len(item["trays"]) > 1]
+
+
 class TopView:
     """Builds the SVG of one plan."""
 
@@ -90,6 +126,7 @@ class TopView:
         self.items = []
         self._grid_lines()
         self._regions()
+        self._intersections()
         self._bodies()
         self._route()
         self._stops()
@@ -134,6 +171,17 @@ class TopView:
                 f'<path d="{"".join(path)}" fill="{tray_colour(index)}" class="region" '
                 f'data-tray="{escape(region["tray"])}" data-cells="{cells}"><title>{escape(title)}</title></path>'
             )
+
+    def _intersections(self) -> None:
+        grid = self.plan["grid"]
+        for item in stop_intersections(self.plan):
+            path = []
+            for x0, y0, x1, y1 in outline_edges(shared_cells(self.plan, item)):
+                corners = np.array([[x0, y0], [x1, y1]]) * grid["resolution"] + grid["origin"]
+                (ax, ay), (bx, by) = map(self.point, corners)
+                path.append(f"M{ax:.1f} {ay:.1f}L{bx:.1f} {by:.1f}")
+            title = f"shared by trays {', '.join(item['trays'])}: {item['cells']} cells, disc of {item['radius']:.3f} m"
+            self.items.append(f'<path d="{"".join(path)}" class="intersection"><title>{escape(title)}</title></path>')
 
     def _bodies(self) -> None:
         for obstacle in self.scenario["obstacles"]:
@@ -207,6 +255,7 @@ TOPVIEW_CSS = f"""
 .topview .axis {{ font-size: 11px; fill: var(--faint); }}
 .topview .region {{ fill-opacity: 0.28; }}
 .topview .region:hover {{ fill-opacity: 0.5; }}
+.topview .intersection {{ stroke: var(--ink); stroke-width: 1.6; stroke-linecap: square; fill: none; }}
 .topview .obstacle {{ stroke: #6b665f; stroke-width: 1; fill-opacity: 0.85; }}
 .topview .tray {{ stroke: #8b7d5c; stroke-width: 1; }}
 .topview .part {{ stroke: #7a3d08; stroke-width: 0.6; }}

@@ -1,0 +1,7 @@
+"""`python -m mmgrasp` is the command `mmgrasp`."""
+
+import sys
+
+from .cli import main
+
+sys.exit(main())

@@ -198,7 +198,7 @@ def write_regions(plan: dict[str, Any], path: Path) -> Path:
     return _save(figure, path)
 
 
-def stop_camera(scene: PlanScene, base: np.ndarray, width: int = 1100, height: int = 800) -> Camera:
+def stop_camera(scene: PlanScene, base: np.ndarray, width: int = 960, height: int = 700) -> Camera:
     """Looks over the robot's shoulder from the side that is open."""
     forward = np.array([np.cos(base[2]), np.sin(base[2]), 0.0])
     side = np.array([-forward[1], forward[0], 0.0])

@@ -58,19 +58,19 @@ NEAR = 0.05
 def render(scene: Scene, camera: Camera, background: str = "#FFFFFF", supersample: int = 2) -> np.ndarray:
     """Picture of the scene as uint8 (height, width, 3)."""
     big = Camera(camera.eye, camera.target, camera.width * supersample, camera.height * supersample, camera.fov)
-    image = np.empty((big.height, big.width, 3))
+    image = np.empty((big.height, big.width, 3), dtype=np.float32)
     image[:] = rgb(background)
-    depth = np.full((big.height, big.width), np.inf)
+    nearness = np.zeros((big.height, big.width), dtype=np.float32)  # 1 / depth
     body_of = np.full((big.height, big.width), -1, dtype=np.int32)
     for body, (vertices, faces, colour) in enumerate(zip(scene.vertices, scene.faces, scene.colours, strict=True)):
         if len(faces):
-            _draw_body(big, vertices, faces, np.array(colour), body, image, depth, body_of)
-    _draw_outlines(image, depth, body_of)
+            _draw_body(big, vertices, faces, np.array(colour), body, image, nearness, body_of)
+    _draw_outlines(image, nearness, body_of)
     small = image.reshape(camera.height, supersample, camera.width, supersample, 3).mean(axis=(1, 3))
     return (np.clip(small, 0, 1) * 255 + 0.5).astype(np.uint8)
 
 
-def _draw_body(camera, vertices, faces, colour, body, image, depth, body_of):
+def _draw_body(camera, vertices, faces, colour, body, image, nearness, body_of):
     corners = vertices[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1)
@@ -94,37 +94,34 @@ def _draw_body(camera, vertices, faces, colour, body, image, depth, body_of):
         & (low[:, 1] < camera.height)
     )
     for t in np.nonzero(visible)[0]:
-        _draw_triangle(screen[t], low[t], high[t], np.minimum(colour * shade[t], 1.0), body, image, depth, body_of)
+        _draw_triangle(screen[t], low[t], high[t], np.minimum(colour * shade[t], 1.0), body, image, nearness, body_of)
 
 
-def _draw_triangle(corners, low, high, colour, body, image, depth, body_of):
-    height, width = depth.shape
+def _draw_triangle(corners, low, high, colour, body, image, nearness, body_of):
+    height, width = nearness.shape
     x0, y0 = max(low[0], 0), max(low[1], 0)
     x1, y1 = min(high[0] + 1, width), min(high[1] + 1, height)
     (ax, ay, az), (bx, by, bz), (cx, cy, cz) = corners
     area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
     if abs(area) < 1e-12 or x1 <= x0 or y1 <= y0:
         return
-    x = np.arange(x0, x1) + 0.5
-    y = (np.arange(y0, y1) + 0.5)[:, None]
-    u = ((x - ax) * (cy - ay) - (cx - ax) * (y - ay)) / area
-    v = ((bx - ax) * (y - ay) - (x - ax) * (by - ay)) / area
-    w = 1 - u - v
-    inside = (u >= -1e-9) & (v >= -1e-9) & (w >= -1e-9)
-    if not inside.any():
-        return
-    z = 1.0 / (w / az + u / bz + v / cz)
+    # Barycentric weights and 1 / depth are linear over the picture: one addition a pixel each.
+    x = (np.arange(x0, x1) + (0.5 - ax)) / area
+    y = ((np.arange(y0, y1) + (0.5 - ay)) / area)[:, None]
+    u = (x * (cy - ay)).astype(np.float32) - (y * (cx - ax)).astype(np.float32)
+    v = (y * (bx - ax)).astype(np.float32) - (x * (by - ay)).astype(np.float32)
+    near = np.float32(1 / az) + u * np.float32(1 / bz - 1 / az) + v * np.float32(1 / cz - 1 / az)
     window = (slice(y0, y1), slice(x0, x1))
-    closer = inside & (z < depth[window])
-    depth[window][closer] = z[closer]
+    closer = (u >= -1e-6) & (v >= -1e-6) & (u + v <= 1 + 1e-6) & (near > nearness[window])
+    nearness[window][closer] = near[closer]
     image[window][closer] = colour
     body_of[window][closer] = body
 
 
-def _draw_outlines(image, depth, body_of):
+def _draw_outlines(image, nearness, body_of):
     """Darkens pixels where the body or, within one, the depth changes abruptly."""
-    edge = np.zeros(depth.shape, dtype=bool)
-    finite = np.where(np.isfinite(depth), depth, 1e3)
+    edge = np.zeros(nearness.shape, dtype=bool)
+    finite = 1 / np.maximum(nearness, 1e-3)
     for axis in (0, 1):
         change = np.diff(body_of, axis=axis) != 0
         jump = np.abs(np.diff(finite, axis=axis)) > 0.06

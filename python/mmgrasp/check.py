@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,8 +13,7 @@ import numpy as np
 
 from . import _core
 from ._core import Robot
-
-Progress = Callable[[str, float], None] | None
+from ._robot_section import Progress
 
 
 @dataclass

@@ -6,17 +6,15 @@ import json
 import os
 import re
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from . import _core
 from ._core import Outcome, PartSupplyResult
 from ._files import write_file
+from ._robot_section import Progress
 from .plan_file import plan_to_dict
 from .scenario import Scenario, load_scenario
-
-Progress = Callable[[str, float], None] | None
 
 
 class PartSupplyPlan:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -14,11 +13,9 @@ from . import _core
 from ._core import CollisionChecker, InvalidInput, LinkShape, PartSupplyProblem, ReachDatabase, World
 from ._files import shipped
 from ._reading import Node, read_yaml
-from ._robot_section import RobotSetup, choose_sections, find_file, read_setup
+from ._robot_section import Progress, RobotSetup, choose_sections, find_file, read_setup
 from ._shapes import read_shapes
 from ._tray_section import TraySetup, read_part_types, read_tray
-
-Progress = Callable[[str, float], None] | None
 
 TOP_KEYS = "format version name robot start goal positioning_uncertainty trays part_types"
 TOP_OPTIONAL = "gripper carry obstacles options reach"

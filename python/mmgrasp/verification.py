@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from ._core import verify as checks
 from ._reading import Document, read_json
+from ._robot_section import Progress
 from .plan_file import check_header, plan_to_check, scenario_to_dict
 from .scenario import load_scenario
-
-Progress = Callable[[str, float], None] | None
 
 
 @dataclass

@@ -3,6 +3,7 @@
 
 #include "task/base_grid.hpp"
 
+#include "mmgrasp/core/error.hpp"
 #include "mmgrasp/task/base_region.hpp"
 
 namespace mmgrasp {
@@ -55,9 +56,13 @@ BaseGrid make_base_grid(const PartSupplyProblem& problem, const ReachDatabase& d
   // Cell corners lie on multiples of the resolution: moving one tray does not shift the grid under the others.
   const auto down = [&](double v) { return std::floor(v / grid.resolution + 1e-9); };
   const auto up = [&](double v) { return std::ceil(v / grid.resolution - 1e-9); };
+  const Eigen::Vector2d cells(up(box.max().x()) - down(box.min().x()), up(box.max().y()) - down(box.min().y()));
+  constexpr double kMostCells = 2e7;
+  require(cells.prod() * static_cast<double>(grid.headings.size()) <= kMostCells, "grid.resolution", grid.resolution,
+          "must be coarser: the base grid would have more than 20 million cells");
   grid.origin = Eigen::Vector2d(down(box.min().x()), down(box.min().y())) * grid.resolution;
-  grid.nx = static_cast<int>(up(box.max().x()) - down(box.min().x()));
-  grid.ny = static_cast<int>(up(box.max().y()) - down(box.min().y()));
+  grid.nx = static_cast<int>(cells.x());
+  grid.ny = static_cast<int>(cells.y());
   return grid;
 }
 

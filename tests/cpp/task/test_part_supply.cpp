@@ -218,6 +218,17 @@ TEST(PartSupply, AStartInCollisionIsRefusedByName) {
   }
 }
 
+TEST(PartSupply, AGridTooFineIsRefusedByName) {
+  PartSupplyProblem problem = test::small_storeroom(1);
+  problem.options.grid.resolution = 1e-6;
+  try {
+    make_base_grid(problem, database());
+    FAIL() << "accepted";
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("grid.resolution = 1e-06"), std::string::npos) << error.what();
+  }
+}
+
 TEST(PartSupply, BadOptionsAreRefusedByName) {
   const auto message = [](auto change) {
     PartSupplyProblem problem = test::small_storeroom(1);

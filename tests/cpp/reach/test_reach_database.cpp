@@ -9,26 +9,16 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
-#include "support/small_robots.hpp"
+#include "support/reach_arms.hpp"
 
 namespace mmgrasp {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-JointGroup gantry() {
-  return Robot::from_strings(test::gantry_urdf()).chain("base", "c");
-}
-JointGroup seven_joints() {
-  return Robot::from_strings(test::seven_joint_urdf()).chain("column", "tool");
-}
-
-ReachOptions with_samples(std::int64_t samples, double min_manipulability = 0.02) {
-  ReachOptions options;
-  options.samples = samples;
-  options.min_manipulability = min_manipulability;
-  return options;
-}
+using test::gantry;
+using test::seven_joints;
+using test::with_samples;
 
 bool holds_column(const Eigen::MatrixXd& columns, const Eigen::VectorXd& q) {
   for (Eigen::Index i = 0; i < columns.cols(); ++i)

@@ -8,7 +8,7 @@
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/reach/reach_database.hpp"
 #include "mmgrasp/robot/ik.hpp"
-#include "support/small_robots.hpp"
+#include "support/reach_arms.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -16,19 +16,9 @@ namespace {
 constexpr double kRounding = 3e-4;  // stored tool poses take 16 bytes each
 constexpr double kPi = 3.14159265358979323846;
 
-JointGroup gantry() {
-  return Robot::from_strings(test::gantry_urdf()).chain("base", "c");
-}
-JointGroup seven_joints() {
-  return Robot::from_strings(test::seven_joint_urdf()).chain("column", "tool");
-}
-
-ReachOptions with_samples(std::int64_t samples, double min_manipulability = 0.02) {
-  ReachOptions options;
-  options.samples = samples;
-  options.min_manipulability = min_manipulability;
-  return options;
-}
+using test::gantry;
+using test::seven_joints;
+using test::with_samples;
 
 /// The distance that nearest() sorts by, from kinematics.
 double pose_distance(const ReachOptions& options, const Pose& a, const Pose& b) {

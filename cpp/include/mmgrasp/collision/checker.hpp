@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,8 @@ struct MMGRASP_EXPORT DistanceResult {
   std::string a, b;                                        ///< The closest pair.
   Eigen::Vector3d point_a = Eigen::Vector3d::Zero();       ///< Witness points, world frame.
   Eigen::Vector3d point_b = Eigen::Vector3d::Zero();
+  bool with_scene = false;   ///< `b` is an object of the scene.
+  Eigen::VectorXd gradient;  ///< d value / d q, length of the configuration; only when it was asked for.
 };
 
 /// Answers collision questions about one group of one robot in one snapshot of a world. Not thread-safe (scratch
@@ -59,8 +62,16 @@ class MMGRASP_EXPORT CollisionChecker {
   bool is_free(const Eigen::VectorXd& q);
   /// Every touching pair (limits are not looked at).
   std::vector<Contact> contacts(const Eigen::VectorXd& q);
+  /// One touching pair (limits are not looked at), self before scene; nothing when free. Cheaper than contacts().
+  std::optional<Contact> first_contact(const Eigen::VectorXd& q);
   /// Smallest distance over all checked pairs; padding is not subtracted. Infinite when there is no pair.
   DistanceResult distance(const Eigen::VectorXd& q);
+  /// The same with its gradient in joint space: n^T (J_a(point_a) - J_b(point_b)), n from b to a; exact wherever the
+  /// closest points are unique. Zero when the pair cannot move.
+  DistanceResult distance_and_gradient(const Eigen::VectorXd& q);
+  /// Every pair of bodies nearer than `within` [m], nearest first, each with its gradient (P3 5.8's sum runs over the
+  /// self pairs among them).
+  std::vector<DistanceResult> distances(const Eigen::VectorXd& q, double within);
 
   /// Straight joint-space edge (angles are not wrapped), checked at steps in which no joint moves more than `step` (rad
   /// or m), ends included.

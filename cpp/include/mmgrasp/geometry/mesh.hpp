@@ -30,6 +30,9 @@ struct MMGRASP_EXPORT MeshReport {
   int triangles = 0;             ///< Kept.
   bool closed = false;
   bool convex = false;
+  std::string chosen = "mesh";  ///< What stands in for it: "mesh", "hull", "box", ... (geometry/simplify_mesh.hpp).
+  int triangles_saved = 0;      ///< Triangles that collision checks need not look at any more.
+  double deviation = 0;         ///< No point of what was chosen lies farther than this from the mesh [m].
 };
 
 /// Reads STL, OBJ, PLY or DAE; merges equal vertices, drops degenerate triangles, orients a closed mesh outwards

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <memory>
+#include <vector>
 
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/monitor.hpp"
@@ -11,6 +13,9 @@
 
 namespace mmgrasp {
 
+class IkObjective;  // robot/ik_objective.hpp
+using IkObjectives = std::vector<std::shared_ptr<const IkObjective>>;
+
 struct MMGRASP_EXPORT IkOptions {
   double position_tolerance = 1e-5;  ///< [m], > 0
   double rotation_tolerance = 1e-4;  ///< [rad], > 0
@@ -18,6 +23,11 @@ struct MMGRASP_EXPORT IkOptions {
   int restarts = 30;                 ///< Random restarts after the seed; >= 0
   double time_limit = 1.0;           ///< Wall-clock cap [s]; > 0
   unsigned seed = 1;                 ///< Same seed, same answer.
+  /// How dear it is to move each joint, > 0, one per joint of the group; empty: all the same (weighted least squares).
+  std::vector<double> joint_weights;
+  /// What the redundancy is used for: costs that are lowered in the null space (P3 3.3-3.5, 5.7). Empty: nothing.
+  IkObjectives objectives;
+  int objective_iterations = 50;  ///< Steps along the solutions once one is found, each kept on the pose; >= 0
   void check() const;
 };
 
@@ -27,6 +37,7 @@ struct MMGRASP_EXPORT IkResult {
   double position_error = 0;  ///< [m] of q, or of the best attempt.
   double rotation_error = 0;  ///< [rad]
   Rejections rejections;      ///< Descents that ended: reach, limits, or what `valid` said.
+  double objective = 0;       ///< Sum of the objectives' costs at q; 0 without objectives.
   int iterations = 0;
 };
 
@@ -49,7 +60,9 @@ MMGRASP_EXPORT IkResult solve_ik(const JointGroup& group, const Pose& T_world_ti
                                  const IkOptions& options = {}, const ConfigurationFilter& valid = {},
                                  const Monitor& monitor = {});
 
-/// Up to `count` distinct solutions (joint distance above 0.1 rad), in the order found.
+/// Up to `count` distinct solutions, farthest-apart first. For chains of six joints whose wrist allows it (and for
+/// seven with one joint sampled) every branch is computed in closed form, polished and confirmed, so the set is
+/// complete; otherwise random restarts search for solutions that differ by more than 0.1 rad.
 MMGRASP_EXPORT std::vector<Eigen::VectorXd> solve_ik_all(const JointGroup& group, const Pose& T_world_tip, int count,
                                                          const IkOptions& options = {},
                                                          const ConfigurationFilter& valid = {});

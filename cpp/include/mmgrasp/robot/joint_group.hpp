@@ -58,6 +58,13 @@ class MMGRASP_EXPORT JointGroup {
   /// Links whose pose depends on q, ascending.
   const std::vector<int>& moving_links() const;
 
+  /// World-aligned Jacobian at a point that moves with `link`, given in that link's frame; 6 x size(). Zero columns for
+  /// joints that do not move it.
+  Matrix6Xd jacobian(const Eigen::Ref<const Eigen::VectorXd>& q, int link, const Eigen::Vector3d& p_link_point) const;
+  /// The same for a point in the world and links that link_poses(q) has placed. J must be 6 x size(). No allocation.
+  void point_jacobian(const Poses& T_world_link, const Eigen::Ref<const Eigen::VectorXd>& q, int link,
+                      const Eigen::Vector3d& p_world_point, Eigen::Ref<Matrix6Xd> J) const;
+
   /// sqrt(det(J J^T)) (Yoshikawa; P1 3.2.1).
   double manipulability(const Eigen::Ref<const Eigen::VectorXd>& q) const;
 

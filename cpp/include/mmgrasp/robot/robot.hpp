@@ -21,6 +21,8 @@ struct MMGRASP_EXPORT RobotOptions {
   std::map<std::string, std::string> package_dirs;  ///< package://NAME/... -> folder. Looked at first.
   std::string mesh_dir;                             ///< Folder that relative mesh paths refer to; default: the URDF's.
   bool load_meshes = true;                          ///< false: kinematics only, links with meshes get no shape.
+  double mesh_tolerance = 0;  ///< A primitive, hull or decimated mesh that contains a collision mesh and sticks out by
+                              ///< at most this [m] replaces it; >= 0. With 0 only what is the same solid is replaced.
   bool allow_missing_meshes = false;  ///< true: a missing mesh is a warning in the report, not an IoError.
 };
 
@@ -85,6 +87,8 @@ class MMGRASP_EXPORT Robot {
   const std::vector<EndEffectorDescription>& end_effectors() const;
   /// SRDF group states: group -> state -> joint -> value.
   const std::map<std::string, std::map<std::string, std::map<std::string, double>>>& group_states() const;
+  /// Joints that the SRDF calls passive (castors): they move, but nothing drives them. No group contains them.
+  const std::vector<std::string>& passive_joints() const;
   bool has_srdf() const;
 
   /// True when the two links need no self-collision check: the SRDF says so, a joint joins them (also across links

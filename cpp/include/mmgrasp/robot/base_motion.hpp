@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "mmgrasp/core/export.hpp"
+#include "mmgrasp/robot/planar_base.hpp"
+
+namespace mmgrasp {
+
+/// Velocity command of the platform (v_x, v_y, omega), in its own frame, for velocities of the virtual joints x, y,
+/// theta standing at heading theta (P3 3.12), and back.
+MMGRASP_EXPORT Eigen::Vector3d platform_velocity(double theta, const Eigen::Vector3d& joint_velocity);
+MMGRASP_EXPORT Eigen::Vector3d joint_velocity(double theta, const Eigen::Vector3d& platform_velocity);
+
+/// Rim speeds of a diff-drive's wheels [m/s] and back: v = (left + right) / 2, omega = (right - left) / W with W the
+/// wheel separation (P1 4.11; its R_base must be W, see docs/errata.md).
+struct MMGRASP_EXPORT WheelSpeeds {
+  double left = 0, right = 0;
+};
+MMGRASP_EXPORT WheelSpeeds wheel_speeds(double v, double omega, double wheel_separation);
+MMGRASP_EXPORT Eigen::Vector3d platform_velocity(const WheelSpeeds& wheels, double wheel_separation);
+
+/// Largest factor in [0, 1] by which a platform velocity must be scaled to keep every limit of the base kind: speed,
+/// turning, wheels. A diff-drive cannot move sideways: a v_y beyond 1e-9 of the rest gives 0, as does any motion of a
+/// fixed base.
+MMGRASP_EXPORT double velocity_scale(BaseKind kind, const BaseLimits& limits, const Eigen::Vector3d& platform_velocity);
+
+}  // namespace mmgrasp

@@ -1,0 +1,29 @@
+#include "mmgrasp/mapping/camera.hpp"
+
+#include <cmath>
+
+#include "mmgrasp/core/error.hpp"
+
+namespace mmgrasp {
+
+void PinholeCamera::check() const {
+  require(width > 0, "camera.width", width, "must be positive");
+  require(height > 0, "camera.height", height, "must be positive");
+  require(std::isfinite(fx) && fx > 0, "camera.fx", fx, "must be positive and finite");
+  require(std::isfinite(fy) && fy > 0, "camera.fy", fy, "must be positive and finite");
+  require(std::isfinite(cx), "camera.cx", cx, "must be finite");
+  require(std::isfinite(cy), "camera.cy", cy, "must be finite");
+  require(std::isfinite(nearest) && nearest > 0, "camera.nearest", nearest, "must be positive and finite");
+  require(farthest > nearest, "camera.farthest", farthest, "must be more than camera.nearest");
+}
+
+std::optional<Eigen::Vector2d> PinholeCamera::project(const Eigen::Vector3d& p_camera_point) const {
+  const double depth = p_camera_point[2];
+  if (!(depth >= nearest && depth <= farthest)) return std::nullopt;
+  const Eigen::Vector2d pixel(cx + fx * p_camera_point[0] / depth, cy + fy * p_camera_point[1] / depth);
+  // Pixel centres lie on whole numbers: the image reaches from -0.5 to width - 0.5.
+  const bool seen = pixel[0] >= -0.5 && pixel[0] <= width - 0.5 && pixel[1] >= -0.5 && pixel[1] <= height - 0.5;
+  return seen ? std::optional<Eigen::Vector2d>(pixel) : std::nullopt;
+}
+
+}  // namespace mmgrasp

@@ -12,7 +12,6 @@ import argparse
 import json
 import os
 import platform
-import re
 import statistics
 import subprocess
 import sys
@@ -20,7 +19,9 @@ import tempfile
 import time
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from tables import ROOT, markdown, write_readme
+
 SCENARIOS = {
     "shipped storeroom": (ROOT / "python/mmgrasp/assets/scenarios/storeroom.yaml", 10.0),
     "omni cell": (ROOT / "python/mmgrasp/assets/scenarios/omni_cell.yaml", None),
@@ -66,23 +67,14 @@ def table(results: dict[str, dict]) -> str:
     """Markdown: one row a scenario, one column a stage."""
     names = list(dict.fromkeys(stage for r in results.values() for stage in r["stages"]))
     head = ["scenario", "trays", "stops", "picks", *names, "whole command [s]", "goal [s]", "verified", "verify [s]"]
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    rows = []
     for name, r in results.items():
         goal = SCENARIOS[name][1]
         cells = [name, str(r["trays"]), str(r["stops"]), str(r["picks"])]
         cells += [f"{r['stages'].get(stage, 0):.2f}" for stage in names]
         cells += [f"{r['total']:.2f}", "" if goal is None else f"{goal:.0f}", "yes" if r["verified"] else "NO"]
-        lines.append("| " + " | ".join([*cells, f"{r['verify']:.1f}"]) + " |")
-    return "\n".join(lines)
-
-
-def write_readme(text: str) -> None:
-    """Replaces the table between the two markers of benchmarks/README.md."""
-    path = ROOT / "benchmarks/README.md"
-    begin, end = "<!-- main_job begin -->", "<!-- main_job end -->"
-    page = path.read_text()
-    pattern = re.compile(re.escape(begin) + ".*?" + re.escape(end), re.DOTALL)
-    path.write_text(pattern.sub(lambda _: f"{begin}\n{text}\n{end}", page))
+        rows.append([*cells, f"{r['verify']:.1f}"])
+    return markdown(head, rows)
 
 
 def main() -> None:
@@ -102,7 +94,7 @@ def main() -> None:
     text = f"Median of {arguments.runs} runs, {machine}.\n\n{table(results)}"
     print(text)
     if arguments.write:
-        write_readme(text)
+        write_readme("main_job", text)
 
 
 if __name__ == "__main__":

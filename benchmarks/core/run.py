@@ -1,0 +1,135 @@
+"""Kinematics, IK and collision beside the libraries people use, in one run.
+
+    python benchmarks/core/run.py [--only free ...] [--peers FOLDER] [--write]
+
+Builds the programs benchmarks/core/bench_*.cpp against this library and against the peers (an environment made from
+peers.txt below build/, or the one named by --peers), runs them one after another, then the peers that are Python packages.
+Ratios are the peer's value over ours for rates and ours over the peer's for times, as the goals are worded. --write puts the
+table into benchmarks/README.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import subprocess
+import sys
+import venv
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from goals import GOALS, Goal
+from tables import ROOT, markdown, write_readme
+
+BUILD = ROOT / "build/bench"
+
+
+def peers_environment(folder: Path) -> Path:
+    """A virtual environment with the peers; made when it is not there. Returns its python."""
+    python = folder / "bin/python"
+    if not python.exists():
+        print(f"making {folder}", file=sys.stderr)
+        venv.create(folder, with_pip=True)
+        subprocess.run([python, "-m", "pip", "install", "-q", "-r", HERE / "peers.txt"], check=True)
+    return python
+
+
+def build_programs(python: Path) -> list[Path]:
+    """Configures and builds; returns the programs."""
+    packages = subprocess.run(
+        [python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))"], check=True, capture_output=True, text=True
+    ).stdout.strip()
+    environment = {**os.environ, "CCACHE_BASEDIR": str(ROOT)}
+    options = ["-DCMAKE_BUILD_TYPE=Release", "-DMMGRASP_BUILD_BENCHMARKS=ON", f"-DMMGRASP_PEERS={packages}"]
+    quiet = {"check": True, "env": environment, "stdout": subprocess.DEVNULL}
+    subprocess.run(["cmake", "-S", ROOT, "-B", BUILD, "-G", "Ninja", *options], **quiet)
+    subprocess.run(["cmake", "--build", BUILD], **quiet)
+    return sorted((BUILD / "benchmarks").glob("bench_*"))
+
+
+def lines_of(command: list) -> list[dict]:
+    """Runs a program and reads the JSON lines it prints; other lines are shown."""
+    print("running", Path(command[-1]).name, file=sys.stderr)
+    done = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True, cwd=BUILD)
+    out = []
+    for line in done.stdout.splitlines():
+        if line.startswith("{"):
+            out.append(json.loads(line))
+        elif line:
+            print(line, file=sys.stderr)
+    return out
+
+
+def matching(goal: Goal, lines: list[dict]) -> list[tuple[dict, dict]]:
+    """Pairs (ours, peer's) that a goal compares."""
+    ours = [line for line in lines if line["row"] == goal.row and line["who"] == goal.ours]
+    pairs = []
+    for mine in ours:
+        peers = [p for p in lines if p["row"] == goal.row and p["on"] == mine["on"] and p["who"] == goal.peer]
+        pairs += [(mine, peer) for peer in peers]
+    return pairs
+
+
+def goal_table(lines: list[dict]) -> str:
+    """One row for each goal and robot: ours, the peer's, the ratio, whether it is reached."""
+    rows = []
+    for goal in GOALS:
+        for mine, peer in matching(goal, lines):
+            a, b = mine[goal.field], peer[goal.field]
+            ratio = a / b if goal.at_most else b / a
+            reached = ratio <= goal.bound if goal.at_most else ratio >= goal.bound
+            rows.append(
+                [
+                    f"{goal.row}{'' if goal.field == 'value' else ', ' + goal.field}",
+                    mine["on"],
+                    goal.ours,
+                    f"{a:.3g} {mine['unit']}",
+                    goal.peer,
+                    f"{b:.3g} {peer['unit']}",
+                    f"{ratio:.2f}",
+                    f"{'at most' if goal.at_most else 'at least'} {goal.bound:g}",
+                    "yes" if reached else "**no**",
+                ]
+            )
+    return markdown(["work", "on", "ours", "", "peer", "", "ratio", "goal", "reached"], rows)
+
+
+def full_table(lines: list[dict]) -> str:
+    """Every measurement with its settings."""
+    plain = ("row", "on", "who", "value", "unit", "settings")
+    rows = []
+    for line in lines:
+        more = ", ".join(f"{k} {v:.4g}" if isinstance(v, float) else f"{k} {v}" for k, v in line.items() if k not in plain)
+        rows.append([line["row"], line["on"], line["who"], f"{line['value']:.4g} {line['unit']}", more, line["settings"]])
+    return markdown(["work", "on", "program", "", "also", "settings"], rows)
+
+
+def main() -> None:
+    """Measures and prints."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", nargs="*", help="programs to run: kinematics, ik, free, ...")
+    parser.add_argument("--peers", type=Path, default=ROOT / "build/peers", help="virtual environment of the peers")
+    parser.add_argument("--write", action="store_true", help="update benchmarks/README.md")
+    arguments = parser.parse_args()
+    python = peers_environment(arguments.peers.absolute())
+    lines = []
+    for program in build_programs(python):
+        name = program.name.removeprefix("bench_")
+        if arguments.only and name not in arguments.only:
+            continue
+        lines += lines_of([program])
+        script = HERE / f"peers_{name}.py"
+        if script.exists():
+            lines += lines_of([python, script])
+    cores = f"{os.cpu_count()} cores, {platform.machine()}"
+    text = f"{cores}.\n\n{goal_table(lines)}\n\nAll measurements:\n\n{full_table(lines)}"
+    print(text)
+    if arguments.write:
+        write_readme("core", text)
+
+
+if __name__ == "__main__":
+    main()

@@ -26,6 +26,7 @@ void bind_geometry(py::module_& m);
 void bind_optim(py::module_& m);
 void bind_robot(py::module_& m);
 void bind_group(py::module_& m);
+void bind_ik(py::module_& m);
 void bind_trajectory(py::module_& m);
 void bind_collision(py::module_& m);
 void bind_reach(py::module_& m);

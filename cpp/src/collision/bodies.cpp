@@ -15,6 +15,7 @@ BodyShape place_on_link(const LinkShape& shape, const Rigid& in_link, int body, 
   out.in_link = in_link;
   out.solid = shared_solid(shape.shape, 0);
   out.padded = padding > 0 ? shared_solid(shape.shape, padding) : out.solid;
+  out.cover = shared_cover(*out.solid, shape.shape);
   out.ball = in_link * out.solid->ball_centre;
   return out;
 }
@@ -132,7 +133,7 @@ void Snapshot::add_held() {
 
 void Snapshot::add_scene() {
   std::vector<SceneShape> unbounded;
-  std::vector<Eigen::AlignedBox3d> boxes;
+  std::vector<ScenePacks::Item> items;
   for (const auto& [name, object] : world.objects()) {
     object_names.push_back(name);
     for (const LinkShape& shape : object.shapes) {
@@ -146,14 +147,12 @@ void Snapshot::add_scene() {
         unbounded.push_back(out);
         continue;
       }
-      const Eigen::Vector3d centre = out.T_world * out.solid->box_centre;
-      const Eigen::Vector3d half = out.T_world.R.cwiseAbs() * out.solid->box_half;
-      boxes.emplace_back(Eigen::Vector3d(centre - half), Eigen::Vector3d(centre + half));
+      items.push_back({{out.T_world.R, out.T_world * out.solid->box_centre}, out.solid->box_half});
       scene.push_back(out);
     }
   }
   bounded = static_cast<int>(scene.size());
-  scene_tree = BoxTree(boxes, 2);
+  packs = ScenePacks(items);
   scene.insert(scene.end(), unbounded.begin(), unbounded.end());
 }
 

@@ -4,6 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "collision/ball_cover.hpp"
+#include "collision/moving_frames.hpp"
+#include "collision/scene_packs.hpp"
 #include "collision/solid.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/robot/robot.hpp"
@@ -14,6 +17,9 @@ namespace mmgrasp::detail {
 /// cheap.
 std::shared_ptr<const Solid> shared_solid(const Shape& shape, double padding);
 
+/// cover_body, kept likewise.
+std::shared_ptr<const BallCover> shared_cover(const Solid& solid, const Shape& shape);
+
 /// One shape that moves with a robot link, whether of the link itself or of a held object.
 struct BodyShape {
   int body = 0;
@@ -21,6 +27,7 @@ struct BodyShape {
   Rigid in_link;
   std::shared_ptr<const Solid> solid;              ///< Against the robot itself.
   std::shared_ptr<const Solid> padded;             ///< Against the scene.
+  std::shared_ptr<const BallCover> cover;          ///< Of the solid without padding, in its frame.
   Eigen::Vector3d ball = Eigen::Vector3d::Zero();  ///< Centre of the bounding sphere in the link.
 };
 
@@ -51,7 +58,7 @@ struct Snapshot {
   std::vector<std::string> object_names;
   std::vector<SceneShape> scene;  ///< Bounded shapes, then unbounded ones (planes).
   int bounded = 0;
-  BoxTree scene_tree;  ///< Over the bounded shapes.
+  ScenePacks packs;  ///< Over the bounded shapes.
 
  private:
   void add_robot();
@@ -65,16 +72,32 @@ std::vector<int> default_touch_links(const Robot& robot, int link);
 
 struct ShapePair {
   int a = 0, b = 0;
-  double reach = 0;  ///< Sum of the bounding spheres' radii.
+  int ball_a = 0, ball_b = 0;  ///< Their places among the plan's balls.
+  double reach = 0;            ///< Sum of the bounding spheres' radii.
 };
 
-/// Which pairs one group must look at.
+/// Where a shape sits among the frames of a group.
+struct PlacedShape {
+  int frame = 0;
+  Rigid in_frame;
+};
+
+/// Which pairs one group must look at, and how its shapes move.
 struct PairPlan {
   PairPlan(const Snapshot& snapshot, const JointGroup& group);
 
+  MovingFrames frames;
+  std::vector<PlacedShape> placed;  ///< Per shape.
+  std::vector<FrameBall> balls;     ///< Of `moving`, then of `fixed`, in their order; padding included.
   std::vector<int> moving, fixed;   ///< Shapes the group moves, and the others.
   std::vector<ShapePair> varying;   ///< Relative pose depends on the configuration.
   std::vector<ShapePair> constant;  ///< It does not: one look per reference is enough.
+  /// Bounds on how fast a point of each moving shape moves in the world, and of each varying pair's bodies against each
+  /// other, per unit of each column (rows) [m/rad or m/m]; within the joints' limits.
+  Eigen::MatrixXd shape_rates, pair_rates;
+
+ private:
+  void bound_motion(const JointGroup& group);
 };
 
 /// Link of each rigid assembly: links joined by fixed joints share a number.

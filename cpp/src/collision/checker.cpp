@@ -3,14 +3,13 @@
 #include <cmath>
 
 #include "collision/checker_impl.hpp"
+#include "collision/edge_continuous.hpp"
+#include "collision/edge_walk.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
 
 namespace {
-
-// Solvers and interpolation leave rounding at the limits.
-constexpr double kLimitSlack = 1e-9;
 
 // The group's own check builds its message's words first: too slow for the hot path, so only when something is wrong.
 void check_configuration(const JointGroup& group, const Eigen::VectorXd& q, const char* field) {
@@ -21,132 +20,6 @@ void check_configuration(const JointGroup& group, const Eigen::VectorXd& q, cons
 
 void CheckerOptions::check() const {
   require(std::isfinite(padding) && padding >= 0, "padding", padding, "must be finite and >= 0 [m]");
-}
-
-CollisionChecker::Impl::Impl(std::shared_ptr<const detail::Snapshot> snapshot_in, const JointGroup& group_in)
-    : snapshot(std::move(snapshot_in)),
-      plan(std::make_shared<detail::PairPlan>(*snapshot, group_in)),
-      group(group_in),
-      balls(snapshot->shapes.size(), Eigen::Vector3d::Zero()),
-      poses(snapshot->shapes.size()),
-      pose_stamp(snapshot->shapes.size(), 0),
-      moves(snapshot->shapes.size(), 0) {
-  for (const int s : plan->moving) moves[s] = 1;
-}
-
-void CollisionChecker::Impl::forget() {
-  links_valid = false;
-  constant_self.reset();
-  fixed_scene.reset();
-}
-
-void CollisionChecker::Impl::place(const Eigen::VectorXd& q) {
-  const bool first = !links_valid;
-  group.link_poses(q, links, links_valid);
-  links_valid = true;
-  ++stamp;
-  const auto place_ball = [&](int s) {
-    const detail::BodyShape& shape = snapshot->shapes[s];
-    const Pose& T = links[shape.link];
-    balls[s].noalias() = T.linear() * shape.ball + T.translation();
-  };
-  for (const int s : plan->moving) place_ball(s);
-  if (!first) return;
-  fixed_stamp = stamp;
-  for (const int s : plan->fixed) place_ball(s);
-}
-
-const detail::Rigid& CollisionChecker::Impl::pose(int s) {
-  const std::uint64_t current = moves[s] ? stamp : fixed_stamp;
-  if (pose_stamp[s] != current) {
-    const detail::BodyShape& shape = snapshot->shapes[s];
-    const Pose& T = links[shape.link];
-    poses[s].R.noalias() = T.linear() * shape.in_link.R;
-    poses[s].t.noalias() = T.linear() * shape.in_link.t + T.translation();
-    pose_stamp[s] = current;
-  }
-  return poses[s];
-}
-
-bool CollisionChecker::Impl::pair_collides(const detail::ShapePair& pair) {
-  if ((balls[pair.a] - balls[pair.b]).squaredNorm() > pair.reach * pair.reach) return false;
-  const auto& shapes = snapshot->shapes;
-  return detail::solids_collide(*shapes[pair.a].solid, pose(pair.a), *shapes[pair.b].solid, pose(pair.b));
-}
-
-bool CollisionChecker::Impl::hits_scene(int s, int scene_shape) {
-  const detail::SceneShape& other = snapshot->scene[scene_shape];
-  const detail::Solid& solid = *snapshot->shapes[s].padded;
-  const double reach = solid.ball_radius + other.solid->ball_radius;
-  if ((balls[s] - other.ball).squaredNorm() > reach * reach) return false;
-  return detail::solids_collide(solid, pose(s), *other.solid, other.T_world);
-}
-
-int CollisionChecker::Impl::find_scene_hit(int s) {
-  int hit = -1;
-  const auto visit = [&](int item) {
-    if (!hits_scene(s, item)) return false;
-    hit = item;
-    return true;
-  };
-  const double radius = snapshot->shapes[s].padded->ball_radius;
-  snapshot->scene_tree.any_in(balls[s], Eigen::Vector3d::Constant(radius), visit);
-  for (int i = snapshot->bounded; hit < 0 && i < static_cast<int>(snapshot->scene.size()); ++i) visit(i);
-  return hit;
-}
-
-bool CollisionChecker::Impl::self_collides() {
-  if (!constant_self) {
-    constant_self = false;
-    for (const detail::ShapePair& pair : plan->constant) {
-      if (pair_collides(pair)) constant_self = true;
-    }
-  }
-  if (*constant_self) return true;
-  if (last_pair >= 0 && pair_collides(plan->varying[last_pair])) return true;
-  for (std::size_t i = 0; i < plan->varying.size(); ++i) {
-    if (!pair_collides(plan->varying[i])) continue;
-    last_pair = static_cast<int>(i);
-    return true;
-  }
-  return false;
-}
-
-bool CollisionChecker::Impl::scene_collides() {
-  if (!fixed_scene) {
-    fixed_scene = false;
-    for (const int s : plan->fixed) {
-      if (find_scene_hit(s) >= 0) fixed_scene = true;
-    }
-  }
-  if (*fixed_scene) return true;
-  if (last_shape >= 0 && hits_scene(last_shape, last_scene)) return true;
-  for (const int s : plan->moving) {
-    const int hit = find_scene_hit(s);
-    if (hit < 0) continue;
-    last_shape = s;
-    last_scene = hit;
-    return true;
-  }
-  return false;
-}
-
-Rejection CollisionChecker::Impl::rejection(const Eigen::VectorXd& q) {
-  ++queries;
-  if (!group.within_limits(q, kLimitSlack)) return Rejection::limits;
-  place(q);
-  if (snapshot->options.check_self && self_collides()) return Rejection::self_collision;
-  if (snapshot->options.check_scene && scene_collides()) return Rejection::scene;
-  return Rejection::none;
-}
-
-bool CollisionChecker::Impl::is_free(const Eigen::VectorXd& q) {
-  ++queries;
-  if (!group.within_limits(q, kLimitSlack)) return false;
-  place(q);
-  if (snapshot->options.check_scene && last_shape >= 0 && hits_scene(last_shape, last_scene)) return false;
-  if (snapshot->options.check_self && self_collides()) return false;
-  return !(snapshot->options.check_scene && scene_collides());
 }
 
 CollisionChecker::CollisionChecker(const JointGroup& group, const World& world, const CheckerOptions& options) {
@@ -198,25 +71,21 @@ bool CollisionChecker::is_free(const Eigen::VectorXd& q) {
   return impl_->is_free(q);
 }
 
+std::optional<Contact> CollisionChecker::first_contact(const Eigen::VectorXd& q) {
+  check_configuration(impl_->group, q, "q");
+  ++impl_->queries;
+  impl_->place_balls(q.data());
+  return impl_->placed_contact();
+}
+
 bool CollisionChecker::edge_is_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double step) {
   check_configuration(impl_->group, q0, "q0");
   check_configuration(impl_->group, q1, "q1");
   require(std::isfinite(step) && step > 0, "step", step, "must be finite and > 0 [rad or m]");
   if (!impl_->is_free(q0) || !impl_->is_free(q1)) return false;
   const double pieces = std::ceil((q1 - q0).cwiseAbs().maxCoeff() / step - 1e-9);
-  require(pieces < 1e9, "step", step, "must not cut the edge into more than 1e9 pieces");
-  const long count = static_cast<long>(pieces);
-  long stride = 1;
-  while (stride < count) stride *= 2;
-  // Halving: a collision in the middle of the edge is found after a few looks, not after half of them.
-  Eigen::VectorXd q(q0.size());
-  for (stride /= 2; stride >= 1; stride /= 2) {
-    for (long i = stride; i < count; i += 2 * stride) {
-      q = q0 + (q1 - q0) * (static_cast<double>(i) / static_cast<double>(count));
-      if (!impl_->is_free(q)) return false;
-    }
-  }
-  return true;
+  require(pieces < detail::kMaxPieces, "step", step, "must not cut the edge into more than 1e9 pieces");
+  return Impl::EdgeWalk(*impl_, q0, q1, static_cast<long>(pieces)).all_free();
 }
 
 }  // namespace mmgrasp

@@ -9,11 +9,18 @@
 
 namespace mmgrasp {
 
+/// Solvers and interpolation leave rounding at the limits.
+constexpr double kLimitSlack = 1e-9;
+
 /// Scratch of one checker on top of shared, immutable preparation.
 struct CollisionChecker::Impl {
+  class EdgeWalk;
+
   Impl(std::shared_ptr<const detail::Snapshot> snapshot_in, const JointGroup& group_in);
 
-  /// Places links for q and the balls of moving shapes.
+  /// Places what yes-or-no answers need: the group's frames and the balls of moving shapes.
+  void place_balls(const double* q);
+  /// The same, and all links' poses and `balls`.
   void place(const Eigen::VectorXd& q);
   /// Forgets what depends on root and reference.
   void forget();
@@ -21,27 +28,53 @@ struct CollisionChecker::Impl {
   Rejection rejection(const Eigen::VectorXd& q);
   /// The same yes or no, but whatever hit last time is looked at first.
   bool is_free(const Eigen::VectorXd& q);
+  /// The same for a configuration within limits that is placed already.
+  bool placed_is_free();
+  /// What touches first in a configuration that is placed already.
+  std::optional<Contact> placed_contact();
 
   bool self_collides();
   bool scene_collides();
+  /// Exact answers. What balls can tell is told by them.
   bool pair_collides(const detail::ShapePair& pair);
   bool hits_scene(int shape, int scene_shape);
-  /// First scene shape hit by the shape, or -1.
-  int find_scene_hit(int shape);
   const detail::Rigid& pose(int shape);
+
+  /// What the balls of the two say.
+  detail::CoverAnswer pair_balls(const detail::ShapePair& pair);
+  detail::CoverAnswer scene_balls(int shape, int scene_shape);
+  bool pair_collides_exactly(const detail::ShapePair& pair);
+  bool hits_scene_exactly(int shape, int scene_shape);
+  bool balls_apart(const detail::ShapePair& pair) const;
+  /// False when plan->moving[body] hits a bounded scene shape. Clears `proven` unless it stays free while none of its
+  /// points moves more than `motion` [m].
+  bool body_is_free(int body, double motion, bool& proven);
+  /// Fills `near` with the bounded scene shapes whose boxes meet the balls first .. last of the plan.
+  void gather_near(int first, int last);
+  /// The first of the plan's shapes first .. last that hits the scene, with what it hits; false when none does.
+  bool find_scene_hit(const std::vector<int>& shapes, int first_ball);
 
   std::shared_ptr<const detail::Snapshot> snapshot;
   std::shared_ptr<const detail::PairPlan> plan;
   JointGroup group;
   std::size_t queries = 0;
 
-  Poses links;  ///< Of the last configuration.
+  std::vector<double> frames;       ///< Of the last configuration; see Kernels::place_frames.
+  std::vector<float> ball_centres;  ///< Per ball of the plan: x, y, z, radius.
+  bool frames_valid = false;
+  Poses links;  ///< Of the last configuration given to place().
   bool links_valid = false;
-  std::vector<Eigen::Vector3d> balls;  ///< World frame, per shape.
+  std::vector<Eigen::Vector3d> balls;  ///< World frame, per shape; of the last place().
   std::vector<detail::Rigid> poses;    ///< World frame, per shape; made when first asked for.
   std::vector<std::uint64_t> pose_stamp;
   std::uint64_t stamp = 0, fixed_stamp = 0;
   std::vector<char> moves;  ///< Per shape.
+
+  struct Near {
+    int shape, other;  ///< `other`: a scene shape, or the number of a varying pair.
+  };
+  std::vector<Near> near, unsure;
+  std::vector<std::uint8_t> masks;
 
   std::optional<bool> constant_self;  ///< Pairs whose relative pose no configuration changes.
   std::optional<bool> fixed_scene;    ///< Links that no configuration moves, against the scene.

@@ -49,7 +49,7 @@ std::vector<int> rigid_assemblies(const Robot& robot) {
   return group_links(robot, [&](int joint) { return robot.joints()[joint].type != JointType::fixed; });
 }
 
-PairPlan::PairPlan(const Snapshot& snapshot, const JointGroup& group) {
+PairPlan::PairPlan(const Snapshot& snapshot, const JointGroup& group) : frames(group) {
   const Robot& robot = snapshot.robot;
   const std::vector<int> assembly = rigid_assemblies(robot);
   const std::vector<char> active = active_joints(robot, group);
@@ -58,17 +58,53 @@ PairPlan::PairPlan(const Snapshot& snapshot, const JointGroup& group) {
   std::vector<char> link_moves(robot.links().size(), 0);
   for (const int link : group.moving_links()) link_moves[link] = 1;
   for (std::size_t s = 0; s < snapshot.shapes.size(); ++s) {
-    if (snapshot.shapes[s].solid->never_collides()) continue;
-    (link_moves[snapshot.shapes[s].link] ? moving : fixed).push_back(static_cast<int>(s));
+    const BodyShape& shape = snapshot.shapes[s];
+    placed.push_back({frames.frame_of(shape.link), frames.link_in_frame(shape.link) * shape.in_link});
+    if (shape.solid->never_collides()) continue;
+    (link_moves[shape.link] ? moving : fixed).push_back(static_cast<int>(s));
+  }
+  std::vector<int> ball_of(snapshot.shapes.size(), -1);
+  for (const auto* shapes : {&moving, &fixed}) {
+    for (const int s : *shapes) {
+      const Solid& solid = *snapshot.shapes[s].padded;
+      const Eigen::Vector3d centre = placed[s].in_frame * solid.ball_centre;
+      ball_of[s] = static_cast<int>(balls.size());
+      balls.push_back({{centre[0], centre[1], centre[2]}, solid.ball_radius, placed[s].frame});
+    }
   }
   for (std::size_t i = 0; i < snapshot.shapes.size(); ++i) {
     for (std::size_t j = i + 1; j < snapshot.shapes.size(); ++j) {
       const BodyShape &a = snapshot.shapes[i], &b = snapshot.shapes[j];
       if (a.body == b.body || a.solid->never_collides() || b.solid->never_collides()) continue;
       if (never_needs_check(snapshot, snapshot.bodies[a.body], snapshot.bodies[b.body], assembly)) continue;
-      const ShapePair pair{static_cast<int>(i), static_cast<int>(j), a.solid->ball_radius + b.solid->ball_radius};
+      const ShapePair pair{static_cast<int>(i), static_cast<int>(j), ball_of[i], ball_of[j],
+                           a.solid->ball_radius + b.solid->ball_radius};
       (moved_by[a.link] == moved_by[b.link] ? constant : varying).push_back(pair);
     }
+  }
+  bound_motion(group);
+}
+
+void PairPlan::bound_motion(const JointGroup& group) {
+  // Limits are kept up to rounding.
+  const Eigen::VectorXd largest =
+      group.lower().cwiseAbs().cwiseMax(group.upper().cwiseAbs()) + Eigen::VectorXd::Constant(group.size(), 1e-6);
+  const auto radius = [&](int ball) { return Eigen::Vector3d(balls[ball].p).norm() + balls[ball].radius; };
+  Eigen::VectorXd rates(group.size());
+  shape_rates.resize(group.size(), static_cast<Eigen::Index>(moving.size()));
+  for (Eigen::Index i = 0; i < shape_rates.cols(); ++i) {
+    rates.setZero();
+    frames.add_rates(balls[i].frame, radius(static_cast<int>(i)), -1, largest, rates);
+    shape_rates.col(i) = rates;
+  }
+  pair_rates.resize(group.size(), static_cast<Eigen::Index>(varying.size()));
+  for (Eigen::Index i = 0; i < pair_rates.cols(); ++i) {
+    const ShapePair& pair = varying[i];
+    const int a = balls[pair.ball_a].frame, b = balls[pair.ball_b].frame, common = frames.common_frame(a, b);
+    rates.setZero();
+    frames.add_rates(a, radius(pair.ball_a), common, largest, rates);
+    frames.add_rates(b, radius(pair.ball_b), common, largest, rates);
+    pair_rates.col(i) = rates;
   }
 }
 

@@ -1,0 +1,292 @@
+#include "collision/ball_cover.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "collision/solid.hpp"
+
+namespace mmgrasp::detail {
+
+namespace {
+
+constexpr int kMaxCells = 64;
+// Inner balls of larger meshes would take too long to find.
+constexpr std::size_t kMaxTriangles = 20000;
+// Rounding of the construction itself, far above that of double precision.
+constexpr double kGrowth = 1 + 1e-6;
+
+using Points = std::vector<Eigen::Vector3d>;
+
+// Ball that holds all points: towards the farthest one again and again (Badoiu and Clarkson), then as large as needed.
+std::pair<Eigen::Vector3d, double> small_ball(const Points& points) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& p : points) box.extend(p);
+  Eigen::Vector3d centre = box.center(), best = centre;
+  double radius = std::numeric_limits<double>::infinity();
+  for (int i = 2; i < 50; ++i) {
+    const Eigen::Vector3d* farthest = &points.front();
+    double squared = -1;
+    for (const Eigen::Vector3d& p : points) {
+      const double d = (p - centre).squaredNorm();
+      if (d > squared) squared = d, farthest = &p;
+    }
+    if (std::sqrt(squared) < radius) radius = std::sqrt(squared), best = centre;
+    centre += (*farthest - centre) / i;
+  }
+  return {best, radius};
+}
+
+// Cuts the polygon along sign * (x[axis] - at) <= 0.
+void cut(Points& polygon, int axis, double at, double sign, Points& scratch) {
+  scratch.clear();
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector3d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const double da = sign * (a[axis] - at), db = sign * (b[axis] - at);
+    if (da <= 0) scratch.push_back(a);
+    if ((da < 0 && db > 0) || (da > 0 && db < 0)) {
+      Eigen::Vector3d between = a + (b - a) * (da / (da - db));
+      between[axis] = at;
+      scratch.push_back(between);
+    }
+  }
+  polygon.swap(scratch);
+}
+
+// Cells of a grid over the bounds, about as long as wide.
+struct Grid {
+  explicit Grid(const Eigen::AlignedBox3d& bounds) : low(bounds.min()) {
+    const Eigen::Vector3d size = bounds.sizes();
+    double target = std::max(0.5 * size.minCoeff(), 0.05 * size.maxCoeff());
+    do {
+      for (int k = 0; k < 3; ++k) count[k] = std::max(1, static_cast<int>(std::lround(size[k] / target)));
+      target *= 1.1;
+    } while (count[0] * count[1] * count[2] > kMaxCells);
+    for (int k = 0; k < 3; ++k) step[k] = size[k] / count[k];
+  }
+  double plane(int axis, int i) const { return low[axis] + i * step[axis]; }
+
+  Eigen::Vector3d low, step;
+  std::array<int, 3> count{};
+};
+
+// Extreme points of the part of the body in each cell: where its surface is cut by the cell, and the cell's own corners
+// within the body.
+template <class Contains>
+std::vector<Points> cell_points(const TriangleMesh& mesh, const Grid& grid, const Contains& contains) {
+  const auto& n = grid.count;
+  std::vector<Points> cells(static_cast<std::size_t>(n[0] * n[1] * n[2]));
+  const auto cell = [&](int i, int j, int k) -> Points& {
+    return cells[static_cast<std::size_t>((i * n[1] + j) * n[2] + k)];
+  };
+  Points polygon, scratch;
+  for (const auto& t : mesh.triangles) {
+    Eigen::AlignedBox3d box;
+    for (const int corner : t) box.extend(mesh.vertices[corner]);
+    int first[3], last[3];
+    for (int k = 0; k < 3; ++k) {
+      const double step = grid.step[k] > 0 ? grid.step[k] : 1;
+      // A triangle in a cell's face belongs to both sides.
+      first[k] = std::clamp(static_cast<int>(std::floor((box.min()[k] - grid.low[k]) / step - 1e-9)), 0, n[k] - 1);
+      last[k] = std::clamp(static_cast<int>(std::floor((box.max()[k] - grid.low[k]) / step + 1e-9)), 0, n[k] - 1);
+    }
+    for (int i = first[0]; i <= last[0]; ++i) {
+      for (int j = first[1]; j <= last[1]; ++j) {
+        for (int k = first[2]; k <= last[2]; ++k) {
+          polygon = {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+          const int at[3] = {i, j, k};
+          for (int axis = 0; axis < 3; ++axis) {
+            // Outer cells are open outwards: rounding must not cut off what touches the bounds.
+            if (at[axis] > 0) cut(polygon, axis, grid.plane(axis, at[axis]), -1, scratch);
+            if (at[axis] + 1 < n[axis]) cut(polygon, axis, grid.plane(axis, at[axis] + 1), 1, scratch);
+          }
+          Points& points = cell(i, j, k);
+          points.insert(points.end(), polygon.begin(), polygon.end());
+        }
+      }
+    }
+  }
+  for (int i = 0; i <= n[0]; ++i) {
+    for (int j = 0; j <= n[1]; ++j) {
+      for (int k = 0; k <= n[2]; ++k) {
+        const Eigen::Vector3d corner(grid.plane(0, i), grid.plane(1, j), grid.plane(2, k));
+        if (!contains(corner)) continue;
+        for (int a = std::max(0, i - 1); a <= std::min(i, n[0] - 1); ++a) {
+          for (int b = std::max(0, j - 1); b <= std::min(j, n[1] - 1); ++b) {
+            for (int c = std::max(0, k - 1); c <= std::min(k, n[2] - 1); ++c) cell(a, b, c).push_back(corner);
+          }
+        }
+      }
+    }
+  }
+  return cells;
+}
+
+double triangle_distance(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                         const Eigen::Vector3d& c) {
+  const auto to_segment = [&](const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
+    const Eigen::Vector3d uv = v - u;
+    const double length = uv.squaredNorm();
+    const double s = length > 0 ? std::clamp((p - u).dot(uv) / length, 0.0, 1.0) : 0;
+    return (u + s * uv - p).norm();
+  };
+  const Eigen::Vector3d n = (b - a).cross(c - a);
+  const bool over = n.dot((b - a).cross(p - a)) >= 0 && n.dot((c - b).cross(p - b)) >= 0 &&
+                    n.dot((a - c).cross(p - c)) >= 0 && n.squaredNorm() > 0;
+  if (over) return std::abs(n.dot(p - a)) / n.norm();
+  return std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
+}
+
+double surface_distance(const TriangleMesh& mesh, const Eigen::Vector3d& p) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const auto& t : mesh.triangles)
+    best = std::min(best, triangle_distance(p, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
+  return best;
+}
+
+template <class Contains, class Depth>
+BallCover cover_surface(const TriangleMesh& mesh, const Contains& contains, const Depth& depth) {
+  Eigen::AlignedBox3d bounds;
+  for (const Eigen::Vector3d& v : mesh.vertices) bounds.extend(v);
+  BallCover cover;
+  for (const Points& points : cell_points(mesh, Grid(bounds), contains)) {
+    if (points.empty()) continue;
+    const auto [centre, radius] = small_ball(points);
+    cover.add(centre, radius, depth(centre));
+  }
+  cover.finish();
+  return cover;
+}
+
+// Half-spaces of a convex mesh, each with how far it may be off within the mesh's size: corners are known up to
+// `rounding`, and a sliver's plane tilts the more the thinner it is.
+struct Face {
+  Eigen::Vector3d normal;
+  double offset, slack;
+};
+
+std::vector<Face> faces_of(const TriangleMesh& mesh, double size, double rounding) {
+  std::vector<Face> faces;
+  for (const auto& t : mesh.triangles) {
+    const Eigen::Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    const Eigen::Vector3d n = (b - a).cross(c - a);
+    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+    const Eigen::Vector3d normal = n.normalized();
+    faces.push_back({normal, normal.dot(a), rounding * (1 + size * longest / n.norm())});
+  }
+  return faces;
+}
+
+BallCover cover_convex(const TriangleMesh& mesh, double size) {
+  const double rounding = 1e-6 * size;
+  const std::vector<Face> faces = faces_of(mesh, size, rounding);
+  const auto depth = [&](const Eigen::Vector3d& p) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Face& face : faces) least = std::min(least, face.offset - face.normal.dot(p));
+    return least - 3 * rounding;
+  };
+  const auto contains = [&](const Eigen::Vector3d& p) {
+    return std::all_of(faces.begin(), faces.end(),
+                       [&](const Face& face) { return face.normal.dot(p) <= face.offset + face.slack; });
+  };
+  return cover_surface(mesh, contains, depth);
+}
+
+BallCover cover_box(const Eigen::Vector3d& size) {
+  const Grid grid(Eigen::AlignedBox3d(-0.5 * size, 0.5 * size));
+  BallCover cover;
+  for (int i = 0; i < grid.count[0]; ++i) {
+    for (int j = 0; j < grid.count[1]; ++j) {
+      for (int k = 0; k < grid.count[2]; ++k) {
+        const Eigen::Vector3d centre = grid.low + grid.step.cwiseProduct(Eigen::Vector3d(i + 0.5, j + 0.5, k + 0.5));
+        cover.add(centre, 0.5 * grid.step.norm(), (0.5 * size - centre.cwiseAbs()).minCoeff());
+      }
+    }
+  }
+  cover.finish();
+  return cover;
+}
+
+// The prism around the cylinder; depths are the cylinder's own.
+BallCover cover_cylinder(const Cylinder& cylinder) {
+  constexpr int kSegments = 24;
+  Cylinder around = cylinder;
+  around.radius /= std::cos(M_PI / kSegments);
+  const auto mesh = shape_mesh(around, kSegments);
+  const auto depth = [&](const Eigen::Vector3d& p) {
+    return std::min(cylinder.radius - p.head<2>().norm(), 0.5 * cylinder.length - std::abs(p[2]));
+  };
+  // Within the circumscribed prism by a bound that holds for any phase of its corners.
+  const auto contains = [&](const Eigen::Vector3d& p) {
+    return p.head<2>().norm() <= around.radius && std::abs(p[2]) <= 0.5 * cylinder.length * kGrowth;
+  };
+  return cover_surface(*mesh, contains, depth);
+}
+
+BallCover cover_capsule(const Capsule& capsule) {
+  BallCover cover;
+  const double half = 0.5 * capsule.length, r = capsule.radius;
+  for (const double end : {-half, half}) cover.add({0, 0, end}, r, r);
+  const int slices = std::clamp(static_cast<int>(std::ceil(capsule.length / r)), 1, 24);
+  for (int i = 0; i < slices; ++i) {
+    const double step = capsule.length / slices;
+    cover.add({0, 0, -half + (i + 0.5) * step}, std::hypot(r, 0.5 * step), r);
+  }
+  cover.finish();
+  return cover;
+}
+
+}  // namespace
+
+void BallCover::add(const Eigen::Vector3d& centre, double outer, double inner) {
+  for (int k = 0; k < 3; ++k) {
+    data_[k].push_back(static_cast<float>(centre[k]));
+    extent_ = std::max(extent_, std::abs(data_[k].back()));
+  }
+  const double rounding = 1e-6 * (centre.cwiseAbs().maxCoeff() + outer);
+  data_[3].push_back(static_cast<float>(outer * kGrowth + rounding));
+  data_[4].push_back(inner > 2 * rounding ? static_cast<float>(inner / kGrowth - rounding) : -1.0f);
+  extent_ = std::max(extent_, data_[3].back());
+  ++filled_;
+}
+
+void BallCover::finish() {
+  while (data_[0].size() % kLanes != 0) {
+    for (int k = 0; k < 3; ++k) data_[k].push_back(1e18f);
+    data_[3].push_back(0);
+    data_[4].push_back(-1);
+  }
+}
+
+CoverView BallCover::view() const {
+  return {data_[0].data(), data_[1].data(), data_[2].data(),
+          data_[3].data(), data_[4].data(), static_cast<int>(data_[0].size()),
+          filled_};
+}
+
+BallCover cover_body(const Solid& solid, const Shape& shape) {
+  if (const auto* s = std::get_if<Sphere>(&shape)) {
+    BallCover cover;
+    cover.add(Eigen::Vector3d::Zero(), s->radius, s->radius);
+    cover.finish();
+    return cover;
+  }
+  if (const auto* s = std::get_if<Capsule>(&shape)) return cover_capsule(*s);
+  if (const auto* s = std::get_if<Cylinder>(&shape)) return cover_cylinder(*s);
+  if (const auto* s = std::get_if<Box>(&shape)) return cover_box(s->size);
+  const auto* s = std::get_if<MeshShape>(&shape);
+  if (s == nullptr || s->mesh->triangles.empty()) return {};
+  const TriangleMesh& mesh = *s->mesh;
+  if (mesh.convex) return cover_convex(mesh, 2 * solid.box_half.norm());
+  if (!mesh.closed) {
+    return cover_surface(
+        mesh, [](const Eigen::Vector3d&) { return false; }, [](const Eigen::Vector3d&) { return -1.0; });
+  }
+  const bool small = mesh.triangles.size() <= kMaxTriangles;
+  return cover_surface(
+      mesh, [&](const Eigen::Vector3d& p) { return solid.contains(p); },
+      [&](const Eigen::Vector3d& p) { return small && solid.contains(p) ? surface_distance(mesh, p) : -1.0; });
+}
+
+}  // namespace mmgrasp::detail

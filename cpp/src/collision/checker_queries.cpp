@@ -1,0 +1,316 @@
+// The hot query: frames, balls against boxes eight by eight, covers, and only then the exact narrow phase.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "collision/checker_impl.hpp"
+
+namespace mmgrasp {
+
+using detail::CoverAnswer;
+using detail::FloatRigid;
+using detail::Rigid;
+
+namespace {
+
+FloatRigid to_float(const Rigid& T) {
+  FloatRigid out;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) out.R[3 * r + c] = static_cast<float>(T.R(r, c));
+    out.t[r] = static_cast<float>(T.t[r]);
+  }
+  return out;
+}
+
+// Single precision rounds sums of these magnitudes a few times: far below 2e-6 of them.
+float slack_of(const FloatRigid& T, float extent_a, float extent_b) {
+  return 2e-6f * (std::abs(T.t[0]) + std::abs(T.t[1]) + std::abs(T.t[2]) + 3 * (extent_a + extent_b));
+}
+
+// A body's cover, placed at T_a, against the bounding box of the other one.
+CoverAnswer cover_against_box(const detail::BallCover& cover, const Rigid& T_a, const detail::Solid& other,
+                              const Rigid& T_b, double grow) {
+  Rigid box = T_a.to(T_b);
+  box.t += box.R * other.box_centre;
+  const FloatRigid T = to_float(box);
+  const float half[3] = {static_cast<float>(other.box_half[0]), static_cast<float>(other.box_half[1]),
+                         static_cast<float>(other.box_half[2])};
+  const float slack = slack_of(T, cover.extent(), std::max({half[0], half[1], half[2]}));
+  return detail::kernels().cover_box(cover.view(), T, half, static_cast<float>(grow), slack);
+}
+
+}  // namespace
+
+CollisionChecker::Impl::Impl(std::shared_ptr<const detail::Snapshot> snapshot_in, const JointGroup& group_in)
+    : snapshot(std::move(snapshot_in)),
+      plan(std::make_shared<detail::PairPlan>(*snapshot, group_in)),
+      group(group_in),
+      frames(16 * static_cast<std::size_t>(plan->frames.count())),
+      ball_centres(4 * plan->balls.size()),
+      balls(snapshot->shapes.size(), Eigen::Vector3d::Zero()),
+      poses(snapshot->shapes.size()),
+      pose_stamp(snapshot->shapes.size(), 0),
+      moves(snapshot->shapes.size(), 0) {
+  for (const int s : plan->moving) moves[s] = 1;
+}
+
+void CollisionChecker::Impl::forget() {
+  frames_valid = links_valid = false;
+  constant_self.reset();
+  fixed_scene.reset();
+}
+
+void CollisionChecker::Impl::place_balls(const double* q) {
+  ++stamp;
+  const bool first = !frames_valid;
+  if (first) {
+    detail::MovingFrames::set(Rigid(group.T_world_root()), frames.data());
+    fixed_stamp = stamp;
+    frames_valid = true;
+  }
+  plan->frames.place(q, frames.data());
+  const std::size_t count = first ? plan->balls.size() : plan->moving.size();
+  detail::kernels().place_balls(plan->balls.data(), static_cast<int>(count), frames.data(), ball_centres.data());
+}
+
+void CollisionChecker::Impl::place(const Eigen::VectorXd& q) {
+  place_balls(q.data());
+  const bool first = !links_valid;
+  group.link_poses(q, links, links_valid);
+  links_valid = true;
+  const auto place_ball = [&](int s) {
+    const detail::BodyShape& shape = snapshot->shapes[s];
+    const Pose& T = links[shape.link];
+    balls[s].noalias() = T.linear() * shape.ball + T.translation();
+  };
+  for (const int s : plan->moving) place_ball(s);
+  if (!first) return;
+  for (const int s : plan->fixed) place_ball(s);
+}
+
+const Rigid& CollisionChecker::Impl::pose(int s) {
+  const std::uint64_t current = moves[s] ? stamp : fixed_stamp;
+  if (pose_stamp[s] != current) {
+    const detail::PlacedShape& shape = plan->placed[s];
+    const Rigid T = detail::MovingFrames::get(frames.data() + 16 * shape.frame);
+    poses[s].R.noalias() = T.R * shape.in_frame.R;
+    poses[s].t.noalias() = T.R * shape.in_frame.t + T.t;
+    pose_stamp[s] = current;
+  }
+  return poses[s];
+}
+
+bool CollisionChecker::Impl::balls_apart(const detail::ShapePair& pair) const {
+  const float *a = ball_centres.data() + 4 * pair.ball_a, *b = ball_centres.data() + 4 * pair.ball_b;
+  const float dx = a[0] - b[0], dy = a[1] - b[1], dz = a[2] - b[2], reach = a[3] + b[3];
+  return dx * dx + dy * dy + dz * dz > reach * reach;
+}
+
+CoverAnswer CollisionChecker::Impl::pair_balls(const detail::ShapePair& pair) {
+  const detail::BodyShape &a = snapshot->shapes[pair.a], &b = snapshot->shapes[pair.b];
+  if (a.cover->empty() || b.cover->empty()) return detail::kMaybe;
+  const Rigid &T_a = pose(pair.a), &T_b = pose(pair.b);
+  const CoverAnswer first = cover_against_box(*a.cover, T_a, *b.solid, T_b, 0);
+  if (first == detail::kApart || (first == detail::kOverlap && b.solid->is_box)) return first;
+  const CoverAnswer second = cover_against_box(*b.cover, T_b, *a.solid, T_a, 0);
+  if (second == detail::kApart || (second == detail::kOverlap && a.solid->is_box)) return second;
+  const FloatRigid T = to_float(T_a.to(T_b));
+  return detail::kernels().cover_cover(a.cover->view(), b.cover->view(), T,
+                                       slack_of(T, a.cover->extent(), b.cover->extent()));
+}
+
+bool CollisionChecker::Impl::pair_collides_exactly(const detail::ShapePair& pair) {
+  const auto& shapes = snapshot->shapes;
+  return detail::solids_collide(*shapes[pair.a].solid, pose(pair.a), *shapes[pair.b].solid, pose(pair.b));
+}
+
+bool CollisionChecker::Impl::pair_collides(const detail::ShapePair& pair) {
+  if (balls_apart(pair)) return false;
+  const CoverAnswer answer = pair_balls(pair);
+  return answer == detail::kMaybe ? pair_collides_exactly(pair) : answer == detail::kOverlap;
+}
+
+CoverAnswer CollisionChecker::Impl::scene_balls(int s, int scene_shape) {
+  const detail::BodyShape& shape = snapshot->shapes[s];
+  const detail::SceneShape& other = snapshot->scene[scene_shape];
+  if (shape.cover->empty() || other.solid->kind == detail::SolidKind::plane) return detail::kMaybe;
+  // Padding pushes out the corners of a box by up to sqrt(3) of it.
+  const double grow = shape.padded != shape.solid ? 1.75 * snapshot->options.padding : 0;
+  const CoverAnswer answer = cover_against_box(*shape.cover, pose(s), *other.solid, other.T_world, grow);
+  return answer == detail::kOverlap && !other.solid->is_box ? detail::kMaybe : answer;
+}
+
+bool CollisionChecker::Impl::hits_scene_exactly(int s, int scene_shape) {
+  const detail::SceneShape& other = snapshot->scene[scene_shape];
+  return detail::solids_collide(*snapshot->shapes[s].padded, pose(s), *other.solid, other.T_world);
+}
+
+bool CollisionChecker::Impl::hits_scene(int s, int scene_shape) {
+  const CoverAnswer answer = scene_balls(s, scene_shape);
+  return answer == detail::kMaybe ? hits_scene_exactly(s, scene_shape) : answer == detail::kOverlap;
+}
+
+void CollisionChecker::Impl::gather_near(int first, int last) {
+  const detail::ScenePacks& packs = snapshot->packs;
+  near.clear();
+  const auto add = [&](int ball, int pack, unsigned mask) {
+    for (; mask != 0; mask &= mask - 1) near.push_back({ball, packs.item(pack, __builtin_ctz(mask))});
+  };
+  if (packs.flat()) {
+    const int count = packs.count();
+    masks.resize(static_cast<std::size_t>(count * (last - first)));
+    detail::kernels().balls_meet(packs.data(), count, ball_centres.data() + 4 * first, last - first, masks.data(),
+                                 nullptr);
+    for (int b = first; b < last; ++b) {
+      for (int k = 0; k < count; ++k) add(b, k, masks[static_cast<std::size_t>((b - first) * count + k)]);
+    }
+    return;
+  }
+  for (int b = first; b < last; ++b) {
+    const float* ball = ball_centres.data() + 4 * b;
+    packs.packs_near(ball, [&](int pack) {
+      std::uint8_t mask = 0;
+      detail::kernels().balls_meet(packs.data() + pack, 1, ball, 1, &mask, nullptr);
+      add(b, pack, mask);
+      return false;
+    });
+  }
+}
+
+bool CollisionChecker::Impl::body_is_free(int body, double motion, bool& proven) {
+  const detail::ScenePacks& packs = snapshot->packs;
+  const float* ball = ball_centres.data() + 4 * body;
+  const int s = plan->moving[static_cast<std::size_t>(body)];
+  const auto hits_any = [&](int pack, unsigned mask) {
+    for (; mask != 0; mask &= mask - 1) {
+      const int other = packs.item(pack, __builtin_ctz(mask));
+      if (!hits_scene(s, other)) continue;
+      last_shape = s;
+      last_scene = other;
+      return true;
+    }
+    return false;
+  };
+  if (packs.flat()) {
+    std::uint8_t flat_masks[detail::ScenePacks::kFlat];
+    float nearest = std::numeric_limits<float>::infinity();
+    detail::kernels().balls_meet(packs.data(), packs.count(), ball, 1, flat_masks, &nearest);
+    if (std::sqrt(nearest) - ball[3] > motion) return true;
+    proven = false;
+    for (int k = 0; k < packs.count(); ++k) {
+      if (hits_any(k, flat_masks[k])) return false;
+    }
+    return true;
+  }
+  const float grown[4] = {ball[0], ball[1], ball[2], static_cast<float>(ball[3] + motion)};
+  return !packs.packs_near(grown, [&](int pack) {
+    std::uint8_t mask = 0;
+    float nearest = 0;
+    detail::kernels().balls_meet(packs.data() + pack, 1, ball, 1, &mask, &nearest);
+    if (std::sqrt(nearest) - ball[3] > motion) return false;
+    proven = false;
+    return hits_any(pack, mask);
+  });
+}
+
+bool CollisionChecker::Impl::find_scene_hit(const std::vector<int>& shapes, int first_ball) {
+  const auto found = [&](int s, int other) {
+    last_shape = s;
+    last_scene = other;
+    return true;
+  };
+  gather_near(first_ball, first_ball + static_cast<int>(shapes.size()));
+  unsure.clear();
+  for (const Near& pair : near) {
+    const int s = shapes[static_cast<std::size_t>(pair.shape - first_ball)];
+    const CoverAnswer answer = scene_balls(s, pair.other);
+    if (answer == detail::kOverlap) return found(s, pair.other);
+    if (answer == detail::kMaybe) unsure.push_back({s, pair.other});
+  }
+  for (const Near& pair : unsure) {
+    if (hits_scene_exactly(pair.shape, pair.other)) return found(pair.shape, pair.other);
+  }
+  for (int i = snapshot->bounded; i < static_cast<int>(snapshot->scene.size()); ++i) {
+    for (const int s : shapes) {
+      if (hits_scene(s, i)) return found(s, i);
+    }
+  }
+  return false;
+}
+
+bool CollisionChecker::Impl::self_collides() {
+  if (!constant_self) {
+    constant_self = false;
+    for (const detail::ShapePair& pair : plan->constant) {
+      if (pair_collides(pair)) constant_self = true;
+    }
+  }
+  if (*constant_self) return true;
+  if (last_pair >= 0 && pair_collides(plan->varying[last_pair])) return true;
+  unsure.clear();
+  for (std::size_t i = 0; i < plan->varying.size(); ++i) {
+    const detail::ShapePair& pair = plan->varying[i];
+    if (balls_apart(pair)) continue;
+    const CoverAnswer answer = pair_balls(pair);
+    if (answer == detail::kApart) continue;
+    if (answer == detail::kMaybe) {
+      unsure.push_back({0, static_cast<int>(i)});
+      continue;
+    }
+    last_pair = static_cast<int>(i);
+    return true;
+  }
+  for (const Near& entry : unsure) {
+    if (!pair_collides_exactly(plan->varying[entry.other])) continue;
+    last_pair = entry.other;
+    return true;
+  }
+  return false;
+}
+
+bool CollisionChecker::Impl::scene_collides() {
+  if (!fixed_scene) fixed_scene = find_scene_hit(plan->fixed, static_cast<int>(plan->moving.size()));
+  if (*fixed_scene) return true;
+  return find_scene_hit(plan->moving, 0);
+}
+
+std::optional<Contact> CollisionChecker::Impl::placed_contact() {
+  const auto body = [&](int s) { return snapshot->bodies[snapshot->shapes[s].body].name; };
+  if (snapshot->options.check_self) {
+    for (const auto* pairs : {&plan->constant, &plan->varying}) {
+      for (const detail::ShapePair& pair : *pairs) {
+        if (pair_collides(pair)) return Contact{body(pair.a), body(pair.b), false};
+      }
+    }
+  }
+  if (!snapshot->options.check_scene) return std::nullopt;
+  const bool hit =
+      find_scene_hit(plan->fixed, static_cast<int>(plan->moving.size())) || find_scene_hit(plan->moving, 0);
+  if (!hit) return std::nullopt;
+  return Contact{body(last_shape), snapshot->object_names[snapshot->scene[last_scene].object], true};
+}
+
+Rejection CollisionChecker::Impl::rejection(const Eigen::VectorXd& q) {
+  ++queries;
+  if (!group.within_limits(q, kLimitSlack)) return Rejection::limits;
+  place_balls(q.data());
+  if (snapshot->options.check_self && self_collides()) return Rejection::self_collision;
+  if (snapshot->options.check_scene && scene_collides()) return Rejection::scene;
+  return Rejection::none;
+}
+
+bool CollisionChecker::Impl::placed_is_free() {
+  if (snapshot->options.check_scene && last_shape >= 0 && hits_scene(last_shape, last_scene)) return false;
+  if (snapshot->options.check_self && self_collides()) return false;
+  return !(snapshot->options.check_scene && scene_collides());
+}
+
+bool CollisionChecker::Impl::is_free(const Eigen::VectorXd& q) {
+  ++queries;
+  if (!group.within_limits(q, kLimitSlack)) return false;
+  place_balls(q.data());
+  return placed_is_free();
+}
+
+}  // namespace mmgrasp

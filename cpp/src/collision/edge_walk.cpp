@@ -1,0 +1,114 @@
+#include "collision/edge_walk.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mmgrasp {
+
+using detail::SceneShape;
+using detail::ShapePair;
+using detail::Snapshot;
+
+namespace {
+
+// Single precision of gaps and rates; the balls' radii carry the slack of their own coordinates.
+double surely(double motion) {
+  return motion * (1 + 1e-5) + 1e-7;
+}
+
+double plane_gap(const SceneShape& plane, const float* ball) {
+  const Eigen::Vector3d normal = plane.T_world.R * plane.solid->normal;
+  const Eigen::Vector3d centre(ball[0], ball[1], ball[2]);
+  return normal.dot(centre - plane.T_world.t) - plane.solid->offset - ball[3];
+}
+
+}  // namespace
+
+CollisionChecker::Impl::EdgeWalk::EdgeWalk(Impl& checker, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
+                                           long pieces)
+    : checker_(checker), q0_(q0), delta_(q1 - q0), q_(q0.size()), pieces_(pieces) {
+  if (pieces < 2) return;
+  const Eigen::VectorXd step = delta_.cwiseAbs() / static_cast<double>(pieces);
+  body_motion_ = checker.plan->shape_rates.transpose() * step;
+  pair_motion_ = checker.plan->pair_rates.transpose() * step;
+}
+
+bool CollisionChecker::Impl::EdgeWalk::all_free() {
+  if (pieces_ < 2) return true;
+  const CheckerOptions& options = checker_.snapshot->options;
+  open_.clear();
+  if (options.check_scene && !checker_.snapshot->scene.empty()) {
+    for (int i = 0; i < static_cast<int>(checker_.plan->moving.size()); ++i) open_.push_back(i);
+  }
+  const std::size_t bodies = open_.size();
+  if (options.check_self) {
+    for (int i = 0; i < static_cast<int>(checker_.plan->varying.size()); ++i) open_.push_back(i);
+  }
+  std::size_t looked_at = 0;
+  std::vector<Interval> queue{{0, pieces_, 0, bodies, open_.size()}};
+  for (std::size_t next = 0; next < queue.size(); ++next) {
+    const Interval interval = queue[next];
+    const long middle = (interval.low + interval.high) / 2;
+    const long reach = std::max(middle - interval.low, interval.high - middle) - 1;
+    Interval rest = interval;
+    ++looked_at;
+    if (!look(interval, middle, static_cast<double>(reach), rest)) return false;
+    if (rest.end == rest.bodies) continue;
+    rest.high = middle;
+    if (rest.high - rest.low > 1) queue.push_back(rest);
+    rest.low = middle;
+    rest.high = interval.high;
+    if (rest.high - rest.low > 1) queue.push_back(rest);
+  }
+  // What was proven counts as checked.
+  checker_.queries += static_cast<std::size_t>(pieces_ - 1) - looked_at;
+  return true;
+}
+
+bool CollisionChecker::Impl::EdgeWalk::look(const Interval& interval, long at, double reach, Interval& rest) {
+  q_ = q0_ + delta_ * (static_cast<double>(at) / static_cast<double>(pieces_));
+  ++checker_.queries;
+  checker_.place_balls(q_.data());
+  rest.bodies = open_.size();
+  if (!bodies_free(interval, reach)) return false;
+  rest.pairs = open_.size();
+  if (!pairs_free(interval, reach)) return false;
+  rest.end = open_.size();
+  return true;
+}
+
+bool CollisionChecker::Impl::EdgeWalk::bodies_free(const Interval& interval, double reach) {
+  const Snapshot& snapshot = *checker_.snapshot;
+  for (std::size_t n = interval.bodies; n < interval.pairs; ++n) {
+    const int body = open_[n];
+    const double motion = surely(body_motion_[body] * reach);
+    bool proven = true;
+    if (!checker_.body_is_free(body, motion, proven)) return false;
+    for (int i = snapshot.bounded; i < static_cast<int>(snapshot.scene.size()); ++i) {
+      if (plane_gap(snapshot.scene[i], checker_.ball_centres.data() + 4 * body) > motion) continue;
+      proven = false;
+      if (checker_.hits_scene(checker_.plan->moving[body], i)) return false;
+    }
+    if (!proven) open_.push_back(body);
+  }
+  return true;
+}
+
+bool CollisionChecker::Impl::EdgeWalk::pairs_free(const Interval& interval, double reach) {
+  for (std::size_t n = interval.pairs; n < interval.end; ++n) {
+    const int index = open_[n];
+    const ShapePair& pair = checker_.plan->varying[index];
+    const float* a = checker_.ball_centres.data() + 4 * pair.ball_a;
+    const float* b = checker_.ball_centres.data() + 4 * pair.ball_b;
+    const double gap = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) - a[3] - b[3];
+    if (gap > surely(pair_motion_[index] * reach)) continue;
+    if (gap <= 0 && checker_.pair_collides(pair)) {
+      checker_.last_pair = index;
+      return false;
+    }
+    open_.push_back(index);
+  }
+  return true;
+}
+
+}  // namespace mmgrasp

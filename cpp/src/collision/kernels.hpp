@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+
+namespace mmgrasp::detail {
+
+/// The loops that decide how quick a check is. They exchange plain arrays and are compiled twice: for every machine of
+/// the platform and for AVX2 with FMA; which one runs is decided once at run time. Everything in single precision takes
+/// a slack that covers its rounding, so that it may only err towards "not sure".
+
+constexpr int kLanes = 8;
+
+/// Up to eight boxes turned any way, coordinate by coordinate. Lanes without a box are infinitely far away.
+struct BoxPack {
+  float axes[9][kLanes];  ///< Row k of the inverse rotation: 3k .. 3k + 2.
+  float centre[3][kLanes];
+  float half[3][kLanes];
+};
+
+/// A joint's frame on its way down the tree: turned so that the joint moves about or along its own z.
+struct FrameStep {
+  double R[12];  ///< Three columns of four numbers, the fourth 0: this frame before it moves, in its parent.
+  double p[4];
+  double multiplier, offset;  ///< Joint value = multiplier * q[column] + offset.
+  int parent;                 ///< Frame number; frame 0 is the root. Step i makes frame i + 1.
+  int column;
+  int prismatic;
+};
+
+/// A bounding ball that moves with a frame.
+struct FrameBall {
+  double p[3];
+  double radius;
+  int frame;
+};
+
+/// Small balls that cover a body together, in its own frame. No point of the body lies outside all outer balls; each
+/// inner ball lies within the body (radius negative: none).
+struct CoverView {
+  const float *x, *y, *z, *outer, *inner;
+  int count;   ///< Multiple of kLanes; the last ones are infinitely far away.
+  int filled;  ///< Balls without the padding.
+};
+
+/// R (rows) and t of a body in the frame of another one, single precision.
+struct FloatRigid {
+  float R[9], t[3];
+};
+
+enum CoverAnswer : unsigned { kApart = 0, kMaybe = 1, kOverlap = 2 };
+
+struct Kernels {
+  const char* name;
+  /// frames: 16 numbers each, columns R0 R1 R2 p of four; frame 0 is given.
+  void (*place_frames)(const FrameStep* steps, int count, const double* q, double* frames);
+  /// World centre (x, y, z) and radius of each ball, the radius with a slack for single precision.
+  void (*place_balls)(const FrameBall* balls, int count, const double* frames, float* out);
+  /// masks[b * packs + k]: which boxes of pack k ball b meets. nearest[b], unless null: least squared distance of the
+  /// ball's centre to any box.
+  void (*balls_meet)(const BoxPack* packs, int pack_count, const float* balls, int ball_count, std::uint8_t* masks,
+                     float* nearest);
+  /// Cover against a box placed in its frame. `grow` is added to the outer radii, `slack` covers rounding.
+  CoverAnswer (*cover_box)(const CoverView& cover, const FloatRigid& box, const float* half, float grow, float slack);
+  /// Cover against cover b placed in the frame of a.
+  CoverAnswer (*cover_cover)(const CoverView& a, const CoverView& b, const FloatRigid& b_in_a, float slack);
+};
+
+/// The quickest this machine can run.
+const Kernels& kernels();
+/// The one that runs everywhere; for tests.
+const Kernels& portable_kernels();
+
+}  // namespace mmgrasp::detail

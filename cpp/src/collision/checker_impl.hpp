@@ -12,6 +12,23 @@ namespace mmgrasp {
 /// Solvers and interpolation leave rounding at the limits.
 constexpr double kLimitSlack = 1e-9;
 
+namespace detail {
+
+/// A pair of shapes, with a number its distance is not below.
+struct Candidate {
+  double bound = 0;
+  int shape = 0;
+  int other = 0;  ///< Another shape, or one of the scene.
+  bool with_scene = false;
+};
+
+struct NearestPair {
+  Candidate pair;
+  SolidGap gap;  ///< Infinite: there is none.
+};
+
+}  // namespace detail
+
 /// Scratch of one checker on top of shared, immutable preparation.
 struct CollisionChecker::Impl {
   class EdgeWalk;
@@ -54,6 +71,16 @@ struct CollisionChecker::Impl {
   /// The first of the plan's shapes first .. last that hits the scene, with what it hits; false when none does.
   bool find_scene_hit(const std::vector<int>& shapes, int first_ball);
 
+  /// The nearest pair at the configuration placed last.
+  detail::NearestPair nearest();
+  detail::SolidGap gap_of(const detail::Candidate& pair, double bound);
+  double box_bound(const detail::Candidate& pair);
+  /// Calls visit(candidate) for every pair, bounded by spheres: those no configuration changes, or the others.
+  template <class Visit>
+  void each_pair(bool still, const Visit& visit) const;
+  DistanceResult described(const detail::NearestPair& nearest) const;
+  Eigen::VectorXd gradient(const detail::NearestPair& nearest) const;
+
   std::shared_ptr<const detail::Snapshot> snapshot;
   std::shared_ptr<const detail::PairPlan> plan;
   JointGroup group;
@@ -80,6 +107,9 @@ struct CollisionChecker::Impl {
   std::optional<bool> fixed_scene;    ///< Links that no configuration moves, against the scene.
   int last_pair = -1;                 ///< What collided last tends to collide again.
   int last_shape = -1, last_scene = -1;
+
+  std::optional<detail::NearestPair> nearest_still;  ///< Of the pairs that no configuration changes.
+  std::vector<detail::Candidate> candidates;         ///< Scratch of nearest().
 };
 
 }  // namespace mmgrasp

@@ -59,6 +59,7 @@ void CollisionChecker::Impl::forget() {
   frames_valid = links_valid = false;
   constant_self.reset();
   fixed_scene.reset();
+  nearest_still.reset();
 }
 
 void CollisionChecker::Impl::place_balls(const double* q) {

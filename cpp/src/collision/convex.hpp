@@ -41,17 +41,6 @@ struct Convex {
 /// false.
 bool convex_collide(const Convex& a, const Convex& b, const Rigid& b_in_a, double margin, Eigen::Vector3d& axis);
 
-struct ConvexGap {
-  double distance = 0;                             ///< [m]; 0 when the bodies overlap.
-  Eigen::Vector3d on_a = Eigen::Vector3d::Zero();  ///< Witness points, frame of a.
-  Eigen::Vector3d on_b = Eigen::Vector3d::Zero();
-};
-ConvexGap convex_distance(const Convex& a, const Convex& b, const Rigid& b_in_a);
-
-/// Distance by which b must at most be moved to part the overlapping bodies, with the points that lie deepest: the best
-/// of many directions, an upper bound of the true depth.
-ConvexGap convex_penetration(const Convex& a, const Convex& b, const Rigid& b_in_a);
-
 /// Separating axis test of two boxes: false only if they are apart by more than `margin` along one of the 15 axes.
 /// Exact for margin 0. `t` is the centre of b in the frame of a, `R` its rotation.
 inline bool boxes_overlap(const Eigen::Vector3d& ha, const Eigen::Vector3d& hb, const Eigen::Matrix3d& R,

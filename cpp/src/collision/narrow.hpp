@@ -9,15 +9,21 @@ namespace mmgrasp::detail {
 /// True when a, placed at T_a, and b at T_b touch (or come within the sum of their margins). Closed meshes are solid.
 bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b);
 
+/// distance = normal . (on_a - on_b).
 struct SolidGap {
-  double distance = std::numeric_limits<double>::infinity();  ///< [m]; negative when they overlap (approximate).
+  double distance = std::numeric_limits<double>::infinity();  ///< [m]; negative when they overlap.
   Eigen::Vector3d on_a = Eigen::Vector3d::Zero();             ///< World frame.
   Eigen::Vector3d on_b = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< Unit, world frame, the way a goes to get away from b.
 };
 
-/// Gap between the two, margins not counted. Exact below `bound`; above it the answer may be anything not below the
-/// bound.
+/// Gap between the two, margins not counted. Exact below `bound`; otherwise the distance is infinite. Overlap: the
+/// exact depth for convex bodies; for meshes that of their hulls (bounding boxes where there is no hull), which no
+/// shift needs to exceed; for voxels that of the deepest cell.
 SolidGap solids_distance(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b,
                          double bound = std::numeric_limits<double>::infinity());
+
+/// A number the distance is not below, from bounding boxes; cheap. Minus infinity for planes and where boxes overlap.
+double boxes_gap(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b);
 
 }  // namespace mmgrasp::detail

@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <functional>
 
 #include "collision/narrow.hpp"
+#include "collision/tree_gap.hpp"
 
 namespace mmgrasp::detail {
 
@@ -19,74 +19,10 @@ bool is_tree(const Solid& s) {
   return s.kind == SolidKind::mesh || s.kind == SolidKind::voxels;
 }
 
-// Smallest gap between pieces below `best`; both bodies as trees, a convex body being a tree of one leaf.
-class GapSearch {
- public:
-  GapSearch(const Solid& a, const Solid& b, const Rigid& b_in_a, double bound)
-      : a_(a), b_(b), b_in_a_(b_in_a), abs_R_(b_in_a.R.cwiseAbs()) {
-    best_.distance = bound;
-  }
-
-  // False when nothing is closer than the bound.
-  bool run(ConvexGap& gap) {
-    visit(0, 0);
-    if (found_) gap = best_;
-    return found_;
-  }
-
- private:
-  static BoxTree::Node node_of(const Solid& s, int i) {
-    if (is_tree(s)) return s.tree.nodes()[i];
-    BoxTree::Node node;
-    node.centre = s.box_centre;
-    node.half = s.box_half;
-    node.count = 1;
-    return node;
-  }
-  static Convex piece_of(const Solid& s, int i) { return is_tree(s) ? s.piece(i) : s.core; }
-
-  // Widest gap along the face normals of both boxes: cheap, and never more than the distance.
-  double lower_bound(const BoxTree::Node& na, const BoxTree::Node& nb) const {
-    const Eigen::Vector3d t = b_in_a_ * nb.centre - na.centre;
-    const Eigen::Vector3d along_a = t.cwiseAbs() - na.half - abs_R_ * nb.half;
-    const Eigen::Vector3d along_b = (b_in_a_.R.transpose() * t).cwiseAbs() - nb.half - abs_R_.transpose() * na.half;
-    return std::max(0.0, std::max(along_a.maxCoeff(), along_b.maxCoeff()));
-  }
-
-  void visit_leaves(const BoxTree::Node& na, const BoxTree::Node& nb) {
-    for (int i = na.first; i < na.first + na.count; ++i) {
-      for (int j = nb.first; j < nb.first + nb.count; ++j) {
-        const ConvexGap gap = convex_distance(piece_of(a_, i), piece_of(b_, j), b_in_a_);
-        if (gap.distance >= best_.distance) continue;
-        best_ = gap;
-        found_ = true;
-      }
-    }
-  }
-
-  void visit(int ia, int ib) {
-    if (best_.distance <= 0) return;
-    const BoxTree::Node na = node_of(a_, ia), nb = node_of(b_, ib);
-    if (na.count > 0 && nb.count > 0) return visit_leaves(na, nb);
-    const bool split_a = nb.count > 0 || (na.count == 0 && na.half.squaredNorm() > nb.half.squaredNorm());
-    const int first = split_a ? na.first : nb.first;
-    double bounds[2];
-    for (int k = 0; k < 2; ++k) {
-      bounds[k] = split_a ? lower_bound(node_of(a_, first + k), nb) : lower_bound(na, node_of(b_, first + k));
-    }
-    const int nearer = bounds[1] < bounds[0] ? 1 : 0;
-    for (const int k : {nearer, 1 - nearer}) {
-      if (bounds[k] >= best_.distance) continue;
-      split_a ? visit(first + k, ib) : visit(ia, first + k);
-    }
-  }
-
-  const Solid &a_, &b_;
-  Rigid b_in_a_;
-  Eigen::Matrix3d abs_R_;
-  ConvexGap best_;
-  bool found_ = false;
-};
+// A convex body around the solid: itself, its hull or its bounding box.
+Convex around(const Solid& s) {
+  return !is_tree(s) || s.has_hull ? s.core : bounding_box(s);
+}
 
 // Lowest point of a body along a direction of its own frame.
 std::pair<double, Eigen::Vector3d> lowest_point(const Solid& body, const Eigen::Vector3d& normal) {
@@ -107,44 +43,127 @@ ConvexGap plane_gap(const Solid& plane, const Solid& b, const Rigid& b_in_a) {
   gap.distance = height + plane.normal.dot(b_in_a.t) - plane.offset;
   gap.on_b = b_in_a * point;
   gap.on_a = gap.on_b - gap.distance * plane.normal;
+  gap.normal = -plane.normal;
   return gap;
 }
 
+ConvexGap swapped(const ConvexGap& gap, const Rigid& T) {
+  return {gap.distance, T * gap.on_b, T * gap.on_a, -(T.R * gap.normal)};
+}
+
+// Lets the deeper of two gaps stand.
+void keep_deeper(const ConvexGap& gap, ConvexGap& deepest) {
+  if (gap.distance < deepest.distance) deepest = gap;
+}
+
+// The cell of `cloud` that lies deepest in b. Cells that could not be deeper, by their overlap along the cloud's axes,
+// are passed over.
+ConvexGap deepest_cell(const Solid& cloud, const Convex& b, const Rigid& b_in_cloud) {
+  Eigen::Vector3d low, high;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d axis = b_in_cloud.R.row(k);
+    low[k] = axis.dot(b.support(-axis)) + b_in_cloud.t[k] - b.radius;
+    high[k] = axis.dot(b.support(axis)) + b_in_cloud.t[k] + b.radius;
+  }
+  const auto overlap = [&](const Eigen::Vector3d& centre, const Eigen::Vector3d& half) {
+    return (centre + half - low).cwiseMin(high - centre + half).minCoeff();
+  };
+  ConvexGap deepest;  // 0 where rounding finds no cell
+  deepest.on_a = deepest.on_b = b_in_cloud * b.centre;
+  const Eigen::Vector3d half = Eigen::Vector3d::Constant(cloud.cell_half);
+  int stack[64], size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const BoxTree::Node& node = cloud.tree.nodes()[stack[--size]];
+    if (overlap(node.centre, node.half) < 0) continue;
+    if (node.count == 0) {
+      stack[size++] = node.first + 1;
+      stack[size++] = node.first;
+      continue;
+    }
+    for (int i = node.first; i < node.first + node.count; ++i) {
+      if (overlap(cloud.cells[i], half) <= -deepest.distance) continue;
+      const Convex cell = cloud.piece(i);
+      ConvexGap gap;
+      Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+      switch (convex_gap(cell, b, b_in_cloud, deepest.distance, axis, gap)) {
+        case GapKind::beyond:
+          break;
+        case GapKind::apart:
+          keep_deeper(gap, deepest);
+          break;
+        case GapKind::overlapping:
+          keep_deeper(convex_penetration(cell, b, b_in_cloud), deepest);
+      }
+    }
+  }
+  return deepest;
+}
+
+// Of bodies that touch.
 ConvexGap overlap(const Solid& a, const Solid& b, const Rigid& b_in_a) {
-  const bool a_core = !is_tree(a) || a.has_hull, b_core = !is_tree(b) || b.has_hull;
-  ConvexGap gap = convex_penetration(a_core ? a.core : bounding_box(a), b_core ? b.core : bounding_box(b), b_in_a);
-  gap.distance = -gap.distance;
-  return gap;
+  if (a.kind == SolidKind::voxels) return deepest_cell(a, around(b), b_in_a);
+  if (b.kind == SolidKind::voxels) {
+    const Rigid a_in_b(b_in_a.R.transpose(), -(b_in_a.R.transpose() * b_in_a.t));
+    return swapped(deepest_cell(b, around(a), a_in_b), b_in_a);
+  }
+  return convex_penetration(around(a), around(b), b_in_a);
+}
+
+// Bodies with bounds. False when they are not nearer than `bound`; `gap` is in the frame of a.
+bool find_gap(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double bound, ConvexGap& gap) {
+  const Rigid b_in_a = T_a.to(T_b);
+  const bool trees = is_tree(a) || is_tree(b);
+  const bool bounded = (!is_tree(a) || a.has_hull) && (!is_tree(b) || b.has_hull);
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  ConvexGap outer;  // of the bodies, or of their hulls: then it comes from below
+  GapKind kind = GapKind::overlapping;
+  if (bounded) kind = convex_gap(a.core, b.core, b_in_a, bound, axis, outer);
+  if (kind == GapKind::beyond) return false;
+  if (!trees) {
+    gap = kind == GapKind::apart ? outer : convex_penetration(a.core, b.core, b_in_a);
+    return gap.distance < bound;
+  }
+  if (!(kind == GapKind::apart && outer.distance > 0)) {
+    outer.distance = 0;
+    axis.setZero();
+    if (solids_collide(a, T_a, b, T_b)) {
+      gap = overlap(a, b, b_in_a);
+      return gap.distance < bound;
+    }
+  }
+  // The surfaces lie at most their dents behind their hulls, so no search beyond that.
+  const bool dents_known = bounded && (!is_tree(a) || a.has_inner) && (!is_tree(b) || b.has_inner);
+  if (dents_known) bound = std::min(bound, outer.distance + a.dent + b.dent + 1e-9);
+  return bound > 0 && tree_gap(a, b, b_in_a, bound, axis, gap);
 }
 
 }  // namespace
+
+double boxes_gap(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b) {
+  if (a.kind == SolidKind::plane || b.kind == SolidKind::plane) return -std::numeric_limits<double>::infinity();
+  const Rigid b_in_a = T_a.to(T_b);
+  const double gap =
+      box_gap(a.box_half, b.box_half, b_in_a.R, b_in_a.R.cwiseAbs(), b_in_a * b.box_centre - a.box_centre);
+  return gap > 0 ? gap : -std::numeric_limits<double>::infinity();
+}
 
 SolidGap solids_distance(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double bound) {
   SolidGap out;
   if (a.never_collides() || b.never_collides()) return out;
   if (a.kind != SolidKind::plane && b.kind == SolidKind::plane) {
     const SolidGap gap = solids_distance(b, T_b, a, T_a, bound);
-    return {gap.distance, gap.on_b, gap.on_a};
+    return {gap.distance, gap.on_b, gap.on_a, -gap.normal};
   }
-  const Rigid b_in_a = T_a.to(T_b);
   ConvexGap gap;
   if (a.kind == SolidKind::plane) {
     if (b.kind == SolidKind::plane) return out;
-    gap = plane_gap(a, b, b_in_a);
-    return {gap.distance, T_a * gap.on_a, T_a * gap.on_b};
+    gap = plane_gap(a, b, T_a.to(T_b));
+    if (!(gap.distance < bound)) return out;
+  } else if (!find_gap(a, T_a, b, T_b, bound, gap)) {
+    return out;
   }
-  const bool bounded = (!is_tree(a) || a.has_hull) && (!is_tree(b) || b.has_hull);
-  if (bounded) gap = convex_distance(a.core, b.core, b_in_a);  // exact for convex bodies, from below for hulls
-  if (gap.distance >= bound) return out;
-  if (gap.distance == 0 && solids_collide(a, T_a, b, T_b)) {
-    gap = overlap(a, b, b_in_a);
-  } else if (is_tree(a) || is_tree(b)) {
-    // The surfaces lie at most their dents behind their hulls, so no search beyond that.
-    const bool dents_known = bounded && (!is_tree(a) || a.has_inner) && (!is_tree(b) || b.has_inner);
-    if (dents_known) bound = std::min(bound, gap.distance + a.dent + b.dent + 1e-9);
-    if (!GapSearch(a, b, b_in_a, bound).run(gap)) return out;
-  }
-  return {gap.distance, T_a * gap.on_a, T_a * gap.on_b};
+  return {gap.distance, T_a * gap.on_a, T_a * gap.on_b, T_a.R * gap.normal};
 }
 
 }  // namespace mmgrasp::detail

@@ -6,8 +6,12 @@ set_property(GLOBAL PROPERTY MMGRASP_MODULES "")
 add_library(mmgrasp_flags INTERFACE)
 target_compile_options(mmgrasp_flags INTERFACE -Wall -Wextra -Wpedantic -Wno-psabi)
 if(MMGRASP_SANITIZE)
-  target_compile_options(mmgrasp_flags INTERFACE -fsanitize=${MMGRASP_SANITIZE} -fno-omit-frame-pointer)
+  # The assertions of Eigen and of the standard library find what stays inside an allocation.
+  target_compile_options(mmgrasp_flags INTERFACE -fsanitize=${MMGRASP_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -UNDEBUG
+                         -D_GLIBCXX_ASSERTIONS)
   target_link_options(mmgrasp_flags INTERFACE -fsanitize=${MMGRASP_SANITIZE})
+  # Under AddressSanitizer Eigen would align by hand what the third-party libraries then release with plain free().
+  target_compile_definitions(mmgrasp_flags INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
 function(mmgrasp_module name)

@@ -1,4 +1,3 @@
-#include <octomap/OcTree.h>
 
 #include <unistd.h>
 
@@ -15,6 +14,7 @@
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/collision/disabled_pairs.hpp"
 #include "mmgrasp/collision/world.hpp"
+#include "mmgrasp/geometry/octree.hpp"
 
 namespace mmgrasp::python {
 namespace {
@@ -40,31 +40,12 @@ const std::vector<OptionField<DisabledPairsOptions>>& pair_fields() {
 }
 
 /// Occupied leaves of an OctoMap file: one Voxels shape for each leaf size, so that pruned leaves keep their size.
-std::vector<LinkShape> read_octree(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) throw IoError(path + ": no such file");
-  octomap::OcTree tree(0.1);
-  const bool binary = std::filesystem::path(path).extension() != ".ot";
-  std::unique_ptr<octomap::AbstractOcTree> other;
-  const octomap::OcTree* source = &tree;
-  if (binary) {
-    if (!tree.readBinary(path)) throw IoError(path + ": is no OctoMap binary tree (.bt)");
-  } else {
-    other.reset(octomap::AbstractOcTree::read(path));
-    source = dynamic_cast<const octomap::OcTree*>(other.get());
-    if (!source) throw IoError(path + ": is no OctoMap tree (.ot)");
-  }
-  std::map<double, std::shared_ptr<std::vector<Eigen::Vector3d>>> by_size;
-  for (auto leaf = source->begin_leafs(), end = source->end_leafs(); leaf != end; ++leaf) {
-    if (!source->isNodeOccupied(*leaf)) continue;
-    auto& centres = by_size[leaf.getSize()];
-    if (!centres) centres = std::make_shared<std::vector<Eigen::Vector3d>>();
-    centres->emplace_back(leaf.getX(), leaf.getY(), leaf.getZ());
-  }
-  if (by_size.empty()) throw IoError(path + ": holds no occupied leaf");
+
+std::vector<LinkShape> octree_shapes(const std::string& path) {
   std::vector<LinkShape> shapes;
-  for (auto& [size, centres] : by_size) {
+  for (const Voxels& voxels : load_octree(path)) {
     LinkShape shape;
-    shape.shape = Voxels{centres, size};
+    shape.shape = voxels;
     shapes.push_back(shape);
   }
   return shapes;
@@ -153,7 +134,7 @@ void bind_world(py::module_& m) {
       .def(
           "add_octree",
           [](World& w, const std::string& name, const py::object& path, const py::object& pose) {
-            w.add(name, object_of(read_octree(path_argument(path, "path")), pose));
+            w.add(name, object_of(octree_shapes(path_argument(path, "path")), pose));
           },
           py::arg("name"), py::arg("path"), py::arg("pose") = py::none(),
           "Occupied leaves of an OctoMap file (.bt or .ot) as solid voxels.")

@@ -6,10 +6,9 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <unordered_map>
 
+#include "geometry/file_content.hpp"
 #include "geometry/mesh_readers.hpp"
 #include "geometry/mesh_topology.hpp"
 
@@ -110,24 +109,10 @@ std::shared_ptr<const TriangleMesh> clean_mesh(detail::RawMesh raw, const std::s
   return mesh;
 }
 
-std::string read_file(const std::string& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) detail::mesh_error(path, "does not exist");
-  if (std::filesystem::is_directory(status)) detail::mesh_error(path, "is a folder");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) detail::mesh_error(path, "cannot be opened");
-  std::ostringstream content;
-  content << file.rdbuf();
-  if (content.str().empty()) detail::mesh_error(path, "is empty");
-  return content.str();
-}
-
-detail::RawMesh read_mesh(const std::string& path) {
+detail::RawMesh read_mesh(const std::string& path, std::string_view content) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
-  const std::string content = read_file(path);
   if (extension == ".stl") return detail::read_stl(path, content);
   if (extension == ".obj") return detail::read_obj(path, content);
   if (extension == ".ply") return detail::read_ply(path, content);
@@ -137,13 +122,13 @@ detail::RawMesh read_mesh(const std::string& path) {
 
 }  // namespace
 
-std::shared_ptr<const TriangleMesh> load_mesh(const std::string& path, const Eigen::Vector3d& scale,
-                                              MeshReport* report) {
+std::shared_ptr<const TriangleMesh> detail::parse_mesh(const std::string& path, std::string_view content,
+                                                       const Eigen::Vector3d& scale, MeshReport* report) {
   for (int k = 0; k < 3; ++k) {
     require(std::isfinite(scale[k]) && scale[k] != 0, "mesh scale of '" + path + "'", scale[k],
             "must be finite and not zero");
   }
-  detail::RawMesh raw = read_mesh(path);
+  detail::RawMesh raw = read_mesh(path, content);
   if (raw.triangles.empty()) detail::mesh_error(path, "holds no triangle");
   for (std::size_t i = 0; i < raw.vertices.size(); ++i) {
     if (!raw.vertices[i].allFinite()) detail::mesh_error(path, "vertex " + std::to_string(i) + " is not finite");
@@ -158,6 +143,11 @@ std::shared_ptr<const TriangleMesh> load_mesh(const std::string& path, const Eig
   auto mesh = clean_mesh(std::move(raw), path, report);
   if (mesh->triangles.empty()) detail::mesh_error(path, "holds no triangle with an area");
   return mesh;
+}
+
+std::shared_ptr<const TriangleMesh> load_mesh(const std::string& path, const Eigen::Vector3d& scale,
+                                              MeshReport* report) {
+  return detail::parse_mesh(path, detail::file_content(path, "mesh file"), scale, report);
 }
 
 std::shared_ptr<const TriangleMesh> make_mesh(std::vector<Eigen::Vector3d> vertices, Triangles triangles,

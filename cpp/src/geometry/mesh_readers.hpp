@@ -2,11 +2,13 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/geometry/mesh.hpp"
 
 namespace mmgrasp::detail {
 
@@ -25,6 +27,10 @@ RawMesh read_stl(const std::string& path, std::string_view content);
 RawMesh read_obj(const std::string& path, std::string_view content);
 RawMesh read_ply(const std::string& path, std::string_view content);
 RawMesh read_dae(const std::string& path, std::string_view content);
+
+/// load_mesh for a file's content already in memory; the extension of `path` names the format.
+std::shared_ptr<const TriangleMesh> parse_mesh(const std::string& path, std::string_view content,
+                                               const Eigen::Vector3d& scale, MeshReport* report);
 
 /// Adds the polygon as a fan of triangles.
 void add_polygon(RawMesh& mesh, const std::vector<int>& corners);

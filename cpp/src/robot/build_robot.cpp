@@ -10,6 +10,8 @@
 namespace mmgrasp::detail {
 namespace {
 
+constexpr std::size_t kMostLinks = 2000;  // a robot keeps pairs of links, so its size grows with the square
+
 using NameIndex = std::unordered_map<std::string, int>;
 
 std::vector<std::string> link_names(const RobotParts& parts) {
@@ -189,6 +191,9 @@ void disable_adjacent(Robot::Data& data) {
 std::shared_ptr<Robot::Data> build_robot(const RobotParts& parts) {
   if (parts.links.empty())
     throw InvalidInput(parts.origin + ": robot \"" + parts.name + "\" has no <link>: needs at least one");
+  if (parts.links.size() > kMostLinks)
+    throw InvalidInput(parts.origin + ": robot \"" + parts.name + "\" has " + std::to_string(parts.links.size()) +
+                       " links: must have at most " + std::to_string(kMostLinks));
   const NameIndex part_links = index_links(parts);
   const NameIndex part_joints = index_joints(parts);
   const Tree tree = build_tree(parts, part_links);

@@ -6,6 +6,8 @@
 namespace mmgrasp::detail {
 namespace {
 
+constexpr std::size_t kLongest = 100;  // nobody mistypes more; the comparison takes the product of both lengths
+
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -24,9 +26,11 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string near_miss(const std::string& name, const std::vector<std::string>& known) {
+  if (name.size() > kLongest) return "";
   const std::string* best = nullptr;
   std::size_t best_distance = std::max<std::size_t>(3, name.size() / 2) + 1;
   for (const std::string& candidate : known) {
+    if (candidate.size() > kLongest) continue;
     const std::size_t distance = edit_distance(name, candidate);
     if (distance < best_distance) {
       best_distance = distance;

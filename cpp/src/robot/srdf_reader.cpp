@@ -10,6 +10,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr std::size_t kMaxGroupNesting = 100;
+constexpr std::size_t kMostGroups = 1000;  // each may list every joint
 
 /// A group's members while subgroups are being merged: joint indices, and the ends when one chain gave them.
 struct Members {
@@ -80,6 +81,8 @@ class SrdfReader {
         continue;
       }
       group_order_.push_back(name);
+      if (group_order_.size() > kMostGroups)
+        xml_.fail(*e, "is one group too many: an SRDF may have at most " + std::to_string(kMostGroups));
     }
     for (const std::string& name : group_order_) {
       std::set<std::string> visiting;
@@ -191,9 +194,14 @@ class SrdfReader {
   }
 
   bool on_one_path(const std::vector<int>& joints) const {
-    const std::vector<int> path = joints_between(0, joint(joints.back()).child_link);
-    return std::all_of(joints.begin(), joints.end(),
-                       [&path](int j) { return std::find(path.begin(), path.end(), j) != path.end(); });
+    std::vector<int> path = joints_between(0, joint(joints.back()).child_link);
+    std::sort(path.begin(), path.end());
+    return std::includes(path.begin(), path.end(), joints.begin(), joints.end());
+  }
+
+  bool has_group(const std::string& name) const {
+    return std::any_of(data_.groups.begin(), data_.groups.end(),
+                       [&name](const GroupDescription& group) { return group.name == name; });
   }
 
   void read_states() {
@@ -201,12 +209,13 @@ class SrdfReader {
          e = e->NextSiblingElement("group_state")) {
       const std::string state = xml_.required_text(*e, "name");
       const std::string group = xml_.required_text(*e, "group");
-      if (!group_elements_.count(group)) {
-        warn(*e, "names group \"" + group + "\", which the SRDF lacks");
+      if (!has_group(group)) {
+        warn(*e, "names group \"" + group + "\", which the SRDF lacks or which was dropped");
         continue;
       }
+      auto& values = data_.group_states[group][state];
       for (const TiXmlElement* j = e->FirstChildElement("joint"); j; j = j->NextSiblingElement("joint"))
-        read_state_value(*j, data_.group_states[group][state]);
+        read_state_value(*j, values);
     }
   }
 

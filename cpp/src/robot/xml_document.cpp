@@ -1,11 +1,13 @@
 #include "robot/xml_document.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <vector>
 
 #include "mmgrasp/core/error.hpp"
+#include "robot/utf8.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -18,43 +20,65 @@ bool starts_with_no_case(const std::string& text, std::size_t at, const char* wo
   return true;
 }
 
-/// Walks over the markup outside comments and CDATA without building anything.
+/// End of the tag that starts at `i`, or npos. A '>' inside a quoted attribute does not end it.
+std::size_t tag_end(const std::string& text, std::size_t i) {
+  char quote = 0;
+  for (++i; i < text.size(); ++i) {
+    if (quote) {
+      if (text[i] == quote) quote = 0;
+    } else if (text[i] == '"' || text[i] == '\'') {
+      quote = text[i];
+    } else if (text[i] == '>') {
+      return i;
+    }
+  }
+  return std::string::npos;
+}
+
+bool starts_name(char c) {
+  return std::isalpha(static_cast<unsigned char>(c)) || c == '_' || static_cast<unsigned char>(c) > 127;
+}
+
+/// Walks over the markup outside comments and CDATA without building anything. Whatever the parser might read in
+/// another way is refused, since the depth would be wrong then.
 void check_markup(const std::string& text, const std::string& origin) {
   int depth = 0;
+  std::size_t counted = 0;
+  int line = 1;
+  const auto place = [&](std::size_t at) {
+    line += static_cast<int>(std::count(text.begin() + static_cast<std::ptrdiff_t>(counted),
+                                        text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+    counted = at;
+    return origin + ":" + std::to_string(line) + ": ";
+  };
   for (std::size_t i = text.find('<'); i != std::string::npos; i = text.find('<', i + 1)) {
     std::size_t end = std::string::npos;
     if (text.compare(i, 4, "<!--") == 0) {
       end = text.find("-->", i + 4);
     } else if (text.compare(i, 9, "<![CDATA[") == 0) {
       end = text.find("]]>", i + 9);
+    } else if (text.compare(i, 2, "<?") == 0) {
+      end = text.find("?>", i);
+      if (end == std::string::npos || text.find_first_of("<>", i + 1) < end)
+        throw InvalidInput(place(i) +
+                           "not well-formed XML: a processing instruction must end with '?>' and hold no '<' or '>'");
     } else {
       for (const char* declaration : {"<!DOCTYPE", "<!ENTITY"})
         if (starts_with_no_case(text, i, declaration))
-          throw InvalidInput(origin + ": element " + declaration +
+          throw InvalidInput(place(i) + "element " + declaration +
                              ">: document type and entity declarations are refused");
-      if (text.compare(i, 2, "<?") == 0) {
-        end = text.find("?>", i);
-      } else {
-        // A '>' inside a quoted attribute does not end the tag.
-        char quote = 0;
-        for (end = i + 1; end < text.size(); ++end) {
-          if (quote) {
-            if (text[end] == quote) quote = 0;
-          } else if (text[end] == '"' || text[end] == '\'') {
-            quote = text[end];
-          } else if (text[end] == '>') {
-            break;
-          }
-        }
-        if (end >= text.size()) break;  // unfinished tag: the parser says where
-        if (text[i + 1] == '/') {
-          --depth;
-        } else if (text[end - 1] != '/') {
-          ++depth;
-        }
-        require(depth <= kMaxNesting, origin + ": nesting of elements", depth,
-                "must be at most " + std::to_string(kMaxNesting));
-      }
+      const bool closes = text[i + 1] == '/';
+      if (!closes && !starts_name(text[i + 1]))
+        throw InvalidInput(place(i) + "not well-formed XML: '<' is not followed by a name");
+      end = tag_end(text, i);
+      if (end == std::string::npos) break;  // unfinished tag: the parser says where
+      if (closes && depth == 0)
+        throw InvalidInput(place(i) + "not well-formed XML: a closing tag without its opening one");
+      if (closes) --depth;
+      if (!closes && text[end - 1] != '/') ++depth;
+      if (depth > kMaxNesting)
+        throw InvalidInput(place(i) + "nesting of elements = " + std::to_string(depth) + ": must be at most " +
+                           std::to_string(kMaxNesting));
     }
     if (end == std::string::npos) break;
     i = end;
@@ -82,8 +106,10 @@ std::vector<std::string> words(const std::string& text) {
 
 }  // namespace
 
-XmlDocument::XmlDocument(const std::string& text, const std::string& origin)
+XmlDocument::XmlDocument(const std::string& raw, const std::string& origin)
     : origin_(origin), document_(std::make_shared<TiXmlDocument>()) {
+  // What is not UTF-8 is nearly always an older file in Latin-1.
+  const std::string text = is_utf8(raw) ? raw : utf8_from_latin1(raw);
   if (text.find('\0') != std::string::npos) throw InvalidInput(origin + ": holds a NUL byte: must be XML text");
   check_markup(text, origin);
   document_->Parse(text.c_str(), nullptr, TIXML_ENCODING_UTF8);
@@ -97,14 +123,15 @@ XmlDocument::XmlDocument(const std::string& text, const std::string& origin)
 std::string XmlDocument::where(const TiXmlElement& element) const {
   std::string text = origin_ + ":" + std::to_string(element.Row()) + ": <" + element.Value();
   for (const char* key : {"name", "link1", "link2"})
-    if (const char* value = element.Attribute(key)) text += std::string(" ") + key + "=\"" + value + "\"";
+    if (const char* value = element.Attribute(key); value && is_utf8(value))
+      text += std::string(" ") + key + "=\"" + value + "\"";
   text += ">";
   // Inner elements (limit, origin, box, ...) rarely have names: say whose they are.
   if (!element.Attribute("name")) {
     for (const TiXmlNode* node = element.Parent(); node; node = node->Parent()) {
       const TiXmlElement* owner = node->ToElement();
       if (!owner || owner == root_) break;
-      if (const char* name = owner->Attribute("name")) {
+      if (const char* name = owner->Attribute("name"); name && is_utf8(name)) {
         text += std::string(" of ") + owner->Value() + " \"" + name + "\"";
         break;
       }
@@ -120,6 +147,8 @@ void XmlDocument::fail(const TiXmlElement& element, const std::string& what) con
 std::optional<std::string> XmlDocument::text(const TiXmlElement& element, const char* attribute) const {
   const char* value = element.Attribute(attribute);
   if (!value) return std::nullopt;
+  // A character reference can name what is none, a surrogate for instance.
+  if (!is_utf8(value)) fail(element, std::string("attribute ") + attribute + " holds what is no character");
   return trimmed(value);
 }
 
@@ -184,7 +213,11 @@ std::string xml_escape(const std::string& text) {
         result += "&apos;";
         break;
       default:
-        result += c;
+        if (static_cast<unsigned char>(c) < ' ') {
+          result += "&#" + std::to_string(static_cast<int>(c)) + ";";  // a reader would take it for a blank
+        } else {
+          result += c;
+        }
     }
   }
   return result;

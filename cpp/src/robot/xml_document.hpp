@@ -13,8 +13,9 @@ namespace mmgrasp::detail {
 /// attribute, value and rule.
 class XmlDocument {
  public:
-  /// Refuses document type and entity declarations, NUL bytes and absurd nesting before the parser sees the text.
-  XmlDocument(const std::string& text, const std::string& origin);
+  /// Refuses document type and entity declarations, NUL bytes and absurd nesting before the parser sees the text,
+  /// which is UTF-8 or Latin-1.
+  XmlDocument(const std::string& raw, const std::string& origin);
 
   const TiXmlElement& root() const { return *root_; }
   const std::string& origin() const { return origin_; }

@@ -38,6 +38,8 @@ const std::string kLimit = "<limit lower=\"-1\" upper=\"1\" velocity=\"1\" effor
 std::vector<BadCase> bad_cases() {
   std::string deep;
   for (int i = 0; i < 100000; ++i) deep += "<a>";
+  std::string close;
+  for (int i = 0; i < 100000; ++i) close += "</a>";
   return {
       {"empty text", "", {"bad.urdf"}},
       {"no XML", "hello", {"bad.urdf"}},
@@ -49,6 +51,12 @@ std::vector<BadCase> bad_cases() {
       {"entity bomb", "<!DOCTYPE robot [<!ENTITY a \"b\">]>" + robot("<link name=\"&a;\"/>"), {"DOCTYPE", "refused"}},
       {"lower-case doctype", "<!doctype robot>" + robot("<link name=\"a\"/>"), {"refused"}},
       {"deep nesting", robot(deep), {"nesting"}},
+      // Text that the parser reads otherwise than a quick look at tags does must not hide depth from the limit.
+      {"depth behind a quote", robot("<! '>" + deep + "'"), {":2", "not followed by a name"}},
+      {"depth behind closing tags", close + robot(deep), {"closing tag"}},
+      {"depth behind an instruction", robot("<?x >" + deep + "?>"), {":2", "processing instruction"}},
+      {"depth behind closing tags in an instruction", robot("<?xml v=\"</a>\"?>" + deep), {":2", "instruction"}},
+      {"depth behind an unfinished instruction", robot("<?x >" + deep), {":2", "instruction"}},
       {"xacro left in", robot("<xacro:include filename=\"x\"/>"), {"xacro"}},
       {"link without name", robot("<link/>"), {":2", "<link>", "name"}},
       {"duplicate link", robot("<link name=\"a\"/>\n<link name=\"a\"/>"), {":3", "\"a\"", "unique"}},
@@ -162,6 +170,21 @@ TEST(RobotBadInput, SubgroupsThatDoubleEachOtherStayCheap) {
   const Robot robot = Robot::from_strings(joint(kLimit), srdf + "</robot>");  // 2^59 visits if each were expanded
   ASSERT_EQ(robot.groups().size(), 60u);
   EXPECT_EQ(robot.groups().back().joints, (std::vector<std::string>{"j"}));
+}
+
+TEST(RobotBadInput, SizesThatGrowWithTheSquareAreBounded) {
+  std::string links = "<link name=\"l0\"/>";
+  for (int i = 1; i <= 2000; ++i) {
+    const std::string name = "l" + std::to_string(i);
+    links += "<link name=\"" + name + "\"/>" + fixed("j" + std::to_string(i), "l0", name);
+  }
+  EXPECT_THROW(Robot::from_strings(robot(links)), InvalidInput);
+  std::string srdf = "<robot name=\"r\">";
+  for (int i = 0; i <= 1000; ++i) srdf += "<group name=\"g" + std::to_string(i) + "\"><joint name=\"j\"/></group>";
+  EXPECT_THROW(Robot::from_strings(joint(kLimit), srdf + "</robot>"), InvalidInput);
+  const std::string long_name(2'000'000, 'x');  // comparing two of them letter by letter would take an hour
+  EXPECT_THROW(Robot::from_strings(robot("<link name=\"" + long_name + "y\"/>" + fixed("j", long_name, "b"))),
+               InvalidInput);
 }
 
 TEST(RobotBadInput, BaseLimitsAndKinds) {

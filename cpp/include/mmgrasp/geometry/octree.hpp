@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mmgrasp/core/export.hpp"
+#include "mmgrasp/geometry/shape.hpp"
+
+namespace mmgrasp {
+
+/// Occupied leaves of an OctoMap file (.bt, or .ot with log odds of at least 0), one entry per edge length, finest
+/// first. Throws IoError naming the file and what is wrong with it: missing, another tree type, truncated, deeper than
+/// 16 levels, another number of nodes than announced, or nothing occupied.
+MMGRASP_EXPORT std::vector<Voxels> load_octree(const std::string& path);
+
+}  // namespace mmgrasp

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <assimp/Importer.hpp>
 
+#include "core/xml_markup.hpp"
 #include "geometry/mesh_readers.hpp"
 
 namespace mmgrasp::detail {
@@ -44,6 +45,9 @@ void add_node(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& T
 }  // namespace
 
 RawMesh read_dae(const std::string& path, std::string_view content) {
+  // The importer forgives what is no XML and returns the part it understood.
+  if (const auto fault = find_markup_fault(content))
+    mesh_error(path, "line " + std::to_string(fault->line) + ": no valid DAE: " + fault->reason);
   Assimp::Importer importer;
   // URDF tools show DAE coordinates as they stand, whatever <up_axis> says; the unit scales the root node.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);

@@ -1,89 +1,16 @@
 #include "robot/xml_document.hpp"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <vector>
 
+#include "core/xml_markup.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "robot/utf8.hpp"
 
 namespace mmgrasp::detail {
 namespace {
-
-constexpr int kMaxNesting = 200;  // real robot files stay below 10; the parser recurses once per level
-
-bool starts_with_no_case(const std::string& text, std::size_t at, const char* word) {
-  for (; *word; ++word, ++at)
-    if (at >= text.size() || std::toupper(static_cast<unsigned char>(text[at])) != *word) return false;
-  return true;
-}
-
-/// End of the tag that starts at `i`, or npos. A '>' inside a quoted attribute does not end it.
-std::size_t tag_end(const std::string& text, std::size_t i) {
-  char quote = 0;
-  for (++i; i < text.size(); ++i) {
-    if (quote) {
-      if (text[i] == quote) quote = 0;
-    } else if (text[i] == '"' || text[i] == '\'') {
-      quote = text[i];
-    } else if (text[i] == '>') {
-      return i;
-    }
-  }
-  return std::string::npos;
-}
-
-bool starts_name(char c) {
-  return std::isalpha(static_cast<unsigned char>(c)) || c == '_' || static_cast<unsigned char>(c) > 127;
-}
-
-/// Walks over the markup outside comments and CDATA without building anything. Whatever the parser might read in
-/// another way is refused, since the depth would be wrong then.
-void check_markup(const std::string& text, const std::string& origin) {
-  int depth = 0;
-  std::size_t counted = 0;
-  int line = 1;
-  const auto place = [&](std::size_t at) {
-    line += static_cast<int>(std::count(text.begin() + static_cast<std::ptrdiff_t>(counted),
-                                        text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
-    counted = at;
-    return origin + ":" + std::to_string(line) + ": ";
-  };
-  for (std::size_t i = text.find('<'); i != std::string::npos; i = text.find('<', i + 1)) {
-    std::size_t end = std::string::npos;
-    if (text.compare(i, 4, "<!--") == 0) {
-      end = text.find("-->", i + 4);
-    } else if (text.compare(i, 9, "<![CDATA[") == 0) {
-      end = text.find("]]>", i + 9);
-    } else if (text.compare(i, 2, "<?") == 0) {
-      end = text.find("?>", i);
-      if (end == std::string::npos || text.find_first_of("<>", i + 1) < end)
-        throw InvalidInput(place(i) +
-                           "not well-formed XML: a processing instruction must end with '?>' and hold no '<' or '>'");
-    } else {
-      for (const char* declaration : {"<!DOCTYPE", "<!ENTITY"})
-        if (starts_with_no_case(text, i, declaration))
-          throw InvalidInput(place(i) + "element " + declaration +
-                             ">: document type and entity declarations are refused");
-      const bool closes = text[i + 1] == '/';
-      if (!closes && !starts_name(text[i + 1]))
-        throw InvalidInput(place(i) + "not well-formed XML: '<' is not followed by a name");
-      end = tag_end(text, i);
-      if (end == std::string::npos) break;  // unfinished tag: the parser says where
-      if (closes && depth == 0)
-        throw InvalidInput(place(i) + "not well-formed XML: a closing tag without its opening one");
-      if (closes) --depth;
-      if (!closes && text[end - 1] != '/') ++depth;
-      if (depth > kMaxNesting)
-        throw InvalidInput(place(i) + "nesting of elements = " + std::to_string(depth) + ": must be at most " +
-                           std::to_string(kMaxNesting));
-    }
-    if (end == std::string::npos) break;
-    i = end;
-  }
-}
 
 std::string trimmed(const std::string& text) {
   const char* blanks = " \t\r\n";
@@ -110,8 +37,8 @@ XmlDocument::XmlDocument(const std::string& raw, const std::string& origin)
     : origin_(origin), document_(std::make_shared<TiXmlDocument>()) {
   // What is not UTF-8 is nearly always an older file in Latin-1.
   const std::string text = is_utf8(raw) ? raw : utf8_from_latin1(raw);
-  if (text.find('\0') != std::string::npos) throw InvalidInput(origin + ": holds a NUL byte: must be XML text");
-  check_markup(text, origin);
+  if (const auto fault = find_markup_fault(text))
+    throw InvalidInput(origin + ":" + std::to_string(fault->line) + ": not well-formed XML: " + fault->reason);
   document_->Parse(text.c_str(), nullptr, TIXML_ENCODING_UTF8);
   if (document_->Error())
     throw InvalidInput(origin + ":" + std::to_string(document_->ErrorRow()) +

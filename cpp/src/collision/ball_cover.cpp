@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "collision/solid.hpp"
@@ -64,6 +65,12 @@ struct Grid {
       target *= 1.1;
     } while (count[0] * count[1] * count[2] > kMaxCells);
     for (int k = 0; k < 3; ++k) step[k] = size[k] / count[k];
+  }
+  Grid cut(int parts) const {
+    Grid out = *this;
+    out.step /= parts;
+    for (int& n : out.count) n *= parts;
+    return out;
   }
   double plane(int axis, int i) const { return low[axis] + i * step[axis]; }
 
@@ -145,18 +152,83 @@ double surface_distance(const TriangleMesh& mesh, const Eigen::Vector3d& p) {
   return best;
 }
 
+// One ball, no finer ones.
+void add_single(CoverLevels& levels, const Eigen::Vector3d& centre, double outer, double inner) {
+  for (BallCover& level : levels) {
+    level.add(centre, outer, inner);
+    if (&level != &levels.front()) level.pad();
+  }
+}
+
+// A cell of one level with all that lies in it, and its eight parts on the next.
+template <class Depth>
+class CellBalls {
+ public:
+  CellBalls(const std::vector<Points>& cells, const std::array<int, 3>& count, const Depth& depth, CoverLevels& levels)
+      : cells_(cells), count_(count), depth_(depth), levels_(levels) {}
+
+  // Adds cell (i, j, k) of the coarsest level, unless it is empty.
+  void add(int i, int j, int k) {
+    Points points;
+    gather(0, i, j, k, points);
+    if (points.empty()) return;
+    const auto [centre, outer] = small_ball(points);
+    add_parts(0, i, j, k, centre, outer, depth_(centre));
+  }
+
+ private:
+  void gather(std::size_t level, int i, int j, int k, Points& out) const {
+    if (level + 1 == levels_.size()) {
+      const Points& own = cells_[static_cast<std::size_t>((i * count_[1] + j) * count_[2] + k)];
+      out.insert(out.end(), own.begin(), own.end());
+      return;
+    }
+    for (int c = 0; c < 8; ++c) gather(level + 1, 2 * i + (c & 1), 2 * j + (c >> 1 & 1), 2 * k + (c >> 2), out);
+  }
+
+  void add_parts(std::size_t level, int i, int j, int k, const Eigen::Vector3d& centre, double outer, double inner) {
+    levels_[level].add(centre, outer, inner);
+    if (level + 1 == levels_.size()) return;
+    Points points;
+    for (int c = 0; c < 8; ++c) {
+      const int a = 2 * i + (c & 1), b = 2 * j + (c >> 1 & 1), d = 2 * k + (c >> 2);
+      points.clear();
+      gather(level + 1, a, b, d, points);
+      if (points.empty()) {
+        add_nothing(level + 1);
+        continue;
+      }
+      const auto [part, radius] = small_ball(points);
+      // Depth changes no faster than the place.
+      add_parts(level + 1, a, b, d, part, radius, inner - (part - centre).norm());
+    }
+  }
+
+  // Keeps the numbering: eight places on the next level for each ball.
+  void add_nothing(std::size_t level) {
+    levels_[level].add_far();
+    if (level + 1 == levels_.size()) return;
+    for (int c = 0; c < 8; ++c) add_nothing(level + 1);
+  }
+
+  const std::vector<Points>& cells_;
+  const std::array<int, 3>& count_;
+  const Depth& depth_;
+  CoverLevels& levels_;
+};
+
 template <class Contains, class Depth>
-BallCover cover_surface(const TriangleMesh& mesh, const Contains& contains, const Depth& depth) {
+void cover_surface(const TriangleMesh& mesh, const Contains& contains, const Depth& depth, CoverLevels& levels) {
   Eigen::AlignedBox3d bounds;
   for (const Eigen::Vector3d& v : mesh.vertices) bounds.extend(v);
-  BallCover cover;
-  for (const Points& points : cell_points(mesh, Grid(bounds), contains)) {
-    if (points.empty()) continue;
-    const auto [centre, radius] = small_ball(points);
-    cover.add(centre, radius, depth(centre));
+  const Grid grid(bounds), finest = grid.cut(1 << (levels.size() - 1));
+  const std::vector<Points> cells = cell_points(mesh, finest, contains);
+  CellBalls<Depth> balls(cells, finest.count, depth, levels);
+  for (int i = 0; i < grid.count[0]; ++i) {
+    for (int j = 0; j < grid.count[1]; ++j) {
+      for (int k = 0; k < grid.count[2]; ++k) balls.add(i, j, k);
+    }
   }
-  cover.finish();
-  return cover;
 }
 
 // Half-spaces of a convex mesh, each with how far it may be off within the mesh's size: corners are known up to
@@ -178,7 +250,7 @@ std::vector<Face> faces_of(const TriangleMesh& mesh, double size, double roundin
   return faces;
 }
 
-BallCover cover_convex(const TriangleMesh& mesh, double size) {
+void cover_convex(const TriangleMesh& mesh, double size, CoverLevels& levels) {
   const double rounding = 1e-6 * size;
   const std::vector<Face> faces = faces_of(mesh, size, rounding);
   const auto depth = [&](const Eigen::Vector3d& p) {
@@ -190,26 +262,30 @@ BallCover cover_convex(const TriangleMesh& mesh, double size) {
     return std::all_of(faces.begin(), faces.end(),
                        [&](const Face& face) { return face.normal.dot(p) <= face.offset + face.slack; });
   };
-  return cover_surface(mesh, contains, depth);
+  cover_surface(mesh, contains, depth, levels);
 }
 
-BallCover cover_box(const Eigen::Vector3d& size) {
+void cover_box(const Eigen::Vector3d& size, CoverLevels& levels) {
   const Grid grid(Eigen::AlignedBox3d(-0.5 * size, 0.5 * size));
-  BallCover cover;
+  const std::function<void(std::size_t, const Eigen::Vector3d&, const Eigen::Vector3d&)> add =
+      [&](std::size_t level, const Eigen::Vector3d& centre, const Eigen::Vector3d& cell) {
+        levels[level].add(centre, 0.5 * cell.norm(), (0.5 * size - centre.cwiseAbs()).minCoeff());
+        if (level + 1 == levels.size()) return;
+        for (int c = 0; c < 8; ++c) {
+          const Eigen::Vector3d side((c & 1) - 0.5, (c >> 1 & 1) - 0.5, (c >> 2) - 0.5);
+          add(level + 1, centre + 0.5 * cell.cwiseProduct(side), 0.5 * cell);
+        }
+      };
   for (int i = 0; i < grid.count[0]; ++i) {
     for (int j = 0; j < grid.count[1]; ++j) {
-      for (int k = 0; k < grid.count[2]; ++k) {
-        const Eigen::Vector3d centre = grid.low + grid.step.cwiseProduct(Eigen::Vector3d(i + 0.5, j + 0.5, k + 0.5));
-        cover.add(centre, 0.5 * grid.step.norm(), (0.5 * size - centre.cwiseAbs()).minCoeff());
-      }
+      for (int k = 0; k < grid.count[2]; ++k)
+        add(0, grid.low + grid.step.cwiseProduct(Eigen::Vector3d(i + 0.5, j + 0.5, k + 0.5)), grid.step);
     }
   }
-  cover.finish();
-  return cover;
 }
 
 // The prism around the cylinder; depths are the cylinder's own.
-BallCover cover_cylinder(const Cylinder& cylinder) {
+void cover_cylinder(const Cylinder& cylinder, CoverLevels& levels) {
   constexpr int kSegments = 24;
   Cylinder around = cylinder;
   around.radius /= std::cos(M_PI / kSegments);
@@ -221,20 +297,35 @@ BallCover cover_cylinder(const Cylinder& cylinder) {
   const auto contains = [&](const Eigen::Vector3d& p) {
     return p.head<2>().norm() <= around.radius && std::abs(p[2]) <= 0.5 * cylinder.length * kGrowth;
   };
-  return cover_surface(*mesh, contains, depth);
+  cover_surface(*mesh, contains, depth, levels);
 }
 
-BallCover cover_capsule(const Capsule& capsule) {
-  BallCover cover;
+void cover_capsule(const Capsule& capsule, CoverLevels& levels) {
   const double half = 0.5 * capsule.length, r = capsule.radius;
-  for (const double end : {-half, half}) cover.add({0, 0, end}, r, r);
+  for (const double end : {-half, half}) add_single(levels, {0, 0, end}, r, r);
   const int slices = std::clamp(static_cast<int>(std::ceil(capsule.length / r)), 1, 24);
-  for (int i = 0; i < slices; ++i) {
-    const double step = capsule.length / slices;
-    cover.add({0, 0, -half + (i + 0.5) * step}, std::hypot(r, 0.5 * step), r);
-  }
-  cover.finish();
-  return cover;
+  const double step = capsule.length / slices;
+  for (int i = 0; i < slices; ++i) add_single(levels, {0, 0, -half + (i + 0.5) * step}, std::hypot(r, 0.5 * step), r);
+}
+
+void cover_mesh(const TriangleMesh& mesh, const Solid& solid, CoverLevels& levels) {
+  if (mesh.convex) return cover_convex(mesh, 2 * solid.box_half.norm(), levels);
+  const auto nowhere = [](const Eigen::Vector3d&) { return false; };
+  const auto no_depth = [](const Eigen::Vector3d&) { return -1.0; };
+  if (!mesh.closed) return cover_surface(mesh, nowhere, no_depth, levels);
+  const bool small = mesh.triangles.size() <= kMaxTriangles;
+  const auto contains = [&](const Eigen::Vector3d& p) { return solid.contains(p); };
+  const auto depth = [&](const Eigen::Vector3d& p) {
+    return small && solid.contains(p) ? surface_distance(mesh, p) : -1.0;
+  };
+  cover_surface(mesh, contains, depth, levels);
+}
+
+void cover_primitive(const Shape& shape, CoverLevels& levels) {
+  if (const auto* s = std::get_if<Sphere>(&shape)) add_single(levels, Eigen::Vector3d::Zero(), s->radius, s->radius);
+  if (const auto* s = std::get_if<Capsule>(&shape)) cover_capsule(*s, levels);
+  if (const auto* s = std::get_if<Cylinder>(&shape)) cover_cylinder(*s, levels);
+  if (const auto* s = std::get_if<Box>(&shape)) cover_box(s->size, levels);
 }
 
 }  // namespace
@@ -248,15 +339,17 @@ void BallCover::add(const Eigen::Vector3d& centre, double outer, double inner) {
   data_[3].push_back(static_cast<float>(outer * kGrowth + rounding));
   data_[4].push_back(inner > 2 * rounding ? static_cast<float>(inner / kGrowth - rounding) : -1.0f);
   extent_ = std::max(extent_, data_[3].back());
-  ++filled_;
+  filled_ = static_cast<int>(data_[0].size());
 }
 
-void BallCover::finish() {
-  while (data_[0].size() % kLanes != 0) {
-    for (int k = 0; k < 3; ++k) data_[k].push_back(1e18f);
-    data_[3].push_back(0);
-    data_[4].push_back(-1);
-  }
+void BallCover::add_far() {
+  for (int k = 0; k < 3; ++k) data_[k].push_back(1e18f);
+  data_[3].push_back(0);
+  data_[4].push_back(-1);
+}
+
+void BallCover::pad() {
+  while (data_[0].size() % kLanes != 0) add_far();
 }
 
 CoverView BallCover::view() const {
@@ -265,28 +358,32 @@ CoverView BallCover::view() const {
           filled_};
 }
 
-BallCover cover_body(const Solid& solid, const Shape& shape) {
-  if (const auto* s = std::get_if<Sphere>(&shape)) {
-    BallCover cover;
-    cover.add(Eigen::Vector3d::Zero(), s->radius, s->radius);
-    cover.finish();
-    return cover;
+BodyBounds::BodyBounds(const Solid& solid, const Shape& shape) {
+  CoverLevels levels(1);
+  if (const auto* s = std::get_if<MeshShape>(&shape)) {
+    mesh_ = s->mesh;
+    if (!s->mesh->triangles.empty()) cover_mesh(*s->mesh, solid, levels);
+  } else {
+    if (!std::holds_alternative<Voxels>(shape)) shape_ = shape;
+    cover_primitive(shape, levels);
   }
-  if (const auto* s = std::get_if<Capsule>(&shape)) return cover_capsule(*s);
-  if (const auto* s = std::get_if<Cylinder>(&shape)) return cover_cylinder(*s);
-  if (const auto* s = std::get_if<Box>(&shape)) return cover_box(s->size);
-  const auto* s = std::get_if<MeshShape>(&shape);
-  if (s == nullptr || s->mesh->triangles.empty()) return {};
-  const TriangleMesh& mesh = *s->mesh;
-  if (mesh.convex) return cover_convex(mesh, 2 * solid.box_half.norm());
-  if (!mesh.closed) {
-    return cover_surface(
-        mesh, [](const Eigen::Vector3d&) { return false; }, [](const Eigen::Vector3d&) { return -1.0; });
-  }
-  const bool small = mesh.triangles.size() <= kMaxTriangles;
-  return cover_surface(
-      mesh, [&](const Eigen::Vector3d& p) { return solid.contains(p); },
-      [&](const Eigen::Vector3d& p) { return small && solid.contains(p) ? surface_distance(mesh, p) : -1.0; });
+  balls_ = std::move(levels.front());
+  balls_.pad();
+}
+
+const BodyBounds::Detail& BodyBounds::detail(const Solid& solid) const {
+  std::call_once(once_, [&] {
+    detail_.covers.resize(kLevels);
+    if (balls_.empty()) return;
+    if (const auto mesh = mesh_.lock()) {
+      cover_mesh(*mesh, solid, detail_.covers);
+      detail_.field = std::make_unique<const DistanceField>(*mesh, solid);
+    } else {
+      cover_primitive(shape_, detail_.covers);
+    }
+    detail_.covers.front().pad();
+  });
+  return detail_;
 }
 
 }  // namespace mmgrasp::detail

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
+#include <mutex>
 #include <vector>
 
+#include "collision/distance_field.hpp"
 #include "collision/kernels.hpp"
 #include "mmgrasp/geometry/shape.hpp"
 
@@ -15,8 +18,10 @@ class BallCover {
  public:
   /// `inner` is the radius of a ball about the same centre that lies within the body, negative when there is none.
   void add(const Eigen::Vector3d& centre, double outer, double inner);
-  /// Rounds up to whole vectors. Nothing may be added afterwards.
-  void finish();
+  /// A place that stays empty: infinitely far away.
+  void add_far();
+  /// Empty places up to the next whole vector.
+  void pad();
 
   bool empty() const { return filled_ == 0; }
   CoverView view() const;
@@ -25,12 +30,38 @@ class BallCover {
 
  private:
   std::vector<float> data_[5];
-  int filled_ = 0;
+  int filled_ = 0;  ///< Up to the last real ball.
   float extent_ = 0;
 };
 
-/// Covers the body the solid was made of (without padding): the bounding box is cut into cells, each cell's part of the
-/// body gets a ball. Empty for planes and voxels.
-BallCover cover_body(const Solid& solid, const Shape& shape);
+/// Covers of the same body, each finer than the one before: the balls kLanes * i ... of a level cover what ball i of
+/// the level above covers.
+using CoverLevels = std::vector<BallCover>;
+
+/// What stands in for a body before its exact shape is looked at (padding not included).
+class BodyBounds {
+ public:
+  static constexpr int kLevels = 3;
+
+  BodyBounds(const Solid& solid, const Shape& shape);
+
+  /// The bounding box cut into cells, a ball for each cell's part of the body. Empty for planes and voxels.
+  const BallCover& balls() const { return balls_; }
+
+  /// Made when first asked for: most bodies never come that close to others.
+  struct Detail {
+    CoverLevels covers;                          ///< kLevels of them.
+    std::unique_ptr<const DistanceField> field;  ///< Distances to a mesh; null for other shapes.
+  };
+  /// `solid` is the one it was made with. Safe from several threads.
+  const Detail& detail(const Solid& solid) const;
+
+ private:
+  BallCover balls_;
+  Shape shape_;                             // primitives
+  std::weak_ptr<const TriangleMesh> mesh_;  // lives in the robot as long as somebody asks
+  mutable std::once_flag once_;
+  mutable Detail detail_;
+};
 
 }  // namespace mmgrasp::detail

@@ -15,7 +15,7 @@ BodyShape place_on_link(const LinkShape& shape, const Rigid& in_link, int body, 
   out.in_link = in_link;
   out.solid = shared_solid(shape.shape, 0);
   out.padded = padding > 0 ? shared_solid(shape.shape, padding) : out.solid;
-  out.cover = shared_cover(*out.solid, shape.shape);
+  out.bounds = shared_bounds(*out.solid, shape.shape);
   out.ball = in_link * out.solid->ball_centre;
   return out;
 }

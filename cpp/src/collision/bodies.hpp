@@ -17,8 +17,8 @@ namespace mmgrasp::detail {
 /// cheap.
 std::shared_ptr<const Solid> shared_solid(const Shape& shape, double padding);
 
-/// cover_body, kept likewise.
-std::shared_ptr<const BallCover> shared_cover(const Solid& solid, const Shape& shape);
+/// BodyBounds, kept likewise; those of primitives for some time.
+std::shared_ptr<const BodyBounds> shared_bounds(const Solid& solid, const Shape& shape);
 
 /// One shape that moves with a robot link, whether of the link itself or of a held object.
 struct BodyShape {
@@ -27,7 +27,7 @@ struct BodyShape {
   Rigid in_link;
   std::shared_ptr<const Solid> solid;              ///< Against the robot itself.
   std::shared_ptr<const Solid> padded;             ///< Against the scene.
-  std::shared_ptr<const BallCover> cover;          ///< Of the solid without padding, in its frame.
+  std::shared_ptr<const BodyBounds> bounds;        ///< Of the solid without padding, in its frame.
   Eigen::Vector3d ball = Eigen::Vector3d::Zero();  ///< Centre of the bounding sphere in the link.
 };
 

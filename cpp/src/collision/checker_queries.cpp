@@ -40,6 +40,16 @@ CoverAnswer cover_against_box(const detail::BallCover& cover, const Rigid& T_a, 
   return detail::kernels().cover_box(cover.view(), T, half, static_cast<float>(grow), slack);
 }
 
+// A body's balls, placed at T_balls, in the field of a body at T_field.
+CoverAnswer balls_in_field(const detail::DistanceField& field, const Rigid& T_field, const detail::CoverLevels& balls,
+                           const Rigid& T_balls, double grow) {
+  const FloatRigid T = to_float(T_field.to(T_balls));
+  detail::CoverView levels[detail::BodyBounds::kLevels];
+  for (std::size_t i = 0; i < balls.size(); ++i) levels[i] = balls[i].view();
+  return detail::kernels().field_cover(field.view(), levels, static_cast<int>(balls.size()), T,
+                                       static_cast<float>(grow), slack_of(T, field.extent(), balls[0].extent()));
+}
+
 }  // namespace
 
 CollisionChecker::Impl::Impl(std::shared_ptr<const detail::Snapshot> snapshot_in, const JointGroup& group_in)
@@ -110,20 +120,36 @@ bool CollisionChecker::Impl::balls_apart(const detail::ShapePair& pair) const {
 
 CoverAnswer CollisionChecker::Impl::pair_balls(const detail::ShapePair& pair) {
   const detail::BodyShape &a = snapshot->shapes[pair.a], &b = snapshot->shapes[pair.b];
-  if (a.cover->empty() || b.cover->empty()) return detail::kMaybe;
+  if (a.bounds->balls().empty() || b.bounds->balls().empty()) return detail::kMaybe;
   const Rigid &T_a = pose(pair.a), &T_b = pose(pair.b);
-  const CoverAnswer first = cover_against_box(*a.cover, T_a, *b.solid, T_b, 0);
+  const CoverAnswer first = cover_against_box(a.bounds->balls(), T_a, *b.solid, T_b, 0);
   if (first == detail::kApart || (first == detail::kOverlap && b.solid->is_box)) return first;
-  const CoverAnswer second = cover_against_box(*b.cover, T_b, *a.solid, T_a, 0);
+  const CoverAnswer second = cover_against_box(b.bounds->balls(), T_b, *a.solid, T_a, 0);
   if (second == detail::kApart || (second == detail::kOverlap && a.solid->is_box)) return second;
-  const FloatRigid T = to_float(T_a.to(T_b));
-  return detail::kernels().cover_cover(a.cover->view(), b.cover->view(), T,
-                                       slack_of(T, a.cover->extent(), b.cover->extent()));
+  // The larger body as the field: the smaller one has the smaller balls.
+  const bool a_larger = a.solid->ball_radius > b.solid->ball_radius;
+  const auto by_field = [&](const detail::BodyShape& body, const Rigid& T_body, const detail::BodyShape& balls,
+                            const Rigid& T_balls) {
+    const auto& field = body.bounds->detail(*body.solid).field;
+    if (field == nullptr) return detail::kMaybe;
+    return balls_in_field(*field, T_body, balls.bounds->detail(*balls.solid).covers, T_balls, 0);
+  };
+  const CoverAnswer answer = a_larger ? by_field(a, T_a, b, T_b) : by_field(b, T_b, a, T_a);
+  if (answer != detail::kMaybe) return answer;
+  return a_larger ? by_field(b, T_b, a, T_a) : by_field(a, T_a, b, T_b);
 }
 
 bool CollisionChecker::Impl::pair_collides_exactly(const detail::ShapePair& pair) {
-  const auto& shapes = snapshot->shapes;
-  return detail::solids_collide(*shapes[pair.a].solid, pose(pair.a), *shapes[pair.b].solid, pose(pair.b));
+  const detail::BodyShape &a = snapshot->shapes[pair.a], &b = snapshot->shapes[pair.b];
+  if (a.solid->kind == detail::SolidKind::mesh && b.solid->kind == detail::SolidKind::mesh) {
+    // Few large triangles look for their like in a field around the smaller body.
+    const bool field_of_a = a.solid->ball_radius < b.solid->ball_radius;
+    const detail::BodyShape &first = field_of_a ? a : b, &second = field_of_a ? b : a;
+    return detail::meshes_collide(*first.solid, pose(field_of_a ? pair.a : pair.b),
+                                  *first.bounds->detail(*first.solid).field, *second.solid,
+                                  pose(field_of_a ? pair.b : pair.a));
+  }
+  return detail::solids_collide(*a.solid, pose(pair.a), *b.solid, pose(pair.b));
 }
 
 bool CollisionChecker::Impl::pair_collides(const detail::ShapePair& pair) {
@@ -135,10 +161,10 @@ bool CollisionChecker::Impl::pair_collides(const detail::ShapePair& pair) {
 CoverAnswer CollisionChecker::Impl::scene_balls(int s, int scene_shape) {
   const detail::BodyShape& shape = snapshot->shapes[s];
   const detail::SceneShape& other = snapshot->scene[scene_shape];
-  if (shape.cover->empty() || other.solid->kind == detail::SolidKind::plane) return detail::kMaybe;
+  if (shape.bounds->balls().empty() || other.solid->kind == detail::SolidKind::plane) return detail::kMaybe;
   // Padding pushes out the corners of a box by up to sqrt(3) of it.
   const double grow = shape.padded != shape.solid ? 1.75 * snapshot->options.padding : 0;
-  const CoverAnswer answer = cover_against_box(*shape.cover, pose(s), *other.solid, other.T_world, grow);
+  const CoverAnswer answer = cover_against_box(shape.bounds->balls(), pose(s), *other.solid, other.T_world, grow);
   return answer == detail::kOverlap && !other.solid->is_box ? detail::kMaybe : answer;
 }
 

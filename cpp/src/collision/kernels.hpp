@@ -47,6 +47,15 @@ struct FloatRigid {
   float R[9], t[3];
 };
 
+/// A grid of distances to a body from below (DistanceField).
+struct FieldView {
+  float low[3], per_step;    ///< Lower corner; cells per metre.
+  float quantum;             ///< Metres per unit of a cell.
+  float centre[3], half[3];  ///< Bounding box of the body, for points beyond the grid.
+  int count[3];
+  const std::int8_t* cells;  ///< Negative: wholly within the body.
+};
+
 enum CoverAnswer : unsigned { kApart = 0, kMaybe = 1, kOverlap = 2 };
 
 struct Kernels {
@@ -61,8 +70,10 @@ struct Kernels {
                      float* nearest);
   /// Cover against a box placed in its frame. `grow` is added to the outer radii, `slack` covers rounding.
   CoverAnswer (*cover_box)(const CoverView& cover, const FloatRigid& box, const float* half, float grow, float slack);
-  /// Cover against cover b placed in the frame of a.
-  CoverAnswer (*cover_cover)(const CoverView& a, const CoverView& b, const FloatRigid& b_in_a, float slack);
+  /// A field against covers placed in its frame, each level with kLanes balls for each ball of the level above: only
+  /// where a ball may touch are its parts looked at.
+  CoverAnswer (*field_cover)(const FieldView& field, const CoverView* levels, int level_count,
+                             const FloatRigid& cover_in_field, float grow, float slack);
 };
 
 /// The quickest this machine can run.

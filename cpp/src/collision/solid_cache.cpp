@@ -54,42 +54,42 @@ std::shared_ptr<const Solid> shared_solid(const Shape& shape, double padding) {
 namespace {
 
 // Kind and dimensions of a primitive, or a mesh's address.
-using CoverKey = std::tuple<std::size_t, const void*, double, double, double>;
+using BoundsKey = std::tuple<std::size_t, const void*, double, double, double>;
 
-CoverKey cover_key(const Shape& shape) {
+BoundsKey bounds_key(const Shape& shape) {
   const std::size_t kind = shape.index();
   if (const auto* s = std::get_if<Box>(&shape)) return {kind, nullptr, s->size[0], s->size[1], s->size[2]};
   if (const auto* s = std::get_if<Sphere>(&shape)) return {kind, nullptr, s->radius, 0, 0};
   if (const auto* s = std::get_if<Cylinder>(&shape)) return {kind, nullptr, s->radius, s->length, 0};
   if (const auto* s = std::get_if<Capsule>(&shape)) return {kind, nullptr, s->radius, s->length, 0};
   if (const auto* s = std::get_if<MeshShape>(&shape)) return {kind, s->mesh.get(), 0, 0, 0};
-  return {kind, nullptr, 0, 0, 0};  // planes and voxels have an empty cover
+  return {kind, nullptr, 0, 0, 0};  // planes and voxels have none
 }
 
-struct CoverEntry {
+struct BoundsEntry {
   std::weak_ptr<const void> source;  // of meshes only
-  std::shared_ptr<const BallCover> cover;
+  std::shared_ptr<const BodyBounds> bounds;
 };
 
-constexpr std::size_t kMaxCovers = 1000;
+constexpr std::size_t kMaxBounds = 1000;
 
 }  // namespace
 
-std::shared_ptr<const BallCover> shared_cover(const Solid& solid, const Shape& shape) {
-  static std::map<CoverKey, CoverEntry> covers;
-  const CoverKey key = cover_key(shape);
+std::shared_ptr<const BodyBounds> shared_bounds(const Solid& solid, const Shape& shape) {
+  static std::map<BoundsKey, BoundsEntry> known;
+  const BoundsKey key = bounds_key(shape);
   std::shared_ptr<const void> source;
   if (const auto* mesh = std::get_if<MeshShape>(&shape)) source = mesh->mesh;
   {
     const std::lock_guard<std::mutex> lock(cache_mutex);
-    const auto it = covers.find(key);
-    if (it != covers.end() && it->second.source.lock() == source) return it->second.cover;
+    const auto it = known.find(key);
+    if (it != known.end() && it->second.source.lock() == source) return it->second.bounds;
   }
-  auto cover = std::make_shared<const BallCover>(cover_body(solid, shape));
+  auto bounds = std::make_shared<const BodyBounds>(solid, shape);
   const std::lock_guard<std::mutex> lock(cache_mutex);
-  if (covers.size() >= kMaxCovers) covers.clear();
-  covers[key] = {source, cover};
-  return cover;
+  if (known.size() >= kMaxBounds) known.clear();
+  known[key] = {source, bounds};
+  return bounds;
 }
 
 }  // namespace mmgrasp::detail

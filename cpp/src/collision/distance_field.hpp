@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "collision/kernels.hpp"
+#include "mmgrasp/geometry/mesh.hpp"
+
+namespace mmgrasp::detail {
+
+struct Solid;
+
+/// A grid around a body that bounds the distance to it from below: what is farther than a ball's radius misses the ball
+/// for certain. Cells that lie wholly within the body are marked. Immutable.
+class DistanceField {
+ public:
+  /// Of a mesh; `solid` was made of it.
+  DistanceField(const TriangleMesh& mesh, const Solid& solid);
+  /// Of solid cells of one edge length. The grid is their own as long as it is small enough, else a coarser one.
+  DistanceField(const std::vector<Eigen::Vector3d>& centres, double resolution);
+
+  FieldView view() const;
+  /// The point, in the body's frame, is at least this far from the body [m]; 0 when that is not known.
+  double distance(const Eigen::Vector3d& point) const {
+    const Eigen::Vector3d cell = (point - low_) * per_step_;
+    if ((cell.array() < 0).any() || (cell.array() >= size_.array()).any()) return body_.exteriorDistance(point);
+    const int value = cells_[index(static_cast<int>(cell[0]), static_cast<int>(cell[1]), static_cast<int>(cell[2]))];
+    return value > 0 ? value * quantum_ : 0;
+  }
+  /// Largest coordinate of the grid [m].
+  float extent() const { return extent_; }
+
+ private:
+  enum Cell : std::int8_t { kInside = -1, kNear = 0 };  ///< Else: distance in quanta.
+
+  void lay_out(const Eigen::AlignedBox3d& body, const Eigen::Vector3d& low, double step,
+               const std::array<int, 3>& count);
+  std::size_t index(int i, int j, int k) const { return (static_cast<std::size_t>(i) * count_[1] + j) * count_[2] + k; }
+  /// Cells that the triangle may touch become kNear.
+  void mark(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
+  /// Cells that cannot be reached from outside without crossing kNear become kNear, or kInside where the solid says so.
+  void fill(const Solid& solid);
+  /// Turns kFree cells into distances to the others.
+  void measure();
+
+  Eigen::AlignedBox3d body_;
+  Eigen::Vector3d low_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d size_ = Eigen::Vector3d::Zero();  ///< In cells.
+  double step_ = 1, per_step_ = 1, quantum_ = 1;
+  std::array<int, 3> count_{{1, 1, 1}};
+  std::vector<std::int8_t> cells_;
+  float extent_ = 0;
+};
+
+}  // namespace mmgrasp::detail

@@ -338,8 +338,8 @@ int links_with_shapes(const Robot& robot) {
 /// The group again on a robot that differs in its pairs only.
 JointGroup rebuilt(const JointGroup& group, const Robot& robot) {
   const std::string tip = robot.links()[group.tip_link()].name;
-  const std::string first = group.names()[group.has_base() ? 3 : 0];
-  const std::string base = robot.links()[robot.joints()[robot.joint_index(first)].parent_link].name;
+  const int first = group.joints()[group.has_base() ? 3 : 0];
+  const std::string base = robot.links()[robot.joints()[first].parent_link].name;
   const bool named = [&] {
     for (const GroupDescription& description : robot.groups()) {
       if (description.name == group.name()) return true;

@@ -21,13 +21,12 @@ std::vector<int> group_links(const Robot& robot, const Breaks& breaks) {
 
 // Joints whose value the group sets, mimicking ones included.
 std::vector<char> active_joints(const Robot& robot, const JointGroup& group) {
-  const std::vector<std::string>& names = group.names();
+  const std::vector<int>& driven = group.joints();
   std::vector<char> active(robot.joints().size(), 0);
   for (std::size_t j = 0; j < active.size(); ++j) {
     const Joint& joint = robot.joints()[j];
     const int leader = joint.mimic_joint >= 0 ? joint.mimic_joint : static_cast<int>(j);
-    const auto first = names.begin() + (group.has_base() ? 3 : 0);
-    active[j] = std::find(first, names.end(), robot.joints()[leader].name) != names.end();
+    active[j] = std::find(driven.begin(), driven.end(), leader) != driven.end();
   }
   return active;
 }

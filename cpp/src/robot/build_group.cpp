@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mmgrasp/core/error.hpp"
 #include "robot/joint_group_data.hpp"
@@ -14,17 +15,66 @@ const Joint& joint_of(const GroupModel& model, int index) {
   return model.robot.joints()[static_cast<std::size_t>(index)];
 }
 
-/// How one robot joint depends on the configuration; column -1 when it stands still.
-struct Drive {
-  int column = -1;
-  double multiplier = 1, offset = 0;
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kAccelerationPerVelocity = 4.0;  // [1/s]: URDF knows no acceleration limits
+
+struct Column {
+  std::string name;
+  int joint = -1;
+  double lower = 0, upper = 0, velocity = 0, acceleration = 0;
+  bool wraps = false;
 };
 
-Drive drive_of(const GroupModel& model, const Joint& joint, int index) {
+std::vector<Column> base_columns(const BaseLimits& limits) {
+  const double w = limits.workspace, v = limits.linear_velocity, a = limits.linear_acceleration;
+  return {{"x", -1, -w, w, v, a, false},
+          {"y", -1, -w, w, v, a, false},
+          {"theta", -1, -kInfinite, kInfinite, limits.angular_velocity, limits.angular_acceleration, true}};
+}
+
+std::vector<Column> joint_columns(const Joint& joint, int index, double workspace) {
+  const double v = joint.velocity, a = kAccelerationPerVelocity * v;
+  const auto translation = [&](const char* axis) {
+    return Column{joint.name + "/" + axis, index, -workspace, workspace, v, a, false};
+  };
+  // A rotation vector's entries are no angles of their own: half turns either way hold every rotation.
+  const auto rotation = [&](const char* axis) {
+    return Column{joint.name + "/" + axis, index, -M_PI, M_PI, v, a, false};
+  };
+  switch (joint.type) {
+    case JointType::planar:
+      return {translation("x"), translation("y"),
+              Column{joint.name + "/theta", index, -kInfinite, kInfinite, v, a, true}};
+    case JointType::floating:
+      return {translation("x"), translation("y"), translation("z"), rotation("rx"), rotation("ry"), rotation("rz")};
+    default:
+      return {{joint.name, index, joint.lower, joint.upper, v, a, joint.type == JointType::continuous}};
+  }
+}
+
+void set_columns(const std::vector<Column>& columns, GroupModel& model) {
+  const Eigen::Index size = static_cast<Eigen::Index>(columns.size());
+  for (Eigen::VectorXd* v : {&model.lower, &model.upper, &model.velocity, &model.acceleration}) v->resize(size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const Column& column = columns[static_cast<std::size_t>(i)];
+    model.names.push_back(column.name);
+    model.joints.push_back(column.joint);
+    model.wraps.push_back(column.wraps);
+    model.lower[i] = column.lower;
+    model.upper[i] = column.upper;
+    model.velocity[i] = column.velocity;
+    model.acceleration[i] = column.acceleration;
+  }
+}
+
+}  // namespace
+
+Drive drive_of(const GroupModel& model, int index) {
+  const Joint& joint = joint_of(model, index);
   const int source = joint.mimic_joint >= 0 ? joint.mimic_joint : index;
   const auto found = std::find(model.joints.begin(), model.joints.end(), source);
   if (found == model.joints.end()) return {};
-  Drive drive{model.base_columns() + static_cast<int>(found - model.joints.begin()), 1, 0};
+  Drive drive{static_cast<int>(found - model.joints.begin()), 1, 0};
   if (joint.mimic_joint >= 0) {
     drive.multiplier = joint.mimic_multiplier;
     drive.offset = joint.mimic_offset;
@@ -32,7 +82,6 @@ Drive drive_of(const GroupModel& model, const Joint& joint, int index) {
   return drive;
 }
 
-/// T_parent_child of a joint that stands at the reference.
 Pose standing_pose(const GroupModel& model, const Joint& joint) {
   if (joint.mimic_joint >= 0) {
     const int source = joint_of(model, joint.mimic_joint).value_index;
@@ -43,166 +92,36 @@ Pose standing_pose(const GroupModel& model, const Joint& joint) {
   return joint.T_parent_joint * joint_motion(joint, model.reference.data() + joint.value_index);
 }
 
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& a) {
-  Eigen::Matrix3d M;
-  M << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
-  return M;
-}
-
-LinkStep link_step(const GroupModel& model, const Joint& joint, int index) {
-  const Drive drive = drive_of(model, joint, index);
-  LinkStep step;
-  step.link = joint.child_link;
-  step.parent = joint.parent_link;
-  step.column = drive.column;
-  step.multiplier = drive.multiplier;
-  step.offset = drive.offset;
-  step.prismatic = joint.type == JointType::prismatic;
-  const Pose T = drive.column < 0 ? standing_pose(model, joint) : joint.T_parent_joint;
-  const Eigen::Matrix3d R = T.linear();
-  step.A = R;
-  step.B.setZero();
-  step.C.setZero();
-  if (drive.column >= 0 && !step.prismatic) {
-    // Rodrigues: a a^T + sin [a]x + cos (1 - a a^T), with the fixed rotation multiplied in.
-    const Eigen::Matrix3d along = joint.axis * joint.axis.transpose();
-    step.A = R * along;
-    step.B = R * cross_matrix(joint.axis);
-    step.C = R * (Eigen::Matrix3d::Identity() - along);
-  }
-  step.p0 = T.translation();
-  step.d = R * joint.axis;
-  return step;
-}
-
-void flatten_links(GroupModel& model) {
-  model.steps.clear();
-  model.moving_links.clear();
-  model.moving_steps.clear();
-  std::vector<bool> moves(model.robot.links().size(), model.has_base);
-  if (model.has_base) model.moving_links.push_back(0);
-  const std::vector<Joint>& joints = model.robot.joints();
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    const LinkStep step = link_step(model, joints[i], static_cast<int>(i));
-    if (moves[static_cast<std::size_t>(step.parent)] || step.column >= 0) {
-      moves[static_cast<std::size_t>(step.link)] = true;
-      model.moving_links.push_back(step.link);
-      model.moving_steps.push_back(static_cast<int>(model.steps.size()));
-    }
-    model.steps.push_back(step);
-  }
-}
-
-Eigen::Matrix3d rotation_from_z(const Eigen::Vector3d& axis) {
-  if (axis == -Eigen::Vector3d::UnitZ()) return Eigen::Vector3d(1, -1, -1).asDiagonal();
-  return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
-}
-
-/// Range of a joint value as a length, for the reach bound.
-double travel(const GroupModel& model, const ChainSegment& segment) {
-  if (!segment.prismatic) return 0;
-  const double a = segment.multiplier * model.lower[segment.column] + segment.offset;
-  const double b = segment.multiplier * model.upper[segment.column] + segment.offset;
-  return std::max(std::abs(a), std::abs(b));
-}
-
-void flatten_chain(GroupModel& model) {
-  std::vector<int> path;
-  for (int link = model.tip_link; link > 0; link = joint_of(model, link - 1).parent_link) path.push_back(link - 1);
-  std::reverse(path.begin(), path.end());
-  model.chain.clear();
-  model.reach = 0;
-  model.first_joint.setZero();
-  Pose fixed = Pose::Identity();
-  for (const int index : path) {
-    const Joint& joint = joint_of(model, index);
-    const Drive drive = drive_of(model, joint, index);
-    if (drive.column < 0) {
-      fixed = fixed * standing_pose(model, joint);
-      continue;
-    }
-    // Turn the joint frame so that the axis is z, and back behind the joint.
-    const Eigen::Matrix3d align = rotation_from_z(joint.axis);
-    const Pose before = fixed * joint.T_parent_joint;
-    ChainSegment segment;
-    segment.R = before.linear() * align;
-    segment.p = before.translation();
-    segment.prismatic = joint.type == JointType::prismatic;
-    segment.column = drive.column;
-    segment.multiplier = drive.multiplier;
-    segment.offset = drive.offset;
-    if (model.chain.empty()) {
-      model.first_joint = segment.p;
-    } else {
-      model.reach += segment.p.norm();
-    }
-    model.reach += travel(model, segment);
-    model.chain.push_back(segment);
-    fixed = Pose::Identity();
-    fixed.linear() = align.transpose();
-  }
-  model.R_tip = fixed.linear();
-  model.p_tip = fixed.translation();
-  if (model.chain.empty()) {
-    model.first_joint = model.p_tip;
-  } else {
-    model.reach += model.p_tip.norm();
-  }
-}
-
-void add_base_columns(GroupModel& model, std::vector<double> (&columns)[4]) {
-  const BaseLimits& limits = model.robot.base_limits();
-  const double inf = std::numeric_limits<double>::infinity();
-  model.names = {"x", "y", "theta"};
-  model.wraps = {false, false, true};
-  columns[0] = {-limits.workspace, -limits.workspace, -inf};
-  columns[1] = {limits.workspace, limits.workspace, inf};
-  columns[2] = {limits.linear_velocity, limits.linear_velocity, limits.angular_velocity};
-  columns[3] = {limits.linear_acceleration, limits.linear_acceleration, limits.angular_acceleration};
-}
-
-Eigen::VectorXd to_eigen(const std::vector<double>& values) {
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
-
-}  // namespace
-
 void flatten(GroupModel& model) {
-  flatten_links(model);
-  flatten_chain(model);
+  auto kinematics = std::make_shared<GroupKinematics>();
+  flatten_links(model, *kinematics);
+  flatten_chain(model, *kinematics);
+  model.kinematics = std::move(kinematics);
 }
 
 JointGroup make_group(const Robot& robot, const std::string& name, const std::vector<int>& joints, int tip_link,
                       bool with_base) {
-  constexpr double kAccelerationPerVelocity = 4.0;  // [1/s]: URDF knows no acceleration limits
   if (with_base && robot.base() == BaseKind::fixed)
     throw InvalidInput("group \"" + name + "\": with_base = true: robot \"" + robot.name() +
                        "\" has base kind fixed, load it as diff_drive or omni");
   auto model = std::make_shared<GroupModel>(robot);
   model->name = name;
-  model->joints = joints;
   model->has_base = with_base;
   model->tip_link = tip_link;
   model->reference = robot.default_values();
-  std::vector<double> columns[4];  // lower, upper, velocity, acceleration
-  if (with_base) add_base_columns(*model, columns);
+  std::vector<Column> columns;
+  if (with_base) columns = base_columns(robot.base_limits());
   for (const int index : joints) {
-    const Joint& joint = joint_of(*model, index);
-    model->names.push_back(joint.name);
-    model->wraps.push_back(joint.type == JointType::continuous);
-    const double values[4] = {joint.lower, joint.upper, joint.velocity, kAccelerationPerVelocity * joint.velocity};
-    for (int i = 0; i < 4; ++i) columns[i].push_back(values[i]);
+    const std::vector<Column> more = joint_columns(joint_of(*model, index), index, robot.base_limits().workspace);
+    columns.insert(columns.end(), more.begin(), more.end());
   }
-  const int size = static_cast<int>(model->names.size());
+  const int size = static_cast<int>(columns.size());
   require(size > 0, "group \"" + name + "\" size", size, "must have at least one movable joint");
   require(size <= kMaxGroupSize, "group \"" + name + "\" size", size,
           "must be at most " + std::to_string(kMaxGroupSize));
-  model->lower = to_eigen(columns[0]);
-  model->upper = to_eigen(columns[1]);
-  model->velocity = to_eigen(columns[2]);
-  model->acceleration = to_eigen(columns[3]);
+  set_columns(columns, *model);
   flatten(*model);
-  return JointGroup(std::make_shared<JointGroup::Data>(JointGroup::Data{std::move(model), Pose::Identity()}));
+  return JointGroup(std::make_shared<JointGroup::Data>(std::move(model), Pose::Identity()));
 }
 
 }  // namespace detail
@@ -256,9 +175,6 @@ JointGroup Robot::chain(const std::string& base_link, const std::string& tip_lin
   std::vector<int> chain_joints;
   for (int link = tip; link != base; link = joints()[static_cast<std::size_t>(link - 1)].parent_link) {
     const Joint& joint = joints()[static_cast<std::size_t>(link - 1)];
-    if (joint.value_count() > 1)
-      throw InvalidInput("joint \"" + joint.name + "\": is " + to_string(joint.type) +
-                         ", a chain may hold joints with one value only");
     // A mimic joint moves with the one it follows, which must be in the chain itself to count.
     if (joint.value_index >= 0) chain_joints.push_back(link - 1);
   }

@@ -7,6 +7,13 @@
 
 namespace mmgrasp {
 
+JointGroup::Data::Data(std::shared_ptr<const detail::GroupModel> of, const Pose& T)
+    : model(std::move(of)), T_world_root(T), kinematics(model->kinematics.get()) {
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(kinematics->first_turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  Eigen::Map<Eigen::Matrix3d>(root.R, 3, 3) = T.linear() * turn;
+  Eigen::Map<Eigen::Vector3d>(root.p, 3) = T.translation();
+}
+
 JointGroup::JointGroup(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
 
 const Robot& JointGroup::robot() const {
@@ -49,7 +56,10 @@ const Pose& JointGroup::T_world_root() const {
   return data_->T_world_root;
 }
 const std::vector<int>& JointGroup::moving_links() const {
-  return data_->model->moving_links;
+  return data_->kinematics->moving_links;
+}
+const std::vector<int>& JointGroup::joints() const {
+  return data_->model->joints;
 }
 
 JointGroup JointGroup::with_reference(const Eigen::VectorXd& full_values) const {
@@ -61,14 +71,14 @@ JointGroup JointGroup::with_reference(const Eigen::VectorXd& full_values) const 
   auto model = std::make_shared<detail::GroupModel>(*data_->model);
   model->reference = full_values;
   detail::flatten(*model);
-  return JointGroup(std::make_shared<Data>(Data{std::move(model), data_->T_world_root}));
+  return JointGroup(std::make_shared<Data>(std::move(model), data_->T_world_root));
 }
 
 JointGroup JointGroup::at(const Pose& T_world_root) const {
   if (has_base())
     throw InvalidInput("group \"" + name() +
                        "\": its base joints already say where the root stands, at() is for groups without");
-  return JointGroup(std::make_shared<Data>(Data{data_->model, T_world_root}));
+  return JointGroup(std::make_shared<Data>(data_->model, T_world_root));
 }
 
 JointGroup JointGroup::with_acceleration_limits(const Eigen::VectorXd& limits) const {
@@ -77,7 +87,7 @@ JointGroup JointGroup::with_acceleration_limits(const Eigen::VectorXd& limits) c
     require(limits[i] > 0, "acceleration_limits[" + std::to_string(i) + "]", limits[i], "must be positive");
   auto model = std::make_shared<detail::GroupModel>(*data_->model);
   model->acceleration = limits;
-  return JointGroup(std::make_shared<Data>(Data{std::move(model), data_->T_world_root}));
+  return JointGroup(std::make_shared<Data>(std::move(model), data_->T_world_root));
 }
 
 bool JointGroup::within_limits(const Eigen::VectorXd& q, double slack) const {
@@ -105,9 +115,13 @@ Eigen::VectorXd JointGroup::sample_upper() const {
 Eigen::VectorXd JointGroup::full_values(const Eigen::VectorXd& q) const {
   const detail::GroupModel& model = *data_->model;
   Eigen::VectorXd values = model.reference;
-  for (std::size_t i = 0; i < model.joints.size(); ++i)
-    values[model.robot.joints()[static_cast<std::size_t>(model.joints[i])].value_index] =
-        q[model.base_columns() + static_cast<Eigen::Index>(i)];
+  int place = 0;  // within the values of a joint
+  for (int i = model.base_columns(); i < size(); ++i) {
+    const int joint = model.joints[static_cast<std::size_t>(i)];
+    const bool same = i > 0 && model.joints[static_cast<std::size_t>(i - 1)] == joint;
+    place = same ? place + 1 : 0;
+    values[model.robot.joints()[static_cast<std::size_t>(joint)].value_index + place] = q[i];
+  }
   return values;
 }
 

@@ -23,7 +23,7 @@ constexpr int kCheckRestarts = 12;
 std::set<std::string> hand_links(const JointGroup& arm) {
   const Robot& robot = arm.robot();
   std::set<std::string> names;
-  std::vector<int> open = {robot.joints()[static_cast<std::size_t>(robot.joint_index(arm.names().back()))].child_link};
+  std::vector<int> open = {robot.joints()[static_cast<std::size_t>(arm.joints().back())].child_link};
   while (!open.empty()) {
     const Link& link = robot.links()[static_cast<std::size_t>(open.back())];
     open.pop_back();

@@ -3,45 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <kdl/chainfksolverpos_recursive.hpp>
-#include <kdl/chainjnttojacsolver.hpp>
 #include <limits>
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "support/kinematics_support.hpp"
 #include "support/robot_support.hpp"
 
 using namespace mmgrasp;
 using namespace mmgrasp::testing_support;
 
 namespace {
-
-Eigen::VectorXd random_configuration(const JointGroup& group, Rng& rng) {
-  return rng.uniform(group.sample_lower(), group.sample_upper());
-}
-
-Matrix6Xd numeric_jacobian(const JointGroup& group, const Eigen::VectorXd& q) {
-  const double h = 1e-6;
-  Matrix6Xd J(6, group.size());
-  for (int i = 0; i < group.size(); ++i) {
-    Eigen::VectorXd a = q, b = q;
-    a[i] -= h;
-    b[i] += h;
-    J.col(i) = pose_difference(group.fk(a), group.fk(b)) / (2 * h);
-  }
-  return J;
-}
-
-/// Group and Robot::link_poses must agree on every link; the latter is the plain, slow way.
-void expect_link_poses_agree(const JointGroup& group, const Eigen::VectorXd& q) {
-  const Poses expected = group.robot().link_poses(group.full_values(q), group.root_pose(q));
-  Poses actual;
-  group.link_poses(q, actual);
-  ASSERT_EQ(actual.size(), expected.size());
-  for (std::size_t i = 0; i < actual.size(); ++i)
-    EXPECT_LT((actual[i].matrix() - expected[i].matrix()).norm(), 1e-12) << group.robot().links()[i].name;
-  EXPECT_LT((group.fk(q).matrix() - expected[static_cast<std::size_t>(group.tip_link())].matrix()).norm(), 1e-12);
-}
 
 const char* kMimicUrdf = R"(
 <robot name="mimic">
@@ -97,27 +69,13 @@ TEST(JointGroup, MatchesKdlOnRandomConfigurations) {
   const Robot ur = load_kinematics("robots/ur/expanded/ur5e.urdf");
   for (const JointGroup& group :
        {panda().group("panda_arm"), tiago().group("arm_torso"), ur.chain("base_link", "tool0")}) {
-    const KDL::Chain chain = kdl_chain(group.robot(), group.tip_link());
-    ASSERT_EQ(static_cast<int>(chain.getNrOfJoints()), group.size());
-    KDL::ChainFkSolverPos_recursive fk(chain);
-    KDL::ChainJntToJacSolver jacobian(chain);
     Rng rng(11);
     for (int i = 0; i < 200; ++i) {
       const Eigen::VectorXd q = random_configuration(group, rng);
-      KDL::JntArray angles(chain.getNrOfJoints());
-      angles.data = q;
-      KDL::Frame frame;
-      KDL::Jacobian expected(chain.getNrOfJoints());
-      ASSERT_GE(fk.JntToCart(angles, frame), 0);
-      ASSERT_GE(jacobian.JntToJac(angles, expected), 0);
+      expect_kdl_agrees(group, q);
       Pose T;
       Matrix6Xd J(6, group.size());
       group.fk_jacobian(q, T, J);
-      for (int r = 0; r < 3; ++r) {
-        EXPECT_NEAR(T(r, 3), frame.p[r], 1e-12);
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(T(r, c), frame.M(r, c), 1e-12);
-      }
-      EXPECT_LT((J - expected.data).cwiseAbs().maxCoeff(), 1e-12);
       EXPECT_EQ((group.fk(q).matrix() - T.matrix()).norm(), 0.0);
       EXPECT_EQ((group.jacobian(q) - J).norm(), 0.0);
     }
@@ -243,13 +201,133 @@ TEST(JointGroup, LimitsWrapsAndDefaults) {
   EXPECT_THROW(group.with_acceleration_limits(-faster), InvalidInput);
 }
 
-TEST(JointGroup, ManipulabilityMatchesSingularValues) {
+TEST(JointGroup, EveryWayThroughThePr2MatchesKdlOnEveryInstructionSet) {
   MMGRASP_NEEDS_SHARED_DATA();
-  const JointGroup group = panda().group("panda_arm");
-  Rng rng(9);
-  for (int i = 0; i < 50; ++i) {
-    const Eigen::VectorXd q = random_configuration(group, rng);
-    const double expected = Eigen::JacobiSVD<Eigen::MatrixXd>(group.jacobian(q)).singularValues().prod();
-    EXPECT_NEAR(group.manipulability(q), expected, 1e-10);
+  const Robot robot = load_kinematics("reference/trac_ik/launch/pr2.urdf");
+  std::vector<JointGroup> chains;
+  for (const Link& link : robot.links()) {
+    // KDL chains know no mimic joints: ends below one are left to the comparison with Robot::link_poses.
+    bool plain = true, moves = false;
+    for (int at = robot.link_index(link.name); at > 0;
+         at = robot.joints()[static_cast<std::size_t>(at - 1)].parent_link) {
+      plain = plain && robot.joints()[static_cast<std::size_t>(at - 1)].mimic_joint < 0;
+      moves = moves || robot.joints()[static_cast<std::size_t>(at - 1)].value_index >= 0;
+    }
+    if (plain && moves) chains.push_back(robot.chain(robot.links()[0].name, link.name));
   }
+  EXPECT_GE(chains.size(), 60u);
+  on_every_instruction_set([&] {
+    Rng rng(21);
+    for (const JointGroup& group : chains) {
+      SCOPED_TRACE(group.name());
+      for (int i = 0; i < 5; ++i) {
+        const Eigen::VectorXd q = random_configuration(group, rng);
+        expect_kdl_agrees(group, q);
+        expect_link_poses_agree(group, q);
+      }
+    }
+  });
+}
+
+TEST(JointGroup, PointJacobianMatchesKdlOnChains) {
+  MMGRASP_NEEDS_SHARED_DATA();
+  const Robot robot = panda();
+  const JointGroup arm = robot.group("panda_arm");
+  Rng rng(31);
+  for (const char* name : {"panda_link8", "panda_link5", "panda_link2"}) {
+    const JointGroup part = robot.chain("panda_link0", name);
+    for (int i = 0; i < 20; ++i) {
+      const Eigen::VectorXd q = random_configuration(arm, rng);
+      const Eigen::Vector3d point = rng.uniform(Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1, 1, 1));
+      Pose T;
+      Matrix6Xd expected;
+      ASSERT_NO_FATAL_FAILURE(kdl_kinematics(part, q.head(part.size()), point, T, expected));
+      const Matrix6Xd J = arm.jacobian(q, robot.link_index(name), point);
+      EXPECT_LT((J.leftCols(part.size()) - expected).cwiseAbs().maxCoeff(), 1e-12);
+      EXPECT_EQ(J.rightCols(arm.size() - part.size()).norm(), 0.0);
+      Poses poses;
+      arm.link_poses(q, poses);
+      Matrix6Xd in_place(6, arm.size());
+      arm.point_jacobian(poses, q, robot.link_index(name), T.translation(), in_place);
+      EXPECT_LT((in_place - J).cwiseAbs().maxCoeff(), 1e-12);
+    }
+  }
+  EXPECT_LT(
+      (arm.jacobian(arm.sample_lower(), arm.tip_link(), Eigen::Vector3d::Zero()) - arm.jacobian(arm.sample_lower()))
+          .norm(),
+      1e-12);
+  EXPECT_THROW(arm.jacobian(arm.sample_lower(), -1, Eigen::Vector3d::Zero()), InvalidInput);
+  EXPECT_THROW(arm.jacobian(arm.sample_lower(), 1000, Eigen::Vector3d::Zero()), InvalidInput);
+}
+
+TEST(JointGroup, PointJacobianMatchesFiniteDifferencesOnTreesWithBaseAndMimic) {
+  MMGRASP_NEEDS_SHARED_DATA();
+  RobotOptions omni;
+  omni.base = BaseKind::omni;
+  const std::vector<JointGroup> groups{tiago().group("arm_torso", "", true), two_hands().group("all", "left_tip"),
+                                       Robot::from_strings(kMimicUrdf, "", omni).chain("root", "tip", true)};
+  Rng rng(32);
+  for (const JointGroup& group : groups) {
+    const int links = static_cast<int>(group.robot().links().size());
+    for (int link = 0; link < links; ++link) {
+      SCOPED_TRACE(group.robot().links()[static_cast<std::size_t>(link)].name);
+      Eigen::VectorXd q = random_configuration(group, rng);
+      if (group.has_base()) q.head<2>() /= 50;
+      const Eigen::Vector3d point(0.3, -0.2, 0.5);
+      EXPECT_LT((group.jacobian(q, link, point) - numeric_jacobian(group, q, link, point)).cwiseAbs().maxCoeff(), 2e-8);
+    }
+  }
+}
+
+TEST(JointGroup, TreesWithAMimicInTheOtherBranch) {
+  const JointGroup right = two_hands().group("all", "right_tip"), left = two_hands().group("all", "left_tip");
+  const JointGroup mobile = two_hands(BaseKind::omni).group("all", "right_tip", true);
+  on_every_instruction_set([&] {
+    Rng rng(33);
+    for (const JointGroup& group : {right, left, mobile})
+      for (int i = 0; i < 20; ++i) {
+        Eigen::VectorXd q = random_configuration(group, rng);
+        if (group.has_base()) q.head<2>() /= 50;
+        expect_link_poses_agree(group, q);
+        // Storage that is not clean beforehand, and wider than the Jacobian.
+        Eigen::MatrixXd storage = Eigen::MatrixXd::Constant(9, group.size(), 7.0);
+        Eigen::Map<Matrix6Xd, 0, Eigen::OuterStride<>> J(storage.data(), 6, group.size(), Eigen::OuterStride<>(9));
+        Pose T;
+        group.fk_jacobian(q, T, J);
+        EXPECT_LT((J - numeric_jacobian(group, q)).cwiseAbs().maxCoeff(), 2e-8);
+        EXPECT_EQ((storage.bottomRows(3).array() - 7.0).matrix().norm(), 0.0);
+        if (group.tip_link() == left.tip_link()) {
+          EXPECT_EQ(J.col(2).norm(), 0.0);
+        }
+      }
+  });
+}
+
+TEST(JointGroup, FarAngles) {
+  const Robot robot = Robot::from_strings(R"(<robot name="wheel"><link name="a"/><link name="b"/>
+    <joint name="j" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint></robot>)");
+  const JointGroup group = robot.chain("a", "b");
+  on_every_instruction_set([&] {
+    const auto expect_turned = [&](double angle) {
+      const Pose T = group.fk(Eigen::VectorXd::Constant(1, angle));
+      Poses poses;
+      group.link_poses(Eigen::VectorXd::Constant(1, angle), poses);
+      for (const Pose& each : {T, poses[1]}) {
+        EXPECT_NEAR(each(0, 0), std::cos(angle), 2.3e-16) << angle;  // an ulp below 1 is 1.1e-16
+        EXPECT_NEAR(each(1, 0), std::sin(angle), 2.3e-16) << angle;
+      }
+    };
+    Rng rng(41);
+    for (int i = 0; i < 20000; ++i) expect_turned(rng.uniform(-20.0, 20.0));
+    for (int i = 0; i < 20000; ++i) expect_turned(rng.uniform(-1e5, 1e5));
+    for (int i = -200; i <= 200; ++i)
+      for (const double off : {0.0, 1e-15, -1e-9, 1e-4}) expect_turned(i * M_PI_2 + off);
+    for (const double angle : {1e5, -100000.1, 1e6, 3e9, -1e17, 1e300, 0.0, -0.0, 5e-324}) expect_turned(angle);
+    // What is no number stays none, on every way.
+    for (const double angle : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+      EXPECT_TRUE(std::isnan(group.fk(Eigen::VectorXd::Constant(1, angle))(0, 0)));
+      EXPECT_TRUE(std::isnan(group.jacobian(Eigen::VectorXd::Constant(1, angle)).sum()) ||
+                  group.jacobian(Eigen::VectorXd::Constant(1, angle)).allFinite());
+    }
+  });
 }

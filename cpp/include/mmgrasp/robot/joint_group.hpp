@@ -12,13 +12,17 @@
 namespace mmgrasp {
 
 /// Some joints of a robot that are planned together, and a tip. Configuration: base joints x, y, theta first when the
-/// group has them, then the chain in order. All other joints stay at the group's reference values; without base joints
-/// the root stands at `T_world_root`. Immutable, cheap to copy, safe to share between threads.
+/// group has them, then the chain in order. A planar joint has three columns, "<joint>/x", "<joint>/y" and
+/// "<joint>/theta"; a floating one six, "<joint>/x", "/y", "/z" and its rotation vector "/rx", "/ry", "/rz". Their
+/// translations lie in the base's workspace bound, the entries of a rotation vector in [-pi, pi]; theta wraps. All
+/// other joints stay at the group's reference values; without base joints the root stands at `T_world_root`. Immutable,
+/// cheap to copy, safe to share between threads.
 class MMGRASP_EXPORT JointGroup {
  public:
   const Robot& robot() const;
   const std::string& name() const;
   const std::vector<std::string>& names() const;  ///< "x", "y", "theta" first when the group has the base.
+  const std::vector<int>& joints() const;         ///< Robot joint of each column; -1 for the base's.
   int size() const;
   bool has_base() const;
   int tip_link() const;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "mmgrasp/core/export.hpp"
@@ -9,15 +10,25 @@
 namespace mmgrasp {
 
 /// Forward kinematics of many configurations, a column of Q (size() x m) each. The same values as JointGroup::fk to
-/// 1e-12, several configurations at a time where the machine has wide vectors.
+/// 1e-12, several configurations at a time. Throws InvalidInput when Q has not size() rows.
 MMGRASP_EXPORT void fk_batch(const JointGroup& group, const Eigen::Ref<const Eigen::MatrixXd>& Q, Poses& T_world_tip);
 
 /// With the world-aligned Jacobians at the tip, stored next to each other: 6 x (m size()).
 MMGRASP_EXPORT void fk_jacobian_batch(const JointGroup& group, const Eigen::Ref<const Eigen::MatrixXd>& Q,
                                       Poses& T_world_tip, Matrix6Xd& J);
 
-/// sqrt(det(J J^T)) of each.
+/// JointGroup::manipulability of each.
 MMGRASP_EXPORT Eigen::VectorXd manipulability_batch(const JointGroup& group,
                                                     const Eigen::Ref<const Eigen::MatrixXd>& Q);
+
+namespace detail {
+
+/// For tests and measurements: the code that kinematics runs on, "portable" and what this machine has besides ("avx2",
+/// "avx512"), best first; the first is used unless another is chosen, for the whole process. Values differ between them
+/// by roundings.
+MMGRASP_EXPORT std::vector<std::string> instruction_sets();
+MMGRASP_EXPORT void use_instruction_set(const std::string& name);
+
+}  // namespace detail
 
 }  // namespace mmgrasp

@@ -1,0 +1,96 @@
+#pragma once
+
+/// The arithmetic of kinematics on plain arrays, compiled once for every instruction set. No Eigen type passes through
+/// here: wider registers would change the alignment that Eigen's types were given elsewhere.
+namespace mmgrasp::detail {
+
+constexpr int kMaxColumns = 64;    ///< Of a group, so that Jacobians live on the stack.
+constexpr int kMaxSegments = 128;  ///< Moving joints on the way from the root to a tip; lets scratch live on the stack.
+constexpr int kMaxTurns = 1024;    ///< Turning joints a group moves anywhere in the robot.
+constexpr int kMaxBalls = 16;      ///< Floating joints on the way to a tip.
+constexpr int kTurnBlock = 8;      ///< Tables of angles are padded to a multiple of this.
+
+/// Angles that depend on the configuration: multiplier * q[column] + offset.
+struct TurnTable {
+  int count = 0;  ///< Entries that mean something; the rest of the last block is harmless.
+  const int* column = nullptr;
+  const double* multiplier = nullptr;
+  const double* offset = nullptr;
+};
+
+enum class Motion { turn, slide, ball };
+
+/// One elementary motion on the way to the tip. Any rotation is Rz(a) Rx(b) Rz(c): the turns about z on either side are
+/// folded into the angles of the motions before and after, so that only the turn about x is left between two of them.
+/// In its own frame a motion goes about or along z.
+struct Segment {
+  double p[3] = {0, 0, 0};            ///< From the frame before, in that frame, before the turn about x.
+  double turn_cos = 1, turn_sin = 0;  ///< Of the turn about x.
+  double multiplier = 1, offset = 0;  ///< Slides: value = multiplier * q[column] + offset. Of turns: see TurnTable.
+  int column = 0;
+  int ball = 0;  ///< Which of the caller's balls.
+  Motion motion = Motion::turn;
+  bool adds = false;  ///< An earlier segment has written this column of the Jacobian.
+};
+
+/// Motion that the caller works out: rotation vectors. Columns of three.
+struct Ball {
+  double R[9];     ///< Rotation, seen from the frame before it.
+  double axes[9];  ///< Its left Jacobian: angular velocity per rate of each value.
+};
+
+struct Chain {
+  int segments = 0;
+  const Segment* segment = nullptr;
+  TurnTable turns;    ///< One entry for each segment (a constant one for slides and balls), then the base's heading.
+  bool base = false;  ///< Columns 0 to 2 are x, y, theta of the root.
+  int columns = 0;
+  int still_columns = 0;  ///< Columns that do not move the tip.
+  const int* still_column = nullptr;
+  double R_tip[9], p_tip[3];  ///< Behind the last motion; columns of three.
+};
+
+/// Where the root stands: rotation (columns of three) and position. Ignored by chains with a base.
+struct RootPose {
+  double R[9], p[3];
+};
+
+/// How a link stands in its parent.
+struct LinkStep {
+  enum class Kind { fixed, turn, slide, given };
+  Kind kind = Kind::fixed;
+  int link = 0, parent = 0;
+  int index = 0;  ///< Turn: entry of the turn table. Given: entry of the poses that the caller worked out.
+  int column = 0;
+  double multiplier = 1, offset = 0;  ///< Slides.
+  double A[12], B[12], C[12];         ///< R = A + sin B + cos C; columns of four, the last entry 0.
+  double p[4], d[4];                  ///< Position and what a slide adds per metre.
+};
+
+struct Kernels {
+  const char* name;
+  int lanes;  ///< Configurations that `batch` takes at a time.
+  /// `T` receives a 4 x 4 pose, `J` (may be null) 6 x columns with `stride` between columns.
+  void (*single)(const Chain&, const RootPose&, const double* q, const Ball*, double* T, double* J, long stride);
+  /// `blocks` times `lanes` configurations; chains without balls. J (may be null): 6 x columns each, next to each
+  /// other.
+  void (*batch)(const Chain&, const RootPose&, const double* q, long stride, long blocks, double* T, double* J);
+  /// Places links in this order; parents stand already. `T` holds 4 x 4 poses by link, `given` by LinkStep::index.
+  void (*links)(const LinkStep* steps, const int* order, int count, const TurnTable&, const double* q,
+                const double* given, double* T);
+};
+
+/// The fastest that this machine can run, unless use_instruction_set() chose another.
+const Kernels& kernels();
+
+extern const Kernels kPortableKernels;
+#if defined(__x86_64__) && defined(__GNUC__)
+#define MMGRASP_X86_KERNELS
+extern const Kernels kAvx2Kernels;
+extern const Kernels kAvx512Kernels;
+#endif
+
+/// For tables with angles beyond what the vector polynomials reduce exactly, or infinite ones.
+void turn_any(const TurnTable&, const double* q, double* sines, double* cosines);
+
+}  // namespace mmgrasp::detail

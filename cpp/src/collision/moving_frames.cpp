@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/error.hpp"
+
 namespace mmgrasp::detail {
 
 namespace {
@@ -12,11 +14,15 @@ Eigen::Matrix3d z_to(const Eigen::Vector3d& axis) {
   return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
 }
 
-int column_of(const Robot& robot, const JointGroup& group, const Joint& joint) {
-  const Joint& leader = joint.mimic_joint >= 0 ? robot.joints()[joint.mimic_joint] : joint;
-  const auto first = group.names().begin() + (group.has_base() ? 3 : 0);
-  const auto it = std::find(first, group.names().end(), leader.name);
-  return it == group.names().end() ? -1 : static_cast<int>(it - group.names().begin());
+int column_of(const JointGroup& group, int index) {
+  const Joint& joint = group.robot().joints()[index];
+  const std::vector<int>& driven = group.joints();
+  const auto it = std::find(driven.begin(), driven.end(), joint.mimic_joint >= 0 ? joint.mimic_joint : index);
+  if (it == driven.end()) return -1;
+  if (joint.value_count() > 1)
+    throw InvalidInput("group \"" + group.name() + "\": joint \"" + joint.name + "\" is " + to_string(joint.type) +
+                       ", collision checks move joints with one value only");
+  return static_cast<int>(it - driven.begin());
 }
 
 }  // namespace
@@ -29,7 +35,7 @@ MovingFrames::MovingFrames(const JointGroup& group) : has_base_(group.has_base()
   for (std::size_t link = 1; link < robot.links().size(); ++link) {
     const Joint& joint = robot.joints()[robot.links()[link].parent_joint];
     const Rigid& parent = link_in_frame_[joint.parent_link];
-    const int column = column_of(robot, group, joint);
+    const int column = column_of(group, robot.links()[link].parent_joint);
     if (column < 0) {
       frame_of_[link] = frame_of_[joint.parent_link];
       link_in_frame_[link] = parent * Rigid(reference[joint.parent_link]).to(Rigid(reference[link]));

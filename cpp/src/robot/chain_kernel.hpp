@@ -67,7 +67,7 @@ struct LinkStep {
   double p[4], d[4];                  ///< Position and what a slide adds per metre.
 };
 
-struct Kernels {
+struct KinematicsKernels {
   const char* name;
   int lanes;  ///< Configurations that `batch` takes at a time.
   /// `T` receives a 4 x 4 pose, `J` (may be null) 6 x columns with `stride` between columns.
@@ -81,13 +81,13 @@ struct Kernels {
 };
 
 /// The fastest that this machine can run, unless use_instruction_set() chose another.
-const Kernels& kernels();
+const KinematicsKernels& kinematics_kernels();
 
-extern const Kernels kPortableKernels;
+extern const KinematicsKernels kPortableKinematics;
 #if defined(__x86_64__) && defined(__GNUC__)
 #define MMGRASP_X86_KERNELS
-extern const Kernels kAvx2Kernels;
-extern const Kernels kAvx512Kernels;
+extern const KinematicsKernels kAvx2Kinematics;
+extern const KinematicsKernels kAvx512Kinematics;
 #endif
 
 /// For tables with angles beyond what the vector polynomials reduce exactly, or infinite ones.

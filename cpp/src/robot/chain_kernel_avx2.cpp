@@ -11,7 +11,7 @@ namespace {
 
 }  // namespace
 
-const Kernels kAvx2Kernels{"avx2", MMGRASP_LANES, &single, &batch, &links};
+const KinematicsKernels kAvx2Kinematics{"avx2", MMGRASP_LANES, &single, &batch, &links};
 
 }  // namespace mmgrasp::detail
 #endif

@@ -36,7 +36,7 @@ class Balls {
 Pose JointGroup::fk(const Eigen::Ref<const Eigen::VectorXd>& q) const {
   Pose T_world_tip;
   const Balls balls(*data_->kinematics, q.data());
-  detail::kernels().single(data_->kinematics->chain, data_->root, q.data(), balls.data(), T_world_tip.data(), nullptr,
+  detail::kinematics_kernels().single(data_->kinematics->chain, data_->root, q.data(), balls.data(), T_world_tip.data(), nullptr,
                            0);
   return T_world_tip;
 }
@@ -51,7 +51,7 @@ Matrix6Xd JointGroup::jacobian(const Eigen::Ref<const Eigen::VectorXd>& q) const
 void JointGroup::fk_jacobian(const Eigen::Ref<const Eigen::VectorXd>& q, Pose& T_world_tip,
                              Eigen::Ref<Matrix6Xd> J) const {
   const Balls balls(*data_->kinematics, q.data());
-  detail::kernels().single(data_->kinematics->chain, data_->root, q.data(), balls.data(), T_world_tip.data(), J.data(),
+  detail::kinematics_kernels().single(data_->kinematics->chain, data_->root, q.data(), balls.data(), T_world_tip.data(), J.data(),
                            J.outerStride());
 }
 
@@ -69,7 +69,7 @@ void JointGroup::link_poses(const Eigen::Ref<const Eigen::VectorXd>& q, Poses& T
     given[16 * i + 15] = 0;
   }
   const std::vector<int>& order = all ? kinematics.all_steps : kinematics.moving_steps;
-  detail::kernels().links(kinematics.steps.data(), order.data(), static_cast<int>(order.size()), kinematics.link_turns,
+  detail::kinematics_kernels().links(kinematics.steps.data(), order.data(), static_cast<int>(order.size()), kinematics.link_turns,
                           q.data(), given, T_world_link[0].data());
 }
 

@@ -10,7 +10,7 @@
 namespace mmgrasp {
 namespace {
 
-using detail::Kernels;
+using detail::KinematicsKernels;
 
 using Columns = Eigen::Ref<const Eigen::MatrixXd>;
 
@@ -33,7 +33,7 @@ void run(const JointGroup& group, const Columns& Q, Pose* T, double* J) {
     }
     return;
   }
-  const Kernels& kernels = detail::kernels();
+  const KinematicsKernels& kernels = detail::kinematics_kernels();
   const detail::RootPose& root = group.data().root;
   const Eigen::Index whole = m / kernels.lanes * kernels.lanes, rest = m - whole;
   if (whole > 0)

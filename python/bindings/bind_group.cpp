@@ -1,7 +1,10 @@
 #include <map>
+#include <optional>
 
 #include "bindings.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
+#include "mmgrasp/robot/kinematics_batch.hpp"
+#include "mmgrasp/robot/manipulability.hpp"
 
 namespace mmgrasp::python {
 namespace {
@@ -10,11 +13,48 @@ Eigen::VectorXd configuration(const JointGroup& g, const ArrayLike& q, const cha
   return vector_argument(q, name, g.size());
 }
 
+/// The digits that fk_batch gives, which may differ from JointGroup::fk in the last one.
+Pose fk_as_in_batches(const JointGroup& g, const Eigen::VectorXd& q) {
+  Poses poses;
+  fk_batch(g, q, poses);
+  return poses.front();
+}
+
+Eigen::MatrixXd jacobian_at(const JointGroup& g, const ArrayLike& q, const std::optional<std::string>& link,
+                            const std::optional<ArrayLike>& point) {
+  const Eigen::VectorXd at = configuration(g, q);
+  if (!link && !point) return g.jacobian(at);
+  return g.jacobian(at, link ? g.robot().link_index(*link) : g.tip_link(),
+                    point ? vector3_argument(*point, "point") : Eigen::Vector3d(0, 0, 0));
+}
+
+py::array_t<double> jacobian_batch(const JointGroup& g, const ArrayLike& Q) {
+  const Eigen::MatrixXd columns = matrix_argument(Q, "Q", g.size()).transpose();
+  const py::ssize_t m = columns.cols(), n = g.size();
+  Poses poses;
+  Matrix6Xd J;
+  {
+    py::gil_scoped_release release;
+    fk_jacobian_batch(g, columns, poses, J);
+  }
+  py::array_t<double> out({m, py::ssize_t{6}, n});
+  auto to = out.mutable_unchecked<3>();
+  for (py::ssize_t i = 0; i < m; ++i)
+    for (py::ssize_t r = 0; r < 6; ++r)
+      for (py::ssize_t c = 0; c < n; ++c) to(i, r, c) = J(r, i * n + c);
+  return out;
+}
+
 void bind_group_class(py::module_& m) {
   declared<JointGroup>(m, "JointGroup")
       .def_property_readonly("robot", &JointGroup::robot)
       .def_property_readonly("name", &JointGroup::name)
-      .def_property_readonly("names", &JointGroup::names, "Joint names; x, y, theta first when the group has the base.")
+      .def_property_readonly(
+          "names", &JointGroup::names,
+          "Names of the columns: joints, with x, y, theta first when the group has the base. A planar joint "
+          "has three, \"<joint>/x\", \"/y\", \"/theta\"; a floating one six, \"/x\", \"/y\", \"/z\", \"/rx\", \"/ry\", "
+          "\"/rz\" "
+          "(a rotation vector).")
       .def_property_readonly("size", &JointGroup::size)
       .def("__len__", &JointGroup::size)
       .def_property_readonly("has_base", &JointGroup::has_base)
@@ -48,24 +88,28 @@ void bind_group_class(py::module_& m) {
           },
           py::arg("q"), py::arg("slack") = 0.0)
       .def(
-          "fk", [](const JointGroup& g, const ArrayLike& q) { return to_array(g.fk(configuration(g, q))); },
+          "fk",
+          [](const JointGroup& g, const ArrayLike& q) { return to_array(fk_as_in_batches(g, configuration(g, q))); },
           py::arg("q"), "T_world_tip, (4, 4), of a configuration (n,).")
       .def(
           "fk_batch",
           [](const JointGroup& g, const ArrayLike& Q) {
             const Eigen::MatrixXd columns = matrix_argument(Q, "Q", g.size()).transpose();
-            Poses poses(columns.cols());
+            Poses poses;
             {
               py::gil_scoped_release release;
-              for (Eigen::Index i = 0; i < columns.cols(); ++i) poses[i] = g.fk(columns.col(i));
+              fk_batch(g, columns, poses);
             }
             return to_array(poses);
           },
           py::arg("Q"), "(m, 4, 4) for configurations (m, n).")
-      .def(
-          "jacobian",
-          [](const JointGroup& g, const ArrayLike& q) { return Eigen::MatrixXd(g.jacobian(configuration(g, q))); },
-          py::arg("q"), "(6, n), world-aligned at the tip's origin: linear rows, then angular.")
+      .def("jacobian", &jacobian_at, py::arg("q"), py::arg("link") = py::none(), py::arg("point") = py::none(),
+           "(6, n), world-aligned: linear rows [m/rad, m/m], then angular. At the tip's origin, or at `point` [m] in "
+           "the "
+           "frame of\n`link` (default: the tip; point (0, 0, 0)), which moves with it. Columns of joints that do not "
+           "move "
+           "it are zero.")
+      .def("jacobian_batch", &jacobian_batch, py::arg("Q"), "(m, 6, n) at the tip's origin, for configurations (m, n).")
       .def(
           "link_poses",
           [](const JointGroup& g, const ArrayLike& q) {
@@ -78,7 +122,33 @@ void bind_group_class(py::module_& m) {
           py::arg("q"), "World pose (4, 4) of every link of the robot.")
       .def(
           "manipulability",
-          [](const JointGroup& g, const ArrayLike& q) { return g.manipulability(configuration(g, q)); }, py::arg("q"))
+          [](const JointGroup& g, const ArrayLike& q) { return g.manipulability(configuration(g, q)); }, py::arg("q"),
+          "sqrt(det(J J^T)) (Yoshikawa): 0 at singularities, and for groups of fewer than six joints.")
+      .def(
+          "manipulability_batch",
+          [](const JointGroup& g, const ArrayLike& Q) {
+            const Eigen::MatrixXd columns = matrix_argument(Q, "Q", g.size()).transpose();
+            py::gil_scoped_release release;
+            return manipulability_batch(g, columns);
+          },
+          py::arg("Q"), "(m,) for configurations (m, n).")
+      .def(
+          "velocity_manipulability",
+          [](const JointGroup& g, const ArrayLike& q, const ArrayLike& direction) {
+            return velocity_manipulability(g, configuration(g, q), vector_argument(direction, "direction"));
+          },
+          py::arg("q"), py::arg("direction"),
+          "Length of the velocity ellipsoid along a direction (P2 equation 3.2): (3,) translation or (6,) twist, "
+          "world-aligned.\n0 where the tool cannot move along it.")
+      .def(
+          "force_manipulability",
+          [](const JointGroup& g, const ArrayLike& q, const ArrayLike& direction) {
+            return force_manipulability(g, configuration(g, q), vector_argument(direction, "direction"));
+          },
+          py::arg("q"), py::arg("direction"),
+          "Length of the force ellipsoid along a direction (P2 equation 3.3), as for "
+          "velocity_manipulability;\ninfinite where no "
+          "joint works against such a force.")
       .def("__repr__", [](const JointGroup& g) {
         std::string names;
         for (const std::string& name : g.names()) names += (names.empty() ? "" : ", ") + name;

@@ -36,8 +36,8 @@ class Balls {
 Pose JointGroup::fk(const Eigen::Ref<const Eigen::VectorXd>& q) const {
   Pose T_world_tip;
   const Balls balls(*data_->kinematics, q.data());
-  detail::kinematics_kernels().single(data_->kinematics->chain, data_->root, q.data(), balls.data(), T_world_tip.data(), nullptr,
-                           0);
+  detail::kinematics_kernels().single(data_->kinematics->chain, data_->root, q.data(), balls.data(), T_world_tip.data(),
+                                      nullptr, 0);
   return T_world_tip;
 }
 
@@ -51,8 +51,8 @@ Matrix6Xd JointGroup::jacobian(const Eigen::Ref<const Eigen::VectorXd>& q) const
 void JointGroup::fk_jacobian(const Eigen::Ref<const Eigen::VectorXd>& q, Pose& T_world_tip,
                              Eigen::Ref<Matrix6Xd> J) const {
   const Balls balls(*data_->kinematics, q.data());
-  detail::kinematics_kernels().single(data_->kinematics->chain, data_->root, q.data(), balls.data(), T_world_tip.data(), J.data(),
-                           J.outerStride());
+  detail::kinematics_kernels().single(data_->kinematics->chain, data_->root, q.data(), balls.data(), T_world_tip.data(),
+                                      J.data(), J.outerStride());
 }
 
 void JointGroup::link_poses(const Eigen::Ref<const Eigen::VectorXd>& q, Poses& T_world_link, bool moved_only) const {
@@ -69,8 +69,8 @@ void JointGroup::link_poses(const Eigen::Ref<const Eigen::VectorXd>& q, Poses& T
     given[16 * i + 15] = 0;
   }
   const std::vector<int>& order = all ? kinematics.all_steps : kinematics.moving_steps;
-  detail::kinematics_kernels().links(kinematics.steps.data(), order.data(), static_cast<int>(order.size()), kinematics.link_turns,
-                          q.data(), given, T_world_link[0].data());
+  detail::kinematics_kernels().links(kinematics.steps.data(), order.data(), static_cast<int>(order.size()),
+                                     kinematics.link_turns, q.data(), given, T_world_link[0].data());
 }
 
 Matrix6Xd JointGroup::jacobian(const Eigen::Ref<const Eigen::VectorXd>& q, int link,

@@ -40,7 +40,10 @@ def peers_environment(folder: Path) -> Path:
 def build_programs(python: Path) -> list[Path]:
     """Configures and builds; returns the programs."""
     packages = subprocess.run(
-        [python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))"], check=True, capture_output=True, text=True
+        [python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))"],
+        check=True,
+        capture_output=True,
+        text=True,
     ).stdout.strip()
     environment = {**os.environ, "CCACHE_BASEDIR": str(ROOT)}
     options = ["-DCMAKE_BUILD_TYPE=Release", "-DMMGRASP_BUILD_BENCHMARKS=ON", f"-DMMGRASP_PEERS={packages}"]
@@ -102,8 +105,12 @@ def full_table(lines: list[dict]) -> str:
     plain = ("row", "on", "who", "value", "unit", "settings")
     rows = []
     for line in lines:
-        more = ", ".join(f"{k} {v:.4g}" if isinstance(v, float) else f"{k} {v}" for k, v in line.items() if k not in plain)
-        rows.append([line["row"], line["on"], line["who"], f"{line['value']:.4g} {line['unit']}", more, line["settings"]])
+        more = ", ".join(
+            f"{k} {v:.4g}" if isinstance(v, float) else f"{k} {v}" for k, v in line.items() if k not in plain
+        )
+        rows.append(
+            [line["row"], line["on"], line["who"], f"{line['value']:.4g} {line['unit']}", more, line["settings"]]
+        )
     return markdown(["work", "on", "program", "", "also", "settings"], rows)
 
 

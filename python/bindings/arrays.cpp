@@ -1,6 +1,8 @@
 #include "arrays.hpp"
 
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <sstream>
 
 #include "mmgrasp/core/error.hpp"
@@ -10,31 +12,46 @@ namespace {
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-std::string shape_text(const py::array& array) {
+std::string shape_text(const std::vector<py::ssize_t>& shape) {
   std::ostringstream out;
   out << "(";
-  for (py::ssize_t i = 0; i < array.ndim(); ++i) out << (i ? ", " : "") << array.shape(i);
-  out << (array.ndim() == 1 ? ",)" : ")");
+  for (std::size_t i = 0; i < shape.size(); ++i) out << (i ? ", " : "") << shape[i];
+  out << (shape.size() == 1 ? ",)" : ")");
   return out.str();
 }
 
-Array numbers(const py::handle& value, const std::string& name, int dimensions, const std::string& wanted) {
+std::vector<py::ssize_t> shape_of(const py::array& array) {
+  return {array.shape(), array.shape() + array.ndim()};
+}
+
+[[noreturn]] void wrong_shape(const std::string& name, const py::array& array, const std::string& wanted) {
+  throw InvalidInput(name + " has shape " + shape_text(shape_of(array)) + ": must be " + wanted);
+}
+
+/// The value as numpy's array, its element type one of `kinds` (numpy's letters).
+py::array array_of(const py::handle& value, const std::string& name, const std::string& kinds,
+                   const std::string& wanted) {
   py::array raw = value.is_none() ? py::array() : py::array::ensure(value);
   PyErr_Clear();
-  const char kind = raw ? raw.dtype().kind() : 'O';
-  if (value.is_none() || !raw || (kind != 'f' && kind != 'i' && kind != 'u')) {
-    const std::string given =
-        value.is_none() ? "None" : std::string(py::str(py::type::handle_of(value).attr("__name__")));
-    throw InvalidInput(name + " = <" + given + ">: must be an array of numbers of shape " + wanted);
+  if (!value.is_none() && raw && kinds.find(raw.dtype().kind()) != std::string::npos) return raw;
+  std::string given = value.is_none() ? "None" : std::string(py::str(py::type::handle_of(value).attr("__name__")));
+  if (raw && py::isinstance<py::array>(value)) given += " of " + std::string(py::str(raw.dtype()));
+  throw InvalidInput(name + " = <" + given + ">: must be an array of " + wanted);
+}
+
+Array numbers(const py::handle& value, const std::string& name, int dimensions, const std::string& wanted,
+              bool infinite = false) {
+  const py::array raw = array_of(value, name, "fiu", "numbers of shape " + wanted);
+  if (raw.ndim() != dimensions) wrong_shape(name, raw, wanted);
+  const Array array = Array::ensure(raw);
+  if (!array) {
+    PyErr_Clear();
+    throw InvalidInput(name + ": cannot be converted to an array of float64");
   }
-  if (raw.ndim() != dimensions) {
-    throw InvalidInput(name + " has shape " + shape_text(raw) + ": must be " + wanted);
-  }
-  Array array = Array::ensure(raw);
   for (py::ssize_t i = 0; i < array.size(); ++i) {
-    if (!std::isfinite(array.data()[i])) {
+    if (infinite ? std::isnan(array.data()[i]) : !std::isfinite(array.data()[i])) {
       throw InvalidInput(name + " holds " + std::to_string(array.data()[i]) + " at entry " + std::to_string(i) +
-                         ": must be finite");
+                         (infinite ? ": must be a number" : ": must be finite"));
     }
   }
   return array;
@@ -46,11 +63,21 @@ std::string count_text(Eigen::Index count, const char* any) {
 
 }  // namespace
 
+double finite_argument(double value, const std::string& name) {
+  require(std::isfinite(value), name, value, "must be finite");
+  return value;
+}
+
+std::vector<double> finite_argument(std::vector<double> values, const std::string& name) {
+  for (std::size_t i = 0; i < values.size(); ++i) finite_argument(values[i], name + "[" + std::to_string(i) + "]");
+  return values;
+}
+
 Eigen::VectorXd vector_argument(const py::handle& value, const std::string& name, Eigen::Index size) {
   const std::string wanted = "(" + count_text(size, "n") + ",)";
   const Array array = numbers(value, name, 1, wanted);
   if (size >= 0 && array.size() != size) {
-    throw InvalidInput(name + " has shape " + shape_text(array) + ": must be " + wanted);
+    wrong_shape(name, array, wanted);
   }
   return Eigen::Map<const Eigen::VectorXd>(array.data(), array.size());
 }
@@ -63,23 +90,51 @@ Eigen::Vector3d vector3_argument(const py::handle& value, const std::string& nam
   return vector_argument(value, name, 3);
 }
 
-Eigen::MatrixXd matrix_argument(const py::handle& value, const std::string& name, Eigen::Index columns) {
+Eigen::MatrixXd matrix_argument(const py::handle& value, const std::string& name, Eigen::Index columns, bool infinite) {
   const std::string wanted = "(m, " + count_text(columns, "n") + ")";
-  const Array array = numbers(value, name, 2, wanted);
+  const Array array = numbers(value, name, 2, wanted, infinite);
   if (columns >= 0 && array.shape(1) != columns) {
-    throw InvalidInput(name + " has shape " + shape_text(array) + ": must be " + wanted);
+    wrong_shape(name, array, wanted);
   }
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   return Eigen::Map<const RowMajor>(array.data(), array.shape(0), array.shape(1));
 }
 
-Pose pose_argument(const py::handle& value, const std::string& name) {
-  if (value.is_none()) return Pose::Identity();
+Pose pose_argument(const py::object& value, const std::string& name) {
+  return value.is_none() ? Pose::Identity() : pose_argument(ArrayLike(value), name);
+}
+
+Pose pose_argument(const ArrayLike& value, const std::string& name) {
   const Array array = numbers(value, name, 2, "(4, 4)");
   if (array.shape(0) != 4 || array.shape(1) != 4) {
-    throw InvalidInput(name + " has shape " + shape_text(array) + ": must be (4, 4)");
+    wrong_shape(name, array, "(4, 4)");
   }
   return checked_pose(Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(array.data()), name);
+}
+
+template <typename Entry>
+static std::vector<std::uint8_t> checked_flags(const py::array& raw, const std::string& name) {
+  const auto entries = py::array_t<Entry, py::array::c_style | py::array::forcecast>::ensure(raw);
+  for (py::ssize_t i = 0; i < entries.size(); ++i) {
+    if (entries.data()[i] == 0 || entries.data()[i] == 1) continue;
+    throw InvalidInput(name + " holds " + std::to_string(entries.data()[i]) + " at entry " + std::to_string(i) +
+                       ": must be 0 or 1");
+  }
+  return {entries.data(), entries.data() + entries.size()};
+}
+
+std::vector<std::uint8_t> flags_argument(const py::handle& value, const std::string& name,
+                                         const std::vector<py::ssize_t>& shape) {
+  std::string wanted = "(n,)";
+  py::ssize_t count = -1;
+  if (!shape.empty()) {
+    count = std::accumulate(shape.begin(), shape.end(), py::ssize_t{1}, std::multiplies<>());
+    wanted = shape_text(shape) + " or flat (" + std::to_string(count) + ",)";
+  }
+  const py::array raw = array_of(value, name, "biu", "flags of shape " + wanted);
+  const bool flat = raw.ndim() == 1 && (count < 0 || raw.size() == count);
+  if (!flat && shape_of(raw) != shape) wrong_shape(name, raw, wanted);
+  return raw.itemsize() == 1 ? checked_flags<std::uint8_t>(raw, name) : checked_flags<std::int64_t>(raw, name);
 }
 
 std::vector<Eigen::VectorXd> rows_argument(const py::handle& value, const std::string& name, Eigen::Index columns) {

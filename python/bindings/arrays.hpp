@@ -24,14 +24,22 @@ class ArrayLike : public py::object {
   PYBIND11_OBJECT_DEFAULT(ArrayLike, py::object, [](PyObject* o) { return static_cast<int>(o != nullptr); })
 };
 
+/// A plain number that is neither infinite nor NaN, and a list of such.
+double finite_argument(double value, const std::string& name);
+std::vector<double> finite_argument(std::vector<double> values, const std::string& name);
 /// (n,) with finite entries; size < 0 takes any length.
 Eigen::VectorXd vector_argument(const py::handle& value, const std::string& name, Eigen::Index size = -1);
 Eigen::Vector2d vector2_argument(const py::handle& value, const std::string& name);
 Eigen::Vector3d vector3_argument(const py::handle& value, const std::string& name);
-/// (m, columns) with finite entries; columns < 0 takes any number.
-Eigen::MatrixXd matrix_argument(const py::handle& value, const std::string& name, Eigen::Index columns = -1);
-/// (4, 4), a rigid transform; None is the identity.
-Pose pose_argument(const py::handle& value, const std::string& name);
+/// (m, columns) with finite entries, or with `infinite` also infinite ones; columns < 0 takes any number.
+Eigen::MatrixXd matrix_argument(const py::handle& value, const std::string& name, Eigen::Index columns = -1,
+                                bool infinite = false);
+/// (4, 4), a rigid transform. Where the argument may be left out (py::object), None is the identity.
+Pose pose_argument(const ArrayLike& value, const std::string& name);
+Pose pose_argument(const py::object& value, const std::string& name);
+/// Zeros and ones (or booleans) of the given shape or flattened, as one row; without a shape any number of them.
+std::vector<std::uint8_t> flags_argument(const py::handle& value, const std::string& name,
+                                         const std::vector<py::ssize_t>& shape = {});
 /// (m, n) rows as separate configurations.
 std::vector<Eigen::VectorXd> rows_argument(const py::handle& value, const std::string& name, Eigen::Index columns = -1);
 

@@ -69,7 +69,8 @@ void bind_grasp(py::module_& m) {
       });
   py::class_<Grasp>(m, "Grasp", "One way to hold an object.")
       .def(py::init([](const ArrayLike& T_object_tcp, double width, double quality) {
-             return Grasp{pose_argument(T_object_tcp, "T_object_tcp"), width, quality};
+             return Grasp{pose_argument(T_object_tcp, "T_object_tcp"), finite_argument(width, "width"),
+                          finite_argument(quality, "quality")};
            }),
            py::arg("T_object_tcp"), py::arg("width"), py::arg("quality") = 1.0)
       .def_property_readonly("T_object_tcp", [](const Grasp& g) { return to_array(g.T_object_tcp); })

@@ -84,7 +84,7 @@ void bind_group_class(py::module_& m) {
       .def(
           "within_limits",
           [](const JointGroup& g, const ArrayLike& q, double slack) {
-            return g.within_limits(configuration(g, q), slack);
+            return g.within_limits(configuration(g, q), finite_argument(slack, "slack"));
           },
           py::arg("q"), py::arg("slack") = 0.0)
       .def(

@@ -52,7 +52,8 @@ void bind_optim(py::module_& m) {
       });
   m.def(
       "shortest_visiting_tour",
-      [](const Eigen::MatrixXd& lengths) {
+      [](const ArrayLike& given) {
+        const Eigen::MatrixXd lengths = matrix_argument(given, "lengths", -1, true);
         py::gil_scoped_release release;
         return shortest_visiting_tour(lengths);
       },

@@ -41,13 +41,10 @@ py::array_t<std::uint8_t> mask_array(const BaseGrid& grid, const CellMask& cells
   return out;
 }
 
-CellMask mask_argument(const BaseGrid& grid,
-                       const py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>& cells) {
-  if (static_cast<std::size_t>(cells.size()) != grid.size()) {
-    throw InvalidInput("cells has " + std::to_string(cells.size()) + " entries: the grid has " +
-                       std::to_string(grid.size()));
-  }
-  return CellMask(cells.data(), cells.data() + cells.size());
+CellMask mask_argument(const BaseGrid& grid, const ArrayLike& cells) {
+  const auto flags = flags_argument(
+      cells, "cells", {static_cast<py::ssize_t>(grid.headings.size()), py::ssize_t{grid.ny}, py::ssize_t{grid.nx}});
+  return CellMask(flags.begin(), flags.end());
 }
 
 void bind_problem(py::module_& m) {
@@ -83,7 +80,7 @@ void bind_problem(py::module_& m) {
       .def(py::init([](std::string name, const ArrayLike& T_world_tray, const ArrayLike& size, std::vector<Part> parts,
                        std::vector<double> headings) {
              return Tray{std::move(name), pose_argument(T_world_tray, "T_world_tray"), vector3_argument(size, "size"),
-                         std::move(parts), std::move(headings)};
+                         std::move(parts), finite_argument(std::move(headings), "headings")};
            }),
            py::arg("name"), py::arg("T_world_tray"), py::arg("size"), py::arg("parts"),
            py::arg("headings") = std::vector<double>{})
@@ -96,7 +93,8 @@ void bind_problem(py::module_& m) {
            [](const Tray& t) { return "Tray('" + t.name + "', " + std::to_string(t.parts.size()) + " parts)"; });
   py::class_<CarryPlace>(m, "CarryPlace", "Where picked parts go: a bin fixed to the robot.")
       .def(py::init([](const ArrayLike& T_base_bin, const ArrayLike& size, double drop_gap) {
-             return CarryPlace{pose_argument(T_base_bin, "T_base_bin"), vector2_argument(size, "size"), drop_gap};
+             return CarryPlace{pose_argument(T_base_bin, "T_base_bin"), vector2_argument(size, "size"),
+                               finite_argument(drop_gap, "drop_gap")};
            }),
            py::arg("T_base_bin"), py::arg("size"), py::arg("drop_gap") = CarryPlace{}.drop_gap)
       .def_property_readonly("T_base_bin", [](const CarryPlace& c) { return to_array(c.T_base_bin); })
@@ -143,7 +141,8 @@ void bind_regions(py::module_& m) {
              if (!(resolution > 0) || nx <= 0 || ny <= 0 || headings.empty()) {
                throw InvalidInput("BaseGrid: resolution, nx and ny must be > 0 and headings not empty");
              }
-             return BaseGrid{vector2_argument(origin, "origin"), resolution, nx, ny, std::move(headings)};
+             return BaseGrid{vector2_argument(origin, "origin"), finite_argument(resolution, "resolution"), nx, ny,
+                             finite_argument(std::move(headings), "headings")};
            }),
            py::arg("origin"), py::arg("resolution"), py::arg("nx"), py::arg("ny"),
            py::arg("headings") = std::vector<double>{0.0})
@@ -152,8 +151,19 @@ void bind_regions(py::module_& m) {
       .def_readonly("nx", &BaseGrid::nx)
       .def_readonly("ny", &BaseGrid::ny)
       .def_readonly("headings", &BaseGrid::headings)
-      .def("centre", &BaseGrid::centre, py::arg("heading"), py::arg("ix"), py::arg("iy"),
-           "x, y, theta of a cell's middle.")
+      .def(
+          "centre",
+          [](const BaseGrid& g, int heading, int ix, int iy) {
+            const auto check = [](const char* name, int value, int count) {
+              require(value >= 0 && value < count, name, std::to_string(value),
+                      "must be in [0, " + std::to_string(count) + ")");
+            };
+            check("heading", heading, static_cast<int>(g.headings.size()));
+            check("ix", ix, g.nx);
+            check("iy", iy, g.ny);
+            return g.centre(heading, ix, iy);
+          },
+          py::arg("heading"), py::arg("ix"), py::arg("iy"), "x, y, theta of a cell's middle.")
       .def("__repr__", [](const BaseGrid& g) {
         return "BaseGrid(" + std::to_string(g.nx) + " x " + std::to_string(g.ny) + " cells, " +
                std::to_string(g.headings.size()) + " headings)";
@@ -213,8 +223,7 @@ py::dict intersection_dict(const Intersection& i) {
 void bind_sequence(py::module_& m) {
   m.def(
       "inscribed_circle",
-      [](const BaseGrid& grid, const py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>& cells,
-         int heading) {
+      [](const BaseGrid& grid, const ArrayLike& cells, int heading) {
         if (heading < 0 || heading >= static_cast<int>(grid.headings.size())) {
           throw InvalidInput("heading = " + std::to_string(heading) + ": must be a layer of the grid");
         }

@@ -68,8 +68,8 @@ void bind_parts(py::module_& m) {
            }),
            py::arg("pose"), py::arg("radius"), py::arg("trays"));
   py::class_<CheckedRegion>(m, "CheckedRegion")
-      .def(py::init([](std::string tray, const py::array_t<std::uint8_t, py::array::c_style>& cells) {
-             return CheckedRegion{std::move(tray), {cells.data(), cells.data() + cells.size()}};
+      .def(py::init([](std::string tray, const ArrayLike& cells) {
+             return CheckedRegion{std::move(tray), flags_argument(cells, "cells")};
            }),
            py::arg("tray"), py::arg("cells"));
   py::class_<CheckedLegFigures>(m, "CheckedLegFigures")

@@ -137,6 +137,8 @@ void resolve_mimics(const RobotParts& parts, const NameIndex& part_joints, Robot
     if (step->joint.value_count() != 1)
       throw InvalidInput(place + ": mimic joint = \"" + step->joint.name + "\": is " + to_string(step->joint.type) +
                          ", must be a joint with one value");
+    if (!(std::abs(multiplier) < 1e12 && std::abs(offset) < 1e12))
+      throw InvalidInput(place + ": mimic multipliers and offsets multiply to above 1e12 (damaged?)");
     joint.mimic_joint = data.joint_by_name.at(step->joint.name);
     joint.mimic_multiplier = multiplier;
     joint.mimic_offset = offset;

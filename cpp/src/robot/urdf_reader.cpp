@@ -1,5 +1,6 @@
 #include "robot/urdf_reader.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
@@ -10,6 +11,7 @@
 namespace mmgrasp::detail {
 namespace {
 
+constexpr double kLargest = 1e12;          // [m] or [rad]
 constexpr double kFallbackVelocity = 1.0;  // [rad/s] or [m/s], for joints whose file gives none
 constexpr std::array<JointType, 6> kJointTypes = {JointType::fixed,     JointType::revolute, JointType::continuous,
                                                   JointType::prismatic, JointType::planar,   JointType::floating};
@@ -47,13 +49,26 @@ class UrdfReader {
     const TiXmlElement* origin = owner.FirstChildElement("origin");
     if (!origin) return Pose::Identity();
     const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
-    return pose_from_xyz_rpy(xml_.vector3(*origin, "xyz", zero), xml_.vector3(*origin, "rpy", zero));
+    return pose_from_xyz_rpy(read_vector(*origin, "xyz", zero), read_vector(*origin, "rpy", zero));
+  }
+
+  /// Sums and products of what is read must stay finite.
+  void check_size(const TiXmlElement& element, const char* attribute, double value) {
+    if (!(std::abs(value) < kLargest))
+      xml_.fail(element, std::string(attribute) + " = \"" + number_text(value) + "\": must be below 1e12 (damaged?)");
+  }
+
+  Eigen::Vector3d read_vector(const TiXmlElement& element, const char* attribute, const Eigen::Vector3d& fallback) {
+    const Eigen::Vector3d value = xml_.vector3(element, attribute, fallback);
+    for (const double component : value) check_size(element, attribute, component);
+    return value;
   }
 
   double read_positive(const TiXmlElement& element, const char* attribute) {
     const double value = xml_.required_number(element, attribute);
     if (!(value > 0))
       xml_.fail(element, std::string(attribute) + " = \"" + number_text(value) + "\": must be positive");
+    check_size(element, attribute, value);
     return value;
   }
 
@@ -91,7 +106,7 @@ class UrdfReader {
 
   Box read_box(const TiXmlElement& element) {
     const std::string text = xml_.required_text(element, "size");
-    const Eigen::Vector3d size = xml_.vector3(element, "size", Eigen::Vector3d::Zero());
+    const Eigen::Vector3d size = read_vector(element, "size", Eigen::Vector3d::Zero());
     if (!(size.minCoeff() > 0)) xml_.fail(element, "size = \"" + text + "\": every length must be positive");
     return Box{size};
   }
@@ -99,7 +114,7 @@ class UrdfReader {
   void read_mesh(const TiXmlElement& element, LinkShape& shape) {
     shape.shape = MeshShape{};
     shape.mesh_uri = xml_.required_text(element, "filename");
-    shape.mesh_scale = xml_.vector3(element, "scale", Eigen::Vector3d::Ones());
+    shape.mesh_scale = read_vector(element, "scale", Eigen::Vector3d::Ones());
     if (!(shape.mesh_scale.cwiseAbs().minCoeff() > 0))
       xml_.fail(element, "scale = \"" + xml_.required_text(element, "scale") + "\": no axis may be zero");
   }
@@ -135,7 +150,7 @@ class UrdfReader {
   void read_axis(const TiXmlElement& element, Joint& joint) {
     const TiXmlElement* axis = element.FirstChildElement("axis");
     if (!axis || joint.type == JointType::fixed || joint.type == JointType::floating) return;
-    const Eigen::Vector3d value = xml_.vector3(*axis, "xyz", Eigen::Vector3d::UnitX());
+    const Eigen::Vector3d value = read_vector(*axis, "xyz", Eigen::Vector3d::UnitX());
     const double norm = value.norm();
     if (!(norm > 1e-9)) xml_.fail(*axis, "xyz = \"" + xml_.text(*axis, "xyz").value_or("") + "\": must not be zero");
     joint.axis = value / norm;
@@ -158,6 +173,9 @@ class UrdfReader {
       if (joint.lower > joint.upper)
         xml_.fail(*limit, "lower = \"" + number_text(joint.lower) + "\", upper = \"" + number_text(joint.upper) +
                               "\": lower must not exceed upper");
+      // Some files write the largest double for "no limit"; but zero moved into the limits must stay a sane value.
+      check_size(*limit, "lower", std::max(0.0, joint.lower));
+      check_size(*limit, "upper", std::min(0.0, joint.upper));
     }
     const double velocity = read_not_negative(*limit, "velocity");
     if (velocity > 0) {
@@ -183,6 +201,8 @@ class UrdfReader {
     named.mimic = xml_.required_text(mimic, "joint");
     named.joint.mimic_multiplier = xml_.number(mimic, "multiplier", 1);
     named.joint.mimic_offset = xml_.number(mimic, "offset", 0);
+    check_size(mimic, "multiplier", named.joint.mimic_multiplier);
+    check_size(mimic, "offset", named.joint.mimic_offset);
   }
 
   XmlDocument xml_;

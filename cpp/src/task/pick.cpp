@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "mmgrasp/core/error.hpp"
 #include "mmgrasp/plan/motion.hpp"
 #include "mmgrasp/plan/straight_line.hpp"
 #include "mmgrasp/plan/time_parameterization.hpp"
@@ -249,6 +250,16 @@ class PickPlanner {
   Eigen::MatrixXd seeds_;
 };
 
+void check_part(const PartSupplyProblem& problem, int tray, int part, const std::string& tray_name,
+                const std::string& part_name) {
+  const auto check = [](int index, std::size_t count, const std::string& name) {
+    require(index >= 0 && index < static_cast<int>(count), name, std::to_string(index),
+            "must be in [0, " + std::to_string(count) + ")");
+  };
+  check(tray, problem.trays.size(), tray_name);
+  check(part, problem.trays[static_cast<std::size_t>(tray)].parts.size(), part_name);
+}
+
 }  // namespace
 
 const char* to_string(MotionKind kind) {
@@ -275,6 +286,11 @@ double Pick::duration() const {
 
 Pick plan_pick(const PartSupplyProblem& problem, const ReachDatabase& database, const Eigen::Vector3d& base_pose,
                int tray, int part, const std::vector<std::pair<int, int>>& remaining, const Monitor& monitor) {
+  check_part(problem, tray, part, "tray", "part");
+  for (std::size_t i = 0; i < remaining.size(); ++i) {
+    const std::string name = "remaining[" + std::to_string(i) + "]";
+    check_part(problem, remaining[i].first, remaining[i].second, name + ".tray", name + ".part");
+  }
   // Only the calling thread may report progress; here it only listens for the end.
   Monitor quiet;
   quiet.stop = monitor.stop;

@@ -281,7 +281,10 @@ void bind_sequence(py::module_& m) {
       .def_readonly("length", &BasePath::length)
       .def_readonly("turning", &BasePath::turning)
       .def(
-          "duration", [](const BasePath& p, const Robot& robot) { return base_path_duration(p, robot.base_limits()); },
+          "duration",
+          [](const BasePath& p, const Robot& robot) {
+            return base_path_duration(p, robot.base(), robot.base_limits());
+          },
           py::arg("robot"))
       .def("__repr__", [](const BasePath& p) {
         return std::string("BasePath(") + to_string(p.outcome) + ", " + std::string(py::repr(py::float_(p.length))) +

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -75,7 +76,7 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
             "urdf": robot.to_urdf(),
             "srdf": robot.to_srdf(),
             "base": robot.base,
-            "base_limits": robot.base_limits,
+            "base_limits": {key: value for key, value in robot.base_limits.items() if math.isfinite(value)},
             "meshes": [{"file": path, "sha256": sha256_of(path)} for path in _mesh_files(robot)],
         },
         "arm": {

@@ -34,6 +34,8 @@ void BaseLimits::check() const {
   positive(linear_acceleration, "linear_acceleration");
   positive(angular_acceleration, "angular_acceleration");
   positive(workspace, "workspace");
+  require(wheel_velocity > 0, "base_limits.wheel_velocity", wheel_velocity, "must be positive (infinite: no limit)");
+  positive(wheel_separation, "wheel_separation");
 }
 
 }  // namespace mmgrasp

@@ -66,6 +66,7 @@ std::string Robot::hash() const {
   const BaseLimits& limits = data_->base_limits;
   hasher.add(limits.linear_velocity).add(limits.angular_velocity).add(limits.linear_acceleration);
   hasher.add(limits.angular_acceleration).add(limits.workspace);
+  hasher.add(limits.wheel_velocity).add(limits.wheel_separation);
   for (const Link& link : data_->links) add_link(hasher, link);
   for (const Joint& joint : data_->joints) add_joint(hasher, joint);
   // Only which pairs are off matters to a result, not why.

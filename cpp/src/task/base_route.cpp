@@ -5,6 +5,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/pose.hpp"
+#include "mmgrasp/robot/base_motion.hpp"
 #include "task/base_search.hpp"
 
 namespace mmgrasp {
@@ -118,7 +119,7 @@ BasePath plan_base_route(CollisionChecker& checker, const Eigen::VectorXd& home,
   }
   const bool same = (from - to).head<2>().norm() < 1e-9 && std::abs(wrap_angle(from.z() - to.z())) < 1e-9;
   if (options.base == BaseKind::fixed && !same) return path;
-  const BaseLimits& limits = checker.group().robot().base_limits();
+  const BaseLimits limits = driving_limits(options.base, checker.group().robot().base_limits());
   const BaseSearchSettings settings{options.base, options.resolution, limits.linear_velocity / limits.angular_velocity,
                                     search_bounds(checker, from, to, options)};
   Poses3 poses = {from};
@@ -143,7 +144,8 @@ BasePath plan_base_route(CollisionChecker& checker, const Eigen::VectorXd& home,
   return path;
 }
 
-double base_path_duration(const BasePath& path, const BaseLimits& limits) {
+double base_path_duration(const BasePath& path, BaseKind base, const BaseLimits& base_limits) {
+  const BaseLimits limits = driving_limits(base, base_limits);
   double duration = 0;
   for (std::size_t i = 1; i < path.poses.size(); ++i) {
     const Eigen::Vector3d d = path.poses[i] - path.poses[i - 1];

@@ -40,8 +40,13 @@ bool figures_hold(const CheckedLegFigures& said, const std::vector<Eigen::Vector
     length += (poses[i] - poses[i - 1]).head<2>().norm();
     turning += std::abs(poses[i].z() - poses[i - 1].z());
   }
-  const double drive = least_time(length, limits.linear_velocity, limits.linear_acceleration);
-  const double turn = least_time(turning, limits.angular_velocity, limits.angular_acceleration);
+  double speed = limits.linear_velocity, turning_rate = limits.angular_velocity;
+  if (base == BaseKind::diff_drive) {  // a turn on the spot drives the wheels at half their separation
+    speed = std::min(speed, limits.wheel_velocity);
+    turning_rate = std::min(turning_rate, limits.wheel_velocity / (0.5 * limits.wheel_separation));
+  }
+  const double drive = least_time(length, speed, limits.linear_acceleration);
+  const double turn = least_time(turning, turning_rate, limits.angular_acceleration);
   const double least = base == BaseKind::omni ? std::max(drive, turn) : drive + turn;
   return std::abs(said.length - length) <= 1e-6 * (1 + length) &&
          std::abs(said.turning - turning) <= 1e-6 * (1 + turning) && std::isfinite(said.duration) &&

@@ -120,7 +120,14 @@ TEST(BaseRoute, DurationOfTrapezoids) {
   BasePath path;
   path.poses = {{0, 0, 0}, {2, 0, 0}, {2, 0, 0.25}, {2.5, 0, 0.25}};
   // 2 m: 2 / 0.5 + 0.5 / 0.25 = 6 s. 0.25 rad never reaches 1 rad/s: 2 sqrt(0.25 / 2). 0.5 m: 2 sqrt(0.5 / 0.25).
-  EXPECT_NEAR(base_path_duration(path, limits), 6.0 + 2 * std::sqrt(0.125) + 2 * std::sqrt(2.0), 1e-9);
+  const double expected = 6.0 + 2 * std::sqrt(0.125) + 2 * std::sqrt(2.0);
+  EXPECT_NEAR(base_path_duration(path, BaseKind::diff_drive, limits), expected, 1e-9);
+  // Wheels of 0.4 m/s, 2 m apart, drive at 0.4 m/s (2 m: 5 + 1.6 s, 0.5 m: below 0.64 m, a triangle still) and turn at
+  // 0.4 rad/s (0.25 rad: 0.625 + 0.2 s). An omni base has no such wheels.
+  limits.wheel_velocity = 0.4;
+  limits.wheel_separation = 2;
+  EXPECT_NEAR(base_path_duration(path, BaseKind::omni, limits), expected, 1e-9);
+  EXPECT_NEAR(base_path_duration(path, BaseKind::diff_drive, limits), 6.6 + 0.825 + 2 * std::sqrt(2.0), 1e-9);
 }
 
 }  // namespace

@@ -22,7 +22,12 @@ MMGRASP_EXPORT Eigen::Vector3d platform_velocity(const WheelSpeeds& wheels, doub
 
 /// Largest factor in [0, 1] by which a platform velocity must be scaled to keep every limit of the base kind: speed,
 /// turning, wheels. A diff-drive cannot move sideways: a v_y beyond 1e-9 of the rest gives 0, as does any motion of a
-/// fixed base.
+/// fixed base. Every function here throws InvalidInput for numbers that are not finite and separations that are not
+/// positive.
 MMGRASP_EXPORT double velocity_scale(BaseKind kind, const BaseLimits& limits, const Eigen::Vector3d& platform_velocity);
+
+/// The limits with speed and turning rate lowered to what they can be one at a time: what times straight drives and
+/// turns on the spot.
+MMGRASP_EXPORT BaseLimits driving_limits(BaseKind kind, const BaseLimits& limits);
 
 }  // namespace mmgrasp

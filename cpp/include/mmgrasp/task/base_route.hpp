@@ -34,7 +34,8 @@ MMGRASP_EXPORT BasePath plan_base_route(CollisionChecker& checker, const Eigen::
                                         const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                                         const BaseRouteOptions& options, const Monitor& monitor = {});
 
-/// Time to drive it under the limits with trapezoidal profiles, stopping at every pose where the motion changes [s].
-MMGRASP_EXPORT double base_path_duration(const BasePath& path, const BaseLimits& limits);
+/// Time to drive it under the limits (a diff-drive's wheels included) with trapezoidal profiles, stopping at every pose
+/// where the motion changes [s].
+MMGRASP_EXPORT double base_path_duration(const BasePath& path, BaseKind base, const BaseLimits& base_limits);
 
 }  // namespace mmgrasp

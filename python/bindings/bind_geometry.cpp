@@ -3,6 +3,7 @@
 #include "bindings.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
 #include "mmgrasp/geometry/shape.hpp"
+#include "mmgrasp/geometry/simplify_mesh.hpp"
 
 namespace mmgrasp::python {
 namespace {
@@ -114,6 +115,20 @@ void bind_mesh(py::module_& m) {
       });
 }
 
+/// The stand-in with the names that a robot's report has.
+py::dict stand_in_dict(const MeshShape& mesh, double tolerance) {
+  MeshStandIn found;
+  {
+    py::gil_scoped_release release;
+    found = simplify_mesh(mesh.mesh, tolerance);
+  }
+  LinkShape shape;
+  shape.shape = found.shape;
+  shape.T_link_shape = found.T_mesh_shape;
+  return py::dict(py::arg("shape") = shape, py::arg("chosen") = found.chosen,
+                  py::arg("triangles_saved") = found.triangles_saved, py::arg("deviation") = found.deviation);
+}
+
 }  // namespace
 
 void bind_geometry(py::module_& m) {
@@ -164,6 +179,11 @@ void bind_geometry(py::module_& m) {
       .def("__repr__", [](const LinkShape& s) {
         return std::string("LinkShape(") + shape_kind(s.shape) + " at " + text(s.T_link_shape.translation()) + ")";
       });
+  m.def("simplify_mesh", &stand_in_dict, py::arg("mesh"), py::arg("tolerance") = 0.0,
+        "The simplest solid that contains a mesh and has no point farther than `tolerance` [m] from it, as a dict:\n"
+        "`shape` (a LinkShape in the mesh's frame), `chosen` (mesh, hull, box, sphere or cylinder), `triangles_saved` "
+        "and\n"
+        "the proven `deviation` [m]. With 0 the solid stays the same.");
 }
 
 }  // namespace mmgrasp::python

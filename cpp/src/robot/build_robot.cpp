@@ -166,13 +166,16 @@ std::vector<int> rigid_bodies(const Robot::Data& data) {
   return body;
 }
 
-void disable_adjacent(Robot::Data& data) {
+}  // namespace
+
+std::set<std::pair<int, int>> adjacent_pairs(const Robot::Data& data) {
+  std::set<std::pair<int, int>> pairs;
   const auto is_bare = [&data](int link) {
     const Link& l = data.links[static_cast<std::size_t>(link)];
     return l.collisions.empty() && data.shapes_left_out.count(l.name) == 0;
   };
-  const auto disable = [&data](int a, int b) {
-    if (a != b) data.disabled_pairs.emplace(std::minmax(a, b), DisabledReason::adjacent);
+  const auto disable = [&pairs](int a, int b) {
+    if (a != b) pairs.emplace(std::minmax(a, b));
   };
   for (const Joint& joint : data.joints) {
     disable(joint.parent_link, joint.child_link);
@@ -186,9 +189,8 @@ void disable_adjacent(Robot::Data& data) {
   for (std::size_t a = 0; a < body.size(); ++a)
     for (std::size_t b = a + 1; b < body.size(); ++b)
       if (body[a] == body[b]) disable(static_cast<int>(a), static_cast<int>(b));
+  return pairs;
 }
-
-}  // namespace
 
 std::shared_ptr<Robot::Data> build_robot(const RobotParts& parts) {
   if (parts.links.empty())
@@ -209,7 +211,10 @@ std::shared_ptr<Robot::Data> build_robot(const RobotParts& parts) {
   data->groups = parts.groups;
   data->end_effectors = parts.end_effectors;
   data->group_states = parts.group_states;
+  data->passive_joints = parts.passive_joints;
+  data->virtual_joints = parts.virtual_joints;
   data->has_srdf = parts.has_srdf;
+  data->inertials = parts.inertials;
   data->shapes_left_out = parts.shapes_left_out;
   for (const int old_link : order) {
     Link link = parts.links[static_cast<std::size_t>(old_link)];
@@ -235,7 +240,7 @@ std::shared_ptr<Robot::Data> build_robot(const RobotParts& parts) {
     if (a != data->link_by_name.end() && b != data->link_by_name.end() && a != b)
       data->disabled_pairs.emplace(std::minmax(a->second, b->second), reason);
   }
-  disable_adjacent(*data);
+  for (const auto& pair : adjacent_pairs(*data)) data->disabled_pairs.emplace(pair, DisabledReason::adjacent);
   return data;
 }
 
@@ -259,7 +264,10 @@ RobotParts to_parts(const Robot::Data& data) {
   parts.groups = data.groups;
   parts.end_effectors = data.end_effectors;
   parts.group_states = data.group_states;
+  parts.passive_joints = data.passive_joints;
+  parts.virtual_joints = data.virtual_joints;
   parts.has_srdf = data.has_srdf;
+  parts.inertials = data.inertials;
   parts.shapes_left_out = data.shapes_left_out;
   for (const auto& [pair, reason] : data.disabled_pairs) {
     const std::string& a = data.links[static_cast<std::size_t>(pair.first)].name;

@@ -1,5 +1,7 @@
 #include "mmgrasp/robot/joint.hpp"
 
+#include "robot/robot_data.hpp"
+
 namespace mmgrasp {
 
 const char* to_string(JointType type) {
@@ -31,6 +33,16 @@ int Joint::value_count() const {
     default:
       return 1;
   }
+}
+
+std::vector<std::string> detail::value_names(const Joint& joint) {
+  if (joint.value_count() == 1) return {joint.name};
+  std::vector<std::string> names;
+  const std::vector<const char*> parts = joint.type == JointType::planar
+                                             ? std::vector<const char*>{"x", "y", "theta"}
+                                             : std::vector<const char*>{"x", "y", "z", "rx", "ry", "rz"};
+  for (int i = 0; i < joint.value_count(); ++i) names.push_back(joint.name + "/" + parts[static_cast<std::size_t>(i)]);
+  return names;
 }
 
 }  // namespace mmgrasp

@@ -5,8 +5,11 @@
 #include <fstream>
 #include <sstream>
 
-namespace mmgrasp::detail {
+#include "mmgrasp/robot/packages.hpp"
+
+namespace mmgrasp {
 namespace fs = std::filesystem;
+namespace detail {
 namespace {
 
 constexpr int kMaxClimb = 8;  // folders above the URDF that are searched for packages
@@ -110,8 +113,13 @@ const std::vector<fs::path>& MeshLocator::package_folders(const std::string& nam
     if (is_folder(ancestor / name)) folders.push_back(ancestor / name);
   }
   folders.push_back(mesh_dir_ / name);
-  folders.push_back(mesh_dir_);
   return folders;
+}
+
+std::string MeshLocator::find_package(const std::string& name) {
+  for (const fs::path& folder : package_folders(name))
+    if (is_folder(folder)) return folder.string();
+  return "";
 }
 
 std::string MeshLocator::find(const std::string& uri, std::vector<std::string>* looked) {
@@ -137,7 +145,14 @@ std::string MeshLocator::find(const std::string& uri, std::vector<std::string>* 
     const std::string found = existing(folder / inside);
     if (!found.empty()) return found;
   }
-  return "";
+  return existing(mesh_dir_ / inside);  // package://meshes/... and the like: relative paths in disguise
 }
 
-}  // namespace mmgrasp::detail
+}  // namespace detail
+
+std::string find_package(const std::string& name, const std::string& folder,
+                         const std::map<std::string, std::string>& package_dirs) {
+  return detail::MeshLocator(folder, "", package_dirs).find_package(name);
+}
+
+}  // namespace mmgrasp

@@ -18,8 +18,11 @@ class MeshLocator {
 
   /// Absolute path of an existing file, or empty. `looked` receives the places tried.
   std::string find(const std::string& uri, std::vector<std::string>* looked = nullptr);
+  /// First existing folder of a package, or empty.
+  std::string find_package(const std::string& name);
 
  private:
+  /// Where a package may lie, best first.
   const std::vector<std::filesystem::path>& package_folders(const std::string& name);
 
   std::filesystem::path urdf_dir_, mesh_dir_;

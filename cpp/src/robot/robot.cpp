@@ -1,5 +1,6 @@
 #include "mmgrasp/robot/robot.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
@@ -16,6 +17,18 @@ std::vector<std::string> names_of(const std::vector<Named>& items) {
   std::vector<std::string> names;
   for (const Named& item : items) names.push_back(item.name);
   return names;
+}
+
+/// "joint" or, for joints with several values, "joint/x": the joint's name and which of its values is meant.
+std::pair<std::string, int> split_value_name(const Robot::Data& data, const std::string& name) {
+  const std::size_t slash = name.rfind('/');
+  if (data.joint_by_name.count(name) || slash == std::string::npos) return {name, 0};
+  const auto found = data.joint_by_name.find(name.substr(0, slash));
+  if (found == data.joint_by_name.end()) return {name, 0};
+  const std::vector<std::string> parts = detail::value_names(data.joints[static_cast<std::size_t>(found->second)]);
+  const auto part = std::find(parts.begin(), parts.end(), name);
+  if (part == parts.end()) return {name, 0};
+  return {found->first, static_cast<int>(part - parts.begin())};
 }
 
 }  // namespace
@@ -72,16 +85,19 @@ Eigen::VectorXd Robot::values(const std::map<std::string, double>& by_name) cons
   constexpr double kSlack = 1e-9;  // printed limits lose their last digit
   Eigen::VectorXd result = data_->default_values;
   for (const auto& [name, value] : by_name) {
-    const Joint& joint = data_->joints[static_cast<std::size_t>(joint_index(name))];
+    const auto [joint_name, part] = split_value_name(*data_, name);
+    const Joint& joint = data_->joints[static_cast<std::size_t>(joint_index(joint_name))];
     const std::string field = "joint \"" + name + "\"";
     if (joint.mimic_joint >= 0)
       throw InvalidInput(field + ": follows joint \"" +
                          data_->joints[static_cast<std::size_t>(joint.mimic_joint)].name + "\", set that one");
-    if (joint.value_count() != 1)
-      throw InvalidInput(field + ": is " + to_string(joint.type) + ", must be a joint with one value");
+    if (joint.value_count() == 0) throw InvalidInput(field + ": is fixed, must be a movable joint");
+    if (joint.value_count() > 1 && name == joint_name)
+      throw InvalidInput(field + ": is " + to_string(joint.type) +
+                         ", name one of its values: " + detail::value_names(joint).front() + ", ...");
     require(std::isfinite(value) && value >= joint.lower - kSlack && value <= joint.upper + kSlack, field, value,
             "must lie in [" + detail::number_text(joint.lower) + ", " + detail::number_text(joint.upper) + "]");
-    result[joint.value_index] = value;
+    result[joint.value_index + part] = value;
   }
   return result;
 }
@@ -115,6 +131,9 @@ const std::vector<EndEffectorDescription>& Robot::end_effectors() const {
 }
 const GroupStates& Robot::group_states() const {
   return data_->group_states;
+}
+const std::vector<std::string>& Robot::passive_joints() const {
+  return data_->passive_joints;
 }
 bool Robot::has_srdf() const {
   return data_->has_srdf;

@@ -52,6 +52,10 @@ void add_prefix(RobotParts& parts, const std::string& prefix) {
       for (const auto& [joint, value] : values) renamed[prefix + joint] = value;
     }
   parts.group_states = std::move(states);
+  for (std::string& joint : parts.passive_joints) joint = prefix + joint;
+  std::map<std::string, std::string> inertials;
+  for (auto& [link, text] : parts.inertials) inertials.emplace(prefix + link, std::move(text));
+  parts.inertials = std::move(inertials);
   NamedPairs pairs;
   for (const auto& [pair, reason] : parts.disabled_pairs)
     pairs.emplace(ordered(prefix + pair.first, prefix + pair.second), reason);
@@ -86,6 +90,8 @@ Robot Robot::mount(const Robot& other, const std::string& parent_link, const Pos
   append(parts.joints, mounted.joints);
   append(parts.groups, mounted.groups);
   append(parts.end_effectors, mounted.end_effectors);
+  append(parts.passive_joints, mounted.passive_joints);  // its virtual joints end here: its root is fixed now
+  parts.inertials.insert(mounted.inertials.begin(), mounted.inertials.end());
   append(parts.report.warnings, mounted.report.warnings);
   append(parts.report.meshes, mounted.report.meshes);
   append(parts.report.missing, mounted.report.missing);

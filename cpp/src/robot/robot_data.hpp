@@ -14,6 +14,11 @@ namespace mmgrasp {
 using GroupStates = std::map<std::string, std::map<std::string, std::map<std::string, double>>>;
 using NamedPairs = std::map<std::pair<std::string, std::string>, DisabledReason>;
 
+/// How an SRDF ties the robot to the world. Kept to be written out again: here the base kind says how the root moves.
+struct VirtualJoint {
+  std::string name, type, parent_frame, child_link;
+};
+
 struct Robot::Data {
   std::string name;
   BaseKind base = BaseKind::fixed;
@@ -24,8 +29,11 @@ struct Robot::Data {
   std::vector<GroupDescription> groups;
   std::vector<EndEffectorDescription> end_effectors;
   GroupStates group_states;
+  std::vector<std::string> passive_joints;
+  std::vector<VirtualJoint> virtual_joints;
   bool has_srdf = false;
   std::map<std::pair<int, int>, DisabledReason> disabled_pairs;
+  std::map<std::string, std::string> inertials;  // link -> its <inertial> as XML: nothing here computes with it
   std::set<std::string> shapes_left_out;  // links whose meshes were not loaded: without shapes here, but not in truth
 
   // Derived from the above.
@@ -58,14 +66,22 @@ struct RobotParts {
   std::vector<GroupDescription> groups;
   std::vector<EndEffectorDescription> end_effectors;
   GroupStates group_states;
+  std::vector<std::string> passive_joints;
+  std::vector<VirtualJoint> virtual_joints;
   bool has_srdf = false;
   NamedPairs disabled_pairs;
+  std::map<std::string, std::string> inertials;
   std::set<std::string> shapes_left_out;
 };
 
 /// Orders links and joints breadth first, resolves mimic joints, numbers values, disables pairs that cannot collide in
 /// a meaningful way (joined by a joint or rigidly). Throws InvalidInput when the parts are no tree.
 std::shared_ptr<Robot::Data> build_robot(const RobotParts& parts);
+/// Pairs that build_robot disables by itself: joined by a joint (also across links without shapes) or one rigid body.
+std::set<std::pair<int, int>> adjacent_pairs(const Robot::Data& data);
+/// Names of a joint's values: its own for one; name/x, name/y, name/theta for planar joints; name/x, name/y, name/z,
+/// name/rx, name/ry, name/rz (rotation vector) for floating ones.
+std::vector<std::string> value_names(const Joint& joint);
 RobotParts to_parts(const Robot::Data& data);
 
 }  // namespace detail

@@ -1,9 +1,11 @@
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/shape.hpp"
+#include "mmgrasp/geometry/simplify_mesh.hpp"
 #include "robot/mesh_locator.hpp"
 #include "robot/robot_data.hpp"
 #include "robot/srdf_reader.hpp"
@@ -31,20 +33,33 @@ std::string read_text(const std::string& path, const char* kind) {
 /// Reads each mesh file once per scale, although robots use the same wheel or finger several times.
 class MeshCache {
  public:
-  MeshShape load(const LinkShape& shape, RobotReport& report) {
+  explicit MeshCache(double tolerance) : tolerance_(tolerance) {}
+
+  /// Puts the mesh, or what stands in for it, into a shape whose file is known.
+  void load(LinkShape& shape, RobotReport& report) {
     const Eigen::Vector3d& s = shape.mesh_scale;
-    MeshShape& entry = meshes_[shape.mesh_path + "|" + detail::number_text(s[0]) + "|" + detail::number_text(s[1]) +
-                               "|" + detail::number_text(s[2])];
-    if (!entry.mesh) {
+    MeshStandIn& entry = meshes_[shape.mesh_path + "|" + detail::number_text(s[0]) + "|" + detail::number_text(s[1]) +
+                                 "|" + detail::number_text(s[2])];
+    const auto* known = std::get_if<MeshShape>(&entry.shape);
+    if (known && !known->mesh) {
       MeshReport mesh_report;
-      entry.mesh = load_mesh(shape.mesh_path, s, &mesh_report);
+      entry = simplify_mesh(load_mesh(shape.mesh_path, s, &mesh_report), tolerance_);
+      mesh_report.chosen = entry.chosen;
+      mesh_report.triangles_saved = entry.triangles_saved;
+      mesh_report.deviation = entry.deviation;
       report.meshes.push_back(mesh_report);
     }
-    return entry;
+    shape.shape = entry.shape;
+    shape.T_link_shape = shape.T_link_shape * entry.T_mesh_shape;
+    if (std::holds_alternative<MeshShape>(entry.shape)) return;
+    shape.mesh_uri.clear();  // a primitive like any other: files written from here hold it, not the mesh
+    shape.mesh_path.clear();
+    shape.mesh_scale.setOnes();
   }
 
  private:
-  std::map<std::string, MeshShape> meshes_;
+  double tolerance_;
+  std::map<std::string, MeshStandIn> meshes_;
 };
 
 std::string missing_message(const std::string& origin, const std::string& link, const std::string& uri,
@@ -62,7 +77,7 @@ std::string missing_message(const std::string& origin, const std::string& link, 
 
 void resolve_meshes(detail::RobotParts& parts, const RobotOptions& options) {
   detail::MeshLocator locator(fs::path(parts.origin).parent_path(), options.mesh_dir, options.package_dirs);
-  MeshCache cache;
+  MeshCache cache(options.mesh_tolerance);
   for (Link& link : parts.links) {
     std::vector<LinkShape> kept;
     for (LinkShape& shape : link.collisions) {
@@ -84,7 +99,7 @@ void resolve_meshes(detail::RobotParts& parts, const RobotOptions& options) {
         parts.report.warnings.push_back(message);
         continue;
       }
-      shape.shape = cache.load(shape, parts.report);
+      cache.load(shape, parts.report);
       kept.push_back(shape);
     }
     link.collisions = std::move(kept);
@@ -106,6 +121,8 @@ void warn_of_odd_sizes(detail::RobotParts& parts) {
 Robot load_robot(const std::string& urdf, const std::string& urdf_origin, const std::string& srdf,
                  const std::string& srdf_origin, const RobotOptions& options) {
   options.base_limits.check();
+  require(std::isfinite(options.mesh_tolerance) && options.mesh_tolerance >= 0, "mesh_tolerance",
+          options.mesh_tolerance, "must be >= 0 and finite");
   detail::RobotParts parts = detail::read_urdf(urdf, urdf_origin);
   parts.base = options.base;
   parts.base_limits = options.base_limits;
@@ -131,8 +148,8 @@ Robot Robot::load(const std::string& urdf_path, const std::string& srdf_path, co
 }
 
 Robot Robot::from_strings(const std::string& urdf, const std::string& srdf, const RobotOptions& options,
-                          const std::string& origin) {
-  return load_robot(urdf, origin, srdf, origin + " (SRDF)", options);
+                          const std::string& origin, const std::string& srdf_origin) {
+  return load_robot(urdf, origin, srdf, srdf_origin.empty() ? origin + " (SRDF)" : srdf_origin, options);
 }
 
 }  // namespace mmgrasp

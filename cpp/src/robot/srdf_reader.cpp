@@ -1,6 +1,7 @@
 #include "robot/srdf_reader.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "mmgrasp/core/error.hpp"
@@ -39,6 +40,8 @@ class SrdfReader {
     const auto name = xml_.text(root, "name");
     if (name && *name != data_.name)
       warn(root, "is written for robot \"" + *name + "\", the URDF's is \"" + data_.name + "\"");
+    read_virtual_joints();
+    read_passive_joints();
     read_groups();
     read_states();
     read_end_effectors();
@@ -73,6 +76,28 @@ class SrdfReader {
     return path;
   }
 
+  void read_virtual_joints() {
+    for (const TiXmlElement* e = xml_.root().FirstChildElement("virtual_joint"); e;
+         e = e->NextSiblingElement("virtual_joint"))
+      data_.virtual_joints.push_back({xml_.required_text(*e, "name"), xml_.text(*e, "type").value_or("fixed"),
+                                      xml_.text(*e, "parent_frame").value_or("world"),
+                                      xml_.text(*e, "child_link").value_or(data_.links.front().name)});
+  }
+
+  void read_passive_joints() {
+    for (const TiXmlElement* e = xml_.root().FirstChildElement("passive_joint"); e;
+         e = e->NextSiblingElement("passive_joint")) {
+      const std::string name = xml_.required_text(*e, "name");
+      if (is_virtual_joint(name)) continue;
+      const auto found = data_.joint_by_name.find(name);
+      if (found == data_.joint_by_name.end()) {
+        warn(*e, "names a joint that the robot lacks");
+      } else if (passive_.insert(found->second).second) {
+        data_.passive_joints.push_back(name);
+      }
+    }
+  }
+
   void read_groups() {
     for (const TiXmlElement* e = xml_.root().FirstChildElement("group"); e; e = e->NextSiblingElement("group")) {
       const std::string name = xml_.required_text(*e, "name");
@@ -88,7 +113,8 @@ class SrdfReader {
       std::set<std::string> visiting;
       const Members& members = collect(name, visiting);
       const GroupDescription group = describe(name, members);
-      if (group.joints.empty() && members.joints.empty())
+      const bool says_something = group_elements_.at(name)->FirstChildElement() != nullptr;
+      if (says_something && group.joints.empty() && members.joints.empty())
         warn(*group_elements_.at(name), "none of its joints and links is in the robot, the group is dropped");
       else
         data_.groups.push_back(group);
@@ -147,10 +173,8 @@ class SrdfReader {
   }
 
   bool is_virtual_joint(const std::string& name) const {
-    for (const TiXmlElement* e = xml_.root().FirstChildElement("virtual_joint"); e;
-         e = e->NextSiblingElement("virtual_joint"))
-      if (xml_.text(*e, "name") == name) return true;
-    return false;
+    return std::any_of(data_.virtual_joints.begin(), data_.virtual_joints.end(),
+                       [&name](const VirtualJoint& joint) { return joint.name == name; });
   }
 
   void add_link(const std::string& name, Members& members) {
@@ -172,7 +196,7 @@ class SrdfReader {
     group.name = name;
     std::vector<int> movable;
     for (const int index : members.joints)
-      if (joint(index).value_index >= 0 && joint(index).value_count() == 1) {
+      if (joint(index).value_index >= 0 && !passive_.count(index)) {
         movable.push_back(index);
         group.joints.push_back(joint(index).name);
       }
@@ -225,12 +249,26 @@ class SrdfReader {
     if (found == data_.joint_by_name.end()) return warn(element, "names a joint that the robot lacks");
     const Joint& known = joint(found->second);
     if (known.value_index < 0) return;  // fixed and mimic joints: their values follow from others
-    if (known.value_count() != 1) return warn(element, "is ignored: the joint has more than one value");
+    if (known.value_count() != 1) return read_several_values(element, known, state);
     const double value = xml_.required_number(element, "value");
     if (value < known.lower - 1e-3 || value > known.upper + 1e-3)
       warn(element, "value = \"" + number_text(value) + "\" lies outside the joint's limits [" +
                         number_text(known.lower) + ", " + number_text(known.upper) + "]");
     state[name] = value;
+  }
+
+  /// x y theta of a planar joint; x y z and a quaternion x y z w of a floating one.
+  void read_several_values(const TiXmlElement& element, const Joint& known, std::map<std::string, double>& state) {
+    std::vector<double> values = xml_.required_numbers(element, "value", known.type == JointType::planar ? 3 : 7);
+    if (known.type == JointType::floating) {
+      const Eigen::Vector4d q(values[3], values[4], values[5], values[6]);
+      if (!(std::abs(q.norm() - 1) < 1e-3)) xml_.fail(element, "value: its quaternion must be of length 1");
+      const Eigen::AngleAxisd turn(Eigen::Quaterniond(q).normalized());
+      const Eigen::Vector3d vector = turn.angle() * turn.axis();
+      values = {values[0], values[1], values[2], vector[0], vector[1], vector[2]};
+    }
+    const std::vector<std::string> names = value_names(known);
+    for (std::size_t i = 0; i < names.size(); ++i) state[names[i]] = values[i];
   }
 
   void read_end_effectors() {
@@ -283,6 +321,7 @@ class SrdfReader {
   std::vector<std::string> group_order_;
   std::map<std::string, Members> collected_;
   std::map<std::string, int> unknown_links_;
+  std::set<int> passive_;
 };
 
 }  // namespace

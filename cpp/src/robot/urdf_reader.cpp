@@ -27,7 +27,8 @@ class UrdfReader {
     parts_.name = xml_.required_text(root, "name");
     for (const TiXmlElement* e = root.FirstChildElement(); e; e = e->NextSiblingElement()) {
       // xacro tags left in the file mean that it was never expanded: links and joints would be missing silently.
-      if (e->ValueStr().rfind("xacro:", 0) == 0) xml_.fail(*e, "is xacro: expand the file to plain URDF first");
+      if (e->ValueStr().rfind("xacro:", 0) == 0)
+        xml_.fail(*e, "is xacro: expand the file to plain URDF first (Python does for files called .xacro)");
       if (e->ValueStr() == "link") read_link(*e);
       if (e->ValueStr() == "joint") read_joint(*e);
     }
@@ -77,7 +78,25 @@ class UrdfReader {
     link.name = read_name(element, link_names_, "link");
     for (const TiXmlElement* e = element.FirstChildElement("collision"); e; e = e->NextSiblingElement("collision"))
       link.collisions.push_back(read_collision(*e));
+    if (const TiXmlElement* inertial = element.FirstChildElement("inertial")) read_inertial(link.name, *inertial);
     parts_.links.push_back(std::move(link));
+  }
+
+  /// Nothing here computes with masses: the element is kept as it stands, and bad numbers in it are no reason to refuse
+  /// a robot.
+  void read_inertial(const std::string& link, const TiXmlElement& element) {
+    try {
+      read_origin(element);
+      for (const TiXmlElement* e = element.FirstChildElement(); e; e = e->NextSiblingElement())
+        for (const char* name : {"value", "ixx", "ixy", "ixz", "iyy", "iyz", "izz"}) xml_.number(*e, name, 0);
+    } catch (const InvalidInput& error) {
+      parts_.report.warnings.push_back(std::string(error.what()) + "; the link's <inertial> is left out");
+      return;
+    }
+    TiXmlPrinter printer;
+    printer.SetStreamPrinting();
+    element.Accept(&printer);
+    parts_.inertials[link] = printer.CStr();
   }
 
   LinkShape read_collision(const TiXmlElement& element) {
@@ -129,7 +148,7 @@ class UrdfReader {
     named.child = read_link_reference(element, "child");
     joint.T_parent_joint = read_origin(element);
     read_axis(element, joint);
-    if (joint.value_count() == 1) read_limits(element, joint);
+    if (joint.value_count() > 0) read_limits(element, joint);
     if (const TiXmlElement* mimic = element.FirstChildElement("mimic")) read_mimic(element, *mimic, named);
     parts_.joints.push_back(std::move(named));
   }
@@ -159,7 +178,7 @@ class UrdfReader {
   void read_limits(const TiXmlElement& element, Joint& joint) {
     const TiXmlElement* limit = element.FirstChildElement("limit");
     joint.velocity = kFallbackVelocity;
-    const bool bounded = joint.type != JointType::continuous;
+    const bool bounded = joint.type == JointType::revolute || joint.type == JointType::prismatic;
     if (!limit) {
       if (bounded)
         xml_.fail(element, std::string("<limit> is missing: a ") + to_string(joint.type) + " joint needs one");

@@ -3,7 +3,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <vector>
 
 #include "core/xml_markup.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -111,12 +110,20 @@ double XmlDocument::required_number(const TiXmlElement& element, const char* att
 
 Eigen::Vector3d XmlDocument::vector3(const TiXmlElement& element, const char* attribute,
                                      const Eigen::Vector3d& fallback) const {
+  if (!text(element, attribute)) return fallback;
+  return Eigen::Vector3d(required_numbers(element, attribute, 3).data());
+}
+
+std::vector<double> XmlDocument::required_numbers(const TiXmlElement& element, const char* attribute,
+                                                  std::size_t count) const {
   const auto value = text(element, attribute);
-  if (!value) return fallback;
+  if (!value) fail(element, std::string("attribute ") + attribute + " is missing");
   const std::vector<std::string> parts = words(*value);
-  if (parts.size() != 3) fail(element, std::string(attribute) + " = \"" + *value + "\": must be three numbers");
-  Eigen::Vector3d result;
-  for (int i = 0; i < 3; ++i) result[i] = parse_number(element, attribute, parts[static_cast<std::size_t>(i)]);
+  if (parts.size() != count)
+    fail(element, std::string(attribute) + " = \"" + *value + "\": must be " +
+                      (count == 3 ? "three" : std::to_string(count)) + " numbers");
+  std::vector<double> result;
+  for (const std::string& part : parts) result.push_back(parse_number(element, attribute, part));
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace mmgrasp::detail {
 
@@ -30,6 +31,8 @@ class XmlDocument {
   /// Finite number, or `fallback` when the attribute is missing.
   double number(const TiXmlElement& element, const char* attribute, double fallback) const;
   double required_number(const TiXmlElement& element, const char* attribute) const;
+  /// Exactly `count` finite numbers.
+  std::vector<double> required_numbers(const TiXmlElement& element, const char* attribute, std::size_t count) const;
   /// Three finite numbers, or `fallback` when the attribute is missing.
   Eigen::Vector3d vector3(const TiXmlElement& element, const char* attribute, const Eigen::Vector3d& fallback) const;
 

@@ -57,9 +57,10 @@ class MMGRASP_EXPORT Robot {
   /// the disabled pairs are then computed by sampling when a collision checker first needs them (see
   /// collision/disabled_pairs.hpp); here only adjacent ones are set.
   static Robot load(const std::string& urdf_path, const std::string& srdf_path = "", const RobotOptions& options = {});
-  /// The same from text; `origin` names the source in messages and gives the folder for relative meshes.
+  /// The same from text; `origin` names the source in messages and gives the folder for relative meshes. An empty
+  /// `srdf_origin` is "<origin> (SRDF)".
   static Robot from_strings(const std::string& urdf, const std::string& srdf = "", const RobotOptions& options = {},
-                            const std::string& origin = "<string>");
+                            const std::string& origin = "<string>", const std::string& srdf_origin = "");
 
   const std::string& name() const;
   BaseKind base() const;
@@ -77,7 +78,8 @@ class MMGRASP_EXPORT Robot {
   int value_count() const;
   /// All zeros, moved into limits where zero is outside.
   Eigen::VectorXd default_values() const;
-  /// default_values() with the named joints set. Throws InvalidInput on unknown names or values outside limits.
+  /// default_values() with the named joints set. A planar joint's values are named joint/x, joint/y, joint/theta, a
+  /// floating one's joint/x, /y, /z, /rx, /ry, /rz. Throws InvalidInput on unknown names or values outside limits.
   Eigen::VectorXd values(const std::map<std::string, double>& by_name) const;
   /// Pose of every link for full values, root at T_world_root. The slow general reference; JointGroup has the fast
   /// path.
@@ -85,7 +87,7 @@ class MMGRASP_EXPORT Robot {
 
   const std::vector<GroupDescription>& groups() const;
   const std::vector<EndEffectorDescription>& end_effectors() const;
-  /// SRDF group states: group -> state -> joint -> value.
+  /// SRDF group states: group -> state -> joint -> value, with the names that values() takes.
   const std::map<std::string, std::map<std::string, std::map<std::string, double>>>& group_states() const;
   /// Joints that the SRDF calls passive (castors): they move, but nothing drives them. No group contains them.
   const std::vector<std::string>& passive_joints() const;
@@ -112,9 +114,9 @@ class MMGRASP_EXPORT Robot {
   Robot with_link(const std::string& name, const std::string& parent_link, const Pose& T_parent_link,
                   const std::vector<LinkShape>& collisions = {}) const;
 
-  /// The whole robot written out: what was read of it, so without visuals and inertias. Mesh URIs are written as
-  /// absolute file paths; meshes that were not loaded are left out. Throws InvalidInput for a mesh that came from no
-  /// file.
+  /// The whole robot written out: links with inertias and collision shapes, joints; without visuals. Mesh URIs are
+  /// written as absolute file paths; meshes that were not loaded are left out. Throws InvalidInput for a mesh that came
+  /// from no file.
   std::string to_urdf() const;
   std::string to_srdf() const;
   /// Content hash of kinematics, shapes (mesh contents included), limits and disabled pairs.

@@ -1,7 +1,11 @@
+#include <limits>
 #include <map>
+#include <string_view>
 
 #include "bindings.hpp"
+#include "mmgrasp/robot/base_motion.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
+#include "mmgrasp/robot/packages.hpp"
 #include "mmgrasp/robot/robot.hpp"
 
 namespace mmgrasp::python {
@@ -15,7 +19,16 @@ const std::vector<OptionField<BaseLimits>>& base_limit_fields() {
       option<BaseLimits>("angular_velocity", &BaseLimits::angular_velocity, "[rad/s]"),
       option<BaseLimits>("linear_acceleration", &BaseLimits::linear_acceleration, "[m/s^2]"),
       option<BaseLimits>("angular_acceleration", &BaseLimits::angular_acceleration, "[rad/s^2]"),
-      option<BaseLimits>("workspace", &BaseLimits::workspace, "x and y lie in [-workspace, workspace] [m]")};
+      option<BaseLimits>("workspace", &BaseLimits::workspace, "x and y lie in [-workspace, workspace] [m]"),
+      {"wheel_velocity",
+       [](BaseLimits& limits, const py::handle& value) {
+         limits.wheel_velocity = std::numeric_limits<double>::infinity();
+         if (!value.is_none() && !value.equal(py::float_(limits.wheel_velocity)))
+           convert(value, "wheel_velocity", limits.wheel_velocity);
+       },
+       [](const BaseLimits& limits) -> py::object { return py::float_(limits.wheel_velocity); },
+       "of a diff-drive's wheel rims [m/s]; None or infinite: no limit"},
+      option<BaseLimits>("wheel_separation", &BaseLimits::wheel_separation, "of a diff-drive's wheels [m]")};
   return fields;
 }
 
@@ -35,14 +48,33 @@ std::map<std::string, std::string> package_argument(const py::object& value) {
   return out;
 }
 
+bool is_xacro(const std::string& path) {
+  constexpr std::string_view kEnding = ".xacro";
+  return path.size() >= kEnding.size() && path.compare(path.size() - kEnding.size(), kEnding.size(), kEnding) == 0;
+}
+
+/// A robot of which at least one file is xacro: that one is expanded in Python, the other read as it is.
+Robot load_expanded(const std::string& urdf_path, const std::string& srdf_path, const py::object& xacro_args,
+                    const RobotOptions& options) {
+  const py::module_ xacro = py::module_::import("mmgrasp._xacro");
+  const auto text = [&](const std::string& path) {
+    return py::cast<std::string>(xacro.attr("read_or_expand")(path, options.package_dirs, xacro_args));
+  };
+  const auto origin = [](const std::string& path) { return path + (is_xacro(path) ? " (expanded)" : ""); };
+  const std::string urdf = text(urdf_path), srdf = srdf_path.empty() ? "" : text(srdf_path);
+  py::gil_scoped_release release;
+  return Robot::from_strings(urdf, srdf, options, origin(urdf_path), origin(srdf_path));
+}
+
 RobotOptions robot_options(const py::object& package_dirs, const std::string& base, const py::object& base_limits,
-                           bool load_meshes, bool allow_missing_meshes) {
+                           bool load_meshes, bool allow_missing_meshes, double mesh_tolerance) {
   RobotOptions options;
   options.base = base_kind_from_string(base);
   options.base_limits = base_limits_argument(base_limits);
   options.package_dirs = package_argument(package_dirs);
   options.load_meshes = load_meshes;
   options.allow_missing_meshes = allow_missing_meshes;
+  options.mesh_tolerance = mesh_tolerance;
   return options;
 }
 
@@ -76,7 +108,8 @@ py::dict report_dict(const RobotReport& report) {
     meshes.append(py::dict("path"_a = mesh.path, "vertices_read"_a = mesh.vertices_read,
                            "vertices_merged"_a = mesh.vertices_merged,
                            "degenerate_triangles"_a = mesh.degenerate_triangles, "triangles"_a = mesh.triangles,
-                           "closed"_a = mesh.closed, "convex"_a = mesh.convex));
+                           "closed"_a = mesh.closed, "convex"_a = mesh.convex, "chosen"_a = mesh.chosen,
+                           "triangles_saved"_a = mesh.triangles_saved, "deviation"_a = mesh.deviation));
   }
   return py::dict("warnings"_a = report.warnings, "meshes"_a = meshes, "missing"_a = report.missing);
 }
@@ -115,32 +148,40 @@ void bind_robot_class(py::module_& m) {
       .def_static(
           "load",
           [](const py::object& urdf, const py::object& srdf, const py::object& package_dirs, const std::string& base,
-             const py::object& base_limits, bool load_meshes, bool allow_missing_meshes) {
+             const py::object& base_limits, bool load_meshes, bool allow_missing_meshes, double mesh_tolerance,
+             const py::object& xacro_args) {
             const RobotOptions options =
-                robot_options(package_dirs, base, base_limits, load_meshes, allow_missing_meshes);
+                robot_options(package_dirs, base, base_limits, load_meshes, allow_missing_meshes, mesh_tolerance);
             const std::string urdf_path = path_argument(urdf, "urdf");
             const std::string srdf_path = srdf.is_none() ? "" : path_argument(srdf, "srdf");
+            if (is_xacro(urdf_path) || is_xacro(srdf_path))
+              return load_expanded(urdf_path, srdf_path, xacro_args, options);
+            if (!xacro_args.is_none()) refuse_value("xacro_args", xacro_args, "None unless a file is called .xacro");
             py::gil_scoped_release release;
             return Robot::load(urdf_path, srdf_path, options);
           },
           py::arg("urdf"), py::arg("srdf") = py::none(), py::arg("package_dirs") = py::none(),
           py::arg("base") = "fixed", py::kw_only(), py::arg("base_limits") = py::none(), py::arg("load_meshes") = true,
-          py::arg("allow_missing_meshes") = false,
-          "Reads a URDF and, if given, its SRDF. `base` is fixed, diff_drive or omni; `package_dirs` maps the names "
-          "in\n"
-          "package://NAME/... to folders. Raises IoError or InvalidInput naming file, element, value and rule.")
+          py::arg("allow_missing_meshes") = false, py::arg("mesh_tolerance") = 0.0, py::arg("xacro_args") = py::none(),
+          "Reads a URDF and, if given, its SRDF. `base` is fixed, diff_drive or omni; `package_dirs` maps the names\n"
+          "in package://NAME/... to folders. Files called .xacro are expanded first (needs the package xacro; macros\n"
+          "are programs: expand only files you trust) with the arguments `xacro_args` (a dict). A box, hull, sphere "
+          "or\n"
+          "cylinder that contains a collision mesh and sticks out at most `mesh_tolerance` [m] replaces it; 0: only\n"
+          "what is the same solid. Raises IoError or InvalidInput naming file, element, value and rule.")
       .def_static(
           "from_strings",
           [](const std::string& urdf, const std::string& srdf, const py::object& package_dirs, const std::string& base,
-             const py::object& base_limits, bool load_meshes, bool allow_missing_meshes, const std::string& origin) {
+             const py::object& base_limits, bool load_meshes, bool allow_missing_meshes, double mesh_tolerance,
+             const std::string& origin) {
             const RobotOptions options =
-                robot_options(package_dirs, base, base_limits, load_meshes, allow_missing_meshes);
+                robot_options(package_dirs, base, base_limits, load_meshes, allow_missing_meshes, mesh_tolerance);
             py::gil_scoped_release release;
             return Robot::from_strings(urdf, srdf, options, origin);
           },
           py::arg("urdf"), py::arg("srdf") = "", py::arg("package_dirs") = py::none(), py::arg("base") = "fixed",
           py::kw_only(), py::arg("base_limits") = py::none(), py::arg("load_meshes") = true,
-          py::arg("allow_missing_meshes") = false, py::arg("origin") = "<string>",
+          py::arg("allow_missing_meshes") = false, py::arg("mesh_tolerance") = 0.0, py::arg("origin") = "<string>",
           "The same from the texts of URDF and SRDF; `origin` names the source in messages.")
       .def_property_readonly("name", &Robot::name)
       .def_property_readonly(
@@ -153,6 +194,14 @@ void bind_robot_class(py::module_& m) {
                                }
                                return out;
                              })
+      .def(
+          "velocity_scale",
+          [](const Robot& r, const ArrayLike& platform_velocity) {
+            return velocity_scale(r.base(), r.base_limits(), vector3_argument(platform_velocity, "platform_velocity"));
+          },
+          py::arg("platform_velocity"),
+          "Largest factor in [0, 1] that keeps a platform velocity (v_x, v_y, omega) inside the base's limits: speed,\n"
+          "turning, wheels. 0 for what this base cannot do at all (sideways, or fixed).")
       .def_property_readonly(
           "links",
           [](const Robot& r) {
@@ -185,7 +234,9 @@ void bind_robot_class(py::module_& m) {
             return out;
           },
           "SRDF groups: name to joints, base_link, tip_link.")
-      .def_property_readonly("group_states", &Robot::group_states, "SRDF states: group, state, joint to value.")
+      .def_property_readonly(
+          "group_states", &Robot::group_states,
+          "SRDF states: group, state, joint to value. Joints with several values appear as joint/x, joint/y, ...")
       .def_property_readonly(
           "end_effectors",
           [](const Robot& r) {
@@ -195,6 +246,8 @@ void bind_robot_class(py::module_& m) {
             }
             return out;
           })
+      .def_property_readonly("passive_joints", &Robot::passive_joints,
+                             "Joints that nothing drives (SRDF passive_joint): in no group.")
       .def_property_readonly("has_srdf", &Robot::has_srdf)
       .def_property_readonly("hash", &Robot::hash, "Content hash: kinematics, shapes, limits, disabled pairs.")
       .def(
@@ -255,18 +308,64 @@ void bind_robot_class(py::module_& m) {
             return r.with_disabled_pairs(std::move(out));
           },
           py::arg("pairs"))
-      .def("to_urdf", &Robot::to_urdf, "The whole robot as one URDF; mesh files by absolute path.")
-      .def("to_srdf", &Robot::to_srdf)
+      .def("to_urdf", &Robot::to_urdf, "The whole robot as one URDF, without visuals; mesh files by absolute path.")
+      .def("to_srdf", &Robot::to_srdf,
+           "Groups, states, end effectors, passive and virtual joints and the disabled pairs with their reasons as one "
+           "SRDF.\n"
+           "For a robot without an SRDF: with_sampled_pairs(robot).to_srdf() writes the computed pairs.")
       .def("__repr__", [](const Robot& r) {
         return "Robot('" + r.name() + "', " + std::to_string(r.links().size()) + " links, " +
                std::to_string(movable_joints(r).size()) + " movable joints, base " + to_string(r.base()) + ")";
       });
 }
 
+void bind_base_motion(py::module_& m) {
+  m.def(
+      "find_package",
+      [](const std::string& name, const py::object& folder, const py::object& package_dirs) {
+        return find_package(name, path_argument(folder, "folder"), package_argument(package_dirs));
+      },
+      py::arg("name"), py::arg("folder"), py::arg("package_dirs") = py::none(),
+      "Folder of the ROS package that a file in `folder` means by package://NAME or $(find NAME); empty if none.");
+  m.def(
+      "platform_velocity",
+      [](double theta, const ArrayLike& joint_velocity) {
+        return platform_velocity(theta, vector3_argument(joint_velocity, "joint_velocity"));
+      },
+      py::arg("theta"), py::arg("joint_velocity"),
+      "Velocity command (v_x, v_y, omega) in the platform's own frame for velocities of the virtual joints x, y, "
+      "theta\n"
+      "standing at heading theta (P3 3.12) [m/s, rad/s].");
+  m.def(
+      "platform_velocity",
+      [](double left, double right, double wheel_separation) {
+        return platform_velocity(WheelSpeeds{left, right}, wheel_separation);
+      },
+      py::kw_only(), py::arg("left"), py::arg("right"), py::arg("wheel_separation"),
+      "The same of a diff-drive whose wheel rims move at `left` and `right` [m/s]: v = (left + right) / 2,\n"
+      "omega = (right - left) / wheel_separation (P1 4.11).");
+  m.def(
+      "joint_velocity",
+      [](double theta, const ArrayLike& platform_velocity) {
+        return joint_velocity(theta, vector3_argument(platform_velocity, "platform_velocity"));
+      },
+      py::arg("theta"), py::arg("platform_velocity"),
+      "Velocities of the virtual joints x, y, theta for a platform velocity: the inverse of platform_velocity().");
+  m.def(
+      "wheel_speeds",
+      [](double v, double omega, double wheel_separation) {
+        const WheelSpeeds wheels = wheel_speeds(v, omega, wheel_separation);
+        return py::make_tuple(wheels.left, wheels.right);
+      },
+      py::arg("v"), py::arg("omega"), py::arg("wheel_separation"),
+      "Rim speeds (left, right) of a diff-drive's wheels [m/s].");
+}
+
 }  // namespace
 
 void bind_robot(py::module_& m) {
   bind_robot_class(m);
+  bind_base_motion(m);
   bind_group(m);
 }
 

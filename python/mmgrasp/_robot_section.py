@@ -17,8 +17,8 @@ from ._shapes import read_shapes
 
 Progress = Callable[[str, float], None] | None
 
-BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace"
-ROBOT_KEYS = "urdf srdf packages base base_limits mount frames group tcp joints home"
+BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation"
+ROBOT_KEYS = "urdf srdf packages xacro_args base base_limits mount frames group tcp joints home"
 CARRY_LINK = "carry_bin"
 
 
@@ -121,7 +121,7 @@ def _compose(node: Node) -> Robot:
     base = node["base"].choice("fixed", "diff_drive", "omni") if "base" in node else "fixed"
     robot = _load(node, base, limits)
     for mount in node["mount"].elements() if "mount" in node else []:
-        mount.mapping("urdf parent_link", "srdf packages pose prefix")
+        mount.mapping("urdf parent_link", "srdf packages xacro_args pose prefix")
         other = _load(mount, "fixed", {})
         _link(robot, mount["parent_link"])
         T = mount["pose"].pose() if "pose" in mount else np.eye(4)
@@ -143,7 +143,8 @@ def _load(node: Node, base: str, limits: dict[str, float]) -> Robot:
     packages = {}
     for name, folder in node["packages"].items() if "packages" in node else []:
         packages[name] = str(find_file(folder))
-    return Robot.load(urdf, srdf, packages, base, base_limits=limits)
+    arguments = {name: value.raw for name, value in node["xacro_args"].items()} if "xacro_args" in node else None
+    return Robot.load(urdf, srdf, packages, base, base_limits=limits, xacro_args=arguments)
 
 
 def _link(robot: Robot, node: Node) -> None:

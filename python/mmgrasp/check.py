@@ -9,10 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from . import _core
-from ._core import Robot
+from ._core import InvalidInput, Robot
 from ._robot_section import Progress
 
 
@@ -21,6 +19,7 @@ class RobotCheck:
     """Findings about one robot. `problems` are what keeps it from being planned for."""
 
     robot: Robot
+    sampled: Robot  # the same with its disabled pairs computed
     problems: list[str]
     doubts: list[str]
     always: list[tuple[str, str]]
@@ -47,6 +46,14 @@ class RobotCheck:
             "pairs": {"all": self.pairs, "never": self.never, "always": self.always},
         }
 
+    def srdf(self) -> str:
+        """An SRDF of what is known: that of the file, if any, and the computed pairs with their reasons."""
+        if self.robot.report["missing"]:
+            raise InvalidInput(
+                f"{self.robot.name}: an SRDF needs every collision mesh; not found: {self.robot.report['missing'][0]}"
+            )
+        return self.sampled.to_srdf()
+
 
 def check_robot(
     urdf: str | os.PathLike[str],
@@ -54,9 +61,19 @@ def check_robot(
     package_dirs: Mapping[str, str] | None = None,
     base: str = "fixed",
     progress: Progress = None,
+    mesh_tolerance: float = 0.0,
+    xacro_args: Mapping[str, Any] | None = None,
 ) -> RobotCheck:
     """Reads a robot as far as possible: missing meshes are listed, not refused."""
-    robot = Robot.load(urdf, srdf, dict(package_dirs or {}), base, allow_missing_meshes=True)
+    robot = Robot.load(
+        urdf,
+        srdf,
+        dict(package_dirs or {}),
+        base,
+        allow_missing_meshes=True,
+        mesh_tolerance=mesh_tolerance,
+        xacro_args=xacro_args,
+    )
     problems = [f"mesh not found: {uri}" for uri in robot.report["missing"]]
     if not robot.joints:
         problems.append("no movable joint")
@@ -69,28 +86,25 @@ def check_robot(
             and joint["mimic"] is None
         ):
             problems.append(f"joint {joint['name']}: limits [{joint['lower']:g}, {joint['upper']:g}] leave no room")
-        if joint["type"] in ("planar", "floating"):
-            problems.append(f"joint {joint['name']} is {joint['type']}: cannot be part of an arm")
     sampled = robot if robot.report["missing"] else _core.with_sampled_pairs(robot, progress=progress)
     reasons = sampled.disabled_pairs
     shaped = sum(1 for link in robot.links if robot.collisions(link))
     always = [(a, b) for a, b, reason in reasons if reason == "always"]
     never = sum(1 for *_, reason in reasons if reason == "never")
     return RobotCheck(
-        robot, problems, [*robot.report["warnings"], *_doubts(robot)], always, never, shaped * (shaped - 1) // 2
+        robot,
+        sampled,
+        problems,
+        [*robot.report["warnings"], *_doubts(robot)],
+        always,
+        never,
+        shaped * (shaped - 1) // 2,
     )
 
 
 def _doubts(robot: Robot) -> list[str]:
-    """Sizes and limits that hint at millimetres or degrees."""
+    """Limits that hint at degrees or stand still. (Loading warns of odd sizes.)"""
     doubts = []
-    for link in robot.links:
-        sizes = [high - low for low, high in (shape.bounds for shape in robot.collisions(link))]
-        largest = max((float(np.max(size)) for size in sizes), default=0.0)
-        if largest > 5 and not any(link in warning for warning in robot.report["warnings"]):
-            doubts.append(f"link {link} is {largest:g} m large: are its shapes in millimetres?")
-        elif sizes and largest < 5e-4:
-            doubts.append(f"link {link} is {largest:g} m large: are its shapes scaled twice?")
     for joint in robot.joint_table:
         if joint["type"] == "revolute" and max(abs(joint["lower"]), abs(joint["upper"])) > 8 * math.pi:
             doubts.append(
@@ -103,6 +117,24 @@ def _doubts(robot: Robot) -> list[str]:
         ):
             doubts.append(f"joint {joint['name']}: velocity limit {joint['velocity']:g} lets it not move")
     return doubts
+
+
+def _mesh_line(mesh: Mapping[str, Any]) -> str:
+    """What was read of a mesh, what stands in for it in collision checks, and what that saves."""
+    kind = ("convex solid" if mesh["convex"] else "solid") if mesh["closed"] else "open surface"
+    line = f"mesh       {Path(mesh['path']).name}: {mesh['triangles']} triangles, {kind}"
+    if mesh["vertices_merged"]:
+        line += f", {mesh['vertices_merged']} of {mesh['vertices_read']} vertices merged"
+    if mesh["degenerate_triangles"]:
+        line += f", {mesh['degenerate_triangles']} degenerate triangles dropped"
+    if mesh["chosen"] == "mesh":
+        return line + "; kept as it is"
+    line += f"; checked as {mesh['chosen']}"
+    if mesh["triangles_saved"]:
+        line += f", saves {mesh['triangles_saved']} triangles"
+    return line + (
+        f", sticks out at most {mesh['deviation'] * 1000:.3g} mm" if mesh["deviation"] else ", the same solid"
+    )
 
 
 def describe(check: RobotCheck) -> str:
@@ -126,13 +158,8 @@ def describe(check: RobotCheck) -> str:
             f"joint      {joint['name']}: {joint['type']}, [{joint['lower']:g}, {joint['upper']:g}] {unit}, "
             f"at most {joint['velocity']:g} {unit}/s{follows}"
         )
-    for mesh in robot.report["meshes"]:
-        kind = ("convex solid" if mesh["convex"] else "solid") if mesh["closed"] else "open surface"
-        repaired = mesh["vertices_merged"] + mesh["degenerate_triangles"]
-        note = f", {mesh['degenerate_triangles']} degenerate triangles dropped" if mesh["degenerate_triangles"] else ""
-        lines.append(
-            f"mesh       {Path(mesh['path']).name}: {mesh['triangles']} triangles, {kind}{note if repaired else ''}"
-        )
+    lines += [f"passive    {joint}" for joint in robot.passive_joints]
+    lines += [_mesh_line(mesh) for mesh in robot.report["meshes"]]
     lines.append(f"pairs      {check.never} of {check.pairs} link pairs never touch, {len(check.always)} always touch")
     lines += [f"always     {a} and {b} touch in every configuration" for a, b in check.always]
     lines += [f"doubt      {doubt}" for doubt in check.doubts]

@@ -17,6 +17,7 @@ from rich.table import Table
 from . import _core
 from ._console import Reporter
 from ._core import Error, InvalidInput, Outcome
+from ._files import write_file
 from ._reading import read_json
 from .check import check_robot, describe
 from .part_supply import PartSupplyPlan, plan_part_supply
@@ -60,8 +61,16 @@ def build_parser() -> argparse.ArgumentParser:
     verify.set_defaults(run=run_verify)
 
     check = commands.add_parser("check", help="tell what mmgrasp understands of a robot")
-    check.add_argument("urdf", type=Path)
+    check.add_argument("urdf", type=Path, help="a URDF, or a .xacro file that expands to one")
     check.add_argument("--srdf", type=Path, metavar="FILE")
+    check.add_argument(
+        "--xacro-arg",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        type=_xacro_argument,
+        help="an argument of the xacro file; may be repeated",
+    )
     check.add_argument(
         "--package",
         action="append",
@@ -71,6 +80,14 @@ def build_parser() -> argparse.ArgumentParser:
         help="where package://NAME/... lies; may be repeated",
     )
     check.add_argument("--base", choices=["fixed", "diff_drive", "omni"], default="fixed")
+    check.add_argument(
+        "--mesh-tolerance",
+        type=float,
+        default=0.0,
+        metavar="M",
+        help="how far simpler solids may stick out of collision meshes [m] (default 0: only the same solid)",
+    )
+    check.add_argument("--write-srdf", type=Path, metavar="FILE", help="write an SRDF with the computed link pairs")
     check.add_argument("--json", action="store_true")
     check.set_defaults(run=run_check)
 
@@ -99,6 +116,13 @@ def _package(text: str) -> tuple[str, str]:
     if not Path(folder).is_dir():
         raise argparse.ArgumentTypeError(f"{folder!r} is no folder")
     return name, folder
+
+
+def _xacro_argument(text: str) -> tuple[str, str]:
+    name, found, value = text.partition("=")
+    if not found or not name:
+        raise argparse.ArgumentTypeError(f"{text!r} is not NAME=VALUE")
+    return name.removesuffix(":"), value  # xacro's own command writes NAME:=VALUE
 
 
 # --- commands ---------------------------------------------------------------------------------------------------------
@@ -211,7 +235,17 @@ def _print_verdict(verdict: PlanVerdict, console: Console) -> None:
 
 def run_check(arguments: argparse.Namespace, console: Console) -> int:
     with Reporter(console) as report:
-        found = check_robot(arguments.urdf, arguments.srdf, dict(arguments.package), arguments.base, report)
+        found = check_robot(
+            arguments.urdf,
+            arguments.srdf,
+            dict(arguments.package),
+            arguments.base,
+            report,
+            arguments.mesh_tolerance,
+            dict(arguments.xacro_arg) or None,
+        )
+    if arguments.write_srdf:
+        write_file(arguments.write_srdf, found.srdf())
     print(json.dumps(found.to_dict(), indent=1, default=str) if arguments.json else describe(found))
     return DONE if found.ok else FAULTY
 

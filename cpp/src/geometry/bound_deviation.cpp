@@ -4,6 +4,7 @@
 #include <queue>
 
 #include "geometry/triangle_tree.hpp"
+#include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/simplify_mesh.hpp"
 
 namespace mmgrasp {
@@ -11,11 +12,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMaxCells = 200'000;    // looked at before a bound counts as not reached
-constexpr int kPolishCells = 20'000;  // once the limit is kept: spent on a tighter figure
+constexpr int kMaxCells = 1'000'000;  // looked at before a bound counts as not reached
+constexpr int kPolishCells = 50'000;  // once the limit is kept: spent on a tighter figure
 constexpr double kClose = 1.1;        // a bound this close to the truth is good enough
 
-/// A cube that may hold points of the convex body. No point in it lies farther from the mesh than `bound`.
+/// A cube that may hold points of the solid. No point in it lies farther from the mesh than `bound`.
 struct Cell {
   Vector3d centre;
   double half;  // half its edge
@@ -25,18 +26,10 @@ struct Cell {
 
 class DeviationSearch {
  public:
-  DeviationSearch(const TriangleMesh& convex, const TriangleMesh& mesh) : mesh_(mesh), tree_(mesh) {
-    for (const auto& t : convex.triangles) {
-      const Vector3d &a = convex.vertices[t[0]], &b = convex.vertices[t[1]], &c = convex.vertices[t[2]];
-      const Vector3d n = (b - a).cross(c - a);
-      if (!(n.norm() > 0)) continue;
-      normals_.push_back(n.normalized());
-      offsets_.push_back(normals_.back().dot(a));
-    }
+  DeviationSearch(const TriangleMesh& solid, const TriangleMesh& mesh) : solid_(solid), mesh_(mesh) {
     Eigen::AlignedBox3d box;
-    for (const Vector3d& v : convex.vertices) box.extend(v);
-    const double half = 0.5 * box.sizes().maxCoeff();
-    push(box.center(), half);
+    for (const Vector3d& v : solid.vertices) box.extend(v);
+    push(box.center(), 0.5 * box.sizes().maxCoeff());
   }
 
   double run(double limit) {
@@ -59,37 +52,28 @@ class DeviationSearch {
   void push(const Vector3d& centre, double half) {
     ++looked_at_;
     const double reach = std::sqrt(3.0) * half;
-    const double outside = above_faces(centre);
-    if (outside > reach) return;  // holds no point of the convex body
-    const double surface = tree_.distance(centre);
-    const bool inside = tree_.contains(centre);
-    const double distance = inside ? 0 : surface;
-    if (outside <= 0) farthest_ = std::max(farthest_, distance);
-    // Deep inside a solid a whole cell belongs to it; else distances change by at most the way from the centre.
-    const double bound = inside ? std::max(0.0, reach - surface) : surface + reach;
+    const bool in_solid = solid_.contains(centre);
+    if (!in_solid && solid_.distance(centre) > reach) return;  // holds no point of the solid
+    const double surface = mesh_.distance(centre);
+    const bool in_mesh = mesh_.contains(centre);
+    if (in_solid && !in_mesh) farthest_ = std::max(farthest_, surface);
+    // Deep inside a solid mesh a whole cell belongs to it; else distances change by at most the way from the centre.
+    const double bound = in_mesh ? std::max(0.0, reach - surface) : surface + reach;
     if (bound > 0) cells_.push({centre, half, bound});
   }
 
-  /// Height over the face whose plane is farthest below the point; <= 0 inside. A lower bound of the distance.
-  double above_faces(const Vector3d& p) const {
-    double height = -std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < normals_.size(); ++i) height = std::max(height, normals_[i].dot(p) - offsets_[i]);
-    return height;
-  }
-
-  const TriangleMesh& mesh_;
-  detail::TriangleTree tree_;
-  std::vector<Vector3d> normals_;
-  std::vector<double> offsets_;
+  detail::TriangleTree solid_, mesh_;
   std::priority_queue<Cell> cells_;
-  double farthest_ = 0;  // of a point that surely belongs to the convex body
+  double farthest_ = 0;  // of a point that surely belongs to the solid
   int looked_at_ = 0;
 };
 
 }  // namespace
 
-double bound_deviation(const TriangleMesh& convex, const TriangleMesh& mesh, double limit) {
-  return DeviationSearch(convex, mesh).run(limit);
+double bound_deviation(const TriangleMesh& solid, const TriangleMesh& mesh, double limit) {
+  require(solid.closed, "solid", "open", "must be a closed mesh");
+  require(std::isfinite(limit) && limit > 0, "limit", limit, "must be positive and finite");
+  return DeviationSearch(solid, mesh).run(limit);
 }
 
 }  // namespace mmgrasp

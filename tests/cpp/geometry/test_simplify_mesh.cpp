@@ -69,6 +69,7 @@ bool shape_contains(const Shape& shape, const Vector3d& p, double slack) {
   if (const auto* cylinder = std::get_if<Cylinder>(&shape))
     return p.head<2>().norm() <= cylinder->radius + slack && std::abs(p.z()) <= 0.5 * cylinder->length + slack;
   const TriangleMesh& mesh = *std::get<MeshShape>(shape).mesh;
+  if (!mesh.convex) return mesh_contains(mesh, p) || slow_distance(mesh, p) <= slack;
   for (const auto& t : mesh.triangles) {  // convex: behind every face
     const Vector3d& a = mesh.vertices[t[0]];
     const Vector3d n = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).normalized();
@@ -169,18 +170,18 @@ TEST(SimplifyMesh, PrimitivesWithinTheToleranceInClosedForm) {
 
 TEST(SimplifyMesh, HullsOfDentedSolids) {
   // Two cubes with a gap of g: the middle of the gap is g / 2 from either.
-  const double g = 0.02;
+  const double g = 0.2;
   const MeshPtr two = joined(box_mesh({1, 1, 1}), moved(box_mesh({1, 1, 1}), turned({1 + g, 0, 0}, {0, 0, 0})));
   ASSERT_TRUE(two->closed);
   const MeshPtr around = convex_hull(two->vertices);
-  const double bound = bound_deviation(*around, *two, 0.02);
+  const double bound = bound_deviation(*around, *two, 0.2);
   EXPECT_GE(bound, 0.5 * g);
   EXPECT_LE(bound, 1.1 * 0.5 * g);
   EXPECT_EQ(bound_deviation(*around, *two, 0.4 * g), std::numeric_limits<double>::infinity());
   EXPECT_EQ(simplify_mesh(two, 0.4 * g).chosen, "mesh");
-  const MeshStandIn found = simplify_mesh(two, 0.02);
+  const MeshStandIn found = simplify_mesh(two, 0.2);
   EXPECT_EQ(found.chosen, "box");
-  expect_promise(two, found, 0.02, 5);
+  expect_promise(two, found, 0.2, 5);
 
   // A step in a block: an L. The hull's largest distance lies on the slanted face over the notch.
   const MeshPtr l =
@@ -210,6 +211,54 @@ TEST(SimplifyMesh, HullsOfDentedSolids) {
   EXPECT_LE(cavity, 1.1 * 0.25);
 }
 
+/// A tube: ring of `sides` quadrilaterals inside and out.
+MeshPtr tube(double inner, double outer, double length, int sides) {
+  std::vector<Vector3d> v;
+  std::vector<std::array<int, 3>> t;
+  for (int i = 0; i < sides; ++i) {
+    const double c = std::cos(2 * M_PI * i / sides), s = std::sin(2 * M_PI * i / sides);
+    for (const double r : {inner, outer})
+      for (const double z : {0.0, length}) v.emplace_back(r * c, r * s, z);
+  }
+  for (int i = 0; i < sides; ++i) {
+    const int a = 4 * i, b = 4 * ((i + 1) % sides);
+    const std::array<std::array<int, 2>, 4> strips = {{{0, 1}, {3, 2}, {1, 3}, {2, 0}}};
+    for (const auto& [p, q] : strips) {
+      t.push_back({a + p, b + p, b + q});
+      t.push_back({a + p, b + q, a + q});
+    }
+  }
+  return make_mesh(v, t);
+}
+
+TEST(SimplifyMesh, DecimatedMeshesContainTheirOriginal) {
+  // A pipe's bore must stay open: its hull would fill it.
+  const MeshPtr pipe = tube(0.05, 0.06, 0.1, 96);
+  ASSERT_TRUE(pipe->closed);
+  ASSERT_FALSE(mesh_contains(*pipe, {0, 0, 0.05}));
+  ASSERT_TRUE(mesh_contains(*pipe, {0.055, 0, 0.05}));
+  const MeshStandIn found = simplify_mesh(pipe, 0.002);
+  EXPECT_EQ(found.chosen, "decimated");
+  const TriangleMesh& fewer = *std::get<MeshShape>(found.shape).mesh;
+  EXPECT_TRUE(fewer.closed);
+  EXPECT_LT(fewer.triangles.size(), pipe->triangles.size() / 3);
+  EXPECT_EQ(found.triangles_saved, static_cast<int>(pipe->triangles.size() - fewer.triangles.size()));
+  EXPECT_GT(mesh_volume(fewer), mesh_volume(*pipe));
+  EXPECT_FALSE(mesh_contains(fewer, {0, 0, 0.05}));
+  expect_promise(pipe, found, 0.002, 9);
+  // Random points of the pipe itself, not only its corners, are inside.
+  Rng rng(11, 0);
+  for (int i = 0; i < 4000; ++i) {
+    const Vector3d p(rng.uniform(-0.06, 0.06), rng.uniform(-0.06, 0.06), rng.uniform(0, 0.1));
+    EXPECT_TRUE(!mesh_contains(*pipe, p) || shape_contains(found.shape, p, 1e-9)) << p.transpose();
+  }
+  EXPECT_EQ(simplify_mesh(pipe).chosen, "mesh");
+  // Finer tolerances save less and deviate less.
+  const MeshStandIn finer = simplify_mesh(pipe, 0.001);
+  EXPECT_LE(finer.deviation, 0.001);
+  EXPECT_LE(finer.triangles_saved, found.triangles_saved);
+}
+
 TEST(SimplifyMesh, OpenMeshesAreSurfaces) {
   // A lid of 0.02 m: the middle of the hull is 0.01 m from the surface; a cube without lid is 0.5 m away inside.
   const auto without_lid = [](const Vector3d& size) {
@@ -234,7 +283,7 @@ TEST(SimplifyMesh, OpenMeshesAreSurfaces) {
 TEST(SimplifyMesh, HoldsItsPromiseOnRealMeshes) {
   const std::string folder = std::string(MMGRASP_SHARED_DATA) + "/robots/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared test data at " << folder;
-  int simpler = 0, same = 0;
+  int simpler = 0, same = 0, decimated = 0;
   unsigned seed = 10;
   const std::string tiago = "tiago/example-robot-data/robots/tiago_description/meshes/";
   for (const std::string& file : {std::string("ur/ur_description/meshes/ur5e/collision/forearm.stl"),
@@ -248,12 +297,14 @@ TEST(SimplifyMesh, HoldsItsPromiseOnRealMeshes) {
     for (const double tolerance : {0.0, 0.005, 0.03}) {
       const MeshStandIn found = simplify_mesh(mesh, tolerance);
       expect_promise(mesh, found, tolerance, ++seed);
+      if (found.chosen == "decimated") ++decimated;
       ++(found.chosen == "mesh" ? same : simpler);
-      if (tolerance == 0 && !mesh->convex) EXPECT_EQ(found.chosen, "mesh");
+      EXPECT_TRUE(tolerance > 0 || mesh->convex || found.chosen == "mesh");
     }
   }
   EXPECT_GT(simpler, 0);
   EXPECT_GT(same, 0);
+  EXPECT_GT(decimated, 0);
 }
 
 TEST(SimplifyMesh, FlatMeshesAndBadTolerances) {

@@ -97,6 +97,9 @@ const std::vector<fs::path>& MeshLocator::package_folders(const std::string& nam
   }
   for (const fs::path& path : environment_paths("AMENT_PREFIX_PATH"))
     if (is_folder(path / "share" / name)) folders.push_back(path / "share" / name);
+  for (const char* variable : {"GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH"})  // where model://NAME is at home
+    for (const fs::path& path : environment_paths(variable))
+      if (is_folder(path / name)) folders.push_back(path / name);
 
   std::vector<fs::path> ancestors;
   for (fs::path path = urdf_dir_; static_cast<int>(ancestors.size()) < kMaxClimb; path = path.parent_path()) {

@@ -8,8 +8,9 @@
 namespace mmgrasp::detail {
 
 /// Finds the files that a URDF's mesh URIs name. package://NAME/rest is looked for, in this order, in: the folder given
-/// for NAME; packages under ROS_PACKAGE_PATH and AMENT_PREFIX_PATH; packages (a package.xml of that name) among the
-/// URDF's ancestors and one level below each; folders called NAME among the ancestors or beside them; the mesh folder.
+/// for NAME; packages under ROS_PACKAGE_PATH, AMENT_PREFIX_PATH, GAZEBO_MODEL_PATH and GZ_SIM_RESOURCE_PATH; packages
+/// (a package.xml of that name) among the URDF's ancestors and one level below each; folders called NAME among the
+/// ancestors or beside them; the mesh folder.
 class MeshLocator {
  public:
   /// `mesh_dir` is where relative paths start; the search for packages climbs from `urdf_dir`.

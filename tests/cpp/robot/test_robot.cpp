@@ -247,6 +247,36 @@ TEST(Robot, FindsMeshesWhereAPackageMayLie) {
   EXPECT_TRUE(robot.links()[0].collisions.empty());
 }
 
+TEST(Robot, LooksForMeshesInTheOrderThatIsPromised) {
+  TemporaryFolder folder;
+  for (const char* place : {"given/m/t.obj", "ros/pkg/m/t.obj", "ament/share/pkg/m/t.obj", "gazebo/pkg/m/t.obj",
+                            "ws/pkg/m/t.obj", "ws/pkg/urdf/m/t.obj"})
+    folder.write(place, kTetrahedron);
+  folder.write("ws/pkg/package.xml", "<package><name>pkg</name></package>");
+  const std::string origin = (folder.path() / "ws/pkg/urdf/r.urdf").string();
+  RobotOptions options;
+  const auto found = [&](const std::string& uri) {
+    const Robot robot = Robot::from_strings(mesh_robot(uri), "", options, origin);
+    return std::filesystem::relative(robot.links()[0].collisions.at(0).mesh_path,
+                                     std::filesystem::canonical(folder.path()))
+        .string();
+  };
+  setenv("ROS_PACKAGE_PATH", (folder.path() / "ros").c_str(), 1);
+  setenv("AMENT_PREFIX_PATH", (folder.path() / "ament").c_str(), 1);
+  setenv("GAZEBO_MODEL_PATH", ("/nowhere:" + (folder.path() / "gazebo").string()).c_str(), 1);
+  options.package_dirs["pkg"] = (folder.path() / "given").string();
+  EXPECT_EQ(found("package://pkg/m/t.obj"), "given/m/t.obj");
+  options.package_dirs.clear();
+  EXPECT_EQ(found("package://pkg/m/t.obj"), "ros/pkg/m/t.obj");
+  unsetenv("ROS_PACKAGE_PATH");
+  EXPECT_EQ(found("package://pkg/m/t.obj"), "ament/share/pkg/m/t.obj");
+  unsetenv("AMENT_PREFIX_PATH");
+  EXPECT_EQ(found("model://pkg/m/t.obj"), "gazebo/pkg/m/t.obj");
+  unsetenv("GAZEBO_MODEL_PATH");
+  EXPECT_EQ(found("model://pkg/m/t.obj"), "ws/pkg/m/t.obj");
+  EXPECT_EQ(found("package://nobody/m/t.obj"), "ws/pkg/urdf/m/t.obj");  // relative in disguise
+}
+
 TEST(Robot, WarnsOfDoubtfulUnits) {
   const auto warnings = [](const std::string& size) {
     return Robot::from_strings("<robot name='r'><link name='a'><collision><geometry><box size='" + size +

@@ -54,7 +54,7 @@ def expand(
             content = Path(filename).read_bytes()
             for word in (b"<!DOCTYPE", b"<!ENTITY"):
                 if word in content.upper():
-                    raise InvalidInput(f"{filename}: {word.decode()}> declarations are refused")
+                    raise InvalidInput(f"{word.decode()}> declarations are refused")
         return parse(text, filename)
 
     printed = io.StringIO()
@@ -72,7 +72,8 @@ def expand(
         except Exception as error:  # the package raises whatever its expressions raise
             place = next((file for file in reversed(xacro.filestack or []) if file), path)
             inside = "" if str(place) == path else f" (in {place})"
-            message = str(error) or type(error).__name__
+            cause = getattr(error, "exc", None)  # the package wraps what $(find ...) raised
+            message = str(cause if isinstance(cause, InvalidInput) else error) or type(error).__name__
             raise InvalidInput(f"{path}{inside}: xacro cannot be expanded: {message}") from error
     if printed.getvalue().strip():
         logging.getLogger("mmgrasp").warning("%s: %s", path, " ".join(printed.getvalue().split()))

@@ -23,18 +23,26 @@ void clamp(const JointGroup& group, Eigen::VectorXd& q) {
   q = q.cwiseMax(group.lower()).cwiseMin(group.upper());
 }
 
-/// Solves (J J^T + damping) y = error over the joints that are free to move and puts the step into `step`. A joint that
-/// would cross its limit is set onto it; what it still contributes is taken off the error, and the others share the
-/// rest.
+/// Solves (J W^-1 J^T + damping) y = error over the joints that are free to move and puts the step W^-1 J^T y into
+/// `step`, W the joints' weights. A joint that would cross its limit is set onto it; what it still contributes is taken
+/// off the error, and the others share the rest.
 void limited_step(const JointGroup& group, const Eigen::VectorXd& q, const Vector6d& error, double damping,
-                  bool keep_limits, IkWorkspace& workspace) {
+                  const std::vector<double>& weights, bool keep_limits, IkWorkspace& workspace) {
   const Matrix6Xd& J = workspace.J;
+  const auto ease = [&weights](Eigen::Index i) {
+    return weights.empty() ? 1.0 : 1.0 / weights[static_cast<std::size_t>(i)];
+  };
   Eigen::VectorXd& step = workspace.step;
   const Eigen::Index n = q.size();
   std::array<bool, kMaxGroupSize> fixed{};
   Vector6d rest = error;
   Matrix6d A;
-  A.noalias() = J * J.transpose();
+  if (weights.empty()) {
+    A.noalias() = J * J.transpose();
+  } else {
+    A.setZero();
+    for (Eigen::Index i = 0; i < n; ++i) A.noalias() += ease(i) * J.col(i) * J.col(i).transpose();
+  }
   for (Eigen::Index round = 0; round <= n; ++round) {
     Matrix6d damped = A;
     damped.diagonal().array() += damping;
@@ -42,7 +50,7 @@ void limited_step(const JointGroup& group, const Eigen::VectorXd& q, const Vecto
     double longest = 0;
     for (Eigen::Index i = 0; i < n; ++i) {
       if (fixed[static_cast<std::size_t>(i)]) continue;
-      step[i] = J.col(i).dot(y);
+      step[i] = ease(i) * J.col(i).dot(y);
       longest = std::max(longest, std::abs(step[i]));
     }
     const double scale = longest > kLongestStep ? kLongestStep / longest : 1.0;
@@ -57,7 +65,7 @@ void limited_step(const JointGroup& group, const Eigen::VectorXd& q, const Vecto
       step[i] = inside - q[i];
       fixed[static_cast<std::size_t>(i)] = true;
       rest.noalias() -= J.col(i) * step[i];
-      A.noalias() -= J.col(i) * J.col(i).transpose();
+      A.noalias() -= ease(i) * J.col(i) * J.col(i).transpose();
       again = true;
     }
     if (!again) return;
@@ -87,7 +95,8 @@ DescentEnd descend(const JointGroup& group, const Pose& T_world_tip, Eigen::Vect
       if (!(squared < kShrink * checkpoint)) return end;
       checkpoint = squared;
     }
-    limited_step(group, q, error, kDampingPerError * squared + kLeastDamping, keep_limits, workspace);
+    limited_step(group, q, error, kDampingPerError * squared + kLeastDamping, options.joint_weights, keep_limits,
+                 workspace);
     q += workspace.step;
     if (keep_limits) clamp(group, q);  // q + (limit - q) may miss the limit by a rounding
   }

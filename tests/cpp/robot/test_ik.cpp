@@ -203,3 +203,80 @@ TEST(Ik, StopTokenAndBadInput) {
   options.position_tolerance = 0;
   EXPECT_THROW(solve_ik(group, Pose::Identity(), seed, options), InvalidInput);
 }
+
+TEST(Ik, MoveItsCasesOfPanda) {
+  // reference/transcribed/moveit_ik_panda_kdl.xml: 100 random poses from its non-singular seed to 1e-5; and, from the
+  // zero configuration (singular, joint 4 outside its limits here), the pose 0.1 m below the one there.
+  MMGRASP_NEEDS_SHARED_DATA();
+  const JointGroup group = panda().group("panda_arm");
+  ASSERT_EQ(group.robot().links()[static_cast<std::size_t>(group.tip_link())].name, "panda_link8");
+  Eigen::VectorXd seed(7);
+  seed << -0.5, -0.5, 0.3, -2, 0.8, 1.8, 1.9;
+  IkOptions options;
+  options.position_tolerance = options.rotation_tolerance = 1e-5;
+  Rng rng(30);
+  for (int i = 0; i < 100; ++i) {
+    const Pose target = group.fk(rng.uniform(group.lower(), group.upper()));
+    const IkResult result = solve_ik(group, target, seed, options);
+    ASSERT_EQ(result.outcome, Outcome::solved);
+    EXPECT_LE(plain_error(group, result.q, target).norm(), 2e-5);
+  }
+  Pose target = group.fk(Eigen::VectorXd::Zero(7));
+  target.translation().z() -= 0.1;
+  const IkResult result = solve_ik(group, target, Eigen::VectorXd::Zero(7), options);
+  ASSERT_EQ(result.outcome, Outcome::solved);
+  EXPECT_LE(plain_error(group, result.q, target).norm(), 2e-5);
+  // Its consistency limits: a pose made within 0.4 rad of the seed has an answer within 0.4 rad of it.
+  int near = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::VectorXd made = rng.uniform(Eigen::VectorXd(seed.array() - 0.2), Eigen::VectorXd(seed.array() + 0.2));
+    const IkResult answer = solve_ik(group, group.fk(made), seed, options);
+    ASSERT_EQ(answer.outcome, Outcome::solved);
+    near += (answer.q - seed).cwiseAbs().maxCoeff() <= 0.4;
+  }
+  EXPECT_GE(near, 98);
+}
+
+TEST(Ik, TracIksRobot) {
+  MMGRASP_NEEDS_SHARED_DATA();
+  const Robot robot = load_kinematics("reference/trac_ik/launch/pr2.urdf");
+  for (const char* base : {"torso_lift_link", "base_link"}) {  // 7 joints; 8 with the torso's lift
+    const JointGroup group = robot.chain(base, "r_wrist_roll_link");
+    ASSERT_EQ(group.size(), base == std::string("base_link") ? 8 : 7);
+    EXPECT_EQ(count_solved(group, 1000), 1000) << base;
+  }
+}
+
+TEST(Ik, BaseAndArmAreOneChain) {
+  MMGRASP_NEEDS_SHARED_DATA();
+  const auto expect_all = [](const JointGroup& group, double room, int count) {
+    Rng rng(31);
+    Eigen::VectorXd lower = group.sample_lower(), upper = group.sample_upper();
+    lower.head<2>().setConstant(-room);
+    upper.head<2>().setConstant(room);
+    int solved = 0;
+    double arm_motion = 0;
+    for (int i = 0; i < count; ++i) {
+      const Pose target = group.fk(rng.uniform(lower, upper));
+      // The seed stands anywhere in the room: the base has to drive there.
+      const Eigen::VectorXd seed = rng.uniform(lower, upper);
+      const IkResult result = solve_ik(group, target, seed);
+      solved += result.outcome == Outcome::solved;
+      if (result.outcome != Outcome::solved) continue;
+      const Vector6d error = plain_error(group, result.q, target);
+      EXPECT_LE(error.head<3>().norm(), 1.001e-5);
+      EXPECT_LE(error.tail<3>().norm(), 1.001e-4);
+      EXPECT_TRUE(group.within_limits(result.q));
+      EXPECT_LE(std::abs(result.q[2] - seed[2]), M_PI + 1e-9);  // the way round that is shorter
+      arm_motion += (result.q - seed).tail(group.size() - 3).cwiseAbs().maxCoeff();
+    }
+    EXPECT_EQ(solved, count) << group.name();
+  };
+  expect_all(tiago(BaseKind::diff_drive).group("arm_torso", "", true), 5, 500);
+  expect_all(tiago(BaseKind::omni).group("arm", "", true), 20, 500);
+  RobotOptions options;
+  options.base = BaseKind::diff_drive;
+  const std::string folder = std::string(MMGRASP_ASSETS) + "/robots/fetchlike/fetchlike";
+  const Robot fetchlike = Robot::load(folder + ".urdf", folder + ".srdf", options);
+  expect_all(fetchlike.group("arm_with_torso", "gripper_tcp", true), 5, 500);
+}

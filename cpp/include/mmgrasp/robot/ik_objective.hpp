@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/robot/ik.hpp"
@@ -18,6 +19,12 @@ class MMGRASP_EXPORT IkObjective {
   /// Cost at q (its unit times a weight); `gradient` is set to d cost / d q.
   virtual double evaluate(const Eigen::VectorXd& q, Eigen::VectorXd& gradient) const = 0;
 };
+
+/// The part of `xi` that moves the joints but not the tip: (I - J^+ J) xi (P3 3.5, 5.7), J^+ the pseudo-inverse
+/// weighted with `weights` > 0 (empty: 1 each), so that the result is the steepest such direction in that metric. J: 6
+/// x n. Throws InvalidInput on lengths that do not match.
+MMGRASP_EXPORT Eigen::VectorXd project_onto_null_space(const Matrix6Xd& J, const Eigen::VectorXd& xi,
+                                                       const std::vector<double>& weights = {});
 
 /// Keeps joints away from their limits (P3 5.9, 5.10, with the mirror for the lower limit): weight x squared depth [rad
 /// or m] inside the outer `soft_fraction` of the range at each end, in (0, 0.5].

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mmgrasp/core/export.hpp"
+#include "mmgrasp/robot/ik.hpp"
+
+namespace mmgrasp {
+
+/// All arm configurations that put the tip at a pose, and what became of the others.
+struct MMGRASP_EXPORT IkBranches {
+  /// Inside limits, confirmed by forward kinematics, allowed by the filter; the one nearest to the middle of the limits
+  /// first, then always the one farthest from those before it.
+  std::vector<Eigen::VectorXd> solutions;
+  bool complete = false;     ///< Every branch was computed (with seven joints: for every sampled value), none searched.
+  int redundant_joint = -1;  ///< Configuration entry that was sampled; -1 for none.
+  Rejections rejections;     ///< Branches turned down; `reach` counts searches (or sampled values) without any.
+};
+
+/// Every inverse kinematics branch of an arm of six turning joints in closed form, and of one of seven joints for
+/// `redundant_values` values of its redundant joint, spread evenly over its range (0: about the wanted density for a
+/// diverse set, 24). Whether a closed form fits is read from where the axes lie: three of them meeting at one end
+/// (spherical wrist or shoulder), or the joints 2-4 parallel; geometry that is special only to 0.1 mm will do, since
+/// each branch is polished by Newton's method on the true chain. A joint that may turn more than once gives one
+/// solution, in the turn nearest to the middle of its limits. Arms without closed form and groups with a base get
+/// random descents: `complete` is false then. Throws InvalidInput on bad options or a pose that is none.
+MMGRASP_EXPORT IkBranches solve_ik_branches(const JointGroup& group, const Pose& T_world_tip,
+                                            const IkOptions& options = {}, const ConfigurationFilter& valid = {},
+                                            int redundant_values = 0);
+
+/// Puts solutions in an order in which the first ones are as different as can be: first the one nearest to the middle
+/// of the limits, then always the one farthest from those before it (joint-space distance, angles without limits the
+/// short way).
+MMGRASP_EXPORT void spread_apart(const JointGroup& group, std::vector<Eigen::VectorXd>& solutions);
+
+}  // namespace mmgrasp

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "mmgrasp/robot/joint_group.hpp"
+
+namespace mmgrasp::detail {
+
+/// A rigid motion; cheaper to compose than a 4 x 4 matrix.
+struct Motion {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();
+
+  Motion operator*(const Motion& other) const { return {R * other.R, R * other.p + p}; }
+  Eigen::Vector3d operator*(const Eigen::Vector3d& x) const { return R * x + p; }
+  Motion inverse() const { return {R.transpose(), -(R.transpose() * p)}; }
+};
+
+/// The turn about the axis h through the point p.
+Motion turn_about(const Eigen::Vector3d& h, const Eigen::Vector3d& p, double angle);
+
+/// A chain of turning joints as the product of exponentials E_1 ... E_n = G, with axes as they lie when all joint
+/// values are zero, seen from the root: G = T_root_tip T_root_tip(0)^-1.
+struct Screws {
+  static constexpr int kMost = 7;
+  int size = 0;
+  std::array<Eigen::Vector3d, kMost> h, p;
+  Motion tip;  ///< T_world_tip at zero.
+};
+
+/// True when each column moves one joint that turns or slides (no mimic, planar or floating joints on the way to the
+/// tip).
+bool one_joint_a_column(const JointGroup& group);
+
+/// Empty (size 0) unless the group has no base and six or seven turning joints, each with its own column.
+Screws screws_of(const JointGroup& group);
+
+/// Configurations of every branch.
+struct Branches {
+  static constexpr int kMost = 16;
+  std::array<std::array<double, Screws::kMost>, kMost> value;
+  int count = 0;
+};
+
+/// Which closed form fits a chain of six turning joints.
+///  spherical: axes 4, 5, 6 meet in one point (Pieper), and among the first three two neighbours meet or are parallel;
+///  parallel:  axes 2, 3, 4 are parallel, 5 and 6 meet;
+///  either also seen from the tip (`reversed`).
+struct ClosedForm {
+  enum class Family { none, spherical, parallel };
+  Family family = Family::none;
+  bool reversed = false;
+};
+ClosedForm closed_form_of(const Screws& six);
+void solve_closed_form(const ClosedForm& form, const Screws& six, const Motion& G, Branches& branches);
+
+/// Seven joints: the joint which, once locked, leaves six that have a closed form, whatever its value; -1 for none.
+int redundant_joint(const Screws& seven);
+/// The six others with joint `locked` at `angle`; G changes with it.
+Screws lock_joint(const Screws& seven, int locked, double angle, Motion& G);
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <chrono>
+#include <cmath>
+
+#include "mmgrasp/core/random.hpp"
+#include "mmgrasp/robot/ik.hpp"
+
+namespace mmgrasp::detail {
+
+class Clock {
+ public:
+  explicit Clock(double limit) : limit_(limit), start_(std::chrono::steady_clock::now()) {}
+  bool over() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count() > limit_;
+  }
+
+ private:
+  double limit_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+/// Start configurations that spread over the limits without clusters: an additive sequence with irrational steps
+/// (powers of the root of x^(n+1) = x + 1), shifted at random by the seed. A base starts no farther
+/// from the pose than the arm could reach.
+class IkStarts {
+ public:
+  IkStarts(const JointGroup& group, const Pose& T_world_tip, unsigned seed);
+  Eigen::VectorXd next();
+
+ private:
+  Eigen::VectorXd lower_, upper_, position_, step_;
+};
+
+/// Angles without limits are taken the way that is nearest to the seed.
+void unwind(const JointGroup& group, const Eigen::VectorXd& seed, Eigen::VectorXd& q);
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+
+namespace mmgrasp::detail {
+
+/// The elementary problems that closed-form inverse kinematics is made of: which turns about given axes bring one
+/// vector to another, to a distance or to a plane (after Paden and Kahan). Axes are unit vectors.
+
+/// Up to two angles. `free` says that every angle solves the problem; the one given is 0.
+struct Angles {
+  std::array<double, 2> value{};
+  int count = 0;
+  bool free = false;
+
+  void add(double angle) { value[static_cast<std::size_t>(count++)] = angle; }
+  const double* begin() const { return value.data(); }
+  const double* end() const { return value.data() + count; }
+};
+
+inline Eigen::Vector3d turned(const Eigen::Vector3d& axis, double angle, const Eigen::Vector3d& x) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return c * x + s * axis.cross(x) + (1 - c) * axis.dot(x) * axis;
+}
+
+/// a cos(angle) + b sin(angle) = c. What misses a solution by a little (geometry that is only nearly special, poses at
+/// the border of reach) gives the nearest angle: Newton's method decides about it afterwards.
+inline Angles solve_cosine(double a, double b, double c) {
+  constexpr double kSlack = 1e-3, kNothing = 1e-9;
+  Angles angles;
+  const double r = std::hypot(a, b);
+  if (r < kNothing) {
+    if (std::abs(c) < 1e3 * kNothing) {
+      angles.add(0);
+      angles.free = true;
+    }
+    return angles;
+  }
+  const double ratio = c / r;
+  if (!(std::abs(ratio) <= 1 + kSlack)) return angles;
+  const double middle = std::atan2(b, a);
+  if (std::abs(ratio) >= 1) {
+    angles.add(ratio > 0 ? middle : middle + M_PI);
+    return angles;
+  }
+  const double half = std::acos(ratio);
+  angles.add(middle + half);
+  angles.add(middle - half);
+  return angles;
+}
+
+/// The turn about `axis` that brings u closest to v; 0 when any does.
+inline double angle_onto(const Eigen::Vector3d& axis, const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
+  const double sine = axis.dot(u.cross(v)), cosine = u.dot(v) - axis.dot(u) * axis.dot(v);
+  return sine * sine + cosine * cosine < 1e-24 ? 0.0 : std::atan2(sine, cosine);
+}
+
+/// k . R(axis, angle) u = d
+inline Angles angles_to_plane(const Eigen::Vector3d& axis, const Eigen::Vector3d& k, const Eigen::Vector3d& u,
+                              double d) {
+  const double along = k.dot(axis) * axis.dot(u);
+  return solve_cosine(k.dot(u) - along, k.dot(axis.cross(u)), d - along);
+}
+
+/// |R(axis, angle) u - v| = d
+inline Angles angles_to_distance(const Eigen::Vector3d& axis, const Eigen::Vector3d& u, const Eigen::Vector3d& v,
+                                 double d) {
+  return angles_to_plane(axis, v, u, 0.5 * (u.squaredNorm() + v.squaredNorm() - d * d));
+}
+
+}  // namespace mmgrasp::detail

@@ -15,9 +15,11 @@
 
 namespace mmgrasp {
 
-/// Past solutions that start the next searches (P3 3.6): grows with use, can be saved. Knows the group it is for.
+/// Past solutions that start the next searches (P3 3.6): grows with use, can be saved. Knows the group it is for. When
+/// full, the oldest are forgotten.
 class MMGRASP_EXPORT IkSeedDatabase {
  public:
+  /// The group must have base joints; capacity > 0. Throws InvalidInput.
   explicit IkSeedDatabase(const JointGroup& group, int capacity = 10000);
   /// Configurations are kept with the base taken out: where the tool stood relative to the root, and the arm's joints.
   void add(const Eigen::VectorXd& q);
@@ -25,13 +27,16 @@ class MMGRASP_EXPORT IkSeedDatabase {
   /// remembered arm posture reaches the pose (height and tilt may remain wrong: IK mends that).
   std::vector<Eigen::VectorXd> seeds(const Pose& T_world_tip, int count) const;
   std::size_t size() const { return entries_.size(); }
-  void save(const std::string& path) const;                                      ///< Throws IoError.
-  static IkSeedDatabase load(const std::string& path, const JointGroup& group);  ///< Refuses another robot's.
+  const JointGroup& group() const { return group_; }
+  /// Writes text: robot hash, joint names, one arm posture a line, checksum. Throws IoError.
+  void save(const std::string& path) const;
+  /// Throws IoError for a file that is none, damaged, or made for another robot or other joints.
+  static IkSeedDatabase load(const std::string& path, const JointGroup& group, int capacity = 10000);
 
  private:
   struct Entry {
     Pose T_root_tip;
-    Eigen::VectorXd q;
+    Eigen::VectorXd q;  // the arm's joints
   };
   JointGroup group_;
   int capacity_;
@@ -55,6 +60,7 @@ struct MMGRASP_EXPORT PlatformLocationsProblem {
 
 struct MMGRASP_EXPORT PlatformLocationsOptions {
   int samples = 100;                   ///< Valid configurations drawn for each of the two poses (P3's n); > 0
+  int max_draws = 2000;                ///< Searches run for each pose, valid or not; > 0
   double least_manipulability = 0.02;  ///< epsilon of P3 3.1, over the arm's joints; >= 0
   double turn_weight = 0.3;            ///< What one radian of base turn counts as [m]: |h_1 - h_2| mixes units; >= 0
   unsigned seed = 1;
@@ -80,8 +86,10 @@ struct MMGRASP_EXPORT PlatformLocations {
 };
 
 /// Two base + arm configurations for two tool poses with the least base travel (P3 3.6, Algorithm 2, equation 3.1, with
-/// its errata: both ends are drawn again and again, not c_1 once; travel and turn have their weights). The group must
-/// have the base. Solutions found are added to `database`, which starts the searches when given.
+/// its errata: both ends are drawn again and again, not c_1 once; travel and turn have their weights). Beyond the paper
+/// the two ends know of each other: each is also sought from the other's base pose, since one stop often serves both
+/// poses (cost 0, which ends the search), and the best pairs are drawn together along the solutions of their poses. The
+/// checker's group must have the base. Solutions found are added to `database`, which starts the searches when given.
 MMGRASP_EXPORT PlatformLocations plan_platform_locations(CollisionChecker& checker,
                                                          const PlatformLocationsProblem& problem,
                                                          const PlatformLocationsOptions& options = {},

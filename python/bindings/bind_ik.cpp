@@ -1,12 +1,33 @@
+#include <algorithm>
+#include <memory>
+#include <optional>
+
 #include "bindings.hpp"
 #include "mmgrasp/collision/collision_ik.hpp"
 #include "mmgrasp/robot/ik.hpp"
+#include "mmgrasp/robot/ik_branches.hpp"
+#include "mmgrasp/robot/ik_objective.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
 
 namespace mmgrasp::python {
 namespace {
 
 using namespace py::literals;
+
+/// Entries of weights; their number is checked against the group when the call runs.
+void set_weights(IkOptions& options, const py::handle& value) {
+  if (value.is_none()) return;
+  const Eigen::VectorXd weights = vector_argument(value, "joint_weights");
+  options.joint_weights.assign(weights.data(), weights.data() + weights.size());
+}
+
+void set_objectives(IkOptions& options, const py::handle& value) {
+  if (!py::isinstance<py::sequence>(value)) refuse_value("objectives", value, "must be a list of IkObjective");
+  for (const py::handle& entry : py::reinterpret_borrow<py::sequence>(value)) {
+    if (!py::isinstance<IkObjective>(entry)) refuse_value("objectives", entry, "must be an IkObjective");
+    options.objectives.push_back(py::cast<std::shared_ptr<IkObjective>>(entry));
+  }
+}
 
 const std::vector<OptionField<IkOptions>>& ik_fields() {
   static const std::vector<OptionField<IkOptions>> fields{
@@ -15,7 +36,12 @@ const std::vector<OptionField<IkOptions>>& ik_fields() {
       option<IkOptions>("max_iterations", &IkOptions::max_iterations, "per descent"),
       option<IkOptions>("restarts", &IkOptions::restarts, "random restarts after the seed"),
       option<IkOptions>("time_limit", &IkOptions::time_limit, "wall-clock cap [s]"),
-      option<IkOptions>("rng_seed", &IkOptions::seed, "same seed, same answer")};
+      option<IkOptions>("rng_seed", &IkOptions::seed, "same seed, same answer"),
+      {"joint_weights", set_weights, [](const IkOptions& o) { return py::cast(o.joint_weights); },
+       "how dear it is to move each joint, > 0; empty: all the same"},
+      {"objectives", set_objectives, [](const IkOptions&) { return py::list(); },
+       "costs (IkObjective) that the redundancy lowers once the pose is reached"},
+      option<IkOptions>("objective_iterations", &IkOptions::objective_iterations, "steps along the solutions")};
   return fields;
 }
 
@@ -45,6 +71,7 @@ void bind_result(py::module_& m) {
       .def_readonly("position_error", &IkResult::position_error, "[m] of q, or of the best attempt.")
       .def_readonly("rotation_error", &IkResult::rotation_error, "[rad]")
       .def_readonly("rejections", &IkResult::rejections)
+      .def_readonly("objective", &IkResult::objective, "Sum of the objectives' costs at q.")
       .def_readonly("iterations", &IkResult::iterations)
       .def("to_dict",
            [](const IkResult& r) {
@@ -52,11 +79,43 @@ void bind_result(py::module_& m) {
              if (r.outcome == Outcome::solved) q = py::cast(r.q).attr("tolist")();
              return py::dict("outcome"_a = to_string(r.outcome), "q"_a = q, "position_error"_a = r.position_error,
                              "rotation_error"_a = r.rotation_error, "rejections"_a = to_dict(r.rejections),
-                             "iterations"_a = r.iterations);
+                             "objective"_a = r.objective, "iterations"_a = r.iterations);
            })
       .def("__repr__", [](const IkResult& r) {
         return std::string("IkResult(") + to_string(r.outcome) +
                (r.outcome == Outcome::solved ? ", q=" + text(r.q) : ", rejected: " + r.rejections.summary()) + ")";
+      });
+}
+
+IkBranches branches(const JointGroup& group, const Pose& T, const World* world, const IkOptions& options,
+                    int redundant_values) {
+  std::optional<CollisionChecker> checker;
+  if (world) checker.emplace(with_sampled_pairs(group), *world);
+  py::gil_scoped_release release;
+  const auto valid = [&](const Eigen::VectorXd& q) { return checker->rejection(q); };
+  return solve_ik_branches(group, T, options, checker ? ConfigurationFilter(valid) : ConfigurationFilter(),
+                           redundant_values);
+}
+
+void bind_branches(py::module_& m) {
+  py::class_<IkBranches>(m, "IkBranches", "Every arm configuration found for a pose, and why others were turned down.")
+      .def_property_readonly(
+          "solutions", [](const IkBranches& b) { return rows_to_array(b.solutions); },
+          "(k, n), inside limits and checked; the first ones as different from each other as can be.")
+      .def_readonly("complete", &IkBranches::complete, "True when every branch was computed, none searched.")
+      .def_readonly("redundant_joint", &IkBranches::redundant_joint, "Joint that was sampled; -1 for none.")
+      .def_readonly("rejections", &IkBranches::rejections, "Branches turned down, by cause.")
+      .def("__len__", [](const IkBranches& b) { return b.solutions.size(); })
+      .def("to_dict",
+           [](const IkBranches& b) {
+             py::list solutions;
+             for (const Eigen::VectorXd& q : b.solutions) solutions.append(py::cast(q).attr("tolist")());
+             return py::dict("solutions"_a = solutions, "complete"_a = b.complete,
+                             "redundant_joint"_a = b.redundant_joint, "rejections"_a = to_dict(b.rejections));
+           })
+      .def("__repr__", [](const IkBranches& b) {
+        return "IkBranches(" + std::to_string(b.solutions.size()) + " solutions" + (b.complete ? ", complete" : "") +
+               ", rejected: " + b.rejections.summary() + ")";
       });
 }
 
@@ -76,6 +135,33 @@ void bind_group_methods(py::module_& m) {
            "answer is\n"
            "free of collisions with it and of self-collision; without one, collisions are not looked at." +
            option_help(ik_fields()))
+              .c_str())
+      .def(
+          "ik_branches",
+          [](const JointGroup& g, const ArrayLike& T_world_tip, const World* world, int redundant_values,
+             const py::kwargs& options) {
+            return branches(g, pose_argument(T_world_tip, "T_world_tip"), world,
+                            read_options(ik_fields(), options, "ik_branches"), redundant_values);
+          },
+          py::arg("T_world_tip"), py::arg("world") = py::none(), py::arg("redundant_values") = 0,
+          ("Every branch of an arm of six turning joints, and of one of seven for `redundant_values` values of its\n"
+           "redundant joint (0: 24); random descents search where no closed form fits. With a world, free ones only." +
+           option_help(ik_fields()))
+              .c_str())
+      .def(
+          "ik_all",
+          [](const JointGroup& g, const ArrayLike& T_world_tip, int count, const World* world,
+             const py::kwargs& options) {
+            if (count <= 0) throw InvalidInput("count = " + std::to_string(count) + ": must be > 0");
+            const IkBranches all = branches(g, pose_argument(T_world_tip, "T_world_tip"), world,
+                                            read_options(ik_fields(), options, "ik_all"), std::clamp(count, 8, 48));
+            std::vector<Eigen::VectorXd> first = all.solutions;
+            if (first.size() > static_cast<std::size_t>(count)) first.resize(static_cast<std::size_t>(count));
+            return rows_to_array(first);
+          },
+          py::arg("T_world_tip"), py::arg("count") = 16, py::arg("world") = py::none(),
+          ("Up to `count` solutions (k, n), the first ones farthest apart; ik_branches tells why others fell." +
+           option_help(ik_fields()))
               .c_str());
 }
 
@@ -83,6 +169,7 @@ void bind_group_methods(py::module_& m) {
 
 void bind_ik(py::module_& m) {
   bind_result(m);
+  bind_branches(m);
   bind_group_methods(m);
 }
 

@@ -27,12 +27,14 @@ void bind_optim(py::module_& m);
 void bind_robot(py::module_& m);
 void bind_group(py::module_& m);
 void bind_ik(py::module_& m);
+void bind_ik_objectives(py::module_& m);
 void bind_trajectory(py::module_& m);
 void bind_collision(py::module_& m);
 void bind_reach(py::module_& m);
 void bind_grasp(py::module_& m);
 void bind_plan(py::module_& m);
 void bind_task(py::module_& m);
+void bind_platform_locations(py::module_& m);
 void bind_verify(py::module_& m);
 
 py::dict to_dict(const Rejections& rejections);

@@ -23,9 +23,11 @@ PYBIND11_MODULE(_core, m) {
   bind_optim(m);
   bind_robot(m);
   bind_collision(m);
+  bind_ik_objectives(m);
   bind_reach(m);
   bind_grasp(m);
   bind_plan(m);
   bind_task(m);
+  bind_platform_locations(m);
   bind_verify(m);
 }

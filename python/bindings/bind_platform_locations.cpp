@@ -1,0 +1,123 @@
+#include "bindings.hpp"
+#include "mmgrasp/task/platform_locations.hpp"
+
+namespace mmgrasp::python {
+namespace {
+
+using namespace py::literals;
+
+const std::vector<OptionField<PlatformLocationsOptions>>& fields() {
+  using O = PlatformLocationsOptions;
+  static const std::vector<OptionField<O>> all{
+      option<O>("samples", &O::samples, "valid configurations drawn for each pose"),
+      option<O>("max_draws", &O::max_draws, "searches for each pose, valid or not"),
+      option<O>("least_manipulability", &O::least_manipulability, "over the arm's joints"),
+      option<O>("turn_weight", &O::turn_weight, "what one radian of base turn counts as [m]"),
+      option<O>("seed", &O::seed, "same seed, same answer"),
+      option<O>("time_limit", &O::time_limit, "wall-clock cap [s]")};
+  return all;
+}
+
+py::dict to_dict(const PlatformLocationsCounts& counts) {
+  return py::dict("draws"_a = counts.draws, "rejections"_a = python::to_dict(counts.rejections), "view"_a = counts.view,
+                  "singular"_a = counts.singular, "iterations"_a = counts.iterations);
+}
+
+py::object configuration(const PlatformLocations& found, const Eigen::VectorXd& q) {
+  return found.outcome == Outcome::solved ? py::cast(q) : py::none();
+}
+
+void bind_result(py::module_& m) {
+  py::class_<PlatformLocations>(m, "PlatformLocations", "Two base + arm configurations for two tool poses.")
+      .def_readonly("outcome", &PlatformLocations::outcome)
+      .def_property_readonly(
+          "q_pick", [](const PlatformLocations& p) { return configuration(p, p.q_pick); },
+          "Base and arm at the first pose; None unless solved.")
+      .def_property_readonly("q_place", [](const PlatformLocations& p) { return configuration(p, p.q_place); })
+      .def_readonly("cost", &PlatformLocations::cost, "Travel [m] + turn_weight * turn [rad].")
+      .def_readonly("travel", &PlatformLocations::travel, "Of the base between the two [m].")
+      .def_readonly("turn", &PlatformLocations::turn, "[rad]")
+      .def_property_readonly(
+          "pick", [](const PlatformLocations& p) { return to_dict(p.pick); },
+          "Draws, what they fell at, and iterations of the first pose.")
+      .def_property_readonly("place", [](const PlatformLocations& p) { return to_dict(p.place); })
+      .def("to_dict",
+           [](const PlatformLocations& p) {
+             return py::dict("outcome"_a = to_string(p.outcome), "q_pick"_a = configuration(p, p.q_pick),
+                             "q_place"_a = configuration(p, p.q_place), "cost"_a = p.cost, "travel"_a = p.travel,
+                             "turn"_a = p.turn, "pick"_a = to_dict(p.pick), "place"_a = to_dict(p.place));
+           })
+      .def("__repr__", [](const PlatformLocations& p) {
+        return std::string("PlatformLocations(") + to_string(p.outcome) +
+               (p.outcome == Outcome::solved
+                    ? ", travel " + std::to_string(p.travel) + " m, turn " + std::to_string(p.turn) + " rad"
+                    : std::string()) +
+               ")";
+      });
+}
+
+void bind_database(py::module_& m) {
+  py::class_<IkSeedDatabase>(m, "IkSeedDatabase", "Past solutions that start the next searches; grows with use.")
+      .def(py::init<const JointGroup&, int>(), py::arg("group"), py::arg("capacity") = 10000)
+      .def("__len__", &IkSeedDatabase::size)
+      .def(
+          "add", [](IkSeedDatabase& db, const ArrayLike& q) { db.add(vector_argument(q, "q", db.group().size())); },
+          py::arg("q"))
+      .def(
+          "seeds",
+          [](const IkSeedDatabase& db, const ArrayLike& T, int count) {
+            return rows_to_array(db.seeds(pose_argument(T, "T_world_tip"), count));
+          },
+          py::arg("T_world_tip"), py::arg("count") = 8,
+          "(k, n): remembered arm postures with the base put where they reach the pose, best match first.")
+      .def(
+          "save", [](const IkSeedDatabase& db, const py::object& path) { db.save(path_argument(path, "path")); },
+          py::arg("path"))
+      .def_static(
+          "load",
+          [](const py::object& path, const JointGroup& group, int capacity) {
+            return IkSeedDatabase::load(path_argument(path, "path"), group, capacity);
+          },
+          py::arg("path"), py::arg("group"), py::arg("capacity") = 10000,
+          "Raises IoError on a damaged file or one made for another robot.");
+}
+
+}  // namespace
+
+void bind_platform_locations(py::module_& m) {
+  bind_result(m);
+  bind_database(m);
+  m.def(
+      "plan_platform_locations",
+      [](CollisionChecker& checker, const ArrayLike& T_world_pick, const ArrayLike& T_world_place,
+         const py::object& pick_point, const py::object& place_point, const py::object& camera_link,
+         const ArrayLike& T_link_camera, IkSeedDatabase* database, const py::kwargs& options) {
+        PlatformLocationsProblem problem;
+        problem.T_world_pick = pose_argument(T_world_pick, "T_world_pick");
+        problem.T_world_place = pose_argument(T_world_place, "T_world_place");
+        problem.pick_point =
+            pick_point.is_none() ? problem.T_world_pick.translation() : vector3_argument(pick_point, "pick_point");
+        problem.place_point =
+            place_point.is_none() ? problem.T_world_place.translation() : vector3_argument(place_point, "place_point");
+        if (!camera_link.is_none()) {
+          MountedCamera camera;
+          camera.link = checker.group().robot().link_index(py::cast<std::string>(camera_link));
+          camera.T_link_camera = pose_argument(T_link_camera, "T_link_camera");
+          problem.camera = camera;
+        }
+        const PlatformLocationsOptions read = read_options(fields(), options, "plan_platform_locations");
+        return LongCall(py::none()).run([&](const Monitor& monitor) {
+          return plan_platform_locations(checker, problem, read, database, monitor);
+        });
+      },
+      py::arg("checker"), py::arg("T_world_pick"), py::arg("T_world_place"), py::kw_only(),
+      py::arg("pick_point") = py::none(), py::arg("place_point") = py::none(), py::arg("camera_link") = py::none(),
+      py::arg("T_link_camera") = py::none(), py::arg("database") = py::none(),
+      ("Two base + arm configurations for two tool poses with the least base travel (P3 3.6, Algorithm 2). The "
+       "checker's group\nmust have the base. With a camera (640 x 480, f = 525 pixels, +z ahead) on `camera_link` the "
+       "points (default: the tool\npositions) are in view. A database starts the searches and learns from them." +
+       option_help(fields()))
+          .c_str());
+}
+
+}  // namespace mmgrasp::python

@@ -39,7 +39,9 @@ IkSeedDatabase::IkSeedDatabase(const JointGroup& group, int capacity) : group_(g
 void IkSeedDatabase::add(const Eigen::VectorXd& q) {
   group_.check_configuration(q, "q");
   if (static_cast<int>(entries_.size()) == capacity_) entries_.pop_front();
-  entries_.push_back({group_.root_pose(q).inverse() * group_.fk(q), q.tail(q.size() - 3)});
+  Eigen::VectorXd at_origin = q;
+  at_origin.head<3>().setZero();
+  entries_.push_back({group_.fk(at_origin), q.tail(q.size() - 3)});
 }
 
 std::vector<Eigen::VectorXd> IkSeedDatabase::seeds(const Pose& T_world_tip, int count) const {

@@ -91,7 +91,7 @@ void bind_platform_locations(py::module_& m) {
       "plan_platform_locations",
       [](CollisionChecker& checker, const ArrayLike& T_world_pick, const ArrayLike& T_world_place,
          const py::object& pick_point, const py::object& place_point, const py::object& camera_link,
-         const ArrayLike& T_link_camera, IkSeedDatabase* database, const py::kwargs& options) {
+         const py::object& T_link_camera, IkSeedDatabase* database, const py::kwargs& options) {
         PlatformLocationsProblem problem;
         problem.T_world_pick = pose_argument(T_world_pick, "T_world_pick");
         problem.T_world_place = pose_argument(T_world_place, "T_world_place");

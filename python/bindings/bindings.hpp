@@ -30,6 +30,8 @@ void bind_ik(py::module_& m);
 void bind_ik_objectives(py::module_& m);
 void bind_trajectory(py::module_& m);
 void bind_collision(py::module_& m);
+void bind_world(py::module_& m);
+void bind_disabled_pairs(py::module_& m);
 void bind_reach(py::module_& m);
 void bind_grasp(py::module_& m);
 void bind_plan(py::module_& m);

@@ -48,8 +48,10 @@ inline Body make_body(const mmgrasp::Shape& shape) {
     body.parts.push_back({std::make_shared<fcl::Cylinderd>(s->radius, s->length)});
   if (const auto* s = std::get_if<Capsule>(&shape))
     body.parts.push_back({std::make_shared<fcl::Capsuled>(s->radius, s->length)});
-  if (const auto* s = std::get_if<Plane>(&shape))
+  if (const auto* s = std::get_if<Plane>(&shape)) {
     body.parts.push_back({std::make_shared<fcl::Halfspaced>(s->normal, s->offset)});
+    body.probes.clear();  // nothing holds a half-space
+  }
   if (const auto* s = std::get_if<MeshShape>(&shape)) {
     body.parts.push_back({mesh_geometry(*s->mesh)});
     // Every vertex is a probe: the reference need not know which triangles hang together.

@@ -1,0 +1,182 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "bindings.hpp"
+#include "mmgrasp/collision/world.hpp"
+#include "mmgrasp/geometry/octree.hpp"
+
+namespace mmgrasp::python {
+namespace {
+
+/// Occupied leaves of an OctoMap file: one Voxels shape for each leaf size, so that pruned leaves keep their size.
+std::vector<LinkShape> octree_shapes(const std::string& path) {
+  std::vector<LinkShape> shapes;
+  for (const Voxels& voxels : load_octree(path)) {
+    LinkShape shape;
+    shape.shape = voxels;
+    shapes.push_back(shape);
+  }
+  return shapes;
+}
+
+/// The cells of a grid through the object's origin that hold a point.
+Voxels voxels_of_points(const Eigen::MatrixXd& points, double resolution) {
+  if (!(resolution > 0) || !std::isfinite(resolution)) {
+    throw InvalidInput("resolution = " + std::to_string(resolution) + ": must be > 0");
+  }
+  if (points.rows() == 0) throw InvalidInput("points has shape (0, 3): must hold at least one point");
+  const double largest = points.cwiseAbs().maxCoeff();
+  if (largest / resolution > 1e15) {
+    throw InvalidInput("resolution = " + std::to_string(resolution) + ": is too fine for points " +
+                       std::to_string(largest) + " m away");
+  }
+  std::vector<std::array<std::int64_t, 3>> cells(static_cast<std::size_t>(points.rows()));
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    auto& cell = cells[static_cast<std::size_t>(i)];
+    for (int k = 0; k < 3; ++k) cell[k] = static_cast<std::int64_t>(std::floor(points(i, k) / resolution));
+  }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  auto centres = std::make_shared<std::vector<Eigen::Vector3d>>();
+  for (const auto& cell : cells) {
+    centres->push_back(resolution * Eigen::Vector3d(cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5));
+  }
+  return Voxels{centres, resolution};
+}
+
+WorldObject object_of(std::vector<LinkShape> shapes, const py::object& pose) {
+  WorldObject object;
+  object.shapes = std::move(shapes);
+  object.T_world_object = pose_argument(pose, "pose");
+  return object;
+}
+
+std::vector<std::string> keys(const World& world) {
+  std::vector<std::string> names;
+  for (const auto& [name, object] : world.objects()) names.push_back(name);
+  return names;
+}
+
+std::vector<std::string> attached_keys(const World& world) {
+  std::vector<std::string> names;
+  for (const auto& [name, object] : world.attached()) names.push_back(name);
+  return names;
+}
+
+}  // namespace
+
+void bind_world(py::module_& m) {
+  declared<World>(m, "World")
+      .def(py::init<>())
+      .def("copy", [](const World& w) { return World(w); })
+      .def(
+          "add",
+          [](World& w, const std::string& name, const py::object& shapes, const py::object& pose) {
+            if (py::isinstance<py::list>(shapes)) {
+              w.add(name, object_of(py::cast<std::vector<LinkShape>>(shapes), pose));
+            } else {
+              w.add(name, py::cast<Shape>(shapes), pose_argument(pose, "pose"));
+            }
+          },
+          py::arg("name"), py::arg("shape"), py::arg("pose") = py::none(),
+          "A shape, or a list of LinkShape as one body.")
+      .def(
+          "add_box",
+          [](World& w, const std::string& name, const ArrayLike& size, const py::object& pose) {
+            w.add(name, Box{vector3_argument(size, "size")}, pose_argument(pose, "pose"));
+          },
+          py::arg("name"), py::arg("size"), py::arg("pose") = py::none(), "Full lengths [m], centred.")
+      .def(
+          "add_cylinder",
+          [](World& w, const std::string& name, double radius, double length, const py::object& pose) {
+            w.add(name, Cylinder{radius, length}, pose_argument(pose, "pose"));
+          },
+          py::arg("name"), py::arg("radius"), py::arg("length"), py::arg("pose") = py::none(), "Along z, centred [m].")
+      .def(
+          "add_sphere",
+          [](World& w, const std::string& name, double radius, const py::object& pose) {
+            w.add(name, Sphere{radius}, pose_argument(pose, "pose"));
+          },
+          py::arg("name"), py::arg("radius"), py::arg("pose") = py::none())
+      .def(
+          "add_mesh",
+          [](World& w, const std::string& name, const py::object& path, const py::object& pose,
+             const py::object& scale) {
+            const py::object shape = py::type::of<LinkShape>().attr("mesh")(path, scale);
+            w.add(name, object_of({py::cast<LinkShape>(shape)}, pose));
+          },
+          py::arg("name"), py::arg("path"), py::arg("pose") = py::none(), py::arg("scale") = 1.0,
+          "STL, OBJ, DAE or PLY; closed meshes are solids, open ones surfaces.")
+      .def(
+          "add_octree",
+          [](World& w, const std::string& name, const py::object& path, const py::object& pose) {
+            w.add(name, object_of(octree_shapes(path_argument(path, "path")), pose));
+          },
+          py::arg("name"), py::arg("path"), py::arg("pose") = py::none(),
+          "Occupied leaves of an OctoMap file (.bt or .ot) as solid voxels.")
+      .def(
+          "add_points",
+          [](World& w, const std::string& name, const ArrayLike& points, double resolution, const py::object& pose) {
+            w.add(name, voxels_of_points(matrix_argument(points, "points", 3), resolution),
+                  pose_argument(pose, "pose"));
+          },
+          py::arg("name"), py::arg("points"), py::arg("resolution"), py::arg("pose") = py::none(),
+          "Points (m, 3) as the solid cells of edge `resolution` [m] that hold one.")
+      .def(
+          "move",
+          [](World& w, const std::string& name, const ArrayLike& pose) { w.move(name, pose_argument(pose, "pose")); },
+          py::arg("name"), py::arg("pose"))
+      .def("remove", &World::remove, py::arg("name"), "Takes an object, held or not, out of the world.")
+      .def(
+          "attach",
+          [](World& w, const std::string& name, const std::string& link, const py::object& pose,
+             const std::set<std::string>& touch_links) {
+            w.attach(name, link, pose_argument(pose, "pose"), touch_links);
+          },
+          py::arg("name"), py::arg("link"), py::arg("pose") = py::none(),
+          py::arg("touch_links") = std::set<std::string>{},
+          "From the scene to a link, at T_link_object. Empty touch_links: the link, all below it, and its gripper's "
+          "fingers.")
+      .def(
+          "detach",
+          [](World& w, const std::string& name, const py::object& pose) {
+            const auto held = w.attached().find(name);
+            if (held == w.attached().end()) throw InvalidInput("name = '" + name + "': is not attached");
+            if (pose.is_none()) {
+              w.remove(name);
+              return;
+            }
+            w.detach(name, pose_argument(pose, "pose"));
+          },
+          py::arg("name"), py::arg("pose") = py::none(),
+          "Puts a held object back into the scene at T_world_object; without a pose it leaves the world.")
+      .def("__contains__", &World::has)
+      .def_property_readonly("objects", &keys, "Names of the scene's objects.")
+      .def_property_readonly("attached", &attached_keys, "Names of the held objects.")
+      .def(
+          "pose_of",
+          [](const World& w, const std::string& name) {
+            const auto object = w.objects().find(name);
+            if (object == w.objects().end()) throw InvalidInput("name = '" + name + "': no such scene object");
+            return to_array(object->second.T_world_object);
+          },
+          py::arg("name"))
+      .def(
+          "shapes_of",
+          [](const World& w, const std::string& name) {
+            const auto object = w.objects().find(name);
+            if (object != w.objects().end()) return object->second.shapes;
+            const auto held = w.attached().find(name);
+            if (held == w.attached().end()) throw InvalidInput("name = '" + name + "': no such object");
+            return held->second.shapes;
+          },
+          py::arg("name"))
+      .def("__repr__", [](const World& w) {
+        return "World(" + std::to_string(w.objects().size()) + " objects, " + std::to_string(w.attached().size()) +
+               " held)";
+      });
+}
+
+}  // namespace mmgrasp::python

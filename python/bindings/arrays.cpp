@@ -50,7 +50,11 @@ Array numbers(const py::handle& value, const std::string& name, int dimensions, 
   }
   for (py::ssize_t i = 0; i < array.size(); ++i) {
     if (infinite ? std::isnan(array.data()[i]) : !std::isfinite(array.data()[i])) {
-      throw InvalidInput(name + " holds " + std::to_string(array.data()[i]) + " at entry " + std::to_string(i) +
+      const py::ssize_t columns = array.shape(array.ndim() - 1);
+      const std::string entry = array.ndim() == 2
+                                    ? "(" + std::to_string(i / columns) + ", " + std::to_string(i % columns) + ")"
+                                    : std::to_string(i);
+      throw InvalidInput(name + " holds " + std::to_string(array.data()[i]) + " at entry " + entry +
                          (infinite ? ": must be a number" : ": must be finite"));
     }
   }

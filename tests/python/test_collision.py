@@ -213,7 +213,7 @@ def test_wrong_configurations_are_refused(checker, draws, ask):
     for bad in (np.nan, np.inf):
         q = draws[0].copy()
         q[2] = bad
-        with pytest.raises(mg.InvalidInput, match=r"\[2\]"):
+        with pytest.raises(mg.InvalidInput, match="entry 2"):
             question(q, *more)
 
 
@@ -223,10 +223,10 @@ def test_wrong_batches_are_refused(checker, draws):
         checker.are_free(draws[:, :-1])
     bad = draws.copy()
     bad[7, 3] = np.nan
-    with pytest.raises(mg.InvalidInput, match=r"Q\[7, 3\]"):
+    with pytest.raises(mg.InvalidInput, match=r"Q holds nan at entry \(7, 3\)"):
         checker.are_free(bad)
     with pytest.raises(mg.InvalidInput, match="within"):
         checker.distances(draws[0], -1.0)
     for scan in (np.array([[0.0, np.nan, 0.0]]), np.array([[0.0, np.inf, 0.0]])):
-        with pytest.raises(mg.InvalidInput, match=r"points\[0, 1\]"):
+        with pytest.raises(mg.InvalidInput, match=r"points holds (nan|inf) at entry \(0, 1\)"):
             mg.World().add_points("scan", scan, resolution=0.1)

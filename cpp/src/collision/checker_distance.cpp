@@ -6,7 +6,6 @@
 #include <map>
 
 #include "collision/checker_impl.hpp"
-#include "collision/gap_gradient.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
@@ -111,13 +110,17 @@ DistanceResult CollisionChecker::Impl::described(const NearestPair& nearest) con
   return out;
 }
 
-Eigen::VectorXd CollisionChecker::Impl::gradient(const NearestPair& nearest) const {
+Eigen::VectorXd CollisionChecker::Impl::gradient(const NearestPair& nearest, const Eigen::VectorXd& q) {
   Eigen::VectorXd row = Eigen::VectorXd::Zero(group.size());
   const auto& [pair, gap] = nearest;
   if (gap.distance == std::numeric_limits<double>::infinity()) return row;
-  detail::add_point_speed(group, links, snapshot->shapes[pair.shape].link, gap.on_a, gap.normal, 1, row);
-  if (!pair.with_scene)
-    detail::add_point_speed(group, links, snapshot->shapes[pair.other].link, gap.on_b, gap.normal, -1, row);
+  point_jacobian.resize(6, group.size());
+  const auto add = [&](int link, const Eigen::Vector3d& point, double sign) {
+    group.point_jacobian(links, q, link, point, point_jacobian);
+    row.noalias() += sign * point_jacobian.topRows<3>().transpose() * gap.normal;
+  };
+  add(snapshot->shapes[pair.shape].link, gap.on_a, 1);
+  if (!pair.with_scene) add(snapshot->shapes[pair.other].link, gap.on_b, -1);
   return row;
 }
 
@@ -134,7 +137,7 @@ DistanceResult CollisionChecker::distance_and_gradient(const Eigen::VectorXd& q)
   impl_->place(q);
   const NearestPair nearest = impl_->nearest();
   DistanceResult out = impl_->described(nearest);
-  out.gradient = impl_->gradient(nearest);
+  out.gradient = impl_->gradient(nearest, q);
   return out;
 }
 
@@ -167,7 +170,7 @@ std::vector<DistanceResult> CollisionChecker::distances(const Eigen::VectorXd& q
   std::vector<DistanceResult> out;
   for (const auto& [key, nearest] : by_bodies) {
     out.push_back(impl_->described(nearest));
-    out.back().gradient = impl_->gradient(nearest);
+    out.back().gradient = impl_->gradient(nearest, q);
   }
   std::stable_sort(out.begin(), out.end(),
                    [](const DistanceResult& a, const DistanceResult& b) { return a.value < b.value; });

@@ -79,7 +79,7 @@ struct CollisionChecker::Impl {
   template <class Visit>
   void each_pair(bool still, const Visit& visit) const;
   DistanceResult described(const detail::NearestPair& nearest) const;
-  Eigen::VectorXd gradient(const detail::NearestPair& nearest) const;
+  Eigen::VectorXd gradient(const detail::NearestPair& nearest, const Eigen::VectorXd& q);
 
   std::shared_ptr<const detail::Snapshot> snapshot;
   std::shared_ptr<const detail::PairPlan> plan;
@@ -110,6 +110,7 @@ struct CollisionChecker::Impl {
 
   std::optional<detail::NearestPair> nearest_still;  ///< Of the pairs that no configuration changes.
   std::vector<detail::Candidate> candidates;         ///< Scratch of nearest().
+  Matrix6Xd point_jacobian;                          ///< Scratch of gradient().
 };
 
 }  // namespace mmgrasp

@@ -22,9 +22,9 @@ void set_weights(IkOptions& options, const py::handle& value) {
 }
 
 void set_objectives(IkOptions& options, const py::handle& value) {
-  if (!py::isinstance<py::sequence>(value)) refuse_value("objectives", value, "must be a list of IkObjective");
+  if (!py::isinstance<py::sequence>(value)) refuse_value("objectives", value, "a list of IkObjective");
   for (const py::handle& entry : py::reinterpret_borrow<py::sequence>(value)) {
-    if (!py::isinstance<IkObjective>(entry)) refuse_value("objectives", entry, "must be an IkObjective");
+    if (!py::isinstance<IkObjective>(entry)) refuse_value("objectives", entry, "an IkObjective");
     options.objectives.push_back(py::cast<std::shared_ptr<IkObjective>>(entry));
   }
 }

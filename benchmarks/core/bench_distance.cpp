@@ -88,7 +88,7 @@ bool run(const bench::Arm& arm, bool self, int count, int rounds) {
                   median(program.all), more, program.settings});
     same = same && program.worst < 1e-6;
   }
-  return same && std::isfinite(sum) && hits >= 0.05 && hits <= 0.5;
+  return same && std::isfinite(sum);
 }
 
 }  // namespace

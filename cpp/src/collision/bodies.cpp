@@ -132,7 +132,7 @@ void Snapshot::add_held() {
 }
 
 void Snapshot::add_scene() {
-  std::vector<SceneShape> unbounded;
+  std::vector<SceneShape> others;
   std::vector<ScenePacks::Item> items;
   for (const auto& [name, object] : world.objects()) {
     object_names.push_back(name);
@@ -143,17 +143,17 @@ void Snapshot::add_scene() {
       out.solid = shared_solid(shape.shape, 0);
       if (out.solid->never_collides()) continue;
       out.ball = out.T_world * out.solid->ball_centre;
-      if (out.solid->kind == SolidKind::plane) {
-        unbounded.push_back(out);
+      if (out.solid->kind == SolidKind::plane || out.solid->kind == SolidKind::voxels) {
+        others.push_back(out);
         continue;
       }
       items.push_back({{out.T_world.R, out.T_world * out.solid->box_centre}, out.solid->box_half});
       scene.push_back(out);
     }
   }
-  bounded = static_cast<int>(scene.size());
+  packed = static_cast<int>(scene.size());
   packs = ScenePacks(items);
-  scene.insert(scene.end(), unbounded.begin(), unbounded.end());
+  scene.insert(scene.end(), others.begin(), others.end());
 }
 
 }  // namespace mmgrasp::detail

@@ -56,9 +56,9 @@ struct Snapshot {
   std::vector<Body> bodies;
   std::vector<BodyShape> shapes;
   std::vector<std::string> object_names;
-  std::vector<SceneShape> scene;  ///< Bounded shapes, then unbounded ones (planes).
-  int bounded = 0;
-  ScenePacks packs;  ///< Over the bounded shapes.
+  std::vector<SceneShape> scene;  ///< First those in `packs`, then voxels and planes.
+  int packed = 0;
+  ScenePacks packs;
 
  private:
   void add_robot();
@@ -89,6 +89,7 @@ struct PairPlan {
   MovingFrames frames;
   std::vector<PlacedShape> placed;  ///< Per shape.
   std::vector<FrameBall> balls;     ///< Of `moving`, then of `fixed`, in their order; padding included.
+  std::vector<int> ball_of;         ///< Per shape: its place in `balls`, or -1.
   std::vector<int> moving, fixed;   ///< Shapes the group moves, and the others.
   std::vector<ShapePair> varying;   ///< Relative pose depends on the configuration.
   std::vector<ShapePair> constant;  ///< It does not: one look per reference is enough.

@@ -164,6 +164,14 @@ CoverAnswer CollisionChecker::Impl::scene_balls(int s, int scene_shape) {
   if (shape.bounds->balls().empty() || other.solid->kind == detail::SolidKind::plane) return detail::kMaybe;
   // Padding pushes out the corners of a box by up to sqrt(3) of it.
   const double grow = shape.padded != shape.solid ? 1.75 * snapshot->options.padding : 0;
+  if (other.solid->kind == detail::SolidKind::voxels) {
+    const float* ball = ball_centres.data() + 4 * plan->ball_of[s];
+    const Eigen::Vector3d centre(ball[0], ball[1], ball[2]);
+    if (other.solid->field->distance(other.T_world.R.transpose() * (centre - other.T_world.t)) > ball[3])
+      return detail::kApart;
+    const auto& covers = shape.bounds->detail(*shape.solid).covers;
+    return balls_in_field(*other.solid->field, other.T_world, covers, pose(s), grow);
+  }
   const CoverAnswer answer = cover_against_box(shape.bounds->balls(), pose(s), *other.solid, other.T_world, grow);
   return answer == detail::kOverlap && !other.solid->is_box ? detail::kMaybe : answer;
 }
@@ -258,7 +266,7 @@ bool CollisionChecker::Impl::find_scene_hit(const std::vector<int>& shapes, int 
   for (const Near& pair : unsure) {
     if (hits_scene_exactly(pair.shape, pair.other)) return found(pair.shape, pair.other);
   }
-  for (int i = snapshot->bounded; i < static_cast<int>(snapshot->scene.size()); ++i) {
+  for (int i = snapshot->packed; i < static_cast<int>(snapshot->scene.size()); ++i) {
     for (const int s : shapes) {
       if (hits_scene(s, i)) return found(s, i);
     }

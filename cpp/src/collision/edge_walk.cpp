@@ -16,10 +16,12 @@ double surely(double motion) {
   return motion * (1 + 1e-5) + 1e-7;
 }
 
-double plane_gap(const SceneShape& plane, const float* ball) {
-  const Eigen::Vector3d normal = plane.T_world.R * plane.solid->normal;
+// From below.
+double gap_to(const SceneShape& other, const float* ball) {
   const Eigen::Vector3d centre(ball[0], ball[1], ball[2]);
-  return normal.dot(centre - plane.T_world.t) - plane.solid->offset - ball[3];
+  const Eigen::Vector3d in_other = other.T_world.R.transpose() * (centre - other.T_world.t);
+  if (other.solid->kind == detail::SolidKind::voxels) return other.solid->field->distance(in_other) - ball[3];
+  return other.solid->normal.dot(in_other) - other.solid->offset - ball[3];
 }
 
 }  // namespace
@@ -84,8 +86,8 @@ bool CollisionChecker::Impl::EdgeWalk::bodies_free(const Interval& interval, dou
     const double motion = surely(body_motion_[body] * reach);
     bool proven = true;
     if (!checker_.body_is_free(body, motion, proven)) return false;
-    for (int i = snapshot.bounded; i < static_cast<int>(snapshot.scene.size()); ++i) {
-      if (plane_gap(snapshot.scene[i], checker_.ball_centres.data() + 4 * body) > motion) continue;
+    for (int i = snapshot.packed; i < static_cast<int>(snapshot.scene.size()); ++i) {
+      if (gap_to(snapshot.scene[i], checker_.ball_centres.data() + 4 * body) > motion) continue;
       proven = false;
       if (checker_.hits_scene(checker_.plan->moving[body], i)) return false;
     }

@@ -160,8 +160,10 @@ bool field_clears(const DistanceField& field, const Eigen::Vector3d& a, const Ei
   return bc >= ca ? halves(b, c, a) : halves(c, a, b);
 }
 
+// More halves cost more than the exact look they may save.
+constexpr int kCuts = 1;
+
 // Triangles of b that the field of a cannot rule out, against the tree of a.
-constexpr int kCuts = 7;
 bool tree_hits_field(const Solid& a, const DistanceField& field, const Solid& b, const PairFrame& frame,
                      double margin) {
   int stack[64], size = 0;

@@ -62,7 +62,7 @@ PairPlan::PairPlan(const Snapshot& snapshot, const JointGroup& group) : frames(g
     if (shape.solid->never_collides()) continue;
     (link_moves[shape.link] ? moving : fixed).push_back(static_cast<int>(s));
   }
-  std::vector<int> ball_of(snapshot.shapes.size(), -1);
+  ball_of.assign(snapshot.shapes.size(), -1);
   for (const auto* shapes : {&moving, &fixed}) {
     for (const int s : *shapes) {
       const Solid& solid = *snapshot.shapes[s].padded;

@@ -191,6 +191,7 @@ void set_voxels(Solid& solid, const Voxels& voxels) {
   for (const int item : solid.tree.items()) solid.cells.push_back((*voxels.centres)[item]);
   set_bounds(solid, all, all.diagonal().norm());
   solid.part_points = cell_groups(*voxels.centres, voxels.resolution);
+  solid.field = std::make_shared<const DistanceField>(*voxels.centres, voxels.resolution);
 }
 
 void set_primitive(Solid& solid, const Shape& shape, double padding) {

@@ -6,6 +6,7 @@
 
 #include "collision/box_tree.hpp"
 #include "collision/convex.hpp"
+#include "collision/distance_field.hpp"
 #include "mmgrasp/geometry/shape.hpp"
 
 namespace mmgrasp::detail {
@@ -37,6 +38,7 @@ struct Solid {
   std::vector<std::array<double, 9>> triangles;  ///< In tree order: x of three corners, y, z.
   std::vector<Eigen::Vector3d> cells;            ///< Voxel centres in tree order.
   double cell_half = 0;
+  std::shared_ptr<const DistanceField> field;  ///< Kind voxels: distances to the cells.
   bool closed = false;  ///< Mesh with an inside.
   /// One point of each connected part: with no contact of surfaces, the part is inside a solid if and only if its point
   /// is.

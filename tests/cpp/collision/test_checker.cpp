@@ -309,3 +309,51 @@ TEST(Checker, BadInputIsNamed) {
     EXPECT_NE(std::string(error.what()).find("gripper_of_another_robot"), std::string::npos);
   }
 }
+
+TEST(Checker, FirstContactIsOneOfAll) {
+  const Robot robot = Robot::from_strings(kGripperUrdf, kGripperSrdf);
+  World world;
+  world.add("left wall", Box{{0.1, 1, 1}}, shifted(0.62, 0.3, 0));
+  world.add("right wall", Box{{0.1, 1, 1}}, shifted(0.62, -0.8, 0));
+  CollisionChecker checker(robot.group("arm"), world);
+  Rng rng(12);
+  int self = 0, scene = 0, none = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::VectorXd q = rng.uniform(checker.group().lower(), checker.group().upper());
+    const std::vector<Contact> all = checker.contacts(q);
+    const std::optional<Contact> first = checker.first_contact(q);
+    ASSERT_EQ(first.has_value(), !all.empty());
+    if (!first) {
+      ++none;
+      continue;
+    }
+    bool listed = false, any_self = false;
+    for (const Contact& c : all) {
+      listed = listed || (c.a == first->a && c.b == first->b && c.with_scene == first->with_scene);
+      any_self = any_self || !c.with_scene;
+    }
+    ASSERT_TRUE(listed) << first->a << " " << first->b;
+    ASSERT_EQ(first->with_scene, !any_self);
+    ++(any_self ? self : scene);
+  }
+  EXPECT_GT(self, 20);
+  EXPECT_GT(scene, 20);
+  EXPECT_GT(none, 20);
+}
+
+TEST(Checker, DetachPutsBackAndRemoveTakesAway) {
+  const Robot robot = Robot::from_strings(kGripperUrdf, kGripperSrdf);
+  Eigen::VectorXd q(2);
+  q << 0, 0;
+  World held;
+  held.add("part", Box{{0.1, 0.08, 0.02}}, shifted(0.6, 0, 0));
+  held.attach("part", "tcp", Pose::Identity());
+  World detached = held, removed = held;
+  detached.detach("part", shifted(0.6, 0, 0));  // where the hand is: now it is an obstacle
+  removed.remove("part");
+  EXPECT_EQ(CollisionChecker(robot.group("arm"), held).rejection(q), Rejection::none);
+  EXPECT_EQ(CollisionChecker(robot.group("arm"), detached).rejection(q), Rejection::scene);
+  EXPECT_EQ(CollisionChecker(robot.group("arm"), removed).rejection(q), Rejection::none);
+  EXPECT_FALSE(removed.has("part"));
+  EXPECT_TRUE(detached.has("part"));
+}

@@ -172,6 +172,39 @@ TEST(CheckerRobots, TiagoOnItsBaseAgreesWithFcl) {
   expect_agreement(load_tiago(BaseKind::diff_drive).chain("torso_fixed_link", "arm_7_link", true), 5, 200, 1.5, 1.4);
 }
 
+TEST(CheckerRobots, CloudAgreesWithFcl) {
+  MMGRASP_NEEDS_SHARED_DATA();
+  Rng rng(21);
+  // Balls of cells, hollow ones and full ones, and single cells strewn about.
+  auto centres = std::make_shared<std::vector<Eigen::Vector3d>>();
+  const double edge = 0.02;
+  for (int ball = 0; ball < 8; ++ball) {
+    const double angle = rng.uniform(-M_PI, M_PI), r = rng.uniform(0.4, 0.8), inner = ball % 2 == 0 ? 0 : 3;
+    const Eigen::Vector3d middle(std::floor(r * std::cos(angle) / edge), std::floor(r * std::sin(angle) / edge),
+                                 std::floor(rng.uniform(0, 1) / edge));
+    for (int i = -4; i <= 4; ++i) {
+      for (int j = -4; j <= 4; ++j) {
+        for (int k = -4; k <= 4; ++k) {
+          const Eigen::Vector3d cell(i, j, k);
+          if (cell.norm() > 4 || cell.norm() < inner) continue;
+          centres->push_back(edge * (middle + cell + Eigen::Vector3d::Constant(0.5)));
+        }
+      }
+    }
+  }
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d cell = rng.uniform(Eigen::Vector3d(-40, -40, 0), Eigen::Vector3d(40, 40, 50)).array().floor();
+    if (cell.head<2>().norm() > 15) centres->push_back(edge * (cell + Eigen::Vector3d::Constant(0.5)));
+  }
+  World world;
+  world.add("cloud", Voxels{centres, edge}, pose_from_xyz_rpy({0.02, -0.03, 0.05}, {0.1, 0.05, 0.7}));
+  Tally tally;
+  compare(load_panda().group("panda_arm"), world, 60, rng, tally);
+  EXPECT_GT(tally.none, 8);
+  EXPECT_GT(tally.scene, 8);
+  EXPECT_LE(tally.unjudged, 1);
+}
+
 TEST(CheckerRobots, MovingTheRootEqualsANewChecker) {
   MMGRASP_NEEDS_SHARED_DATA();
   Rng rng(5);
@@ -201,14 +234,14 @@ TEST(CheckerRobots, ClonesAnswerAlikeInThreads) {
   const CollisionChecker checker(group, random_world(rng, 0.8, 1.0));
   std::vector<Eigen::VectorXd> samples;
   for (int i = 0; i < 2000; ++i) samples.push_back(rng.uniform(group.lower(), group.upper()));
-  std::vector<std::vector<Rejection>> answers(4);
+  std::vector<std::vector<Rejection>> answers(8);
   std::vector<std::thread> threads;
-  for (int t = 0; t < 4; ++t) {
+  for (int t = 0; t < 8; ++t) {
     threads.emplace_back([&, t] {
       CollisionChecker own = checker.clone();
       answers[t].resize(samples.size());
       // Each thread in its own order (odd steps not divisible by 5 visit all): what was asked before must not matter.
-      const std::size_t strides[] = {1, 3, 7, 9};
+      const std::size_t strides[] = {1, 3, 7, 9, 11, 13, 17, 19};
       for (std::size_t i = 0; i < samples.size(); ++i) {
         const std::size_t k = (i * strides[t] + 17 * t) % samples.size();
         answers[t][k] = own.rejection(samples[k]);
@@ -219,7 +252,7 @@ TEST(CheckerRobots, ClonesAnswerAlikeInThreads) {
   CollisionChecker own = checker.clone();
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Rejection expected = own.rejection(samples[i]);
-    for (int t = 0; t < 4; ++t) ASSERT_EQ(answers[t][i], expected);
+    for (int t = 0; t < 8; ++t) ASSERT_EQ(answers[t][i], expected);
   }
   EXPECT_EQ(checker.queries(), 0u);
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <octomap/OcTree.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -131,4 +132,20 @@ TEST(Octree, RefusesNamingTheFault) {
          "finite");
   EXPECT_THROW(load_octree("/nowhere/map.bt"), IoError);
   EXPECT_THROW(load_octree("/tmp"), IoError);
+}
+
+TEST(Octree, PointsBecomeTheCellsThatHoldThem) {
+  const Voxels cells = voxelize({{0.005, 0.005, 0.005}, {-0.001, 0.019, 0.01}, {0.009, 0.001, 0.002}}, 0.01);
+  ASSERT_EQ(cells.centres->size(), 2u);  // the first and the last share one; a point on a face belongs above it
+  EXPECT_TRUE((*cells.centres)[0].isApprox(Eigen::Vector3d(-0.005, 0.015, 0.015), 1e-12));
+  EXPECT_TRUE((*cells.centres)[1].isApprox(Eigen::Vector3d(0.005, 0.005, 0.005), 1e-12));
+  EXPECT_EQ(cells.resolution, 0.01);
+  EXPECT_THROW(voxelize({}, 0.01), InvalidInput);
+  EXPECT_THROW(voxelize({{0, 0, 0}}, 0), InvalidInput);
+  try {
+    voxelize({{0, 0, 0}, {0, std::nan(""), 0}}, 0.01);
+    FAIL();
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("points[1][1]"), std::string::npos) << error.what();
+  }
 }

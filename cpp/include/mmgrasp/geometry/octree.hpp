@@ -13,4 +13,8 @@ namespace mmgrasp {
 /// 16 levels, another number of nodes than announced, or nothing occupied.
 MMGRASP_EXPORT std::vector<Voxels> load_octree(const std::string& path);
 
+/// The cells of a grid of edge `resolution` [m] through the origin that hold a point, in order of x, y, z. Throws
+/// InvalidInput on a resolution that is not positive, no points, or one that is not finite (naming its index).
+MMGRASP_EXPORT Voxels voxelize(const std::vector<Eigen::Vector3d>& points, double resolution);
+
 }  // namespace mmgrasp

@@ -1,0 +1,40 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/geometry/octree.hpp"
+
+namespace mmgrasp {
+
+Voxels voxelize(const std::vector<Eigen::Vector3d>& points, double resolution) {
+  require(std::isfinite(resolution) && resolution > 0, "resolution", resolution, "must be finite and > 0 [m]");
+  require(!points.empty(), "points", "0", "must hold at least one");
+  std::vector<std::array<std::int64_t, 3>> cells;
+  cells.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::array<std::int64_t, 3> cell{};
+    for (int k = 0; k < 3; ++k) {
+      const double at = std::floor(points[i][k] / resolution);
+      // Doubles number cells one by one up to 2^53.
+      require(std::abs(at) < 9e15, "points[" + std::to_string(i) + "][" + std::to_string(k) + "]", points[i][k],
+              "must be finite and within 9e15 cells of the origin");
+      cell[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(at);
+    }
+    cells.push_back(cell);
+  }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  auto centres = std::make_shared<std::vector<Eigen::Vector3d>>();
+  centres->reserve(cells.size());
+  for (const auto& cell : cells) {
+    centres->push_back(resolution * Eigen::Vector3d(static_cast<double>(cell[0]) + 0.5,
+                                                    static_cast<double>(cell[1]) + 0.5,
+                                                    static_cast<double>(cell[2]) + 0.5));
+  }
+  return {centres, resolution};
+}
+
+}  // namespace mmgrasp

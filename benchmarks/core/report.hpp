@@ -35,9 +35,11 @@ struct Line {
 };
 
 inline void print(const Line& line) {
-  std::printf("{\"row\": \"%s\", \"on\": \"%s\", \"who\": \"%s\", \"value\": %.6g, \"unit\": \"%s\"%s%s, \"settings\": \"%s\"}\n",
-              line.row.c_str(), line.on.c_str(), line.who.c_str(), line.value, line.unit.c_str(),
-              line.more.empty() ? "" : ", ", line.more.c_str(), line.settings.c_str());
+  std::printf(
+      "{\"row\": \"%s\", \"on\": \"%s\", \"who\": \"%s\", \"value\": %.6g, \"unit\": \"%s\"%s%s, \"settings\": "
+      "\"%s\"}\n",
+      line.row.c_str(), line.on.c_str(), line.who.c_str(), line.value, line.unit.c_str(), line.more.empty() ? "" : ", ",
+      line.more.c_str(), line.settings.c_str());
   std::fflush(stdout);
 }
 

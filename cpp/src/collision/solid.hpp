@@ -39,7 +39,7 @@ struct Solid {
   std::vector<Eigen::Vector3d> cells;            ///< Voxel centres in tree order.
   double cell_half = 0;
   std::shared_ptr<const DistanceField> field;  ///< Kind voxels: distances to the cells.
-  bool closed = false;  ///< Mesh with an inside.
+  bool closed = false;                         ///< Mesh with an inside.
   /// One point of each connected part: with no contact of surfaces, the part is inside a solid if and only if its point
   /// is.
   std::vector<Eigen::Vector3d> part_points;

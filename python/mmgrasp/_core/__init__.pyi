@@ -11,21 +11,24 @@ import numpy
 import numpy.typing
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BaseRegion', 'Box', 'Capsule', 'CarryPlace', 'CollisionChecker', 'Contact', 'Cylinder', 'DistanceResult', 'Error', 'FingerJoint', 'Grasp', 'Gripper', 'IkResult', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'Mesh', 'MotionResult', 'MotionStats', 'Obstruction', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyProblem', 'PartSupplyResult', 'Pick', 'PickMotion', 'Plane', 'ReachDatabase', 'Rejection', 'Rejections', 'Robot', 'SetCoverResult', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'TourResult', 'Tray', 'Voxels', 'World', 'cache_folder', 'compute_base_regions', 'compute_disabled_pairs', 'inscribed_circle', 'make_base_grid', 'minimal_stops', 'plan_base_route', 'plan_motion', 'plan_pick', 'plan_straight_line', 'planner_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'quat_xyzw_from_rotation', 'robust_intersections', 'sample_grasps', 'shortest_visiting_tour', 'solve_part_supply', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'verify', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BaseRegion', 'Box', 'Capsule', 'CarryPlace', 'CollisionChecker', 'Contact', 'Cylinder', 'DistanceResult', 'EdgeResult', 'Error', 'FingerJoint', 'Grasp', 'Gripper', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'Mesh', 'MotionResult', 'MotionStats', 'Obstruction', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyProblem', 'PartSupplyResult', 'Pick', 'PickMotion', 'Plane', 'PlatformLocations', 'ReachDatabase', 'Rejection', 'Rejections', 'Robot', 'SetCoverResult', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'TourResult', 'Tray', 'Voxels', 'World', 'cache_folder', 'camera_view_objective', 'compute_base_regions', 'compute_disabled_pairs', 'find_package', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'make_base_grid', 'minimal_stops', 'plan_base_route', 'plan_motion', 'plan_pick', 'plan_platform_locations', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'quat_xyzw_from_rotation', 'robust_intersections', 'sample_grasps', 'self_distance_objective', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_part_supply', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Robot:
     """
     A robot as URDF and SRDF describe it. Immutable; joints and links by name.
     """
     @staticmethod
-    def from_strings(urdf: str, srdf: str = '', package_dirs: typing.Any = None, base: str = 'fixed', *, base_limits: typing.Any = None, load_meshes: bool = True, allow_missing_meshes: bool = False, origin: str = '<string>') -> Robot:
+    def from_strings(urdf: str, srdf: str = '', package_dirs: typing.Any = None, base: str = 'fixed', *, base_limits: typing.Any = None, load_meshes: bool = True, allow_missing_meshes: bool = False, mesh_tolerance: typing.SupportsFloat | typing.SupportsIndex = 0.0, origin: str = '<string>') -> Robot:
         """
         The same from the texts of URDF and SRDF; `origin` names the source in messages.
         """
     @staticmethod
-    def load(urdf: typing.Any, srdf: typing.Any = None, package_dirs: typing.Any = None, base: str = 'fixed', *, base_limits: typing.Any = None, load_meshes: bool = True, allow_missing_meshes: bool = False) -> Robot:
+    def load(urdf: typing.Any, srdf: typing.Any = None, package_dirs: typing.Any = None, base: str = 'fixed', *, base_limits: typing.Any = None, load_meshes: bool = True, allow_missing_meshes: bool = False, mesh_tolerance: typing.SupportsFloat | typing.SupportsIndex = 0.0, xacro_args: typing.Any = None) -> Robot:
         """
-        Reads a URDF and, if given, its SRDF. `base` is fixed, diff_drive or omni; `package_dirs` maps the names in
-        package://NAME/... to folders. Raises IoError or InvalidInput naming file, element, value and rule.
+        Reads a URDF and, if given, its SRDF. `base` is fixed, diff_drive or omni; `package_dirs` maps the names
+        in package://NAME/... to folders. Files called .xacro are expanded first (needs the package xacro; macros
+        are programs: expand only files you trust) with the arguments `xacro_args` (a dict). A box, hull, sphere or
+        cylinder that contains a collision mesh and sticks out at most `mesh_tolerance` [m] replaces it; 0: only
+        what is the same solid. Raises IoError or InvalidInput naming file, element, value and rule.
         """
     def __repr__(self) -> str:
         ...
@@ -47,14 +50,22 @@ class Robot:
         This robot with `other` put on one of its links; the names of `other` get the prefix, SRDFs are merged.
         """
     def to_srdf(self) -> str:
-        ...
+        """
+        Groups, states, end effectors, passive and virtual joints and the disabled pairs with their reasons as one SRDF.
+        For a robot without an SRDF: with_sampled_pairs(robot).to_srdf() writes the computed pairs.
+        """
     def to_urdf(self) -> str:
         """
-        The whole robot as one URDF; mesh files by absolute path.
+        The whole robot as one URDF, without visuals; mesh files by absolute path.
         """
     def values(self, joints: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
         Full value vector (for with_reference) with the named joints set.
+        """
+    def velocity_scale(self, platform_velocity: numpy.typing.ArrayLike) -> float:
+        """
+        Largest factor in [0, 1] that keeps a platform velocity (v_x, v_y, omega) inside the base's limits: speed,
+        turning, wheels. 0 for what this base cannot do at all (sideways, or fixed).
         """
     def with_disabled_pairs(self, pairs: collections.abc.Sequence[tuple[str, str, str]]) -> Robot:
         ...
@@ -81,7 +92,7 @@ class Robot:
     @property
     def group_states(self) -> dict[str, dict[str, dict[str, float]]]:
         """
-        SRDF states: group, state, joint to value.
+        SRDF states: group, state, joint to value. Joints with several values appear as joint/x, joint/y, ...
         """
     @property
     def groups(self) -> dict:
@@ -115,6 +126,11 @@ class Robot:
     def name(self) -> str:
         ...
     @property
+    def passive_joints(self) -> list[str]:
+        """
+        Joints that nothing drives (SRDF passive_joint): in no group.
+        """
+    @property
     def report(self) -> dict:
         """
         What loading found.
@@ -139,6 +155,11 @@ class JointGroup:
         """
         (m, 4, 4) for configurations (m, n).
         """
+    def force_manipulability(self, q: numpy.typing.ArrayLike, direction: numpy.typing.ArrayLike) -> float:
+        """
+        Length of the force ellipsoid along a direction (P2 equation 3.3), as for velocity_manipulability;
+        infinite where no joint works against such a force.
+        """
     def ik(self, T_world_tip: numpy.typing.ArrayLike, seed: typing.Any = None, world: World = None, **kwargs) -> IkResult:
         """
         Inverse kinematics from `seed` (default: middle of the limits), then random restarts. With a world the answer is
@@ -151,17 +172,67 @@ class JointGroup:
             restarts = 30: random restarts after the seed
             time_limit = 1.0: wall-clock cap [s]
             rng_seed = 1: same seed, same answer
+            joint_weights = []: how dear it is to move each joint, > 0; empty: all the same
+            objectives = []: costs (IkObjective) that the redundancy lowers once the pose is reached
+            objective_iterations = 50: steps along the solutions
         """
-    def jacobian(self, q: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    def ik_all(self, T_world_tip: numpy.typing.ArrayLike, count: typing.SupportsInt | typing.SupportsIndex = 16, world: World = None, **kwargs) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (6, n), world-aligned at the tip's origin: linear rows, then angular.
+        Up to `count` solutions (k, n), the first ones farthest apart; ik_branches tells why others fell.
+        
+        Keyword options:
+            position_tolerance = 1e-05: [m]
+            rotation_tolerance = 0.0001: [rad]
+            max_iterations = 60: per descent
+            restarts = 30: random restarts after the seed
+            time_limit = 1.0: wall-clock cap [s]
+            rng_seed = 1: same seed, same answer
+            joint_weights = []: how dear it is to move each joint, > 0; empty: all the same
+            objectives = []: costs (IkObjective) that the redundancy lowers once the pose is reached
+            objective_iterations = 50: steps along the solutions
+        """
+    def ik_branches(self, T_world_tip: numpy.typing.ArrayLike, world: World = None, redundant_values: typing.SupportsInt | typing.SupportsIndex = 0, **kwargs) -> IkBranches:
+        """
+        Every branch of an arm of six turning joints, and of one of seven for `redundant_values` values of its
+        redundant joint (0: 24); random descents search where no closed form fits. With a world, free ones only.
+        
+        Keyword options:
+            position_tolerance = 1e-05: [m]
+            rotation_tolerance = 0.0001: [rad]
+            max_iterations = 60: per descent
+            restarts = 30: random restarts after the seed
+            time_limit = 1.0: wall-clock cap [s]
+            rng_seed = 1: same seed, same answer
+            joint_weights = []: how dear it is to move each joint, > 0; empty: all the same
+            objectives = []: costs (IkObjective) that the redundancy lowers once the pose is reached
+            objective_iterations = 50: steps along the solutions
+        """
+    def jacobian(self, q: numpy.typing.ArrayLike, link: str | None = None, point: numpy.typing.ArrayLike | None = None) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (6, n), world-aligned: linear rows [m/rad, m/m], then angular. At the tip's origin, or at `point` [m] in the frame of
+        `link` (default: the tip; point (0, 0, 0)), which moves with it. Columns of joints that do not move it are zero.
+        """
+    def jacobian_batch(self, Q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (m, 6, n) at the tip's origin, for configurations (m, n).
         """
     def link_poses(self, q: numpy.typing.ArrayLike) -> dict:
         """
         World pose (4, 4) of every link of the robot.
         """
     def manipulability(self, q: numpy.typing.ArrayLike) -> float:
-        ...
+        """
+        sqrt(det(J J^T)) (Yoshikawa): 0 at singularities, and for groups of fewer than six joints.
+        """
+    def manipulability_batch(self, Q: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (m,) for configurations (m, n).
+        """
+    def velocity_manipulability(self, q: numpy.typing.ArrayLike, direction: numpy.typing.ArrayLike) -> float:
+        """
+        Length of the velocity ellipsoid along a direction (P2 equation 3.2): (3,) translation or (6,) twist, world-aligned.
+        0 where the tool cannot move along it.
+        """
     def with_acceleration_limits(self, limits: numpy.typing.ArrayLike) -> JointGroup:
         ...
     def with_reference(self, joints: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex]) -> JointGroup:
@@ -190,7 +261,7 @@ class JointGroup:
     @property
     def names(self) -> list[str]:
         """
-        Joint names; x, y, theta first when the group has the base.
+        Names of the columns: joints, with x, y, theta first when the group has the base. A planar joint has three, "<joint>/x", "/y", "/theta"; a floating one six, "/x", "/y", "/z", "/rx", "/ry", "/rz" (a rotation vector).
         """
     @property
     def robot(self) -> Robot:
@@ -555,6 +626,11 @@ class IkResult:
     def iterations(self) -> int:
         ...
     @property
+    def objective(self) -> float:
+        """
+        Sum of the objectives' costs at q.
+        """
+    @property
     def outcome(self) -> Outcome:
         ...
     @property
@@ -574,6 +650,36 @@ class IkResult:
     def rotation_error(self) -> float:
         """
         [rad]
+        """
+class IkBranches:
+    """
+    Every arm configuration found for a pose, and why others were turned down.
+    """
+    def __len__(self) -> int:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def complete(self) -> bool:
+        """
+        True when every branch was computed, none searched.
+        """
+    @property
+    def redundant_joint(self) -> int:
+        """
+        Joint that was sampled; -1 for none.
+        """
+    @property
+    def rejections(self) -> Rejections:
+        """
+        Branches turned down, by cause.
+        """
+    @property
+    def solutions(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k, n), inside limits and checked; the first ones as different from each other as can be.
         """
 class JointTrajectory:
     """
@@ -656,6 +762,11 @@ class DistanceResult:
     def b(self) -> str:
         ...
     @property
+    def gradient(self) -> typing.Any:
+        """
+        d value / d q, (n,); None unless it was asked for.
+        """
+    @property
     def point_a(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         """
         (3,) in the world frame.
@@ -666,8 +777,41 @@ class DistanceResult:
     @property
     def value(self) -> float:
         """
-        [m]; negative: penetration depth (approximate).
+        [m]; negative: depth, exact for convex bodies (see docs/methods/collision.md for others).
         """
+    @property
+    def with_scene(self) -> bool:
+        """
+        `b` is an object of the scene.
+        """
+class EdgeResult:
+    """
+    Whether a straight joint-space edge is free, and where it is refused if not.
+    """
+    def __bool__(self) -> bool:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def checks(self) -> int:
+        """
+        Configurations looked at.
+        """
+    @property
+    def contact(self) -> Contact | None:
+        """
+        What touches there; None when limits refuse it or all is free.
+        """
+    @property
+    def fraction(self) -> float:
+        """
+        Where along the edge the first refused check was, in [0, 1]; 1 when free.
+        """
+    @property
+    def free(self) -> bool:
+        ...
 class CollisionChecker:
     """
     Collision questions about one group in a snapshot of the world: later changes of the world
@@ -682,17 +826,44 @@ class CollisionChecker:
         """
     def __repr__(self) -> str:
         ...
+    def are_free(self, Q: numpy.typing.ArrayLike, threads: typing.SupportsInt | typing.SupportsIndex = 0) -> numpy.typing.NDArray[numpy.bool]:
+        """
+        is_free of each row of Q (m, n), as (m,) booleans; 0 threads: all.
+        """
+    def check_edge(self, q0: numpy.typing.ArrayLike, q1: numpy.typing.ArrayLike, **kwargs) -> EdgeResult:
+        """
+        The straight joint-space edge with what refuses it: in steps, or by conservative advancement.
+        
+        Keyword options:
+            joint_step = 0.02: no joint moves more than this between two checks [rad or m]
+            workspace_step = inf: no point moves more than this between two checks [m]
+            continuous = False: conservative advancement instead of steps
+            tolerance = 0.0001: continuous only: gaps below this count as contact [m]
+        """
+    def clone(self) -> CollisionChecker:
+        """
+        The same checker with scratch of its own, for another thread.
+        """
     def contacts(self, q: numpy.typing.ArrayLike) -> list[Contact]:
         """
         Every touching pair; limits are not looked at.
         """
-    def distance(self, q: numpy.typing.ArrayLike) -> DistanceResult:
+    def distance(self, q: numpy.typing.ArrayLike, gradient: bool = False) -> DistanceResult:
         """
-        Smallest distance over all checked pairs.
+        Smallest signed distance over all checked pairs, padding not subtracted; with `gradient` also d value / d q.
+        Infinite when there is no pair.
+        """
+    def distances(self, q: numpy.typing.ArrayLike, within: typing.SupportsFloat | typing.SupportsIndex) -> list[DistanceResult]:
+        """
+        Every pair of bodies nearer than `within` [m], nearest first, each with its gradient.
         """
     def edge_is_free(self, q0: numpy.typing.ArrayLike, q1: numpy.typing.ArrayLike, step: typing.SupportsFloat | typing.SupportsIndex = 0.02) -> bool:
         """
         The straight joint-space edge, checked so finely that no joint moves more than `step` [rad or m].
+        """
+    def first_contact(self, q: numpy.typing.ArrayLike) -> Contact | None:
+        """
+        One touching pair, self before scene, or None; limits are not looked at.
         """
     def is_free(self, q: numpy.typing.ArrayLike) -> bool:
         """
@@ -704,6 +875,24 @@ class CollisionChecker:
         """
     @property
     def group(self) -> JointGroup:
+        ...
+    @property
+    def motion_bounds(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,) bounds on how far any point moves when a joint moves by one unit [m/rad or m/m].
+        """
+class IkObjective:
+    """
+    A cost of configurations that inverse kinematics lowers with the freedom that the pose leaves: pass a list as ik(..., objectives=[...]).
+    """
+    def __repr__(self) -> str:
+        ...
+    def evaluate(self, q: numpy.typing.ArrayLike) -> tuple[float, typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]]:
+        """
+        (cost, gradient (n,)).
+        """
+    @property
+    def name(self) -> str:
         ...
 class ReachDatabase:
     """
@@ -1359,6 +1548,69 @@ class PartSupplyResult:
     @property
     def timings(self) -> list[tuple[str, float]]:
         ...
+class PlatformLocations:
+    """
+    Two base + arm configurations for two tool poses.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def cost(self) -> float:
+        """
+        Travel [m] + turn_weight * turn [rad].
+        """
+    @property
+    def outcome(self) -> Outcome:
+        ...
+    @property
+    def pick(self) -> dict:
+        """
+        Draws, what they fell at, and iterations of the first pose.
+        """
+    @property
+    def place(self) -> dict:
+        ...
+    @property
+    def q_pick(self) -> typing.Any:
+        """
+        Base and arm at the first pose; None unless solved.
+        """
+    @property
+    def q_place(self) -> typing.Any:
+        ...
+    @property
+    def travel(self) -> float:
+        """
+        Of the base between the two [m].
+        """
+    @property
+    def turn(self) -> float:
+        """
+        [rad]
+        """
+class IkSeedDatabase:
+    """
+    Past solutions that start the next searches; grows with use.
+    """
+    @staticmethod
+    def load(path: typing.Any, group: JointGroup, capacity: typing.SupportsInt | typing.SupportsIndex = 10000) -> IkSeedDatabase:
+        """
+        Raises IoError on a damaged file or one made for another robot.
+        """
+    def __init__(self, group: JointGroup, capacity: typing.SupportsInt | typing.SupportsIndex = 10000) -> None:
+        ...
+    def __len__(self) -> int:
+        ...
+    def add(self, q: numpy.typing.ArrayLike) -> None:
+        ...
+    def save(self, path: typing.Any) -> None:
+        ...
+    def seeds(self, T_world_tip: numpy.typing.ArrayLike, count: typing.SupportsInt | typing.SupportsIndex = 8) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k, n): remembered arm postures with the base put where they reach the pose, best match first.
+        """
 def _check_options(section: str, **kwargs) -> None:
     """
     Raises InvalidInput when an option of a scenario's section is out of range.
@@ -1377,6 +1629,11 @@ def cache_folder() -> str:
     """
     $XDG_CACHE_HOME/mmgrasp, or ~/.cache/mmgrasp.
     """
+def camera_view_objective(group: JointGroup, camera_link: str, point: numpy.typing.ArrayLike, T_link_camera: typing.Any = None, weight: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> IkObjective:
+    """
+    Weight times the squared distance [m] of a world point from the optical axis (+z) of a camera on a link, plus the
+    squared depth by which it lies behind the camera.
+    """
 def compute_base_regions(problem: PartSupplyProblem, database: ReachDatabase, grid: BaseGrid, *, progress: typing.Any = None) -> list[BaseRegion]:
     """
     P1 Algorithm 2 with exact inverse kinematics: one region for each tray with target parts.
@@ -1391,9 +1648,21 @@ def compute_disabled_pairs(robot: Robot, *, progress: typing.Any = None, **kwarg
         seed = 1: same seed, same pairs
         threads = 0: 0: all
     """
-def inscribed_circle(grid: BaseGrid, cells: typing.Annotated[numpy.typing.ArrayLike, numpy.uint8], heading: typing.SupportsInt | typing.SupportsIndex = 0) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"], float]:
+def find_package(name: str, folder: typing.Any, package_dirs: typing.Any = None) -> str:
+    """
+    Folder of the ROS package that a file in `folder` means by package://NAME or $(find NAME); empty if none.
+    """
+def inscribed_circle(grid: BaseGrid, cells: numpy.typing.ArrayLike, heading: typing.SupportsInt | typing.SupportsIndex = 0) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"], float]:
     """
     Centre (2,) and radius [m] of the largest disc inside the union of cells of one layer.
+    """
+def joint_limit_objective(group: JointGroup, soft_fraction: typing.SupportsFloat | typing.SupportsIndex = 0.1, weight: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> IkObjective:
+    """
+    Weight times the squared depth inside the outer `soft_fraction` of each joint's range, at both ends.
+    """
+def joint_velocity(theta: typing.SupportsFloat | typing.SupportsIndex, platform_velocity: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    """
+    Velocities of the virtual joints x, y, theta for a platform velocity: the inverse of platform_velocity().
     """
 def make_base_grid(problem: PartSupplyProblem, database: ReachDatabase) -> BaseGrid:
     """
@@ -1425,6 +1694,20 @@ def plan_pick(problem: PartSupplyProblem, database: ReachDatabase, base_pose: nu
     """
     One pick from a base pose; `remaining` are the (tray, part) still in place, the picked one among them.
     """
+def plan_platform_locations(checker: CollisionChecker, T_world_pick: numpy.typing.ArrayLike, T_world_place: numpy.typing.ArrayLike, *, pick_point: typing.Any = None, place_point: typing.Any = None, camera_link: typing.Any = None, T_link_camera: typing.Any = None, database: IkSeedDatabase = None, **kwargs) -> PlatformLocations:
+    """
+    Two base + arm configurations for two tool poses with the least base travel (P3 3.6, Algorithm 2). The checker's group
+    must have the base. With a camera (640 x 480, f = 525 pixels, +z ahead) on `camera_link` the points (default: the tool
+    positions) are in view. A database starts the searches and learns from them.
+    
+    Keyword options:
+        samples = 100: valid configurations drawn for each pose
+        max_draws = 2000: searches for each pose, valid or not
+        least_manipulability = 0.02: over the arm's joints
+        turn_weight = 0.3: what one radian of base turn counts as [m]
+        seed = 1: same seed, same answer
+        time_limit = 10.0: wall-clock cap [s]
+    """
 def plan_straight_line(checker: CollisionChecker, start: numpy.typing.ArrayLike, T_world_to: numpy.typing.ArrayLike, **kwargs) -> StraightLineResult:
     """
     The tool moves on a straight line from the pose of `start` to T_world_to.
@@ -1438,6 +1721,18 @@ def plan_straight_line(checker: CollisionChecker, start: numpy.typing.ArrayLike,
 def planner_names() -> list[str]:
     """
     Names that plan_motion's `planner` takes.
+    """
+@typing.overload
+def platform_velocity(theta: typing.SupportsFloat | typing.SupportsIndex, joint_velocity: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    """
+    Velocity command (v_x, v_y, omega) in the platform's own frame for velocities of the virtual joints x, y, theta
+    standing at heading theta (P3 3.12) [m/s, rad/s].
+    """
+@typing.overload
+def platform_velocity(*, left: typing.SupportsFloat | typing.SupportsIndex, right: typing.SupportsFloat | typing.SupportsIndex, wheel_separation: typing.SupportsFloat | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    """
+    The same of a diff-drive whose wheel rims move at `left` and `right` [m/s]: v = (left + right) / 2,
+    omega = (right - left) / wheel_separation (P1 4.11).
     """
 def pose(xyz: numpy.typing.ArrayLike, rpy: typing.Any = None, quat_xyzw: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
     """
@@ -1472,9 +1767,23 @@ def sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Gripper,
         standoff = 0.0: how far the tool centre point stays outside the object's middle [m]
         seed = 1: same seed, same grasps
     """
-def shortest_visiting_tour(lengths: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"]) -> TourResult:
+def self_distance_objective(checker: CollisionChecker, margin: typing.SupportsFloat | typing.SupportsIndex = 0.05, weight: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> IkObjective:
+    """
+    Weight times the sum of (1 - distance / margin)^2 over pairs of the robot's own links nearer than `margin` [m].
+    """
+def shortest_visiting_tour(lengths: numpy.typing.ArrayLike) -> TourResult:
     """
     Shortest way from start over all n stops to goal. `lengths` is (n + 2, n + 2): stops, start, goal; infinite: no way.
+    """
+def simplify_mesh(mesh: Mesh, tolerance: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> dict:
+    """
+    The simplest solid that contains a mesh and has no point farther than `tolerance` [m] from it, as a dict:
+    `shape` (a LinkShape in the mesh's frame), `chosen` (mesh, hull, box, sphere or cylinder), `triangles_saved` and
+    the proven `deviation` [m]. With 0 the solid stays the same.
+    """
+def singularity_objective(group: JointGroup, threshold: typing.SupportsFloat | typing.SupportsIndex, weight: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> IkObjective:
+    """
+    Weight times max(0, 1 - M / threshold)^2, M the manipulability of the arm's joints (without the base).
     """
 def solve_part_supply(problem: PartSupplyProblem, database: ReachDatabase, *, progress: typing.Any = None) -> PartSupplyResult:
     """
@@ -1496,6 +1805,10 @@ def time_parameterize(path: numpy.typing.ArrayLike, velocity_limits: numpy.typin
 def time_parameterize_free(checker: CollisionChecker, path: numpy.typing.ArrayLike, *, edge_step: typing.SupportsFloat | typing.SupportsIndex = 0.01, **kwargs) -> JointTrajectory:
     """
     time_parameterize under the group's limits, the blended corners checked for collisions too.
+    """
+def wheel_speeds(v: typing.SupportsFloat | typing.SupportsIndex, omega: typing.SupportsFloat | typing.SupportsIndex, wheel_separation: typing.SupportsFloat | typing.SupportsIndex) -> tuple[float, float]:
+    """
+    Rim speeds (left, right) of a diff-drive's wheels [m/s].
     """
 def with_sampled_pairs(robot: Robot, *, progress: typing.Any = None) -> Robot:
     """

@@ -30,7 +30,7 @@ class CheckedStop:
     def __init__(self, pose: numpy.typing.ArrayLike, radius: typing.SupportsFloat | typing.SupportsIndex, trays: collections.abc.Sequence[str]) -> None:
         ...
 class CheckedRegion:
-    def __init__(self, tray: str, cells: typing.Annotated[numpy.typing.ArrayLike, numpy.uint8]) -> None:
+    def __init__(self, tray: str, cells: numpy.typing.ArrayLike) -> None:
         ...
 class CheckedLegFigures:
     def __init__(self, length: typing.SupportsFloat | typing.SupportsIndex, turning: typing.SupportsFloat | typing.SupportsIndex, duration: typing.SupportsFloat | typing.SupportsIndex) -> None:

@@ -124,16 +124,19 @@ void bind_line(py::module_& m) {
           "path", [](const StraightLineResult& r) { return path_array(r.path); }, "(k, n) or None.")
       .def_readonly("fraction", &StraightLineResult::fraction, "How far along the line it came, in [0, 1].")
       .def_readonly("cause", &StraightLineResult::cause, "Why it ended there.")
+      .def_readonly("contact", &StraightLineResult::contact, "What touches there, when something does, or None.")
       .def("to_dict",
            [](const StraightLineResult& r) {
              py::object path = path_array(r.path);
              if (!path.is_none()) path = path.attr("tolist")();
              return py::dict("outcome"_a = to_string(r.outcome), "path"_a = path, "fraction"_a = r.fraction,
-                             "cause"_a = to_string(r.cause));
+                             "cause"_a = to_string(r.cause),
+                             "contact"_a = r.contact ? py::cast(*r.contact).attr("to_dict")() : py::none());
            })
       .def("__repr__", [](const StraightLineResult& r) {
         return std::string("StraightLineResult(") + to_string(r.outcome) + ", fraction " +
-               std::string(py::repr(py::float_(r.fraction))) + ")";
+               std::string(py::repr(py::float_(r.fraction))) +
+               (r.contact ? ", '" + r.contact->a + "' touches '" + r.contact->b + "'" : "") + ")";
       });
   m.def(
       "plan_straight_line",

@@ -21,7 +21,18 @@ from mmgrasp import _core
 STUBS = Path(mg.__file__).parent / "_core"
 CORPUS = REPOSITORY / "tests" / "fuzz" / "corpus"
 # Optional arrays are annotated Any, since None stands for "left out".
-OPTIONAL = {"pose", "T", "T_world_root", "seed", "rpy", "quat_xyzw", "base_pose", "accelerations"}
+OPTIONAL = {
+    "pose",
+    "T",
+    "pick_point",
+    "place_point",
+    "T_world_root",
+    "seed",
+    "rpy",
+    "quat_xyzw",
+    "base_pose",
+    "accelerations",
+}
 
 URDF = """<robot name="r"><link name="o"/>
 <link name="a"><collision><geometry><box size="0.1 0.1 0.4"/></geometry></collision></link><link name="b"/><link name="tip"/>
@@ -34,6 +45,7 @@ ROBOT = mg.Robot.from_strings(URDF, base="omni")
 ARM = ROBOT.group(base_link="o", tip="tip").with_acceleration_limits([1, 1, 1])
 Q = np.array([0.25, 0.5, 0.5])
 POSE = ARM.fk(Q)
+WHOLE_BODY = ROBOT.group(base_link="o", tip="tip", with_base=True)
 GRID = mg.BaseGrid([0.0, 0.0], 0.1, 4, 3)
 
 
@@ -79,6 +91,8 @@ VALUES: dict[str, Any] = {
     "points": np.array([[1.0, 2, 3], [4, 5, 6]]),
     "centres": np.array([[1.0, 2, 3], [4, 5, 6]]),
     "point": np.array([0.1, 0.2, 0.3]),
+    "pick_point": np.array([0.1, 0.2, 0.3]),
+    "place_point": np.array([0.1, 0.2, 0.3]),
     "direction": np.array([0.0, 0.0, 1.0]),
     "normal": np.array([0.0, 0.0, 1.0]),
     "approach": np.array([1.0, 0, 0]),
@@ -102,6 +116,9 @@ VALUES: dict[str, Any] = {
     "PartSupplyProblem.goal": X_Y_THETA,
     "plan_base_route.start": X_Y_THETA,
     "plan_base_route.goal": X_Y_THETA,
+    "platform_velocity": X_Y_THETA,
+    "joint_velocity": X_Y_THETA,
+    "IkSeedDatabase.add.q": np.array([0.5, 0.25, 0.75, *Q]),
     "verify.CheckedStop.pose": X_Y_THETA,
     "verify.CheckedRegion.cells": np.ones(12, np.uint8),
 }
@@ -113,6 +130,8 @@ OBJECTS = {
     "World.detach": held,
     "CollisionChecker": lambda: mg.CollisionChecker(ROBOT, world(), ARM),
     "ReachDatabase": lambda: mg.ReachDatabase.build(ARM, samples=1000, threads=1),
+    "IkObjective": lambda: mg.joint_limit_objective(ARM),
+    "IkSeedDatabase": lambda: mg.IkSeedDatabase(WHOLE_BODY),
     "JointTrajectory": lambda: mg.time_parameterize([Q, Q / 2], np.ones(3), np.ones(3), names=["i", "j", "k"]),
     "PartSupplyProblem": lambda: mg.PartSupplyProblem(
         ROBOT, ARM, gripper(), world(), [TRAY], Q, X_Y_THETA, X_Y_THETA, CARRY
@@ -127,6 +146,9 @@ OTHERS: dict[str, Any] = {
     "world": world,
     "scene": world,
     "checker": OBJECTS["CollisionChecker"],
+    "plan_platform_locations.checker": lambda: mg.CollisionChecker(ROBOT, world(), WHOLE_BODY),
+    "camera_link": lambda: "tip",
+    "theta": lambda: 0.5,
     "database": OBJECTS["ReachDatabase"],
     "problem": OBJECTS["PartSupplyProblem"],
     "gripper": gripper,
@@ -292,7 +314,7 @@ def test_the_stubs_were_read():
 
 @pytest.mark.parametrize("argument", ARGUMENTS, ids=name_of)
 def test_bad_arrays_are_refused_by_name(argument):
-    if argument.function != "plan_pick":  # which would plan
+    if argument.function not in ("plan_pick", "plan_platform_locations"):  # which would plan
         call(argument, value_of(argument))
     accepted = []
     for what, value in bad_values(argument).items():

@@ -11,7 +11,8 @@ namespace {
 
 class SelfDistance final : public IkObjective {
  public:
-  SelfDistance(const CollisionChecker& checker, double margin, double weight) : margin_(margin), weight_(weight) {
+  SelfDistance(const CollisionChecker& checker, double margin, double weight)
+      : IkObjective(checker.group().size()), margin_(margin), weight_(weight) {
     idle_.push_back(checker.clone());
   }
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
-#include <utility>
 
 #include "collision/checker_impl.hpp"
 
@@ -11,18 +9,15 @@ namespace mmgrasp {
 
 namespace detail {
 
-// The advancement needs the plan's pairs and the placed bodies, which the checker's public face does not show. Naming a
-// private member in an explicit instantiation is allowed.
-template <auto Member>
-struct Expose {
-  friend auto& scratch_of(CollisionChecker& checker) { return *(checker.*Member); }
+/// The advancement needs the plan's pairs and the placed bodies, which the checker's public face does not show.
+struct CheckerAccess {
+  using Impl = CollisionChecker::Impl;
+  static Impl& of(CollisionChecker& checker) { return *checker.impl_; }
 };
-template struct Expose<&CollisionChecker::impl_>;
-auto& scratch_of(CollisionChecker& checker);
 
 namespace {
 
-using Impl = std::remove_reference_t<decltype(scratch_of(std::declval<CollisionChecker&>()))>;
+using Impl = CheckerAccess::Impl;
 
 // Along the edge up to which both joint limits (with the checker's slack) hold; 1 when they hold everywhere.
 double within_limits_up_to(const JointGroup& group, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) {
@@ -143,7 +138,7 @@ class Advance {
 
 EdgeResult advance_edge(CollisionChecker& checker, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
                         const EdgeOptions& options) {
-  Impl& impl = scratch_of(checker);
+  Impl& impl = CheckerAccess::of(checker);
   const std::size_t before = checker.queries();
   EdgeResult result;
   const Rejection start = checker.rejection(q0);

@@ -17,6 +17,9 @@ struct BoxPack {
   float half[3][kLanes];
 };
 
+/// How a frame moves: about its own z, along it, or by a rotation vector (three columns).
+enum class FrameMotion { turn, slide, ball };
+
 /// A joint's frame on its way down the tree: turned so that the joint moves about or along its own z.
 struct FrameStep {
   double R[12];  ///< Three columns of four numbers, the fourth 0: this frame before it moves, in its parent.
@@ -24,7 +27,7 @@ struct FrameStep {
   double multiplier, offset;  ///< Joint value = multiplier * q[column] + offset.
   int parent;                 ///< Frame number; frame 0 is the root. Step i makes frame i + 1.
   int column;
-  int prismatic;
+  FrameMotion motion;
 };
 
 /// A bounding ball that moves with a frame.

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mmgrasp/core/error.hpp"
-
 namespace mmgrasp::detail {
 
 namespace {
@@ -18,11 +16,44 @@ int column_of(const JointGroup& group, int index) {
   const Joint& joint = group.robot().joints()[index];
   const std::vector<int>& driven = group.joints();
   const auto it = std::find(driven.begin(), driven.end(), joint.mimic_joint >= 0 ? joint.mimic_joint : index);
-  if (it == driven.end()) return -1;
-  if (joint.value_count() > 1)
-    throw InvalidInput("group \"" + group.name() + "\": joint \"" + joint.name + "\" is " + to_string(joint.type) +
-                       ", collision checks move joints with one value only");
-  return static_cast<int>(it - driven.begin());
+  return it == driven.end() ? -1 : static_cast<int>(it - driven.begin());
+}
+
+// One motion about or along z of `align`, seen from the joint's frame.
+struct Motion {
+  Eigen::Matrix3d align;
+  FrameMotion kind;
+};
+
+// Turns an axis of the frame to where its z is.
+Eigen::Matrix3d axis_first(const Eigen::Matrix3d& frame, int axis) {
+  Eigen::Matrix3d align;
+  for (int c = 0; c < 3; ++c) align.col((c + 2) % 3) = frame.col((axis + c) % 3);
+  return align;
+}
+
+// A column of the configuration each, but for the ball, which takes three.
+std::vector<Motion> motions_of(const Joint& joint) {
+  const Eigen::Matrix3d own = Eigen::Matrix3d::Identity(), turned = z_to(joint.axis);
+  switch (joint.type) {
+    case JointType::fixed:
+      return {};
+    case JointType::revolute:
+    case JointType::continuous:
+      return {{turned, FrameMotion::turn}};
+    case JointType::prismatic:
+      return {{turned, FrameMotion::slide}};
+    case JointType::planar:
+      return {{axis_first(turned, 0), FrameMotion::slide},
+              {axis_first(turned, 1), FrameMotion::slide},
+              {turned, FrameMotion::turn}};
+    case JointType::floating:
+      return {{axis_first(own, 0), FrameMotion::slide},
+              {axis_first(own, 1), FrameMotion::slide},
+              {own, FrameMotion::slide},
+              {own, FrameMotion::ball}};
+  }
+  return {};
 }
 
 }  // namespace
@@ -41,23 +72,27 @@ MovingFrames::MovingFrames(const JointGroup& group) : has_base_(group.has_base()
       link_in_frame_[link] = parent * Rigid(reference[joint.parent_link]).to(Rigid(reference[link]));
       continue;
     }
-    const Eigen::Matrix3d turn = z_to(joint.axis);
-    const Rigid at_zero = parent * Rigid(joint.T_parent_joint);
-    const Eigen::Matrix3d R = at_zero.R * turn;
-    FrameStep step{};
-    for (int c = 0; c < 3; ++c) {
-      for (int r = 0; r < 3; ++r) step.R[4 * c + r] = R(r, c);
-      step.p[c] = at_zero.t[c];
-    }
     const bool mimics = joint.mimic_joint >= 0;
-    step.multiplier = mimics ? joint.mimic_multiplier : 1;
-    step.offset = mimics ? joint.mimic_offset : 0;
-    step.parent = frame_of_[joint.parent_link];
-    step.column = column;
-    step.prismatic = joint.type == JointType::prismatic;
-    steps_.push_back(step);
-    frame_of_[link] = static_cast<int>(steps_.size());
-    link_in_frame_[link] = Rigid(turn.transpose(), Eigen::Vector3d::Zero());
+    int frame = frame_of_[joint.parent_link], at = column;
+    Rigid rest = parent * Rigid(joint.T_parent_joint);
+    for (const Motion& motion : motions_of(joint)) {
+      FrameStep step{};
+      const Eigen::Matrix3d R = rest.R * motion.align;
+      for (int c = 0; c < 3; ++c) {
+        for (int r = 0; r < 3; ++r) step.R[4 * c + r] = R(r, c);
+        step.p[c] = rest.t[c];
+      }
+      step.multiplier = mimics ? joint.mimic_multiplier : 1;
+      step.offset = mimics ? joint.mimic_offset : 0;
+      step.parent = frame;
+      step.column = at++;
+      step.motion = motion.kind;
+      steps_.push_back(step);
+      frame = static_cast<int>(steps_.size());
+      rest = Rigid(motion.align.transpose(), Eigen::Vector3d::Zero());
+    }
+    frame_of_[link] = frame;
+    link_in_frame_[link] = rest;
   }
 }
 
@@ -94,8 +129,14 @@ void MovingFrames::add_rates(int frame, double radius, int against, const Eigen:
   while (frame > 0 && frame != against) {
     const FrameStep& step = steps_[frame - 1];
     const double factor = std::abs(step.multiplier);
-    rates[step.column] += step.prismatic ? factor : factor * radius;
-    if (step.prismatic) radius += std::abs(step.offset) + (factor > 0 ? factor * largest[step.column] : 0);
+    const bool slides = step.motion == FrameMotion::slide;
+    rates[step.column] += slides ? factor : factor * radius;
+    if (step.motion == FrameMotion::ball) {
+      // A rotation vector's rate is never less than the angular velocity it makes.
+      rates[step.column + 1] += radius;
+      rates[step.column + 2] += radius;
+    }
+    if (slides) radius += std::abs(step.offset) + (factor > 0 ? factor * largest[step.column] : 0);
     radius += Eigen::Vector3d(step.p[0], step.p[1], step.p[2]).norm();
     frame = step.parent;
   }

@@ -46,6 +46,7 @@ class LineFollower {
     result_.cause = checker_.rejection(path_.waypoints.front());
     if (result_.cause != Rejection::none) {
       result_.outcome = Outcome::invalid_start;
+      note_contact(path_.waypoints.front());
       return std::move(result_);
     }
     const double steps =
@@ -106,11 +107,16 @@ class LineFollower {
     const double step = options_.edge_step / 8;
     const int count = std::max(1, static_cast<int>(std::ceil((to - from).cwiseAbs().maxCoeff() / step)));
     for (int i = 1; i <= count; ++i) {
-      const Rejection cause = checker_.rejection(from + (static_cast<double>(i) / count) * (to - from));
-      if (cause != Rejection::none) return cause;
+      const Eigen::VectorXd q = from + (static_cast<double>(i) / count) * (to - from);
+      const Rejection cause = checker_.rejection(q);
+      if (cause == Rejection::none) continue;
+      if (cause != Rejection::limits) note_contact(q);
+      return cause;
     }
     return Rejection::none;
   }
+
+  void note_contact(const Eigen::VectorXd& q) { result_.contact = checker_.first_contact(q); }
 
   bool fail(Rejection cause) {
     result_.cause = cause;

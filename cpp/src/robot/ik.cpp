@@ -141,6 +141,10 @@ void check_target(const JointGroup& group, const Pose& T_world_tip, const IkOpti
     require(static_cast<int>(options.joint_weights.size()) == group.size(), "ik.joint_weights length",
             static_cast<double>(options.joint_weights.size()),
             "must be " + std::to_string(group.size()) + " (group \"" + group.name() + "\")");
+  for (std::size_t i = 0; i < options.objectives.size(); ++i)
+    require(options.objectives[i]->size() == group.size(), "ik.objectives[" + std::to_string(i) + "] length",
+            options.objectives[i]->size(),
+            "must be " + std::to_string(group.size()) + " (group \"" + group.name() + "\")");
   checked_pose(T_world_tip.matrix(), "T_world_tip (group \"" + group.name() + "\")");
 }
 

@@ -18,7 +18,8 @@ void check_weight(double weight) {
 /// (5.10) with its mirror: as printed it has no bound on where it is active and leaves out the lower limit.
 class JointLimits final : public IkObjective {
  public:
-  JointLimits(const JointGroup& group, double soft_fraction, double weight) : weight_(weight) {
+  JointLimits(const JointGroup& group, double soft_fraction, double weight)
+      : IkObjective(group.size()), weight_(weight) {
     lower_ = group.lower();
     upper_ = group.upper();
     for (Eigen::Index i = 0; i < lower_.size(); ++i) {
@@ -47,7 +48,8 @@ class JointLimits final : public IkObjective {
 class Singularity final : public IkObjective {
  public:
   Singularity(const JointGroup& group, double threshold, double weight)
-      : group_(group),
+      : IkObjective(group.size()),
+        group_(group),
         first_(group.has_base() ? 3 : 0),
         plain_(detail::one_joint_a_column(group)),
         threshold_(threshold),
@@ -112,7 +114,12 @@ class Singularity final : public IkObjective {
 class CameraView final : public IkObjective {
  public:
   CameraView(const JointGroup& group, int link, const Pose& T_link_camera, const Eigen::Vector3d& point, double weight)
-      : group_(group), link_(link), T_link_camera_(T_link_camera), point_(point), weight_(weight) {}
+      : IkObjective(group.size()),
+        group_(group),
+        link_(link),
+        T_link_camera_(T_link_camera),
+        point_(point),
+        weight_(weight) {}
 
   std::string name() const override { return "camera view"; }
 

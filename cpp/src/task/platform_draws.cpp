@@ -12,7 +12,8 @@ namespace {
 /// Half the squared distance of the base from a pose: what draws two ends together.
 class BaseDistance final : public IkObjective {
  public:
-  BaseDistance(const Eigen::Vector3d& base, double turn_weight) : base_(base), turn_weight_(turn_weight) {}
+  BaseDistance(int size, const Eigen::Vector3d& base, double turn_weight)
+      : IkObjective(size), base_(base), turn_weight_(turn_weight) {}
   std::string name() const override { return "base distance"; }
   double evaluate(const Eigen::VectorXd& q, Eigen::VectorXd& gradient) const override {
     const double turn = turn_weight_ * wrap_angle(q[2] - base_[2]);
@@ -155,7 +156,7 @@ bool PlatformEnd::draw(const IkSeedDatabase* database) {
 
 Eigen::VectorXd PlatformEnd::drawn_towards(const Eigen::VectorXd& q, const Eigen::Vector3d& base, double turn_weight) {
   IkOptions options = descent_;
-  options.objectives = {std::make_shared<BaseDistance>(base, std::max(turn_weight, 0.05))};
+  options.objectives = {std::make_shared<BaseDistance>(static_cast<int>(q.size()), base, std::max(turn_weight, 0.05))};
   const auto valid = [this](const Eigen::VectorXd& candidate) {
     Rejection cause = Rejection::none;
     const Fault fault = fault_of(candidate, cause);

@@ -1094,6 +1094,11 @@ class StraightLineResult:
         Why it ended there.
         """
     @property
+    def contact(self) -> Contact | None:
+        """
+        What touches there, when something does, or None.
+        """
+    @property
     def fraction(self) -> float:
         """
         How far along the line it came, in [0, 1].

@@ -113,6 +113,8 @@ TEST(StraightLine, StopsAtASceneObstacle) {
   const StraightLineResult result = plan_straight_line(checker, q, moved(from, 0.2 * ahead));
   EXPECT_EQ(result.outcome, Outcome::infeasible);
   EXPECT_EQ(result.cause, Rejection::scene);
+  ASSERT_TRUE(result.contact);
+  EXPECT_EQ(result.contact->b, "ball");
   EXPECT_LE(0.2 * result.fraction, gap + 1e-4);
   EXPECT_GE(0.2 * result.fraction, gap - 0.006);
 }
@@ -141,6 +143,8 @@ TEST(StraightLine, AStartInCollisionIsRefused) {
   const StraightLineResult result = plan_straight_line(checker, q, moved(from, {0.1, 0, 0}));
   EXPECT_EQ(result.outcome, Outcome::invalid_start);
   EXPECT_EQ(result.cause, Rejection::scene);
+  ASSERT_TRUE(result.contact);
+  EXPECT_EQ(result.contact->b, "ball");
 }
 
 TEST(StraightLine, NoMotionIsATrivialLine) {

@@ -14,6 +14,10 @@
 
 namespace mmgrasp {
 
+namespace detail {
+struct CheckerAccess;
+}
+
 struct MMGRASP_EXPORT CheckerOptions {
   double padding = 0;       ///< Robot links (not what they hold) are grown by this [m] against the scene; >= 0.
   bool check_self = true;   ///< Robot (and what it holds) against itself.
@@ -27,8 +31,11 @@ struct MMGRASP_EXPORT Contact {
   bool with_scene = false;
 };
 
+/// Signed distance of two bodies. Overlapping: minus the least shift that parts them, exact for convex bodies; for
+/// others that of their hulls (bounding boxes of meshes without one), which is never too small, and for voxels the
+/// deepest cell's. The witness points are then the deepest ones.
 struct MMGRASP_EXPORT DistanceResult {
-  double value = std::numeric_limits<double>::infinity();  ///< [m]; negative: penetration depth (approximate).
+  double value = std::numeric_limits<double>::infinity();  ///< [m]; negative: depth.
   std::string a, b;                                        ///< The closest pair.
   Eigen::Vector3d point_a = Eigen::Vector3d::Zero();       ///< Witness points, world frame.
   Eigen::Vector3d point_b = Eigen::Vector3d::Zero();
@@ -80,6 +87,7 @@ class MMGRASP_EXPORT CollisionChecker {
   std::size_t queries() const;  ///< Configurations checked so far.
 
  private:
+  friend struct detail::CheckerAccess;
   struct Impl;
   explicit CollisionChecker(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;

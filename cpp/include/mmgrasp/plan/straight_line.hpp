@@ -23,6 +23,7 @@ struct MMGRASP_EXPORT StraightLineResult {
   std::optional<JointPath> path;      ///< From q_start to T_world_to; set if and only if solved.
   double fraction = 0;                ///< How far along the line the last good waypoint lies, in [0, 1].
   Rejection cause = Rejection::none;  ///< Why it ended there: reach (also: a jump), limits, self_collision, scene.
+  std::optional<Contact> contact;     ///< What touches there, when something does.
 };
 
 /// The tool moves on a straight line (rotation by slerp) from the pose of q_start to T_world_to, by dense IK in small

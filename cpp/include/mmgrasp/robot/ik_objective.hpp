@@ -14,10 +14,15 @@ namespace mmgrasp {
 /// q_p = (I - J^+ J) xi, xi the sum of the negative gradients). Immutable and safe to share between threads.
 class MMGRASP_EXPORT IkObjective {
  public:
+  explicit IkObjective(int size) : size_(size) {}
   virtual ~IkObjective();
   virtual std::string name() const = 0;
-  /// Cost at q (its unit times a weight); `gradient` is set to d cost / d q.
+  /// Cost at q (its unit times a weight); `gradient` is set to d cost / d q. q must have size() entries.
   virtual double evaluate(const Eigen::VectorXd& q, Eigen::VectorXd& gradient) const = 0;
+  int size() const { return size_; }  ///< Of the group it was made for.
+
+ private:
+  int size_;
 };
 
 /// The part of `xi` that moves the joints but not the tip: (I - J^+ J) xi (P3 3.5, 5.7), J^+ the pseudo-inverse

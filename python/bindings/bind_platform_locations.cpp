@@ -56,6 +56,41 @@ void bind_result(py::module_& m) {
       });
 }
 
+void bind_camera(py::module_& m) {
+  const PinholeCamera usual;
+  py::class_<PinholeCamera>(m, "PinholeCamera",
+                            "Pinhole camera without distortion: looks along +z, x to the right of the image, y down.")
+      .def(py::init(
+               [](int width, int height, double fx, double fy, double cx, double cy, double nearest, double farthest) {
+                 const PinholeCamera camera{width, height, fx, fy, cx, cy, nearest, farthest};
+                 camera.check();
+                 return camera;
+               }),
+           py::arg("width") = usual.width, py::arg("height") = usual.height, py::arg("fx") = usual.fx,
+           py::arg("fy") = usual.fy, py::arg("cx") = usual.cx, py::arg("cy") = usual.cy,
+           py::arg("nearest") = usual.nearest, py::arg("farthest") = usual.farthest,
+           "Sizes, focal lengths and principal point in pixels, depths seen in [nearest, farthest] [m].")
+      .def_readonly("width", &PinholeCamera::width)
+      .def_readonly("height", &PinholeCamera::height)
+      .def_readonly("fx", &PinholeCamera::fx)
+      .def_readonly("fy", &PinholeCamera::fy)
+      .def_readonly("cx", &PinholeCamera::cx)
+      .def_readonly("cy", &PinholeCamera::cy)
+      .def_readonly("nearest", &PinholeCamera::nearest)
+      .def_readonly("farthest", &PinholeCamera::farthest)
+      .def(
+          "project",
+          [](const PinholeCamera& camera, const ArrayLike& point) -> py::object {
+            const auto pixel = camera.project(vector3_argument(point, "point"));
+            return pixel ? py::cast(*pixel) : py::none();
+          },
+          py::arg("point"), "Pixel (u, v) of a point in the camera's frame, or None when it is not seen.")
+      .def("__repr__", [](const PinholeCamera& c) {
+        return "PinholeCamera(" + std::to_string(c.width) + " x " + std::to_string(c.height) + ", f " +
+               std::to_string(c.fx) + ", " + std::to_string(c.fy) + ")";
+      });
+}
+
 void bind_database(py::module_& m) {
   py::class_<IkSeedDatabase>(m, "IkSeedDatabase", "Past solutions that start the next searches; grows with use.")
       .def(py::init<const JointGroup&, int>(), py::arg("group"), py::arg("capacity") = 10000)
@@ -85,13 +120,15 @@ void bind_database(py::module_& m) {
 }  // namespace
 
 void bind_platform_locations(py::module_& m) {
+  bind_camera(m);
   bind_result(m);
   bind_database(m);
   m.def(
       "plan_platform_locations",
       [](CollisionChecker& checker, const ArrayLike& T_world_pick, const ArrayLike& T_world_place,
          const py::object& pick_point, const py::object& place_point, const py::object& camera_link,
-         const py::object& T_link_camera, IkSeedDatabase* database, const py::kwargs& options) {
+         const py::object& T_link_camera, const PinholeCamera* camera, IkSeedDatabase* database,
+         const py::kwargs& options) {
         PlatformLocationsProblem problem;
         problem.T_world_pick = pose_argument(T_world_pick, "T_world_pick");
         problem.T_world_place = pose_argument(T_world_place, "T_world_place");
@@ -99,11 +136,15 @@ void bind_platform_locations(py::module_& m) {
             pick_point.is_none() ? problem.T_world_pick.translation() : vector3_argument(pick_point, "pick_point");
         problem.place_point =
             place_point.is_none() ? problem.T_world_place.translation() : vector3_argument(place_point, "place_point");
+        if (camera_link.is_none() && (!T_link_camera.is_none() || camera))
+          throw InvalidInput(std::string(camera ? "camera" : "T_link_camera") +
+                             ": name the camera_link that carries it");
         if (!camera_link.is_none()) {
-          MountedCamera camera;
-          camera.link = checker.group().robot().link_index(py::cast<std::string>(camera_link));
-          camera.T_link_camera = pose_argument(T_link_camera, "T_link_camera");
-          problem.camera = camera;
+          MountedCamera mounted;
+          if (camera) mounted.camera = *camera;
+          mounted.link = checker.group().robot().link_index(py::cast<std::string>(camera_link));
+          if (!T_link_camera.is_none()) mounted.T_link_camera = pose_argument(T_link_camera, "T_link_camera");
+          problem.camera = mounted;
         }
         const PlatformLocationsOptions read = read_options(fields(), options, "plan_platform_locations");
         return LongCall(py::none()).run([&](const Monitor& monitor) {
@@ -112,10 +153,12 @@ void bind_platform_locations(py::module_& m) {
       },
       py::arg("checker"), py::arg("T_world_pick"), py::arg("T_world_place"), py::kw_only(),
       py::arg("pick_point") = py::none(), py::arg("place_point") = py::none(), py::arg("camera_link") = py::none(),
-      py::arg("T_link_camera") = py::none(), py::arg("database") = py::none(),
+      py::arg("T_link_camera") = py::none(), py::arg("camera") = py::none(), py::arg("database") = py::none(),
       ("Two base + arm configurations for two tool poses with the least base travel (P3 3.6, Algorithm 2). The "
-       "checker's group\nmust have the base. With a camera (640 x 480, f = 525 pixels, +z ahead) on `camera_link` the "
-       "points (default: the tool\npositions) are in view. A database starts the searches and learns from them." +
+       "checker's group\nmust have the base. With a `camera_link` the points (default: the tool positions) are in view "
+       "of\n"
+       "`camera` (default: PinholeCamera()), whose frame looks along +z. A database starts the searches and learns "
+       "from them." +
        option_help(fields()))
           .c_str());
 }

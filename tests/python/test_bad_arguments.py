@@ -130,6 +130,7 @@ OBJECTS = {
     "World.detach": held,
     "CollisionChecker": lambda: mg.CollisionChecker(ROBOT, world(), ARM),
     "ReachDatabase": lambda: mg.ReachDatabase.build(ARM, samples=1000, threads=1),
+    "PinholeCamera": mg.PinholeCamera,
     "IkObjective": lambda: mg.joint_limit_objective(ARM),
     "IkSeedDatabase": lambda: mg.IkSeedDatabase(WHOLE_BODY),
     "JointTrajectory": lambda: mg.time_parameterize([Q, Q / 2], np.ones(3), np.ones(3), names=["i", "j", "k"]),
@@ -139,6 +140,8 @@ OBJECTS = {
 }
 
 # The arguments beside the array.
+# Optional arguments that mean nothing without another one.
+COMPANIONS: dict[str, dict[str, Any]] = {"plan_platform_locations.T_link_camera": {"camera_link": "tip"}}
 OTHERS: dict[str, Any] = {
     "robot": lambda: ROBOT,
     "group": lambda: ARM,
@@ -254,7 +257,7 @@ def value_of(argument: Argument) -> np.ndarray:
 
 
 def call(argument: Argument, value: Any) -> Any:
-    keywords = {argument.name: value}
+    keywords = {argument.name: value, **COMPANIONS.get(f"{argument.function}.{argument.name}", {})}
     for name in argument.given:
         other = looked_up(OTHERS, argument.function, name)
         if other is not None:

@@ -11,7 +11,7 @@ import numpy
 import numpy.typing
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BaseRegion', 'Box', 'Capsule', 'CarryPlace', 'CollisionChecker', 'Contact', 'Cylinder', 'DistanceResult', 'EdgeResult', 'Error', 'FingerJoint', 'Grasp', 'Gripper', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'Mesh', 'MotionResult', 'MotionStats', 'Obstruction', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyProblem', 'PartSupplyResult', 'Pick', 'PickMotion', 'Plane', 'PlatformLocations', 'ReachDatabase', 'Rejection', 'Rejections', 'Robot', 'SetCoverResult', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'TourResult', 'Tray', 'Voxels', 'World', 'cache_folder', 'camera_view_objective', 'compute_base_regions', 'compute_disabled_pairs', 'find_package', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'make_base_grid', 'minimal_stops', 'plan_base_route', 'plan_motion', 'plan_pick', 'plan_platform_locations', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'quat_xyzw_from_rotation', 'robust_intersections', 'sample_grasps', 'self_distance_objective', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_part_supply', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BaseRegion', 'Box', 'Capsule', 'CarryPlace', 'CollisionChecker', 'Contact', 'Cylinder', 'DistanceResult', 'EdgeResult', 'Error', 'FingerJoint', 'Grasp', 'Gripper', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'Mesh', 'MotionResult', 'MotionStats', 'Obstruction', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyProblem', 'PartSupplyResult', 'Pick', 'PickMotion', 'PinholeCamera', 'Plane', 'PlatformLocations', 'ReachDatabase', 'Rejection', 'Rejections', 'Robot', 'SetCoverResult', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'TourResult', 'Tray', 'Voxels', 'World', 'cache_folder', 'camera_view_objective', 'compute_base_regions', 'compute_disabled_pairs', 'find_package', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'make_base_grid', 'minimal_stops', 'plan_base_route', 'plan_motion', 'plan_pick', 'plan_platform_locations', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'quat_xyzw_from_rotation', 'robust_intersections', 'sample_grasps', 'self_distance_objective', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_part_supply', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Robot:
     """
     A robot as URDF and SRDF describe it. Immutable; joints and links by name.
@@ -1553,6 +1553,44 @@ class PartSupplyResult:
     @property
     def timings(self) -> list[tuple[str, float]]:
         ...
+class PinholeCamera:
+    """
+    Pinhole camera without distortion: looks along +z, x to the right of the image, y down.
+    """
+    def __init__(self, width: typing.SupportsInt | typing.SupportsIndex = 640, height: typing.SupportsInt | typing.SupportsIndex = 480, fx: typing.SupportsFloat | typing.SupportsIndex = 525.0, fy: typing.SupportsFloat | typing.SupportsIndex = 525.0, cx: typing.SupportsFloat | typing.SupportsIndex = 319.5, cy: typing.SupportsFloat | typing.SupportsIndex = 239.5, nearest: typing.SupportsFloat | typing.SupportsIndex = 0.1, farthest: typing.SupportsFloat | typing.SupportsIndex = 5.0) -> None:
+        """
+        Sizes, focal lengths and principal point in pixels, depths seen in [nearest, farthest] [m].
+        """
+    def __repr__(self) -> str:
+        ...
+    def project(self, point: numpy.typing.ArrayLike) -> typing.Any:
+        """
+        Pixel (u, v) of a point in the camera's frame, or None when it is not seen.
+        """
+    @property
+    def cx(self) -> float:
+        ...
+    @property
+    def cy(self) -> float:
+        ...
+    @property
+    def farthest(self) -> float:
+        ...
+    @property
+    def fx(self) -> float:
+        ...
+    @property
+    def fy(self) -> float:
+        ...
+    @property
+    def height(self) -> int:
+        ...
+    @property
+    def nearest(self) -> float:
+        ...
+    @property
+    def width(self) -> int:
+        ...
 class PlatformLocations:
     """
     Two base + arm configurations for two tool poses.
@@ -1699,11 +1737,11 @@ def plan_pick(problem: PartSupplyProblem, database: ReachDatabase, base_pose: nu
     """
     One pick from a base pose; `remaining` are the (tray, part) still in place, the picked one among them.
     """
-def plan_platform_locations(checker: CollisionChecker, T_world_pick: numpy.typing.ArrayLike, T_world_place: numpy.typing.ArrayLike, *, pick_point: typing.Any = None, place_point: typing.Any = None, camera_link: typing.Any = None, T_link_camera: typing.Any = None, database: IkSeedDatabase = None, **kwargs) -> PlatformLocations:
+def plan_platform_locations(checker: CollisionChecker, T_world_pick: numpy.typing.ArrayLike, T_world_place: numpy.typing.ArrayLike, *, pick_point: typing.Any = None, place_point: typing.Any = None, camera_link: typing.Any = None, T_link_camera: typing.Any = None, camera: PinholeCamera = None, database: IkSeedDatabase = None, **kwargs) -> PlatformLocations:
     """
     Two base + arm configurations for two tool poses with the least base travel (P3 3.6, Algorithm 2). The checker's group
-    must have the base. With a camera (640 x 480, f = 525 pixels, +z ahead) on `camera_link` the points (default: the tool
-    positions) are in view. A database starts the searches and learns from them.
+    must have the base. With a `camera_link` the points (default: the tool positions) are in view of
+    `camera` (default: PinholeCamera()), whose frame looks along +z. A database starts the searches and learns from them.
     
     Keyword options:
         samples = 100: valid configurations drawn for each pose

@@ -115,7 +115,7 @@ bool run(const bench::Arm& arm, int count, int rounds) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int count = argc > 1 ? std::atoi(argv[1]) : 3300, rounds = argc > 2 ? std::atoi(argv[2]) : 5;
+  const int count = argc > 1 ? std::atoi(argv[1]) : 1650, rounds = argc > 2 ? std::atoi(argv[2]) : 3;
   bool good = true;
   for (const bench::Arm& arm : bench::arms()) good = run(arm, count, rounds) && good;
   return good ? 0 : 1;

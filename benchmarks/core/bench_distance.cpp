@@ -94,7 +94,7 @@ bool run(const bench::Arm& arm, bool self, int count, int rounds) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int count = argc > 1 ? std::atoi(argv[1]) : 2200, rounds = argc > 2 ? std::atoi(argv[2]) : 5;
+  const int count = argc > 1 ? std::atoi(argv[1]) : 550, rounds = argc > 2 ? std::atoi(argv[2]) : 3;
   bool good = true;
   for (const bench::Arm& arm : bench::arms()) {
     for (const bool self : {false, true}) good = run(arm, self, count, rounds) && good;

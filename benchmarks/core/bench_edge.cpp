@@ -37,41 +37,45 @@ bool run(const bench::Arm& arm, int count, int rounds) {
   const mmgrasp::World world = bench::twenty_boxes(arm, 3);
   mmgrasp::CollisionChecker checker(arm.group, world);
   const Edges edges = bench::planner_edges(checker, count, 0.5, 5);
-  bench::FclPeer fcl(arm.group, world, false);
+  bench::FclPeer as_trees(arm.group, world, false), as_convex(arm.group, world, true);
   const auto ours = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
     return checker.edge_is_free(a, b, kStep);
   };
-  const auto theirs = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return fcl.edge_is_free(a, b, kStep); };
+  const auto with = [](bench::FclPeer& fcl) {
+    return [&fcl](const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return fcl.edge_is_free(a, b, kStep); };
+  };
+  const auto trees = with(as_trees), convex = with(as_convex);
   Edges free, hit;
   bool same = true;
   std::size_t unjudged = 0, sum = 0;
   for (const auto& [from, to] : edges) {
     const bool answer = ours(from, to);
     (answer ? free : hit).emplace_back(from, to);
-    if (theirs(from, to) == answer) continue;
+    if (trees(from, to) == answer && convex(from, to) == answer) continue;
     if (nearest(checker, from, to) < 1e-6) {
       ++unjudged;
     } else {
       same = false;
     }
   }
-  std::vector<double> times[2][3];
+  std::vector<double> times[3][3];
   for (int round = 0; round < rounds; ++round) {
     const Edges* sets[3] = {&edges, &free, &hit};
     for (int k = 0; k < 3; ++k) {
       times[0][k].push_back(time_of(*sets[k], sum, ours));
-      times[1][k].push_back(time_of(*sets[k], sum, theirs));
+      times[1][k].push_back(time_of(*sets[k], sum, trees));
+      times[2][k].push_back(time_of(*sets[k], sum, convex));
     }
   }
   const double hits = static_cast<double>(hit.size()) / static_cast<double>(edges.size());
-  for (int p = 0; p < 2; ++p) {
+  const char* names[3] = {"mmgrasp", "FCL, meshes as BVH", "FCL, convex meshes as Convex"};
+  for (int p = 0; p < 3; ++p) {
     char more[256];
     std::snprintf(more, sizeof more,
                   "\"hits\": %.3f, \"free us\": %.4g, \"colliding us\": %.4g, \"edges\": %zu, \"in the 1e-6 m band\": "
                   "%zu, \"answers agree\": %s",
                   hits, median(times[p][1]), median(times[p][2]), edges.size(), unjudged, same ? "true" : "false");
-    bench::print({"edge of 0.5 rad", arm.name + ", 20 boxes", p == 0 ? "mmgrasp" : "FCL, meshes as BVH", "us",
-                  median(times[p][0]), more,
+    bench::print({"edge of 0.5 rad", arm.name + ", 20 boxes", names[p], "us", median(times[p][0]), more,
                   p == 0 ? "edge_is_free, step 0.02" : "DynamicAABBTree manager, step 0.02 from one end to the other"});
   }
   return same && sum > 0 && hits >= 0.05 && hits <= 0.5;
@@ -80,7 +84,7 @@ bool run(const bench::Arm& arm, int count, int rounds) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int count = argc > 1 ? std::atoi(argv[1]) : 1000, rounds = argc > 2 ? std::atoi(argv[2]) : 7;
+  const int count = argc > 1 ? std::atoi(argv[1]) : 500, rounds = argc > 2 ? std::atoi(argv[2]) : 5;
   bool good = true;
   for (const bench::Arm& arm : bench::arms()) good = run(arm, count, rounds) && good;
   return good ? 0 : 1;

@@ -40,6 +40,16 @@ struct MMGRASP_EXPORT Intersections {
 MMGRASP_EXPORT Intersections robust_intersections(const BaseGrid& grid, const std::vector<BaseRegion>& regions,
                                                   double min_radius, std::size_t max_sets = 200000);
 
+/// The same, but only sets that are part of no other robust one: every stop that could be made at all is among them, so
+/// they are enough to prove a least number of stops, and there are few of them (some thousand for 500 trays) where
+/// robust_intersections() would list every subset. Found on the floor, not on the sets: boxes of places are split until
+/// what each could serve at most is known (no disc smaller than `min_radius` by more than 1e-9 m counts; sets whose
+/// disc is within 1e-6 m of it may be judged either way). `complete` is false when `max_boxes` a layer or the monitor
+/// ended the search. sets_tried counts the sets found, `lost` stays empty.
+MMGRASP_EXPORT Intersections maximal_intersections(const BaseGrid& grid, const std::vector<BaseRegion>& regions,
+                                                   double min_radius, std::size_t max_boxes = 50'000'000,
+                                                   const Monitor& monitor = {});
+
 /// Where the base stops and which trays it serves there.
 struct MMGRASP_EXPORT Stop {
   Eigen::Vector3d pose = Eigen::Vector3d::Zero();  ///< x, y, theta

@@ -3,9 +3,8 @@
 //
 //   bench_ik                    mmgrasp and KDL's LMA, in this process
 //   bench_ik --poses FOLDER     writes <robot>.poses for peers_ik.py (one line a pose: 16 entries row by row, the seed)
-//   bench_ik --answers FOLDER   judges the <robot>.<peer>.answers that peers_ik.py wrote (one line a pose: time [us],
-//   q) bench_ik --branches FOLDER  judges <robot>.<peer>.branches, found on FOLDER/<robot>.urdf: every branch a peer
-//   finds
+//   bench_ik --answers FOLDER   judges the <robot>.<peer>.answers that peers_ik.py wrote (a line: time [us], q)
+//   bench_ik --branches FOLDER  judges <robot>.<peer>.branches, found on FOLDER/<robot>.urdf: every branch a peer finds
 //                               must be among ours
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainiksolverpos_lma.hpp>

@@ -91,10 +91,11 @@ IkBranches branches(const JointGroup& group, const Pose& T, const World* world, 
                     int redundant_values) {
   std::optional<CollisionChecker> checker;
   if (world) checker.emplace(with_sampled_pairs(group), *world);
-  py::gil_scoped_release release;
   const auto valid = [&](const Eigen::VectorXd& q) { return checker->rejection(q); };
-  return solve_ik_branches(group, T, options, checker ? ConfigurationFilter(valid) : ConfigurationFilter(),
-                           redundant_values);
+  return LongCall(py::none()).run([&](const Monitor& monitor) {
+    return solve_ik_branches(group, T, options, checker ? ConfigurationFilter(valid) : ConfigurationFilter(),
+                             redundant_values, monitor);
+  });
 }
 
 void bind_branches(py::module_& m) {
@@ -168,6 +169,7 @@ void bind_group_methods(py::module_& m) {
 }  // namespace
 
 void bind_ik(py::module_& m) {
+  m.def("_ik_option_table", [] { return option_table(ik_fields()); });
   bind_result(m);
   bind_branches(m);
   bind_group_methods(m);

@@ -120,6 +120,7 @@ void bind_database(py::module_& m) {
 }  // namespace
 
 void bind_platform_locations(py::module_& m) {
+  m.def("_platform_option_table", [] { return option_table(fields()); });
   bind_camera(m);
   bind_result(m);
   bind_database(m);
@@ -147,8 +148,9 @@ void bind_platform_locations(py::module_& m) {
           problem.camera = mounted;
         }
         const PlatformLocationsOptions read = read_options(fields(), options, "plan_platform_locations");
+        CollisionChecker own = checker.clone();
         return LongCall(py::none()).run([&](const Monitor& monitor) {
-          return plan_platform_locations(checker, problem, read, database, monitor);
+          return plan_platform_locations(own, problem, read, database, monitor);
         });
       },
       py::arg("checker"), py::arg("T_world_pick"), py::arg("T_world_place"), py::kw_only(),

@@ -8,6 +8,13 @@ SECTIONS = (
     ("options", "How to plan (`PartSupplyOptions`)", _core._supply_option_table, {"positioning_uncertainty"}),
     ("reach", "The reachability database (`ReachOptions`)", _core._reach_option_table, set()),
     ("grasp_options", "The grasp sampler of a part type (`GraspSamplerOptions`)", _core._grasp_option_table, set()),
+    ("ik", "Inverse kinematics, keywords of `JointGroup.ik` and its kin (`IkOptions`)", _core._ik_option_table, set()),
+    (
+        "plan_platform_locations",
+        "Two base poses for two tool poses, keywords (`PlatformLocationsOptions`)",
+        _core._platform_option_table,
+        set(),
+    ),
 )
 
 

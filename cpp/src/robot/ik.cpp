@@ -8,30 +8,12 @@
 #include "mmgrasp/robot/ik_objective.hpp"
 #include "robot/ik_candidates.hpp"
 #include "robot/ik_descent.hpp"
+#include "robot/ik_failure.hpp"
 #include "robot/ik_null_space.hpp"
 #include "robot/ik_starts.hpp"
 
 namespace mmgrasp {
 namespace {
-
-/// Tells "out of reach" from "reached only outside joint limits" by going on without limits from where a descent
-/// failed.
-class FailureCause {
- public:
-  Rejection of(const JointGroup& group, const Pose& T_world_tip, Eigen::VectorXd q, const IkOptions& options,
-               IkWorkspace& workspace) {
-    if (!reached_ && tries_ < kTries) {
-      ++tries_;
-      reached_ = detail::descend(group, T_world_tip, q, options, workspace, false).converged;
-    }
-    return reached_ ? Rejection::limits : Rejection::reach;
-  }
-
- private:
-  static constexpr int kTries = 3;  // the answer belongs to the pose: no need to ask again for each of 30 descents
-  int tries_ = 0;
-  bool reached_ = false;
-};
 
 /// One call of solve_ik.
 class Search {
@@ -63,39 +45,50 @@ class Search {
     return accept(q);
   }
 
-  /// The closed form, when the arm has one: branches inside limits, nearest to the seed first; with seven joints then
-  /// descents from those that stick out least. Returns true when nothing is left to try: solved, or every branch of six
-  /// joints turned down.
+  /// The closed form, when the arm has one: branches inside limits, the least total cost of the objectives first, then
+  /// the nearest to the seed; then descents from those that stick out of the limits least. True when that solved it.
   bool closed_form() {
     const detail::Candidates candidates = detail::closed_form_candidates(group_, target_, kRedundantValues);
     if (!candidates.known_form) return false;
-    std::vector<std::pair<double, Eigen::VectorXd>> inside, outside;
+    std::vector<Ranked> inside, outside;
     for (const Eigen::VectorXd& q : candidates.q) {
       const double violation = detail::limit_violation(group_, q);
       if (violation > 0) {
-        outside.emplace_back(violation, q);
+        outside.push_back({violation, 0, q});
         continue;
       }
       const Eigen::VectorXd near = detail::turned_towards(group_, q, seed_);
-      inside.emplace_back((near - seed_).squaredNorm(), near);
+      inside.push_back(ranked(near));
+      // A whole turn may change the cost, but no distance to the seed for the better.
+      if (!options_.objectives.empty() && near != q) inside.push_back(ranked(q));
     }
-    const auto nearer = [](const auto& a, const auto& b) { return a.first < b.first; };
-    std::sort(inside.begin(), inside.end(), nearer);
-    std::sort(outside.begin(), outside.end(), nearer);
-    for (const auto& [distance, q] : inside)
-      if (accept(q)) return true;
-    if (candidates.redundant_joint < 0) {
-      result_.rejections.add(Rejection::limits, outside.size());
-      return !candidates.q.empty();
-    }
+    std::sort(inside.begin(), inside.end());
+    std::sort(outside.begin(), outside.end());
+    for (const Ranked& branch : inside)
+      if (accept(branch.q)) return true;
     for (std::size_t i = 0; i < std::min(outside.size(), kNearlyInside); ++i)
-      if (descent(outside[i].second)) return true;
+      if (descent(outside[i].q)) return true;
     return false;
   }
 
  private:
   static constexpr int kRedundantValues = 24;
   static constexpr std::size_t kNearlyInside = 6;
+
+  struct Ranked {
+    double first, second;
+    Eigen::VectorXd q;
+    bool operator<(const Ranked& other) const {
+      return first != other.first ? first < other.first : second < other.second;
+    }
+  };
+
+  Ranked ranked(const Eigen::VectorXd& q) const {
+    Eigen::ArrayXd way = (q - seed_).array().square();
+    for (std::size_t i = 0; i < options_.joint_weights.size(); ++i)
+      way[static_cast<Eigen::Index>(i)] *= options_.joint_weights[i];
+    return {detail::total_cost(options_.objectives, q), way.sum(), q};
+  }
 
   bool accept(Eigen::VectorXd q) {
     const Rejection verdict = valid_ ? valid_(q) : Rejection::none;
@@ -109,9 +102,18 @@ class Search {
       return false;
     }
     if (!options_.objectives.empty()) {
-      result_.objective =
-          detail::slide_along_solutions(group_, target_, options_, valid_, workspace_, q, result_.iterations);
-      detail::confirm(group_, target_, q, options_, position_error, rotation_error);
+      Eigen::VectorXd slid = q;
+      double cost =
+          detail::slide_along_solutions(group_, target_, options_, valid_, workspace_, slid, result_.iterations);
+      double slid_position_error = 0, slid_rotation_error = 0;
+      if (detail::confirm(group_, target_, slid, options_, slid_position_error, slid_rotation_error)) {
+        q = slid;
+        position_error = slid_position_error;
+        rotation_error = slid_rotation_error;
+      } else {
+        cost = detail::total_cost(options_.objectives, q);
+      }
+      result_.objective = cost;
     }
     result_.outcome = Outcome::solved;
     result_.q = q;
@@ -127,7 +129,7 @@ class Search {
   const ConfigurationFilter& valid_;
   IkResult result_;
   IkWorkspace workspace_;
-  FailureCause cause_;
+  detail::FailureCause cause_;
   double best_ = std::numeric_limits<double>::infinity();
 };
 
@@ -187,22 +189,23 @@ IkResult solve_ik(const JointGroup& group, const Pose& T_world_tip, const Eigen:
     result.rejections.add(Rejection::reach);
     return result;
   }
-  // Six joints: the branch nearest to the seed, for less than a descent takes. Seven: two descents solve nearly every
-  // pose that has room, for less than sampling the redundant joint takes.
+  // Six joints: every branch, for less than a descent takes. Seven: two descents solve nearly every pose that has room,
+  // for less than sampling the redundant joint takes.
   const bool six = detail::screws_of(group).size == 6;
-  constexpr int kDescentsBeforeClosedForm = 2;
   double position_error = 0, rotation_error = 0;
   const bool there = detail::confirm(group, T_world_tip, seed, options, position_error, rotation_error);
+  // A seed that solves is kept unless objectives want to know of other branches, or the filter refuses it.
+  const int descents_before_closed_form = !six ? 2 : there && options.objectives.empty() ? 1 : 0;
   const detail::Clock clock(options.time_limit);
   detail::IkStarts starts(group, T_world_tip, options.seed);
-  if (six && !there && !monitor.stopped() && search.closed_form()) return result;
-  for (int attempt = 0; attempt <= options.restarts; ++attempt) {
+  for (int attempt = 0; attempt <= std::max(options.restarts, six ? descents_before_closed_form : 0); ++attempt) {
     if (monitor.stopped() || (attempt > 0 && clock.over())) {
       result.outcome = monitor.stopped() ? Outcome::stopped : Outcome::timeout;
       return result;
     }
-    if (!six && attempt == kDescentsBeforeClosedForm && search.closed_form()) return result;
-    if (search.descent(attempt == 0 ? seed : starts.next())) return result;
+    // In a singularity the closed form keeps one of infinitely many splits: descents may still find another.
+    if (attempt == descents_before_closed_form && search.closed_form()) return result;
+    if (attempt <= options.restarts && search.descent(attempt == 0 ? seed : starts.next())) return result;
   }
   return result;
 }

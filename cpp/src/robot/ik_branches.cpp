@@ -5,7 +5,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "robot/ik_candidates.hpp"
-#include "robot/ik_descent.hpp"
+#include "robot/ik_failure.hpp"
 #include "robot/ik_starts.hpp"
 
 namespace mmgrasp {
@@ -14,19 +14,21 @@ namespace {
 constexpr int kRedundantValues = 24;
 constexpr double kDistinct = 0.1;  // [rad] Between solutions that random descents find.
 
-/// Random descents until `count` distinct solutions are found or the budget is spent.
+/// Random descents until `count` distinct solutions are found, the budget is spent or the monitor says stop.
 void search(const JointGroup& group, const Pose& T_world_tip, int count, const IkOptions& options,
-            const ConfigurationFilter& valid, IkBranches& branches) {
+            const ConfigurationFilter& valid, const Monitor& monitor, IkBranches& branches) {
   detail::IkStarts starts(group, T_world_tip, options.seed);
   const detail::Clock clock(options.time_limit);
   IkWorkspace workspace;
+  detail::FailureCause cause;
   const Eigen::VectorXd middle = Eigen::VectorXd::Zero(group.size());
   std::vector<Eigen::VectorXd> seen;
   const long budget = static_cast<long>(options.restarts + 1) * count;
-  for (long i = 0; i < budget && static_cast<int>(branches.solutions.size()) < count && !clock.over(); ++i) {
+  for (long i = 0; i < budget && static_cast<int>(branches.solutions.size()) < count; ++i) {
+    if (clock.over() || monitor.stopped()) return;
     Eigen::VectorXd q = starts.next();
     if (!detail::descend(group, T_world_tip, q, options, workspace, true).converged) {
-      branches.rejections.add(Rejection::reach);
+      branches.rejections.add(cause.of(group, T_world_tip, q, options, workspace));
       continue;
     }
     detail::unwind(group, middle, q);
@@ -48,7 +50,7 @@ bool enumerate(const JointGroup& group, const Pose& T_world_tip, int redundant_v
                const ConfigurationFilter& valid, IkBranches& branches) {
   const detail::Candidates candidates = detail::closed_form_candidates(group, T_world_tip, redundant_values);
   if (!candidates.known_form) return false;
-  branches.complete = true;
+  branches.complete = !candidates.free;
   branches.redundant_joint = candidates.redundant_joint;
   branches.rejections.add(Rejection::reach, static_cast<std::size_t>(candidates.without));
   for (const Eigen::VectorXd& q : candidates.q) {
@@ -66,7 +68,7 @@ bool enumerate(const JointGroup& group, const Pose& T_world_tip, int redundant_v
 }
 
 IkBranches branches_of(const JointGroup& group, const Pose& T_world_tip, int count, int redundant_values,
-                       const IkOptions& options, const ConfigurationFilter& valid) {
+                       const IkOptions& options, const ConfigurationFilter& valid, const Monitor& monitor) {
   detail::check_target(group, T_world_tip, options);
   IkBranches branches;
   if (!detail::maybe_in_reach(group, T_world_tip.translation())) {
@@ -75,11 +77,12 @@ IkBranches branches_of(const JointGroup& group, const Pose& T_world_tip, int cou
     return branches;
   }
   const bool enumerated = enumerate(group, T_world_tip, redundant_values, options, valid, branches);
-  // A redundant joint's sampled values may all miss what little room its limits leave.
-  const bool sampled = branches.redundant_joint >= 0;
-  if (!enumerated || (sampled && branches.solutions.empty())) {
+  // A redundant joint's sampled values may all miss what little room its limits leave; so may the one split of a
+  // singularity that the closed form keeps.
+  const bool partial = branches.redundant_joint >= 0 || !branches.complete;
+  if (!enumerated || (partial && branches.solutions.empty())) {
     branches.complete = false;
-    search(group, T_world_tip, count, options, valid, branches);
+    search(group, T_world_tip, count, options, valid, monitor, branches);
   }
   spread_apart(group, branches.solutions);
   return branches;
@@ -88,18 +91,18 @@ IkBranches branches_of(const JointGroup& group, const Pose& T_world_tip, int cou
 }  // namespace
 
 IkBranches solve_ik_branches(const JointGroup& group, const Pose& T_world_tip, const IkOptions& options,
-                             const ConfigurationFilter& valid, int redundant_values) {
+                             const ConfigurationFilter& valid, int redundant_values, const Monitor& monitor) {
   require(redundant_values >= 0, "redundant_values", redundant_values, "must not be negative");
   constexpr int kSearched = 16;
   return branches_of(group, T_world_tip, kSearched, redundant_values ? redundant_values : kRedundantValues, options,
-                     valid);
+                     valid, monitor);
 }
 
 std::vector<Eigen::VectorXd> solve_ik_all(const JointGroup& group, const Pose& T_world_tip, int count,
                                           const IkOptions& options, const ConfigurationFilter& valid) {
   require(count >= 0, "count", count, "must not be negative");
   const int values = std::clamp(count, 8, 48);
-  std::vector<Eigen::VectorXd> solutions = branches_of(group, T_world_tip, count, values, options, valid).solutions;
+  std::vector<Eigen::VectorXd> solutions = branches_of(group, T_world_tip, count, values, options, valid, {}).solutions;
   if (static_cast<int>(solutions.size()) > count) solutions.resize(static_cast<std::size_t>(count));
   return solutions;
 }

@@ -76,6 +76,7 @@ Candidates closed_form_candidates(const JointGroup& group, const Pose& T_world_t
     } else {
       solve_closed_form(form, screws, G, branches);
     }
+    candidates.free = candidates.free || branches.free;
     const std::size_t first = candidates.q.size();
     for (int b = 0; b < branches.count; ++b) {
       const auto& value = branches.value[static_cast<std::size_t>(b)];

@@ -13,6 +13,7 @@ struct Candidates {
   bool known_form = false;   ///< The group has a closed form.
   int redundant_joint = -1;  ///< Column that was sampled.
   int without = 0;           ///< Sampled values (or the one search) without any branch.
+  bool free = false;         ///< Singular: a joint could take any value, of which one was kept.
   std::vector<Eigen::VectorXd> q;
 };
 

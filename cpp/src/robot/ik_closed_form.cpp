@@ -51,17 +51,24 @@ Screws reversed(const Screws& s) {
 struct Positions {
   std::array<std::array<double, 3>, 4> value;
   int count = 0;
+  bool free = false;
   void add(double a, double b, double c) {
     if (count < 4) value[static_cast<std::size_t>(count++)] = {a, b, c};
   }
 };
 
+/// The same angles; `free` is set when they stand for any.
+Angles noted(const Angles& angles, bool& free) {
+  free = free || angles.free;
+  return angles;
+}
+
 /// E_i E_j u = v for axes that meet in o: the first turn must keep h_i . u.
 template <class Use>
 void two_turns(const Vector3d& hi, const Vector3d& hj, const Vector3d& o, const Vector3d& u, const Vector3d& v,
-               const Use& use) {
-  for (const double second : angles_to_plane(hj, hi, u - o, hi.dot(v - o)))
-    use(angle_onto(hi, turned(hj, second, u - o), v - o), second);
+               bool& free, const Use& use) {
+  for (const double second : noted(angles_to_plane(hj, hi, u - o, hi.dot(v - o)), free))
+    use(angle_onto(hi, turned(hj, second, u - o), v - o, free), second);
 }
 
 Vector3d turned_point(const Screws& s, int i, double angle, const Vector3d& x) {
@@ -71,24 +78,26 @@ Vector3d turned_point(const Screws& s, int i, double angle, const Vector3d& x) {
 Positions wrist_positions(const Screws& s, const Vector3d& w, const Vector3d& t) {
   Positions found;
   if (const auto o = meeting_point(s, 0, 1)) {  // both keep the distance from o
-    for (const double third : angles_to_distance(s.h[2], w - s.p[2], *o - s.p[2], (t - *o).norm()))
-      two_turns(s.h[0], s.h[1], *o, turned_point(s, 2, third, w), t,
+    for (const double third : noted(angles_to_distance(s.h[2], w - s.p[2], *o - s.p[2], (t - *o).norm()), found.free))
+      two_turns(s.h[0], s.h[1], *o, turned_point(s, 2, third, w), t, found.free,
                 [&](double first, double second) { found.add(first, second, third); });
   } else if (const auto o = meeting_point(s, 1, 2)) {
-    for (const double first : angles_to_distance(s.h[0], t - s.p[0], *o - s.p[0], (w - *o).norm()))
-      two_turns(s.h[1], s.h[2], *o, w, turned_point(s, 0, first, t),
+    for (const double first : noted(angles_to_distance(s.h[0], t - s.p[0], *o - s.p[0], (w - *o).norm()), found.free))
+      two_turns(s.h[1], s.h[2], *o, w, turned_point(s, 0, first, t), found.free,
                 [&](double second, double third) { found.add(-first, second, third); });
   } else if (parallel(s, 1, 2)) {  // both keep the height along their axes
-    for (const double first : angles_to_plane(s.h[0], s.h[1], t - s.p[0], s.h[1].dot(w - s.p[0]))) {
+    for (const double first : noted(angles_to_plane(s.h[0], s.h[1], t - s.p[0], s.h[1].dot(w - s.p[0])), found.free)) {
       const Vector3d u = turned_point(s, 0, first, t);
-      for (const double third : angles_to_distance(s.h[2], w - s.p[2], s.p[1] - s.p[2], (u - s.p[1]).norm()))
-        found.add(-first, angle_onto(s.h[1], turned_point(s, 2, third, w) - s.p[1], u - s.p[1]), third);
+      for (const double third :
+           noted(angles_to_distance(s.h[2], w - s.p[2], s.p[1] - s.p[2], (u - s.p[1]).norm()), found.free))
+        found.add(-first, angle_onto(s.h[1], turned_point(s, 2, third, w) - s.p[1], u - s.p[1], found.free), third);
     }
   } else if (parallel(s, 0, 1)) {
-    for (const double third : angles_to_plane(s.h[2], s.h[0], w - s.p[2], s.h[0].dot(t - s.p[2]))) {
+    for (const double third : noted(angles_to_plane(s.h[2], s.h[0], w - s.p[2], s.h[0].dot(t - s.p[2])), found.free)) {
       const Vector3d u = turned_point(s, 2, third, w);
-      for (const double second : angles_to_distance(s.h[1], u - s.p[1], s.p[0] - s.p[1], (t - s.p[0]).norm()))
-        found.add(angle_onto(s.h[0], turned_point(s, 1, second, u) - s.p[0], t - s.p[0]), second, third);
+      for (const double second :
+           noted(angles_to_distance(s.h[1], u - s.p[1], s.p[0] - s.p[1], (t - s.p[0]).norm()), found.free))
+        found.add(angle_onto(s.h[0], turned_point(s, 1, second, u) - s.p[0], t - s.p[0], found.free), second, third);
     }
   }
   return found;
@@ -109,14 +118,15 @@ void add(Branches& branches, const std::array<double, 6>& values, bool reversed)
 void solve_spherical(const Screws& s, const Motion& G, bool reversed, Branches& branches) {
   const Vector3d w = *wrist_point(s);
   const Positions positions = wrist_positions(s, w, G * w);
+  branches.free = branches.free || positions.free;
   const Vector3d y = across(s.h[5]);
   for (int i = 0; i < positions.count; ++i) {
     const auto& [a, b, c] = positions.value[static_cast<std::size_t>(i)];
     const auto back = [&](const Vector3d& x) { return turned(s.h[2], -c, turned(s.h[1], -b, turned(s.h[0], -a, x))); };
     const Vector3d Rh = back(G.R * s.h[5]), Ry = back(G.R * y);
-    for (const double fifth : angles_to_plane(s.h[4], s.h[3], s.h[5], s.h[3].dot(Rh))) {
-      const double fourth = angle_onto(s.h[3], turned(s.h[4], fifth, s.h[5]), Rh);
-      const double sixth = angle_onto(s.h[5], y, turned(s.h[4], -fifth, turned(s.h[3], -fourth, Ry)));
+    for (const double fifth : noted(angles_to_plane(s.h[4], s.h[3], s.h[5], s.h[3].dot(Rh)), branches.free)) {
+      const double fourth = angle_onto(s.h[3], turned(s.h[4], fifth, s.h[5]), Rh, branches.free);
+      const double sixth = angle_onto(s.h[5], y, turned(s.h[4], -fifth, turned(s.h[3], -fourth, Ry)), branches.free);
       add(branches, {a, b, c, fourth, fifth, sixth}, reversed);
     }
   }
@@ -127,18 +137,19 @@ void solve_parallel(const Screws& s, const Motion& G, bool reversed, Branches& b
   const Vector3d o = *meeting_point(s, 4, 5);
   const Vector3d Go = G * o, Gh = G.R * s.h[5];
   const Vector3d y = across(h);
-  for (const double first : angles_to_plane(s.h[0], h, Go - s.p[0], h.dot(o - s.p[0]))) {
+  for (const double first : noted(angles_to_plane(s.h[0], h, Go - s.p[0], h.dot(o - s.p[0])), branches.free)) {
     const Vector3d u = turned_point(s, 0, first, Go), uh = turned(s.h[0], first, Gh);
-    for (const double fifth : angles_to_plane(s.h[4], h, s.h[5], h.dot(uh))) {
+    for (const double fifth : noted(angles_to_plane(s.h[4], h, s.h[5], h.dot(uh)), branches.free)) {
       // R_6^T R_5^T h = G^T R_1 h
       const Vector3d left = turned(s.h[4], -fifth, h), right = G.R.transpose() * turned(s.h[0], -first, h);
-      const double sixth = -angle_onto(s.h[5], left, right);
+      const double sixth = -angle_onto(s.h[5], left, right, branches.free);
       // What joints 2-4 turn together, and where they bring the point o.
       const Vector3d Ry = turned(s.h[0], first, G.R * turned(s.h[5], -sixth, turned(s.h[4], -fifth, y)));
-      const double sum = angle_onto(h, y, Ry);
+      const double sum = angle_onto(h, y, Ry, branches.free);
       const Vector3d p4 = u + turned(h, sum, s.p[3] - o);
-      for (const double third : angles_to_distance(s.h[2], s.p[3] - s.p[2], s.p[1] - s.p[2], (p4 - s.p[1]).norm())) {
-        const double second = angle_onto(h, turned_point(s, 2, third, s.p[3]) - s.p[1], p4 - s.p[1]);
+      for (const double third :
+           noted(angles_to_distance(s.h[2], s.p[3] - s.p[2], s.p[1] - s.p[2], (p4 - s.p[1]).norm()), branches.free)) {
+        const double second = angle_onto(h, turned_point(s, 2, third, s.p[3]) - s.p[1], p4 - s.p[1], branches.free);
         const double sign3 = s.h[2].dot(h) > 0 ? 1 : -1, sign4 = s.h[3].dot(h) > 0 ? 1 : -1;
         add(branches, {-first, second, third, sign4 * (sum - second - sign3 * third), fifth, sixth}, reversed);
       }
@@ -204,6 +215,7 @@ ClosedForm closed_form_of(const Screws& six) {
 
 void solve_closed_form(const ClosedForm& form, const Screws& six, const Motion& G, Branches& branches) {
   branches.count = 0;
+  branches.free = false;
   if (form.family == ClosedForm::Family::none) return;
   const Screws s = form.reversed ? reversed(six) : six;
   const Motion target = form.reversed ? G.inverse() : G;

@@ -36,11 +36,12 @@ bool one_joint_a_column(const JointGroup& group);
 /// Empty (size 0) unless the group has no base and six or seven turning joints, each with its own column.
 Screws screws_of(const JointGroup& group);
 
-/// Configurations of every branch.
+/// Configurations of every branch; in a singularity that leaves a joint free, of one of its values.
 struct Branches {
   static constexpr int kMost = 16;
   std::array<std::array<double, Screws::kMost>, kMost> value;
   int count = 0;
+  bool free = false;  ///< A joint could take any value.
 };
 
 /// Which closed form fits a chain of six turning joints.

@@ -108,6 +108,11 @@ double slide_along_solutions(const JointGroup& group, const Pose& T_world_tip, c
   return cost;
 }
 
+double total_cost(const IkObjectives& objectives, const Eigen::VectorXd& q) {
+  Eigen::VectorXd gradient;
+  return total(objectives, q, gradient);
+}
+
 }  // namespace mmgrasp::detail
 
 namespace mmgrasp {

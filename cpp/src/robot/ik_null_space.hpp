@@ -16,4 +16,7 @@ double slide_along_solutions(const JointGroup& group, const Pose& T_world_tip, c
                              const ConfigurationFilter& valid, IkWorkspace& workspace, Eigen::VectorXd& q,
                              int& iterations);
 
+/// Sum of the objectives' costs.
+double total_cost(const IkObjectives& objectives, const Eigen::VectorXd& q);
+
 }  // namespace mmgrasp::detail

@@ -7,6 +7,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "robot/ik_closed_form.hpp"
+#include "robot/manipulability.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -60,7 +61,7 @@ class Singularity final : public IkObjective {
   double evaluate(const Eigen::VectorXd& q, Eigen::VectorXd& gradient) const override {
     gradient.setZero(q.size());
     const Matrix6Xd J = group_.jacobian(q).rightCols(q.size() - first_);
-    const double M = measure(J);
+    const double M = detail::volume(J);
     if (M >= threshold_) return 0;
     const double lack = 1 - M / threshold_;
     const double slope = -2 * weight_ * lack / threshold_;
@@ -72,8 +73,6 @@ class Singularity final : public IkObjective {
   }
 
  private:
-  static double measure(const Matrix6Xd& J) { return std::sqrt(std::max(0.0, (J * J.transpose()).determinant())); }
-
   /// dM/dq_i = M tr((J J^T)^-1 dJ/dq_i J^T). A column of the Jacobian turns with the joints before it; joints from it
   /// on move the tip under it.
   void analytic(const Matrix6Xd& J, double M, double slope, Eigen::VectorXd& gradient) const {
@@ -97,7 +96,7 @@ class Singularity final : public IkObjective {
     Eigen::VectorXd moved = q;
     const auto at = [&](Eigen::Index i, double value) {
       moved[i] = value;
-      return measure(group_.jacobian(moved).rightCols(q.size() - first_));
+      return detail::volume(group_.jacobian(moved).rightCols(q.size() - first_));
     };
     for (Eigen::Index i = first_; i < q.size(); ++i) {
       gradient[i] = slope * (at(i, q[i] + kStep) - at(i, q[i] - kStep)) / (2 * kStep);

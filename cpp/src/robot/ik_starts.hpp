@@ -21,6 +21,10 @@ class Clock {
   std::chrono::steady_clock::time_point start_;
 };
 
+/// Narrows the box [lower, upper] of a group with base: x and y no farther from the pose than the tip gets with every
+/// link stretched and every slide out.
+void keep_base_near(const JointGroup& group, const Pose& T_world_tip, Eigen::VectorXd& lower, Eigen::VectorXd& upper);
+
 /// Start configurations that spread over the limits without clusters: an additive sequence with irrational steps
 /// (powers of the root of x^(n+1) = x + 1), shifted at random by the seed. A base starts no farther
 /// from the pose than the arm could reach.

@@ -52,10 +52,12 @@ inline Angles solve_cosine(double a, double b, double c) {
   return angles;
 }
 
-/// The turn about `axis` that brings u closest to v; 0 when any does.
-inline double angle_onto(const Eigen::Vector3d& axis, const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
+/// The turn about `axis` that brings u closest to v; 0 when any does, and `free` is set then.
+inline double angle_onto(const Eigen::Vector3d& axis, const Eigen::Vector3d& u, const Eigen::Vector3d& v, bool& free) {
   const double sine = axis.dot(u.cross(v)), cosine = u.dot(v) - axis.dot(u) * axis.dot(v);
-  return sine * sine + cosine * cosine < 1e-24 ? 0.0 : std::atan2(sine, cosine);
+  if (sine * sine + cosine * cosine >= 1e-24) return std::atan2(sine, cosine);
+  free = true;
+  return 0;
 }
 
 /// k . R(axis, angle) u = d

@@ -38,6 +38,7 @@ IkSeedDatabase::IkSeedDatabase(const JointGroup& group, int capacity) : group_(g
 
 void IkSeedDatabase::add(const Eigen::VectorXd& q) {
   group_.check_configuration(q, "q");
+  const std::lock_guard<std::mutex> lock(*mutex_);
   if (static_cast<int>(entries_.size()) == capacity_) entries_.pop_front();
   Eigen::VectorXd at_origin = q;
   at_origin.head<3>().setZero();
@@ -51,6 +52,7 @@ std::vector<Eigen::VectorXd> IkSeedDatabase::seeds(const Pose& T_world_tip, int 
     std::size_t entry;
     double yaw;
   };
+  const std::lock_guard<std::mutex> lock(*mutex_);
   std::vector<Match> matches;
   matches.reserve(entries_.size());
   for (std::size_t i = 0; i < entries_.size(); ++i) {
@@ -79,7 +81,13 @@ std::vector<Eigen::VectorXd> IkSeedDatabase::seeds(const Pose& T_world_tip, int 
   return found;
 }
 
-void IkSeedDatabase::save(const std::string& path) const {
+std::size_t IkSeedDatabase::size() const {
+  const std::lock_guard<std::mutex> lock(*mutex_);
+  return entries_.size();
+}
+
+std::string IkSeedDatabase::body() const {
+  const std::lock_guard<std::mutex> lock(*mutex_);
   std::ostringstream text;
   text << kMagic << '\n' << key_of(group_) << '\n' << entries_.size() << ' ' << group_.size() - 3 << '\n';
   text << std::setprecision(17);
@@ -87,11 +95,15 @@ void IkSeedDatabase::save(const std::string& path) const {
     for (Eigen::Index i = 0; i < entry.q.size(); ++i) text << (i ? " " : "") << entry.q[i];
     text << '\n';
   }
-  const std::string body = text.str();
+  return text.str();
+}
+
+void IkSeedDatabase::save(const std::string& path) const {
+  const std::string text = body();
   const std::string temporary = path + ".tmp";
   {
     std::ofstream file(temporary, std::ios::binary);
-    file << body << Hasher().add(body).hex() << '\n';
+    file << text << Hasher().add(text).hex() << '\n';
     file.flush();
     if (!file) throw IoError(temporary + ": cannot be written");
   }

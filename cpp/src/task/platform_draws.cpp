@@ -5,6 +5,8 @@
 
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/robot/ik_objective.hpp"
+#include "robot/ik_starts.hpp"
+#include "robot/manipulability.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -56,24 +58,7 @@ PlatformEnd::PlatformEnd(CollisionChecker& checker, const Pose& T_world_tip, con
     slide_.objectives.push_back(make_singularity_objective(group_, 1.5 * least_manipulability_));
   if (camera_)
     slide_.objectives.push_back(make_camera_view_objective(group_, camera_->link, camera_->T_link_camera, point));
-  // The base starts within the arm's reach of the pose: the farthest the tip gets from the root, by all links
-  // stretched.
-  double reach = 0;
-  const Poses poses = group_.robot().link_poses(group_.full_values(0.5 * (lower_ + upper_)));
-  for (int link = group_.tip_link(); link > 0;) {
-    const int parent =
-        group_.robot()
-            .joints()[static_cast<std::size_t>(group_.robot().links()[static_cast<std::size_t>(link)].parent_joint)]
-            .parent_link;
-    reach +=
-        (poses[static_cast<std::size_t>(link)].translation() - poses[static_cast<std::size_t>(parent)].translation())
-            .norm();
-    link = parent;
-  }
-  for (int i = 0; i < 2; ++i) {
-    lower_[i] = std::max(lower_[i], T_world_tip.translation()[i] - reach);
-    upper_[i] = std::max(lower_[i], std::min(upper_[i], T_world_tip.translation()[i] + reach));
-  }
+  detail::keep_base_near(group_, T_world_tip, lower_, upper_);
 }
 
 bool PlatformEnd::in_view(const Pose& T_world_link) const {
@@ -82,8 +67,7 @@ bool PlatformEnd::in_view(const Pose& T_world_link) const {
 }
 
 PlatformEnd::Fault PlatformEnd::fault_of(const Eigen::VectorXd& q, Rejection& cause) {
-  const Matrix6Xd J = arm_jacobian(group_, q);
-  if (std::sqrt(std::max(0.0, (J * J.transpose()).determinant())) < least_manipulability_) return Fault::singular;
+  if (detail::volume(arm_jacobian(group_, q)) < least_manipulability_) return Fault::singular;
   if (camera_) {
     Poses poses;
     group_.link_poses(q, poses);

@@ -309,3 +309,45 @@ TEST(IkBranches, BadInputNamesTheField) {
     EXPECT_NE(std::string(error.what()).find("joint_weights length"), std::string::npos) << error.what();
   }
 }
+
+TEST(IkBranches, ASingularWristIsNotCalledComplete) {
+  MMGRASP_NEEDS_SHARED_DATA();
+  const JointGroup group = ur5();
+  Eigen::VectorXd made(6);
+  made << 0.3, -1.2, 1.5, -0.9, 0, 0.2;
+  EXPECT_FALSE(solve_ik_branches(group, group.fk(made)).complete);
+  // What the kept split fails at, descents may mend.
+  const auto valid = [&](const Eigen::VectorXd& q) {
+    return std::abs(std::remainder(q[5] - 1.7, 2 * M_PI)) < 0.6 ? Rejection::none : Rejection::scene;
+  };
+  const IkBranches searched = solve_ik_branches(group, group.fk(made), {}, valid);
+  EXPECT_FALSE(searched.complete);
+  ASSERT_FALSE(searched.solutions.empty());
+  for (const Eigen::VectorXd& q : searched.solutions) {
+    EXPECT_EQ(valid(q), Rejection::none);
+    EXPECT_LE(pose_difference(group.fk(q), group.fk(made)).norm(), 1.1e-4);
+  }
+  made[4] = 0.01;
+  EXPECT_TRUE(solve_ik_branches(group, group.fk(made)).complete);
+}
+
+TEST(IkBranches, SearchTellsLimitsFromReachAndStops) {
+  // One joint of +-0.5 rad has no closed form: a pose at 1 rad is there without the limit only.
+  const JointGroup group =
+      Robot::from_strings("<robot name='r'>" + test::urdf_link("a") + test::urdf_link("b") + test::urdf_link("c") +
+                          test::urdf_joint("j", "revolute", "a", "b", "0 0 0", "0 0 1", "-0.5", "0.5") +
+                          test::urdf_joint("f", "fixed", "b", "c", "1 0 0", "0 0 1") + "</robot>")
+          .chain("a", "c");
+  const Pose outside = pose_from_xyz_rpy({std::cos(1.0), std::sin(1.0), 0}, {0, 0, 1});
+  const IkBranches limits = solve_ik_branches(group, outside);
+  EXPECT_GT(limits.rejections.limits, 0u);
+  EXPECT_EQ(limits.rejections.reach, 0u);
+  const IkBranches reach = solve_ik_branches(group, pose_from_xyz_rpy({1, 0, 0}, {0, 0, 0.4}));
+  EXPECT_GT(reach.rejections.reach, 0u);
+  EXPECT_EQ(reach.rejections.limits, 0u);
+  Monitor monitor;
+  monitor.stop.stop();
+  const IkBranches stopped = solve_ik_branches(group, outside, {}, {}, 0, monitor);
+  EXPECT_EQ(stopped.rejections.total(), 0u);
+  EXPECT_FALSE(stopped.complete);
+}

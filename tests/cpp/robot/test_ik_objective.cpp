@@ -4,10 +4,12 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <limits>
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/robot/ik.hpp"
+#include "mmgrasp/robot/ik_branches.hpp"
 #include "support/robot_support.hpp"
 #include "support/small_robots.hpp"
 
@@ -297,4 +299,56 @@ TEST(IkObjective, BadInputNamesTheField) {
               solve_ik(group, Pose::Identity(), Eigen::VectorXd::Zero(7), options);
             }).find("joint_weights length"),
             std::string::npos);
+}
+
+TEST(IkObjective, SixJointsTakeTheCheapestBranch) {
+  MMGRASP_NEEDS_SHARED_DATA();
+  const JointGroup group = load_kinematics("robots/ur/expanded/ur5e.urdf").chain("base_link", "tool0");
+  IkOptions options;
+  options.objectives = {make_joint_limit_objective(group, 0.4, 1.0)};
+  Rng rng(31);
+  int differs = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::VectorXd made = rng.uniform(group.sample_lower(), group.sample_upper());
+    const Pose target = group.fk(made);
+    double least = std::numeric_limits<double>::infinity();
+    for (const Eigen::VectorXd& q : solve_ik_branches(group, target).solutions)
+      least = std::min(least, total(options.objectives, q));
+    // The seed is itself a solution: no reason to stay with it.
+    const IkResult result = solve_ik(group, target, made, options);
+    ASSERT_EQ(result.outcome, Outcome::solved);
+    EXPECT_NEAR(result.objective, total(options.objectives, result.q), 1e-12);
+    EXPECT_LE(result.objective, least + 1e-9);
+    differs += total(options.objectives, made) > least + 1e-3;
+  }
+  EXPECT_GT(differs, 50);
+}
+
+TEST(IkObjective, WeightsDecideWhichBranchIsNearest) {
+  MMGRASP_NEEDS_SHARED_DATA();
+  const JointGroup group = load_kinematics("robots/ur/expanded/ur5e.urdf").chain("base_link", "tool0");
+  Rng rng(32);
+  int differs = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Pose target = group.fk(rng.uniform(group.sample_lower(), group.sample_upper()));
+    const Eigen::VectorXd seed = rng.uniform(Eigen::VectorXd::Constant(6, -1), Eigen::VectorXd::Constant(6, 1));
+    IkOptions options;
+    options.joint_weights = {1, 50, 1, 1, 1, 1};
+    const IkResult weighted = solve_ik(group, target, seed, options), plain = solve_ik(group, target, seed);
+    ASSERT_EQ(weighted.outcome, Outcome::solved);
+    double least = std::numeric_limits<double>::infinity();
+    const auto distance = [&](const Eigen::VectorXd& q) {
+      double sum = 0;
+      for (int j = 0; j < 6; ++j) {
+        const bool once = group.upper()[j] < 4;  // the elbow cannot take whole turns
+        const double way = once ? q[j] - seed[j] : std::remainder(q[j] - seed[j], 2 * M_PI);
+        sum += options.joint_weights[static_cast<std::size_t>(j)] * way * way;
+      }
+      return sum;
+    };
+    for (const Eigen::VectorXd& q : solve_ik_branches(group, target).solutions) least = std::min(least, distance(q));
+    EXPECT_NEAR(distance(weighted.q), least, 1e-5);
+    differs += (weighted.q - plain.q).norm() > 0.1;
+  }
+  EXPECT_GT(differs, 20);
 }

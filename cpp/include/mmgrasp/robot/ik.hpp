@@ -55,7 +55,7 @@ struct MMGRASP_EXPORT IkWorkspace {
 MMGRASP_EXPORT bool refine_ik(const JointGroup& group, const Pose& T_world_tip, Eigen::VectorXd& q,
                               const IkOptions& options, IkWorkspace& workspace);
 
-/// Descent from `seed`, then from random configurations until one passes limits and `valid`.
+/// Closed-form branches and descents, from `seed` first, until one passes limits and `valid` (docs/methods/ik.md).
 MMGRASP_EXPORT IkResult solve_ik(const JointGroup& group, const Pose& T_world_tip, const Eigen::VectorXd& seed,
                                  const IkOptions& options = {}, const ConfigurationFilter& valid = {},
                                  const Monitor& monitor = {});

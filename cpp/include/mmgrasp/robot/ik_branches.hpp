@@ -13,9 +13,12 @@ struct MMGRASP_EXPORT IkBranches {
   /// Inside limits, confirmed by forward kinematics, allowed by the filter; the one nearest to the middle of the limits
   /// first, then always the one farthest from those before it.
   std::vector<Eigen::VectorXd> solutions;
-  bool complete = false;     ///< Every branch was computed (with seven joints: for every sampled value), none searched.
+  /// Every branch was computed (with seven joints: for every sampled value), none searched. False, too, in a
+  /// singularity that leaves a joint free: of infinitely many configurations one is kept.
+  bool complete = false;
   int redundant_joint = -1;  ///< Configuration entry that was sampled; -1 for none.
-  Rejections rejections;     ///< Branches turned down; `reach` counts searches (or sampled values) without any.
+  Rejections
+      rejections;  ///< Branches turned down and descents that failed; `reach` counts sampled values without any, too.
 };
 
 /// Every inverse kinematics branch of an arm of six turning joints in closed form, and of one of seven joints for
@@ -24,10 +27,11 @@ struct MMGRASP_EXPORT IkBranches {
 /// (spherical wrist or shoulder), or the joints 2-4 parallel; geometry that is special only to 0.1 mm will do, since
 /// each branch is polished by Newton's method on the true chain. A joint that may turn more than once gives one
 /// solution, in the turn nearest to the middle of its limits. Arms without closed form and groups with a base get
-/// random descents: `complete` is false then. Throws InvalidInput on bad options or a pose that is none.
+/// random descents until the time limit or the monitor ends them, and so do singularities whose one branch falls:
+/// `complete` is false then. Throws InvalidInput on bad options or a pose that is none.
 MMGRASP_EXPORT IkBranches solve_ik_branches(const JointGroup& group, const Pose& T_world_tip,
                                             const IkOptions& options = {}, const ConfigurationFilter& valid = {},
-                                            int redundant_values = 0);
+                                            int redundant_values = 0, const Monitor& monitor = {});
 
 /// Puts solutions in an order in which the first ones are as different as can be: first the one nearest to the middle
 /// of the limits, then always the one farthest from those before it (joint-space distance, angles without limits the

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <deque>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +18,7 @@
 namespace mmgrasp {
 
 /// Past solutions that start the next searches (P3 3.6): grows with use, can be saved. Knows the group it is for. When
-/// full, the oldest are forgotten.
+/// full, the oldest are forgotten. Threads may share one; what it answers then depends on who came first.
 class MMGRASP_EXPORT IkSeedDatabase {
  public:
   /// The group must have base joints; capacity > 0. Throws InvalidInput.
@@ -26,7 +28,7 @@ class MMGRASP_EXPORT IkSeedDatabase {
   /// Up to `count` whole configurations whose tool stands at T_world_tip, best match first: the base is put where the
   /// remembered arm posture reaches the pose (height and tilt may remain wrong: IK mends that).
   std::vector<Eigen::VectorXd> seeds(const Pose& T_world_tip, int count) const;
-  std::size_t size() const { return entries_.size(); }
+  std::size_t size() const;
   const JointGroup& group() const { return group_; }
   /// Writes text: robot hash, joint names, one arm posture a line, checksum. Throws IoError.
   void save(const std::string& path) const;
@@ -38,8 +40,10 @@ class MMGRASP_EXPORT IkSeedDatabase {
     Pose T_root_tip;
     Eigen::VectorXd q;  // the arm's joints
   };
+  std::string body() const;
   JointGroup group_;
   int capacity_;
+  std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();  // guards entries_
   std::deque<Entry> entries_;
 };
 

@@ -152,11 +152,13 @@ double surface_distance(const TriangleMesh& mesh, const Eigen::Vector3d& p) {
   return best;
 }
 
-// One ball, no finer ones.
+// One ball, no finer ones: the first of its parts on each level is itself, the other places below it stay empty.
 void add_single(CoverLevels& levels, const Eigen::Vector3d& centre, double outer, double inner) {
+  int places = 1;
   for (BallCover& level : levels) {
     level.add(centre, outer, inner);
-    if (&level != &levels.front()) level.pad();
+    for (int i = 1; i < places; ++i) level.add_far();
+    places *= kLanes;
   }
 }
 

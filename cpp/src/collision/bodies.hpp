@@ -82,6 +82,13 @@ struct PlacedShape {
   Rigid in_frame;
 };
 
+/// Bounds on how fast a point of each moving shape moves in the world, and of each varying pair's bodies against each
+/// other, per unit of each column (rows) [m/rad or m/m].
+struct MotionRates {
+  Eigen::MatrixXd shapes, pairs;
+  bool finite = true;
+};
+
 /// Which pairs one group must look at, and how its shapes move.
 struct PairPlan {
   PairPlan(const Snapshot& snapshot, const JointGroup& group);
@@ -93,12 +100,13 @@ struct PairPlan {
   std::vector<int> moving, fixed;   ///< Shapes the group moves, and the others.
   std::vector<ShapePair> varying;   ///< Relative pose depends on the configuration.
   std::vector<ShapePair> constant;  ///< It does not: one look per reference is enough.
-  /// Bounds on how fast a point of each moving shape moves in the world, and of each varying pair's bodies against each
-  /// other, per unit of each column (rows) [m/rad or m/m]; within the joints' limits.
-  Eigen::MatrixXd shape_rates, pair_rates;
+  MotionRates rates;                ///< Within the joints' limits; not finite where a sliding joint has none.
+
+  /// What holds along one straight edge; empty when `rates` are finite.
+  MotionRates rates_along(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) const;
 
  private:
-  void bound_motion(const JointGroup& group);
+  MotionRates bound_motion(const Eigen::VectorXd& largest) const;
 };
 
 /// Link of each rigid assembly: links joined by fixed joints share a number.

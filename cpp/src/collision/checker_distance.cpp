@@ -40,29 +40,43 @@ void CollisionChecker::Impl::each_pair(bool still, const Visit& visit) const {
   }
 }
 
-SolidGap CollisionChecker::Impl::gap_of(const Candidate& pair, double bound) {
+SolidGap CollisionChecker::Impl::gap_of(const Candidate& pair, double bound, bool still) {
   const detail::Solid& a = *snapshot->shapes[pair.shape].solid;
   if (pair.with_scene) {
     const detail::SceneShape& other = snapshot->scene[pair.other];
     return solids_distance(a, pose(pair.shape), *other.solid, other.T_world, bound);
   }
-  return solids_distance(a, pose(pair.shape), *snapshot->shapes[pair.other].solid, pose(pair.other), bound);
+  const detail::Solid& b = *snapshot->shapes[pair.other].solid;
+  if (still) return solids_distance(a, plan->placed[pair.shape].in_frame, b, plan->placed[pair.other].in_frame, bound);
+  return solids_distance(a, pose(pair.shape), b, pose(pair.other), bound);
 }
 
-double CollisionChecker::Impl::box_bound(const Candidate& pair) {
+double CollisionChecker::Impl::box_bound(const Candidate& pair, bool still) {
   const detail::Solid& a = *snapshot->shapes[pair.shape].solid;
   if (pair.with_scene) {
     const detail::SceneShape& other = snapshot->scene[pair.other];
     return std::max(pair.bound, boxes_gap(a, pose(pair.shape), *other.solid, other.T_world));
   }
   const detail::Solid& b = *snapshot->shapes[pair.other].solid;
-  return std::max(pair.bound, boxes_gap(a, pose(pair.shape), b, pose(pair.other)));
+  const detail::Rigid& T_a = still ? plan->placed[pair.shape].in_frame : pose(pair.shape);
+  const detail::Rigid& T_b = still ? plan->placed[pair.other].in_frame : pose(pair.other);
+  return std::max(pair.bound, boxes_gap(a, T_a, b, T_b));
+}
+
+void CollisionChecker::Impl::to_world(NearestPair& nearest) const {
+  SolidGap& gap = nearest.gap;
+  if (nearest.pair.with_scene || gap.distance == std::numeric_limits<double>::infinity()) return;
+  const int frame = plan->placed[nearest.pair.shape].frame;
+  const detail::Rigid T = detail::MovingFrames::get(frames.data() + 16 * frame);
+  gap.on_a = T * gap.on_a;
+  gap.on_b = T * gap.on_b;
+  gap.normal = T.R * gap.normal;
 }
 
 NearestPair CollisionChecker::Impl::nearest() {
   NearestPair best;
-  const auto look_at = [&](const Candidate& pair) {
-    const SolidGap gap = gap_of(pair, best.gap.distance);
+  const auto look_at = [&](const Candidate& pair, bool still) {
+    const SolidGap gap = gap_of(pair, best.gap.distance, still);
     if (gap.distance < best.gap.distance) best = {pair, gap};
   };
   const auto search = [&](bool still) {
@@ -72,18 +86,18 @@ NearestPair CollisionChecker::Impl::nearest() {
     });
     if (candidates.empty()) return;
     // A first gap turns most others away by their boxes.
-    look_at(*std::min_element(candidates.begin(), candidates.end(), by_bound));
+    look_at(*std::min_element(candidates.begin(), candidates.end(), by_bound), still);
     std::size_t kept = 0;
     for (Candidate pair : candidates) {
       if (pair.bound >= best.gap.distance) continue;
-      pair.bound = box_bound(pair);
+      pair.bound = box_bound(pair, still);
       if (pair.bound < best.gap.distance) candidates[kept++] = pair;
     }
     candidates.resize(kept);
     std::sort(candidates.begin(), candidates.end(), by_bound);
     for (const Candidate& pair : candidates) {
       if (pair.bound >= best.gap.distance) break;
-      look_at(pair);
+      look_at(pair, still);
     }
   };
   if (nearest_still) {
@@ -92,6 +106,7 @@ NearestPair CollisionChecker::Impl::nearest() {
     search(true);
     nearest_still = best;
   }
+  to_world(best);
   search(false);
   return best;
 }

@@ -73,8 +73,12 @@ struct CollisionChecker::Impl {
 
   /// The nearest pair at the configuration placed last.
   detail::NearestPair nearest();
-  detail::SolidGap gap_of(const detail::Candidate& pair, double bound);
-  double box_bound(const detail::Candidate& pair);
+  /// `still`: two of the robot's own shapes in the frame they share, so that the answer is the same digit for digit
+  /// wherever they are.
+  detail::SolidGap gap_of(const detail::Candidate& pair, double bound, bool still = false);
+  double box_bound(const detail::Candidate& pair, bool still = false);
+  /// A gap of two still shapes, as the last place() puts it into the world.
+  void to_world(detail::NearestPair& nearest) const;
   /// Calls visit(candidate) for every pair, bounded by spheres: those no configuration changes, or the others.
   template <class Visit>
   void each_pair(bool still, const Visit& visit) const;
@@ -108,7 +112,7 @@ struct CollisionChecker::Impl {
   int last_pair = -1;                 ///< What collided last tends to collide again.
   int last_shape = -1, last_scene = -1;
 
-  std::optional<detail::NearestPair> nearest_still;  ///< Of the pairs that no configuration changes.
+  std::optional<detail::NearestPair> nearest_still;  ///< Of the pairs that no configuration changes; see gap_of.
   std::vector<detail::Candidate> candidates;         ///< Scratch of nearest().
   Matrix6Xd point_jacobian;                          ///< Scratch of gradient().
 };

@@ -39,13 +39,15 @@ class Advance {
     const Eigen::VectorXd way = delta_.cwiseAbs();
     const CheckerOptions& options = checker.snapshot->options;
     const PairPlan& plan = *checker.plan;
+    const MotionRates own = plan.rates_along(q0, q1);
+    const MotionRates& bounds = plan.rates.finite ? plan.rates : own;
     if (options.check_self && !plan.varying.empty()) {
-      const Eigen::VectorXd rates = plan.pair_rates.transpose() * way;
+      const Eigen::VectorXd rates = bounds.pairs.transpose() * way;
       for (std::size_t i = 0; i < plan.varying.size(); ++i)
         add(plan.varying[i].a, plan.varying[i].b, false, rates[static_cast<Eigen::Index>(i)]);
     }
     if (options.check_scene && !plan.moving.empty()) {
-      const Eigen::VectorXd rates = plan.shape_rates.transpose() * way;
+      const Eigen::VectorXd rates = bounds.shapes.transpose() * way;
       for (std::size_t i = 0; i < plan.moving.size(); ++i) {
         for (int k = 0; k < static_cast<int>(checker.snapshot->scene.size()); ++k)
           add(plan.moving[i], k, true, rates[static_cast<Eigen::Index>(i)]);
@@ -94,7 +96,7 @@ class Advance {
   static constexpr double kTogether = 0.02;
 
   void add(int shape, int other, bool with_scene, double rate) {
-    if (rate > 0) open_.push_back({shape, other, with_scene, rate, 0});
+    if (!(rate <= 0)) open_.push_back({shape, other, with_scene, rate, 0});
   }
 
   const Solid& solid_of(const Item& item) const {

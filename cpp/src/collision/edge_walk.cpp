@@ -16,6 +16,10 @@ double surely(double motion) {
   return motion * (1 + 1e-5) + 1e-7;
 }
 
+// Far checks first finds collisions early; once this many intervals wait, one is finished after the other, which keeps
+// memory independent of the number of pieces.
+constexpr std::size_t kBroad = 256;
+
 // From below.
 double gap_to(const SceneShape& other, const float* ball) {
   const Eigen::Vector3d centre(ball[0], ball[1], ball[2]);
@@ -31,8 +35,10 @@ CollisionChecker::Impl::EdgeWalk::EdgeWalk(Impl& checker, const Eigen::VectorXd&
     : checker_(checker), q0_(q0), delta_(q1 - q0), q_(q0.size()), pieces_(pieces) {
   if (pieces < 2) return;
   const Eigen::VectorXd step = delta_.cwiseAbs() / static_cast<double>(pieces);
-  body_motion_ = checker.plan->shape_rates.transpose() * step;
-  pair_motion_ = checker.plan->pair_rates.transpose() * step;
+  const detail::MotionRates own = checker.plan->rates_along(q0, q1);
+  const detail::MotionRates& rates = checker.plan->rates.finite ? checker.plan->rates : own;
+  body_motion_ = rates.shapes.transpose() * step;
+  pair_motion_ = rates.pairs.transpose() * step;
 }
 
 bool CollisionChecker::Impl::EdgeWalk::all_free() {
@@ -48,8 +54,17 @@ bool CollisionChecker::Impl::EdgeWalk::all_free() {
   }
   std::size_t looked_at = 0;
   std::vector<Interval> queue{{0, pieces_, 0, bodies, open_.size()}};
-  for (std::size_t next = 0; next < queue.size(); ++next) {
-    const Interval interval = queue[next];
+  bool deep = false;
+  for (std::size_t next = 0; next < queue.size();) {
+    deep = deep || queue.size() - next > kBroad;
+    const Interval interval = deep ? queue.back() : queue[next];
+    if (deep) {
+      // All that wait were put there before: their lists lie within this one's end.
+      queue.pop_back();
+      open_.resize(interval.end);
+    } else {
+      ++next;
+    }
     const long middle = (interval.low + interval.high) / 2;
     const long reach = std::max(middle - interval.low, interval.high - middle) - 1;
     Interval rest = interval;

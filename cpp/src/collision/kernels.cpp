@@ -1,5 +1,9 @@
 #include "collision/kernels.hpp"
 
+#include <atomic>
+
+#include "mmgrasp/core/error.hpp"
+
 namespace mmgrasp::detail {
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
@@ -20,16 +24,33 @@ namespace portable {
 #undef MMGRASP_KERNEL_NAME
 }  // namespace portable
 
-const Kernels& portable_kernels() {
+namespace {
+
+const Kernels& quickest() {
+#ifdef MMGRASP_HAS_AVX2
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return avx2::kTable;
+#endif
   return portable::kTable;
 }
 
+std::atomic<const Kernels*>& chosen() {
+  static std::atomic<const Kernels*> table{&quickest()};
+  return table;
+}
+
+}  // namespace
+
 const Kernels& kernels() {
-#ifdef MMGRASP_HAS_AVX2
-  static const bool wide = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  if (wide) return avx2::kTable;
-#endif
-  return portable::kTable;
+  return *chosen().load(std::memory_order_relaxed);
+}
+
+void use_collision_kernels(const std::string& name) {
+  if (!name.empty() && name != "portable") throw InvalidInput("name = " + name + ": must be portable or empty");
+  chosen().store(name.empty() ? &quickest() : &portable::kTable);
+}
+
+std::string collision_kernels() {
+  return kernels().name;
 }
 
 }  // namespace mmgrasp::detail

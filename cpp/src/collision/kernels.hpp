@@ -1,6 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+
+#include "mmgrasp/core/export.hpp"
 
 namespace mmgrasp::detail {
 
@@ -79,9 +82,11 @@ struct Kernels {
                              const FloatRigid& cover_in_field, float grow, float slack);
 };
 
-/// The quickest this machine can run.
+/// The quickest this machine can run, unless use_collision_kernels() chose others.
 const Kernels& kernels();
-/// The one that runs everywhere; for tests.
-const Kernels& portable_kernels();
+/// "portable" (they run everywhere), or "" for the quickest; for tests, while no checker is at work.
+MMGRASP_EXPORT void use_collision_kernels(const std::string& name);
+/// Name of those in use.
+MMGRASP_EXPORT std::string collision_kernels();
 
 }  // namespace mmgrasp::detail

@@ -81,30 +81,37 @@ PairPlan::PairPlan(const Snapshot& snapshot, const JointGroup& group) : frames(g
       (moved_by[a.link] == moved_by[b.link] ? constant : varying).push_back(pair);
     }
   }
-  bound_motion(group);
+  // Limits are kept up to rounding.
+  rates = bound_motion(group.lower().cwiseAbs().cwiseMax(group.upper().cwiseAbs()) +
+                       Eigen::VectorXd::Constant(group.size(), 1e-6));
 }
 
-void PairPlan::bound_motion(const JointGroup& group) {
-  // Limits are kept up to rounding.
-  const Eigen::VectorXd largest =
-      group.lower().cwiseAbs().cwiseMax(group.upper().cwiseAbs()) + Eigen::VectorXd::Constant(group.size(), 1e-6);
+MotionRates PairPlan::rates_along(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) const {
+  if (rates.finite) return {};
+  return bound_motion(q0.cwiseAbs().cwiseMax(q1.cwiseAbs()));
+}
+
+MotionRates PairPlan::bound_motion(const Eigen::VectorXd& largest) const {
   const auto radius = [&](int ball) { return Eigen::Vector3d(balls[ball].p).norm() + balls[ball].radius; };
-  Eigen::VectorXd rates(group.size());
-  shape_rates.resize(group.size(), static_cast<Eigen::Index>(moving.size()));
-  for (Eigen::Index i = 0; i < shape_rates.cols(); ++i) {
-    rates.setZero();
-    frames.add_rates(balls[i].frame, radius(static_cast<int>(i)), -1, largest, rates);
-    shape_rates.col(i) = rates;
+  MotionRates out;
+  Eigen::VectorXd column(largest.size());
+  out.shapes.resize(largest.size(), static_cast<Eigen::Index>(moving.size()));
+  for (Eigen::Index i = 0; i < out.shapes.cols(); ++i) {
+    column.setZero();
+    frames.add_rates(balls[i].frame, radius(static_cast<int>(i)), -1, largest, column);
+    out.shapes.col(i) = column;
   }
-  pair_rates.resize(group.size(), static_cast<Eigen::Index>(varying.size()));
-  for (Eigen::Index i = 0; i < pair_rates.cols(); ++i) {
+  out.pairs.resize(largest.size(), static_cast<Eigen::Index>(varying.size()));
+  for (Eigen::Index i = 0; i < out.pairs.cols(); ++i) {
     const ShapePair& pair = varying[i];
     const int a = balls[pair.ball_a].frame, b = balls[pair.ball_b].frame, common = frames.common_frame(a, b);
-    rates.setZero();
-    frames.add_rates(a, radius(pair.ball_a), common, largest, rates);
-    frames.add_rates(b, radius(pair.ball_b), common, largest, rates);
-    pair_rates.col(i) = rates;
+    column.setZero();
+    frames.add_rates(a, radius(pair.ball_a), common, largest, column);
+    frames.add_rates(b, radius(pair.ball_b), common, largest, column);
+    out.pairs.col(i) = column;
   }
+  out.finite = out.shapes.allFinite() && out.pairs.allFinite();
+  return out;
 }
 
 }  // namespace mmgrasp::detail

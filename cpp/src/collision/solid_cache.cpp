@@ -71,7 +71,12 @@ struct BoundsEntry {
   std::shared_ptr<const BodyBounds> bounds;
 };
 
-constexpr std::size_t kMaxBounds = 1000;
+// Of primitives: nothing tells when the last user of a size is gone.
+constexpr std::size_t kMaxPrimitives = 1000;
+
+bool of_primitive(const BoundsKey& key) {
+  return std::get<1>(key) == nullptr;
+}
 
 }  // namespace
 
@@ -87,7 +92,16 @@ std::shared_ptr<const BodyBounds> shared_bounds(const Solid& solid, const Shape&
   }
   auto bounds = std::make_shared<const BodyBounds>(solid, shape);
   const std::lock_guard<std::mutex> lock(cache_mutex);
-  if (known.size() >= kMaxBounds) known.clear();
+  std::size_t primitives = 0;
+  for (auto it = known.begin(); it != known.end();) {
+    const bool dead = !of_primitive(it->first) && it->second.source.expired();
+    primitives += of_primitive(it->first);
+    it = dead ? known.erase(it) : std::next(it);
+  }
+  for (auto it = known.begin(); primitives >= kMaxPrimitives && it != known.end();) {
+    // Checkers that use them hold them too: what goes is made again only by new ones.
+    it = of_primitive(it->first) ? known.erase(it) : std::next(it);
+  }
   known[key] = {source, bounds};
   return bounds;
 }

@@ -115,7 +115,70 @@ TEST(CheckerShapes, MeshesAreWhatTheNamesSay) {
   EXPECT_FALSE(open_bin()->closed);
 }
 
-TEST(CheckerShapes, EveryPairAgreesWithFcl) {
+namespace mmgrasp::detail {
+MMGRASP_EXPORT void use_collision_kernels(const std::string& name);
+MMGRASP_EXPORT std::string collision_kernels();
+}  // namespace mmgrasp::detail
+
+namespace {
+
+/// "" the quickest kernels of this machine, "portable" those of every machine.
+class CheckerShapesOnKernels : public ::testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override { detail::use_collision_kernels(GetParam()); }
+  void TearDown() override { detail::use_collision_kernels(""); }
+};
+INSTANTIATE_TEST_SUITE_P(Kernels, CheckerShapesOnKernels, ::testing::Values("", "portable"),
+                         [](const auto& info) { return info.param.empty() ? "quickest" : info.param; });
+
+}  // namespace
+
+// Capsules have few balls and no finer ones, next to bodies that look at three levels of them.
+TEST_P(CheckerShapesOnKernels, LongCapsulesAgreeWithFcl) {
+  if (!GetParam().empty()) {
+    ASSERT_EQ(detail::collision_kernels(), GetParam());
+  }
+  Rng rng(21);
+  int free = 0, hit = 0, unjudged = 0;
+  for (const Capsule& capsule : {Capsule{0.1, 0.4}, Capsule{0.03, 0.6}, Capsule{0.1, 0.05}}) {
+    const fcl_reference::Body body = fcl_reference::make_body(capsule);
+    for (const Case& other : {Case{"voxels", random_voxels()}, Case{"dented", MeshShape{l_shape()}}}) {
+      const fcl_reference::Body reference = fcl_reference::make_body(other.shape);
+      const Pose T = pose_from_xyz_rpy({0.3, -0.2, 0.5}, {0.4, -0.9, 2.0});
+      for (const std::string where : {"link", "held", "self"}) {
+        if (where == "self" && other.name == "voxels") continue;  // links are not made of voxels
+        World world;
+        if (where != "self") world.add(other.name, other.shape, T);
+        if (where == "held") {
+          world.add("part", capsule, Pose::Identity());
+          world.attach("part", "carrier", Pose::Identity());
+        }
+        Robot robot = free_body::robot(where == "held" ? std::vector<LinkShape>{}
+                                                       : std::vector<LinkShape>{free_body::link_shape(capsule)});
+        if (where == "self") robot = robot.with_link("obstacle", "root", T, {free_body::link_shape(other.shape)});
+        CollisionChecker checker(robot.chain("root", "carrier"), world);
+        for (int i = 0; i < 400; ++i) {
+          Eigen::VectorXd q = random_offset(rng, 0.6 * (radius_of(capsule) + radius_of(other.shape)));
+          q.head<3>() += T.translation();
+          const bool expected = fcl_reference::touch(body, free_body::pose(q), reference, T);
+          const bool answer = !checker.is_free(q);
+          if (answer != expected && fcl_reference::on_the_edge(body, free_body::pose(q), reference, T)) {
+            ++unjudged;
+            continue;
+          }
+          ASSERT_EQ(answer, expected) << capsule.radius << " " << capsule.length << " " << where << " against "
+                                      << other.name << ", q = " << q.transpose();
+          ++(expected ? hit : free);
+        }
+      }
+    }
+  }
+  EXPECT_GT(hit, 1000);
+  EXPECT_GT(free, 1000);
+  EXPECT_LT(unjudged, 5);
+}
+
+TEST_P(CheckerShapesOnKernels, EveryPairAgreesWithFcl) {
   const int samples = 250;
   int free = 0, hit = 0, unjudged = 0;
   for (const Case& mover : all_shapes()) {

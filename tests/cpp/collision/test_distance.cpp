@@ -252,6 +252,44 @@ TEST(Distance, OfVoxelsAndPlanes) {
   EXPECT_NEAR(floor.distance(q).value, -0.05, 1e-12);
 }
 
+// Two bodies that keep their places against each other while both move: the points move with them.
+TEST(Distance, PointsOfPairsThatNothingChangesMoveWithTheRobot) {
+  const std::string urdf =
+      "<robot name='free'><link name='root'/>" + free_body::joint("x", "prismatic", "1 0 0", "root", "a") +
+      free_body::joint("y", "prismatic", "0 1 0", "a", "b") + free_body::joint("z", "prismatic", "0 0 1", "b", "c") +
+      free_body::joint("yaw", "revolute", "0 0 1", "c", "d") +
+      free_body::joint("pitch", "revolute", "0 1 0", "d", "e") +
+      free_body::joint("roll", "revolute", "1 0 0", "e", "carrier") +
+      free_body::joint("spare", "prismatic", "1 0 0", "carrier", "side") + "</robot>";
+  const Pose T_left = pose_from_xyz_rpy({-0.3, 0.1, 0}, {0.3, 0.2, 0.1});
+  const Pose T_right = pose_from_xyz_rpy({0.4, 0, 0.2}, {0, 0, 0});
+  const Robot robot = Robot::from_strings(urdf)
+                          .with_link("left", "carrier", T_left, {free_body::link_shape(Box{{0.2, 0.3, 0.1}})})
+                          .with_link("right", "side", T_right, {free_body::link_shape(Sphere{0.1})});
+  const JointGroup group = robot.chain("root", "carrier");
+  CollisionChecker checker(group, World());
+  Rng rng(31);
+  for (int i = 0; i < 20; ++i) {
+    const Eigen::VectorXd q = random_q(rng, 2);
+    const DistanceResult result = checker.distance_and_gradient(q);
+    const Pose T = free_body::pose(q);
+    const bool left_first = result.a == "left";
+    ASSERT_EQ(left_first ? result.b : result.a, "right");
+    const Eigen::Vector3d in_box = (T * T_left).inverse() * (left_first ? result.point_a : result.point_b);
+    const Eigen::Vector3d in_sphere = (T * T_right).inverse() * (left_first ? result.point_b : result.point_a);
+    const Eigen::Vector3d beyond = in_box.cwiseAbs() - Eigen::Vector3d(0.1, 0.15, 0.05);
+    EXPECT_NEAR(beyond.maxCoeff(), 0, 1e-9);
+    EXPECT_NEAR(in_sphere.norm(), 0.1, 1e-9);
+    EXPECT_NEAR((result.point_a - result.point_b).norm(), result.value, 1e-9);
+    EXPECT_NEAR(result.gradient.norm(), 0, 1e-9) << "nothing the group does changes the gap";
+    // Digit for digit what a new checker says.
+    CollisionChecker fresh(group, World());
+    const DistanceResult again = fresh.distance(q);
+    EXPECT_EQ(again.value, result.value);
+    EXPECT_EQ(again.point_a, result.point_a);
+  }
+}
+
 TEST(Distance, BoundsOfWhatIsAskedAreChecked) {
   CollisionChecker checker = make_checker(Sphere{0.1}, Sphere{0.1});
   EXPECT_THROW(checker.distance_and_gradient(Eigen::VectorXd::Zero(5)), InvalidInput);

@@ -147,3 +147,28 @@ TEST(EdgeContinuous, PaddingLimitsAndStartsAreKept) {
   q0[0] = 0;
   EXPECT_TRUE(check_edge(plain, q0, q0, continuous()).free);
 }
+
+TEST(EdgeContinuous, SlidesWithoutLimitsBehindAJointThatRests) {
+  // The slide could be anywhere: only the edge itself bounds how far the joint before it can swing the body.
+  const Robot robot =
+      Robot::from_strings(
+          "<robot name='r'><link name='root'/><link name='arm'/><link name='carrier'/>"
+          "<joint name='turn' type='revolute'><parent link='root'/><child link='arm'/><axis xyz='0 0 1'/>"
+          "<limit lower='-2' upper='2' velocity='1' effort='1'/></joint>"
+          "<joint name='fly' type='floating'><parent link='arm'/><child link='carrier'/></joint></robot>")
+          .with_link("ball", "carrier", Pose::Identity(), {free_body::link_shape(Sphere{0.01})});
+  const JointGroup group = robot.chain("root", "carrier");
+  ASSERT_EQ(group.size(), 7);
+  World world;
+  world.add("wall", Box{{0.001, 1, 1}}, at(0.5, 0, 0));
+  CollisionChecker checker(group, world);
+  Eigen::VectorXd q0 = Eigen::VectorXd::Zero(7), q1 = q0;
+  q1[1] = 0.9;
+  const EdgeResult result = check_edge(checker, q0, q1, continuous());
+  EXPECT_FALSE(result.free);
+  EXPECT_NEAR(result.fraction * 0.9, 0.5 - 0.0005 - 0.01, 2e-4);
+  EXPECT_FALSE(checker.edge_is_free(q0, q1, 0.005));
+  q1[1] = 0.4;
+  EXPECT_TRUE(check_edge(checker, q0, q1, continuous()).free);
+  EXPECT_TRUE(checker.edge_is_free(q0, q1, 0.005));
+}

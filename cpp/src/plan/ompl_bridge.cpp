@@ -35,8 +35,8 @@ std::vector<std::filesystem::path> plugin_folders() {
 
 int open_flags() {
   int flags = RTLD_NOW | RTLD_LOCAL;
-#ifndef __SANITIZE_ADDRESS__
-  // The plugin must find its own Eigen symbols, not the ones KDL or PCL brought. AddressSanitizer refuses the flag.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  // The plugin must find its own Eigen symbols, not the ones KDL or PCL brought. Sanitizers refuse the flag.
   flags |= RTLD_DEEPBIND;
 #endif
   return flags;

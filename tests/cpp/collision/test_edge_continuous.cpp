@@ -148,8 +148,7 @@ TEST(EdgeContinuous, PaddingLimitsAndStartsAreKept) {
   EXPECT_TRUE(check_edge(plain, q0, q0, continuous()).free);
 }
 
-TEST(EdgeContinuous, SlidesWithoutLimitsBehindAJointThatRests) {
-  // The slide could be anywhere: only the edge itself bounds how far the joint before it can swing the body.
+TEST(EdgeContinuous, AFloatingBallMeetsAThinWall) {
   const Robot robot =
       Robot::from_strings(
           "<robot name='r'><link name='root'/><link name='arm'/><link name='carrier'/>"

@@ -14,6 +14,14 @@ import pytest
 import mmgrasp as mg
 
 
+@pytest.fixture(autouse=True)
+def interruptible():
+    """A shell's background job is started with SIGINT ignored, and so would be what it starts."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 def interrupt_soon() -> threading.Timer:
     timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()

@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "assembly.hpp"
+#include "coal_shapes.hpp"
 #include "mmgrasp/collision/checker.hpp"
 
 namespace bench {
@@ -30,14 +32,14 @@ class CoalDistancePeer {
     for (std::size_t link = 0; link < robot.links().size(); ++link) {
       for (const LinkShape& shape : robot.links()[link].collisions) {
         objects_.push_back({static_cast<int>(link), moves[link] != 0, shape.T_link_shape,
-                            std::make_unique<coal::CollisionObject>(geometry(shape.shape))});
+                            std::make_unique<coal::CollisionObject>(coal_geometry(shape.shape))});
         place(objects_.back());
       }
     }
     for (const auto& entry : world.objects()) {
       for (const LinkShape& shape : entry.second.shapes) {
         const Pose T = entry.second.T_world_object * shape.T_link_shape;
-        scene_.push_back(std::make_unique<coal::CollisionObject>(geometry(shape.shape),
+        scene_.push_back(std::make_unique<coal::CollisionObject>(coal_geometry(shape.shape),
                                                                  coal::Transform3s(T.linear(), T.translation())));
         manager_.registerObject(scene_.back().get());
       }
@@ -48,7 +50,9 @@ class CoalDistancePeer {
     for (const Placed& a : objects_) {
       if (!a.moves) manager_.distance(a.object.get(), &look_);
       for (const Placed& b : objects_) {
-        if (!self || a.link >= b.link || robot.pair_disabled(a.link, b.link) || top(a.link) == top(b.link)) continue;
+        if (!self || a.link >= b.link || robot.pair_disabled(a.link, b.link) ||
+            assembly_of(robot, a.link) == assembly_of(robot, b.link))
+          continue;
         if (a.moves || b.moves) {
           pairs_.emplace_back(a.object.get(), b.object.get());
         } else {
@@ -98,40 +102,10 @@ class CoalDistancePeer {
     double least = 0;
   };
 
-  int top(int link) const {
-    const mmgrasp::Robot& robot = group_.robot();
-    while (robot.links()[link].parent_joint >= 0 &&
-           robot.joints()[robot.links()[link].parent_joint].type == mmgrasp::JointType::fixed)
-      link = robot.joints()[robot.links()[link].parent_joint].parent_link;
-    return link;
-  }
-
   void place(Placed& placed) {
     const mmgrasp::Pose T = links_[placed.link] * placed.T_link_shape;
     placed.object->setTransform(T.linear(), T.translation());
     placed.object->computeAABB();
-  }
-
-  static std::shared_ptr<coal::CollisionGeometry> geometry(const mmgrasp::Shape& shape) {
-    using namespace mmgrasp;
-    if (const auto* s = std::get_if<Box>(&shape)) return std::make_shared<coal::Box>(s->size);
-    if (const auto* s = std::get_if<Sphere>(&shape)) return std::make_shared<coal::Sphere>(s->radius);
-    if (const auto* s = std::get_if<Cylinder>(&shape)) return std::make_shared<coal::Cylinder>(s->radius, s->length);
-    if (const auto* s = std::get_if<Capsule>(&shape)) return std::make_shared<coal::Capsule>(s->radius, s->length);
-    const TriangleMesh& mesh = *std::get<MeshShape>(shape).mesh;
-    if (mesh.convex) {
-      auto points = std::make_shared<std::vector<coal::Vec3s>>(mesh.vertices.begin(), mesh.vertices.end());
-      auto faces = std::make_shared<std::vector<coal::Triangle>>();
-      for (const auto& t : mesh.triangles) faces->emplace_back(t[0], t[1], t[2]);
-      return std::make_shared<coal::Convex<coal::Triangle>>(points, static_cast<unsigned>(points->size()), faces,
-                                                            static_cast<unsigned>(faces->size()));
-    }
-    auto model = std::make_shared<coal::BVHModel<coal::OBBRSS>>();
-    model->beginModel();
-    for (const auto& t : mesh.triangles)
-      model->addTriangle(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
-    model->endModel();
-    return model;
   }
 
   mmgrasp::JointGroup group_;

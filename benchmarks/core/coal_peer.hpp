@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "coal_shapes.hpp"
 #include "fcl_peer.hpp"
 
 namespace bench {
@@ -31,7 +32,7 @@ class CoalPeer {
       for (const LinkShape& shape : robot.links()[link].collisions) {
         objects_of[link].push_back(static_cast<int>(robot_.size()));
         robot_.push_back({static_cast<int>(link), shape.T_link_shape,
-                          std::make_unique<coal::CollisionObject>(geometry(shape.shape))});
+                          std::make_unique<coal::CollisionObject>(coal_geometry(shape.shape))});
         place(robot_.back());
         if (moves[link]) moving_.push_back(static_cast<int>(robot_.size()) - 1);
       }
@@ -49,7 +50,7 @@ class CoalPeer {
     for (const auto& entry : world.objects()) {
       for (const LinkShape& shape : entry.second.shapes) {
         const Pose T = entry.second.T_world_object * shape.T_link_shape;
-        scene_.push_back(std::make_unique<coal::CollisionObject>(geometry(shape.shape),
+        scene_.push_back(std::make_unique<coal::CollisionObject>(coal_geometry(shape.shape),
                                                                  coal::Transform3s(T.linear(), T.translation())));
         manager_.registerObject(scene_.back().get());
       }
@@ -100,28 +101,6 @@ class CoalPeer {
     const mmgrasp::Pose T = links_[placed.link] * placed.T_link_shape;
     placed.object->setTransform(T.linear(), T.translation());
     placed.object->computeAABB();
-  }
-
-  static std::shared_ptr<coal::CollisionGeometry> geometry(const mmgrasp::Shape& shape) {
-    using namespace mmgrasp;
-    if (const auto* s = std::get_if<Box>(&shape)) return std::make_shared<coal::Box>(s->size);
-    if (const auto* s = std::get_if<Sphere>(&shape)) return std::make_shared<coal::Sphere>(s->radius);
-    if (const auto* s = std::get_if<Cylinder>(&shape)) return std::make_shared<coal::Cylinder>(s->radius, s->length);
-    if (const auto* s = std::get_if<Capsule>(&shape)) return std::make_shared<coal::Capsule>(s->radius, s->length);
-    const TriangleMesh& mesh = *std::get<MeshShape>(shape).mesh;
-    if (mesh.convex) {
-      auto points = std::make_shared<std::vector<coal::Vec3s>>(mesh.vertices.begin(), mesh.vertices.end());
-      auto faces = std::make_shared<std::vector<coal::Triangle>>();
-      for (const auto& t : mesh.triangles) faces->emplace_back(t[0], t[1], t[2]);
-      return std::make_shared<coal::Convex<coal::Triangle>>(points, static_cast<unsigned>(points->size()), faces,
-                                                            static_cast<unsigned>(faces->size()));
-    }
-    auto model = std::make_shared<coal::BVHModel<coal::OBBRSS>>();
-    model->beginModel();
-    for (const auto& t : mesh.triangles)
-      model->addTriangle(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
-    model->endModel();
-    return model;
   }
 
   mmgrasp::JointGroup group_;

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "assembly.hpp"
+#include "fcl_shapes.hpp"
 #include "mmgrasp/collision/checker.hpp"
 
 namespace bench {
@@ -29,16 +31,16 @@ class FclDistancePeer {
     group_.link_poses(0.5 * (group.sample_lower() + group.sample_upper()), links_);
     for (std::size_t link = 0; link < robot.links().size(); ++link) {
       for (const LinkShape& shape : robot.links()[link].collisions) {
-        objects_.push_back(
-            {static_cast<int>(link), moves[link] != 0, shape.T_link_shape,
-             std::make_unique<fcl::CollisionObjectd>(geometry(shape.shape), fcl::Transform3d::Identity())});
+        objects_.push_back({static_cast<int>(link), moves[link] != 0, shape.T_link_shape,
+                            std::make_unique<fcl::CollisionObjectd>(fcl_geometry(shape.shape, convex_),
+                                                                    fcl::Transform3d::Identity())});
         place(objects_.back());
       }
     }
     for (const auto& entry : world.objects()) {
       for (const LinkShape& shape : entry.second.shapes) {
         scene_.push_back(std::make_unique<fcl::CollisionObjectd>(
-            geometry(shape.shape), fcl::Transform3d(entry.second.T_world_object * shape.T_link_shape)));
+            fcl_geometry(shape.shape, convex_), fcl::Transform3d(entry.second.T_world_object * shape.T_link_shape)));
         manager_.registerObject(scene_.back().get());
       }
     }
@@ -47,7 +49,9 @@ class FclDistancePeer {
     for (const Placed& a : objects_) {
       if (!a.moves) manager_.distance(a.object.get(), &still, &look);
       for (const Placed& b : objects_) {
-        if (!self || a.link >= b.link || robot.pair_disabled(a.link, b.link) || top(a.link) == top(b.link)) continue;
+        if (!self || a.link >= b.link || robot.pair_disabled(a.link, b.link) ||
+            assembly_of(robot, a.link) == assembly_of(robot, b.link))
+          continue;
         if (a.moves || b.moves) {
           pairs_.emplace_back(a.object.get(), b.object.get());
         } else {
@@ -100,38 +104,9 @@ class FclDistancePeer {
     return query->least <= 0;
   }
 
-  int top(int link) const {
-    const mmgrasp::Robot& robot = group_.robot();
-    while (robot.links()[link].parent_joint >= 0 &&
-           robot.joints()[robot.links()[link].parent_joint].type == mmgrasp::JointType::fixed)
-      link = robot.joints()[robot.links()[link].parent_joint].parent_link;
-    return link;
-  }
-
   void place(Placed& placed) {
     placed.object->setTransform(fcl::Transform3d(links_[placed.link] * placed.T_link_shape));
     placed.object->computeAABB();
-  }
-
-  std::shared_ptr<fcl::CollisionGeometryd> geometry(const mmgrasp::Shape& shape) const {
-    using namespace mmgrasp;
-    if (const auto* s = std::get_if<Box>(&shape)) return std::make_shared<fcl::Boxd>(s->size);
-    if (const auto* s = std::get_if<Sphere>(&shape)) return std::make_shared<fcl::Sphered>(s->radius);
-    if (const auto* s = std::get_if<Cylinder>(&shape)) return std::make_shared<fcl::Cylinderd>(s->radius, s->length);
-    if (const auto* s = std::get_if<Capsule>(&shape)) return std::make_shared<fcl::Capsuled>(s->radius, s->length);
-    const TriangleMesh& mesh = *std::get<MeshShape>(shape).mesh;
-    if (mesh.convex && convex_) {
-      auto faces = std::make_shared<std::vector<int>>();
-      for (const auto& t : mesh.triangles) faces->insert(faces->end(), {3, t[0], t[1], t[2]});
-      return std::make_shared<fcl::Convexd>(std::make_shared<std::vector<Eigen::Vector3d>>(mesh.vertices),
-                                            static_cast<int>(mesh.triangles.size()), faces);
-    }
-    auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
-    model->beginModel();
-    for (const auto& t : mesh.triangles)
-      model->addTriangle(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
-    model->endModel();
-    return model;
   }
 
   mmgrasp::JointGroup group_;

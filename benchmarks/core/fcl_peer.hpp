@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "assembly.hpp"
+#include "fcl_shapes.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/collision/disabled_pairs.hpp"
 
@@ -17,19 +19,14 @@ namespace bench {
 /// The pairs of links that a checker of the group looks at because they can move against each other.
 inline std::vector<std::pair<int, int>> self_pairs(const mmgrasp::JointGroup& group) {
   const mmgrasp::Robot& robot = group.robot();
-  const auto top = [&](int link) {
-    while (robot.links()[link].parent_joint >= 0 &&
-           robot.joints()[robot.links()[link].parent_joint].type == mmgrasp::JointType::fixed)
-      link = robot.joints()[robot.links()[link].parent_joint].parent_link;
-    return link;
-  };
   std::vector<char> moves(robot.links().size(), 0);
   for (const int link : group.moving_links()) moves[link] = 1;
   std::vector<std::pair<int, int>> pairs;
   for (int a = 0; a < static_cast<int>(robot.links().size()); ++a) {
     for (int b = a + 1; b < static_cast<int>(robot.links().size()); ++b) {
       if (robot.links()[a].collisions.empty() || robot.links()[b].collisions.empty()) continue;
-      if ((!moves[a] && !moves[b]) || robot.pair_disabled(a, b) || top(a) == top(b)) continue;
+      if ((!moves[a] && !moves[b]) || robot.pair_disabled(a, b) || assembly_of(robot, a) == assembly_of(robot, b))
+        continue;
       pairs.emplace_back(a, b);
     }
   }
@@ -53,9 +50,9 @@ class FclPeer {
     for (std::size_t link = 0; link < robot.links().size(); ++link) {
       for (const LinkShape& shape : robot.links()[link].collisions) {
         objects_of_[link].push_back(static_cast<int>(robot_.size()));
-        robot_.push_back(
-            {static_cast<int>(link), shape.T_link_shape,
-             std::make_unique<fcl::CollisionObjectd>(geometry(shape.shape), fcl::Transform3d::Identity())});
+        robot_.push_back({static_cast<int>(link), shape.T_link_shape,
+                          std::make_unique<fcl::CollisionObjectd>(fcl_geometry(shape.shape, convex_),
+                                                                  fcl::Transform3d::Identity())});
         place(robot_.back());
         if (moves[link]) moving_.push_back(static_cast<int>(robot_.size()) - 1);
       }
@@ -68,7 +65,7 @@ class FclPeer {
     for (const auto& entry : world.objects()) {
       for (const LinkShape& shape : entry.second.shapes) {
         scene_.push_back(std::make_unique<fcl::CollisionObjectd>(
-            geometry(shape.shape), fcl::Transform3d(entry.second.T_world_object * shape.T_link_shape)));
+            fcl_geometry(shape.shape, convex_), fcl::Transform3d(entry.second.T_world_object * shape.T_link_shape)));
         manager_.registerObject(scene_.back().get());
       }
     }
@@ -128,27 +125,6 @@ class FclPeer {
   void place(Placed& placed) {
     placed.object->setTransform(fcl::Transform3d(links_[placed.link] * placed.T_link_shape));
     placed.object->computeAABB();
-  }
-
-  std::shared_ptr<fcl::CollisionGeometryd> geometry(const mmgrasp::Shape& shape) {
-    using namespace mmgrasp;
-    if (const auto* s = std::get_if<Box>(&shape)) return std::make_shared<fcl::Boxd>(s->size);
-    if (const auto* s = std::get_if<Sphere>(&shape)) return std::make_shared<fcl::Sphered>(s->radius);
-    if (const auto* s = std::get_if<Cylinder>(&shape)) return std::make_shared<fcl::Cylinderd>(s->radius, s->length);
-    if (const auto* s = std::get_if<Capsule>(&shape)) return std::make_shared<fcl::Capsuled>(s->radius, s->length);
-    const TriangleMesh& mesh = *std::get<MeshShape>(shape).mesh;
-    if (mesh.convex && convex_) {
-      auto faces = std::make_shared<std::vector<int>>();
-      for (const auto& t : mesh.triangles) faces->insert(faces->end(), {3, t[0], t[1], t[2]});
-      return std::make_shared<fcl::Convexd>(std::make_shared<std::vector<Eigen::Vector3d>>(mesh.vertices),
-                                            static_cast<int>(mesh.triangles.size()), faces);
-    }
-    auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
-    model->beginModel();
-    for (const auto& t : mesh.triangles)
-      model->addTriangle(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
-    model->endModel();
-    return model;
   }
 
   mmgrasp::JointGroup group_;

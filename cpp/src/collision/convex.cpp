@@ -6,7 +6,7 @@
 #include <emmintrin.h>
 #endif
 
-#include "collision/simplex.hpp"
+#include "collision/difference.hpp"
 
 namespace mmgrasp::detail {
 
@@ -58,19 +58,6 @@ int farthest(const double* points, int count, const Eigen::Vector3d& d) {
 
 inline double with_sign(double magnitude, double sign) {
   return sign >= 0 ? magnitude : -magnitude;
-}
-
-SimplexPoint difference(const Convex& a, const Convex& b, const Rigid& b_in_a, const Eigen::Vector3d& v) {
-  SimplexPoint p;
-  p.on_a = a.support(-v);
-  p.on_b = b_in_a * b.support(b_in_a.R.transpose() * v);
-  p.w = p.on_a - p.on_b;
-  return p;
-}
-
-// Gap taken for touching: rounding of coordinates as large as those of w, which spans both bodies when they overlap.
-double touching_gap(const SimplexPoint& p) {
-  return 1e-12 * (1e-3 + p.w.lpNorm<1>() + p.on_a.lpNorm<1>());
 }
 
 }  // namespace

@@ -2,26 +2,13 @@
 
 #include <limits>
 
-#include "collision/simplex.hpp"
+#include "collision/difference.hpp"
 
 namespace mmgrasp::detail {
 
 namespace {
 
 constexpr int kMaxIterations = 128;
-
-SimplexPoint difference(const Convex& a, const Convex& b, const Rigid& b_in_a, const Eigen::Vector3d& axis) {
-  SimplexPoint p;
-  p.on_a = a.support(-axis);
-  p.on_b = b_in_a * b.support(b_in_a.R.transpose() * axis);
-  p.w = p.on_a - p.on_b;
-  return p;
-}
-
-// Gap taken for touching: rounding of coordinates as large as those of w, which spans both bodies when they overlap.
-double touching_gap(const SimplexPoint& p) {
-  return 1e-12 * (1e-3 + p.w.lpNorm<1>() + p.on_a.lpNorm<1>());
-}
 
 }  // namespace
 

@@ -11,7 +11,7 @@
 namespace bench {
 
 /// A shape as FCL's users have it: convex meshes as Convex when `convex`, others as trees of boxes.
-std::shared_ptr<fcl::CollisionGeometryd> geometry(const mmgrasp::Shape& shape) {
+inline std::shared_ptr<fcl::CollisionGeometryd> fcl_geometry(const mmgrasp::Shape& shape, bool convex) {
   using namespace mmgrasp;
   if (const auto* s = std::get_if<Box>(&shape)) return std::make_shared<fcl::Boxd>(s->size);
   if (const auto* s = std::get_if<Sphere>(&shape)) return std::make_shared<fcl::Sphered>(s->radius);

@@ -1,5 +1,4 @@
 #include "bindings.hpp"
-#include "mmgrasp/task/base_region.hpp"
 #include "mmgrasp/task/base_route.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
 #include "mmgrasp/task/part_supply.hpp"
@@ -31,20 +30,6 @@ const std::vector<OptionField<Options>>& supply_fields() {
       option<Options>("seed", &Options::seed, "same seed, same plan"),
       option<Options>("threads", &Options::threads, "0: all; does not change the answer")};
   return fields;
-}
-
-py::array_t<std::uint8_t> mask_array(const BaseGrid& grid, const CellMask& cells) {
-  py::array_t<std::uint8_t> out({static_cast<py::ssize_t>(grid.headings.size()), static_cast<py::ssize_t>(grid.ny),
-                                 static_cast<py::ssize_t>(grid.nx)});
-  if (static_cast<std::size_t>(out.size()) != cells.size()) throw InvalidInput("cells: belong to another grid");
-  std::copy(cells.begin(), cells.end(), out.mutable_data());
-  return out;
-}
-
-CellMask mask_argument(const BaseGrid& grid, const ArrayLike& cells) {
-  const auto flags = flags_argument(
-      cells, "cells", {static_cast<py::ssize_t>(grid.headings.size()), py::ssize_t{grid.ny}, py::ssize_t{grid.nx}});
-  return CellMask(flags.begin(), flags.end());
 }
 
 void bind_problem(py::module_& m) {
@@ -135,103 +120,12 @@ void bind_problem(py::module_& m) {
       });
 }
 
-void bind_regions(py::module_& m) {
-  py::class_<BaseGrid>(m, "BaseGrid", "Square cells over the floor, one layer for each heading.")
-      .def(py::init([](const ArrayLike& origin, double resolution, int nx, int ny, std::vector<double> headings) {
-             if (!(resolution > 0) || nx <= 0 || ny <= 0 || headings.empty()) {
-               throw InvalidInput("BaseGrid: resolution, nx and ny must be > 0 and headings not empty");
-             }
-             return BaseGrid{vector2_argument(origin, "origin"), finite_argument(resolution, "resolution"), nx, ny,
-                             finite_argument(std::move(headings), "headings")};
-           }),
-           py::arg("origin"), py::arg("resolution"), py::arg("nx"), py::arg("ny"),
-           py::arg("headings") = std::vector<double>{0.0})
-      .def_readonly("origin", &BaseGrid::origin, "Lower corner of cell (0, 0) [m].")
-      .def_readonly("resolution", &BaseGrid::resolution)
-      .def_readonly("nx", &BaseGrid::nx)
-      .def_readonly("ny", &BaseGrid::ny)
-      .def_readonly("headings", &BaseGrid::headings)
-      .def(
-          "centre",
-          [](const BaseGrid& g, int heading, int ix, int iy) {
-            const auto check = [](const char* name, int value, int count) {
-              require(value >= 0 && value < count, name, std::to_string(value),
-                      "must be in [0, " + std::to_string(count) + ")");
-            };
-            check("heading", heading, static_cast<int>(g.headings.size()));
-            check("ix", ix, g.nx);
-            check("iy", iy, g.ny);
-            return g.centre(heading, ix, iy);
-          },
-          py::arg("heading"), py::arg("ix"), py::arg("iy"), "x, y, theta of a cell's middle.")
-      .def("__repr__", [](const BaseGrid& g) {
-        return "BaseGrid(" + std::to_string(g.nx) + " x " + std::to_string(g.ny) + " cells, " +
-               std::to_string(g.headings.size()) + " headings)";
-      });
-  py::class_<PartExplanation>(m, "PartExplanation",
-                              "What became of the candidates for one part over all base poses tried.")
-      .def_readonly("part", &PartExplanation::part)
-      .def_readonly("grasps", &PartExplanation::grasps)
-      .def_readonly("base_poses_tried", &PartExplanation::base_poses_tried)
-      .def_readonly("base_poses_feasible", &PartExplanation::base_poses_feasible)
-      .def_readonly("rejections", &PartExplanation::rejections)
-      .def("to_dict",
-           [](const PartExplanation& e) {
-             return py::dict("part"_a = e.part, "grasps"_a = e.grasps, "base_poses_tried"_a = e.base_poses_tried,
-                             "base_poses_feasible"_a = e.base_poses_feasible, "rejections"_a = to_dict(e.rejections));
-           })
-      .def("__repr__", [](const PartExplanation& e) {
-        return "PartExplanation('" + e.part + "', feasible at " + std::to_string(e.base_poses_feasible) + " of " +
-               std::to_string(e.base_poses_tried) + " base poses, rejected: " + e.rejections.summary() + ")";
-      });
-  py::class_<BaseRegion>(m, "BaseRegion", "Base poses from which every target part of a tray can be grasped.")
-      .def_readonly("tray", &BaseRegion::tray)
-      .def(
-          "cells", [](const BaseRegion& r, const BaseGrid& grid) { return mask_array(grid, r.cells); }, py::arg("grid"),
-          "(headings, ny, nx) array of 0 and 1.")
-      .def(
-          "part_cells",
-          [](const BaseRegion& r, const BaseGrid& grid) {
-            py::list out;
-            for (const CellMask& cells : r.part_cells) out.append(mask_array(grid, cells));
-            return out;
-          },
-          py::arg("grid"), "The same for each target part alone.")
-      .def_readonly("explanations", &BaseRegion::explanations)
-      .def_readonly("base_poses_in_collision", &BaseRegion::base_poses_in_collision)
-      .def_property_readonly("count", &BaseRegion::count, "Number of cells.")
-      .def("__repr__",
-           [](const BaseRegion& r) { return "BaseRegion('" + r.tray + "', " + std::to_string(r.count()) + " cells)"; });
-  m.def("make_base_grid", &make_base_grid, py::arg("problem"), py::arg("database"),
-        "The grid that covers all base poses from which any tray could be reached.");
-  m.def(
-      "compute_base_regions",
-      [](const PartSupplyProblem& problem, const ReachDatabase& database, const BaseGrid& grid,
-         const py::object& progress) {
-        return LongCall(progress).run(
-            [&](const Monitor& monitor) { return compute_base_regions(problem, database, grid, monitor); });
-      },
-      py::arg("problem"), py::arg("database"), py::arg("grid"), py::kw_only(), py::arg("progress") = py::none(),
-      "P1 Algorithm 2 with exact inverse kinematics: one region for each tray with target parts.");
-}
-
 py::dict intersection_dict(const Intersection& i) {
   return py::dict("trays"_a = i.trays, "heading"_a = i.heading, "centre"_a = py::make_tuple(i.centre.x(), i.centre.y()),
                   "radius"_a = i.radius, "cells"_a = i.cells);
 }
 
 void bind_sequence(py::module_& m) {
-  m.def(
-      "inscribed_circle",
-      [](const BaseGrid& grid, const ArrayLike& cells, int heading) {
-        if (heading < 0 || heading >= static_cast<int>(grid.headings.size())) {
-          throw InvalidInput("heading = " + std::to_string(heading) + ": must be a layer of the grid");
-        }
-        const InscribedCircle circle = inscribed_circle(grid, mask_argument(grid, cells), heading);
-        return py::make_tuple(Eigen::Vector2d(circle.centre), circle.radius);
-      },
-      py::arg("grid"), py::arg("cells"), py::arg("heading") = 0,
-      "Centre (2,) and radius [m] of the largest disc inside the union of cells of one layer.");
   py::class_<Intersection>(m, "Intersection", "Cells that several regions share, with their largest disc.")
       .def_readonly("trays", &Intersection::trays)
       .def_readonly("heading", &Intersection::heading)
@@ -405,7 +299,7 @@ void bind_plan_result(py::module_& m) {
 
 void bind_task(py::module_& m) {
   bind_problem(m);
-  bind_regions(m);
+  bind_base_regions(m);
   bind_sequence(m);
   bind_picks(m);
   bind_plan_result(m);

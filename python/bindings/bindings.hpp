@@ -35,6 +35,7 @@ void bind_disabled_pairs(py::module_& m);
 void bind_reach(py::module_& m);
 void bind_grasp(py::module_& m);
 void bind_plan(py::module_& m);
+void bind_base_regions(py::module_& m);
 void bind_task(py::module_& m);
 void bind_platform_locations(py::module_& m);
 void bind_verify(py::module_& m);

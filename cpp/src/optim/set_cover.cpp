@@ -1,23 +1,26 @@
 #include "mmgrasp/optim/set_cover.hpp"
 
-#include <coin/Cbc_C_Interface.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <memory>
-#include <mutex>
-#include <optional>
+#include <numeric>
 #include <string>
 
 #include "mmgrasp/core/error.hpp"
+#include "optim/set_cover_branching.hpp"
+#include "optim/set_cover_prices.hpp"
 #include "optim/set_cover_reduction.hpp"
 
 namespace mmgrasp {
 namespace {
 
+constexpr int kPriceSteps = 3000;
+constexpr double kSearchWork = 5e6;     // Entries of the problem looked at in search of a better cover.
+constexpr double kShrunk = 0.8;         // Prices are sought again when no more than this share of the sets is left.
+constexpr double kLeastSeconds = 1e-3;  // For CBC, however late it is.
+
 double cost_of(const SetCoverProblem& problem, int set) {
-  return problem.costs.empty() ? 1.0 : problem.costs[set];
+  return problem.costs.empty() ? 1.0 : problem.costs[static_cast<std::size_t>(set)];
 }
 
 double cost_of(const SetCoverProblem& problem, const std::vector<int>& sets) {
@@ -26,138 +29,167 @@ double cost_of(const SetCoverProblem& problem, const std::vector<int>& sets) {
   return sum;
 }
 
-bool covers(const SetCoverProblem& problem, const std::vector<int>& sets) {
-  std::vector<bool> covered(problem.elements, false);
-  for (int s : sets) {
-    for (int e : problem.sets[s]) covered[e] = true;
-  }
-  return std::all_of(covered.begin(), covered.end(), [](bool c) { return c; });
+double size_of(const SetCoverProblem& problem) {
+  std::size_t size = 0;
+  for (const auto& set : problem.sets) size += set.size();
+  return static_cast<double>(size);
 }
 
-std::vector<int> elements_in_no_set(const SetCoverProblem& problem) {
-  std::vector<bool> covered(problem.elements, false);
-  for (const auto& set : problem.sets) {
-    for (int e : set) covered[e] = true;
+std::vector<int> elements_left_out(const SetCoverProblem& problem, const std::vector<int>& sets) {
+  std::vector<bool> covered(static_cast<std::size_t>(problem.elements), false);
+  for (int s : sets) {
+    for (int e : problem.sets[static_cast<std::size_t>(s)]) covered[static_cast<std::size_t>(e)] = true;
   }
   std::vector<int> missing;
   for (int e = 0; e < problem.elements; ++e) {
-    if (!covered[e]) missing.push_back(e);
+    if (!covered[static_cast<std::size_t>(e)]) missing.push_back(e);
   }
   return missing;
 }
 
-/// The part of the problem the reductions left, renumbered.
-SetCoverProblem restricted(const SetCoverProblem& problem, const detail::ReducedCover& reduced) {
-  SetCoverProblem small;
-  small.elements = static_cast<int>(reduced.elements.size());
-  std::vector<int> new_index(problem.elements, -1);
-  for (int i = 0; i < small.elements; ++i) new_index[reduced.elements[i]] = i;
-  for (int s : reduced.sets) {
-    std::vector<int> elements;
-    for (int e : problem.sets[s]) {
-      if (new_index[e] >= 0) elements.push_back(new_index[e]);
-    }
-    std::sort(elements.begin(), elements.end());
-    elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
-    small.sets.push_back(std::move(elements));
-    small.costs.push_back(cost_of(problem, s));
-  }
-  return small;
+std::vector<int> elements_in_no_set(const SetCoverProblem& problem) {
+  std::vector<int> all(problem.sets.size());
+  std::iota(all.begin(), all.end(), 0);
+  return elements_left_out(problem, all);
 }
 
-/// Cheapest set per newly covered element first, then sets that became superfluous leave: the answer when CBC has none
-/// in time.
-std::vector<int> greedy_cover(const SetCoverProblem& problem) {
-  std::vector<int> times_covered(problem.elements, 0), chosen;
-  int missing = problem.elements;
-  while (missing > 0) {
-    int best = -1, best_gain = 0;
-    for (int s = 0; s < static_cast<int>(problem.sets.size()); ++s) {
-      const auto& set = problem.sets[s];
-      const int gain =
-          static_cast<int>(std::count_if(set.begin(), set.end(), [&](int e) { return times_covered[e] == 0; }));
-      if (gain > 0 && (best < 0 || cost_of(problem, s) * best_gain < cost_of(problem, best) * gain)) {
-        best = s;
-        best_gain = gain;
-      }
-    }
-    for (int e : problem.sets[best]) missing -= times_covered[e]++ == 0;
-    chosen.push_back(best);
-  }
-  for (std::size_t i = 0; i < chosen.size();) {
-    const auto& set = problem.sets[chosen[i]];
-    if (std::all_of(set.begin(), set.end(), [&](int e) { return times_covered[e] > 1; })) {
-      for (int e : set) --times_covered[e];
-      chosen.erase(chosen.begin() + i);
-    } else {
-      ++i;
-    }
-  }
-  return chosen;
-}
-
-bool all_integral(const std::vector<double>& costs) {
-  return std::all_of(costs.begin(), costs.end(), [](double c) { return c == std::floor(c) && c < 1e9; });
-}
-
-struct BranchAndBoundAnswer {
-  std::optional<std::vector<int>> chosen;
-  double lower_bound = 0;
-  bool proven = false;
+/// A part of a problem with its own numbers, and which of the problem's sets they are.
+struct Part {
+  SetCoverProblem problem;
+  std::vector<int> sets;
 };
 
-/// CBC's command-line layer, which Cbc_solve goes through, keeps process-wide state: one run at a time.
-std::mutex& cbc_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
-
-BranchAndBoundAnswer branch_and_bound(const SetCoverProblem& problem, double time_limit) {
-  const std::lock_guard<std::mutex> lock(cbc_mutex());
-  const std::unique_ptr<Cbc_Model, void (*)(Cbc_Model*)> model(Cbc_newModel(), Cbc_deleteModel);
-  const int columns = static_cast<int>(problem.sets.size());
-  std::vector<int> starts{0}, rows;
-  for (const auto& set : problem.sets) {
-    rows.insert(rows.end(), set.begin(), set.end());
-    starts.push_back(static_cast<int>(rows.size()));
-  }
-  const std::vector<double> ones(rows.size(), 1.0), lower(columns, 0.0), upper(columns, 1.0);
-  const std::vector<double> row_lower(problem.elements, 1.0);
-  std::vector<double> row_upper(problem.elements);
-  // No row bound from above is needed; the number of columns is never reached in vain and spares CBC an infinity.
-  std::fill(row_upper.begin(), row_upper.end(), static_cast<double>(columns));
-  Cbc_setLogLevel(model.get(), 0);
-  Cbc_setParameter(model.get(), "log", "0");
-  Cbc_setParameter(model.get(), "threads", "0");
-  Cbc_setParameter(model.get(), "timeMode", "elapsed");
-  if (!all_integral(problem.costs)) Cbc_setParameter(model.get(), "increment", "1e-9");
-  Cbc_loadProblem(model.get(), columns, problem.elements, starts.data(), rows.data(), ones.data(), lower.data(),
-                  upper.data(), problem.costs.data(), row_lower.data(), row_upper.data());
-  for (int c = 0; c < columns; ++c) Cbc_setInteger(model.get(), c);
-  Cbc_setAllowableGap(model.get(), 0.0);
-  Cbc_setAllowableFractionGap(model.get(), 0.0);
-  Cbc_setMaximumSeconds(model.get(), time_limit);
-  Cbc_solve(model.get());
-
-  BranchAndBoundAnswer answer;
-  answer.proven = Cbc_isProvenOptimal(model.get());
-  answer.lower_bound = Cbc_getBestPossibleObjValue(model.get());
-  if (const double* solution = Cbc_bestSolution(model.get())) {
-    answer.chosen.emplace();
-    for (int c = 0; c < columns; ++c) {
-      if (solution[c] > 0.5) answer.chosen->push_back(c);
+/// The problem on some of its sets and elements; costs are written out.
+Part part_of(const SetCoverProblem& problem, const std::vector<int>& sets, const std::vector<int>& elements) {
+  Part part;
+  part.problem.elements = static_cast<int>(elements.size());
+  std::vector<int> new_index(static_cast<std::size_t>(problem.elements), -1);
+  for (std::size_t i = 0; i < elements.size(); ++i)
+    new_index[static_cast<std::size_t>(elements[i])] = static_cast<int>(i);
+  for (int s : sets) {
+    std::vector<int> kept;
+    for (int e : problem.sets[static_cast<std::size_t>(s)]) {
+      if (new_index[static_cast<std::size_t>(e)] >= 0) kept.push_back(new_index[static_cast<std::size_t>(e)]);
     }
+    std::sort(kept.begin(), kept.end());
+    kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+    if (kept.empty()) continue;
+    part.problem.sets.push_back(std::move(kept));
+    part.problem.costs.push_back(cost_of(problem, s));
+    part.sets.push_back(s);
   }
-  return answer;
+  return part;
 }
 
-/// A bound that rounding in the linear programmes cannot have lifted too far; whole-numbered costs allow rounding it
-/// up.
-double safe_bound(double bound, const std::vector<double>& costs) {
-  if (!std::isfinite(bound) || bound < 0) return 0;
-  const double lowered = bound - 1e-6 * std::max(1.0, std::abs(bound));
-  return std::max(0.0, all_integral(costs) ? std::ceil(lowered) : lowered);
+/// Elements that no set joins can be covered apart.
+std::vector<std::vector<int>> components(const SetCoverProblem& problem) {
+  std::vector<int> root(static_cast<std::size_t>(problem.elements));
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&root](int e) {
+    while (root[static_cast<std::size_t>(e)] != e) {
+      int& up = root[static_cast<std::size_t>(e)];
+      up = root[static_cast<std::size_t>(up)];
+      e = up;
+    }
+    return e;
+  };
+  for (const auto& set : problem.sets) {
+    for (int e : set) root[static_cast<std::size_t>(find(e))] = find(set.front());
+  }
+  std::vector<std::vector<int>> lists(static_cast<std::size_t>(problem.elements));
+  for (int e = 0; e < problem.elements; ++e) lists[static_cast<std::size_t>(find(e))].push_back(e);
+  lists.erase(std::remove_if(lists.begin(), lists.end(), [](const auto& list) { return list.empty(); }), lists.end());
+  return lists;
 }
+
+class Solver {
+ public:
+  explicit Solver(double time_limit)
+      : end_(Clock::now() +
+             std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(time_limit, 1e6)))) {}
+
+  struct Answer {
+    std::vector<int> chosen;
+    double bound = 0;
+  };
+
+  /// A cover and a proven bound; both meet when it is optimal. Reduced, in components, each by prices and then by
+  /// branch and bound.
+  Answer solve(const SetCoverProblem& problem) {
+    const detail::ReducedCover reduced = detail::reduce_set_cover(problem);
+    Answer answer{reduced.forced, cost_of(problem, reduced.forced)};
+    if (reduced.elements.empty()) return answer;
+    const Part rest = part_of(problem, reduced.sets, reduced.elements);
+    std::vector<int> all(rest.problem.sets.size());
+    std::iota(all.begin(), all.end(), 0);
+    for (const std::vector<int>& elements : components(rest.problem)) {
+      const Part part = part_of(rest.problem, all, elements);
+      const Answer one = solve_connected(part.problem);
+      for (int s : one.chosen) {
+        answer.chosen.push_back(rest.sets[static_cast<std::size_t>(part.sets[static_cast<std::size_t>(s)])]);
+      }
+      answer.bound += one.bound;
+    }
+    return answer;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  double seconds_left() const {
+    return std::max(kLeastSeconds, std::chrono::duration<double>(end_ - Clock::now()).count());
+  }
+
+  Answer solve_connected(const SetCoverProblem& problem) {
+    const int rounds = static_cast<int>(kSearchWork / (1000.0 + size_of(problem)));
+    detail::PricedCover priced = detail::price_set_cover(problem, kPriceSteps);
+    detail::search_covers(problem, priced, rounds);
+    Answer answer{priced.chosen, priced.bound};
+    if (priced.bound >= priced.cost) return answer;
+    // Only sets that could be part of a cheaper cover: taking any other lifts the bound to the cost of the one at hand.
+    const std::vector<double> reduced = detail::reduced_costs(problem, priced.prices);
+    const double bound = detail::bound_by_prices(problem, priced.prices);
+    const double wanted = detail::all_integral(problem.costs) ? priced.cost - 1 : priced.cost;
+    std::vector<int> useful, elements(static_cast<std::size_t>(problem.elements));
+    std::iota(elements.begin(), elements.end(), 0);
+    for (int s = 0; s < static_cast<int>(problem.sets.size()); ++s) {
+      if (bound + std::max(0.0, reduced[static_cast<std::size_t>(s)]) <= wanted + 1e-9 * priced.cost)
+        useful.push_back(s);
+    }
+    if (!elements_left_out(problem, useful).empty()) return proven(answer, priced.cost);
+    const Part part = part_of(problem, useful, elements);
+    if (static_cast<double>(useful.size()) < kShrunk * static_cast<double>(problem.sets.size())) {
+      return better(problem, answer, lifted(solve(part.problem), part.sets));
+    }
+    const detail::BranchAndBoundAnswer branched = detail::branch_and_bound(part.problem, priced.cost, seconds_left());
+    Answer inner{priced.chosen, branched.lower_bound};
+    if (branched.chosen) inner = lifted({*branched.chosen, branched.lower_bound}, part.sets);
+    if (branched.proven) inner.bound = cost_of(problem, inner.chosen);
+    if (branched.none_cheaper) inner = {priced.chosen, priced.cost};
+    return better(problem, answer, inner);
+  }
+
+  static Answer proven(Answer answer, double cost) {
+    answer.bound = cost;
+    return answer;
+  }
+
+  static Answer lifted(const Answer& inner, const std::vector<int>& sets) {
+    Answer answer{{}, inner.bound};
+    for (int s : inner.chosen) answer.chosen.push_back(sets[static_cast<std::size_t>(s)]);
+    return answer;
+  }
+
+  /// Of a cover and one from the sets that could be part of a cheaper one, whose bound holds for cheaper covers only.
+  static Answer better(const SetCoverProblem& problem, const Answer& known, const Answer& inner) {
+    const double known_cost = cost_of(problem, known.chosen), inner_cost = cost_of(problem, inner.chosen);
+    Answer best = inner_cost < known_cost ? inner : known;
+    best.bound = std::max(known.bound, std::min({inner.bound, known_cost, inner_cost}));
+    return best;
+  }
+
+  Clock::time_point end_;
+};
 
 }  // namespace
 
@@ -187,26 +219,16 @@ SetCoverResult solve_set_cover(const SetCoverProblem& problem, double time_limit
     result.outcome = Outcome::infeasible;
     return result;
   }
-  const detail::ReducedCover reduced = detail::reduce_set_cover(problem);
-  result.chosen = reduced.forced;
-  result.lower_bound = cost_of(problem, reduced.forced);
-  bool proven = true;
-  if (!reduced.elements.empty()) {
-    const SetCoverProblem small = restricted(problem, reduced);
-    const BranchAndBoundAnswer answer = branch_and_bound(small, time_limit);
-    std::vector<int> chosen = greedy_cover(small);
-    const bool usable = answer.chosen && covers(small, *answer.chosen);
-    proven = answer.proven && usable;
-    if (usable && (proven || cost_of(small, *answer.chosen) <= cost_of(small, chosen))) chosen = *answer.chosen;
-    for (int c : chosen) result.chosen.push_back(reduced.sets[c]);
-    result.lower_bound += proven ? cost_of(small, chosen) : safe_bound(answer.lower_bound, small.costs);
-  }
-  std::sort(result.chosen.begin(), result.chosen.end());
+  Solver::Answer answer = Solver(time_limit).solve(problem);
+  std::sort(answer.chosen.begin(), answer.chosen.end());
+  result.chosen = std::move(answer.chosen);
   result.cost = cost_of(problem, result.chosen);
-  result.lower_bound = proven ? result.cost : std::min(result.lower_bound, result.cost);
-  if (!covers(problem, result.chosen)) throw Error("set cover: the answer leaves an element uncovered");
-  // A greedy cover that meets the bound is proven as well.
-  result.outcome = proven || result.cost <= result.lower_bound ? Outcome::solved : Outcome::approximate;
+  if (!elements_left_out(problem, result.chosen).empty()) {
+    throw Error("set cover: the answer leaves an element uncovered");
+  }
+  const bool proven = answer.bound >= result.cost - 1e-9 * result.cost;  // the same sums in another order
+  result.lower_bound = proven ? result.cost : answer.bound;
+  result.outcome = proven ? Outcome::solved : Outcome::approximate;
   return result;
 }
 

@@ -6,11 +6,14 @@
 #include <string>
 
 #include "mmgrasp/core/error.hpp"
+#include "optim/tour_bounds.hpp"
+#include "optim/tour_search.hpp"
 
 namespace mmgrasp {
 namespace {
 
 constexpr int kExactStops = 15;
+constexpr double kProven = 1e-9;  // Relative gap that is rounding.
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void check_lengths(const Eigen::MatrixXd& lengths) {
@@ -80,70 +83,6 @@ std::vector<int> exact_order(const Eigen::MatrixXd& lengths, int n) {
   return order;
 }
 
-std::vector<int> nearest_insertion(const Eigen::MatrixXd& lengths, int n) {
-  std::vector<int> order;
-  std::vector<bool> placed(n, false);
-  for (int round = 0; round < n; ++round) {
-    int best_stop = -1;
-    std::size_t best_place = 0;
-    double best_extra = kInfinity;
-    for (int stop = 0; stop < n; ++stop) {
-      if (placed[stop]) continue;
-      for (std::size_t place = 0; place <= order.size(); ++place) {
-        const int before = place == 0 ? n : order[place - 1], after = place == order.size() ? n + 1 : order[place];
-        const double extra = lengths(before, stop) + lengths(stop, after) - lengths(before, after);
-        if (best_stop < 0 || extra < best_extra) {
-          best_stop = stop;
-          best_place = place;
-          best_extra = extra;
-        }
-      }
-    }
-    order.insert(order.begin() + best_place, best_stop);
-    placed[best_stop] = true;
-  }
-  return order;
-}
-
-/// Reverses stretches and moves runs of up to three stops (either way round) while that shortens the tour.
-void improve(const Eigen::MatrixXd& lengths, std::vector<int>& order) {
-  const int n = static_cast<int>(order.size());
-  double length = length_of(lengths, order);
-  const auto keep_if_shorter = [&](std::vector<int>& trial) {
-    const double trial_length = length_of(lengths, trial);
-    if (trial_length >= length - 1e-12 * (1 + length)) return false;
-    order = trial;
-    length = trial_length;
-    return true;
-  };
-  std::vector<int> trial, run;
-  bool improved = true;
-  while (improved) {
-    improved = false;
-    for (int i = 0; i < n; ++i) {
-      for (int j = i + 1; j < n; ++j) {
-        trial = order;
-        std::reverse(trial.begin() + i, trial.begin() + j + 1);
-        improved |= keep_if_shorter(trial);
-      }
-    }
-    for (int size = 1; size <= 3 && size < n; ++size) {
-      for (int from = 0; from + size <= n; ++from) {
-        for (int to = 0; to <= n - size; ++to) {
-          for (const bool reversed : {false, true}) {
-            trial = order;
-            run.assign(trial.begin() + from, trial.begin() + from + size);
-            if (reversed) std::reverse(run.begin(), run.end());
-            trial.erase(trial.begin() + from, trial.begin() + from + size);
-            trial.insert(trial.begin() + to, run.begin(), run.end());
-            improved |= keep_if_shorter(trial);
-          }
-        }
-      }
-    }
-  }
-}
-
 /// "No way" as a length beyond any tour without one, so that the heuristics can compare tours that use some.
 Eigen::MatrixXd with_large_finite(const Eigen::MatrixXd& lengths) {
   double largest = 1.0;
@@ -160,21 +99,20 @@ TourResult shortest_visiting_tour(const Eigen::MatrixXd& lengths) {
   check_lengths(lengths);
   const int n = std::max(0, static_cast<int>(lengths.rows()) - 2);
   TourResult result;
-  result.proven = n <= kExactStops;
-  if (result.proven) {
-    result.order = exact_order(lengths, n);
-  } else {
-    const Eigen::MatrixXd finite = with_large_finite(lengths);
-    result.order = nearest_insertion(finite, n);
-    improve(finite, result.order);
-  }
+  const bool exact = n <= kExactStops;
+  const Eigen::MatrixXd finite = exact ? Eigen::MatrixXd() : with_large_finite(lengths);
+  result.order = exact ? exact_order(lengths, n) : detail::short_order(finite);
   result.length = static_cast<int>(result.order.size()) == n ? length_of(lengths, result.order) : kInfinity;
-  if (std::isfinite(result.length)) {
-    result.outcome = result.proven ? Outcome::solved : Outcome::approximate;
-  } else {
+  if (!std::isfinite(result.length)) {
+    result.proven = exact;
+    result.lower_bound = exact ? kInfinity : 0;
     result.order.clear();
-    result.outcome = result.proven ? Outcome::infeasible : Outcome::timeout;
+    result.outcome = exact ? Outcome::infeasible : Outcome::timeout;
+    return result;
   }
+  result.lower_bound = exact ? result.length : detail::tour_bound(finite, result.length);
+  result.proven = result.lower_bound >= result.length * (1 - kProven);
+  result.outcome = result.proven ? Outcome::solved : Outcome::approximate;
   return result;
 }
 

@@ -4,7 +4,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
-#include "task/inscribed_circle.hpp"
+#include "task/region_patches.hpp"
 
 // Lengths in here are in cells: cell (ix, iy) is the square [ix, ix + 1] x [iy, iy + 1].
 namespace mmgrasp {
@@ -12,11 +12,6 @@ namespace {
 
 constexpr double kRadiusSlack = 1e-9;  // [m]: a disc of exactly the least radius counts.
 constexpr double kSmallestBox = 1e-6;  // [m]: finer than this, centres are told apart by the points tried only.
-constexpr double kCircleError = 2e-7;  // [m]
-
-struct Square {
-  int ix, iy;
-};
 
 struct Window {
   double x0, x1, y0, y1;
@@ -44,52 +39,6 @@ double squared_gap(const Square& s, const Window& w) {
 double squared_farthest(const Square& s, const Window& w) {
   const double dx = std::max({s.ix - w.x0, 0.0, w.x1 - s.ix - 1}), dy = std::max({s.iy - w.y0, 0.0, w.y1 - s.iy - 1});
   return dx * dx + dy * dy;
-}
-
-/// One tray's region in one layer, cut to its bounds.
-struct Patch {
-  int tray = 0, x0 = 0, y0 = 0, nx = 0, ny = 0;
-  std::vector<std::uint8_t> cells;
-  std::vector<Square> border;  ///< Cells outside that touch the region: all that limits a disc.
-
-  bool has(int ix, int iy) const {
-    return ix >= x0 && iy >= y0 && ix < x0 + nx && iy < y0 + ny &&
-           cells[static_cast<std::size_t>(iy - y0) * nx + (ix - x0)] != 0;
-  }
-};
-
-Patch make_patch(const BaseGrid& grid, const CellMask& mask, int heading, int tray) {
-  Patch patch;
-  patch.tray = tray;
-  int x1 = -1, y1 = -1;
-  patch.x0 = grid.nx;
-  patch.y0 = grid.ny;
-  for (int iy = 0; iy < grid.ny; ++iy) {
-    for (int ix = 0; ix < grid.nx; ++ix) {
-      if (!mask[grid.index(heading, ix, iy)]) continue;
-      patch.x0 = std::min(patch.x0, ix);
-      patch.y0 = std::min(patch.y0, iy);
-      x1 = std::max(x1, ix);
-      y1 = std::max(y1, iy);
-    }
-  }
-  if (x1 < 0) return patch;
-  patch.nx = x1 - patch.x0 + 1;
-  patch.ny = y1 - patch.y0 + 1;
-  patch.cells.reserve(static_cast<std::size_t>(patch.nx) * patch.ny);
-  for (int iy = patch.y0; iy <= y1; ++iy) {
-    for (int ix = patch.x0; ix <= x1; ++ix) patch.cells.push_back(mask[grid.index(heading, ix, iy)] ? 1 : 0);
-  }
-  for (int iy = patch.y0 - 1; iy <= y1 + 1; ++iy) {
-    for (int ix = patch.x0 - 1; ix <= x1 + 1; ++ix) {
-      bool touches = false;
-      for (int dy = -1; dy <= 1; ++dy) {
-        for (int dx = -1; dx <= 1; ++dx) touches = touches || patch.has(ix + dx, iy + dy);
-      }
-      if (touches && !patch.has(ix, iy)) patch.border.push_back({ix, iy});
-    }
-  }
-  return patch;
 }
 
 bool subset(const std::vector<int>& a, const std::vector<int>& b) {
@@ -311,68 +260,32 @@ class LayerSearch {
   MaximalSets found_;
 };
 
-/// The widest disc in what the trays' regions share; at least the one found.
-Intersection place_of(const BaseGrid& grid, const std::vector<Patch>& layer, const Found& found, int heading,
-                      double min_radius) {
-  std::vector<const Patch*> patches;
-  for (const Patch& patch : layer) {
-    if (std::binary_search(found.trays.begin(), found.trays.end(), patch.tray)) patches.push_back(&patch);
-  }
-  int x0 = 0, y0 = 0, x1 = grid.nx, y1 = grid.ny;
-  for (const Patch* patch : patches) {
-    x0 = std::max(x0, patch->x0);
-    y0 = std::max(y0, patch->y0);
-    x1 = std::min(x1, patch->x0 + patch->nx);
-    y1 = std::min(y1, patch->y0 + patch->ny);
-  }
-  Intersection place;
-  place.trays = found.trays;
-  place.heading = heading;
-  std::vector<std::uint8_t> cells;
-  for (int iy = y0; iy < y1; ++iy) {
-    for (int ix = x0; ix < x1; ++ix) {
-      const bool shared = std::all_of(patches.begin(), patches.end(), [&](const Patch* p) { return p->has(ix, iy); });
-      cells.push_back(shared ? 1 : 0);
-      place.cells += shared ? 1 : 0;
+}  // namespace
+
+Intersections maximal_intersections(const RegionPatches& patches, double min_radius, std::size_t max_boxes,
+                                    const Monitor& monitor) {
+  const double resolution = patches.grid().resolution;
+  Intersections result;
+  for (int heading = 0; heading < patches.headings(); ++heading) {
+    LayerSearch search(patches.layer(heading), min_radius / resolution, resolution, max_boxes, monitor);
+    result.complete = search.run() && result.complete;
+    for (const Found& found : search.found().sorted()) {
+      ++result.sets_tried;
+      Intersection place = patches.shared(found.trays, heading);
+      if (place.radius < min_radius) {  // by a rounding
+        place.radius = min_radius - kRadiusSlack;
+        place.centre = patches.grid().origin + Eigen::Vector2d(found.spot.x, found.spot.y) * resolution;
+      }
+      result.robust.push_back(std::move(place));
     }
   }
-  InscribedCircle circle =
-      inscribed_circle_in_cells(x1 - x0, y1 - y0, cells, std::min(kCircleError / grid.resolution, 1e-3));
-  place.radius = circle.radius * grid.resolution;
-  circle.centre += Eigen::Vector2d(x0, y0);
-  if (place.radius < min_radius) {  // by a rounding
-    place.radius = min_radius - kRadiusSlack;
-    circle.centre = {found.spot.x, found.spot.y};
-  }
-  place.centre = grid.origin + circle.centre * grid.resolution;
-  return place;
+  return result;
 }
-
-}  // namespace
 
 Intersections maximal_intersections(const BaseGrid& grid, const std::vector<BaseRegion>& regions, double min_radius,
                                     std::size_t max_boxes, const Monitor& monitor) {
   require(std::isfinite(min_radius) && min_radius >= 0, "min_radius", min_radius, "must be finite and not negative");
-  for (const BaseRegion& region : regions) {
-    require(region.cells.size() == grid.size(), "region '" + region.tray + "' cells",
-            static_cast<double>(region.cells.size()),
-            "must be one flag a cell of the grid (" + std::to_string(grid.size()) + ")");
-  }
-  Intersections result;
-  for (int heading = 0; heading < static_cast<int>(grid.headings.size()); ++heading) {
-    std::vector<Patch> layer;
-    for (int tray = 0; tray < static_cast<int>(regions.size()); ++tray) {
-      Patch patch = make_patch(grid, regions[static_cast<std::size_t>(tray)].cells, heading, tray);
-      if (!patch.cells.empty()) layer.push_back(std::move(patch));
-    }
-    LayerSearch search(layer, min_radius / grid.resolution, grid.resolution, max_boxes, monitor);
-    result.complete = search.run() && result.complete;
-    for (const Found& found : search.found().sorted()) {
-      ++result.sets_tried;
-      result.robust.push_back(place_of(grid, layer, found, heading, min_radius));
-    }
-  }
-  return result;
+  return maximal_intersections(RegionPatches(grid, regions), min_radius, max_boxes, monitor);
 }
 
 }  // namespace mmgrasp

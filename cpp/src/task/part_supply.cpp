@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/optim/tour.hpp"
 #include "task/joined_motions.hpp"
 #include "task/obstructions.hpp"
 #include "task/other_places.hpp"
@@ -22,6 +23,7 @@ constexpr int kRobustnessRounds = 5;
 constexpr double kRequiredRate = 0.999;  // Share of sampled base poses that must work in the end.
 constexpr std::size_t kOtherPlaces = 4;
 constexpr std::size_t kNamedContacts = 3;
+constexpr std::size_t kListedSets = 2000;
 
 /// Adds up the wall time of a stage.
 class StageClock {
@@ -127,13 +129,62 @@ class PartSupply {
 
   bool solve_stops() {
     const StageClock clock(plan_, "intersections and stops");
-    plan_.intersections = robust_intersections(plan_.grid, plan_.regions, problem_.options.positioning_uncertainty);
-    StopSet set = minimal_stops(plan_.grid, plan_.intersections, static_cast<int>(plan_.regions.size()));
+    StopOptions options;
+    options.min_radius = problem_.options.positioning_uncertainty;
+    options.route_length = [this](const std::vector<Stop>& stops) { return straight_route(stops); };
+    StopSet set = least_stops(plan_.grid, plan_.regions, options, monitor_);
     plan_.stops = std::move(set.stops);
     plan_.lower_bound = set.lower_bound;
     plan_.proven_minimal = set.outcome == Outcome::solved;
     unreachable_ = std::move(set.unreachable_trays);
+    list_intersections(std::move(set.candidates));
     return set.outcome == Outcome::solved || set.outcome == Outcome::approximate;
+  }
+
+  /// For the reader of the plan: every robust set of trays when there are not too many, else those that matter.
+  void list_intersections(Intersections candidates) {
+    plan_.intersections =
+        robust_intersections(plan_.grid, plan_.regions, problem_.options.positioning_uncertainty, kListedSets);
+    if (!plan_.intersections.complete) plan_.intersections = std::move(candidates);
+    std::vector<Intersection>& robust = plan_.intersections.robust;
+    for (Stop& stop : plan_.stops) {
+      const auto same = std::find_if(robust.begin(), robust.end(), [&](const Intersection& some) {
+        return some.trays == stop.trays && std::abs(heading_of(some) - stop.pose.z()) < 1e-12;
+      });
+      stop.intersection = static_cast<int>(same - robust.begin());
+      if (same == robust.end()) robust.push_back(intersection_of(stop));
+    }
+  }
+
+  double heading_of(const Intersection& some) const {
+    return plan_.grid.headings[static_cast<std::size_t>(some.heading)];
+  }
+
+  Intersection intersection_of(const Stop& stop) const {
+    Intersection own;
+    own.trays = stop.trays;
+    own.centre = stop.pose.head<2>();
+    own.radius = stop.radius;
+    while (heading_of(own) != stop.pose.z()) ++own.heading;
+    for (std::size_t cell = 0; cell < static_cast<std::size_t>(plan_.grid.cells_per_layer()); ++cell) {
+      const std::size_t at = plan_.grid.index(own.heading, 0, 0) + cell;
+      own.cells += std::all_of(own.trays.begin(), own.trays.end(),
+                               [&](int tray) { return plan_.regions[static_cast<std::size_t>(tray)].cells[at] != 0; });
+    }
+    return own;
+  }
+
+  /// From start to goal over all stops as the crow flies: enough to choose among equally good sequences.
+  double straight_route(const std::vector<Stop>& stops) const {
+    std::vector<Eigen::Vector2d> places;
+    for (const Stop& stop : stops) places.emplace_back(stop.pose.head<2>());
+    places.emplace_back(problem_.start.head<2>());
+    places.emplace_back(problem_.goal.head<2>());
+    const auto n = static_cast<Eigen::Index>(places.size());
+    const Eigen::MatrixXd lengths = Eigen::MatrixXd::NullaryExpr(n, n, [&](Eigen::Index i, Eigen::Index j) {
+      return (places[static_cast<std::size_t>(i)] - places[static_cast<std::size_t>(j)]).norm();
+    });
+    return shortest_visiting_tour(lengths).length;
   }
 
   void explain_unreachable(BasePoseEvaluator& evaluator) {

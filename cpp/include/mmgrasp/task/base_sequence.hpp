@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "mmgrasp/core/export.hpp"
@@ -63,7 +64,26 @@ struct MMGRASP_EXPORT StopSet {
   std::vector<Stop> stops;                ///< In no order yet.
   int lower_bound = 0;                    ///< Proven least number of stops.
   std::vector<int> unreachable_trays;
+  Intersections candidates;  ///< least_stops(): the maximal intersections it chose from.
 };
+
+/// What is asked of a least sequence of stops, and how equally short ones are told apart.
+struct MMGRASP_EXPORT StopOptions {
+  double min_radius = 0.10;      ///< Positioning uncertainty: the least disc at every stop [m]; >= 0.
+  double time_limit = 60.0;      ///< For the proof that fewer stops cannot do [s]; > 0.
+  double tie_time_limit = 10.0;  ///< For choosing among equally few stops [s]; >= 0.
+  /// Length of the shortest route over some stops, the last tie-breaker; empty: not looked at.
+  std::function<double(const std::vector<Stop>&)> route_length;
+  void check() const;
+};
+
+/// The whole of P1's PlanMinSequence from the regions: the least number of stops, over maximal_intersections(); among
+/// equally few, the largest smallest disc (to 0.1 mm), of those the largest sum of radii (P1 equation 3.2; counted in
+/// whole millimetres, over discs no more than a quarter of a cell, or a sixteenth of their range, apart), of those the
+/// shortest route among up to 200 sequences. Each tray is served at one stop, and the disc of a stop is the widest one
+/// for exactly its trays. The outcome tells about the number of stops only. Stop::intersection stays -1.
+MMGRASP_EXPORT StopSet least_stops(const BaseGrid& grid, const std::vector<BaseRegion>& regions,
+                                   const StopOptions& options = {}, const Monitor& monitor = {});
 
 /// The least number of robust intersections that cover all trays (P1 equation 3.1), by 0-1 programming with proof;
 /// among equally few, larger discs are preferred. Each tray goes to the chosen stop with the largest disc.

@@ -1,0 +1,146 @@
+#include "optim/tour_bounds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace mmgrasp::detail {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kMaxSteps = 1000;
+constexpr int kPatience = 20;
+constexpr double kLastStep = 1e-4;
+
+/// Shortest spanning tree of symmetric lengths plus prices (Prim); its length and each node's neighbours.
+double spanning_tree(const Eigen::MatrixXd& lengths, const Eigen::VectorXd& prices, Eigen::VectorXi& degrees) {
+  const auto n = lengths.rows();
+  std::vector<double> nearest(static_cast<std::size_t>(n), kInfinity);
+  std::vector<Eigen::Index> from(static_cast<std::size_t>(n), 0);
+  std::vector<char> in(static_cast<std::size_t>(n), 0);
+  degrees = Eigen::VectorXi::Zero(n);
+  double total = 0;
+  Eigen::Index at = 0;
+  for (Eigen::Index joined = 1; joined < n; ++joined) {
+    in[static_cast<std::size_t>(at)] = 1;
+    Eigen::Index next = -1;
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const auto i = static_cast<std::size_t>(j);
+      if (in[i]) continue;
+      const double length = lengths(at, j) + prices(at) + prices(j);
+      if (length < nearest[i]) {
+        nearest[i] = length;
+        from[i] = at;
+      }
+      if (next < 0 || nearest[i] < nearest[static_cast<std::size_t>(next)]) next = j;
+    }
+    total += nearest[static_cast<std::size_t>(next)];
+    ++degrees(next);
+    ++degrees(from[static_cast<std::size_t>(next)]);
+    at = next;
+  }
+  return total;
+}
+
+double tree_bound(const Eigen::MatrixXd& lengths, double reached) {
+  const auto n = lengths.rows();
+  Eigen::MatrixXd shorter = lengths.cwiseMin(lengths.transpose());
+  // Never driven when there is a stop between.
+  const double far = 4 * (reached + shorter.maxCoeff());
+  shorter(n - 2, n - 1) = shorter(n - 1, n - 2) = far;
+  // Nothing is ever driven into the start or out of the goal.
+  for (Eigen::Index i = 0; i < n - 2; ++i) {
+    shorter(n - 2, i) = shorter(i, n - 2) = lengths(n - 2, i);
+    shorter(n - 1, i) = shorter(i, n - 1) = lengths(i, n - 1);
+  }
+  Eigen::VectorXi wanted = Eigen::VectorXi::Constant(n, 2), degrees;
+  wanted.tail<2>().setOnes();
+  Eigen::VectorXd prices = Eigen::VectorXd::Zero(n), best_prices = prices;
+  double best = 0, step = 1;
+  int since = 0;
+  for (int k = 0; k < kMaxSteps && step > kLastStep; ++k) {
+    const double bound = spanning_tree(shorter, prices, degrees) - prices.dot(wanted.cast<double>());
+    if (bound > best + 1e-9 * reached) since = 0;
+    if (bound > best) {
+      best = bound;
+      best_prices = prices;
+    }
+    const Eigen::VectorXd off = (degrees - wanted).cast<double>();
+    if (off.squaredNorm() == 0 || best >= reached) break;
+    if (++since > kPatience) {
+      since = 0;
+      step *= 0.5;
+      prices = best_prices;
+      continue;
+    }
+    prices += step * std::max(reached - bound, 1e-3 * reached) / off.squaredNorm() * off;
+  }
+  return best;
+}
+
+/// Cheapest assignment of columns to rows (shortest augmenting paths); the sum of its dual prices.
+double assignment(const Eigen::MatrixXd& costs) {
+  const auto n = static_cast<std::size_t>(costs.rows());
+  std::vector<double> row_price(n + 1, 0), column_price(n + 1, 0), slack(n + 1);
+  std::vector<std::size_t> row_of(n + 1, 0), previous(n + 1, 0);
+  std::vector<char> done(n + 1);
+  for (std::size_t row = 1; row <= n; ++row) {
+    row_of[0] = row;
+    std::size_t column = 0;
+    std::fill(slack.begin(), slack.end(), kInfinity);
+    std::fill(done.begin(), done.end(), 0);
+    do {
+      done[column] = 1;
+      const std::size_t at = row_of[column];
+      std::size_t next = 0;
+      double least = kInfinity;
+      for (std::size_t j = 1; j <= n; ++j) {
+        if (done[j]) continue;
+        const double reduced = costs(static_cast<Eigen::Index>(at - 1), static_cast<Eigen::Index>(j - 1)) -
+                               row_price[at] - column_price[j];
+        if (reduced < slack[j]) {
+          slack[j] = reduced;
+          previous[j] = column;
+        }
+        if (slack[j] < least) {
+          least = slack[j];
+          next = j;
+        }
+      }
+      for (std::size_t j = 0; j <= n; ++j) {
+        if (done[j]) {
+          row_price[row_of[j]] += least;
+          column_price[j] -= least;
+        } else {
+          slack[j] -= least;
+        }
+      }
+      column = next;
+    } while (row_of[column] != 0);
+    for (; column != 0; column = previous[column]) row_of[column] = row_of[previous[column]];
+  }
+  return -column_price[0];
+}
+
+double assignment_bound(const Eigen::MatrixXd& lengths, double reached) {
+  const auto n = lengths.rows();
+  // Rows: stops and start; columns: stops and goal.
+  Eigen::MatrixXd costs(n - 1, n - 1);
+  costs.leftCols(n - 2) = lengths.topLeftCorner(n - 1, n - 2);
+  costs.col(n - 2) = lengths.col(n - 1).head(n - 1);
+  const double far = 4 * (reached + lengths.maxCoeff());
+  for (Eigen::Index i = 0; i < n - 2; ++i) costs(i, i) = far;
+  costs(n - 2, n - 2) = far;
+  return assignment(costs);
+}
+
+}  // namespace
+
+double tour_bound(const Eigen::MatrixXd& lengths, double reached) {
+  if (lengths.rows() < 3) return lengths(0, 1);
+  const double bound = std::max(tree_bound(lengths, reached), assignment_bound(lengths, reached));
+  return std::clamp(bound - 1e-12 * static_cast<double>(lengths.rows()) * reached, 0.0, reached);
+}
+
+}  // namespace mmgrasp::detail

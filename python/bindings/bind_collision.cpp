@@ -85,6 +85,8 @@ Eigen::VectorXd configuration(const CollisionChecker& checker, const ArrayLike& 
 }
 
 void bind_checker(py::module_& m) {
+  m.def("_checker_option_table", [] { return option_table(checker_fields()); });
+  m.def("_edge_option_table", [] { return option_table(edge_fields()); });
   py::class_<CollisionChecker>(
       m, "CollisionChecker",
       "Collision questions about one group in a snapshot of the world: later changes of the world\n"

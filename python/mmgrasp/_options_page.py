@@ -9,6 +9,8 @@ SECTIONS = (
     ("reach", "The reachability database (`ReachOptions`)", _core._reach_option_table, set()),
     ("grasp_options", "The grasp sampler of a part type (`GraspSamplerOptions`)", _core._grasp_option_table, set()),
     ("ik", "Inverse kinematics, keywords of `JointGroup.ik` and its kin (`IkOptions`)", _core._ik_option_table, set()),
+    ("collision_checker", "Keywords of `CollisionChecker` (`CheckerOptions`)", _core._checker_option_table, set()),
+    ("check_edge", "Keywords of `CollisionChecker.check_edge` (`EdgeOptions`)", _core._edge_option_table, set()),
     (
         "plan_platform_locations",
         "Two base poses for two tool poses, keywords (`PlatformLocationsOptions`)",

@@ -1,6 +1,8 @@
 // SRDF for a fixed small robot: its groups work or say why not, and what is written of it reads back the same.
 #include <cmath>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "expect.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -38,6 +40,15 @@ void use_groups(const Robot& robot) {
   }
 }
 
+/// The names of a group's columns; none when it is no chain.
+std::vector<std::string> joints_of(const Robot& robot, const std::string& group) {
+  try {
+    return robot.group(group).names();
+  } catch (const InvalidInput&) {
+    return {};
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -54,7 +65,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   use_groups(*robot);
   const Robot again = Robot::from_strings(robot->to_urdf(), robot->to_srdf(), {}, "written.urdf");
   expect(again.groups().size() == robot->groups().size(), "the same groups after writing and reading");
+  for (std::size_t i = 0; i < again.groups().size(); ++i)
+    expect(joints_of(again, again.groups()[i].name) == joints_of(*robot, robot->groups()[i].name),
+           "of the same joints");
   expect(again.group_states() == robot->group_states(), "the same states");
+  expect(again.passive_joints() == robot->passive_joints(), "the same passive joints");
   expect(again.disabled_pairs() == robot->disabled_pairs(), "the same disabled pairs");
   return 0;
 }

@@ -83,7 +83,7 @@ struct Kernels {
 };
 
 /// The quickest this machine can run, unless use_collision_kernels() chose others.
-const Kernels& kernels();
+MMGRASP_EXPORT const Kernels& kernels();
 /// "portable" (they run everywhere), or "" for the quickest; for tests, while no checker is at work.
 MMGRASP_EXPORT void use_collision_kernels(const std::string& name);
 /// Name of those in use.

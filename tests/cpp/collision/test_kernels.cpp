@@ -1,0 +1,255 @@
+#include "collision/kernels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "mmgrasp/core/random.hpp"
+
+// Each loop of the collision kernels, in every version this machine runs, against plain double precision: they may err
+// only towards "not sure", and only within the slack.
+namespace mmgrasp::detail {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kSlack = 1e-5;
+
+/// Runs a test once with the portable kernels and once with the quickest.
+class CollisionKernels : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override { use_collision_kernels(GetParam()); }
+  void TearDown() override { use_collision_kernels(""); }
+};
+
+INSTANTIATE_TEST_SUITE_P(Each, CollisionKernels, testing::Values("portable", ""),
+                         [](const auto& info) { return std::string(*info.param ? info.param : "quickest"); });
+
+Vector3d point_within(Rng& random, double half) {
+  return {random.uniform(-half, half), random.uniform(-half, half), random.uniform(-half, half)};
+}
+
+Matrix3d any_rotation(Rng& random) {
+  return (Eigen::AngleAxisd(random.uniform(-3, 3), Vector3d::UnitZ()) *
+          Eigen::AngleAxisd(random.uniform(-3, 3), Vector3d::UnitY()) *
+          Eigen::AngleAxisd(random.uniform(-3, 3), Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+struct Box {
+  Matrix3d R;
+  Vector3d centre, half;
+  double distance(const Vector3d& p) const {
+    return ((R.transpose() * (p - centre)).cwiseAbs() - half).cwiseMax(0.0).norm();
+  }
+};
+
+Box any_box(Rng& random) {
+  return {any_rotation(random), point_within(random, 0.8), Vector3d(0.2, 0.2, 0.2) + point_within(random, 0.15)};
+}
+
+FloatRigid to_float(const Matrix3d& R, const Vector3d& t) {
+  FloatRigid out{};
+  for (int i = 0; i < 9; ++i) out.R[i] = static_cast<float>(R(i / 3, i % 3));
+  for (int i = 0; i < 3; ++i) out.t[i] = static_cast<float>(t[i]);
+  return out;
+}
+
+/// Balls as a CoverView wants them: padded to whole vectors with balls far away.
+struct Cover {
+  std::vector<float> x, y, z, outer, inner;
+  int filled = 0;
+  void add(const Vector3d& p, double outer_radius, double inner_radius) {
+    x.push_back(static_cast<float>(p.x()));
+    y.push_back(static_cast<float>(p.y()));
+    z.push_back(static_cast<float>(p.z()));
+    outer.push_back(static_cast<float>(outer_radius));
+    inner.push_back(static_cast<float>(inner_radius));
+    ++filled;
+  }
+  CoverView view() {
+    while (x.size() % kLanes != 0) {
+      for (auto* v : {&x, &y, &z}) v->push_back(1e6f);
+      outer.push_back(0);
+      inner.push_back(-1);
+    }
+    return {x.data(), y.data(), z.data(), outer.data(), inner.data(), static_cast<int>(x.size()), filled};
+  }
+  Vector3d centre(int i) const { return {x[i], y[i], z[i]}; }
+};
+
+TEST_P(CollisionKernels, FramesEqualProductsOfTransforms) {
+  Rng random(3);
+  for (int round = 0; round < 200; ++round) {
+    std::vector<FrameStep> steps;
+    std::vector<double> q;
+    std::vector<Eigen::Isometry3d> expected{Eigen::Isometry3d::Identity()};
+    for (int i = 0; i < 7; ++i) {
+      Eigen::Isometry3d fixed = Eigen::Isometry3d::Identity();
+      fixed.linear() = any_rotation(random);
+      fixed.translation() = point_within(random, 0.5);
+      FrameStep step{};
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) step.R[4 * c + r] = fixed.linear()(r, c);
+      for (int r = 0; r < 3; ++r) step.p[r] = fixed.translation()[r];
+      step.multiplier = random.uniform(-2, 2);
+      step.offset = random.uniform(-1, 1);
+      step.parent = static_cast<int>(random.uniform(0, i + 0.999));
+      step.column = static_cast<int>(q.size());
+      step.motion = i % 3 == 0 ? FrameMotion::turn : i % 3 == 1 ? FrameMotion::slide : FrameMotion::ball;
+      Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
+      if (step.motion == FrameMotion::ball) {
+        const Vector3d w = round == 0 ? Vector3d::Zero() : point_within(random, 2);
+        if (w.norm() > 0) moved.linear() = Eigen::AngleAxisd(w.norm(), w.normalized()).toRotationMatrix();
+        for (int k = 0; k < 3; ++k) q.push_back(w[k]);
+      } else {
+        q.push_back(random.uniform(-3, 3));
+        const double value = step.multiplier * q.back() + step.offset;
+        if (step.motion == FrameMotion::turn)
+          moved.linear() = Eigen::AngleAxisd(value, Vector3d::UnitZ()).toRotationMatrix();
+        if (step.motion == FrameMotion::slide) moved.translation().z() = value;
+      }
+      expected.push_back(expected[step.parent] * fixed * moved);
+      steps.push_back(step);
+    }
+    alignas(32) double frames[16 * 8] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0};
+    kernels().place_frames(steps.data(), static_cast<int>(steps.size()), q.data(), frames);
+    for (std::size_t f = 0; f < expected.size(); ++f)
+      for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 3; ++r) EXPECT_NEAR(frames[16 * f + 4 * c + r], expected[f].matrix()(r, c), 1e-13) << f;
+
+    const FrameBall ball{{0.1, -0.2, 0.3}, 0.07, 5};
+    float placed[4];
+    kernels().place_balls(&ball, 1, frames, placed);
+    const Vector3d centre = expected[5] * Vector3d(0.1, -0.2, 0.3);
+    const double moved_by = (Vector3d(placed[0], placed[1], placed[2]) - centre).norm();
+    EXPECT_GE(placed[3], 0.07 + moved_by);  // what rounding moved, the radius makes good
+    EXPECT_LT(placed[3], 0.07 + 3e-6 * (3 * centre.norm() + 0.07));
+  }
+}
+
+TEST_P(CollisionKernels, BallsMeetBoxesWhenTheyDo) {
+  Rng random(5);
+  int met = 0, apart = 0;
+  for (int round = 0; round < 300; ++round) {
+    BoxPack packs[2] = {};
+    std::vector<Box> boxes;
+    for (BoxPack& pack : packs) {
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const Box box = any_box(random);
+        boxes.push_back(box);
+        for (int k = 0; k < 9; ++k) pack.axes[k][lane] = static_cast<float>(box.R.transpose()(k / 3, k % 3));
+        for (int k = 0; k < 3; ++k) {
+          pack.centre[k][lane] = static_cast<float>(box.centre[k]);
+          pack.half[k][lane] = static_cast<float>(box.half[k]);
+        }
+      }
+    }
+    const Vector3d centre = point_within(random, 1).cast<float>().cast<double>();
+    const double radius = static_cast<float>(random.uniform(0.05, 0.5));
+    const float ball[4] = {static_cast<float>(centre.x()), static_cast<float>(centre.y()),
+                           static_cast<float>(centre.z()), static_cast<float>(radius)};
+    std::uint8_t masks[2] = {};
+    float nearest = 0;
+    kernels().balls_meet(packs, 2, ball, 1, masks, &nearest);
+    double least = 1e9;
+    for (int i = 0; i < 16; ++i) {
+      const double distance = boxes[i].distance(centre);
+      least = std::min(least, distance);
+      const bool said = (masks[i / kLanes] >> (i % kLanes) & 1) != 0;
+      if (distance < radius - kSlack) EXPECT_TRUE(said) << distance << " " << radius;
+      if (distance > radius + kSlack) EXPECT_FALSE(said) << distance << " " << radius;
+      ++(said ? met : apart);
+    }
+    EXPECT_NEAR(nearest, least * least, kSlack);
+  }
+  EXPECT_GT(met, 300);
+  EXPECT_GT(apart, 300);
+}
+
+TEST_P(CollisionKernels, CoverAgainstBoxIsNeverSureAndWrong) {
+  Rng random(7);
+  int answers[3] = {};
+  for (int round = 0; round < 3000; ++round) {
+    Cover cover;
+    for (int i = 0; i < 11; ++i) {
+      const double inner = random.uniform(-0.05, 0.05);
+      cover.add(point_within(random, 0.2), std::max(inner, 0.0) + random.uniform(0.005, 0.05), inner);
+    }
+    Box box = any_box(random);
+    box.centre *= 0.6;
+    const float half[3] = {static_cast<float>(box.half[0]), static_cast<float>(box.half[1]),
+                           static_cast<float>(box.half[2])};
+    const double grow = random.uniform(0, 0.01);
+    const CoverView view = cover.view();
+    const CoverAnswer answer = kernels().cover_box(view, to_float(box.R, box.centre), half, static_cast<float>(grow),
+                                                   static_cast<float>(kSlack));
+    ++answers[answer];
+    bool outer_meets = false, inner_meets = false, outer_far = true;
+    for (int i = 0; i < cover.filled; ++i) {
+      const double distance = box.distance(cover.centre(i));
+      outer_meets |= distance <= cover.outer[i] + grow;
+      outer_far &= distance > cover.outer[i] + grow + 2 * kSlack;
+      inner_meets |= cover.inner[i] > 0 && distance < cover.inner[i];
+    }
+    if (outer_meets) EXPECT_NE(answer, kApart);
+    if (outer_far) EXPECT_EQ(answer, kApart);
+    if (!inner_meets) EXPECT_NE(answer, kOverlap);
+  }
+  for (const int count : answers) EXPECT_GT(count, 100);
+}
+
+TEST_P(CollisionKernels, FieldAgainstCoverIsNeverSureAndWrong) {
+  // The field of a ball of radius 0.2 about the origin: each cell holds a lower bound of the distance within it.
+  constexpr int kCount = 24;
+  constexpr double kLow = -0.36, kStep = 0.03, kRadius = 0.2, kQuantum = 0.004;
+  std::vector<std::int8_t> cells(kCount * kCount * kCount);
+  for (int i = 0; i < kCount; ++i)
+    for (int j = 0; j < kCount; ++j)
+      for (int k = 0; k < kCount; ++k) {
+        const Vector3d centre(kLow + (i + 0.5) * kStep, kLow + (j + 0.5) * kStep, kLow + (k + 0.5) * kStep);
+        const double reach = 0.5 * std::sqrt(3.0) * kStep, d = centre.norm() - kRadius;
+        const double units = d + reach < 0 ? -1 : std::max(0.0, d - reach) / kQuantum;
+        cells[(i * kCount + j) * kCount + k] = static_cast<std::int8_t>(std::min(127.0, std::floor(units)));
+      }
+  FieldView field{};
+  for (int k = 0; k < 3; ++k) {
+    field.low[k] = static_cast<float>(kLow);
+    field.half[k] = static_cast<float>(kRadius);
+    field.count[k] = kCount;
+  }
+  field.per_step = static_cast<float>(1 / kStep);
+  field.quantum = static_cast<float>(kQuantum);
+  field.cells = cells.data();
+  Rng random(11);
+  int answers[3] = {};
+  for (int round = 0; round < 4000; ++round) {
+    // Four big balls, each with eight small ones inside it.
+    Cover coarse, fine;
+    for (int i = 0; i < kLanes; ++i) {
+      const Vector3d centre = point_within(random, 0.12);
+      coarse.add(centre, 0.06, -1);
+      for (int k = 0; k < kLanes; ++k) fine.add(centre + point_within(random, 0.02), 0.02, round % 2 == 0 ? 0.01 : -1);
+    }
+    const CoverView levels[2] = {coarse.view(), fine.view()};
+    const Matrix3d R = any_rotation(random);
+    const Vector3d t = point_within(random, 0.4);
+    const CoverAnswer answer = kernels().field_cover(field, levels, 2, to_float(R, t), 0, static_cast<float>(kSlack));
+    ++answers[answer];
+    double least = 1e9, least_centre = 1e9;
+    for (int i = 0; i < fine.filled; ++i) {
+      const double d = (R * fine.centre(i) + t).norm() - kRadius;
+      least = std::min(least, d - fine.outer[i]);
+      if (fine.inner[i] > 0) least_centre = std::min(least_centre, d);
+    }
+    if (least < 0) EXPECT_NE(answer, kApart);
+    if (least > 2 * std::sqrt(3.0) * kStep) EXPECT_EQ(answer, kApart);
+    if (least_centre > 0) EXPECT_NE(answer, kOverlap);
+  }
+  for (const int count : answers) EXPECT_GT(count, 100);
+}
+
+}  // namespace
+}  // namespace mmgrasp::detail

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import json
+import threading
+
+import numpy as np
 
 import mmgrasp as mg
+from conftest import ASSETS
 
 
 def without_times(plan: mg.PartSupplyPlan) -> str:
@@ -27,3 +31,34 @@ def test_same_database_at_one_and_two_threads(small_path, tmp_path):
         files.append(tmp_path / f"{threads}.reach")
         mg.ReachDatabase.build(arm, samples=50_000, seed=1, threads=threads).save(files[-1])
     assert files[0].read_bytes() == files[1].read_bytes()
+
+
+def test_threads_share_one_seed_database():
+    folder = ASSETS / "robots" / "fetchlike"
+    robot = mg.Robot.load(folder / "fetchlike.urdf", folder / "fetchlike.srdf", base="diff_drive")
+    whole = robot.group("arm_with_torso", tip="gripper_tcp", with_base=True)
+    checker = mg.CollisionChecker(robot, mg.World(), group=whole)
+    database = mg.IkSeedDatabase(whole, capacity=50)
+    down = [0, np.pi / 2, 0]
+    failures: list[str] = []
+
+    def plan(number: int) -> None:
+        own = checker.clone()
+        for i in range(3):
+            pick = mg.pose([0.8 + 0.05 * i, -0.2, 0.9], rpy=down)
+            place = mg.pose([0.8, 0.2 + 0.05 * number, 0.9], rpy=down)
+            found = mg.plan_platform_locations(own, pick, place, database=database, samples=5, seed=number + 1)
+            if found.outcome != mg.Outcome.solved:
+                failures.append(f"{number}/{i}: {found.outcome}")
+            elif max(np.abs(whole.fk(found.q_pick) - pick).max(), np.abs(whole.fk(found.q_place) - place).max()) > 2e-4:
+                failures.append(f"{number}/{i}: off the poses")
+
+    workers = [threading.Thread(target=plan, args=(number,)) for number in range(4)]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join()
+    assert failures == []
+    assert 24 <= len(database) <= 50  # two solutions a call at least
+    for seed in database.seeds(mg.pose([0.8, 0, 0.9], rpy=down), 50):
+        assert np.isfinite(seed).all()

@@ -54,8 +54,7 @@ bool agree(std::vector<Program>& programs, mmgrasp::CollisionChecker& checker, c
 bool run(const bench::Arm& arm, int count, int rounds) {
   const mmgrasp::World world = bench::twenty_boxes(arm, 3);
   mmgrasp::CollisionChecker checker(arm.group, world);
-  const Configurations draws = bench::planner_draws(checker, count, 5),
-                       others = bench::planner_draws(checker, count, 6);
+  const Configurations draws = bench::planner_draws(checker, count, 5);
   bench::FclPeer fcl_convex(arm.group, world, true), fcl_trees(arm.group, world, false);
   std::vector<Program> programs;
   programs.push_back({"mmgrasp", "defaults", [&](const Eigen::VectorXd& q) { return checker.is_free(q); }, {}, {}, {}});
@@ -83,9 +82,6 @@ bool run(const bench::Arm& arm, int count, int rounds) {
   Configurations free, hit;
   for (const Eigen::VectorXd& q : draws) (checker.is_free(q) ? free : hit).push_back(q);
   std::size_t unjudged = 0, sum = 0;
-  // Before anything was asked about configurations near these more than a few times.
-  std::vector<double> first;
-  for (Program& program : programs) first.push_back(time_of(program, others, sum));
   const bool same = agree(programs, checker, draws, unjudged);
   for (int round = 0; round < rounds; ++round) {
     for (Program& program : programs) {
@@ -96,13 +92,12 @@ bool run(const bench::Arm& arm, int count, int rounds) {
   }
   const double hits = static_cast<double>(hit.size()) / static_cast<double>(draws.size());
   for (Program& program : programs) {
-    char more[320];
+    char more[256];
     std::snprintf(
         more, sizeof more,
         "\"hits\": %.3f, \"free us\": %.4g, \"colliding us\": %.4g, \"queries\": %zu, \"in the 1e-6 m band\": "
-        "%zu, \"answers agree\": %s, \"on first sight us\": %.4g",
-        hits, median(program.free), median(program.hit), draws.size(), unjudged, same ? "true" : "false",
-        first[static_cast<std::size_t>(&program - programs.data())]);
+        "%zu, \"answers agree\": %s",
+        hits, median(program.free), median(program.hit), draws.size(), unjudged, same ? "true" : "false");
     bench::print(
         {"free or not", arm.name + ", 20 boxes", program.who, "us", median(program.all), more, program.settings});
   }

@@ -17,7 +17,6 @@ BodyShape place_on_link(const LinkShape& shape, const Rigid& in_link, int body, 
   out.padded = padding > 0 ? shared_solid(shape.shape, padding) : out.solid;
   out.bounds = shared_bounds(*out.solid, shape.shape);
   out.ball = in_link * out.solid->ball_centre;
-  out.of_mesh = std::holds_alternative<MeshShape>(shape.shape);
   return out;
 }
 

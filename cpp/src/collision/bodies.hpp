@@ -6,7 +6,6 @@
 
 #include "collision/ball_cover.hpp"
 #include "collision/moving_frames.hpp"
-#include "collision/pair_table.hpp"
 #include "collision/scene_packs.hpp"
 #include "collision/solid.hpp"
 #include "mmgrasp/collision/checker.hpp"
@@ -30,7 +29,6 @@ struct BodyShape {
   std::shared_ptr<const Solid> padded;             ///< Against the scene.
   std::shared_ptr<const BodyBounds> bounds;        ///< Of the solid without padding, in its frame.
   Eigen::Vector3d ball = Eigen::Vector3d::Zero();  ///< Centre of the bounding sphere in the link.
-  bool of_mesh = false;                            ///< The solid lives as long as its mesh.
 };
 
 /// A robot link with shapes, or a held object.
@@ -74,10 +72,8 @@ std::vector<int> default_touch_links(const Robot& robot, int link);
 
 struct ShapePair {
   int a = 0, b = 0;
-  int ball_a = 0, ball_b = 0;              ///< Their places among the plan's balls.
-  double reach = 0;                        ///< Sum of the bounding spheres' radii.
-  int upper = 0, lower = 0;                ///< With a table: a and b, the one nearer to the root first.
-  std::shared_ptr<const PairTable> table;  ///< Null: none.
+  int ball_a = 0, ball_b = 0;  ///< Their places among the plan's balls.
+  double reach = 0;            ///< Sum of the bounding spheres' radii.
 };
 
 /// Where a shape sits among the frames of a group.
@@ -111,7 +107,6 @@ struct PairPlan {
 
  private:
   MotionRates bound_motion(const Eigen::VectorXd& largest) const;
-  void add_tables(const Snapshot& snapshot, const JointGroup& group);
 };
 
 /// Link of each rigid assembly: links joined by fixed joints share a number.

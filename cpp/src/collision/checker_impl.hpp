@@ -63,10 +63,6 @@ struct CollisionChecker::Impl {
   bool pair_collides_exactly(const detail::ShapePair& pair);
   bool hits_scene_exactly(int shape, int scene_shape);
   bool balls_apart(const detail::ShapePair& pair) const;
-  /// Proven apart by their balls or by their table.
-  bool surely_apart(const detail::ShapePair& pair) const;
-  /// Tells the pair's table what it costs to find the pair apart otherwise; true when the table now proves it.
-  bool spent(const detail::ShapePair& pair, int cost) const;
   /// False when plan->moving[body] hits a bounded scene shape. Clears `proven` unless it stays free while none of its
   /// points moves more than `motion` [m].
   bool body_is_free(int body, double motion, bool& proven);
@@ -94,7 +90,6 @@ struct CollisionChecker::Impl {
   JointGroup group;
   std::size_t queries = 0;
 
-  std::vector<double> values;       ///< The configuration placed last.
   std::vector<double> frames;       ///< Of the last configuration; see Kernels::place_frames.
   std::vector<float> ball_centres;  ///< Per ball of the plan: x, y, z, radius.
   bool frames_valid = false;

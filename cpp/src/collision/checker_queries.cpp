@@ -56,7 +56,6 @@ CollisionChecker::Impl::Impl(std::shared_ptr<const detail::Snapshot> snapshot_in
     : snapshot(std::move(snapshot_in)),
       plan(std::make_shared<detail::PairPlan>(*snapshot, group_in)),
       group(group_in),
-      values(static_cast<std::size_t>(group_in.size())),
       frames(16 * static_cast<std::size_t>(plan->frames.count())),
       ball_centres(4 * plan->balls.size()),
       balls(snapshot->shapes.size(), Eigen::Vector3d::Zero()),
@@ -75,7 +74,6 @@ void CollisionChecker::Impl::forget() {
 
 void CollisionChecker::Impl::place_balls(const double* q) {
   ++stamp;
-  std::copy(q, q + values.size(), values.begin());
   const bool first = !frames_valid;
   if (first) {
     detail::MovingFrames::set(Rigid(group.T_world_root()), frames.data());
@@ -120,25 +118,13 @@ bool CollisionChecker::Impl::balls_apart(const detail::ShapePair& pair) const {
   return dx * dx + dy * dy + dz * dz > reach * reach;
 }
 
-bool CollisionChecker::Impl::surely_apart(const detail::ShapePair& pair) const {
-  if (balls_apart(pair)) return true;
-  return pair.table != nullptr && pair.table->apart(values.data());
-}
-
-bool CollisionChecker::Impl::spent(const detail::ShapePair& pair, int cost) const {
-  return pair.table != nullptr &&
-         pair.table->spent(values.data(), cost, snapshot->shapes[pair.upper], snapshot->shapes[pair.lower]);
-}
-
 CoverAnswer CollisionChecker::Impl::pair_balls(const detail::ShapePair& pair) {
   const detail::BodyShape &a = snapshot->shapes[pair.a], &b = snapshot->shapes[pair.b];
   if (a.bounds->balls().empty() || b.bounds->balls().empty()) return detail::kMaybe;
   const Rigid &T_a = pose(pair.a), &T_b = pose(pair.b);
   const CoverAnswer first = cover_against_box(a.bounds->balls(), T_a, *b.solid, T_b, 0);
-  if (first == detail::kApart) spent(pair, detail::PairTable::kBoxCost);
   if (first == detail::kApart || (first == detail::kOverlap && b.solid->is_box)) return first;
   const CoverAnswer second = cover_against_box(b.bounds->balls(), T_b, *a.solid, T_a, 0);
-  if (second == detail::kApart) spent(pair, detail::PairTable::kBoxCost);
   if (second == detail::kApart || (second == detail::kOverlap && a.solid->is_box)) return second;
   // The larger body as the field: the smaller one has the smaller balls.
   const bool a_larger = a.solid->ball_radius > b.solid->ball_radius;
@@ -148,15 +134,12 @@ CoverAnswer CollisionChecker::Impl::pair_balls(const detail::ShapePair& pair) {
     if (field == nullptr) return detail::kMaybe;
     return balls_in_field(*field, T_body, balls.bounds->detail(*balls.solid).covers, T_balls, 0);
   };
-  CoverAnswer answer = a_larger ? by_field(a, T_a, b, T_b) : by_field(b, T_b, a, T_a);
-  if (answer == detail::kMaybe) answer = a_larger ? by_field(b, T_b, a, T_a) : by_field(a, T_a, b, T_b);
-  if (answer == detail::kApart) spent(pair, detail::PairTable::kFieldCost);
-  return answer;
+  const CoverAnswer answer = a_larger ? by_field(a, T_a, b, T_b) : by_field(b, T_b, a, T_a);
+  if (answer != detail::kMaybe) return answer;
+  return a_larger ? by_field(b, T_b, a, T_a) : by_field(a, T_a, b, T_b);
 }
 
 bool CollisionChecker::Impl::pair_collides_exactly(const detail::ShapePair& pair) {
-  // A proof costs about as much as the exact check, but is good for all of its cell.
-  if (spent(pair, detail::PairTable::kExactCost)) return false;
   const detail::BodyShape &a = snapshot->shapes[pair.a], &b = snapshot->shapes[pair.b];
   if (a.solid->kind == detail::SolidKind::mesh && b.solid->kind == detail::SolidKind::mesh) {
     // Few large triangles look for their like in a field around the smaller body.
@@ -170,7 +153,7 @@ bool CollisionChecker::Impl::pair_collides_exactly(const detail::ShapePair& pair
 }
 
 bool CollisionChecker::Impl::pair_collides(const detail::ShapePair& pair) {
-  if (surely_apart(pair)) return false;
+  if (balls_apart(pair)) return false;
   const CoverAnswer answer = pair_balls(pair);
   return answer == detail::kMaybe ? pair_collides_exactly(pair) : answer == detail::kOverlap;
 }
@@ -303,7 +286,7 @@ bool CollisionChecker::Impl::self_collides() {
   unsure.clear();
   for (std::size_t i = 0; i < plan->varying.size(); ++i) {
     const detail::ShapePair& pair = plan->varying[i];
-    if (surely_apart(pair)) continue;
+    if (balls_apart(pair)) continue;
     const CoverAnswer answer = pair_balls(pair);
     if (answer == detail::kApart) continue;
     if (answer == detail::kMaybe) {

@@ -19,8 +19,6 @@ double surely(double motion) {
 // Far checks first finds collisions early; once this many intervals wait, one is finished after the other, which keeps
 // memory independent of the number of pieces.
 constexpr std::size_t kBroad = 256;
-// Longer edges are not looked up check by check before they are walked.
-constexpr long kMostLookUps = 100;
 
 // From below.
 double gap_to(const SceneShape& other, const float* ball) {
@@ -52,9 +50,7 @@ bool CollisionChecker::Impl::EdgeWalk::all_free() {
   }
   const std::size_t bodies = open_.size();
   if (options.check_self) {
-    for (int i = 0; i < static_cast<int>(checker_.plan->varying.size()); ++i) {
-      if (!apart_all_along(checker_.plan->varying[i])) open_.push_back(i);
-    }
+    for (int i = 0; i < static_cast<int>(checker_.plan->varying.size()); ++i) open_.push_back(i);
   }
   std::size_t looked_at = 0;
   std::vector<Interval> queue{{0, pieces_, 0, bodies, open_.size()}};
@@ -83,15 +79,6 @@ bool CollisionChecker::Impl::EdgeWalk::all_free() {
   }
   // What was proven counts as checked.
   checker_.queries += static_cast<std::size_t>(pieces_ - 1) - looked_at;
-  return true;
-}
-
-bool CollisionChecker::Impl::EdgeWalk::apart_all_along(const ShapePair& pair) {
-  if (pair.table == nullptr || pieces_ > kMostLookUps) return false;
-  for (long i = 1; i < pieces_; ++i) {
-    q_ = q0_ + delta_ * (static_cast<double>(i) / static_cast<double>(pieces_));
-    if (!pair.table->apart(q_.data())) return false;
-  }
   return true;
 }
 

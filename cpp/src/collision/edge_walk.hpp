@@ -27,8 +27,6 @@ class CollisionChecker::Impl::EdgeWalk {
   bool look(const Interval& interval, long at, double reach, Interval& rest);
   bool bodies_free(const Interval& interval, double reach);
   bool pairs_free(const Interval& interval, double reach);
-  /// The pair's table says so for all checks.
-  bool apart_all_along(const detail::ShapePair& pair);
 
   Impl& checker_;
   Eigen::VectorXd q0_, delta_, q_;

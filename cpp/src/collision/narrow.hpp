@@ -9,9 +9,6 @@ namespace mmgrasp::detail {
 /// True when a, placed at T_a, and b at T_b touch (or come within the sum of their margins). Closed meshes are solid.
 bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b);
 
-/// A part of one lies within the other, given that their surfaces do not meet.
-bool one_inside(const Solid& a, const Solid& b, const Rigid& b_in_a);
-
 class DistanceField;
 /// The same answer for two meshes whose bodies are known to be close, sooner: `field` (of a) says which triangles of b
 /// need no look.

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "collision/field_walk.hpp"
+#include "collision/distance_field.hpp"
 #include "collision/narrow.hpp"
 
 namespace mmgrasp::detail {
@@ -16,6 +16,11 @@ struct PairFrame {
 
 bool nodes_overlap(const BoxTree::Node& a, const BoxTree::Node& b, const PairFrame& frame, double margin) {
   return boxes_overlap(a.half, b.half, frame.b_in_a.R, frame.abs_R, frame.b_in_a * b.centre - a.centre, margin);
+}
+
+bool pieces_collide(const Convex& a, const Convex& b, const Rigid& b_in_a, double margin) {
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  return convex_collide(a, b, b_in_a, margin, axis);
 }
 
 // Some triangle or voxel of a against the convex body b.
@@ -73,6 +78,116 @@ bool tree_hits_tree(const Solid& a, const Solid& b, const PairFrame& frame, doub
   return false;
 }
 
+// The space a triangle takes, for boxes that do not meet it: its bounds, its plane and the planes through its edges.
+class TriangleSpace {
+ public:
+  TriangleSpace(const Convex& triangle, const Rigid& placed, double margin) {
+    const double* p = triangle.points;
+    Eigen::Vector3d corner[3];
+    Eigen::AlignedBox3d bounds;
+    for (int i = 0; i < 3; ++i) {
+      corner[i] = placed * Eigen::Vector3d(p[i], p[3 + i], p[6 + i]);
+      bounds.extend(corner[i]);
+    }
+    const double grown = margin + 1e-9;
+    centre_ = bounds.center();
+    half_ = 0.5 * bounds.sizes() + Eigen::Vector3d::Constant(grown);
+    const Eigen::Vector3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+    add(normal, corner[0], grown);
+    add(-normal, corner[0], grown);
+    for (int i = 0; i < 3; ++i) add((corner[(i + 1) % 3] - corner[i]).cross(normal), corner[i], grown);
+  }
+
+  bool misses(const BoxTree::Node& box) const {
+    if (((box.centre - centre_).cwiseAbs() - box.half - half_).maxCoeff() > 0) return true;
+    for (int i = 0; i < count_; ++i) {
+      if (normal_[i].dot(box.centre) - normal_[i].cwiseAbs().dot(box.half) > offset_[i]) return true;
+    }
+    return false;
+  }
+
+ private:
+  // Slivers have no direction worth trusting.
+  void add(const Eigen::Vector3d& normal, const Eigen::Vector3d& point, double grown) {
+    const double length = normal.norm();
+    if (!(length > 1e-10 * half_.squaredNorm())) return;
+    normal_[count_] = normal / length;
+    offset_[count_] = normal_[count_].dot(point) + grown;
+    ++count_;
+  }
+
+  Eigen::Vector3d centre_, half_, normal_[5];
+  double offset_[5];
+  int count_ = 0;
+};
+
+// A single triangle (a hull of three points) of another body against the tree.
+bool tree_hits_triangle(const Solid& a, const Convex& triangle, const Rigid& b_in_a, double margin) {
+  const TriangleSpace space(triangle, b_in_a, margin);
+  int stack[64], size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const BoxTree::Node& node = a.tree.nodes()[stack[--size]];
+    if (space.misses(node)) continue;
+    if (node.count == 0) {
+      stack[size++] = node.first + 1;
+      stack[size++] = node.first;
+      continue;
+    }
+    for (int i = node.first; i < node.first + node.count; ++i) {
+      if (pieces_collide(a.piece(i), triangle, b_in_a, margin)) return true;
+    }
+  }
+  return false;
+}
+
+// True when the field proves the triangle farther away than the margin, cutting it in halves where it must.
+bool field_clears(const DistanceField& field, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                  const Eigen::Vector3d& c, double margin, int cuts) {
+  const Eigen::Vector3d middle = (a + b + c) / 3;
+  const double distance = field.distance(middle) - margin;
+  if (distance <= 0) return false;
+  const double squared = std::max({(a - middle).squaredNorm(), (b - middle).squaredNorm(), (c - middle).squaredNorm()});
+  if (distance * distance > squared) return true;
+  if (cuts == 0) return false;
+  const auto halves = [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Eigen::Vector3d& other) {
+    const Eigen::Vector3d half = 0.5 * (from + to);
+    return field_clears(field, from, half, other, margin, cuts - 1) &&
+           field_clears(field, half, to, other, margin, cuts - 1);
+  };
+  const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
+  if (ab >= bc && ab >= ca) return halves(a, b, c);
+  return bc >= ca ? halves(b, c, a) : halves(c, a, b);
+}
+
+// More halves cost more than the exact look they may save.
+constexpr int kCuts = 1;
+
+// Triangles of b that the field of a cannot rule out, against the tree of a.
+bool tree_hits_field(const Solid& a, const DistanceField& field, const Solid& b, const PairFrame& frame,
+                     double margin) {
+  int stack[64], size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const BoxTree::Node& node = b.tree.nodes()[stack[--size]];
+    if (field.distance(frame.b_in_a * node.centre) > node.half.norm() + margin) continue;
+    if (node.count == 0) {
+      stack[size++] = node.first + 1;
+      stack[size++] = node.first;
+      continue;
+    }
+    for (int i = node.first; i < node.first + node.count; ++i) {
+      const Convex triangle = b.piece(i);
+      const double* p = triangle.points;
+      Eigen::Vector3d corner[3];
+      for (int c = 0; c < 3; ++c) corner[c] = frame.b_in_a * Eigen::Vector3d(p[c], p[3 + c], p[6 + c]);
+      if (field_clears(field, corner[0], corner[1], corner[2], margin, kCuts)) continue;
+      if (tree_hits_triangle(a, triangle, frame.b_in_a, margin)) return true;
+    }
+  }
+  return false;
+}
+
 // b inside the closed mesh a, given that their surfaces do not meet: then each connected part is in or out as a whole.
 bool inside(const Solid& a, const Solid& b, const Rigid& b_in_a) {
   if (a.kind != SolidKind::mesh || !a.closed) return false;
@@ -108,10 +223,6 @@ bool plane_collides(const Solid& plane, const Solid& b, const Rigid& b_in_a, dou
 
 }  // namespace
 
-bool one_inside(const Solid& a, const Solid& b, const Rigid& b_in_a) {
-  return inside(a, b, b_in_a) || inside(b, a, b_in_a.to(Rigid()));
-}
-
 bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b) {
   if (a.never_collides() || b.never_collides()) return false;
   if (a.kind != SolidKind::plane && b.kind == SolidKind::plane) return solids_collide(b, T_b, a, T_a);
@@ -137,7 +248,7 @@ bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigi
       return true;
   }
   if (b_is_tree ? tree_hits_tree(a, b, frame, margin) : tree_hits_convex(a, b, frame, margin)) return true;
-  return one_inside(a, b, frame.b_in_a);
+  return inside(a, b, frame.b_in_a) || inside(b, a, T_b.to(T_a));
 }
 
 bool meshes_collide(const Solid& a, const Rigid& T_a, const DistanceField& field, const Solid& b, const Rigid& T_b) {
@@ -146,10 +257,8 @@ bool meshes_collide(const Solid& a, const Rigid& T_a, const DistanceField& field
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
   if (a.has_hull && b.has_hull && !convex_collide(a.core, b.core, frame.b_in_a, margin, axis)) return false;
   if (a.has_inner && b.has_inner && convex_collide(a.inner, b.inner, frame.b_in_a, margin, axis)) return true;
-  const auto same = [margin](const Eigen::Vector3d*, int, double) { return margin; };
-  long budget = std::numeric_limits<long>::max();
-  if (tree_hits_field(a, field, b, frame.b_in_a, same, budget)) return true;
-  return one_inside(a, b, frame.b_in_a);
+  if (tree_hits_field(a, field, b, frame, margin)) return true;
+  return inside(a, b, frame.b_in_a) || inside(b, a, T_b.to(T_a));
 }
 
 }  // namespace mmgrasp::detail

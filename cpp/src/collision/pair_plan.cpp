@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "collision/bodies.hpp"
 
@@ -77,71 +76,14 @@ PairPlan::PairPlan(const Snapshot& snapshot, const JointGroup& group) : frames(g
       const BodyShape &a = snapshot.shapes[i], &b = snapshot.shapes[j];
       if (a.body == b.body || a.solid->never_collides() || b.solid->never_collides()) continue;
       if (never_needs_check(snapshot, snapshot.bodies[a.body], snapshot.bodies[b.body], assembly)) continue;
-      const ShapePair pair{static_cast<int>(i),
-                           static_cast<int>(j),
-                           ball_of[i],
-                           ball_of[j],
-                           a.solid->ball_radius + b.solid->ball_radius,
-                           0,
-                           0,
-                           nullptr};
+      const ShapePair pair{static_cast<int>(i), static_cast<int>(j), ball_of[i], ball_of[j],
+                           a.solid->ball_radius + b.solid->ball_radius};
       (moved_by[a.link] == moved_by[b.link] ? constant : varying).push_back(pair);
     }
   }
   // Limits are kept up to rounding.
   rates = bound_motion(group.lower().cwiseAbs().cwiseMax(group.upper().cwiseAbs()) +
                        Eigen::VectorXd::Constant(group.size(), 1e-6));
-  add_tables(snapshot, group);
-}
-
-namespace {
-
-// Steps from frame `upper` down to frame `lower`; false when there is no such way, or one that no table covers.
-bool chain_between(const MovingFrames& frames, int upper, int lower, const JointGroup& group, PairChain& chain) {
-  for (int frame = lower; frame != upper; frame = frames.steps()[static_cast<std::size_t>(frame) - 1].parent) {
-    if (frame == 0 || chain.axes.size() == PairChain::kMaxAxes) return false;
-    const FrameStep& step = frames.steps()[static_cast<std::size_t>(frame) - 1];
-    if (step.motion == FrameMotion::ball || step.multiplier == 0) return false;
-    PairChain::Axis axis;
-    for (int c = 0; c < 3; ++c) {
-      for (int r = 0; r < 3; ++r) axis.before.R(r, c) = step.R[4 * c + r];
-      axis.before.t[c] = step.p[c];
-    }
-    axis.multiplier = step.multiplier;
-    axis.offset = step.offset;
-    axis.column = step.column;
-    axis.slides = step.motion == FrameMotion::slide;
-    const double one = step.multiplier * group.lower()[step.column] + step.offset;
-    const double other = step.multiplier * group.upper()[step.column] + step.offset;
-    // Limits are kept up to rounding.
-    axis.low = std::min(one, other) - 1e-6;
-    axis.size = std::abs(one - other) + 2e-6;
-    axis.wraps = !axis.slides && !(axis.size < 2 * M_PI);
-    if (axis.wraps) axis.low = 0, axis.size = 2 * M_PI;
-    if (!std::isfinite(axis.low) || !std::isfinite(axis.size)) return false;
-    axis.per_size = 1 / axis.size;
-    chain.axes.insert(chain.axes.begin(), axis);
-  }
-  return true;
-}
-
-}  // namespace
-
-void PairPlan::add_tables(const Snapshot& snapshot, const JointGroup& group) {
-  for (ShapePair& pair : varying) {
-    // Meshes keep their solids, so what was found out about them serves later checkers as well.
-    if (!snapshot.shapes[pair.a].of_mesh || !snapshot.shapes[pair.b].of_mesh) continue;
-    if (snapshot.bodies[snapshot.shapes[pair.a].body].held || snapshot.bodies[snapshot.shapes[pair.b].body].held)
-      continue;
-    const bool a_above = frames.common_frame(placed[pair.a].frame, placed[pair.b].frame) == placed[pair.a].frame;
-    pair.upper = a_above ? pair.a : pair.b;
-    pair.lower = a_above ? pair.b : pair.a;
-    PairChain chain;
-    chain.upper_in_frame = placed[pair.upper].in_frame;
-    chain.lower_in_frame = placed[pair.lower].in_frame;
-    if (!chain_between(frames, placed[pair.upper].frame, placed[pair.lower].frame, group, chain)) continue;
-    pair.table = shared_table(chain, snapshot.shapes[pair.upper].solid, snapshot.shapes[pair.lower].solid);
-  }
 }
 
 MotionRates PairPlan::rates_along(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) const {

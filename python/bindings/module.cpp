@@ -28,6 +28,7 @@ PYBIND11_MODULE(_core, m) {
   bind_grasp(m);
   bind_plan(m);
   bind_task(m);
+  bind_pickle(m);
   bind_platform_locations(m);
   bind_verify(m);
 }

@@ -1,14 +1,15 @@
 """The command `mmgrasp`.
 
-Exit codes: 0 done, 1 a plan has faults or a robot cannot be planned for, 2 bad input, 3 there is no plan, 130 Ctrl-C.
+Exit codes: 0 done, 1 a plan has faults, a robot cannot be planned for or an exact value of a paper is missed, 2 bad input, 3 there is no plan, 130 Ctrl-C.
 """
 
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from rich.console import Console
@@ -91,12 +92,38 @@ def build_parser() -> argparse.ArgumentParser:
     check.add_argument("--json", action="store_true")
     check.set_defaults(run=run_check)
 
+    again = commands.add_parser(
+        "reproduce", help="compute a paper's tables and figures again, beside the paper's numbers"
+    )
+    again.add_argument("name", nargs="*", help="p1-table-3.3, ... or all; none: list them")
+    again.add_argument("--quick", action="store_true", help="smaller set-ups that show the same in seconds")
+    again.add_argument(
+        "--json", action="store_true", help="print JSON instead of Markdown: an object for one name, else a list"
+    )
+    again.add_argument(
+        "--out", type=Path, metavar="DIR", help="also write JSON and pictures there, and a page of all of them"
+    )
+    again.add_argument("--seed", type=_count, default=1, metavar="N", help="of whatever is random (default 1)")
+    _add_cluster_options(again)
+    again.set_defaults(run=run_reproduce)
+
     view = commands.add_parser("view", help="show a plan in the browser, or draw it")
     view.add_argument("plan", type=Path, help="plan.json")
     view.add_argument("--png", type=Path, metavar="FILE", help="write a picture instead of opening the browser")
     view.add_argument("--port", type=_count, default=8080, metavar="N")
     view.set_defaults(run=run_view)
     return parser
+
+
+def _add_cluster_options(parser: argparse.ArgumentParser) -> None:
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument(
+        "--workers", type=_count, metavar="N", help="spread the work over N local processes (0: one a core)"
+    )
+    where.add_argument("--scheduler", metavar="ADDRESS", help="spread the work over a Dask cluster, tcp://host:port")
+    parser.add_argument(
+        "--shards", type=Path, metavar="DIR", help="where --workers and --scheduler keep finished shards"
+    )
 
 
 def _count(text: str) -> int:
@@ -267,6 +294,43 @@ def run_view(arguments: argparse.Namespace, console: Console) -> int:
     except ImportError:
         raise InvalidInput("the browser view needs viser: pip install 'mmgrasp[view]'") from None
     return DONE
+
+
+def run_reproduce(arguments: argparse.Namespace, console: Console) -> int:
+    from . import reproduce as again
+    from .reproduce.page import markdown, store
+
+    if not arguments.name:
+        for entry in again.ENTRIES.values():
+            print(f"{entry.name:<24}{entry.title}")
+        return DONE
+    names = [e for name in arguments.name for e in (again.ENTRIES if name == "all" else [again.entry(name).name])]
+    results = []
+    with Reporter(console) as report, _sweep(arguments) as sweep:
+        for name in dict.fromkeys(names):
+            result = again.reproduce(name, quick=arguments.quick, seed=arguments.seed, progress=report, sweep=sweep)
+            results.append(result)
+            if arguments.out:
+                store(result, arguments.out)
+            if not arguments.json:
+                print(markdown(result), flush=True)
+    if arguments.json:
+        print(json.dumps(results[0] if len(results) == 1 else results, allow_nan=False))
+    return DONE if all(c["holds"] for result in results for c in result["checks"] if c["kind"] == "E") else FAULTY
+
+
+@contextlib.contextmanager
+def _sweep(arguments: argparse.Namespace) -> Iterator[Callable]:
+    """Calls here, or on the cluster that the arguments ask for."""
+    if arguments.workers is None and arguments.scheduler is None:
+        from .reproduce import sweep_here
+
+        yield sweep_here
+        return
+    from . import cluster
+
+    with cluster.connect(workers=arguments.workers, scheduler=arguments.scheduler, folder=arguments.shards) as engine:
+        yield engine.run
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

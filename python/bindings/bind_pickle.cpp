@@ -1,0 +1,80 @@
+#include "bindings.hpp"
+#include "mmgrasp/task/base_region.hpp"
+
+// Grids and regions travel between processes (mmgrasp.cluster): they pickle, to the last bit.
+
+namespace mmgrasp::python {
+namespace {
+
+py::bytes packed(const CellMask& cells) {
+  return py::bytes(reinterpret_cast<const char*>(cells.data()), cells.size());
+}
+
+CellMask unpacked(const py::handle& state) {
+  const auto text = py::cast<std::string>(state);
+  return CellMask(text.begin(), text.end());
+}
+
+py::tuple grid_state(const BaseGrid& g) {
+  return py::make_tuple(Eigen::Vector2d(g.origin), g.resolution, g.nx, g.ny, g.headings);
+}
+
+BaseGrid grid_of(const py::tuple& s) {
+  return BaseGrid{py::cast<Eigen::Vector2d>(s[0]), py::cast<double>(s[1]), py::cast<int>(s[2]), py::cast<int>(s[3]),
+                  py::cast<std::vector<double>>(s[4])};
+}
+
+py::tuple explanation_state(const PartExplanation& e) {
+  const Rejections& r = e.rejections;
+  return py::make_tuple(e.part, e.grasps, e.base_poses_tried, e.base_poses_feasible, r.reach, r.limits,
+                        r.self_collision, r.scene, r.grasp_filter);
+}
+
+PartExplanation explanation_of(const py::tuple& s) {
+  const auto count = [&](std::size_t i) { return py::cast<std::size_t>(s[i]); };
+  PartExplanation e;
+  e.part = py::cast<std::string>(s[0]);
+  e.grasps = py::cast<int>(s[1]);
+  e.base_poses_tried = count(2);
+  e.base_poses_feasible = count(3);
+  e.rejections = {count(4), count(5), count(6), count(7), count(8)};
+  return e;
+}
+
+py::tuple region_state(const BaseRegion& r) {
+  py::list parts, explanations;
+  for (const CellMask& cells : r.part_cells) parts.append(packed(cells));
+  for (const PartExplanation& e : r.explanations) explanations.append(explanation_state(e));
+  return py::make_tuple(r.tray, packed(r.cells), parts, explanations, r.base_poses_in_collision);
+}
+
+BaseRegion region_of(const py::tuple& s) {
+  BaseRegion r;
+  r.tray = py::cast<std::string>(s[0]);
+  r.cells = unpacked(s[1]);
+  for (const py::handle& cells : s[2]) r.part_cells.push_back(unpacked(cells));
+  for (const py::handle& e : s[3]) r.explanations.push_back(explanation_of(py::cast<py::tuple>(e)));
+  r.base_poses_in_collision = py::cast<std::size_t>(s[4]);
+  return r;
+}
+
+}  // namespace
+
+void bind_pickle(py::module_& m) {
+  declared<BaseGrid>(m, "BaseGrid").def(py::pickle(&grid_state, &grid_of));
+  declared<PartExplanation>(m, "PartExplanation").def(py::pickle(&explanation_state, &explanation_of));
+  declared<BaseRegion>(m, "BaseRegion")
+      .def(py::init([](std::string tray, const ArrayLike& cells, const BaseGrid& grid) {
+             BaseRegion region;
+             region.tray = std::move(tray);
+             region.cells = flags_argument(
+                 cells, "cells",
+                 {static_cast<py::ssize_t>(grid.headings.size()), py::ssize_t{grid.ny}, py::ssize_t{grid.nx}});
+             return region;
+           }),
+           py::arg("tray"), py::arg("cells"), py::arg("grid"),
+           "A region known from elsewhere: (headings, ny, nx) zeros and ones, to be intersected with others.")
+      .def(py::pickle(&region_state, &region_of));
+}
+
+}  // namespace mmgrasp::python

@@ -1,0 +1,101 @@
+"""P1 table 3.1, figures 3.13 and 3.15: one tray's base region against the number of objects in it."""
+
+from __future__ import annotations
+
+import itertools
+import statistics
+import time
+from typing import Any
+
+from .. import _core
+from .drawing import figure, paper_and_ours
+from .entry import Context, Entry, Result
+from .setup import RESOLUTION, Row, database, describe, reach_samples
+
+PAPER = {
+    (1, 1): (306, 0.22),
+    (1, 2): (306, 0.26),
+    (2, 2): (196, 0.28),
+    (3, 4): (157, 0.51),
+    (6, 8): (146, 1.64),
+    (9, 12): (146, 3.01),
+    (12, 16): (146, 5.10),
+    (15, 20): (146, 7.84),
+    (18, 24): (146, 11.14),
+    (21, 28): (146, 15.41),
+}
+CELLS, TIME = "Number of base positions", "Calculation time (s)"
+
+
+def measure(row: Row, samples: int, repeats: int) -> dict[str, Any]:
+    """The region of a single tray: its cells, and how long it took from the loaded database, nothing kept in between."""
+    reach = database(row, samples)
+    problem = row.problem()
+    seconds = []
+    for _ in range(repeats):
+        begun = time.perf_counter()
+        grid = _core.make_base_grid(problem, reach)
+        region = _core.compute_base_regions(problem, reach, grid)[0]
+        seconds.append(time.perf_counter() - begun)
+    return {
+        "cells": region.count,
+        "radius": _core.inscribed_circle(grid, region.cells(grid))[1],
+        "objects": len(region.explanations),
+        "grasps": sum(e.grasps for e in region.explanations),
+        "tried": max(e.base_poses_tried for e in region.explanations),
+        "seconds": statistics.median(seconds),
+    }
+
+
+def run(context: Context) -> Result:
+    sizes = [(1, 1), (1, 2), (2, 2), (3, 4)] if context.quick else list(PAPER)
+    samples = reach_samples(context.quick)
+    repeats = 1 if context.quick else 3
+    items = [{"row": Row(objects=size), "samples": samples, "repeats": repeats} for size in sizes]
+    database(Row(), samples, progress=context.progress)
+    found = context.sweep(measure, items, "p1-table-3.1")
+    alone = context.sweep(measure, [{**item, "row": item["row"].with_(threads=1)} for item in items], "one thread")
+    result = Result(setup=describe(Row(), samples, "objects", "trays"))
+    for size, ours, single in zip(sizes, found, alone, strict=True):
+        cells, seconds = PAPER[size]
+        values = result.row({"objects": f"{size[0]}x{size[1]}"})
+        values[CELLS] = (cells, ours["cells"])
+        values[TIME] = (seconds, ours["seconds"])
+        values["one thread (s)"] = (None, single["seconds"])
+        values["radius of the inscribed circle (m)"] = (None, ours["radius"])
+        values["objects"] = (size[0] * size[1], ours["objects"])
+        values["grasps"] = (size[0] * size[1], ours["grasps"])
+        values["base positions tried"] = (None, ours["tried"])
+    cells = [ours["cells"] for ours in found]
+    filled = [n for size, n in zip(sizes, cells, strict=True) if size[0] * size[1] >= 12]
+    result.trend("more objects never enlarge the region", all(a >= b for a, b in itertools.pairwise(cells)))
+    result.trend(
+        "once the corners are filled (from 3x4 on) the region hardly changes: within a quarter",
+        min(filled) >= 0.75 * max(filled),
+    )
+    result.trend(
+        "at least ten times as fast in every row",
+        all(10 * ours["seconds"] <= PAPER[size][1] for size, ours in zip(sizes, found, strict=True)),
+    )
+    last = cells[-1] / PAPER[sizes[-1]][0]
+    result.notes.append(
+        f"Regions are {cells[0] / 306:.2f} (1x1) to {last:.2f} ({sizes[-1][0]}x{sizes[-1][1]}) times the paper's. A cell of ours "
+        f"of {RESOLUTION} m counts only if its centre and its four corners are feasible with exact inverse kinematics and the "
+        "robot at home stands free there; the paper counts a centre when a configuration of its voxel is free. Heights of table, "
+        "torso and tool are not printed and move these numbers (table below the rows)."
+    )
+    return result
+
+
+def draw(result: dict[str, Any]):
+    """Figures 3.13 and 3.15."""
+    objects = [row["values"]["objects"]["ours"] for row in result["rows"]]
+    fig, axes = figure(9.0, 3.6, columns=2)
+    paper_and_ours(axes[0], objects, result["rows"], CELLS)
+    axes[0].set(xlabel="objects in the tray", ylabel="base positions (5 cm cells)", ylim=(0, None))
+    paper_and_ours(axes[1], objects, result["rows"], TIME)
+    axes[1].set(xlabel="objects in the tray", ylabel="calculation time [s]", yscale="log")
+    return fig
+
+
+ENTRIES = [Entry("p1-table-3.1", "Base region of one tray against the number of objects", run, draw)]

@@ -1,0 +1,108 @@
+"""What a reproduced table or figure is: rows with the paper's value and ours side by side, checks, and how to draw them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Progress = Callable[[str, float], None] | None
+Sweep = Callable[..., list]
+
+
+def sweep_here(
+    function: Callable[..., dict[str, Any]], items: Sequence[dict[str, Any]], *, progress: Progress, stage: str
+) -> list[dict[str, Any]]:
+    """Calls the function with each item's keywords, one after the other in this process."""
+    out = []
+    for i, item in enumerate(items):
+        if progress is not None:
+            progress(stage, i / len(items))
+        out.append(function(**item))
+    if progress is not None:
+        progress(stage, 1.0)
+    return out
+
+
+@dataclass
+class Context:
+    """How a run is to be done."""
+
+    quick: bool = False
+    seed: int = 1
+    progress: Progress = None
+    run_sweep: Sweep = sweep_here
+
+    def sweep(self, function: Callable[..., dict[str, Any]], items: Iterable[dict[str, Any]], stage: str) -> list:
+        """A measurement for each item, in their order; here or on a cluster."""
+        return self.run_sweep(function, list(items), progress=self.progress, stage=stage)
+
+
+@dataclass
+class Check:
+    """A statement about the outcome. kind "E": the paper's exact value; "T": its trend."""
+
+    kind: str
+    what: str
+    holds: bool
+
+
+@dataclass
+class Result:
+    """One reproduced item. Values are (paper, ours); None where the paper prints nothing or there is nothing of ours."""
+
+    rows: list[tuple[dict[str, Any], dict[str, tuple[Any, Any]]]] = field(default_factory=list)
+    setup: dict[str, Any] = field(default_factory=dict)
+    checks: list[Check] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    drawing: dict[str, Any] = field(default_factory=dict)
+    """What the picture needs beyond the rows; plain values."""
+
+    def row(self, key: dict[str, Any], **_: Any) -> dict[str, tuple[Any, Any]]:
+        values: dict[str, tuple[Any, Any]] = {}
+        self.rows.append((key, values))
+        return values
+
+    def exact(self, what: str, holds: bool) -> None:
+        self.checks.append(Check("E", what, bool(holds)))
+
+    def trend(self, what: str, holds: bool) -> None:
+        self.checks.append(Check("T", what, bool(holds)))
+
+    def to_dict(self) -> dict[str, Any]:
+        return {
+            "rows": [
+                {
+                    "key": key,
+                    "values": {name: {"paper": _plain(p), "ours": _plain(o)} for name, (p, o) in values.items()},
+                }
+                for key, values in self.rows
+            ],
+            "setup": {key: _plain(value) for key, value in self.setup.items()},
+            "checks": [{"kind": c.kind, "what": c.what, "holds": c.holds} for c in self.checks],
+            "notes": self.notes,
+            "drawing": self.drawing,
+        }
+
+
+def _plain(value: Any) -> Any:
+    """JSON's own types; floats keep six significant digits, which no table shows more of."""
+    if isinstance(value, (list, tuple)):
+        return [_plain(v) for v in value]
+    if hasattr(value, "item"):
+        value = value.item()
+    return float(f"{value:.6g}") if isinstance(value, float) else value
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One name of `mmgrasp reproduce`."""
+
+    name: str
+    title: str
+    run: Callable[[Context], Result]
+    draw: Callable[[dict[str, Any]], Figure] | None = None
+    """From a stored result to its picture."""

@@ -1,0 +1,103 @@
+"""Markdown and pictures of stored results."""
+
+from __future__ import annotations
+
+import io
+import json
+from pathlib import Path
+from typing import Any
+
+from .._files import write_file
+from . import ENTRIES
+
+FOLDER = "reproduction"
+
+HEAD = """# What the papers print, and what mmgrasp computes
+
+Written by `mmgrasp reproduce` (or `./dev reproduce`) from the results in `{folder}/*.json`; do not edit. Each table has the paper's value
+(p) and ours (o) in every column; a dash stands where the paper prints nothing. **E** marks statements that must hold exactly, **T** trends.
+P1 ran on a laptop at 2.5 GHz. Times start from a loaded reachability database, with nothing kept from before.
+"""
+
+
+def markdown(result: dict[str, Any], picture: str | None = None) -> str:
+    """One result as a section."""
+    lines = [f"## {result['name']}: {result['title']}", ""]
+    columns = list(dict.fromkeys(name for row in result["rows"] for name in row["values"]))
+    keys = list(dict.fromkeys(name for row in result["rows"] for name in row["key"]))
+    printed = [n for n in columns if any(row["values"].get(n, {}).get("paper") is not None for row in result["rows"])]
+    head = [*keys]
+    for name in columns:
+        head += [f"{name} (p)", f"{name} (o)"] if name in printed else [name]
+    lines += ["| " + " | ".join(head) + " |", "|" + "---|" * len(keys) + "---:|" * (len(head) - len(keys))]
+    for row in result["rows"]:
+        cells = [_text(row["key"].get(key)) for key in keys]
+        for name in columns:
+            value = row["values"].get(name, {"paper": None, "ours": None})
+            cells += [_text(value["paper"]), _text(value["ours"])] if name in printed else [_text(value["ours"])]
+        lines.append("| " + " | ".join(cells) + " |")
+    lines.append("")
+    if picture:
+        lines += [f"![{result['title']}]({picture})", ""]
+    for check in result["checks"]:
+        lines.append(f"- **{check['kind']}** {'holds' if check['holds'] else 'DOES NOT HOLD'}: {check['what']}")
+    if result["checks"]:
+        lines.append("")
+    for note in result["notes"]:
+        lines += [note, ""]
+    setup = "; ".join(f"{key} {_text(value)}" for key, value in result["setup"].items())
+    machine = result["machine"]
+    kind = "quick version, " if result["quick"] else ""
+    lines += [
+        f"Set-up: {setup}.",
+        "",
+        f"({kind}seed {result['seed']}, {result['seconds']:g} s in all, {result['date']}, {machine['processor']}, "
+        f"{machine['cores']} cores, {machine['system']}, Python {machine['python']}, mmgrasp {machine['mmgrasp']})",
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def _text(value: Any) -> str:
+    if value is None:
+        return "-"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}"
+    if isinstance(value, list):
+        return " x ".join(_text(v) for v in value) if len(value) == 3 else ", ".join(_text(v) for v in value)
+    return str(value)
+
+
+def write_picture(result: dict[str, Any], path: Path) -> bool:
+    """Draws a stored result; False when its entry has no picture."""
+    draw = ENTRIES[result["name"]].draw
+    if draw is None:
+        return False
+    buffer = io.BytesIO()
+    draw(result).savefig(buffer, format="png")
+    write_file(path, buffer.getvalue())
+    return True
+
+
+def store(result: dict[str, Any], out: Path) -> Path:
+    """Writes a result's JSON and picture below the folder and the page of all results stored there; returns the page."""
+    folder = out / FOLDER
+    write_file(folder / f"{result['name']}.json", json.dumps(result, allow_nan=False, indent=1) + "\n")
+    write_picture(result, folder / f"{result['name']}.png")
+    return write_page(out)
+
+
+def write_page(out: Path) -> Path:
+    """The page of all results stored below the folder, in the order of the table of entries."""
+    sections = [HEAD.format(folder=FOLDER)]
+    for name in ENTRIES:
+        path = out / FOLDER / f"{name}.json"
+        if not path.is_file():
+            continue
+        picture = f"{FOLDER}/{name}.png"
+        sections.append(markdown(json.loads(path.read_text()), picture if (out / picture).is_file() else None))
+    page = out / "reproduction.md"
+    write_file(page, "\n".join(sections))
+    return page

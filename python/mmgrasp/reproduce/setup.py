@@ -1,0 +1,187 @@
+"""The storeroom of P1 3.6: trays in a row, objects on a regular grid in each, the shipped Fetch-like robot before them.
+
+What P1 states is taken from it: trays of 30 x 40 x 10 cm, m = a x b objects at the points of a grid, k grasps an object,
+base positions 5 cm apart, one heading (towards the trays), the arm's seven joints, a positioning uncertainty of 0.10 m,
+collisions with the trays and what carries them. What it leaves open is a field of Row, so that it can be varied.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+from .._core import BaseGrid, Box, Grasp, LinkShape, Part, PartSupplyProblem, ReachDatabase, Tray, World
+from .._files import shipped
+from .._reading import read_yaml
+from .._robot_section import RobotSetup, choose_sections, read_setup
+from .._tray_section import tray_walls
+
+Progress = Callable[[str, float], None] | None
+
+UNCERTAINTY = 0.10  # P1 3.7.1 [m]
+RESOLUTION = 0.05  # P1 3.6 [m]
+TOP = 0.03  # thickness of the table's top [m]
+MARKER = LinkShape(Box([0.001, 0.001, 0.001]), _core.pose([0, 0, 0.0005]))
+
+
+@dataclass(frozen=True)
+class Row:
+    """Trays in a row along y, the robot on their -x side (P1 figure 3.12)."""
+
+    trays: int = 1
+    objects: tuple[int, int] = (9, 12)
+    """Along the tray's 30 cm and along its 40 cm."""
+    grasps: int = 1
+    """An object; from above, turned about the vertical by pi / grasps each."""
+    spacing: float = 0.5
+    """Between the middles of neighbouring trays [m]."""
+    shift: float = 0.0
+    """Of the whole row along itself [m]."""
+    middles: tuple[float, ...] | None = None
+    """Middles of the trays along the row [m]; None: by trays and spacing."""
+    targets: tuple[tuple[int, ...], ...] | None = None
+    """Objects to pick in each tray; None: all."""
+    places: tuple[tuple[tuple[float, float, float], ...], ...] | None = None
+    """For each tray: x, y [m] in it and turn about the vertical [rad] of each grasp; None: the regular grid."""
+    table: float = 0.40
+    """Height of the table's top [m]."""
+    tool: float = 0.12
+    """Height of the tool above the tray's floor [m]: finger tips clear the rim, so that corners can be filled."""
+    torso: float = 0.38
+    """Where the torso lift stands [m]: P1 plans for the arm's seven joints."""
+    turn: float = 0.0
+    """Of the fingers' closing direction against the row's [rad]."""
+    tilt: float = np.pi / 6
+    """Of the approach from straight down towards the robot's heading [rad]."""
+    deep: bool = False
+    """The tray's 40 cm lie along x (away from the robot) instead of along the row."""
+    ik_seeds: int = 8
+    threads: int = 0
+
+    @property
+    def tray_size(self) -> tuple[float, float, float]:
+        """x (depth), y (along the row), z [m]."""
+        return (0.40, 0.30, 0.10) if self.deep else (0.30, 0.40, 0.10)
+
+    @property
+    def per_tray(self) -> int:
+        return self.objects[0] * self.objects[1]
+
+    def tray_middles(self) -> list[float]:
+        middles = self.middles if self.middles is not None else [i * self.spacing for i in range(self.trays)]
+        return [y + self.shift for y in middles]
+
+    def object_places(self) -> np.ndarray:
+        """(m, 2): the middles of a x b equal cells of the tray, x fastest [m]."""
+        counts = self.objects[::-1] if self.deep else self.objects
+        axes = [((np.arange(n) + 0.5) / n - 0.5) * length for n, length in zip(counts, self.tray_size[:2], strict=True)]
+        return np.array([(x, y) for y in axes[1] for x in axes[0]])
+
+    def problem(self) -> PartSupplyProblem:
+        """The same as objects for the planner."""
+        setup = robot_setup(self.torso)
+        scene, trays = World(), []
+        middles = self.tray_middles()
+        length = max(middles) - min(middles) + self.tray_size[1] + 0.1
+        scene.add_box(
+            "table top",
+            [self.tray_size[0] + 0.04, length, TOP],
+            _core.pose([0, (max(middles) + min(middles)) / 2, self.table - TOP / 2]),
+        )
+        for index, y in enumerate(middles):
+            T_world_tray = _core.pose([0, y, self.table + 0.006])
+            scene.add(f"tray {index}", tray_walls(list(self.tray_size)), T_world_tray)
+            trays.append(Tray(str(index), T_world_tray, self.tray_size, self._parts(index, T_world_tray), [0.0]))
+        away = max(middles) + 3.0
+        return PartSupplyProblem(
+            setup.robot,
+            setup.arm,
+            setup.gripper,
+            scene,
+            trays,
+            setup.home,
+            [-1.5, min(middles) - 1.0, 0.0],
+            [-1.5, away - 2.0, 0.0],
+            setup.carry,
+            positioning_uncertainty=UNCERTAINTY,
+            grid_resolution=RESOLUTION,
+            ik_seeds=self.ik_seeds,
+            threads=self.threads,
+        )
+
+    def _parts(self, tray: int, T_world_tray: np.ndarray) -> list[Part]:
+        if self.places is not None:
+            placed = [(x, y, [turn]) for x, y, turn in self.places[tray]]
+        else:
+            turns = [self.turn + np.pi * k / self.grasps for k in range(self.grasps)]
+            placed = [(x, y, turns) for x, y in self.object_places()]
+        chosen = None if self.targets is None else set(self.targets[tray])
+        parts = []
+        for i, (x, y, turns) in enumerate(placed):
+            grasps = [
+                Grasp(_core.pose([0, 0, self.tool], rpy=[0, np.pi / 2 - self.tilt, turn]), 0.02, 1.0) for turn in turns
+            ]
+            T_world_part = T_world_tray @ _core.pose([x, y, 0.0])
+            parts.append(Part(f"{tray}/{i}", [MARKER], T_world_part, grasps, target=chosen is None or i in chosen))
+        return parts
+
+    def with_(self, **changes: Any) -> Row:
+        return replace(self, **changes)
+
+
+@functools.cache
+def robot_setup(torso: float) -> RobotSetup:
+    """The shipped Fetch-like robot with its seven-joint arm, the torso lift held."""
+    document = read_yaml(shipped("asset:scenarios/storeroom.yaml"))
+    section = document.root["robot"].raw
+    home = dict(section["home"])
+    home.pop("torso_lift_joint")
+    section["group"] = "arm"
+    section["home"] = home
+    section["joints"] = {**section["joints"], "torso_lift_joint": torso}
+    return read_setup(choose_sections(document.root, None))
+
+
+def database(row: Row, samples: int, *, seed: int = 1, progress: Progress = None, **options: Any) -> ReachDatabase:
+    """The arm's database for a row's torso height, from the cache or built now."""
+    return ReachDatabase.load_or_build(
+        robot_setup(row.torso).arm, _core.cache_folder(), progress=progress, samples=samples, seed=seed, **options
+    )
+
+
+def grid_of(problem: PartSupplyProblem, reach: ReachDatabase) -> BaseGrid:
+    return _core.make_base_grid(problem, reach)
+
+
+def reach_samples(quick: bool) -> int:
+    """Configurations drawn for the database."""
+    return 500_000 if quick else 2_000_000
+
+
+def describe(row: Row, samples: int, *varied: str) -> dict[str, Any]:
+    """A set-up in words and numbers; `varied` are told by the rows instead."""
+    words = {
+        "robot": "fetchlike, seven-joint arm, diff-drive base",
+        "tray [m]": row.tray_size,
+        "trays": row.trays,
+        "objects": f"{row.objects[0]}x{row.objects[1]}",
+        "grasps per object": row.grasps,
+        "grid [m]": RESOLUTION,
+        "uncertainty [m]": UNCERTAINTY,
+        "spacing [m]": row.spacing,
+        "table height [m]": row.table,
+        "tool above the tray's floor [m]": row.tool,
+        "torso lift [m]": row.torso,
+        "approach tilted from straight down [rad]": row.tilt,
+        "closing direction against the row [rad]": row.turn,
+        "configurations drawn for the database": samples,
+        "obstacles": "table top, walls and floors of all trays",
+    }
+    if row.trays == 1:
+        varied = (*varied, "spacing [m]")
+    return {key: value for key, value in words.items() if key not in varied}

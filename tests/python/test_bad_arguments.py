@@ -170,6 +170,7 @@ OTHERS: dict[str, Any] = {
     "nx": lambda: 4,
     "ny": lambda: 3,
     "tray": lambda: 0,
+    "BaseRegion.tray": lambda: "tray",
     "part": lambda: 0,
     "times": lambda: [0.0, 1.0],
     "holding": lambda: False,

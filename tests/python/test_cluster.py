@@ -87,7 +87,7 @@ def test_a_killed_worker_costs_only_its_shards(processes, expected, tmp_path, ca
                 time.sleep(0.002)
 
         finished = threading.Event()
-        hunter = threading.Thread(target=kill_one)
+        hunter = threading.Thread(target=kill_one, daemon=True)
         hunter.start()
         with caplog.at_level(logging.INFO, logger="mmgrasp.cluster"):
             _, regions = cluster.compute_base_regions(ROW, engine=engine, database=SAMPLES)
@@ -179,7 +179,7 @@ def test_what_has_no_content_is_refused():
 def test_an_absent_scheduler_is_named(tmp_path):
     with (
         pytest.raises(mg.InvalidInput, match=r"tcp://127\.0\.0\.1:9"),
-        cluster.connect(scheduler="tcp://127.0.0.1:9", folder=tmp_path),
+        cluster.connect(scheduler="tcp://127.0.0.1:9", folder=tmp_path, timeout=0.5),
     ):
         pass
 

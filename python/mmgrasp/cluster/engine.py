@@ -7,6 +7,7 @@ import logging
 import os
 import threading
 import time
+import uuid
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,6 +20,7 @@ from .store import ShardStore
 
 log = logging.getLogger("mmgrasp.cluster")
 TOPIC = "mmgrasp-shards"
+PATIENCE = 2.0  # for the last lines of the log [s]
 FAILURES = 10  # workers that a shard may outlive before it is held for the cause
 
 Progress = Callable[[str, float], None] | None
@@ -33,6 +35,8 @@ class ShardEvent:
     shard: str
     worker: str
     time: float
+    run: str = ""
+    """Which call of Engine.run."""
 
 
 @dataclass
@@ -66,8 +70,11 @@ class Engine:
             else:
                 missing[key] = item
         done, total = len(results), len(set(keys))
+        run = uuid.uuid4().hex[:8]
         futures = {
-            key: self.client.submit(run_shard, key, code_digest(), function, item, key=f"{TOPIC}-{key}", pure=False)
+            key: self.client.submit(
+                run_shard, key, code_digest(), run, function, item, key=f"{TOPIC}-{key}-{run}", pure=False
+            )
             for key, item in missing.items()
         }
         of_future = {future.key: key for key, future in futures.items()}
@@ -82,17 +89,26 @@ class Engine:
         except BaseException:
             self.client.cancel(list(futures.values()))
             raise
+        self._await_log(run, set(missing))
         return [results[key] for key in keys]
+
+    def _await_log(self, run: str, shards: set[str]) -> None:
+        """Results may overtake what workers say about them; what is lost with a worker never arrives."""
+        until = time.monotonic() + PATIENCE
+        while time.monotonic() < until:
+            with self._lock:
+                shards -= {e.shard for e in self.events if e.kind == "done" and e.run == run}
+            if not shards:
+                return
+            time.sleep(0.01)
 
     def heard(self, event: tuple[float, dict[str, Any]]) -> None:
         """Called with what workers report."""
         told = event[1]
         with self._lock:
-            known = [e for e in self.events if e.shard == told["shard"]]
-            kind = told["kind"]
-            if kind == "begun" and any(e.kind in ("begun", "again") for e in known):
-                kind = "again"
-        self._note(ShardEvent(kind, told["shard"], told["worker"], told["time"]))
+            known = [e.kind for e in self.events if e.shard == told["shard"] and e.run == told["run"]]
+        kind = "again" if told["kind"] == "begun" and "begun" in known else told["kind"]
+        self._note(ShardEvent(kind, told["shard"], told["worker"], told["time"], told["run"]))
 
     def _note(self, event: ShardEvent) -> None:
         with self._lock:
@@ -107,7 +123,7 @@ def shard_key(function: Callable[..., Any], item: dict[str, Any]) -> str:
     return Hasher().add(code_digest()).add(f"{function.__module__}.{function.__qualname__}").add(item, "item").hex()
 
 
-def run_shard(key: str, code: str, function: Callable[..., Any], item: dict[str, Any]) -> Any:
+def run_shard(key: str, code: str, run: str, function: Callable[..., Any], item: dict[str, Any]) -> Any:
     """What a worker does."""
     from dask.distributed import get_worker
 
@@ -116,7 +132,8 @@ def run_shard(key: str, code: str, function: Callable[..., Any], item: dict[str,
     worker = get_worker()
 
     def tell(kind: str) -> None:
-        worker.log_event(TOPIC, {"kind": kind, "shard": key, "worker": worker.address, "time": time.time()})
+        told = {"kind": kind, "shard": key, "worker": worker.address, "time": time.time(), "run": run}
+        worker.log_event(TOPIC, told)
 
     tell("begun")
     result = function(**item)
@@ -130,11 +147,16 @@ def default_folder() -> Path:
 
 @contextlib.contextmanager
 def connect(
-    *, workers: int | None = None, scheduler: str | None = None, folder: str | os.PathLike[str] | None = None
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    folder: str | os.PathLike[str] | None = None,
+    timeout: float = 15.0,
 ) -> Iterator[Engine]:
     """An engine on `scheduler` (tcp://host:port), or on `workers` local processes (default: one a core) that end with it.
 
-    `folder` keeps finished shards from run to run (default: the cache folder's `shards`).
+    `folder` keeps finished shards from run to run (default: the cache folder's `shards`). Raises InvalidInput when Dask is
+    not installed or the scheduler does not answer within `timeout` [s].
     """
     try:
         from dask.distributed import Client, LocalCluster
@@ -159,7 +181,7 @@ def connect(
                 )
             )
         try:
-            client = stack.enter_context(Client(address, timeout=15))
+            client = stack.enter_context(Client(address, timeout=timeout))
         except (OSError, TimeoutError) as error:
             raise InvalidInput(f"scheduler = {scheduler!r}: cannot be reached: {error}") from None
         engine = Engine(client, store)

@@ -135,7 +135,7 @@ def draw_distance(result: dict[str, Any]):
     axis.annotate("paper: >= 0.10 m\nbelow 0.8 m", (0.81, 0.14), color="#6a6f78", fontsize=8)
     axis.set(
         xlabel="distance between the trays [m]",
-        ylabel="radius of the largest disc in the intersection [m]",
+        ylabel="radius of the largest shared disc [m]",
         ylim=(0, None),
     )
     return fig
@@ -234,8 +234,6 @@ def run_long_rows(context: Context) -> Result:
     samples = reach_samples(context.quick)
     counts = [4, 8] if context.quick else [22, 50, 100, 200, 500]
     row = base_row(context.quick)
-    if context.quick:
-        row = row.with_(objects=(2, 2))
     database(row, samples, progress=context.progress)
     found = context.sweep(plan, [{"row": row.with_(trays=n), "samples": samples} for n in counts], "p1-figure-3.16")
     result = Result(setup=describe(row, samples, "trays"))

@@ -27,3 +27,13 @@ if(fcl_options)
   set_target_properties(PkgConfig::FCL PROPERTIES INTERFACE_COMPILE_OPTIONS "${fcl_options}")
 endif()
 mmgrasp_dependency(fcl PkgConfig::FCL PkgConfig::OCTOMAP)
+
+# PCL's own package file looks for VTK and more; these eight libraries need none of it.
+find_path(PCL_INCLUDE_DIR pcl/pcl_base.h PATH_SUFFIXES pcl-1.13 pcl-1.14 pcl-1.15 pcl-1.12 REQUIRED)
+set(pcl_libraries "")
+foreach(part common search kdtree octree sample_consensus filters features segmentation)
+  find_library(PCL_${part}_LIBRARY pcl_${part} REQUIRED)
+  list(APPEND pcl_libraries ${PCL_${part}_LIBRARY})
+endforeach()
+mmgrasp_dependency(pcl ${pcl_libraries})
+target_include_directories(mmgrasp_deps_pcl SYSTEM INTERFACE ${PCL_INCLUDE_DIR})

@@ -30,5 +30,7 @@ PYBIND11_MODULE(_core, m) {
   bind_task(m);
   bind_pickle(m);
   bind_platform_locations(m);
+  bind_mapping(m);
+  bind_graspability(m);
   bind_verify(m);
 }

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <vector>
+
+#include "grasp/row_spans.hpp"
+#include "mmgrasp/grasp/graspability.hpp"
+
+namespace mmgrasp::detail {
+
+/// What a height of the fingertips makes of a height map: where the part would stand between the fingers, what fingers
+/// and palm would touch.
+struct TipLayer {
+  TipLayer(const HeightMap& map, double tip_height, const GraspabilityOptions& options, int border);
+  double tip_height;
+  RowSums contact, fingers, palm;
+};
+
+/// Masks of one closing direction and opening, ready for convolution.
+struct HandRuns {
+  HandRuns(const HandMasks& masks)
+      : contact(masks.contact), fingers(masks.fingers), palm(masks.palm), contact_cells(masks.contact.count()) {}
+  int radius() const { return std::max({contact.radius, fingers.radius, palm.radius}); }
+  MaskRuns contact, fingers, palm;
+  int contact_cells;
+};
+
+/// Contact share where nothing is touched, else 0; smoothed by three running means. `peak` is the unsmoothed map.
+struct LayerMap {
+  std::vector<float> raw, smooth;
+  bool empty = true;
+};
+LayerMap layer_map(const TipLayer& layer, const HandRuns& hand, int smoothing_cells);
+
+/// Cells of local maxima, best first, none nearer than `distance` cells to a better one.
+std::vector<int> local_maxima(const LayerMap& map, int nx, int ny, double distance);
+
+/// Heights at which fingertips are tried, lowest first.
+std::vector<double> tip_heights(const HeightMap& map, const GraspabilityOptions& options);
+
+enum class Refined { good, too_wide, poor, collision };
+
+/// Centres the hand on the part under a cell, measures it and checks the hand opened for it; fills all of `grasp` but
+/// the world pose and the score's last factor.
+class Refiner {
+ public:
+  Refiner(const HeightMap& map, const Gripper& gripper, const GraspabilityOptions& options)
+      : map_(map), gripper_(gripper), options_(options) {}
+  Refined refine(int ix, int iy, double angle, double opening, double tip_height, ScoredGrasp& grasp) const;
+
+ private:
+  bool touches(const Eigen::Vector2d& middle, const Eigen::Vector2d& along, double u0, double u1, double v_half,
+               double above) const;
+  bool hand_touches(const Eigen::Vector2d& middle, const Eigen::Vector2d& along, double opening,
+                    double tip_height) const;
+  float height_at(const Eigen::Vector2d& p) const;
+
+  const HeightMap& map_;
+  const Gripper& gripper_;
+  const GraspabilityOptions& options_;
+};
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,93 @@
+#include "mapping/pcl_segmentation.hpp"
+
+#include <pcl/filters/voxel_grid.h>
+#include <pcl/point_types.h>
+#include <pcl/search/kdtree.h>
+#include <pcl/segmentation/extract_clusters.h>
+#include <pcl/segmentation/sac_segmentation.h>
+
+#include <algorithm>
+
+namespace mmgrasp::detail {
+namespace {
+
+using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+
+Cloud::Ptr to_pcl(const std::vector<Eigen::Vector3d>& points) {
+  Cloud::Ptr cloud(new Cloud);
+  cloud->reserve(points.size());
+  for (const Eigen::Vector3d& p : points) {
+    cloud->emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()));
+  }
+  return cloud;
+}
+
+}  // namespace
+
+FoundPlane dominant_plane(const std::vector<Eigen::Vector3d>& points, double tolerance, int iterations,
+                          const Eigen::Vector3d& axis, double angle) {
+  FoundPlane out;
+  if (points.size() < 3) return out;
+  pcl::SACSegmentation<pcl::PointXYZ> search(false);  // not seeded from the clock
+  search.setMethodType(pcl::SAC_RANSAC);
+  search.setModelType(axis.isZero() ? pcl::SACMODEL_PLANE : pcl::SACMODEL_PERPENDICULAR_PLANE);
+  if (!axis.isZero()) {
+    search.setAxis(axis.normalized().cast<float>());
+    search.setEpsAngle(angle);
+  }
+  search.setDistanceThreshold(tolerance);
+  search.setMaxIterations(iterations);
+  search.setOptimizeCoefficients(true);
+  search.setInputCloud(to_pcl(points));
+  pcl::PointIndices inliers;
+  pcl::ModelCoefficients plane;
+  search.segment(inliers, plane);
+  if (inliers.indices.size() < 3 || plane.values.size() != 4) return out;
+  const Eigen::Vector3d normal(plane.values[0], plane.values[1], plane.values[2]);
+  out.found = true;
+  out.normal = normal.normalized();
+  out.offset = -plane.values[3] / normal.norm();
+  out.inliers.assign(inliers.indices.begin(), inliers.indices.end());
+  return out;
+}
+
+std::vector<std::vector<int>> euclidean_clusters(const std::vector<Eigen::Vector3d>& points, double tolerance,
+                                                 double leaf, int least) {
+  std::vector<std::vector<int>> groups;
+  if (points.empty()) return groups;
+  const Cloud::Ptr cloud = to_pcl(points);
+  Cloud::Ptr thinned(new Cloud);
+  pcl::VoxelGrid<pcl::PointXYZ> grid;
+  grid.setInputCloud(cloud);
+  grid.setLeafSize(static_cast<float>(leaf), static_cast<float>(leaf), static_cast<float>(leaf));
+  grid.setSaveLeafLayout(true);
+  grid.filter(*thinned);
+
+  std::vector<pcl::PointIndices> found;
+  pcl::EuclideanClusterExtraction<pcl::PointXYZ> search;
+  pcl::search::KdTree<pcl::PointXYZ>::Ptr tree(new pcl::search::KdTree<pcl::PointXYZ>);
+  search.setClusterTolerance(tolerance);
+  search.setMinClusterSize(1);
+  search.setMaxClusterSize(static_cast<int>(thinned->size()));
+  search.setSearchMethod(tree);
+  search.setInputCloud(thinned);
+  search.extract(found);
+
+  std::vector<int> group_of(thinned->size(), -1);
+  for (std::size_t g = 0; g < found.size(); ++g) {
+    for (const int i : found[g].indices) group_of[static_cast<std::size_t>(i)] = static_cast<int>(g);
+  }
+  groups.resize(found.size());
+  for (std::size_t i = 0; i < cloud->size(); ++i) {
+    const int cell = grid.getCentroidIndex((*cloud)[i]);
+    if (cell < 0 || group_of[static_cast<std::size_t>(cell)] < 0) continue;
+    groups[static_cast<std::size_t>(group_of[static_cast<std::size_t>(cell)])].push_back(static_cast<int>(i));
+  }
+  groups.erase(std::remove_if(groups.begin(), groups.end(),
+                              [&](const auto& group) { return static_cast<int>(group.size()) < least; }),
+               groups.end());
+  std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  return groups;
+}
+
+}  // namespace mmgrasp::detail

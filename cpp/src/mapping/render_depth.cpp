@@ -1,0 +1,187 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "mapping/shape_rays.hpp"
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/parallel.hpp"
+#include "mmgrasp/core/random.hpp"
+#include "mmgrasp/mapping/depth_image.hpp"
+
+namespace mmgrasp {
+namespace {
+
+using Eigen::Vector3d;
+constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr int kBand = 16;  // rows of a work item
+
+struct Pixels {
+  int u0 = 0, u1 = -1, v0 = 0, v1 = -1;  // inclusive; empty when u0 > u1
+};
+
+/// The pixels whose rays may meet the convex hull of these points; all of them when one lies beside or behind the
+/// camera.
+template <typename Points>
+Pixels pixels_around(const PinholeCamera& camera, const Points& points) {
+  double lower[2] = {kNever, kNever}, upper[2] = {-kNever, -kNever};
+  for (const Vector3d& p : points) {
+    if (p.z() < 1e-6) return {0, camera.width - 1, 0, camera.height - 1};
+    const double uv[2] = {camera.cx + camera.fx * p.x() / p.z(), camera.cy + camera.fy * p.y() / p.z()};
+    for (int k = 0; k < 2; ++k) {
+      lower[k] = std::min(lower[k], uv[k]);
+      upper[k] = std::max(upper[k], uv[k]);
+    }
+  }
+  const auto clamped = [](double value, int size) {  // a pixel more on either side costs little
+    return static_cast<int>(std::clamp(value, -2.0, size + 1.0));
+  };
+  return {std::max(0, clamped(std::floor(lower[0]) - 1, camera.width)),
+          std::min(camera.width - 1, clamped(std::ceil(upper[0]) + 1, camera.width)),
+          std::max(0, clamped(std::floor(lower[1]) - 1, camera.height)),
+          std::min(camera.height - 1, clamped(std::ceil(upper[1]) + 1, camera.height))};
+}
+
+/// Triangles in the camera's frame as linear functions of the ray's direction. Neighbours compute the function of a
+/// shared edge from the same two corners in the same order, so that no ray slips between them.
+struct Triangle {
+  Vector3d edge[3];  // ray . edge has one sign for all three inside
+  Vector3d normal;   // depth = offset / (ray . normal)
+  double offset = 0;
+  Pixels pixels;
+};
+
+Vector3d edge_function(const Vector3d& a, const Vector3d& b) {
+  const bool swapped = std::lexicographical_compare(b.data(), b.data() + 3, a.data(), a.data() + 3);
+  return swapped ? Vector3d(-b.cross(a)) : Vector3d(a.cross(b));
+}
+
+struct Analytic {
+  Shape shape;
+  Pose T_shape_camera;
+  Pixels pixels;
+};
+
+class Renderer {
+ public:
+  Renderer(const std::vector<PlacedShape>& scene, const PinholeCamera& camera, const Pose& T_world_camera)
+      : camera_(camera) {
+    const Pose T_camera_world = T_world_camera.inverse(Eigen::Isometry);
+    for (std::size_t i = 0; i < scene.size(); ++i) {
+      check_shape(scene[i].shape, "scene shape " + std::to_string(i));
+      const Pose T = T_camera_world * scene[i].T_world_shape;
+      const bool faceted =
+          std::holds_alternative<MeshShape>(scene[i].shape) || std::holds_alternative<Voxels>(scene[i].shape);
+      faceted ? add_mesh(*shape_mesh(scene[i].shape), T) : add_analytic(scene[i].shape, T);
+    }
+  }
+
+  void render_band(int v0, int v1, float* depth) const {
+    std::vector<double> nearest(static_cast<std::size_t>(camera_.width) * (v1 - v0), kNever);
+    for (const Analytic& body : analytic_) draw(body, v0, v1, nearest.data());
+    for (const Triangle& triangle : triangles_) draw(triangle, v0, v1, nearest.data());
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+      const bool seen = nearest[i] >= camera_.nearest && nearest[i] <= camera_.farthest;
+      depth[i] = seen ? static_cast<float>(nearest[i]) : 0.0f;
+    }
+  }
+
+ private:
+  Vector3d ray(int u, int v) const { return {(u - camera_.cx) / camera_.fx, (v - camera_.cy) / camera_.fy, 1.0}; }
+
+  void add_analytic(const Shape& shape, const Pose& T) {
+    Pixels pixels{0, camera_.width - 1, 0, camera_.height - 1};
+    if (!std::holds_alternative<Plane>(shape)) {
+      const Eigen::AlignedBox3d box = shape_bounds(shape);
+      std::vector<Vector3d> corners;
+      for (int k = 0; k < 8; ++k) corners.push_back(T * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(k)));
+      const bool behind = std::all_of(corners.begin(), corners.end(), [](const Vector3d& c) { return c.z() <= 0; });
+      if (behind) return;
+      pixels = pixels_around(camera_, corners);
+    }
+    analytic_.push_back({shape, T.inverse(Eigen::Isometry), pixels});
+  }
+
+  void add_mesh(const TriangleMesh& mesh, const Pose& T) {
+    std::vector<Vector3d> vertices;
+    for (const Vector3d& v : mesh.vertices) vertices.push_back(T * v);
+    for (const auto& t : mesh.triangles) {
+      const std::array<Vector3d, 3> c{vertices[t[0]], vertices[t[1]], vertices[t[2]]};
+      if (c[0].z() <= 0 && c[1].z() <= 0 && c[2].z() <= 0) continue;
+      Triangle out;
+      for (int k = 0; k < 3; ++k) out.edge[k] = edge_function(c[k], c[(k + 1) % 3]);
+      out.normal = (c[1] - c[0]).cross(c[2] - c[0]);
+      out.offset = out.normal.dot(c[0]);
+      out.pixels = pixels_around(camera_, c);
+      triangles_.push_back(out);
+    }
+  }
+
+  void draw(const Analytic& body, int v0, int v1, double* nearest) const {
+    const Vector3d origin = body.T_shape_camera.translation();
+    for (int v = std::max(v0, body.pixels.v0); v <= std::min(v1 - 1, body.pixels.v1); ++v) {
+      for (int u = body.pixels.u0; u <= body.pixels.u1; ++u) {
+        const double t = detail::first_hit(body.shape, origin, body.T_shape_camera.linear() * ray(u, v));
+        double& best = nearest[static_cast<std::size_t>(v - v0) * camera_.width + u];
+        best = std::min(best, t);
+      }
+    }
+  }
+
+  void draw(const Triangle& triangle, int v0, int v1, double* nearest) const {
+    for (int v = std::max(v0, triangle.pixels.v0); v <= std::min(v1 - 1, triangle.pixels.v1); ++v) {
+      for (int u = triangle.pixels.u0; u <= triangle.pixels.u1; ++u) {
+        const Vector3d d = ray(u, v);
+        const double a = d.dot(triangle.edge[0]), b = d.dot(triangle.edge[1]), c = d.dot(triangle.edge[2]);
+        if (!((a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0))) continue;
+        const double speed = d.dot(triangle.normal);
+        if (speed == 0) continue;  // seen edge-on: its neighbours are met
+        const double t = triangle.offset / speed;
+        if (!(t > 0)) continue;
+        double& best = nearest[static_cast<std::size_t>(v - v0) * camera_.width + u];
+        best = std::min(best, t);
+      }
+    }
+  }
+
+  PinholeCamera camera_;
+  std::vector<Analytic> analytic_;
+  std::vector<Triangle> triangles_;
+};
+
+void disturb(DepthImage& image, const RenderOptions& options, int v) {
+  for (int u = 0; u < image.camera.width; ++u) {
+    const std::size_t pixel = static_cast<std::size_t>(v) * image.camera.width + u;
+    Rng rng(options.seed, pixel);
+    float& z = image.depth[pixel];
+    const double noise = rng.normal(), luck = rng.uniform();
+    if (z > 0) z = std::max(0.0f, static_cast<float>(z + options.noise * z * z * noise));
+    if (luck < options.missing) z = 0;
+  }
+}
+
+}  // namespace
+
+void RenderOptions::check() const {
+  require(std::isfinite(noise) && noise >= 0, "noise", noise, "must be zero or positive and finite [m]");
+  require(missing >= 0 && missing <= 1, "missing", missing, "must be in [0, 1]");
+  require(threads >= 0, "threads", threads, "must be zero or positive");
+}
+
+DepthImage render_depth(const std::vector<PlacedShape>& scene, const PinholeCamera& camera, const Pose& T_world_camera,
+                        const RenderOptions& options) {
+  options.check();
+  camera.check();
+  DepthImage image{camera, checked_pose(T_world_camera.matrix(), "T_world_camera"), {}};
+  image.depth.assign(static_cast<std::size_t>(camera.width) * camera.height, 0.0f);
+  const Renderer renderer(scene, camera, image.T_world_camera);
+  const bool disturbed = options.noise > 0 || options.missing > 0;
+  parallel_for((camera.height + kBand - 1) / kBand, options.threads, [&](std::size_t band, int) {
+    const int v0 = static_cast<int>(band) * kBand, v1 = std::min(v0 + kBand, camera.height);
+    renderer.render_band(v0, v1, image.depth.data() + static_cast<std::size_t>(v0) * camera.width);
+    for (int v = v0; disturbed && v < v1; ++v) disturb(image, options, v);
+  });
+  return image;
+}
+
+}  // namespace mmgrasp

@@ -1,0 +1,279 @@
+#include "mmgrasp/grasp/graspability.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <filesystem>
+
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/random.hpp"
+#include "mmgrasp/geometry/point_cloud.hpp"
+#include "support/tray_scene.hpp"
+
+using namespace mmgrasp;
+using namespace tray_scene;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+const PlacedShape kFloor{Plane{Vector3d::UnitZ(), 0.0}, Pose::Identity()};
+
+double line_angle(double a, double b) {
+  return std::abs(std::remainder(a - b, kPi));
+}
+
+PlacedShape box(const Vector3d& size, double x, double y, double yaw) {
+  return {Box{size}, flat(x, y, size.z() / 2, yaw)};
+}
+
+}  // namespace
+
+TEST(Graspability, BoxIsTakenAcrossItsNarrowSideAtItsMiddle) {
+  Rng rng(2);
+  for (int i = 0; i < 8; ++i) {
+    const double x = rng.uniform(-0.08, 0.08), y = rng.uniform(-0.05, 0.05), yaw = rng.uniform(-kPi, kPi);
+    const HeightMap map = map_of({kFloor, box({0.16, 0.04, 0.05}, x, y, yaw)}, {0.4, 0.4});
+    GraspabilityOptions options;
+    options.orientations = 36;
+    const Graspability found = evaluate_graspability(map, gripper(), options);
+    ASSERT_FALSE(found.grasps.empty());
+    const ScoredGrasp& best = found.grasps[0];
+    EXPECT_LT(line_angle(best.angle, yaw + kPi / 2), kPi / 36 + 1e-6);
+    EXPECT_NEAR(best.width, 0.04, 0.004);
+    EXPECT_NEAR(best.opening, best.width + 0.02, 1e-12);
+    const Vector3d p = flat(x, y, 0, yaw).inverse() * best.T_world_tcp.translation();
+    EXPECT_NEAR(p.y(), 0, 0.003);
+    EXPECT_NEAR(p.x(), 0, 0.03);
+    // The tcp's axes: approach down, closing across the box.
+    EXPECT_LT((best.T_world_tcp.linear().col(0) + Vector3d::UnitZ()).norm(), 1e-12);
+    EXPECT_NEAR(best.T_world_tcp.linear().col(1).x(), std::cos(best.angle), 1e-12);
+    EXPECT_NEAR(best.T_world_tcp.translation().z(), best.height + 0.02, 1e-12);
+    // The box is longer than the gripper opens: none of the grasps is along it.
+    for (const ScoredGrasp& grasp : found.grasps) EXPECT_LT(line_angle(grasp.angle, yaw + kPi / 2), 1.0);
+  }
+}
+
+TEST(Graspability, TooWideABoxGivesNone) {
+  for (const double yaw : {0.0, 0.3, 0.8}) {
+    const HeightMap map = map_of({kFloor, box({0.13, 0.11, 0.05}, 0.02, 0.01, yaw)}, {0.4, 0.4});
+    EXPECT_TRUE(evaluate_graspability(map, gripper()).grasps.empty());
+  }
+}
+
+TEST(Graspability, NeighbourNearerThanAFingerBlocksThatSide) {
+  // Fingers take 12 mm and margins; a neighbour of the same height along the long sides leaves room or not.
+  const auto grasps_across = [](double gap) {
+    const HeightMap map = map_of({kFloor, box({0.12, 0.04, 0.05}, 0, 0, 0), box({0.12, 0.04, 0.05}, 0, 0.04 + gap, 0),
+                                  box({0.12, 0.04, 0.05}, 0, -0.04 - gap, 0)},
+                                 {0.4, 0.4});
+    int across = 0;
+    for (const ScoredGrasp& g : evaluate_graspability(map, gripper()).grasps)
+      across += std::abs(g.T_world_tcp.translation().y()) < 0.02 && line_angle(g.angle, kPi / 2) < 0.3;
+    return across;
+  };
+  EXPECT_GT(grasps_across(0.05), 0);
+  EXPECT_EQ(grasps_across(0.012), 0);
+}
+
+TEST(Graspability, TrayWallsCollide) {
+  // Against a wall there is room for a finger on one side only.
+  const auto tray = tray_shapes({0.3, 0.4, 0.1}, 0.005);
+  for (const bool at_wall : {false, true}) {
+    std::vector<PlacedShape> scene;
+    add(scene, tray, Pose::Identity());
+    scene.push_back(box({0.04, 0.12, 0.05}, at_wall ? 0.124 : 0.0, 0, 0));
+    int across = 0;
+    for (const ScoredGrasp& g : evaluate_graspability(map_of(scene, {0.4, 0.5}), gripper()).grasps)
+      across += line_angle(g.angle, 0) < 0.3;
+    EXPECT_EQ(across > 0, !at_wall);
+  }
+}
+
+TEST(Graspability, QuarterTurnOfTheMapTurnsTheAnswer) {
+  const HeightMap map =
+      map_of({kFloor, box({0.1, 0.04, 0.05}, 0.03, 0.02, 0.5), box({0.05, 0.03, 0.04}, -0.08, 0.05, 1.2)}, {0.4, 0.3});
+  HeightMap turned = map;
+  turned.nx = map.ny;
+  turned.ny = map.nx;
+  for (int iy = 0; iy < map.ny; ++iy) {
+    for (int ix = 0; ix < map.nx; ++ix) {
+      const std::size_t to = turned.index(map.ny - 1 - iy, ix);
+      turned.height[to] = map.height[map.index(ix, iy)];
+      turned.upper[to] = map.upper[map.index(ix, iy)];
+    }
+  }
+  GraspabilityOptions options;
+  for (const double tip : {0.003, 0.02}) {
+    const auto a = graspability_map(map, gripper(), kPi / 8, 0.1, tip, options);
+    const auto b = graspability_map(turned, gripper(), kPi / 8 + kPi / 2, 0.1, tip, options);
+    double largest = 0;
+    for (int iy = 0; iy < map.ny; ++iy) {
+      for (int ix = 0; ix < map.nx; ++ix) {
+        largest = std::max<double>(largest, a[map.index(ix, iy)]);
+        ASSERT_NEAR(a[map.index(ix, iy)], b[turned.index(map.ny - 1 - iy, ix)], 1e-6);
+      }
+    }
+    EXPECT_GT(largest, 0.1);
+  }
+}
+
+TEST(Graspability, ShiftOfTheMapShiftsTheAnswer) {
+  const HeightMap map = map_of({kFloor, box({0.1, 0.04, 0.05}, 0.0, 0.0, 0.5)}, {0.5, 0.4});
+  HeightMap shifted = map;
+  const int sx = 20, sy = -11;
+  for (int iy = 0; iy < map.ny; ++iy) {
+    for (int ix = 0; ix < map.nx; ++ix) {
+      const int jx = std::clamp(ix - sx, 0, map.nx - 1), jy = std::clamp(iy - sy, 0, map.ny - 1);
+      shifted.height[map.index(ix, iy)] = map.height[map.index(jx, jy)];
+      shifted.upper[map.index(ix, iy)] = map.upper[map.index(jx, jy)];
+    }
+  }
+  const auto a = evaluate_graspability(map, gripper()).grasps, b = evaluate_graspability(shifted, gripper()).grasps;
+  ASSERT_FALSE(a.empty());
+  ASSERT_EQ(a.size(), b.size());
+  const Vector3d shift(sx * map.resolution, sy * map.resolution, 0);
+  EXPECT_LT((b[0].T_world_tcp.translation() - a[0].T_world_tcp.translation() - shift).norm(), 1e-9);
+  EXPECT_NEAR(a[0].score, b[0].score, 1e-6);
+}
+
+TEST(Graspability, MapIsContactWhereNothingIsTouched) {
+  // Brute force with the masks themselves, without smoothing.
+  const HeightMap map = map_of(
+      {kFloor, box({0.06, 0.03, 0.05}, 0.01, 0.0, 0.4), box({0.05, 0.05, 0.02}, -0.05, 0.03, 0)}, {0.24, 0.2}, 0.004);
+  GraspabilityOptions options;
+  options.smoothing = 0;
+  const double angle = 1.9, opening = 0.07, tip = 0.012;
+  const auto found = graspability_map(map, gripper(), angle, opening, tip, options);
+  const HandMasks masks = make_hand_masks(gripper(), options.hand, opening, angle, map.resolution);
+  int graspable = 0;
+  for (int y = 0; y < map.ny; ++y) {
+    for (int x = 0; x < map.nx; ++x) {
+      int contact = 0;
+      bool touched = false;
+      for (int dy = -30; dy <= 30; ++dy) {
+        for (int dx = -30; dx <= 30; ++dx) {
+          const auto in = [&](const MaskImage& m) {
+            return std::abs(dx) <= m.radius && std::abs(dy) <= m.radius && m.at(dx, dy);
+          };
+          const int u = x + dx, v = y + dy;
+          const bool inside = u >= 0 && v >= 0 && u < map.nx && v < map.ny;
+          const float h = inside ? map.height[map.index(u, v)] : NAN, upper = inside ? map.upper[map.index(u, v)] : NAN;
+          contact += in(masks.contact) && h > static_cast<float>(tip + options.insertion);
+          touched = touched || (in(masks.fingers) && !(upper <= static_cast<float>(tip - options.hand.margin)));
+        }
+      }
+      const float expected = touched ? 0 : static_cast<float>(contact) / masks.contact.count();
+      ASSERT_NEAR(found[map.index(x, y)], expected, 1e-6);
+      graspable += expected > 0;
+    }
+  }
+  EXPECT_GT(graspable, 20);
+}
+
+TEST(Graspability, SameAnswerAtAnyThreadCount) {
+  const HeightMap map = map_of({kFloor, box({0.1, 0.04, 0.05}, 0.03, 0.02, 0.5)}, {0.4, 0.3});
+  GraspabilityOptions options;
+  options.threads = 1;
+  const auto a = evaluate_graspability(map, gripper(), options).grasps;
+  options.threads = 3;
+  const auto b = evaluate_graspability(map, gripper(), options).grasps;
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].T_world_tcp.matrix(), b[i].T_world_tcp.matrix());
+}
+
+/// Random trays: the open hand at every grasp beside the true bodies, not beside what the camera saw of them.
+TEST(Graspability, HandsAreFreeInRandomTrays) {
+  const std::vector<std::vector<LinkShape>> kinds{
+      {at(Box{{0.06, 0.04, 0.03}})},
+      {at(Cylinder{0.015, 0.07})},
+      {at(Box{{0.08, 0.02, 0.02}}), at(Box{{0.02, 0.05, 0.02}}, flat(0.03, 0.035, 0))}};
+  const Vector3d size(0.3, 0.4, 0.1);
+  const HandShape hand;
+  int grasps = 0, free = 0;
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+      PlacementOptions placement;
+      placement.count = 8;
+      placement.seed = seed;
+      std::vector<PlacedShape> scene;
+      add(scene, tray_shapes(size, 0.005), Pose::Identity());
+      for (const PlacedPart& part : random_placement(kinds[kind], size, 0.005, placement).parts)
+        add(scene, kinds[kind], part.T_tray_part);
+      RenderOptions render;
+      render.noise = seed % 2 ? 0.0 : 0.001;
+      render.seed = seed;
+      DepthImage image;
+      const HeightMap map = map_of(scene, {0.44, 0.54}, 0.002, render, &image);
+      auto found = evaluate_graspability(map, gripper());
+      EXPECT_GT(found.grasps.size(), 2u) << kind << " " << seed;
+      find_pixels(image, found.grasps);
+      const World world = world_of(scene);
+      for (const ScoredGrasp& grasp : found.grasps) {
+        ++grasps;
+        free += hand_is_free(grasp, gripper(), hand, world);
+        // Something stands between the pads: the pixel sees it above the fingertips.
+        EXPECT_GE(grasp.pixel.x(), 0);
+      }
+    }
+  }
+  EXPECT_GT(grasps, 100);
+  EXPECT_EQ(free, grasps);
+}
+
+/// A real table seen by a Kinect: no measured point lies inside fingers or palm, and some lie between the fingers.
+TEST(Graspability, RealCloudsKeepTheHandClear) {
+  const std::string path = std::string(MMGRASP_SHARED_DATA) + "/clouds/pcl/mOSD/learn0.pcd";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no reference data";
+  const PointCloud cloud = read_pcd(path);
+  DepthImage image{PinholeCamera(), Pose::Identity(), {}};
+  std::vector<Vector3d> table;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    const double z = cloud.points[i].z();
+    image.depth.push_back(std::isfinite(z) ? static_cast<float>(z) : 0.0f);
+    if (cloud.labels[i] >= 1 && cloud.labels[i] <= 9) table.push_back(cloud.points[i]);
+  }
+  // The table's plane by least squares over its labelled points.
+  Vector3d mean = Vector3d::Zero();
+  for (const Vector3d& p : table) mean += p / table.size();
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Vector3d& p : table) spread += (p - mean) * (p - mean).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
+  Vector3d up = solver.eigenvectors().col(0);
+  if (up.dot(mean) > 0) up = -up;  // towards the camera
+  Pose T = Pose::Identity();
+  const Vector3d x = (Vector3d::UnitX() - up.x() * up).normalized();
+  T.linear() << x, up.cross(x), up;
+  T.translation() = mean;
+  const HeightMap map = make_height_map(image, T, {0.9, 0.9});
+  GraspabilityOptions options;
+  options.lowest = 0.015;
+  const auto found = evaluate_graspability(map, gripper(), options);
+  EXPECT_GE(found.grasps.size(), 3u);
+  for (const ScoredGrasp& grasp : found.grasps) {
+    const Pose T_tcp_world = grasp.T_world_tcp.inverse();
+    int between = 0, inside = 0;
+    for (const Vector3d& p : cloud.points) {
+      if (!p.allFinite()) continue;
+      const Vector3d q = T_tcp_world * p;  // approach x, closing y
+      const bool at_depth = q.x() < 0.02 && q.x() > 0.02 - options.hand.finger_length;
+      const bool in_width = std::abs(q.z()) < 0.011;
+      between += at_depth && in_width && std::abs(q.y()) < grasp.opening / 2;
+      inside +=
+          at_depth && in_width && std::abs(q.y()) > grasp.opening / 2 && std::abs(q.y()) < grasp.opening / 2 + 0.012;
+      inside += q.x() <= 0.02 - options.hand.finger_length && q.x() > -0.15 && std::abs(q.y()) < 0.065 &&
+                std::abs(q.z()) < 0.0325;
+    }
+    EXPECT_EQ(inside, 0);
+    EXPECT_GT(between, 20);
+  }
+}
+
+TEST(Graspability, MisuseIsRefused) {
+  HeightMap map = map_of({kFloor}, {0.1, 0.1});
+  GraspabilityOptions options;
+  options.orientations = 0;
+  EXPECT_THROW(evaluate_graspability(map, gripper(), options), InvalidInput);
+  map.upper.pop_back();
+  EXPECT_THROW(evaluate_graspability(map, gripper()), InvalidInput);
+}

@@ -34,8 +34,6 @@ void bind_world(py::module_& m);
 void bind_disabled_pairs(py::module_& m);
 void bind_reach(py::module_& m);
 void bind_grasp(py::module_& m);
-void bind_graspability(py::module_& m);
-void bind_mapping(py::module_& m);
 void bind_plan(py::module_& m);
 void bind_base_regions(py::module_& m);
 void bind_task(py::module_& m);

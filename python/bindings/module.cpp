@@ -4,6 +4,9 @@
 
 namespace mmgrasp::python {
 
+void bind_mapping(py::module_& m);
+void bind_graspability(py::module_& m);
+
 void declare_classes(py::module_& m) {
   py::class_<Robot>(m, "Robot", "A robot as URDF and SRDF describe it. Immutable; joints and links by name.");
   py::class_<JointGroup>(m, "JointGroup", "Joints that are planned together, and a tip. Immutable.");

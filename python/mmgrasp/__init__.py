@@ -108,6 +108,7 @@ from ._core import (
     with_sampled_pairs,
 )
 from .part_supply import PartSupplyPlan, plan_part_supply
+from .random_trays import TrayScan, parts_of_grasps, scan_random_tray, union_of_grasps
 from .scenario import Scenario, load_scenario
 from .verification import PlanVerdict, verify_plan
 
@@ -168,6 +169,7 @@ __all__ = [
     "Sphere",
     "Stop",
     "Tray",
+    "TrayScan",
     "Voxels",
     "World",
     "__version__",
@@ -188,6 +190,7 @@ __all__ = [
     "make_base_grid",
     "make_height_map",
     "minimal_stops",
+    "parts_of_grasps",
     "plan_base_route",
     "plan_motion",
     "plan_part_supply",
@@ -206,6 +209,7 @@ __all__ = [
     "resting_poses",
     "robust_intersections",
     "sample_grasps",
+    "scan_random_tray",
     "self_distance_objective",
     "shortest_visiting_tour",
     "simplify_mesh",
@@ -215,6 +219,7 @@ __all__ = [
     "time_parameterize",
     "time_parameterize_free",
     "tray_shapes",
+    "union_of_grasps",
     "verify_plan",
     "wheel_speeds",
     "with_sampled_pairs",

@@ -75,8 +75,8 @@ class Evaluation {
       ScoredGrasp grasp;
       grasp.orientation = item.orientation;
       ++result.counts.tried;
-      switch (refiner_.refine(cell % map_.nx, cell / map_.nx, angle(item.orientation), openings_[item.opening],
-                              layer.tip_height, grasp)) {
+      switch (refiner_.refine(cell % map_.nx, cell / map_.nx, angle(item.orientation), openings_[item.opening], layer,
+                              grasp)) {
         case detail::Refined::too_wide:
           ++result.counts.too_wide;
           continue;

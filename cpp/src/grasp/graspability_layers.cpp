@@ -9,34 +9,113 @@ namespace {
 
 constexpr int kMostMaxima = 60;  // of one closing direction, opening and height
 
-/// Running mean over 2 r + 1 values of a line, zeros beyond its ends.
-void running_mean(const float* in, float* out, int n, int stride, int r) {
-  // Counted in double from the same side, so that equal neighbourhoods give equal means but for rounding.
-  double sum = 0;
-  for (int i = 0; i < std::min(r, n); ++i) sum += in[static_cast<std::size_t>(i) * stride];
+/// Running mean along x over 2 r + 1 values, zeros beyond the ends.
+void mean_along_rows(const std::vector<float>& in, std::vector<float>& out, int nx, int ny, int r) {
   const double scale = 1.0 / (2 * r + 1);
-  for (int i = 0; i < n; ++i) {
-    if (i + r < n) sum += in[static_cast<std::size_t>(i + r) * stride];
-    out[static_cast<std::size_t>(i) * stride] = static_cast<float>(sum * scale);
-    if (i - r >= 0) sum -= in[static_cast<std::size_t>(i - r) * stride];
+  for (int y = 0; y < ny; ++y) {
+    const float* from = in.data() + static_cast<std::size_t>(y) * nx;
+    float* to = out.data() + static_cast<std::size_t>(y) * nx;
+    double sum = 0;
+    for (int x = 0; x < std::min(r, nx); ++x) sum += from[x];
+    for (int x = 0; x < nx; ++x) {
+      if (x + r < nx) sum += from[x + r];
+      to[x] = static_cast<float>(sum * scale);
+      if (x - r >= 0) sum -= from[x - r];
+    }
   }
 }
 
+/// The same along y, a whole row at a time.
+void mean_along_columns(const std::vector<float>& in, std::vector<float>& out, int nx, int ny, int r) {
+  const double scale = 1.0 / (2 * r + 1);
+  std::vector<double> sum(nx, 0.0);
+  const auto add = [&](int y, double sign) {
+    const float* row = in.data() + static_cast<std::size_t>(y) * nx;
+    for (int x = 0; x < nx; ++x) sum[x] += sign * row[x];
+  };
+  for (int y = 0; y < std::min(r, ny); ++y) add(y, 1);
+  for (int y = 0; y < ny; ++y) {
+    if (y + r < ny) add(y + r, 1);
+    float* to = out.data() + static_cast<std::size_t>(y) * nx;
+    for (int x = 0; x < nx; ++x) to[x] = static_cast<float>(sum[x] * scale);
+    if (y - r >= 0) add(y - r, -1);
+  }
+}
+
+/// Three running means over the part of the map that they can change.
 void smooth(std::vector<float>& values, int nx, int ny, int r) {
-  if (r == 0) return;
-  std::vector<float> other(values.size());
-  for (int pass = 0; pass < 3; ++pass) {
-    for (int y = 0; y < ny; ++y) {
-      const std::size_t row = static_cast<std::size_t>(y) * nx;
-      running_mean(values.data() + row, other.data() + row, nx, 1, r);
+  int x0 = nx, x1 = -1, y0 = ny, y1 = -1;
+  for (int y = 0; y < ny; ++y) {
+    for (int x = 0; x < nx; ++x) {
+      if (values[static_cast<std::size_t>(y) * nx + x] == 0) continue;
+      x0 = std::min(x0, x);
+      x1 = std::max(x1, x);
+      y0 = std::min(y0, y);
+      y1 = y;
     }
-    for (int x = 0; x < nx; ++x) running_mean(other.data() + x, values.data() + x, ny, nx, r);
+  }
+  if (r == 0 || x1 < 0) return;
+  x0 = std::max(0, x0 - 3 * r);
+  x1 = std::min(nx - 1, x1 + 3 * r);
+  y0 = std::max(0, y0 - 3 * r);
+  y1 = std::min(ny - 1, y1 + 3 * r);
+  const int w = x1 - x0 + 1, h = y1 - y0 + 1;
+  std::vector<float> some(static_cast<std::size_t>(w) * h), other(some.size());
+  for (int y = 0; y < h; ++y) {
+    const float* row = values.data() + static_cast<std::size_t>(y + y0) * nx + x0;
+    std::copy(row, row + w, some.data() + static_cast<std::size_t>(y) * w);
+  }
+  for (int pass = 0; pass < 3; ++pass) {
+    mean_along_rows(some, other, w, h, r);
+    mean_along_columns(other, some, w, h, r);
+  }
+  for (int y = 0; y < h; ++y) {
+    const float* row = some.data() + static_cast<std::size_t>(y) * w;
+    std::copy(row, row + w, values.data() + static_cast<std::size_t>(y + y0) * nx + x0);
   }
 }
 
 }  // namespace
 
-TipLayer::TipLayer(const HeightMap& map, double tip, const GraspabilityOptions& options, int border) : tip_height(tip) {
+Pieces::Pieces(const HeightMap& map, double above, double step) : map_(map), label_(map.height.size(), -1) {
+  const auto limit = static_cast<float>(above), jump = static_cast<float>(step);
+  std::vector<int> queue;
+  for (int seed = 0; seed < map.nx * map.ny; ++seed) {
+    if (label_[seed] >= 0 || !(map.height[seed] > limit)) continue;
+    const int label = static_cast<int>(pieces_.size());
+    queue.assign(1, seed);
+    label_[seed] = label;
+    Piece piece;
+    for (std::size_t next = 0; next < queue.size(); ++next) {
+      const int i = queue[next], x = i % map.nx, y = i / map.nx;
+      piece.middle += map.centre(x, y);
+      const auto visit = [&](int k) {
+        if (label_[k] >= 0 || !(map.height[k] > limit) || std::abs(map.height[k] - map.height[i]) > jump) return;
+        label_[k] = label;
+        queue.push_back(k);
+      };
+      if (x > 0) visit(i - 1);
+      if (x + 1 < map.nx) visit(i + 1);
+      if (y > 0) visit(i - map.nx);
+      if (y + 1 < map.ny) visit(i + map.nx);
+    }
+    piece.middle /= static_cast<double>(queue.size());
+    for (const int i : queue)
+      piece.radius = std::max(piece.radius, (map.centre(i % map.nx, i / map.nx) - piece.middle).norm());
+    pieces_.push_back(piece);
+  }
+}
+
+double Pieces::centring(const Eigen::Vector2d& point) const {
+  const int ix = static_cast<int>(std::floor(point.x() / map_.resolution + 0.5 * map_.nx));
+  const int iy = static_cast<int>(std::floor(point.y() / map_.resolution + 0.5 * map_.ny));
+  if (ix < 0 || iy < 0 || ix >= map_.nx || iy >= map_.ny || label_[map_.index(ix, iy)] < 0) return 0;
+  const Piece& piece = pieces_[label_[map_.index(ix, iy)]];
+  return std::max(0.0, 1 - (point - piece.middle).norm() / (piece.radius + map_.resolution));
+}
+
+TipLayer::TipLayer(const HeightMap& map, double tip, const GraspabilityOptions& options, int border)
+    : tip_height(tip), pieces(map, tip + options.insertion, options.insertion) {
   const std::size_t cells = map.height.size();
   std::vector<std::uint8_t> between(cells), low(cells), high(cells);
   const auto held = static_cast<float>(tip + options.insertion),

@@ -7,12 +7,30 @@
 
 namespace mmgrasp::detail {
 
+/// Connected cells that rise above a height without a step between neighbours: what is likely one part.
+class Pieces {
+ public:
+  Pieces(const HeightMap& map, double above, double step);
+  /// 1 over the middle of the piece under a point of the map, 0 at its farthest cell or beside all pieces.
+  double centring(const Eigen::Vector2d& point) const;
+
+ private:
+  struct Piece {
+    Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+    double radius = 0;
+  };
+  const HeightMap& map_;
+  std::vector<int> label_;  // one a cell, -1 below
+  std::vector<Piece> pieces_;
+};
+
 /// What a height of the fingertips makes of a height map: where the part would stand between the fingers, what fingers
 /// and palm would touch.
 struct TipLayer {
   TipLayer(const HeightMap& map, double tip_height, const GraspabilityOptions& options, int border);
   double tip_height;
   RowSums contact, fingers, palm;
+  Pieces pieces;
 };
 
 /// Masks of one closing direction and opening, ready for convolution.
@@ -44,8 +62,12 @@ enum class Refined { good, too_wide, poor, collision };
 class Refiner {
  public:
   Refiner(const HeightMap& map, const Gripper& gripper, const GraspabilityOptions& options)
-      : map_(map), gripper_(gripper), options_(options) {}
-  Refined refine(int ix, int iy, double angle, double opening, double tip_height, ScoredGrasp& grasp) const;
+      : map_(map), gripper_(gripper), options_(options) {
+    for (const float upper : map.upper) {
+      if (upper > top_) top_ = upper;
+    }
+  }
+  Refined refine(int ix, int iy, double angle, double opening, const TipLayer& layer, ScoredGrasp& grasp) const;
 
  private:
   bool touches(const Eigen::Vector2d& middle, const Eigen::Vector2d& along, double u0, double u1, double v_half,
@@ -57,6 +79,7 @@ class Refiner {
   const HeightMap& map_;
   const Gripper& gripper_;
   const GraspabilityOptions& options_;
+  double top_ = -1e30;  // nothing of the map rises higher
 };
 
 }  // namespace mmgrasp::detail

@@ -54,6 +54,7 @@ bool Refiner::hand_touches(const Vector2d& middle, const Vector2d& along, double
   const double palm = std::max(outer, options_.hand.palm_length / 2),
                palm_side = std::max(side, options_.hand.palm_width / 2);
   const double above = tip + options_.hand.finger_length;
+  if (top_ <= above - options_.hand.margin) return false;
   // Beyond the map and where nothing was seen the palm is only as free as the fingers beside it: see TipLayer.
   const int reach = static_cast<int>(std::ceil(std::hypot(palm, palm_side) / map_.resolution)) + 2;
   const int cx = static_cast<int>(std::floor(middle.x() / map_.resolution + 0.5 * map_.nx));
@@ -70,7 +71,8 @@ bool Refiner::hand_touches(const Vector2d& middle, const Vector2d& along, double
   return false;
 }
 
-Refined Refiner::refine(int ix, int iy, double angle, double opening, double tip, ScoredGrasp& grasp) const {
+Refined Refiner::refine(int ix, int iy, double angle, double opening, const TipLayer& layer, ScoredGrasp& grasp) const {
+  const double tip = layer.tip_height;
   const Vector2d along(std::cos(angle), std::sin(angle)), across(-along.y(), along.x());
   const Vector2d start = map_.centre(ix, iy);
   // Lines across the pads every half cell, points along the closing axis every half cell.
@@ -123,7 +125,7 @@ Refined Refiner::refine(int ix, int iy, double angle, double opening, double tip
   grasp.iy = static_cast<int>(std::floor(middle.y() / map_.resolution + 0.5 * map_.ny));
   grasp.T_world_tcp.translation() << middle, tip + gripper_.finger_depth / 2;
   const double depth = std::min(1.0, (top - tip) / gripper_.finger_depth);
-  grasp.score = contact * solid * (0.5 + 0.5 * depth);
+  grasp.score = contact * solid * (0.5 + 0.5 * depth) * (0.5 + 0.5 * layer.pieces.centring(middle));
   return Refined::good;
 }
 

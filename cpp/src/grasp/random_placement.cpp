@@ -138,15 +138,13 @@ class Placer {
 
   bool is_free(const Pose& T) { return checker_->is_free(configuration(T)); }
 
-  /// Lets the part down from where it is, to the floor or until it is a gap away from something.
+  /// Lets the part down from where it is, to the floor or until it meets something.
   bool settles(Pose& T, double floor) {
     if (!is_free(T)) return false;
     double& z = T.translation().z();
     while (z > floor) {
-      const double distance = checker_->distance(configuration(T)).value;
-      if (distance <= options_.gap) break;
-      const double before = z;
-      // Moving by less than the distance is safe; a small step that is found free as well.
+      // Moving by less than the distance is safe; so is a small step that is found free, past a wall close by.
+      const double before = z, distance = checker_->distance(configuration(T)).value;
       z = std::max(floor, z - std::max(distance - options_.gap / 2, kSmallStep));
       if (is_free(T)) continue;
       double low = z, high = before;

@@ -44,7 +44,7 @@ TEST(Graspability, BoxIsTakenAcrossItsNarrowSideAtItsMiddle) {
     EXPECT_NEAR(best.opening, best.width + 0.02, 1e-12);
     const Vector3d p = flat(x, y, 0, yaw).inverse() * best.T_world_tcp.translation();
     EXPECT_NEAR(p.y(), 0, 0.003);
-    EXPECT_NEAR(p.x(), 0, 0.03);
+    EXPECT_NEAR(p.x(), 0, 0.015);
     // The tcp's axes: approach down, closing across the box.
     EXPECT_LT((best.T_world_tcp.linear().col(0) + Vector3d::UnitZ()).norm(), 1e-12);
     EXPECT_NEAR(best.T_world_tcp.linear().col(1).x(), std::cos(best.angle), 1e-12);
@@ -249,7 +249,8 @@ TEST(Graspability, RealCloudsKeepTheHandClear) {
   GraspabilityOptions options;
   options.lowest = 0.015;
   const auto found = evaluate_graspability(map, gripper(), options);
-  EXPECT_GE(found.grasps.size(), 3u);
+  EXPECT_GE(found.grasps.size(), 3u) << found.counts.tried << " tried, " << found.counts.too_wide << " too wide, "
+                                     << found.counts.poor << " poor, " << found.counts.collision << " in collision";
   for (const ScoredGrasp& grasp : found.grasps) {
     const Pose T_tcp_world = grasp.T_world_tcp.inverse();
     int between = 0, inside = 0;

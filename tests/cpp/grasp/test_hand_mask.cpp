@@ -40,7 +40,7 @@ TEST(HandMask, ConvolutionEqualsBruteForce) {
     odd.cells.resize(169);
     for (auto& cell : odd.cells) cell = rng.uniform() < 0.5;
     const HandMasks masks = make_hand_masks(tray_scene::gripper(), {}, 0.06, 0.7, 0.01);
-    for (const MaskImage* mask : {&odd, &masks.contact, &masks.fingers, &masks.palm}) {
+    for (const MaskImage* mask : {static_cast<const MaskImage*>(&odd), &masks.contact, &masks.fingers, &masks.palm}) {
       for (const bool outside : {false, true}) {
         const auto counts = convolve_mask(image, nx, ny, *mask, outside);
         for (int y = 0; y < ny; ++y)

@@ -61,8 +61,8 @@ struct MMGRASP_EXPORT Graspability {
 /// and palm with those that would be touched. Graspability is the contact count where nothing is touched, smoothed; at
 /// its local maxima the hand is centred on the part, its width measured, and the hand opened for that width is checked
 /// again. Cells of which nothing is known, and all beyond the map, count as touched. The score is the product of the
-/// share of the pads in contact, how solid the part is between them, how deep they hold it and how far the hand may
-/// shift. Same answer at any thread count. Throws InvalidInput on a bad map, gripper or option.
+/// share of the pads in contact, how solid the part is between them, how deep they hold it, how near its middle and how
+/// far the hand may shift. Same answer at any thread count. Throws InvalidInput on a bad map, gripper or option.
 MMGRASP_EXPORT Graspability evaluate_graspability(const HeightMap& map, const Gripper& gripper,
                                                   const GraspabilityOptions& options = {}, const Monitor& monitor = {});
 

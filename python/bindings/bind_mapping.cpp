@@ -9,17 +9,24 @@ namespace {
 
 using namespace py::literals;
 
-/// (rows, columns) of float32; NaN and infinity are allowed.
-std::vector<float> image_argument(const py::handle& value, const std::string& name, int rows, int columns) {
-  const auto array = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(value);
-  if (!array) {
-    PyErr_Clear();
-    throw InvalidInput(name + ": must be an array of numbers");
+/// An array of real numbers as T, in which NaN and infinity may stand for what was not measured.
+template <typename T>
+py::array_t<T, py::array::c_style> measured_argument(const py::object& value, const std::string& name) {
+  const auto raw = py::array::ensure(value);
+  if (!raw) PyErr_Clear();
+  if (!raw || std::string("fiu").find(raw.dtype().kind()) == std::string::npos) {
+    throw InvalidInput(name + ": must be an array of real numbers");
   }
+  return py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(raw);
+}
+
+/// (rows, columns) of float32.
+std::vector<float> image_argument(const py::object& value, const std::string& name, int rows, int columns) {
+  const auto array = measured_argument<float>(value, name);
   if (array.ndim() != 2 || (rows >= 0 && (array.shape(0) != rows || array.shape(1) != columns))) {
-    throw InvalidInput(
-        name + ": must have the shape " +
-        (rows >= 0 ? "(" + std::to_string(rows) + ", " + std::to_string(columns) + ")" : "(rows, columns)"));
+    const std::string wanted =
+        rows >= 0 ? "(" + std::to_string(rows) + ", " + std::to_string(columns) + ")" : "(rows, columns)";
+    throw InvalidInput(name + ": must have the shape " + wanted);
   }
   return {array.data(), array.data() + array.size()};
 }
@@ -30,13 +37,9 @@ py::array_t<float> to_image(const std::vector<float>& values, int rows, int colu
   return out;
 }
 
-/// (n, 3), where rows may hold NaN.
-std::vector<Eigen::Vector3d> points_argument(const py::handle& value, const std::string& name) {
-  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(value);
-  if (!array) {
-    PyErr_Clear();
-    throw InvalidInput(name + ": must be an array of numbers");
-  }
+/// (n, 3) or (rows, columns, 3).
+std::vector<Eigen::Vector3d> points_argument(const py::object& value, const std::string& name) {
+  const auto array = measured_argument<double>(value, name);
   const bool rows = (array.ndim() == 2 || array.ndim() == 3) && array.shape(array.ndim() - 1) == 3;
   if (!rows) throw InvalidInput(name + ": must have the shape (n, 3) or (rows, columns, 3)");
   std::vector<Eigen::Vector3d> points(static_cast<std::size_t>(array.size() / 3));
@@ -103,7 +106,7 @@ void bind_clouds(py::module_& m) {
 void bind_images(py::module_& m) {
   py::class_<DepthImage>(m, "DepthImage",
                          "What a depth camera saw: depth along the camera's axis [m], 0 where nothing was measured.")
-      .def(py::init([](const ArrayLike& depth, const PinholeCamera& camera, const py::object& T_world_camera) {
+      .def(py::init([](const py::object& depth, const PinholeCamera& camera, const py::object& T_world_camera) {
              camera.check();
              DepthImage image{camera, pose_argument(T_world_camera, "T_world_camera"),
                               image_argument(depth, "depth", camera.height, camera.width)};
@@ -140,7 +143,7 @@ void bind_images(py::module_& m) {
       "look_down", [](const ArrayLike& eye) { return to_array(look_down(vector3_argument(eye, "eye"))); },
       py::arg("eye"), "T_world_camera of a camera at `eye` [m] that looks straight down, image x along the world's x.");
   py::class_<HeightMap>(m, "HeightMap", "Heights over square cells, seen along -z of the map's frame [m].")
-      .def(py::init([](const ArrayLike& height, double resolution, const py::object& T_world_map) {
+      .def(py::init([](const py::object& height, double resolution, const py::object& T_world_map) {
              HeightMap map;
              map.height = image_argument(height, "height", -1, -1);
              map.upper = map.height;
@@ -201,7 +204,7 @@ void bind_cuboids(py::module_& m) {
            [](const CuboidFit& f) { return "CuboidFit(" + std::to_string(f.cuboids.size()) + " cuboids)"; });
   m.def(
       "fit_cuboids",
-      [](const ArrayLike& points, const py::object& T_world_tray, const py::object& tray_size, double wall,
+      [](const py::object& points, const py::object& T_world_tray, const py::object& tray_size, double wall,
          const py::object& up, const py::object& eye, const py::kwargs& options) {
         CuboidFitOptions read = read_options(cuboid_fields(), options, "fit_cuboids");
         if (!up.is_none()) read.up = vector3_argument(up, "up");

@@ -14,7 +14,7 @@ using namespace mmgrasp;
 
 namespace {
 
-const std::filesystem::path kClouds = std::filesystem::path(MMGRASP_SHARED_DATA) / "clouds";
+const std::filesystem::path kClouds = std::filesystem::path(std::string(MMGRASP_SHARED_DATA)) / "clouds";
 
 class PointCloudFile : public ::testing::Test {
  protected:

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-const std::filesystem::path kClouds = std::filesystem::path(MMGRASP_SHARED_DATA) / "clouds";
+const std::filesystem::path kClouds = std::filesystem::path(std::string(MMGRASP_SHARED_DATA)) / "clouds";
 
 struct TrueBox {
   Vector3d size;

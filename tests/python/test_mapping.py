@@ -1,0 +1,125 @@
+"""Depth images, cuboids and graspability through the Python door."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import mmgrasp as mg
+from conftest import REPOSITORY
+
+CLOUDS = REPOSITORY.parent / "shared" / "data" / "clouds"
+TRAY = [0.3, 0.4, 0.1]
+PART = [mg.LinkShape(mg.Box([0.07, 0.035, 0.03]))]
+
+
+def gripper() -> mg.Gripper:
+    return mg.Gripper(
+        "tcp", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.04, finger_width=0.022
+    )
+
+
+def small_camera() -> mg.PinholeCamera:
+    return mg.PinholeCamera(width=40, height=30, fx=30.0, fy=30.0, cx=19.5, cy=14.5)
+
+
+def test_rendered_plane_has_its_points_on_it():
+    image = mg.render_depth([mg.LinkShape(mg.Plane([0, 0, 1], 0.2))], small_camera(), mg.look_down([0.1, 0.2, 1.0]))
+    assert image.depth.shape == (30, 40)
+    assert np.allclose(image.depth, 0.8, atol=1e-6)
+    points = image.points()
+    assert points.shape == (1200, 3)
+    assert np.allclose(points[:, 2], 0.2, atol=1e-6)
+    again = mg.DepthImage(image.depth, image.camera, image.T_world_camera)
+    assert np.array_equal(again.points(), points)
+
+
+@pytest.mark.parametrize(
+    "depth", ["x", [["a"]], np.zeros((2, 3)), np.zeros(1200), np.zeros((30, 40), complex), [[1, 2], [3]], None]
+)
+def test_bad_images_are_refused_by_name(depth):
+    with pytest.raises(mg.InvalidInput, match="depth"):
+        mg.DepthImage(depth, small_camera())
+
+
+@pytest.mark.parametrize("points", ["x", [1.0, 2, 3], np.zeros((4, 2)), np.zeros((4, 3), complex), [["a"] * 3]])
+def test_bad_points_are_refused_by_name(points):
+    with pytest.raises(mg.InvalidInput, match="points"):
+        mg.fit_cuboids(points)
+
+
+def test_unknown_keyword_names_the_near_miss():
+    with pytest.raises(mg.InvalidInput, match="cluster_tolerance"):
+        mg.fit_cuboids(np.zeros((4, 3)), cluster_tolerence=0.1)
+
+
+def test_not_measured_is_no_error():
+    image = mg.DepthImage(np.full((30, 40), np.nan), small_camera())
+    assert len(image.points()) == 0
+    assert not mg.fit_cuboids(np.full((10, 3), np.nan)).cuboids
+
+
+def test_scans_of_random_trays():
+    scans = [mg.scan_random_tray(PART, TRAY, gripper(), count=8, fill=fill, seed=3) for fill in (1.0, 0.5)]
+    assert [len(scan.placement.parts) + scan.placement.not_placed for scan in scans] == [8, 4]
+    assert all(scan.grasps for scan in scans)
+    union = mg.union_of_grasps(scans)
+    assert len(union) == sum(len(scan.grasps) for scan in scans)
+    scores = [grasp.score for grasp in union]
+    assert scores == sorted(scores, reverse=True)
+    again = mg.scan_random_tray(PART, TRAY, gripper(), count=8, fill=0.5, seed=3)
+    assert [g.T_world_tcp.tolist() for g in again.grasps] == [g.T_world_tcp.tolist() for g in scans[1].grasps]
+
+    T_world_tray = mg.pose([1, 2, 0.7], rpy=[0, 0, 0.3])
+    parts = mg.parts_of_grasps("tray", union, gripper(), T_world_tray)
+    assert len({part.name for part in parts}) == len(union)
+    for part, grasp in zip(parts, union, strict=True):
+        tcp = part.pose @ part.grasps[0].T_object_tcp
+        assert np.allclose(tcp, T_world_tray @ grasp.T_world_tcp)
+        other = part.pose @ part.grasps[1].T_object_tcp
+        assert np.allclose(other[:3, 0], tcp[:3, 0])  # the same approach,
+        assert np.allclose(other[:3, 1], -tcp[:3, 1])  # the fingers change places
+        bead = np.linalg.inv(T_world_tray) @ part.pose @ part.shapes[0].pose
+        assert np.allclose(bead[:3, 3], [0, 0, -0.0025])  # inside the tray's floor
+
+
+def test_cuboids_of_a_random_tray_are_its_parts():
+    scan = mg.scan_random_tray(PART, TRAY, gripper(), count=4, seed=2, noise=0.0, stack=False)
+    fit = mg.fit_cuboids(
+        scan.image.points(), T_world_tray=np.eye(4), tray_size=TRAY, eye=scan.image.T_world_camera[:3, 3]
+    )
+    assert 1 <= len(fit.cuboids) <= 4
+    true = np.array([part.T_tray_part[:3, 3] for part in scan.placement.parts])
+    whole = [c for c in fit.cuboids if np.allclose(sorted(c.size), [0.03, 0.035, 0.07], atol=0.004)]
+    assert whole
+    for cuboid in whole:
+        assert np.min(np.linalg.norm(true - cuboid.T_world_box[:3, 3], axis=1)) < 0.004
+
+
+def test_real_depth_frames_give_points_where_their_poses_say():
+    """Two frames of one sequence: their clouds meet once each is put at its camera's pose."""
+    if not CLOUDS.exists():
+        pytest.skip("no reference data")
+    image_module = pytest.importorskip("PIL.Image")
+    lines = (CLOUDS / "open3d" / "RGBD" / "trajectory.log").read_text().split("\n")
+    poses = [np.array([[float(x) for x in lines[5 * k + 1 + i].split()] for i in range(4)]) for k in range(2)]
+    clouds = []
+    for k, T in enumerate(poses):
+        depth = np.asarray(image_module.open(CLOUDS / "open3d" / "RGBD" / "depth" / f"{k:05d}.png"), np.float32) / 1000
+        T[:3, :3] = np.linalg.svd(T[:3, :3])[0] @ np.linalg.svd(T[:3, :3])[2]
+        clouds.append(mg.DepthImage(depth, mg.PinholeCamera(), T).points())
+    assert min(map(len, clouds)) > 100_000
+    cells = {tuple(cell) for cell in np.floor(clouds[0] / 0.03).astype(int)}
+    grown = {(x + i, y + j, z + k) for x, y, z in cells for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1)}
+    some = np.floor(clouds[1][::50] / 0.03).astype(int)
+    assert np.mean([tuple(cell) in grown for cell in some]) > 0.9
+
+
+def test_real_cloud_files():
+    if not CLOUDS.exists():
+        pytest.skip("no reference data")
+    cloud = mg.read_pcd(CLOUDS / "haf" / "pcd4.pcd")
+    assert len(cloud.points) == 208
+    assert "200" in cloud.warning
+    with pytest.raises(mg.IoError, match=r"README\.txt"):
+        mg.read_pcd(CLOUDS / "haf" / "README.txt")

@@ -54,6 +54,7 @@ def scan_random_tray(
     count: int = 12,
     fill: float = 1.0,
     wall: float = 0.005,
+    stack: bool = True,
     seed: int = 1,
     camera: PinholeCamera | None = None,
     camera_height: float = 0.8,
@@ -63,11 +64,12 @@ def scan_random_tray(
 ) -> TrayScan:
     """Fills a tray at random, renders it from above its middle and evaluates graspability.
 
-    `fill` is the share of `count` parts that is left in the tray (P1: 1, 0.75, 0.5, 0.25). `camera_height` [m] is above
+    `fill` is the share of `count` parts that is left in the tray (P1: 1, 0.75, 0.5, 0.25); with
+    `stack` a part without a place on the floor may lie on others. `camera_height` [m] is above
     the floor; `noise` [m] is the depth's at 1 m. Further keywords go to evaluate_graspability. Same seed, same scan.
     """
     size = np.asarray(tray_size, float)
-    placement = _core.random_placement(list(part), size, count=count, fill=fill, wall=wall, seed=seed)
+    placement = _core.random_placement(list(part), size, count=count, fill=fill, wall=wall, stack=stack, seed=seed)
     scene = _core.tray_shapes(size, wall)
     for placed in placement.parts:
         scene += [LinkShape(shape.shape, placed.T_tray_part @ shape.pose) for shape in part]

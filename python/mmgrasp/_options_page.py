@@ -17,6 +17,13 @@ SECTIONS = (
         _core._platform_option_table,
         set(),
     ),
+    (
+        "evaluate_graspability",
+        "Grasps from a height map, keywords (`GraspabilityOptions`)",
+        _core._graspability_option_table,
+        set(),
+    ),
+    ("fit_cuboids", "Box-shaped parts of a cloud, keywords (`CuboidFitOptions`)", _core._cuboid_option_table, set()),
 )
 
 

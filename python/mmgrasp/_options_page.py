@@ -7,6 +7,12 @@ from . import _core
 SECTIONS = (
     ("options", "How to plan (`PartSupplyOptions`)", _core._supply_option_table, {"positioning_uncertainty"}),
     ("reach", "The reachability database (`ReachOptions`)", _core._reach_option_table, set()),
+    (
+        "capability_map",
+        "Keywords of `CapabilityMap.build` (`CapabilityOptions`)",
+        _core._capability_option_table,
+        set(),
+    ),
     ("grasp_options", "The grasp sampler of a part type (`GraspSamplerOptions`)", _core._grasp_option_table, set()),
     ("ik", "Inverse kinematics, keywords of `JointGroup.ik` and its kin (`IkOptions`)", _core._ik_option_table, set()),
     ("collision_checker", "Keywords of `CollisionChecker` (`CheckerOptions`)", _core._checker_option_table, set()),

@@ -7,6 +7,7 @@ test here fails and says so.
 from __future__ import annotations
 
 import ast
+import functools
 import itertools
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -126,6 +127,12 @@ VALUES: dict[str, Any] = {
     "verify.CheckedRegion.cells": np.ones(12, np.uint8),
 }
 
+
+@functools.cache
+def capability_map() -> mg.CapabilityMap:
+    return mg.CapabilityMap.build(ARM, upper=(1, 1, 2), voxel=1, poses=2, threads=1)
+
+
 OBJECTS = {
     "Robot": lambda: ROBOT,
     "JointGroup": lambda: ARM,
@@ -133,6 +140,7 @@ OBJECTS = {
     "World.detach": held,
     "CollisionChecker": lambda: mg.CollisionChecker(ROBOT, world(), ARM),
     "ReachDatabase": lambda: mg.ReachDatabase.build(ARM, samples=1000, threads=1),
+    "CapabilityMap": capability_map,
     "PinholeCamera": mg.PinholeCamera,
     "IkObjective": lambda: mg.joint_limit_objective(ARM),
     "IkSeedDatabase": lambda: mg.IkSeedDatabase(WHOLE_BODY),
@@ -174,6 +182,7 @@ OTHERS: dict[str, Any] = {
     "tcp_link": lambda: "tip",
     "link": lambda: "tip",
     "headings": lambda: [0.0],
+    "distances": lambda: [0.5, 1.0],
     "nx": lambda: 4,
     "ny": lambda: 3,
     "tray": lambda: 0,

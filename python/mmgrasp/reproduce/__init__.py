@@ -10,7 +10,17 @@ from typing import Any
 
 from .._core import InvalidInput, __version__
 from .._reading import near_miss
-from . import base_regions, experiments, ik_query, policies, random_placement, robust_sets, rows, solver_regions
+from . import (
+    base_regions,
+    capability,
+    experiments,
+    ik_query,
+    policies,
+    random_placement,
+    robust_sets,
+    rows,
+    solver_regions,
+)
 from .entry import Context, Entry, Progress, Result, Sweep, sweep_here
 
 __all__ = ["ENTRIES", "Context", "Entry", "Result", "entry", "reproduce"]
@@ -24,9 +34,15 @@ TOPICS = (
     policies,
     experiments,
     random_placement,
+    capability,
 )
 ENTRIES: dict[str, Entry] = {e.name: e for topic in TOPICS for e in topic.ENTRIES}
-ALSO = {"p1-figure-3.13": "p1-table-3.1", "p1-figure-3.15": "p1-table-3.1", "p1-figure-3.4": "p1-figure-3.5"}
+ALSO = {
+    "p1-figure-3.13": "p1-table-3.1",
+    "p1-figure-3.15": "p1-table-3.1",
+    "p1-figure-3.4": "p1-figure-3.5",
+    "p3-figure-3.32": "p3-figure-3.31",
+}
 
 
 def entry(name: str) -> Entry:

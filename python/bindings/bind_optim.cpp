@@ -1,5 +1,7 @@
 #include "bindings.hpp"
+#include "mmgrasp/optim/assignment.hpp"
 #include "mmgrasp/optim/set_cover.hpp"
+#include "mmgrasp/optim/shared_tours.hpp"
 #include "mmgrasp/optim/tour.hpp"
 
 namespace mmgrasp::python {
@@ -39,11 +41,12 @@ void bind_optim(py::module_& m) {
       .def_readonly("outcome", &TourResult::outcome)
       .def_readonly("order", &TourResult::order, "Visiting order of the stops.")
       .def_readonly("length", &TourResult::length)
-      .def_readonly("proven", &TourResult::proven, "True when exact.")
+      .def_readonly("lower_bound", &TourResult::lower_bound, "Proven: no way is shorter.")
+      .def_readonly("proven", &TourResult::proven, "True when the length meets the bound; always up to 15 stops.")
       .def("to_dict",
            [](const TourResult& r) {
              return py::dict("outcome"_a = to_string(r.outcome), "order"_a = r.order, "length"_a = r.length,
-                             "proven"_a = r.proven);
+                             "lower_bound"_a = r.lower_bound, "proven"_a = r.proven);
            })
       .def("__repr__", [](const TourResult& r) {
         return std::string("TourResult(") + to_string(r.outcome) +
@@ -60,6 +63,41 @@ void bind_optim(py::module_& m) {
       py::arg("lengths"),
       "Shortest way from start over all n stops to goal. `lengths` is (n + 2, n + 2): stops, start, goal; infinite: no "
       "way.");
+
+  m.def(
+      "cheapest_assignment",
+      [](const ArrayLike& given) {
+        const Eigen::MatrixXd costs = matrix_argument(given, "costs");
+        py::gil_scoped_release release;
+        return cheapest_assignment(costs);
+      },
+      py::arg("costs"), "A column of its own for each row of (n, n) so that the sum of costs is least.");
+
+  py::class_<SharedTours>(m, "SharedTours", "Stops shared among several robots.")
+      .def_readonly("outcome", &SharedTours::outcome)
+      .def_readonly("orders", &SharedTours::orders, "The stops of each robot in visiting order.")
+      .def_readonly("durations", &SharedTours::durations)
+      .def_readonly("makespan", &SharedTours::makespan, "The longest duration.")
+      .def_readonly("lower_bound", &SharedTours::lower_bound, "Proven: no sharing ends earlier.")
+      .def("to_dict",
+           [](const SharedTours& s) {
+             return py::dict("outcome"_a = to_string(s.outcome), "orders"_a = s.orders, "durations"_a = s.durations,
+                             "makespan"_a = s.makespan, "lower_bound"_a = s.lower_bound);
+           })
+      .def("__repr__", [](const SharedTours& s) {
+        return std::string("SharedTours(") + to_string(s.outcome) + ", " + std::to_string(s.orders.size()) +
+               " robots, makespan " + std::string(py::repr(py::float_(s.makespan))) + ")";
+      });
+  m.def(
+      "share_stops",
+      [](const ArrayLike& given, const std::vector<double>& stop_times, int robots) {
+        const Eigen::MatrixXd drive_times = matrix_argument(given, "drive_times", -1, true);
+        py::gil_scoped_release release;
+        return share_stops(drive_times, stop_times, robots);
+      },
+      py::arg("drive_times"), py::arg("stop_times"), py::arg("robots"),
+      "Shares stops among robots so that the last is done as early as can be. `drive_times` is (n + 2 k, n + 2 k): "
+      "stops, k starts, k goals; infinite: no way.");
 }
 
 }  // namespace mmgrasp::python

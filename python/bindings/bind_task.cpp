@@ -120,89 +120,6 @@ void bind_problem(py::module_& m) {
       });
 }
 
-py::dict intersection_dict(const Intersection& i) {
-  return py::dict("trays"_a = i.trays, "heading"_a = i.heading, "centre"_a = py::make_tuple(i.centre.x(), i.centre.y()),
-                  "radius"_a = i.radius, "cells"_a = i.cells);
-}
-
-void bind_sequence(py::module_& m) {
-  py::class_<Intersection>(m, "Intersection", "Cells that several regions share, with their largest disc.")
-      .def_readonly("trays", &Intersection::trays)
-      .def_readonly("heading", &Intersection::heading)
-      .def_readonly("centre", &Intersection::centre)
-      .def_readonly("radius", &Intersection::radius)
-      .def_readonly("cells", &Intersection::cells)
-      .def("to_dict", &intersection_dict)
-      .def("__repr__", [](const Intersection& i) {
-        return "Intersection(trays " + std::string(py::repr(py::cast(i.trays))) + ", radius " +
-               std::string(py::repr(py::float_(i.radius))) + ")";
-      });
-  py::class_<Intersections>(m, "Intersections")
-      .def_readonly("robust", &Intersections::robust)
-      .def_readonly("lost", &Intersections::lost, "Shared cells whose disc is too small, largest first.")
-      .def_readonly("sets_tried", &Intersections::sets_tried)
-      .def_readonly("sets_too_small", &Intersections::sets_too_small)
-      .def("__repr__", [](const Intersections& i) {
-        return "Intersections(" + std::to_string(i.robust.size()) + " robust, " + std::to_string(i.sets_too_small) +
-               " too small, " + std::to_string(i.sets_tried) + " tried)";
-      });
-  m.def("robust_intersections", &robust_intersections, py::arg("grid"), py::arg("regions"), py::arg("min_radius"),
-        py::arg("max_sets") = std::size_t{200000},
-        "Every set of trays whose shared cells hold a disc of at least `min_radius` [m] (P1 3.4.2).");
-  py::class_<Stop>(m, "Stop", "Where the base stops and which trays it serves there.")
-      .def_readonly("pose", &Stop::pose, "x, y, theta.")
-      .def_readonly("radius", &Stop::radius, "Of the disc in which every target part stays graspable [m].")
-      .def_readonly("trays", &Stop::trays)
-      .def_readonly("intersection", &Stop::intersection)
-      .def("__repr__", [](const Stop& s) {
-        return "Stop(" + text(s.pose) + ", trays " + std::string(py::repr(py::cast(s.trays))) + ")";
-      });
-  py::class_<StopSet>(m, "StopSet")
-      .def_readonly("outcome", &StopSet::outcome)
-      .def_readonly("stops", &StopSet::stops)
-      .def_readonly("lower_bound", &StopSet::lower_bound, "Proven least number of stops.")
-      .def_readonly("unreachable_trays", &StopSet::unreachable_trays)
-      .def("__repr__", [](const StopSet& s) {
-        return std::string("StopSet(") + to_string(s.outcome) + ", " + std::to_string(s.stops.size()) + " stops)";
-      });
-  m.def("minimal_stops", py::overload_cast<const BaseGrid&, const std::vector<Intersection>&, int>(&minimal_stops),
-        py::arg("grid"), py::arg("intersections"), py::arg("trays"),
-        "The least number of intersections that cover all trays (P1 equation 3.1), with proof.");
-  py::class_<BasePath>(m, "BasePath", "A drive of the base.")
-      .def_readonly("outcome", &BasePath::outcome)
-      .def_property_readonly(
-          "poses", [](const BasePath& p) { return rows_to_array(p.poses); }, "(k, 3): x, y, theta.")
-      .def_readonly("length", &BasePath::length)
-      .def_readonly("turning", &BasePath::turning)
-      .def(
-          "duration",
-          [](const BasePath& p, const Robot& robot) {
-            return base_path_duration(p, robot.base(), robot.base_limits());
-          },
-          py::arg("robot"))
-      .def("__repr__", [](const BasePath& p) {
-        return std::string("BasePath(") + to_string(p.outcome) + ", " + std::string(py::repr(py::float_(p.length))) +
-               " m)";
-      });
-  m.def(
-      "plan_base_route",
-      [](const JointGroup& arm, const World& world, const ArrayLike& home, const ArrayLike& from, const ArrayLike& to,
-         double resolution) {
-        BaseRouteOptions options;
-        options.base = arm.robot().base();
-        options.resolution = resolution;
-        CollisionChecker checker(with_sampled_pairs(arm), world);
-        const Eigen::VectorXd q = vector_argument(home, "home", arm.size());
-        const Eigen::Vector3d a = vector3_argument(from, "start"), b = vector3_argument(to, "goal");
-        return LongCall(py::none()).run([&](const Monitor& monitor) {
-          return plan_base_route(checker, q, a, b, options, monitor);
-        });
-      },
-      py::arg("arm"), py::arg("world"), py::kw_only(), py::arg("home"), py::arg("start"), py::arg("goal"),
-      py::arg("resolution") = BaseRouteOptions{}.resolution,
-      "A driveable, collision-free way of the whole robot with its arm at `home`; poses are x, y, theta.");
-}
-
 void bind_picks(py::module_& m) {
   py::class_<PickMotion>(m, "PickMotion", "One timed arm motion at a stop.")
       .def_property_readonly("kind", [](const PickMotion& p) { return to_string(p.kind); })
@@ -300,7 +217,7 @@ void bind_plan_result(py::module_& m) {
 void bind_task(py::module_& m) {
   bind_problem(m);
   bind_base_regions(m);
-  bind_sequence(m);
+  bind_base_sequence(m);
   bind_picks(m);
   bind_plan_result(m);
 }

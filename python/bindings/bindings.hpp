@@ -36,6 +36,7 @@ void bind_reach(py::module_& m);
 void bind_grasp(py::module_& m);
 void bind_plan(py::module_& m);
 void bind_base_regions(py::module_& m);
+void bind_base_sequence(py::module_& m);
 void bind_task(py::module_& m);
 void bind_pickle(py::module_& m);  ///< After the classes it adds to.
 void bind_platform_locations(py::module_& m);

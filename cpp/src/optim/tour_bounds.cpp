@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "mmgrasp/optim/assignment.hpp"
+
 namespace mmgrasp::detail {
 namespace {
 
@@ -79,50 +81,6 @@ double tree_bound(const Eigen::MatrixXd& lengths, double reached) {
   return best;
 }
 
-/// Cheapest assignment of columns to rows (shortest augmenting paths); the sum of its dual prices.
-double assignment(const Eigen::MatrixXd& costs) {
-  const auto n = static_cast<std::size_t>(costs.rows());
-  std::vector<double> row_price(n + 1, 0), column_price(n + 1, 0), slack(n + 1);
-  std::vector<std::size_t> row_of(n + 1, 0), previous(n + 1, 0);
-  std::vector<char> done(n + 1);
-  for (std::size_t row = 1; row <= n; ++row) {
-    row_of[0] = row;
-    std::size_t column = 0;
-    std::fill(slack.begin(), slack.end(), kInfinity);
-    std::fill(done.begin(), done.end(), 0);
-    do {
-      done[column] = 1;
-      const std::size_t at = row_of[column];
-      std::size_t next = 0;
-      double least = kInfinity;
-      for (std::size_t j = 1; j <= n; ++j) {
-        if (done[j]) continue;
-        const double reduced = costs(static_cast<Eigen::Index>(at - 1), static_cast<Eigen::Index>(j - 1)) -
-                               row_price[at] - column_price[j];
-        if (reduced < slack[j]) {
-          slack[j] = reduced;
-          previous[j] = column;
-        }
-        if (slack[j] < least) {
-          least = slack[j];
-          next = j;
-        }
-      }
-      for (std::size_t j = 0; j <= n; ++j) {
-        if (done[j]) {
-          row_price[row_of[j]] += least;
-          column_price[j] -= least;
-        } else {
-          slack[j] -= least;
-        }
-      }
-      column = next;
-    } while (row_of[column] != 0);
-    for (; column != 0; column = previous[column]) row_of[column] = row_of[previous[column]];
-  }
-  return -column_price[0];
-}
-
 double assignment_bound(const Eigen::MatrixXd& lengths, double reached) {
   const auto n = lengths.rows();
   // Rows: stops and start; columns: stops and goal.
@@ -132,7 +90,10 @@ double assignment_bound(const Eigen::MatrixXd& lengths, double reached) {
   const double far = 4 * (reached + lengths.maxCoeff());
   for (Eigen::Index i = 0; i < n - 2; ++i) costs(i, i) = far;
   costs(n - 2, n - 2) = far;
-  return assignment(costs);
+  double total = 0;
+  const std::vector<int> column = cheapest_assignment(costs);
+  for (Eigen::Index i = 0; i < n - 1; ++i) total += costs(i, column[static_cast<std::size_t>(i)]);
+  return total;
 }
 
 }  // namespace

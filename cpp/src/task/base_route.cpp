@@ -7,30 +7,14 @@
 #include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
 #include "task/base_search.hpp"
+#include "task/floor_field.hpp"
 
 namespace mmgrasp {
 namespace {
 
-constexpr double kMargin = 2.0;         // [m] around what is in the scene
 constexpr int kShorteningChecks = 400;  // Direct ways tried for shortening.
 
 using Poses3 = std::vector<Eigen::Vector3d>;
-
-Eigen::AlignedBox2d search_bounds(const CollisionChecker& checker, const Eigen::Vector3d& from,
-                                  const Eigen::Vector3d& to, const BaseRouteOptions& options) {
-  if (!options.bounds.isEmpty()) return options.bounds;
-  Eigen::AlignedBox2d bounds(Eigen::Vector2d(from.head<2>()));
-  bounds.extend(Eigen::Vector2d(to.head<2>()));
-  for (const auto& [name, object] : checker.world().objects()) {
-    for (const LinkShape& shape : object.shapes) {
-      const Eigen::AlignedBox3d box = shape_bounds(shape.shape, object.T_world_object * shape.T_link_shape);
-      if (!box.min().allFinite() || !box.max().allFinite()) continue;  // a plane has no end
-      bounds.extend(Eigen::Vector2d(box.min().head<2>()));
-      bounds.extend(Eigen::Vector2d(box.max().head<2>()));
-    }
-  }
-  return {Eigen::Vector2d(bounds.min().array() - kMargin), Eigen::Vector2d(bounds.max().array() + kMargin)};
-}
 
 bool path_free(BaseClearance& clearance, const Poses3& poses, std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; ++i) {
@@ -120,8 +104,10 @@ BasePath plan_base_route(CollisionChecker& checker, const Eigen::VectorXd& home,
   const bool same = (from - to).head<2>().norm() < 1e-9 && std::abs(wrap_angle(from.z() - to.z())) < 1e-9;
   if (options.base == BaseKind::fixed && !same) return path;
   const BaseLimits limits = driving_limits(options.base, checker.group().robot().base_limits());
+  const Eigen::AlignedBox2d bounds =
+      options.bounds.isEmpty() ? floor_bounds(checker.world(), {from, to}) : options.bounds;
   const BaseSearchSettings settings{options.base, options.resolution, limits.linear_velocity / limits.angular_velocity,
-                                    search_bounds(checker, from, to, options)};
+                                    bounds};
   Poses3 poses = {from};
   if (!same) {
     auto found = search_base_path(clearance, from, to, settings, monitor);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/optim/tour.hpp"
+#include "mmgrasp/task/part_supply.hpp"
 #include "task/scene.hpp"
 
 namespace mmgrasp {
@@ -13,6 +15,7 @@ namespace {
 
 constexpr std::size_t kPlannedStops = 6;
 constexpr double kPadding = 0.01;  // [m]
+constexpr int kRounds = 8;         // Orders looked at while planned drives replace estimates.
 
 std::array<double, 6> key_of(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   return {from.x(), from.y(), from.z(), to.x(), to.y(), to.z()};
@@ -76,40 +79,113 @@ void BaseRoutes::prepare(const std::vector<std::pair<Eigen::Vector3d, Eigen::Vec
   }
 }
 
-std::vector<int> visiting_order(const PartSupplyProblem& problem, const std::vector<Stop>& stops, BaseRoutes& routes,
-                                int& missing) {
-  const int n = static_cast<int>(stops.size());
-  std::vector<Eigen::Vector3d> places;
-  for (const Stop& stop : stops) places.push_back(stop.pose);
-  places.push_back(problem.start);
-  places.push_back(problem.goal);
-  const bool planned = stops.size() <= kPlannedStops;
-  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> pairs;
-  for (int i = 0; i < n + 2; ++i) {
-    for (int j = i + 1; j < n + 2; ++j)
-      pairs.emplace_back(places[static_cast<std::size_t>(i)], places[static_cast<std::size_t>(j)]);
+Eigen::MatrixXd BaseRoutes::estimates(const std::vector<Eigen::Vector3d>& places) const {
+  BaseRouteOptions options;
+  options.base = problem_.robot.base();
+  options.resolution = problem_.options.route_resolution;
+  return route_lengths(bare_, problem_.home, places, options, problem_.options.threads, monitor_);
+}
+
+namespace {
+
+class VisitingOrder {
+ public:
+  VisitingOrder(const PartSupplyProblem& problem, const std::vector<Stop>& stops, BaseRoutes& routes)
+      : routes_(routes), n_(static_cast<int>(stops.size())) {
+    for (const Stop& stop : stops) places_.push_back(stop.pose);
+    places_.push_back(problem.start);
+    places_.push_back(problem.goal);
   }
-  if (planned) routes.prepare(pairs);
-  Eigen::MatrixXd lengths = Eigen::MatrixXd::Zero(n + 2, n + 2);
-  for (int i = 0; i < n + 2; ++i) {
-    for (int j = 0; j < n + 2; ++j) {
-      if (i == j) continue;
-      const Eigen::Vector3d &a = places[static_cast<std::size_t>(i)], &b = places[static_cast<std::size_t>(j)];
-      if (!planned) {
-        lengths(i, j) = (a - b).head<2>().norm();
-        continue;
+
+  std::vector<int> run(int& missing) {
+    std::vector<int> order;
+    if (n_ <= static_cast<int>(kPlannedStops)) {
+      std::vector<std::pair<int, int>> all;
+      for (int i = 0; i < n_ + 2; ++i) {
+        for (int j = i + 1; j < n_ + 2; ++j) all.emplace_back(i, j);
       }
-      const BasePath path = routes.between(a, b);
-      lengths(i, j) = path.outcome == Outcome::solved ? path.length : std::numeric_limits<double>::infinity();
+      lengths_ = Eigen::MatrixXd::Zero(n_ + 2, n_ + 2);
+      plan(all);
+      order = shortest_visiting_tour(lengths_).order;
+    } else {
+      order = by_estimates();
+    }
+    if (!order.empty() || n_ == 0) return order;
+    missing = -1;
+    for (int i = 0; i < n_; ++i) {
+      if (lengths_.rows() == n_ + 2 && !std::isfinite(lengths_(n_, i))) missing = i;
+    }
+    return {};
+  }
+
+ private:
+  /// Replaces lengths by those of planned drives.
+  void plan(const std::vector<std::pair<int, int>>& pairs) {
+    std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> drives;
+    for (const auto& [i, j] : pairs) drives.emplace_back(place(i), place(j));
+    routes_.prepare(drives);
+    for (const auto& [i, j] : pairs) {
+      const BasePath path = routes_.between(place(i), place(j));
+      planned_.insert(std::minmax(i, j));
+      lengths_(i, j) = lengths_(j, i) = path.outcome == Outcome::solved ? path.length : kInfinity;
     }
   }
-  const TourResult tour = shortest_visiting_tour(lengths);
-  if (tour.outcome == Outcome::solved || tour.outcome == Outcome::approximate) return tour.order;
-  missing = -1;
-  for (int i = 0; i < n; ++i) {
-    if (!std::isfinite(lengths(n, i))) missing = i;
+
+  std::vector<int> by_estimates() {
+    lengths_ = routes_.estimates(places_);
+    if (lengths_.rows() != n_ + 2) return {};
+    // Narrow places that the search of the floor does not get out of: their drives are planned at once, the ones from
+    // the start first, since without them there is no order.
+    plan(unreached(n_));
+    if (!lengths_.row(n_).allFinite()) return {};
+    for (int i = 0; i < n_ + 2; ++i) plan(unreached(i));
+    std::vector<int> order;
+    for (int round = 0; round < kRounds; ++round) {
+      order = shortest_visiting_tour(lengths_).order;
+      if (order.empty()) return {};
+      std::vector<std::pair<int, int>> legs;
+      int at = n_;
+      for (std::size_t i = 0; i <= order.size(); ++i) {
+        const int to = i < order.size() ? order[i] : n_ + 1;
+        if (planned_.count(std::minmax(at, to)) == 0) legs.emplace_back(at, to);
+        at = to;
+      }
+      if (legs.empty()) break;
+      plan(legs);
+    }
+    return order;
   }
-  return {};
+
+  std::vector<std::pair<int, int>> unreached(int from) const {
+    std::vector<std::pair<int, int>> pairs;
+    for (int to = 0; to < n_ + 2; ++to) {
+      if (!std::isfinite(lengths_(from, to)) && planned_.count(std::minmax(from, to)) == 0)
+        pairs.emplace_back(from, to);
+    }
+    return pairs;
+  }
+
+  const Eigen::Vector3d& place(int i) const { return places_[static_cast<std::size_t>(i)]; }
+
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  BaseRoutes& routes_;
+  int n_;
+  std::vector<Eigen::Vector3d> places_;
+  Eigen::MatrixXd lengths_;
+  std::set<std::pair<int, int>> planned_;
+};
+
+}  // namespace
+
+std::vector<int> visiting_order(const PartSupplyProblem& problem, const std::vector<Stop>& stops, BaseRoutes& routes,
+                                int& missing) {
+  return VisitingOrder(problem, stops, routes).run(missing);
+}
+
+std::vector<int> order_stops(const PartSupplyProblem& problem, const std::vector<Stop>& stops, int& missing,
+                             const Monitor& monitor) {
+  BaseRoutes routes(problem, monitor);
+  return visiting_order(problem, stops, routes, missing);
 }
 
 }  // namespace mmgrasp

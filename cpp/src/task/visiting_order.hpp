@@ -19,6 +19,8 @@ class BaseRoutes {
 
   /// A drive with all parts in place: it stays free when parts leave.
   BasePath between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+  /// Lengths between many places without planning each drive (see route_lengths()); empty when stopped.
+  Eigen::MatrixXd estimates(const std::vector<Eigen::Vector3d>& places) const;
   /// The same for many pairs at once, in parallel.
   void prepare(const std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& pairs);
 
@@ -33,8 +35,7 @@ class BaseRoutes {
   std::map<Key, BasePath> known_;
 };
 
-/// Order in which the stops are visited from start to goal. Up to 6 stops by the lengths of planned drives, more by
-/// straight distances. Empty when some stop cannot be driven to (then `missing` names its index, -1 for the goal).
+/// See order_stops().
 std::vector<int> visiting_order(const PartSupplyProblem& problem, const std::vector<Stop>& stops, BaseRoutes& routes,
                                 int& missing);
 

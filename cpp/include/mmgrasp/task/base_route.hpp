@@ -34,6 +34,15 @@ MMGRASP_EXPORT BasePath plan_base_route(CollisionChecker& checker, const Eigen::
                                         const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                                         const BaseRouteOptions& options, const Monitor& monitor = {});
 
+/// How far it is to drive between all pairs of some base poses, the arm at `home`, around what stands in the way: one
+/// search of the whole floor for each pose instead of one for each pair. Symmetric; infinite where no way was found
+/// (plan_base_route() may still find a narrow one). Estimates, good to some per cent: cells of `resolution` (coarser
+/// when the floor would have more than 40,000) that the robot may pass in one of 16 directions; turns cost nothing.
+/// Empty when the monitor ended it. `bounds` and `check_step` of the options are not used.
+MMGRASP_EXPORT Eigen::MatrixXd route_lengths(const CollisionChecker& checker, const Eigen::VectorXd& home,
+                                             const std::vector<Eigen::Vector3d>& poses, const BaseRouteOptions& options,
+                                             int threads = 0, const Monitor& monitor = {});
+
 /// Time to drive it under the limits (a diff-drive's wheels included) with trapezoidal profiles, stopping at every pose
 /// where the motion changes [s].
 MMGRASP_EXPORT double base_path_duration(const BasePath& path, BaseKind base, const BaseLimits& base_limits);

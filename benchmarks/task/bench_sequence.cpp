@@ -57,6 +57,10 @@ int main(int argc, char** argv) {
     if (wanted("row")) run(mmgrasp::test::row_layout(trays, 0.45));
     if (wanted("aisle")) run(mmgrasp::test::aisle_layout(trays, 0.45, 1.5));
   }
+  // Thousands of candidates: many trays in few places.
+  for (const double area : {0.06, 0.03}) {
+    if (wanted("dense")) run(mmgrasp::test::overhead_layout(500, 1, area));
+  }
   for (int trays : {50, 100, 200, 500}) {
     if (wanted("block")) run(mmgrasp::test::block_layout(trays, 0.45, 1.5));
     for (unsigned seed : {1u, 2u, 3u}) {

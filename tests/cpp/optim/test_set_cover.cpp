@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <functional>
+#include <limits>
 #include <thread>
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "support/orlib.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -62,27 +65,6 @@ void expect_cover(const SetCoverProblem& problem, const SetCoverResult& result) 
   EXPECT_TRUE(std::is_sorted(result.chosen.begin(), result.chosen.end()));
 }
 
-/// OR-Library's layout: rows (elements), columns (sets), the costs, then for each row how many columns cover it and
-/// which.
-SetCoverProblem read_orlib(std::istream& in) {
-  SetCoverProblem problem;
-  int sets = 0;
-  in >> problem.elements >> sets;
-  problem.sets.resize(sets);
-  problem.costs.resize(sets);
-  for (double& cost : problem.costs) in >> cost;
-  for (int e = 0; e < problem.elements; ++e) {
-    int count = 0;
-    in >> count;
-    for (int k = 0; k < count; ++k) {
-      int set = 0;
-      in >> set;
-      problem.sets.at(set - 1).push_back(e);
-    }
-  }
-  return problem;
-}
-
 TEST(SetCover, EqualsBruteForceOnRandomInstances) {
   Rng rng(7);
   int solved = 0, infeasible = 0;
@@ -106,6 +88,69 @@ TEST(SetCover, EqualsBruteForceOnRandomInstances) {
   EXPECT_GT(infeasible, 30);
 }
 
+/// Beyond what trying all subsets allows: the same covers by a plain branching over elements, without any bound but the
+/// best cover's cost. Two or three components, so that they are told apart.
+double by_branching(const SetCoverProblem& problem) {
+  double best = std::numeric_limits<double>::infinity();
+  std::vector<int> times(static_cast<std::size_t>(problem.elements), 0);
+  const std::function<void(double)> descend = [&](double cost) {
+    if (cost >= best) return;
+    const auto open = std::find(times.begin(), times.end(), 0);
+    if (open == times.end()) {
+      best = cost;
+      return;
+    }
+    const int element = static_cast<int>(open - times.begin());
+    for (std::size_t s = 0; s < problem.sets.size(); ++s) {
+      const auto& set = problem.sets[s];
+      if (std::find(set.begin(), set.end(), element) == set.end()) continue;
+      for (int e : set) ++times[static_cast<std::size_t>(e)];
+      descend(cost + cost_of(problem, static_cast<int>(s)));
+      for (int e : set) --times[static_cast<std::size_t>(e)];
+    }
+  };
+  descend(0);
+  return best;
+}
+
+TEST(SetCover, LargerInstancesInSeveralComponents) {
+  Rng rng(19);
+  int with_gap = 0;
+  for (int repeat = 0; repeat < 30; ++repeat) {
+    SetCoverProblem problem;
+    const int blocks = 2 + repeat % 2, size = 9;
+    problem.elements = blocks * size;
+    double sum = 0;
+    for (int block = 0; block < blocks; ++block) {
+      SetCoverProblem one;
+      one.elements = size;
+      for (int s = 0; s < 22; ++s) {
+        std::vector<int> here, there;
+        for (int e = 0; e < size; ++e) {
+          if (rng.uniform() > 0.28 && s % size != e) continue;
+          here.push_back(e);
+          there.push_back(block * size + e);
+        }
+        one.sets.push_back(here);
+        problem.sets.push_back(there);
+        const double cost = repeat % 3 == 0   ? 1.0
+                            : repeat % 3 == 1 ? 1.0 + static_cast<double>(rng.index(5))
+                                              : rng.uniform(1, 2);
+        one.costs.push_back(cost);
+        problem.costs.push_back(cost);
+      }
+      sum += by_branching(one);
+    }
+    const SetCoverResult result = solve_set_cover(problem);
+    ASSERT_EQ(result.outcome, Outcome::solved);
+    EXPECT_NEAR(result.cost, sum, 1e-7) << repeat;
+    EXPECT_NEAR(result.lower_bound, sum, 1e-7) << repeat;
+    expect_cover(problem, result);
+    with_gap += result.chosen.size() > 6;
+  }
+  EXPECT_GT(with_gap, 5);
+}
+
 struct OrLibraryCase {
   const char* name;
   double optimum;  // As published by Beasley; equal to data/reference/transcribed/scp_optima.json.
@@ -116,7 +161,7 @@ class OrLibrary : public ::testing::TestWithParam<OrLibraryCase> {};
 TEST_P(OrLibrary, ReachesThePublishedOptimum) {
   std::ifstream in(std::string(MMGRASP_SHARED_DATA) + "/reference/orlib_scp/" + GetParam().name + ".txt");
   if (!in) GTEST_SKIP() << "OR-Library files are not here";
-  const SetCoverProblem problem = read_orlib(in);
+  const SetCoverProblem problem = test::read_orlib(in);
   const SetCoverResult result = solve_set_cover(problem, 60.0);
   EXPECT_EQ(result.outcome, Outcome::solved);
   EXPECT_DOUBLE_EQ(result.cost, GetParam().optimum);
@@ -162,7 +207,7 @@ TEST(SetCover, TinyCostDifferencesDecide) {
 TEST(SetCover, TimeLimitLeavesACoverAndAValidBound) {
   std::ifstream in(std::string(MMGRASP_SHARED_DATA) + "/reference/orlib_scp/scp61.txt");
   if (!in) GTEST_SKIP() << "OR-Library files are not here";
-  const SetCoverProblem problem = read_orlib(in);
+  const SetCoverProblem problem = test::read_orlib(in);
   const SetCoverResult result = solve_set_cover(problem, 1e-3);
   expect_cover(problem, result);
   EXPECT_GE(result.cost, 138);

@@ -10,12 +10,12 @@
 namespace mmgrasp {
 namespace {
 
-/// A wall from y = -3 to y = 3 at x = 0, so that places on both sides are near as the crow flies only.
+/// A wall from y = -2 to y = 2 at x = 0, so that places on both sides are near as the crow flies only.
 PartSupplyProblem walled() {
   PartSupplyProblem problem = test::small_storeroom();
   problem.scene = World();
   problem.trays.clear();
-  problem.scene.add("wall", test::box_shape(0.2, 6, 1), test::at(0, 0, 0.5));
+  problem.scene.add("wall", test::box_shape(0.2, 4, 1), test::at(0, 0, 0.5));
   problem.start = {-2, 0, 0};
   problem.goal = {2, 0, 0};
   return problem;
@@ -33,8 +33,8 @@ TEST(RouteLengths, LengthsLeadAroundTheWall) {
     CollisionChecker own = checker.clone();
     for (int i = 0; i < 4; ++i) {
       EXPECT_EQ(lengths(i, i), 0);
-      for (int j = 0; j < 4; ++j) {
-        if (i == j) continue;
+      for (int j = i + 1; j < 4; ++j) {
+        EXPECT_NEAR(lengths(i, j), lengths(j, i), 1e-9);
         const Eigen::Vector3d &a = places[static_cast<std::size_t>(i)], &b = places[static_cast<std::size_t>(j)];
         BaseRouteOptions options;
         options.base = base;
@@ -44,7 +44,7 @@ TEST(RouteLengths, LengthsLeadAroundTheWall) {
         EXPECT_NEAR(lengths(i, j), drive.length, 0.12 * drive.length) << i << " to " << j;
       }
     }
-    EXPECT_GT(lengths(0, 1), 6);  // the crow flies 2 m
+    EXPECT_GT(lengths(0, 1), 4.5);  // the crow flies 2 m
   }
 }
 
@@ -60,40 +60,41 @@ TEST(RouteLengths, AClosedRoomCannotBeLeft) {
   EXPECT_LT(lengths(0, 2), 1);
 }
 
-/// Eight stops on both sides of the wall: the best of all orders by the lengths of planned drives.
-TEST(VisitingOrder, EightStopsAroundAWall) {
+/// Seven stops on both sides of the wall: the best of all orders by the lengths of planned drives.
+TEST(VisitingOrder, SevenStopsAroundAWall) {
   const PartSupplyProblem problem = walled();
-  std::vector<Stop> stops(8);
-  for (int i = 0; i < 8; ++i) {
+  std::vector<Stop> stops(7);
+  for (int i = 0; i < 7; ++i) {
     const double side = i % 2 == 0 ? -1 : 1;
     stops[static_cast<std::size_t>(i)].pose = {0.9 * side, -2.0 + 1.2 * (i / 2), 0};
   }
   int missing = -1;
   const std::vector<int> order = order_stops(problem, stops, missing);
-  ASSERT_EQ(order.size(), 8u);
+  ASSERT_EQ(order.size(), 7u);
   std::vector<Eigen::Vector3d> places;
   for (const Stop& stop : stops) places.push_back(stop.pose);
   places.push_back(problem.start);
   places.push_back(problem.goal);
   CollisionChecker checker(problem.arm, problem.scene);
-  Eigen::MatrixXd lengths = Eigen::MatrixXd::Zero(10, 10);
-  for (std::size_t i = 0; i < 10; ++i) {
-    for (std::size_t j = 0; j < 10; ++j) {
-      if (i != j)
-        lengths(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-            routes.between(places[i], places[j]).length;
+  Eigen::MatrixXd lengths = Eigen::MatrixXd::Zero(9, 9);
+  for (std::size_t i = 0; i < 9; ++i) {
+    for (std::size_t j = i + 1; j < 9; ++j) {
+      const BasePath drive = plan_base_route(checker, problem.home, places[i], places[j], BaseRouteOptions());
+      ASSERT_EQ(drive.outcome, Outcome::solved);
+      const auto a = static_cast<Eigen::Index>(i), b = static_cast<Eigen::Index>(j);
+      lengths(a, b) = lengths(b, a) = drive.length;
     }
   }
   const auto length_of = [&](const std::vector<int>& way) {
     double sum = 0;
-    int at = 8;
+    int at = 7;
     for (int stop : way) {
       sum += lengths(at, stop);
       at = stop;
     }
-    return sum + lengths(at, 9);
+    return sum + lengths(at, 8);
   };
-  std::vector<int> trial(8);
+  std::vector<int> trial(7);
   std::iota(trial.begin(), trial.end(), 0);
   double best = 1e9;
   do {
@@ -102,7 +103,7 @@ TEST(VisitingOrder, EightStopsAroundAWall) {
   EXPECT_LE(length_of(order), 1.02 * best);
   // As the crow flies the stops would be visited in pairs across the wall.
   int changes = 0;
-  for (std::size_t i = 1; i < 8; ++i) changes += order[i] % 2 != order[i - 1] % 2;
+  for (std::size_t i = 1; i < 7; ++i) changes += order[i] % 2 != order[i - 1] % 2;
   EXPECT_EQ(changes, 1);
 }
 

@@ -1,4 +1,4 @@
-"""Where trays stand in a storeroom and parts lie in a tray: regular and random placements, by seed.
+"""Where trays stand in a storeroom, regularly or at random by seed, and where parts lie regularly in a tray.
 
 Poses are rows (x, y, yaw) in metres and radians. A tray's yaw is the direction in which a robot in front of it looks
 (the tray's +x); parts are given in the tray's frame, whose origin is the middle of its floor.
@@ -89,23 +89,3 @@ def regular_parts(rows: int, columns: int, size: tuple[float, float]) -> Poses:
     x = depth * ((np.arange(rows) + 0.5) / rows - 0.5)
     y = width * ((np.arange(columns) + 0.5) / columns - 0.5)
     return np.array([[a, b, 0.0] for a in x for b in y])
-
-
-def random_parts(count: int, size: tuple[float, float], seed: int, *, radius: float = 0.02) -> Poses:
-    """Parts anywhere in the tray, turned anyhow: each within a circle of `radius` that touches neither wall nor other
-    part. Fills of 75, 50 and 25 % (P1 3.5.2) are the first rows of a full tray's answer, each part as likely as any."""
-    _check(count, depth=size[0], width=size[1], radius=radius)
-    half = np.array(size) / 2 - radius
-    _require(bool((half >= 0).all()), "radius", radius, "must fit into the tray")
-    rng = np.random.default_rng(seed)
-    places: list[NDArray] = []
-    for _ in range(5000 * max(count, 1)):
-        if len(places) == count:
-            break
-        at = rng.uniform(-half, half)
-        if all(np.linalg.norm(at - other) >= 2 * radius for other in places):
-            places.append(at)
-    if len(places) < count:
-        raise Error(f"count = {count}: only {len(places)} parts found room in the tray")
-    order = rng.permutation(count)
-    return np.array([[*places[i], rng.uniform(-math.pi, math.pi)] for i in order]).reshape(-1, 3)

@@ -8,6 +8,7 @@ from . import _core as _core
 from ._core import (
     BaseGrid,
     BasePath,
+    BasePlacement,
     BaseRegion,
     Box,
     CapabilityMap,
@@ -128,6 +129,7 @@ from .verification import PlanVerdict, verify_plan
 __all__ = [
     "BaseGrid",
     "BasePath",
+    "BasePlacement",
     "BaseRegion",
     "Box",
     "CapabilityMap",

@@ -118,6 +118,8 @@ VALUES: dict[str, Any] = {
     "eye": np.array([0.1, 0.2, 0.3]),
     "tray_size": np.array([0.3, 0.4, 0.1]),
     "make_height_map.size": np.array([0.1, 0.2]),
+    "T_world_tips": np.array([POSE, POSE]),
+    "T_base_tips": np.array([POSE, POSE]),
     "CarryPlace.size": np.array([0.1, 0.2]),
     "PartSupplyProblem.start": X_Y_THETA,
     "PartSupplyProblem.goal": X_Y_THETA,

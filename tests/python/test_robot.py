@@ -188,10 +188,12 @@ def test_database_answers_after_a_round_trip(arm, tmp_path):
     assert len(again) == len(db) > 0
     T = arm.fk(np.array([0.1, 0.3, 0.2, 0.1, 0.9, 0.0, 0.4, 0.0]))
     np.testing.assert_array_equal(db.nearest(T, 4), again.nearest(T, 4))
-    data = (tmp_path / "arm.reach").read_bytes()
-    (tmp_path / "cut.reach").write_bytes(data[: len(data) // 2])
-    with pytest.raises(mg.IoError, match=r"cut\.reach"):
-        mg.ReachDatabase.load(tmp_path / "cut.reach")
+    assert again.path == str(tmp_path / "arm.reach")
+    again.verify()
+    configurations = tmp_path / "arm.reach" / "configurations.npy"
+    configurations.write_bytes(configurations.read_bytes()[:-1])
+    with pytest.raises(mg.IoError, match=r"configurations\.npy: truncated"):
+        mg.ReachDatabase.load(tmp_path / "arm.reach")
 
 
 def test_mounting_writes_one_robot(fetch, arm):

@@ -1,252 +1,277 @@
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numeric>
-#include <vector>
+#include <sys/file.h>
 
-#include "mmgrasp/collision/checker.hpp"
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <optional>
+
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
-#include "mmgrasp/core/random.hpp"
-#include "reach/cell_counter.hpp"
-#include "reach/reach_data.hpp"
+#include "reach/reach_meta.hpp"
+#include "reach/shard_merge.hpp"
 
 namespace mmgrasp {
 namespace {
 
+namespace fs = std::filesystem;
 using Data = ReachDatabase::Data;
 
-constexpr std::int64_t kBlock = 2048;       // samples of one random stream: the unit of parallel work
-constexpr std::int64_t kBlocksABatch = 32;  // between batches the counts of full cells are brought up to date
 constexpr std::int64_t kManipulabilityBlocks = 8;
+constexpr std::int64_t kMostBlocksAShard = 256, kLeastShards = 64;
+constexpr std::int64_t kWorthCountingFull = 200'000;  // samples per place in a cell: with fewer, few cells ever fill
+constexpr double kSamplingShare = 0.9;   // of the progress
 constexpr const char* kStage = "reachability database";
 
-/// Configurations that passed, in the order of sampling.
-struct Kept {
-  std::vector<std::uint64_t> keys;
-  std::vector<float> configurations;
-  std::vector<detail::StoredPose> poses;
-
-  void append(const Kept& other, std::size_t index, int joints) {
-    keys.push_back(other.keys[index]);
-    const auto q = other.configurations.begin() + index * joints;
-    configurations.insert(configurations.end(), q, q + joints);
-    poses.push_back(other.poses[index]);
-  }
-};
-
-/// Largest float not above, or smallest not below a bound: rounding must not leave the limits.
-float round_inwards(double value, double lower, double upper) {
-  float rounded = static_cast<float>(value);
-  if (rounded > upper) rounded = std::nextafter(rounded, -std::numeric_limits<float>::infinity());
-  if (rounded < lower) rounded = std::nextafter(rounded, std::numeric_limits<float>::infinity());
-  return rounded;
-}
-
-/// sqrt(det(J J^T)) (Yoshikawa), and sqrt(det(J^T J)) for fewer than six joints, for which the former is always 0.
-double manipulability(const Matrix6Xd& J) {
-  const double determinant = J.cols() >= 6 ? Eigen::Matrix<double, 6, 6>(J * J.transpose()).determinant()
-                                           : Eigen::MatrixXd(J.transpose() * J).determinant();
-  return std::sqrt(std::max(0.0, determinant));
-}
-
-/// Draws configurations of one arm; one per thread.
-class Sampler {
- public:
-  explicit Sampler(const JointGroup& arm)
-      : arm_(arm), lower_(arm.sample_lower()), upper_(arm.sample_upper()), q_(arm.size()), J_(6, arm.size()) {}
-
-  void draw(Rng& rng) {
-    for (Eigen::Index i = 0; i < q_.size(); ++i)
-      q_[i] = round_inwards(rng.uniform(lower_[i], upper_[i]), lower_[i], upper_[i]);
-    arm_.fk_jacobian(q_, T_, J_);
-  }
-  const Eigen::VectorXd& q() const { return q_; }
-  const Pose& pose() const { return T_; }
-  Eigen::VectorXd range() const { return upper_ - lower_; }
-  double manipulability() const { return mmgrasp::manipulability(J_); }
-
- private:
-  const JointGroup& arm_;
-  Eigen::VectorXd lower_, upper_, q_;
-  Matrix6Xd J_;
-  Pose T_ = Pose::Identity();
-};
-
+/// Samples an arm shard by shard and puts the shards together.
 class Builder {
  public:
-  Builder(const JointGroup& arm, const ReachOptions& options, const Monitor& monitor)
+  Builder(const JointGroup& arm, const ReachOptions& options, const std::string& key, const std::string& partial,
+          const Monitor& monitor)
       : arm_(arm),
+        stored_(arm_),
         options_(options),
         monitor_(monitor),
         threads_(resolve_threads(options.threads)),
         rotations_(options.rotation_cell),
-        counter_(1 << 16),
-        joint_scale_(Sampler(arm).range().cwiseMax(1e-9).cwiseInverse().cast<float>()) {
+        blocks_((options.samples + detail::kBlock - 1) / detail::kBlock),
+        shard_blocks_(std::clamp<std::int64_t>((blocks_ + kLeastShards - 1) / kLeastShards, 1, kMostBlocksAShard)),
+        shards_((blocks_ + shard_blocks_ - 1) / shard_blocks_),
+        store_(partial, key, shards_, arm_.size()) {
     CheckerOptions checking;
     checking.check_scene = false;
     const CollisionChecker checker(arm_, World{}, checking);
-    for (int i = 0; i < threads_; ++i) {
-      checkers_.push_back(checker.clone());
-      samplers_.emplace_back(arm_);
-    }
+    samplers_.reserve(static_cast<std::size_t>(threads_));
+    for (int i = 0; i < threads_; ++i) samplers_.emplace_back(arm_, stored_, options_, rotations_, checker.clone());
+    if (options.samples / options.max_per_cell > kWorthCountingFull) full_.emplace(options.max_per_cell);
   }
 
-  /// False when stopped.
-  bool run(Data& data) {
-    if (!estimate_manipulability()) return false;
-    const std::int64_t blocks = (options_.samples + kBlock - 1) / kBlock;
-    std::vector<Kept> batch(kBlocksABatch);
-    for (std::int64_t first = 0; first < blocks; first += kBlocksABatch) {
-      monitor_.report(kStage, static_cast<double>(first) / static_cast<double>(blocks));
-      const std::int64_t count = std::min(kBlocksABatch, blocks - first);
-      const auto work = [&](std::size_t item, int worker) {
-        sample_block(first + static_cast<std::int64_t>(item), worker, batch[item]);
-      };
-      if (!parallel_for(static_cast<std::size_t>(count), threads_, work, silent())) return false;
-      for (std::int64_t i = 0; i < count; ++i) merge(batch[i]);
-    }
-    if (!store(data)) return false;
-    monitor_.report(kStage, 1.0);
+  /// The configurations go to `writer`, or to data.own when it is null. False when stopped.
+  bool run(Data& data, detail::NpyWriter* writer) {
+    data.arm = stored_;
+    data.joints = arm_.size();
+    monitor_.report(kStage, 0);
+    if (!estimate_manipulability() || !sample() || !merge(data, writer)) return false;
+    data.view_own();
     return true;
   }
 
  private:
   Monitor silent() const { return Monitor{monitor_.stop, {}}; }
 
-  std::int64_t block_size(std::int64_t block) const { return std::min(kBlock, options_.samples - block * kBlock); }
-
   /// From the first blocks, so that every sample is measured against the same threshold.
   bool estimate_manipulability() {
-    if (options_.min_manipulability <= 0) return !monitor_.stopped();
-    std::vector<double> largest(kManipulabilityBlocks, 0);
-    const std::int64_t blocks = std::min(kManipulabilityBlocks, (options_.samples + kBlock - 1) / kBlock);
+    if (options_.min_manipulability <= 0 && options_.thinning <= 0) return !monitor_.stopped();
+    std::vector<double> largest(static_cast<std::size_t>(std::min(kManipulabilityBlocks, blocks_)), 0);
     const auto work = [&](std::size_t block, int worker) {
-      Rng rng(options_.seed, block);
-      for (std::int64_t i = 0; i < block_size(static_cast<std::int64_t>(block)); ++i) {
-        samplers_[worker].draw(rng);
-        largest[block] = std::max(largest[block], samplers_[worker].manipulability());
-      }
+      largest[block] =
+          samplers_[static_cast<std::size_t>(worker)].largest_manipulability(static_cast<std::int64_t>(block));
     };
-    if (!parallel_for(static_cast<std::size_t>(blocks), threads_, work, silent())) return false;
-    threshold_ = options_.min_manipulability * *std::max_element(largest.begin(), largest.end());
+    if (!parallel_for(largest.size(), threads_, work, silent())) return false;
+    for (detail::ShardSampler& sampler : samplers_)
+      sampler.set_largest_manipulability(*std::max_element(largest.begin(), largest.end()));
     return true;
   }
 
-  detail::CellIndex checked_cell(const Pose& T) const {
-    const auto index = detail::position_cell(T.translation(), options_.position_cell);
-    require(index.has_value(), "position_cell", options_.position_cell,
-            "too small: the arm reaches more than 8192 cells from the root [m]");
-    return *index;
-  }
-
-  /// Reads the counter as the batches before left it; so what passes depends on the block alone, not on the threads.
-  void sample_block(std::int64_t block, int worker, Kept& kept) {
-    kept = {};
-    Rng rng(options_.seed, static_cast<std::uint64_t>(block));
-    Sampler& sampler = samplers_[worker];
-    for (std::int64_t i = 0; i < block_size(block); ++i) {
-      sampler.draw(rng);
-      if (threshold_ > 0 && sampler.manipulability() < threshold_) continue;
-      const detail::CellIndex cell = checked_cell(sampler.pose());
-      const std::uint64_t key =
-          (detail::position_key(cell) << detail::kRotationBits) | rotations_.id(sampler.pose().linear());
-      if (counter_.count(key) >= options_.max_per_cell) continue;
-      if (!checkers_[worker].is_free(sampler.q())) continue;
-      kept.keys.push_back(key);
-      for (const double value : sampler.q()) kept.configurations.push_back(static_cast<float>(value));
-      kept.poses.emplace_back(sampler.pose(), cell, options_.position_cell);
-    }
-  }
-
-  void merge(const Kept& block) {
-    for (std::size_t i = 0; i < block.keys.size(); ++i)
-      if (counter_.increment(block.keys[i], options_.max_per_cell)) kept_.append(block, i, arm_.size());
-  }
-
-  /// Sorts by cell, and within each cell puts the most different configurations first.
-  bool store(Data& data) {
-    std::vector<std::uint64_t> order(kept_.keys.size());
-    std::iota(order.begin(), order.end(), std::uint64_t{0});
-    std::sort(order.begin(), order.end(), [&](std::uint64_t a, std::uint64_t b) {
-      return kept_.keys[a] != kept_.keys[b] ? kept_.keys[a] < kept_.keys[b] : a < b;
-    });
-    constexpr std::uint64_t kRotationMask = (std::uint64_t{1} << detail::kRotationBits) - 1;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      const std::uint64_t key = kept_.keys[order[i]];
-      if (i > 0 && key == kept_.keys[order[i - 1]]) continue;
-      if (data.position_keys.empty() || data.position_keys.back() != key >> detail::kRotationBits) {
-        data.position_keys.push_back(key >> detail::kRotationBits);
-        data.position_first.push_back(static_cast<std::uint32_t>(data.rotation_ids.size()));
+  bool sample() {
+    std::atomic<std::int64_t> done{0};
+    std::vector<std::int64_t> missing;
+    for (std::int64_t shard = 0; shard < shards_; ++shard) {
+      if (!store_.has(shard)) {
+        missing.push_back(shard);
+        continue;
       }
-      data.rotation_ids.push_back(static_cast<std::uint32_t>(key & kRotationMask));
-      data.cell_first.push_back(static_cast<std::uint32_t>(i));
+      done += blocks_of(shard);
+      if (full_) full_->finish(shard, store_.cell_keys(shard));
     }
-    data.position_first.push_back(static_cast<std::uint32_t>(data.rotation_ids.size()));
-    data.cell_first.push_back(static_cast<std::uint32_t>(order.size()));
-
-    const std::size_t cells = data.rotation_ids.size(), chunk = 4096;
-    const auto spread = [&](std::size_t item, int) {
-      for (std::size_t cell = item * chunk; cell < std::min(cells, (item + 1) * chunk); ++cell)
-        most_different_first(order, data.cell_first[cell], data.cell_first[cell + 1]);
-    };
-    if (!parallel_for((cells + chunk - 1) / chunk, threads_, spread, silent())) return false;
-
-    const std::size_t joints = static_cast<std::size_t>(arm_.size());
-    data.configurations.resize(order.size() * joints);
-    data.poses.resize(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      std::copy_n(&kept_.configurations[order[i] * joints], joints, &data.configurations[i * joints]);
-      data.poses[i] = kept_.poses[order[i]];
-    }
-    return true;
-  }
-
-  /// Farthest-point order over joint values scaled by their ranges, starting with the first drawn.
-  void most_different_first(std::vector<std::uint64_t>& order, std::size_t begin, std::size_t end) const {
-    const auto joints = static_cast<Eigen::Index>(arm_.size());
-    const auto at = [&](std::size_t place) {
-      return Eigen::Map<const Eigen::VectorXf>(&kept_.configurations[order[place] * joints], joints);
-    };
-    std::vector<float> apart(end - begin, std::numeric_limits<float>::infinity());
-    for (std::size_t chosen = begin; chosen + 2 < end; ++chosen) {
-      std::size_t farthest = chosen + 1;
-      for (std::size_t i = chosen + 1; i < end; ++i) {
-        const float distance = (at(i) - at(chosen)).cwiseProduct(joint_scale_).squaredNorm();
-        apart[i - begin] = std::min(apart[i - begin], distance);
-        if (apart[i - begin] > apart[farthest - begin]) farthest = i;
+    std::atomic<bool> stopped{false};
+    const auto work = [&](std::size_t item, int worker) {
+      const std::int64_t shard = missing[item];
+      double reported = -1;
+      const auto step = [&] {
+        const double fraction =
+            kSamplingShare * static_cast<double>(done.fetch_add(1) + 1) / static_cast<double>(blocks_);
+        if (worker == 0 && fraction > reported + 0.002) monitor_.report(kStage, reported = fraction);
+        return !monitor_.stopped();
+      };
+      detail::ShardRecords records;
+      const detail::FillTable* full = full_ ? &*full_ : nullptr;
+      if (!samplers_[static_cast<std::size_t>(worker)].sample(shard * shard_blocks_, blocks_of(shard), full, step,
+                                                              records)) {
+        stopped = true;
+        return;
       }
-      std::swap(order[chosen + 1], order[farthest]);
-      std::swap(apart[chosen + 1 - begin], apart[farthest - begin]);
-    }
+      store_.put(shard, std::move(records));
+      if (full_) full_->finish(shard, store_.cell_keys(shard));
+    };
+    return parallel_for(missing.size(), threads_, work, silent()) && !stopped;
   }
 
-  const JointGroup& arm_;
-  const ReachOptions& options_;
+  std::int64_t blocks_of(std::int64_t shard) const { return std::min(shard_blocks_, blocks_ - shard * shard_blocks_); }
+
+  bool merge(Data& data, detail::NpyWriter* writer) {
+    const detail::ShardMerge merging(store_, shards_, rotations_.count(), arm_.size(), options_.max_per_cell);
+    require(merging.record_count() < 0xffffffffu, "samples", static_cast<double>(options_.samples),
+            "too many: fewer than 2^32 configurations can be stored");
+    detail::OwnArrays& own = data.own;
+    own.position_first.assign(1, 0);
+    own.cell_first.assign(1, 0);
+    if (writer == nullptr) own.configurations.reserve(merging.record_count() * static_cast<std::size_t>(arm_.size()));
+    const std::size_t parts = merging.part_count(), batch = 4 * static_cast<std::size_t>(threads_);
+    std::vector<detail::MergedCells> merged(batch);
+    for (std::size_t first = 0; first < parts; first += batch) {
+      const std::size_t count = std::min(batch, parts - first);
+      const auto work = [&](std::size_t item, int) { merged[item] = merging.merge(first + item); };
+      if (!parallel_for(count, threads_, work, silent())) return false;
+      for (std::size_t i = 0; i < count; ++i) append(merged[i], own, writer);
+      monitor_.report(kStage, kSamplingShare + (1 - kSamplingShare) * static_cast<double>(first + count) /
+                                                   static_cast<double>(parts + 1));
+    }
+    return !monitor_.stopped();
+  }
+
+  static void append(const detail::MergedCells& cells, detail::OwnArrays& own, detail::NpyWriter* writer) {
+    own.positions.insert(own.positions.end(), cells.positions.begin(), cells.positions.end());
+    for (const std::uint32_t count : cells.position_counts)
+      own.position_first.push_back(own.position_first.back() + count);
+    own.rotation_ids.insert(own.rotation_ids.end(), cells.rotation_ids.begin(), cells.rotation_ids.end());
+    for (const std::uint32_t count : cells.cell_counts) own.cell_first.push_back(own.cell_first.back() + count);
+    if (writer != nullptr)
+      writer->write(cells.configurations.data(), cells.configurations.size() * sizeof(std::uint16_t));
+    else
+      own.configurations.insert(own.configurations.end(), cells.configurations.begin(), cells.configurations.end());
+  }
+
+  JointGroup arm_;
+  detail::StoredArm stored_;
+  ReachOptions options_;
   const Monitor& monitor_;
   int threads_;
   detail::RotationCells rotations_;
-  detail::CellCounter counter_;
-  Eigen::VectorXf joint_scale_;  ///< One over each joint's range.
-  std::vector<CollisionChecker> checkers_;
-  std::vector<Sampler> samplers_;
-  double threshold_ = 0;
-  Kept kept_;
+  std::int64_t blocks_, shard_blocks_, shards_;
+  detail::ShardStore store_;
+  std::optional<detail::FillTable> full_;
+  std::vector<detail::ShardSampler> samplers_;
+};
+
+std::shared_ptr<Data> make_data(const JointGroup& arm, const ReachOptions& options) {
+  auto data = std::make_shared<Data>();
+  data->options = options;
+  data->options.threads = 0;
+  data->key = ReachDatabase::cache_key(arm, options);
+  data->arm = detail::StoredArm(detail::checked_arm(arm));
+  data->joints = arm.size();
+  return data;
+}
+
+/// Holds no configuration.
+ReachDatabase empty_database(const JointGroup& arm, const ReachOptions& options) {
+  auto data = make_data(arm, options);
+  data->own.position_first.assign(1, 0);
+  data->own.cell_first.assign(1, 0);
+  data->view_own();
+  data->complete();
+  return ReachDatabase(std::move(data));
+}
+
+/// The folder of unfinished shards. A second build of the same path at the same time gets one of its own, which does
+/// not outlive it.
+class PartialFolder {
+ public:
+  explicit PartialFolder(const std::string& path) : folder_(path + ".partial") {
+    if (try_lock()) return;
+    folder_ = detail::temporary_beside(path);
+    own_ = true;
+    if (!try_lock()) throw IoError(folder_ + ": cannot make the folder for unfinished parts");
+  }
+  ~PartialFolder() {
+    std::error_code error;
+    if (own_ || finished_ || !holds_parts()) fs::remove_all(folder_, error);
+    if (lock_ >= 0) ::close(lock_);
+  }
+  PartialFolder(const PartialFolder&) = delete;
+  PartialFolder& operator=(const PartialFolder&) = delete;
+
+  const std::string& path() const { return folder_; }
+  void finished() { finished_ = true; }
+
+ private:
+  bool try_lock() {
+    std::error_code error;
+    fs::create_directory(folder_, error);
+    lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (lock_ < 0) throw IoError(folder_ + ": cannot make the folder for unfinished parts");
+    if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) return true;
+    ::close(lock_);
+    lock_ = -1;
+    return false;
+  }
+  bool holds_parts() const {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder_, error))
+      if (entry.path().extension() == ".part") return true;
+    return false;
+  }
+
+  std::string folder_;
+  int lock_ = -1;
+  bool own_ = false, finished_ = false;
 };
 
 }  // namespace
 
 ReachDatabase ReachDatabase::build(const JointGroup& arm, const ReachOptions& options, const Monitor& monitor) {
   options.check();
-  const JointGroup at_root = detail::checked_arm(arm);
-  auto data = std::make_shared<Data>();
-  data->options = options;
-  data->options.threads = 0;
-  data->key = cache_key(arm, options);
-  data->joints = arm.size();
-  if (!Builder(at_root, options, monitor).run(*data)) data->clear();
+  auto data = make_data(arm, options);
+  const bool built = Builder(detail::checked_arm(arm), options, data->key, "", monitor).run(*data, nullptr);
+  if (!built) return empty_database(arm, options);
   data->complete();
+  data->measure();
+  monitor.report(kStage, 1.0);
   return ReachDatabase(std::move(data));
+}
+
+ReachDatabase ReachDatabase::build_to(const std::string& path, const JointGroup& arm, const ReachOptions& options,
+                                      const Monitor& monitor) {
+  options.check();
+  const std::string key = cache_key(arm, options);
+  PartialFolder partial(path);
+  const std::string written = (fs::path(partial.path()) / "written").string();
+  std::error_code error;
+  fs::remove_all(written, error);
+  if (!fs::create_directory(written, error)) throw IoError(path + ": cannot write (" + error.message() + ")");
+  bool built = false;
+  try {
+    auto data = make_data(arm, options);
+    auto layout = detail::array_layouts(0, 0, 0, static_cast<std::uint64_t>(arm.size()))[detail::kArrayCount - 1];
+    const std::string file = (fs::path(written) / detail::kArrayFiles[detail::kArrayCount - 1]).string();
+    detail::NpyWriter writer(file, path, layout);
+    built = Builder(detail::checked_arm(arm), options, key, partial.path(), monitor).run(*data, &writer);
+    if (built) {
+      writer.finish(data->size());
+      const auto rows = static_cast<std::uint64_t>(data->size());
+      layout.shape[0] = rows;
+      data->files.push_back(std::make_unique<detail::CheckedFile>(file, layout, writer.checksums()));
+      data->configurations = {reinterpret_cast<const std::uint16_t*>(data->files[0]->payload()),
+                              rows * static_cast<std::size_t>(arm.size())};
+      data->complete();
+      data->measure();
+      detail::write_database(*data, written, path, &writer);
+    }
+  } catch (...) {
+    fs::remove_all(written, error);
+    throw;
+  }
+  if (!built) {
+    fs::remove_all(written, error);
+    return empty_database(arm, options);
+  }
+  detail::put_in_place(written, path);
+  partial.finished();
+  monitor.report(kStage, 1.0);
+  return load(path);
 }
 
 }  // namespace mmgrasp

@@ -23,7 +23,7 @@ std::string ReachDatabase::cache_key(const JointGroup& arm, const ReachOptions& 
   // The arm's own reference values do not matter: they are replaced by every sample.
   hasher.add(Eigen::MatrixXd(at_root.full_values(Eigen::VectorXd::Zero(at_root.size()))));
   hasher.add(options.samples).add(options.position_cell).add(options.rotation_cell).add(options.max_per_cell);
-  hasher.add(options.min_manipulability).add(options.seed);
+  hasher.add(options.min_manipulability).add(options.thinning).add(options.seed);
   return hasher.hex();
 }
 
@@ -42,7 +42,11 @@ ReachDatabase ReachDatabase::load_or_build(const JointGroup& arm, const ReachOpt
       if (found.key() == key) return found;
     } catch (const IoError&) {  // a damaged cache is worth nothing, and costs nothing: build again and replace it
     }
+    std::filesystem::remove_all(path, error);
   }
+  // Only what takes long is worth leaving parts of when interrupted.
+  constexpr std::int64_t kWorthParts = 16'000'000;
+  if (options.samples >= kWorthParts) return build_to(path, arm, options, monitor);
   ReachDatabase built = build(arm, options, monitor);
   if (!monitor.stopped()) built.save(path);
   return built;

@@ -2,13 +2,18 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <atomic>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mmgrasp/reach/reach_database.hpp"
+#include "reach/npy_file.hpp"
 #include "reach/rotation_cells.hpp"
+#include "reach/stored_arm.hpp"
 
 namespace mmgrasp::detail {
 
@@ -18,7 +23,7 @@ constexpr std::int64_t kPositionLimit = std::int64_t{1} << (kPositionBits - 1); 
 constexpr int kRotationBits = 22;
 
 /// Raised whenever sampling, cells or file layout change: older caches are then built anew.
-constexpr std::uint32_t kReachFormat = 1;
+constexpr int kReachFormat = 2;
 
 using CellIndex = Eigen::Matrix<std::int64_t, 3, 1>;
 
@@ -41,7 +46,7 @@ struct StoredPose {
     return Eigen::Vector4f(quaternion[0], quaternion[1], quaternion[2], quaternion[3]) * kScale;
   }
 };
-static_assert(sizeof(StoredPose) == 16, "written byte for byte: no padding");
+static_assert(sizeof(StoredPose) == 16, "four in a cache line");
 
 /// The arm with its root in the origin. Throws InvalidInput when it has base joints or no joints.
 JointGroup checked_arm(const JointGroup& arm);
@@ -54,39 +59,122 @@ CellIndex cell_of_key(std::uint64_t key);
 
 }  // namespace mmgrasp::detail
 
+namespace mmgrasp::detail {
+
+/// Numbers that somebody else keeps.
+template <typename T>
+struct View {
+  const T* data = nullptr;
+  std::size_t count = 0;
+  const T& operator[](std::size_t i) const { return data[i]; }
+  const T* begin() const { return data; }
+  const T* end() const { return data + count; }
+};
+
+/// The arrays of a database built in this process.
+struct OwnArrays {
+  std::vector<std::int32_t> positions;
+  std::vector<std::uint32_t> position_first, rotation_ids, cell_first;
+  std::vector<std::uint16_t> configurations;
+};
+
+/// A file of a database on disk, and which of its chunks were compared with their checksums.
+struct CheckedFile {
+  CheckedFile(const std::string& path_in, const NpyLayout& layout, std::vector<std::uint32_t> checksums_in);
+
+  /// Compares the chunks that hold these bytes of the array, unless that was done before. Throws IoError. Safe from
+  /// several threads.
+  void ensure(std::uint64_t first_byte, std::uint64_t end_byte) const;
+  void check_chunk(std::size_t chunk) const;
+  const unsigned char* payload() const { return map.data() + header_bytes; }
+
+  std::string path;
+  MappedFile map;
+  std::size_t header_bytes;
+  std::vector<std::uint32_t> checksums;
+  mutable std::vector<std::atomic<std::uint8_t>> checked;
+};
+
+}  // namespace mmgrasp::detail
+
 namespace mmgrasp {
 
 /// Configurations sorted by position cell, then rotation cell, then diversity: everything of one position cell lies
-/// together.
+/// together. Tool poses are not stored: those of a position cell are worked out when it is first looked into.
 struct ReachDatabase::Data {
+  Data() = default;
+  ~Data();
+  Data(const Data&) = delete;
+  Data& operator=(const Data&) = delete;
+
   ReachOptions options;
   std::string key;
+  detail::StoredArm arm;
   int joints = 0;
 
-  std::vector<std::uint64_t> position_keys;   ///< Non-empty position cells, ascending.
-  std::vector<std::uint32_t> position_first;  ///< First cell of each position cell, and the end.
-  std::vector<std::uint32_t> rotation_ids;    ///< One a cell, ascending within a position cell.
-  std::vector<std::uint32_t> cell_first;      ///< First configuration of each cell, and the end.
-  std::vector<float> configurations;          ///< `joints` numbers each.
-  std::vector<detail::StoredPose> poses;      ///< Tool pose of each.
-
-  // Derived when complete() is called.
-  detail::RotationCells rotations{3.0};
-  std::vector<std::uint32_t> slots;  ///< Open addressing: position cell + 1, or 0 for a free slot.
+  detail::View<std::int32_t> positions;        ///< Three indices for each non-empty position cell, ascending.
+  detail::View<std::uint32_t> position_first;  ///< First cell of each position cell, and the end.
+  detail::View<std::uint32_t> rotation_ids;    ///< One a cell, ascending within a position cell.
+  detail::View<std::uint32_t> cell_first;      ///< First configuration of each cell, and the end.
+  detail::View<std::uint16_t> configurations;  ///< `joints` numbers each.
   Eigen::AlignedBox3d bounds;
   double reach = 0;
 
-  std::size_t size() const { return cell_first.empty() ? 0 : static_cast<std::size_t>(cell_first.back()); }
-  std::size_t cell_count() const { return rotation_ids.size(); }
+  // One of these keeps the arrays.
+  detail::OwnArrays own;
+  std::vector<std::unique_ptr<const detail::CheckedFile>> files;
+  const detail::CheckedFile* configuration_file = nullptr;  ///< Null: nothing to check.
+  std::string folder;                                       ///< Empty: in memory only.
+
+  // Made by complete().
+  detail::RotationCells rotations{3.0};
+  std::vector<std::uint64_t> position_keys;
+  std::vector<std::uint32_t> slots;  ///< Open addressing: position cell + 1, or 0 for a free slot.
+
+  std::size_t size() const { return cell_first.count == 0 ? 0 : static_cast<std::size_t>(cell_first.end()[-1]); }
+  std::size_t cell_count() const { return rotation_ids.count; }
+  std::size_t position_count() const { return position_first.count == 0 ? 0 : position_first.count - 1; }
+  /// Points the views at `own`.
+  void view_own();
+  /// Call once the arrays are there.
   void complete();
-  /// Forgets every configuration.
-  void clear();
+  /// Works out bounds and reach.
+  void measure();
   /// Index into position_keys, or -1.
   std::int64_t find_position(std::uint64_t key) const;
-  /// Tool position of a configuration that lies in this position cell [m].
-  Eigen::Vector3d position_of(std::size_t index, std::size_t position_cell) const;
   /// First and last + 1 configuration in the pose's cell.
   std::pair<std::size_t, std::size_t> find_cell(const Pose& T_base_tip) const;
+
+  /// The stored numbers of these configurations, checked against the file's checksums before they are first used.
+  const std::uint16_t* stored(std::size_t first, std::size_t end) const;
+  /// Tool poses of all configurations, those of this position cell filled in.
+  const detail::StoredPose* poses_of(std::size_t position) const {
+    if (pose_state_[position].load(std::memory_order_acquire) != kReady) fill_poses(position);
+    return poses_;
+  }
+  std::pair<std::size_t, std::size_t> configurations_of(std::size_t position) const {
+    return {cell_first[position_first[position]], cell_first[position_first[position + 1]]};
+  }
+
+ private:
+  enum PoseState : std::uint8_t { kNothing, kBusy, kReady };
+  void fill_poses(std::size_t position) const;
+
+  detail::StoredPose* poses_ = nullptr;  // as much as all need; memory is used for what was touched
+  mutable std::vector<std::atomic<std::uint8_t>> pose_state_;
 };
+
+namespace detail {
+
+/// Writes the folder's files, meta.json last. `data` needs everything but `own` when the writer of the configurations
+/// has finished already; else null.
+void write_database(const ReachDatabase::Data& data, const std::string& folder, const std::string& named,
+                    const NpyWriter* configurations);
+/// Puts a written folder in place of what is there, which must be a database or nothing. Throws IoError naming it.
+void put_in_place(const std::string& written, const std::string& path);
+/// Next to `path`, unique among processes and threads.
+std::string temporary_beside(const std::string& path);
+
+}  // namespace detail
 
 }  // namespace mmgrasp

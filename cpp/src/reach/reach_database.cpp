@@ -8,14 +8,6 @@
 
 namespace mmgrasp {
 namespace detail {
-namespace {
-
-/// Spreads neighbouring keys over the table (Fibonacci hashing).
-std::size_t slot_of(std::uint64_t key, std::size_t mask) {
-  return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15ull) >> 32) & mask;
-}
-
-}  // namespace
 
 std::optional<CellIndex> position_cell(const Eigen::Vector3d& position, double edge) {
   CellIndex index;
@@ -57,71 +49,6 @@ StoredPose::StoredPose(const Pose& T, const CellIndex& cell, double edge) : unus
 
 }  // namespace detail
 
-void ReachDatabase::Data::complete() {
-  rotations = detail::RotationCells(options.rotation_cell);
-  std::size_t capacity = 2;
-  while (capacity < 2 * position_keys.size() + 1) capacity *= 2;
-  slots.assign(capacity, 0);
-  for (std::size_t i = 0; i < position_keys.size(); ++i) {
-    std::size_t slot = detail::slot_of(position_keys[i], capacity - 1);
-    while (slots[slot] != 0) slot = (slot + 1) & (capacity - 1);
-    slots[slot] = static_cast<std::uint32_t>(i + 1);
-  }
-  bounds.setEmpty();
-  double farthest = 0;
-  for (std::size_t p = 0; p < position_keys.size(); ++p) {
-    for (std::size_t i = cell_first[position_first[p]]; i < cell_first[position_first[p + 1]]; ++i) {
-      const Eigen::Vector3d position = position_of(i, p);
-      bounds.extend(position);
-      farthest = std::max(farthest, position.squaredNorm());
-    }
-  }
-  if (size() == 0) {
-    reach = 0;
-    return;
-  }
-  // Stored positions are rounded to the middle of 65536ths: half of one more holds what was sampled.
-  const double rounding = options.position_cell / 131072;
-  bounds.min().array() -= rounding;
-  bounds.max().array() += rounding;
-  reach = std::sqrt(farthest) + std::sqrt(3.0) * rounding;
-}
-
-Eigen::Vector3d ReachDatabase::Data::position_of(std::size_t index, std::size_t position_cell) const {
-  const Eigen::Vector3d corner = detail::cell_of_key(position_keys[position_cell]).cast<double>();
-  return options.position_cell * (corner + poses[index].place().cast<double>());
-}
-
-void ReachDatabase::Data::clear() {
-  position_keys.clear();
-  rotation_ids.clear();
-  configurations.clear();
-  poses.clear();
-  position_first.assign(1, 0);
-  cell_first.assign(1, 0);
-}
-
-std::int64_t ReachDatabase::Data::find_position(std::uint64_t key) const {
-  const std::size_t mask = slots.size() - 1;
-  for (std::size_t slot = detail::slot_of(key, mask); slots[slot] != 0; slot = (slot + 1) & mask)
-    if (position_keys[slots[slot] - 1] == key) return static_cast<std::int64_t>(slots[slot]) - 1;
-  return -1;
-}
-
-std::pair<std::size_t, std::size_t> ReachDatabase::Data::find_cell(const Pose& T_base_tip) const {
-  const auto index = detail::position_cell(T_base_tip.translation(), options.position_cell);
-  if (!index || size() == 0) return {0, 0};
-  const std::int64_t position = find_position(detail::position_key(*index));
-  if (position < 0) return {0, 0};
-  const auto begin = rotation_ids.begin() + position_first[position];
-  const auto end = rotation_ids.begin() + position_first[position + 1];
-  const std::uint32_t id = rotations.id(T_base_tip.linear());
-  const auto found = std::lower_bound(begin, end, id);
-  if (found == end || *found != id) return {0, 0};
-  const std::size_t cell = static_cast<std::size_t>(found - rotation_ids.begin());
-  return {cell_first[cell], cell_first[cell + 1]};
-}
-
 void ReachOptions::check() const {
   require(samples > 0, "samples", static_cast<double>(samples), "must be positive");
   require(std::isfinite(position_cell) && position_cell > 0, "position_cell", position_cell,
@@ -130,6 +57,7 @@ void ReachOptions::check() const {
   require(max_per_cell > 0, "max_per_cell", max_per_cell, "must be positive");
   require(min_manipulability >= 0 && min_manipulability < 1, "min_manipulability", min_manipulability,
           "must lie in [0, 1)");
+  require(thinning >= 0 && thinning <= 1, "thinning", thinning, "must lie in [0, 1]");
   require(threads >= 0, "threads", threads, "must be 0 (all) or positive");
 }
 
@@ -153,6 +81,9 @@ const ReachOptions& ReachDatabase::options() const {
 double ReachDatabase::reach() const {
   return data_->reach;
 }
+const std::string& ReachDatabase::path() const {
+  return data_->folder;
+}
 Eigen::AlignedBox3d ReachDatabase::bounds() const {
   return data_->bounds;
 }
@@ -160,30 +91,34 @@ Eigen::AlignedBox3d ReachDatabase::bounds() const {
 Eigen::VectorXd ReachDatabase::configuration(std::int64_t index) const {
   require(index >= 0 && index < size(), "index", static_cast<double>(index),
           "must lie in [0, " + std::to_string(size()) + ")");
-  return Eigen::Map<const Eigen::VectorXf>(&data_->configurations[index * data_->joints], data_->joints).cast<double>();
+  const auto i = static_cast<std::size_t>(index);
+  Eigen::VectorXd q(data_->joints);
+  data_->arm.decode(data_->stored(i, i + 1), 1, q.data());
+  return q;
 }
 
 Pose ReachDatabase::tool_pose(std::int64_t index) const {
   require(index >= 0 && index < size(), "index", static_cast<double>(index),
           "must lie in [0, " + std::to_string(size()) + ")");
   const auto i = static_cast<std::size_t>(index);
-  const auto cell =
-      std::upper_bound(data_->cell_first.begin(), data_->cell_first.end(), i) - data_->cell_first.begin() - 1;
-  const auto position = std::upper_bound(data_->position_first.begin(), data_->position_first.end(), cell) -
-                        data_->position_first.begin() - 1;
-  Pose T = Pose::Identity();
-  T.translation() = data_->position_of(i, static_cast<std::size_t>(position));
-  T.linear() = Eigen::Quaterniond(data_->poses[i].coefficients().cast<double>()).normalized().toRotationMatrix();
+  Pose T;
+  data_->arm.tool_poses(data_->stored(i, i + 1), 1, &T);
   return T;
 }
 
-Eigen::MatrixXd ReachDatabase::cell(const Pose& T_base_tip) const {
-  require(T_base_tip.matrix().allFinite(), "T_base_tip", "not finite", "must be a pose");
+std::pair<std::int64_t, std::int64_t> ReachDatabase::voxel(const Pose& T_base_tip) const {
+  if (!T_base_tip.matrix().allFinite()) require(false, "T_base_tip", "not finite", "must be a pose");
   const auto [begin, end] = data_->find_cell(T_base_tip);
-  if (begin == end) return Eigen::MatrixXd(data_->joints, 0);
-  return Eigen::Map<const Eigen::MatrixXf>(&data_->configurations[begin * data_->joints], data_->joints,
-                                           static_cast<Eigen::Index>(end - begin))
-      .cast<double>();
+  return {static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end)};
+}
+
+Eigen::MatrixXd ReachDatabase::cell(const Pose& T_base_tip) const {
+  const auto [begin, end] = voxel(T_base_tip);
+  Eigen::MatrixXd out(data_->joints, end - begin);
+  if (begin == end) return out;
+  const auto first = static_cast<std::size_t>(begin), last = static_cast<std::size_t>(end);
+  data_->arm.decode(data_->stored(first, last), last - first, out.data());
+  return out;
 }
 
 }  // namespace mmgrasp

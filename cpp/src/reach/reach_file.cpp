@@ -2,196 +2,187 @@
 
 #include <atomic>
 #include <cerrno>
-#include <cstddef>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <type_traits>
 
 #include "mmgrasp/core/error.hpp"
-#include "mmgrasp/core/hash.hpp"
-#include "reach/reach_data.hpp"
+#include "mmgrasp/core/parallel.hpp"
+#include "reach/reach_meta.hpp"
 
 namespace mmgrasp {
 namespace {
 
+namespace fs = std::filesystem;
+
 using Data = ReachDatabase::Data;
-
-constexpr char kMagic[8] = {'M', 'M', 'G', 'R', 'E', 'A', 'C', 'H'};
-constexpr std::uint32_t kByteOrder = 0x01020304;
-
-/// First bytes of the file; the arrays of Data follow in the order in which they are declared.
-struct Header {
-  char magic[8];
-  std::uint32_t format;
-  std::uint32_t byte_order;
-  char key[16];
-  std::int64_t samples;
-  double position_cell, rotation_cell, min_manipulability;
-  std::int32_t max_per_cell;
-  std::uint32_t seed;
-  std::int64_t joints;
-  std::uint64_t position_count, cell_count, size;
-  std::uint64_t payload_hash;
-  std::uint64_t header_hash;  ///< Of everything before it.
-};
-static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 120, "written byte for byte: no padding");
-
-std::uint64_t hash_of(const Header& header) {
-  return Hasher().add(&header, offsetof(Header, header_hash)).value();
-}
-
-template <typename Visit>
-void for_each_array(Data& data, Visit visit) {
-  visit(data.position_keys);
-  visit(data.position_first);
-  visit(data.rotation_ids);
-  visit(data.cell_first);
-  visit(data.configurations);
-  visit(data.poses);
-}
-
-template <typename T>
-std::size_t byte_count(const std::vector<T>& values) {
-  return values.size() * sizeof(T);
-}
-
-Header make_header(const Data& data) {
-  Header header{};
-  std::memcpy(header.magic, kMagic, sizeof(kMagic));
-  header.format = detail::kReachFormat;
-  header.byte_order = kByteOrder;
-  std::memcpy(header.key, data.key.data(), std::min(data.key.size(), sizeof(header.key)));
-  header.samples = data.options.samples;
-  header.position_cell = data.options.position_cell;
-  header.rotation_cell = data.options.rotation_cell;
-  header.min_manipulability = data.options.min_manipulability;
-  header.max_per_cell = data.options.max_per_cell;
-  header.seed = data.options.seed;
-  header.joints = data.joints;
-  header.position_count = data.position_keys.size();
-  header.cell_count = data.cell_count();
-  header.size = data.size();
-  Hasher hasher;
-  for_each_array(const_cast<Data&>(data), [&](const auto& values) { hasher.add(values.data(), byte_count(values)); });
-  header.payload_hash = hasher.value();
-  header.header_hash = hash_of(header);
-  return header;
-}
 
 [[noreturn]] void refuse(const std::string& path, const std::string& what) {
   throw IoError(path + ": " + what);
 }
 
-/// Checks what can be checked before the arrays are read, so that a forged count cannot ask for all memory.
-void check_header(const Header& header, std::uint64_t file_size, const std::string& path) {
-  if (std::memcmp(header.magic, kMagic, sizeof(kMagic)) != 0) refuse(path, "not a reachability database");
-  if (header.byte_order != kByteOrder) refuse(path, "written on a machine with another byte order");
-  if (header.format != detail::kReachFormat)
-    refuse(path, "format version " + std::to_string(header.format) + ", this library reads " +
-                     std::to_string(detail::kReachFormat));
-  if (header.header_hash != hash_of(header)) refuse(path, "corrupt: the header's checksum differs");
-  constexpr std::uint64_t kMostCounted = std::uint64_t{1} << 40;  // keeps the sum below within 64 bits
-  if (header.joints <= 0 || header.joints > 1000 || header.position_count > kMostCounted ||
-      header.cell_count > kMostCounted || header.size > kMostCounted)
-    refuse(path, "corrupt: impossible counts in the header");
-  const std::uint64_t expected =
-      sizeof(Header) + header.position_count * 8 + (header.position_count + 1) * 4 + header.cell_count * 4 +
-      (header.cell_count + 1) * 4 +
-      header.size * (4 * static_cast<std::uint64_t>(header.joints) + sizeof(detail::StoredPose));
-  if (file_size != expected)
-    refuse(path, (file_size < expected ? "truncated: " : "bytes after the end: ") + std::to_string(file_size) +
-                     " bytes, " + std::to_string(expected) + " expected");
+bool starts_with(const fs::path& file, const std::string& text) {
+  std::string begin(text.size(), '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return stream && begin == text;
 }
 
+/// The one-file format of earlier versions.
+bool is_old_file(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error) && starts_with(path, "MMGREACH");
+}
+
+std::string file_in(const std::string& folder, const char* name) {
+  return (fs::path(folder) / name).string();
+}
+
+/// Every offset must be usable: nothing that was read from a file is trusted.
 void check_tables(const Data& data, const std::string& path) {
-  bool sound = data.position_first.front() == 0 && data.position_first.back() == data.rotation_ids.size() &&
-               data.cell_first.front() == 0 &&
-               data.configurations.size() == data.cell_first.back() * static_cast<std::size_t>(data.joints);
-  for (std::size_t i = 0; i + 1 < data.position_first.size(); ++i)
-    sound = sound && data.position_first[i] < data.position_first[i + 1];
-  for (std::size_t i = 0; i + 1 < data.position_keys.size(); ++i)
-    sound = sound && data.position_keys[i] < data.position_keys[i + 1];
-  for (std::size_t i = 0; i + 1 < data.cell_first.size(); ++i)
-    sound = sound && data.cell_first[i] < data.cell_first[i + 1];
+  const std::size_t positions = data.position_count(), cells = data.cell_count();
+  bool sound = data.position_first[0] == 0 && data.position_first[positions] == cells && data.cell_first[0] == 0 &&
+               data.configurations.count == data.size() * static_cast<std::size_t>(data.joints);
+  for (std::size_t i = 0; i < positions; ++i) sound = sound && data.position_first[i] < data.position_first[i + 1];
+  for (std::size_t i = 0; i < cells; ++i) sound = sound && data.cell_first[i] < data.cell_first[i + 1];
+  for (std::size_t i = 0; i < 3 * positions; ++i)
+    sound = sound && data.positions[i] >= -detail::kPositionLimit && data.positions[i] < detail::kPositionLimit;
   if (!sound) refuse(path, "corrupt: the tables contradict each other");
 }
 
-void write_file(const Data& data, const std::string& path, const std::string& named) {
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  if (!file) throw IoError(named + ": cannot write (" + std::strerror(errno) + ")");
-  const Header header = make_header(data);
-  file.write(reinterpret_cast<const char*>(&header), sizeof(header));
-  for_each_array(const_cast<Data&>(data), [&](const auto& values) {
-    file.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(byte_count(values)));
-  });
-  file.close();
-  if (!file) throw IoError(named + ": cannot write all of it (is the disk full?)");
+void check_order(const Data& data, const std::string& path) {
+  bool sound = true;
+  for (std::size_t i = 0; i + 1 < data.position_keys.size(); ++i)
+    sound = sound && data.position_keys[i] < data.position_keys[i + 1];
+  const std::uint32_t rotations = data.rotations.count();
+  for (std::size_t i = 0; i < data.cell_count(); ++i) sound = sound && data.rotation_ids[i] < rotations;
+  if (!sound) refuse(path, "corrupt: the cells are not in order");
+}
+
+template <typename T>
+detail::View<T> view(const detail::CheckedFile& file, std::uint64_t count) {
+  return {reinterpret_cast<const T*>(file.payload()), static_cast<std::size_t>(count)};
 }
 
 }  // namespace
 
-void ReachDatabase::save(const std::string& path) const {
-  // Unique among processes and threads that save the same file at once: the last rename wins, each a whole file.
+namespace detail {
+
+std::string temporary_beside(const std::string& path) {
   static std::atomic<unsigned> counter{0};
-  const std::string temporary =
-      path + ".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(counter.fetch_add(1));
+  return path + ".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(counter.fetch_add(1));
+}
+
+void write_database(const Data& data, const std::string& folder, const std::string& named,
+                    const NpyWriter* configurations) {
+  FileChecksums checksums;
+  const auto layouts =
+      array_layouts(data.position_count(), data.cell_count(), data.size(), static_cast<std::uint64_t>(data.joints));
+  const void* const arrays[kArrayCount] = {data.positions.data, data.position_first.data, data.rotation_ids.data,
+                                           data.cell_first.data, data.configurations.data};
+  for (int i = 0; i < kArrayCount; ++i) {
+    if (i == kArrayCount - 1 && configurations != nullptr) {
+      checksums[i] = configurations->checksums();
+      continue;
+    }
+    NpyWriter writer(file_in(folder, kArrayFiles[i]), named, layouts[i]);
+    writer.write(arrays[i], layouts[i].payload_bytes());
+    writer.finish(layouts[i].shape[0]);
+    checksums[i] = writer.checksums();
+  }
+  std::ofstream file(file_in(folder, kMetaFile), std::ios::binary | std::ios::trunc);
+  file << meta_text(data, checksums);
+  file.close();
+  if (!file) refuse(named, "cannot write all of it (is the disk full?)");
+}
+
+void put_in_place(const std::string& written, const std::string& path) {
   std::error_code error;
+  const fs::path meta = fs::path(path) / kMetaFile;
+  if (fs::is_directory(path, error) && !fs::is_empty(path, error) && !fs::exists(meta, error))
+    refuse(path, "cannot put the database in place: a folder that is none stands there");
+  if (fs::is_regular_file(path, error) && !is_old_file(path))
+    refuse(path, "cannot put the database in place: a file that is none stands there");
+  // A folder cannot replace a full one in one step: for a moment none is there, never half of one.
+  if (fs::exists(path, error)) {
+    const std::string aside = temporary_beside(path);
+    fs::rename(path, aside, error);
+    if (!error) fs::rename(written, path, error);
+    std::error_code ignored;
+    fs::remove_all(aside, ignored);
+  } else {
+    fs::rename(written, path, error);
+  }
+  if (error) refuse(path, "cannot put the written folder in place (" + error.message() + ")");
+}
+
+}  // namespace detail
+
+void ReachDatabase::save(const std::string& path) const {
+  const std::string temporary = detail::temporary_beside(path);
+  std::error_code error;
+  if (!fs::create_directory(temporary, error)) refuse(path, "cannot write (" + error.message() + ")");
   try {
-    write_file(*data_, temporary, path);
-    std::filesystem::rename(temporary, path, error);
-    if (error) throw IoError(path + ": cannot put the written file in place (" + error.message() + ")");
+    if (data_->size() > 0) data_->stored(0, data_->size());  // what is copied must be sound
+    detail::write_database(*data_, temporary, path, nullptr);
+    detail::put_in_place(temporary, path);
   } catch (...) {
-    std::filesystem::remove(temporary, error);
+    fs::remove_all(temporary, error);
     throw;
   }
 }
 
 ReachDatabase ReachDatabase::load(const std::string& path) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) refuse(path, "no such file");
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) refuse(path, "cannot be opened");
-  const auto file_size = static_cast<std::uint64_t>(file.tellg());
-  if (file_size < sizeof(Header))
-    refuse(path, "truncated: " + std::to_string(file_size) + " bytes are too few for a reachability database");
-  file.seekg(0);
-  Header header;
-  file.read(reinterpret_cast<char*>(&header), sizeof(header));
-  if (!file) refuse(path, "cannot be read");
-  check_header(header, file_size, path);
+  if (is_old_file(path))
+    refuse(path, "a reachability database in the one-file format of earlier versions; build it again");
+  if (!fs::exists(path, error)) refuse(path, "no such file or folder");
+  if (!fs::is_directory(path, error)) refuse(path, "not a reachability database (those are folders)");
+  const std::string meta_path = file_in(path, detail::kMetaFile);
+  if (!fs::is_regular_file(meta_path, error))
+    refuse(path, "not a reachability database: it holds no " + std::string(detail::kMetaFile));
 
   auto data = std::make_shared<Data>();
-  data->key.assign(header.key, strnlen(header.key, sizeof(header.key)));
-  data->options.samples = header.samples;
-  data->options.position_cell = header.position_cell;
-  data->options.rotation_cell = header.rotation_cell;
-  data->options.min_manipulability = header.min_manipulability;
-  data->options.max_per_cell = header.max_per_cell;
-  data->options.seed = header.seed;
-  data->joints = static_cast<int>(header.joints);
-  data->position_keys.resize(header.position_count);
-  data->position_first.resize(header.position_count + 1);
-  data->rotation_ids.resize(header.cell_count);
-  data->cell_first.resize(header.cell_count + 1);
-  data->configurations.resize(header.size * static_cast<std::uint64_t>(header.joints));
-  data->poses.resize(header.size);
-  Hasher hasher;
-  for_each_array(*data, [&](auto& values) {
-    file.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(byte_count(values)));
-    hasher.add(values.data(), byte_count(values));
-  });
-  if (!file) refuse(path, "cannot be read to its end");
-  if (hasher.value() != header.payload_hash) refuse(path, "corrupt: the checksum of the contents differs");
-  try {
-    data->options.check();
-  } catch (const InvalidInput& invalid) {
-    refuse(path, std::string("corrupt: ") + invalid.what());
-  }
+  detail::Meta meta = detail::read_meta(meta_path, *data);
+  const auto joints = static_cast<std::uint64_t>(data->joints);
+  const auto layouts = detail::array_layouts(meta.positions, meta.cells, meta.size, joints);
+  for (int i = 0; i < detail::kArrayCount; ++i)
+    data->files.push_back(std::make_unique<detail::CheckedFile>(file_in(path, detail::kArrayFiles[i]), layouts[i],
+                                                                std::move(meta.checksums[i])));
+  // The tables are small and are checked now; the configurations when they are first looked at.
+  for (int i = 0; i + 1 < detail::kArrayCount; ++i)
+    if (layouts[i].payload_bytes() > 0) data->files[i]->ensure(0, layouts[i].payload_bytes());
+  data->positions = view<std::int32_t>(*data->files[0], 3 * meta.positions);
+  data->position_first = view<std::uint32_t>(*data->files[1], meta.positions + 1);
+  data->rotation_ids = view<std::uint32_t>(*data->files[2], meta.cells);
+  data->cell_first = view<std::uint32_t>(*data->files[3], meta.cells + 1);
+  data->configurations = view<std::uint16_t>(*data->files[4], meta.size * joints);
+  data->configuration_file = data->files[4].get();
+  data->folder = path;
+  if (data->cell_first[meta.cells] != meta.size) refuse(path, "corrupt: the tables contradict each other");
   check_tables(*data, path);
   data->complete();
+  check_order(*data, path);
   return ReachDatabase(std::move(data));
+}
+
+ReachDatabase ReachDatabase::load(const std::string& path, const JointGroup& arm) {
+  ReachDatabase database = load(path);
+  const std::string difference = database.difference(arm);
+  if (!difference.empty()) refuse(path, "built for another robot: " + difference + "; build it again");
+  return database;
+}
+
+std::string ReachDatabase::difference(const JointGroup& arm) const {
+  return data_->arm.difference(detail::StoredArm(detail::checked_arm(arm)));
+}
+
+bool ReachDatabase::verify(const Monitor& monitor) const {
+  for (const auto& file : data_->files) {
+    const auto work = [&](std::size_t chunk, int) { file->check_chunk(chunk); };
+    if (!parallel_for(file->checksums.size(), 0, work, monitor, "checksums")) return false;
+  }
+  return true;
 }
 
 }  // namespace mmgrasp

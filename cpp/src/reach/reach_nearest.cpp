@@ -110,9 +110,10 @@ struct Query {
   Eigen::Vector4f quaternion;
   float per_radian;
 
-  void measure(const PositionCell& position, std::size_t begin, std::size_t end, Nearest& nearest) const {
+  void measure(const detail::StoredPose* poses, const PositionCell& position, std::size_t begin, std::size_t end,
+               Nearest& nearest) const {
     for (std::size_t i = begin; i < end; ++i) {
-      const detail::StoredPose& pose = data.poses[i];
+      const detail::StoredPose& pose = poses[i];
       const float shift = (pose.place() - position.query).norm();
       // q and -q are one rotation; the chord between unit quaternions is exact for small angles where 2 acos is not.
       const Eigen::Vector4f other = pose.coefficients();
@@ -135,7 +136,8 @@ struct Query {
 
   /// Looks at every cell of a position cell, some at a time: first those within bounds are picked and their poses asked
   /// from memory, then measured, so that the waits overlap.
-  void scan(const PositionCell& position, const float* bounds, Nearest& nearest) const {
+  void scan(const detail::StoredPose* poses, const PositionCell& position, const float* bounds,
+            Nearest& nearest) const {
     constexpr std::size_t kChunk = 64;
     std::array<std::uint32_t, kChunk> picked;
     const std::uint32_t end = data.position_first[position.index + 1];
@@ -146,31 +148,33 @@ struct Query {
         picked[count] = cell;
         count += bounds[data.rotation_ids[cell]] <= limit ? 1 : 0;
       }
-      for (std::size_t i = 0; i < count; ++i) __builtin_prefetch(&data.poses[data.cell_first[picked[i]]]);
+      for (std::size_t i = 0; i < count; ++i) __builtin_prefetch(&poses[data.cell_first[picked[i]]]);
       for (std::size_t i = 0; i < count; ++i)
-        measure(position, data.cell_first[picked[i]], data.cell_first[picked[i] + 1], nearest);
+        measure(poses, position, data.cell_first[picked[i]], data.cell_first[picked[i] + 1], nearest);
     }
   }
 
   /// Searches the adjacent rotation cells one by one: for position cells with very many rotation cells.
-  void search(const PositionCell& position, const RotationBounds& bounds, Nearest& nearest) const {
-    const auto begin = data.rotation_ids.begin() + data.position_first[position.index];
-    const auto end = data.rotation_ids.begin() + data.position_first[position.index + 1];
+  void search(const detail::StoredPose* poses, const PositionCell& position, const RotationBounds& bounds,
+              Nearest& nearest) const {
+    const auto* begin = data.rotation_ids.begin() + data.position_first[position.index];
+    const auto* end = data.rotation_ids.begin() + data.position_first[position.index + 1];
     for (const auto& rotation_cell : bounds) {
       if (position.distance + static_cast<float>(rotation_cell.angle) > nearest.worst() + kSlack) break;
-      const auto found = std::lower_bound(begin, end, rotation_cell.id);
+      const auto* found = std::lower_bound(begin, end, rotation_cell.id);
       if (found == end || *found != rotation_cell.id) continue;
       const std::size_t cell = static_cast<std::size_t>(found - data.rotation_ids.begin());
-      measure(position, data.cell_first[cell], data.cell_first[cell + 1], nearest);
+      measure(poses, position, data.cell_first[cell], data.cell_first[cell + 1], nearest);
     }
   }
 
   void visit(const PositionCell& position, const RotationBounds& bounds, Nearest& nearest) const {
     constexpr std::uint32_t kWorthScanning = 1024;
+    const detail::StoredPose* poses = data.poses_of(static_cast<std::size_t>(position.index));
     if (data.position_first[position.index + 1] - data.position_first[position.index] <= kWorthScanning)
-      scan(position, bounds.table(), nearest);
+      scan(poses, position, bounds.table(), nearest);
     else
-      search(position, bounds, nearest);
+      search(poses, position, bounds, nearest);
   }
 };
 
@@ -198,10 +202,10 @@ int ReachDatabase::nearest(const Pose& T_base_tip, int count, Eigen::MatrixXd& o
     if (p + 1 < position_count) query.ask_for(positions[p + 1]);
     query.visit(positions[p], bounds, nearest);
   }
+  const auto joints = static_cast<std::size_t>(data_->joints);
   for (std::size_t i = 0; i < found.size(); ++i)
-    out.col(static_cast<Eigen::Index>(i)) =
-        Eigen::Map<const Eigen::VectorXf>(&data_->configurations[found[i].index * data_->joints], data_->joints)
-            .cast<double>();
+    data_->arm.decode(data_->configurations.data + found[i].index * joints, 1,
+                      out.col(static_cast<Eigen::Index>(i)).data());
   return static_cast<int>(found.size());
 }
 

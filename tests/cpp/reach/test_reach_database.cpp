@@ -36,7 +36,7 @@ TEST(ReachDatabase, StoredConfigurationsLieInTheCellOfTheirToolPose) {
     const Eigen::VectorXd q = database.configuration(index);
     EXPECT_TRUE(arm.within_limits(q));
     EXPECT_TRUE(holds_column(database.cell(arm.fk(q)), q));
-    EXPECT_LT((database.tool_pose(index).matrix() - arm.fk(q).matrix()).norm(), 2e-4) << "rounded to 16 bytes";
+    EXPECT_LT((database.tool_pose(index).matrix() - arm.fk(q).matrix()).norm(), 1e-12);
   }
 }
 
@@ -154,7 +154,11 @@ TEST(ReachDatabase, DropsWhatIsNearlySingular) {
     }
     return std::pair(smallest, largest);
   };
-  const auto [all_smallest, all_largest] = range(0);
+  const auto [all_smallest, largest_free] = range(0);
+  double all_largest = largest_free;
+  Rng rng(8);  // samples in self-collision count too
+  for (int i = 0; i < 200000; ++i)
+    all_largest = std::max(all_largest, arm.manipulability(rng.uniform(arm.sample_lower(), arm.sample_upper())));
   EXPECT_LT(all_smallest, 0.01 * all_largest);
   const auto [smallest, largest] = range(0.3);
   EXPECT_GE(smallest, 0.3 * 0.9 * all_largest);  // the largest is estimated from the first samples

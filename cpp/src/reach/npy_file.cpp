@@ -1,0 +1,125 @@
+#include "reach/npy_file.hpp"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "mmgrasp/core/error.hpp"
+#include "reach/crc32.hpp"
+
+namespace mmgrasp::detail {
+
+std::uint64_t NpyLayout::payload_bytes() const {
+  std::uint64_t bytes = item_bytes;
+  for (const std::uint64_t extent : shape) bytes *= extent;
+  return bytes;
+}
+
+std::string NpyLayout::header() const {
+  std::string text = "{'descr': '" + dtype + "', 'fortran_order': False, 'shape': (";
+  for (std::size_t i = 0; i < shape.size(); ++i) text += (i > 0 ? ", " : "") + std::to_string(shape[i]);
+  text += shape.size() == 1 ? ",), }" : "), }";
+  // Room for any number of rows: the count is only known once all are written.
+  constexpr std::size_t kHeader = 192, kPrefix = 10;
+  text.resize(std::max(kHeader - kPrefix, (text.size() + 1 + kPrefix + 63) / 64 * 64 - kPrefix) - 1, ' ');
+  text += '\n';
+  std::string out("\x93NUMPY\x01\x00", 8);
+  out += static_cast<char>(text.size() & 0xff);
+  out += static_cast<char>(text.size() >> 8);
+  return out + text;
+}
+
+NpyWriter::NpyWriter(const std::string& path, const std::string& named, const NpyLayout& layout)
+    : path_(path), named_(named), layout_(layout) {
+  file_ = std::fopen(path.c_str(), "wb");
+  if (file_ == nullptr) throw IoError(named_ + ": cannot write (" + std::strerror(errno) + ")");
+  const std::string header = layout_.header();
+  header_bytes_ = header.size();
+  first_chunk_.assign(header.begin(), header.end());
+  if (std::fwrite(header.data(), 1, header.size(), file_) != header.size()) refuse();
+  file_bytes_ = header.size();
+}
+
+NpyWriter::~NpyWriter() {
+  if (file_ != nullptr) std::fclose(file_);
+}
+
+void NpyWriter::refuse() const {
+  throw IoError(named_ + ": cannot write all of it (" + std::strerror(errno) + ")");
+}
+
+void NpyWriter::sum(const unsigned char* bytes, std::size_t size) {
+  if (checksums_.empty()) {
+    const std::size_t part = std::min(size, kChecksumChunk - first_chunk_.size());
+    first_chunk_.insert(first_chunk_.end(), bytes, bytes + part);
+    bytes += part;
+    size -= part;
+    if (first_chunk_.size() < kChecksumChunk) return;
+    checksums_.push_back(0);  // filled in at the end
+  }
+  while (size > 0) {
+    const std::size_t part = std::min(size, kChecksumChunk - open_bytes_);
+    open_sum_ = crc32(bytes, part, open_sum_);
+    open_bytes_ += part;
+    bytes += part;
+    size -= part;
+    if (open_bytes_ < kChecksumChunk) return;
+    checksums_.push_back(open_sum_);
+    open_sum_ = 0;
+    open_bytes_ = 0;
+  }
+}
+
+void NpyWriter::write(const void* bytes, std::size_t size) {
+  if (size == 0) return;
+  sum(static_cast<const unsigned char*>(bytes), size);
+  if (std::fwrite(bytes, 1, size, file_) != size) refuse();
+  file_bytes_ += size;
+}
+
+void NpyWriter::finish(std::uint64_t rows) {
+  layout_.shape[0] = rows;
+  const std::string header = layout_.header();
+  require(header.size() == header_bytes_ && file_bytes_ == header_bytes_ + layout_.payload_bytes(), "rows",
+          static_cast<double>(rows), "must be what was written");
+  std::copy(header.begin(), header.end(), first_chunk_.begin());
+  if (checksums_.empty()) checksums_.push_back(0);
+  checksums_[0] = crc32(first_chunk_.data(), first_chunk_.size());
+  if (open_bytes_ > 0) checksums_.push_back(open_sum_);
+  const bool written = std::fseek(file_, 0, SEEK_SET) == 0 &&
+                       std::fwrite(header.data(), 1, header.size(), file_) == header.size() && std::fflush(file_) == 0;
+  if (!written) refuse();
+  const int closed = std::fclose(file_);
+  file_ = nullptr;
+  if (closed != 0) refuse();
+}
+
+MappedFile::MappedFile(const std::string& path, std::uint64_t bytes) : size_(bytes) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) throw IoError(path + ": cannot be opened (" + std::strerror(errno) + ")");
+  struct stat status;
+  const bool known = ::fstat(file, &status) == 0 && S_ISREG(status.st_mode);
+  const auto found = known ? static_cast<std::uint64_t>(status.st_size) : 0;
+  if (!known || found != bytes) {
+    ::close(file);
+    if (!known) throw IoError(path + ": not a file");
+    throw IoError(path + ": " + (found < bytes ? "truncated: " : "bytes after the end: ") + std::to_string(found) +
+                  " bytes, " + std::to_string(bytes) + " expected");
+  }
+  void* at = ::mmap(nullptr, bytes, PROT_READ, MAP_SHARED, file, 0);
+  const int failure = errno;
+  ::close(file);
+  if (at == MAP_FAILED) throw IoError(path + ": cannot be mapped into memory (" + std::strerror(failure) + ")");
+  data_ = static_cast<const unsigned char*>(at);
+}
+
+MappedFile::~MappedFile() {
+  ::munmap(const_cast<unsigned char*>(data_), size_);
+}
+
+}  // namespace mmgrasp::detail

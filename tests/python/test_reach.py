@@ -11,7 +11,6 @@ import pytest
 
 import mmgrasp as mg
 
-
 ASSETS = Path(mg.__file__).parent / "assets"
 
 

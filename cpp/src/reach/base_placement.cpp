@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <tuple>
 
 #include "mmgrasp/core/error.hpp"
@@ -151,15 +152,18 @@ class Examiner {
   }
 
   /// Gives up (reached = -1) when more than `most_missed` targets are missed.
-  BasePlacement place(const Eigen::Vector3d& base_pose, const Poses& targets, int most_missed) {
+  BasePlacement place(const Eigen::Vector3d& base_pose, const Poses& targets, const std::vector<std::size_t>& order,
+                      int most_missed, std::vector<std::size_t>& missed) {
     BasePlacement out;
     out.base_pose = base_pose;
     out.configurations.resize(targets.size());
-    int missed = 0;
-    for (std::size_t i = 0; i < targets.size(); ++i) {
+    for (const std::size_t i : order) {
       if (reaches(base_pose, targets[i], out.configurations[i])) {
         ++out.reached;
-      } else if (++missed > most_missed) {
+        continue;
+      }
+      missed.push_back(i);
+      if (static_cast<int>(missed.size()) > most_missed) {
         out.reached = -1;
         return out;
       }
@@ -229,10 +233,17 @@ class PlacementSearch {
     const int before = best_.reached, most_missed = static_cast<int>(targets_.size()) - before - 1;
     if (most_missed < 0) return false;
     std::vector<BasePlacement> placed(bases.size());
+    std::vector<std::vector<std::size_t>> missed(bases.size());
     const auto work = [&](std::size_t i, int worker) {
-      placed[i] = examiners_[static_cast<std::size_t>(worker)].place(bases[i], targets_, most_missed);
+      placed[i] =
+          examiners_[static_cast<std::size_t>(worker)].place(bases[i], targets_, order_, most_missed, missed[i]);
     };
     if (!parallel_for(bases.size(), options_.threads, work, Monitor{monitor_.stop, {}})) return false;
+    // Those missed most come first: a base pose that cannot be better shows it sooner.
+    for (const auto& some : missed)
+      for (const std::size_t target : some) ++misses_[target];
+    std::stable_sort(order_.begin(), order_.end(),
+                     [&](std::size_t a, std::size_t b) { return misses_[a] > misses_[b]; });
     for (BasePlacement& placement : placed)
       if (placement.reached > best_.reached) best_ = std::move(placement);
     return best_.reached > before;
@@ -241,7 +252,7 @@ class PlacementSearch {
   BasePlacement run() {
     const std::vector<Eigen::Vector3d> bases = voted();
     // In pieces, so that what the first ones reach ends the look at the others early.
-    constexpr std::size_t kPiece = 8;
+    constexpr std::size_t kPiece = 4;
     for (std::size_t i = 0; i < bases.size() && !monitor_.stopped(); i += kPiece) {
       look_at({bases.begin() + static_cast<std::ptrdiff_t>(i),
                bases.begin() + static_cast<std::ptrdiff_t>(std::min(i + kPiece, bases.size()))});
@@ -296,6 +307,8 @@ class PlacementSearch {
   const BasePlacementOptions& options_;
   const Monitor& monitor_;
   std::vector<Examiner> examiners_;
+  std::vector<int> misses_;         // of each target so far
+  std::vector<std::size_t> order_;  // in which targets are looked at
   BasePlacement best_;
 };
 

@@ -20,6 +20,7 @@ struct MMGRASP_EXPORT BasePlacementOptions {
   int refinements = 4;  ///< Rounds of smaller steps about the best base pose; >= 0.
   IkOptions ik;         ///< Tolerances and iterations of the descents; restarts are not used.
   int threads = 0;      ///< 0: all. Does not change the answer.
+  BasePlacementOptions() { ik.max_iterations = 25; }  // from a near start: what takes longer hardly ever arrives
   void check() const;
 };
 

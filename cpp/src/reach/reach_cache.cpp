@@ -42,7 +42,7 @@ ReachDatabase ReachDatabase::load_or_build(const JointGroup& arm, const ReachOpt
       if (found.key() == key) return found;
     } catch (const IoError&) {  // a damaged cache is worth nothing, and costs nothing: build again and replace it
     }
-    std::filesystem::remove_all(path, error);
+    detail::move_away(path);
   }
   // Only what takes long is worth leaving parts of when interrupted.
   constexpr std::int64_t kWorthParts = 16'000'000;

@@ -172,6 +172,8 @@ void write_database(const ReachDatabase::Data& data, const std::string& folder, 
                     const NpyWriter* configurations);
 /// Puts a written folder in place of what is there, which must be a database or nothing. Throws IoError naming it.
 void put_in_place(const std::string& written, const std::string& path);
+/// Removes what stands there, in one step for others.
+void move_away(const std::string& path);
 /// Next to `path`, unique among processes and threads.
 std::string temporary_beside(const std::string& path);
 

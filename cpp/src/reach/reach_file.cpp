@@ -103,17 +103,22 @@ void put_in_place(const std::string& written, const std::string& path) {
     refuse(path, "cannot put the database in place: a folder that is none stands there");
   if (fs::is_regular_file(path, error) && !is_old_file(path))
     refuse(path, "cannot put the database in place: a file that is none stands there");
-  // A folder cannot replace a full one in one step: for a moment none is there, never half of one.
-  if (fs::exists(path, error)) {
-    const std::string aside = temporary_beside(path);
-    fs::rename(path, aside, error);
-    if (!error) fs::rename(written, path, error);
-    std::error_code ignored;
-    fs::remove_all(aside, ignored);
-  } else {
+  // A folder cannot replace a full one in one step: for a moment none is there, never half of one. Others may do the
+  // same at the same time; the last one stays.
+  constexpr int kAttempts = 20;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
     fs::rename(written, path, error);
+    if (!error) return;
+    move_away(path);
   }
-  if (error) refuse(path, "cannot put the written folder in place (" + error.message() + ")");
+  refuse(path, "cannot put the written folder in place (" + error.message() + ")");
+}
+
+void move_away(const std::string& path) {
+  const std::string aside = temporary_beside(path);
+  std::error_code error;
+  fs::rename(path, aside, error);
+  if (!error) fs::remove_all(aside, error);
 }
 
 }  // namespace detail

@@ -282,6 +282,18 @@ TEST_F(ReachFile, AStoppedBuildGoesOnWhereItWas) {
   EXPECT_TRUE(test::read_folder(path("o.reach")) == test::read_folder(path("another.reach")));
 }
 
+TEST_F(ReachFile, ManyMaySaveTheSameDatabaseAtOnce) {
+  const auto database = ReachDatabase::build(test::seven_joints_to("2.4"), small(2000));
+  std::vector<std::thread> pool;
+  for (int t = 0; t < 4; ++t)
+    pool.emplace_back([&] {
+      for (int i = 0; i < 10; ++i) database.save(path("s.reach"));
+    });
+  for (std::thread& thread : pool) thread.join();
+  EXPECT_EQ(ReachDatabase::load(path("s.reach")).size(), database.size());
+  EXPECT_EQ(entry_count(), 1u);
+}
+
 TEST_F(ReachFile, ManyThreadsMayUseAFreshDatabase) {
   const JointGroup arm = test::seven_joints_to("2.4");
   const auto built = ReachDatabase::build(arm, small());

@@ -192,6 +192,9 @@ class PlacementSearch {
     options.check();
     detail::check_checker(checker, arm);
     for (const Pose& T : targets) require(T.matrix().allFinite(), "T_world_tip", "not finite", "must be a pose");
+    misses_.assign(targets.size(), 0);
+    order_.resize(targets.size());
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
     for (int i = 0; i < resolve_threads(options.threads); ++i) examiners_.emplace_back(database, arm, options, checker);
   }
 

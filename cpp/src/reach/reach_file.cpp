@@ -34,6 +34,13 @@ bool is_old_file(const fs::path& path) {
   return fs::is_regular_file(path, error) && starts_with(path, "MMGREACH");
 }
 
+bool is_something_else(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_regular_file(path, error)) return !is_old_file(path);
+  return fs::is_directory(path, error) && !fs::is_empty(path, error) && !error &&
+         !fs::exists(path / detail::kMetaFile, error);
+}
+
 std::string file_in(const std::string& folder, const char* name) {
   return (fs::path(folder) / name).string();
 }
@@ -98,11 +105,10 @@ void write_database(const Data& data, const std::string& folder, const std::stri
 
 void put_in_place(const std::string& written, const std::string& path) {
   std::error_code error;
-  const fs::path meta = fs::path(path) / kMetaFile;
-  if (fs::is_directory(path, error) && !fs::is_empty(path, error) && !fs::exists(meta, error))
-    refuse(path, "cannot put the database in place: a folder that is none stands there");
-  if (fs::is_regular_file(path, error) && !is_old_file(path))
-    refuse(path, "cannot put the database in place: a file that is none stands there");
+  constexpr int kLooks = 5;  // another save may take the folder away between two questions, but not every time
+  int strange = 0;
+  while (strange < kLooks && is_something_else(path)) ++strange;
+  if (strange == kLooks) refuse(path, "cannot put the database in place: something that is none stands there");
   // A folder cannot replace a full one in one step: for a moment none is there, never half of one. Others may do the
   // same at the same time; the last one stays.
   constexpr int kAttempts = 20;

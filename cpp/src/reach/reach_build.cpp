@@ -22,7 +22,7 @@ using Data = ReachDatabase::Data;
 constexpr std::int64_t kManipulabilityBlocks = 8;
 constexpr std::int64_t kMostBlocksAShard = 256, kLeastShards = 64;
 constexpr std::int64_t kWorthCountingFull = 200'000;  // samples per place in a cell: with fewer, few cells ever fill
-constexpr double kSamplingShare = 0.9;   // of the progress
+constexpr double kSamplingShare = 0.9;                // of the progress
 constexpr const char* kStage = "reachability database";
 
 /// Samples an arm shard by shard and puts the shards together.

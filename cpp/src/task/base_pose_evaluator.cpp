@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -7,16 +8,15 @@
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/robot/ik.hpp"
 #include "mmgrasp/task/base_region.hpp"
+#include "task/ik_lattice.hpp"
 #include "task/no_clock.hpp"
 #include "task/scene.hpp"
+#include "task/warm_descent.hpp"
 
 namespace mmgrasp {
 namespace {
 
-constexpr int kFruitless = 2;    // Descents without an arrival after which a grasp counts as out of reach.
-constexpr int kIterations = 20;  // Of one descent: from a stored configuration near by, one that arrives takes 4 to 10.
-constexpr double kFar = 1.2;     // Cells of the database beyond which only one descent is tried.
-constexpr double kSame = 1e-3;   // Configurations nearer than this are one [rad or m].
+constexpr int kNeighbours = 3;       // Nodes around tried where the own one is of no use.
 constexpr int kCheckRestarts = 12;
 
 /// Links that stand still in the tool's frame while the arm moves: those behind the last arm joint.
@@ -51,10 +51,20 @@ int stage(Rejection cause) {
 /// What all clones share.
 struct EvaluatorTables {
   const PartSupplyProblem* problem;
-  const ReachDatabase* database;
-  JointGroup arm;                                               // root at the origin
-  std::vector<std::vector<std::vector<int>>> opening;           // [tray][part][grasp]: index of the opening's checker
-  std::vector<std::vector<std::vector<std::uint8_t>>> blocked;  // [tray][part][grasp]: the hand alone touches something
+  JointGroup arm;  // root at the origin
+  Eigen::AlignedBox3d bounds;
+  double reach;
+  std::shared_ptr<const IkLattice> lattice;
+  std::vector<double> openings;
+  std::vector<std::vector<int>> first;  // [tray][part]: where its grasps begin in the lists below
+  std::vector<int> opening;             // index of the opening's checker
+  std::vector<std::uint8_t> blocked;    // the hand alone touches something
+};
+
+/// A grasp as it is for one heading of the base, with the base in the origin.
+struct PlacedGrasp {
+  IkLattice::Sheet* sheet = nullptr;
+  Pose T_root_tcp;
 };
 
 struct BasePoseEvaluator::Impl {
@@ -62,19 +72,18 @@ struct BasePoseEvaluator::Impl {
   CollisionChecker at_rest;
   std::vector<CollisionChecker> opened;
   std::vector<Eigen::Vector3d> opened_at;  // where each checker's root stands now
-  IkOptions ik;
-  IkWorkspace workspace;
-  Eigen::MatrixXd seeds;
-  std::vector<Eigen::VectorXd> seen;
+  WarmDescent descent;
+  double heading = std::nan("");    // of `placed`
+  std::vector<PlacedGrasp> placed;  // one a grasp
+  Eigen::VectorXd q;
 
   Impl(std::shared_ptr<const EvaluatorTables> shared, CollisionChecker rest, std::vector<CollisionChecker> open)
       : tables(std::move(shared)),
         at_rest(std::move(rest)),
         opened(std::move(open)),
-        opened_at(opened.size(), Eigen::Vector3d::Constant(std::nan(""))) {
-    ik.max_iterations = kIterations;
-    ik.time_limit = kNoClock;
-  }
+        opened_at(opened.size(), Eigen::Vector3d::Constant(std::nan(""))),
+        descent(tables->arm),
+        placed(tables->opening.size()) {}
 
   std::unique_ptr<Impl> clone() const {
     std::vector<CollisionChecker> copies;
@@ -91,105 +100,186 @@ struct BasePoseEvaluator::Impl {
     return checker;
   }
 
-  /// Remembers a solution; false when it was judged already.
-  bool is_new(const Eigen::VectorXd& q) {
-    for (const Eigen::VectorXd& other : seen) {
-      if ((other - q).cwiseAbs().maxCoeff() < kSame) return false;
+  const PlacedGrasp& place(double theta, const Part& part, int grasp, int place_of_grasp) {
+    if (theta != heading) {
+      for (PlacedGrasp& old : placed) old.sheet = nullptr;
+      heading = theta;
     }
-    seen.push_back(q);
+    PlacedGrasp& placed_grasp = placed[static_cast<std::size_t>(place_of_grasp)];
+    if (placed_grasp.sheet == nullptr) {
+      placed_grasp.T_root_tcp = pose_from_planar(Eigen::Vector3d(0, 0, theta)).inverse() *
+                                (part.T_world_part * part.grasps[static_cast<std::size_t>(grasp)].T_object_tcp);
+      placed_grasp.sheet =
+          &tables->lattice->sheet(placed_grasp.T_root_tcp.linear(), placed_grasp.T_root_tcp.translation().z());
+    }
+    return placed_grasp;
+  }
+
+  /// Follows one configuration of a node to the pose. True when it arrives; `cause` is then what the checker says.
+  bool follow(const double* start, const Pose& T_base_tcp, CollisionChecker& checker, Rejection& cause) {
+    q = Eigen::Map<const Eigen::VectorXd>(start, tables->arm.size());
+    if (!descent.run(T_base_tcp, q)) return false;
+    cause = checker.rejection(q);
     return true;
   }
 
-  /// One descent from a stored configuration that, failing, also tells whether the pose is reached outside the limits
-  /// only.
-  IkResult descent(const Pose& T_base_tcp, int seed) {
-    IkOptions one = ik;
-    one.restarts = 0;
-    return solve_ik(tables->arm, T_base_tcp, seeds.col(seed).head(tables->arm.size()), one);
-  }
-
-  /// Distance of a stored configuration's tool from the pose, in cells of the database.
-  double cells_away(const Pose& T_base_tcp, int seed) const {
-    const ReachOptions& cells = tables->database->options();
-    const Pose T = tables->arm.fk(seeds.col(seed).head(tables->arm.size()));
-    return (T.translation() - T_base_tcp.translation()).norm() / cells.position_cell +
-           rotation_distance(T, T_base_tcp) / cells.rotation_cell;
-  }
-
-  Rejection grasp(const Eigen::Vector3d& base_pose, const Pose& T_base_tcp, int opening, Eigen::VectorXd& q) {
-    const int count = tables->database->nearest(T_base_tcp, tables->problem->options.grid.ik_seeds, seeds);
-    if (count == 0) return Rejection::reach;
-    CollisionChecker& checker = checker_at(opening, base_pose);
-    seen.clear();
+  /// One grasp, `q` its configuration when there is one. `any_order`: what was of use last is tried first.
+  Rejection grasp(const Eigen::Vector3d& base_pose, const Part& part, int index, int place_of_grasp, bool any_order) {
+    const PlacedGrasp& grasp = place(base_pose.z(), part, index, place_of_grasp);
+    const double c = std::cos(base_pose.z()), s = std::sin(base_pose.z());
+    Pose T_base_tcp = grasp.T_root_tcp;
+    T_base_tcp.translation().x() -= c * base_pose.x() + s * base_pose.y();
+    T_base_tcp.translation().y() -= c * base_pose.y() - s * base_pose.x();
+    const double x = T_base_tcp.translation().x(), y = T_base_tcp.translation().y();
+    std::array<int, 2> cell;
+    IkLattice::Node* node = grasp.sheet->find(x, y, cell);
+    if (node == nullptr) return Rejection::reach;
+    const Pose T_base_node = grasp.sheet->pose(cell[0], cell[1]);
+    const IkLattice& lattice = *tables->lattice;
+    CollisionChecker& checker = checker_at(tables->opening[static_cast<std::size_t>(place_of_grasp)], base_pose);
     Rejection worst = Rejection::reach;
-    // A pose that no stored configuration is near to is hardly ever reached: one descent is enough there.
-    const int fruitless = std::min(count, cells_away(T_base_tcp, 0) > kFar ? 1 : kFruitless);
-    for (int i = 0; i < count; ++i) {
-      if (seen.empty() && i + 1 == fruitless) {
-        const IkResult last = descent(T_base_tcp, i);
-        if (last.outcome != Outcome::solved) return last.rejections.limits > 0 ? Rejection::limits : Rejection::reach;
-        q = last.q;
-      } else {
-        q = seeds.col(i).head(tables->arm.size());
-        if (!refine_ik(tables->arm, T_base_tcp, q, ik, workspace)) continue;
-      }
-      if (!is_new(q)) continue;
-      const Rejection cause = checker.rejection(q);
-      if (cause == Rejection::none) return cause;
+    bool arrived = false;
+    const auto tried = [&](const double* start) {
+      Rejection cause;
+      if (!follow(start, T_base_tcp, checker, cause)) return false;
+      arrived = true;
+      if (cause == Rejection::none) return true;
       if (stage(cause) > stage(worst)) worst = cause;
+      return false;
+    };
+    const int first = any_order ? node->last_good.load(std::memory_order_relaxed) : 0;
+    int k = 0;
+    if (const double* start = first > 0 ? node->solution(first, lattice, T_base_node) : nullptr; start != nullptr)
+      if (tried(start)) return Rejection::none;
+    for (; const double* start = node->solution(k, lattice, T_base_node); ++k) {
+      if (k == first && first > 0) continue;
+      if (!tried(start)) continue;
+      if (any_order) node->last_good.store(k, std::memory_order_relaxed);
+      return Rejection::none;
     }
-    return worst;
+    if (arrived) return worst;
+    return from_neighbours(*grasp.sheet, cell, x, y, tried) ? Rejection::none
+           : arrived                                        ? worst
+           : k == 0                                         ? node->cause()
+                                                            : Rejection::reach;
+  }
+
+  /// Near the edge of the reach a node may lie outside where the pose lies inside.
+  template <class Try>
+  bool from_neighbours(IkLattice::Sheet& sheet, const std::array<int, 2>& cell, double x, double y, const Try& tried) {
+    struct Near {
+      double distance;
+      const double* start;
+    };
+    std::array<Near, 8> near;
+    std::size_t count = 0;
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        if (dx == 0 && dy == 0) continue;
+        const int ix = cell[0] + dx, iy = cell[1] + dy;
+        IkLattice::Node* node = sheet.at(ix, iy);
+        if (node == nullptr) continue;
+        const double* start = node->solution(0, *tables->lattice, sheet.pose(ix, iy));
+        if (start != nullptr) near[count++] = {sheet.squared_distance(ix, iy, x, y), start};
+      }
+    }
+    std::stable_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count),
+                     [](const Near& a, const Near& b) { return a.distance < b.distance; });
+    for (std::size_t i = 0; i < std::min<std::size_t>(count, kNeighbours); ++i) {
+      if (tried(near[i].start)) return true;
+    }
+    return false;
+  }
+
+  /// The first grasp that works, or -1 with one cause for each.
+  int find(const Eigen::Vector3d& base_pose, int tray, int index, int first_grasp, bool any_order,
+           std::vector<Rejection>& causes) {
+    const Part& part = part_of(*tables->problem, tray, index);
+    const int begin = tables->first[static_cast<std::size_t>(tray)][static_cast<std::size_t>(index)];
+    const int count = static_cast<int>(part.grasps.size());
+    causes.resize(part.grasps.size());
+    for (int turn = first_grasp >= 0 ? -1 : 0; turn < count; ++turn) {
+      const int g = turn < 0 ? first_grasp : turn;
+      if (turn >= 0 && g == first_grasp) continue;
+      Rejection& cause = causes[static_cast<std::size_t>(g)];
+      cause = tables->blocked[static_cast<std::size_t>(begin + g)] ? Rejection::grasp_filter
+                                                                   : grasp(base_pose, part, g, begin + g, any_order);
+      if (cause == Rejection::none) return g;
+    }
+    return -1;
   }
 };
 
 namespace {
 
 /// Indices of checkers by opening; openings that differ by rounding share one.
-std::shared_ptr<EvaluatorTables> make_tables(const PartSupplyProblem& problem, const ReachDatabase& database,
-                                             std::vector<double>& openings) {
-  auto tables =
-      std::make_shared<EvaluatorTables>(EvaluatorTables{&problem, &database, problem.arm.at(Pose::Identity()), {}, {}});
+std::shared_ptr<EvaluatorTables> make_tables(const PartSupplyProblem& problem, const ReachDatabase& database) {
+  const JointGroup arm = problem.arm.at(Pose::Identity());
+  auto tables = std::make_shared<EvaluatorTables>(
+      EvaluatorTables{&problem,
+                      arm,
+                      database.bounds(),
+                      database.reach(),
+                      std::make_shared<const IkLattice>(arm, database, problem.options.grid.ik_seeds),
+                      {},
+                      {},
+                      {},
+                      {}});
   std::map<long, int> known;
   for (const Tray& tray : problem.trays) {
-    tables->opening.emplace_back();
-    tables->blocked.emplace_back();
+    tables->first.emplace_back();
     for (const Part& part : tray.parts) {
-      std::vector<int> indices;
+      tables->first.back().push_back(static_cast<int>(tables->opening.size()));
       for (const Grasp& grasp : part.grasps) {
         const double opening = problem.gripper.pregrasp_opening(grasp.width);
-        const auto [it, is_new] = known.emplace(std::lround(opening * 1e9), static_cast<int>(openings.size()));
-        if (is_new) openings.push_back(opening);
-        indices.push_back(it->second);
+        const auto [it, is_new] = known.emplace(std::lround(opening * 1e9), static_cast<int>(tables->openings.size()));
+        if (is_new) tables->openings.push_back(opening);
+        tables->opening.push_back(it->second);
       }
-      tables->opening.back().push_back(indices);
-      tables->blocked.back().emplace_back(part.grasps.size(), 0);
     }
   }
+  tables->blocked.assign(tables->opening.size(), 0);
   return tables;
 }
 
-/// The robot is lifted, as a whole, so that its tool is at the grasp: what the hand touches there it touches with any
-/// arm.
-bool hand_touches(CollisionChecker& checker, const Pose& T_tcp_root, const Eigen::VectorXd& q,
-                  const std::set<std::string>& hand, const Pose& T_world_tcp) {
-  checker.set_root(T_world_tcp * T_tcp_root);
-  for (const Contact& contact : checker.contacts(q)) {
-    if (contact.with_scene && hand.count(contact.a)) return true;
+/// The hand alone, fingers opened so far, held at the tool centre point of a body without shapes that can be put
+/// anywhere: what it touches at a grasp it touches with any arm.
+CollisionChecker hand_checker(const PartSupplyProblem& problem, double opening, World world) {
+  const JointGroup arm = arm_with_opening(problem, opening);
+  const std::vector<Pose> T_root_link = arm.robot().link_poses(arm.full_values(problem.home));
+  const Pose T_tcp_root = T_root_link[static_cast<std::size_t>(arm.tip_link())].inverse();
+  WorldObject hand;
+  const std::set<std::string> links = hand_links(arm);
+  for (std::size_t i = 0; i < arm.robot().links().size(); ++i) {
+    const Link& link = arm.robot().links()[i];
+    if (links.count(link.name) == 0) continue;
+    for (LinkShape shape : link.collisions) {
+      shape.T_link_shape = T_tcp_root * T_root_link[i] * shape.T_link_shape;
+      hand.shapes.push_back(shape);
+    }
   }
-  return false;
-}
-
-void find_blocked_grasps(const PartSupplyProblem& problem, const World& world, const std::vector<double>& openings,
-                         EvaluatorTables& tables) {
-  const std::vector<std::pair<int, int>> parts = all_parts(problem);
-  const std::set<std::string> hand = hand_links(problem.arm);
-  const Pose T_tcp_root = tables.arm.fk(problem.home).inverse();
+  static const Robot carrier = Robot::from_strings(
+      "<robot name='carrier'><link name='root'/><link name='tcp'/><joint name='turn' type='revolute'><parent "
+      "link='root'/><child link='tcp'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' velocity='1' effort='1'/>"
+      "</joint></robot>");
+  if (!hand.shapes.empty()) {
+    std::string name = "hand";
+    while (world.has(name)) name += "'";
+    world.add(name, std::move(hand));
+    world.attach(name, "tcp", Pose::Identity());
+  }
   CheckerOptions scene_only;
   scene_only.check_self = false;
+  return CollisionChecker(carrier.chain("root", "tcp"), world, scene_only);
+}
+
+void find_blocked_grasps(const PartSupplyProblem& problem, const World& world, EvaluatorTables& tables) {
+  const std::vector<std::pair<int, int>> parts = all_parts(problem);
   std::vector<CollisionChecker> originals;
-  for (double opening : openings) originals.emplace_back(arm_with_opening(problem, opening), world, scene_only);
+  for (double opening : tables.openings) originals.push_back(hand_checker(problem, opening, world));
   const int threads = resolve_threads(problem.options.threads);
   std::vector<std::vector<CollisionChecker>> checkers(static_cast<std::size_t>(threads));
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(1);
   parallel_for(parts.size(), threads, [&](std::size_t item, int worker) {
     const auto [tray, index] = parts[item];
     const Part& part = part_of(problem, tray, index);
@@ -198,11 +288,12 @@ void find_blocked_grasps(const PartSupplyProblem& problem, const World& world, c
     if (own.empty()) {
       for (const CollisionChecker& checker : originals) own.push_back(checker.clone());
     }
+    const std::size_t begin =
+        static_cast<std::size_t>(tables.first[static_cast<std::size_t>(tray)][static_cast<std::size_t>(index)]);
     for (std::size_t g = 0; g < part.grasps.size(); ++g) {
-      const int opening = tables.opening[static_cast<std::size_t>(tray)][static_cast<std::size_t>(index)][g];
-      tables.blocked[static_cast<std::size_t>(tray)][static_cast<std::size_t>(index)][g] =
-          hand_touches(own[static_cast<std::size_t>(opening)], T_tcp_root, problem.home, hand,
-                       part.T_world_part * part.grasps[g].T_object_tcp);
+      CollisionChecker& checker = own[static_cast<std::size_t>(tables.opening[begin + g])];
+      checker.set_root(part.T_world_part * part.grasps[g].T_object_tcp);
+      tables.blocked[begin + g] = !checker.is_free(still);
     }
   });
 }
@@ -210,13 +301,12 @@ void find_blocked_grasps(const PartSupplyProblem& problem, const World& world, c
 }  // namespace
 
 BasePoseEvaluator::BasePoseEvaluator(const PartSupplyProblem& problem, const ReachDatabase& database) {
-  std::vector<double> openings;
-  std::shared_ptr<EvaluatorTables> tables = make_tables(problem, database, openings);
+  const std::shared_ptr<EvaluatorTables> tables = make_tables(problem, database);
   const World world = world_with_parts(problem, all_parts(problem));
-  find_blocked_grasps(problem, world, openings, *tables);
+  find_blocked_grasps(problem, world, *tables);
   CollisionChecker at_rest(problem.arm, world);
   std::vector<CollisionChecker> opened;
-  for (double opening : openings) opened.push_back(at_rest.with_group(arm_with_opening(problem, opening)));
+  for (double opening : tables->openings) opened.push_back(at_rest.with_group(arm_with_opening(problem, opening)));
   impl_ = std::make_unique<Impl>(tables, std::move(at_rest), std::move(opened));
 }
 
@@ -235,40 +325,30 @@ Rejection BasePoseEvaluator::home(const Eigen::Vector3d& base_pose) {
 }
 
 PartAtPose BasePoseEvaluator::part(const Eigen::Vector3d& base_pose, int tray, int index, int first_grasp) {
-  const EvaluatorTables& tables = *impl_->tables;
-  const Part& part = part_of(*tables.problem, tray, index);
-  const std::vector<int>& openings = tables.opening[static_cast<std::size_t>(tray)][static_cast<std::size_t>(index)];
-  const Pose T_base_part = pose_from_planar(base_pose).inverse() * part.T_world_part;
-  const int count = static_cast<int>(part.grasps.size());
   PartAtPose result;
-  result.causes.assign(part.grasps.size(), Rejection::none);
-  for (int turn = first_grasp >= 0 ? -1 : 0; turn < count; ++turn) {
-    const int g = turn < 0 ? first_grasp : turn;
-    if (turn >= 0 && g == first_grasp) continue;
-    Rejection& cause = result.causes[static_cast<std::size_t>(g)];
-    cause = hand_blocked(tray, index, g)
-                ? Rejection::grasp_filter
-                : impl_->grasp(base_pose, T_base_part * part.grasps[static_cast<std::size_t>(g)].T_object_tcp,
-                               openings[static_cast<std::size_t>(g)], result.q);
-    if (cause != Rejection::none) continue;
-    result.feasible = true;
-    result.grasp = g;
+  result.grasp = impl_->find(base_pose, tray, index, first_grasp, false, result.causes);
+  result.feasible = result.grasp >= 0;
+  if (result.feasible) {
+    result.q = impl_->q;
     result.causes.clear();
-    return result;
   }
-  result.q.resize(0);
   return result;
+}
+
+int BasePoseEvaluator::find_grasp(const Eigen::Vector3d& base_pose, int tray, int index, int first_grasp,
+                                  std::vector<Rejection>& causes) {
+  return impl_->find(base_pose, tray, index, first_grasp, true, causes);
 }
 
 bool BasePoseEvaluator::part_with_restarts(const Eigen::Vector3d& base_pose, int tray, int index, int first_grasp) {
   if (part(base_pose, tray, index, first_grasp).feasible) return true;
   const EvaluatorTables& tables = *impl_->tables;
   const Part& part = part_of(*tables.problem, tray, index);
-  const std::vector<int>& openings = tables.opening[static_cast<std::size_t>(tray)][static_cast<std::size_t>(index)];
+  const int begin = tables.first[static_cast<std::size_t>(tray)][static_cast<std::size_t>(index)];
   const Pose T_base_part = pose_from_planar(base_pose).inverse() * part.T_world_part;
   for (int g = 0; g < static_cast<int>(part.grasps.size()); ++g) {
     if (hand_blocked(tray, index, g)) continue;
-    CollisionChecker& checker = impl_->checker_at(openings[static_cast<std::size_t>(g)], base_pose);
+    CollisionChecker& checker = impl_->checker_at(tables.opening[static_cast<std::size_t>(begin + g)], base_pose);
     IkOptions options;
     options.restarts = kCheckRestarts;
     options.time_limit = kNoClock;
@@ -282,8 +362,8 @@ bool BasePoseEvaluator::part_with_restarts(const Eigen::Vector3d& base_pose, int
 }
 
 bool BasePoseEvaluator::hand_blocked(int tray, int part, int grasp) const {
-  return impl_->tables
-      ->blocked[static_cast<std::size_t>(tray)][static_cast<std::size_t>(part)][static_cast<std::size_t>(grasp)];
+  const int begin = impl_->tables->first[static_cast<std::size_t>(tray)][static_cast<std::size_t>(part)];
+  return impl_->tables->blocked[static_cast<std::size_t>(begin + grasp)] != 0;
 }
 
 double BasePoseEvaluator::missing_reach(const Eigen::Vector3d& base_pose, int tray, int index) const {
@@ -294,8 +374,8 @@ double BasePoseEvaluator::missing_reach(const Eigen::Vector3d& base_pose, int tr
   for (int g = 0; g < static_cast<int>(part.grasps.size()); ++g) {
     if (hand_blocked(tray, index, g)) continue;
     const Eigen::Vector3d p = (T_base_part * part.grasps[static_cast<std::size_t>(g)].T_object_tcp).translation();
-    const double outside = std::sqrt(tables.database->bounds().squaredExteriorDistance(p));
-    nearest = std::min(nearest, std::max(outside, p.norm() - tables.database->reach()));
+    const double outside = std::sqrt(tables.bounds.squaredExteriorDistance(p));
+    nearest = std::min(nearest, std::max(outside, p.norm() - tables.reach));
   }
   return std::isfinite(nearest) ? std::max(nearest, 0.0) : 0.0;
 }

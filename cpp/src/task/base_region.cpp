@@ -204,6 +204,7 @@ class RegionSearch {
     const LayerMarks& home = home_[static_cast<std::size_t>(task.heading)];
     counts.resize(task.parts.size());
     std::vector<int> last(task.parts.size(), -1);  // the grasp that worked at the base pose before
+    std::vector<Rejection> causes;
     for (int ix = 0; ix < lattice.nx(); ++ix) {
       if (monitor_.stopped()) return;
       const std::size_t i = lattice.index(ix, iy);
@@ -213,13 +214,13 @@ class RegionSearch {
         if (!wanted(task, p, lattice, ix, iy)) continue;
         RowCount& count = counts[p];
         ++count.tried;
-        const PartAtPose seen = evaluator.part(pose, task.tray, task.parts[p], last[p]);
-        if (!seen.feasible) {
-          for (Rejection cause : seen.causes) count.rejections.add(cause);
+        const int grasp = evaluator.find_grasp(pose, task.tray, task.parts[p], last[p], causes);
+        if (grasp < 0) {
+          for (Rejection cause : causes) count.rejections.add(cause);
           continue;
         }
         ++count.feasible;
-        last[p] = seen.grasp;
+        last[p] = grasp;
         (corners ? task.marks[p].corners : task.marks[p].centres)[i] = 1;
       }
     }

@@ -81,6 +81,9 @@ class MMGRASP_EXPORT BasePoseEvaluator {
   /// Grasps are tried in order, `first_grasp` (when >= 0) before the others: that saves time and changes only which
   /// grasp is named. The robot at home is not looked at.
   PartAtPose part(const Eigen::Vector3d& base_pose, int tray, int part, int first_grasp = -1);
+  /// Index of a grasp that works, or -1 with one cause for each in `causes`. As part(), quicker: without naming a
+  /// configuration, and what worked near by is tried first; that changes only which grasp is named.
+  int find_grasp(const Eigen::Vector3d& base_pose, int tray, int part, int first_grasp, std::vector<Rejection>& causes);
   /// The same with random restarts of IK: slower, finds a configuration in more cases. For checks, not for regions.
   bool part_with_restarts(const Eigen::Vector3d& base_pose, int tray, int part, int first_grasp = -1);
   /// True when the open hand alone touches the scene or a part at the grasp: no arm configuration can be free.

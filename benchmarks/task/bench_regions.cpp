@@ -9,6 +9,8 @@
 
 #include "core/report.hpp"
 #include "mmgrasp/task/base_region.hpp"
+#include "mmgrasp/task/base_sequence.hpp"
+#include "support/paths.hpp"
 #include "support/tray_rows.hpp"
 
 using namespace mmgrasp;
@@ -63,6 +65,37 @@ void measure(const char* table, const testing_support::MobileManipulator& robot,
                 "5 cm grid, one grasp from above, Fetch-like robot, database loaded, nothing else cached"});
 }
 
+/// The largest discs of 5,000 intersections: the region of one object with itself, shifted.
+void measure_circles(const testing_support::MobileManipulator& robot, const ReachDatabase& database) {
+  const PartSupplyProblem problem = testing_support::tray_row(robot, RowOptions());
+  const BaseGrid grid = make_base_grid(problem, database);
+  const CellMask cells = compute_base_regions(problem, database, grid)[0].cells;
+  std::vector<CellMask> shared;
+  std::size_t count = 0;
+  for (int dy = -40; dy <= 40 && shared.size() < 5000; ++dy) {
+    for (int dx = -40; dx <= 40 && shared.size() < 5000; ++dx) {
+      CellMask both(cells.size(), 0);
+      std::size_t own = 0;
+      for (int iy = std::max(0, dy); iy < std::min(grid.ny, grid.ny + dy); ++iy) {
+        for (int ix = std::max(0, dx); ix < std::min(grid.nx, grid.nx + dx); ++ix)
+          own += both[grid.index(0, ix, iy)] = cells[grid.index(0, ix, iy)] & cells[grid.index(0, ix - dx, iy - dy)];
+      }
+      if (own == 0) continue;
+      count += own;
+      shared.push_back(std::move(both));
+    }
+  }
+  double radii = 0;
+  const double begin = bench::now();
+  for (const CellMask& both : shared) radii += inscribed_circle(grid, both, 0).radius;
+  const double seconds = bench::now() - begin;
+  std::ostringstream more;
+  more << "\"intersections\": " << shared.size() << ", \"cells\": " << count
+       << ", \"mean radius m\": " << radii / static_cast<double>(shared.size());
+  bench::print(
+      {"inscribed circles", "shifted regions", "mmgrasp", "s", seconds, more.str(), "exact to 1e-6 m, one thread"});
+}
+
 }  // namespace
 
 /// bench_regions <folder for databases> [rounds] [largest number of trays]
@@ -98,4 +131,5 @@ int main(int argc, char** argv) {
     set_up.trays = count;
     measure("p1-table-3.3", robot, database, {set_up, paper}, count > 22 ? 1 : rounds);
   }
+  measure_circles(robot, database);
 }

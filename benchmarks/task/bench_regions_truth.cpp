@@ -9,6 +9,7 @@
 #include "mmgrasp/collision/collision_ik.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/task/base_region.hpp"
+#include "support/paths.hpp"
 #include "support/region_truth.hpp"
 #include "support/tray_rows.hpp"
 

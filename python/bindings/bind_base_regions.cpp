@@ -80,7 +80,7 @@ void bind_region_classes(py::module_& m) {
           "part_cells",
           [](const BaseRegion& r, const BaseGrid& grid) {
             py::list out;
-            for (const CellMask& cells : r.part_cells) out.append(mask_array(grid, cells));
+            for (const PartCells& cells : r.part_cells) out.append(mask_array(grid, cells.mask()));
             return out;
           },
           py::arg("grid"), "The same for each target part alone.")

@@ -43,7 +43,12 @@ PartExplanation explanation_of(const py::tuple& s) {
 
 py::tuple region_state(const BaseRegion& r) {
   py::list parts, explanations;
-  for (const CellMask& cells : r.part_cells) parts.append(packed(cells));
+  for (const PartCells& cells : r.part_cells) {
+    py::list windows;
+    for (const PartCells::Window& w : cells.windows())
+      windows.append(py::make_tuple(w.heading, w.x0, w.y0, w.nx, w.ny, packed(w.flags)));
+    parts.append(py::make_tuple(cells.nx(), cells.ny(), cells.size(), windows));
+  }
   for (const PartExplanation& e : r.explanations) explanations.append(explanation_state(e));
   return py::make_tuple(r.tray, packed(r.cells), parts, explanations, r.base_poses_in_collision);
 }
@@ -52,7 +57,17 @@ BaseRegion region_of(const py::tuple& s) {
   BaseRegion r;
   r.tray = py::cast<std::string>(s[0]);
   r.cells = unpacked(s[1]);
-  for (const py::handle& cells : s[2]) r.part_cells.push_back(unpacked(cells));
+  for (const py::handle& cells : s[2]) {
+    const auto state = py::cast<py::tuple>(cells);
+    std::vector<PartCells::Window> windows;
+    for (const py::handle& window : state[3]) {
+      const auto w = py::cast<py::tuple>(window);
+      const auto number = [&w](std::size_t i) { return py::cast<int>(w[i]); };
+      windows.push_back({number(0), number(1), number(2), number(3), number(4), unpacked(w[5])});
+    }
+    r.part_cells.emplace_back(py::cast<int>(state[0]), py::cast<int>(state[1]), py::cast<std::size_t>(state[2]),
+                              std::move(windows));
+  }
   for (const py::handle& e : s[3]) r.explanations.push_back(explanation_of(py::cast<py::tuple>(e)));
   r.base_poses_in_collision = py::cast<std::size_t>(s[4]);
   return r;

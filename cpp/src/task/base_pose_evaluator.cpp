@@ -5,6 +5,7 @@
 #include <set>
 
 #include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/robot/ik.hpp"
 #include "mmgrasp/task/base_region.hpp"
@@ -16,7 +17,7 @@
 namespace mmgrasp {
 namespace {
 
-constexpr int kNeighbours = 3;       // Nodes around tried where the own one is of no use.
+constexpr int kNeighbours = 3;  // Nodes around tried where the own one is of no use.
 constexpr int kCheckRestarts = 12;
 
 /// Links that stand still in the tool's frame while the arm moves: those behind the last arm joint.
@@ -55,6 +56,7 @@ struct EvaluatorTables {
   Eigen::AlignedBox3d bounds;
   double reach;
   std::shared_ptr<const IkLattice> lattice;
+  std::vector<std::pair<int, int>> parts;  // in place
   std::vector<double> openings;
   std::vector<std::vector<int>> first;  // [tray][part]: where its grasps begin in the lists below
   std::vector<int> opening;             // index of the opening's checker
@@ -224,6 +226,7 @@ std::shared_ptr<EvaluatorTables> make_tables(const PartSupplyProblem& problem, c
                       {},
                       {},
                       {},
+                      {},
                       {}});
   std::map<long, int> known;
   for (const Tray& tray : problem.trays) {
@@ -238,7 +241,7 @@ std::shared_ptr<EvaluatorTables> make_tables(const PartSupplyProblem& problem, c
       }
     }
   }
-  tables->blocked.assign(tables->opening.size(), 0);
+  tables->blocked.assign(tables->opening.size(), 1);
   return tables;
 }
 
@@ -273,8 +276,9 @@ CollisionChecker hand_checker(const PartSupplyProblem& problem, double opening, 
   return CollisionChecker(carrier.chain("root", "tcp"), world, scene_only);
 }
 
-void find_blocked_grasps(const PartSupplyProblem& problem, const World& world, EvaluatorTables& tables) {
-  const std::vector<std::pair<int, int>> parts = all_parts(problem);
+/// Of the grasps of these parts that `tables` calls blocked.
+void find_blocked_grasps(const PartSupplyProblem& problem, const std::vector<std::pair<int, int>>& parts,
+                         const World& world, EvaluatorTables& tables) {
   std::vector<CollisionChecker> originals;
   for (double opening : tables.openings) originals.push_back(hand_checker(problem, opening, world));
   const int threads = resolve_threads(problem.options.threads);
@@ -291,6 +295,7 @@ void find_blocked_grasps(const PartSupplyProblem& problem, const World& world, E
     const std::size_t begin =
         static_cast<std::size_t>(tables.first[static_cast<std::size_t>(tray)][static_cast<std::size_t>(index)]);
     for (std::size_t g = 0; g < part.grasps.size(); ++g) {
+      if (!tables.blocked[begin + g]) continue;
       CollisionChecker& checker = own[static_cast<std::size_t>(tables.opening[begin + g])];
       checker.set_root(part.T_world_part * part.grasps[g].T_object_tcp);
       tables.blocked[begin + g] = !checker.is_free(still);
@@ -300,14 +305,32 @@ void find_blocked_grasps(const PartSupplyProblem& problem, const World& world, E
 
 }  // namespace
 
-BasePoseEvaluator::BasePoseEvaluator(const PartSupplyProblem& problem, const ReachDatabase& database) {
-  const std::shared_ptr<EvaluatorTables> tables = make_tables(problem, database);
-  const World world = world_with_parts(problem, all_parts(problem));
-  find_blocked_grasps(problem, world, *tables);
+std::unique_ptr<BasePoseEvaluator::Impl> BasePoseEvaluator::make_impl(const std::shared_ptr<EvaluatorTables>& tables,
+                                                                      const World& world) {
+  const PartSupplyProblem& problem = *tables->problem;
+  find_blocked_grasps(problem, tables->parts, world, *tables);
   CollisionChecker at_rest(problem.arm, world);
   std::vector<CollisionChecker> opened;
   for (double opening : tables->openings) opened.push_back(at_rest.with_group(arm_with_opening(problem, opening)));
-  impl_ = std::make_unique<Impl>(tables, std::move(at_rest), std::move(opened));
+  return std::make_unique<Impl>(tables, std::move(at_rest), std::move(opened));
+}
+
+BasePoseEvaluator::BasePoseEvaluator(const PartSupplyProblem& problem, const ReachDatabase& database) {
+  const std::shared_ptr<EvaluatorTables> tables = make_tables(problem, database);
+  tables->parts = all_parts(problem);
+  impl_ = make_impl(tables, world_with_parts(problem, tables->parts));
+}
+
+BasePoseEvaluator BasePoseEvaluator::without(const std::vector<std::pair<int, int>>& tray_and_part) const {
+  const auto tables = std::make_shared<EvaluatorTables>(*impl_->tables);
+  World world = impl_->at_rest.world();
+  for (const auto& leaving : tray_and_part) {
+    const auto it = std::find(tables->parts.begin(), tables->parts.end(), leaving);
+    require(it != tables->parts.end(), "part", leaving.second, "must be a part of the tray that is in place");
+    tables->parts.erase(it);
+    world.remove(part_of(*tables->problem, leaving.first, leaving.second).name);
+  }
+  return BasePoseEvaluator(make_impl(tables, world));
 }
 
 BasePoseEvaluator::BasePoseEvaluator(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

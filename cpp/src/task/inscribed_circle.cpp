@@ -70,29 +70,35 @@ class DiscSearch {
   }
 
   void collect() {
-    std::vector<int> steps = chessboard();
-    const int deepest = *std::max_element(steps.begin(), steps.end());
-    if (deepest == 0) return;
+    const std::vector<double> room_at = squared_distances();
+    double best = 0;
+    std::size_t count = 0;
+    for (int iy = 0; iy < ny_; ++iy) {
+      for (int ix = 0; ix < nx_; ++ix) {
+        if (!free(ix, iy)) continue;
+        best = std::max(best, room_at[static_cast<std::size_t>(iy) * nx_ + ix]);
+        centroid_ += Point(ix + 0.5, iy + 0.5);
+        ++count;
+      }
+    }
+    if (count == 0) return;
+    centroid_ /= static_cast<double>(count);
+    best_ = std::sqrt(best);
     std::vector<Cell> border;
     for (int iy = -1; iy <= ny_; ++iy) {
       for (int ix = -1; ix <= nx_; ++ix) {
         if (!free(ix, iy) && beside_region(ix, iy)) border.push_back({ix, iy});
       }
     }
-    double count = 0;
+    // A radius changes no faster than its centre moves, and no point of a cell is farther than 1/sqrt(2) from its
+    // middle.
+    const double least = squared(std::max(best_ - std::sqrt(0.5) - 1e-9, 0.0));
     for (int iy = 0; iy < ny_; ++iy) {
       for (int ix = 0; ix < nx_; ++ix) {
-        const int k = steps[static_cast<std::size_t>(iy) * nx_ + ix];
-        if (k == 0) continue;
-        centroid_ += Point(ix + 0.5, iy + 0.5);
-        count += 1;
-        // A cell k king's moves from the complement holds no centre of a disc larger than sqrt(2) k; one deepest cell
-        // holds a disc of deepest - 1/2.
-        if (std::sqrt(2.0) * k < deepest - 0.5) continue;
-        rooms_.push_back(make_room({ix, iy}, border));
+        const double squared_room = room_at[static_cast<std::size_t>(iy) * nx_ + ix];
+        if (free(ix, iy) && squared_room >= least) rooms_.push_back(make_room({ix, iy}, squared_room, border));
       }
     }
-    centroid_ /= count;
   }
 
   bool beside_region(int ix, int iy) const {
@@ -104,37 +110,38 @@ class DiscSearch {
     return false;
   }
 
-  /// King's moves to the nearest cell of the complement, 0 in the complement (two sweeps).
-  std::vector<int> chessboard() const {
-    std::vector<int> steps(cells_.size(), 0);
-    const auto at = [&](int ix, int iy) {
-      return ix < 0 || iy < 0 || ix >= nx_ || iy >= ny_ ? 0 : steps[static_cast<std::size_t>(iy) * nx_ + ix];
-    };
+  /// From the middle of every cell of the region to the nearest cell of the complement: along rows first, then the
+  /// least over the rows.
+  std::vector<double> squared_distances() const {
+    const auto gap = [](int steps) { return squared(std::max(steps - 0.5, 0.0)); };
+    std::vector<int> along(cells_.size());  // steps within the row
+    for (int iy = 0; iy < ny_; ++iy) {
+      int* row = along.data() + static_cast<std::ptrdiff_t>(iy) * nx_;
+      for (int ix = 0, steps = 0; ix < nx_; ++ix) row[ix] = steps = free(ix, iy) ? steps + 1 : 0;
+      for (int ix = nx_ - 1, steps = 0; ix >= 0; --ix)
+        row[ix] = std::min(row[ix], steps = free(ix, iy) ? steps + 1 : 0);
+    }
+    std::vector<double> distances(cells_.size(), 0);
     for (int iy = 0; iy < ny_; ++iy) {
       for (int ix = 0; ix < nx_; ++ix) {
         if (!free(ix, iy)) continue;
-        steps[static_cast<std::size_t>(iy) * nx_ + ix] =
-            1 + std::min({at(ix - 1, iy), at(ix - 1, iy - 1), at(ix, iy - 1), at(ix + 1, iy - 1)});
+        double least = gap(along[static_cast<std::size_t>(iy) * nx_ + ix]);
+        for (int steps = 1; gap(steps) < least; ++steps) {
+          for (const int y : {iy - steps, iy + steps}) {
+            const int other = y < 0 || y >= ny_ ? 0 : along[static_cast<std::size_t>(y) * nx_ + ix];
+            least = std::min(least, gap(other) + gap(steps));
+          }
+        }
+        distances[static_cast<std::size_t>(iy) * nx_ + ix] = least;
       }
     }
-    for (int iy = ny_ - 1; iy >= 0; --iy) {
-      for (int ix = nx_ - 1; ix >= 0; --ix) {
-        int& value = steps[static_cast<std::size_t>(iy) * nx_ + ix];
-        value = std::min(value, 1 + std::min({at(ix + 1, iy), at(ix + 1, iy + 1), at(ix, iy + 1), at(ix - 1, iy + 1)}));
-      }
-    }
-    return steps;
+    return distances;
   }
 
-  Room make_room(const Cell& cell, const std::vector<Cell>& border) const {
+  Room make_room(const Cell& cell, double squared_room, const std::vector<Cell>& border) const {
     Room room;
     room.cell = cell;
-    double least = std::numeric_limits<double>::infinity();
-    for (const Cell& b : border) {
-      least = std::min(least, squared(std::max(std::abs(b.ix - cell.ix) - 0.5, 0.0)) +
-                                  squared(std::max(std::abs(b.iy - cell.iy) - 0.5, 0.0)));
-    }
-    room.at_centre = std::sqrt(least);
+    room.at_centre = std::sqrt(squared_room);
     // Any point of the cell is within 1/sqrt(2) of its middle, so farther cells are never the nearest.
     const double bound = squared(room.at_centre + std::sqrt(2.0) + 1e-9);
     for (const Cell& b : border) {

@@ -24,10 +24,8 @@ int blocking_part(const BaseRegion& region) {
   int worst = 0;
   std::size_t least = std::numeric_limits<std::size_t>::max();
   for (int p = 0; p < static_cast<int>(region.part_cells.size()); ++p) {
-    const CellMask& cells = region.part_cells[static_cast<std::size_t>(p)];
     const std::size_t feasible = region.explanations[static_cast<std::size_t>(p)].base_poses_feasible;
-    const std::size_t size =
-        feasible == 0 ? 0 : 1 + static_cast<std::size_t>(std::count(cells.begin(), cells.end(), std::uint8_t{1}));
+    const std::size_t size = feasible == 0 ? 0 : 1 + region.part_cells[static_cast<std::size_t>(p)].count();
     if (size < least) {
       least = size;
       worst = p;

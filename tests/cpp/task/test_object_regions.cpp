@@ -51,8 +51,8 @@ TEST_F(KeptRegions, AnyChoiceOfPartsIsAnIntersection) {
   EXPECT_EQ(kept.parts(0), (std::vector<int>{0, 1, 2, 3}));
   EXPECT_EQ(kept.parts(1), (std::vector<int>{0, 1, 3}));
   EXPECT_EQ(kept.region(0, {0, 1, 2, 3}), regions[0].cells);
-  EXPECT_EQ(kept.region(1, {3}), regions[1].part_cells[2]);
-  CellMask both = regions[0].part_cells[1];
+  EXPECT_EQ(kept.region(1, {3}), regions[1].part_cells[2].mask());
+  CellMask both = regions[0].part_cells[1].mask();
   for (std::size_t i = 0; i < both.size(); ++i) both[i] &= regions[0].part_cells[2][i];
   EXPECT_EQ(kept.region(0, {2, 1}), both);
   EXPECT_THROW(kept.region(0, {}), InvalidInput);
@@ -87,10 +87,17 @@ TEST_F(KeptRegions, LeavingPartsGiveWhatScratchGives) {
       const BaseRegion& region = scratch[static_cast<std::size_t>(tray)];
       ASSERT_EQ(parts.size(), region.part_cells.size());
       EXPECT_EQ(kept.base_region(tray).cells, region.cells);
+      EXPECT_EQ(kept.base_region(tray).base_poses_in_collision, region.base_poses_in_collision);
       for (std::size_t p = 0; p < parts.size(); ++p) {
         const CellMask now = kept.region(tray, {parts[p]});
-        EXPECT_EQ(now, region.part_cells[p]);
-        EXPECT_EQ(kept.base_region(tray).explanations[p].rejections, region.explanations[p].rejections);
+        EXPECT_EQ(now, region.part_cells[p].mask());
+        const PartExplanation told = kept.base_region(tray).explanations[p];
+        const PartExplanation& recount = region.explanations[p];
+        EXPECT_EQ(told.part, recount.part);
+        EXPECT_EQ(told.base_poses_tried, recount.base_poses_tried);
+        EXPECT_EQ(told.base_poses_feasible, recount.base_poses_feasible);
+        EXPECT_EQ(told.rejections, recount.rejections)
+            << told.rejections.summary() << " against " << recount.rejections.summary();
         const std::vector<int>& known = parts_before[static_cast<std::size_t>(tray)];
         const auto place = static_cast<std::size_t>(std::find(known.begin(), known.end(), parts[p]) - known.begin());
         const CellMask& then = before[static_cast<std::size_t>(tray)][place];

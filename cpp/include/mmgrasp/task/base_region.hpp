@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mmgrasp/core/export.hpp"
@@ -32,6 +33,37 @@ struct MMGRASP_EXPORT BaseGrid {
 /// One flag a cell of a BaseGrid.
 using CellMask = std::vector<std::uint8_t>;
 
+/// The cells of a BaseGrid from which one part can be grasped: flags, kept for the rows and columns that hold any,
+/// since a grid over a whole storeroom is much larger than what one part needs.
+class MMGRASP_EXPORT PartCells {
+ public:
+  /// Flags of a block of cells of one layer, row by row.
+  struct Window {
+    int heading, x0, y0, nx, ny;
+    std::vector<std::uint8_t> flags;
+  };
+  PartCells() = default;
+  explicit PartCells(const BaseGrid& grid) : nx_(grid.nx), ny_(grid.ny), size_(grid.size()) {}
+  /// As it was: what grid and windows() told.
+  PartCells(int nx, int ny, std::size_t size, std::vector<Window> windows)
+      : nx_(nx), ny_(ny), size_(size), windows_(std::move(windows)) {}
+  int nx() const { return nx_; }              ///< Of the grid.
+  int ny() const { return ny_; }              ///< Of the grid.
+  std::size_t size() const { return size_; }  ///< Of the grid.
+  const std::vector<Window>& windows() const { return windows_; }
+  bool operator[](std::size_t cell) const;  ///< By BaseGrid::index().
+  std::size_t count() const;
+  CellMask mask() const;  ///< One flag a cell of the grid.
+  bool operator==(const PartCells& other) const;
+  /// Flags of a block of one layer, row by row; at most one block a layer.
+  void add_window(int heading, int x0, int y0, int nx, int ny, const std::vector<std::uint8_t>& flags);
+
+ private:
+  int nx_ = 0, ny_ = 0;
+  std::size_t size_ = 0;
+  std::vector<Window> windows_;
+};
+
 /// What became of the candidates for one part, over all base poses tried. The rejections count grasp x base pose pairs
 /// at the base poses from which the part cannot be grasped: there every grasp fell, each to one cause, so that their
 /// total is grasps x (base_poses_tried - base_poses_feasible). Where one grasp works the others are not looked at. The
@@ -49,8 +81,8 @@ struct MMGRASP_EXPORT PartExplanation {
 
 struct MMGRASP_EXPORT BaseRegion {
   std::string tray;
-  CellMask cells;                    ///< 1: from everywhere in this cell every target part can be grasped.
-  std::vector<CellMask> part_cells;  ///< The same for each target part alone, in the tray's order.
+  CellMask cells;                     ///< 1: from everywhere in this cell every target part can be grasped.
+  std::vector<PartCells> part_cells;  ///< The same for each target part alone, in the tray's order.
   std::vector<PartExplanation> explanations;
   std::size_t base_poses_in_collision =
       0;  ///< Cell centres within the search radius at which the robot at home touches the scene.
@@ -65,6 +97,8 @@ struct MMGRASP_EXPORT PartAtPose {
   std::vector<Rejection> causes;  ///< When not feasible: one a grasp.
 };
 
+struct EvaluatorTables;
+
 /// Asks for single base poses what compute_base_regions asks for all of them: the same base pose gives the same answer,
 /// whatever was asked before. Parts are all in place. Not thread-safe (scratch inside): `clone()` gives one per thread.
 /// The problem and the database must outlive it.
@@ -75,6 +109,9 @@ class MMGRASP_EXPORT BasePoseEvaluator {
   BasePoseEvaluator& operator=(BasePoseEvaluator&&) noexcept;
   ~BasePoseEvaluator();
   BasePoseEvaluator clone() const;
+  /// The same with these parts (tray, part) gone: they are nobody's obstacle any more, and are not to be asked for.
+  /// Quicker than a new one. Throws InvalidInput for a part that is gone already.
+  BasePoseEvaluator without(const std::vector<std::pair<int, int>>& tray_and_part) const;
 
   /// What the robot at home with fingers at rest runs into when its base stands there (x, y, theta).
   Rejection home(const Eigen::Vector3d& base_pose);
@@ -95,6 +132,7 @@ class MMGRASP_EXPORT BasePoseEvaluator {
  private:
   struct Impl;
   explicit BasePoseEvaluator(std::unique_ptr<Impl> impl);
+  static std::unique_ptr<Impl> make_impl(const std::shared_ptr<EvaluatorTables>& tables, const World& world);
   std::unique_ptr<Impl> impl_;
 };
 

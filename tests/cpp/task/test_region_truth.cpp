@@ -1,0 +1,50 @@
+// Region maps of whole robots against collision-aware IK of the core, cell by cell (benchmarks/task/bench_regions_truth
+// compares more of them).
+#include <gtest/gtest.h>
+
+#include "support/paths.hpp"
+#include "support/region_truth.hpp"
+#include "support/robot_support.hpp"
+#include "support/tray_rows.hpp"
+
+namespace mmgrasp {
+namespace {
+
+/// No false cells; of the feasible ones at most this share is missed.
+void expect_true_cells(const testing_support::MobileManipulator& robot, int samples, double missed) {
+  testing_support::RowOptions row;
+  row.rows = row.columns = 2;
+  row.grasps = 2;
+  row.tool_height = 0.07;
+  const PartSupplyProblem problem = testing_support::tray_row(robot, row);
+  ReachOptions reach;
+  reach.samples = 400000;
+  const ReachDatabase database = ReachDatabase::build(robot.arm, reach);
+  const BaseGrid grid = make_base_grid(problem, database);
+  const std::vector<BaseRegion> regions = compute_base_regions(problem, database, grid);
+  const testing_support::TruthCounts counts =
+      testing_support::compare_with_truth(problem, database, grid, regions, 0, 1.2, samples, 20, 1);
+  EXPECT_EQ(counts.wrong, 0) << robot.name;
+  EXPECT_GT(counts.claimed, samples / 20) << robot.name;
+  EXPECT_LE(counts.missed, missed * counts.truth) << robot.name;
+  ::testing::Test::RecordProperty("feasible by IK", counts.truth);
+  ::testing::Test::RecordProperty("missed", counts.missed);
+}
+
+TEST(RegionTruth, FetchLike) {
+  expect_true_cells(testing_support::fetchlike(MMGRASP_ASSETS), 120, 0.2);
+}
+
+TEST(RegionTruth, Tiago) {
+  MMGRASP_NEEDS_SHARED_DATA();
+  expect_true_cells(testing_support::tiago_with_gripper(MMGRASP_SHARED_DATA), 60, 0.2);
+}
+
+// Its joints turn twice, so that a database of this size is thin: most cells are missed, and none may be false.
+TEST(RegionTruth, Ur10eOnRidgeback) {
+  MMGRASP_NEEDS_SHARED_DATA();
+  expect_true_cells(testing_support::ur10e_on_ridgeback(MMGRASP_SHARED_DATA), 60, 1.0);
+}
+
+}  // namespace
+}  // namespace mmgrasp

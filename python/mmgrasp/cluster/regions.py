@@ -33,8 +33,8 @@ def compute_base_regions(
     with (from each machine's cache); None: a scenario's own `reach` section. Paths must mean the same files on every
     worker: a worker that reads another problem or database refuses its shard. Raises InvalidInput, IoError, Error.
     """
-    source = _named(source)
-    given = _named(database) if isinstance(database, (str, os.PathLike)) else database
+    source = named(source)
+    given = named(database) if isinstance(database, (str, os.PathLike)) else database
     problem, reach = _load(source, _frozen(given))
     grid = _core.make_base_grid(problem, reach)
     digest = problem_digest(problem, reach)
@@ -79,7 +79,7 @@ def _staying(part: Part) -> Part:
     )
 
 
-def _named(path: Any) -> Any:
+def named(path: Any) -> Any:
     return (
         str(Path(path).resolve())
         if isinstance(path, (str, os.PathLike)) and not str(path).startswith("asset:")

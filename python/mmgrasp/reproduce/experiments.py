@@ -14,7 +14,7 @@ import numpy as np
 from .. import _core
 from .drawing import TRAY_COLOURS, cells_to_runs, draw_cells, figure, grid_values
 from .entry import Context, Entry, Result
-from .policies import SCANS, random_places
+from .policies import RANDOM_TOOL, SCANS, random_places
 from .rows import SPACING
 from .setup import UNCERTAINTY, Row, database, describe, reach_samples
 
@@ -29,7 +29,7 @@ def row_of(placement: str, seed: int) -> Row:
     if placement == "ExperA":
         return row
     rng = np.random.default_rng(seed)
-    return row.with_(places=tuple(tuple(random_places(rng, 4 * SCANS, row.tray_size)) for _ in TRAYS))
+    return row.with_(tool=RANDOM_TOOL, places=tuple(tuple(random_places(rng, 4 * SCANS, row.tray_size)) for _ in TRAYS))
 
 
 def plan(placement: str, samples: int, seed: int) -> dict[str, Any]:

@@ -11,7 +11,7 @@ import numpy as np
 from .. import _core
 from .drawing import figure
 from .entry import Context, Entry, Result
-from .policies import SCANS, random_places
+from .policies import RANDOM_TOOL, SCANS, random_places
 from .setup import Row, database, describe, reach_samples
 
 FILLS = (100, 75, 50, 25)
@@ -24,7 +24,7 @@ def measure(row: Row, samples: int, seed: int) -> dict[str, Any]:
     """
     rng = np.random.default_rng(seed)
     m = row.per_tray
-    row = row.with_(places=(tuple(random_places(rng, m * (SCANS + 1), row.tray_size)),))
+    row = row.with_(tool=RANDOM_TOOL, places=(tuple(random_places(rng, m * (SCANS + 1), row.tray_size)),))
     reach, problem = database(row, samples), row.problem()
     grid = _core.make_base_grid(problem, reach)
     objects = _core.ObjectRegions.compute(problem, reach, grid)
@@ -50,7 +50,7 @@ def measure(row: Row, samples: int, seed: int) -> dict[str, Any]:
 
 def run(context: Context) -> Result:
     samples = reach_samples(context.quick)
-    row = Row(trays=1, objects=(2, 2) if context.quick else (3, 4))
+    row = Row(trays=1, objects=(2, 2) if context.quick else (3, 4), tool=RANDOM_TOOL)
     database(row, samples, progress=context.progress)
     seeds = [context.seed + k for k in range(1 if context.quick else 10)]
     found = context.sweep(measure, [{"row": row, "samples": samples, "seed": s} for s in seeds], "p1-random-placement")

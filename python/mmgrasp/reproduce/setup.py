@@ -47,7 +47,7 @@ class Row:
     targets: tuple[tuple[int, ...], ...] | None = None
     """Objects to pick in each tray; None: all."""
     places: tuple[tuple[tuple[float, float, float], ...], ...] | None = None
-    """For each tray: x, y [m] in it and turn about the vertical [rad] of each grasp; None: the regular grid."""
+    """For each tray: x, y [m] in it and turn about the approach [rad] of each grasp (P1 3.7.2); None: the regular grid."""
     table: float = 0.40
     """Height of the table's top [m]."""
     tool: float = 0.12
@@ -115,17 +115,16 @@ class Row:
         )
 
     def _parts(self, tray: int, T_world_tray: np.ndarray) -> list[Part]:
+        down = np.pi / 2 - self.tilt
         if self.places is not None:
-            placed = [(x, y, [turn]) for x, y, turn in self.places[tray]]
+            placed = [(x, y, [[turn, down, 0.0]]) for x, y, turn in self.places[tray]]
         else:
-            turns = [self.turn + np.pi * k / self.grasps for k in range(self.grasps)]
-            placed = [(x, y, turns) for x, y in self.object_places()]
+            rolls = [[0.0, down, self.turn + np.pi * k / self.grasps] for k in range(self.grasps)]
+            placed = [(x, y, rolls) for x, y in self.object_places()]
         chosen = None if self.targets is None else set(self.targets[tray])
         parts = []
-        for i, (x, y, turns) in enumerate(placed):
-            grasps = [
-                Grasp(_core.pose([0, 0, self.tool], rpy=[0, np.pi / 2 - self.tilt, turn]), 0.02, 1.0) for turn in turns
-            ]
+        for i, (x, y, rolls) in enumerate(placed):
+            grasps = [Grasp(_core.pose([0, 0, self.tool], rpy=rpy), 0.02, 1.0) for rpy in rolls]
             T_world_part = T_world_tray @ _core.pose([x, y, 0.0])
             parts.append(Part(f"{tray}/{i}", [MARKER], T_world_part, grasps, target=chosen is None or i in chosen))
         return parts

@@ -107,6 +107,22 @@ void bind_map(py::module_& m) {
           },
           "arm"_a, "world"_a, py::kw_only(), "progress"_a = py::none(),
           "The map of the same arm in a world with more in it: only what is reached here is looked at again.")
+      .def(
+          "save",
+          [](const CapabilityMap& map, const py::object& path) {
+            const std::string name = path_argument(path, "path");
+            py::gil_scoped_release release;
+            map.save(name);
+          },
+          "path"_a, "Writes a folder of .npy files and meta.json.")
+      .def_static(
+          "load",
+          [](const py::object& path) {
+            const std::string name = path_argument(path, "path");
+            py::gil_scoped_release release;
+            return CapabilityMap::load(name);
+          },
+          "path"_a, "Raises IoError on a truncated, foreign or corrupt folder.")
       .def_property_readonly("shape", [](const CapabilityMap& map) { return py::tuple(py::cast(map.shape())); })
       .def_property_readonly(
           "index",

@@ -101,3 +101,13 @@ def test_pictures_show_the_map(made, robot):
     figure.canvas.draw()
     picture = np.asarray(figure.canvas.buffer_rgba())
     assert picture.std() > 10
+
+
+def test_numpy_reads_what_save_writes(made, tmp_path):
+    made.save(tmp_path / "map")
+    for name in ("index", "classes", "configurations", "tool_poses"):
+        np.testing.assert_array_equal(np.load(tmp_path / "map" / f"{name}.npy"), getattr(made, name))
+    again = mg.CapabilityMap.load(tmp_path / "map")
+    np.testing.assert_array_equal(again.classes, made.classes)
+    with pytest.raises(mg.IoError, match="nowhere"):
+        mg.CapabilityMap.load(tmp_path / "nowhere")

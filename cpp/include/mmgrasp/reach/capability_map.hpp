@@ -57,6 +57,13 @@ class MMGRASP_EXPORT CapabilityMap {
   /// the links. Throws InvalidInput when the map was made for another arm.
   CapabilityMap restricted(const JointGroup& arm, const World& world, const Monitor& monitor = {}) const;
 
+  /// Writes the folder `path`: index.npy (float32, x y z), classes.npy (uint8, x y z pose; the values of Rejection),
+  /// configurations.npy (float32, one row for each reached pose in the order of `classes`), tool_poses.npy (float64,
+  /// (poses, 4, 4) around a voxel's centre) and meta.json. Written beside and renamed. Throws IoError.
+  void save(const std::string& path) const;
+  /// Throws IoError on a foreign, truncated or corrupt folder, naming the file and what is wrong.
+  static CapabilityMap load(const std::string& path);
+
   const CapabilityOptions& options() const;
   /// Of robot, group and where the other joints are held: what restricted() compares.
   const std::string& arm_key() const;

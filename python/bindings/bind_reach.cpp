@@ -4,6 +4,7 @@
 #include "mmgrasp/reach/base_placement.hpp"
 #include "mmgrasp/reach/reach_arrays.hpp"
 #include "mmgrasp/reach/reach_database.hpp"
+#include "mmgrasp/reach/reach_parts.hpp"
 #include "mmgrasp/reach/reach_solve.hpp"
 
 namespace mmgrasp::python {
@@ -211,6 +212,25 @@ void bind_reach(py::module_& m) {
           },
           py::arg("arm"), py::kw_only(), py::arg("progress") = py::none(),
           ("Samples the arm. `progress` is called with (stage, fraction)." + option_help(reach_fields())).c_str())
+      .def_static(
+          "part_count",
+          [](const JointGroup& arm, const py::kwargs& options) {
+            return reach_part_count(with_sampled_pairs(arm),
+                                    read_options(reach_fields(), options, "ReachDatabase.part_count"));
+          },
+          py::arg("arm"), "Into how many parts build_to divides a build with these options.")
+      .def_static(
+          "build_parts",
+          [](const py::object& folder, const JointGroup& arm, const std::vector<std::int64_t>& parts,
+             const py::object& progress, const py::kwargs& options) {
+            const ReachOptions read = read_options(reach_fields(), options, "ReachDatabase.build_parts");
+            const std::string name = path_argument(folder, "folder");
+            const JointGroup group = with_sampled_pairs(arm);
+            return LongCall(progress).run(
+                [&](const Monitor& monitor) { return build_reach_parts(name, group, read, parts, monitor); });
+          },
+          py::arg("folder"), py::arg("arm"), py::arg("parts"), py::kw_only(), py::arg("progress") = py::none(),
+          "Draws single parts into a folder; in `path`.partial they are what build_to(path, ...) goes on from.")
       .def_static(
           "load_or_build",
           [](const JointGroup& arm, const py::object& cache_dir, const py::object& progress,

@@ -137,6 +137,21 @@ def test_only_missing_shards_are_computed(expected, tmp_path):
             np.testing.assert_array_equal(ours["noise"], alike(**item)["noise"])
 
 
+def test_a_database_drawn_in_parts_is_the_same_file_for_file(tmp_path):
+    options = {"samples": 120_000, "seed": 3, "max_per_cell": 4}
+    alone = mg.ReachDatabase.build_to(tmp_path / "alone", ROW.problem().arm, **options)
+    with cluster.connect(workers=2, folder=tmp_path / "shards") as engine:
+        spread = cluster.build_database(ROW, tmp_path / "spread", engine=engine, **options)
+        assert len({e.worker for e in engine.events if e.kind == "begun"}) == 2
+    assert len(spread) == len(alone) > 0
+    names = sorted(p.name for p in (tmp_path / "alone").iterdir())
+    assert names == sorted(p.name for p in (tmp_path / "spread").iterdir())
+    for name in names:
+        assert (tmp_path / "alone" / name).read_bytes() == (tmp_path / "spread" / name).read_bytes(), name
+    with pytest.raises(mg.InvalidInput, match="part = 1000000"):
+        mg.ReachDatabase.build_parts(tmp_path / "parts", ROW.problem().arm, [1_000_000], **options)
+
+
 def test_a_scenario_gives_what_one_process_gives(small_path, tmp_path):
     scenario = mg.load_scenario(small_path)
     problem, reach = scenario.problem(), scenario.reach_database()

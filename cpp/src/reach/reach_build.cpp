@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <numeric>
 #include <optional>
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
+#include "mmgrasp/reach/reach_parts.hpp"
 #include "reach/reach_meta.hpp"
 #include "reach/shard_merge.hpp"
 
@@ -48,6 +50,14 @@ class Builder {
     if (options.samples / options.max_per_cell > kWorthCountingFull) full_.emplace(options.max_per_cell);
   }
 
+  std::int64_t shards() const { return shards_; }
+
+  /// Only these shards, into the store. False when stopped.
+  bool run_shards(const std::vector<std::int64_t>& wanted) {
+    full_.reset();
+    return estimate_manipulability() && sample(wanted);
+  }
+
   /// The configurations go to `writer`, or to data.own when it is null. False when stopped.
   bool run(Data& data, detail::NpyWriter* writer) {
     data.arm = stored_;
@@ -76,9 +86,15 @@ class Builder {
   }
 
   bool sample() {
+    std::vector<std::int64_t> all(static_cast<std::size_t>(shards_));
+    std::iota(all.begin(), all.end(), std::int64_t{0});
+    return sample(all);
+  }
+
+  bool sample(const std::vector<std::int64_t>& wanted) {
     std::atomic<std::int64_t> done{0};
     std::vector<std::int64_t> missing;
-    for (std::int64_t shard = 0; shard < shards_; ++shard) {
+    for (const std::int64_t shard : wanted) {
       if (!store_.has(shard)) {
         missing.push_back(shard);
         continue;
@@ -231,6 +247,25 @@ ReachDatabase ReachDatabase::build(const JointGroup& arm, const ReachOptions& op
   data->measure();
   monitor.report(kStage, 1.0);
   return ReachDatabase(std::move(data));
+}
+
+std::int64_t reach_part_count(const JointGroup& arm, const ReachOptions& options) {
+  options.check();
+  return Builder(detail::checked_arm(arm), options, ReachDatabase::cache_key(arm, options), "", {}).shards();
+}
+
+bool build_reach_parts(const std::string& folder, const JointGroup& arm, const ReachOptions& options,
+                       const std::vector<std::int64_t>& parts, const Monitor& monitor) {
+  options.check();
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw IoError(folder + ": cannot make the folder for parts (" + error.message() + ")");
+  Builder builder(detail::checked_arm(arm), options, ReachDatabase::cache_key(arm, options), folder, monitor);
+  for (const std::int64_t part : parts) {
+    require(part >= 0 && part < builder.shards(), "part", static_cast<double>(part),
+            "must be in [0, " + std::to_string(builder.shards()) + ")");
+  }
+  return builder.run_shards(parts);
 }
 
 ReachDatabase ReachDatabase::build_to(const std::string& path, const JointGroup& arm, const ReachOptions& options,

@@ -13,10 +13,20 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from .database import build_database
 from .engine import Engine, Progress, ShardEvent, connect, shard_key
 from .regions import ProblemSource, compute_base_regions
 
-__all__ = ["Engine", "ProblemSource", "ShardEvent", "compute_base_regions", "connect", "run_sweep", "shard_key"]
+__all__ = [
+    "Engine",
+    "ProblemSource",
+    "ShardEvent",
+    "build_database",
+    "compute_base_regions",
+    "connect",
+    "run_sweep",
+    "shard_key",
+]
 
 
 def run_sweep(

@@ -78,6 +78,8 @@ struct BasePoseEvaluator::Impl {
   double heading = std::nan("");    // of `placed`
   std::vector<PlacedGrasp> placed;  // one a grasp
   Eigen::VectorXd q;
+  Eigen::MatrixXd seen;  // configurations of the grasp at hand that the checker turned down
+  Eigen::Index seen_count = 0;
 
   Impl(std::shared_ptr<const EvaluatorTables> shared, CollisionChecker rest, std::vector<CollisionChecker> open)
       : tables(std::move(shared)),
@@ -85,7 +87,8 @@ struct BasePoseEvaluator::Impl {
         opened(std::move(open)),
         opened_at(opened.size(), Eigen::Vector3d::Constant(std::nan(""))),
         descent(tables->arm),
-        placed(tables->opening.size()) {}
+        placed(tables->opening.size()),
+        seen(tables->arm.size(), 16) {}
 
   std::unique_ptr<Impl> clone() const {
     std::vector<CollisionChecker> copies;
@@ -133,37 +136,73 @@ struct BasePoseEvaluator::Impl {
     T_base_tcp.translation().x() -= c * base_pose.x() + s * base_pose.y();
     T_base_tcp.translation().y() -= c * base_pose.y() - s * base_pose.x();
     const double x = T_base_tcp.translation().x(), y = T_base_tcp.translation().y();
+    const IkLattice& lattice = *tables->lattice;
     std::array<int, 2> cell;
     IkLattice::Node* node = grasp.sheet->find(x, y, cell);
-    if (node == nullptr) return Rejection::reach;
-    const Pose T_base_node = grasp.sheet->pose(cell[0], cell[1]);
-    const IkLattice& lattice = *tables->lattice;
+    if (node == nullptr && !lattice.closed_form()) return Rejection::reach;
     CollisionChecker& checker = checker_at(tables->opening[static_cast<std::size_t>(place_of_grasp)], base_pose);
     Rejection worst = Rejection::reach;
     bool arrived = false;
+    seen_count = 0;
     const auto tried = [&](const double* start) {
       Rejection cause;
       if (!follow(start, T_base_tcp, checker, cause)) return false;
       arrived = true;
       if (cause == Rejection::none) return true;
       if (stage(cause) > stage(worst)) worst = cause;
+      if (lattice.closed_form()) remember();
       return false;
     };
-    const int first = any_order ? node->last_good.load(std::memory_order_relaxed) : 0;
     int k = 0;
-    if (const double* start = first > 0 ? node->solution(first, lattice, T_base_node) : nullptr; start != nullptr)
-      if (tried(start)) return Rejection::none;
-    for (; const double* start = node->solution(k, lattice, T_base_node); ++k) {
-      if (k == first && first > 0) continue;
-      if (!tried(start)) continue;
-      if (any_order) node->last_good.store(k, std::memory_order_relaxed);
-      return Rejection::none;
+    if (node != nullptr) {
+      const Pose T_base_node = grasp.sheet->pose(cell[0], cell[1]);
+      const int first = any_order ? node->last_good.load(std::memory_order_relaxed) : 0;
+      if (const double* start = first > 0 ? node->solution(first, lattice, T_base_node) : nullptr; start != nullptr)
+        if (tried(start)) return Rejection::none;
+      for (; const double* start = node->solution(k, lattice, T_base_node); ++k) {
+        if (k == first && first > 0) continue;
+        if (!tried(start)) continue;
+        if (any_order) node->last_good.store(k, std::memory_order_relaxed);
+        return Rejection::none;
+      }
     }
+    if (lattice.closed_form()) return from_branches(T_base_tcp, checker, worst);
     if (arrived) return worst;
     return from_neighbours(*grasp.sheet, cell, x, y, tried) ? Rejection::none
            : arrived                                        ? worst
            : k == 0                                         ? node->cause()
                                                             : Rejection::reach;
+  }
+
+  void remember() {
+    if (seen_count < seen.cols()) seen.col(seen_count++) = q;
+  }
+
+  /// The same posture, whole turns aside: all joints of an arm with a closed form turn.
+  bool was_seen(const Eigen::VectorXd& other) const {
+    constexpr double kSame = 1e-3;  // [rad]
+    for (Eigen::Index i = 0; i < seen_count; ++i) {
+      Eigen::Index j = 0;
+      while (j < other.size() && std::abs(wrap_angle(other[j] - seen(j, i))) < kSame) ++j;
+      if (j == other.size()) return true;
+    }
+    return false;
+  }
+
+  /// Every branch of the pose itself but those that have been followed to: after this nothing is left to find.
+  Rejection from_branches(const Pose& T_base_tcp, CollisionChecker& checker, Rejection worst) {
+    const IkBranches branches = tables->lattice->branches(T_base_tcp);
+    if (worst == Rejection::reach && branches.rejections.limits > 0) worst = Rejection::limits;
+    for (const Eigen::VectorXd& branch : branches.solutions) {
+      if (was_seen(branch)) continue;
+      const Rejection cause = checker.rejection(branch);
+      if (cause == Rejection::none) {
+        q = branch;
+        return cause;
+      }
+      if (stage(cause) > stage(worst)) worst = cause;
+    }
+    return worst;
   }
 
   /// Near the edge of the reach a node may lie outside where the pose lies inside.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "robot/ik_closed_form.hpp"
 #include "task/no_clock.hpp"
 #include "task/warm_descent.hpp"
 
@@ -37,12 +38,25 @@ Eigen::Matrix3d rotation_of(const std::array<int, 7>& key) {
   return R;
 }
 
+bool six_joints_in_closed_form(const JointGroup& arm) {
+  const detail::Screws screws = detail::screws_of(arm);
+  return screws.size == 6 && detail::closed_form_of(screws).family != detail::ClosedForm::Family::none;
+}
+
 }  // namespace
 
 IkLattice::IkLattice(const JointGroup& arm, const ReachDatabase& database, int seeds)
-    : arm_(arm), database_(database), seeds_(seeds) {
+    : arm_(arm), database_(database), seeds_(seeds), closed_form_(six_joints_in_closed_form(arm)) {
   ik_.max_iterations = kIterations;
   ik_.time_limit = kNoClock;
+}
+
+IkBranches IkLattice::branches(const Pose& T_base_tcp) const {
+  // Where a singularity makes the closed form fall back on random descents, their number and seed end them.
+  IkOptions options;
+  options.restarts = 0;
+  options.time_limit = kNoClock;
+  return solve_ik_branches(arm_, T_base_tcp, options);
 }
 
 IkLattice::Sheet& IkLattice::sheet(const Eigen::Matrix3d& R, double z) const {
@@ -112,23 +126,36 @@ const double* IkLattice::Node::solution(int k, const IkLattice& lattice, const P
   return configurations_.data() + static_cast<std::ptrdiff_t>(k) * configurations_.rows();
 }
 
-/// Follows one more seed; false when there is none.
+/// All branches, or the seeds to follow.
+void IkLattice::Node::start(const IkLattice& lattice, const Pose& T_base_node) {
+  started_ = true;
+  if (lattice.closed_form_) {
+    const IkBranches branches = lattice.branches(T_base_node);
+    const auto count = static_cast<Eigen::Index>(branches.solutions.size());
+    configurations_.resize(lattice.arm_.size(), count);
+    for (Eigen::Index i = 0; i < count; ++i) configurations_.col(i) = branches.solutions[static_cast<std::size_t>(i)];
+    found_.store(static_cast<int>(count), std::memory_order_release);
+    return;
+  }
+  thread_local Eigen::MatrixXd seeds;
+  seeds_count_ = lattice.database_.nearest(T_base_node, lattice.seeds_, seeds);
+  fruitless_ = kFruitless;
+  if (seeds_count_ == 0) return;
+  configurations_ = seeds.leftCols(seeds_count_);
+  const ReachOptions& cells = lattice.database_.options();
+  const Pose T = lattice.arm_.fk(configurations_.col(0));
+  const double away = (T.translation() - T_base_node.translation()).norm() / cells.position_cell +
+                      rotation_distance(T, T_base_node) / cells.rotation_cell;
+  if (away > kFar) fruitless_ = 0;
+}
+
+/// Looks for one more configuration; false when there is none left to look for.
 bool IkLattice::Node::search(const IkLattice& lattice, const Pose& T_base_node) {
   thread_local Eigen::VectorXd q;
   const JointGroup& arm = lattice.arm_;
   if (!started_) {
-    started_ = true;
-    thread_local Eigen::MatrixXd seeds;
-    seeds_count_ = lattice.database_.nearest(T_base_node, lattice.seeds_, seeds);
-    fruitless_ = kFruitless;
-    if (seeds_count_ > 0) {
-      configurations_ = seeds.leftCols(seeds_count_);
-      const ReachOptions& cells = lattice.database_.options();
-      const Pose T = arm.fk(configurations_.col(0));
-      const double away = (T.translation() - T_base_node.translation()).norm() / cells.position_cell +
-                          rotation_distance(T, T_base_node) / cells.rotation_cell;
-      if (away > kFar) fruitless_ = 0;
-    }
+    start(lattice, T_base_node);
+    if (found_.load(std::memory_order_relaxed) > 0) return true;
   }
   const int found = found_.load(std::memory_order_relaxed);
   if (next_ >= seeds_count_ || (found == 0 && next_ >= fruitless_)) {

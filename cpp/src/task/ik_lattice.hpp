@@ -13,13 +13,15 @@
 #include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/reach/reach_database.hpp"
 #include "mmgrasp/robot/ik.hpp"
+#include "mmgrasp/robot/ik_branches.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
 
 namespace mmgrasp {
 
 /// Arm configurations at the nodes of a lattice of tool poses, found when first asked for: from a node's configuration
 /// a pose in the node's cell is a step or two away. What a node holds depends on the node alone, never on who asked
-/// first, so that answers made from it depend on the pose alone. Thread-safe.
+/// first, so that answers made from it depend on the pose alone. Arms of six joints with a closed form get all
+/// branches, others what the database leads to. Thread-safe.
 class IkLattice {
  public:
   static constexpr double kEdge = 0.05;  ///< Of a cell [m].
@@ -33,6 +35,7 @@ class IkLattice {
     std::atomic<int> last_good{0};  ///< Which was of use last: saves time, decides nothing.
 
    private:
+    void start(const IkLattice& lattice, const Pose& T_base_node);
     bool search(const IkLattice& lattice, const Pose& T_base_node);
 
     std::mutex mutex_;
@@ -65,8 +68,13 @@ class IkLattice {
     std::unique_ptr<std::atomic<Node*>[]> nodes_;
   };
 
-  /// `arm` with its root in the origin; up to `seeds` stored configurations are followed for each node. Keeps copies.
+  /// `arm` with its root in the origin; without a closed form up to `seeds` stored configurations are followed for each
+  /// node. Keeps copies.
   IkLattice(const JointGroup& arm, const ReachDatabase& database, int seeds);
+  /// branches() are all there are.
+  bool closed_form() const { return closed_form_; }
+  /// Of a pose itself, with closed_form() only.
+  IkBranches branches(const Pose& T_base_tcp) const;
   /// For a tool orientation and height in the root frame. It lives as long as the lattice.
   Sheet& sheet(const Eigen::Matrix3d& R, double z) const;
 
@@ -77,6 +85,7 @@ class IkLattice {
   JointGroup arm_;
   ReachDatabase database_;
   int seeds_;
+  bool closed_form_;
   IkOptions ik_;
   mutable std::mutex mutex_;
   mutable std::map<Key, std::unique_ptr<Sheet>> sheets_;

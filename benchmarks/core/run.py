@@ -11,60 +11,25 @@ table into benchmarks/README.md.
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import platform
 import subprocess
 import sys
-import venv
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from goals import GOALS, Goal
+from programs import build_programs, full_table, lines_of, peers_environment
 from tables import ROOT, markdown, write_readme
 
-BUILD = ROOT / "build/bench"
 SLOW = {"exactness"}  # 100,000 queries against FCL: run when asked for
 
 
-def peers_environment(folder: Path) -> Path:
-    """A virtual environment with the peers; made when it is not there. Returns its python."""
-    python = folder / "bin/python"
-    if not python.exists():
-        print(f"making {folder}", file=sys.stderr)
-        venv.create(folder, with_pip=True)
-        subprocess.run([python, "-m", "pip", "install", "-q", "-r", HERE / "peers.txt"], check=True)
-    return python
-
-
-def build_programs(python: Path) -> list[Path]:
-    """Configures and builds; returns the programs."""
-    packages = subprocess.run(
-        [python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))"],
-        check=True,
-        capture_output=True,
-        text=True,
-    ).stdout.strip()
-    environment = {**os.environ, "CCACHE_BASEDIR": str(ROOT)}
-    options = ["-DCMAKE_BUILD_TYPE=Release", "-DMMGRASP_BUILD_BENCHMARKS=ON", f"-DMMGRASP_PEERS={packages}"]
-    quiet = {"check": True, "env": environment, "stdout": subprocess.DEVNULL}
-    subprocess.run(["cmake", "-S", ROOT, "-B", BUILD, "-G", "Ninja", *options], **quiet)
-    subprocess.run(["cmake", "--build", BUILD], **quiet)
-    return sorted((BUILD / "benchmarks").glob("bench_*"))
-
-
-def lines_of(command: list) -> list[dict]:
-    """Runs a program and reads the JSON lines it prints; other lines are shown."""
-    print("running", Path(command[-1]).name, file=sys.stderr)
-    done = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True, cwd=BUILD)
-    out = []
-    for line in done.stdout.splitlines():
-        if line.startswith("{"):
-            out.append(json.loads(line))
-        elif line:
-            print(line, file=sys.stderr)
-    return out
+def packages_of(python: Path) -> str:
+    """The folder a virtual environment installs packages into."""
+    command = [python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))"]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
 
 
 def matching(goal: Goal, lines: list[dict]) -> list[tuple[dict, dict | None]]:
@@ -105,20 +70,6 @@ def goal_table(lines: list[dict]) -> str:
     return markdown(["work", "on", "ours", "", "peer", "", "ratio", "goal", "reached"], rows)
 
 
-def full_table(lines: list[dict]) -> str:
-    """Every measurement with its settings."""
-    plain = ("row", "on", "who", "value", "unit", "settings")
-    rows = []
-    for line in lines:
-        more = ", ".join(
-            f"{k} {v:.4g}" if isinstance(v, float) else f"{k} {v}" for k, v in line.items() if k not in plain
-        )
-        rows.append(
-            [line["row"], line["on"], line["who"], f"{line['value']:.4g} {line['unit']}", more, line["settings"]]
-        )
-    return markdown(["work", "on", "program", "", "also", "settings"], rows)
-
-
 def main() -> None:
     """Measures and prints."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -126,9 +77,12 @@ def main() -> None:
     parser.add_argument("--peers", type=Path, default=ROOT / "build/peers", help="virtual environment of the peers")
     parser.add_argument("--write", action="store_true", help="update benchmarks/README.md")
     arguments = parser.parse_args()
-    python = peers_environment(arguments.peers.absolute())
+    python = peers_environment(arguments.peers.absolute(), HERE / "peers.txt")
     lines = []
-    for program in build_programs(python):
+    names = [source.stem for source in sorted(HERE.glob("bench_*.cpp"))]
+    for program in build_programs([f"-DMMGRASP_PEERS={packages_of(python)}"], names):
+        if program.name not in names:
+            continue
         name = program.name.removeprefix("bench_")
         if name not in arguments.only if arguments.only else name in SLOW:
             continue

@@ -108,7 +108,8 @@ void judge(const Case& c, const CapabilityMap& map, int poses, int threads) {
           << ", \"missed by inverse kinematics\": " << more << ", \"seconds\": " << bench::now() - start
           << ", \"us a pose\": " << 1e6 * sum / poses;
   bench::print({"capability map, truth", c.name, "mmgrasp", "% classed otherwise", 100.0 * (missed + more) / poses,
-                members.str(), "IK with 1000 restarts, closed form included, and collision checks"});
+                members.str(),
+                std::to_string(poses) + " poses, IK with 1000 restarts, closed form included, and collision checks"});
 }
 
 void run(const Case& c, int poses, int threads) {
@@ -119,7 +120,7 @@ void run(const Case& c, int poses, int threads) {
   const double time = bench::now() - start, used = processor_time() - processor;
   std::ostringstream members;
   members << "\"poses\": " << map.classes().size() << ", \"reached\": " << map.reached()
-          << ", \"maximum\": " << map.maximum() << ", \"processor s\": " << used
+          << ", \"maximum\": " << map.maximum() << ", \"processor_s\": " << used
           << ", \"us a pose and core\": " << 1e6 * used / static_cast<double>(map.classes().size())
           << ", \"refused\": \"" << map.rejections().summary() << "\"";
   bench::print({"capability map", c.name, "mmgrasp", "s", time, members.str(), "defaults, 200 poses a voxel"});

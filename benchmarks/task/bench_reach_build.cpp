@@ -22,6 +22,7 @@ void line(const std::string& on, const std::string& who, const std::string& unit
 }
 
 void run(const bench::ReachCase& robot, std::int64_t samples, const fs::path& folder) {
+  const std::string on = robot.name + ", " + std::to_string(samples) + " samples";
   ReachOptions options;
   options.samples = samples;
   options.max_per_cell = 1000;
@@ -39,11 +40,11 @@ void run(const bench::ReachCase& robot, std::int64_t samples, const fs::path& fo
                 "\"processor_us_a_pose\": %.3f, \"peak_GiB\": %.2f, \"bytes_a_pose\": %.2f",
                 size, static_cast<long long>(built.cell_count()), wall, processor, 1e6 * processor / size, memory,
                 bytes / size);
-  line(robot.name, "mmgrasp", "million poses/s", 1e-6 * size / wall, more);
+  line(on, "mmgrasp", "million poses/s", 1e-6 * size / wall, more);
 
   const double opening = bench::now();
   const ReachDatabase database = ReachDatabase::load(path, robot.arm);
-  line(robot.name, "mmgrasp, open", "s", bench::now() - opening);
+  line(on, "mmgrasp, open", "s", bench::now() - opening);
 
   Rng rng(7);
   Poses poses;
@@ -61,14 +62,13 @@ void run(const bench::ReachCase& robot, std::int64_t samples, const fs::path& fo
     }
     return 1e6 * best / static_cast<double>(poses.size());
   };
-  line(robot.name, "mmgrasp, voxel", "us", per_pose([&](const Pose& T) {
+  line(on, "mmgrasp, voxel", "us", per_pose([&](const Pose& T) {
          const auto [begin, end] = database.voxel(T);
          found += end - begin;
        }));
-  line(robot.name, "mmgrasp, voxel's configurations", "us",
-       per_pose([&](const Pose& T) { found += database.cell(T).cols(); }));
+  line(on, "mmgrasp, voxel's configurations", "us", per_pose([&](const Pose& T) { found += database.cell(T).cols(); }));
   Eigen::MatrixXd out;
-  line(robot.name, "mmgrasp, 8 nearest", "us", per_pose([&](const Pose& T) { found += database.nearest(T, 8, out); }));
+  line(on, "mmgrasp, 8 nearest", "us", per_pose([&](const Pose& T) { found += database.nearest(T, 8, out); }));
   if (found == 0) std::exit(1);
   fs::remove_all(path);
 }

@@ -64,7 +64,8 @@ void coverage(const bench::ReachCase& robot, std::int64_t samples, int count) {
                 "\"build_processor_s\": %.3f, \"solve_us\": %.1f",
                 static_cast<long long>(database.size()), static_cast<long long>(database.cell_count()), voxel / n,
                 near / n, exact / n, built, 1e6 * solve_time / n);
-  bench::print({"reach coverage", robot.name, "mmgrasp", "samples", static_cast<double>(samples), more, ""});
+  bench::print({"reach coverage", robot.name, "mmgrasp", "samples", static_cast<double>(samples), more,
+                std::to_string(samples) + " samples, " + std::to_string(count) + " poses"});
 }
 
 /// Poses in the middle of voxels, as Reuleaux tries them: positions on the grid, rotations evenly over a sphere and its

@@ -58,7 +58,7 @@ void measure(const char* table, const testing_support::MobileManipulator& robot,
   on << row.set_up.trays << (row.set_up.trays == 1 ? " tray of " : " trays of ") << row.set_up.rows << "x"
      << row.set_up.columns;
   more << std::setprecision(4) << "\"table\": \"" << table << "\", \"best\": " << wall.front()
-       << ", \"core seconds\": " << cpu[cpu.size() / 2] << ", \"cells\": " << cells
+       << ", \"processor_s\": " << cpu[cpu.size() / 2] << ", \"cells\": " << cells
        << ", \"objects\": " << row.set_up.trays * row.set_up.rows * row.set_up.columns
        << ", \"base poses tried\": " << tried << ", \"feasible\": " << feasible << ", \"paper\": " << row.paper;
   bench::print({"base regions", on.str(), "mmgrasp", "s", wall[wall.size() / 2], more.str(),
@@ -129,7 +129,7 @@ int main(int argc, char** argv) {
     if (count > most) break;
     RowOptions set_up = grid(9, 12);
     set_up.trays = count;
-    measure("p1-table-3.3", robot, database, {set_up, paper}, count > 22 ? 1 : rounds);
+    measure("p1-table-3.3", robot, database, {set_up, paper}, count > 10 ? 1 : rounds);
   }
   measure_circles(robot, database);
 }

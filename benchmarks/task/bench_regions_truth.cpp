@@ -39,7 +39,8 @@ void compare(const testing_support::MobileManipulator& robot, const std::string&
   bench::print({"region maps", robot.name, "mmgrasp", "missed share",
                 counts.truth == 0 ? 0 : static_cast<double>(counts.missed) / static_cast<double>(counts.truth),
                 more.str(),
-                "one tray of 2x2 objects, four grasps from above each; part by part, cell centre and corners"});
+                "one tray of 2x2 objects, four grasps from above each; part by part, cell centre and corners; " +
+                    std::to_string(samples) + " cells and parts, " + std::to_string(restarts) + " restarts"});
 }
 
 }  // namespace

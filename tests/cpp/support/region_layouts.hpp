@@ -15,6 +15,7 @@ namespace mmgrasp::test {
 struct LaidTray {
   Eigen::Vector2d at;
   double facing = 0;  // a robot in front of it looks along this direction [rad]
+  double reach = 0;   // in place of the larger outer radius of the shape [m]; 0: that one
 };
 
 struct Layout {
@@ -26,6 +27,8 @@ struct Layout {
 struct SectorShape {
   double inner = 0.45, outer = 0.90, half_angle = 0.9;  // [m], [m], [rad]
   double keep_off = 0.40;                               // Of the robot's middle from any tray's [m].
+  int headings = 1;                                     // Layers; more than one: a tray must be in front, namely
+  double front = 0.7;                                   // no farther off the heading than this [rad].
 };
 
 inline Layout make_layout(const std::string& name, const std::vector<LaidTray>& trays, const SectorShape& shape = {},
@@ -39,8 +42,9 @@ inline Layout make_layout(const std::string& name, const std::vector<LaidTray>& 
   grid.origin = bounds.min().array() - shape.outer - resolution;
   grid.nx = static_cast<int>(std::ceil((bounds.sizes().x() + 2 * shape.outer) / resolution)) + 2;
   grid.ny = static_cast<int>(std::ceil((bounds.sizes().y() + 2 * shape.outer) / resolution)) + 2;
-  grid.headings = {0};
-  CellMask blocked(grid.size(), 0);
+  grid.headings.clear();
+  for (int h = 0; h < shape.headings; ++h) grid.headings.push_back(2 * M_PI * h / shape.headings);
+  CellMask blocked(static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny), 0);
   const auto near_cells = [&](const LaidTray& tray, double reach, const auto& visit) {
     const Eigen::Vector2d low = (tray.at - grid.origin).array() / resolution - reach / resolution - 1;
     const int span = static_cast<int>(2 * reach / resolution) + 3;
@@ -62,10 +66,16 @@ inline Layout make_layout(const std::string& name, const std::vector<LaidTray>& 
     region.tray = "tray_" + std::to_string(layout.regions.size());
     region.cells.assign(grid.size(), 0);
     const Eigen::Vector2d front(-std::cos(tray.facing), -std::sin(tray.facing));
-    near_cells(tray, shape.outer, [&](std::size_t cell, const Eigen::Vector2d& d) {
+    const double outer = tray.reach > 0 ? tray.reach : shape.outer;
+    near_cells(tray, outer, [&](std::size_t cell, const Eigen::Vector2d& d) {
       const double r = d.norm();
-      const bool inside = r >= shape.inner && r <= shape.outer && d.dot(front) >= r * std::cos(shape.half_angle);
-      if (inside && !blocked[cell]) region.cells[cell] = 1;
+      const bool inside = r >= shape.inner && r <= outer && d.dot(front) >= r * std::cos(shape.half_angle);
+      if (!inside || blocked[cell]) return;
+      for (int h = 0; h < shape.headings; ++h) {
+        const double heading = grid.headings[static_cast<std::size_t>(h)];
+        const bool ahead = -d.dot(Eigen::Vector2d(std::cos(heading), std::sin(heading))) >= r * std::cos(shape.front);
+        if (shape.headings == 1 || ahead) region.cells[cell + static_cast<std::size_t>(h) * blocked.size()] = 1;
+      }
     });
     layout.regions.push_back(std::move(region));
   }
@@ -87,6 +97,28 @@ inline Layout aisle_layout(int trays, double spacing, double width) {
     laid.push_back({{spacing * (i / 2), left ? width / 2 : -width / 2}, left ? M_PI / 2 : -M_PI / 2});
   }
   return make_layout("aisle of " + std::to_string(trays), laid);
+}
+
+/// Shelves of several boards, along one row or on both sides of an aisle (`width` > 0): trays stand above each other
+/// wherever they were put, a little turned, and the higher the board the shorter the reach. Regions overlap deeply.
+inline Layout board_layout(int trays, int boards, double spacing, double width, int headings, unsigned seed) {
+  Rng rng(seed);
+  const int sides = width > 0 ? 2 : 1;
+  std::vector<LaidTray> laid;
+  for (int i = 0; i < trays; ++i) {
+    const int board = i / sides % boards;
+    const double x = spacing * (i / (sides * boards)) + rng.uniform(-0.5, 0.5) * spacing;
+    const double turn = rng.uniform(-0.5, 0.5), depth = rng.uniform(0, 0.15);
+    const bool left = i % sides == 0;
+    laid.push_back({{x, (left ? 1 : -1) * (width / 2 + depth)},
+                    (left ? M_PI / 2 : -M_PI / 2) + turn,
+                    0.90 - 0.2 * board / boards});
+  }
+  SectorShape shape;
+  shape.headings = headings;
+  return make_layout((width > 0 ? "aisle of " : "row of ") + std::to_string(trays) + " on " + std::to_string(boards) +
+                         " boards, " + std::to_string(headings) + " headings",
+                     laid, shape);
 }
 
 /// Shelves back to back with aisles between them, trays on both sides and at the ends.

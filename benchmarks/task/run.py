@@ -73,9 +73,10 @@ def compared(lines: list[dict]) -> list[dict]:
             line["gap"] = line["cost"] - line["bound"]
         peers = [other for other in lines if (other["row"], other["on"]) == (line["row"], line["on"])]
         peers = [other for other in peers if other["who"].startswith("scikit-robot")]
-        if peers and line["who"] == "mmgrasp":
+        if peers and line["who"].startswith("mmgrasp"):
+            counted = "reached" if "ignored" in line["who"] else "free"
             line["times_as_fast"] = min(other["value"] for other in peers) / line["value"]
-            line["more_reached"] = line["free"] - max(other["reached"] for other in peers)
+            line["more"] = line[counted] - max(other[counted] for other in peers)
         out.append(line)
     return out
 

@@ -41,7 +41,7 @@ def commands(full: bool, folder: str, peer: Path) -> dict[str, list[list]]:
         "reach_coverage": [[coverage, "fetchlike", *(["16384000", "10000"] if full else ["1024000", "2000"])]],
         "base_placement": [[sys.executable, HERE / "bench_base_placement.py", "--peer", peer]],
         "capability": [[capability, "--case", name, "--truth", truth] for name in MAPS],
-        "regions": [[programs / "bench_regions", CACHE, "3", "500"]],
+        "regions": [[programs / "bench_regions", CACHE, "3", "500" if full else "100"]],
         "regions_truth": [[programs / "bench_regions_truth", CACHE, *(["2000", "200"] if full else ["100", "50"])]],
         "sequence": [[sequence], *[[sequence, "dense"]] * full],
         "set_cover": [[programs / "bench_set_cover"]],

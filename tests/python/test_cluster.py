@@ -181,6 +181,8 @@ def test_digest_tells_problems_apart():
     assert base == problem_digest(ROW.with_(threads=2).problem(), reach)
     changed = [{"shift": 1e-9}, {"tool": 0.121}, {"targets": ((0,),) * 6}, {"ik_seeds": 9}, {"objects": (2, 3)}]
     assert len({base, *(problem_digest(ROW.with_(**c).problem(), reach) for c in changed)}) == 6
+    # The torso stands elsewhere: another problem even beside the same database.
+    assert problem_digest(ROW.with_(torso=ROW.torso - 0.01).problem(), reach) != base
 
 
 def test_what_has_no_content_is_refused():

@@ -66,6 +66,29 @@ void check_order(const Data& data, const std::string& path) {
   if (!sound) refuse(path, "corrupt: the cells are not in order");
 }
 
+/// Bounds and reach say how far to look: they must fit the cells that are there.
+void check_bounds(const Data& data, const std::string& path) {
+  const double cell = data.options.position_cell, slack = 1e-3 * cell;
+  Eigen::AlignedBox3d cells;
+  double nearest = 0, farthest = 0;  // least and largest that the reach can be
+  for (std::size_t i = 0; i < data.position_count(); ++i) {
+    const Eigen::Vector3d low =
+        cell * Eigen::Vector3d(data.positions[3 * i], data.positions[3 * i + 1], data.positions[3 * i + 2]);
+    const Eigen::AlignedBox3d box(low, low + Eigen::Vector3d::Constant(cell));
+    cells.extend(box);
+    nearest = std::max(nearest, box.exteriorDistance(Eigen::Vector3d::Zero().eval()));
+    farthest = std::max(farthest, box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).norm());
+  }
+  bool sound =
+      data.bounds.isEmpty() == cells.isEmpty() && data.reach >= nearest - slack && data.reach <= farthest + slack;
+  if (sound && !cells.isEmpty()) {
+    const Eigen::Vector3d low = data.bounds.min() - cells.min(), high = cells.max() - data.bounds.max();
+    sound = low.minCoeff() >= -slack && low.maxCoeff() <= cell + slack && high.minCoeff() >= -slack &&
+            high.maxCoeff() <= cell + slack;
+  }
+  if (!sound) refuse(path, "corrupt: reach or bounds do not fit the cells");
+}
+
 template <typename T>
 detail::View<T> view(const detail::CheckedFile& file, std::uint64_t count) {
   return {reinterpret_cast<const T*>(file.payload()), static_cast<std::size_t>(count)};
@@ -174,6 +197,7 @@ ReachDatabase ReachDatabase::load(const std::string& path) {
   check_tables(*data, path);
   data->complete();
   check_order(*data, path);
+  check_bounds(*data, path);
   return ReachDatabase(std::move(data));
 }
 

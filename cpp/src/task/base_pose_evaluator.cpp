@@ -355,6 +355,8 @@ std::unique_ptr<BasePoseEvaluator::Impl> BasePoseEvaluator::make_impl(const std:
 }
 
 BasePoseEvaluator::BasePoseEvaluator(const PartSupplyProblem& problem, const ReachDatabase& database) {
+  const std::string difference = database.difference(problem.arm);
+  if (!difference.empty()) throw InvalidInput("database: was built for another arm than the problem's: " + difference);
   const std::shared_ptr<EvaluatorTables> tables = make_tables(problem, database);
   tables->parts = all_parts(problem);
   impl_ = make_impl(tables, world_with_parts(problem, tables->parts));

@@ -79,7 +79,7 @@ class GroupOrder {
   /// Best order, and whether that is proven. `order` is where it starts.
   bool improve(Order& order, Value& value) {
     value = value_of(order);
-    if (trays_.size() < 2) return true;
+    if (trays_.size() < 2 || rounds_ == 0) return true;
     if (trays_.size() == 2) {
       reassign(order, 1);
       value = value_of(order);
@@ -241,10 +241,22 @@ PickingOrder paired_order(const std::vector<std::vector<Eigen::Vector2d>>& place
       continue;
     }
     std::vector<Eigen::Vector2d> before;  // in the order picked
-    for (int part : order.back()) before.push_back(places[tray - 1][static_cast<std::size_t>(part)]);
+    std::vector<std::size_t> rounds;      // in which those are picked; then those left for parts without a partner
+    for (std::size_t round = 0; round < order.back().size(); ++round) {
+      const int part = order.back()[round];
+      if (part < 0) continue;
+      before.push_back(places[tray - 1][static_cast<std::size_t>(part)]);
+      rounds.push_back(round);
+    }
+    for (std::size_t round = 0; rounds.size() < before.size() + own.size(); ++round) {
+      if (round >= order.back().size() || order.back()[round] < 0) rounds.push_back(round);
+    }
     std::vector<int> picks;
-    for (int part : matched(before, places[tray])) {
-      if (part < static_cast<int>(own.size())) picks.push_back(part);
+    const std::vector<int> match = matched(before, places[tray]);
+    for (std::size_t i = 0; i < match.size(); ++i) {
+      if (match[i] >= static_cast<int>(own.size())) continue;
+      picks.resize(std::max(picks.size(), rounds[i] + 1), -1);
+      picks[rounds[i]] = match[i];
     }
     order.push_back(std::move(picks));
   }

@@ -15,7 +15,6 @@ namespace {
 
 constexpr std::size_t kPlannedStops = 6;
 constexpr double kPadding = 0.01;  // [m]
-constexpr int kRounds = 8;         // Orders looked at while planned drives replace estimates.
 
 std::array<double, 6> key_of(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   return {from.x(), from.y(), from.z(), to.x(), to.y(), to.z()};
@@ -139,9 +138,8 @@ class VisitingOrder {
     plan(unreached(n_));
     if (!lengths_.row(n_).allFinite()) return {};
     for (int i = 0; i < n_ + 2; ++i) plan(unreached(i));
-    std::vector<int> order;
-    for (int round = 0; round < kRounds; ++round) {
-      order = shortest_visiting_tour(lengths_).order;
+    while (true) {  // Each round plans a drive at least that was not planned before.
+      const std::vector<int> order = shortest_visiting_tour(lengths_).order;
       if (order.empty()) return {};
       std::vector<std::pair<int, int>> legs;
       int at = n_;
@@ -150,10 +148,9 @@ class VisitingOrder {
         if (planned_.count(std::minmax(at, to)) == 0) legs.emplace_back(at, to);
         at = to;
       }
-      if (legs.empty()) break;
+      if (legs.empty()) return order;
       plan(legs);
     }
-    return order;
   }
 
   std::vector<std::pair<int, int>> unreached(int from) const {

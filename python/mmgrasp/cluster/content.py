@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import InvalidInput, PartSupplyProblem, ReachDatabase
+from .._core import InvalidInput, JointGroup, PartSupplyProblem, ReachDatabase
 
 
 class Hasher:
@@ -68,11 +68,17 @@ def code_digest() -> str:
     return hasher.hex()
 
 
+def arm_key(arm: JointGroup) -> str:
+    """Of the robot, and of where its other joints are held, by the poses they give its links."""
+    lowest = arm.link_poses(arm.sample_lower)
+    return Hasher().add([arm.robot.hash, arm.names, arm.tip]).add({n: lowest[n] for n in sorted(lowest)}).hex()
+
+
 def problem_digest(problem: PartSupplyProblem, database: ReachDatabase) -> str:
     """Hash of all that base regions depend on: robot, arm, gripper, scene, trays, parts, grasps, options, database."""
-    hasher = Hasher().add(problem.robot.hash).add(database.key)
     arm, gripper = problem.arm, problem.gripper
-    hasher.add([arm.names, arm.tip, np.array(problem.home), arm.T_world_root])
+    hasher = Hasher().add(arm_key(arm)).add(database.key)
+    hasher.add([np.array(problem.home), arm.T_world_root])
     hasher.add([gripper.tcp_link, np.array(gripper.approach), np.array(gripper.closing), list(gripper.finger_links)])
     hasher.add([gripper.max_opening, gripper.finger_depth, gripper.finger_width, gripper.clearance])
     hasher.add([[j.name, j.closed, j.open] for j in gripper.joints])
@@ -83,7 +89,7 @@ def problem_digest(problem: PartSupplyProblem, database: ReachDatabase) -> str:
     for tray in problem.trays:
         hasher.add([tray.name, tray.T_world_tray, np.array(tray.size), list(tray.headings)])
         for part in tray.parts:
-            hasher.add([part.name, part.T_world_part, part.target])
+            hasher.add([part.name, part.T_world_part, part.target, part.grasps_too_wide])
             _add_shapes(hasher, part.shapes)
             for grasp in part.grasps:
                 hasher.add([grasp.T_object_tcp, grasp.width])

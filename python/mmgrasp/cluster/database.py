@@ -11,7 +11,7 @@ from typing import Any
 from .._core import Error, InvalidInput, JointGroup, ReachDatabase
 from .._files import write_file
 from ..scenario import Scenario, load_scenario
-from .content import Hasher
+from .content import arm_key
 from .engine import Engine, Progress
 from .regions import ProblemSource, named
 
@@ -56,12 +56,6 @@ def draw_parts(source: Any, key: str, options: dict[str, Any], parts: list[int])
     with tempfile.TemporaryDirectory() as folder:
         ReachDatabase.build_parts(folder, arm, parts, **options)
         return {file.name: file.read_bytes() for file in sorted(Path(folder).glob("*.part"))}
-
-
-def arm_key(arm: JointGroup) -> str:
-    """Of the robot, and of where its other joints are held, by the poses they give its links."""
-    lowest = arm.link_poses(arm.sample_lower)
-    return Hasher().add([arm.robot.hash, arm.names, arm.tip]).add({n: lowest[n] for n in sorted(lowest)}).hex()
 
 
 @functools.lru_cache(maxsize=2)

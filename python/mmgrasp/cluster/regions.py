@@ -97,7 +97,7 @@ def _load(source: Any, database: Any) -> tuple[PartSupplyProblem, ReachDatabase]
     made = load_scenario(source) if isinstance(source, str) else source
     problem = made.problem()
     if isinstance(database, str):
-        return problem, ReachDatabase.load(database)
+        return problem, ReachDatabase.load(database, problem.arm)
     if database is not None:
         return problem, ReachDatabase.load_or_build(problem.arm, _core.cache_folder(), **dict(database))
     if not isinstance(made, Scenario):

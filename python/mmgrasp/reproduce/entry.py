@@ -48,6 +48,8 @@ class Check:
     kind: str
     what: str
     holds: bool
+    clock: bool = False
+    """About seconds on the clock: how busy the machine is decides with."""
 
 
 @dataclass
@@ -69,8 +71,8 @@ class Result:
     def exact(self, what: str, holds: bool) -> None:
         self.checks.append(Check("E", what, bool(holds)))
 
-    def trend(self, what: str, holds: bool) -> None:
-        self.checks.append(Check("T", what, bool(holds)))
+    def trend(self, what: str, holds: bool, *, clock: bool = False) -> None:
+        self.checks.append(Check("T", what, bool(holds), clock))
 
     def to_dict(self) -> dict[str, Any]:
         return {
@@ -82,7 +84,7 @@ class Result:
                 for key, values in self.rows
             ],
             "setup": {key: _plain(value) for key, value in self.setup.items()},
-            "checks": [{"kind": c.kind, "what": c.what, "holds": c.holds} for c in self.checks],
+            "checks": [{"kind": c.kind, "what": c.what, "holds": c.holds, "clock": c.clock} for c in self.checks],
             "notes": self.notes,
             "drawing": self.drawing,
         }

@@ -102,8 +102,9 @@ def run_experiment(context: Context) -> Result:
     values["grasps"] = (None, ours["grasps"])
     values["cells"] = (None, " ".join(map(str, ours["cells"])))
     values = result.row({"sequence": "baseline"})
-    values["stops"] = (3, len(ours["baseline"]))
-    values["trays of each stop"] = ("{1} {2} {4}", "{1} {2} {4}")
+    alone = [tray for tray, radius in zip(TRAYS, ours["baseline radii"], strict=True) if radius >= UNCERTAINTY]
+    values["stops"] = (3, len(alone))
+    values["trays of each stop"] = ("{1} {2} {4}", " ".join(_braces([t]) for t in alone))
     values["least radius [m]"] = (None, min(ours["baseline radii"]))
     result.exact("2 stops, {1,2} and {4}, proven least", sorted(ours["trays"]) == [[1, 2], [4]] and ours["least"] == 2)
     result.trend(

@@ -63,6 +63,40 @@ TEST(PairedOrder, EqualTraysArePairedPartByPart) {
   }
 }
 
+TEST(PairedOrder, PartsOfUnequalTraysStayWithTheirPartners) {
+  // The single part lies straight across the second of three, 0.5 m away as on average.
+  const std::vector<std::vector<Eigen::Vector2d>> places{
+      {{0, 0}, {0.3, 0}, {0.6, 0}}, {{0.3, 0.5}}, {{0, 1}, {0.3, 1}}};
+  const PickingOrder order = paired_order(places);
+  EXPECT_EQ(order[0], (std::vector<int>{0, 1, 2}));
+  // One pair has no spread: any partner will do, but the round must be that partner's.
+  int round = -1;
+  for (std::size_t i = 0; i < order[1].size(); ++i)
+    if (order[1][i] == 0) round = static_cast<int>(i);
+  ASSERT_GE(round, 0);
+  ASSERT_LT(round, 3);
+  std::vector<int> seen;
+  for (const int part : order[2])
+    if (part >= 0) seen.push_back(part);
+  std::sort(seen.begin(), seen.end());
+  EXPECT_EQ(seen, (std::vector<int>{0, 1}));
+  ASSERT_GT(static_cast<int>(order[2].size()), round);
+  EXPECT_GE(order[2][static_cast<std::size_t>(round)], 0) << "picked together with the single part";
+}
+
+TEST(OptimisedOrder, TraysWithoutParts) {
+  PartRegions parts;
+  parts.grid = Storeroom(2, 1, 1, 0.5, 0.8).parts.grid;
+  parts.cells = {{}, {}};
+  for (const bool smallest : {false, true}) {
+    OrderOptions options;
+    options.smallest_first = smallest;
+    const OptimisedOrder found = optimised_order(parts, {{0, 1}}, {{}, {}}, options);
+    EXPECT_EQ(found.order, (PickingOrder{{}, {}}));
+    EXPECT_EQ(found.mean_radius, 0);
+  }
+}
+
 /// The spread of the distances within pairs is the least over all pairings.
 TEST(PairedOrder, LeastSpreadOfDistances) {
   for (unsigned seed = 1; seed <= 20; ++seed) {

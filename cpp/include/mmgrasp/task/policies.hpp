@@ -35,8 +35,8 @@ using PickingOrder = std::vector<std::vector<int>>;
 
 /// P1's heuristic (figure 3.11): tray by tray, each part goes with the part of the tray before so that the distances
 /// within these pairs are as equal as can be (least squares about their mean). `places` are the parts' positions on the
-/// floor, [tray][part]; the first tray's parts come in their order. Trays may hold different numbers of parts: those
-/// left over come last.
+/// floor, [tray][part]; the first tray's parts come in their order. Trays may hold different numbers of parts: a
+/// round without a partner is -1, and parts left over take rounds in which the tray before has none.
 MMGRASP_EXPORT PickingOrder paired_order(const std::vector<std::vector<Eigen::Vector2d>>& places);
 
 struct MMGRASP_EXPORT OrderOptions {

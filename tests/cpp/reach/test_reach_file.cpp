@@ -159,7 +159,7 @@ TEST_F(ReachFile, RefusesForeignFilesAndEditedOnes) {
   refused("meta.json", summed(with(meta, "\"tip\"", "\"top\"")), "\"tip\" is missing");
   refused("meta.json", summed(with(meta, "\"joint_step\": [", "\"joint_step\": [0.1, ")), "make no sense");
   refused("meta.json", summed(with(meta, "\"reach\": ", "\"reach\": 9")), "do not fit the cells");
-  refused("meta.json", summed(with(meta, "\"bounds_lower\": [", "\"bounds_lower\": [-9")), "");
+  refused("meta.json", summed(with(meta, "\"bounds_lower\": [-", "\"bounds_lower\": [-9")), "do not fit the cells");
   refused("meta.json", "{\"name\": \"something else\"}", "not of a reachability database");
   refused("meta.json", std::string(100000, '['), "not of a reachability database");
   std::string other = with(sound.at("cell_first.npy"), "<u4", "<f4");

@@ -25,7 +25,7 @@ print(f"union: {len(union)} grasps; the best: {union[0]}")
 
 # For base regions every grasp is a part of its own, to be placed in a mg.Tray.
 parts = mg.parts_of_grasps("tray", union, gripper, mg.pose([0.8, 0, 0.7]))
-print(f"a tray of {len(parts)} wanted grasps, the first at {parts[0].pose[:3, 3].round(3)}")
+print(f"a tray of {len(parts)} wanted grasps, the first at {parts[0].T_world_part[:3, 3].round(3)}")
 
 scan = scans[0]
 eye = scan.image.T_world_camera[:3, 3]

@@ -105,8 +105,10 @@ def test_pictures_show_the_map(made, robot):
 
 def test_numpy_reads_what_save_writes(made, tmp_path):
     made.save(tmp_path / "map")
-    for name in ("index", "classes", "configurations", "tool_poses"):
+    for name in ("index", "classes", "configurations"):
         np.testing.assert_array_equal(np.load(tmp_path / "map" / f"{name}.npy"), getattr(made, name))
+    # Tool poses are computed when asked for: another order of sums rounds otherwise.
+    np.testing.assert_allclose(np.load(tmp_path / "map" / "tool_poses.npy"), made.tool_poses, rtol=0, atol=1e-15)
     again = mg.CapabilityMap.load(tmp_path / "map")
     np.testing.assert_array_equal(again.classes, made.classes)
     with pytest.raises(mg.IoError, match="nowhere"):

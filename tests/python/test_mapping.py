@@ -74,12 +74,12 @@ def test_scans_of_random_trays():
     parts = mg.parts_of_grasps("tray", union, gripper(), T_world_tray)
     assert len({part.name for part in parts}) == len(union)
     for part, grasp in zip(parts, union, strict=True):
-        tcp = part.pose @ part.grasps[0].T_object_tcp
+        tcp = part.T_world_part @ part.grasps[0].T_object_tcp
         assert np.allclose(tcp, T_world_tray @ grasp.T_world_tcp)
-        other = part.pose @ part.grasps[1].T_object_tcp
+        other = part.T_world_part @ part.grasps[1].T_object_tcp
         assert np.allclose(other[:3, 0], tcp[:3, 0])  # the same approach,
         assert np.allclose(other[:3, 1], -tcp[:3, 1])  # the fingers change places
-        bead = np.linalg.inv(T_world_tray) @ part.pose @ part.shapes[0].pose
+        bead = np.linalg.inv(T_world_tray) @ part.T_world_part @ part.shapes[0].pose
         assert np.allclose(bead[:3, 3], [0, 0, -0.0025])  # inside the tray's floor
 
 

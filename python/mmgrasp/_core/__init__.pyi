@@ -11,7 +11,7 @@ import numpy
 import numpy.typing
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BaseRegion', 'Box', 'Capsule', 'CarryPlace', 'CollisionChecker', 'Contact', 'Cylinder', 'DistanceResult', 'EdgeResult', 'Error', 'FingerJoint', 'Grasp', 'Gripper', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'Mesh', 'MotionResult', 'MotionStats', 'Obstruction', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyProblem', 'PartSupplyResult', 'Pick', 'PickMotion', 'PinholeCamera', 'Plane', 'PlatformLocations', 'ReachDatabase', 'Rejection', 'Rejections', 'Robot', 'SetCoverResult', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'TourResult', 'Tray', 'Voxels', 'World', 'cache_folder', 'camera_view_objective', 'compute_base_regions', 'compute_disabled_pairs', 'find_package', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'make_base_grid', 'minimal_stops', 'plan_base_route', 'plan_motion', 'plan_pick', 'plan_platform_locations', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'quat_xyzw_from_rotation', 'robust_intersections', 'sample_grasps', 'self_distance_objective', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_part_supply', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'Box', 'CapabilityMap', 'Capsule', 'CarryPlace', 'CollisionChecker', 'Contact', 'CuboidFit', 'Cylinder', 'DepthImage', 'DistanceResult', 'EdgeResult', 'Error', 'FingerJoint', 'FittedCuboid', 'Grasp', 'Graspability', 'Gripper', 'HeightMap', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'Mesh', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyProblem', 'PartSupplyResult', 'Pick', 'PickMotion', 'PinholeCamera', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Robot', 'ScoredGrasp', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'TourResult', 'Tray', 'Voxels', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'compute_base_regions', 'compute_disabled_pairs', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'least_stops', 'look_down', 'make_base_grid', 'make_height_map', 'maximal_intersections', 'minimal_stops', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_motion', 'plan_pick', 'plan_platform_locations', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_part_supply', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Robot:
     """
     A robot as URDF and SRDF describe it. Immutable; joints and links by name.
@@ -602,6 +602,11 @@ class TourResult:
     def length(self) -> float:
         ...
     @property
+    def lower_bound(self) -> float:
+        """
+        Proven: no way is shorter.
+        """
+    @property
     def order(self) -> list[int]:
         """
         Visiting order of the stops.
@@ -612,8 +617,37 @@ class TourResult:
     @property
     def proven(self) -> bool:
         """
-        True when exact.
+        True when the length meets the bound; always up to 15 stops.
         """
+class SharedTours:
+    """
+    Stops shared among several robots.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def durations(self) -> list[float]:
+        ...
+    @property
+    def lower_bound(self) -> float:
+        """
+        Proven: no sharing ends earlier.
+        """
+    @property
+    def makespan(self) -> float:
+        """
+        The longest duration.
+        """
+    @property
+    def orders(self) -> list[list[int]]:
+        """
+        The stops of each robot in visiting order.
+        """
+    @property
+    def outcome(self) -> Outcome:
+        ...
 class IkResult:
     """
     Answer of inverse kinematics.
@@ -909,23 +943,71 @@ class ReachDatabase:
             rotation_cell = 0.55: approximate diameter of a rotation cell [rad]
             max_per_cell = 16: configurations kept in a cell
             min_manipulability = 0.02: least manipulability kept, as a fraction of the largest
+            thinning = 0.0: below this fraction of the largest manipulability kept by chance; 0: all
             seed = 1: same seed, same database
             threads = 0: 0: all; does not change the answer
         """
     @staticmethod
-    def load(path: typing.Any) -> ReachDatabase:
+    def build_parts(folder: typing.Any, arm: JointGroup, parts: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], *, progress: typing.Any = None, **kwargs) -> bool:
         """
-        Raises IoError on a truncated, foreign or corrupt file.
+        Draws single parts into a folder; in `path`.partial they are what build_to(path, ...) goes on from.
+        """
+    @staticmethod
+    def build_to(path: typing.Any, arm: JointGroup, *, progress: typing.Any = None, **kwargs) -> ReachDatabase:
+        """
+        Builds through files into a folder; interrupted and called again, it goes on where it was.
+        """
+    @staticmethod
+    def load(path: typing.Any, arm: JointGroup = None) -> ReachDatabase:
+        """
+        Raises IoError on a truncated, foreign or corrupt database, and on one built for another arm than `arm`.
         """
     @staticmethod
     def load_or_build(arm: JointGroup, cache_dir: typing.Any, *, progress: typing.Any = None, **kwargs) -> ReachDatabase:
         """
         The database of this arm and these options from the cache folder; built and stored when it is not there.
         """
+    @staticmethod
+    def part_count(arm: JointGroup, **kwargs) -> int:
+        """
+        Into how many parts build_to divides a build with these options.
+        """
     def __len__(self) -> int:
         ...
     def __repr__(self) -> str:
         ...
+    def base_poses_for(self, arm: JointGroup, T_world_tip: numpy.typing.ArrayLike, *, count: typing.SupportsInt | typing.SupportsIndex = 32, checker: CollisionChecker = None, **kwargs) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        Base poses (k, 3) on the floor from which the tool reaches a pose in the world, and the configurations (k, n) that do.
+        
+        Keyword options:
+            step = 0.05: grid of base positions [m]
+            headings = 24: of the base, evenly over the circle
+            candidates = 64: best base poses of the grid looked at exactly
+            seeds = 8: stored configurations tried for a target
+            refinements = 4: rounds of smaller steps about the best
+            position_tolerance = 1e-05: [m]
+            rotation_tolerance = 0.0001: [rad]
+            threads = 0: 0: all; does not change the answer
+        """
+    def difference(self, arm: JointGroup) -> str:
+        """
+        What of the arm has changed since the build, in words; empty when nothing.
+        """
+    def find_base_placement(self, arm: JointGroup, T_world_tips: numpy.typing.ArrayLike, *, checker: CollisionChecker = None, progress: typing.Any = None, **kwargs) -> BasePlacement:
+        """
+        One base pose from which as many tool poses (m, 4, 4) in the world as possible are reached.
+        
+        Keyword options:
+            step = 0.05: grid of base positions [m]
+            headings = 24: of the base, evenly over the circle
+            candidates = 64: best base poses of the grid looked at exactly
+            seeds = 8: stored configurations tried for a target
+            refinements = 4: rounds of smaller steps about the best
+            position_tolerance = 1e-05: [m]
+            rotation_tolerance = 0.0001: [rad]
+            threads = 0: 0: all; does not change the answer
+        """
     def nearest(self, T_base_tip: numpy.typing.ArrayLike, count: typing.SupportsInt | typing.SupportsIndex = 8) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
         Up to `count` stored configurations (k, n) near the pose, nearest first.
@@ -936,6 +1018,33 @@ class ReachDatabase:
         """
     def save(self, path: typing.Any) -> None:
         ...
+    def solve(self, arm: JointGroup, T_base_tip: numpy.typing.ArrayLike, *, checker: CollisionChecker = None, **kwargs) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Exact configurations (k, n) for a pose relative to the root, from stored ones near it; the most different ones first, with a checker the free ones.
+        
+        Keyword options:
+            count = 8: solutions at most
+            candidates = 64: stored configurations tried
+            distinct = 0.1: solutions differ by more than this in some joint [rad or m]
+            position_tolerance = 1e-05: [m]
+            rotation_tolerance = 0.0001: [rad]
+            threads = 0: of batches; 0: all
+        """
+    def solve_batch(self, arm: JointGroup, T_base_tips: numpy.typing.ArrayLike, *, checker: CollisionChecker = None, **kwargs) -> list:
+        """
+        solve() for many poses (m, 4, 4) at a time: a list of arrays. The same keywords.
+        """
+    def to_dict(self) -> dict:
+        ...
+    def verify(self) -> None:
+        """
+        Compares every file with its checksums; raises IoError where they differ.
+        """
+    @property
+    def arrays(self) -> dict:
+        """
+        Read-only views of the database's arrays, by file name.
+        """
     @property
     def cell_count(self) -> int:
         """
@@ -945,12 +1054,164 @@ class ReachDatabase:
     def joint_count(self) -> int:
         ...
     @property
+    def joint_lower(self) -> list[float]:
+        ...
+    @property
+    def joint_step(self) -> list[float]:
+        """
+        q = joint_lower + joint_step * arrays['configurations'].
+        """
+    @property
     def key(self) -> str:
         ...
+    @property
+    def path(self) -> str:
+        """
+        The folder; empty for a database in memory only.
+        """
     @property
     def reach(self) -> float:
         """
         Largest distance of a stored tool position from the root [m].
+        """
+class BasePlacement:
+    """
+    One base pose for many tool poses.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def base_pose(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        x, y, theta
+        """
+    @property
+    def configurations(self) -> list:
+        """
+        One per target; None where it is not reached.
+        """
+    @property
+    def reached(self) -> int:
+        """
+        How many of the targets.
+        """
+class CapabilityMap:
+    """
+    The share of tool poses around each point that an arm reaches, with its limits, self-collision and the scene
+    (P3 3.9.2, equation 3.13). Everything is in the robot's root frame. Immutable.
+    """
+    @staticmethod
+    def build(arm: JointGroup, world: World | None = None, *, progress: typing.Any = None, **kwargs) -> CapabilityMap:
+        """
+        Tries every tool pose of every voxel. `progress` is called with (stage, fraction).
+        
+        Keyword options:
+            lower = (-1.0, -1.0, 0.0): corner of the grid in the robot's root frame [m]
+            upper = (1.0, 1.0, 2.6): the opposite corner, a whole number of voxels away [m]
+            voxel = 0.1: edge of a voxel and diameter of its sphere [m]
+            poses = 200: tool poses in a voxel; a multiple of rolls
+            rolls = 1: rolls about each approach direction
+            approach = (0.0, 0.0, 1.0): where the tool points, in the tip's frame
+            samples = 0: values tried of joints a pose leaves free; 0: 64 for one, 128 for two
+            sweeps = 4: times that solutions spread from pose to neighbouring pose
+            restarts = 0: further random descents for poses that border reached ones
+            padding = 0.0: robot links are grown by this against the scene [m]
+            seed = 1: same seed, same map
+            threads = 0: 0: all; does not change the answer
+        """
+    @staticmethod
+    def load(path: typing.Any) -> CapabilityMap:
+        """
+        Raises IoError on a truncated, foreign or corrupt folder.
+        """
+    def __repr__(self) -> str:
+        ...
+    def best_base_distance(self, T_world_tips: numpy.typing.ArrayLike, distances: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], heading: typing.SupportsFloat | typing.SupportsIndex = 0.0, cone: typing.SupportsFloat | typing.SupportsIndex = 4.0) -> tuple[float, float, list[float]]:
+        """
+        Which distance [m] to stand behind the poses' middle, facing along `heading` [rad]:
+        (distance, score, scores of all).
+        """
+    def configuration(self, x: typing.SupportsInt | typing.SupportsIndex, y: typing.SupportsInt | typing.SupportsIndex, z: typing.SupportsInt | typing.SupportsIndex, pose: typing.SupportsInt | typing.SupportsIndex) -> typing.Any:
+        """
+        Configuration that reaches a pose of a voxel, or None.
+        """
+    def index_at(self, point: numpy.typing.ArrayLike) -> float:
+        """
+        Index of the voxel that holds a point of the root frame; 0 outside.
+        """
+    def restricted(self, arm: JointGroup, world: World, *, progress: typing.Any = None) -> CapabilityMap:
+        """
+        The map of the same arm in a world with more in it: only what is reached here is looked at again.
+        """
+    def save(self, path: typing.Any) -> None:
+        """
+        Writes a folder of .npy files and meta.json.
+        """
+    def score(self, T_world_tips: numpy.typing.ArrayLike, T_world_root: typing.Any = None, cone: typing.SupportsFloat | typing.SupportsIndex = 4.0) -> float:
+        """
+        Mean index over tool poses (m, 4, 4) with the root at a pose. With `cone` below pi [rad] only tool poses
+        that approach within that angle of each pose count.
+        """
+    def slice(self, axis: str, at: typing.SupportsFloat | typing.SupportsIndex) -> numpy.ndarray[typing.Any, numpy.dtype[typing.Any]]:
+        """
+        Cut through the voxels at a coordinate [m]: `slice("z", 0.75)` is (nx, ny).
+        """
+    @property
+    def centres(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Centres of the voxels (nx, ny, nz, 3) [m].
+        """
+    @property
+    def classes(self) -> numpy.ndarray[typing.Any, numpy.dtype[typing.Any]]:
+        """
+        What became of each pose (nx, ny, nz, poses), uint8: 0 reached, 1 out of reach, 2 limits, 3 self-collision,
+        4 scene.
+        """
+    @property
+    def configurations(self) -> numpy.ndarray[typing.Any, numpy.dtype[typing.Any]]:
+        """
+        A configuration for each reached pose (reached, n), float32, in the order of `classes`.
+        """
+    @property
+    def index(self) -> numpy.ndarray[typing.Any, numpy.dtype[typing.Any]]:
+        """
+        Reachability index of each voxel (nx, ny, nz), float32 in [0, 1].
+        """
+    @property
+    def lower(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        ...
+    @property
+    def maximum(self) -> float:
+        """
+        The largest index.
+        """
+    @property
+    def reached(self) -> int:
+        """
+        Poses reached.
+        """
+    @property
+    def rejections(self) -> Rejections:
+        """
+        Poses not reached, by cause.
+        """
+    @property
+    def shape(self) -> tuple:
+        ...
+    @property
+    def tool_poses(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Tool poses around a voxel's centre (poses, 4, 4).
+        """
+    @property
+    def upper(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        ...
+    @property
+    def voxel(self) -> float:
+        """
+        Edge of a voxel [m].
         """
 class FingerJoint:
     """
@@ -1230,9 +1491,13 @@ class BaseGrid:
     """
     Square cells over the floor, one layer for each heading.
     """
+    def __getstate__(self) -> tuple:
+        ...
     def __init__(self, origin: numpy.typing.ArrayLike, resolution: typing.SupportsFloat | typing.SupportsIndex, nx: typing.SupportsInt | typing.SupportsIndex, ny: typing.SupportsInt | typing.SupportsIndex, headings: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [0.0]) -> None:
         ...
     def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: tuple) -> None:
         ...
     def centre(self, heading: typing.SupportsInt | typing.SupportsIndex, ix: typing.SupportsInt | typing.SupportsIndex, iy: typing.SupportsInt | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         """
@@ -1259,7 +1524,11 @@ class PartExplanation:
     """
     What became of the candidates for one part over all base poses tried.
     """
+    def __getstate__(self) -> tuple:
+        ...
     def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: tuple) -> None:
         ...
     def to_dict(self) -> dict:
         ...
@@ -1282,7 +1551,15 @@ class BaseRegion:
     """
     Base poses from which every target part of a tray can be grasped.
     """
+    def __getstate__(self) -> tuple:
+        ...
+    def __init__(self, tray: str, cells: numpy.typing.ArrayLike, grid: BaseGrid) -> None:
+        """
+        A region known from elsewhere: (headings, ny, nx) zeros and ones, to be intersected with others.
+        """
     def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: tuple) -> None:
         ...
     def cells(self, grid: BaseGrid) -> numpy.typing.NDArray[numpy.uint8]:
         """
@@ -1306,6 +1583,41 @@ class BaseRegion:
     @property
     def tray(self) -> str:
         ...
+class ObjectRegions:
+    """
+    The region of every target part alone, kept and updated when parts leave.
+    """
+    @staticmethod
+    def compute(problem: PartSupplyProblem, database: ReachDatabase, grid: BaseGrid, *, progress: typing.Any = None) -> ObjectRegions:
+        """
+        The same as compute_base_regions, kept part by part.
+        """
+    def __repr__(self) -> str:
+        ...
+    def base_region(self, tray: typing.SupportsInt | typing.SupportsIndex) -> BaseRegion:
+        """
+        The region of all target parts in place, with what became of the candidates.
+        """
+    def parts(self, tray: typing.SupportsInt | typing.SupportsIndex) -> list[int]:
+        """
+        Indices of a tray's target parts that are in place, ascending.
+        """
+    def region(self, tray: typing.SupportsInt | typing.SupportsIndex, parts: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]) -> numpy.typing.NDArray[numpy.uint8]:
+        """
+        (headings, ny, nx) array of 0 and 1: cells from which every one of these parts can be grasped.
+        """
+    def remove(self, tray_and_part: collections.abc.Sequence[tuple[typing.SupportsInt | typing.SupportsIndex, typing.SupportsInt | typing.SupportsIndex]], *, progress: typing.Any = None) -> bool:
+        """
+        Parts (tray, part) leave: they stand in nobody's way any more. False when stopped: nothing has changed.
+        """
+    @property
+    def grid(self) -> BaseGrid:
+        ...
+    @property
+    def trays(self) -> int:
+        """
+        How many.
+        """
 class Intersection:
     """
     Cells that several regions share, with their largest disc.
@@ -1332,6 +1644,11 @@ class Intersection:
 class Intersections:
     def __repr__(self) -> str:
         ...
+    @property
+    def complete(self) -> bool:
+        """
+        False when the search ended early.
+        """
     @property
     def lost(self) -> list[Intersection]:
         """
@@ -1372,6 +1689,11 @@ class StopSet:
     def __repr__(self) -> str:
         ...
     @property
+    def candidates(self) -> Intersections:
+        """
+        What least_stops chose from.
+        """
+    @property
     def lower_bound(self) -> int:
         """
         Proven least number of stops.
@@ -1407,6 +1729,97 @@ class BasePath:
     @property
     def turning(self) -> float:
         ...
+class OptimisedOrder:
+    """
+    In which order parts are best picked.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def mean_radius(self) -> float:
+        """
+        Over rounds and groups [m].
+        """
+    @property
+    def order(self) -> list[list[int]]:
+        """
+        [tray][round]: index of the part.
+        """
+    @property
+    def proven(self) -> bool:
+        """
+        No other order is better for these groups.
+        """
+    @property
+    def smallest_radius(self) -> float:
+        ...
+class PolicyRound:
+    """
+    One round of pick and place.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def mean_radius(self) -> float:
+        """
+        Over the stops [m].
+        """
+    @property
+    def outcome(self) -> Outcome:
+        ...
+    @property
+    def reliable(self) -> bool:
+        """
+        The parts picked can be grasped from everywhere in the discs of their stops.
+        """
+    @property
+    def seconds(self) -> float:
+        """
+        Spent on regions and stops between the rounds.
+        """
+    @property
+    def stops(self) -> list[Stop]:
+        ...
+class PolicyResult:
+    """
+    A row of P1 table 3.4.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def feasible(self) -> bool:
+        """
+        Solved, reliable and online.
+        """
+    @property
+    def mean_radius(self) -> float:
+        """
+        P1 equation 3.2 [m].
+        """
+    @property
+    def mean_stops(self) -> float:
+        ...
+    @property
+    def online(self) -> bool:
+        """
+        Every round's seconds are within the limit.
+        """
+    @property
+    def reliable(self) -> bool:
+        ...
+    @property
+    def rounds(self) -> list[PolicyRound]:
+        ...
+    @property
+    def smallest_radius(self) -> float:
+        ...
+    @property
+    def solved(self) -> bool:
+        """
+        Every round has stops.
+        """
 class PickMotion:
     """
     One timed arm motion at a stop.
@@ -1654,11 +2067,257 @@ class IkSeedDatabase:
         """
         (k, n): remembered arm postures with the base put where they reach the pose, best match first.
         """
+class PointCloud:
+    """
+    Points of a scan [m]; an organised cloud keeps the image's rows.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def T_world_sensor(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def height(self) -> int:
+        """
+        1 when the points are in no order.
+        """
+    @property
+    def labels(self) -> list[int]:
+        """
+        One a point where the file has them, else empty.
+        """
+    @property
+    def points(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3); NaN: not measured.
+        """
+    @property
+    def warning(self) -> str:
+        """
+        What the reader put up with, or empty.
+        """
+    @property
+    def width(self) -> int:
+        ...
+class DepthImage:
+    """
+    What a depth camera saw: depth along the camera's axis [m], 0 where nothing was measured.
+    """
+    def __init__(self, depth: typing.Any, camera: PinholeCamera, T_world_camera: typing.Any = None) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def points(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3): every measured point in the world, row by row [m].
+        """
+    @property
+    def T_world_camera(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def camera(self) -> PinholeCamera:
+        ...
+    @property
+    def depth(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (height, width) float32 [m]
+        """
+class HeightMap:
+    """
+    Heights over square cells, seen along -z of the map's frame [m].
+    """
+    def __init__(self, height: typing.Any, resolution: typing.SupportsFloat | typing.SupportsIndex, T_world_map: typing.Any = None) -> None:
+        """
+        From heights (ny, nx) [m], NaN where nothing is known; the frame lies in the middle of the rectangle.
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def T_world_map(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def height(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (ny, nx) best estimate; NaN: not seen.
+        """
+    @property
+    def pixel(self) -> float:
+        """
+        What a pixel of the image covers [m]; 0 without an image.
+        """
+    @property
+    def resolution(self) -> float:
+        ...
+    @property
+    def upper(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        (ny, nx) no surface is higher; NaN: nothing known.
+        """
+class FittedCuboid:
+    """
+    A box-shaped part on its supporting plane.
+    """
+    def __repr__(self) -> str:
+        ...
+    def shape(self) -> Box:
+        """
+        The cuboid as a shape.
+        """
+    @property
+    def T_world_box(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def fill(self) -> float:
+        """
+        Share of the top rectangle that was seen: how box-like it is.
+        """
+    @property
+    def points(self) -> int:
+        ...
+    @property
+    def size(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        Full lengths, the longer side of the top first [m].
+        """
+class CuboidFit:
+    """
+    The supporting plane, the cuboids on it, and which point belongs to what.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def cuboids(self) -> list[FittedCuboid]:
+        ...
+    @property
+    def labels(self) -> list[int]:
+        """
+        One a point: its cuboid, -1 the plane, -2 left out.
+        """
+    @property
+    def plane_found(self) -> bool:
+        ...
+    @property
+    def plane_normal(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        ...
+    @property
+    def plane_offset(self) -> float:
+        """
+        plane_normal . x = plane_offset [m]
+        """
+class ScoredGrasp:
+    """
+    A way to grasp something that a depth image shows.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def T_world_tcp(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def angle(self) -> float:
+        """
+        Of the closing axis in the map's frame, in [0, pi) [rad].
+        """
+    @property
+    def cell(self) -> tuple[int, int]:
+        ...
+    @property
+    def height(self) -> float:
+        """
+        Of the fingertips above the map's frame [m].
+        """
+    @property
+    def opening(self) -> float:
+        """
+        Of the fingers while moving in [m].
+        """
+    @property
+    def pixel(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"]:
+        """
+        (u, v) in the depth image; (-1, -1) without one.
+        """
+    @property
+    def score(self) -> float:
+        """
+        In (0, 1].
+        """
+    @property
+    def width(self) -> float:
+        """
+        Of the part between the fingers [m].
+        """
+class Graspability:
+    """
+    Grasps, best first, and what became of the other places looked at.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def counts(self) -> dict:
+        ...
+    @property
+    def grasps(self) -> list[ScoredGrasp]:
+        ...
+class RestingPose:
+    """
+    How a part may lie on a level floor.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def T_floor_part(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def probability(self) -> float:
+        ...
+class PlacedPart:
+    """
+    A part lying in a tray.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def T_tray_part(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def on_floor(self) -> bool:
+        """
+        False: it lies on others.
+        """
+    @property
+    def resting_pose(self) -> int:
+        """
+        Index into resting_poses(part).
+        """
+class RandomPlacement:
+    """
+    Parts lying in a tray at random.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def not_placed(self) -> int:
+        """
+        Parts for which no place was found.
+        """
+    @property
+    def parts(self) -> list[PlacedPart]:
+        ...
+def _capability_option_table() -> dict:
+    ...
 def _check_options(section: str, **kwargs) -> None:
     """
     Raises InvalidInput when an option of a scenario's section is out of range.
     """
+def _checker_option_table() -> dict:
+    ...
+def _cuboid_option_table() -> dict:
+    ...
+def _edge_option_table() -> dict:
+    ...
 def _grasp_option_table() -> dict:
+    ...
+def _graspability_option_table() -> dict:
     ...
 def _ik_option_table() -> dict:
     ...
@@ -1681,6 +2340,10 @@ def camera_view_objective(group: JointGroup, camera_link: str, point: numpy.typi
     Weight times the squared distance [m] of a world point from the optical axis (+z) of a camera on a link, plus the
     squared depth by which it lies behind the camera.
     """
+def cheapest_assignment(costs: numpy.typing.ArrayLike) -> list[int]:
+    """
+    A column of its own for each row of (n, n) so that the sum of costs is least.
+    """
 def compute_base_regions(problem: PartSupplyProblem, database: ReachDatabase, grid: BaseGrid, *, progress: typing.Any = None) -> list[BaseRegion]:
     """
     P1 Algorithm 2 with exact inverse kinematics: one region for each tray with target parts.
@@ -1695,9 +2358,56 @@ def compute_disabled_pairs(robot: Robot, *, progress: typing.Any = None, **kwarg
         seed = 1: same seed, same pairs
         threads = 0: 0: all
     """
+def evaluate_graspability(map: HeightMap, gripper: Gripper, *, image: DepthImage | None = None, **kwargs) -> Graspability:
+    """
+    Fast graspability evaluation (P1 3.7.2): contact and collision masks of the hand convolved with a height map over
+    closing directions, openings and heights; grasps at the local maxima, straight along -z of the map. With the
+    `image` that the map was made of each grasp gets its pixel.
+    
+    Keyword options:
+        finger_thickness = 0.012: of a finger along the closing axis [m]
+        finger_length = 0.12: from the fingertip back to the palm [m]
+        palm_length = 0.13: of the palm along the closing axis [m]
+        palm_width = 0.065: of the palm across it [m]
+        margin = 0.001: air kept around the hand [m]
+        orientations = 16: closing directions over half a turn
+        openings = 2: openings tried: max_opening and equal parts of it
+        layer_step = 0.01: between the heights at which fingertips are tried [m]
+        lowest = 0.003: height of the lowest fingertips above the map's frame [m]
+        insertion = 0.01: how far a part must rise above the fingertips to count as held [m]
+        smoothing = 0.01: radius over which graspability is averaged [m]
+        min_contact = 0.4: share of the pads' width that must meet the part
+        min_distance = 0.015: between returned grasps of about one direction [m]
+        max_grasps = 100: best kept
+        threads = 0: 0: all
+    """
 def find_package(name: str, folder: typing.Any, package_dirs: typing.Any = None) -> str:
     """
     Folder of the ROS package that a file in `folder` means by package://NAME or $(find NAME); empty if none.
+    """
+def fit_cuboids(points: typing.Any, *, T_world_tray: typing.Any = None, tray_size: typing.Any = None, wall: typing.SupportsFloat | typing.SupportsIndex = 0.005, up: typing.Any = None, eye: typing.Any = None, **kwargs) -> CuboidFit:
+    """
+    Box-shaped parts in a cloud (n, 3) (P1 3.7.1): the supporting plane and the tray are taken out, every cluster above
+    gets an upright cuboid. With a tray (outer `tray_size`, frame at the middle of its floor) the floor carries the parts;
+    without, the dominant plane does whose normal is near `up` (z; zeros: any plane, `eye` is above it).
+    
+    Keyword options:
+        plane_tolerance = 0.008: points no farther from the plane belong to it [m]
+        wall_margin = 0.006: points no farther from a tray's wall are left out [m]
+        up_angle = 0.35: the plane's normal lies within this of `up` [rad]
+        max_height = 0.5: points higher above the plane are left out [m]
+        cluster_tolerance = 0.01: points farther from each other are different parts [m]
+        leaf = 0.003: cell to which points are thinned for the search [m]
+        min_points = 60: smaller clusters are left out
+        plane_iterations = 1000: random planes tried
+    """
+def graspability_map(map: HeightMap, gripper: Gripper, angle: typing.SupportsFloat | typing.SupportsIndex, opening: typing.SupportsFloat | typing.SupportsIndex, tip_height: typing.SupportsFloat | typing.SupportsIndex, **kwargs) -> numpy.typing.NDArray[numpy.float32]:
+    """
+    (ny, nx) smoothed graspability in [0, 1] of one closing direction, opening and height of the fingertips.
+    """
+def hand_masks(gripper: Gripper, opening: typing.SupportsFloat | typing.SupportsIndex, angle: typing.SupportsFloat | typing.SupportsIndex, resolution: typing.SupportsFloat | typing.SupportsIndex, **kwargs) -> dict:
+    """
+    The masks `contact`, `fingers` and `palm` as images of zeros and ones with the hand in the middle.
     """
 def inscribed_circle(grid: BaseGrid, cells: numpy.typing.ArrayLike, heading: typing.SupportsInt | typing.SupportsIndex = 0) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"], float]:
     """
@@ -1711,13 +2421,42 @@ def joint_velocity(theta: typing.SupportsFloat | typing.SupportsIndex, platform_
     """
     Velocities of the virtual joints x, y, theta for a platform velocity: the inverse of platform_velocity().
     """
+def least_stops(grid: BaseGrid, regions: collections.abc.Sequence, min_radius: typing.SupportsFloat | typing.SupportsIndex = 0.1, *, time_limit: typing.SupportsFloat | typing.SupportsIndex = 60.0, tie_time_limit: typing.SupportsFloat | typing.SupportsIndex = 10.0, start: typing.Any = None, goal: typing.Any = None, progress: typing.Any = None) -> StopSet:
+    """
+    The least number of stops over regions (or masks), with proof; among equally few the widest discs, then, with `start` and `goal` (x, y), the shortest route as the crow flies.
+    """
+def look_down(eye: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    T_world_camera of a camera at `eye` [m] that looks straight down, image x along the world's x.
+    """
 def make_base_grid(problem: PartSupplyProblem, database: ReachDatabase) -> BaseGrid:
     """
     The grid that covers all base poses from which any tray could be reached.
     """
+def make_height_map(image: DepthImage, T_world_map: numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, **kwargs) -> HeightMap:
+    """
+    Resamples a depth image over a rectangle of `size` (x, y) [m] around a frame whose z points up.
+    
+    Keyword options:
+        resolution = 0.002: edge of a cell [m]
+        hole_radius = 2: holes up to so many pixels from a measurement are filled
+        jump = 0.01: neighbouring pixels that differ by more show different surfaces [m]
+    """
+def maximal_intersections(grid: BaseGrid, regions: collections.abc.Sequence, min_radius: typing.SupportsFloat | typing.SupportsIndex, *, max_boxes: typing.SupportsInt | typing.SupportsIndex = 50000000, progress: typing.Any = None) -> Intersections:
+    """
+    Those of the robust sets that are part of no other one: enough to prove a least number of stops.
+    """
 def minimal_stops(grid: BaseGrid, intersections: collections.abc.Sequence[Intersection], trays: typing.SupportsInt | typing.SupportsIndex) -> StopSet:
     """
     The least number of intersections that cover all trays (P1 equation 3.1), with proof.
+    """
+def optimised_order(grid: BaseGrid, cells: collections.abc.Sequence, groups: collections.abc.Sequence[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]], order: collections.abc.Sequence[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]], *, smallest_first: bool = False, restarts: typing.SupportsInt | typing.SupportsIndex = 20, rng_seed: typing.SupportsInt | typing.SupportsIndex = 1) -> OptimisedOrder:
+    """
+    The order in which parts are best picked when the trays of each group share a stop, never worse than `order`. `cells` is [tray][part], bitmaps (headings, ny, nx).
+    """
+def paired_order(places: collections.abc.Sequence) -> list[list[int]]:
+    """
+    P1's heuristic (figure 3.11): parts of neighbouring trays at nearly constant distances go together. `places` is one (m, 2) array of positions a tray; the answer is [tray][round].
     """
 def plan_base_route(arm: JointGroup, world: World, *, home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, resolution: typing.SupportsFloat | typing.SupportsIndex = 0.1) -> BasePath:
     """
@@ -1797,9 +2536,46 @@ def quat_xyzw_from_rotation(R: numpy.typing.ArrayLike) -> typing.Annotated[numpy
     """
     Quaternion (x, y, z, w) of a (3, 3) rotation.
     """
-def robust_intersections(grid: BaseGrid, regions: collections.abc.Sequence[BaseRegion], min_radius: typing.SupportsFloat | typing.SupportsIndex, max_sets: typing.SupportsInt | typing.SupportsIndex = 200000) -> Intersections:
+def random_placement(part: collections.abc.Sequence[LinkShape], tray_size: numpy.typing.ArrayLike, *, count: typing.SupportsInt | typing.SupportsIndex = 12, fill: typing.SupportsFloat | typing.SupportsIndex = 1.0, wall: typing.SupportsFloat | typing.SupportsIndex = 0.005, **kwargs) -> RandomPlacement:
+    """
+    Alike parts lying in a tray at random (P1 3.5.2), let down one after another without touching; `fill` is the share
+    of `count` that is there. The tray's frame is the middle of its floor, `tray_size` are outer lengths.
+    
+    Keyword options:
+        attempts = 100: random places tried for each part
+        stack = True: a part without a place on the floor may lie on others
+        gap = 0.0005: air left between bodies [m]
+        seed = 1: same seed, same places
+    """
+def read_pcd(path: typing.Any) -> PointCloud:
+    """
+    Reads a PCD file: ascii, binary or binary_compressed. Raises IoError naming file and rule.
+    """
+def render_depth(scene: collections.abc.Sequence[LinkShape], camera: PinholeCamera, T_world_camera: numpy.typing.ArrayLike, **kwargs) -> DepthImage:
+    """
+    The depth image of shapes whose poses are in the world: one ray a pixel, first surface in front of the camera.
+    
+    Keyword options:
+        noise = 0.0: standard deviation of the depth at 1 m; grows with the square of the distance [m]
+        missing = 0.0: share of pixels without a measurement, in [0, 1]
+        seed = 1: same seed, same image
+        threads = 0: 0: all
+    """
+def resting_poses(part: collections.abc.Sequence[LinkShape]) -> list[RestingPose]:
+    """
+    Faces of a part's convex hull on which it does not tip over, most probable first.
+    """
+def robust_intersections(grid: BaseGrid, regions: collections.abc.Sequence, min_radius: typing.SupportsFloat | typing.SupportsIndex, max_sets: typing.SupportsInt | typing.SupportsIndex = 200000) -> Intersections:
     """
     Every set of trays whose shared cells hold a disc of at least `min_radius` [m] (P1 3.4.2).
+    """
+def route_lengths(arm: JointGroup, world: World, *, home: numpy.typing.ArrayLike, positions: numpy.typing.ArrayLike, resolution: typing.SupportsFloat | typing.SupportsIndex = 0.1, threads: typing.SupportsInt | typing.SupportsIndex = 0, progress: typing.Any = None) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    """
+    (m, m): how far it is to drive between base poses (m, 3), around what stands in the way; infinite: no way found.
+    """
+def run_policy(grid: BaseGrid, cells: collections.abc.Sequence, order: collections.abc.Sequence[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]], policy: str = 'all', *, min_radius: typing.SupportsFloat | typing.SupportsIndex = 0.1, online_limit: typing.SupportsFloat | typing.SupportsIndex = 1.0, time_limit: typing.SupportsFloat | typing.SupportsIndex = 60.0, tie_time_limit: typing.SupportsFloat | typing.SupportsIndex = 10.0, planned: typing.Any = None, progress: typing.Any = None) -> PolicyResult:
+    """
+    Plans the stops of every round for all parts, the `remaining` or the `targets` and holds them against the parts' bitmaps `cells` [tray][part]. `planned(round)` gives other regions to plan with, one a tray: what they cost counts as time between the rounds.
     """
 def sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Gripper, **kwargs) -> list[Grasp]:
     """
@@ -1817,6 +2593,10 @@ def sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Gripper,
 def self_distance_objective(checker: CollisionChecker, margin: typing.SupportsFloat | typing.SupportsIndex = 0.05, weight: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> IkObjective:
     """
     Weight times the sum of (1 - distance / margin)^2 over pairs of the robot's own links nearer than `margin` [m].
+    """
+def share_stops(drive_times: numpy.typing.ArrayLike, stop_times: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], robots: typing.SupportsInt | typing.SupportsIndex) -> SharedTours:
+    """
+    Shares stops among robots so that the last is done as early as can be. `drive_times` is (n + 2 k, n + 2 k): stops, k starts, k goals; infinite: no way.
     """
 def shortest_visiting_tour(lengths: numpy.typing.ArrayLike) -> TourResult:
     """
@@ -1852,6 +2632,10 @@ def time_parameterize(path: numpy.typing.ArrayLike, velocity_limits: numpy.typin
 def time_parameterize_free(checker: CollisionChecker, path: numpy.typing.ArrayLike, *, edge_step: typing.SupportsFloat | typing.SupportsIndex = 0.01, **kwargs) -> JointTrajectory:
     """
     time_parameterize under the group's limits, the blended corners checked for collisions too.
+    """
+def tray_shapes(size: numpy.typing.ArrayLike, wall: typing.SupportsFloat | typing.SupportsIndex = 0.005) -> list[LinkShape]:
+    """
+    Floor and four walls of a tray (outer lengths) in its frame.
     """
 def wheel_speeds(v: typing.SupportsFloat | typing.SupportsIndex, omega: typing.SupportsFloat | typing.SupportsIndex, wheel_separation: typing.SupportsFloat | typing.SupportsIndex) -> tuple[float, float]:
     """

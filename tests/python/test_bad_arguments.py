@@ -157,9 +157,14 @@ OBJECTS = {
 
 # The arguments beside the array.
 # Optional arguments that mean nothing without another one.
-COMPANIONS: dict[str, dict[str, Any]] = {"plan_platform_locations.T_link_camera": {"camera_link": "tip"}}
+COMPANIONS: dict[str, dict[str, Any]] = {
+    "plan_platform_locations.T_link_camera": {"camera_link": "tip"},
+    "fit_cuboids.T_world_tray": {"tray_size": [0.3, 0.4, 0.1]},
+}
 OTHERS: dict[str, Any] = {
     "robot": lambda: ROBOT,
+    "depth": lambda: np.ones((480, 640), np.float32),
+    "height": lambda: np.ones((3, 4)),
     "group": lambda: ARM,
     "arm": lambda: ARM,
     "world": world,
@@ -324,7 +329,7 @@ def bad_values(argument: Argument) -> dict[str, Any]:
         del bad["no entries"]
     if not argument.optional:
         bad["None"] = None
-    if argument.name == "lengths":
+    if argument.name in ("lengths", "drive_times"):
         del bad["inf"]  # no way between two stops
     return bad
 

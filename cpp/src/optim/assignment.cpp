@@ -10,8 +10,8 @@ namespace mmgrasp {
 
 std::vector<int> cheapest_assignment(const Eigen::MatrixXd& costs) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  require(costs.rows() == costs.cols(), "costs", std::to_string(costs.rows()) + " x " + std::to_string(costs.cols()),
-          "must be square");
+  const std::string shape = "(" + std::to_string(costs.rows()) + ", " + std::to_string(costs.cols()) + ")";
+  require(costs.rows() == costs.cols(), "shape of costs", shape, "must be square");
   require(costs.allFinite(), "costs", costs.sum(), "must be finite");
   // Row and column 0 stand for "none": each row in turn finds the cheapest way to a free column over reduced costs.
   const auto n = static_cast<std::size_t>(costs.rows());

@@ -116,7 +116,7 @@ def run_distance(context: Context) -> Result:
     )
     result.trend(
         "two trays are robust together up to one distance and not beyond it",
-        robust == [d for d in distances if farthest is not None and d <= farthest],
+        bool(robust) and robust == [d for d in distances if d <= max(robust)],
     )
     result.notes.append(
         f"The paper's pairs stay robust below 0.8 m, ours up to {farthest} m: with exact inverse kinematics a region is as wide "

@@ -188,26 +188,32 @@ TEST(ReachNearest, SeedsInverseKinematicsOfTheRealPanda) {
   const Robot robot = Robot::load((folder / "expanded/panda.urdf").string(),
                                   std::filesystem::exists(srdf) ? srdf.string() : "", loading);
   const JointGroup arm = robot.chain("panda_link0", "panda_link8");
-  const auto database = ReachDatabase::build(arm, with_samples(30000));
-  ASSERT_GT(database.size(), 5000);
-  EXPECT_LT(database.reach(),
-            0.333 + 0.316 + 0.384 + 0.088 + 0.107 + 0.1);  // the links stretched out, elbow offset included
-  Rng rng(4);
-  Eigen::MatrixXd out;
-  IkWorkspace workspace;
+  // Several draws, since a single one is off by some percent either way: 89.4 % when last looked at.
+  constexpr int kDraws = 10, kTrials = 500;
   int solved = 0;
-  for (int trial = 0; trial < 1000; ++trial) {
-    const Pose T = arm.fk(database.configuration(static_cast<std::int64_t>(rng.index(database.size())))) *
-                   pose_from_xyz_rpy({0.02, -0.02, 0.01}, {0.1, -0.1, 0.1});
-    const int found = database.nearest(T, 8, out);
-    bool converged = false;
-    for (int k = 0; k < found && !converged; ++k) {
-      Eigen::VectorXd q = out.col(k);
-      converged = refine_ik(arm, T, q, {}, workspace) && arm.within_limits(q);
+  for (unsigned seed = 1; seed <= kDraws; ++seed) {
+    ReachOptions options = with_samples(30000);
+    options.seed = seed;
+    const auto database = ReachDatabase::build(arm, options);
+    ASSERT_GT(database.size(), 5000);
+    EXPECT_LT(database.reach(),
+              0.333 + 0.316 + 0.384 + 0.088 + 0.107 + 0.1);  // the links stretched out, elbow offset included
+    Rng rng(4);
+    Eigen::MatrixXd out;
+    IkWorkspace workspace;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      const Pose T = arm.fk(database.configuration(static_cast<std::int64_t>(rng.index(database.size())))) *
+                     pose_from_xyz_rpy({0.02, -0.02, 0.01}, {0.1, -0.1, 0.1});
+      const int found = database.nearest(T, 8, out);
+      bool converged = false;
+      for (int k = 0; k < found && !converged; ++k) {
+        Eigen::VectorXd q = out.col(k);
+        converged = refine_ik(arm, T, q, {}, workspace) && arm.within_limits(q);
+      }
+      solved += converged;
     }
-    solved += converged;
   }
-  EXPECT_GE(solved, 880);
+  EXPECT_GE(solved, 89 * kDraws * kTrials / 100);
 }
 
 }  // namespace

@@ -1,7 +1,11 @@
 #pragma once
 
-#include <string>
+#include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
+#include "mmgrasp/task/base_region.hpp"
 #include "mmgrasp/task/part_supply.hpp"
 
 namespace mmgrasp::test {
@@ -131,5 +135,28 @@ inline ReachDatabase small_database(const PartSupplyProblem& problem) {
   options.samples = 300000;
   return ReachDatabase::build(problem.arm, options);
 }
+
+/// The small storeroom's regions on a grid of 8 cm, computed once for all tests of a suite.
+class SmallRegions : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    problem_ = new PartSupplyProblem(small_storeroom());
+    problem_->options.grid.resolution = 0.08;
+    database_ = new ReachDatabase(small_database(*problem_));
+    grid_ = new BaseGrid(make_base_grid(*problem_, *database_));
+    regions_ = new std::vector<BaseRegion>(compute_base_regions(*problem_, *database_, *grid_));
+  }
+  static void TearDownTestSuite() {
+    delete regions_;
+    delete grid_;
+    delete database_;
+    delete problem_;
+  }
+
+  inline static PartSupplyProblem* problem_ = nullptr;
+  inline static ReachDatabase* database_ = nullptr;
+  inline static BaseGrid* grid_ = nullptr;
+  inline static std::vector<BaseRegion>* regions_ = nullptr;
+};
 
 }  // namespace mmgrasp::test

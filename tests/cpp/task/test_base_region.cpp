@@ -9,32 +9,7 @@
 namespace mmgrasp {
 namespace {
 
-class BaseRegions : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    problem_ = new PartSupplyProblem(test::small_storeroom());
-    problem_->options.grid.resolution = 0.08;
-    database_ = new ReachDatabase(test::small_database(*problem_));
-    grid_ = new BaseGrid(make_base_grid(*problem_, *database_));
-    regions_ = new std::vector<BaseRegion>(compute_base_regions(*problem_, *database_, *grid_));
-  }
-  static void TearDownTestSuite() {
-    delete regions_;
-    delete grid_;
-    delete database_;
-    delete problem_;
-  }
-
-  static PartSupplyProblem* problem_;
-  static ReachDatabase* database_;
-  static BaseGrid* grid_;
-  static std::vector<BaseRegion>* regions_;
-};
-
-PartSupplyProblem* BaseRegions::problem_ = nullptr;
-ReachDatabase* BaseRegions::database_ = nullptr;
-BaseGrid* BaseRegions::grid_ = nullptr;
-std::vector<BaseRegion>* BaseRegions::regions_ = nullptr;
+using BaseRegions = test::SmallRegions;
 
 TEST_F(BaseRegions, RegionsAreThereAndFitTheGrid) {
   ASSERT_EQ(regions_->size(), 2u);

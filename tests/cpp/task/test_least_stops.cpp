@@ -28,33 +28,42 @@ double radius_of(const BaseGrid& grid, const std::vector<BaseRegion>& regions, c
   return best;
 }
 
-/// Every way to split the trays into groups; each group's disc must be large enough.
+using Partition = std::vector<std::vector<int>>;
+
+/// Visits every way to split the trays into at most `most` groups, which the visitor may lower.
+void each_partition(int trays, const std::size_t& most, const std::function<void(const Partition&)>& visit) {
+  Partition parts;
+  const std::function<void(int)> place = [&](int tray) {
+    if (parts.size() > most) return;
+    if (tray == trays) {
+      visit(parts);
+      return;
+    }
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      parts[p].push_back(tray);
+      place(tray + 1);
+      parts[p].pop_back();
+    }
+    parts.push_back({tray});
+    place(tray + 1);
+    parts.pop_back();
+  };
+  place(0);
+}
+
+/// The fewest groups whose discs are all large enough, and the largest smallest disc of as few.
 struct BestPartition {
   std::size_t groups = 1000;
   double smallest = 0;
 
   BestPartition(int trays, double min_radius, const std::function<double(const std::vector<int>&)>& radius) {
-    std::vector<std::vector<int>> parts;
-    const std::function<void(int)> place = [&](int tray) {
-      if (parts.size() > groups) return;
-      if (tray == trays) {
-        double least = 1e9;
-        for (const auto& part : parts) least = std::min(least, radius(part));
-        if (least < min_radius) return;
-        if (parts.size() < groups || least > smallest) smallest = least;
-        groups = parts.size();
-        return;
-      }
-      for (std::size_t p = 0; p < parts.size(); ++p) {
-        parts[p].push_back(tray);
-        place(tray + 1);
-        parts[p].pop_back();
-      }
-      parts.push_back({tray});
-      place(tray + 1);
-      parts.pop_back();
-    };
-    place(0);
+    each_partition(trays, groups, [&](const Partition& parts) {
+      double least = 1e9;
+      for (const auto& part : parts) least = std::min(least, radius(part));
+      if (least < min_radius) return;
+      if (parts.size() < groups || least > smallest) smallest = least;
+      groups = parts.size();
+    });
   }
 };
 
@@ -108,29 +117,15 @@ TEST(LeastStops, TheSumOfRadiiIsTheLargest) {
     }
     // All partitions with as many groups and no smaller smallest disc.
     double best = 0;
-    std::vector<std::vector<int>> parts;
-    const std::function<void(int)> place = [&](int tray) {
-      if (parts.size() > set.stops.size()) return;
-      if (tray == 6) {
-        double total = 0, least = 1e9;
-        for (const auto& part : parts) {
-          const double radius = radius_of(layout.grid, layout.regions, part);
-          total += radius;
-          least = std::min(least, radius);
-        }
-        if (parts.size() == set.stops.size() && least >= smallest - 1e-5) best = std::max(best, total);
-        return;
+    each_partition(6, set.stops.size(), [&](const Partition& parts) {
+      double total = 0, least = 1e9;
+      for (const auto& part : parts) {
+        const double radius = radius_of(layout.grid, layout.regions, part);
+        total += radius;
+        least = std::min(least, radius);
       }
-      for (std::size_t p = 0; p < parts.size(); ++p) {
-        parts[p].push_back(tray);
-        place(tray + 1);
-        parts[p].pop_back();
-      }
-      parts.push_back({tray});
-      place(tray + 1);
-      parts.pop_back();
-    };
-    place(0);
+      if (parts.size() == set.stops.size() && least >= smallest - 1e-5) best = std::max(best, total);
+    });
     const double step = 0.25 * layout.grid.resolution + 1e-3;  // what least_stops() promises for each stop
     EXPECT_GE(sum, best - step * static_cast<double>(set.stops.size())) << seed;
     EXPECT_LE(sum, best + 1e-5) << seed;

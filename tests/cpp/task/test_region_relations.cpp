@@ -8,22 +8,8 @@
 namespace mmgrasp {
 namespace {
 
-class RegionRelations : public ::testing::Test {
+class RegionRelations : public test::SmallRegions {
  protected:
-  static void SetUpTestSuite() {
-    problem_ = new PartSupplyProblem(test::small_storeroom());
-    problem_->options.grid.resolution = 0.08;
-    database_ = new ReachDatabase(test::small_database(*problem_));
-    grid_ = new BaseGrid(make_base_grid(*problem_, *database_));
-    regions_ = new std::vector<BaseRegion>(compute_base_regions(*problem_, *database_, *grid_));
-  }
-  static void TearDownTestSuite() {
-    delete regions_;
-    delete grid_;
-    delete database_;
-    delete problem_;
-  }
-
   /// Everything but the robot, moved by a rigid motion of the floor.
   static PartSupplyProblem moved(const PartSupplyProblem& problem, const Eigen::Vector3d& motion) {
     PartSupplyProblem other = problem;
@@ -51,17 +37,7 @@ class RegionRelations : public ::testing::Test {
     }
     return {different, in_any};
   }
-
-  static PartSupplyProblem* problem_;
-  static ReachDatabase* database_;
-  static BaseGrid* grid_;
-  static std::vector<BaseRegion>* regions_;
 };
-
-PartSupplyProblem* RegionRelations::problem_ = nullptr;
-ReachDatabase* RegionRelations::database_ = nullptr;
-BaseGrid* RegionRelations::grid_ = nullptr;
-std::vector<BaseRegion>* RegionRelations::regions_ = nullptr;
 
 TEST_F(RegionRelations, AnObstacleNeverGrowsARegion) {
   Rng rng(3);

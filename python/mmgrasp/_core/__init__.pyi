@@ -1447,7 +1447,7 @@ class PartSupplyProblem:
         Keyword options:
             grid_resolution = 0.05: cell edge of the base grid [m]
             grid_max_distance = 0.0: cells farther from the tray's middle are not tried [m]; 0: the arm's reach
-            ik_seeds = 8: database configurations refined for each grasp and base pose
+            ik_seeds = 8: database configurations refined for each grasp and base pose; arms with closed-form IK take all branches
             positioning_uncertainty = 0.1: radius of the disc in which the base may come to stand [m]
             approach_distance = 0.08: straight move from pre-grasp to grasp [m]
             lift_height = 0.12: straight upward move after closing [m]

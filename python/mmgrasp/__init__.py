@@ -122,7 +122,7 @@ from ._core import (
     with_sampled_pairs,
 )
 from .part_supply import PartSupplyPlan, plan_part_supply
-from .random_trays import TrayScan, parts_of_grasps, scan_random_tray, union_of_grasps
+from .random_trays import TrayScan, parts_of_grasps, scan_random_tray, scan_tray, union_of_grasps
 from .scenario import Scenario, load_scenario
 from .verification import PlanVerdict, verify_plan
 
@@ -237,6 +237,7 @@ __all__ = [
     "run_policy",
     "sample_grasps",
     "scan_random_tray",
+    "scan_tray",
     "self_distance_objective",
     "share_stops",
     "shortest_visiting_tour",

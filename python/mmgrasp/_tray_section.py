@@ -31,19 +31,6 @@ class TraySetup:
     targets: list[str] = field(default_factory=list)
 
 
-def tray_walls(size: list[float]) -> list[LinkShape]:
-    """Floor and four walls; the tray's frame is the middle of the floor's upper face, `size` are outer lengths."""
-    x, y, z = size
-    middle = z / 2 - WALL
-    return [
-        LinkShape(Box([x, y, WALL]), _core.pose([0, 0, -WALL / 2])),
-        LinkShape(Box([WALL, y, z]), _core.pose([x / 2 - WALL / 2, 0, middle])),
-        LinkShape(Box([WALL, y, z]), _core.pose([-x / 2 + WALL / 2, 0, middle])),
-        LinkShape(Box([x - 2 * WALL, WALL, z]), _core.pose([0, y / 2 - WALL / 2, middle])),
-        LinkShape(Box([x - 2 * WALL, WALL, z]), _core.pose([0, -y / 2 + WALL / 2, middle])),
-    ]
-
-
 def read_part_types(node: Node, gripper: Gripper) -> dict[str, PartType]:
     types = {}
     for name, entry in node.items():
@@ -118,7 +105,7 @@ def read_tray(node: Node, types: dict[str, PartType], gripper: Gripper) -> TrayS
             )
         )
     headings = node["headings"].numbers() if "headings" in node else []
-    return TraySetup(Tray(name, T_world_tray, size, parts, headings), tray_walls(size), targets)
+    return TraySetup(Tray(name, T_world_tray, size, parts, headings), _core.tray_shapes(size, WALL), targets)
 
 
 def _kind(node: Node, types: dict[str, PartType]) -> str:

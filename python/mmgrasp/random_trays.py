@@ -7,7 +7,7 @@ a part may come to lie.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -34,9 +34,10 @@ MARKER = 0.001  # radius of the body that stands for a grasp [m]
 
 @dataclass(frozen=True)
 class TrayScan:
-    """One random filling of a tray, its depth image and the grasps found in it; poses are in the tray's frame."""
+    """One filling of a tray, its depth image and the grasps found in it; poses are in the tray's frame."""
 
-    placement: RandomPlacement
+    placement: RandomPlacement | None
+    """None: the poses were given."""
     image: DepthImage
     height_map: HeightMap
     found: Graspability
@@ -69,16 +70,60 @@ def scan_random_tray(
     the floor; `noise` [m] is the depth's at 1 m. Further keywords go to evaluate_graspability. Same seed, same scan.
     """
     size = np.asarray(tray_size, float)
-    placement = _core.random_placement(list(part), size, count=count, fill=fill, wall=wall, stack=stack, seed=seed)
+    placement = _core.random_placement(_body(part), size, count=count, fill=fill, wall=wall, stack=stack, seed=seed)
+    poses = [placed.T_tray_part for placed in placement.parts]
+    seen = _core.look_down([0, 0, camera_height])
+    scan = scan_tray(
+        part,
+        poses,
+        size,
+        gripper,
+        wall=wall,
+        seed=seed,
+        camera=camera,
+        T_tray_camera=seen,
+        noise=noise,
+        resolution=resolution,
+        **options,
+    )
+    return replace(scan, placement=placement)
+
+
+def scan_tray(
+    part: Sequence[LinkShape],
+    poses: Iterable[ArrayLike],
+    tray_size: ArrayLike,
+    gripper: Gripper,
+    *,
+    wall: float = 0.005,
+    seed: int = 1,
+    camera: PinholeCamera | None = None,
+    T_tray_camera: ArrayLike | None = None,
+    noise: float = 0.0005,
+    resolution: float = 0.002,
+    **options: Any,
+) -> TrayScan:
+    """Renders a tray in which parts lie at `poses` (T_tray_part each) and evaluates graspability.
+
+    Without `T_tray_camera` the camera looks down from 0.8 m above the middle of the floor. Else as scan_random_tray.
+    """
+    body = _body(part)
+    size = np.asarray(tray_size, float)
     scene = _core.tray_shapes(size, wall)
-    for placed in placement.parts:
-        scene += [LinkShape(shape.shape, placed.T_tray_part @ shape.pose) for shape in part]
-    eye = _core.look_down([0, 0, camera_height])
+    for pose in poses:
+        scene += [LinkShape(shape.shape, np.asarray(pose, float) @ shape.pose) for shape in body]
+    eye = _core.look_down([0, 0, 0.8]) if T_tray_camera is None else T_tray_camera
     image = _core.render_depth(scene, camera or PinholeCamera(), eye, noise=noise, seed=seed)
     around = size[:2] + 2 * BORDER
     height_map = _core.make_height_map(image, np.eye(4), around, resolution=resolution)
     found = _core.evaluate_graspability(height_map, gripper, image=image, **options)
-    return TrayScan(placement, image, height_map, found)
+    return TrayScan(None, image, height_map, found)
+
+
+def _body(part: Sequence[LinkShape]) -> list[LinkShape]:
+    if isinstance(part, Part) or not all(isinstance(shape, LinkShape) for shape in part):
+        raise _core.InvalidInput("part: must be a list of LinkShape, its body; a Part is a body with a pose and grasps")
+    return list(part)
 
 
 def union_of_grasps(scans: Iterable[TrayScan]) -> list[ScoredGrasp]:

@@ -123,3 +123,47 @@ def test_real_cloud_files():
     assert "200" in cloud.warning
     with pytest.raises(mg.IoError, match=r"README\.txt"):
         mg.read_pcd(CLOUDS / "haf" / "README.txt")
+
+
+def test_graspability_on_a_real_depth_frame_keeps_the_hand_clear():
+    """What stands on the largest level surface of a room: no measured point in a finger, some between the fingers."""
+    if not CLOUDS.exists():
+        pytest.skip("no reference data")
+    image_module = pytest.importorskip("PIL.Image")
+    depth = np.asarray(image_module.open(CLOUDS / "open3d" / "RGBD" / "depth" / "00000.png"), np.float32) / 1000
+    image = mg.DepthImage(depth, mg.PinholeCamera(), np.eye(4))
+    points = image.points()
+    fit = mg.fit_cuboids(points, up=[0, 0, 0], plane_tolerance=0.02, leaf=0.01, cluster_tolerance=0.03, min_points=300)
+    up = fit.plane_normal  # the floor's
+    x = np.array([1.0, 0, 0]) - up[0] * up
+    T_world_map = np.eye(4)
+    T_world_map[:3, :3] = np.column_stack([x, np.cross(up, x), up]) / np.linalg.norm(x)
+    T_world_map[:3, 2] = up
+    middle = np.mean([cuboid.T_world_box[:3, 3] for cuboid in fit.cuboids], axis=0)
+    T_world_map[:3, 3] = middle - (up @ middle - fit.plane_offset) * up
+    heights = mg.make_height_map(image, T_world_map, [1.6, 1.6], resolution=0.005, jump=0.03)
+    found = mg.evaluate_graspability(heights, gripper(), image=image, lowest=0.02, layer_step=0.02, insertion=0.015)
+    assert len(found.grasps) >= 3
+    for grasp in found.grasps:
+        q = (points - grasp.T_world_tcp[:3, 3]) @ grasp.T_world_tcp[:3, :3]  # approach x, closing y
+        side = np.abs(q[:, 1])
+        reached = (q[:, 0] < 0.02) & (q[:, 0] > 0.02 - 0.12) & (np.abs(q[:, 2]) < 0.011)
+        assert np.sum(reached & (side < grasp.opening / 2)) > 20
+        assert not np.any(reached & (side > grasp.opening / 2) & (side < grasp.opening / 2 + 0.012))
+
+
+def test_a_part_with_grasps_is_no_body():
+    part = mg.Part("part", PART, np.eye(4), [])
+    with pytest.raises(mg.InvalidInput, match="list of LinkShape"):
+        mg.scan_random_tray(part, TRAY, gripper())
+
+
+def test_parts_at_given_poses_are_grasped_where_they_lie():
+    poses = [mg.pose([x, 0.1, 0.015], rpy=[0, 0, np.pi / 2]) for x in (-0.06, 0.06)]
+    scan = mg.scan_tray(PART, poses, TRAY, gripper(), noise=0.0)
+    assert scan.placement is None
+    for pose in poses:
+        near = [g for g in scan.grasps if np.linalg.norm(g.T_world_tcp[:2, 3] - pose[:2, 3]) < 0.02]
+        assert near
+        assert max(near, key=lambda g: g.score).width == pytest.approx(0.035, abs=0.006)
+    assert all(min(np.linalg.norm(g.T_world_tcp[:2, 3] - p[:2, 3]) for p in poses) < 0.06 for g in scan.grasps)

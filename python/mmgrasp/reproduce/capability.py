@@ -86,10 +86,9 @@ def _free(context: Context) -> Result:
             row[f"refused: {cause.replace('_', '-')}"] = (None, getattr(made.rejections, cause))
         if not context.quick:
             result.trend(f"{name}: at least 30 times faster than the paper's 30 minutes", seconds < 60, clock=True)
-    result.exact(
-        "2,080,000 tool poses in 20 x 20 x 26 voxels" if not context.quick else "every voxel has its poses",
-        all(m.classes.size == np.prod(m.shape) * len(m.tool_poses) for m in best.values()),
-    )
+    if not context.quick:
+        sizes = {m.classes.size for m in best.values()} | {np.prod(m.shape) * 200 for m in best.values()}
+        result.exact("2,080,000 tool poses in 20 x 20 x 26 voxels", sizes == {2_080_000})
     result.trend(
         "more joints reach more: the arm with its lift a larger maximum than alone",
         best["arm and lift"].maximum >= best["arm"].maximum,

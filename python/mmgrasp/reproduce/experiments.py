@@ -14,8 +14,8 @@ import numpy as np
 from .. import _core
 from .drawing import TRAY_COLOURS, cells_to_runs, draw_cells, figure, grid_values
 from .entry import Context, Entry, Result
-from .policies import RANDOM_TOOL, SCANS, random_places
 from .rows import SPACING
+from .scanned_trays import SCANS, parts_from, random_scan
 from .setup import UNCERTAINTY, Row, database, describe, reach_samples
 
 TRAYS = (1, 2, 4)
@@ -23,19 +23,22 @@ MIDDLES = tuple(round((tray - 1) * SPACING, 6) for tray in TRAYS)
 PAPER_TIMES = {"ExperA": (46.94, 29.68), "ExperB": (38.20, 26.98)}
 
 
-def row_of(placement: str, seed: int) -> Row:
-    """ExperA: four objects on a grid (P1 3.7.3). ExperB: four scans of as many objects thrown in."""
-    row = Row(trays=3, objects=(2, 2), middles=MIDDLES)
+def problem_of(placement: str, seed: int) -> _core.PartSupplyProblem:
+    """ExperA: four objects on a grid (P1 3.7.3). ExperB: the grasps of four scans of a tray with parts thrown in."""
+    row = experiment_row()
     if placement == "ExperA":
-        return row
-    rng = np.random.default_rng(seed)
-    return row.with_(tool=RANDOM_TOOL, places=tuple(tuple(random_places(rng, 4 * SCANS, row.tray_size)) for _ in TRAYS))
+        return row.problem()
+    scans = [[g for scan in range(SCANS) for g in random_scan(row, t, scan, seed).grasps] for t in range(row.trays)]
+    return row.problem([parts_from(row, t, grasps) for t, grasps in enumerate(scans)])
+
+
+def experiment_row() -> Row:
+    return Row(trays=3, objects=(2, 2), middles=MIDDLES)
 
 
 def plan(placement: str, samples: int, seed: int) -> dict[str, Any]:
     """The planned stops and, as the baseline, the middle of each region."""
-    row = row_of(placement, seed)
-    reach, problem = database(row, samples), row.problem()
+    reach, problem = database(experiment_row(), samples), problem_of(placement, seed)
     grid = _core.make_base_grid(problem, reach)
     regions = _core.compute_base_regions(problem, reach, grid)
     sets = _core.robust_intersections(grid, regions, UNCERTAINTY)
@@ -56,10 +59,9 @@ def plan(placement: str, samples: int, seed: int) -> dict[str, Any]:
     }
 
 
-def drive(placement: str, samples: int, seed: int, stops: list[list[float]], run: int) -> dict[str, Any]:
+def drive(seed: int, stops: list[list[float]], run: int) -> dict[str, Any]:
     """One run over the stops: each is missed by an error drawn from the disc's normal distribution (10 cm on average)."""
-    row = row_of(placement, seed)
-    problem = row.problem()
+    problem = experiment_row().problem()
     rng = np.random.default_rng([seed, run])
     wanted = [np.array(stop) for stop in stops]
     points = np.array([p[:2] for p in [*wanted, problem.start, problem.goal]])
@@ -88,7 +90,7 @@ def _missed(rng: np.random.Generator, problem: _core.PartSupplyProblem, target: 
 # --- experiment 3.7.1 -------------------------------------------------------------------------------------------------
 def run_experiment(context: Context) -> Result:
     samples = reach_samples(context.quick)
-    row = row_of("ExperA", context.seed)
+    row = experiment_row()
     database(row, samples, progress=context.progress)
     item = {"placement": "ExperA", "samples": samples, "seed": context.seed}
     (ours,) = context.sweep(plan, [item], "p1-experiment-3.7.1")
@@ -146,12 +148,12 @@ def run_driving(context: Context) -> Result:
     samples = reach_samples(context.quick)
     runs = 2 if context.quick else 10
     names = ["ExperA"] if context.quick else ["ExperA", "ExperB"]
-    row = row_of("ExperA", context.seed)
+    row = experiment_row()
     database(row, samples, progress=context.progress)
     common = {"samples": samples, "seed": context.seed}
     plans = context.sweep(plan, [{"placement": name, **common} for name in names], "stops")
     items = [
-        {"placement": name, **common, "stops": ours[kind], "run": run}
+        {"seed": context.seed, "stops": ours[kind], "run": run}
         for name, ours in zip(names, plans, strict=True)
         for kind in ("baseline", "stops")
         for run in range(runs)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
-import time
-from collections.abc import Callable
+import functools
 from typing import Any
 
 import numpy as np
@@ -13,7 +11,17 @@ from .. import _core
 from .drawing import figure
 from .entry import Context, Entry, Result
 from .rows import SPACING
-from .setup import UNCERTAINTY, Row, database, describe, reach_samples
+from .scanned_trays import (
+    COUNT,
+    FILLS,
+    SCANS,
+    SETUP,
+    emptied_best_first,
+    part_cells,
+    parts_from,
+    random_scan,
+)
+from .setup import UNCERTAINTY, Row, database, describe, grid_of, reach_samples
 
 PAPER = {
     "Reg/ALL": ("Reliable", 0.100, "OK", "Yes"),
@@ -23,178 +31,169 @@ PAPER = {
     "Rand/updateR": ("Unreliable", 0.143, "OK", "No"),
     "Rand/updateT": ("Reliable", 0.229, "No", "No"),
 }
-SCANS = 4  # P1 3.7.2
-RANDOM_TOOL = 0.15  # above the tray's floor: tilted and turned about the approach, fingers still clear the rim [m]
+POLICIES = {"ALL": "all", "updateR": "remaining", "updateT": "targets"}
+BETTER = "Reg/updateT, optimised order"
 ONLINE = 1.0  # a round's stops must be known in this time [s]
 
-
-def random_places(
-    rng: np.random.Generator, count: int, size: tuple[float, float, float]
-) -> list[tuple[float, float, float]]:
-    """Objects thrown into a tray: place and turn about the vertical uniform, no margin kept between them."""
-    x, y = (rng.uniform(-length / 2 + 0.015, length / 2 - 0.015, count) for length in size[:2])
-    return [
-        (float(a), float(b), float(t)) for a, b, t in zip(x, y, rng.uniform(-np.pi / 2, np.pi / 2, count), strict=True)
-    ]
+Cells = list[list[np.ndarray]]  # [tray][part]
 
 
-Chosen = Callable[[int, int], list[int]]  # (tray, round) -> objects that the stops must serve
-Stops = list[tuple[np.ndarray, float, tuple[int, ...]]]  # middle, radius and trays of each
+def told(result: _core.PolicyResult, held: list[float]) -> dict[str, Any]:
+    """A row of the table. `held`: mean radius of each round's discs if the trays stay grouped as for ALL."""
+    return {
+        "mean radius": result.mean_radius,
+        "smallest radius": result.smallest_radius,
+        "radii": [r.mean_radius for r in result.rounds],
+        "held radius": float(np.mean(held)),
+        "stops": result.mean_stops,
+        "solved": result.solved,
+        "reliable": sum(r.reliable for r in result.rounds) / len(result.rounds),
+        "slowest": max(r.seconds for r in result.rounds),
+        "online": result.online,
+        "feasible": result.feasible,
+    }
 
 
-def rounds(
-    grid, objects, trays: int, count: int, planned: dict[str, Chosen], picked: Chosen
-) -> dict[str, dict[str, Any]]:
-    """What each policy gives, ALL first: its stops serve the same trays together in every round and only move.
-
-    Told are the discs of the stops, whether what is picked can be picked from all of each disc, and how the least number of
-    stops would change if trays could be served together anew in each round.
-    """
-    out: dict[str, dict[str, Any]] = {}
-    groups: list[tuple[int, ...]] = []
-    for policy, choose in planned.items():
-        radii, sizes, least_radii, kept, asked, slowest = [], [], [], 0, 0, 0.0
-        known: dict[tuple, tuple[Stops, list[float]]] = {}
-        for i in range(count):
-            begun = time.perf_counter()
-            key = tuple(tuple(choose(t, i)) for t in range(trays))
-            if key not in known:
-                masks = [objects.region(t, list(key[t])) for t in range(trays)]
-                least = _least_stops(grid, masks)
-                if not groups:
-                    groups = [tuple(s.trays) for s in least]
-                known[key] = ([_widest(grid, masks, group) for group in groups], [s.radius for s in least])
-            stops, least_discs = known[key]
-            slowest = max(slowest, time.perf_counter() - begun)
-            radii.append(float(np.mean([radius for _, radius, _ in stops])) if stops else 0.0)
-            sizes.append(len(least_discs))
-            least_radii += least_discs
-            for middle, _, served in stops:
-                for t in served:
-                    asked += 1
-                    kept += _disc_inside(grid, objects.region(t, picked(t, i)), middle)
-        out[policy] = {
-            "mean radius": float(np.mean(radii)),
-            "radii": radii,
-            "stops": len(groups),
-            "least stops": float(np.mean(sizes)),
-            "least radius": float(np.mean(least_radii)) if least_radii else 0.0,
-            "reliable": kept / asked if asked else 0.0,
-            "slowest": slowest,
-        }
-    return out
-
-
-def _least_stops(grid, masks: list[np.ndarray]) -> list[_core.Stop]:
-    regions = [_core.BaseRegion(str(t), mask, grid) for t, mask in enumerate(masks)]
-    return _core.minimal_stops(grid, _core.robust_intersections(grid, regions, UNCERTAINTY).robust, len(masks)).stops
-
-
-def _widest(grid, masks: list[np.ndarray], trays: tuple[int, ...]) -> tuple[np.ndarray, float, tuple[int, ...]]:
-    middle, radius = _core.inscribed_circle(grid, np.bitwise_and.reduce([masks[t] for t in trays]))
-    return middle, radius, trays
-
-
-def _disc_inside(grid, cells: np.ndarray, middle: np.ndarray) -> bool:
-    """Whether every cell whose middle lies in the disc of the positioning uncertainty is marked."""
-    x = grid.origin[0] + grid.resolution * (np.arange(grid.nx) + 0.5) - middle[0]
-    y = grid.origin[1] + grid.resolution * (np.arange(grid.ny) + 0.5) - middle[1]
-    return bool(cells[0][np.hypot(x[None, :], y[:, None]) <= UNCERTAINTY].all())
+def held_radius(grid: _core.BaseGrid, regions: list[_core.BaseRegion], groups: list[tuple[int, ...]]) -> float:
+    masks = [region.cells(grid) for region in regions]
+    shared = [np.bitwise_and.reduce([masks[t] for t in group]) for group in groups]
+    return float(np.mean([_core.inscribed_circle(grid, mask)[1] for mask in shared]))
 
 
 def regular(row: Row, samples: int) -> dict[str, Any]:
+    """Objects on a grid, picked in P1's pairing (figure 3.11) and in the order that is best for the stops of ALL."""
     reach, problem = database(row, samples), row.problem()
-    grid = _core.make_base_grid(problem, reach)
+    grid = grid_of(problem, reach)
     objects = _core.ObjectRegions.compute(problem, reach, grid)
-    m, every = row.per_tray, list(range(row.per_tray))
-
-    def target(_: int, i: int) -> list[int]:
-        return [i]  # the objects of a pair lie alike in their trays, so that their distance is the trays' (figure 3.11)
-
-    planned = {"ALL": lambda t, i: every, "updateR": lambda t, i: every[i:], "updateT": target}
-    return rounds(grid, objects, row.trays, m, planned, target)
+    trays, every = range(row.trays), range(row.per_tray)
+    cells: Cells = [[objects.region(t, [k]) for k in every] for t in trays]
+    middles = row.tray_middles()
+    paired = _core.paired_order([row.object_places() + [0.0, middles[t]] for t in trays])
+    limits = {"min_radius": UNCERTAINTY, "online_limit": ONLINE}
+    static = _core.run_policy(grid, cells, paired, "all", **limits)
+    groups = [tuple(stop.trays) for stop in static.rounds[0].stops]
+    best = _core.optimised_order(grid, cells, groups, paired)
+    out = {}
+    for name, order, policy in [
+        *((f"Reg/{name}", paired, policy) for name, policy in POLICIES.items()),
+        (BETTER, best.order, "targets"),
+    ]:
+        ran = static if policy == "all" else _core.run_policy(grid, cells, order, policy, **limits)
+        held = []
+        for i in every:
+            chosen = {"all": list(every), "remaining": None, "targets": None}[policy]
+            parts = [chosen or list(order[t][i:] if policy == "remaining" else [order[t][i]]) for t in trays]
+            regions = [_core.BaseRegion(str(t), objects.region(t, parts[t]), grid) for t in trays]
+            held.append(held_radius(grid, regions, groups))
+        out[name] = told(ran, held)
+    return out
 
 
 def randomly(row: Row, samples: int, seed: int) -> dict[str, Any]:
-    """Places of the actual objects, and of SCANS other fillings of each tray by which the regions are estimated."""
-    rng = np.random.default_rng(seed)
-    m = row.per_tray
-    places = tuple(tuple(random_places(rng, m * (1 + SCANS), row.tray_size)) for _ in range(row.trays))
-    row = row.with_(places=places, tool=RANDOM_TOOL)
-    reach, problem = database(row, samples), row.problem()
-    grid = _core.make_base_grid(problem, reach)
-    objects = _core.ObjectRegions.compute(problem, reach, grid)
-    order = [list(rng.permutation(m)) for _ in range(row.trays)]
+    """Trays filled at random: ALL and updateR plan for the grasps of SCANS other fillings, updateT for the grasp to come."""
+    reach = database(row, samples)
+    trays = range(row.trays)
+    taken = [emptied_best_first(row, t, seed) for t in trays]
+    parts = [parts_from(row, t, [grasp for grasp in taken[t] if grasp is not None]) for t in trays]
+    grid = grid_of(row.problem(parts), reach)
+    actual = part_cells(row, parts, reach, grid)
+    cells: Cells = [[actual.region(t, [k]) for k in range(len(parts[t]))] for t in trays]
+    order = [_numbered([grasp is not None for grasp in taken[t]]) for t in trays]
 
-    def target(t: int, i: int) -> list[int]:
-        return [int(order[t][i])]
+    @functools.cache
+    def estimated(fill: int) -> list[_core.BaseRegion]:
+        grasps = [[g for scan in range(SCANS) for g in random_scan(row, t, scan, seed, fill).grasps] for t in trays]
+        wanted = [parts_from(row, t, grasps[t]) for t in trays]
+        found = part_cells(row, wanted, reach, grid)
+        return [_core.BaseRegion(str(t), found.region(t, list(range(len(wanted[t])))), grid) for t in trays]
 
-    def scanned(share: float) -> list[int]:
-        each = max(1, math.ceil(share * m))
-        return [m * (1 + scan) + k for scan in range(SCANS) for k in range(each)]
+    def left(i: int) -> list[_core.BaseRegion]:
+        share = 100 * (COUNT - i) / COUNT
+        return estimated(min(fill for fill in FILLS if fill >= share))  # a weighing device tells how many
 
-    def remaining(_: int, i: int) -> list[int]:
-        return scanned(math.ceil(4 * (m - i) / m) / 4)  # known for 100, 75, 50, 25 % (P1 3.5.2)
+    def coming(i: int) -> list[_core.BaseRegion]:
+        """Nothing is known beforehand of the parts that will be picked: their regions cost time between the rounds."""
+        now = [[parts[t][order[t][i]]] if order[t][i] >= 0 else [] for t in trays]
+        found = part_cells(row, now, reach, grid)
+        empty = np.zeros_like(cells[0][0])
+        masks = [found.region(t, [0]) if now[t] else empty for t in trays]
+        return [_core.BaseRegion(str(t), mask, grid) for t, mask in enumerate(masks)]
 
-    planned = {"ALL": lambda t, i: scanned(1.0), "updateR": remaining, "updateT": target}
-    found = rounds(grid, objects, row.trays, m, planned, target)
-    targets = tuple((int(order[t][0]),) for t in range(row.trays))
-    problem = row.with_(targets=targets).problem()
-    begun = time.perf_counter()
-    _core.compute_base_regions(problem, reach, grid)
-    found["updateT"]["slowest"] += time.perf_counter() - begun  # nothing is known of these objects beforehand
-    return found
+    for fill in FILLS:
+        estimated(fill)  # known offline (P1 3.5.2)
+    out, groups = {}, []
+    for name, planned in {"ALL": lambda i: estimated(100), "updateR": left, "updateT": coming}.items():
+        limits = {"min_radius": UNCERTAINTY, "online_limit": ONLINE}
+        ran = _core.run_policy(grid, cells, order, POLICIES[name], planned=planned, **limits)
+        groups = groups or [tuple(stop.trays) for stop in ran.rounds[0].stops]
+        served = [[g for g in (tuple(t for t in g if order[t][i] >= 0) for g in groups) if g] for i in range(COUNT)]
+        held = [held_radius(grid, planned(i), served[i]) for i in range(COUNT) if served[i]]
+        out[f"Rand/{name}"] = told(ran, held)
+    return out
+
+
+def _numbered(there: list[bool]) -> list[int]:
+    """[round]: the how-manieth part that is picked, -1 for none."""
+    counts = np.cumsum(there) - 1
+    return [int(k) if is_there else -1 for k, is_there in zip(counts, there, strict=True)]
 
 
 def run(context: Context) -> Result:
     samples = reach_samples(context.quick)
-    row = Row(trays=3 if context.quick else 9, objects=(2, 2) if context.quick else (3, 4), spacing=SPACING)
+    row = Row(trays=2 if context.quick else 9, objects=(2, 2) if context.quick else (3, 4), spacing=SPACING)
     database(row, samples, progress=context.progress)
-    (reg,) = context.sweep(regular, [{"row": row, "samples": samples}], "regular placement")
-    (rand,) = context.sweep(randomly, [{"row": row, "samples": samples, "seed": context.seed}], "random placement")
+    (found,) = context.sweep(regular, [{"row": row, "samples": samples}], "regular placement")
+    common = {"row": row, "samples": samples, "seed": context.seed}
+    (rand,) = context.sweep(randomly, [common], "random placement")
+    found |= rand
     result = Result(setup=describe(row, samples))
-    result.setup |= {
-        "rounds": row.per_tray,
-        "scans of a randomly filled tray": SCANS,
-        "tool, random placement [m]": RANDOM_TOOL,
-        "seed": context.seed,
-    }
-    for name, paper in PAPER.items():
-        placement, policy = name.split("/")
-        ours = (reg if placement == "Reg" else rand)[policy]
-        reliable, online = ours["reliable"] == 1.0, ours["slowest"] <= ONLINE
+    result.setup |= {"rounds": f"{row.per_tray} (regular), {COUNT} (random)", "seed": context.seed}
+    result.setup |= {f"random: {key}": value for key, value in SETUP.items()} | {"random: scans": SCANS}
+    for name, ours in found.items():
+        paper = PAPER.get(name, (None,) * 4)
+        reliable = ours["reliable"] == 1.0
         values = result.row({"Policies": name})
         values["Base positions"] = (paper[0], "Reliable" if reliable else "Unreliable")
         values["Average robustness [m]"] = (paper[1], ours["mean radius"])
-        values["Online"] = (paper[2], "OK" if online else "No")
-        values["Feasibility"] = (paper[3], "Yes" if reliable and online else "No")
-        values["picks inside the disc"] = (None, ours["reliable"])
-        values["stops"] = (None, ours["stops"])
-        values["least stops in a round (mean)"] = (None, ours["least stops"])
-        values["radius with least stops [m]"] = (None, ours["least radius"])
+        values["Online"] = (paper[2], "OK" if ours["online"] else "No")
+        values["Feasibility"] = (paper[3], "Yes" if ours["feasible"] else "No")
+        values["stops in a round (mean)"] = (None, ours["stops"])
+        values["smallest radius [m]"] = (None, ours["smallest radius"])
+        values["average with the trays grouped as for ALL [m]"] = (None, ours["held radius"])
+        values["rounds picked reliably"] = (None, ours["reliable"])
         values["slowest round [s]"] = (None, ours["slowest"])
-    for placement, found in (("Reg", reg), ("Rand", rand)):
-        means = [found[policy]["mean radius"] for policy in ("ALL", "updateR", "updateT")]
+    for placement in ("Reg", "Rand"):
+        rows = [found[f"{placement}/{policy}"] for policy in POLICIES]
+        means, held, stops = ([r[key] for r in rows] for key in ("mean radius", "held radius", "stops"))
         result.trend(f"{placement}: ALL < updateR < updateT in average robustness", means[0] < means[1] < means[2])
-    result.exact("regular placement: every base position is reliable", all(o["reliable"] == 1.0 for o in reg.values()))
-    result.notes.append(
-        "The mean radius is that of stops which serve the same trays together as those of ALL and move with the policy. With larger "
-        "regions fewer stops could do, at smaller discs: the columns on the right. Every radius counts from the objects' own regions, "
-        "so that the first round of updateR is ALL."
+        result.trend(
+            f"{placement}: the same with the trays grouped as for ALL, while the least number of stops never grows",
+            held[0] < held[1] < held[2] and stops[0] >= stops[1] >= stops[2],
+        )
+    result.exact(
+        "regular placement: every base position is reliable",
+        all(ours["reliable"] == 1.0 for name, ours in found.items() if name.startswith("Reg")),
     )
-    result.drawing = {
-        "rounds": {f"{p}/{k}": v["radii"] for p, found in (("Reg", reg), ("Rand", rand)) for k, v in found.items()}
-    }
+    result.trend(
+        "an optimised picking order is no worse than P1's pairing, for the stops of ALL",
+        found[BETTER]["held radius"] >= found["Reg/updateT"]["held radius"] - 1e-9,
+    )
+    result.notes.append(
+        "The average robustness is equation 3.2 over the least stops of each round: with larger regions fewer stops do, at smaller "
+        "discs. The column to the right of the smallest radius keeps the trays together as ALL groups them, so that only the discs move."
+    )
+    result.drawing = {"rounds": {name: ours["radii"] for name, ours in found.items()}}
     return result
 
 
 def draw(result: dict[str, Any]):
     fig, axes = figure(9.0, 3.4, columns=2)
-    colours = {"ALL": "#8a8f98", "updateR": "#1f6fb4", "updateT": "#d9822b"}
+    colours = {"ALL": "#8a8f98", "updateR": "#1f6fb4", "updateT": "#d9822b", "updateT, optimised order": "#b8405e"}
     for axis, placement in zip(axes, ("Reg", "Rand"), strict=True):
         for policy, colour in colours.items():
-            radii = result["drawing"]["rounds"][f"{placement}/{policy}"]
-            axis.plot(range(1, len(radii) + 1), radii, "-o", markersize=4, color=colour, label=policy)
+            radii = result["drawing"]["rounds"].get(f"{placement}/{policy}", [])
+            if radii:
+                axis.plot(range(1, len(radii) + 1), radii, "-o", markersize=4, color=colour, label=policy)
         axis.set(title=f"{placement}: objects placed {'on a grid' if placement == 'Reg' else 'at random'}")
         axis.set(xlabel="round", ylabel="mean radius of the round's stops [m]", ylim=(0, None))
         axis.legend(frameon=False)

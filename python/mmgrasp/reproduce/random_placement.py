@@ -1,9 +1,8 @@
-"""P1 3.5.2 and 3.7.2: regions of randomly filled trays, estimated from the union of several placements."""
+"""P1 3.5.2 and 3.7.2: regions of randomly filled trays, estimated from the union of the grasps of several scans."""
 
 from __future__ import annotations
 
 import itertools
-import math
 from typing import Any
 
 import numpy as np
@@ -11,76 +10,70 @@ import numpy as np
 from .. import _core
 from .drawing import figure
 from .entry import Context, Entry, Result
-from .policies import RANDOM_TOOL, SCANS, random_places
-from .setup import Row, database, describe, reach_samples
-
-FILLS = (100, 75, 50, 25)
+from .scanned_trays import COUNT, FILLS, REGULAR, SCANS, SETUP, part_cells, parts_from, random_scan
+from .setup import Row, database, describe, grid_of, reach_samples
 
 
-def measure(row: Row, samples: int, seed: int) -> dict[str, Any]:
-    """Regions by 1 .. SCANS placements at each fill, and how much of a fresh placement's region they would promise wrongly.
-
-    A placement at 50 % is one at 100 % with half of its objects taken out.
-    """
-    rng = np.random.default_rng(seed)
-    m = row.per_tray
-    row = row.with_(tool=RANDOM_TOOL, places=(tuple(random_places(rng, m * (SCANS + 1), row.tray_size)),))
-    reach, problem = database(row, samples), row.problem()
-    grid = _core.make_base_grid(problem, reach)
-    objects = _core.ObjectRegions.compute(problem, reach, grid)
+def measure(row: Row, samples: int, seed: int, fill: int) -> dict[str, Any]:
+    """Regions by 1 .. SCANS scans, and how many of their cells one more, unseen filling would not confirm."""
+    scans = [random_scan(row, 0, scan, seed, fill).grasps for scan in range(SCANS + 1)]
+    ends = list(itertools.accumulate(len(grasps) for grasps in scans))
+    parts = parts_from(row, 0, [grasp for grasps in scans for grasp in grasps])
+    reach = database(row, samples)
+    grid = grid_of(row.problem([parts]), reach)
+    objects = part_cells(row, [parts], reach, grid)
+    unseen = objects.region(0, list(range(ends[-2], ends[-1]))).astype(bool)
     out = []
-    for fill in FILLS:
-        each = math.ceil(fill * m / 100)
-        for scans in range(1, SCANS + 1):
-            union = [m * scan + k for scan in range(scans) for k in range(each)]
-            cells = objects.region(0, union)
-            fresh = objects.region(0, [m * SCANS + k for k in range(each)])
-            out.append(
-                {
-                    "fill": fill,
-                    "scans": scans,
-                    "cells": int(cells.sum()),
-                    "grasps": len(union),
-                    "radius": _core.inscribed_circle(grid, cells)[1],
-                    "promised wrongly": int((cells & ~fresh.astype(bool)).sum()),
-                }
-            )
-    return {"rows": out}
+    for count, end in enumerate(ends[:-1], start=1):
+        cells = objects.region(0, list(range(end)))
+        out.append(
+            {
+                "scans": count,
+                "cells": int(cells.sum()),
+                "grasps": end,
+                "radius": _core.inscribed_circle(grid, cells)[1],
+                "promised wrongly": int((cells & ~unseen).sum()),
+            }
+        )
+    return {"rows": out, "unseen": int(unseen.sum())}
 
 
 def run(context: Context) -> Result:
     samples = reach_samples(context.quick)
-    row = Row(trays=1, objects=(2, 2) if context.quick else (3, 4), tool=RANDOM_TOOL)
+    row = Row(trays=1)
     database(row, samples, progress=context.progress)
     seeds = [context.seed + k for k in range(1 if context.quick else 10)]
-    found = context.sweep(measure, [{"row": row, "samples": samples, "seed": s} for s in seeds], "p1-random-placement")
-    result = Result(setup=describe(row, samples, "objects"))
-    result.setup |= {
-        "objects at 100 %": row.per_tray,
-        "placements": f"seeds {seeds[0]} to {seeds[-1]}, means over them",
-    }
+    fills = FILLS[::3] if context.quick else FILLS
+    items = [{"row": row, "samples": samples, "seed": seed, "fill": fill} for fill in fills for seed in seeds]
+    found = iter(context.sweep(measure, items, "p1-random-placement"))
+    result = Result(setup=describe(row, samples, *REGULAR))
+    result.setup |= SETUP | {"fillings": f"seeds {seeds[0]} to {seeds[-1]}, means over them"}
     cells: dict[tuple[int, int], float] = {}
-    for lines in zip(*(one["rows"] for one in found), strict=True):
-        fill, scans = lines[0]["fill"], lines[0]["scans"]
-        cells[fill, scans] = float(np.mean([line["cells"] for line in lines]))
-        values = result.row({"fill [%]": fill, "scans": scans})
-        values["cells"] = (None, cells[fill, scans])
-        values["radius [m]"] = (None, float(np.mean([line["radius"] for line in lines])))
-        values["cells promised wrongly"] = (None, float(np.mean([line["promised wrongly"] for line in lines])))
-        values["objects"] = (None, math.ceil(fill * row.per_tray / 100))
-        values["grasps"] = (None, lines[0]["grasps"])
+    wrong: dict[tuple[int, int], float] = {}
+    for fill in fills:
+        of_fill = [next(found) for _ in seeds]
+        for lines in zip(*(one["rows"] for one in of_fill), strict=True):
+            scans = lines[0]["scans"]
+            cells[fill, scans] = float(np.mean([line["cells"] for line in lines]))
+            wrong[fill, scans] = float(np.mean([line["promised wrongly"] for line in lines]))
+            values = result.row({"fill [%]": fill, "scans": scans})
+            values["cells"] = (None, cells[fill, scans])
+            values["radius [m]"] = (None, float(np.mean([line["radius"] for line in lines])))
+            values["cells promised wrongly"] = (None, wrong[fill, scans])
+            values["cells of an unseen filling"] = (None, float(np.mean([one["unseen"] for one in of_fill])))
+            values["objects"] = (None, round(COUNT * fill / 100))
+            values["grasps"] = (None, float(np.mean([line["grasps"] for line in lines])))
     result.trend(
-        "fewer objects left never shrink the region",
-        all(cells[a, k] <= cells[b, k] for a, b in itertools.pairwise(FILLS) for k in range(1, SCANS + 1)),
+        "the fewer parts are left the larger is the region of one scan",
+        all(cells[a, 1] <= cells[b, 1] for a, b in itertools.pairwise(fills)),
     )
     result.trend(
-        "every further scan shrinks the estimate or leaves it",
-        all(cells[f, k + 1] <= cells[f, k] for f in FILLS for k in range(1, SCANS)),
+        "four scans promise fewer cells wrongly than one",
+        sum(wrong[fill, SCANS] for fill in fills) < sum(wrong[fill, 1] for fill in fills),
     )
-    spread = [cells[100, k] - cells[25, k] for k in (1, SCANS)]
     result.trend(
         "the union of four scans differs less between fills than one scan does (the paper: in theory not at all)",
-        abs(spread[1]) <= abs(spread[0]),
+        abs(cells[fills[-1], SCANS] - cells[100, SCANS]) <= abs(cells[fills[-1], 1] - cells[100, 1]),
     )
     return result
 
@@ -90,7 +83,8 @@ def draw(result: dict[str, Any]):
     for fill, shade in zip(FILLS, ("#123f66", "#1f6fb4", "#6aa9dc", "#b5d4ee"), strict=True):
         rows = [row for row in result["rows"] if row["key"]["fill [%]"] == fill]
         points = [(row["key"]["scans"], row["values"]["cells"]["ours"]) for row in rows]
-        axis.plot(*zip(*points, strict=True), "-o", color=shade, label=f"{fill} %")
+        if points:
+            axis.plot(*zip(*points, strict=True), "-o", color=shade, label=f"{fill} %")
     axis.set(
         xlabel="scans whose grasps are united", ylabel="cells of the region", ylim=(0, None), xticks=range(1, SCANS + 1)
     )

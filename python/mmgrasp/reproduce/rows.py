@@ -131,6 +131,7 @@ def draw_distance(result: dict[str, Any]):
     x = [row["key"]["distance [m]"] for row in result["rows"]]
     paper_and_ours(axis, x, result["rows"], "radius [m]")
     axis.axhline(result["drawing"]["limit"], color="#b8405e", linewidth=1)
+    axis.annotate("needed: the positioning uncertainty", (0.3, 0.085), color="#b8405e", fontsize=8)
     axis.axvline(0.8, color="#8a8f98", linestyle="--", linewidth=1)
     axis.annotate("paper: >= 0.10 m\nbelow 0.8 m", (0.81, 0.14), color="#6a6f78", fontsize=8)
     axis.set(

@@ -8,7 +8,7 @@ collisions with the trays and what carries them. What it leaves open is a field 
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -19,7 +19,7 @@ from .._core import BaseGrid, Box, Grasp, LinkShape, Part, PartSupplyProblem, Re
 from .._files import shipped
 from .._reading import read_yaml
 from .._robot_section import RobotSetup, choose_sections, read_setup
-from .._tray_section import tray_walls
+from .._tray_section import WALL
 
 Progress = Callable[[str, float], None] | None
 
@@ -46,8 +46,6 @@ class Row:
     """Middles of the trays along the row [m]; None: by trays and spacing."""
     targets: tuple[tuple[int, ...], ...] | None = None
     """Objects to pick in each tray; None: all."""
-    places: tuple[tuple[tuple[float, float, float], ...], ...] | None = None
-    """For each tray: x, y [m] in it and turn about the approach [rad] of each grasp (P1 3.7.2); None: the regular grid."""
     table: float = 0.40
     """Height of the table's top [m]."""
     tool: float = 0.12
@@ -76,14 +74,18 @@ class Row:
         middles = self.middles if self.middles is not None else [i * self.spacing for i in range(self.trays)]
         return [y + self.shift for y in middles]
 
+    def tray_pose(self, middle: float) -> np.ndarray:
+        """T_world_tray of the tray at this place of the row."""
+        return _core.pose([0, middle, self.table + 0.006])
+
     def object_places(self) -> np.ndarray:
         """(m, 2): the middles of a x b equal cells of the tray, x fastest [m]."""
         counts = self.objects[::-1] if self.deep else self.objects
         axes = [((np.arange(n) + 0.5) / n - 0.5) * length for n, length in zip(counts, self.tray_size[:2], strict=True)]
         return np.array([(x, y) for y in axes[1] for x in axes[0]])
 
-    def problem(self) -> PartSupplyProblem:
-        """The same as objects for the planner."""
+    def problem(self, parts: Sequence[Sequence[Part]] | None = None) -> PartSupplyProblem:
+        """The same as objects for the planner; `parts` of each tray instead of the regular grid's."""
         setup = robot_setup(self.torso)
         scene, trays = World(), []
         middles = self.tray_middles()
@@ -94,9 +96,10 @@ class Row:
             _core.pose([0, (max(middles) + min(middles)) / 2, self.table - TOP / 2]),
         )
         for index, y in enumerate(middles):
-            T_world_tray = _core.pose([0, y, self.table + 0.006])
-            scene.add(f"tray {index}", tray_walls(list(self.tray_size)), T_world_tray)
-            trays.append(Tray(str(index), T_world_tray, self.tray_size, self._parts(index, T_world_tray), [0.0]))
+            T_world_tray = self.tray_pose(y)
+            scene.add(f"tray {index}", _core.tray_shapes(self.tray_size, WALL), T_world_tray)
+            held = self._parts(index, T_world_tray) if parts is None else list(parts[index])
+            trays.append(Tray(str(index), T_world_tray, self.tray_size, held, [0.0]))
         away = max(middles) + 3.0
         return PartSupplyProblem(
             setup.robot,
@@ -116,14 +119,10 @@ class Row:
 
     def _parts(self, tray: int, T_world_tray: np.ndarray) -> list[Part]:
         down = np.pi / 2 - self.tilt
-        if self.places is not None:
-            placed = [(x, y, [[turn, down, 0.0]]) for x, y, turn in self.places[tray]]
-        else:
-            rolls = [[0.0, down, self.turn + np.pi * k / self.grasps] for k in range(self.grasps)]
-            placed = [(x, y, rolls) for x, y in self.object_places()]
+        rolls = [[0.0, down, self.turn + np.pi * k / self.grasps] for k in range(self.grasps)]
         chosen = None if self.targets is None else set(self.targets[tray])
         parts = []
-        for i, (x, y, rolls) in enumerate(placed):
+        for i, (x, y) in enumerate(self.object_places()):
             grasps = [Grasp(_core.pose([0, 0, self.tool], rpy=rpy), 0.02, 1.0) for rpy in rolls]
             T_world_part = T_world_tray @ _core.pose([x, y, 0.0])
             parts.append(Part(f"{tray}/{i}", [MARKER], T_world_part, grasps, target=chosen is None or i in chosen))

@@ -48,10 +48,51 @@ Eigen::Vector3d base_argument(const py::object& base_pose) {
   return vector3_argument(base_pose, "base_pose");
 }
 
+std::vector<Eigen::VectorXd> samples_argument(const py::handle& value, const char* name, std::size_t rows,
+                                              Eigen::Index columns) {
+  std::vector<Eigen::VectorXd> read = rows_argument(value, name, columns);
+  if (read.size() != rows) {
+    throw InvalidInput(std::string(name) + ": has shape (" + std::to_string(read.size()) + ", " +
+                       std::to_string(columns) + "), must have a row for each of the " + std::to_string(rows) +
+                       " times");
+  }
+  return read;
+}
+
+JointTrajectory make_trajectory(const std::vector<std::string>& names, const ArrayLike& times,
+                                const ArrayLike& positions, const py::object& velocities,
+                                const py::object& accelerations) {
+  JointTrajectory t;
+  t.names = names;
+  const Eigen::VectorXd clock = vector_argument(times, "times");
+  t.times.assign(clock.data(), clock.data() + clock.size());
+  if (t.times.empty()) throw InvalidInput("times: has shape (0,), must hold at least one time");
+  if (t.times[0] != 0) throw InvalidInput("times[0] = " + text(clock.head(1)) + ": must be 0");
+  for (Eigen::Index i = 1; i < clock.size(); ++i) {
+    if (!(clock[i] > clock[i - 1])) {
+      throw InvalidInput("times: has shape (" + std::to_string(clock.size()) + ",), times[" + std::to_string(i) +
+                         "] = " + text(clock.segment(i, 1)) + " must be later than the time before");
+    }
+  }
+  const auto columns = static_cast<Eigen::Index>(names.size());
+  t.positions = samples_argument(positions, "positions", t.times.size(), columns);
+  if (!velocities.is_none()) t.velocities = samples_argument(velocities, "velocities", t.times.size(), columns);
+  if (!accelerations.is_none()) {
+    if (velocities.is_none()) throw InvalidInput("accelerations: need velocities too");
+    t.accelerations = samples_argument(accelerations, "accelerations", t.times.size(), columns);
+  }
+  return t;
+}
+
 }  // namespace
 
 void bind_trajectory(py::module_& m) {
   py::class_<JointTrajectory>(m, "JointTrajectory", "A path on a clock; cubic Hermite between samples.")
+      .def(py::init(&make_trajectory), py::arg("names"), py::arg("times"), py::arg("positions"),
+           py::arg("velocities") = py::none(), py::arg("accelerations") = py::none(),
+           "From samples: times (k,) from 0 and increasing [s], positions (k, n), and if given velocities and "
+           "accelerations\n"
+           "(k, n). Without velocities the samples are joined by straight lines.")
       .def_readonly("names", &JointTrajectory::names)
       .def_property_readonly(
           "times",

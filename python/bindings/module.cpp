@@ -7,6 +7,7 @@ namespace mmgrasp::python {
 void bind_mapping(py::module_& m);
 void bind_graspability(py::module_& m);
 void bind_capability(py::module_& m);
+void bind_control(py::module_& m);
 
 void declare_classes(py::module_& m) {
   py::class_<Robot>(m, "Robot", "A robot as URDF and SRDF describe it. Immutable; joints and links by name.");
@@ -32,6 +33,7 @@ PYBIND11_MODULE(_core, m) {
   bind_capability(m);
   bind_grasp(m);
   bind_plan(m);
+  bind_control(m);
   bind_task(m);
   bind_pickle(m);
   bind_platform_locations(m);

@@ -29,6 +29,12 @@ SECTIONS = (
         _core._graspability_option_table,
         set(),
     ),
+    (
+        "track_base",
+        "A base on its plan, keywords; those of `BaseTracker` are the first eight (`BaseTrackingOptions`, `BaseDisturbance`)",
+        _core._tracking_option_table,
+        set(),
+    ),
     ("fit_cuboids", "Box-shaped parts of a cloud, keywords (`CuboidFitOptions`)", _core._cuboid_option_table, set()),
 )
 

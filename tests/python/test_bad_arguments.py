@@ -126,6 +126,12 @@ VALUES: dict[str, Any] = {
     "plan_base_route.start": X_Y_THETA,
     "plan_base_route.goal": X_Y_THETA,
     "platform_velocity": X_Y_THETA,
+    "drive_arc.pose": X_Y_THETA,
+    "BaseTracker.command": X_Y_THETA,
+    "desired": X_Y_THETA,
+    "desired_next": X_Y_THETA,
+    "measured": X_Y_THETA,
+    "JointTrajectory.times": np.array([0.0, 1.0]),
     "joint_velocity": X_Y_THETA,
     "IkSeedDatabase.add.q": np.array([0.5, 0.25, 0.75, *Q]),
     "verify.CheckedStop.pose": X_Y_THETA,
@@ -147,6 +153,7 @@ OBJECTS = {
     "ReachDatabase": lambda: mg.ReachDatabase.build(ARM, samples=1000, threads=1),
     "CapabilityMap": capability_map,
     "PinholeCamera": mg.PinholeCamera,
+    "BaseTracker": lambda: mg.BaseTracker(ROBOT),
     "IkObjective": lambda: mg.joint_limit_objective(ARM),
     "IkSeedDatabase": lambda: mg.IkSeedDatabase(WHOLE_BODY),
     "JointTrajectory": lambda: mg.time_parameterize([Q, Q / 2], np.ones(3), np.ones(3), names=["i", "j", "k"]),
@@ -160,9 +167,11 @@ OBJECTS = {
 COMPANIONS: dict[str, dict[str, Any]] = {
     "plan_platform_locations.T_link_camera": {"camera_link": "tip"},
     "fit_cuboids.T_world_tray": {"tray_size": [0.3, 0.4, 0.1]},
+    "JointTrajectory.accelerations": {"velocities": np.zeros((2, 3))},
 }
 OTHERS: dict[str, Any] = {
     "robot": lambda: ROBOT,
+    "JointTrajectory.names": lambda: ["i", "j", "k"],
     "depth": lambda: np.ones((480, 640), np.float32),
     "height": lambda: np.ones((3, 4)),
     "group": lambda: ARM,

@@ -20,6 +20,7 @@ from . import (
     robust_sets,
     rows,
     solver_regions,
+    tracking,
 )
 from .entry import Context, Entry, Progress, Result, Sweep, sweep_here
 
@@ -35,6 +36,7 @@ TOPICS = (
     experiments,
     random_placement,
     capability,
+    tracking,
 )
 ENTRIES: dict[str, Entry] = {e.name: e for topic in TOPICS for e in topic.ENTRIES}
 ALSO = {

@@ -1,0 +1,53 @@
+#include "mmgrasp/control/unicycle.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "mmgrasp/core/error.hpp"
+
+namespace mmgrasp {
+namespace {
+
+constexpr double kTwoPi = 2 * 3.14159265358979323846;
+
+/// sin(x) / x
+double sinc(double x) {
+  return std::abs(x) < 1e-4 ? 1 - x * x / 6 : std::sin(x) / x;
+}
+
+void check_finite(const Eigen::Vector3d& v, const char* field) {
+  const char* parts[] = {"[0]", "[1]", "[2]"};
+  for (int i = 0; i < 3; ++i) require(std::isfinite(v[i]), std::string(field) + parts[i], v[i], "must be finite");
+}
+
+}  // namespace
+
+Eigen::Vector3d drive_arc(const Eigen::Vector3d& pose, const Eigen::Vector3d& platform_velocity, double time) {
+  check_finite(pose, "pose");
+  check_finite(platform_velocity, "platform_velocity");
+  require(std::isfinite(time) && time >= 0, "time", time, "must be finite and not negative");
+  const double turn = platform_velocity.z() * time;
+  Eigen::Vector3d result = pose;
+  result.head<2>() += time * sinc(turn / 2) * (Eigen::Rotation2Dd(pose.z() + turn / 2) * platform_velocity.head<2>());
+  result.z() += turn;
+  return result;
+}
+
+Eigen::Vector3d arc_velocity(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double time) {
+  check_finite(from, "from");
+  check_finite(to, "to");
+  require(std::isfinite(time) && time > 0, "time", time, "must be finite and positive");
+  const double turn = to.z() - from.z();
+  require(std::abs(turn) < kTwoPi, "to[2]", to.z(), "must lie less than a full turn from from[2]");
+  Eigen::Vector3d velocity;
+  velocity.head<2>() = Eigen::Rotation2Dd(-(from.z() + turn / 2)) * (to - from).head<2>() / (time * sinc(turn / 2));
+  velocity.z() = turn / time;
+  return velocity;
+}
+
+double wrapped_angle(double angle) {
+  const double wrapped = std::remainder(angle, kTwoPi);
+  return wrapped <= -kTwoPi / 2 ? wrapped + kTwoPi : wrapped;
+}
+
+}  // namespace mmgrasp

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <limits>
+
+#include "mmgrasp/optim/nlp_solver.hpp"
+
+namespace mmgrasp::detail {
+
+/// The best point seen: while none keeps the constraints, the least violated; after that the cheapest that keeps them.
+class BestIterate {
+ public:
+  explicit BestIterate(double tolerance) : tolerance_(tolerance) {}
+  void offer(const Eigen::VectorXd& x, double objective, double violation) {
+    if (!std::isfinite(objective) || !std::isfinite(violation) || !x.allFinite()) return;
+    const bool keeps = violation <= tolerance_, best_keeps = violation_ <= tolerance_;
+    if (keeps != best_keeps ? !keeps : keeps ? objective >= objective_ : violation >= violation_) return;
+    x_ = x;
+    objective_ = objective;
+    violation_ = violation;
+  }
+  bool any() const { return x_.size() > 0; }
+  const Eigen::VectorXd& x() const { return x_; }
+
+ private:
+  double tolerance_, objective_ = 0, violation_ = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd x_;
+};
+
+/// When a solve has to end, and whether a callback wanted it to.
+class SolveClock {
+ public:
+  SolveClock(double time_limit, const Monitor& monitor)
+      : monitor_(monitor), start_(std::chrono::steady_clock::now()), limit_(time_limit) {}
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  bool stopped() const { return monitor_.stopped(); }
+  bool late() const { return seconds() > limit_; }
+  bool over() const { return stopped() || late() || error; }
+  std::exception_ptr error;  ///< Thrown by a callback.
+
+ private:
+  const Monitor& monitor_;
+  std::chrono::steady_clock::time_point start_;
+  double limit_;
+};
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,190 @@
+#include <nlopt.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "optim/nlp_backends.hpp"
+
+namespace mmgrasp::detail {
+namespace {
+
+using Eigen::VectorXd;
+
+/// One side of a constraint: factor * (c - bound) <= 0, or = 0.
+struct Side {
+  int row;
+  double factor, bound;
+};
+
+/// Evaluates the problem once per point, and hands out rows of it.
+class Dense {
+ public:
+  Dense(NonlinearProblem& problem, const Bounds& variables, const Bounds& bounds, SolveClock& clock, BestIterate& best)
+      : problem_(problem), variables_(variables), clock_(clock), best_(best), bounds_(bounds) {
+    for (Eigen::Index i = 0; i < bounds.lower.size(); ++i) {
+      const int row = static_cast<int>(i);
+      if (bounds.lower[i] == bounds.upper[i]) {
+        equal.push_back({row, 1, bounds.lower[i]});
+        continue;
+      }
+      if (std::isfinite(bounds.upper[i])) below.push_back({row, 1, bounds.upper[i]});
+      if (std::isfinite(bounds.lower[i])) below.push_back({row, -1, bounds.lower[i]});
+    }
+    c_.resize(bounds.lower.size());
+    jacobian_.resize(static_cast<Eigen::Index>(problem.jacobian_pattern().size()));
+  }
+
+  std::vector<Side> equal, below;
+  int evaluations = 0;
+  double latest() const { return value_; }
+
+  double objective(unsigned n, const double* x, double* gradient) {
+    return guarded([&] {
+      move(n, x);
+      if (gradient) problem_.gradient(x_, Eigen::Map<VectorXd>(gradient, n));
+      return value_;
+    });
+  }
+  void sides(const std::vector<Side>& which, unsigned n, const double* x, double* out, double* gradient) {
+    guarded([&] {
+      move(n, x);
+      for (std::size_t i = 0; i < which.size(); ++i) out[i] = which[i].factor * (c_[which[i].row] - which[i].bound);
+      if (gradient) rows(which, n, gradient);
+      return 0.0;
+    });
+  }
+
+ private:
+  template <typename Function>
+  double guarded(Function&& function) {
+    if (clock_.over()) throw nlopt::forced_stop();
+    double value = 0;
+    try {
+      value = function();
+    } catch (const nlopt::forced_stop&) {
+      throw;
+    } catch (...) {
+      clock_.error = std::current_exception();
+      throw nlopt::forced_stop();
+    }
+    return value;
+  }
+
+  /// SLSQP turns in circles on numbers that are not finite, so they end it.
+  void move(unsigned n, const double* x) {
+    const Eigen::Map<const VectorXd> to(x, n);
+    if (x_.size() > 0 && x_ == to) return;
+    x_ = to;
+    if (!x_.allFinite()) throw nlopt::forced_stop();
+    value_ = problem_.objective(x_);
+    if (c_.size() > 0) problem_.constraints(x_, c_);
+    if (jacobian_.size() > 0) problem_.jacobian(x_, jacobian_);
+    if (!std::isfinite(value_) || !c_.allFinite() || !jacobian_.allFinite()) throw nlopt::forced_stop();
+    ++evaluations;
+    double violation = 0;
+    for (Eigen::Index i = 0; i < c_.size(); ++i)
+      violation = std::max({violation, bounds_.lower[i] - c_[i], c_[i] - bounds_.upper[i]});
+    best_.offer(x_.cwiseMax(variables_.lower).cwiseMin(variables_.upper), value_, violation);
+  }
+
+  void rows(const std::vector<Side>& which, unsigned n, double* gradient) {
+    const SparsePattern& pattern = problem_.jacobian_pattern();
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& J = dense_;
+    J.setZero(c_.size(), n);
+    for (std::size_t i = 0; i < pattern.size(); ++i)
+      J(pattern.rows[i], pattern.columns[i]) += jacobian_[static_cast<Eigen::Index>(i)];
+    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> out(
+        gradient, static_cast<Eigen::Index>(which.size()), n);
+    for (std::size_t i = 0; i < which.size(); ++i)
+      out.row(static_cast<Eigen::Index>(i)) = which[i].factor * J.row(which[i].row);
+  }
+
+  NonlinearProblem& problem_;
+  const Bounds& variables_;
+  SolveClock& clock_;
+  BestIterate& best_;
+  Bounds bounds_;
+  VectorXd x_, c_, jacobian_;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> dense_;
+  double value_ = 0;
+};
+
+double objective_of(unsigned n, const double* x, double* gradient, void* dense) {
+  return static_cast<Dense*>(dense)->objective(n, x, gradient);
+}
+void equal_of(unsigned, double* out, unsigned n, const double* x, double* gradient, void* dense) {
+  auto* d = static_cast<Dense*>(dense);
+  d->sides(d->equal, n, x, out, gradient);
+}
+void below_of(unsigned, double* out, unsigned n, const double* x, double* gradient, void* dense) {
+  auto* d = static_cast<Dense*>(dense);
+  d->sides(d->below, n, x, out, gradient);
+}
+
+std::vector<double> list(const VectorXd& v) {
+  return {v.data(), v.data() + v.size()};
+}
+
+class SlsqpSolver : public NlpSolver {
+ public:
+  std::string name() const override { return "slsqp"; }
+
+ private:
+  NlpResult run(NonlinearProblem& problem, const VectorXd& guess, const NlpOptions& options,
+                const Monitor& monitor) const override {
+    SolveClock clock(options.time_limit, monitor);
+    BestIterate best(options.constraint_tolerance);
+    const Bounds variables = problem.variable_bounds();
+    Dense dense(problem, variables, problem.constraint_bounds(), clock, best);
+    VectorXd last = guess.cwiseMax(variables.lower).cwiseMin(variables.upper);
+    nlopt::result code = nlopt::FAILURE;
+    std::string message;
+    try {
+      // A single short step ends a run of it: an answer is one when a fresh run from there finds nothing better.
+      for (double before = 0; dense.evaluations < options.max_iterations; before = dense.latest()) {
+        const bool first = dense.evaluations == 0;
+        code = optimize(dense, variables, options, last);
+        const double now = dense.latest();
+        if (!first && std::abs(now - before) <= options.tolerance * std::max(1.0, std::abs(now))) break;
+      }
+      message = code == nlopt::MAXEVAL_REACHED ? "evaluations exceeded" : "converged";
+    } catch (const std::exception& error) {
+      message = error.what();
+    }
+    if (clock.error) std::rethrow_exception(clock.error);
+    const bool converged = code == nlopt::SUCCESS || code == nlopt::FTOL_REACHED || code == nlopt::XTOL_REACHED;
+    NlpResult result = judged(problem, last, converged, code == nlopt::MAXEVAL_REACHED, best, guess, options, clock);
+    result.iterations = dense.evaluations;
+    result.message = message;
+    return result;
+  }
+
+  static nlopt::result optimize(Dense& dense, const Bounds& variables, const NlpOptions& options, VectorXd& x) {
+    nlopt::opt solver(nlopt::LD_SLSQP, static_cast<unsigned>(x.size()));
+    solver.set_lower_bounds(list(variables.lower));
+    solver.set_upper_bounds(list(variables.upper));
+    solver.set_min_objective(&objective_of, &dense);
+    const auto tolerances = [&](const std::vector<Side>& sides) {
+      return std::vector<double>(sides.size(), 0.5 * options.constraint_tolerance);
+    };
+    if (!dense.equal.empty()) solver.add_equality_mconstraint(&equal_of, &dense, tolerances(dense.equal));
+    if (!dense.below.empty()) solver.add_inequality_mconstraint(&below_of, &dense, tolerances(dense.below));
+    solver.set_ftol_rel(options.tolerance);
+    solver.set_xtol_rel(1e-12);
+    solver.set_maxeval(options.max_iterations - dense.evaluations);
+    std::vector<double> at = list(x);
+    double value = 0;
+    const nlopt::result code = solver.optimize(at, value);
+    x = Eigen::Map<const VectorXd>(at.data(), x.size());
+    return code;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<NlpSolver> make_slsqp() {
+  return std::make_unique<SlsqpSolver>();
+}
+
+}  // namespace mmgrasp::detail

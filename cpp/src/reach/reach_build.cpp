@@ -268,9 +268,10 @@ bool build_reach_parts(const std::string& folder, const JointGroup& arm, const R
   return builder.run_shards(parts);
 }
 
-ReachDatabase ReachDatabase::build_to(const std::string& path, const JointGroup& arm, const ReachOptions& options,
+ReachDatabase ReachDatabase::build_to(const std::string& folder, const JointGroup& arm, const ReachOptions& options,
                                       const Monitor& monitor) {
   options.check();
+  const std::string path = detail::folder_name(folder);
   const std::string key = cache_key(arm, options);
   PartialFolder partial(path);
   const std::string written = (fs::path(partial.path()) / "written").string();

@@ -176,6 +176,8 @@ void put_in_place(const std::string& written, const std::string& path);
 void move_away(const std::string& path);
 /// Next to `path`, unique among processes and threads.
 std::string temporary_beside(const std::string& path);
+/// The path without slashes at its end.
+std::string folder_name(const std::string& path);
 
 }  // namespace detail
 

@@ -98,6 +98,10 @@ detail::View<T> view(const detail::CheckedFile& file, std::uint64_t count) {
 
 namespace detail {
 
+std::string folder_name(const std::string& path) {
+  return path.empty() ? path : fs::path(path + "/").parent_path().string();
+}
+
 std::string temporary_beside(const std::string& path) {
   static std::atomic<unsigned> counter{0};
   return path + ".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(counter.fetch_add(1));
@@ -152,7 +156,8 @@ void move_away(const std::string& path) {
 
 }  // namespace detail
 
-void ReachDatabase::save(const std::string& path) const {
+void ReachDatabase::save(const std::string& folder) const {
+  const std::string path = detail::folder_name(folder);
   const std::string temporary = detail::temporary_beside(path);
   std::error_code error;
   if (!fs::create_directory(temporary, error)) refuse(path, "cannot write (" + error.message() + ")");

@@ -128,7 +128,7 @@ void ShardStore::put(std::int64_t shard, ShardRecords&& records) {
     ShardHeader header = make_header(key_, shard, kept, joints_);
     header.sum = sum_of(kept);
     header.header_sum = header_sum(header);
-    const std::string path = path_of(shard), temporary = path + ".tmp";
+    const std::string path = path_of(shard), temporary = detail::temporary_beside(path);  // others may write it, too
     std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
     file.write(reinterpret_cast<const char*>(&header), sizeof(header));
     each_array(kept, [&](const auto& values) {

@@ -228,6 +228,15 @@ TEST_F(ReachFile, CannotBeWrittenWhereThereIsNoFolder) {
   EXPECT_EQ(test::read_bytes(path("letter.txt")), "dear all");
 }
 
+TEST_F(ReachFile, ASlashAtTheEndChangesNothing) {
+  const auto database = ReachDatabase::build_to(path("a.reach/"), test::seven_joints_to("2.4"), small(100));
+  EXPECT_EQ(database.path(), path("a.reach"));
+  database.save(path("b.reach//"));
+  EXPECT_EQ(entry_count(), 2u);
+  EXPECT_TRUE(test::read_folder(path("a.reach")) == test::read_folder(path("b.reach")));
+  EXPECT_THROW(database.save(""), IoError);
+}
+
 TEST_F(ReachFile, AStoppedBuildGoesOnWhereItWas) {
   const JointGroup arm = test::seven_joints_to("2.4");
   const ReachOptions options = small(600000);

@@ -97,10 +97,11 @@ struct PairPlan {
   std::vector<PlacedShape> placed;  ///< Per shape.
   std::vector<FrameBall> balls;     ///< Of `moving`, then of `fixed`, in their order; padding included.
   std::vector<int> ball_of;         ///< Per shape: its place in `balls`, or -1.
-  std::vector<int> moving, fixed;   ///< Shapes the group moves, and the others.
-  std::vector<ShapePair> varying;   ///< Relative pose depends on the configuration.
-  std::vector<ShapePair> constant;  ///< It does not: one look per reference is enough.
-  MotionRates rates;                ///< Within the joints' limits; not finite where a sliding joint has none.
+  std::vector<int> moving, fixed;   ///< Shapes the group moves, and the others; those checked against the scene first.
+  int moving_in_scene = 0, fixed_in_scene = 0;  ///< How many of them are checked against the scene.
+  std::vector<ShapePair> varying;               ///< Relative pose depends on the configuration.
+  std::vector<ShapePair> constant;              ///< It does not: one look per reference is enough.
+  MotionRates rates;  ///< Within the joints' limits; not finite where a sliding joint has none.
 
   /// What holds along one straight edge; empty when `rates` are finite.
   MotionRates rates_along(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) const;

@@ -31,7 +31,9 @@ void CollisionChecker::Impl::each_pair(bool still, const Visit& visit) const {
   }
   if (!snapshot->options.check_scene) return;
   const int count = static_cast<int>(snapshot->scene.size());
-  for (const int s : still ? plan->fixed : plan->moving) {
+  const std::vector<int>& shapes = still ? plan->fixed : plan->moving;
+  for (int k = 0; k < (still ? plan->fixed_in_scene : plan->moving_in_scene); ++k) {
+    const int s = shapes[static_cast<std::size_t>(k)];
     const double radius = snapshot->shapes[s].solid->ball_radius;
     for (int i = 0; i < count; ++i) {
       const detail::SceneShape& other = snapshot->scene[i];

@@ -68,8 +68,12 @@ struct CollisionChecker::Impl {
   bool body_is_free(int body, double motion, bool& proven);
   /// Fills `near` with the bounded scene shapes whose boxes meet the balls first .. last of the plan.
   void gather_near(int first, int last);
-  /// The first of the plan's shapes first .. last that hits the scene, with what it hits; false when none does.
-  bool find_scene_hit(const std::vector<int>& shapes, int first_ball);
+  /// The first of `count` shapes of the plan that hits the scene, with what it hits; false when none does.
+  bool find_scene_hit(const std::vector<int>& shapes, int count, int first_ball);
+  bool moving_hit_scene() { return find_scene_hit(plan->moving, plan->moving_in_scene, 0); }
+  bool fixed_hit_scene() {
+    return find_scene_hit(plan->fixed, plan->fixed_in_scene, static_cast<int>(plan->moving.size()));
+  }
 
   /// The nearest pair at the configuration placed last.
   detail::NearestPair nearest();

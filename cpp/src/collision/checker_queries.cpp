@@ -249,13 +249,13 @@ bool CollisionChecker::Impl::body_is_free(int body, double motion, bool& proven)
   });
 }
 
-bool CollisionChecker::Impl::find_scene_hit(const std::vector<int>& shapes, int first_ball) {
+bool CollisionChecker::Impl::find_scene_hit(const std::vector<int>& shapes, int count, int first_ball) {
   const auto found = [&](int s, int other) {
     last_shape = s;
     last_scene = other;
     return true;
   };
-  gather_near(first_ball, first_ball + static_cast<int>(shapes.size()));
+  gather_near(first_ball, first_ball + count);
   unsure.clear();
   for (const Near& pair : near) {
     const int s = shapes[static_cast<std::size_t>(pair.shape - first_ball)];
@@ -267,7 +267,8 @@ bool CollisionChecker::Impl::find_scene_hit(const std::vector<int>& shapes, int 
     if (hits_scene_exactly(pair.shape, pair.other)) return found(pair.shape, pair.other);
   }
   for (int i = snapshot->packed; i < static_cast<int>(snapshot->scene.size()); ++i) {
-    for (const int s : shapes) {
+    for (int k = 0; k < count; ++k) {
+      const int s = shapes[static_cast<std::size_t>(k)];
       if (hits_scene(s, i)) return found(s, i);
     }
   }
@@ -305,9 +306,8 @@ bool CollisionChecker::Impl::self_collides() {
 }
 
 bool CollisionChecker::Impl::scene_collides() {
-  if (!fixed_scene) fixed_scene = find_scene_hit(plan->fixed, static_cast<int>(plan->moving.size()));
-  if (*fixed_scene) return true;
-  return find_scene_hit(plan->moving, 0);
+  if (!fixed_scene) fixed_scene = fixed_hit_scene();
+  return *fixed_scene || moving_hit_scene();
 }
 
 std::optional<Contact> CollisionChecker::Impl::placed_contact() {
@@ -320,9 +320,7 @@ std::optional<Contact> CollisionChecker::Impl::placed_contact() {
     }
   }
   if (!snapshot->options.check_scene) return std::nullopt;
-  const bool hit =
-      find_scene_hit(plan->fixed, static_cast<int>(plan->moving.size())) || find_scene_hit(plan->moving, 0);
-  if (!hit) return std::nullopt;
+  if (!fixed_hit_scene() && !moving_hit_scene()) return std::nullopt;
   return Contact{body(last_shape), snapshot->object_names[snapshot->scene[last_scene].object], true};
 }
 

@@ -48,7 +48,7 @@ class Advance {
     }
     if (options.check_scene && !plan.moving.empty()) {
       const Eigen::VectorXd rates = bounds.shapes.transpose() * way;
-      for (std::size_t i = 0; i < plan.moving.size(); ++i) {
+      for (std::size_t i = 0; i < static_cast<std::size_t>(plan.moving_in_scene); ++i) {
         for (int k = 0; k < static_cast<int>(checker.snapshot->scene.size()); ++k)
           add(plan.moving[i], k, true, rates[static_cast<Eigen::Index>(i)]);
       }

@@ -46,7 +46,7 @@ bool CollisionChecker::Impl::EdgeWalk::all_free() {
   const CheckerOptions& options = checker_.snapshot->options;
   open_.clear();
   if (options.check_scene && !checker_.snapshot->scene.empty()) {
-    for (int i = 0; i < static_cast<int>(checker_.plan->moving.size()); ++i) open_.push_back(i);
+    for (int i = 0; i < checker_.plan->moving_in_scene; ++i) open_.push_back(i);
   }
   const std::size_t bodies = open_.size();
   if (options.check_self) {

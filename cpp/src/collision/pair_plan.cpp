@@ -62,6 +62,14 @@ PairPlan::PairPlan(const Snapshot& snapshot, const JointGroup& group) : frames(g
     if (shape.solid->never_collides()) continue;
     (link_moves[shape.link] ? moving : fixed).push_back(static_cast<int>(s));
   }
+  const auto in_scene = [&](int s) {
+    return !snapshot.options.held_only || snapshot.bodies[snapshot.shapes[s].body].held;
+  };
+  const auto scene_first = [&](std::vector<int>& shapes) {
+    return static_cast<int>(std::stable_partition(shapes.begin(), shapes.end(), in_scene) - shapes.begin());
+  };
+  moving_in_scene = scene_first(moving);
+  fixed_in_scene = scene_first(fixed);
   ball_of.assign(snapshot.shapes.size(), -1);
   for (const auto* shapes : {&moving, &fixed}) {
     for (const int s : *shapes) {
@@ -75,6 +83,7 @@ PairPlan::PairPlan(const Snapshot& snapshot, const JointGroup& group) : frames(g
     for (std::size_t j = i + 1; j < snapshot.shapes.size(); ++j) {
       const BodyShape &a = snapshot.shapes[i], &b = snapshot.shapes[j];
       if (a.body == b.body || a.solid->never_collides() || b.solid->never_collides()) continue;
+      if (snapshot.options.held_only && !snapshot.bodies[a.body].held && !snapshot.bodies[b.body].held) continue;
       if (never_needs_check(snapshot, snapshot.bodies[a.body], snapshot.bodies[b.body], assembly)) continue;
       const ShapePair pair{static_cast<int>(i), static_cast<int>(j), ball_of[i], ball_of[j],
                            a.solid->ball_radius + b.solid->ball_radius};

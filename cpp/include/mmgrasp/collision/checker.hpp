@@ -22,6 +22,9 @@ struct MMGRASP_EXPORT CheckerOptions {
   double padding = 0;       ///< Robot links (not what they hold) are grown by this [m] against the scene; >= 0.
   bool check_self = true;   ///< Robot (and what it holds) against itself.
   bool check_scene = true;  ///< Robot (and what it holds) against the scene.
+  /// Only what it holds, against the robot and the scene: the robot alone is taken to be free (many grasps of one
+  /// object share what is known of the robot, P2 4.3.2.4).
+  bool held_only = false;
   void check() const;
 };
 

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "mmgrasp/collision/edge.hpp"
+#include "mmgrasp/collision/world.hpp"
+#include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/monitor.hpp"
+#include "mmgrasp/core/outcome.hpp"
+#include "mmgrasp/grasp/gripper.hpp"
+#include "mmgrasp/plan/roadmap.hpp"
+#include "mmgrasp/robot/ik.hpp"
+#include "mmgrasp/robot/joint_group.hpp"
+#include "mmgrasp/robot/trajectory.hpp"
+
+namespace mmgrasp {
+
+/// One way to hold the object while it is carried.
+struct MMGRASP_EXPORT CandidateGrasp {
+  Pose T_object_tool = Pose::Identity();  ///< Of the group's tip in the object's frame.
+  double opening = 0;                     ///< Of the fingers while holding [m]; used when the problem has a gripper.
+  double cost = 0;                        ///< Added to the path's length; >= 0.
+};
+
+/// Carry an object from one pose to another with any of many grasps (P2 4.2): the planner chooses the grasp.
+struct MMGRASP_EXPORT ManipulationProblem {
+  JointGroup group;               ///< Arm, or base and arm; its tip is the tool.
+  World world;                    ///< Without the object.
+  std::vector<LinkShape> object;  ///< In the object's frame.
+  Pose T_world_start = Pose::Identity(), T_world_goal = Pose::Identity();
+  std::vector<CandidateGrasp> grasps{};
+  std::optional<Gripper> gripper{};     ///< Sets the fingers to each grasp's opening.
+  std::set<std::string> touch_links{};  ///< Links that may touch the object; empty: the end effector's.
+  std::string object_name = "object";
+  /// Throws InvalidInput: no grasps, a pose that is no rigid transform (index and field named), a negative cost.
+  void check() const;
+};
+
+/// Options of "prm_star_mg" alone.
+struct MMGRASP_EXPORT PrmStarMgOptions {
+  /// Grasps searched together before paths are checked (P2 4.3.4): 1 is the naive variant, 0 (all at once) the batch
+  /// variant, anything between the standard one. The answer is the same, the way there is not.
+  int batch = 0;
+  /// Search a grasp only when its straight-line cost could still win (beyond P2); off: as in the paper.
+  bool lazy_grasps = true;
+  RoadmapOptions roadmap;  ///< Used when no roadmap is given.
+  void check() const;
+};
+
+struct MMGRASP_EXPORT ManipulationOptions {
+  std::string planner = "prm_star_mg";         ///< A name of manipulation_planner_names().
+  int ik_solutions = 4;                        ///< Arm configurations tried for each grasp at each end; > 0.
+  EdgeOptions edge{0.02, 0.005, false, 1e-4};  ///< How finely edges are checked.
+  IkOptions ik;
+  double time_limit = 15;  ///< Wall-clock cap on IK and search together, without the roadmap's building [s]; > 0.
+  unsigned seed = 1;       ///< Same seed, same path, as long as the clock does not end the run.
+  int threads = 0;         ///< 0: all; does not change the answer.
+  PrmStarMgOptions prm;
+  void check() const;
+};
+
+/// "prm_star_mg" searches a roadmap (P2 chapter 4).
+MMGRASP_EXPORT std::vector<std::string> manipulation_planner_names();
+
+/// What became of one grasp before the search.
+struct MMGRASP_EXPORT GraspReport {
+  Rejections start, goal;                       ///< Arm configurations turned down at either end.
+  int start_solutions = 0, goal_solutions = 0;  ///< Those left.
+};
+
+/// A better solution on the way.
+struct MMGRASP_EXPORT Improvement {
+  double seconds = 0;  ///< Since the search began; IK and the roadmap's building come before.
+  double cost = 0;
+  int grasp = -1;
+};
+
+struct MMGRASP_EXPORT ManipulationStats {
+  double ik_seconds = 0, roadmap_seconds = 0, search_seconds = 0;
+  std::size_t graph_searches = 0;
+  std::size_t grasps_searched = 0;
+  std::size_t edges_checked_robot = 0;  ///< For the robot alone, shared by all grasps of an opening.
+  std::size_t edges_checked_held = 0;   ///< For what it holds.
+};
+
+struct MMGRASP_EXPORT ManipulationResult {
+  Outcome outcome = Outcome::timeout;
+  int grasp_index = -1;
+  std::optional<JointPath> path;  ///< Set if and only if solved; checked again at 0.005 rad with the object in hand.
+  double cost = 0;                ///< Path length plus the grasp's cost.
+  /// No path costs less: with prm_star_mg none over this roadmap and these arm configurations, otherwise the least
+  /// straight line of any grasp.
+  double lower_bound = 0;
+  std::vector<Improvement> improvements;
+  std::vector<GraspReport> grasps;  ///< One a grasp.
+  std::vector<Contact> contacts;    ///< With invalid_start or invalid_goal: what touches there with the first grasp.
+  Rejections rejections;            ///< Sum over all grasps and both ends.
+  ManipulationStats stats;
+};
+
+/// Collision-free path of the group that carries the object from start to goal with the best of the grasps. Every grasp
+/// is looked at, none sampled away. No grasp reachable at the start: invalid_start; at the goal: invalid_goal;
+/// `rejections` and `grasps` say why. With `roadmap` the graph is not built again; it must be of the same robot and
+/// joints. `improved` is called with every better solution.
+MMGRASP_EXPORT ManipulationResult plan_manipulation(const ManipulationProblem& problem,
+                                                    const ManipulationOptions& options = {},
+                                                    const Roadmap* roadmap = nullptr, const Monitor& monitor = {},
+                                                    const std::function<void(const Improvement&)>& improved = {});
+
+}  // namespace mmgrasp

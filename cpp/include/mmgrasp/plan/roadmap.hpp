@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/monitor.hpp"
+#include "mmgrasp/robot/joint_group.hpp"
+
+namespace mmgrasp {
+
+struct MMGRASP_EXPORT RoadmapOptions {
+  int vertices = 5000;  ///< Configurations drawn; in [2, 10 million].
+  /// Vertices nearer than gamma (log n / n)^(1/d) are joined (P2 4.3.2.1) [rad or m]; > 0.
+  double gamma = 4;
+  /// > 0: each vertex is joined with that many nearest ones instead, whatever gamma says.
+  int neighbours = 0;
+  unsigned seed = 1;
+  void check() const;
+};
+
+/// Size and shape of a roadmap, for reports: whether gamma promises anything can be read from it.
+struct MMGRASP_EXPORT RoadmapFigures {
+  double mean_degree = 0;
+  int components = 0;         ///< Connected parts.
+  int largest_component = 0;  ///< Vertices in the largest one.
+  double radius = 0;          ///< Connection radius; that of the farthest neighbour with `neighbours`.
+  double volume = 0;          ///< Of the box the vertices are drawn from.
+  double gamma_star = 0;      ///< PRM* asks for gamma > 2 (1 + 1/d)^(1/d) (volume / unit ball)^(1/d).
+};
+
+/// Configurations of a group drawn from its joint box and joined when near, without any collision check: what is
+/// blocked is found out lazily and kept elsewhere, so one roadmap serves every grasp, object and scene (P2 4.3.2.1,
+/// Algorithm 4.1). Angles are not wrapped. Immutable; cheap to copy, safe to share between threads. Vertex i is the
+/// same for every number of vertices: a larger roadmap contains a smaller one's vertices.
+class MMGRASP_EXPORT Roadmap {
+ public:
+  /// One end of an edge as seen from the other.
+  struct Arc {
+    int to;
+    int edge;  ///< The same number from both ends, in [0, edge_count()).
+    double length;
+  };
+
+  /// Throws InvalidInput on bad options or a group without finite bounds. Returns an empty roadmap when stopped.
+  static Roadmap build(const JointGroup& group, const RoadmapOptions& options = {}, const Monitor& monitor = {});
+  /// Writes to a temporary name and renames. Throws IoError.
+  void save(const std::string& path) const;
+  /// Throws IoError on a damaged or foreign file, or one made for another robot or other joints.
+  static Roadmap load(const std::string& path, const JointGroup& group);
+
+  const JointGroup& group() const;
+  const RoadmapOptions& options() const;
+  int size() const;  ///< Vertices.
+  int edge_count() const;
+  const Eigen::MatrixXd& vertices() const;  ///< One column each.
+  const Arc* begin(int vertex) const;
+  const Arc* end(int vertex) const;
+  /// The two vertices of an edge, the smaller number first.
+  std::pair<int, int> ends(int edge) const;
+  /// Vertices a new configuration would be joined with, ascending; `out` is overwritten.
+  void near(const Eigen::VectorXd& q, std::vector<int>& out) const;
+  RoadmapFigures figures() const;
+
+  struct Data;
+  explicit Roadmap(std::shared_ptr<const Data> data);
+
+ private:
+  std::shared_ptr<const Data> data_;
+};
+
+}  // namespace mmgrasp

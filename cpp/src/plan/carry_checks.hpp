@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/plan/manipulation.hpp"
+#include "mmgrasp/robot/trajectory.hpp"
+
+namespace mmgrasp::detail {
+
+/// Collision questions of a carry, told apart: the robot alone with its fingers at an opening (shared by all grasps
+/// with that opening), and the object in hand with one grasp. One set of checkers per worker, made when first needed.
+class CarryChecks {
+ public:
+  CarryChecks(const ManipulationProblem& problem, const EdgeOptions& edge, int workers);
+
+  int opening_count() const { return static_cast<int>(groups_.size()); }
+  int opening_of(int grasp) const { return opening_of_[static_cast<std::size_t>(grasp)]; }
+  /// The problem's group with its fingers at an opening.
+  const JointGroup& group(int opening) const { return groups_[static_cast<std::size_t>(opening)]; }
+
+  bool robot_is_free(int worker, int opening, const Eigen::VectorXd& q);
+  bool robot_edge_is_free(int worker, int opening, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
+  Rejection robot_rejection(int worker, int opening, const Eigen::VectorXd& q);
+  /// The held object against the robot and the scene; the robot alone is not looked at.
+  bool held_is_free(int worker, int grasp, const Eigen::VectorXd& q);
+  bool held_edge_is_free(int worker, int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
+  Rejection held_rejection(int worker, int grasp, const Eigen::VectorXd& q);
+  /// The first edge of a finished path that is not free for robot and object together at 0.005 rad or m; -1: all are.
+  int blocked_edge(int grasp, const JointPath& path) const;
+  /// A checker of everything.
+  CollisionChecker whole(int grasp) const;
+  const ManipulationProblem& problem() const { return problem_; }
+
+ private:
+  CollisionChecker& robot(int worker, int opening);
+  CollisionChecker& held(int worker, int grasp);
+  World world_with(int grasp) const;
+
+  const ManipulationProblem& problem_;
+  EdgeOptions edge_;
+  std::vector<JointGroup> groups_;  ///< One an opening.
+  std::vector<int> opening_of_;     ///< Per grasp.
+  std::string tip_;
+  /// Checkers without a held object, [worker][opening].
+  std::vector<std::vector<std::optional<CollisionChecker>>> robot_;
+  struct Held {
+    int grasp = -1;
+    std::optional<CollisionChecker> checker;
+  };
+  std::vector<std::vector<Held>> held_;  ///< The last few of each worker.
+  std::vector<std::size_t> next_held_;
+};
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,43 @@
+#include "plan/carry_planner.hpp"
+
+#include <utility>
+
+#include "mmgrasp/core/error.hpp"
+#include "plan/prm_star_mg.hpp"
+
+namespace mmgrasp {
+namespace detail {
+namespace {
+
+constexpr CarryPlanner kPlanners[] = {
+    {"prm_star_mg", run_prm_star_mg},
+};
+
+}  // namespace
+
+const CarryPlanner& carry_planner(const std::string& name) {
+  std::string known;
+  for (const CarryPlanner& planner : kPlanners) {
+    if (name == planner.name) return planner;
+    known += (known.empty() ? "" : ", ") + std::string(planner.name);
+  }
+  throw InvalidInput("planner = \"" + name + "\": must be one of " + known);
+}
+
+void take_path(const CarryInput& input, int grasp, double cost, JointPath path, ManipulationResult& result) {
+  result.grasp_index = grasp;
+  result.cost = cost;
+  result.path = std::move(path);
+  result.improvements.push_back({input.clock.seconds(), cost, grasp});
+  if (input.improved) input.improved(result.improvements.back());
+}
+
+}  // namespace detail
+
+std::vector<std::string> manipulation_planner_names() {
+  std::vector<std::string> names;
+  for (const detail::CarryPlanner& planner : detail::kPlanners) names.emplace_back(planner.name);
+  return names;
+}
+
+}  // namespace mmgrasp

@@ -1,0 +1,94 @@
+#include "mmgrasp/plan/manipulation.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/parallel.hpp"
+#include "plan/carry_candidates.hpp"
+#include "plan/carry_planner.hpp"
+
+namespace mmgrasp {
+namespace {
+
+bool is_rigid(const Pose& T) {
+  return T.matrix().allFinite() && (T.linear() * T.linear().transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-6 &&
+         T.linear().determinant() > 0;
+}
+
+void require_rigid(const Pose& T, const std::string& field) {
+  if (!is_rigid(T)) throw InvalidInput(field + ": must be a rigid transform of finite numbers (rotation orthonormal)");
+}
+
+}  // namespace
+
+void ManipulationProblem::check() const {
+  require(!object.empty(), "object", "[]", "must have at least one shape");
+  require(!grasps.empty(), "grasps", "[]", "must hold at least one grasp");
+  require_rigid(T_world_start, "T_world_start");
+  require_rigid(T_world_goal, "T_world_goal");
+  if (gripper) gripper->check();
+  for (std::size_t i = 0; i < grasps.size(); ++i) {
+    const std::string name = "grasps[" + std::to_string(i) + "].";
+    require_rigid(grasps[i].T_object_tool, name + "T_object_tool");
+    require(std::isfinite(grasps[i].cost) && grasps[i].cost >= 0, name + "cost", grasps[i].cost,
+            "must be finite and >= 0");
+    const double widest = gripper ? gripper->max_opening : 1e9;
+    require(grasps[i].opening >= 0 && grasps[i].opening <= widest, name + "opening", grasps[i].opening,
+            "must be in [0, the gripper's max_opening]");
+  }
+  if (world.has(object_name)) throw InvalidInput("object_name = " + object_name + ": is a name of the world already");
+}
+
+void PrmStarMgOptions::check() const {
+  require(batch >= 0, "batch", batch, "must be >= 0");
+  roadmap.check();
+}
+
+void ManipulationOptions::check() const {
+  detail::carry_planner(planner);
+  require(ik_solutions > 0, "ik_solutions", ik_solutions, "must be > 0");
+  require(time_limit > 0, "time_limit", time_limit, "must be > 0 [s]");
+  edge.check();
+  ik.check();
+  prm.check();
+}
+
+ManipulationResult plan_manipulation(const ManipulationProblem& problem, const ManipulationOptions& options,
+                                     const Roadmap* roadmap, const Monitor& monitor,
+                                     const std::function<void(const Improvement&)>& improved) {
+  problem.check();
+  options.check();
+  if (roadmap && (roadmap->group().robot().hash() != problem.group.robot().hash() ||
+                  roadmap->group().names() != problem.group.names())) {
+    throw InvalidInput("roadmap: was built for another robot or other joints than the problem's group");
+  }
+  const detail::CarryPlanner& planner = detail::carry_planner(options.planner);
+  ManipulationResult result;
+  const detail::CarryClock clock;
+  detail::CarryChecks checks(problem, options.edge, resolve_threads(options.threads));
+  std::vector<detail::CarryCandidate> candidates;
+  const bool all_seen = detail::find_candidates(problem, options, checks, candidates, result.grasps, monitor);
+  result.stats.ik_seconds = clock.seconds();
+  bool any_start = false;
+  for (const GraspReport& report : result.grasps) {
+    any_start |= report.start_solutions > 0;
+    result.rejections += report.start;
+    result.rejections += report.goal;
+  }
+  if (!all_seen) {
+    result.outcome = monitor.stopped() ? Outcome::stopped : Outcome::timeout;
+  } else if (candidates.empty()) {
+    result.outcome = any_start ? Outcome::invalid_goal : Outcome::invalid_start;
+    result.contacts = detail::first_contacts(checks, options, result.grasps, any_start);
+  } else {
+    detail::CarryInput input{
+        problem,  options, roadmap, checks, std::move(candidates), options.time_limit - result.stats.ik_seconds,
+        improved, monitor};
+    planner.run(input, result);
+    result.stats.search_seconds = input.clock.seconds();
+  }
+  return result;
+}
+
+}  // namespace mmgrasp

@@ -1,0 +1,196 @@
+#include "mmgrasp/plan/roadmap.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/parallel.hpp"
+#include "mmgrasp/core/random.hpp"
+#include "plan/roadmap_data.hpp"
+
+namespace mmgrasp {
+namespace {
+
+constexpr int kLeafSize = 12;
+
+double unit_ball_volume(double d) {
+  return std::pow(M_PI, 0.5 * d) / std::tgamma(0.5 * d + 1);
+}
+
+}  // namespace
+
+void RoadmapOptions::check() const {
+  require(vertices >= 2 && vertices <= 10'000'000, "vertices", vertices, "must be in [2, 10000000]");
+  require(std::isfinite(gamma) && gamma > 0, "gamma", gamma, "must be finite and > 0");
+  require(neighbours >= 0, "neighbours", neighbours, "must be >= 0");
+}
+
+void Roadmap::Data::draw() {
+  const Eigen::VectorXd lower = group.sample_lower(), upper = group.sample_upper();
+  for (Eigen::Index i = 0; i < lower.size(); ++i) {
+    require(std::isfinite(upper[i] - lower[i]), "group: width of '" + group.names()[static_cast<std::size_t>(i)] + "'",
+            upper[i] - lower[i], "must be finite to draw a roadmap from");
+  }
+  vertices.resize(lower.size(), options.vertices);
+  // A stream each, so that vertex i does not depend on how many there are.
+  for (Eigen::Index i = 0; i < vertices.cols(); ++i)
+    vertices.col(i) = Rng(options.seed, static_cast<std::uint64_t>(i)).uniform(lower, upper);
+}
+
+void Roadmap::Data::index() {
+  cloud = std::make_unique<detail::ColumnCloud>(detail::ColumnCloud{vertices});
+  tree = std::make_unique<detail::ColumnTree>(static_cast<int>(vertices.rows()), *cloud,
+                                              nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
+  tree->buildIndex();
+}
+
+double Roadmap::Data::radius() const {
+  const double n = static_cast<double>(vertices.cols()), d = static_cast<double>(vertices.rows());
+  return options.gamma * std::pow(std::log(n) / n, 1 / d);
+}
+
+void Roadmap::Data::near(const double* q, std::vector<int>& out) const {
+  out.clear();
+  if (options.neighbours > 0) {
+    const auto wanted = static_cast<std::size_t>(std::min<Eigen::Index>(options.neighbours, vertices.cols()));
+    out.resize(wanted);
+    std::vector<double> squared(wanted);
+    out.resize(tree->knnSearch(q, wanted, out.data(), squared.data()));
+  } else {
+    const double r = radius();
+    std::vector<std::pair<int, double>> found;
+    nanoflann::SearchParams params;
+    params.sorted = false;
+    tree->radiusSearch(q, r * r, found, params);
+    for (const auto& hit : found) out.push_back(hit.first);
+  }
+  std::sort(out.begin(), out.end());
+}
+
+bool Roadmap::Data::join(const Monitor& monitor) {
+  const auto count = static_cast<std::size_t>(vertices.cols());
+  // With a fixed number of neighbours the vertex itself is its nearest one.
+  std::vector<std::vector<int>> joined(count);
+  RoadmapOptions& own = options;
+  const int wanted = own.neighbours;
+  if (wanted > 0) own.neighbours = wanted + 1;
+  const bool done = parallel_for(
+      count, 0, [&](std::size_t v, int) { near(vertices.col(static_cast<Eigen::Index>(v)).data(), joined[v]); },
+      monitor, "roadmap");
+  own.neighbours = wanted;
+  if (!done) return false;
+  ends.clear();
+  for (std::size_t v = 0; v < count; ++v) {
+    for (const int u : joined[v]) {
+      const auto a = static_cast<int>(std::min<std::size_t>(v, static_cast<std::size_t>(u)));
+      const auto b = static_cast<int>(std::max<std::size_t>(v, static_cast<std::size_t>(u)));
+      if (a != b) ends.emplace_back(a, b);
+    }
+  }
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  make_arcs();
+  return true;
+}
+
+void Roadmap::Data::make_arcs() {
+  const auto count = static_cast<std::size_t>(vertices.cols());
+  first.assign(count + 1, 0);
+  for (const auto& [a, b] : ends) {
+    ++first[static_cast<std::size_t>(a) + 1];
+    ++first[static_cast<std::size_t>(b) + 1];
+  }
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  arcs.resize(2 * ends.size());
+  std::vector<int> next(first.begin(), first.end() - 1);
+  for (std::size_t e = 0; e < ends.size(); ++e) {
+    const auto [a, b] = ends[e];
+    const double length = (vertices.col(a) - vertices.col(b)).norm();
+    arcs[static_cast<std::size_t>(next[static_cast<std::size_t>(a)]++)] = {b, static_cast<int>(e), length};
+    arcs[static_cast<std::size_t>(next[static_cast<std::size_t>(b)]++)] = {a, static_cast<int>(e), length};
+  }
+}
+
+Roadmap::Roadmap(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+
+Roadmap Roadmap::build(const JointGroup& group, const RoadmapOptions& options, const Monitor& monitor) {
+  options.check();
+  auto data = std::make_shared<Data>(group, options);
+  data->draw();
+  data->index();
+  if (!data->join(monitor)) {
+    data = std::make_shared<Data>(group, options);
+    data->vertices.resize(group.size(), 0);
+    data->make_arcs();
+  }
+  return Roadmap(data);
+}
+
+const JointGroup& Roadmap::group() const {
+  return data_->group;
+}
+const RoadmapOptions& Roadmap::options() const {
+  return data_->options;
+}
+int Roadmap::size() const {
+  return static_cast<int>(data_->vertices.cols());
+}
+int Roadmap::edge_count() const {
+  return static_cast<int>(data_->ends.size());
+}
+const Eigen::MatrixXd& Roadmap::vertices() const {
+  return data_->vertices;
+}
+const Roadmap::Arc* Roadmap::begin(int vertex) const {
+  return data_->arcs.data() + data_->first[static_cast<std::size_t>(vertex)];
+}
+const Roadmap::Arc* Roadmap::end(int vertex) const {
+  return data_->arcs.data() + data_->first[static_cast<std::size_t>(vertex) + 1];
+}
+std::pair<int, int> Roadmap::ends(int edge) const {
+  return data_->ends[static_cast<std::size_t>(edge)];
+}
+
+void Roadmap::near(const Eigen::VectorXd& q, std::vector<int>& out) const {
+  data_->group.check_configuration(q, "q");
+  out.clear();
+  if (size() > 0) data_->near(q.data(), out);
+}
+
+RoadmapFigures Roadmap::figures() const {
+  RoadmapFigures out;
+  const auto d = static_cast<double>(data_->group.size());
+  out.volume = (data_->group.sample_upper() - data_->group.sample_lower()).prod();
+  out.gamma_star = 2 * std::pow(1 + 1 / d, 1 / d) * std::pow(out.volume / unit_ball_volume(d), 1 / d);
+  if (size() == 0) return out;
+  out.mean_degree = 2.0 * edge_count() / size();
+  out.radius = data_->radius();
+  if (options().neighbours > 0) {
+    out.radius = 0;
+    for (const Arc& arc : data_->arcs) out.radius = std::max(out.radius, arc.length);
+  }
+  std::vector<char> seen(static_cast<std::size_t>(size()), 0);
+  std::vector<int> stack;
+  for (int start = 0; start < size(); ++start) {
+    if (seen[static_cast<std::size_t>(start)]) continue;
+    ++out.components;
+    int members = 0;
+    stack.assign(1, start);
+    seen[static_cast<std::size_t>(start)] = 1;
+    while (!stack.empty()) {
+      const int v = stack.back();
+      stack.pop_back();
+      ++members;
+      for (const Arc* arc = begin(v); arc != end(v); ++arc) {
+        if (seen[static_cast<std::size_t>(arc->to)]) continue;
+        seen[static_cast<std::size_t>(arc->to)] = 1;
+        stack.push_back(arc->to);
+      }
+    }
+    out.largest_component = std::max(out.largest_component, members);
+  }
+  return out;
+}
+
+}  // namespace mmgrasp

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <nanoflann.hpp>
+#include <utility>
+#include <vector>
+
+#include "mmgrasp/plan/roadmap.hpp"
+
+namespace mmgrasp {
+
+namespace detail {
+
+/// Columns of a matrix as nanoflann wants them.
+struct ColumnCloud {
+  const Eigen::MatrixXd& columns;
+  std::size_t kdtree_get_point_count() const { return static_cast<std::size_t>(columns.cols()); }
+  double kdtree_get_pt(std::size_t i, std::size_t k) const {
+    return columns(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i));
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+using ColumnTree =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, ColumnCloud>, ColumnCloud, -1, int>;
+
+}  // namespace detail
+
+struct Roadmap::Data {
+  Data(const JointGroup& group_in, const RoadmapOptions& options_in) : group(group_in), options(options_in) {}
+
+  /// Draws the vertices and indexes them; the edges come after.
+  void draw();
+  void index();
+  double radius() const;
+  int wanted_neighbours() const { return options.neighbours; }
+  void near(const double* q, std::vector<int>& out) const;
+  /// Joins near vertices; false when stopped.
+  bool join(const Monitor& monitor);
+  /// Makes the arcs of `ends`.
+  void make_arcs();
+
+  JointGroup group;
+  RoadmapOptions options;
+  Eigen::MatrixXd vertices;
+  std::vector<std::pair<int, int>> ends;  ///< Of each edge, ascending.
+  std::vector<int> first;                 ///< Arcs of vertex v: first[v] .. first[v + 1].
+  std::vector<Arc> arcs;
+  std::unique_ptr<detail::ColumnCloud> cloud;
+  std::unique_ptr<detail::ColumnTree> tree;
+};
+
+}  // namespace mmgrasp

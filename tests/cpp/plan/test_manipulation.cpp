@@ -1,0 +1,295 @@
+#include "mmgrasp/plan/manipulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <queue>
+
+#include "mmgrasp/core/error.hpp"
+#include "plan/planar_arm.hpp"
+
+namespace mmgrasp {
+namespace {
+
+Pose flat_pose(double x, double y, double yaw) {
+  Pose T = Pose::Identity();
+  T.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  T.translation() = Eigen::Vector3d(x, y, 0);
+  return T;
+}
+
+LinkShape bar(double length) {
+  LinkShape shape;
+  shape.shape = Box{{length, 0.02, 0.02}};
+  return shape;
+}
+
+/// A bar carried by an arm of three links in the plane past two posts: twenty grasps, ten along the bar, from both
+/// sides.
+ManipulationProblem bar_problem() {
+  const test::PlanarArm arm(3, 0.4);
+  ManipulationProblem problem{arm.group(), {}, {bar(0.4)}, flat_pose(0.55, 0.45, 1.2), flat_pose(0.6, -0.45, 0.9), {}};
+  problem.world.add("post", Shape(Box{{0.1, 0.1, 0.2}}), flat_pose(0.85, 0.0, 0));
+  problem.world.add("corner", Shape(Box{{0.06, 0.06, 0.2}}), flat_pose(0.35, -0.75, 0));
+  for (int i = 0; i < 10; ++i)
+    for (const double side : {0.5 * M_PI, -0.5 * M_PI})
+      problem.grasps.push_back({flat_pose(-0.18 + 0.04 * i, 0, side), 0, 0});
+  problem.touch_links = {"l3", "tip"};
+  return problem;
+}
+
+ManipulationOptions bar_options() {
+  ManipulationOptions options;
+  options.prm.roadmap.vertices = 300;
+  options.prm.roadmap.gamma = 5;
+  options.ik_solutions = 2;
+  options.time_limit = 100;
+  return options;
+}
+
+World carrying(const ManipulationProblem& problem, const CandidateGrasp& grasp) {
+  World world = problem.world;
+  world.add("object", WorldObject{problem.object, problem.T_world_start});
+  world.attach("object", "tip", grasp.T_object_tool.inverse(), problem.touch_links);
+  return world;
+}
+
+/// The cheapest path of one grasp over the roadmap by Dijkstra's algorithm, every edge checked beforehand with the bar
+/// in hand.
+double exhaustive_cost(const ManipulationProblem& problem, const ManipulationOptions& options, const Roadmap& roadmap,
+                       int index) {
+  const CandidateGrasp& grasp = problem.grasps[static_cast<std::size_t>(index)];
+  CollisionChecker checker(problem.group, carrying(problem, grasp));
+  IkOptions ik = options.ik;
+  ik.seed = options.ik.seed + static_cast<unsigned>(index);
+  const auto solve = [&](const Pose& T) {
+    return solve_ik_all(problem.group, T * grasp.T_object_tool, options.ik_solutions, ik,
+                        [&](const Eigen::VectorXd& q) { return checker.rejection(q); });
+  };
+  std::vector<Eigen::VectorXd> nodes;
+  for (int v = 0; v < roadmap.size(); ++v) nodes.push_back(roadmap.vertices().col(v));
+  const auto first_start = nodes.size();
+  for (const auto& q : solve(problem.T_world_start)) nodes.push_back(q);
+  const auto first_goal = nodes.size();
+  for (const auto& q : solve(problem.T_world_goal)) nodes.push_back(q);
+  if (first_goal == first_start || nodes.size() == first_goal) return std::numeric_limits<double>::infinity();
+
+  std::vector<std::vector<std::pair<std::size_t, double>>> arcs(nodes.size());
+  const auto join = [&](std::size_t a, std::size_t b) {
+    if (!checker.is_free(nodes[a]) || !checker.is_free(nodes[b])) return;
+    if (!check_edge(checker, nodes[a], nodes[b], options.edge).free) return;
+    arcs[a].push_back({b, (nodes[b] - nodes[a]).norm()});
+    arcs[b].push_back({a, (nodes[b] - nodes[a]).norm()});
+  };
+  const double radius = options.prm.roadmap.gamma * std::pow(std::log(double(roadmap.size())) / roadmap.size(),
+                                                             1.0 / static_cast<double>(problem.group.size()));
+  for (std::size_t a = 0; a < nodes.size(); ++a)
+    for (std::size_t b = a + 1; b < nodes.size(); ++b) {
+      const bool ends = a >= first_start && a < first_goal && b >= first_goal;
+      const bool same_end = a >= first_start && !ends;
+      if (ends || (!same_end && (nodes[b] - nodes[a]).norm() < radius)) join(a, b);
+    }
+  std::vector<double> cost(nodes.size(), std::numeric_limits<double>::infinity());
+  using Entry = std::pair<double, std::size_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  for (std::size_t s = first_start; s < first_goal; ++s) queue.push({cost[s] = 0, s});
+  while (!queue.empty()) {
+    const auto [at, node] = queue.top();
+    queue.pop();
+    if (at > cost[node]) continue;
+    if (node >= first_goal) return at + grasp.cost;
+    for (const auto& [next, length] : arcs[node])
+      if (at + length < cost[next]) queue.push({cost[next] = at + length, next});
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+TEST(Roadmap, JoinsExactlyTheNearOnes) {
+  const test::PlanarArm arm(3);
+  RoadmapOptions options;
+  options.vertices = 400;
+  options.gamma = 5;
+  const Roadmap roadmap = Roadmap::build(arm.group(), options);
+  const double radius = 5 * std::pow(std::log(400.0) / 400, 1.0 / 3);
+  EXPECT_NEAR(roadmap.figures().radius, radius, 1e-12);
+  int edges = 0;
+  for (int a = 0; a < 400; ++a) {
+    EXPECT_TRUE(arm.group().within_limits(roadmap.vertices().col(a)));
+    std::vector<int> joined, expected;
+    for (const Roadmap::Arc* arc = roadmap.begin(a); arc != roadmap.end(a); ++arc) {
+      joined.push_back(arc->to);
+      EXPECT_NEAR(arc->length, (roadmap.vertices().col(a) - roadmap.vertices().col(arc->to)).norm(), 1e-12);
+      EXPECT_EQ(roadmap.ends(arc->edge), std::make_pair(std::min(a, arc->to), std::max(a, arc->to)));
+    }
+    for (int b = 0; b < 400; ++b)
+      if (b != a && (roadmap.vertices().col(a) - roadmap.vertices().col(b)).norm() < radius) expected.push_back(b);
+    std::sort(joined.begin(), joined.end());
+    EXPECT_EQ(joined, expected);
+    edges += static_cast<int>(expected.size());
+  }
+  EXPECT_EQ(2 * roadmap.edge_count(), edges);
+  EXPECT_NEAR(roadmap.figures().mean_degree, edges / 400.0, 1e-12);
+  // gamma* = 2 (1 + 1/3)^(1/3) (5.6^3 / (4/3 pi))^(1/3)
+  EXPECT_NEAR(roadmap.figures().gamma_star, 2 * std::cbrt(4.0 / 3) * 5.6 / std::cbrt(4.0 / 3 * M_PI), 1e-9);
+}
+
+TEST(Roadmap, LargerOneHoldsTheSmallerOnesVertices) {
+  const test::PlanarArm arm(3);
+  RoadmapOptions options;
+  options.vertices = 50;
+  const Roadmap small = Roadmap::build(arm.group(), options);
+  options.vertices = 200;
+  const Roadmap large = Roadmap::build(arm.group(), options);
+  EXPECT_EQ(small.vertices(), large.vertices().leftCols(50));
+}
+
+TEST(Roadmap, FileHoldsAllOfItAndNothingElseIsTaken) {
+  const test::PlanarArm arm(3);
+  RoadmapOptions options;
+  options.vertices = 100;
+  options.neighbours = 6;
+  const Roadmap roadmap = Roadmap::build(arm.group(), options);
+  const std::string path = testing::TempDir() + "mmgrasp_test.roadmap";
+  roadmap.save(path);
+  const Roadmap back = Roadmap::load(path, arm.group());
+  EXPECT_EQ(back.vertices(), roadmap.vertices());
+  ASSERT_EQ(back.edge_count(), roadmap.edge_count());
+  for (int e = 0; e < roadmap.edge_count(); ++e) EXPECT_EQ(back.ends(e), roadmap.ends(e));
+  for (int v = 0; v < roadmap.size(); ++v) EXPECT_GE(roadmap.end(v) - roadmap.begin(v), 6);
+  EXPECT_THROW(Roadmap::load(path, test::PlanarArm(4).group()), IoError);
+  EXPECT_THROW(Roadmap::load(path, test::PlanarArm(3, 0.5, 0.03).group()), IoError);
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+  for (const std::size_t at : {std::size_t{3}, std::size_t{40}, bytes.size() / 2, bytes.size() - 3}) {
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ 4);
+    std::ofstream(path, std::ios::binary) << damaged;
+    EXPECT_THROW(Roadmap::load(path, arm.group()), IoError) << at;
+    std::ofstream(path, std::ios::binary) << bytes.substr(0, at);
+    EXPECT_THROW(Roadmap::load(path, arm.group()), IoError) << at;
+  }
+  std::remove(path.c_str());
+  EXPECT_THROW(Roadmap::load(path, arm.group()), IoError);
+}
+
+TEST(PrmStarMg, EveryVariantFindsTheExhaustiveOptimum) {
+  const ManipulationProblem problem = bar_problem();
+  ManipulationOptions options = bar_options();
+  const Roadmap roadmap = Roadmap::build(problem.group, options.prm.roadmap);
+  double best = std::numeric_limits<double>::infinity();
+  int feasible = 0;
+  for (std::size_t g = 0; g < problem.grasps.size(); ++g) {
+    const double cost = exhaustive_cost(problem, options, roadmap, static_cast<int>(g));
+    feasible += std::isfinite(cost) ? 1 : 0;
+    best = std::min(best, cost);
+  }
+  ASSERT_GT(feasible, 1);
+  ASSERT_LT(feasible, 20);
+  for (const int batch : {1, 4, 0})
+    for (const bool lazy : {false, true})
+      for (const int threads : {1, 2}) {
+        options.prm.batch = batch;
+        options.prm.lazy_grasps = lazy;
+        options.threads = threads;
+        const ManipulationResult result = plan_manipulation(problem, options, &roadmap);
+        ASSERT_EQ(result.outcome, Outcome::solved) << batch << lazy;
+        EXPECT_NEAR(result.cost, best, 1e-9) << batch << lazy;
+        EXPECT_NEAR(result.path->length(), best, 1e-9);
+        EXPECT_NEAR(result.lower_bound, best, 1e-9);
+        // With everything in one batch the first solution is the best.
+        EXPECT_TRUE(batch != 0 || result.improvements.size() == 1u);
+      }
+}
+
+TEST(PrmStarMg, PathCarriesTheObjectAndIsFree) {
+  const ManipulationProblem problem = bar_problem();
+  const ManipulationResult result = plan_manipulation(problem, bar_options());
+  ASSERT_EQ(result.outcome, Outcome::solved);
+  const CandidateGrasp& grasp = problem.grasps[static_cast<std::size_t>(result.grasp_index)];
+  CollisionChecker checker(problem.group, carrying(problem, grasp));
+  const auto& waypoints = result.path->waypoints;
+  for (std::size_t i = 0; i + 1 < waypoints.size(); ++i)
+    EXPECT_TRUE(checker.edge_is_free(waypoints[i], waypoints[i + 1], 0.001));
+  const auto object_at = [&](const Eigen::VectorXd& q) { return problem.group.fk(q) * grasp.T_object_tool.inverse(); };
+  EXPECT_LT((object_at(waypoints.front()).matrix() - problem.T_world_start.matrix()).norm(), 3e-4);
+  EXPECT_LT((object_at(waypoints.back()).matrix() - problem.T_world_goal.matrix()).norm(), 3e-4);
+}
+
+TEST(PrmStarMg, CostsOfGraspsCount) {
+  ManipulationProblem problem = bar_problem();
+  const ManipulationOptions options = bar_options();
+  const ManipulationResult cheap = plan_manipulation(problem, options);
+  ASSERT_EQ(cheap.outcome, Outcome::solved);
+  problem.grasps[static_cast<std::size_t>(cheap.grasp_index)].cost = 100;
+  const ManipulationResult other = plan_manipulation(problem, options);
+  ASSERT_EQ(other.outcome, Outcome::solved);
+  EXPECT_NE(other.grasp_index, cheap.grasp_index);
+  EXPECT_GE(other.cost, cheap.cost);
+  EXPECT_LT(other.cost, 100);
+}
+
+TEST(PrmStarMg, SaysWhyThereIsNoPlan) {
+  ManipulationProblem problem = bar_problem();
+  ManipulationOptions options = bar_options();
+  options.ik.restarts = 5;
+  problem.T_world_start = flat_pose(5, 0, 0);
+  ManipulationResult result = plan_manipulation(problem, options);
+  EXPECT_EQ(result.outcome, Outcome::invalid_start);
+  EXPECT_EQ(result.rejections.reach, 20u);
+  problem = bar_problem();
+  problem.T_world_goal = flat_pose(0.85, 0, 0);  // within the post
+  result = plan_manipulation(problem, options);
+  EXPECT_EQ(result.outcome, Outcome::invalid_goal);
+  EXPECT_GT(result.rejections.scene, 0u);
+  ASSERT_EQ(result.grasps.size(), 20u);
+  for (const GraspReport& report : result.grasps) EXPECT_EQ(report.goal_solutions, 0);
+  // Walls all around the start: reachable, but no way out.
+  problem = bar_problem();
+  options.prm.roadmap.vertices = 20;
+  options.prm.roadmap.gamma = 0.01;
+  problem.world.add("wall", Shape(Box{{1.6, 0.02, 0.2}}), flat_pose(1.0, 0.05, 0));
+  result = plan_manipulation(problem, options);
+  EXPECT_EQ(result.outcome, Outcome::infeasible);
+  EXPECT_FALSE(result.path.has_value());
+}
+
+TEST(PrmStarMg, RefusesNonsense) {
+  const ManipulationProblem good = bar_problem();
+  const auto refused = [](const ManipulationProblem& problem, const char* what) {
+    try {
+      plan_manipulation(problem, bar_options());
+      ADD_FAILURE() << what;
+    } catch (const InvalidInput& error) {
+      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+    }
+  };
+  ManipulationProblem problem = good;
+  problem.grasps.clear();
+  refused(problem, "grasps");
+  problem = good;
+  problem.grasps[3].T_object_tool.linear() *= 1.1;
+  refused(problem, "grasps[3].T_object_tool");
+  problem = good;
+  problem.T_world_goal.translation().x() = std::nan("");
+  refused(problem, "T_world_goal");
+  problem = good;
+  problem.object.clear();
+  refused(problem, "object");
+  problem = good;
+  problem.grasps[1].cost = -1;
+  refused(problem, "grasps[1].cost");
+  const Roadmap foreign = Roadmap::build(test::PlanarArm(4).group(), bar_options().prm.roadmap);
+  EXPECT_THROW(plan_manipulation(good, bar_options(), &foreign), InvalidInput);
+}
+
+TEST(PrmStarMg, StopsWhenTold) {
+  Monitor monitor;
+  monitor.stop.stop();
+  EXPECT_EQ(plan_manipulation(bar_problem(), bar_options(), nullptr, monitor).outcome, Outcome::stopped);
+}
+
+}  // namespace
+}  // namespace mmgrasp

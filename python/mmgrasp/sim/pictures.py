@@ -1,0 +1,159 @@
+"""Pictures of a run from its recorded states: single frames, a strip, an animated GIF.
+
+The renderer "own" is the library's software renderer and needs nothing; "mujoco" is MuJoCo's, which needs OpenGL without a display
+(MUJOCO_GL=egl or osmesa).
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .._core import InvalidInput
+from .._files import write_file
+from ..viz.png import write_png
+from ..viz.raster import Camera, Scene, render
+from ..viz.scene import placed_triangles, transformed
+from ..viz.style import FLOOR, OBSTACLE, PART, ROBOT, ROBOT_ARM
+from .model import BASE_JOINTS
+from .result import SimResult
+from .simulation import Simulation
+
+FLOOR_TILE = 0.5
+
+
+class Painter:
+    """Draws states of one simulation with the software renderer."""
+
+    def __init__(self, sim: Simulation):
+        self.sim = sim
+        fingers = set(sim.gripper.finger_links) if sim.gripper else set()
+        dark = {link for link in sim.robot.links if link in fingers}
+        self.links = [
+            (link, *placed_triangles(shape), ROBOT_ARM if link in dark else ROBOT)
+            for link in sim.robot.links
+            for shape in sim.robot.collisions(link)
+        ]
+        self.scene = [
+            (transformed(sim.scene.pose_of(name), V), F)
+            for name in sim.scene.objects
+            for V, F in (placed_triangles(shape) for shape in sim.scene.shapes_of(name))
+        ]
+        self.parts = {name: [placed_triangles(s) for s in part.shapes] for name, part in sim.parts.items()}
+
+    def picture(self, state: dict[str, Any], camera: Camera) -> np.ndarray:
+        """uint8 (height, width, 3)."""
+        scene = Scene()
+        scene.add(*_floor(camera.target), FLOOR)
+        for V, F in self.scene:
+            scene.add(V, F, OBSTACLE)
+        x, y, theta = state["base"]
+        T = np.eye(4)
+        T[:2, :2] = [[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]]
+        T[:2, 3] = x, y
+        limits = {j["name"]: (j["lower"], j["upper"]) for j in self.sim.robot.joint_table}
+        # Physics may stand a hair beyond a limit, which the model refuses.
+        joints = {n: float(np.clip(v, *limits[n])) for n, v in state["joints"].items()}
+        poses = self.sim.robot.link_poses(joints, T)
+        for link, V, F, colour in self.links:
+            scene.add(transformed(poses[link], V), F, colour)
+        for name, shapes in self.parts.items():
+            for V, F in shapes:
+                scene.add(transformed(state["parts"][name], V), F, PART)
+        return render(scene, camera)
+
+
+def _floor(middle: np.ndarray, reach: float = 4.0) -> tuple[np.ndarray, np.ndarray]:
+    ticks = np.arange(-reach, reach + FLOOR_TILE / 2, FLOOR_TILE)
+    vertices = np.array([[middle[0] + x, middle[1] + y, -0.002] for y in ticks for x in ticks])
+    n = len(ticks)
+    corners = [j * n + i for j in range(n - 1) for i in range(n - 1)]
+    return vertices, np.array([f for a in corners for f in ([a, a + 1, a + n + 1], [a, a + n + 1, a + n])])
+
+
+def frames(
+    sim: Simulation,
+    result: SimResult,
+    times: Sequence[float] | None = None,
+    *,
+    eye: Sequence[float],
+    target: Sequence[float],
+    width: int = 480,
+    height: int = 360,
+    renderer: str = "own",
+) -> list[np.ndarray]:
+    """Pictures (height, width, 3) of the states nearest to the times [s], or of all recorded ones.
+
+    The camera looks from `eye` to `target` [m]. Raises InvalidInput for an unknown renderer and where OpenGL is missing.
+    """
+    if renderer not in ("own", "mujoco"):
+        raise InvalidInput(f"renderer = {renderer!r}: must be own or mujoco")
+    clock = np.array([s["time"] for s in result.states])
+    chosen = range(len(clock)) if times is None else [int(np.abs(clock - t).argmin()) for t in times]
+    states = [result.states[i] for i in chosen]
+    camera = Camera(np.asarray(eye, float), np.asarray(target, float), width, height)
+    if renderer == "mujoco":
+        return _mujoco_frames(sim, states, camera)
+    painter = Painter(sim)
+    return [painter.picture(state, camera) for state in states]
+
+
+def _mujoco_frames(sim: Simulation, states: list[dict[str, Any]], camera: Camera) -> list[np.ndarray]:
+    mujoco = sim.mujoco
+    try:
+        made = mujoco.Renderer(sim.model, camera.height, camera.width)
+    except Exception as error:
+        raise InvalidInput(
+            f"renderer = 'mujoco': no OpenGL without a display here (MUJOCO_GL=egl or osmesa): {error}; renderer='own' needs none"
+        ) from None
+    view = mujoco.MjvCamera()
+    line = camera.eye - camera.target
+    view.lookat[:] = camera.target
+    view.distance = np.linalg.norm(line)
+    view.azimuth = np.degrees(np.arctan2(-line[1], -line[0]))
+    view.elevation = np.degrees(np.arcsin(-line[2] / view.distance))
+    data = mujoco.MjData(sim.model)
+    pictures = []
+    for state in states:
+        for name, address in sim.address.items():
+            data.qpos[address] = state["joints"][name]
+        for name, value in zip(BASE_JOINTS, state["base"], strict=True) if sim.moves else ():
+            data.qpos[sim.model.joint(name).qposadr[0]] = value
+        for name, T in state["parts"].items():
+            at = int(sim.model.joint(f"part/{name}").qposadr[0])
+            quat = np.zeros(4)
+            mujoco.mju_mat2Quat(quat, np.ascontiguousarray(T[:3, :3]).ravel())
+            data.qpos[at : at + 7] = [*T[:3, 3], *quat]
+        mujoco.mj_forward(sim.model, data)
+        made.update_scene(data, view)
+        pictures.append(made.render().copy())
+    made.close()
+    return pictures
+
+
+def write_strip(path: str | Path, pictures: Sequence[np.ndarray], columns: int = 4, gap: int = 4) -> Path:
+    """PNG of pictures of one size in rows, in reading order."""
+    height, width, _ = pictures[0].shape
+    rows = -(-len(pictures) // columns)
+    sheet = np.full((rows * (height + gap) - gap, columns * (width + gap) - gap, 3), 255, np.uint8)
+    for i, picture in enumerate(pictures):
+        y, x = (i // columns) * (height + gap), (i % columns) * (width + gap)
+        sheet[y : y + height, x : x + width] = picture
+    return write_png(path, sheet)
+
+
+def write_gif(path: str | Path, pictures: Sequence[np.ndarray], seconds_per_frame: float) -> Path:
+    """An endless animation."""
+    from PIL import Image
+
+    images = [Image.fromarray(p).quantize(64) for p in pictures]
+    buffer = io.BytesIO()
+    images[0].save(
+        buffer, "GIF", save_all=True, append_images=images[1:], duration=round(1000 * seconds_per_frame), loop=0
+    )
+    write_file(Path(path), buffer.getvalue())
+    return Path(path)

@@ -8,6 +8,7 @@ void bind_mapping(py::module_& m);
 void bind_graspability(py::module_& m);
 void bind_capability(py::module_& m);
 void bind_control(py::module_& m);
+void bind_structure(py::module_& m);
 
 void declare_classes(py::module_& m) {
   py::class_<Robot>(m, "Robot", "A robot as URDF and SRDF describe it. Immutable; joints and links by name.");
@@ -39,5 +40,6 @@ PYBIND11_MODULE(_core, m) {
   bind_platform_locations(m);
   bind_mapping(m);
   bind_graspability(m);
+  bind_structure(m);
   bind_verify(m);
 }

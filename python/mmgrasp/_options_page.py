@@ -35,6 +35,12 @@ SECTIONS = (
         _core._tracking_option_table,
         set(),
     ),
+    (
+        "pipe_grasps",
+        "Grasps of a pipe, keywords of `Pipe.sample_grasps` (`PipeGraspOptions`)",
+        _core._pipe_grasp_option_table,
+        set(),
+    ),
     ("fit_cuboids", "Box-shaped parts of a cloud, keywords (`CuboidFitOptions`)", _core._cuboid_option_table, set()),
 )
 

@@ -1,0 +1,129 @@
+#include "mmgrasp/structure/pipe.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "mmgrasp/core/error.hpp"
+
+namespace mmgrasp {
+namespace {
+
+using Eigen::Vector3d;
+
+std::string entry(const char* list, std::size_t index) {
+  return std::string(list) + "[" + std::to_string(index) + "]";
+}
+
+/// Number of the connected piece of each node, the smallest node of the piece.
+std::vector<int> pieces(const Pipe& pipe) {
+  std::vector<int> piece(pipe.nodes.size());
+  std::iota(piece.begin(), piece.end(), 0);
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const auto& [a, b] : pipe.sections) {
+      const int least = std::min(piece[a], piece[b]);
+      changed = changed || piece[a] != piece[b];
+      piece[a] = piece[b] = least;
+    }
+  }
+  return piece;
+}
+
+}  // namespace
+
+void Pipe::check() const {
+  require(!sections.empty(), "sections", "[]", "a pipe has at least one section");
+  require(diameters.size() == sections.size(), "diameters", std::to_string(diameters.size()) + " values",
+          "must be one for each of the " + std::to_string(sections.size()) + " sections");
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    require(nodes[i].allFinite(), entry("nodes", i), "not finite", "must be three finite numbers [m]");
+  }
+  const int count = static_cast<int>(nodes.size());
+  std::vector<bool> used(nodes.size(), false);
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const auto [a, b] = sections[i];
+    const std::string value = "(" + std::to_string(a) + ", " + std::to_string(b) + ")";
+    require(a >= 0 && b >= 0 && a < count && b < count, entry("sections", i), value,
+            "must be indices of the " + std::to_string(count) + " nodes, from 0");
+    require(length(static_cast<int>(i)) >= kShortest, entry("sections", i), value,
+            "its nodes must be at least 0.001 m apart");
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto [c, d] = sections[j];
+      require(!((a == c && b == d) || (a == d && b == c)), entry("sections", i), value,
+              "joins the same nodes as " + entry("sections", j));
+    }
+    used[a] = used[b] = true;
+    require(std::isfinite(diameters[i]) && diameters[i] > 0, entry("diameters", i), diameters[i],
+            "must be positive [m]");
+  }
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    require(used[i], entry("nodes", i), "of no section", "every node must belong to a section");
+  }
+  const std::vector<int> piece = pieces(*this);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    require(piece[i] == 0, entry("nodes", i), "not connected to nodes[0]", "a pipe is one connected piece");
+  }
+}
+
+double Pipe::length(int section) const {
+  const auto [a, b] = sections.at(section);
+  return (nodes.at(b) - nodes.at(a)).norm();
+}
+
+Pose Pipe::T_object_section(int section) const {
+  const auto [a, b] = sections.at(section);
+  const Vector3d x = (nodes.at(b) - nodes.at(a)).normalized();
+  const bool along_z = std::abs(x.z()) > std::cos(0.06);
+  const Vector3d towards = along_z ? Vector3d::UnitX() : Vector3d::UnitZ();
+  Pose T = Pose::Identity();
+  T.linear().col(0) = x;
+  T.linear().col(1) = (towards - towards.dot(x) * x).normalized();
+  T.linear().col(2) = x.cross(T.linear().col(1));
+  T.translation() = nodes.at(a);
+  return T;
+}
+
+Vector3d Pipe::centre_of_mass() const {
+  Vector3d sum = Vector3d::Zero();
+  double mass = 0;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const double weight = length(static_cast<int>(i)) * diameters.at(i);
+    sum += weight * (nodes.at(sections[i][0]) + nodes.at(sections[i][1])) / 2;
+    mass += weight;
+  }
+  return sum / mass;
+}
+
+std::vector<LinkShape> Pipe::shapes(PipeEnds ends) const {
+  check();
+  std::vector<LinkShape> out;
+  std::vector<int> meeting(nodes.size(), 0);
+  std::vector<double> widest(nodes.size(), 0.0);
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const double along = length(static_cast<int>(i)), radius = diameters[i] / 2;
+    Pose T = T_object_section(static_cast<int>(i));
+    T = T * Eigen::Translation3d(along / 2, 0, 0) *
+        Eigen::AngleAxisd(3.14159265358979323846 / 2, Vector3d::UnitY());  // the shapes' z along the section's x
+    LinkShape shape;
+    shape.shape = ends == PipeEnds::round ? Shape(Capsule{radius, along}) : Shape(Cylinder{radius, along});
+    shape.T_link_shape = T;
+    out.push_back(shape);
+    for (const int node : sections[i]) {
+      ++meeting[node];
+      widest[node] = std::max(widest[node], radius);
+    }
+  }
+  if (ends == PipeEnds::round) return out;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (meeting[i] < 2) continue;
+    LinkShape ball;
+    ball.shape = Sphere{widest[i]};
+    ball.T_link_shape.translation() = nodes[i];
+    out.push_back(ball);
+  }
+  return out;
+}
+
+}  // namespace mmgrasp

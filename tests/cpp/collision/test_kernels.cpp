@@ -159,8 +159,12 @@ TEST_P(CollisionKernels, BallsMeetBoxesWhenTheyDo) {
       const double distance = boxes[i].distance(centre);
       least = std::min(least, distance);
       const bool said = (masks[i / kLanes] >> (i % kLanes) & 1) != 0;
-      if (distance < radius - kSlack) EXPECT_TRUE(said) << distance << " " << radius;
-      if (distance > radius + kSlack) EXPECT_FALSE(said) << distance << " " << radius;
+      if (distance < radius - kSlack) {
+        EXPECT_TRUE(said) << distance << " " << radius;
+      }
+      if (distance > radius + kSlack) {
+        EXPECT_FALSE(said) << distance << " " << radius;
+      }
       ++(said ? met : apart);
     }
     EXPECT_NEAR(nearest, least * least, kSlack);
@@ -194,9 +198,15 @@ TEST_P(CollisionKernels, CoverAgainstBoxIsNeverSureAndWrong) {
       outer_far &= distance > cover.outer[i] + grow + 2 * kSlack;
       inner_meets |= cover.inner[i] > 0 && distance < cover.inner[i];
     }
-    if (outer_meets) EXPECT_NE(answer, kApart);
-    if (outer_far) EXPECT_EQ(answer, kApart);
-    if (!inner_meets) EXPECT_NE(answer, kOverlap);
+    if (outer_meets) {
+      EXPECT_NE(answer, kApart);
+    }
+    if (outer_far) {
+      EXPECT_EQ(answer, kApart);
+    }
+    if (!inner_meets) {
+      EXPECT_NE(answer, kOverlap);
+    }
   }
   for (const int count : answers) EXPECT_GT(count, 100);
 }
@@ -244,9 +254,15 @@ TEST_P(CollisionKernels, FieldAgainstCoverIsNeverSureAndWrong) {
       least = std::min(least, d - fine.outer[i]);
       if (fine.inner[i] > 0) least_centre = std::min(least_centre, d);
     }
-    if (least < 0) EXPECT_NE(answer, kApart);
-    if (least > 2 * std::sqrt(3.0) * kStep) EXPECT_EQ(answer, kApart);
-    if (least_centre > 0) EXPECT_NE(answer, kOverlap);
+    if (least < 0) {
+      EXPECT_NE(answer, kApart);
+    }
+    if (least > 2 * std::sqrt(3.0) * kStep) {
+      EXPECT_EQ(answer, kApart);
+    }
+    if (least_centre > 0) {
+      EXPECT_NE(answer, kOverlap);
+    }
   }
   for (const int count : answers) EXPECT_GT(count, 100);
 }

@@ -9,6 +9,7 @@ void bind_graspability(py::module_& m);
 void bind_capability(py::module_& m);
 void bind_control(py::module_& m);
 void bind_structure(py::module_& m);
+void bind_push_grasp(py::module_& m);
 
 void declare_classes(py::module_& m) {
   py::class_<Robot>(m, "Robot", "A robot as URDF and SRDF describe it. Immutable; joints and links by name.");
@@ -35,6 +36,7 @@ PYBIND11_MODULE(_core, m) {
   bind_grasp(m);
   bind_plan(m);
   bind_control(m);
+  bind_push_grasp(m);
   bind_task(m);
   bind_pickle(m);
   bind_platform_locations(m);

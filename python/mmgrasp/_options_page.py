@@ -41,6 +41,7 @@ SECTIONS = (
         _core._pipe_grasp_option_table,
         set(),
     ),
+    ("push_grasp", "A grasp in passing, keywords (`PushGraspProblem`)", _core._push_option_table, set()),
     ("fit_cuboids", "Box-shaped parts of a cloud, keywords (`CuboidFitOptions`)", _core._cuboid_option_table, set()),
 )
 

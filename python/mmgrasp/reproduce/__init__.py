@@ -15,6 +15,7 @@ from . import (
     capability,
     experiments,
     ik_query,
+    physics,
     policies,
     random_placement,
     robust_sets,
@@ -37,6 +38,7 @@ TOPICS = (
     random_placement,
     capability,
     tracking,
+    physics,
 )
 ENTRIES: dict[str, Entry] = {e.name: e for topic in TOPICS for e in topic.ENTRIES}
 ALSO = {

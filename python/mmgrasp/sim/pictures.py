@@ -7,19 +7,19 @@ The renderer "own" is the library's software renderer and needs nothing; "mujoco
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from .._core import InvalidInput
+from .._core import Gripper, InvalidInput, Robot, World
 from .._files import write_file
 from ..viz.png import write_png
 from ..viz.raster import Camera, Scene, render
 from ..viz.scene import placed_triangles, transformed
 from ..viz.style import FLOOR, OBSTACLE, PART, ROBOT, ROBOT_ARM
-from .model import BASE_JOINTS
+from .model import BASE_JOINTS, SimPart
 from .result import SimResult
 from .simulation import Simulation
 
@@ -27,23 +27,23 @@ FLOOR_TILE = 0.5
 
 
 class Painter:
-    """Draws states of one simulation with the software renderer."""
+    """Draws recorded states of a robot, a scene and parts with the software renderer. Needs no MuJoCo."""
 
-    def __init__(self, sim: Simulation):
-        self.sim = sim
-        fingers = set(sim.gripper.finger_links) if sim.gripper else set()
-        dark = {link for link in sim.robot.links if link in fingers}
+    def __init__(self, robot: Robot, gripper: Gripper | None, scene: World, parts: Iterable[SimPart]):
+        self.robot = robot
+        fingers = set(gripper.finger_links) if gripper else set()
+        self.limits = {j["name"]: (j["lower"], j["upper"]) for j in robot.joint_table}
         self.links = [
-            (link, *placed_triangles(shape), ROBOT_ARM if link in dark else ROBOT)
-            for link in sim.robot.links
-            for shape in sim.robot.collisions(link)
+            (link, *placed_triangles(shape), ROBOT_ARM if link in fingers else ROBOT)
+            for link in robot.links
+            for shape in robot.collisions(link)
         ]
         self.scene = [
-            (transformed(sim.scene.pose_of(name), V), F)
-            for name in sim.scene.objects
-            for V, F in (placed_triangles(shape) for shape in sim.scene.shapes_of(name))
+            (transformed(scene.pose_of(name), V), F)
+            for name in scene.objects
+            for V, F in (placed_triangles(shape) for shape in scene.shapes_of(name))
         ]
-        self.parts = {name: [placed_triangles(s) for s in part.shapes] for name, part in sim.parts.items()}
+        self.parts = {part.name: [placed_triangles(s) for s in part.shapes] for part in parts}
 
     def picture(self, state: dict[str, Any], camera: Camera) -> np.ndarray:
         """uint8 (height, width, 3)."""
@@ -55,10 +55,9 @@ class Painter:
         T = np.eye(4)
         T[:2, :2] = [[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]]
         T[:2, 3] = x, y
-        limits = {j["name"]: (j["lower"], j["upper"]) for j in self.sim.robot.joint_table}
         # Physics may stand a hair beyond a limit, which the model refuses.
-        joints = {n: float(np.clip(v, *limits[n])) for n, v in state["joints"].items()}
-        poses = self.sim.robot.link_poses(joints, T)
+        joints = {n: float(np.clip(v, *self.limits[n])) for n, v in state["joints"].items()}
+        poses = self.robot.link_poses(joints, T)
         for link, V, F, colour in self.links:
             scene.add(transformed(poses[link], V), F, colour)
         for name, shapes in self.parts.items():
@@ -98,7 +97,7 @@ def frames(
     camera = Camera(np.asarray(eye, float), np.asarray(target, float), width, height)
     if renderer == "mujoco":
         return _mujoco_frames(sim, states, camera)
-    painter = Painter(sim)
+    painter = Painter(sim.robot, sim.gripper, sim.scene, sim.parts.values())
     return [painter.picture(state, camera) for state in states]
 
 

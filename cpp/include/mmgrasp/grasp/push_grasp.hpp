@@ -1,0 +1,63 @@
+#pragma once
+
+#include "mmgrasp/core/export.hpp"
+
+namespace mmgrasp {
+
+/// A parallel gripper that takes an object while the tool moves on along the approach (P1 4.3, figure 4.7). Lengths
+/// along the approach are engagements: how far the finger tips are beyond the object's near face, negative before they
+/// reach it. The palm touches at `finger_length`; from there the object slides with it.
+struct MMGRASP_EXPORT PushGraspProblem {
+  double opening = 0.1;         ///< Between the fingers before they close [m]; > object_width.
+  double closing_speed = 0.1;   ///< How fast the opening shrinks [m/s]; > 0 (P1 4.4.1).
+  double tool_speed = 0.3;      ///< Along the approach [m/s]; > 0.
+  double finger_length = 0.12;  ///< From the palm to the tips [m]; > 0.
+  double object_width = 0.05;   ///< Along the closing direction [m]; > 0.
+  double grip_depth = 0.02;     ///< Least engagement that holds [m]; in (0, finger_length].
+  double planned_depth = 0.06;  ///< Engagement at the planned grasp pose [m]; in [grip_depth, finger_length].
+  double clearance = 0.0;       ///< Kept between finger and object on either side while they pass [m]; >= 0.
+  double max_push = 0.1;        ///< How far the object may slide before the palm [m]; >= 0.
+  double along_error = 0.0;     ///< The object may stand this much nearer or farther [m]; >= 0.
+  double lateral_error = 0.0;   ///< And this much to either side along the closing direction [m]; >= 0.
+  void check() const;           ///< Throws InvalidInput naming field, value and rule.
+};
+
+/// What one moment to begin closing comes to.
+struct MMGRASP_EXPORT ClosingOutcome {
+  double start = 0;              ///< Engagement at which closing begins [m].
+  double both_touch = 0;         ///< The same when both fingers touch, were the object not pushed [m].
+  double pushed = 0;             ///< How far the object slides before the palm until then [m].
+  double swept = 0;              ///< How far the tool goes beyond the planned grasp pose until then [m].
+  double gap = 0;                ///< Free space on either side of a centred object as the tips pass it [m].
+  bool holds = false;            ///< An object standing where planned is held, and pushed no farther than allowed.
+  double lateral_tolerance = 0;  ///< An object standing where planned may lie this far off to a side [m]; < 0: none.
+  double nearer_tolerance = 0;   ///< It may stand this much nearer, at the problem's lateral error [m]; < 0: none.
+  double farther_tolerance = 0;  ///< And this much farther [m]; < 0: none.
+};
+
+/// The closing windows of a problem and both strategies of figure 4.7.
+struct MMGRASP_EXPORT PushGrasp {
+  double closing_time = 0;    ///< From `opening` to the object's width [s].
+  double earliest = 0;        ///< Engagements between which closing may begin so that the object is held for every
+  double latest = 0;          ///< error of the problem, its limits kept [m].
+  bool feasible = false;      ///< earliest <= latest.
+  double window = 0;          ///< The same as a time [s]; 0 when not feasible.
+  double max_tool_speed = 0;  ///< Fastest tool for which the window is not empty [m/s]; 0: none, infinite: any.
+  ClosingOutcome push;        ///< Closing begins in the middle of the window, or later once the object is surely
+                              ///< inside; where there is no window, as the tips reach it.
+  ClosingOutcome plain;       ///< Closing while moving so that both fingers touch at the planned pose.
+};
+
+/// Closed form. Throws InvalidInput for a problem out of range.
+MMGRASP_EXPORT PushGrasp push_grasp(const PushGraspProblem& problem);
+
+/// What beginning to close at an engagement [m] comes to.
+MMGRASP_EXPORT ClosingOutcome closing_outcome(const PushGraspProblem& problem, double start);
+
+/// Fastest tool [m/s] before whose palm an object does not leap more than `length` [m]: hit with restitution r it
+/// leaves at (1 + r) v, slowed by friction mu g, and gets (r v)^2 / (2 mu g) ahead before the palm has it again
+/// (P1 4.3: it must not detach). Infinite for r = 0. Throws InvalidInput unless length > 0, friction > 0, restitution
+/// in [0, 1].
+MMGRASP_EXPORT double push_speed_limit(double length, double friction, double restitution);
+
+}  // namespace mmgrasp

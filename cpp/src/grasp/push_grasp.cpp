@@ -1,0 +1,105 @@
+#include "mmgrasp/grasp/push_grasp.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mmgrasp/core/error.hpp"
+
+namespace mmgrasp {
+namespace {
+
+constexpr double kGravity = 9.81;  // [m/s^2]
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+void check_positive(double value, const char* field) {
+  require(std::isfinite(value) && value > 0, field, value, "must be finite and positive");
+}
+
+void check_not_negative(double value, const char* field) {
+  require(std::isfinite(value) && value >= 0, field, value, "must be finite and not negative");
+}
+
+double closing_time(const PushGraspProblem& p) {
+  return (p.opening - p.object_width) / p.closing_speed;
+}
+
+/// Engagement from which on closing may begin so that an object `aside` passes between the tips.
+double passing_start(const PushGraspProblem& p, double aside) {
+  const double spare = p.opening - p.object_width - 2 * (aside + p.clearance);
+  return spare < 0 ? kInfinity : -p.tool_speed * spare / p.closing_speed;
+}
+
+}  // namespace
+
+void PushGraspProblem::check() const {
+  check_positive(object_width, "object_width");
+  require(std::isfinite(opening) && opening > object_width, "opening", opening,
+          "must be finite and wider than object_width");
+  check_positive(closing_speed, "closing_speed");
+  check_positive(tool_speed, "tool_speed");
+  check_positive(finger_length, "finger_length");
+  require(grip_depth > 0 && grip_depth <= finger_length, "grip_depth", grip_depth, "must lie in (0, finger_length]");
+  require(planned_depth >= grip_depth && planned_depth <= finger_length, "planned_depth", planned_depth,
+          "must lie in [grip_depth, finger_length]");
+  check_not_negative(clearance, "clearance");
+  check_not_negative(max_push, "max_push");
+  check_not_negative(along_error, "along_error");
+  check_not_negative(lateral_error, "lateral_error");
+}
+
+ClosingOutcome closing_outcome(const PushGraspProblem& problem, double start) {
+  problem.check();
+  require(std::isfinite(start), "start", start, "must be finite");
+  const PushGraspProblem& p = problem;
+  ClosingOutcome out;
+  out.start = start;
+  out.both_touch = start + p.tool_speed * closing_time(p);
+  out.pushed = std::max(0.0, out.both_touch - p.finger_length);
+  out.swept = std::max(0.0, out.both_touch - p.planned_depth);
+  // Closed already when the tips arrive: they meet the object's face.
+  const double passing = std::min(p.opening, p.opening + p.closing_speed * start / p.tool_speed);
+  out.gap = (std::max(passing, 0.0) - p.object_width) / 2;
+  out.lateral_tolerance = out.gap - p.clearance;
+  out.holds = out.lateral_tolerance >= 0 && out.both_touch >= p.grip_depth && out.pushed <= p.max_push;
+  out.nearer_tolerance = p.finger_length + p.max_push - out.both_touch;
+  out.farther_tolerance = std::min(out.both_touch - p.grip_depth, start - passing_start(p, p.lateral_error));
+  return out;
+}
+
+PushGrasp push_grasp(const PushGraspProblem& problem) {
+  problem.check();
+  const PushGraspProblem& p = problem;
+  PushGrasp out;
+  out.closing_time = closing_time(p);
+  const double travel = p.tool_speed * out.closing_time;
+  out.earliest = p.along_error + std::max(p.grip_depth - travel, passing_start(p, p.lateral_error));
+  out.latest = p.finger_length + p.max_push - travel - p.along_error;
+  out.feasible = out.earliest <= out.latest;
+  out.window = out.feasible ? (out.latest - out.earliest) / p.tool_speed : 0;
+
+  const double room = p.finger_length + p.max_push - 2 * p.along_error;
+  const double aside = p.lateral_error + p.clearance;
+  if (room < p.grip_depth || 2 * aside > p.opening - p.object_width) {
+    out.max_tool_speed = 0;
+  } else {
+    out.max_tool_speed = aside > 0 ? p.closing_speed * room / (2 * aside) : kInfinity;
+  }
+
+  const double middle = (out.earliest + out.latest) / 2;
+  // A later begin than the middle of the window where only then the object is inside whatever its error.
+  const double inside = p.along_error <= out.latest ? std::max(middle, p.along_error) : middle;
+  const double start = out.feasible ? inside : 0.0;
+  out.push = closing_outcome(p, start);
+  out.plain = closing_outcome(p, p.planned_depth - travel);
+  return out;
+}
+
+double push_speed_limit(double length, double friction, double restitution) {
+  check_positive(length, "length");
+  check_positive(friction, "friction");
+  require(restitution >= 0 && restitution <= 1, "restitution", restitution, "must lie in [0, 1]");
+  return restitution == 0 ? kInfinity : std::sqrt(2 * friction * kGravity * length) / restitution;
+}
+
+}  // namespace mmgrasp

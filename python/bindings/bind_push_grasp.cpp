@@ -1,0 +1,97 @@
+#include "bindings.hpp"
+#include "mmgrasp/grasp/push_grasp.hpp"
+
+namespace mmgrasp::python {
+namespace {
+
+using namespace py::literals;
+
+const std::vector<OptionField<PushGraspProblem>>& push_fields() {
+  using P = PushGraspProblem;
+  static const std::vector<OptionField<P>> fields{
+      option<P>("opening", &P::opening, "between the fingers before they close [m]"),
+      option<P>("closing_speed", &P::closing_speed, "how fast the opening shrinks [m/s]"),
+      option<P>("tool_speed", &P::tool_speed, "along the approach [m/s]"),
+      option<P>("finger_length", &P::finger_length, "from the palm to the tips [m]"),
+      option<P>("object_width", &P::object_width, "along the closing direction [m]"),
+      option<P>("grip_depth", &P::grip_depth, "least engagement that holds [m]"),
+      option<P>("planned_depth", &P::planned_depth, "engagement at the planned grasp pose [m]"),
+      option<P>("clearance", &P::clearance, "kept on either side while the fingers pass the object [m]"),
+      option<P>("max_push", &P::max_push, "how far the object may slide before the palm [m]"),
+      option<P>("along_error", &P::along_error, "the object may stand this much nearer or farther [m]"),
+      option<P>("lateral_error", &P::lateral_error, "and this much to either side [m]")};
+  return fields;
+}
+
+py::dict outcome_dict(const ClosingOutcome& o) {
+  return py::dict("start"_a = o.start, "both_touch"_a = o.both_touch, "pushed"_a = o.pushed, "swept"_a = o.swept,
+                  "gap"_a = o.gap, "holds"_a = o.holds, "lateral_tolerance"_a = o.lateral_tolerance,
+                  "nearer_tolerance"_a = o.nearer_tolerance, "farther_tolerance"_a = o.farther_tolerance);
+}
+
+std::string number(double value) {
+  return std::string(py::repr(py::float_(value)));
+}
+
+}  // namespace
+
+void bind_push_grasp(py::module_& m) {
+  using O = ClosingOutcome;
+  using G = PushGrasp;
+  py::class_<O>(
+      m, "ClosingOutcome",
+      "What one moment to begin closing comes to. Engagement: how far the finger tips are beyond the object's "
+      "near face.")
+      .def_readonly("start", &O::start, "Engagement at which closing begins [m].")
+      .def_readonly("both_touch", &O::both_touch, "The same when both fingers touch, were the object not pushed [m].")
+      .def_readonly("pushed", &O::pushed, "How far the object slides before the palm [m].")
+      .def_readonly("swept", &O::swept, "How far the tool goes beyond the planned grasp pose [m].")
+      .def_readonly("gap", &O::gap, "Free space on either side of a centred object as the tips pass it [m].")
+      .def_readonly("holds", &O::holds, "An object standing where planned is held.")
+      .def_readonly("lateral_tolerance", &O::lateral_tolerance, "It may stand this far to a side [m]; < 0: none.")
+      .def_readonly("nearer_tolerance", &O::nearer_tolerance, "It may stand this much nearer [m].")
+      .def_readonly("farther_tolerance", &O::farther_tolerance, "It may stand this much farther [m].")
+      .def("to_dict", &outcome_dict)
+      .def("__repr__", [](const O& o) {
+        return "ClosingOutcome(starts at " + number(o.start) + " m, gap " + number(o.gap) + " m, pushed " +
+               number(o.pushed) + (o.holds ? " m, holds)" : " m, does not hold)");
+      });
+  py::class_<G>(m, "PushGrasp", "Closing windows of a grasp in passing, and both strategies of P1's figure 4.7.")
+      .def_readonly("closing_time", &G::closing_time, "[s]")
+      .def_readonly("earliest", &G::earliest, "First engagement at which closing may begin [m].")
+      .def_readonly("latest", &G::latest, "Last engagement at which closing may begin [m].")
+      .def_readonly("feasible", &G::feasible)
+      .def_readonly("window", &G::window, "From the first to the last [s].")
+      .def_readonly("max_tool_speed", &G::max_tool_speed, "Fastest tool with a window [m/s].")
+      .def_readonly("push", &G::push, "Push-grasp: closing begins when the object is between the fingers.")
+      .def_readonly("plain", &G::plain, "Closing while moving, so that both fingers touch at the planned pose.")
+      .def("to_dict",
+           [](const G& g) {
+             return py::dict("closing_time"_a = g.closing_time, "earliest"_a = g.earliest, "latest"_a = g.latest,
+                             "feasible"_a = g.feasible, "window"_a = g.window, "max_tool_speed"_a = g.max_tool_speed,
+                             "push"_a = outcome_dict(g.push), "plain"_a = outcome_dict(g.plain));
+           })
+      .def("__repr__", [](const G& g) {
+        return g.feasible ? "PushGrasp(window " + number(g.window) + " s, at most " + number(g.max_tool_speed) + " m/s)"
+                          : std::string("PushGrasp(no window)");
+      });
+  m.def(
+      "push_grasp",
+      [](const py::kwargs& problem) { return push_grasp(read_options(push_fields(), problem, "push_grasp")); },
+      ("When a gripper that moves on may begin to close, and what error of the object's position it forgives (P1 "
+       "4.3)." +
+       option_help(push_fields()))
+          .c_str());
+  m.def(
+      "closing_outcome",
+      [](double start, const py::kwargs& problem) {
+        return closing_outcome(read_options(push_fields(), problem, "closing_outcome"), start);
+      },
+      py::arg("start"), "What beginning to close at an engagement [m] comes to; keywords as of push_grasp.");
+  m.def("push_speed_limit", &push_speed_limit, py::kw_only(), py::arg("length"), py::arg("friction"),
+        py::arg("restitution"),
+        "Fastest tool [m/s] before whose palm a hit object does not leap more than `length` [m].");
+  m.def("_push_option_table", [] { return option_table(push_fields()); });
+}
+
+}  // namespace mmgrasp::python

@@ -3,17 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collision/checker_impl.hpp"
+#include "collision/checker_access.hpp"
 
 namespace mmgrasp {
 
 namespace detail {
-
-/// The advancement needs the plan's pairs and the placed bodies, which the checker's public face does not show.
-struct CheckerAccess {
-  using Impl = CollisionChecker::Impl;
-  static Impl& of(CollisionChecker& checker) { return *checker.impl_; }
-};
 
 namespace {
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "collision/held_checker.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
 #include "mmgrasp/robot/trajectory.hpp"
@@ -12,7 +13,8 @@
 namespace mmgrasp::detail {
 
 /// Collision questions of a carry, told apart: the robot alone with its fingers at an opening (shared by all grasps
-/// with that opening), and the object in hand with one grasp. One set of checkers per worker, made when first needed.
+/// with that opening), and the object in hand with one grasp. One set of checkers per worker and opening, made when
+/// first needed; from grasp to grasp only the object's pose in the hand changes.
 class CarryChecks {
  public:
   CarryChecks(const ManipulationProblem& problem, const EdgeOptions& edge, int workers);
@@ -30,14 +32,26 @@ class CarryChecks {
   bool held_edge_is_free(int worker, int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
   Rejection held_rejection(int worker, int grasp, const Eigen::VectorXd& q);
   /// The first edge of a finished path that is not free for robot and object together at 0.005 rad or m; -1: all are.
-  int blocked_edge(int grasp, const JointPath& path) const;
+  int blocked_edge(int grasp, const JointPath& path);
   /// A checker of everything.
   CollisionChecker whole(int grasp) const;
   const ManipulationProblem& problem() const { return problem_; }
 
  private:
-  CollisionChecker& robot(int worker, int opening);
-  CollisionChecker& held(int worker, int grasp);
+  struct Bare {
+    CollisionChecker checker;
+    Eigen::VectorXd motion;  ///< Its motion_bounds().
+  };
+  struct Held {
+    HeldChecker checker;
+    int grasp;
+  };
+
+  Bare& robot(int worker, int opening);
+  HeldChecker& held(int worker, int grasp);
+  /// The checker of `slot` with the object in this grasp.
+  HeldChecker& holding(std::optional<Held>& slot, int grasp, bool held_only);
+  Pose T_tool_object(int grasp) const;
   World world_with(int grasp) const;
 
   const ManipulationProblem& problem_;
@@ -45,14 +59,9 @@ class CarryChecks {
   std::vector<JointGroup> groups_;  ///< One an opening.
   std::vector<int> opening_of_;     ///< Per grasp.
   std::string tip_;
-  /// Checkers without a held object, [worker][opening].
-  std::vector<std::vector<std::optional<CollisionChecker>>> robot_;
-  struct Held {
-    int grasp = -1;
-    std::optional<CollisionChecker> checker;
-  };
-  std::vector<std::vector<Held>> held_;  ///< The last few of each worker.
-  std::vector<std::size_t> next_held_;
+  std::vector<std::vector<std::optional<Bare>>> robot_;  ///< Without a held object, [worker][opening].
+  std::vector<std::vector<std::optional<Held>>> held_;   ///< [worker][opening].
+  std::vector<std::optional<Held>> whole_;               ///< Everything, [opening].
 };
 
 }  // namespace mmgrasp::detail

@@ -4,6 +4,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "plan/prm_star_mg.hpp"
+#include "plan/rrt_star_mg.hpp"
 
 namespace mmgrasp {
 namespace detail {
@@ -11,6 +12,7 @@ namespace {
 
 constexpr CarryPlanner kPlanners[] = {
     {"prm_star_mg", run_prm_star_mg},
+    {"rrt_star_mg", run_rrt_star_mg},
 };
 
 }  // namespace

@@ -52,6 +52,7 @@ void ManipulationOptions::check() const {
   edge.check();
   ik.check();
   prm.check();
+  rrt.check();
 }
 
 ManipulationResult plan_manipulation(const ManipulationProblem& problem, const ManipulationOptions& options,

@@ -14,6 +14,7 @@
 #include "mmgrasp/core/outcome.hpp"
 #include "mmgrasp/grasp/gripper.hpp"
 #include "mmgrasp/plan/roadmap.hpp"
+#include "mmgrasp/plan/rrt_star_mg.hpp"
 #include "mmgrasp/robot/ik.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
 #include "mmgrasp/robot/trajectory.hpp"
@@ -61,10 +62,11 @@ struct MMGRASP_EXPORT ManipulationOptions {
   unsigned seed = 1;       ///< Same seed, same path, as long as the clock does not end the run.
   int threads = 0;         ///< 0: all; does not change the answer.
   PrmStarMgOptions prm;
+  RrtStarMgOptions rrt;
   void check() const;
 };
 
-/// "prm_star_mg" searches a roadmap (P2 chapter 4).
+/// "prm_star_mg" searches a roadmap (P2 chapter 4), "rrt_star_mg" grows trees and gets better with time (chapter 5).
 MMGRASP_EXPORT std::vector<std::string> manipulation_planner_names();
 
 /// What became of one grasp before the search.
@@ -86,6 +88,8 @@ struct MMGRASP_EXPORT ManipulationStats {
   std::size_t grasps_searched = 0;
   std::size_t edges_checked_robot = 0;  ///< For the robot alone, shared by all grasps of an opening.
   std::size_t edges_checked_held = 0;   ///< For what it holds.
+  std::size_t samples = 0;              ///< Drawn by rrt_star_mg, or used again.
+  std::size_t vertices = 0;             ///< Of rrt_star_mg's trees, those removed on the way included.
 };
 
 struct MMGRASP_EXPORT ManipulationResult {

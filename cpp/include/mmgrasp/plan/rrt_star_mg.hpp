@@ -1,0 +1,25 @@
+#pragma once
+
+#include "mmgrasp/core/export.hpp"
+
+namespace mmgrasp {
+
+/// Options of "rrt_star_mg" alone (P2 chapter 5).
+struct MMGRASP_EXPORT RrtStarMgOptions {
+  /// Budget in samples, drawn or used again by another grasp; in [1, 10 million]. The clock is only a cap.
+  int max_samples = 1000;
+  double step =
+      1.5;  ///< Longest edge grown towards a sample (P2's eta), and longest connection radius [rad or m]; > 0.
+  /// Vertices nearer than gamma (log n / n)^(1/(d+1)) are joined, at most `step`; 0: what optimality asks for in the
+  /// joint box. >= 0.
+  double gamma = 0;
+  /// Once a path is known: chance to grow the tree of the grasp that was drawn with the sample (exploration) and not
+  /// the cheapest-looking one nearby (exploitation): P2's p_blt, in [0, 1]. Above 0 every grasp's tree keeps growing.
+  double exploration = 0.5;
+  bool bidirectional = true;  ///< Trees from both ends; off: from the start only.
+  bool informed = true;  ///< Once a path is known: draw only where a better one can pass; off: in the whole joint box.
+  double goal_cost = 0;  ///< Ends with the first path that costs no more; >= 0, infinite: with the first at all.
+  void check() const;
+};
+
+}  // namespace mmgrasp

@@ -1,0 +1,295 @@
+// Sampling and growing.
+
+#include "plan/rrt_star_mg.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mmgrasp/core/error.hpp"
+
+namespace mmgrasp {
+
+void RrtStarMgOptions::check() const {
+  require(max_samples >= 1 && max_samples <= 10000000, "max_samples", max_samples, "must be in [1, 10 million]");
+  require(std::isfinite(step) && step > 0, "step", step, "must be finite and > 0 [rad or m]");
+  require(std::isfinite(gamma) && gamma >= 0, "gamma", gamma, "must be finite and >= 0");
+  require(exploration >= 0 && exploration <= 1, "exploration", exploration, "must be in [0, 1]");
+  require(goal_cost >= 0, "goal_cost", goal_cost, "must be >= 0");
+}
+
+namespace detail {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kSame = 1e-9;  // Configurations nearer than this are the same [rad or m].
+constexpr int kHopeless = -2;
+constexpr int kStraight = 32;        // Straight lines tried before the first sample.
+constexpr int kDuplicates = 4;       // Vertices of other trees taken over by one new vertex.
+constexpr double kPiece = 0.1;       // Of a step, when an edge is followed as far as it is free.
+constexpr int kGuesses = 32;         // Random grasps asked before all of them are.
+constexpr double kGammaSlack = 1.1;  // Above the least that optimality asks for.
+
+/// Cheapest first.
+bool costlier(const Forest::Near& a, const Forest::Near& b) {
+  return a.key != b.key ? a.key > b.key : a.vertex > b.vertex;
+}
+
+// RRT* joins a new vertex with all nearer than gamma (log n / n)^(1 / (d + 1)) (Karaman and Frazzoli, with the exponent
+// that Solovey and others proved sufficient), gamma from the volume of the joint box.
+double least_gamma(const JointGroup& group) {
+  const int d = group.size();
+  const double volume = (group.sample_upper() - group.sample_lower()).prod() / unit_ball_volume(d);
+  return kGammaSlack * 2 * std::pow((1 + 1.0 / d) * volume, 1.0 / (d + 1));
+}
+
+}  // namespace
+
+RrtStarMg::RrtStarMg(CarryInput& input, ManipulationResult& result)
+    : input_(input),
+      result_(result),
+      options_(input.options.rrt),
+      ends_(std::move(input.candidates)),
+      informed_(ends_, input.problem.group.sample_lower(), input.problem.group.sample_upper()),
+      forest_(ends_),
+      rng_(input.options.seed, 0x727274),
+      gamma_(options_.gamma > 0 ? options_.gamma : least_gamma(input.problem.group)),
+      best_(kInfinite),
+      bridge_of_(static_cast<std::size_t>(ends_.size()), -1),
+      to_go_(bridge_of_.size()),
+      to_go_stamp_(bridge_of_.size(), -1),
+      blocked_stamp_(bridge_of_.size(), -1),
+      q_(input.problem.group.size()),
+      q_a_(q_.size()),
+      q_b_(q_.size()) {}
+
+void RrtStarMg::run() {
+  try_straight_lines();
+  int i = 0;
+  for (; i < options_.max_samples && informed_.grasps() > 0 && !(solved() && best_ <= options_.goal_cost); ++i) {
+    if (input_.out_of_time()) break;
+    if (i % 64 == 0) input_.monitor.report("search", static_cast<double>(i) / options_.max_samples);
+    sample(options_.bidirectional ? i % 2 : GraspEnds::kStart);
+  }
+  result_.stats.samples = static_cast<std::size_t>(i);
+  result_.stats.vertices = static_cast<std::size_t>(forest_.vertex_count());
+  result_.lower_bound = std::min(best_, ends_.straight_cost(0));
+  if (solved()) {
+    result_.outcome = Outcome::solved;
+  } else {
+    result_.outcome = input_.monitor.stopped() ? Outcome::stopped : Outcome::timeout;
+  }
+}
+
+double RrtStarMg::radius(int vertices) const {
+  const double n = std::max(2, vertices);
+  return std::min(gamma_ * std::pow(std::log(n) / n, 1.0 / (ends_.dimension() + 1)), options_.step);
+}
+
+// Beyond the paper: nothing is cheaper than a straight line, and many carries have a free one.
+void RrtStarMg::try_straight_lines() {
+  const int tried = std::min(kStraight, ends_.size());
+  std::vector<int> roots;
+  for (int grasp = 0; grasp < tried && ends_.straight_cost(grasp) < best_ && !input_.out_of_time(); ++grasp) {
+    roots.clear();
+    forest_.each_in_tree(Forest::tree(grasp, GraspEnds::kStart), [&](int v) { roots.push_back(v); });
+    for (const int v : roots) connect(v);
+  }
+}
+
+// One round of Algorithm 5.13.
+void RrtStarMg::sample(int side) {
+  int tree = -1;
+  int made = -1;
+  const int again = take_reassigned(side, tree);
+  if (again >= 0) {
+    made = extend_tree(tree, again);
+  } else {
+    const bool informed = options_.informed && solved();
+    const int grasp = informed ? informed_.draw(rng_, q_.data()) : informed_.draw_box(rng_, q_.data());
+    if (grasp < 0) return;
+    const int configuration = forest_.add_configuration(q_.data());
+    if (solved() && rng_.uniform() < options_.exploration) {
+      made = extend_tree(Forest::tree(grasp, side), configuration);
+    } else {
+      made = extend_forest(side, configuration);
+    }
+  }
+  if (made >= 0) connect(made);
+}
+
+int RrtStarMg::take_reassigned(int side, int& tree) {
+  while (!reassign_.empty()) {
+    const std::size_t at = rng_.index(reassign_.size());
+    const int configuration = reassign_[at];
+    reassign_[at] = reassign_.back();
+    reassign_.pop_back();
+    const double* q = forest_.configuration(configuration);
+    const auto serves = [&](int grasp) {
+      return informed_.contains(grasp, q) && forest_.find(Forest::tree(grasp, side), configuration) < 0;
+    };
+    const auto count = static_cast<std::size_t>(informed_.grasps());
+    int grasp = -1;
+    for (int i = 0; i < kGuesses && grasp < 0; ++i) {
+      const int guess = static_cast<int>(rng_.index(count));
+      if (serves(guess)) grasp = guess;
+    }
+    std::size_t found = 0;
+    for (int g = 0; g < informed_.grasps() && (grasp < 0 || found > 0); ++g)
+      if (serves(g) && rng_.index(++found) == 0) grasp = g;
+    if (grasp < 0) continue;
+    tree = Forest::tree(grasp, side);
+    return configuration;
+  }
+  return -1;
+}
+
+int RrtStarMg::steer(int from, int target) {
+  const int d = ends_.dimension();
+  const double* a = forest_.at(from);
+  const double* b = forest_.configuration(target);
+  const double distance = std::sqrt(squared_distance(a, b, d));
+  if (distance < kSame) return -1;
+  if (distance <= options_.step) return target;
+  for (int i = 0; i < d; ++i) q_[i] = a[i] + (b[i] - a[i]) * (options_.step / distance);
+  return forest_.add_configuration(q_.data());
+}
+
+// ExtendAndRewire (Algorithm 5.2) on the tree of one grasp.
+int RrtStarMg::extend_tree(int tree, int configuration) {
+  const int nearest = forest_.nearest_in_tree(tree, forest_.configuration(configuration));
+  const int target = steer(nearest, configuration);
+  if (target < 0 || forest_.find(tree, target) >= 0) return -1;
+  forest_.near_in_tree(tree, forest_.configuration(target), radius(forest_.tree_size(tree)), near_);
+  include_nearest(nearest, target);
+  const int made = add_best(target, kInfinite);
+  if (made >= 0) rewire(made);
+  return made;
+}
+
+// ExtendAndRewire-MG: the tree that looks cheapest by equation (5.1) among those near.
+int RrtStarMg::extend_forest(int side, int configuration) {
+  const int nearest = forest_.nearest_on_side(side, forest_.configuration(configuration));
+  const int target = steer(nearest, configuration);
+  if (target < 0) return -1;
+  forest_.near_on_side(side, forest_.configuration(target), radius(forest_.side_size(side)), near_);
+  include_nearest(nearest, target);
+  const int made = add_best(target, best_);
+  // No tree nearby can be improved from here; another grasp's may (P2 5.3.4).
+  if (made == kHopeless) reassign_.push_back(configuration);
+  if (made < 0) return solved() ? -1 : advance(nearest, target);
+  rewire(made);
+  if (solved()) duplicate_into(made);
+  return made;
+}
+
+// Beyond the paper, until there is a path: as far along a blocked edge as it is free.
+int RrtStarMg::advance(int from, int target) {
+  const Forest::Vertex start = forest_.vertex(from);
+  const int grasp = Forest::grasp_of(start.tree), d = ends_.dimension();
+  const double whole = std::sqrt(squared_distance(forest_.at(from), forest_.configuration(target), d));
+  const double piece = options_.step * kPiece;
+  const auto pieces = static_cast<int>(whole / piece);
+  int last = start.configuration;
+  for (int i = 1; i <= pieces; ++i) {
+    const double share = i * piece / whole;
+    const double* a = forest_.at(from);
+    const double* b = forest_.configuration(target);
+    for (int k = 0; k < d; ++k) q_[k] = a[k] + (b[k] - a[k]) * share;
+    const int next = forest_.add_configuration(q_.data());
+    if (!configuration_is_free(grasp, next) || !edge_is_free(grasp, last, next)) break;
+    last = next;
+  }
+  if (last == start.configuration) return -1;
+  return forest_.add(from, last, std::sqrt(squared_distance(forest_.at(from), forest_.configuration(last), d)));
+}
+
+void RrtStarMg::include_nearest(int nearest, int target) {
+  for (const Near& entry : near_)
+    if (entry.vertex == nearest) return;
+  near_.push_back(
+      {nearest, std::sqrt(squared_distance(forest_.at(nearest), forest_.configuration(target), ends_.dimension()))});
+}
+
+int RrtStarMg::add_best(int configuration, double bound) {
+  const double* q = forest_.configuration(configuration);
+  bool any = false;
+  for (Near& entry : near_) {
+    const Forest::Vertex& vertex = forest_.vertex(entry.vertex);
+    const int grasp = Forest::grasp_of(vertex.tree);
+    const auto own = static_cast<std::size_t>(grasp);
+    if (to_go_stamp_[own] != configuration) {
+      to_go_stamp_[own] = configuration;
+      to_go_[own] = ends_.cost(grasp) + ends_.distance(grasp, 1 - Forest::side_of(vertex.tree), q);
+    }
+    entry.key = vertex.cost + entry.distance + to_go_[own];
+    any |= entry.key < bound;
+  }
+  if (!any) return kHopeless;
+  std::make_heap(near_.begin(), near_.end(), costlier);
+  for (auto last = near_.end(); last != near_.begin(); --last) {
+    std::pop_heap(near_.begin(), last, costlier);
+    const Near& entry = *(last - 1);
+    if (entry.key >= bound) return -1;
+    const Forest::Vertex& vertex = forest_.vertex(entry.vertex);
+    const int grasp = Forest::grasp_of(vertex.tree);
+    int& blocked = blocked_stamp_[static_cast<std::size_t>(grasp)];
+    if (blocked == configuration) continue;
+    if (!configuration_is_free(grasp, configuration)) {
+      blocked = configuration;
+      if (input_.checks.opening_count() == 1 && !robot_is_free(grasp, configuration)) return -1;
+      continue;
+    }
+    if (edge_is_free(grasp, vertex.configuration, configuration))
+      return forest_.add(entry.vertex, configuration, entry.distance);
+  }
+  return -1;
+}
+
+// Only within the tree (P2 5.3.2), and only what could make the best path better.
+void RrtStarMg::rewire(int made) {
+  const Forest::Vertex own = forest_.vertex(made);
+  const int grasp = Forest::grasp_of(own.tree);
+  bool changed = false;
+  for (const Near& entry : near_) {
+    const Forest::Vertex& other = forest_.vertex(entry.vertex);
+    if (other.tree != own.tree || entry.vertex == own.parent || other.parent < 0) continue;
+    const double cost = own.cost + entry.distance;
+    if (!(cost < other.cost - kSame)) continue;
+    if (cost + ends_.cost(grasp) + ends_.distance(grasp, 1 - Forest::side_of(own.tree), forest_.at(entry.vertex)) >=
+        best_)
+      continue;
+    if (!edge_is_free(grasp, own.configuration, other.configuration)) continue;
+    forest_.reparent(entry.vertex, made, entry.distance);
+    changed = true;
+  }
+  if (changed && solved()) refresh(grasp);
+}
+
+// What stands in other trees nearby and could serve this one (P2 5.3.2).
+void RrtStarMg::duplicate_into(int made) {
+  const Forest::Vertex own = forest_.vertex(made);
+  const int grasp = Forest::grasp_of(own.tree), side = Forest::side_of(own.tree);
+  if (!own.alive) return;
+  int taken = 0;
+  for (std::size_t i = 0; i < near_.size() && taken < kDuplicates; ++i) {
+    const Near entry = near_[i];
+    const Forest::Vertex other = forest_.vertex(entry.vertex);
+    if (!other.alive || other.tree == own.tree || other.parent < 0 || entry.distance < kSame) continue;
+    const double cost = own.cost + entry.distance;
+    const double whole = cost + ends_.cost(grasp) + ends_.distance(grasp, 1 - side, forest_.at(entry.vertex));
+    if (whole >= best_ || forest_.find(own.tree, other.configuration) >= 0) continue;
+    if (!configuration_is_free(grasp, other.configuration) ||
+        !edge_is_free(grasp, own.configuration, other.configuration))
+      continue;
+    forest_.add(made, other.configuration, entry.distance);
+    ++taken;
+  }
+}
+
+void run_rrt_star_mg(CarryInput& input, ManipulationResult& result) {
+  RrtStarMg(input, result).run();
+}
+
+}  // namespace detail
+}  // namespace mmgrasp

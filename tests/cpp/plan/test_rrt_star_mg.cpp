@@ -1,0 +1,125 @@
+#include "mmgrasp/plan/rrt_star_mg.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "mmgrasp/core/error.hpp"
+#include "plan/bar_carry.hpp"
+
+namespace mmgrasp {
+namespace {
+
+using test::bar_carry;
+using test::flat_pose;
+
+ManipulationOptions tree_options(int samples = 1000) {
+  ManipulationOptions options;
+  options.planner = "rrt_star_mg";
+  options.rrt.max_samples = samples;
+  options.ik_solutions = 2;
+  options.time_limit = 100;
+  return options;
+}
+
+void expect_sound(const ManipulationProblem& problem, const ManipulationResult& result) {
+  ASSERT_EQ(result.outcome, Outcome::solved);
+  const CandidateGrasp& grasp = problem.grasps[static_cast<std::size_t>(result.grasp_index)];
+  CollisionChecker checker(problem.group, test::carrying(problem, grasp));
+  const auto& waypoints = result.path->waypoints;
+  for (std::size_t i = 0; i + 1 < waypoints.size(); ++i)
+    EXPECT_TRUE(checker.edge_is_free(waypoints[i], waypoints[i + 1], 0.005));
+  const auto object_at = [&](const Eigen::VectorXd& q) { return problem.group.fk(q) * grasp.T_object_tool.inverse(); };
+  EXPECT_LT((object_at(waypoints.front()).matrix() - problem.T_world_start.matrix()).norm(), 3e-4);
+  EXPECT_LT((object_at(waypoints.back()).matrix() - problem.T_world_goal.matrix()).norm(), 3e-4);
+  EXPECT_NEAR(result.cost, result.path->length() + grasp.cost, 1e-9);
+  EXPECT_GE(result.cost, result.lower_bound - 1e-9);
+}
+
+TEST(RrtStarMg, CarriesTheObjectOnFreePaths) {
+  const ManipulationProblem problem = bar_carry();
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    ManipulationOptions options = tree_options(500);
+    options.seed = seed;
+    double last = std::numeric_limits<double>::infinity();
+    int told = 0;
+    const ManipulationResult result = plan_manipulation(problem, options, nullptr, {}, [&](const Improvement& better) {
+      EXPECT_LT(better.cost, last);
+      last = better.cost;
+      ++told;
+    });
+    expect_sound(problem, result);
+    EXPECT_EQ(result.cost, last);
+    EXPECT_EQ(result.improvements.size(), static_cast<std::size_t>(told));
+    EXPECT_LE(result.stats.samples, 500u);
+  }
+}
+
+TEST(RrtStarMg, EverySwitchLeavesPathsSound) {
+  const ManipulationProblem problem = bar_carry();
+  for (const bool bidirectional : {true, false})
+    for (const bool informed : {true, false})
+      for (const double exploration : {0.0, 0.5, 1.0}) {
+        ManipulationOptions options = tree_options(1500);
+        options.rrt.bidirectional = bidirectional;
+        options.rrt.informed = informed;
+        options.rrt.exploration = exploration;
+        expect_sound(problem, plan_manipulation(problem, options));
+      }
+}
+
+TEST(RrtStarMg, CostsOfGraspsCount) {
+  ManipulationProblem problem = bar_carry();
+  const ManipulationResult cheap = plan_manipulation(problem, tree_options());
+  expect_sound(problem, cheap);
+  problem.grasps[static_cast<std::size_t>(cheap.grasp_index)].cost = 100;
+  const ManipulationResult other = plan_manipulation(problem, tree_options());
+  expect_sound(problem, other);
+  EXPECT_NE(other.grasp_index, cheap.grasp_index);
+  EXPECT_LT(other.cost, 100);
+}
+
+TEST(RrtStarMg, OneReachableGraspOfManyIsFound) {
+  const ManipulationProblem all = bar_carry();
+  const ManipulationResult any = plan_manipulation(all, tree_options());
+  ASSERT_EQ(any.outcome, Outcome::solved);
+  ManipulationProblem problem = all;
+  // 500 grasps beyond the arm's reach, and one within it, somewhere among them.
+  problem.grasps.assign(500, {flat_pose(2.5, 0, 0), 0, 0});
+  for (std::size_t i = 0; i < 500; ++i)
+    problem.grasps[i].T_object_tool.translation().x() += 0.001 * static_cast<double>(i);
+  problem.grasps[317] = all.grasps[static_cast<std::size_t>(any.grasp_index)];
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    ManipulationOptions options = tree_options();
+    options.seed = seed;
+    options.rrt.goal_cost = std::numeric_limits<double>::infinity();
+    options.ik.restarts = 3;
+    const ManipulationResult result = plan_manipulation(problem, options);
+    expect_sound(problem, result);
+    EXPECT_EQ(result.grasp_index, 317);
+    EXPECT_EQ(result.improvements.size(), 1u);
+  }
+}
+
+TEST(RrtStarMg, RefusesNonsense) {
+  const auto refused = [](const char* field, const auto& change) {
+    ManipulationOptions options = tree_options();
+    change(options.rrt);
+    try {
+      plan_manipulation(bar_carry(), options);
+      ADD_FAILURE() << field;
+    } catch (const InvalidInput& error) {
+      EXPECT_NE(std::string(error.what()).find(field), std::string::npos) << error.what();
+    }
+  };
+  refused("max_samples", [](RrtStarMgOptions& o) { o.max_samples = 0; });
+  refused("step", [](RrtStarMgOptions& o) { o.step = 0; });
+  refused("step", [](RrtStarMgOptions& o) { o.step = std::nan(""); });
+  refused("gamma", [](RrtStarMgOptions& o) { o.gamma = -1; });
+  refused("exploration", [](RrtStarMgOptions& o) { o.exploration = 1.5; });
+  refused("goal_cost", [](RrtStarMgOptions& o) { o.goal_cost = std::nan(""); });
+}
+
+}  // namespace
+}  // namespace mmgrasp

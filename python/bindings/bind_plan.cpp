@@ -13,11 +13,15 @@ const std::vector<OptionField<MotionOptions>>& motion_fields() {
   static const std::vector<OptionField<O>> fields{
       option<O>("planner", &O::planner, "a name of planner_names()"),
       option<O>("time_limit", &O::time_limit, "wall-clock cap [s]"),
-      option<O>("max_iterations", &O::max_iterations, "budget in validity checks of states drawn"),
-      option<O>("range", &O::range, "longest tree edge [rad]; 0: a fifth of the joint box's diagonal"),
+      option<O>("max_iterations", &O::max_iterations, "budget in states drawn"),
+      option<O>("range", &O::range, "longest tree edge [rad]; 0: a share of the joint box's diagonal"),
+      option<O>("base_margin", &O::base_margin, "the base is drawn this far around start and goals [m]"),
       option<O>("edge_step", &O::edge_step, "largest joint motion between two checks [rad or m]"),
+      option<O>("workspace_step", &O::workspace_step, "largest motion of any robot point between two checks [m]"),
       option<O>("shorten", &O::shorten, "shortcut the path"),
       option<O>("shorten_iterations", &O::shorten_iterations, "tries of the shortening"),
+      option<O>("ik_solutions", &O::ik_solutions, "IK solutions looked for at each tool pose"),
+      option<O>("region_samples", &O::region_samples, "tool poses drawn in each region"),
       option<O>("seed", &O::seed, "same seed, same path")};
   return fields;
 }

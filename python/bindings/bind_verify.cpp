@@ -1,4 +1,5 @@
 #include "bindings.hpp"
+#include "mmgrasp/verify/path_check.hpp"
 #include "mmgrasp/verify/plan_check.hpp"
 
 namespace mmgrasp::python {
@@ -129,12 +130,44 @@ void bind_plan_to_check(py::module_& m) {
       .def_readwrite("robustness_rate", &PlanToCheck::robustness_rate);
 }
 
+void bind_path_check(py::module_& m) {
+  py::class_<PathCheckResult>(m, "PathCheckResult", "What check_path found.")
+      .def_readonly("free", &PathCheckResult::free)
+      .def_readonly("where", &PathCheckResult::where, "Where and what is wrong; empty when free.")
+      .def_readonly("configurations_checked", &PathCheckResult::configurations_checked)
+      .def("to_dict",
+           [](const PathCheckResult& r) {
+             return py::dict("free"_a = r.free, "where"_a = r.where,
+                             "configurations_checked"_a = r.configurations_checked);
+           })
+      .def("__repr__", [](const PathCheckResult& r) {
+        return "PathCheckResult(" + (r.free ? std::string("free") : r.where) + ")";
+      });
+  m.def(
+      "check_path",
+      [](const Robot& robot, const std::vector<std::string>& joints, const ArrayLike& path,
+         const std::vector<CheckedBody>& bodies, const std::map<std::string, double>& other_joints, double joint_step) {
+        PathToCheck check{robot};
+        check.joints = joints;
+        check.waypoints = rows_argument(path, "path", static_cast<Eigen::Index>(joints.size()));
+        check.bodies = bodies;
+        check.other_joints = other_joints;
+        py::gil_scoped_release release;
+        return verify::check_path(check, joint_step);
+      },
+      py::arg("robot"), py::arg("joints"), py::arg("path"), py::arg("bodies"), py::kw_only(),
+      py::arg("other_joints") = std::map<std::string, double>{}, py::arg("joint_step") = 0.005,
+      "Looks at waypoints (k, n) joined by straight lines, in steps of joint_step [rad or m]: limits, self-collisions "
+      "and\ncollisions with the bodies, by KDL and FCL called directly.");
+}
+
 }  // namespace
 
 void bind_verify(py::module_& top) {
   py::module_ m = top.def_submodule("verify", "Checks finished plans; shares no code with the planners.");
   bind_parts(m);
   bind_plan_to_check(m);
+  bind_path_check(m);
   py::class_<Fault>(m, "Fault", "One thing that is physically wrong with a plan.")
       .def(py::init([](std::string code, std::string where, std::string message) {
              return Fault{std::move(code), std::move(where), std::move(message)};

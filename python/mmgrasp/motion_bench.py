@@ -28,6 +28,9 @@ from ._core import (
     pose,
 )
 
+MBM_SETS = ("bookshelf_small", "bookshelf_tall", "bookshelf_thin", "box", "cage", "table_pick", "table_under_pick")
+"""The sets of problems that MotionBenchMaker makes for an arm."""
+
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
@@ -41,12 +44,21 @@ class MotionProblem:
     """Joint name to value [rad or m], every joint the request names (those of a gripper too)."""
     goal: dict[str, float]
     """The joints of the group."""
-    world: World
+    bodies: dict[str, tuple[list[LinkShape], np.ndarray | None]] = field(repr=False)
+    """Name to shapes and pose (None: the world's origin) of each object of the scene."""
     allowed: frozenset[frozenset[str]] = field(repr=False)
     """Pairs of links that may touch."""
 
-    def checker(self, robot: Robot, **options: Any) -> CollisionChecker:
-        """Checks the problem's group on a robot (its disabled pairs and the problem's); options as CollisionChecker's.
+    @property
+    def world(self) -> World:
+        """The scene."""
+        world = World()
+        for name, (shapes, at) in self.bodies.items():
+            world.add(name, shapes, at)
+        return world
+
+    def setting(self, robot: Robot) -> tuple[Robot, JointGroup]:
+        """The robot with the problem's allowed pairs on top of its disabled ones, and the problem's group of it.
 
         Joints outside the group stand where the start has them; those the robot does not move are passed over.
         """
@@ -59,7 +71,11 @@ class MotionProblem:
         robot = robot.with_disabled_pairs([(a, b, reason) for (a, b), reason in pairs.items()])
         group = robot.group(self.group)
         movable = set(robot.joints) - set(group.names)
-        group = group.with_reference({name: value for name, value in self.start.items() if name in movable})
+        return robot, group.with_reference({name: value for name, value in self.start.items() if name in movable})
+
+    def checker(self, robot: Robot, **options: Any) -> CollisionChecker:
+        """Checks the problem's group (see setting()) in its scene; options as CollisionChecker's."""
+        robot, group = self.setting(robot)
         return CollisionChecker(robot, self.world, group=group, **options)
 
     def start_of(self, group: JointGroup) -> np.ndarray:
@@ -96,7 +112,7 @@ def read_motion_problem(scene: str | Path, request: str | Path) -> MotionProblem
             request_file.of(constraint, "joint_name"): request_file.number(request_file.of(constraint, "position"))
             for constraint in request_file.of(goals[0], "joint_constraints")
         },
-        world=_world(scene_file),
+        bodies=_bodies(scene_file),
         allowed=_allowed(scene_file),
     )
 
@@ -162,8 +178,8 @@ def _shape(file: _File, primitive: dict) -> Box | Cylinder | Sphere:
     return Cylinder(radius=sizes[1], length=sizes[0]) if kind == "cylinder" else Sphere(sizes[0])
 
 
-def _world(file: _File) -> World:
-    world = World()
+def _bodies(file: _File) -> dict[str, tuple[list[LinkShape], np.ndarray | None]]:
+    bodies: dict[str, tuple[list[LinkShape], np.ndarray | None]] = {}
     for entry in file.of(file.root, "world", "collision_objects"):
         name = file.of(entry, "id")
         primitives, poses = file.of(entry, "primitives"), file.of(entry, "primitive_poses")
@@ -172,8 +188,10 @@ def _world(file: _File) -> World:
         shapes = [
             LinkShape(_shape(file, primitive), file.pose(at)) for primitive, at in zip(primitives, poses, strict=True)
         ]
-        world.add(name, shapes, file.pose(entry["pose"]) if "pose" in entry else None)
-    return world
+        if name in bodies:
+            raise InvalidInput(f"{file.path}: object '{name}': is there twice")
+        bodies[name] = (shapes, file.pose(entry["pose"]) if "pose" in entry else None)
+    return bodies
 
 
 def _allowed(file: _File) -> frozenset[frozenset[str]]:

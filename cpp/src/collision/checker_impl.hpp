@@ -57,11 +57,15 @@ struct CollisionChecker::Impl {
   bool hits_scene(int shape, int scene_shape);
   const detail::Rigid& pose(int shape);
 
-  /// What the balls of the two say.
-  detail::CoverAnswer pair_balls(const detail::ShapePair& pair);
-  detail::CoverAnswer scene_balls(int shape, int scene_shape);
+  /// What the balls of the two say; the first one's grown by `more` [m], when only "apart" means anything.
+  detail::CoverAnswer pair_balls(const detail::ShapePair& pair, double more = 0);
+  detail::CoverAnswer scene_balls(int shape, int scene_shape, double more = 0);
   bool pair_collides_exactly(const detail::ShapePair& pair);
   bool hits_scene_exactly(int shape, int scene_shape);
+  /// Whether the two touch (kOverlap), stay apart while they come no more than `motion` [m] closer (kApart), or
+  /// neither.
+  detail::CoverAnswer pair_within(const detail::ShapePair& pair, double motion);
+  detail::CoverAnswer scene_within(int shape, int scene_shape, double motion);
   bool balls_apart(const detail::ShapePair& pair) const;
   /// False when plan->moving[body] hits a bounded scene shape. Clears `proven` unless it stays free while none of its
   /// points moves more than `motion` [m].

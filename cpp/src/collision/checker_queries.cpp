@@ -5,11 +5,13 @@
 #include <limits>
 
 #include "collision/checker_impl.hpp"
+#include "collision/convex_gap.hpp"
 
 namespace mmgrasp {
 
 using detail::CoverAnswer;
 using detail::FloatRigid;
+using detail::Nearness;
 using detail::Rigid;
 
 namespace {
@@ -22,6 +24,15 @@ FloatRigid to_float(const Rigid& T) {
   }
   return out;
 }
+
+// Balls grown by more than this meet cells of a field everywhere [m].
+constexpr double kFieldReach = 0.02;
+
+// Gaps are not looked for where a body moves farther than this: most would not do [m].
+constexpr double kGapReach = 0.1;
+
+// Hulls this close are left to the exact answer [m].
+constexpr double kTouch = 1e-7;
 
 // Single precision rounds sums of these magnitudes a few times: far below 2e-6 of them.
 float slack_of(const FloatRigid& T, float extent_a, float extent_b) {
@@ -48,6 +59,15 @@ CoverAnswer balls_in_field(const detail::DistanceField& field, const Rigid& T_fi
   for (std::size_t i = 0; i < balls.size(); ++i) levels[i] = balls[i].view();
   return detail::kernels().field_cover(field.view(), levels, static_cast<int>(balls.size()), T,
                                        static_cast<float>(grow), slack_of(T, field.extent(), balls[0].extent()));
+}
+
+// Of two solids or the hulls around them; `touching` also where there is no such hull.
+Nearness hull_nearness(const detail::Solid& a, const Rigid& T_a, const detail::Solid& b, const Rigid& T_b,
+                       double motion) {
+  const auto bounded = [](const detail::Solid& s) { return s.kind == detail::SolidKind::convex || s.has_hull; };
+  if (!bounded(a) || !bounded(b)) return Nearness::touching;
+  const double margin = a.margin + b.margin;
+  return detail::convex_nearness(a.core, b.core, T_a.to(T_b), motion + margin + kTouch, margin + kTouch);
 }
 
 }  // namespace
@@ -118,21 +138,22 @@ bool CollisionChecker::Impl::balls_apart(const detail::ShapePair& pair) const {
   return dx * dx + dy * dy + dz * dz > reach * reach;
 }
 
-CoverAnswer CollisionChecker::Impl::pair_balls(const detail::ShapePair& pair) {
+CoverAnswer CollisionChecker::Impl::pair_balls(const detail::ShapePair& pair, double more) {
   const detail::BodyShape &a = snapshot->shapes[pair.a], &b = snapshot->shapes[pair.b];
   if (a.bounds->balls().empty() || b.bounds->balls().empty()) return detail::kMaybe;
   const Rigid &T_a = pose(pair.a), &T_b = pose(pair.b);
-  const CoverAnswer first = cover_against_box(a.bounds->balls(), T_a, *b.solid, T_b, 0);
+  const CoverAnswer first = cover_against_box(a.bounds->balls(), T_a, *b.solid, T_b, more);
   if (first == detail::kApart || (first == detail::kOverlap && b.solid->is_box)) return first;
-  const CoverAnswer second = cover_against_box(b.bounds->balls(), T_b, *a.solid, T_a, 0);
+  const CoverAnswer second = cover_against_box(b.bounds->balls(), T_b, *a.solid, T_a, more);
   if (second == detail::kApart || (second == detail::kOverlap && a.solid->is_box)) return second;
+  if (more > kFieldReach) return detail::kMaybe;
   // The larger body as the field: the smaller one has the smaller balls.
   const bool a_larger = a.solid->ball_radius > b.solid->ball_radius;
   const auto by_field = [&](const detail::BodyShape& body, const Rigid& T_body, const detail::BodyShape& balls,
                             const Rigid& T_balls) {
     const auto& field = body.bounds->detail(*body.solid).field;
     if (field == nullptr) return detail::kMaybe;
-    return balls_in_field(*field, T_body, balls.bounds->detail(*balls.solid).covers, T_balls, 0);
+    return balls_in_field(*field, T_body, balls.bounds->detail(*balls.solid).covers, T_balls, more);
   };
   const CoverAnswer answer = a_larger ? by_field(a, T_a, b, T_b) : by_field(b, T_b, a, T_a);
   if (answer != detail::kMaybe) return answer;
@@ -158,22 +179,54 @@ bool CollisionChecker::Impl::pair_collides(const detail::ShapePair& pair) {
   return answer == detail::kMaybe ? pair_collides_exactly(pair) : answer == detail::kOverlap;
 }
 
-CoverAnswer CollisionChecker::Impl::scene_balls(int s, int scene_shape) {
+CoverAnswer CollisionChecker::Impl::scene_balls(int s, int scene_shape, double more) {
   const detail::BodyShape& shape = snapshot->shapes[s];
   const detail::SceneShape& other = snapshot->scene[scene_shape];
   if (shape.bounds->balls().empty() || other.solid->kind == detail::SolidKind::plane) return detail::kMaybe;
   // Padding pushes out the corners of a box by up to sqrt(3) of it.
-  const double grow = shape.padded != shape.solid ? 1.75 * snapshot->options.padding : 0;
+  const double grow = (shape.padded != shape.solid ? 1.75 * snapshot->options.padding : 0) + more;
   if (other.solid->kind == detail::SolidKind::voxels) {
     const float* ball = ball_centres.data() + 4 * plan->ball_of[s];
     const Eigen::Vector3d centre(ball[0], ball[1], ball[2]);
-    if (other.solid->field->distance(other.T_world.R.transpose() * (centre - other.T_world.t)) > ball[3])
+    if (other.solid->field->distance(other.T_world.R.transpose() * (centre - other.T_world.t)) > ball[3] + more)
       return detail::kApart;
     const auto& covers = shape.bounds->detail(*shape.solid).covers;
     return balls_in_field(*other.solid->field, other.T_world, covers, pose(s), grow);
   }
   const CoverAnswer answer = cover_against_box(shape.bounds->balls(), pose(s), *other.solid, other.T_world, grow);
   return answer == detail::kOverlap && !other.solid->is_box ? detail::kMaybe : answer;
+}
+
+CoverAnswer CollisionChecker::Impl::pair_within(const detail::ShapePair& pair, double motion) {
+  if (motion <= kGapReach) {
+    const CoverAnswer balls = pair_balls(pair, motion);
+    if (balls != CoverAnswer::kMaybe) return balls;
+    const detail::Solid &a = *snapshot->shapes[pair.a].solid, &b = *snapshot->shapes[pair.b].solid;
+    switch (hull_nearness(a, pose(pair.a), b, pose(pair.b), motion)) {
+      case Nearness::beyond:
+        return CoverAnswer::kApart;
+      case Nearness::near:
+        return CoverAnswer::kMaybe;
+      case Nearness::touching:
+        break;
+    }
+  }
+  return pair_collides(pair) ? CoverAnswer::kOverlap : CoverAnswer::kMaybe;
+}
+
+CoverAnswer CollisionChecker::Impl::scene_within(int s, int scene_shape, double motion) {
+  const CoverAnswer balls = scene_balls(s, scene_shape, motion);
+  if (balls != CoverAnswer::kMaybe) return balls;
+  const detail::SceneShape& other = snapshot->scene[scene_shape];
+  switch (hull_nearness(*snapshot->shapes[s].padded, pose(s), *other.solid, other.T_world, motion)) {
+    case Nearness::beyond:
+      return CoverAnswer::kApart;
+    case Nearness::near:
+      return CoverAnswer::kMaybe;
+    case Nearness::touching:
+      break;
+  }
+  return hits_scene(s, scene_shape) ? CoverAnswer::kOverlap : CoverAnswer::kMaybe;
 }
 
 bool CollisionChecker::Impl::hits_scene_exactly(int s, int scene_shape) {
@@ -217,34 +270,46 @@ bool CollisionChecker::Impl::body_is_free(int body, double motion, bool& proven)
   const detail::ScenePacks& packs = snapshot->packs;
   const float* ball = ball_centres.data() + 4 * body;
   const int s = plan->moving[static_cast<std::size_t>(body)];
+  // A body that moves far is only looked at where it is: what its ball, grown by the motion, meets would hardly ever
+  // turn out to stay clear.
+  const bool far = motion > kGapReach;
+  const float grown[4] = {ball[0], ball[1], ball[2], static_cast<float>(ball[3] + (far ? 0 : motion))};
   const auto hits_any = [&](int pack, unsigned mask) {
     for (; mask != 0; mask &= mask - 1) {
       const int other = packs.item(pack, __builtin_ctz(mask));
-      if (!hits_scene(s, other)) continue;
+      if (far) {
+        if (!hits_scene(s, other)) continue;
+      } else {
+        const CoverAnswer answer = scene_within(s, other, motion);
+        if (answer == CoverAnswer::kApart) continue;
+        proven = false;
+        if (answer == CoverAnswer::kMaybe) continue;
+      }
       last_shape = s;
       last_scene = other;
       return true;
     }
     return false;
   };
+  const auto stays_far = [&](float nearest) { return std::sqrt(nearest) - ball[3] > motion; };
   if (packs.flat()) {
     std::uint8_t flat_masks[detail::ScenePacks::kFlat];
     float nearest = std::numeric_limits<float>::infinity();
-    detail::kernels().balls_meet(packs.data(), packs.count(), ball, 1, flat_masks, &nearest);
-    if (std::sqrt(nearest) - ball[3] > motion) return true;
-    proven = false;
+    detail::kernels().balls_meet(packs.data(), packs.count(), grown, 1, flat_masks, &nearest);
+    if (stays_far(nearest)) return true;
+    if (far) proven = false;
     for (int k = 0; k < packs.count(); ++k) {
       if (hits_any(k, flat_masks[k])) return false;
     }
     return true;
   }
-  const float grown[4] = {ball[0], ball[1], ball[2], static_cast<float>(ball[3] + motion)};
-  return !packs.packs_near(grown, [&](int pack) {
+  const float reach[4] = {ball[0], ball[1], ball[2], static_cast<float>(ball[3] + motion)};
+  return !packs.packs_near(reach, [&](int pack) {
     std::uint8_t mask = 0;
     float nearest = 0;
-    detail::kernels().balls_meet(packs.data() + pack, 1, ball, 1, &mask, &nearest);
-    if (std::sqrt(nearest) - ball[3] > motion) return false;
-    proven = false;
+    detail::kernels().balls_meet(packs.data() + pack, 1, grown, 1, &mask, &nearest);
+    if (stays_far(nearest)) return false;
+    if (far) proven = false;
     return hits_any(pack, mask);
   });
 }

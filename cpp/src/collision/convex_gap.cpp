@@ -48,4 +48,32 @@ GapKind convex_gap(const Convex& a, const Convex& b, const Rigid& b_in_a, double
   return GapKind::apart;
 }
 
+Nearness convex_nearness(const Convex& a, const Convex& b, const Rigid& b_in_a, double bound, double touch) {
+  const double reach = bound + a.radius + b.radius, least = touch + a.radius + b.radius;  // of the cores
+  Eigen::Vector3d axis = a.centre - b_in_a * b.centre;
+  if (!(axis.squaredNorm() > 1e-20)) axis = Eigen::Vector3d::UnitX();
+  Simplex simplex;
+  double best = std::numeric_limits<double>::infinity();  // squared length of the simplex's closest point
+  bool parted = false;
+  for (int i = 0; i < kMaxIterations; ++i) {
+    const SimplexPoint p = difference(a, b, b_in_a, axis);
+    const double along = axis.dot(p.w), squared_axis = axis.squaredNorm();
+    if (along > 0) {
+      if (along * along > reach * reach * squared_axis) return Nearness::beyond;
+      if (along * along > least * least * squared_axis) parted = true;
+    }
+    if (i > 0 && (best - along <= 1e-13 * best || simplex.holds(p.w))) break;
+    simplex.add(p);
+    if (simplex.reduce()) break;
+    const Eigen::Vector3d closest = simplex.closest();
+    const double squared = closest.squaredNorm();
+    // A point of the difference lies nearer than the reach: it cannot be beyond.
+    if (parted && squared < reach * reach) return Nearness::near;
+    if (squared <= touching_gap(p) * touching_gap(p) || !(squared < best)) break;
+    best = squared;
+    axis = closest;
+  }
+  return parted ? Nearness::near : Nearness::touching;
+}
+
 }  // namespace mmgrasp::detail

@@ -23,6 +23,12 @@ enum class GapKind {
 GapKind convex_gap(const Convex& a, const Convex& b, const Rigid& b_in_a, double bound, Eigen::Vector3d& axis,
                    ConvexGap& gap);
 
+enum class Nearness { beyond, near, touching };
+
+/// Whether the gap of two convex bodies is more than `bound` [m] (beyond), not proven to be (near, but more than
+/// `touch`), or not proven to be more than `touch` (<= bound): GJK that stops as soon as one of the three is certain.
+Nearness convex_nearness(const Convex& a, const Convex& b, const Rigid& b_in_a, double bound, double touch);
+
 /// Gap of bodies whose cores meet, by the expanding polytope algorithm: exact for polytopes, for round ones to 1e-12 of
 /// their size.
 ConvexGap convex_penetration(const Convex& a, const Convex& b, const Rigid& b_in_a);

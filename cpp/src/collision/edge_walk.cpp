@@ -118,8 +118,11 @@ bool CollisionChecker::Impl::EdgeWalk::pairs_free(const Interval& interval, doub
     const float* a = checker_.ball_centres.data() + 4 * pair.ball_a;
     const float* b = checker_.ball_centres.data() + 4 * pair.ball_b;
     const double gap = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) - a[3] - b[3];
-    if (gap > surely(pair_motion_[index] * reach)) continue;
-    if (gap <= 0 && checker_.pair_collides(pair)) {
+    const double motion = surely(pair_motion_[index] * reach);
+    if (gap > motion) continue;
+    const detail::CoverAnswer answer = checker_.pair_within(pair, motion);
+    if (answer == detail::kApart) continue;
+    if (answer == detail::kOverlap) {
       checker_.last_pair = index;
       return false;
     }

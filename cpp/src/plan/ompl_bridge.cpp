@@ -67,13 +67,13 @@ const MmgraspOmplApi& plugin() {
 
 /// What the plugin's callbacks work on. Exceptions must not cross the boundary: the first one is kept and ends the run.
 struct Session {
-  const OmplQuery& query;
-  OmplAnswer answer;
+  const PlannerQuery& query;
+  PlannerAnswer answer;
   std::string failure;
   std::exception_ptr thrown;
   Eigen::VectorXd a, b;
 
-  explicit Session(const OmplQuery& q) : query(q), a(q.start.size()), b(q.start.size()) {}
+  explicit Session(const PlannerQuery& q) : query(q), a(q.start.size()), b(q.start.size()) {}
   void load(const double* from, Eigen::VectorXd& to) { std::copy_n(from, to.size(), to.data()); }
 
   template <typename Function>
@@ -116,6 +116,19 @@ void waypoint(void* user, const double* q) {
   s.answer.waypoints.push_back(s.a);
 }
 
+void improved(void* user, int count, const double* path) {
+  Session& s = session(user);
+  s.guarded([&] {
+    std::vector<Eigen::VectorXd> waypoints;
+    for (int i = 0; i < count; ++i) {
+      s.load(path + i * s.a.size(), s.a);
+      waypoints.push_back(s.a);
+    }
+    s.query.improved(waypoints);
+    return true;
+  });
+}
+
 void fail(void* user, const char* message) {
   session(user).failure = message;
 }
@@ -134,7 +147,7 @@ std::vector<std::string> ompl_planner_names() {
   return names;
 }
 
-OmplAnswer solve_with_ompl(const OmplQuery& query) {
+PlannerAnswer solve_with_ompl(const PlannerQuery& query) {
   Session session(query);
   const std::vector<double> goals = flattened(query.goals);
   const std::vector<unsigned char> wraps(query.wraps.begin(), query.wraps.end());
@@ -156,6 +169,7 @@ OmplAnswer solve_with_ompl(const OmplQuery& query) {
   problem.edge_is_free = edge_is_free;
   problem.stopped = stopped;
   problem.waypoint = waypoint;
+  problem.improved = query.improved ? improved : nullptr;
   problem.fail = fail;
   const int status = plugin().solve(&problem);
   if (session.thrown) std::rethrow_exception(session.thrown);

@@ -19,8 +19,8 @@ struct PathPoint {
 
 class Shortener {
  public:
-  Shortener(CollisionChecker& checker, Waypoints& waypoints, Rng& rng, const ShorteningOptions& options)
-      : checker_(checker), waypoints_(waypoints), rng_(rng), options_(options) {}
+  Shortener(MotionEdges& edges, Waypoints& waypoints, Rng& rng, const ShorteningOptions& options)
+      : edges_(edges), waypoints_(waypoints), rng_(rng), options_(options) {}
 
   void run() {
     remove_repeats();
@@ -28,7 +28,8 @@ class Shortener {
     int without_gain = 0;
     for (int i = 0; i < options_.iterations && without_gain < kPatience && waypoints_.size() > 2; ++i) {
       if (options_.stopped()) return;
-      const bool gained = i % 3 == 2 ? shortcut_one_joint() : shortcut();
+      // A platform that turns and drives cannot move one value alone.
+      const bool gained = i % 3 == 2 && !edges_.steered() ? shortcut_one_joint() : shortcut();
       without_gain = gained ? 0 : without_gain + 1;
     }
     skip_waypoints();
@@ -36,7 +37,7 @@ class Shortener {
 
  private:
   bool free(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-    return checker_.edge_is_free(a, b, options_.edge_step);
+    return edges_.straight_is_free(a, b, options_.finer);
   }
 
   static double length(const Waypoints& points) {
@@ -65,9 +66,10 @@ class Shortener {
     for (std::size_t i = 0; i + 2 < waypoints_.size(); ++i) {
       for (std::size_t j = waypoints_.size() - 1; j > i + 1; --j) {
         if (options_.stopped()) return;
-        if (!free(waypoints_[i], waypoints_[j])) continue;
-        waypoints_.erase(waypoints_.begin() + i + 1, waypoints_.begin() + j);
-        break;
+        const PathPoint a{i, waypoints_[i]}, b{j - 1, waypoints_[j]};
+        // A straight edge is never longer; turning and driving may be.
+        const double least_gain = edges_.steered() ? kSmallestGain * length(waypoints_) : -1e-9;
+        if (replace_if_better(a, b, stretch(a, b), joined(a.q, b.q), least_gain)) break;
       }
     }
   }
@@ -96,14 +98,24 @@ class Shortener {
     return points;
   }
 
-  bool replace_if_better(const PathPoint& a, const PathPoint& b, const Waypoints& old_stretch, Waypoints new_stretch) {
-    if (length(old_stretch) - length(new_stretch) < kSmallestGain * length(waypoints_)) return false;
+  Waypoints joined(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
+    Waypoints points{a};
+    edges_.connect(a, b, points);
+    return points;
+  }
+
+  bool replace_if_better(const PathPoint& a, const PathPoint& b, const Waypoints& old_stretch, Waypoints new_stretch,
+                         double least_gain) {
+    if (length(old_stretch) - length(new_stretch) < least_gain) return false;
     for (std::size_t i = 0; i + 1 < new_stretch.size(); ++i) {
       if (!free(new_stretch[i], new_stretch[i + 1])) return false;
     }
     Waypoints result(waypoints_.begin(), waypoints_.begin() + a.edge + 1);
     result.insert(result.end(), new_stretch.begin(), new_stretch.end());
-    result.insert(result.end(), waypoints_.begin() + b.edge + 1, waypoints_.end());
+    // The new stretch may end whole turns away from where the old one did.
+    Eigen::VectorXd turns = new_stretch.back() - b.q;
+    for (double& turn : turns) turn = 2 * M_PI * std::round(turn / (2 * M_PI));
+    for (auto w = waypoints_.begin() + b.edge + 1; w != waypoints_.end(); ++w) result.push_back(*w + turns);
     waypoints_ = std::move(result);
     remove_repeats();
     return true;
@@ -112,7 +124,7 @@ class Shortener {
   bool shortcut() {
     const auto [a, b] = random_points();
     if (a.edge == b.edge) return false;
-    return replace_if_better(a, b, stretch(a, b), {a.q, b.q});
+    return replace_if_better(a, b, stretch(a, b), joined(a.q, b.q), kSmallestGain * length(waypoints_));
   }
 
   bool shortcut_one_joint() {
@@ -127,10 +139,10 @@ class Shortener {
       s += (old_stretch[i] - old_stretch[i - 1]).norm();
       new_stretch[i][joint] = a.q[joint] + (s / total) * (b.q[joint] - a.q[joint]);
     }
-    return replace_if_better(a, b, old_stretch, std::move(new_stretch));
+    return replace_if_better(a, b, old_stretch, std::move(new_stretch), kSmallestGain * length(waypoints_));
   }
 
-  CollisionChecker& checker_;
+  MotionEdges& edges_;
   Waypoints& waypoints_;
   Rng& rng_;
   const ShorteningOptions& options_;
@@ -138,8 +150,8 @@ class Shortener {
 
 }  // namespace
 
-void shorten_path(CollisionChecker& checker, JointPath& path, Rng& rng, const ShorteningOptions& options) {
-  if (path.waypoints.size() > 2) Shortener(checker, path.waypoints, rng, options).run();
+void shorten_path(MotionEdges& edges, JointPath& path, Rng& rng, const ShorteningOptions& options) {
+  if (path.waypoints.size() > 2) Shortener(edges, path.waypoints, rng, options).run();
 }
 
 }  // namespace mmgrasp::detail

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,17 +15,35 @@
 
 namespace mmgrasp {
 
+/// Path constraint: an axis of the tool stays within an angle of an axis of the world (a cup that is carried upright).
+struct MMGRASP_EXPORT ToolCone {
+  Eigen::Vector3d tool_axis = Eigen::Vector3d::UnitZ();   ///< In the tip's frame; any length > 0.
+  Eigen::Vector3d world_axis = Eigen::Vector3d::UnitZ();  ///< Any length > 0.
+  double half_angle = 0.2;                                ///< Largest angle between the two [rad], in (0, pi].
+  void check() const;
+};
+
 struct MMGRASP_EXPORT MotionOptions {
   std::string planner = "rrt_connect";  ///< A name of planner_names().
   double time_limit = 5.0;              ///< Wall-clock cap [s]; > 0.
   int max_iterations =
       20000;  ///< Budget in states drawn (rounds, where a planner draws none); > 0. Ends a run reproducibly.
   double range =
-      0.0;  ///< Longest tree edge [rad]; 0: a share of the joint box's diagonal (rrt_connect 1/20, others 1/5).
+      0.0;  ///< Longest tree edge [rad]; 0: a share of the joint box's diagonal (RRT-Connect 1/20, others 1/5).
   double base_margin = 2.0;  ///< With base joints: x and y are drawn this far around start and goals [m]; > 0.
   double edge_step = 0.02;   ///< Largest joint motion between two checks of an edge [rad or m]; > 0.
-  bool shorten = true;       ///< Shortcut the path (never leaves free space).
+  /// Largest motion of any point of the robot (and of what it holds) between two checks of an edge [m]; > 0, infinite:
+  /// no such bound.
+  double workspace_step = std::numeric_limits<double>::infinity();
+  std::optional<ToolCone> tool_cone;  ///< Held along the whole path, start and goal included.
+  bool shorten = true;                ///< Shortcut the path (never leaves free space).
   int shorten_iterations = 200;
+  /// IK solutions looked for at each tool pose (and at each pose drawn in a region); > 0.
+  int ik_solutions = 8;
+  int region_samples = 16;  ///< Tool poses drawn in each region; > 0.
+  /// Called with each better path while a planner that keeps improving is at work, and with the final one; from the
+  /// calling thread. The paths are free at the planner's edge steps, the final one is checked more finely.
+  std::function<void(const JointPath& path, double cost)> improved;
   unsigned seed = 1;
   void check() const;
 };
@@ -36,28 +56,50 @@ struct MMGRASP_EXPORT MotionStats {
 
 struct MMGRASP_EXPORT MotionResult {
   Outcome outcome = Outcome::timeout;
-  /// Set if and only if solved; re-checked at an eighth of edge_step. Has at least two waypoints, the first is the
+  /// Set if and only if solved; re-checked at an eighth of the edge steps. Has at least two waypoints, the first is the
   /// start. Values that wrap run on continuously, so that the last waypoint equals its goal up to full turns of these.
   std::optional<JointPath> path;
   double cost = 0;                ///< Its length.
   int goal_index = -1;            ///< Which of the goals it reaches.
   std::vector<Contact> contacts;  ///< With invalid_start or invalid_goal: what touches.
-  Rejections rejections;          ///< Of goals turned down.
+  Rejections rejections;          ///< Of goals turned down; grasp_filter counts those outside the tool cone.
   MotionStats stats;
 };
 
-/// "rrt_connect" (fast, the default), "rrt", "est", "bi_est", "kpiece", "bkpiece", "prm" end with their first path;
-/// "prm_star", "lazy_prm_star", "rrt_star", "informed_rrt_star", "bit_star" spend the whole budget on shorter ones. All
-/// are OMPL's.
+/// A box of tool poses: T_world_region times a translation within +-position times a rotation rpy within +-rotation.
+struct MMGRASP_EXPORT ToolRegion {
+  Pose T_world_region = Pose::Identity();
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< Half lengths along the region's axes [m], >= 0.
+  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  ///< Roll, pitch and yaw [rad], in [0, pi].
+  void check(const std::string& field) const;
+};
+
+/// What a motion may end at; goal_index counts through the three lists in this order.
+struct MMGRASP_EXPORT MotionGoals {
+  std::vector<Eigen::VectorXd> configurations;
+  Poses tool_poses;                 ///< T_world_tip; reached by inverse kinematics.
+  std::vector<ToolRegion> regions;  ///< Poses are drawn in them, the region's own pose first.
+};
+
+/// "rrt_connect" (ours, fast, the default) and OMPL's: "ompl_rrt_connect", "rrt", "est", "bi_est", "kpiece", "bkpiece",
+/// "prm" end with their first path; "prm_star", "lazy_prm_star", "rrt_star", "informed_rrt_star", "bit_star",
+/// "abit_star" and "ait_star" spend the whole budget on shorter ones.
 MMGRASP_EXPORT std::vector<std::string> planner_names();
 
 /// A collision-free path of the checker's group from `start` to any of `goals`. Throws InvalidInput on wrong lengths,
 /// non-finite numbers, an empty goal list or an unknown planner (the known ones are listed); IoError when the planner
 /// plugin cannot be opened. A straight edge to one of the goals, the nearest first, is taken at once when it is free.
 /// The same seed gives the same path, from any thread, as long as the clock does not end the run. Calls with
-/// rrt_connect run side by side; the other planners draw from OMPL's process-wide seeds and wait for each other.
+/// rrt_connect run side by side; OMPL's planners draw from OMPL's process-wide seeds and wait for each other.
+///
+/// Groups with base joints: an omni base moves in x, y and theta at once; a diff-drive base turns on the spot, drives
+/// straight (forwards or backwards) and turns again, so that every edge of its path can be driven.
 MMGRASP_EXPORT MotionResult plan_motion(CollisionChecker& checker, const Eigen::VectorXd& start,
                                         const std::vector<Eigen::VectorXd>& goals, const MotionOptions& options = {},
                                         const Monitor& monitor = {});
+/// The same with tool poses and regions. A pose without any allowed configuration counts as one rejection.
+MMGRASP_EXPORT MotionResult plan_motion_to(CollisionChecker& checker, const Eigen::VectorXd& start,
+                                           const MotionGoals& goals, const MotionOptions& options = {},
+                                           const Monitor& monitor = {});
 
 }  // namespace mmgrasp

@@ -2,6 +2,8 @@
 
 #include <ompl/geometric/planners/est/BiEST.h>
 #include <ompl/geometric/planners/est/EST.h>
+#include <ompl/geometric/planners/informedtrees/ABITstar.h>
+#include <ompl/geometric/planners/informedtrees/AITstar.h>
 #include <ompl/geometric/planners/informedtrees/BITstar.h>
 #include <ompl/geometric/planners/kpiece/BKPIECE1.h>
 #include <ompl/geometric/planners/kpiece/KPIECE1.h>
@@ -35,7 +37,7 @@ ob::PlannerPtr make_prm_star(const ob::SpaceInformationPtr& si) {
 const PlannerEntry kPlanners[] = {
     // Measured on the 7-joint arm problems of docs/methods/plan.md: a fifth of the diagonal takes two to three times as
     // long.
-    {"rrt_connect", make<og::RRTConnect>, false, false, 0.05},
+    {"ompl_rrt_connect", make<og::RRTConnect>, false, false, 0.05},
     {"rrt", make<og::RRT>, true, false, 0},
     {"est", make<og::EST>, true, true, 0},
     {"bi_est", make<og::BiEST>, true, true, 0},
@@ -47,6 +49,8 @@ const PlannerEntry kPlanners[] = {
     {"rrt_star", make<og::RRTstar>, true, true, 0},
     {"informed_rrt_star", make<og::InformedRRTstar>, true, true, 0},
     {"bit_star", make<og::BITstar>, true, true, 0},
+    {"abit_star", make<og::ABITstar>, true, true, 0},
+    {"ait_star", make<og::AITstar>, true, true, 0},
 };
 const std::size_t kPlannerCount = sizeof(kPlanners) / sizeof(kPlanners[0]);
 

@@ -33,7 +33,8 @@ struct MmgraspOmplProblem {
   int (*edge_is_free)(void* user, const double* q0,
                       const double* q1);  ///< The shortest way round for values that wrap.
   int (*stopped)(void* user);
-  void (*waypoint)(void* user, const double* q);  ///< Called for each waypoint of the path, in order.
+  void (*waypoint)(void* user, const double* q);                ///< Called for each waypoint of the path, in order.
+  void (*improved)(void* user, int count, const double* path);  ///< Rows of a shorter path, while improving; or null.
   void (*fail)(void* user, const char* message);
 };
 
@@ -49,5 +50,5 @@ __attribute__((visibility("default"))) const MmgraspOmplApi* mmgrasp_ompl_api();
 
 }  // extern "C"
 
-constexpr int kMmgraspOmplApiVersion = 1;
+constexpr int kMmgraspOmplApiVersion = 2;
 constexpr const char* kMmgraspOmplApiSymbol = "mmgrasp_ompl_api";

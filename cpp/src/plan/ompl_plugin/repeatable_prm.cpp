@@ -2,6 +2,7 @@
 
 #include <ompl/base/OptimizationObjective.h>
 #include <ompl/base/goals/GoalStates.h>
+#include <ompl/geometric/PathGeometric.h>
 
 namespace mmgrasp_ompl {
 namespace ob = ompl::base;
@@ -23,6 +24,9 @@ ob::PlannerStatus RepeatablePrm::solve(const ob::PlannerTerminationCondition& pt
       if (!path || (best && !opt_->isCostBetterThan(path->cost(opt_), best_cost))) continue;
       best = path;
       best_cost = path->cost(opt_);
+      if (!pdef_->getIntermediateSolutionCallback()) continue;
+      const auto& states = path->as<ompl::geometric::PathGeometric>()->getStates();
+      pdef_->getIntermediateSolutionCallback()(this, {states.begin(), states.end()}, best_cost);
     }
   };
 

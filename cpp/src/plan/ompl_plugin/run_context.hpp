@@ -2,6 +2,8 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
+#include <utility>
 
 #include "plan/ompl_plugin/plugin_api.hpp"
 
@@ -18,6 +20,8 @@ class RunContext {
 
   const MmgraspOmplProblem& problem() const { return problem_; }
 
+  /// Called at every look at the budget.
+  void watch(std::function<void()> look) { look_ = std::move(look); }
   void restart() { draws_ = checks_ = rounds_ = 0; }
   void count_draw() { ++draws_; }
   /// Different for each sampler of a run, the same in every run.
@@ -35,6 +39,7 @@ class RunContext {
   /// The termination condition: called by planners once per round or more often.
   bool finished() {
     ++rounds_;
+    if (look_) look_();
     const long budget = problem_.max_iterations;
     return draws_ >= budget || checks_ >= budget || (count_rounds_ && rounds_ > budget) || stopped();
   }
@@ -47,6 +52,7 @@ class RunContext {
   std::chrono::steady_clock::time_point deadline_;
   long draws_ = 0, checks_ = 0, rounds_ = 0;
   std::uint64_t samplers_ = 0;
+  std::function<void()> look_;
 };
 
 }  // namespace mmgrasp_ompl

@@ -4,11 +4,15 @@
 #include <ompl/util/Console.h>
 #include <ompl/util/RandomNumbers.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <exception>
+#include <limits>
 #include <mutex>
 #include <shared_mutex>
 #include <string>
+#include <vector>
 
 #include "plan/ompl_plugin/joint_space.hpp"
 #include "plan/ompl_plugin/planners.hpp"
@@ -77,6 +81,65 @@ ob::ProblemDefinitionPtr make_definition(const ob::SpaceInformationPtr& si, cons
   return definition;
 }
 
+/// Hands every better path to the caller: planners either call back with one or put it into the definition.
+class Improvements {
+ public:
+  Improvements(const MmgraspOmplProblem& problem, const ob::SpaceInformationPtr& si,
+               const ob::ProblemDefinitionPtr& definition)
+      : problem_(problem), si_(si), definition_(definition) {}
+
+  void add(std::vector<const ob::State*> states, double cost) {
+    const ob::State* start = definition_->getStartState(0);
+    if (states.empty() || !same(states.front(), start)) std::reverse(states.begin(), states.end());
+    if (states.empty() || !same(states.front(), start)) states.insert(states.begin(), start);
+    // Some leave the goal out as well; the cost tells which it is.
+    const auto* goals = definition_->getGoal()->as<ob::GoalStates>();
+    const ob::State* end = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    for (unsigned int g = 0; g < goals->getStateCount(); ++g) {
+      if (same(states.back(), goals->getState(g))) return report(states);
+      const double off = std::abs(length(states) + si_->distance(states.back(), goals->getState(g)) - cost);
+      if (off < least) end = goals->getState(g);
+      least = std::min(least, off);
+    }
+    if (least > 1e-6 * (1 + cost)) return;
+    states.push_back(end);
+    report(states);
+  }
+
+  void look_into_definition() {
+    const ob::PathPtr path = definition_->hasExactSolution() ? definition_->getSolutionPath() : nullptr;
+    if (!path || path == last_) return;
+    last_ = path;
+    const auto& states = path->as<og::PathGeometric>()->getStates();
+    report({states.begin(), states.end()});
+  }
+
+ private:
+  bool same(const ob::State* a, const ob::State* b) const { return si_->distance(a, b) < 1e-9; }
+
+  double length(const std::vector<const ob::State*>& states) const {
+    double sum = 0;
+    for (std::size_t i = 1; i < states.size(); ++i) sum += si_->distance(states[i - 1], states[i]);
+    return sum;
+  }
+
+  void report(const std::vector<const ob::State*>& states) {
+    const double cost = length(states);
+    if (cost > best_ - 1e-9) return;
+    best_ = cost;
+    std::vector<double> rows;
+    for (const ob::State* state : states) rows.insert(rows.end(), values(state), values(state) + problem_.size);
+    problem_.improved(problem_.user, static_cast<int>(states.size()), rows.data());
+  }
+
+  const MmgraspOmplProblem& problem_;
+  const ob::SpaceInformationPtr si_;
+  const ob::ProblemDefinitionPtr definition_;
+  ob::PathPtr last_;
+  double best_ = std::numeric_limits<double>::infinity();
+};
+
 int run(const MmgraspOmplProblem& problem) {
   const PlannerEntry* entry = find_planner(problem.planner);
   if (!entry) {
@@ -96,9 +159,16 @@ int run(const MmgraspOmplProblem& problem) {
   if (range > 0 && planner->params().hasParam("range")) planner->params().setParam("range", std::to_string(range));
   planner->setProblemDefinition(definition);
   planner->setup();
+  Improvements improvements(problem, si, definition);
+  if (problem.improved) {
+    definition->setIntermediateSolutionCallback([&](const ob::Planner*, const std::vector<const ob::State*>& states,
+                                                    const ob::Cost cost) { improvements.add(states, cost.value()); });
+    context->watch([&] { improvements.look_into_definition(); });
+  }
   // What setting up has drawn and checked is not the caller's budget.
   context->restart();
   planner->solve(ob::PlannerTerminationCondition([context] { return context->finished(); }));
+  context->watch({});
 
   if (!definition->hasExactSolution()) {
     return context->finished() ? MMGRASP_OMPL_BUDGET_SPENT : MMGRASP_OMPL_EXHAUSTED;

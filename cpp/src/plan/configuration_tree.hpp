@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace mmgrasp::detail {
+
+/// Configurations with parents and a nearest-neighbour search. Every value stands in a row of eights in single
+/// precision, so that one pass over all configurations is a stream of vector instructions: up to some ten thousand of
+/// them that beats trees of cells.
+class ConfigurationTree {
+ public:
+  /// `wraps`: values in [-pi, pi] that are compared the short way round.
+  explicit ConfigurationTree(std::vector<bool> wraps);
+
+  int size() const { return static_cast<int>(parents_.size()); }
+  int add(const Eigen::VectorXd& q, int parent);
+  /// Squared distance only tells which is nearest, in single precision; of equals the first.
+  int nearest(const Eigen::VectorXd& q) const;
+  int parent(int node) const { return parents_[static_cast<std::size_t>(node)]; }
+  /// Copied into the caller's storage of the right length.
+  void get(int node, Eigen::VectorXd& q) const {
+    q = Eigen::Map<const Eigen::VectorXd>(values_.data() + static_cast<std::ptrdiff_t>(node) * size_, size_);
+  }
+
+ private:
+  static constexpr int kRow = 8;
+  const Eigen::Index size_;
+  const std::vector<bool> wraps_;
+  std::vector<double> values_;
+  std::vector<float> rows_;  ///< [block][value][kRow]; the unused end is far from everything.
+  std::vector<int> parents_;
+};
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/plan/motion.hpp"
+
+namespace mmgrasp::detail {
+
+/// What plan_motion holds a path to: which configurations are allowed, how two of them are joined, and how closely a
+/// joint-space edge is looked at. Works on the checker it was made with.
+class MotionEdges {
+ public:
+  using Waypoints = std::vector<Eigen::VectorXd>;
+
+  MotionEdges(CollisionChecker& checker, const MotionOptions& options);
+
+  CollisionChecker& checker() { return checker_; }
+  const std::vector<bool>& wraps() const { return wraps_; }
+  /// Edges turn on the spot and drive straight instead of moving all values at once.
+  bool steered() const { return steered_; }
+  bool constrained() const { return cone_.has_value(); }
+
+  bool is_free(const Eigen::VectorXd& q);
+  /// The cause, with Rejection::grasp_filter for a tool outside its cone.
+  Rejection rejection(const Eigen::VectorXd& q);
+
+  /// Straight edge between two configurations as they are written, looked at `finer` times as closely as the options
+  /// say.
+  bool straight_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double finer = 1);
+  /// Appends the way from `a` to `b` without `a`; its end may differ from `b` by full turns.
+  void connect(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Waypoints& way) const;
+  /// The way that connect() gives, angles that wrap the short way round.
+  bool edge_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double finer = 1);
+
+  /// Turns the tool back towards its cone; false when that does not succeed within limits.
+  bool project(Eigen::VectorXd& q);
+
+ private:
+  double step(const Eigen::VectorXd& delta, double finer) const;
+  double tilt(const Eigen::VectorXd& q) const;
+  bool edge_keeps_cone(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double finer) const;
+
+  CollisionChecker& checker_;
+  const JointGroup group_;
+  const std::vector<bool> wraps_;
+  const double joint_step_, workspace_step_;
+  Eigen::VectorXd bounds_;  ///< Workspace motion per joint motion; empty when it is not looked at.
+  const bool steered_;
+  std::optional<ToolCone> cone_;
+  Waypoints way_;
+  Eigen::VectorXd delta_, target_;
+};
+
+}  // namespace mmgrasp::detail

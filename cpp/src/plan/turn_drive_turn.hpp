@@ -1,0 +1,16 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace mmgrasp::detail {
+
+/// How a platform that cannot move sideways goes from one configuration (x, y, theta, arm joints ...) to another: turn
+/// on the spot towards the goal or away from it, drive straight (then backwards), turn on the spot; the arm's joints
+/// move along evenly. Of the two headings the one with less turning is taken, so that the way back is the same way.
+/// Appends the corners after `from`, the goal included, whose theta (and other values that wrap) may come out whole
+/// turns away from `to`.
+void append_turn_drive_turn(const Eigen::VectorXd& from, const Eigen::VectorXd& to,
+                            std::vector<Eigen::VectorXd>& corners);
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,93 @@
+#include "mmgrasp/verify/path_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mmgrasp/core/error.hpp"
+#include "verify/context.hpp"
+
+namespace mmgrasp::verify {
+namespace {
+
+constexpr double kLimitSlack = 1e-6;
+
+int known_joint(const Robot& robot, const std::string& name) {
+  for (std::size_t j = 0; j < robot.joints().size(); ++j) {
+    if (robot.joints()[j].name == name) return static_cast<int>(j);
+  }
+  throw InvalidInput("joint \"" + name + "\": the robot has none of this name");
+}
+
+ArmSetup setup_of(const PathToCheck& path) {
+  ArmSetup setup;
+  for (const std::string& name : path.joints) setup.arm.push_back(known_joint(path.robot, name));
+  require(!setup.arm.empty(), "joints", "[]", "must name at least one joint");
+  for (const auto& [name, value] : path.other_joints) setup.others[known_joint(path.robot, name)] = value;
+  setup.tip_link = path.robot.joints()[static_cast<std::size_t>(setup.arm.back())].child_link;
+  return setup;
+}
+
+class PathWalk {
+ public:
+  PathWalk(const PathToCheck& path, std::shared_ptr<const Stage> stage, double step)
+      : path_(path), judge_(std::move(stage)), step_(step) {}
+
+  PathCheckResult run() {
+    const auto& points = path_.waypoints;
+    if (is_good(points.front(), 0, 0)) {
+      for (std::size_t e = 0; e + 1 < points.size() && walk(points[e], points[e + 1], e);) ++e;
+    }
+    result_.free = result_.where.empty();
+    return result_;
+  }
+
+ private:
+  bool walk(const Eigen::VectorXd& from, const Eigen::VectorXd& to, std::size_t edge) {
+    const int count = std::max(1, static_cast<int>(std::ceil((to - from).cwiseAbs().maxCoeff() / step_)));
+    for (int i = 1; i <= count; ++i) {
+      const double at = static_cast<double>(i) / count;
+      if (!is_good(from + at * (to - from), edge, at)) return false;
+    }
+    return true;
+  }
+
+  bool is_good(const Eigen::VectorXd& q, std::size_t edge, double at) {
+    ++result_.configurations_checked;
+    const Kinematics& kinematics = judge_.kinematics();
+    const std::string place = "edge " + std::to_string(edge) + " at " + text(at) + ": ";
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      if (kinematics.continuous()[static_cast<std::size_t>(i)]) continue;
+      if (q[i] >= kinematics.lower()[i] - kLimitSlack && q[i] <= kinematics.upper()[i] + kLimitSlack) continue;
+      result_.where = place + "joint '" + path_.joints[static_cast<std::size_t>(i)] + "' beyond its limits";
+      return false;
+    }
+    const Touch touch = judge_.touch(q, 0);
+    if (touch) result_.where = place + "'" + touch.a + "' touches '" + touch.b + "'";
+    return !touch;
+  }
+
+  const PathToCheck& path_;
+  Judge judge_;
+  const double step_;
+  PathCheckResult result_;
+};
+
+}  // namespace
+
+PathCheckResult check_path(const PathToCheck& path, double joint_step) {
+  require(joint_step > 0 && std::isfinite(joint_step), "joint_step", joint_step, "must be finite and > 0");
+  require(!path.waypoints.empty(), "waypoints", "[]", "must hold at least one configuration");
+  const ArmSetup setup = setup_of(path);
+  for (const auto& q : path.waypoints) {
+    require(q.size() == static_cast<Eigen::Index>(setup.arm.size()) && q.allFinite(), "waypoints",
+            static_cast<double>(q.size()), "must have a finite value for each of the joints");
+  }
+  auto stage = std::make_shared<Stage>(make_stage(path.robot, setup, {}));
+  for (const CheckedBody& body : path.bodies) {
+    stage->bodies.push_back(place_body(body.name, body.shapes, body.T_world_body));
+  }
+  stage->first_part = stage->bodies.size();
+  return PathWalk(path, stage, joint_step).run();
+}
+
+}  // namespace mmgrasp::verify

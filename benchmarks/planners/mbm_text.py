@@ -1,11 +1,12 @@
 """MotionBenchMaker's problems as the plain text that bench_mbm.cpp reads: C++ here reads no YAML.
 
-    python benchmarks/planners/mbm_text.py panda build/bench/mbm_panda.txt [--data FOLDER] [--limit N]
+python benchmarks/planners/mbm_text.py panda build/bench/mbm_panda.txt [--data FOLDER] [--limit N]
 """
 
 from __future__ import annotations
 
 import argparse
+import itertools
 from pathlib import Path
 
 import mmgrasp as mg
@@ -47,8 +48,10 @@ def main() -> None:
     folder = arguments.data / f"robots/{arguments.robot}_vamp/{arguments.robot}"
     lines = [f"robot {folder / arguments.robot}.urdf {folder / arguments.robot}.srdf"]
     for name in MBM_SETS:
-        problems = read_motion_problems(arguments.data / f"planning/vamp_{arguments.robot}/problems/{name}_{arguments.robot}")
-        for problem, _ in zip(problems, range(arguments.limit)):
+        problems = read_motion_problems(
+            arguments.data / f"planning/vamp_{arguments.robot}/problems/{name}_{arguments.robot}"
+        )
+        for problem in itertools.islice(problems, arguments.limit):
             lines += lines_of(problem)
     arguments.out.parent.mkdir(parents=True, exist_ok=True)
     arguments.out.write_text("\n".join(lines) + "\n")

@@ -1,4 +1,5 @@
 #include "bindings.hpp"
+#include "mmgrasp/plan/cartesian.hpp"
 #include "mmgrasp/plan/motion.hpp"
 #include "mmgrasp/plan/straight_line.hpp"
 #include "mmgrasp/plan/time_parameterization.hpp"
@@ -57,17 +58,77 @@ std::vector<Eigen::VectorXd> goals_argument(const ArrayLike& goal, Eigen::Index 
   return {vector_argument(goal, "goal", size)};
 }
 
+/// One pose (4, 4) or a list of them.
+Poses poses_argument(const ArrayLike& value, const std::string& name) {
+  const py::array array = py::array::ensure(value);
+  PyErr_Clear();
+  if (array && array.ndim() == 2) return {pose_argument(value, name)};
+  Poses poses;
+  if (!py::isinstance<py::sequence>(value) || py::isinstance<py::str>(value)) {
+    throw InvalidInput(name + ": must be a pose (4, 4) or a list of poses");
+  }
+  for (const py::handle item : value) {
+    const std::string field = name + "[" + std::to_string(poses.size()) + "]";
+    poses.push_back(pose_argument(py::reinterpret_borrow<ArrayLike>(item), field));
+  }
+  return poses;
+}
+
 MotionResult plan(const Robot& robot, const JointGroup& group, const World& world, const ArrayLike& start,
-                  const ArrayLike& goal, const py::object& progress, const py::kwargs& options) {
+                  const py::object& goal, const py::object& tool_poses, const std::vector<ToolRegion>& regions,
+                  const std::optional<ToolCone>& tool_cone, const py::object& on_solution, const py::object& progress,
+                  const py::kwargs& options) {
   if (group.robot().hash() != robot.hash()) {
     throw InvalidInput("group: belongs to another robot ('" + group.robot().name() + "') than the one given ('" +
                        robot.name() + "')");
   }
-  const MotionOptions read = read_options(motion_fields(), options, "plan_motion");
+  MotionOptions read = read_options(motion_fields(), options, "plan_motion");
+  read.tool_cone = tool_cone;
+  if (!on_solution.is_none()) {
+    read.improved = [&](const JointPath& path, double cost) {
+      const py::gil_scoped_acquire gil;
+      on_solution(rows_to_array(path.waypoints), cost);
+    };
+  }
   const Eigen::VectorXd from = vector_argument(start, "start", group.size());
-  const std::vector<Eigen::VectorXd> to = goals_argument(goal, group.size());
+  MotionGoals goals;
+  if (!goal.is_none()) goals.configurations = goals_argument(py::reinterpret_borrow<ArrayLike>(goal), group.size());
+  if (!tool_poses.is_none())
+    goals.tool_poses = poses_argument(py::reinterpret_borrow<ArrayLike>(tool_poses), "tool_poses");
+  goals.regions = regions;
   CollisionChecker checker(with_sampled_pairs(group), world);
-  return LongCall(progress).run([&](const Monitor& monitor) { return plan_motion(checker, from, to, read, monitor); });
+  return LongCall(progress).run(
+      [&](const Monitor& monitor) { return plan_motion_to(checker, from, goals, read, monitor); });
+}
+
+void bind_goals(py::module_& m) {
+  py::class_<ToolRegion>(m, "ToolRegion", "A box of tool poses around a pose.")
+      .def(py::init([](const ArrayLike& pose, const py::object& position, const py::object& rotation) {
+             ToolRegion region;
+             region.T_world_region = pose_argument(pose, "pose");
+             if (!position.is_none()) region.position = vector3_argument(position, "position");
+             if (!rotation.is_none()) region.rotation = vector3_argument(rotation, "rotation");
+             region.check("ToolRegion");
+             return region;
+           }),
+           py::arg("pose"), py::arg("position") = py::none(), py::arg("rotation") = py::none(),
+           "pose (4, 4) times a translation within +-position [m] times a rotation rpy within +-rotation [rad].")
+      .def("__repr__", [](const ToolRegion& r) {
+        return "ToolRegion(position=" + std::string(py::repr(py::cast(r.position))) +
+               ", rotation=" + std::string(py::repr(py::cast(r.rotation))) + ")";
+      });
+  py::class_<ToolCone>(m, "ToolCone", "Path constraint: an axis of the tool stays near an axis of the world.")
+      .def(py::init([](const ArrayLike& tool_axis, const ArrayLike& world_axis, double half_angle) {
+             ToolCone cone{vector3_argument(tool_axis, "tool_axis"), vector3_argument(world_axis, "world_axis"),
+                           half_angle};
+             cone.check();
+             return cone;
+           }),
+           py::arg("tool_axis"), py::arg("world_axis"), py::arg("half_angle"),
+           "tool_axis in the tip's frame; half_angle: the largest angle between the two [rad].")
+      .def("__repr__", [](const ToolCone& c) {
+        return "ToolCone(half_angle=" + std::string(py::repr(py::float_(c.half_angle))) + ")";
+      });
 }
 
 void bind_motion(py::module_& m) {
@@ -114,11 +175,16 @@ void bind_motion(py::module_& m) {
         return out + ")";
       });
   m.def("planner_names", &planner_names, "Names that plan_motion's `planner` takes.");
-  m.def("plan_motion", &plan, py::arg("robot"), py::arg("group"), py::arg("world"), py::kw_only(), py::arg("start"),
-        py::arg("goal"), py::arg("progress") = py::none(),
-        ("A collision-free path of the group from `start` (n,) to `goal`, (n,) or several as (m, n)." +
-         option_help(motion_fields()))
-            .c_str());
+  m.def(
+      "plan_motion", &plan, py::arg("robot"), py::arg("group"), py::arg("world"), py::kw_only(), py::arg("start"),
+      py::arg("goal") = py::none(), py::arg("tool_poses") = py::none(), py::arg("regions") = std::vector<ToolRegion>{},
+      py::arg("tool_cone") = py::none(), py::arg("on_solution") = py::none(), py::arg("progress") = py::none(),
+      ("A collision-free path of the group from `start` (n,) to any of its goals: `goal` (n,) or several as (m, n),\n"
+       "`tool_poses` of the tip, (4, 4) or a list, and `regions` of them, reached by inverse kinematics. `tool_cone`\n"
+       "holds on the whole path. on_solution(path, cost) is called with each better path. A diff-drive base turns on\n"
+       "the spot and drives straight." +
+       option_help(motion_fields()))
+          .c_str());
 }
 
 void bind_line(py::module_& m) {
@@ -154,10 +220,71 @@ void bind_line(py::module_& m) {
           .c_str());
 }
 
+const std::vector<OptionField<CartesianOptions>>& cartesian_fields() {
+  using O = CartesianOptions;
+  using L = StraightLineOptions;
+  static const std::vector<OptionField<O>> fields{
+      option<O>("position_step", &O::line, &L::position_step, "largest tool translation between two waypoints [m]"),
+      option<O>("rotation_step", &O::line, &L::rotation_step, "largest tool rotation between two waypoints [rad]"),
+      option<O>("max_joint_step", &O::line, &L::max_joint_step, "a larger joint motion between waypoints is a jump"),
+      option<O>("edge_step", &O::line, &L::edge_step, "largest joint motion between two checks [rad or m]"),
+      option<O>("max_branches", &O::max_branches, "configurations of the first pose that are followed at most")};
+  return fields;
+}
+
+void bind_cartesian(py::module_& m) {
+  py::class_<CartesianResult>(m, "CartesianResult", "What plan_cartesian found.")
+      .def_readonly("outcome", &CartesianResult::outcome)
+      .def_property_readonly(
+          "path", [](const CartesianResult& r) { return path_array(r.path); }, "(k, n) or None.")
+      .def_readonly("corners", &CartesianResult::corners, "Waypoint at which each pose is reached.")
+      .def_readonly("fraction", &CartesianResult::fraction, "How far the best branch came, in [0, 1].")
+      .def_readonly("cause", &CartesianResult::cause, "Why it ended there.")
+      .def_readonly("contact", &CartesianResult::contact, "What touches there, when something does, or None.")
+      .def_readonly("branches", &CartesianResult::branches, "Allowed configurations of the first pose.")
+      .def_readonly("tried", &CartesianResult::tried, "Of these: followed.")
+      .def_readonly("rejections", &CartesianResult::rejections)
+      .def("to_dict",
+           [](const CartesianResult& r) {
+             py::object path = path_array(r.path);
+             if (!path.is_none()) path = path.attr("tolist")();
+             return py::dict("outcome"_a = to_string(r.outcome), "path"_a = path, "corners"_a = r.corners,
+                             "fraction"_a = r.fraction, "cause"_a = to_string(r.cause),
+                             "contact"_a = r.contact ? py::cast(*r.contact).attr("to_dict")() : py::none(),
+                             "branches"_a = r.branches, "tried"_a = r.tried, "rejections"_a = to_dict(r.rejections));
+           })
+      .def("__repr__", [](const CartesianResult& r) {
+        return std::string("CartesianResult(") + to_string(r.outcome) + ", fraction " +
+               std::string(py::repr(py::float_(r.fraction))) + ", " + std::to_string(r.tried) + " of " +
+               std::to_string(r.branches) + " branches tried)";
+      });
+  m.def(
+      "plan_cartesian",
+      [](CollisionChecker& checker, const ArrayLike& tool_poses, const py::object& near, const py::object& progress,
+         const py::kwargs& options) {
+        const CartesianOptions read = read_options(cartesian_fields(), options, "plan_cartesian");
+        const Poses poses = poses_argument(tool_poses, "tool_poses");
+        std::optional<Eigen::VectorXd> from;
+        if (!near.is_none()) {
+          from = vector_argument(py::reinterpret_borrow<ArrayLike>(near), "near", checker.group().size());
+        }
+        return LongCall(progress).run(
+            [&](const Monitor& monitor) { return plan_cartesian(checker, poses, from, read, monitor); });
+      },
+      py::arg("checker"), py::arg("tool_poses"), py::arg("near") = py::none(), py::kw_only(),
+      py::arg("progress") = py::none(),
+      ("The tip follows straight lines from pose to pose, from the inverse kinematics branch of the first pose that "
+       "completes\nthem with the shortest way, counted from `near` (n,) when that is given." +
+       option_help(cartesian_fields()))
+          .c_str());
+}
+
 }  // namespace
 
 void bind_plan(py::module_& m) {
+  bind_goals(m);
   bind_motion(m);
+  bind_cartesian(m);
   bind_line(m);
   m.def(
       "time_parameterize",

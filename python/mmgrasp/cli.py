@@ -107,6 +107,23 @@ def build_parser() -> argparse.ArgumentParser:
     _add_cluster_options(again)
     again.set_defaults(run=run_reproduce)
 
+    bench = commands.add_parser("bench", help="run published problem sets and look at every answer again")
+    bench.add_argument("name", choices=["mbm"], help="mbm: MotionBenchMaker's problems for Panda and UR5")
+    bench.add_argument(
+        "--data",
+        type=Path,
+        default=Path("../shared/data"),
+        metavar="DIR",
+        help="folder with robots/ and planning/ (default ../shared/data)",
+    )
+    bench.add_argument("--robot", nargs="+", default=["panda", "ur5"], metavar="NAME")
+    bench.add_argument("--set", nargs="+", metavar="NAME", help="bookshelf_small, ...; default: all seven")
+    bench.add_argument("--limit", type=_count, default=50, metavar="N", help="problems of each set (default 50)")
+    bench.add_argument("--seeds", type=_count, default=1, metavar="N", help="runs of each problem (default 1)")
+    bench.add_argument("--planner", default="rrt_connect", help="a name of planner_names()")
+    bench.add_argument("--json", action="store_true")
+    bench.set_defaults(run=run_bench)
+
     view = commands.add_parser("view", help="show a plan in the browser, or draw it")
     view.add_argument("plan", type=Path, help="plan.json")
     view.add_argument("--png", type=Path, metavar="FILE", help="write a picture instead of opening the browser")
@@ -294,6 +311,39 @@ def run_view(arguments: argparse.Namespace, console: Console) -> int:
     except ImportError:
         raise InvalidInput("the browser view needs viser: pip install 'mmgrasp[view]'") from None
     return DONE
+
+
+def run_bench(arguments: argparse.Namespace, console: Console) -> int:
+    from .motion_bench import MBM_SETS
+    from .motion_bench_run import holds, run_motion_bench
+
+    with Reporter(console) as report:
+        results = run_motion_bench(
+            arguments.data,
+            arguments.robot,
+            arguments.set or MBM_SETS,
+            max(arguments.limit, 1),
+            range(1, 1 + max(arguments.seeds, 1)),
+            progress=report,
+            planner=arguments.planner,
+        )
+    rows = [result.to_dict() for result in results]
+    if arguments.json:
+        print(json.dumps({"rows": rows, "holds": holds(results)}))
+    else:
+        table = Table(
+            title="MotionBenchMaker: edges at 5 mm of any link point, paths looked at again by FCL at 0.005 rad"
+        )
+        for title in ("robot", "set", "solved", "verified", "median [ms]", "p95 [ms]", "call median [ms]"):
+            table.add_column(title, justify="left" if title in ("robot", "set") else "right")
+        for row in rows:
+            times = [f"{row[key]:.2f}" for key in ("median [ms]", "p95 [ms]", "call median [ms]")]
+            solved = f"{row['solved']}/{row['runs']}"
+            table.add_row(row["robot"], row["set"], solved, f"{row['verified']}/{row['solved']}", *times)
+        console.print(table)
+        for fault in (fault for row in rows for fault in row["faults"]):
+            console.print(f"- {fault}", markup=False, soft_wrap=True)
+    return DONE if holds(results) else FAULTY
 
 
 def run_reproduce(arguments: argparse.Namespace, console: Console) -> int:

@@ -1,0 +1,125 @@
+#include "mmgrasp/plan/cartesian.hpp"
+
+#include <algorithm>
+
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/robot/ik_branches.hpp"
+#include "plan/joint_angles.hpp"
+
+namespace mmgrasp {
+namespace {
+
+/// Begins with what is nearest to `near`, or as inverse kinematics orders them.
+class BranchSearch {
+ public:
+  BranchSearch(CollisionChecker& checker, const Poses& poses, const std::optional<Eigen::VectorXd>& near,
+               const CartesianOptions& options, const Monitor& monitor)
+      : checker_(checker), poses_(poses), near_(near), options_(options), monitor_(monitor) {}
+
+  CartesianResult run() {
+    find_branches();
+    result_.branches = static_cast<int>(branches_.size());
+    for (const auto& q : branches_) {
+      if (result_.tried == options_.max_branches || way_to(q) >= best_cost_) break;
+      if (monitor_.stopped()) {
+        result_.outcome = Outcome::stopped;
+        result_.path.reset();
+        return std::move(result_);
+      }
+      follow(q);
+      ++result_.tried;
+    }
+    if (branches_.empty()) result_.cause = most(result_.rejections);
+    result_.outcome = result_.path ? Outcome::solved : Outcome::infeasible;
+    return std::move(result_);
+  }
+
+ private:
+  void find_branches() {
+    IkOptions ik = options_.line.ik;
+    IkBranches found = solve_ik_branches(
+        checker_.group(), poses_.front(), ik, [&](const Eigen::VectorXd& q) { return checker_.rejection(q); }, 0,
+        monitor_);
+    result_.rejections = found.rejections;
+    branches_ = std::move(found.solutions);
+    if (!near_) return;
+    for (auto& q : branches_) q = turned_to_near(q);
+    std::stable_sort(branches_.begin(), branches_.end(),
+                     [&](const auto& a, const auto& b) { return way_to(a) < way_to(b); });
+    const Pose at = checker_.group().fk(*near_);
+    const bool there = (at.translation() - poses_.front().translation()).norm() <= ik.position_tolerance &&
+                       rotation_distance(at, poses_.front()) <= ik.rotation_tolerance;
+    if (there && checker_.is_free(*near_)) branches_.insert(branches_.begin(), *near_);
+  }
+
+  /// In the turn of continuous joints that is nearest.
+  Eigen::VectorXd turned_to_near(const Eigen::VectorXd& q) const {
+    return detail::nearest_turn(checker_.group().wraps(), *near_, q);
+  }
+
+  double way_to(const Eigen::VectorXd& q) const { return near_ ? (q - *near_).norm() : 0; }
+
+  void follow(const Eigen::VectorXd& first) {
+    JointPath path{{first}};
+    std::vector<int> corners{0};
+    const double lines = static_cast<double>(poses_.size() - 1);
+    for (std::size_t i = 1; i < poses_.size(); ++i) {
+      StraightLineResult line = plan_straight_line(checker_, path.waypoints.back(), poses_[i], options_.line);
+      if (line.outcome != Outcome::solved) {
+        const double fraction = (static_cast<double>(i - 1) + line.fraction) / lines;
+        if (result_.path || fraction < result_.fraction) return;
+        result_.fraction = fraction;
+        result_.cause = line.cause;
+        result_.contact = std::move(line.contact);
+        return;
+      }
+      path.waypoints.insert(path.waypoints.end(), line.path->waypoints.begin() + 1, line.path->waypoints.end());
+      corners.push_back(static_cast<int>(path.waypoints.size()) - 1);
+    }
+    const double cost = way_to(first) + path.length();
+    if (cost >= best_cost_) return;
+    best_cost_ = cost;
+    result_.path = std::move(path);
+    result_.corners = std::move(corners);
+    result_.fraction = 1;
+    result_.cause = Rejection::none;
+    result_.contact.reset();
+  }
+
+  static Rejection most(const Rejections& r) {
+    if (r.scene > 0) return Rejection::scene;
+    if (r.self_collision > 0) return Rejection::self_collision;
+    return r.limits > 0 ? Rejection::limits : Rejection::reach;
+  }
+
+  CollisionChecker& checker_;
+  const Poses& poses_;
+  const std::optional<Eigen::VectorXd>& near_;
+  const CartesianOptions& options_;
+  const Monitor& monitor_;
+  std::vector<Eigen::VectorXd> branches_;
+  double best_cost_ = std::numeric_limits<double>::infinity();
+  CartesianResult result_;
+};
+
+}  // namespace
+
+void CartesianOptions::check() const {
+  line.check();
+  require(max_branches > 0, "max_branches", max_branches, "must be > 0");
+}
+
+CartesianResult plan_cartesian(CollisionChecker& checker, const Poses& T_world_tip,
+                               const std::optional<Eigen::VectorXd>& near, const CartesianOptions& options,
+                               const Monitor& monitor) {
+  options.check();
+  require(T_world_tip.size() >= 2, "T_world_tip", static_cast<double>(T_world_tip.size()),
+          "must hold two poses or more");
+  for (std::size_t i = 0; i < T_world_tip.size(); ++i) {
+    checked_pose(T_world_tip[i].matrix(), "T_world_tip[" + std::to_string(i) + "]");
+  }
+  if (near) checker.group().check_configuration(*near, "near");
+  return BranchSearch(checker, T_world_tip, near, options, monitor).run();
+}
+
+}  // namespace mmgrasp

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/monitor.hpp"
+#include "mmgrasp/core/outcome.hpp"
+#include "mmgrasp/optim/nlp_solver.hpp"
+#include "mmgrasp/trajopt/whole_body_problem.hpp"
+#include "mmgrasp/trajopt/whole_body_trajectory.hpp"
+
+namespace mmgrasp {
+
+/// Where the search begins: a configuration per waypoint and a time step per segment.
+struct MMGRASP_EXPORT WholeBodyGuess {
+  std::vector<Eigen::VectorXd> positions;
+  std::vector<Eigen::VectorXd> drive;  ///< Empty: from differences of the positions.
+  std::vector<double> steps;           ///< [s], > 0.
+};
+
+struct MMGRASP_EXPORT WholeBodyOptions {
+  std::string solver = "ipopt";  ///< A name of nlp_solver_names().
+  double tolerance = 1e-5;       ///< Relative optimality, in (0, 1).
+  int max_iterations = 300;      ///< > 0
+  double time_limit = 10.0;      ///< Wall-clock cap [s]; > 0.
+  double smoothing = 1e-3;       ///< [s], >= 0: weight of the mean square of accelerations over their limits.
+  double warm_start = 0;         ///< See NlpOptions.
+  double margin = 0.005;         ///< Collisions: distance to keep [m]; >= 0.
+  double look_out = 0.15;        ///< Collisions: pairs of bodies nearer than this are constrained [m]; > margin.
+  int refinements = 6;           ///< Collisions: times that constraints may be added and the search repeated; >= 0.
+  void check() const;
+};
+
+/// The largest violation of one kind of constraint.
+struct MMGRASP_EXPORT Violation {
+  std::string kind;      ///< "dynamics", "nonholonomic", "position", ...
+  double value = 0;      ///< How far beyond its bound, in `unit`; 0 when kept.
+  double tolerance = 0;  ///< Up to where it counts as kept.
+  std::string unit;
+  double time = 0;   ///< When it is largest [s].
+  int waypoint = 0;  ///< The last waypoint before that time.
+  std::string what;  ///< Which joint, axis or pair.
+  bool kept() const { return value <= tolerance; }
+};
+
+struct MMGRASP_EXPORT WholeBodyResult {
+  /// solved only after check_whole_body found every constraint kept; approximate: kept, optimality not shown.
+  Outcome outcome = Outcome::infeasible;
+  std::shared_ptr<const WholeBodyTrajectory> trajectory;  ///< The answer or, not solved, the best iterate.
+  std::vector<Violation> violations;                      ///< Of the trajectory, one per kind.
+  int iterations = 0;
+  double seconds = 0;
+  std::string message;
+
+  bool usable() const { return outcome == Outcome::solved || outcome == Outcome::approximate; }
+};
+
+/// Judges a trajectory on its own roll-out `finer` times finer than its waypoints, by other means than the optimiser's:
+/// forward kinematics of the group, Runge-Kutta integration of the base, the collision checker. `checkers` is empty or
+/// holds one pointer per segment (the part held changes from one to the next); null: no collisions in that segment.
+MMGRASP_EXPORT std::vector<Violation> check_whole_body(const WholeBodyProblem& problem,
+                                                       const WholeBodyTrajectory& trajectory,
+                                                       const std::vector<CollisionChecker*>& checkers = {},
+                                                       int finer = 10);
+
+/// A locally time-optimal trajectory near the guess. Throws InvalidInput for what problem.check() refuses and for
+/// guesses of wrong length or not finite; no solution is a value, with the violations of the best iterate.
+MMGRASP_EXPORT WholeBodyResult optimize_whole_body(const WholeBodyProblem& problem, const WholeBodyGuess& guess,
+                                                   const WholeBodyOptions& options = {},
+                                                   const std::vector<CollisionChecker*>& checkers = {},
+                                                   const Monitor& monitor = {});
+
+}  // namespace mmgrasp

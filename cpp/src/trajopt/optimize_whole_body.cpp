@@ -1,0 +1,68 @@
+#include "mmgrasp/trajopt/optimize_whole_body.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "mmgrasp/core/error.hpp"
+#include "trajopt/whole_body_nlp.hpp"
+
+namespace mmgrasp {
+namespace {
+
+std::shared_ptr<const WholeBodyTrajectory> trajectory_of(const WholeBodyProblem& problem,
+                                                         const detail::WholeBodyNlp& nlp, const Eigen::VectorXd& x) {
+  WholeBodyGuess g = nlp.unpack(x);
+  std::vector<double> times{0};
+  for (int i = 0; i < nlp.layout().intervals(); ++i)
+    times.push_back(times.back() + g.steps[static_cast<std::size_t>(nlp.layout().segment(i))]);
+  return std::make_shared<const WholeBodyTrajectory>(problem.group, times, g.positions, g.drive);
+}
+
+}  // namespace
+
+void WholeBodyOptions::check() const {
+  make_nlp_solver(solver);
+  require(tolerance > 0 && tolerance < 1, "tolerance", tolerance, "must be in (0, 1)");
+  require(max_iterations > 0, "max_iterations", max_iterations, "must be positive");
+  require(time_limit > 0, "time_limit", time_limit, "must be positive");
+  require(smoothing >= 0 && std::isfinite(smoothing), "smoothing", smoothing, "must be at least 0");
+  require(warm_start >= 0 && std::isfinite(warm_start), "warm_start", warm_start, "must be at least 0");
+  require(margin >= 0 && std::isfinite(margin), "margin", margin, "must be at least 0");
+  require(look_out > margin && std::isfinite(look_out), "look_out", look_out, "must exceed margin");
+  require(refinements >= 0, "refinements", refinements, "must be at least 0");
+}
+
+WholeBodyResult optimize_whole_body(const WholeBodyProblem& problem, const WholeBodyGuess& guess,
+                                    const WholeBodyOptions& options, const std::vector<CollisionChecker*>& checkers,
+                                    const Monitor& monitor) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
+  options.check();
+  problem.check();
+  require(checkers.empty() || checkers.size() == problem.segments.size(), "checkers",
+          static_cast<double>(checkers.size()), "must be empty or hold one per segment");
+  const auto solver = make_nlp_solver(options.solver);
+  detail::WholeBodyNlp nlp(problem, options.smoothing);
+  NlpOptions nlp_options;
+  nlp_options.tolerance = options.tolerance;
+  nlp_options.constraint_tolerance = 5e-9;
+  nlp_options.max_iterations = options.max_iterations;
+  nlp_options.time_limit = options.time_limit;
+  nlp_options.warm_start = options.warm_start;
+  const NlpResult answer = solver->solve(nlp, nlp.pack(guess), nlp_options, monitor);
+
+  WholeBodyResult result;
+  result.iterations = answer.iterations;
+  result.message = answer.message;
+  result.outcome = answer.outcome;
+  result.trajectory = trajectory_of(problem, nlp, answer.x);
+  result.violations = check_whole_body(problem, *result.trajectory, checkers);
+  const bool kept =
+      std::all_of(result.violations.begin(), result.violations.end(), [](const Violation& v) { return v.kept(); });
+  if (result.usable() && !kept) result.outcome = Outcome::infeasible;
+  result.seconds = seconds();
+  return result;
+}
+
+}  // namespace mmgrasp

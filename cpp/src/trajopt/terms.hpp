@@ -1,0 +1,99 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mmgrasp/optim/nonlinear_problem.hpp"
+
+namespace mmgrasp::detail {
+
+/// A few rows of constraints on a few variables. Everything is written in the term's own numbering: value and bounds of
+/// its rows, the non-zeros of its Jacobian, the lower triangle of its Hessian, each in the order of the pattern.
+class Term {
+ public:
+  virtual ~Term() = default;
+  std::vector<int> variables;  ///< Their numbers in the problem.
+  Eigen::VectorXd lower, upper;
+  std::string kind;  ///< Of constraint, for reports.
+  int waypoint = 0;
+  std::string what;
+
+  int rows() const { return static_cast<int>(lower.size()); }
+  virtual void value(const double* x, double* out) const = 0;
+  virtual std::vector<std::pair<int, int>> jacobian_pattern() const = 0;
+  virtual void jacobian(const double* x, double* out) const = 0;
+  virtual std::vector<std::pair<int, int>> hessian_pattern() const { return {}; }  ///< Row >= column.
+  virtual void hessian(const double*, const double*, double*) const {}
+
+ protected:
+  std::vector<std::pair<int, int>> full_jacobian() const;
+  std::vector<std::pair<int, int>> full_hessian() const;
+};
+
+/// lower <= sum_i factor_i x_i <= upper.
+class LinearTerm : public Term {
+ public:
+  explicit LinearTerm(std::vector<double> factors) : factors_(std::move(factors)) {}
+  void value(const double* x, double* out) const override;
+  std::vector<std::pair<int, int>> jacobian_pattern() const override { return full_jacobian(); }
+  void jacobian(const double*, double* out) const override;
+
+ private:
+  std::vector<double> factors_;
+};
+
+/// q1 - q0 - h (v0 + v1) / 2 = 0 (P1 4.6). Variables q0, q1, v0, v1, h.
+class PositionStep : public Term {
+ public:
+  void value(const double* x, double* out) const override;
+  std::vector<std::pair<int, int>> jacobian_pattern() const override { return full_jacobian(); }
+  void jacobian(const double* x, double* out) const override;
+  std::vector<std::pair<int, int>> hessian_pattern() const override { return {{4, 2}, {4, 3}}; }
+  void hessian(const double*, const double* multipliers, double* out) const override;
+};
+
+/// v1 - v0 - h a = 0. Variables v0, v1, a, h.
+class VelocityStep : public Term {
+ public:
+  void value(const double* x, double* out) const override;
+  std::vector<std::pair<int, int>> jacobian_pattern() const override { return full_jacobian(); }
+  void jacobian(const double* x, double* out) const override;
+  std::vector<std::pair<int, int>> hessian_pattern() const override { return {{3, 2}}; }
+  void hessian(const double*, const double* multipliers, double* out) const override;
+};
+
+/// lower <= q + h v / 2 <= upper: with its neighbours' bounds it keeps the parabola between two waypoints inside, since
+/// a parabola lies in the hull of its Bezier points. Variables q, v, h.
+class BulgeTerm : public Term {
+ public:
+  void value(const double* x, double* out) const override;
+  std::vector<std::pair<int, int>> jacobian_pattern() const override { return full_jacobian(); }
+  void jacobian(const double* x, double* out) const override;
+  std::vector<std::pair<int, int>> hessian_pattern() const override { return {{2, 1}}; }
+  void hessian(const double*, const double* multipliers, double* out) const override;
+};
+
+/// a^2 + b^2 <= upper. Variables a, b.
+class SquareSum : public Term {
+ public:
+  void value(const double* x, double* out) const override;
+  std::vector<std::pair<int, int>> jacobian_pattern() const override { return full_jacobian(); }
+  void jacobian(const double* x, double* out) const override;
+  std::vector<std::pair<int, int>> hessian_pattern() const override { return {{0, 0}, {1, 1}}; }
+  void hessian(const double*, const double* multipliers, double* out) const override;
+};
+
+/// x1 - x0 and y1 - y0 equal the way of a unicycle. Variables x0, x1, y0, y1, theta0, omega0, omega1, v0, v1, h.
+class UnicycleStep : public Term {
+ public:
+  void value(const double* x, double* out) const override;
+  std::vector<std::pair<int, int>> jacobian_pattern() const override;
+  void jacobian(const double* x, double* out) const override;
+  std::vector<std::pair<int, int>> hessian_pattern() const override;
+  void hessian(const double*, const double* multipliers, double* out) const override;
+};
+
+}  // namespace mmgrasp::detail

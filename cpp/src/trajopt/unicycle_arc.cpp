@@ -1,0 +1,52 @@
+#include "trajopt/unicycle_arc.hpp"
+
+#include <cmath>
+
+namespace mmgrasp::detail {
+namespace {
+
+// Gauss-Legendre on [0, 1], five points.
+constexpr double kNodes[] = {0.046910077030668004, 0.23076534494715845, 0.5, 0.76923465505284155, 0.953089922969332};
+constexpr double kWeights[] = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444, 0.23931433524968324,
+                               0.11846344252809454};
+
+}  // namespace
+
+void UnicycleArc::evaluate(const Locals& l, double s, int derivatives) {
+  way.setZero();
+  if (derivatives > 0) J.setZero();
+  if (derivatives > 1) {
+    H[0].setZero();
+    H[1].setZero();
+  }
+  const double h = l[5];
+  for (int k = 0; k < 5; ++k) {
+    const double at = s * kNodes[k], weight = s * kWeights[k];
+    const double early = at - 0.5 * at * at, late = 0.5 * at * at;  // shares of omega0, omega1 in the turn
+    const double rate = l[1] * early + l[2] * late, heading = l[0] + h * rate;
+    const double speed = l[3] * (1 - at) + l[4] * at;
+    const double c = std::cos(heading), sn = std::sin(heading);
+    const double A = weight * h * speed;
+    way += A * Eigen::Vector2d(c, sn);
+    if (derivatives == 0) continue;
+    Locals dA = Locals::Zero(), dT;
+    dA[3] = weight * h * (1 - at);
+    dA[4] = weight * h * at;
+    dA[5] = weight * speed;
+    dT << 1, h * early, h * late, 0, 0, rate;
+    J.row(0) += (c * dA - A * sn * dT).transpose();
+    J.row(1) += (sn * dA + A * c * dT).transpose();
+    if (derivatives == 1) continue;
+    Eigen::Matrix<double, 6, 6> ddA = Eigen::Matrix<double, 6, 6>::Zero(), ddT = ddA;
+    ddA(3, 5) = ddA(5, 3) = weight * (1 - at);
+    ddA(4, 5) = ddA(5, 4) = weight * at;
+    ddT(1, 5) = ddT(5, 1) = early;
+    ddT(2, 5) = ddT(5, 2) = late;
+    const Eigen::Matrix<double, 6, 6> mixed = dA * dT.transpose() + dT * dA.transpose();
+    const Eigen::Matrix<double, 6, 6> square = dT * dT.transpose();
+    H[0] += c * ddA - sn * mixed - A * c * square - A * sn * ddT;
+    H[1] += sn * ddA + c * mixed - A * sn * square + A * c * ddT;
+  }
+}
+
+}  // namespace mmgrasp::detail

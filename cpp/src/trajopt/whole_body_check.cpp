@@ -1,0 +1,240 @@
+#include <algorithm>
+#include <cmath>
+
+#include "mmgrasp/robot/base_motion.hpp"
+#include "mmgrasp/trajopt/optimize_whole_body.hpp"
+
+namespace mmgrasp {
+namespace {
+
+using Eigen::VectorXd;
+
+/// The largest violation of each kind, in the order in which kinds are first named.
+class Ledger {
+ public:
+  explicit Ledger(const WholeBodyTrajectory& trajectory) : trajectory_(trajectory) {}
+
+  void open(const std::string& kind, const std::string& unit, double tolerance) {
+    Violation v;
+    v.kind = kind;
+    v.unit = unit;
+    v.tolerance = tolerance;
+    list_.push_back(v);
+  }
+  /// To the kind that was opened last.
+  void note(double value, double time, const std::string& what) {
+    Violation& v = list_.back();
+    if (!(value > v.value) && !std::isnan(value)) return;
+    v.value = std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
+    v.time = time;
+    v.what = what;
+    const std::vector<double>& times = trajectory_.times();
+    const auto after = std::upper_bound(times.begin(), times.end(), time + 1e-12);
+    v.waypoint = std::max(0, static_cast<int>(after - times.begin()) - 1);
+  }
+  std::vector<Violation> list() { return std::move(list_); }
+
+ private:
+  const WholeBodyTrajectory& trajectory_;
+  std::vector<Violation> list_;
+};
+
+double outside(double value, double lower, double upper) {
+  return std::max({0.0, lower - value, value - upper});
+}
+
+struct Sample {
+  double time;
+  int segment;
+  VectorXd q, drive;
+};
+
+std::vector<Sample> samples_of(const WholeBodyProblem& problem, const WholeBodyTrajectory& trajectory, int finer) {
+  std::vector<Sample> samples;
+  const auto& times = trajectory.times();
+  int segment = 0;
+  for (int i = 0; i + 1 < static_cast<int>(times.size()); ++i) {
+    while (i >= problem.segment_end(segment)) ++segment;
+    const double h = times[static_cast<std::size_t>(i) + 1] - times[static_cast<std::size_t>(i)];
+    for (int k = 0; k < finer; ++k) {
+      const double time = times[static_cast<std::size_t>(i)] + h * k / finer;
+      samples.push_back({time, segment, trajectory.at(time), trajectory.drive_at(time)});
+    }
+  }
+  samples.push_back({trajectory.duration(), segment, trajectory.positions().back(), trajectory.drive().back()});
+  return samples;
+}
+
+void check_motion(Ledger& ledger, const WholeBodyTrajectory& t) {
+  const JointGroup& group = t.group();
+  const bool diff_drive = moving_base(group) == BaseKind::diff_drive;
+  // Each interval by itself, integrated from its first waypoint.
+  std::vector<VectorXd> ends;
+  for (std::size_t i = 0; i + 1 < t.size(); ++i) {
+    const WholeBodyTrajectory one(group, {t.times()[i], t.times()[i + 1]}, {t.positions()[i], t.positions()[i + 1]},
+                                  {t.drive()[i], t.drive()[i + 1]});
+    ends.push_back(one.rolled_out(32).back() - t.positions()[i + 1]);
+  }
+  ledger.open("dynamics", "rad or m", 1e-8);
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    for (int c = 0; c < group.size(); ++c)
+      ledger.note(std::abs(ends[i][c]), t.times()[i], group.names()[static_cast<std::size_t>(c)]);
+  }
+  if (!group.has_base()) return;
+  if (diff_drive) {
+    ledger.open("nonholonomic", "m/s", 1e-6);
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      const VectorXd& q = t.positions()[i];
+      const VectorXd rate = configuration_velocity(group, q, t.drive()[i]);
+      ledger.note(std::abs(rate[0] * std::sin(q[2]) - rate[1] * std::cos(q[2])), t.times()[i], "sideways");
+    }
+  }
+  const std::vector<VectorXd> whole = t.rolled_out(32);
+  ledger.open("drift", "m", 1e-6 * static_cast<double>(t.size()));
+  for (std::size_t i = 0; i < t.size(); ++i)
+    ledger.note((whole[i] - t.positions()[i]).head<2>().norm(), t.times()[i], "x, y from the start on");
+}
+
+void check_limits(Ledger& ledger, const WholeBodyProblem& problem, const WholeBodyTrajectory& t,
+                  const std::vector<Sample>& samples) {
+  const JointGroup& group = problem.group;
+  const BaseKind base = moving_base(group);
+  const BaseLimits& limits = group.robot().base_limits();
+  const std::vector<std::string> drives = drive_names(group);
+  ledger.open("position", "rad or m", 1e-6);
+  for (const Sample& s : samples) {
+    for (int c = 0; c < group.size(); ++c) {
+      if (group.wraps()[static_cast<std::size_t>(c)]) continue;
+      ledger.note(outside(s.q[c], group.lower()[c], group.upper()[c]), s.time,
+                  group.names()[static_cast<std::size_t>(c)]);
+    }
+  }
+  const VectorXd v = drive_velocity_limits(group), a = drive_acceleration_limits(group);
+  ledger.open("velocity", "rad/s or m/s", 1e-6);
+  for (const Sample& s : samples) {
+    for (Eigen::Index d = 0; d < v.size(); ++d)
+      ledger.note(outside(s.drive[d], -v[d], v[d]), s.time, drives[static_cast<std::size_t>(d)]);
+    if (base == BaseKind::omni) ledger.note(s.drive.head<2>().norm() - limits.linear_velocity, s.time, "base");
+  }
+  if (base == BaseKind::diff_drive) {
+    ledger.open("wheel speed", "m/s", 1e-6);
+    for (const Sample& s : samples) {
+      const WheelSpeeds wheels = wheel_speeds(s.drive[0], s.drive[1], limits.wheel_separation);
+      ledger.note(std::abs(wheels.left) - limits.wheel_velocity, s.time, "left");
+      ledger.note(std::abs(wheels.right) - limits.wheel_velocity, s.time, "right");
+    }
+  }
+  ledger.open("acceleration", "rad/s^2 or m/s^2", 1e-5);
+  VectorXd before;
+  for (std::size_t i = 0; i + 1 < t.size(); ++i) {
+    const VectorXd slope = (t.drive()[i + 1] - t.drive()[i]) / (t.times()[i + 1] - t.times()[i]);
+    for (Eigen::Index d = 0; d < a.size(); ++d)
+      ledger.note(outside(slope[d], -a[d], a[d]), t.times()[i], drives[static_cast<std::size_t>(d)]);
+    if (base == BaseKind::omni) ledger.note(slope.head<2>().norm() - limits.linear_acceleration, t.times()[i], "base");
+  }
+  if (problem.jerk_time <= 0) return;
+  ledger.open("jerk", "rad/s^3 or m/s^3", 1e-4);
+  for (std::size_t i = 1; i + 1 < t.size(); ++i) {
+    const double h0 = t.times()[i] - t.times()[i - 1], h1 = t.times()[i + 1] - t.times()[i];
+    const VectorXd jump = (t.drive()[i + 1] - t.drive()[i]) / h1 - (t.drive()[i] - t.drive()[i - 1]) / h0;
+    for (Eigen::Index d = 0; d < a.size(); ++d) {
+      ledger.note(std::abs(jump[d]) / h1 - a[d] / problem.jerk_time, t.times()[i], drives[static_cast<std::size_t>(d)]);
+    }
+  }
+}
+
+void check_ends(Ledger& ledger, const WholeBodyProblem& problem, const WholeBodyTrajectory& t) {
+  const JointGroup& group = problem.group;
+  const auto name = [&](int c) { return group.names()[static_cast<std::size_t>(c)]; };
+  const auto velocity = [&](const VectorXd& given, const VectorXd& is) {
+    return (given.size() > 0 ? VectorXd(is - given) : is).cwiseAbs().maxCoeff();
+  };
+  ledger.open("start", "rad or m", 1e-8);
+  for (int c = 0; c < group.size(); ++c) ledger.note(std::abs(t.positions().front()[c] - problem.start[c]), 0, name(c));
+  ledger.note(velocity(problem.start_velocity, t.drive().front()), 0, "velocity");
+  ledger.open("goal", "rad or m", 1e-8);
+  for (int c = 0; c < group.size(); ++c) {
+    ledger.note(outside(t.positions().back()[c], problem.goal_lower[c], problem.goal_upper[c]), t.duration(), name(c));
+  }
+  ledger.note(velocity(problem.end_velocity, t.drive().back()), t.duration(), "velocity");
+  ledger.open("segment duration", "s", 1e-6);
+  for (int s = 0; s < static_cast<int>(problem.segments.size()); ++s) {
+    const double from = s == 0 ? 0 : t.times()[static_cast<std::size_t>(problem.segment_end(s - 1))];
+    const WholeBodySegment& segment = problem.segments[static_cast<std::size_t>(s)];
+    ledger.note(outside(t.times()[static_cast<std::size_t>(problem.segment_end(s))] - from, segment.min_duration,
+                        segment.max_duration),
+                from, "segment " + std::to_string(s));
+  }
+}
+
+void check_tool(Ledger& ledger, const WholeBodyProblem& problem, const WholeBodyTrajectory& t) {
+  if (problem.tool.empty()) return;
+  std::vector<Vector6d> errors;
+  std::vector<Eigen::Vector3d> speeds;
+  for (const ToolConstraint& tool : problem.tool) {
+    const std::size_t at = static_cast<std::size_t>(tool.waypoint);
+    const VectorXd& q = t.positions()[at];
+    const Pose T_target_tip = tool.T_world_tip.inverse() * problem.group.fk(q);
+    const Eigen::Vector3d turn = rotation_vector(T_target_tip.linear());
+    Vector6d error;
+    error << T_target_tip.translation(), turn * (turn.norm() > 1e-12 ? 2 * std::sin(turn.norm() / 2) / turn.norm() : 1);
+    errors.push_back(error);
+    const VectorXd rate = configuration_velocity(problem.group, q, t.drive()[at]);
+    speeds.push_back(tool.T_world_tip.linear().transpose() * (problem.group.jacobian(q) * rate).head<3>());
+  }
+  const char* axes[] = {"x", "y", "z"};
+  const auto over = [&](const char* kind, const char* unit, double tolerance, auto&& each) {
+    ledger.open(kind, unit, tolerance);
+    for (std::size_t i = 0; i < problem.tool.size(); ++i) {
+      const double time = t.times()[static_cast<std::size_t>(problem.tool[i].waypoint)];
+      each(i, time, "tool constraint " + std::to_string(i) + ", ");
+    }
+  };
+  over("task position", "m", 1e-6, [&](std::size_t i, double time, const std::string& what) {
+    for (int k = 0; k < 3; ++k)
+      ledger.note(outside(errors[i][k], problem.tool[i].lower[k], problem.tool[i].upper[k]), time, what + axes[k]);
+  });
+  over("task rotation", "rad", 1e-6, [&](std::size_t i, double time, const std::string& what) {
+    for (int k = 3; k < 6; ++k) {
+      // Either sign of the quaternion means the same rotation.
+      const double lower = problem.tool[i].lower[k], upper = problem.tool[i].upper[k];
+      ledger.note(std::min(outside(errors[i][k], lower, upper), outside(-errors[i][k], lower, upper)), time,
+                  what + "about " + axes[k - 3]);
+    }
+  });
+  over("tool speed", "m/s", 1e-6, [&](std::size_t i, double time, const std::string& what) {
+    ledger.note(speeds[i].norm() - problem.tool[i].max_speed, time, what + "speed");
+    for (int k = 0; k < 3; ++k) {
+      ledger.note(outside(speeds[i][k], problem.tool[i].velocity_lower[k], problem.tool[i].velocity_upper[k]), time,
+                  what + "along " + axes[k]);
+    }
+  });
+}
+
+void check_collisions(Ledger& ledger, const std::vector<CollisionChecker*>& checkers,
+                      const std::vector<Sample>& samples) {
+  if (checkers.empty()) return;
+  ledger.open("collision", "m", 0);
+  for (const Sample& s : samples) {
+    CollisionChecker* checker = checkers[static_cast<std::size_t>(s.segment)];
+    if (!checker || !checker->first_contact(s.q)) continue;
+    const DistanceResult d = checker->distance(s.q);
+    ledger.note(std::max(-d.value, 1e-9), s.time, d.a + " and " + d.b);
+  }
+}
+
+}  // namespace
+
+std::vector<Violation> check_whole_body(const WholeBodyProblem& problem, const WholeBodyTrajectory& trajectory,
+                                        const std::vector<CollisionChecker*>& checkers, int finer) {
+  Ledger ledger(trajectory);
+  const std::vector<Sample> samples = samples_of(problem, trajectory, finer);
+  check_motion(ledger, trajectory);
+  check_limits(ledger, problem, trajectory, samples);
+  check_ends(ledger, problem, trajectory);
+  check_tool(ledger, problem, trajectory);
+  check_collisions(ledger, checkers, samples);
+  return ledger.list();
+}
+
+}  // namespace mmgrasp

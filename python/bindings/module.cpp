@@ -38,6 +38,7 @@ PYBIND11_MODULE(_core, m) {
   bind_control(m);
   bind_push_grasp(m);
   bind_task(m);
+  bind_trajopt(m);
   bind_pickle(m);
   bind_platform_locations(m);
   bind_mapping(m);

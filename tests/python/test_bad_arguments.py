@@ -198,6 +198,7 @@ OTHERS: dict[str, Any] = {
     "shapes": lambda: [BOX],
     "parts": lambda: [PART],
     "trays": lambda: [TRAY],
+    "tasks": lambda: [],
     "remaining": lambda: [(0, 0)],
     "other": lambda: mg.Robot.from_strings('<robot name="s"><link name="a"/></robot>'),
     "parent_link": lambda: "tip",

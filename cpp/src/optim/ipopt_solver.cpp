@@ -244,6 +244,7 @@ class IpoptSolver : public NlpSolver {
     settings->SetNumericValue("bound_relax_factor", 0.0);
     settings->SetStringValue("linear_solver", "mumps");
     settings->SetStringValue("mu_strategy", "adaptive");
+    settings->SetNumericValue("mu_min", std::min(1e-6, 0.01 * options.tolerance));
     settings->SetStringValue("honor_original_bounds", "yes");
     if (options.warm_start > 0) {
       settings->SetStringValue("mu_strategy", "monotone");

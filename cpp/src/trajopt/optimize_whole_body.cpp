@@ -5,10 +5,13 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "trajopt/collision_terms.hpp"
 #include "trajopt/whole_body_nlp.hpp"
 
 namespace mmgrasp {
 namespace {
+
+constexpr double kRepair = 1e-2;  // barrier with which a solution is mended
 
 std::shared_ptr<const WholeBodyTrajectory> trajectory_of(const WholeBodyProblem& problem,
                                                          const detail::WholeBodyNlp& nlp, const Eigen::VectorXd& x) {
@@ -40,23 +43,40 @@ WholeBodyResult optimize_whole_body(const WholeBodyProblem& problem, const Whole
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   options.check();
   problem.check();
-  require(checkers.empty() || checkers.size() == problem.segments.size(), "checkers",
-          static_cast<double>(checkers.size()), "must be empty or hold one per segment");
+  require(checkers.empty() || static_cast<int>(checkers.size()) == problem.intervals(), "checkers",
+          static_cast<double>(checkers.size()), "must be empty or hold one per interval");
   const auto solver = make_nlp_solver(options.solver);
-  detail::WholeBodyNlp nlp(problem, options.smoothing);
+  const bool diff_drive = moving_base(problem.group) == BaseKind::diff_drive;
   NlpOptions nlp_options;
   nlp_options.tolerance = options.tolerance;
   nlp_options.constraint_tolerance = 5e-9;
   nlp_options.max_iterations = options.max_iterations;
-  nlp_options.time_limit = options.time_limit;
   nlp_options.warm_start = options.warm_start;
-  const NlpResult answer = solver->solve(nlp, nlp.pack(guess), nlp_options, monitor);
 
   WholeBodyResult result;
-  result.iterations = answer.iterations;
-  result.message = answer.message;
-  result.outcome = answer.outcome;
-  result.trajectory = trajectory_of(problem, nlp, answer.x);
+  std::vector<int> pinned{0, problem.intervals()};
+  for (const ToolConstraint& tool : problem.tool) pinned.push_back(tool.waypoint);
+  detail::CollisionRows rows(checkers, pinned, options.margin, options.look_out);
+  Eigen::VectorXd x;
+  {
+    const detail::WholeBodyNlp nlp(problem, options.smoothing);
+    x = nlp.pack(guess);
+    if (!checkers.empty() && guess.free) rows.keep_clear(*trajectory_of(problem, nlp, x));
+  }
+  for (int round = 0;; ++round) {
+    detail::WholeBodyNlp nlp(problem, options.smoothing);
+    rows.add_to(nlp, diff_drive);
+    nlp_options.time_limit = std::max(1e-3, options.time_limit - seconds());
+    const NlpResult answer = solver->solve(nlp, x, nlp_options, monitor);
+    result.iterations += answer.iterations;
+    result.message = answer.message;
+    result.outcome = answer.outcome;
+    result.trajectory = trajectory_of(problem, nlp, answer.x);
+    x = answer.x;
+    if (checkers.empty() || !result.usable() || round == options.refinements) break;
+    if (!rows.look_along(*result.trajectory)) break;
+    nlp_options.warm_start = kRepair;
+  }
   result.violations = check_whole_body(problem, *result.trajectory, checkers);
   const bool kept =
       std::all_of(result.violations.begin(), result.violations.end(), [](const Violation& v) { return v.kept(); });

@@ -6,7 +6,9 @@
 
 namespace mmgrasp::detail {
 
-ToolChain::ToolChain(const JointGroup& group) {
+ToolChain::ToolChain(const JointGroup& group) : ToolChain(group, group.tip_link(), Pose::Identity()) {}
+
+ToolChain::ToolChain(const JointGroup& group, int to_link, const Pose& T_link_point) {
   const Robot& robot = group.robot();
   // Links between moving joints stand still relative to each other: one placement gives their offsets.
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(group.size());
@@ -15,7 +17,7 @@ ToolChain::ToolChain(const JointGroup& group) {
   const auto pose = [&](int link) -> const Pose& { return T_world_link[static_cast<std::size_t>(link)]; };
 
   std::vector<const Joint*> moving;
-  for (int link = group.tip_link(); link > 0;) {
+  for (int link = to_link; link > 0;) {
     const Joint& joint =
         robot.joints()[static_cast<std::size_t>(robot.links()[static_cast<std::size_t>(link)].parent_joint)];
     const int index = static_cast<int>(&joint - robot.joints().data());
@@ -51,7 +53,7 @@ ToolChain::ToolChain(const JointGroup& group) {
     T_world_before = pose(joint->child_link);
     steps_.push_back(step);
   }
-  T_last_tip_ = T_world_before.inverse() * pose(group.tip_link());
+  T_last_tip_ = T_world_before.inverse() * pose(to_link) * T_link_point;
 }
 
 void ToolChain::evaluate(const double* q, State& state) const {

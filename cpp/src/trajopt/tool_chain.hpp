@@ -13,6 +13,8 @@ class MMGRASP_EXPORT ToolChain {
  public:
   /// To the group's tip. Throws InvalidInput for planar, floating and mimicking joints on the way.
   explicit ToolChain(const JointGroup& group);
+  /// To a frame on any link.
+  ToolChain(const JointGroup& group, int link, const Pose& T_link_point);
 
   struct Step {
     Pose T_before = Pose::Identity();  ///< From the joint before (the world, for the first) to this joint.

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/collision/edge.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
 #include "mmgrasp/trajopt/optimize_whole_body.hpp"
 
@@ -45,23 +46,22 @@ double outside(double value, double lower, double upper) {
 
 struct Sample {
   double time;
-  int segment;
+  int interval;
   VectorXd q, drive;
 };
 
-std::vector<Sample> samples_of(const WholeBodyProblem& problem, const WholeBodyTrajectory& trajectory, int finer) {
+std::vector<Sample> samples_of(const WholeBodyTrajectory& trajectory, int finer) {
   std::vector<Sample> samples;
   const auto& times = trajectory.times();
-  int segment = 0;
   for (int i = 0; i + 1 < static_cast<int>(times.size()); ++i) {
-    while (i >= problem.segment_end(segment)) ++segment;
     const double h = times[static_cast<std::size_t>(i) + 1] - times[static_cast<std::size_t>(i)];
     for (int k = 0; k < finer; ++k) {
       const double time = times[static_cast<std::size_t>(i)] + h * k / finer;
-      samples.push_back({time, segment, trajectory.at(time), trajectory.drive_at(time)});
+      samples.push_back({time, i, trajectory.at(time), trajectory.drive_at(time)});
     }
   }
-  samples.push_back({trajectory.duration(), segment, trajectory.positions().back(), trajectory.drive().back()});
+  const int last = static_cast<int>(times.size()) - 2;
+  samples.push_back({trajectory.duration(), last, trajectory.positions().back(), trajectory.drive().back()});
   return samples;
 }
 
@@ -215,11 +215,16 @@ void check_collisions(Ledger& ledger, const std::vector<CollisionChecker*>& chec
                       const std::vector<Sample>& samples) {
   if (checkers.empty()) return;
   ledger.open("collision", "m", 0);
-  for (const Sample& s : samples) {
-    CollisionChecker* checker = checkers[static_cast<std::size_t>(s.segment)];
-    if (!checker || !checker->first_contact(s.q)) continue;
-    const DistanceResult d = checker->distance(s.q);
-    ledger.note(std::max(-d.value, 1e-9), s.time, d.a + " and " + d.b);
+  EdgeOptions edge;
+  edge.continuous = true;
+  for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
+    CollisionChecker* checker = checkers[static_cast<std::size_t>(samples[i].interval)];
+    if (!checker) continue;
+    const EdgeResult r = check_edge(*checker, samples[i].q, samples[i + 1].q, edge);
+    if (r.free || !r.contact) continue;  // limits are looked at elsewhere
+    const VectorXd q = samples[i].q + r.fraction * (samples[i + 1].q - samples[i].q);
+    const double time = samples[i].time + r.fraction * (samples[i + 1].time - samples[i].time);
+    ledger.note(std::max(-checker->distance(q).value, 1e-9), time, r.contact->a + " and " + r.contact->b);
   }
 }
 
@@ -228,7 +233,7 @@ void check_collisions(Ledger& ledger, const std::vector<CollisionChecker*>& chec
 std::vector<Violation> check_whole_body(const WholeBodyProblem& problem, const WholeBodyTrajectory& trajectory,
                                         const std::vector<CollisionChecker*>& checkers, int finer) {
   Ledger ledger(trajectory);
-  const std::vector<Sample> samples = samples_of(problem, trajectory, finer);
+  const std::vector<Sample> samples = samples_of(trajectory, finer);
   check_motion(ledger, trajectory);
   check_limits(ledger, problem, trajectory, samples);
   check_ends(ledger, problem, trajectory);

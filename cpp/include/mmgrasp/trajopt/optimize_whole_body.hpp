@@ -21,14 +21,15 @@ struct MMGRASP_EXPORT WholeBodyGuess {
   std::vector<Eigen::VectorXd> positions;
   std::vector<Eigen::VectorXd> drive;  ///< Empty: from differences of the positions.
   std::vector<double> steps;           ///< [s], > 0.
+  bool free = false;  ///< It is known to be free of collisions: the search starts with constraints along it.
 };
 
 struct MMGRASP_EXPORT WholeBodyOptions {
   std::string solver = "ipopt";  ///< A name of nlp_solver_names().
-  double tolerance = 1e-5;       ///< Relative optimality, in (0, 1).
+  double tolerance = 1e-4;       ///< Relative optimality, in (0, 1).
   int max_iterations = 300;      ///< > 0
   double time_limit = 10.0;      ///< Wall-clock cap [s]; > 0.
-  double smoothing = 1e-3;       ///< [s], >= 0: weight of the mean square of accelerations over their limits.
+  double smoothing = 1e-2;       ///< [s], >= 0: weight of the mean square of accelerations over their limits.
   double warm_start = 0;         ///< See NlpOptions.
   double margin = 0.005;         ///< Collisions: distance to keep [m]; >= 0.
   double look_out = 0.15;        ///< Collisions: pairs of bodies nearer than this are constrained [m]; > margin.
@@ -62,7 +63,8 @@ struct MMGRASP_EXPORT WholeBodyResult {
 
 /// Judges a trajectory on its own roll-out `finer` times finer than its waypoints, by other means than the optimiser's:
 /// forward kinematics of the group, Runge-Kutta integration of the base, the collision checker. `checkers` is empty or
-/// holds one pointer per segment (the part held changes from one to the next); null: no collisions in that segment.
+/// holds one pointer per interval (the part held changes on the way); null: nothing can collide there. Between samples
+/// collisions are looked for by conservative advancement.
 MMGRASP_EXPORT std::vector<Violation> check_whole_body(const WholeBodyProblem& problem,
                                                        const WholeBodyTrajectory& trajectory,
                                                        const std::vector<CollisionChecker*>& checkers = {},

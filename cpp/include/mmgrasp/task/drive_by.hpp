@@ -1,0 +1,80 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mmgrasp/collision/world.hpp"
+#include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/monitor.hpp"
+#include "mmgrasp/robot/joint_group.hpp"
+#include "mmgrasp/trajopt/optimize_whole_body.hpp"
+
+namespace mmgrasp {
+
+/// Something the tool does on the way.
+struct MMGRASP_EXPORT DriveByTask {
+  std::vector<Pose> candidates;           ///< Poses of the group's tip, any of which will do; at least one.
+  Vector6d tolerance = Vector6d::Zero();  ///< Per axis of the pose's frame, x y z [m], then turns [rad]; >= 0, < inf.
+  std::vector<bool> free = std::vector<bool>(6, false);             ///< Axes that do not matter at all.
+  double max_tool_speed = std::numeric_limits<double>::infinity();  ///< At the task [m/s]; > 0 (P1 4.3).
+  double dwell = 0;  ///< [s], >= 0: the tool's pose is kept that long, e.g. while a gripper closes.
+  /// Object of the world that is held afterwards, in place of what was held before; empty: none. The hand may touch it
+  /// from two intervals before the task on, and it may touch what it stands on until two intervals after.
+  std::string object;
+};
+
+/// Where the motion ends.
+struct MMGRASP_EXPORT DriveByGoal {
+  Eigen::VectorXd lower, upper;  ///< Box of configurations; equal: prescribed, infinite: free.
+};
+
+struct MMGRASP_EXPORT DriveByOptions {
+  int waypoints = 35;        ///< >= 2 + 2 per task.
+  int attempts = 8;          ///< Guesses tried until one leads to a solution; > 0.
+  int solutions = 1;         ///< Solutions compared, the fastest is returned; > 0.
+  int stands = 64;           ///< Configurations sought per task; > 0.
+  double time_limit = 20.0;  ///< Wall-clock cap [s]; > 0.
+  double jerk_time = 0;      ///< See WholeBodyProblem [s], >= 0; 0: no limit on jerk.
+  bool collisions = true;    ///< The robot keeps clear of the world and of itself.
+  unsigned seed = 1;         ///< Same seed, same answer.
+  int threads = 1;           ///< For the search of configurations; 0: all.
+  WholeBodyOptions trajectory;
+  void check() const;
+};
+
+/// What happens at one task.
+struct MMGRASP_EXPORT DriveByEvent {
+  int waypoint = 0;
+  double time = 0;  ///< [s]
+  int candidate = 0;
+  double base_speed = 0;  ///< [m/s]
+  double tool_speed = 0;  ///< [m/s]
+};
+
+struct MMGRASP_EXPORT DriveByResult {
+  Outcome outcome = Outcome::infeasible;
+  std::shared_ptr<const WholeBodyTrajectory> trajectory;  ///< Null when there was not even a guess.
+  std::vector<DriveByEvent> events;                       ///< One per task.
+  std::vector<Violation> violations;                      ///< Of the trajectory.
+  int attempts = 0;
+  int iterations = 0;  ///< Of all attempts.
+  double seconds = 0;
+  std::string report;  ///< What was tried, and what is broken where, by how much.
+
+  bool usable() const { return outcome == Outcome::solved || outcome == Outcome::approximate; }
+  double duration() const { return trajectory ? trajectory->duration() : 0; }
+};
+
+/// The fastest motion of base and arm from `start` (at rest) through the tasks, in order, to the goal (at rest),
+/// without stopping for them (P1 chapter 4). What P1 leaves to trials is done here: configurations at the tasks, the
+/// way between them, time steps, which waypoint belongs to which task, other starts when one fails. Values that wrap
+/// reach the goal up to full turns. Throws InvalidInput for what makes no sense; no solution is a value with a report.
+MMGRASP_EXPORT DriveByResult plan_drive_by(const JointGroup& group, const World& world, const Eigen::VectorXd& start,
+                                           const std::vector<DriveByTask>& tasks, const DriveByGoal& goal,
+                                           const DriveByOptions& options = {}, const Monitor& monitor = {});
+
+}  // namespace mmgrasp

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "mmgrasp/trajopt/optimize_whole_body.hpp"
+
+namespace mmgrasp::detail {
+
+/// Seconds that each way between successive configurations takes, resting at the first and the last.
+std::vector<double> segment_times(const JointGroup& group, const std::vector<Eigen::VectorXd>& knots);
+
+/// `intervals` shared out in proportion to times, at least three each.
+std::vector<int> share_intervals(int intervals, const std::vector<double>& times);
+
+/// Through the knots: the arm straight, the base along a smooth curve that looks where it drives, or turning, driving
+/// and turning where it would have to turn back.
+WholeBodyGuess guess_through(const JointGroup& group, const std::vector<Eigen::VectorXd>& knots,
+                             const std::vector<int>& intervals, const std::vector<double>& times);
+
+/// The same motion with other numbers of intervals per segment.
+WholeBodyGuess resampled(const WholeBodyTrajectory& trajectory, const std::vector<double>& segment_ends,
+                         const std::vector<int>& intervals);
+
+}  // namespace mmgrasp::detail

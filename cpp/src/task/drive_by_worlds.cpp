@@ -1,0 +1,56 @@
+#include "task/drive_by_worlds.hpp"
+
+#include <algorithm>
+
+namespace mmgrasp::detail {
+namespace {
+
+constexpr int kTouching = 2;  // intervals before and after a task in which hand, part and support may touch
+
+}  // namespace
+
+DriveByWorlds::DriveByWorlds(const JointGroup& group, const World& world, const std::vector<DriveByTask>& tasks)
+    : group_(group), world_(world), tasks_(tasks) {}
+
+World DriveByWorlds::left(std::size_t task) const {
+  World world = world_;
+  for (std::size_t i = 0; i < task; ++i)
+    if (!tasks_[i].object.empty() && world.has(tasks_[i].object)) world.remove(tasks_[i].object);
+  return world;
+}
+
+CollisionChecker& DriveByWorlds::before(std::size_t task) {
+  return before_.try_emplace(task, group_, left(task)).first->second;
+}
+
+CollisionChecker& DriveByWorlds::at(std::size_t task) {
+  if (tasks_[task].object.empty()) return before(task);
+  return at_.try_emplace(task, group_, left(task + 1)).first->second;
+}
+
+std::vector<CollisionChecker*> DriveByWorlds::along(const std::vector<int>& intervals,
+                                                    const std::vector<Stand>& chain) {
+  held_.clear();
+  std::vector<CollisionChecker*> result;
+  const std::string& tip = group_.robot().links()[static_cast<std::size_t>(group_.tip_link())].name;
+  for (std::size_t s = 0; s < intervals.size(); ++s) {
+    CollisionChecker* here = &before(s);
+    CollisionChecker *taken = here, *taking = s < tasks_.size() ? &at(s) : here;
+    if (s > 0 && !tasks_[s - 1].object.empty()) {
+      World world = left(s - 1);
+      const Pose T_world_object = world.objects().at(tasks_[s - 1].object).T_world_object;
+      world.attach(tasks_[s - 1].object, tip, group_.fk(chain[s - 1].q).inverse() * T_world_object);
+      here = &held_.try_emplace(s, group_, world).first->second;
+      taken = &at(s - 1);
+    }
+    const int n = intervals[s];
+    for (int i = 0; i < n; ++i) {
+      const bool first = s > 0 && i < kTouching, last = s < tasks_.size() && i >= n - kTouching;
+      const bool object = s < tasks_.size() && !tasks_[s].object.empty();
+      result.push_back(first && taken != here ? taken : last && object ? taking : here);
+    }
+  }
+  return result;
+}
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,197 @@
+#include "trajopt/collision_terms.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace mmgrasp::detail {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int kRegular = 3;          // samples of each interval
+constexpr int kFiner = 10;           // when looking for collisions
+constexpr double kLeastRoom = 2e-4;  // the check takes gaps below 1e-4 m for contact
+
+VectorXd at_sample(const WholeBodyTrajectory& t, int interval, double s) {
+  const std::size_t i = static_cast<std::size_t>(interval);
+  return s == 0 ? t.positions()[i] : t.at(t.times()[i] + s * (t.times()[i + 1] - t.times()[i]));
+}
+
+std::shared_ptr<const ToolChain> chain_to(const CollisionChecker& checker, const std::string& body,
+                                          const Eigen::Vector3d& p_world, const Poses& T_world_link) {
+  const auto& attached = checker.world().attached();
+  const auto held = attached.find(body);
+  const JointGroup& group = checker.group();
+  const int link = group.robot().link_index(held == attached.end() ? body : held->second.link);
+  Pose T_link_point = Pose::Identity();
+  T_link_point.translation() = T_world_link[static_cast<std::size_t>(link)].inverse() * p_world;
+  return std::make_shared<const ToolChain>(group, link, T_link_point);
+}
+
+/// Adds sign * normal . d p / d q to a gradient, and `weight` times the second derivatives to H.
+void add_point(const ToolChain& chain, const VectorXd& q, const Eigen::Vector3d& along, double* value,
+               VectorXd* gradient, MatrixXd* H) {
+  ToolChain::State s;
+  chain.evaluate(q.data(), s);
+  if (value) *value += along.dot(s.p);
+  const auto column = [&](std::size_t i) { return chain.steps()[i].column; };
+  for (std::size_t i = 0; i < s.v.size(); ++i) {
+    if (gradient) (*gradient)[column(i)] += along.dot(s.v[i]);
+    if (!H) continue;
+    for (std::size_t j = i; j < s.v.size(); ++j) {
+      const double second = along.dot(ToolChain::second(s, i, j));
+      (*H)(column(i), column(j)) += second;
+      if (i != j) (*H)(column(j), column(i)) += second;
+    }
+  }
+}
+
+void add_gap(const SeparatingPlane& plane, const VectorXd& q, double factor, double* value, VectorXd* gradient,
+             MatrixXd* H) {
+  add_point(*plane.a, q, factor * plane.normal, value, gradient, H);
+  if (plane.b) {
+    add_point(*plane.b, q, -factor * plane.normal, value, gradient, H);
+  } else if (value) {
+    *value -= factor * plane.normal.dot(plane.p_b);
+  }
+}
+
+}  // namespace
+
+CollisionTerm::CollisionTerm(const IntervalPoint& point, std::vector<SeparatingPlane> planes)
+    : point_(point), planes_(std::move(planes)) {
+  kind = "collision";
+  const Eigen::Index rows = static_cast<Eigen::Index>(planes_.size());
+  lower.resize(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) lower[i] = planes_[static_cast<std::size_t>(i)].margin;
+  upper = VectorXd::Constant(rows, std::numeric_limits<double>::infinity());
+}
+
+void CollisionTerm::value(const double* x, double* out) const {
+  const VectorXd q = point_.q(x);
+  for (const SeparatingPlane& plane : planes_) {
+    *out = 0;
+    add_gap(plane, q, 1, out++, nullptr, nullptr);
+  }
+}
+
+void CollisionTerm::jacobian(const double* x, double* out) const {
+  const VectorXd q = point_.q(x);
+  const MatrixXd D = point_.jacobian(x);
+  for (std::size_t r = 0; r < planes_.size(); ++r) {
+    VectorXd gradient = VectorXd::Zero(point_.columns());
+    add_gap(planes_[r], q, 1, nullptr, &gradient, nullptr);
+    Eigen::Map<VectorXd>(out + static_cast<Eigen::Index>(r) * D.cols(), D.cols()) = D.transpose() * gradient;
+  }
+}
+
+void CollisionTerm::hessian(const double* x, const double* multipliers, double* out) const {
+  const VectorXd q = point_.q(x);
+  VectorXd gradient = VectorXd::Zero(point_.columns());
+  MatrixXd curvature = MatrixXd::Zero(point_.columns(), point_.columns());
+  for (std::size_t r = 0; r < planes_.size(); ++r)
+    add_gap(planes_[r], q, multipliers[r], nullptr, &gradient, &curvature);
+  const MatrixXd D = point_.jacobian(x);
+  MatrixXd H = D.transpose() * curvature * D;
+  point_.add_curvature(x, gradient, H);
+  for (Eigen::Index i = 0; i < H.rows(); ++i)
+    for (Eigen::Index j = 0; j <= i; ++j) *out++ = H(i, j);
+}
+
+bool CollisionRows::look_along(const WholeBodyTrajectory& trajectory) {
+  bool collides = false;
+  for (int i = 0; i < static_cast<int>(checkers_.size()); ++i) {
+    CollisionChecker* checker = checkers_[static_cast<std::size_t>(i)];
+    if (!checker) continue;
+    for (int k = 0; k <= kFiner; ++k) {
+      const double s = static_cast<double>(k) / kFiner;
+      const VectorXd q = at_sample(trajectory, i, s);
+      if (checker->is_free(q) || !checker->first_contact(q)) continue;
+      collides = true;
+      if (k < kFiner) samples_.insert({i, s});
+      for (const DistanceResult& d : checker->distances(q, margin_ + 1e-3)) watched_.insert({d.with_scene, d.a, d.b});
+    }
+  }
+  if (collides) take_planes(trajectory);
+  return collides;
+}
+
+void CollisionRows::keep_clear(const WholeBodyTrajectory& trajectory) {
+  for (int i = 0; i < static_cast<int>(checkers_.size()); ++i) {
+    CollisionChecker* checker = checkers_[static_cast<std::size_t>(i)];
+    if (!checker) continue;
+    for (const DistanceResult& d : checker->distances(trajectory.positions()[static_cast<std::size_t>(i)], look_out_))
+      if (d.with_scene && d.gradient.cwiseAbs().maxCoeff() > 0) watched_.insert({true, d.a, d.b});
+  }
+  take_planes(trajectory);
+}
+
+double CollisionRows::room(const Pair& pair, const WholeBodyTrajectory& trajectory) {
+  double room = margin_;
+  for (int waypoint : pinned_) {
+    const int interval = std::min(waypoint, static_cast<int>(checkers_.size()) - 1);
+    CollisionChecker* checker = checkers_[static_cast<std::size_t>(interval)];
+    if (!checker) continue;
+    const VectorXd& q = trajectory.positions()[static_cast<std::size_t>(waypoint)];
+    for (const DistanceResult& d : checker->distances(q, 2 * margin_ + 1e-6)) {
+      if (Pair{d.with_scene, d.a, d.b} == pair && d.value > 0) room = std::min(room, 0.5 * d.value);
+    }
+  }
+  return std::max(room, kLeastRoom);
+}
+
+void CollisionRows::take_planes(const WholeBodyTrajectory& trajectory) {
+  std::map<Pair, double> rooms;
+  for (const Pair& pair : watched_) rooms[pair] = room(pair, trajectory);
+  std::set<Sample> samples = samples_;
+  for (int i = 0; i < static_cast<int>(checkers_.size()); ++i)
+    for (int k = 0; k < kRegular; ++k) samples.insert({i, static_cast<double>(k) / kRegular});
+  for (const auto& [i, s] : samples) {
+    CollisionChecker* checker = checkers_[static_cast<std::size_t>(i)];
+    if (!checker || (i == 0 && s == 0)) continue;
+    const VectorXd q = at_sample(trajectory, i, s);
+    Poses T_world_link;
+    checker->group().link_poses(q, T_world_link);
+    for (const DistanceResult& d : checker->distances(q, look_out_)) {
+      const Pair pair{d.with_scene, d.a, d.b};
+      if (watched_.count(pair) == 0 || std::abs(d.value) < 1e-9) continue;
+      if (d.gradient.cwiseAbs().maxCoeff() < 1e-12) continue;  // nothing can be done about it
+      SeparatingPlane plane;
+      plane.a = chain_to(*checker, d.a, d.point_a, T_world_link);
+      if (d.with_scene)
+        plane.p_b = d.point_b;
+      else
+        plane.b = chain_to(*checker, d.b, d.point_b, T_world_link);
+      plane.normal = (d.point_a - d.point_b) / d.value;
+      plane.margin = rooms.at(pair);
+      planes_[{i, s}][pair] = plane;
+    }
+  }
+}
+
+void CollisionRows::add_to(WholeBodyNlp& nlp, bool diff_drive) const {
+  const WholeBodyLayout& layout = nlp.layout();
+  for (const auto& [sample, planes] : planes_) {
+    const auto& [i, s] = sample;
+    std::vector<SeparatingPlane> list;
+    std::string names;
+    for (const auto& [pair, plane] : planes) {
+      list.push_back(plane);
+      names += (names.empty() ? "" : ", ") + std::get<1>(pair) + " and " + std::get<2>(pair);
+    }
+    auto term = std::make_unique<CollisionTerm>(IntervalPoint(layout.columns(), diff_drive, s), std::move(list));
+    term->waypoint = i;
+    term->what = names;
+    for (int c = 0; c < layout.columns(); ++c) term->variables.push_back(layout.q(i, c));
+    if (s > 0) {
+      for (int end = i; end <= i + 1; ++end)
+        for (int d = 0; d < layout.drives(); ++d) term->variables.push_back(layout.v(end, d));
+      term->variables.push_back(layout.h(layout.segment(i)));
+    }
+    nlp.add(std::move(term));
+  }
+}
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/trajopt/whole_body_trajectory.hpp"
+#include "trajopt/interval_point.hpp"
+#include "trajopt/terms.hpp"
+#include "trajopt/tool_chain.hpp"
+#include "trajopt/whole_body_nlp.hpp"
+
+namespace mmgrasp::detail {
+
+/// A plane between two bodies that came near: the point of `a` has to stay `margin` in front of the point of `b` along
+/// a normal that is kept. Smooth in the configuration, and at the place where it was taken equal to their signed
+/// distance (P1 4.10) up to second order.
+struct SeparatingPlane {
+  std::shared_ptr<const ToolChain> a, b;  ///< To the nearest points; `b` null: it stands at p_b.
+  Eigen::Vector3d p_b = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< From b to a.
+  double margin = 0;
+};
+
+/// Gaps along separating planes at one fraction of an interval. Variables: locals of an IntervalPoint.
+class CollisionTerm : public Term {
+ public:
+  CollisionTerm(const IntervalPoint& point, std::vector<SeparatingPlane> planes);
+  void value(const double* x, double* out) const override;
+  std::vector<std::pair<int, int>> jacobian_pattern() const override { return full_jacobian(); }
+  void jacobian(const double* x, double* out) const override;
+  std::vector<std::pair<int, int>> hessian_pattern() const override { return full_hessian(); }
+  void hessian(const double* x, const double* multipliers, double* out) const override;
+
+ private:
+  IntervalPoint point_;
+  std::vector<SeparatingPlane> planes_;
+};
+
+/// Where which pairs of bodies have to be kept apart; planes are taken anew along every trajectory.
+class CollisionRows {
+ public:
+  /// `pinned`: waypoints whose configuration or tool pose is prescribed; bodies that are closer than the margin there
+  /// are given what room they have.
+  CollisionRows(std::vector<CollisionChecker*> checkers, std::vector<int> pinned, double margin, double look_out)
+      : checkers_(std::move(checkers)), pinned_(std::move(pinned)), margin_(margin), look_out_(look_out) {}
+
+  /// Looks along a trajectory; false when nothing collides. Pairs that collide anywhere are constrained from then on
+  /// wherever they are within look_out.
+  bool look_along(const WholeBodyTrajectory& trajectory);
+  /// For a trajectory that is known to be free: constrains what is within look_out of the scene.
+  void keep_clear(const WholeBodyTrajectory& trajectory);
+  void add_to(WholeBodyNlp& nlp, bool diff_drive) const;
+
+ private:
+  using Pair = std::tuple<bool, std::string, std::string>;  // with the scene; a; b
+  using Sample = std::pair<int, double>;                    // interval, fraction
+  void take_planes(const WholeBodyTrajectory& trajectory);
+  double room(const Pair& pair, const WholeBodyTrajectory& trajectory);
+
+  std::vector<CollisionChecker*> checkers_;
+  std::vector<int> pinned_;
+  double margin_, look_out_;
+  std::set<Pair> watched_;
+  std::set<Sample> samples_;  // beside the regular ones
+  std::map<Sample, std::map<Pair, SeparatingPlane>> planes_;
+};
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,254 @@
+#include <cmath>
+
+#include "bindings.hpp"
+#include "mmgrasp/optim/nlp_solver.hpp"
+#include "mmgrasp/task/drive_by.hpp"
+
+namespace mmgrasp::python {
+namespace {
+
+using namespace py::literals;
+using O = DriveByOptions;
+
+const std::vector<OptionField<O>>& drive_by_fields() {
+  using W = WholeBodyOptions;
+  static const std::vector<OptionField<O>> fields{
+      option<O>("waypoints", &O::waypoints, "waypoints of the whole motion"),
+      option<O>("attempts", &O::attempts, "guesses tried until one leads to a solution"),
+      option<O>("solutions", &O::solutions, "solutions compared; the fastest is returned"),
+      option<O>("stands", &O::stands, "configurations sought per task"),
+      option<O>("time_limit", &O::time_limit, "wall-clock cap [s]"),
+      option<O>("jerk_time", &O::jerk_time, "accelerations may go from 0 to their limit in no less [s]; 0: no limit"),
+      option<O>("collisions", &O::collisions, "the robot keeps clear of the world and of itself"),
+      option<O>("seed", &O::seed, "same seed, same answer"),
+      option<O>("threads", &O::threads, "0: all; does not change the answer"),
+      option<O>("solver", &O::trajectory, &W::solver, "a name of nlp_solver_names()"),
+      option<O>("tolerance", &O::trajectory, &W::tolerance, "relative optimality"),
+      option<O>("max_iterations", &O::trajectory, &W::max_iterations, "per attempt"),
+      option<O>("smoothing", &O::trajectory, &W::smoothing,
+                "weight of the mean square of accelerations over their limits [s]"),
+      option<O>("margin", &O::trajectory, &W::margin, "distance to keep from obstacles and from oneself [m]"),
+      option<O>("look_out", &O::trajectory, &W::look_out, "pairs of bodies nearer than this are constrained [m]"),
+      option<O>("refinements", &O::trajectory, &W::refinements, "times that collision constraints may be added")};
+  return fields;
+}
+
+py::dict violation_dict(const Violation& v) {
+  return py::dict("value"_a = v.value, "tolerance"_a = v.tolerance, "unit"_a = v.unit, "time"_a = v.time,
+                  "waypoint"_a = v.waypoint, "what"_a = v.what, "kept"_a = v.kept());
+}
+
+py::dict violations_dict(const std::vector<Violation>& violations) {
+  py::dict result;
+  for (const Violation& v : violations) result[v.kind.c_str()] = violation_dict(v);
+  return result;
+}
+
+py::dict event_dict(const DriveByEvent& e) {
+  return py::dict("waypoint"_a = e.waypoint, "time"_a = e.time, "candidate"_a = e.candidate,
+                  "base_speed"_a = e.base_speed, "tool_speed"_a = e.tool_speed);
+}
+
+Poses candidates_argument(const ArrayLike& value) {
+  const py::array array = py::array::ensure(value);
+  PyErr_Clear();
+  Poses poses;
+  if (array && array.ndim() == 3) {
+    for (py::ssize_t i = 0; i < array.shape(0); ++i)
+      poses.push_back(pose_argument(ArrayLike(py::object(array[py::int_(i)])), "T_world_tip"));
+    if (poses.empty()) throw InvalidInput("T_world_tip = []: must hold at least one pose");
+    return poses;
+  }
+  return {pose_argument(value, "T_world_tip")};
+}
+
+std::vector<bool> free_axes(const std::vector<std::string>& names) {
+  const std::vector<std::string> known{"x", "y", "z", "roll", "pitch", "yaw"};
+  std::vector<bool> free(6, false);
+  for (const std::string& name : names) {
+    bool found = false;
+    for (std::size_t i = 0; i < 6; ++i) {
+      if (name != known[i]) continue;
+      free[i] = true;
+      found = true;
+    }
+    if (!found) throw InvalidInput("free = '" + name + "': must be of x, y, z, roll, pitch, yaw");
+  }
+  return free;
+}
+
+void bind_drive_by_task(py::module_& m) {
+  py::class_<DriveByTask>(m, "DriveByTask",
+                          "Something the tool does on the way: T_world_tip, (4, 4), or candidates (m, 4, 4) of which "
+                          "any will do.\n\n"
+                          "tolerance: (6,) along x, y, z [m] and about them [rad] of the pose's own frame; free: names "
+                          "of axes that do not\n"
+                          "matter, of x, y, z, roll, pitch, yaw; max_tool_speed [m/s] at the task; dwell [s] for which "
+                          "the tool's pose is\n"
+                          "kept, e.g. while a gripper closes; object: name of the world's object that is held "
+                          "afterwards.")
+      .def(py::init([](const ArrayLike& T_world_tip, const py::object& tolerance, const std::vector<std::string>& free,
+                       const py::object& max_tool_speed, double dwell, const std::string& object) {
+             DriveByTask task;
+             task.candidates = candidates_argument(T_world_tip);
+             if (!tolerance.is_none()) task.tolerance = vector_argument(tolerance, "tolerance", 6);
+             for (int i = 0; i < 6; ++i) {
+               if (task.tolerance[i] < 0) throw InvalidInput("tolerance: entries must be at least 0");
+             }
+             task.free = free_axes(free);
+             if (!max_tool_speed.is_none()) {
+               task.max_tool_speed = finite_argument(py::cast<double>(max_tool_speed), "max_tool_speed");
+             }
+             if (!(task.max_tool_speed > 0)) throw InvalidInput("max_tool_speed: must be positive");
+             task.dwell = finite_argument(dwell, "dwell");
+             if (task.dwell < 0) throw InvalidInput("dwell: must be at least 0");
+             task.object = object;
+             return task;
+           }),
+           py::arg("T_world_tip"), py::kw_only(), py::arg("tolerance") = py::none(),
+           py::arg("free") = std::vector<std::string>{}, py::arg("max_tool_speed") = py::none(), py::arg("dwell") = 0.0,
+           py::arg("object") = "")
+      .def_property_readonly(
+          "candidates", [](const DriveByTask& t) { return to_array(t.candidates); }, "(m, 4, 4)")
+      .def_readonly("max_tool_speed", &DriveByTask::max_tool_speed)
+      .def_readonly("dwell", &DriveByTask::dwell)
+      .def_readonly("object", &DriveByTask::object)
+      .def("__repr__", [](const DriveByTask& t) {
+        return "DriveByTask(" + std::to_string(t.candidates.size()) +
+               (t.candidates.size() == 1 ? " pose" : " candidates") + ")";
+      });
+}
+
+void bind_trajectory_class(py::module_& m) {
+  using T = WholeBodyTrajectory;
+  py::class_<T, std::shared_ptr<T>>(m, "WholeBodyTrajectory",
+                                    "Base and arm on one clock. Between waypoints the drive velocities are linear in "
+                                    "time; for a diff-drive base they are\n"
+                                    "its speed v and turning rate omega, so that it never slips sideways.")
+      .def_property_readonly("names", [](const T& t) { return t.group().names(); })
+      .def_property_readonly("drive_names", [](const T& t) { return drive_names(t.group()); })
+      .def_property_readonly(
+          "times", [](const T& t) { return py::array_t<double>(py::ssize_t(t.size()), t.times().data()); },
+          "(k,) [s], of the waypoints")
+      .def_property_readonly(
+          "positions", [](const T& t) { return rows_to_array(t.positions()); }, "(k, n)")
+      .def_property_readonly(
+          "drive", [](const T& t) { return rows_to_array(t.drive()); }, "(k, d), columns as drive_names")
+      .def_property_readonly("duration", &T::duration, "[s]")
+      .def(
+          "at", [](const T& t, double time) { return t.at(finite_argument(time, "time")); }, py::arg("time"),
+          "Configuration (n,) at a time [s], clamped at the ends.")
+      .def(
+          "drive_at", [](const T& t, double time) { return t.drive_at(finite_argument(time, "time")); },
+          py::arg("time"), "Drive velocities (d,) at a time [s].")
+      .def(
+          "rolled_out", [](const T& t, int steps) { return rows_to_array(t.rolled_out(steps)); }, py::arg("steps") = 64,
+          "(k, n): where the robot is at the waypoints when only the drive velocities are followed from the first one.")
+      .def("sampled", &T::sampled, py::arg("between") = 0,
+           "A JointTrajectory of all waypoints and of `between` samples after each; x, y, theta first, with their "
+           "velocities.")
+      .def("to_csv", &T::to_csv, py::arg("between") = 0,
+           "Header time, names, name.velocity, name.acceleration, base.v, base.vy, base.omega, wheel.left, "
+           "wheel.right.")
+      .def("__len__", &T::size)
+      .def("__repr__", [](const T& t) {
+        return "WholeBodyTrajectory(" + std::to_string(t.size()) + " waypoints, " +
+               std::string(py::repr(py::float_(t.duration()))) + " s)";
+      });
+}
+
+void bind_result(py::module_& m) {
+  py::class_<DriveByResult>(m, "DriveByResult", "What plan_drive_by found.")
+      .def_readonly("outcome", &DriveByResult::outcome)
+      .def_property_readonly(
+          "trajectory",
+          [](const DriveByResult& r) { return std::const_pointer_cast<WholeBodyTrajectory>(r.trajectory); },
+          "The answer or, when not solved, the best iterate; None when there was not even a guess.")
+      .def_property_readonly("duration", &DriveByResult::duration, "[s]")
+      .def_property_readonly(
+          "events",
+          [](const DriveByResult& r) {
+            py::list events;
+            for (const DriveByEvent& e : r.events) events.append(event_dict(e));
+            return events;
+          },
+          "One dict per task: waypoint, time [s], candidate, base_speed and tool_speed [m/s].")
+      .def_property_readonly(
+          "violations", [](const DriveByResult& r) { return violations_dict(r.violations); },
+          "By kind of constraint: value (0 when kept), tolerance, unit, time [s], waypoint, what, kept; measured on a "
+          "roll-out ten times\nfiner than the waypoints.")
+      .def_readonly("attempts", &DriveByResult::attempts)
+      .def_readonly("iterations", &DriveByResult::iterations)
+      .def_readonly("seconds", &DriveByResult::seconds)
+      .def_readonly("report", &DriveByResult::report, "What was tried, and what is broken where, by how much.")
+      .def("to_dict",
+           [](const DriveByResult& r) {
+             py::object trajectory = py::none();
+             if (r.trajectory) {
+               trajectory =
+                   py::dict("names"_a = r.trajectory->group().names(),
+                            "drive_names"_a = drive_names(r.trajectory->group()), "times"_a = r.trajectory->times(),
+                            "positions"_a = rows_to_array(r.trajectory->positions()).attr("tolist")(),
+                            "drive"_a = rows_to_array(r.trajectory->drive()).attr("tolist")());
+             }
+             py::list events;
+             for (const DriveByEvent& e : r.events) events.append(event_dict(e));
+             return py::dict("outcome"_a = to_string(r.outcome), "duration"_a = r.duration(),
+                             "trajectory"_a = trajectory, "events"_a = events,
+                             "violations"_a = violations_dict(r.violations), "attempts"_a = r.attempts,
+                             "iterations"_a = r.iterations, "seconds"_a = r.seconds, "report"_a = r.report);
+           })
+      .def("__repr__", [](const DriveByResult& r) {
+        return std::string("DriveByResult(") + to_string(r.outcome) +
+               (r.trajectory ? ", " + std::string(py::repr(py::float_(r.duration()))) + " s" : "") + ", " +
+               std::to_string(r.attempts) + " attempts)";
+      });
+}
+
+DriveByGoal goal_argument(const ArrayLike& goal, Eigen::Index size) {
+  const py::array array = py::array::ensure(goal);
+  PyErr_Clear();
+  if (array && array.ndim() == 2) {
+    const Eigen::MatrixXd box = matrix_argument(goal, "goal", size, true);
+    if (box.rows() != 2) throw InvalidInput("goal: must be (n,), or (2, n) with lower and upper bounds");
+    return {box.row(0).transpose(), box.row(1).transpose()};
+  }
+  const Eigen::VectorXd q = vector_argument(goal, "goal", size);
+  return {q, q};
+}
+
+DriveByResult plan(const Robot& robot, const JointGroup& group, const World& world, const ArrayLike& start,
+                   const std::vector<DriveByTask>& tasks, const ArrayLike& goal, const py::object& progress,
+                   const py::kwargs& options) {
+  if (group.robot().hash() != robot.hash()) {
+    throw InvalidInput("group: belongs to another robot ('" + group.robot().name() + "') than the one given ('" +
+                       robot.name() + "')");
+  }
+  const DriveByOptions read = read_options(drive_by_fields(), options, "plan_drive_by");
+  const Eigen::VectorXd from = vector_argument(start, "start", group.size());
+  const DriveByGoal to = goal_argument(goal, group.size());
+  const JointGroup with_pairs = with_sampled_pairs(group);
+  return LongCall(progress).run(
+      [&](const Monitor& monitor) { return plan_drive_by(with_pairs, world, from, tasks, to, read, monitor); });
+}
+
+}  // namespace
+
+void bind_trajopt(py::module_& m) {
+  m.def("nlp_solver_names", &nlp_solver_names, "Names that plan_drive_by's `solver` takes.");
+  m.def("_drive_by_option_table", [] { return option_table(drive_by_fields()); });
+  bind_drive_by_task(m);
+  bind_trajectory_class(m);
+  bind_result(m);
+  m.def("plan_drive_by", &plan, py::arg("robot"), py::arg("group"), py::arg("world"), py::kw_only(), py::arg("start"),
+        py::arg("tasks"), py::arg("goal"), py::arg("progress") = py::none(),
+        ("The fastest motion of base and arm from `start` (n,), at rest, through the tasks in order to `goal`, at "
+         "rest, without\n"
+         "stopping for them (P1 chapter 4). goal: a configuration (n,), or (2, n) with lower and upper bounds, "
+         "infinite where it\n"
+         "does not matter. The world's objects and the robot itself are obstacles." +
+         option_help(drive_by_fields()))
+            .c_str());
+}
+
+}  // namespace mmgrasp::python

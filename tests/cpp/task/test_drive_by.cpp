@@ -1,0 +1,230 @@
+#include "mmgrasp/task/drive_by.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "mmgrasp/core/error.hpp"
+#include "support/fetchlike.hpp"
+
+namespace mmgrasp {
+namespace {
+
+using Eigen::VectorXd;
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+VectorXd vec(std::initializer_list<double> values) {
+  VectorXd v(static_cast<Eigen::Index>(values.size()));
+  std::copy(values.begin(), values.end(), v.data());
+  return v;
+}
+
+const VectorXd kStart = VectorXd::Zero(10);
+const VectorXd kGoal = vec({10, 0, -1, 1.13, 0.3, 1.9, 1.1, 2.1, 0.5, 2.5});
+
+DriveByTask grasp_at(const Pose& T) {
+  DriveByTask task;
+  task.candidates = {T};
+  return task;
+}
+
+/// What a solved plan promises, looked at from outside.
+void expect_sound(const DriveByResult& r, const std::vector<DriveByTask>& tasks) {
+  ASSERT_EQ(r.outcome, Outcome::solved) << r.report;
+  ASSERT_EQ(r.events.size(), tasks.size());
+  for (const Violation& v : r.violations) EXPECT_TRUE(v.kept()) << v.kind << " " << v.value;
+  const WholeBodyTrajectory& t = *r.trajectory;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const Pose T = t.group().fk(t.positions()[static_cast<std::size_t>(r.events[i].waypoint)]);
+    const Pose& target = tasks[i].candidates[static_cast<std::size_t>(r.events[i].candidate)];
+    EXPECT_LT((T.translation() - target.translation()).norm(), 1e-6);
+    EXPECT_LT(rotation_distance(T, target), 1e-6);
+    if (i > 0) {
+      EXPECT_GT(r.events[i].time, r.events[i - 1].time);
+    }
+  }
+  const std::vector<VectorXd> rolled = t.rolled_out(100);
+  EXPECT_LT((rolled.back() - t.positions().back()).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+}  // namespace
+
+TEST(DriveBy, TakesThePartOfP1OnTheWay) {
+  const JointGroup group = test::fetchlike_whole_body();
+  for (const double y : {-2.0, 2.0}) {
+    const std::vector<DriveByTask> tasks{grasp_at(pose_from_xyz_rpy({5.5, y, 0.5}, {1, 1, 0}))};
+    const DriveByResult r = plan_drive_by(group, World(), kStart, tasks, {kGoal, kGoal});
+    expect_sound(r, tasks);
+    EXPECT_GT(r.events[0].base_speed, 0.1);
+    // 10 m at 0.6 m/s, speeding up and slowing down at 0.5 m/s^2, is the least that limits allow.
+    EXPECT_GT(r.duration(), 10 / 0.6 + 0.6 / 0.5);
+    EXPECT_LT(r.duration(), 20.13);
+  }
+}
+
+TEST(DriveBy, RepeatsItselfAtAnyNumberOfThreads) {
+  const JointGroup group = test::fetchlike_whole_body();
+  const std::vector<DriveByTask> tasks{grasp_at(pose_from_xyz_rpy({4, 1, 0.8}, {0, 0.3, 1}))};
+  DriveByOptions options;
+  const DriveByResult a = plan_drive_by(group, World(), kStart, tasks, {kGoal, kGoal}, options);
+  options.threads = 3;
+  const DriveByResult b = plan_drive_by(group, World(), kStart, tasks, {kGoal, kGoal}, options);
+  ASSERT_EQ(a.outcome, Outcome::solved);
+  EXPECT_EQ(a.trajectory->to_csv(), b.trajectory->to_csv());
+}
+
+TEST(DriveBy, PassesSeveralTasksInOneGo) {
+  const JointGroup group = test::fetchlike_whole_body();
+  std::vector<DriveByTask> tasks;
+  for (int i = 0; i < 3; ++i)
+    tasks.push_back(
+        grasp_at(pose_from_xyz_rpy({2.5 + 2.5 * i, i % 2 ? 0.9 : -0.9, 0.7}, {0, 0.2, i % 2 ? 1.2 : -1.2})));
+  DriveByOptions options;
+  options.waypoints = 50;
+  const DriveByResult r = plan_drive_by(group, World(), kStart, tasks, {kGoal, kGoal}, options);
+  expect_sound(r, tasks);
+}
+
+TEST(DriveBy, KeepsToolSpeedAndDwell) {
+  const JointGroup group = test::fetchlike_whole_body();
+  std::vector<DriveByTask> tasks{grasp_at(pose_from_xyz_rpy({5, -1, 0.7}, {0, 0.2, -1}))};
+  tasks[0].max_tool_speed = 0.05;
+  const DriveByResult r = plan_drive_by(group, World(), kStart, tasks, {kGoal, kGoal});
+  expect_sound(r, tasks);
+  EXPECT_LE(r.events[0].tool_speed, 0.05 + 1e-6);
+}
+
+TEST(DriveBy, HoldsTheToolStillWhileTheBaseDrivesOn) {
+  const JointGroup group = test::fetchlike_whole_body();
+  std::vector<DriveByTask> tasks{grasp_at(pose_from_xyz_rpy({5, -1, 0.7}, {0, 0.2, -1}))};
+  tasks[0].dwell = 0.8;
+  const DriveByResult r = plan_drive_by(group, World(), kStart, tasks, {kGoal, kGoal});
+  expect_sound(r, tasks);
+  const std::size_t from = static_cast<std::size_t>(r.events[0].waypoint);
+  std::size_t to = from;
+  const auto& times = r.trajectory->times();
+  while (to + 1 < times.size() && times[to] - times[from] < 0.8 - 1e-6) ++to;
+  EXPECT_GT(to, from);
+  for (std::size_t i = from; i <= to; ++i) {
+    const Pose T = group.fk(r.trajectory->positions()[i]);
+    EXPECT_LT((T.translation() - tasks[0].candidates[0].translation()).norm(), 1e-6);
+    EXPECT_LT(rotation_distance(T, tasks[0].candidates[0]), 1e-6);
+  }
+  EXPECT_GT((r.trajectory->positions()[to] - r.trajectory->positions()[from]).head<2>().norm(), 0.05);
+}
+
+TEST(DriveBy, ChoosesAmongCandidates) {
+  const JointGroup group = test::fetchlike_whole_body();
+  DriveByTask task;
+  task.candidates = {pose_from_xyz_rpy({5, -1, 9}, {0, 0, 0}), pose_from_xyz_rpy({5, -1, 0.7}, {0, 0.2, -1})};
+  const DriveByResult r = plan_drive_by(group, World(), kStart, {task}, {kGoal, kGoal});
+  expect_sound(r, {task});
+  EXPECT_EQ(r.events[0].candidate, 1);
+}
+
+TEST(DriveBy, LeavesFreeAxesFree) {
+  const JointGroup group = test::fetchlike_whole_body();
+  DriveByTask task = grasp_at(pose_from_xyz_rpy({5, -1, 0.7}, {2.8, 0.2, -1}));
+  const DriveByResult fixed = plan_drive_by(group, World(), kStart, {task}, {kGoal, kGoal});
+  task.free[3] = true;  // roll about the approach axis
+  const DriveByResult r = plan_drive_by(group, World(), kStart, {task}, {kGoal, kGoal});
+  ASSERT_EQ(fixed.outcome, Outcome::solved) << fixed.report;
+  ASSERT_EQ(r.outcome, Outcome::solved) << r.report;
+  const Pose T = group.fk(r.trajectory->positions()[static_cast<std::size_t>(r.events[0].waypoint)]);
+  EXPECT_LT((T.translation() - task.candidates[0].translation()).norm(), 1e-6);
+  EXPECT_NEAR(T.linear().col(0).dot(task.candidates[0].linear().col(0)), 1, 1e-6);
+}
+
+TEST(DriveBy, GoalMayLeaveTheArmFree) {
+  const JointGroup group = test::fetchlike_whole_body();
+  DriveByGoal goal{kGoal, kGoal};
+  goal.lower.tail(7).setConstant(-kInf);
+  goal.upper.tail(7).setConstant(kInf);
+  const std::vector<DriveByTask> tasks{grasp_at(pose_from_xyz_rpy({4, 1, 0.8}, {0, 0.3, 1}))};
+  const DriveByResult r = plan_drive_by(group, World(), kStart, tasks, goal);
+  expect_sound(r, tasks);
+  EXPECT_LT((r.trajectory->positions().back().head(3) - kGoal.head(3)).norm(), 1e-6);
+}
+
+TEST(DriveBy, KeepsClearOfATable) {
+  const JointGroup group = test::fetchlike_whole_body();
+  World world;
+  world.add("table", Box{{0.8, 0.6, 0.04}}, pose_from_xyz_rpy({5, -1.15, 0.55}, {0, 0, 0}));
+  std::vector<DriveByTask> tasks{grasp_at(pose_from_xyz_rpy({5, -1, 0.75}, {0, 0.2, -1}))};
+  DriveByOptions options;
+  options.collisions = false;
+  const DriveByResult blind = plan_drive_by(group, world, kStart, tasks, {kGoal, kGoal}, options);
+  ASSERT_EQ(blind.outcome, Outcome::solved) << blind.report;
+  options.collisions = true;
+  const DriveByResult r = plan_drive_by(group, world, kStart, tasks, {kGoal, kGoal}, options);
+  expect_sound(r, tasks);
+  CollisionChecker checker(group, world);
+  const auto hits = [&](const WholeBodyTrajectory& t) {
+    int count = 0;
+    const JointTrajectory fine = t.sampled(39);
+    for (const VectorXd& q : fine.positions) count += checker.first_contact(q).has_value();
+    return count;
+  };
+  EXPECT_GT(hits(*blind.trajectory), 0);
+  EXPECT_EQ(hits(*r.trajectory), 0);
+}
+
+TEST(DriveBy, CarriesThePartItTook) {
+  const JointGroup group = test::fetchlike_whole_body();
+  World world;
+  const Pose T_grasp = pose_from_xyz_rpy({5, -1, 0.75}, {0, 0.2, -1});
+  world.add("part", Box{{0.04, 0.04, 0.3}}, T_grasp * pose_from_xyz_rpy({0.16, 0, 0}, {0, 0, 0}));
+  std::vector<DriveByTask> tasks{grasp_at(T_grasp)};
+  tasks[0].object = "part";
+  const DriveByResult r = plan_drive_by(group, world, kStart, tasks, {kGoal, kGoal});
+  expect_sound(r, tasks);
+  World held = world;
+  held.attach("part", "gripper_link", T_grasp.inverse() * world.objects().at("part").T_world_object);
+  CollisionChecker checker(group, held);
+  const auto& t = *r.trajectory;
+  const double from = t.times()[static_cast<std::size_t>(r.events[0].waypoint) + 2];
+  for (int i = 0; i <= 400; ++i)
+    EXPECT_FALSE(checker.first_contact(t.at(from + (t.duration() - from) * i / 400)).has_value()) << i;
+}
+
+TEST(DriveBy, ReportsWhatCannotBe) {
+  const JointGroup group = test::fetchlike_whole_body();
+  const std::vector<DriveByTask> tasks{grasp_at(pose_from_xyz_rpy({5, 0, 4}, {0, 0, 0}))};
+  const DriveByResult r = plan_drive_by(group, World(), kStart, tasks, {kGoal, kGoal});
+  EXPECT_EQ(r.outcome, Outcome::infeasible);
+  EXPECT_NE(r.report.find("task 0"), std::string::npos) << r.report;
+  EXPECT_FALSE(r.trajectory);
+}
+
+TEST(DriveBy, RefusesWhatMakesNoSense) {
+  const JointGroup group = test::fetchlike_whole_body();
+  const std::vector<DriveByTask> tasks{grasp_at(pose_from_xyz_rpy({4, 1, 0.8}, {0, 0.3, 1}))};
+  const auto plan = [&](const VectorXd& start, const std::vector<DriveByTask>& t, const DriveByGoal& goal,
+                        const DriveByOptions& o = {}) { plan_drive_by(group, World(), start, t, goal, o); };
+  VectorXd outside = kStart;
+  outside[4] = 3;  // shoulder lift ends at 1.518
+  EXPECT_THROW(plan(outside, tasks, {kGoal, kGoal}), InvalidInput);
+  EXPECT_THROW(plan(kStart.head(9), tasks, {kGoal, kGoal}), InvalidInput);
+  VectorXd nan = kStart;
+  nan[0] = std::nan("");
+  EXPECT_THROW(plan(nan, tasks, {kGoal, kGoal}), InvalidInput);
+  VectorXd above = kGoal;
+  above[0] += 1;
+  EXPECT_THROW(plan(kStart, tasks, {above, kGoal}), InvalidInput);
+  EXPECT_THROW(plan(kStart, {DriveByTask()}, {kGoal, kGoal}), InvalidInput);
+  DriveByOptions few;
+  few.waypoints = 3;
+  EXPECT_THROW(plan(kStart, tasks, {kGoal, kGoal}, few), InvalidInput);
+}
+
+TEST(DriveBy, EndsWhenTold) {
+  const JointGroup group = test::fetchlike_whole_body();
+  const std::vector<DriveByTask> tasks{grasp_at(pose_from_xyz_rpy({4, 1, 0.8}, {0, 0.3, 1}))};
+  Monitor monitor;
+  monitor.stop.stop();
+  EXPECT_EQ(plan_drive_by(group, World(), kStart, tasks, {kGoal, kGoal}, {}, monitor).outcome, Outcome::stopped);
+}
+
+}  // namespace mmgrasp

@@ -42,6 +42,7 @@ SECTIONS = (
         set(),
     ),
     ("push_grasp", "A grasp in passing, keywords (`PushGraspProblem`)", _core._push_option_table, set()),
+    (
         "plan_drive_by",
         "Grasping while driving, keywords (`DriveByOptions`, `WholeBodyOptions`)",
         _core._drive_by_option_table,

@@ -237,6 +237,21 @@ DriveByResult plan(const Robot& robot, const JointGroup& group, const World& wor
 void bind_trajopt(py::module_& m) {
   m.def("nlp_solver_names", &nlp_solver_names, "Names that plan_drive_by's `solver` takes.");
   m.def("_drive_by_option_table", [] { return option_table(drive_by_fields()); });
+  m.def(
+      "_first_drive_by_guess",
+      [](const JointGroup& group, const Eigen::VectorXd& start, const std::vector<DriveByTask>& tasks,
+         const Eigen::VectorXd& goal, int waypoints) -> py::object {
+        DriveByOptions options;
+        options.waypoints = waypoints;
+        const auto first = first_drive_by_guess(group, start, tasks, {goal, goal}, options);
+        if (!first) return py::none();
+        std::vector<int> intervals;
+        for (const WholeBodySegment& s : first->problem.segments) intervals.push_back(s.intervals);
+        return py::dict("positions"_a = rows_to_array(first->guess.positions), "steps"_a = first->guess.steps,
+                        "intervals"_a = intervals, "goal"_a = first->problem.goal_lower);
+      },
+      py::arg("group"), py::kw_only(), py::arg("start"), py::arg("tasks"), py::arg("goal"), py::arg("waypoints") = 35,
+      "Where the first attempt begins, for benchmarks against other optimisers; None when a task is out of reach.");
   bind_drive_by_task(m);
   bind_trajectory_class(m);
   bind_result(m);

@@ -40,7 +40,6 @@ void bind_base_sequence(py::module_& m);
 void bind_task(py::module_& m);
 void bind_pickle(py::module_& m);  ///< After the classes it adds to.
 void bind_platform_locations(py::module_& m);
-void bind_trajopt(py::module_& m);
 void bind_verify(py::module_& m);
 
 py::dict to_dict(const Rejections& rejections);

@@ -7,6 +7,7 @@ namespace mmgrasp::python {
 void bind_mapping(py::module_& m);
 void bind_graspability(py::module_& m);
 void bind_capability(py::module_& m);
+void bind_trajopt(py::module_& m);
 void bind_control(py::module_& m);
 void bind_structure(py::module_& m);
 void bind_push_grasp(py::module_& m);

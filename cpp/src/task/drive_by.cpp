@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 
 #include "mmgrasp/core/error.hpp"
 #include "task/drive_by_guess.hpp"
+#include "task/drive_by_route.hpp"
 #include "task/drive_by_stands.hpp"
 #include "task/drive_by_worlds.hpp"
 
@@ -17,6 +19,8 @@ using Eigen::VectorXd;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr int kDwellIntervals = 4;
+constexpr int kCoarse = 35;       // waypoints of a first solution when many are asked for
+constexpr double kRefine = 1e-3;  // barrier with which it is refined
 
 void check_tasks(const std::vector<DriveByTask>& tasks, const World& world) {
   for (std::size_t i = 0; i < tasks.size(); ++i) {
@@ -130,9 +134,26 @@ class DriveBy {
     return result;
   }
 
+  std::optional<DriveByStart> first_guess() {
+    std::string missing;
+    const auto chains = find_chains(missing);
+    if (chains.empty()) return {};
+    Attempt a = prepared(chains.front(), options_.waypoints);
+    return DriveByStart{std::move(a.problem), std::move(a.guess)};
+  }
+
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
 
  private:
+  struct Attempt {
+    WholeBodyProblem problem;
+    std::vector<VectorXd> knots;
+    std::vector<int> intervals, waypoints;
+    std::vector<double> times;
+    std::vector<CollisionChecker*> checkers;
+    WholeBodyGuess guess;
+  };
+
   std::vector<std::vector<detail::Stand>> find_chains(std::string& missing) {
     if (tasks_.empty()) return {{}};
     const VectorXd goal = goal_near(goal_, start_);
@@ -190,45 +211,111 @@ class DriveBy {
     }
   }
 
+  /// Straight through the stands, and around obstacles when that fails or is bound to; many waypoints start from the
+  /// solution with few.
   WholeBodyResult attempt(const std::vector<detail::Stand>& chain, std::vector<int>& waypoints) {
-    std::vector<VectorXd> knots{start_};
-    for (const detail::Stand& stand : chain) knots.push_back(stand.q);
-    knots.push_back(goal_near(goal_, knots.back()));
-    WholeBodyProblem problem(group_);
-    problem.start = start_;
-    problem.goal_lower = goal_.lower;
-    problem.goal_upper = goal_.upper;
-    problem.jerk_time = options_.jerk_time;
-    std::vector<double> times = detail::segment_times(group_, knots);
-    std::vector<int> intervals = detail::share_intervals(options_.waypoints - 1, times);
+    const int few = std::max(kCoarse, 2 + 4 * static_cast<int>(tasks_.size()));
+    Attempt a =
+        prepared(chain, std::min(options_.waypoints, options_.waypoints > 2 * kCoarse ? few : options_.waypoints));
+    WholeBodyResult r = around_obstacles(a, chain);
+    if (r.usable() && a.problem.waypoints() < options_.waypoints) {
+      Attempt fine = prepared(chain, options_.waypoints);
+      fine.problem.goal_lower = a.problem.goal_lower;
+      fine.problem.goal_upper = a.problem.goal_upper;
+      std::vector<double> ends;
+      for (int s = 0; s < static_cast<int>(a.intervals.size()); ++s)
+        ends.push_back(r.trajectory->times()[static_cast<std::size_t>(a.problem.segment_end(s))]);
+      fine.guess = detail::resampled(*r.trajectory, ends, fine.intervals);
+      fine.guess.free = !fine.checkers.empty();
+      const int before = r.iterations;
+      r = optimize(fine, kRefine);
+      r.iterations += before;
+      a = std::move(fine);
+    }
+    waypoints = a.waypoints;
+    return r;
+  }
+
+  WholeBodyResult around_obstacles(Attempt& a, const std::vector<detail::Stand>& chain) {
+    const bool obstacles = worlds_ && group_.has_base() && !worlds_->before(0).world().objects().empty();
+    if (obstacles && detail::base_collides(a.checkers, a.guess)) guide(a);
+    const WholeBodyResult first = optimize(a);
+    if (first.usable() || !obstacles || a.guess.free || monitor_.stopped()) return first;
+    const bool collides = std::any_of(first.violations.begin(), first.violations.end(),
+                                      [](const Violation& v) { return v.kind == "collision" && !v.kept(); });
+    if (!collides) return first;
+    Attempt other = prepared(chain, a.problem.waypoints());
+    if (!guide(other)) return first;
+    WholeBodyResult second = optimize(other);
+    second.iterations += first.iterations;
+    if (!second.usable() && broken(second) >= broken(first)) return first;
+    a = std::move(other);
+    return second;
+  }
+
+  WholeBodyResult optimize(const Attempt& a, double warm_start = 0) {
     WholeBodyOptions options = options_.trajectory;
+    options.warm_start = std::max(options.warm_start, warm_start);
     options.time_limit = std::max(1e-3, std::min(options.time_limit, options_.time_limit - seconds()));
-    std::vector<CollisionChecker*> checkers;
-    if (worlds_) checkers = worlds_->along(intervals, chain);
+    return optimize_whole_body(a.problem, a.guess, options, a.checkers, monitor_);
+  }
+
+  Attempt prepared(const std::vector<detail::Stand>& chain, int waypoints) {
+    Attempt a{WholeBodyProblem(group_), {start_}, {}, {}, {}, {}, {}};
+    for (const detail::Stand& stand : chain) a.knots.push_back(stand.q);
+    a.knots.push_back(goal_near(goal_, a.knots.back()));
+    a.problem.start = start_;
+    a.problem.goal_lower = goal_.lower;
+    a.problem.goal_upper = goal_.upper;
+    a.problem.jerk_time = options_.jerk_time;
+    a.times = detail::segment_times(group_, a.knots);
+    a.intervals = detail::share_intervals(waypoints - 1, a.times);
+    if (worlds_) a.checkers = worlds_->along(a.intervals, chain);
     // A task that takes time is a segment of its own.
     for (std::size_t t = tasks_.size(); t-- > 0;) {
       if (tasks_[t].dwell <= 0) continue;
       const auto at = static_cast<std::ptrdiff_t>(t) + 1;
-      int end = 0;
-      for (std::size_t s = 0; s <= t; ++s) end += intervals[s];
-      if (worlds_) checkers.insert(checkers.begin() + end, kDwellIntervals, &worlds_->at(t));
-      knots.insert(knots.begin() + at, chain[t].q);
-      intervals.insert(intervals.begin() + at, kDwellIntervals);
-      times.insert(times.begin() + at, tasks_[t].dwell);
+      const int end = std::accumulate(a.intervals.begin(), a.intervals.begin() + at, 0);
+      if (worlds_) a.checkers.insert(a.checkers.begin() + end, kDwellIntervals, &worlds_->at(t));
+      a.knots.insert(a.knots.begin() + at, chain[t].q);
+      a.intervals.insert(a.intervals.begin() + at, kDwellIntervals);
+      a.times.insert(a.times.begin() + at, tasks_[t].dwell);
     }
-    for (int n : intervals) problem.segments.push_back({n});
+    for (int n : a.intervals) a.problem.segments.push_back({n});
     for (std::size_t t = 0, s = 0; t < tasks_.size(); ++t, ++s) {
-      waypoints.push_back(problem.segment_end(static_cast<int>(s)));
-      problem.tool.push_back(constraint_of(tasks_[t], chain[t].candidate, waypoints.back()));
+      a.waypoints.push_back(a.problem.segment_end(static_cast<int>(s)));
+      a.problem.tool.push_back(constraint_of(tasks_[t], chain[t].candidate, a.waypoints.back()));
       if (tasks_[t].dwell <= 0) continue;
-      problem.segments[++s].min_duration = tasks_[t].dwell;
+      a.problem.segments[++s].min_duration = tasks_[t].dwell;
       for (int k = 1; k <= kDwellIntervals; ++k) {
-        problem.tool.push_back(problem.tool.back());
-        ++problem.tool.back().waypoint;
+        a.problem.tool.push_back(a.problem.tool.back());
+        ++a.problem.tool.back().waypoint;
       }
     }
-    return optimize_whole_body(problem, detail::guess_through(group_, knots, intervals, times), options, checkers,
-                               monitor_);
+    a.guess = detail::guess_through(group_, a.knots, a.intervals, a.times);
+    return a;
+  }
+
+  /// Leads the base around obstacles; false when no way was found.
+  bool guide(Attempt& a) {
+    std::vector<detail::GuidedBase> guides;
+    std::size_t task = 0;
+    for (std::size_t k = 0; k + 1 < a.knots.size(); ++k) {
+      guides.emplace_back();
+      if ((a.knots[k + 1] - a.knots[k]).head<2>().norm() < 1e-9) continue;  // a task that takes time
+      guides[k] = detail::guided_base(group_, worlds_->at(task), a.knots[k], a.knots[k + 1], monitor_);
+      ++task;
+      if (guides[k].poses.empty()) return false;
+      a.times[k] = std::max(a.times[k], 1.1 * detail::drive_time(group_, guides[k].poses));
+      // The way may take a full turn: everything after it is that much further round.
+      const double turn = guides[k].poses.back()[2] - a.knots[k + 1][2];
+      for (std::size_t later = k + 1; later < a.knots.size(); ++later) a.knots[later][2] += turn;
+      a.problem.goal_lower[2] += turn;
+      a.problem.goal_upper[2] += turn;
+    }
+    a.guess = detail::guess_through(group_, a.knots, a.intervals, a.times, guides);
+    a.guess.free = true;
+    return true;
   }
 
   const JointGroup& group_;
@@ -254,9 +341,10 @@ void DriveByOptions::check() const {
   trajectory.check();
 }
 
-DriveByResult plan_drive_by(const JointGroup& group, const World& world, const VectorXd& start,
-                            const std::vector<DriveByTask>& tasks, const DriveByGoal& goal,
-                            const DriveByOptions& options, const Monitor& monitor) {
+namespace {
+
+void check_call(const JointGroup& group, const World& world, const VectorXd& start,
+                const std::vector<DriveByTask>& tasks, const DriveByGoal& goal, const DriveByOptions& options) {
   options.check();
   check_tasks(tasks, world);
   const int least = 2 + 2 * static_cast<int>(tasks.size());
@@ -268,10 +356,29 @@ DriveByResult plan_drive_by(const JointGroup& group, const World& world, const V
   ends.goal_upper = goal.upper;
   ends.segments = {{1}};
   ends.check();
+}
+
+}  // namespace
+
+DriveByResult plan_drive_by(const JointGroup& group, const World& world, const VectorXd& start,
+                            const std::vector<DriveByTask>& tasks, const DriveByGoal& goal,
+                            const DriveByOptions& options, const Monitor& monitor) {
+  check_call(group, world, start, tasks, goal, options);
   DriveBy plan(group, world, start, tasks, goal, options, monitor);
   DriveByResult result = plan.run();
   result.seconds = plan.seconds();
   return result;
+}
+
+std::optional<DriveByStart> first_drive_by_guess(const JointGroup& group, const VectorXd& start,
+                                                 const std::vector<DriveByTask>& tasks, const DriveByGoal& goal,
+                                                 const DriveByOptions& options) {
+  const World nothing;
+  const Monitor silent;
+  DriveByOptions blind = options;
+  blind.collisions = false;
+  check_call(group, nothing, start, tasks, goal, blind);
+  return DriveBy(group, nothing, start, tasks, goal, blind, silent).first_guess();
 }
 
 }  // namespace mmgrasp

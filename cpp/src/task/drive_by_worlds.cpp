@@ -14,7 +14,7 @@ DriveByWorlds::DriveByWorlds(const JointGroup& group, const World& world, const 
 
 World DriveByWorlds::left(std::size_t task) const {
   World world = world_;
-  for (std::size_t i = 0; i < task; ++i)
+  for (std::size_t i = 0; i < std::min(task, tasks_.size()); ++i)
     if (!tasks_[i].object.empty() && world.has(tasks_[i].object)) world.remove(tasks_[i].object);
   return world;
 }
@@ -24,7 +24,7 @@ CollisionChecker& DriveByWorlds::before(std::size_t task) {
 }
 
 CollisionChecker& DriveByWorlds::at(std::size_t task) {
-  if (tasks_[task].object.empty()) return before(task);
+  if (task >= tasks_.size() || tasks_[task].object.empty()) return before(task);
   return at_.try_emplace(task, group_, left(task + 1)).first->second;
 }
 

@@ -13,6 +13,7 @@ from .._reading import near_miss
 from . import (
     base_regions,
     capability,
+    drive_by,
     experiments,
     ik_query,
     physics,
@@ -37,6 +38,7 @@ TOPICS = (
     experiments,
     random_placement,
     capability,
+    drive_by,
     tracking,
     physics,
 )

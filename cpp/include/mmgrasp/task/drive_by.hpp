@@ -77,4 +77,14 @@ MMGRASP_EXPORT DriveByResult plan_drive_by(const JointGroup& group, const World&
                                            const std::vector<DriveByTask>& tasks, const DriveByGoal& goal,
                                            const DriveByOptions& options = {}, const Monitor& monitor = {});
 
+/// What plan_drive_by's first attempt hands to the optimiser, without collisions; empty when a task is out of reach.
+struct MMGRASP_EXPORT DriveByStart {
+  WholeBodyProblem problem;
+  WholeBodyGuess guess;
+};
+MMGRASP_EXPORT std::optional<DriveByStart> first_drive_by_guess(const JointGroup& group, const Eigen::VectorXd& start,
+                                                                const std::vector<DriveByTask>& tasks,
+                                                                const DriveByGoal& goal,
+                                                                const DriveByOptions& options = {});
+
 }  // namespace mmgrasp

@@ -21,6 +21,7 @@ from . import (
     random_placement,
     robust_sets,
     rows,
+    shelf,
     solver_regions,
     tracking,
 )
@@ -38,6 +39,7 @@ TOPICS = (
     experiments,
     random_placement,
     capability,
+    shelf,
     drive_by,
     tracking,
     physics,

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "mmgrasp/core/parallel.hpp"
+#include "plan/arm_configurations.hpp"
 
 namespace mmgrasp::detail {
 
@@ -50,19 +51,21 @@ bool find_candidates(const ManipulationProblem& problem, const ManipulationOptio
     out.grasp = grasp;
     out.opening = checks.opening_of(grasp);
     out.cost = candidate.cost;
-    const IkOptions ik = ik_of(options, grasp);
     const auto one_end = [&](bool at_goal, Rejections& rejections, int& left) {
-      bool any = false;
+      const auto valid = [&](const Eigen::VectorXd& q) {
+        // What is held first: there is less of it, and it hits the scene in any configuration or in none.
+        ReachVerdict verdict{checks.held_rejection(worker, grasp, q), false};
+        if (verdict.cause == Rejection::scene) {
+          verdict.final = true;
+        } else if (verdict.cause == Rejection::none) {
+          verdict.cause = checks.robot_rejection(worker, out.opening, q);
+          verdict.final = verdict.cause == Rejection::scene && checks.tool_hits_scene(worker, out.opening, q);
+        }
+        return verdict;
+      };
       std::vector<Eigen::VectorXd> solutions =
-          solve_ik_all(checks.group(out.opening), pose_of_tool(problem, grasp, at_goal), options.ik_solutions, ik,
-                       [&](const Eigen::VectorXd& q) {
-                         any = true;
-                         Rejection cause = checks.robot_rejection(worker, out.opening, q);
-                         if (cause == Rejection::none) cause = checks.held_rejection(worker, grasp, q);
-                         rejections.add(cause);
-                         return cause;
-                       });
-      if (!any) rejections.add(Rejection::reach);
+          arm_configurations(checks.group(out.opening), pose_of_tool(problem, grasp, at_goal), options.ik_solutions,
+                             ik_of(options, grasp), valid, rejections);
       left = static_cast<int>(solutions.size());
       return solutions;
     };
@@ -85,11 +88,13 @@ std::vector<Contact> first_contacts(CarryChecks& checks, const ManipulationOptio
     const int grasp = static_cast<int>(i);
     std::vector<Contact> contacts;
     CollisionChecker checker = checks.whole(grasp);
-    solve_ik_all(checks.group(checks.opening_of(grasp)), pose_of_tool(problem, grasp, at_goal), options.ik_solutions,
-                 ik_of(options, grasp), [&](const Eigen::VectorXd& q) {
-                   if (contacts.empty()) contacts = checker.contacts(q);
-                   return Rejection::none;
-                 });
+    Rejections unused;
+    const auto look = [&](const Eigen::VectorXd& q) {
+      if (contacts.empty()) contacts = checker.contacts(q);
+      return ReachVerdict{Rejection::none, true};
+    };
+    arm_configurations(checks.group(checks.opening_of(grasp)), pose_of_tool(problem, grasp, at_goal),
+                       options.ik_solutions, ik_of(options, grasp), look, unused);
     if (!contacts.empty()) return contacts;
   }
   return {};

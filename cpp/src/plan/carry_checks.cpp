@@ -1,5 +1,6 @@
 #include "plan/carry_checks.hpp"
 
+#include <algorithm>
 #include <map>
 
 namespace mmgrasp::detail {
@@ -13,6 +14,19 @@ JointGroup with_fingers(const JointGroup& group, const Gripper& gripper, double 
   for (const auto& [name, value] : gripper.joint_values(opening))
     values[robot.joints()[static_cast<std::size_t>(robot.joint_index(name))].value_index] = value;
   return group.with_reference(values);
+}
+
+/// The nearest joint above a link that the group moves; -1: none.
+int moved_by(const JointGroup& group, int link) {
+  const Robot& robot = group.robot();
+  const std::vector<int>& driven = group.joints();
+  for (int joint = robot.links()[static_cast<std::size_t>(link)].parent_joint; joint >= 0;) {
+    const Joint& j = robot.joints()[static_cast<std::size_t>(joint)];
+    const int leader = j.mimic_joint >= 0 ? j.mimic_joint : joint;
+    if (std::find(driven.begin(), driven.end(), leader) != driven.end()) return joint;
+    joint = robot.links()[static_cast<std::size_t>(j.parent_link)].parent_joint;
+  }
+  return -1;
 }
 
 }  // namespace
@@ -29,6 +43,10 @@ CarryChecks::CarryChecks(const ManipulationProblem& problem, const EdgeOptions& 
     opening_of_.push_back(at->second);
   }
   tip_ = problem.group.robot().links()[static_cast<std::size_t>(problem.group.tip_link())].name;
+  const std::vector<Link>& links = problem.group.robot().links();
+  const int mover = moved_by(problem.group, problem.group.tip_link());
+  for (std::size_t i = 0; i < links.size(); ++i)
+    if (moved_by(problem.group, static_cast<int>(i)) == mover) tool_.insert(links[i].name);
   for (auto& own : robot_) own.resize(groups_.size());
   for (auto& own : held_) own.resize(groups_.size());
   whole_.resize(groups_.size());
@@ -95,6 +113,11 @@ bool CarryChecks::robot_edge_is_free(int worker, int opening, const Eigen::Vecto
 }
 Rejection CarryChecks::robot_rejection(int worker, int opening, const Eigen::VectorXd& q) {
   return robot(worker, opening).checker.rejection(q);
+}
+bool CarryChecks::tool_hits_scene(int worker, int opening, const Eigen::VectorXd& q) {
+  const std::vector<Contact> contacts = robot(worker, opening).checker.contacts(q);
+  return std::any_of(contacts.begin(), contacts.end(),
+                     [&](const Contact& c) { return c.with_scene && tool_.count(c.a) > 0; });
 }
 bool CarryChecks::held_is_free(int worker, int grasp, const Eigen::VectorXd& q) {
   return held(worker, grasp).is_free(q);

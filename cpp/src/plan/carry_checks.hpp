@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "collision/held_checker.hpp"
@@ -27,6 +29,9 @@ class CarryChecks {
   bool robot_is_free(int worker, int opening, const Eigen::VectorXd& q);
   bool robot_edge_is_free(int worker, int opening, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
   Rejection robot_rejection(int worker, int opening, const Eigen::VectorXd& q);
+  /// Whether a link that stands still relative to the tip (hand and fingers) hits the scene: it then does so in every
+  /// configuration that puts the tip there.
+  bool tool_hits_scene(int worker, int opening, const Eigen::VectorXd& q);
   /// The held object against the robot and the scene; the robot alone is not looked at.
   bool held_is_free(int worker, int grasp, const Eigen::VectorXd& q);
   bool held_edge_is_free(int worker, int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
@@ -59,6 +64,7 @@ class CarryChecks {
   std::vector<JointGroup> groups_;  ///< One an opening.
   std::vector<int> opening_of_;     ///< Per grasp.
   std::string tip_;
+  std::set<std::string> tool_;                           ///< Links that stand still relative to the tip.
   std::vector<std::vector<std::optional<Bare>>> robot_;  ///< Without a held object, [worker][opening].
   std::vector<std::vector<std::optional<Held>>> held_;   ///< [worker][opening].
   std::vector<std::optional<Held>> whole_;               ///< Everything, [opening].

@@ -7,6 +7,7 @@
 #include "mmgrasp/core/parallel.hpp"
 #include "plan/carry_candidates.hpp"
 #include "plan/carry_planner.hpp"
+#include "plan/roadmap_data.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -42,6 +43,7 @@ void ManipulationProblem::check() const {
 
 void PrmStarMgOptions::check() const {
   require(batch >= 0, "batch", batch, "must be >= 0");
+  require(max_vertices >= 0 && max_vertices <= 10'000'000, "max_vertices", max_vertices, "must be in [0, 10000000]");
   roadmap.check();
 }
 
@@ -60,8 +62,7 @@ ManipulationResult plan_manipulation(const ManipulationProblem& problem, const M
                                      const std::function<void(const Improvement&)>& improved) {
   problem.check();
   options.check();
-  if (roadmap && (roadmap->group().robot().hash() != problem.group.robot().hash() ||
-                  roadmap->group().names() != problem.group.names())) {
+  if (roadmap && detail::kinematics_key(roadmap->group()) != detail::kinematics_key(problem.group)) {
     throw InvalidInput("roadmap: was built for another robot or other joints than the problem's group");
   }
   const detail::CarryPlanner& planner = detail::carry_planner(options.planner);

@@ -8,48 +8,54 @@
 
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "plan/overlay_checks.hpp"
 #include "plan/overlay_search.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr std::size_t kSplices = 16;  // Earlier paths from which bounds are spliced.
+constexpr std::size_t kSplices = 16;       // Earlier paths from which bounds are spliced.
+constexpr std::size_t kLargestRound = 32;  // Grasps looked at side by side; whatever the number of threads.
+constexpr std::size_t kSearches = 4;       // Graph searches that are worth a thread.
+// With more openings than these, vertices are checked for the robot on paths only.
+constexpr int kSharingOpenings = 8;
 
+/// One search of one roadmap for all grasps (P2 Algorithm 4.3).
 class RoadmapSearch {
  public:
   RoadmapSearch(CarryInput& input, const Roadmap& roadmap, ManipulationResult& result)
-      : input_(input), roadmap_(roadmap), result_(result), search_(roadmap) {
-    knowledge_.resize(static_cast<std::size_t>(input.checks.opening_count()));
-    for (RoadmapKnowledge& known : knowledge_) {
-      known.vertices.assign(static_cast<std::size_t>(roadmap.size()), RoadmapKnowledge::unknown);
-      known.edges.assign(static_cast<std::size_t>(roadmap.edge_count()), RoadmapKnowledge::unknown);
-    }
-    for (CarryCandidate& candidate : input.candidates) overlays_.emplace_back(roadmap, std::move(candidate));
+      : input_(input),
+        roadmap_(roadmap),
+        result_(result),
+        threads_(resolve_threads(input.options.threads)),
+        checks_(roadmap, input.checks, knowledge_, threads_, result.stats),
+        best_(result.path ? result.cost : kInfinite) {
+    for (int i = 0; i < input.checks.opening_count(); ++i) knowledge_.emplace_back(roadmap);
+    for (const CarryCandidate& candidate : input.candidates) overlays_.emplace_back(roadmap, candidate);
+    for (int worker = 0; worker < threads_; ++worker) searches_.emplace_back(roadmap);
   }
 
-  void run() {
+  /// False when time ran out before all grasps were searched.
+  bool run() {
     const std::vector<int> order = shuffled();
-    const int size =
-        input_.options.prm.batch > 0 ? input_.options.prm.batch : std::max<int>(1, static_cast<int>(order.size()));
+    const std::size_t all = std::max<std::size_t>(1, order.size());
+    const std::size_t size = input_.options.prm.batch > 0 ? static_cast<std::size_t>(input_.options.prm.batch) : all;
     bool whole = true;
-    for (std::size_t first = 0; first < order.size() && whole; first += static_cast<std::size_t>(size)) {
+    for (std::size_t first = 0; first < order.size() && whole; first += size) {
       input_.monitor.report("search", static_cast<double>(first) / static_cast<double>(order.size()));
-      const std::size_t last = std::min(order.size(), first + static_cast<std::size_t>(size));
+      const std::size_t last = std::min(order.size(), first + size);
       whole = search_batch({order.begin() + static_cast<long>(first), order.begin() + static_cast<long>(last)});
     }
-    for (const GraspOverlay& overlay : overlays_) result_.stats.grasps_searched += overlay.connected ? 1 : 0;
-    result_.lower_bound = whole ? best_ : std::min(best_, open_bound_);
+    result_.lower_bound = best_;
     if (!whole) {
-      // Grasps of batches that were not begun are bounded by their straight lines.
+      for (const Entry& open : heap_) result_.lower_bound = std::min(result_.lower_bound, open.key);
+      // Grasps that were not begun are bounded by their straight lines.
       for (const GraspOverlay& overlay : overlays_)
         if (!overlay.connected) result_.lower_bound = std::min(result_.lower_bound, overlay.candidate.straight_cost());
     }
-    if (result_.path) {
-      result_.outcome = Outcome::solved;
-    } else {
-      result_.outcome = input_.monitor.stopped() ? Outcome::stopped : whole ? Outcome::infeasible : Outcome::timeout;
-    }
+    for (const GraspOverlay& overlay : overlays_) result_.stats.grasps_searched += overlay.connected ? 1 : 0;
+    return whole;
   }
 
  private:
@@ -68,197 +74,152 @@ class RoadmapSearch {
     return order;
   }
 
-  void push(double key, int overlay, bool searched) {
-    heap_.push_back({key, overlay, searched});
+  GraspOverlay& overlay(int index) { return overlays_[static_cast<std::size_t>(index)]; }
+
+  void push(double key, int index, bool searched) {
+    heap_.push_back({key, index, searched});
     std::push_heap(heap_.begin(), heap_.end(), later);
   }
 
-  bool find_path(int index, double bound) {
-    ++result_.stats.graph_searches;
-    GraspOverlay& overlay = overlays_[static_cast<std::size_t>(index)];
-    return search_.search(overlay, knowledge_[static_cast<std::size_t>(overlay.candidate.opening)], bound);
+  bool find_path(int worker, int index, double bound) {
+    GraspOverlay& o = overlay(index);
+    o.connect(roadmap_, input_.options.prm.straight, best_);
+    OverlaySearch& search = searches_[static_cast<std::size_t>(worker)];
+    const int opening = o.candidate.opening;
+    search.robot_is_free = {};
+    if (input_.checks.opening_count() <= kSharingOpenings) {
+      search.robot_is_free = [this, worker, opening](int v) {
+        return input_.checks.robot_is_free(worker, opening, roadmap_.vertices().col(v));
+      };
+    }
+    return search.search(o, knowledge_[static_cast<std::size_t>(opening)], bound);
   }
 
-  /// False when time ran out.
+  /// False when time ran out; what is open is then left in the heap.
   bool search_batch(const std::vector<int>& batch) {
     heap_.clear();
-    std::vector<int> found;
-    for (const int index : batch) {
-      GraspOverlay& overlay = overlays_[static_cast<std::size_t>(index)];
-      const double straight = overlay.candidate.straight_cost();
-      if (straight >= best_) continue;
-      if (input_.options.prm.lazy_grasps) {
-        push(straight, index, false);
-        continue;
+    if (input_.options.prm.lazy_grasps) {
+      for (const int index : batch) {
+        const double straight = overlay(index).candidate.straight_cost();
+        if (straight < best_) push(straight, index, false);
       }
-      if (input_.out_of_time()) return ended(straight);
-      overlay.connect(roadmap_);
-      double bound = best_;
-      for (std::size_t i = found.size() > kSplices ? found.size() - kSplices : 0; i < found.size(); ++i)
-        bound = std::min(bound, spliced_cost(roadmap_, overlay, overlays_[static_cast<std::size_t>(found[i])].nodes));
-      if (!find_path(index, bound)) continue;
-      found.push_back(index);
-      push(overlay.path_cost, index, true);
+    } else if (!search_all(batch)) {
+      return false;
     }
+    std::size_t size = 1;
     while (!heap_.empty() && heap_.front().key < best_) {
-      const Entry top = heap_.front();
-      if (input_.out_of_time()) return ended(top.key);
-      std::pop_heap(heap_.begin(), heap_.end(), later);
-      heap_.pop_back();
-      if (top.searched && path_is_free(top.overlay)) {
-        if (accept(top.overlay)) return true;  // All others of the batch cost more.
-      }
-      // Not min(bound, spliced): a spliced path may be blocked (errata on Algorithm 4.3).
-      if (find_path(top.overlay, best_))
-        push(overlays_[static_cast<std::size_t>(top.overlay)].path_cost, top.overlay, true);
+      if (input_.out_of_time()) return false;
+      round(size);
+      size = std::min(2 * size, kLargestRound);
     }
     return true;
   }
 
-  bool ended(double bound) {
-    open_bound_ = std::min(open_bound_, bound);
-    return false;
-  }
-
-  /// Work on the path's items that nobody has looked at yet: all of them, side by side, so that what is known
-  /// afterwards does not depend on the number of threads.
-  template <class Item, class Check>
-  bool check_all(const std::vector<Item>& items, std::vector<char>& free, const Check& check) {
-    free.assign(items.size(), 0);
-    const int threads = items.size() > 1 ? input_.options.threads : 1;
-    parallel_for(items.size(), threads, [&](std::size_t i, int worker) { free[i] = check(worker, items[i]) ? 1 : 0; });
-    return std::all_of(free.begin(), free.end(), [](char f) { return f != 0; });
-  }
-
-  bool path_is_free(int index) {
-    GraspOverlay& overlay = overlays_[static_cast<std::size_t>(index)];
-    return vertices_free_for_robot(overlay) && vertices_free_for_held(overlay) && edges_free_for_robot(overlay) &&
-           edges_free_for_held(overlay);
-  }
-
-  // The ends were checked with their IK.
-  bool vertices_free_for_robot(GraspOverlay& overlay) {
-    RoadmapKnowledge& known = knowledge_[static_cast<std::size_t>(overlay.candidate.opening)];
-    std::vector<int> items;
-    for (const int node : overlay.nodes)
-      if (node < overlay.vertex_count && known.vertices[static_cast<std::size_t>(node)] == RoadmapKnowledge::unknown)
-        items.push_back(node);
-    std::vector<char> free;
-    const bool all = check_all(items, free, [&](int worker, int node) {
-      return input_.checks.robot_is_free(worker, overlay.candidate.opening, roadmap_.vertices().col(node));
-    });
-    for (std::size_t i = 0; i < items.size(); ++i)
-      known.vertices[static_cast<std::size_t>(items[i])] = free[i] ? RoadmapKnowledge::free : RoadmapKnowledge::blocked;
-    return all;
-  }
-
-  bool vertices_free_for_held(GraspOverlay& overlay) {
-    std::vector<int> items;
-    for (const int node : overlay.nodes)
-      if (node < overlay.vertex_count && overlay.passed_vertices.count(node) == 0) items.push_back(node);
-    std::vector<char> free;
-    const bool all = check_all(items, free, [&](int worker, int node) {
-      return input_.checks.held_is_free(worker, overlay.candidate.grasp, roadmap_.vertices().col(node));
-    });
-    for (std::size_t i = 0; i < items.size(); ++i)
-      (free[i] ? overlay.passed_vertices : overlay.blocked_vertices).insert(items[i]);
-    return all;
-  }
-
-  bool edges_free_for_robot(GraspOverlay& overlay) {
-    RoadmapKnowledge& known = knowledge_[static_cast<std::size_t>(overlay.candidate.opening)];
-    std::vector<std::size_t> items;
-    for (std::size_t i = 0; i < overlay.steps.size(); ++i) {
-      const int step = overlay.steps[i];
-      const bool open = step >= 0 ? known.edges[static_cast<std::size_t>(step)] == RoadmapKnowledge::unknown
-                                  : !overlay.links[static_cast<std::size_t>(-1 - step)].passed;
-      if (open) items.push_back(i);
+  /// Searches every grasp of the batch before anything is checked, each bounded by the best path and by what can be
+  /// spliced from those found before it (P2 lines 6-15).
+  bool search_all(const std::vector<int>& batch) {
+    std::vector<int> found;
+    for (const int index : batch) {
+      if (overlay(index).candidate.straight_cost() >= best_) continue;
+      if (input_.out_of_time()) return false;
+      overlay(index).connect(roadmap_, input_.options.prm.straight, best_);
+      double bound = best_;
+      for (std::size_t i = found.size() > kSplices ? found.size() - kSplices : 0; i < found.size(); ++i)
+        bound = std::min(bound, spliced_cost(roadmap_, overlay(index), overlay(found[i]).nodes));
+      ++result_.stats.graph_searches;
+      if (!find_path(0, index, bound)) continue;
+      found.push_back(index);
+      push(overlay(index).path_cost, index, true);
     }
-    std::vector<char> free;
-    const bool all = check_all(items, free, [&](int worker, std::size_t i) {
-      return input_.checks.robot_edge_is_free(worker, overlay.candidate.opening,
-                                              overlay.configuration(roadmap_, overlay.nodes[i]),
-                                              overlay.configuration(roadmap_, overlay.nodes[i + 1]));
-    });
-    result_.stats.edges_checked_robot += items.size();
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      const int step = overlay.steps[items[i]];
-      if (step >= 0) {
-        known.edges[static_cast<std::size_t>(step)] = free[i] ? RoadmapKnowledge::free : RoadmapKnowledge::blocked;
-      } else if (!free[i]) {
-        overlay.links[static_cast<std::size_t>(-1 - step)].blocked = true;
-      }
-    }
-    return all;
+    return true;
   }
 
-  bool edges_free_for_held(GraspOverlay& overlay) {
-    std::vector<std::size_t> items;
-    for (std::size_t i = 0; i < overlay.steps.size(); ++i) {
-      const int step = overlay.steps[i];
-      const bool open = step >= 0 ? overlay.passed_edges.count(step) == 0
-                                  : !overlay.links[static_cast<std::size_t>(-1 - step)].passed;
-      if (open) items.push_back(i);
-    }
-    std::vector<char> free;
-    const bool all = check_all(items, free, [&](int worker, std::size_t i) {
-      return input_.checks.held_edge_is_free(worker, overlay.candidate.grasp,
-                                             overlay.configuration(roadmap_, overlay.nodes[i]),
-                                             overlay.configuration(roadmap_, overlay.nodes[i + 1]));
-    });
-    result_.stats.edges_checked_held += items.size();
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      const int step = overlay.steps[items[i]];
-      if (step >= 0) {
-        (free[i] ? overlay.passed_edges : overlay.blocked_edges).insert(step);
+  /// Takes the most promising grasps, checks the paths of those that have one, and searches the others and those whose
+  /// path is blocked. A free path becomes the best even while others could still be better.
+  void round(std::size_t size) {
+    std::vector<int> to_search;
+    std::vector<GraspOverlay*> to_check;
+    std::vector<int> checked;
+    while (!heap_.empty() && heap_.front().key < best_ && to_search.size() + checked.size() < size) {
+      std::pop_heap(heap_.begin(), heap_.end(), later);
+      const Entry top = heap_.back();
+      heap_.pop_back();
+      if (top.searched) {
+        checked.push_back(top.overlay);
+        to_check.push_back(&overlay(top.overlay));
       } else {
-        GraspOverlay::Link& link = overlay.links[static_cast<std::size_t>(-1 - step)];
-        (free[i] ? link.passed : link.blocked) = true;
+        to_search.push_back(top.overlay);
       }
     }
-    return all;
+    const std::vector<char> free = checks_.check(to_check);
+    for (std::size_t i = 0; i < checked.size(); ++i)
+      if (!free[i] || !accept(checked[i])) to_search.push_back(checked[i]);
+    std::vector<char> found(to_search.size());
+    // Not min(bound, spliced): a spliced path may be blocked (errata on Algorithm 4.3).
+    parallel_for(to_search.size(), to_search.size() >= kSearches ? threads_ : 1,
+                 [&](std::size_t i, int worker) { found[i] = find_path(worker, to_search[i], best_); });
+    result_.stats.graph_searches += to_search.size();
+    for (std::size_t i = 0; i < to_search.size(); ++i)
+      if (found[i]) push(overlay(to_search[i]).path_cost, to_search[i], true);
   }
 
-  /// Checks the path once more, finely and with everything at once, and takes it as the best. False (and the edge at
-  /// fault is blocked) when it fails: a thin obstacle was stepped over.
+  /// Checks a free path once more, finely and with everything at once, and takes it when it is the best. False (and the
+  /// step at fault is blocked) when it fails: a thin obstacle was stepped over.
   bool accept(int index) {
-    GraspOverlay& overlay = overlays_[static_cast<std::size_t>(index)];
+    GraspOverlay& o = overlay(index);
+    if (o.path_cost >= best_) return true;
     JointPath path;
-    for (const int node : overlay.nodes) path.waypoints.push_back(overlay.configuration(roadmap_, node));
-    const int blocked = input_.checks.blocked_edge(overlay.candidate.grasp, path);
+    for (const int node : o.nodes) path.waypoints.push_back(o.configuration(roadmap_, node));
+    const int blocked = input_.checks.blocked_edge(o.candidate.grasp, path);
     if (blocked >= 0) {
-      overlay.block(overlay.steps[static_cast<std::size_t>(blocked)]);
+      o.set_step(o.steps[static_cast<std::size_t>(blocked)], false);
       return false;
     }
-    best_ = overlay.path_cost;
-    take_path(input_, overlay.candidate.grasp, best_, std::move(path), result_);
+    best_ = o.path_cost;
+    take_path(input_, o.candidate.grasp, best_, std::move(path), result_);
     return true;
   }
 
   CarryInput& input_;
   const Roadmap& roadmap_;
   ManipulationResult& result_;
-  OverlaySearch search_;
+  int threads_;
   std::vector<RoadmapKnowledge> knowledge_;
+  OverlayChecks checks_;
+  std::vector<OverlaySearch> searches_;  ///< One per worker.
   std::vector<GraspOverlay> overlays_;
   std::vector<Entry> heap_;
-  double best_ = kInfinite, open_bound_ = kInfinite;
+  double best_;
 };
+
+/// The roadmap to begin with, built unless given; nothing when stopped.
+std::optional<Roadmap> first_roadmap(CarryInput& input, ManipulationResult& result) {
+  if (input.roadmap) return *input.roadmap;
+  const Roadmap own = Roadmap::build(input.problem.group, input.options.prm.roadmap, input.monitor);
+  result.stats.roadmap_seconds = input.clock.seconds();
+  input.clock.start();
+  if (input.monitor.stopped()) return std::nullopt;
+  return own;
+}
 
 }  // namespace
 
 void run_prm_star_mg(CarryInput& input, ManipulationResult& result) {
-  std::optional<Roadmap> own;
-  if (!input.roadmap) {
-    own = Roadmap::build(input.problem.group, input.options.prm.roadmap, input.monitor);
-    result.stats.roadmap_seconds = input.clock.seconds();
-    input.clock.start();
-    if (input.monitor.stopped()) {
-      result.outcome = Outcome::stopped;
-      return;
-    }
+  std::optional<Roadmap> roadmap = first_roadmap(input, result);
+  bool whole = false;
+  while (roadmap) {
+    whole = RoadmapSearch(input, *roadmap, result).run();
+    if (!whole || 2.0 * roadmap->size() > input.options.prm.max_vertices) break;
+    // The same seed gives the same vertices, and more of them.
+    RoadmapOptions denser = roadmap->options();
+    denser.vertices = 2 * roadmap->size();
+    roadmap = Roadmap::build(input.problem.group, denser, input.monitor);
+    if (input.out_of_time()) break;
   }
-  RoadmapSearch(input, own ? *own : *input.roadmap, result).run();
+  if (result.path)
+    result.outcome = Outcome::solved;
+  else
+    result.outcome = input.monitor.stopped() ? Outcome::stopped : whole ? Outcome::infeasible : Outcome::timeout;
 }
 
 }  // namespace mmgrasp::detail

@@ -158,6 +158,10 @@ void Roadmap::near(const Eigen::VectorXd& q, std::vector<int>& out) const {
   if (size() > 0) data_->near(q.data(), out);
 }
 
+double Roadmap::radius() const {
+  return options().neighbours > 0 || size() == 0 ? 0 : data_->radius();
+}
+
 RoadmapFigures Roadmap::figures() const {
   RoadmapFigures out;
   const auto d = static_cast<double>(data_->group.size());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <nanoflann.hpp>
 #include <utility>
@@ -26,6 +27,10 @@ struct ColumnCloud {
 
 using ColumnTree =
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, ColumnCloud>, ColumnCloud, -1, int>;
+
+/// What a group must agree on to use a roadmap: the robot's joints, and which of them it moves where. Shapes, disabled
+/// pairs and where the root stands do not matter.
+std::uint64_t kinematics_key(const JointGroup& group);
 
 }  // namespace detail
 

@@ -13,15 +13,6 @@ namespace {
 
 constexpr char kMagic[] = "mmgrasp roadmap 1\n";
 
-/// What a file must agree on: robot, joints and where they may go. Where the root stands does not matter.
-std::uint64_t key_of(const JointGroup& group) {
-  Hasher hasher;
-  hasher.add(group.robot().hash());
-  for (const std::string& name : group.names()) hasher.add(name);
-  hasher.add(Eigen::MatrixXd(group.sample_lower())).add(Eigen::MatrixXd(group.sample_upper()));
-  return hasher.value();
-}
-
 struct Header {
   std::uint64_t key;
   std::int64_t joints, vertices, edges;
@@ -43,10 +34,27 @@ std::string content_of(const std::string& path) {
 
 }  // namespace
 
+std::uint64_t detail::kinematics_key(const JointGroup& group) {
+  Hasher hasher;
+  for (const Joint& joint : group.robot().joints()) {
+    hasher.add(joint.name).add(joint.type).add(joint.parent_link).add(joint.child_link);
+    hasher.add(Eigen::MatrixXd(joint.T_parent_joint.matrix())).add(Eigen::MatrixXd(joint.axis));
+    hasher.add(joint.mimic_joint).add(joint.mimic_multiplier).add(joint.mimic_offset);
+  }
+  for (const std::string& name : group.names()) hasher.add(name);
+  hasher.add(Eigen::MatrixXd(group.sample_lower())).add(Eigen::MatrixXd(group.sample_upper()));
+  return hasher.value();
+}
+
 void Roadmap::save(const std::string& path) const {
   const Data& data = *data_;
-  const Header header{key_of(data.group), data.vertices.rows(),    data.vertices.cols(), edge_count(),
-                      data.options.gamma, data.options.neighbours, data.options.seed};
+  const Header header{detail::kinematics_key(data.group),
+                      data.vertices.rows(),
+                      data.vertices.cols(),
+                      edge_count(),
+                      data.options.gamma,
+                      data.options.neighbours,
+                      data.options.seed};
   std::string out(kMagic);
   append(out, &header, sizeof header);
   append(out, data.vertices.data(), sizeof(double) * static_cast<std::size_t>(data.vertices.size()));
@@ -80,7 +88,7 @@ Roadmap Roadmap::load(const std::string& path, const JointGroup& group) {
     throw IoError(path + ": is damaged or cut off: its checksum does not match");
   Header header{};
   std::memcpy(&header, content.data() + kStart, sizeof header);
-  if (header.key != key_of(group)) {
+  if (header.key != detail::kinematics_key(group)) {
     throw IoError(path + ": was made for another robot, other joints or other limits than group '" + group.name() +
                   "' of '" + group.robot().name() + "'");
   }

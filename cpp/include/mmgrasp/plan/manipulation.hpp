@@ -49,7 +49,13 @@ struct MMGRASP_EXPORT PrmStarMgOptions {
   int batch = 0;
   /// Search a grasp only when its straight-line cost could still win (beyond P2); off: as in the paper.
   bool lazy_grasps = true;
+  /// Join start and goal configurations by a straight edge whatever their distance (beyond P2); off: when the roadmap
+  /// would join them.
+  bool straight = true;
   RoadmapOptions roadmap;  ///< Used when no roadmap is given.
+  /// Once the best path over the roadmap is found, double its vertices and go on, as long as there are no more than
+  /// this; 0: never. Building denser roadmaps counts as search.
+  int max_vertices = 0;
   void check() const;
 };
 

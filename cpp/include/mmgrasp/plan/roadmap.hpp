@@ -62,6 +62,8 @@ class MMGRASP_EXPORT Roadmap {
   std::pair<int, int> ends(int edge) const;
   /// Vertices a new configuration would be joined with, ascending; `out` is overwritten.
   void near(const Eigen::VectorXd& q, std::vector<int>& out) const;
+  /// Longest edge a new configuration would get; 0 with `neighbours`, which know no such bound.
+  double radius() const;
   RoadmapFigures figures() const;
 
   struct Data;

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "plan/carry_checks.hpp"
+#include "plan/grasp_overlay.hpp"
+
+namespace mmgrasp::detail {
+
+/// Checks the paths found last of several grasps at once, cheap questions first, side by side. What is asked depends on
+/// the paths alone and every answer on its question alone, so that what is known afterwards is the same at any number
+/// of threads.
+class OverlayChecks {
+ public:
+  OverlayChecks(const Roadmap& roadmap, CarryChecks& checks, std::vector<RoadmapKnowledge>& knowledge, int threads,
+                ManipulationStats& stats);
+
+  /// Whether each path is free; what was learned goes to the overlays and to the robot's knowledge.
+  std::vector<char> check(const std::vector<GraspOverlay*>& paths);
+
+ private:
+  struct Item {
+    int path;
+    int what;  ///< A node, or the place of a step in the path.
+  };
+  void vertices_for_robot();
+  void vertices_for_held();
+  void samples();
+  void edges_for_robot();
+  void edges_for_held();
+
+  /// One thread unless there are at least `worth` items.
+  void run(std::size_t count, std::size_t worth, const std::function<void(std::size_t, int)>& work);
+  /// Steps that the object in hand is not known to pass, of paths not yet found blocked.
+  std::vector<Item> open_steps() const;
+  std::pair<Eigen::VectorXd, Eigen::VectorXd> ends(int path, int place) const;
+  /// What the object in hand says of steps; unless `final`, free steps stay open.
+  void take_steps(const std::vector<Item>& items, const std::vector<char>& answers, bool final);
+  RoadmapKnowledge& robot_of(const GraspOverlay& overlay) {
+    return knowledge_[static_cast<std::size_t>(overlay.candidate.opening)];
+  }
+
+  const Roadmap& roadmap_;
+  CarryChecks& checks_;
+  std::vector<RoadmapKnowledge>& knowledge_;
+  int threads_;
+  ManipulationStats& stats_;
+  const std::vector<GraspOverlay*>* paths_ = nullptr;
+  std::vector<char> live_;
+};
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,255 @@
+// What every planner of manipulation_planner_names() promises.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "mmgrasp/core/error.hpp"
+#include "plan/fcl_carry.hpp"
+
+namespace mmgrasp {
+namespace {
+
+using test::flat_pose;
+
+/// A bar carried by an arm of three links past two posts, with twenty grasps.
+class CarryPlanner : public ::testing::TestWithParam<std::string> {
+ protected:
+  ManipulationOptions options() const {
+    ManipulationOptions options;
+    options.planner = GetParam();
+    options.ik_solutions = 2;
+    options.time_limit = 100;  // Not to end a run: the budgets do.
+    options.seed = 3;
+    options.prm.roadmap.vertices = 300;
+    options.prm.roadmap.gamma = 5;
+    options.rrt.max_samples = 600;
+    return options;
+  }
+
+  /// A wall from the first joint on that no link can swing through; its limits forbid the way round the back.
+  static ManipulationProblem walled() {
+    ManipulationProblem problem = test::bar_carry();
+    problem.world.add("wall", Shape(Box{{1.3, 0.02, 0.2}}), flat_pose(0.75, 0, 0));
+    return problem;
+  }
+
+  static void expect_sound(const ManipulationProblem& problem, const ManipulationResult& result) {
+    ASSERT_EQ(result.outcome, Outcome::solved);
+    ASSERT_TRUE(result.path);
+    ASSERT_GE(result.grasp_index, 0);
+    const CandidateGrasp& grasp = problem.grasps[static_cast<std::size_t>(result.grasp_index)];
+    EXPECT_TRUE(test::FclCarry(problem, result.grasp_index, 0.4, 0.02).is_free(*result.path, 0.005));
+    const auto object_at = [&](const Eigen::VectorXd& q) {
+      Pose T = Pose::Identity();
+      for (Eigen::Index i = 0; i < q.size(); ++i) T = T * flat_pose(0, 0, q[i]) * flat_pose(0.4, 0, 0);
+      return Pose(T * grasp.T_object_tool.inverse());
+    };
+    EXPECT_LT((object_at(result.path->waypoints.front()).matrix() - problem.T_world_start.matrix()).norm(), 3e-4);
+    EXPECT_LT((object_at(result.path->waypoints.back()).matrix() - problem.T_world_goal.matrix()).norm(), 3e-4);
+    for (const Eigen::VectorXd& q : result.path->waypoints) EXPECT_TRUE(problem.group.within_limits(q, 1e-9));
+    EXPECT_NEAR(result.cost, result.path->length() + grasp.cost, 1e-9);
+    EXPECT_LE(result.lower_bound, result.cost + 1e-9);
+    ASSERT_FALSE(result.improvements.empty());
+    EXPECT_EQ(result.improvements.back().cost, result.cost);
+    EXPECT_EQ(result.improvements.back().grasp, result.grasp_index);
+  }
+};
+
+TEST_P(CarryPlanner, SolvesAndThePathIsFreeByFcl) {
+  const ManipulationProblem problem = test::bar_carry();
+  double last = std::numeric_limits<double>::infinity();
+  std::size_t told = 0;
+  const ManipulationResult result = plan_manipulation(problem, options(), nullptr, {}, [&](const Improvement& better) {
+    EXPECT_LT(better.cost, last);
+    last = better.cost;
+    ++told;
+  });
+  expect_sound(problem, result);
+  EXPECT_EQ(result.cost, last);
+  EXPECT_EQ(result.improvements.size(), told);
+  EXPECT_EQ(result.grasps.size(), problem.grasps.size());
+}
+
+TEST_P(CarryPlanner, SameSeedSamePathAtAnyNumberOfThreads) {
+  const ManipulationProblem problem = test::bar_carry();
+  ManipulationOptions options = this->options();
+  options.threads = 1;
+  const ManipulationResult expected = plan_manipulation(problem, options);
+  ASSERT_EQ(expected.outcome, Outcome::solved);
+  for (const int threads : {1, 2, 3, 7}) {
+    options.threads = threads;
+    const ManipulationResult result = plan_manipulation(problem, options);
+    ASSERT_TRUE(result.path);
+    EXPECT_EQ(result.path->waypoints, expected.path->waypoints);
+    EXPECT_EQ(result.grasp_index, expected.grasp_index);
+    EXPECT_EQ(result.cost, expected.cost);
+    EXPECT_EQ(result.improvements.size(), expected.improvements.size());
+    EXPECT_EQ(result.stats.graph_searches, expected.stats.graph_searches);
+    EXPECT_EQ(result.stats.edges_checked_robot, expected.stats.edges_checked_robot);
+    EXPECT_EQ(result.stats.edges_checked_held, expected.stats.edges_checked_held);
+    EXPECT_EQ(result.stats.samples, expected.stats.samples);
+  }
+}
+
+TEST_P(CarryPlanner, CallsSideBySideDoNotMeet) {
+  const ManipulationProblem problem = test::bar_carry();
+  const ManipulationResult expected = plan_manipulation(problem, options());
+  ASSERT_TRUE(expected.path);
+  std::vector<ManipulationResult> results(2);
+  std::vector<std::thread> threads;
+  for (ManipulationResult& result : results)
+    threads.emplace_back([&] { result = plan_manipulation(problem, options()); });
+  for (std::thread& thread : threads) thread.join();
+  for (const ManipulationResult& result : results) {
+    ASSERT_TRUE(result.path);
+    EXPECT_EQ(result.path->waypoints, expected.path->waypoints);
+  }
+}
+
+TEST_P(CarryPlanner, WithoutObstaclesTheStraightLineIsTaken) {
+  ManipulationProblem problem = test::bar_carry();
+  problem.world = World{};
+  problem.T_world_goal = flat_pose(0.6, 0.3, 0.9);
+  const ManipulationResult result = plan_manipulation(problem, options());
+  expect_sound(problem, result);
+  EXPECT_EQ(result.path->waypoints.size(), 2u);
+  EXPECT_NEAR(result.cost, result.lower_bound, 1e-9);
+}
+
+TEST_P(CarryPlanner, AGoalThatIsTheStartCostsNothing) {
+  ManipulationProblem problem = test::bar_carry();
+  problem.T_world_goal = problem.T_world_start;
+  const ManipulationResult result = plan_manipulation(problem, options());
+  expect_sound(problem, result);
+  EXPECT_NEAR(result.cost, 0, 1e-9);
+}
+
+TEST_P(CarryPlanner, OneGraspOfManyLeadsThere) {
+  const ManipulationProblem good = test::bar_carry();
+  const ManipulationResult best = plan_manipulation(good, options());
+  ASSERT_TRUE(best.path);
+  for (const bool in_the_post : {false, true}) {
+    ManipulationProblem problem = good;
+    problem.grasps.assign(300, {flat_pose(3, 0, 0), 0, 0});  // out of reach
+    if (in_the_post) {
+      problem.world.add("ball", Shape(Sphere{0.01}), problem.T_world_start * flat_pose(-0.05, 0.2, 0));
+      // The third link crosses the ball.
+      problem.grasps.assign(300, {flat_pose(-0.05, 0, 0.5 * M_PI), 0, 0});
+      for (int side : {1, -1}) problem.grasps.push_back({flat_pose(-0.05, 0, side * 0.5 * M_PI), 0, 0});
+    }
+    problem.grasps.insert(problem.grasps.begin() + 137, good.grasps[static_cast<std::size_t>(best.grasp_index)]);
+    const ManipulationResult result = plan_manipulation(problem, options());
+    ASSERT_EQ(result.outcome, Outcome::solved);
+    EXPECT_EQ(result.grasps.size(), problem.grasps.size());
+    if (!in_the_post) {
+      EXPECT_EQ(result.grasp_index, 137);
+      EXPECT_EQ(result.rejections.reach, 300u);
+    }
+  }
+}
+
+TEST_P(CarryPlanner, AGraspsCostCounts) {
+  ManipulationProblem problem = test::bar_carry();
+  const ManipulationResult cheap = plan_manipulation(problem, options());
+  ASSERT_TRUE(cheap.path);
+  problem.grasps[static_cast<std::size_t>(cheap.grasp_index)].cost = 1000;
+  const ManipulationResult other = plan_manipulation(problem, options());
+  ASSERT_TRUE(other.path);
+  EXPECT_NE(other.grasp_index, cheap.grasp_index);
+  EXPECT_LT(other.cost, 1000);
+}
+
+TEST_P(CarryPlanner, AnImpossibleProblemEndsByItsBudget) {
+  const ManipulationProblem problem = walled();
+  const ManipulationResult result = plan_manipulation(problem, options());
+  EXPECT_TRUE(result.outcome == Outcome::timeout || result.outcome == Outcome::infeasible) << to_string(result.outcome);
+  EXPECT_FALSE(result.path);
+  EXPECT_EQ(result.grasp_index, -1);
+  EXPECT_TRUE(result.improvements.empty());
+  const ManipulationResult again = plan_manipulation(problem, options());
+  EXPECT_EQ(again.outcome, result.outcome);
+  EXPECT_EQ(again.stats.edges_checked_robot, result.stats.edges_checked_robot);
+}
+
+TEST_P(CarryPlanner, TheStopTokenEndsIt) {
+  ManipulationOptions options = this->options();
+  options.rrt.max_samples = 10000000;
+  options.prm.roadmap.vertices = 300000;
+  Monitor monitor;
+  std::thread stopper([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    monitor.stop.stop();
+  });
+  const ManipulationResult result = plan_manipulation(walled(), options, nullptr, monitor);
+  stopper.join();
+  EXPECT_EQ(result.outcome, Outcome::stopped);
+  EXPECT_FALSE(result.path);
+}
+
+TEST_P(CarryPlanner, AStopBeforehandIsHeeded) {
+  Monitor monitor;
+  monitor.stop.stop();
+  EXPECT_EQ(plan_manipulation(test::bar_carry(), options(), nullptr, monitor).outcome, Outcome::stopped);
+}
+
+TEST_P(CarryPlanner, TheClockIsACap) {
+  ManipulationOptions options = this->options();
+  options.time_limit = 1e-9;
+  const ManipulationResult result = plan_manipulation(walled(), options);
+  EXPECT_EQ(result.outcome, Outcome::timeout);
+  EXPECT_FALSE(result.path);
+}
+
+TEST_P(CarryPlanner, StopsWithWhatItHas) {
+  ManipulationOptions options = this->options();
+  options.rrt.max_samples = 10000000;
+  options.prm.max_vertices = 10000000;
+  Monitor monitor;
+  const ManipulationProblem problem = test::bar_carry();
+  const ManipulationResult result =
+      plan_manipulation(problem, options, nullptr, monitor, [&](const Improvement&) { monitor.stop.stop(); });
+  expect_sound(problem, result);
+}
+
+TEST_P(CarryPlanner, AnInvalidStartSaysWhy) {
+  ManipulationProblem problem = test::bar_carry();
+  problem.T_world_start = flat_pose(0.85, 0, 0.5 * M_PI);  // through the post
+  ManipulationResult result = plan_manipulation(problem, options());
+  EXPECT_EQ(result.outcome, Outcome::invalid_start);
+  EXPECT_FALSE(result.path);
+  EXPECT_GT(result.rejections.scene, 0u);
+  ASSERT_FALSE(result.contacts.empty());
+  EXPECT_EQ(result.contacts.front().b, "post");
+  for (const GraspReport& report : result.grasps) EXPECT_GT(report.start.total(), 0u);
+  std::swap(problem.T_world_start, problem.T_world_goal);
+  problem.T_world_start = test::bar_carry().T_world_start;
+  result = plan_manipulation(problem, options());
+  EXPECT_EQ(result.outcome, Outcome::invalid_goal);
+  EXPECT_FALSE(result.contacts.empty());
+  problem.T_world_start = flat_pose(9, 0, 0);
+  result = plan_manipulation(problem, options());
+  EXPECT_EQ(result.outcome, Outcome::invalid_start);
+  EXPECT_EQ(result.rejections.reach, problem.grasps.size());
+  EXPECT_TRUE(result.contacts.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CarryPlanner, ::testing::ValuesIn(manipulation_planner_names()),
+                         [](const auto& info) { return info.param; });
+
+TEST(CarryPlanners, AWrongNameListsTheKnownOnes) {
+  ManipulationOptions options;
+  options.planner = "prm";
+  try {
+    plan_manipulation(test::bar_carry(), options);
+    FAIL() << "an unknown planner was taken";
+  } catch (const InvalidInput& error) {
+    for (const std::string& name : manipulation_planner_names())
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace mmgrasp

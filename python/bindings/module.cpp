@@ -11,6 +11,7 @@ void bind_trajopt(py::module_& m);
 void bind_control(py::module_& m);
 void bind_structure(py::module_& m);
 void bind_push_grasp(py::module_& m);
+void bind_manipulation(py::module_& m);
 
 void declare_classes(py::module_& m) {
   py::class_<Robot>(m, "Robot", "A robot as URDF and SRDF describe it. Immutable; joints and links by name.");
@@ -36,6 +37,7 @@ PYBIND11_MODULE(_core, m) {
   bind_capability(m);
   bind_grasp(m);
   bind_plan(m);
+  bind_manipulation(m);
   bind_control(m);
   bind_push_grasp(m);
   bind_task(m);

@@ -17,6 +17,13 @@ SECTIONS = (
     ("ik", "Inverse kinematics, keywords of `JointGroup.ik` and its kin (`IkOptions`)", _core._ik_option_table, set()),
     ("collision_checker", "Keywords of `CollisionChecker` (`CheckerOptions`)", _core._checker_option_table, set()),
     ("check_edge", "Keywords of `CollisionChecker.check_edge` (`EdgeOptions`)", _core._edge_option_table, set()),
+    ("roadmap", "Keywords of `Roadmap.build` (`RoadmapOptions`)", _core._roadmap_option_table, set()),
+    (
+        "plan_manipulation",
+        "Carrying an object with any of many grasps, keywords (`ManipulationOptions`)",
+        _core._manipulation_option_table,
+        set(),
+    ),
     (
         "plan_platform_locations",
         "Two base poses for two tool poses, keywords (`PlatformLocationsOptions`)",

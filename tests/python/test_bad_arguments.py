@@ -157,6 +157,7 @@ OBJECTS = {
     "BaseTracker": lambda: mg.BaseTracker(ROBOT),
     "IkObjective": lambda: mg.joint_limit_objective(ARM),
     "IkSeedDatabase": lambda: mg.IkSeedDatabase(WHOLE_BODY),
+    "Roadmap": lambda: mg.Roadmap.build(ARM, vertices=10),
     "JointTrajectory": lambda: mg.time_parameterize([Q, Q / 2], np.ones(3), np.ones(3), names=["i", "j", "k"]),
     "PartSupplyProblem": lambda: mg.PartSupplyProblem(
         ROBOT, ARM, gripper(), world(), [TRAY], Q, X_Y_THETA, X_Y_THETA, CARRY
@@ -223,6 +224,8 @@ OTHERS: dict[str, Any] = {
     "World.move.name": lambda: "box",
     "World.attach.name": lambda: "box",
     "World.detach.name": lambda: "box",
+    "ManipulationProblem.object": lambda: BOX,
+    "ManipulationProblem.grasps": lambda: [mg.CandidateGrasp(np.eye(4))],
     "verify.CheckedStop.trays": lambda: ["tray"],
     "verify.CheckedIntersection.trays": lambda: ["tray"],
     "verify.CheckedRegion.tray": lambda: "tray",

@@ -26,16 +26,22 @@ void RoadmapOptions::check() const {
   require(neighbours >= 0, "neighbours", neighbours, "must be >= 0");
 }
 
-void Roadmap::Data::draw() {
+bool Roadmap::Data::draw(const Monitor& monitor) {
   const Eigen::VectorXd lower = group.sample_lower(), upper = group.sample_upper();
   for (Eigen::Index i = 0; i < lower.size(); ++i) {
     require(std::isfinite(upper[i] - lower[i]), "group: width of '" + group.names()[static_cast<std::size_t>(i)] + "'",
             upper[i] - lower[i], "must be finite to draw a roadmap from");
   }
   vertices.resize(lower.size(), options.vertices);
-  // A stream each, so that vertex i does not depend on how many there are.
-  for (Eigen::Index i = 0; i < vertices.cols(); ++i)
-    vertices.col(i) = Rng(options.seed, static_cast<std::uint64_t>(i)).uniform(lower, upper);
+  constexpr Eigen::Index kBlock = 1024;
+  const Eigen::Index count = vertices.cols();
+  const auto draw_block = [&](std::size_t block, int) {
+    const Eigen::Index first = static_cast<Eigen::Index>(block) * kBlock;
+    // A stream each, so that vertex i does not depend on how many there are.
+    for (Eigen::Index i = first; i < std::min(first + kBlock, count); ++i)
+      vertices.col(i) = Rng(options.seed, static_cast<std::uint64_t>(i)).uniform(lower, upper);
+  };
+  return parallel_for(static_cast<std::size_t>((count + kBlock - 1) / kBlock), 0, draw_block, monitor, "roadmap");
 }
 
 void Roadmap::Data::index() {
@@ -117,13 +123,13 @@ Roadmap::Roadmap(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
 Roadmap Roadmap::build(const JointGroup& group, const RoadmapOptions& options, const Monitor& monitor) {
   options.check();
   auto data = std::make_shared<Data>(group, options);
-  data->draw();
-  data->index();
-  if (!data->join(monitor)) {
-    data = std::make_shared<Data>(group, options);
-    data->vertices.resize(group.size(), 0);
-    data->make_arcs();
+  if (data->draw(monitor)) {
+    data->index();
+    if (data->join(monitor)) return Roadmap(data);
   }
+  data = std::make_shared<Data>(group, options);
+  data->vertices.resize(group.size(), 0);
+  data->make_arcs();
   return Roadmap(data);
 }
 

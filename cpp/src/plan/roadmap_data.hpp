@@ -37,11 +37,11 @@ std::uint64_t kinematics_key(const JointGroup& group);
 struct Roadmap::Data {
   Data(const JointGroup& group_in, const RoadmapOptions& options_in) : group(group_in), options(options_in) {}
 
-  /// Draws the vertices and indexes them; the edges come after.
-  void draw();
+  /// Draws the vertices; false when stopped.
+  bool draw(const Monitor& monitor);
+  /// Makes the search tree over the vertices.
   void index();
   double radius() const;
-  int wanted_neighbours() const { return options.neighbours; }
   void near(const double* q, std::vector<int>& out) const;
   /// Joins near vertices; false when stopped.
   bool join(const Monitor& monitor);

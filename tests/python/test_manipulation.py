@@ -1,0 +1,266 @@
+"""plan_manipulation and Roadmap from Python: an arm of three links in the plane carries a bar past two posts."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import threading
+
+import numpy as np
+import pytest
+
+import mmgrasp as mg
+
+LENGTH = 0.4
+
+
+def planar_arm(joints: int = 3, length: float = LENGTH) -> mg.JointGroup:
+    links, rows = ['<link name="l0"/>'], []
+    for i in range(1, joints + 1):
+        links.append(
+            f'<link name="l{i}"><collision><origin xyz="{length / 2} 0 0"/><geometry><box size="{length} 0.02 0.02"/>'
+            f'</geometry></collision></link><joint name="j{i}" type="revolute"><parent link="l{i - 1}"/><child link="l{i}"/>'
+            f'<origin xyz="{length if i > 1 else 0} 0 0"/><axis xyz="0 0 1"/>'
+            '<limit effort="1" velocity="2" lower="-2.8" upper="2.8"/></joint>'
+        )
+        rows += [f'<disable_collisions link1="l{k}" link2="l{i}" reason="User"/>' for k in range(i)]
+    links.append(
+        f'<link name="tip"/><joint name="t" type="fixed"><parent link="l{joints}"/><child link="tip"/>'
+        f'<origin xyz="{length} 0 0"/></joint>'
+    )
+    urdf = f'<robot name="planar">{"".join(links)}</robot>'
+    robot = mg.Robot.from_strings(urdf, f'<robot name="planar">{"".join(rows)}</robot>')
+    return robot.group(base_link="l0", tip="tip")
+
+
+ARM = planar_arm()
+BAR = mg.LinkShape(mg.Box([0.4, 0.02, 0.02]))
+
+
+def flat(x: float, y: float, yaw: float) -> np.ndarray:
+    return mg.pose([x, y, 0], rpy=[0, 0, yaw])
+
+
+def scene() -> mg.World:
+    world = mg.World()
+    world.add_box("post", [0.1, 0.1, 0.2], flat(0.85, 0, 0))
+    world.add_box("corner", [0.06, 0.06, 0.2], flat(0.35, -0.75, 0))
+    return world
+
+
+GRASPS = [mg.CandidateGrasp(flat(-0.18 + 0.04 * i, 0, side)) for i in range(10) for side in (0.5 * np.pi, -0.5 * np.pi)]
+
+
+def problem(**changes) -> mg.ManipulationProblem:
+    arguments = {
+        "group": ARM,
+        "world": scene(),
+        "object": BAR,
+        "T_world_start": flat(0.55, 0.45, 1.2),
+        "T_world_goal": flat(0.6, -0.45, 0.9),
+        "grasps": GRASPS,
+        "touch_links": ["l3", "tip"],
+    }
+    return mg.ManipulationProblem(**{**arguments, **changes})
+
+
+OPTIONS = {"vertices": 300, "gamma": 5, "ik_solutions": 2, "time_limit": 100}
+
+
+def plan(**changes) -> mg.ManipulationResult:
+    return mg.plan_manipulation(problem(**changes), **OPTIONS)
+
+
+def test_the_bar_is_carried_from_start_to_goal():
+    improvements = []
+    result = mg.plan_manipulation(problem(), improved=improvements.append, **OPTIONS)
+    assert result.outcome == mg.Outcome.solved
+    grasp = GRASPS[result.grasp_index]
+    assert result.cost == pytest.approx(np.linalg.norm(np.diff(result.path, axis=0), axis=1).sum(), abs=1e-12)
+    assert result.lower_bound == pytest.approx(result.cost)
+    assert improvements[-1].cost == result.cost and improvements[-1].grasp == result.grasp_index
+    tool_object = np.linalg.inv(grasp.T_object_tool)
+    assert np.allclose(ARM.fk(result.path[0]) @ tool_object, flat(0.55, 0.45, 1.2), atol=3e-4)
+    assert np.allclose(ARM.fk(result.path[-1]) @ tool_object, flat(0.6, -0.45, 0.9), atol=3e-4)
+    world = scene()
+    world.add("bar", [BAR])
+    world.attach("bar", "tip", tool_object, ["l3", "tip"])
+    checker = mg.CollisionChecker(ARM.robot, world, ARM)
+    for a, b in zip(result.path, result.path[1:], strict=False):
+        assert checker.edge_is_free(a, b, 0.002)
+
+
+def test_poses_in_an_array_are_grasps():
+    poses = np.array([grasp.T_object_tool for grasp in GRASPS])
+    by_array, by_list = plan(grasps=poses), plan()
+    assert by_array.cost == by_list.cost and by_array.grasp_index == by_list.grasp_index
+    assert np.array_equal(by_array.path, by_list.path)
+
+
+@pytest.mark.parametrize("batch", [0, 1, 5])
+def test_variants_threads_and_a_loaded_roadmap_agree(tmp_path, batch):
+    roadmap = mg.Roadmap.build(ARM, vertices=300, gamma=5)
+    roadmap.save(tmp_path / "arm.roadmap")
+    loaded = mg.Roadmap.load(tmp_path / "arm.roadmap", ARM)
+    expected = plan()
+    for threads in (1, 2):
+        found = mg.plan_manipulation(
+            problem(), roadmap=loaded, batch=batch, threads=threads, ik_solutions=2, time_limit=100
+        )
+        assert found.cost == pytest.approx(expected.cost, abs=1e-12)
+        assert found.stats["roadmap_seconds"] == 0
+
+
+def test_a_roadmap_tells_of_itself():
+    roadmap = mg.Roadmap.build(ARM, vertices=200, neighbours=5, seed=3)
+    assert len(roadmap) == 200 and roadmap.vertices.shape == (200, 3)
+    degree = np.bincount(roadmap.edges.ravel(), minlength=200)
+    assert degree.min() >= 5 and roadmap.figures["mean_degree"] == pytest.approx(degree.mean())
+    q = np.array([0.1, 0.2, 0.3])
+    nearest = np.argsort(np.linalg.norm(roadmap.vertices - q, axis=1))[:5]
+    assert roadmap.near(q) == sorted(nearest.tolist())
+    assert roadmap.to_dict()["options"] == {"vertices": 200, "gamma": 4.0, "neighbours": 5, "seed": 3}
+    assert "200 vertices" in repr(roadmap)
+
+
+def test_results_convert_and_print():
+    result = plan()
+    data = json.loads(json.dumps(result.to_dict()))
+    assert data["outcome"] == "solved" and len(data["grasps"]) == 20 and data["path"] == result.path.tolist()
+    assert data["stats"]["graph_searches"] > 0 and data["improvements"][-1]["cost"] == result.cost
+    assert "grasp" in repr(result) and "of 20" in repr(result)
+    assert "20 grasps" in repr(problem())
+
+
+def test_out_of_reach_with_every_grasp():
+    result = plan(T_world_start=flat(5, 0, 0))
+    assert result.outcome == mg.Outcome.invalid_start and result.path is None
+    assert [report.start.reach for report in result.grasps] == [1] * 20
+    assert result.rejections.reach == 20 and result.contacts == []
+
+
+def test_start_in_collision_with_every_grasp_names_the_pair():
+    result = plan(T_world_start=flat(0.85, 0, np.pi / 2))
+    assert result.outcome == mg.Outcome.invalid_start
+    assert result.rejections.scene > 0 and all(report.start_solutions == 0 for report in result.grasps)
+    assert any(contact.b == "post" for contact in result.contacts)
+    assert "'post'" in repr(result)
+
+
+def test_goal_in_collision_with_every_grasp():
+    result = plan(T_world_goal=flat(0.85, 0, np.pi / 2))
+    assert result.outcome == mg.Outcome.invalid_goal
+    assert sum(report.start_solutions for report in result.grasps) > 0
+    assert sum(report.goal.scene for report in result.grasps) > 0
+
+
+def test_only_one_of_many_grasps_leads_there():
+    far = [mg.CandidateGrasp(flat(3 + 0.01 * i, 0, 0)) for i in range(300)]
+    good = plan()
+    result = plan(grasps=[*far, GRASPS[good.grasp_index], *far])
+    assert result.outcome == mg.Outcome.solved and result.grasp_index == 300
+    assert result.cost == pytest.approx(good.cost, abs=1e-9)
+    assert sum(report.start.reach for report in result.grasps) == 600
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"grasps": []}, ["grasps", "at least one"]),
+        ({"grasps": [mg.CandidateGrasp(np.eye(4), cost=-1)]}, ["grasps[0].cost"]),
+        ({"grasps": np.eye(4)}, ["grasps", "(4, 4)", "(m, 4, 4)"]),
+        ({"grasps": [np.eye(4), 2 * np.eye(4)]}, ["grasps[1]"]),
+        ({"grasps": "all"}, ["grasps"]),
+        ({"T_world_goal": np.diag([1.0, 1, -1, 1])}, ["T_world_goal"]),
+        ({"T_world_start": np.full((4, 4), np.nan)}, ["T_world_start", "nan"]),
+        ({"T_world_start": np.eye(3)}, ["T_world_start", "(3, 3)"]),
+        ({"object": []}, ["object"]),
+        ({"object": 3}, ["object"]),
+        ({"object_name": "post"}, ["object_name", "post"]),
+        ({"touch_links": ["hand"]}, ["hand"]),
+    ],
+)
+def test_bad_problems_are_refused(changes, words):
+    with pytest.raises(mg.InvalidInput) as refused:
+        plan(**changes)
+    for word in words:
+        assert word in str(refused.value)
+
+
+def test_poses_of_grasps_must_be_rigid():
+    with pytest.raises(mg.InvalidInput, match="T_object_tool"):
+        mg.CandidateGrasp(2 * np.eye(4))
+    with pytest.raises(mg.InvalidInput, match="opening"):
+        mg.CandidateGrasp(np.eye(4), opening=float("nan"))
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"planner": "prm"}, ["planner", "prm_star_mg"]),
+        ({"graps": 3}, ["unknown keyword"]),
+        ({"batches": 3}, ["unknown keyword", "batch"]),
+        ({"batch": -1}, ["batch"]),
+        ({"vertices": 1}, ["vertices"]),
+        ({"gamma": float("inf")}, ["gamma"]),
+        ({"time_limit": 0}, ["time_limit"]),
+        ({"ik_solutions": 0}, ["ik_solutions"]),
+        ({"joint_step": 0}, ["joint_step"]),
+        ({"seed": -1}, ["seed"]),
+    ],
+)
+def test_bad_options_are_refused(options, words):
+    with pytest.raises(mg.InvalidInput) as refused:
+        mg.plan_manipulation(problem(), **options)
+    for word in words:
+        assert word in str(refused.value)
+
+
+def test_a_roadmap_of_another_robot_is_refused(tmp_path):
+    other = mg.Roadmap.build(planar_arm(length=0.5), vertices=50)
+    with pytest.raises(mg.InvalidInput, match="another robot"):
+        mg.plan_manipulation(problem(), roadmap=other)
+    other.save(tmp_path / "other.roadmap")
+    with pytest.raises(mg.IoError, match="another robot"):
+        mg.Roadmap.load(tmp_path / "other.roadmap", ARM)
+    with pytest.raises(mg.IoError, match="cannot be opened"):
+        mg.Roadmap.load(tmp_path / "none.roadmap", ARM)
+    (tmp_path / "text").write_text("no roadmap")
+    with pytest.raises(mg.IoError, match="no roadmap"):
+        mg.Roadmap.load(tmp_path / "text", ARM)
+
+
+def test_what_improved_raises_ends_the_call():
+    def fail(improvement):
+        raise RuntimeError("good enough")
+
+    with pytest.raises(RuntimeError, match="good enough"):
+        mg.plan_manipulation(problem(), improved=fail, **OPTIONS)
+
+
+def test_ctrl_c_ends_it():
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            mg.plan_manipulation(problem(), vertices=5_000_000, neighbours=20, time_limit=1000)
+    finally:
+        timer.join()
+        signal.signal(signal.SIGINT, before)
+
+
+def test_other_threads_run_meanwhile():
+    ticks, done = [], threading.Event()
+
+    def tick():
+        while not done.wait(0.001):
+            ticks.append(1)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    mg.plan_manipulation(problem(), vertices=20000, neighbours=20, ik_solutions=2, time_limit=100)
+    done.set()
+    thread.join()
+    assert len(ticks) > 5

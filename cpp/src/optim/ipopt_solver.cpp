@@ -226,7 +226,7 @@ class IpoptSolver : public NlpSolver {
     NlpResult result = judged(problem, adapter->last, converged, status == Ipopt::Maximum_Iterations_Exceeded, best,
                               guess, options, clock);
     result.iterations = adapter->iterations;
-    result.message = said(status);
+    result.message = clock.stopped() ? "stopped" : clock.late() ? "time exceeded" : said(status);
     return result;
   }
 

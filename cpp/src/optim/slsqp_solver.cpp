@@ -156,7 +156,7 @@ class SlsqpSolver : public NlpSolver {
     const bool converged = code == nlopt::SUCCESS || code == nlopt::FTOL_REACHED || code == nlopt::XTOL_REACHED;
     NlpResult result = judged(problem, last, converged, code == nlopt::MAXEVAL_REACHED, best, guess, options, clock);
     result.iterations = dense.evaluations;
-    result.message = message;
+    result.message = clock.stopped() ? "stopped" : clock.late() ? "time exceeded" : message;
     return result;
   }
 

@@ -165,7 +165,7 @@ class DriveBy {
       if (!stands.back().empty()) continue;
       missing = "task " + std::to_string(i) + ": no configuration within the limits" +
                 (worlds_ ? " and free of collisions" : "") + " brings the tool there (" +
-                std::to_string(options_.stands) + " tries)";
+                std::to_string(options_.stands) + " tries at a time)";
       return {};
     }
     return detail::choose_stands(group_, stands, start_, goal, options_.attempts);

@@ -17,6 +17,7 @@ using Eigen::VectorXd;
 constexpr double kNear = 0.35, kFar = 1.1;  // of base and tool on the floor [m]
 constexpr double kHeadingSpread = 0.6;      // about the direction of travel [rad]
 constexpr double kTwin = 0.3;               // stands closer than this in every value are one
+constexpr int kRounds = 8;                  // of tries while nothing is found
 
 double direction(const VectorXd& from, const VectorXd& to, double otherwise) {
   const Eigen::Vector2d way = to.head<2>() - from.head<2>();
@@ -64,8 +65,8 @@ VectorXd unwound(const JointGroup& group, const VectorXd& from, VectorXd to) {
 std::vector<Stand> find_stands(const JointGroup& group, CollisionChecker* checker, const DriveByTask& task,
                                const VectorXd& before, const VectorXd& after, const DriveByOptions& options,
                                unsigned stream, const Monitor& monitor) {
-  const int count = options.stands;
-  std::vector<Stand> found(static_cast<std::size_t>(count));
+  const std::size_t count = static_cast<std::size_t>(options.stands);
+  std::vector<Stand> found;
   const int threads = resolve_threads(options.threads);
   std::vector<CollisionChecker> checkers;
   for (int i = 0; checker && i < threads; ++i) checkers.push_back(checker->clone());
@@ -74,35 +75,41 @@ std::vector<Stand> find_stands(const JointGroup& group, CollisionChecker* checke
   ik.position_tolerance = 1e-5;
   ik.max_iterations = 40;
   const double along = group.has_base() ? direction(before, after, before[2]) : 0;
-  parallel_for(
-      static_cast<std::size_t>(count), threads,
-      [&](std::size_t item, int worker) {
-        Rng rng(options.seed, 1000003u * (stream + 1) + item);
-        const int candidate = static_cast<int>(item % task.candidates.size());
-        const Pose T = drawn_pose(task, candidate, rng);
-        const double share = rng.uniform(0.2, 0.8);
-        VectorXd seed = (1 - share) * before + share * after;
-        // The first tries keep the arm near the way, later ones look anywhere.
-        if (item * 3 >= static_cast<std::size_t>(count)) {
-          const VectorXd any = rng.uniform(group.sample_lower(), group.sample_upper());
-          seed.tail(seed.size() - (group.has_base() ? 3 : 0)) = any.tail(seed.size() - (group.has_base() ? 3 : 0));
-        }
-        if (group.has_base()) {
-          const double angle = rng.uniform(-M_PI, M_PI), radius = rng.uniform(kNear, kFar);
-          seed[0] = T.translation().x() + radius * std::cos(angle);
-          seed[1] = T.translation().y() + radius * std::sin(angle);
-          seed[2] = along + kHeadingSpread * rng.normal();
-        }
-        seed = seed.cwiseMax(group.sample_lower()).cwiseMin(group.sample_upper());
-        const ConfigurationFilter valid = [&](const VectorXd& q) {
-          return checker ? checkers[static_cast<std::size_t>(worker)].rejection(q) : Rejection::none;
-        };
-        const IkResult r = solve_ik(group, T, seed, ik, valid, {monitor.stop, {}});
-        if (r.outcome != Outcome::solved) return;
-        found[item].q = unwound(group, 0.5 * (before + after), r.q);
-        found[item].candidate = candidate;
-      },
-      monitor);
+  std::size_t first = 0;
+  const auto try_one = [&](std::size_t index, int worker) {
+    const std::size_t item = first + index;
+    Rng rng(options.seed, 1000003u * (stream + 1) + item);
+    const int candidate = static_cast<int>(item % task.candidates.size());
+    const Pose T = drawn_pose(task, candidate, rng);
+    const double share = rng.uniform(0.2, 0.8);
+    VectorXd seed = (1 - share) * before + share * after;
+    // The first tries keep the arm near the way, later ones look anywhere.
+    if (item * 3 >= count) {
+      const VectorXd any = rng.uniform(group.sample_lower(), group.sample_upper());
+      seed.tail(seed.size() - (group.has_base() ? 3 : 0)) = any.tail(seed.size() - (group.has_base() ? 3 : 0));
+    }
+    if (group.has_base()) {
+      const double angle = rng.uniform(-M_PI, M_PI), radius = rng.uniform(kNear, kFar);
+      seed[0] = T.translation().x() + radius * std::cos(angle);
+      seed[1] = T.translation().y() + radius * std::sin(angle);
+      seed[2] = along + kHeadingSpread * rng.normal();
+    }
+    seed = seed.cwiseMax(group.sample_lower()).cwiseMin(group.sample_upper());
+    const ConfigurationFilter valid = [&](const VectorXd& q) {
+      return checker ? checkers[static_cast<std::size_t>(worker)].rejection(q) : Rejection::none;
+    };
+    const IkResult r = solve_ik(group, T, seed, ik, valid, {monitor.stop, {}});
+    if (r.outcome != Outcome::solved) return;
+    found[index].q = unwound(group, 0.5 * (before + after), r.q);
+    found[index].candidate = candidate;
+  };
+  const auto any = [&] {
+    return std::any_of(found.begin(), found.end(), [](const Stand& s) { return s.q.size() > 0; });
+  };
+  for (int round = 0; round < kRounds && !any() && !monitor.stopped(); ++round, first += count) {
+    found.assign(count, {});
+    parallel_for(count, threads, try_one, monitor);
+  }
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i].q.size() == 0) continue;

@@ -41,7 +41,7 @@ def whole_body() -> tuple[_core.Robot, _core.JointGroup]:
         base_limits=BASE_LIMITS,
     )
     group = robot.group("arm", tip="gripper_link", with_base=True)
-    return robot, group.with_reference(robot.values(torso_lift_joint=LIFT))
+    return robot, group.with_reference({"torso_lift_joint": LIFT})
 
 
 def setup() -> dict[str, Any]:

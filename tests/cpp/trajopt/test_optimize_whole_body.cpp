@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <iostream>
 
 #include "mmgrasp/core/error.hpp"
-#include "mmgrasp/robot/ik.hpp"
 #include "support/fetchlike.hpp"
+#include "support/small_robots.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -45,12 +45,35 @@ WholeBodyProblem example(const JointGroup& group) {
   return problem;
 }
 
-void print(const WholeBodyResult& r) {
-  std::cout << to_string(r.outcome) << " " << r.message << " T=" << r.trajectory->duration() << " it=" << r.iterations
-            << " " << r.seconds << " s\n";
+/// Sliding joints of 1 m/s and 2 m/s^2 along x and y.
+JointGroup sliders(int count) {
+  std::string urdf = "<robot name='sliders'>" + test::urdf_link("base");
+  for (int i = 0; i < count; ++i) {
+    const std::string name = std::string(1, static_cast<char>('a' + i)), parent = i == 0 ? "base" : "a";
+    urdf += test::urdf_link(name) +
+            test::urdf_joint("joint_" + name, "prismatic", parent, name, "0 0 0", i == 0 ? "1 0 0" : "0 1 0");
+  }
+  const Robot robot = Robot::from_strings(urdf + "</robot>");
+  return robot.chain("base", count == 1 ? "a" : "b").with_acceleration_limits(VectorXd::Constant(count, 2.0));
+}
+
+/// Rest to rest over d at no more than v, speeding up by a.
+double bang_bang(double d, double v, double a) {
+  return d >= v * v / a ? d / v + v / a : 2 * std::sqrt(d / a);
+}
+
+WholeBodyProblem between(const JointGroup& group, const VectorXd& from, const VectorXd& to, std::vector<int> segments) {
+  WholeBodyProblem problem(group);
+  problem.start = from;
+  problem.goal_lower = problem.goal_upper = to;
+  for (int n : segments) problem.segments.push_back({n});
+  return problem;
+}
+
+const Violation& violation(const WholeBodyResult& r, const std::string& kind) {
   for (const Violation& v : r.violations)
-    std::cout << "  " << v.kind << " " << v.value << " at " << v.time << " " << v.what << (v.kept() ? "" : " !!!")
-              << "\n";
+    if (v.kind == kind) return v;
+  throw InvalidInput(kind);
 }
 
 }  // namespace
@@ -58,11 +81,175 @@ void print(const WholeBodyResult& r) {
 TEST(OptimizeWholeBody, SolvesTheExampleOfP1) {
   const JointGroup group = test::fetchlike_whole_body();
   const WholeBodyProblem problem = example(group);
-  VectorXd middle = 0.5 * (problem.start + problem.goal_lower);
+  const VectorXd middle = 0.5 * (problem.start + problem.goal_lower);
   const WholeBodyResult r =
       optimize_whole_body(problem, straight(problem, {problem.start, middle, problem.goal_lower}, 0.6));
-  print(r);
-  EXPECT_EQ(r.outcome, Outcome::solved);
+  ASSERT_EQ(r.outcome, Outcome::solved) << r.message;
+  for (const Violation& v : r.violations) EXPECT_TRUE(v.kept()) << v.kind;
+  EXPECT_LE(violation(r, "dynamics").value, 1e-8);
+  EXPECT_LE(violation(r, "nonholonomic").value, 1e-6);
+  // (4.1) with all m + 1 segments.
+  EXPECT_NEAR(r.trajectory->duration(),
+              17 * r.trajectory->times()[1] + 17 * (r.trajectory->times()[34] - r.trajectory->times()[33]), 1e-9);
+}
+
+TEST(OptimizeWholeBody, MeetsBangBangOptimaInOneAndTwoDimensions) {
+  for (const double d : {0.3, 0.9, 2.0}) {
+    const JointGroup one = sliders(1);
+    const WholeBodyProblem problem = between(one, vec({-0.5 * d}), vec({0.5 * d}), {34});
+    const WholeBodyResult r = optimize_whole_body(problem, straight(problem, {problem.start, problem.goal_lower}, 0.2));
+    ASSERT_EQ(r.outcome, Outcome::solved) << d;
+    EXPECT_GE(r.trajectory->duration(), bang_bang(d, 1, 2) - 1e-6);
+    EXPECT_LE(r.trajectory->duration(), 1.01 * bang_bang(d, 1, 2));
+  }
+  const WholeBodyProblem problem = between(sliders(2), vec({-1, 0.2}), vec({1, -0.1}), {34});
+  const WholeBodyResult r = optimize_whole_body(problem, straight(problem, {problem.start, problem.goal_lower}, 0.2));
+  ASSERT_EQ(r.outcome, Outcome::solved);
+  EXPECT_GE(r.trajectory->duration(), bang_bang(2, 1, 2) - 1e-6);
+  EXPECT_LE(r.trajectory->duration(), 1.01 * bang_bang(2, 1, 2));
+}
+
+TEST(OptimizeWholeBody, PassesAPointWithoutStopping) {
+  // Out to 1 and back to 0: the joint turns round at the task, where its speed is 0 anyway; over 0 -> 1 -> 2 it is not.
+  const WholeBodyProblem plain = between(sliders(1), vec({0}), vec({2}), {17, 17});
+  WholeBodyProblem problem = plain;
+  ToolConstraint tool;
+  tool.waypoint = 17;
+  tool.T_world_tip.translation().x() = 0.7;
+  problem.tool = {tool};
+  const WholeBodyResult r =
+      optimize_whole_body(problem, straight(problem, {problem.start, vec({0.7}), problem.goal_lower}, 0.1));
+  ASSERT_EQ(r.outcome, Outcome::solved) << r.message;
+  EXPECT_NEAR(r.trajectory->positions()[17][0], 0.7, 1e-6);
+  EXPECT_LE(r.trajectory->duration(), 1.01 * bang_bang(2, 1, 2));
+  problem.tool[0].max_speed = 0.25;
+  const WholeBodyResult slow =
+      optimize_whole_body(problem, straight(problem, {problem.start, vec({0.7}), problem.goal_lower}, 0.1));
+  ASSERT_EQ(slow.outcome, Outcome::solved) << slow.message;
+  // Slowing from 1 to 0.25 and speeding up again costs (1 - 0.25)^2 / 2 / 1 s.
+  EXPECT_NEAR(slow.trajectory->duration(), bang_bang(2, 1, 2) + 0.75 * 0.75 / 2, 0.02);
+  EXPECT_LE(std::abs(slow.trajectory->drive()[17][0]), 0.25 + 1e-6);
+}
+
+TEST(OptimizeWholeBody, BothSolversAgree) {
+  const WholeBodyProblem problem = between(sliders(2), vec({-1, 0.2}), vec({1, -0.1}), {8});
+  const WholeBodyGuess guess = straight(problem, {problem.start, problem.goal_lower}, 0.4);
+  WholeBodyOptions options;
+  options.smoothing = 0.1;
+  options.tolerance = 1e-7;
+  options.max_iterations = 1000;
+  const WholeBodyResult sparse = optimize_whole_body(problem, guess, options);
+  options.solver = "slsqp";
+  const WholeBodyResult dense = optimize_whole_body(problem, guess, options);
+  ASSERT_TRUE(sparse.usable()) << sparse.message;
+  ASSERT_TRUE(dense.usable()) << dense.message;
+  EXPECT_NEAR(sparse.trajectory->duration(), dense.trajectory->duration(), 1e-4 * sparse.trajectory->duration());
+}
+
+TEST(OptimizeWholeBody, KeepsJointLimitsBetweenWaypoints) {
+  // Joints end at 3 m: starting towards the limit, the joint has 0.1 m in which to turn round.
+  WholeBodyProblem problem = between(sliders(1), vec({2.9}), vec({1.0}), {20});
+  problem.start_velocity = vec({0.6});
+  const WholeBodyResult r = optimize_whole_body(problem, straight(problem, {problem.start, problem.goal_lower}, 0.5));
+  ASSERT_EQ(r.outcome, Outcome::solved) << r.message;
+  for (int i = 0; i <= 1000; ++i) EXPECT_LE(r.trajectory->at(r.trajectory->duration() * i / 1000)[0], 3 + 1e-7);
+}
+
+TEST(OptimizeWholeBody, KeepsJerk) {
+  WholeBodyProblem problem = between(sliders(1), vec({-1}), vec({1}), {40});
+  problem.jerk_time = 0.25;
+  const WholeBodyResult r = optimize_whole_body(problem, straight(problem, {problem.start, problem.goal_lower}, 0.1));
+  ASSERT_EQ(r.outcome, Outcome::solved) << r.message;
+  EXPECT_LE(violation(r, "jerk").value, 1e-4);
+  // Two ramps from full to full acceleration replace jumps: the profile lasts jerk_time longer.
+  EXPECT_GE(r.trajectory->duration(), bang_bang(2, 1, 2));
+  EXPECT_LE(r.trajectory->duration(), bang_bang(2, 1, 2) + 0.25 + 0.15);
+}
+
+TEST(OptimizeWholeBody, SaysWhatCannotBeKept) {
+  WholeBodyProblem problem = between(sliders(1), vec({-1}), vec({1}), {10});
+  problem.segments[0].max_duration = 0.5;  // 2 m at 1 m/s
+  const WholeBodyResult r = optimize_whole_body(problem, straight(problem, {problem.start, problem.goal_lower}, 0.05));
+  EXPECT_FALSE(r.usable());
+  ASSERT_TRUE(r.trajectory);
+  EXPECT_TRUE(std::any_of(r.violations.begin(), r.violations.end(), [](const Violation& v) { return !v.kept(); }));
+}
+
+TEST(OptimizeWholeBody, RefusesWhatMakesNoSense) {
+  const WholeBodyProblem good = between(sliders(1), vec({-1}), vec({1}), {10});
+  const WholeBodyGuess guess = straight(good, {good.start, good.goal_lower}, 0.2);
+  const auto refused = [&](const WholeBodyProblem& p, const WholeBodyGuess& g, const std::string& what) {
+    try {
+      optimize_whole_body(p, g);
+      ADD_FAILURE() << what;
+    } catch (const InvalidInput& e) {
+      EXPECT_NE(std::string(e.what()).find(what), std::string::npos) << e.what();
+    }
+  };
+  WholeBodyProblem p = good;
+  p.segments[0].intervals = 0;
+  refused(p, guess, "segments[0].intervals");
+  p = good;
+  p.segments[0].min_duration = 3;
+  p.segments[0].max_duration = 2;
+  refused(p, guess, "max_duration");
+  p = good;
+  p.goal_lower = vec({2});
+  refused(p, guess, "goal");
+  p = good;
+  p.tool.push_back({});
+  p.tool[0].waypoint = 11;
+  refused(p, guess, "waypoint");
+  WholeBodyGuess g = guess;
+  g.positions[4][0] = std::nan("");
+  refused(good, g, "guess.positions[4]");
+  g = guess;
+  g.steps[0] = 0;
+  refused(good, g, "guess.steps");
+  g = guess;
+  g.positions.pop_back();
+  refused(good, g, "guess.positions");
+}
+
+TEST(WholeBodyTrajectory, RollsOutAsAUnicycle) {
+  const JointGroup group = test::fetchlike_whole_body();
+  // Half a circle of 0.5 m at 0.5 m/s.
+  std::vector<double> times;
+  std::vector<VectorXd> positions, drive;
+  for (int i = 0; i <= 10; ++i) {
+    const double t = M_PI * i / 10;
+    VectorXd q = VectorXd::Zero(10), u = VectorXd::Zero(9);
+    q.head<3>() << 0.5 * std::sin(t), 0.5 - 0.5 * std::cos(t), t;
+    u.head<2>() << 0.5, 1;
+    times.push_back(t);
+    positions.push_back(q);
+    drive.push_back(u);
+  }
+  const WholeBodyTrajectory circle(group, times, positions, drive);
+  const std::vector<VectorXd> rolled = circle.rolled_out();
+  for (std::size_t i = 0; i < rolled.size(); ++i) EXPECT_LT((rolled[i] - positions[i]).norm(), 1e-9);
+  const VectorXd q = circle.at(1.234);
+  EXPECT_NEAR(q[0], 0.5 * std::sin(1.234), 1e-9);
+  EXPECT_NEAR(q[2], 1.234, 1e-12);
+  const JointTrajectory fine = circle.sampled(3);
+  EXPECT_EQ(fine.times.size(), 41u);
+  EXPECT_NEAR(fine.accelerations[7].head<2>().norm(), 0.5, 1e-9);  // towards the centre: v omega
+  const WholeBodyProblem problem = between(group, positions.front(), positions.back(), {10});
+  for (const Violation& v : check_whole_body(problem, circle))
+    if (v.kind == "dynamics" || v.kind == "nonholonomic" || v.kind == "drift") {
+      EXPECT_TRUE(v.kept()) << v.kind;
+    }
+  // The trapezoid of (4.6) on x and y would be off by far more than the check allows.
+  std::vector<VectorXd> wrong = positions;
+  for (std::size_t i = 0; i + 1 < wrong.size(); ++i) {
+    const VectorXd a = configuration_velocity(group, positions[i], drive[i]),
+                   b = configuration_velocity(group, positions[i + 1], drive[i + 1]);
+    wrong[i + 1] = wrong[i] + 0.5 * (times[i + 1] - times[i]) * (a + b);
+  }
+  const std::vector<Violation> found = check_whole_body(problem, WholeBodyTrajectory(group, times, wrong, drive));
+  EXPECT_FALSE(found[0].kept());
+  EXPECT_EQ(found[0].kind, "dynamics");
+  EXPECT_GT(found[0].value, 1e-3);
 }
 
 }  // namespace mmgrasp

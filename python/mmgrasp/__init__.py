@@ -149,6 +149,7 @@ from ._core import (
     wheel_speeds,
     with_sampled_pairs,
 )
+from .drive_by import DriveByPick, DriveByPlan, plan_drive_by_picks, push_grasp_tasks
 from .part_supply import PartSupplyPlan, plan_part_supply
 from .random_trays import TrayScan, parts_of_grasps, scan_random_tray, scan_tray, union_of_grasps
 from .scenario import Scenario, load_scenario
@@ -174,6 +175,8 @@ __all__ = [
     "Cylinder",
     "DepthImage",
     "DistanceResult",
+    "DriveByPick",
+    "DriveByPlan",
     "DriveByResult",
     "DriveByTask",
     "EdgeResult",
@@ -269,6 +272,7 @@ __all__ = [
     "plan_base_route",
     "plan_cartesian",
     "plan_drive_by",
+    "plan_drive_by_picks",
     "plan_manipulation",
     "plan_motion",
     "plan_part_supply",
@@ -281,6 +285,7 @@ __all__ = [
     "pose_to_xyz_quat",
     "pose_to_xyz_rpy",
     "push_grasp",
+    "push_grasp_tasks",
     "push_speed_limit",
     "quat_xyzw_from_rotation",
     "random_placement",

@@ -60,7 +60,7 @@ def quick():
 
     def result(name: str) -> dict:
         if name not in done:
-            if name == "p1-figure-4.10":
+            if name in ("p1-figure-4.10", "p1-figure-4.12"):
                 pytest.importorskip("mujoco", reason="MuJoCo is not installed (pip install 'mmgrasp[sim]')")
             done[name] = reproduce(name, quick=True)
         return done[name]

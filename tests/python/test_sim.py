@@ -10,6 +10,7 @@ import pytest
 
 import mmgrasp as mg
 from mmgrasp import sim
+from mmgrasp.sim.passing import Passing, posture
 from mmgrasp.sim.pictures import frames, write_gif, write_strip
 from sim_scenes import TABLE, approach, arm, box, gripper, robot, table
 
@@ -228,3 +229,29 @@ def test_pictures_show_the_part_where_it_is(tmp_path):
         assert red > 120 and red > 2 * blue
     assert write_strip(tmp_path / "strip.png", pictures, columns=2).stat().st_size > 2000
     assert write_gif(tmp_path / "run.gif", pictures, 0.1).read_bytes()[:6] == b"GIF89a"
+
+
+# --- in passing --------------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("share", [0.2, 0.5, 1.0])
+def test_plans_in_passing_meet_the_box_at_the_speed_asked_for(share):
+    """The tool is at the planned engagement as closing begins, and moves on at the speed until both fingers touch."""
+    passing = Passing(share)
+    plan, close_at = passing.plan()
+    arm, q = posture()
+    at = [plan.at(t) for t in (close_at, close_at + passing.closing().closing_time)]
+    tips = [x[0] + arm.fk(q)[0, 3] + 0.02 for x in at]
+    assert tips[0] - (2.0 - 0.025) == pytest.approx(passing.start(), abs=1e-4)
+    assert tips[1] - tips[0] == pytest.approx(passing.speed * 0.5, abs=1e-4)
+    speeds = np.diff(plan.positions[:, 0]) / np.diff(plan.times)
+    assert speeds.max() == pytest.approx(passing.speed, rel=1e-6)
+    assert np.abs(np.diff(speeds)).max() <= 0.5 * 0.01 + 1e-9
+
+
+@physics
+def test_push_grasp_forgives_what_plain_closing_does_not():
+    """At full speed plain closing leaves 4.5 mm on either side, the push-grasp 25 mm."""
+    for push in (False, True):
+        passing = Passing(1.0, push, aside=0.02)
+        assert passing.promised() == push
+        run = passing.run(frame_period=10.0)
+        assert run.grasped == push, run.parts["box"].cause

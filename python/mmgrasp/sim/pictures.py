@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from .._core import Gripper, InvalidInput, Robot, World
+from .. import _core
+from .._core import Gripper, InvalidInput, JointTrajectory, Robot, World
 from .._files import write_file
 from ..viz.png import write_png
 from ..viz.raster import Camera, Scene, render
@@ -64,6 +65,41 @@ class Painter:
             for V, F in shapes:
                 scene.add(transformed(state["parts"][name], V), F, PART)
         return render(scene, camera)
+
+
+def planned_states(
+    robot: Robot,
+    trajectory: JointTrajectory,
+    times: Sequence[float],
+    parts: Iterable[SimPart] = (),
+    *,
+    joints: dict[str, float] | None = None,
+    held: tuple[str, float, str] | None = None,
+) -> list[dict[str, Any]]:
+    """States for a Painter from the plan alone, without physics.
+
+    `joints` stand where a trajectory does not move them. `held` = (part, time, link): the part moves with the link from then on.
+    """
+
+    def state(time: float) -> dict[str, Any]:
+        q = dict(zip(trajectory.names, map(float, trajectory.at(time)), strict=True))
+        base = [q.pop(n, 0.0) for n in ("x", "y", "theta")]
+        return {"time": float(time), "base": base, "joints": {**(joints or {}), **q}, "parts": {}}
+
+    def link_pose(of: dict[str, Any], link: str) -> np.ndarray:
+        x, y, theta = of["base"]
+        return robot.link_poses(of["joints"], _core.pose([x, y, 0], rpy=[0, 0, theta]))[link]
+
+    states = []
+    for time in times:
+        now = state(time)
+        for part in parts:
+            T = np.asarray(part.pose, float)
+            if held and held[0] == part.name and time > held[1]:
+                T = link_pose(now, held[2]) @ np.linalg.inv(link_pose(state(held[1]), held[2])) @ T
+            now["parts"][part.name] = T
+        states.append(now)
+    return states
 
 
 def _floor(middle: np.ndarray, reach: float = 4.0) -> tuple[np.ndarray, np.ndarray]:

@@ -31,7 +31,12 @@ const std::vector<OptionField<TimingOptions>>& timing_fields() {
   using O = TimingOptions;
   static const std::vector<OptionField<O>> fields{
       option<O>("max_deviation", &O::max_deviation, "corners are blended within this joint distance [rad]"),
-      option<O>("sample_period", &O::sample_period, "spacing of the samples [s]")};
+      option<O>("sample_period", &O::sample_period, "spacing of the samples [s]"),
+      {"jerk_limits",
+       [](O& o, const py::handle& v) {
+         o.jerk_limits = v.is_none() ? Eigen::VectorXd() : vector_argument(v, "jerk_limits");
+       },
+       [](const O&) { return py::object(py::none()); }, "of each joint [rad/s^3]; None: no such limits"}};
   return fields;
 }
 

@@ -5,6 +5,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "plan/blended_path.hpp"
+#include "plan/jerk_limit.hpp"
 #include "plan/path_timing.hpp"
 #include "plan/trajectory_sampling.hpp"
 
@@ -15,8 +16,10 @@ using Waypoints = std::vector<Eigen::VectorXd>;
 
 constexpr double kAim = 0.999;               // Part of the limits planned for: room for what cubics do between samples.
 constexpr double kSmallestDeviation = 1e-5;  // Corners that must be passed closer than this [rad] are stopped at.
-constexpr double kRounding = 1e-9;           // Limit overshoot that is nothing but rounding [rad or m].
-constexpr double kSlack = 1e-6;              // Relative, of the final check.
+constexpr double kLeastShare = 0.05;         // Of the acceleration limits, tried under jerk limits.
+constexpr double kShareStep = 0.7;
+constexpr double kRounding = 1e-9;  // Limit overshoot that is nothing but rounding [rad or m].
+constexpr double kSlack = 1e-6;     // Relative, of the final check.
 
 void check_limits(const Eigen::VectorXd& limits, Eigen::Index size, const std::string& field) {
   require(limits.size() == size, field, static_cast<double>(limits.size()),
@@ -71,24 +74,42 @@ void check_samples(const JointTrajectory& trajectory, const Eigen::VectorXd& vel
 /// A path on a clock, with the geometry it came from.
 class TimedPath {
  public:
-  TimedPath(Waypoints waypoints, Eigen::VectorXd velocity_limits, Eigen::VectorXd acceleration_limits, double period)
+  TimedPath(Waypoints waypoints, Eigen::VectorXd velocity_limits, Eigen::VectorXd acceleration_limits,
+            const TimingOptions& options)
       : waypoints_(std::move(waypoints)),
         velocity_limits_(std::move(velocity_limits)),
         acceleration_limits_(std::move(acceleration_limits)),
-        period_(period) {}
+        jerk_limits_(options.jerk_limits),
+        period_(options.sample_period) {}
 
   /// One deviation per inner waypoint.
   JointTrajectory trajectory(const std::vector<double>& deviations) const {
     if (waypoints_.size() < 2) return at_rest(waypoints_.front());
     const detail::BlendedPath path(waypoints_, deviations);
-    const detail::PathTiming timing(path, kAim * velocity_limits_, kAim * acceleration_limits_);
-    JointTrajectory result = detail::sample_trajectory(timing, velocity_limits_, acceleration_limits_, period_);
+    JointTrajectory result = jerk_limits_.size() == 0 ? fastest(path, 1) : smoothest(path);
     result.positions.front() = waypoints_.front();
     result.positions.back() = waypoints_.back();
     result.velocities.front().setZero();
     result.velocities.back().setZero();
     check_samples(result, velocity_limits_, acceleration_limits_);
     return result;
+  }
+
+  JointTrajectory fastest(const detail::BlendedPath& path, double acceleration_share) const {
+    const Eigen::VectorXd accelerations = acceleration_share * acceleration_limits_;
+    const detail::PathTiming timing(path, kAim * velocity_limits_, kAim * accelerations);
+    return detail::sample_trajectory(timing, velocity_limits_, accelerations, period_);
+  }
+
+  /// Where jerk is scarce, accelerating less at first takes less time in the end.
+  JointTrajectory smoothest(const detail::BlendedPath& path) const {
+    JointTrajectory best;
+    for (double share = 1; share > kLeastShare; share *= kShareStep) {
+      JointTrajectory trial =
+          detail::limit_jerk(fastest(path, share), velocity_limits_, acceleration_limits_, jerk_limits_, period_);
+      if (best.times.empty() || trial.duration() < best.duration()) best = std::move(trial);
+    }
+    return best;
   }
 
   std::size_t corner_count() const { return waypoints_.size() < 2 ? 0 : waypoints_.size() - 2; }
@@ -104,7 +125,7 @@ class TimedPath {
 
  private:
   Waypoints waypoints_;
-  Eigen::VectorXd velocity_limits_, acceleration_limits_;
+  Eigen::VectorXd velocity_limits_, acceleration_limits_, jerk_limits_;
   double period_;
 };
 
@@ -160,6 +181,7 @@ void TimingOptions::check() const {
   require(std::isfinite(max_deviation) && max_deviation >= 0, "max_deviation", max_deviation,
           "must be finite and >= 0");
   require(std::isfinite(sample_period) && sample_period > 0, "sample_period", sample_period, "must be finite and > 0");
+  if (jerk_limits.size() > 0) check_limits(jerk_limits, jerk_limits.size(), "jerk_limits");
 }
 
 JointTrajectory time_parameterize(const JointPath& path, const Eigen::VectorXd& velocity_limits,
@@ -170,9 +192,10 @@ JointTrajectory time_parameterize(const JointPath& path, const Eigen::VectorXd& 
   const Eigen::Index size = path.waypoints.front().size();
   check_limits(velocity_limits, size, "velocity_limits");
   check_limits(acceleration_limits, size, "acceleration_limits");
+  if (options.jerk_limits.size() > 0) check_limits(options.jerk_limits, size, "jerk_limits");
   require(names.empty() || static_cast<Eigen::Index>(names.size()) == size, "names", static_cast<double>(names.size()),
           "must be empty or have one entry per joint (" + std::to_string(size) + ")");
-  const TimedPath timed(without_repeats(path.waypoints), velocity_limits, acceleration_limits, options.sample_period);
+  const TimedPath timed(without_repeats(path.waypoints), velocity_limits, acceleration_limits, options);
   JointTrajectory trajectory = timed.trajectory(std::vector<double>(timed.corner_count(), options.max_deviation));
   trajectory.names = names;
   for (Eigen::Index i = 0; names.empty() && i < size; ++i) trajectory.names.push_back("joint_" + std::to_string(i + 1));
@@ -188,8 +211,8 @@ JointTrajectory time_parameterize_free(CollisionChecker& checker, const JointPat
   group.check_configuration(path.waypoints.front(), "path.waypoints[0]");
   check_limits(group.velocity_limits(), group.size(), "velocity_limits");
   check_limits(group.acceleration_limits(), group.size(), "acceleration_limits");
-  const TimedPath timed(without_repeats(path.waypoints), group.velocity_limits(), group.acceleration_limits(),
-                        options.sample_period);
+  if (options.jerk_limits.size() > 0) check_limits(options.jerk_limits, group.size(), "jerk_limits");
+  const TimedPath timed(without_repeats(path.waypoints), group.velocity_limits(), group.acceleration_limits(), options);
   std::vector<double> deviations(timed.corner_count(), options.max_deviation);
   for (;;) {
     JointTrajectory trajectory = timed.trajectory(deviations);

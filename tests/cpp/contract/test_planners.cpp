@@ -3,8 +3,11 @@
 
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/plan/motion.hpp"
@@ -116,6 +119,49 @@ TEST_P(Planner, AnotherSeedGivesAnotherPath) {
   const MotionResult second = plan_motion(checker, start, {goal}, options);
   ASSERT_TRUE(first.path && second.path);
   EXPECT_NE(first.path->waypoints, second.path->waypoints);
+}
+
+TEST_P(Planner, ReportsBetterAndBetterPaths) {
+  CollisionChecker checker = this->checker(wall);
+  MotionOptions options = this->options();
+  std::vector<std::pair<JointPath, double>> reported;
+  options.improved = [&](const JointPath& path, double cost) { reported.emplace_back(path, cost); };
+  const MotionResult result = plan_motion(checker, start, {goal}, options);
+  ASSERT_EQ(result.outcome, Outcome::solved);
+  ASSERT_FALSE(reported.empty());
+  double best = std::numeric_limits<double>::infinity();
+  for (const auto& [path, cost] : reported) {
+    EXPECT_LT(cost, best);
+    best = cost;
+    EXPECT_NEAR(cost, path.length(), 1e-9);
+    EXPECT_EQ(path.waypoints.front(), start);
+    EXPECT_EQ(path.waypoints.back(), goal);
+    EXPECT_GT(test::fcl_path_clearance(arm, kLength, path, wall, options.edge_step), -1e-3);
+  }
+  EXPECT_LE(best, result.cost + 1e-12);
+  // Listening changes nothing.
+  options.improved = {};
+  CollisionChecker fresh = this->checker(wall);
+  EXPECT_EQ(plan_motion(fresh, start, {goal}, options).path->waypoints, result.path->waypoints);
+}
+
+TEST_P(Planner, FreeSpaceIsCrossedStraightAndTheGoalMayBeTheStart) {
+  CollisionChecker checker = this->checker({});
+  const MotionResult straight = plan_motion(checker, start, {goal}, options());
+  ASSERT_EQ(straight.outcome, Outcome::solved);
+  EXPECT_EQ(straight.path->waypoints, (std::vector<VectorXd>{start, goal}));
+  const MotionResult nowhere = plan_motion(checker, start, {start}, options());
+  ASSERT_EQ(nowhere.outcome, Outcome::solved);
+  EXPECT_EQ(nowhere.cost, 0);
+}
+
+TEST_P(Planner, AnInvalidStartNamesThePair) {
+  CollisionChecker checker = this->checker(wall);
+  const MotionResult result = plan_motion(checker, vec(0, 0, 0), {goal}, options());
+  EXPECT_EQ(result.outcome, Outcome::invalid_start);
+  ASSERT_FALSE(result.contacts.empty());
+  EXPECT_EQ(result.contacts[0].b, "box 0");
+  EXPECT_TRUE(result.contacts[0].with_scene);
 }
 
 TEST_P(Planner, AnImpossibleGoalEndsByTheBudget) {

@@ -14,6 +14,9 @@ struct MMGRASP_EXPORT TimingOptions {
   double max_deviation =
       0.01;  ///< Corners are blended within this joint distance [rad]; >= 0; 0 stops at every corner.
   double sample_period = 0.02;  ///< Largest spacing of the samples [s]; > 0. More stand where accelerations jump.
+  /// Of each joint [rad/s^3]; > 0; empty: none. The motion is then the moving average of a faster one: it stays on
+  /// straight edges, rounds blended corners a little more, and takes the window's time longer.
+  Eigen::VectorXd jerk_limits;
   void check() const;
 };
 

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "mmgrasp/robot/trajectory.hpp"
+
+namespace mmgrasp::detail {
+
+/// The moving average over a window of T seconds of a motion that starts and ends at rest: it takes T longer, stays
+/// within the window's convex hull (so on every straight edge), keeps all limits that are the same everywhere, and its
+/// jerk is the difference of two accelerations T apart, over T. T is the least that bisection finds to keep
+/// `jerk_limits` [rad/s^3]. At inner stops the motion waits for T, so that no corner is cut. Names are passed on.
+JointTrajectory limit_jerk(const JointTrajectory& motion, const Eigen::VectorXd& velocity_limits,
+                           const Eigen::VectorXd& acceleration_limits, const Eigen::VectorXd& jerk_limits,
+                           double period);
+
+}  // namespace mmgrasp::detail

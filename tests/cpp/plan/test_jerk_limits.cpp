@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/plan/time_parameterization.hpp"
+
+namespace mmgrasp {
+namespace {
+
+using Eigen::VectorXd;
+
+VectorXd vec(std::initializer_list<double> values) {
+  VectorXd v(static_cast<Eigen::Index>(values.size()));
+  std::copy(values.begin(), values.end(), v.data());
+  return v;
+}
+
+TimingOptions with_jerk(const VectorXd& limits, double deviation = 0.01) {
+  TimingOptions options;
+  options.jerk_limits = limits;
+  options.max_deviation = deviation;
+  options.sample_period = 0.005;
+  return options;
+}
+
+/// The executed cubics keep all limits, by finite differences of `at()` where it is smooth.
+void expect_kept(const JointTrajectory& motion, const VectorXd& velocity, const VectorXd& acceleration,
+                 const VectorXd& jerk) {
+  for (std::size_t i = 0; i + 1 < motion.times.size(); ++i) {
+    const double h = motion.times[i + 1] - motion.times[i];
+    VectorXd p[4];
+    for (int k = 0; k < 4; ++k) p[k] = motion.at(motion.times[i] + h * (1e-9 + k * (1 - 2e-9) / 3));
+    const double d = h / 3;
+    for (Eigen::Index j = 0; j < velocity.size(); ++j) {
+      EXPECT_LE(std::abs(p[3][j] - p[0][j]) / h, velocity[j] * (1 + 1e-5));
+      EXPECT_LE(std::abs(p[2][j] - 2 * p[1][j] + p[0][j]) / (d * d), acceleration[j] * (1 + 1e-3));
+      EXPECT_LE(std::abs(p[3][j] - 3 * p[2][j] + 3 * p[1][j] - p[0][j]) / (d * d * d), jerk[j] * (1 + 1e-2));
+    }
+    // From sample to sample, too, the acceleration changes by no more than the jerk allows.
+    const VectorXd change = (motion.accelerations[i + 1] - motion.accelerations[i]).cwiseAbs();
+    for (Eigen::Index j = 0; j < jerk.size(); ++j) EXPECT_LE(change[j], jerk[j] * h * (1 + 1e-6) + 1e-9);
+  }
+}
+
+TEST(JerkLimits, ALongStraightMoveTakesTheShortestTime) {
+  // v and a are both reached: distance / v + v / a + a / j is the least there is.
+  const double v = 1.0, a = 2.0, j = 20.0, distance = 3.0;
+  const JointPath path{{vec({0}), vec({distance})}};
+  const JointTrajectory motion = time_parameterize(path, vec({v}), vec({a}), with_jerk(vec({j})));
+  EXPECT_NEAR(motion.duration(), distance / v + v / a + a / j, 0.005 * motion.duration());
+  EXPECT_GE(motion.duration(), distance / v + v / a + a / j - 1e-9);
+  EXPECT_EQ(motion.positions.front(), vec({0}));
+  EXPECT_EQ(motion.positions.back(), vec({distance}));
+  EXPECT_EQ(motion.velocities.back(), vec({0}));
+  expect_kept(motion, vec({v}), vec({a}), vec({j}));
+}
+
+TEST(JerkLimits, AShortMoveComesNearTheShortestTime) {
+  // Neither v nor a is reached: 4 (d / 2j)^(1/3) is the least there is.
+  const double j = 10.0, distance = 0.01, least = 4 * std::cbrt(distance / (2 * j));
+  const JointTrajectory motion =
+      time_parameterize(JointPath{{vec({0}), vec({distance})}}, vec({1}), vec({5}), with_jerk(vec({j})));
+  EXPECT_GE(motion.duration(), least - 1e-9);
+  EXPECT_LE(motion.duration(), 1.25 * least);
+  expect_kept(motion, vec({1}), vec({5}), vec({j}));
+}
+
+TEST(JerkLimits, CornersAreBlendedAndLimitsKept) {
+  const JointPath path{{vec({0, 0}), vec({1, 0.2}), vec({1.2, 1}), vec({0, 1.5})}};
+  const VectorXd v = vec({1, 1.5}), a = vec({3, 2}), j = vec({30, 40});
+  const JointTrajectory motion = time_parameterize(path, v, a, with_jerk(j));
+  const JointTrajectory fast = time_parameterize(path, v, a, with_jerk(VectorXd()));
+  EXPECT_GT(motion.duration(), fast.duration());
+  EXPECT_LT(motion.duration(), fast.duration() + 2.5 * (a.cwiseQuotient(j)).maxCoeff());
+  EXPECT_EQ(motion.positions.front(), path.waypoints.front());
+  EXPECT_EQ(motion.positions.back(), path.waypoints.back());
+  expect_kept(motion, v, a, j);
+  // Never far from the path: no farther than blending and averaging over the window may take it.
+  for (double t = 0; t < motion.duration(); t += 0.003) {
+    double off = 1e9;
+    for (std::size_t i = 0; i + 1 < path.waypoints.size(); ++i) {
+      const VectorXd from = path.waypoints[i], way = path.waypoints[i + 1] - from, q = motion.at(t) - from;
+      const double s = std::clamp(q.dot(way) / way.squaredNorm(), 0.0, 1.0);
+      off = std::min(off, (q - s * way).norm());
+    }
+    EXPECT_LE(off, 0.03);
+  }
+}
+
+TEST(JerkLimits, StopsKeepThePathExactly) {
+  const JointPath path{{vec({0, 0}), vec({1, 0}), vec({1, 1})}};
+  const VectorXd v = vec({1, 1}), a = vec({3, 3}), j = vec({20, 20});
+  const JointTrajectory motion = time_parameterize(path, v, a, with_jerk(j, 0));
+  // Two moves of one unit, each as long as it takes by itself.
+  EXPECT_NEAR(motion.duration(), 2 * (1 / 1.0 + 1 / 3.0 + 3 / 20.0), 0.01 * motion.duration());
+  for (double t = 0; t < motion.duration(); t += 0.002) {
+    const VectorXd q = motion.at(t);
+    EXPECT_LE(std::min(std::abs(q[1]), std::abs(q[0] - 1)), 1e-4);
+  }
+  expect_kept(motion, v, a, j);
+}
+
+TEST(JerkLimits, RefusesBadInput) {
+  const JointPath path{{vec({0, 0}), vec({1, 0})}};
+  EXPECT_THROW(time_parameterize(path, vec({1, 1}), vec({1, 1}), with_jerk(vec({1}))), InvalidInput);
+  EXPECT_THROW(time_parameterize(path, vec({1, 1}), vec({1, 1}), with_jerk(vec({1, 0}))), InvalidInput);
+  EXPECT_THROW(time_parameterize(path, vec({1, 1}), vec({1, 1}), with_jerk(vec({1, std::nan("")}))), InvalidInput);
+}
+
+}  // namespace
+}  // namespace mmgrasp

@@ -21,6 +21,7 @@ from ._core import Error, InvalidInput, Outcome
 from ._files import write_file
 from ._reading import read_json
 from .check import check_robot, describe
+from .drive_by import DriveByPlan, plan_drive_by_picks
 from .part_supply import PartSupplyPlan, plan_part_supply
 from .plan_file import plan_to_check, read_plan
 from .scenario import load_scenario
@@ -49,6 +50,9 @@ def build_parser() -> argparse.ArgumentParser:
     plan.add_argument("--robot", metavar="NAME", help="another robot: a shipped profile (tiago, ...) or a profile file")
     plan.add_argument("--threads", type=_count, metavar="N", help="0: all (default); the plan does not depend on it")
     plan.add_argument("--seed", type=_count, metavar="N", help="same seed, same plan")
+    plan.add_argument(
+        "--drive-by", action="store_true", help="take the first part at each stop without stopping for it"
+    )
     plan.add_argument("--no-pictures", action="store_true", help="write plan.json and the trajectories only")
     plan.set_defaults(run=run_plan)
 
@@ -177,12 +181,18 @@ def run_plan(arguments: argparse.Namespace, console: Console) -> int:
         )
         plan = plan_part_supply(scenario, progress=report)
         written = write_outputs(plan, arguments.out, report, pictures=not arguments.no_pictures)
+        passing = None
+        if arguments.drive_by and plan.outcome == Outcome.solved:
+            passing = plan_drive_by_picks(plan, progress=report)
+            passing.save(arguments.out)
     if plan.outcome != Outcome.solved:
         console.print(f"no plan: {plan.outcome.name}", style="bold red", markup=False)
         for obstruction in plan.obstructions:
             console.print(f"- {obstruction.message}", markup=False, soft_wrap=True)
     else:
         console.print(summary(plan))
+    if passing is not None:
+        console.print(drive_by_summary(passing))
     console.print(f"report: {written}", markup=False, soft_wrap=True)
     return exit_code(plan.outcome)
 
@@ -239,6 +249,18 @@ def summary(plan: PartSupplyPlan) -> Table:
     seconds = sum(leg.duration(plan.scenario.setup.robot) for leg in plan.route)
     planning = sum(seconds for _, seconds in plan.timings)
     table.caption = f"drive {length:.2f} m in {seconds:.1f} s, planned in {planning:.1f} s"
+    return table
+
+
+def drive_by_summary(passing: DriveByPlan) -> Table:
+    table = Table(title="parts taken in passing")
+    for title in ("stop", "part", "stop and pick [s]", "drive-by [s]", ""):
+        table.add_column(title, justify="left" if title in ("part", "") else "right")
+    for pick in passing.picks:
+        now = f"{pick.drive_by:.1f}" if pick.used else "-"
+        table.add_row(str(pick.stop + 1), pick.part, f"{pick.stop_and_pick:.1f}", now, pick.why)
+    share = 100 * passing.saved / passing.stop_and_pick
+    table.caption = f"whole round {passing.stop_and_pick:.1f} s, in passing {passing.drive_by:.1f} s: {passing.saved:.1f} s or {share:.1f} % saved"
     return table
 
 

@@ -55,6 +55,8 @@ class DriveByPick:
             "used": self.used,
             "why": self.why,
         }
+        if self.result is not None:
+            out["report"] = self.result.report
         if self.used and self.result is not None:
             out["events"] = self.result.events
             out["violations"] = self.result.violations
@@ -147,7 +149,7 @@ def push_grasp_tasks(
 
 
 def plan_drive_by_picks(plan: PartSupplyPlan, *, progress: Progress = None, **options: Any) -> DriveByPlan:
-    """Tries to take the first part at each stop in passing. Keywords are those of `plan_drive_by`.
+    """Tries to take the first part at each stop in passing. Keywords are those of `plan_drive_by`, here with 45 waypoints and 60 s a stop.
 
     Raises InvalidInput for a plan that is not solved and for a robot that does not drive.
     """
@@ -203,11 +205,11 @@ def _in_passing(
         start=[*here, *problem.home],
         tasks=tasks,
         goal=[*stop.pose, *lifted],
-        **options,
+        **{"waypoints": 45, "time_limit": 60.0, **options},
     )
     made = DriveByPick(leg, leg, part.name, before, result, False, "")
     if result.outcome != Outcome.solved:
-        made.why = f"no motion in passing: {result.report or result.outcome.name}"
+        made.why = f"no motion in passing found in {result.attempts} attempts ({result.outcome.name})"
     elif result.duration >= before:
         made.why = f"in passing it would take {result.duration:.1f} s"
     else:

@@ -57,7 +57,7 @@ class Bottle:
             return [before, _core.DriveByTask(T_grasp, dwell=dwell, object="bottle")], 1
         numbers = {"tool_speed": TOOL_SPEED, "planned_depth": DEPTH}
         closing = _core.push_grasp(
-            opening=OPENING, object_width=2 * RADIUS, finger_length=FINGERS, max_push=0.1, along_error=0.02, **numbers
+            opening=OPENING, object_width=2 * RADIUS, finger_length=FINGERS, max_push=0.02, along_error=0.02, **numbers
         )
         return push_grasp_tasks(T_grasp, robot_setup().gripper, closing, object="bottle", **numbers), 1
 

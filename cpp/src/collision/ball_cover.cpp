@@ -7,12 +7,14 @@
 #include <limits>
 
 #include "collision/solid.hpp"
+#include "collision/triangle_distance.hpp"
 
 namespace mmgrasp::detail {
 
 namespace {
 
 constexpr int kMaxCells = 64;
+constexpr int kRounds = 48, kPartRounds = 16;  // spent on a ball of the coarsest level, and of the others
 // Inner balls of larger meshes would take too long to find.
 constexpr std::size_t kMaxTriangles = 20000;
 // Rounding of the construction itself, far above that of double precision.
@@ -21,12 +23,12 @@ constexpr double kGrowth = 1 + 1e-6;
 using Points = std::vector<Eigen::Vector3d>;
 
 // Ball that holds all points: towards the farthest one again and again (Badoiu and Clarkson), then as large as needed.
-std::pair<Eigen::Vector3d, double> small_ball(const Points& points) {
+std::pair<Eigen::Vector3d, double> small_ball(const Points& points, int rounds) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& p : points) box.extend(p);
   Eigen::Vector3d centre = box.center(), best = centre;
   double radius = std::numeric_limits<double>::infinity();
-  for (int i = 2; i < 50; ++i) {
+  for (int i = 2; i < rounds + 2; ++i) {
     const Eigen::Vector3d* farthest = &points.front();
     double squared = -1;
     for (const Eigen::Vector3d& p : points) {
@@ -130,21 +132,6 @@ std::vector<Points> cell_points(const TriangleMesh& mesh, const Grid& grid, cons
   return cells;
 }
 
-double triangle_distance(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                         const Eigen::Vector3d& c) {
-  const auto to_segment = [&](const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
-    const Eigen::Vector3d uv = v - u;
-    const double length = uv.squaredNorm();
-    const double s = length > 0 ? std::clamp((p - u).dot(uv) / length, 0.0, 1.0) : 0;
-    return (u + s * uv - p).norm();
-  };
-  const Eigen::Vector3d n = (b - a).cross(c - a);
-  const bool over = n.dot((b - a).cross(p - a)) >= 0 && n.dot((c - b).cross(p - b)) >= 0 &&
-                    n.dot((a - c).cross(p - c)) >= 0 && n.squaredNorm() > 0;
-  if (over) return std::abs(n.dot(p - a)) / n.norm();
-  return std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
-}
-
 double surface_distance(const TriangleMesh& mesh, const Eigen::Vector3d& p) {
   double best = std::numeric_limits<double>::infinity();
   for (const auto& t : mesh.triangles)
@@ -174,7 +161,7 @@ class CellBalls {
     Points points;
     gather(0, i, j, k, points);
     if (points.empty()) return;
-    const auto [centre, outer] = small_ball(points);
+    const auto [centre, outer] = small_ball(points, kRounds);
     add_parts(0, i, j, k, centre, outer, depth_(centre));
   }
 
@@ -200,7 +187,7 @@ class CellBalls {
         add_nothing(level + 1);
         continue;
       }
-      const auto [part, radius] = small_ball(points);
+      const auto [part, radius] = small_ball(points, kPartRounds);
       // Depth changes no faster than the place.
       add_parts(level + 1, a, b, d, part, radius, inner - (part - centre).norm());
     }

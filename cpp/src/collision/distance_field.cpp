@@ -5,14 +5,18 @@
 #include <limits>
 
 #include "collision/solid.hpp"
+#include "collision/triangle_distance.hpp"
 
 namespace mmgrasp::detail {
 
 namespace {
 
 constexpr double kMeshCells = 2e5, kVoxelCells = 2e7;
+constexpr double kBand = 2;  // cells about a mesh whose distance is computed exactly
 constexpr std::int8_t kFree = 127;
-constexpr int kQuantaPerCell = 2;
+constexpr int kMeshQuanta = 4, kVoxelQuanta = 2;  // per cell
+// Half of a cell's diagonal, in cells.
+constexpr double kHalfDiagonal = 0.8660254037844387;
 
 // Squared distance in cells from every cell to the nearest one where it is 0, one line at a time (Felzenszwalb and
 // Huttenlocher: the lower envelope of parabolas). `line` holds the result of the axes before.
@@ -49,13 +53,13 @@ void line_distances(std::vector<float>& line, std::vector<float>& out, std::vect
 }  // namespace
 
 void DistanceField::lay_out(const Eigen::AlignedBox3d& body, const Eigen::Vector3d& low, double step,
-                            const std::array<int, 3>& count) {
+                            const std::array<int, 3>& count, int quanta_per_cell) {
   body_ = body;
   low_ = low;
   step_ = step;
   per_step_ = 1 / step;
   // Rounded down, so that rounding never overstates a distance.
-  quantum_ = step / kQuantaPerCell * (1 - 1e-5);
+  quantum_ = step / quanta_per_cell * (1 - 1e-5);
   count_ = count;
   size_ = {double(count[0]), double(count[1]), double(count[2])};
   cells_.assign(static_cast<std::size_t>(count[0]) * count[1] * count[2], kFree);
@@ -73,10 +77,12 @@ DistanceField::DistanceField(const TriangleMesh& mesh, const Solid& solid) {
   const double step = std::cbrt(size.prod() / kMeshCells);
   std::array<int, 3> count{};
   for (int k = 0; k < 3; ++k) count[k] = static_cast<int>(std::ceil(size[k] / step)) + 1;
-  lay_out(body, body.min() - Eigen::Vector3d::Constant(room), step, count);
+  lay_out(body, body.min() - Eigen::Vector3d::Constant(room), step, count, kMeshQuanta);
+  spread_ = step;
   for (const auto& t : mesh.triangles) mark(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
   fill(solid);
-  measure();
+  const double band = kBand * step;
+  measure_centres(centre_distances(mesh, band), band);
 }
 
 DistanceField::DistanceField(const std::vector<Eigen::Vector3d>& centres, double resolution) {
@@ -95,7 +101,7 @@ DistanceField::DistanceField(const std::vector<Eigen::Vector3d>& centres, double
   const double step = coarse * resolution;
   std::array<int, 3> count{};
   for (int k = 0; k < 3; ++k) count[k] = static_cast<int>(std::ceil(body.sizes()[k] / step - 1e-6)) + 2 * kRoom;
-  lay_out(body, body.min() - Eigen::Vector3d::Constant(kRoom * step), step, count);
+  lay_out(body, body.min() - Eigen::Vector3d::Constant(kRoom * step), step, count, kVoxelQuanta);
   for (const Eigen::Vector3d& c : centres) {
     int first[3], last[3];
     bool aligned = true;
@@ -115,7 +121,7 @@ DistanceField::DistanceField(const std::vector<Eigen::Vector3d>& centres, double
       }
     }
   }
-  measure();
+  measure_cells();
 }
 
 FieldView DistanceField::view() const {
@@ -128,6 +134,7 @@ FieldView DistanceField::view() const {
   }
   out.per_step = static_cast<float>(per_step_);
   out.quantum = static_cast<float>(quantum_);
+  out.spread = static_cast<float>(spread_);
   out.cells = cells_.data();
   return out;
 }
@@ -207,21 +214,38 @@ void DistanceField::fill(const Solid& solid) {
   }
 }
 
-void DistanceField::measure() {
-  // Distances from cell to cell are those of their nearest corners: as if the others were grown by a cell all around.
-  std::vector<float> squared(cells_.size(), 1e12f);
-  for (int i = 0; i < count_[0]; ++i) {
-    for (int j = 0; j < count_[1]; ++j) {
-      for (int k = 0; k < count_[2]; ++k) {
-        if (cells_[index(i, j, k)] == kFree) continue;
-        for (int a = std::max(0, i - 1); a <= std::min(i + 1, count_[0] - 1); ++a) {
-          for (int b = std::max(0, j - 1); b <= std::min(j + 1, count_[1] - 1); ++b) {
-            for (int c = std::max(0, k - 1); c <= std::min(k + 1, count_[2] - 1); ++c) squared[index(a, b, c)] = 0;
-          }
+std::vector<float> DistanceField::centre_distances(const TriangleMesh& mesh, double band) const {
+  std::vector<float> squared(cells_.size(), std::numeric_limits<float>::infinity());
+  for (const auto& t : mesh.triangles) {
+    const Eigen::Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    const Eigen::Vector3d low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+    const Eigen::Vector3d middle = (a + b + c) / 3;
+    const double radius =
+        std::sqrt(std::max({(a - middle).squaredNorm(), (b - middle).squaredNorm(), (c - middle).squaredNorm()}));
+    int first[3], last[3];
+    for (int k = 0; k < 3; ++k) {
+      first[k] = std::clamp(static_cast<int>((low[k] - band - low_[k]) * per_step_ - 0.5), 0, count_[k] - 1);
+      last[k] = std::clamp(static_cast<int>((high[k] + band - low_[k]) * per_step_ + 0.5), 0, count_[k] - 1);
+    }
+    for (int i = first[0]; i <= last[0]; ++i) {
+      for (int j = first[1]; j <= last[1]; ++j) {
+        for (int k = first[2]; k <= last[2]; ++k) {
+          const std::size_t n = index(i, j, k);
+          if (cells_[n] != kFree) continue;
+          const Eigen::Vector3d centre = low_ + step_ * Eigen::Vector3d(i + 0.5, j + 0.5, k + 0.5);
+          const double most = radius + std::min(band, std::sqrt(double(squared[n])));
+          if ((centre - middle).squaredNorm() > most * most) continue;
+          const double distance = triangle_distance(centre, a, b, c);
+          squared[n] = std::min(squared[n], static_cast<float>(distance * distance));
         }
       }
     }
   }
+  for (float& value : squared) value = std::sqrt(value);
+  return squared;
+}
+
+void DistanceField::spread_out(std::vector<float>& squared) const {
   const std::size_t stride[3] = {static_cast<std::size_t>(count_[1]) * count_[2], static_cast<std::size_t>(count_[2]),
                                  1};
   for (int axis = 0; axis < 3; ++axis) {
@@ -237,10 +261,41 @@ void DistanceField::measure() {
       }
     }
   }
+}
+
+void DistanceField::measure_centres(const std::vector<float>& near, double band) {
+  std::vector<float> squared(cells_.size());
+  for (std::size_t n = 0; n < cells_.size(); ++n) squared[n] = cells_[n] == kFree ? 1e12f : 0;
+  spread_out(squared);
+  for (std::size_t n = 0; n < cells_.size(); ++n) {
+    if (cells_[n] != kFree) continue;
+    // The mesh may come as near as the corners of the nearest cell that holds some of it.
+    const double at_least = (std::sqrt(double(squared[n])) - kHalfDiagonal) * step_;
+    const double distance = near[n] <= band ? near[n] * (1 - 1e-6) : std::max(at_least, band);
+    cells_[n] = static_cast<std::int8_t>(std::clamp(std::floor(distance / quantum_), 0.0, 126.0));
+  }
+}
+
+void DistanceField::measure_cells() {
+  // Distances from cell to cell are those of their nearest corners: as if the others were grown by a cell all around.
+  std::vector<float> squared(cells_.size(), 1e12f);
+  for (int i = 0; i < count_[0]; ++i) {
+    for (int j = 0; j < count_[1]; ++j) {
+      for (int k = 0; k < count_[2]; ++k) {
+        if (cells_[index(i, j, k)] == kFree) continue;
+        for (int a = std::max(0, i - 1); a <= std::min(i + 1, count_[0] - 1); ++a) {
+          for (int b = std::max(0, j - 1); b <= std::min(j + 1, count_[1] - 1); ++b) {
+            for (int c = std::max(0, k - 1); c <= std::min(k + 1, count_[2] - 1); ++c) squared[index(a, b, c)] = 0;
+          }
+        }
+      }
+    }
+  }
+  spread_out(squared);
   for (std::size_t n = 0; n < cells_.size(); ++n) {
     if (cells_[n] == kFree)
       cells_[n] =
-          static_cast<std::int8_t>(std::min(126.0, std::floor(kQuantaPerCell * std::sqrt(double(squared[n])) + 1e-4)));
+          static_cast<std::int8_t>(std::min(126.0, std::floor(kVoxelQuanta * std::sqrt(double(squared[n])) + 1e-4)));
   }
 }
 

@@ -57,6 +57,7 @@ struct FloatRigid {
 struct FieldView {
   float low[3], per_step;    ///< Lower corner; cells per metre.
   float quantum;             ///< Metres per unit of a cell.
+  float spread;              ///< Taken off for each cell of distance from the cell's centre [m].
   float centre[3], half[3];  ///< Bounding box of the body, for points beyond the grid.
   int count[3];
   const std::int8_t* cells;  ///< Negative: wholly within the body.

@@ -7,6 +7,7 @@
 #include "collision/box_tree.hpp"
 #include "collision/convex.hpp"
 #include "collision/distance_field.hpp"
+#include "mmgrasp/core/export.hpp"
 #include "mmgrasp/geometry/shape.hpp"
 
 namespace mmgrasp::detail {
@@ -15,7 +16,7 @@ enum class SolidKind { convex, mesh, voxels, plane };
 
 /// A shape prepared for collision queries: what takes time is done once here. Immutable, shared between checkers and
 /// threads.
-struct Solid {
+struct MMGRASP_EXPORT Solid {
   SolidKind kind = SolidKind::convex;
 
   /// Kind convex: the body. Kind mesh: its hull when `has_hull`, an outer bound. Frame of the shape.
@@ -61,6 +62,6 @@ struct Solid {
 
 /// `padding` grows the shape: primitives exactly (a box gets 2 x padding longer per axis), planes by their offset,
 /// meshes and voxels through `margin`.
-std::shared_ptr<const Solid> make_solid(const Shape& shape, double padding = 0);
+MMGRASP_EXPORT std::shared_ptr<const Solid> make_solid(const Shape& shape, double padding = 0);
 
 }  // namespace mmgrasp::detail

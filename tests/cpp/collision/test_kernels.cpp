@@ -211,8 +211,9 @@ TEST_P(CollisionKernels, CoverAgainstBoxIsNeverSureAndWrong) {
   for (const int count : answers) EXPECT_GT(count, 100);
 }
 
-TEST_P(CollisionKernels, FieldAgainstCoverIsNeverSureAndWrong) {
-  // The field of a ball of radius 0.2 about the origin: each cell holds a lower bound of the distance within it.
+/// The field of a ball of radius 0.2 about the origin. Each cell holds the distance of its centre, or a lower bound of
+/// all distances within it.
+void field_is_never_sure_and_wrong(bool of_centres) {
   constexpr int kCount = 24;
   constexpr double kLow = -0.36, kStep = 0.03, kRadius = 0.2, kQuantum = 0.004;
   std::vector<std::int8_t> cells(kCount * kCount * kCount);
@@ -221,7 +222,7 @@ TEST_P(CollisionKernels, FieldAgainstCoverIsNeverSureAndWrong) {
       for (int k = 0; k < kCount; ++k) {
         const Vector3d centre(kLow + (i + 0.5) * kStep, kLow + (j + 0.5) * kStep, kLow + (k + 0.5) * kStep);
         const double reach = 0.5 * std::sqrt(3.0) * kStep, d = centre.norm() - kRadius;
-        const double units = d + reach < 0 ? -1 : std::max(0.0, d - reach) / kQuantum;
+        const double units = d + reach < 0 ? -1 : std::max(0.0, of_centres ? d : d - reach) / kQuantum;
         cells[(i * kCount + j) * kCount + k] = static_cast<std::int8_t>(std::min(127.0, std::floor(units)));
       }
   FieldView field{};
@@ -232,6 +233,7 @@ TEST_P(CollisionKernels, FieldAgainstCoverIsNeverSureAndWrong) {
   }
   field.per_step = static_cast<float>(1 / kStep);
   field.quantum = static_cast<float>(kQuantum);
+  field.spread = of_centres ? static_cast<float>(kStep) : 0;
   field.cells = cells.data();
   Rng random(11);
   int answers[3] = {};
@@ -257,7 +259,7 @@ TEST_P(CollisionKernels, FieldAgainstCoverIsNeverSureAndWrong) {
     if (least < 0) {
       EXPECT_NE(answer, kApart);
     }
-    if (least > 2 * std::sqrt(3.0) * kStep) {
+    if (least > (of_centres ? 1 : 2) * std::sqrt(3.0) * kStep + kQuantum) {
       EXPECT_EQ(answer, kApart);
     }
     if (least_centre > 0) {
@@ -265,6 +267,14 @@ TEST_P(CollisionKernels, FieldAgainstCoverIsNeverSureAndWrong) {
     }
   }
   for (const int count : answers) EXPECT_GT(count, 100);
+}
+
+TEST_P(CollisionKernels, FieldOfCellsIsNeverSureAndWrong) {
+  field_is_never_sure_and_wrong(false);
+}
+
+TEST_P(CollisionKernels, FieldOfCentresIsNeverSureAndWrong) {
+  field_is_never_sure_and_wrong(true);
 }
 
 }  // namespace

@@ -1,0 +1,481 @@
+"""Eight pipe structures and the work cells they are carried through, in the style of P2 figure 4.3.
+
+The structures go from a single bend to a branched frame of eight sections; lengths of the larger ones are those of P2
+table 3.3. A cell has an arm on a table, posts under the pipe where it lies and where it belongs, and what stands between:
+columns, a partition to lift it over, or a gate to pass it through. P2 prints no measures of its cells, so a seeded
+generator draws them; what it turns down is counted by cause.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from dataclasses import dataclass, field, replace
+from functools import cache
+from math import acos, pi, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._core import (
+    CandidateGrasp,
+    CollisionChecker,
+    FingerJoint,
+    Gripper,
+    InvalidInput,
+    JointGroup,
+    LinkShape,
+    ManipulationProblem,
+    Outcome,
+    Pipe,
+    PipeGrasp,
+    Roadmap,
+    Robot,
+    World,
+    plan_manipulation,
+    plan_motion,
+    pose,
+)
+from ._files import shipped
+from ._reading import near_miss
+
+__all__ = ["ROBOTS", "PipeCell", "pipe_cell", "pipe_robot", "pipe_structures"]
+
+Pose = NDArray[np.float64]
+ROBOTS = ("tm14like", "kr6like")
+_HALF_TURN = 3.14159
+FINGERS = frozenset({"left_finger_link", "right_finger_link"})
+
+# Nodes [m], sections, outer diameter [m].
+_STRUCTURES: tuple[tuple[list[tuple[float, float, float]], list[tuple[int, int]], float], ...] = (
+    # 1: a bend
+    ([(0, 0, 0), (0.30, 0, 0), (0.30, 0.20, 0)], [(0, 1), (1, 2)], 0.022),
+    # 2: an offset
+    ([(0, 0, 0), (0.20, 0, 0), (0.20, 0.15, 0), (0.40, 0.15, 0)], [(0, 1), (1, 2), (2, 3)], 0.022),
+    # 3: a tee
+    ([(0, 0, 0), (0.20, 0, 0), (0.40, 0, 0), (0.20, 0.20, 0)], [(0, 1), (1, 2), (1, 3)], 0.028),
+    # 4: a bow with its ends in another plane
+    (
+        [(0, 0, 0.15), (0, 0, 0), (0.30, 0, 0), (0.30, 0.20, 0), (0.30, 0.20, 0.15)],
+        [(0, 1), (1, 2), (2, 3), (3, 4)],
+        0.018,
+    ),
+    # 5: Pipe2 of table 3.3
+    (
+        [(0, 0, 0), (0.20, 0, 0), (0.20, 0.20, 0), (0.20, 0.20, 0.30), (0.40, 0.20, 0.30), (0.40, 0.40, 0.30)],
+        [(0, 1), (1, 2), (2, 3), (3, 4), (4, 5)],
+        0.012,
+    ),
+    # 6: Pipe1 of table 3.3, joined as in figure 3.4
+    (
+        [(0, 0, 0), (0.20, 0, 0), (0.20, 0.20, 0), (0.20, 0.20, 0.15), (0.40, 0.20, 0.15), (0.20, 0.60, 0.15)]
+        + [(0.20, 0.60, 0.25)],
+        [(0, 1), (1, 2), (2, 3), (3, 4), (3, 5), (5, 6)],
+        0.012,
+    ),
+    # 7: a closed frame with three legs
+    (
+        [(0, 0, 0), (0.35, 0, 0), (0.35, 0.25, 0), (0, 0.25, 0), (0, 0, 0.15), (0.35, 0, 0.15), (0.35, 0.25, -0.15)],
+        [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 5), (2, 6)],
+        0.015,
+    ),
+    # 8: a branched frame with the lengths of Pipe3 of table 3.3
+    (
+        [(0, 0, 0), (0.20, 0, 0), (0.20, 0.15, 0), (0.20, 0.15, 0.20), (0.40, 0.15, 0), (0.20, 0.55, 0)]
+        + [(0.35, 0.55, 0), (0.20, 0.55, 0.10), (0.40, 0.15, 0.05)],
+        [(0, 1), (1, 2), (2, 3), (2, 4), (2, 5), (5, 6), (5, 7), (4, 8)],
+        0.012,
+    ),
+)
+
+
+def pipe_structures() -> list[Pipe]:
+    """The eight structures, from one bend to eight sections; the object's frame stands in the centre of mass."""
+    pipes = []
+    for nodes, sections, diameter in _STRUCTURES:
+        raw = Pipe(nodes, sections, diameter)
+        pipes.append(Pipe(raw.nodes - raw.centre_of_mass, sections, diameter))
+    return pipes
+
+
+@cache
+def pipe_robot(name: str) -> tuple[Robot, JointGroup, Gripper]:
+    """One of ROBOTS with its arm (the tip is the tool) and its gripper.
+
+    Joints that could turn further are kept to half a turn either way. P2's gamma* of about 10 belongs to that box; in the
+    whole one the thesis' roadmap of 5000 vertices has a mean degree below one and falls to pieces.
+    """
+    if name not in ROBOTS:
+        raise InvalidInput(f"robot = {name!r}: must be one of {', '.join(ROBOTS)}{near_miss(name, list(ROBOTS))}")
+    urdf, srdf = (shipped(f"asset:robots/{name}/{name}.{kind}").read_text() for kind in ("urdf", "srdf"))
+    urdf = re.sub(r'(lower|upper)="(-?)([0-9.]+)"', lambda m: f'{m[1]}="{m[2]}{min(float(m[3]), _HALF_TURN):g}"', urdf)
+    robot = Robot.from_strings(urdf, srdf)
+    gripper = Gripper(
+        "gripper_tcp",
+        approach=[1, 0, 0],
+        closing=[0, 1, 0],
+        max_opening=0.06,
+        finger_depth=0.03,
+        finger_width=0.02,
+        clearance=0.008,
+        joints=[FingerJoint(f"{side}_finger_joint", 0.0, 0.03) for side in ("left", "right")],
+        finger_links=sorted(FINGERS),
+    )
+    return robot, robot.group("arm"), gripper
+
+
+@dataclass(frozen=True)
+class _Style:
+    """What stands between and around start and goal."""
+
+    columns: int = 0
+    partition: float = 0.0
+    """Height of a plate that the pipe must be lifted over [m]; 0: none."""
+    gap: float = 0.0
+    """A roof over the cell leaves this much above the partition [m]; 0: no roof."""
+    low: tuple[str, ...] = ()
+    """Which of start and goal lie close to the table: most grasps would need a hand below it."""
+    picky: bool = False
+    """The first grasp within reach must not do: RRT-Connect finds no motion for it."""
+    far: bool = False
+    """Near the end of the arm's reach."""
+    bays: tuple[str, ...] = ()
+    """Which of start and goal lie in a bay: back and sides, open towards the arm and above."""
+
+
+_STYLES = (
+    _Style(columns=2),
+    _Style(columns=2, partition=0.35),
+    _Style(low=("start", "goal"), far=True),
+    _Style(bays=("goal",), partition=0.30, far=True),
+    _Style(partition=0.30, gap=0.48),
+    _Style(partition=0.30, gap=0.46, picky=True),
+    _Style(bays=("start", "goal")),
+    _Style(low=("start",), bays=("start", "goal"), columns=2),
+)
+_LOW = (0.02, 0.05)  # height of the lowest point [m]
+_BAY_ROOM = 0.10  # between the pipe and the walls of its bay [m]
+
+
+@dataclass(frozen=True, eq=False)
+class PipeCell:
+    """A pipe, where it lies and where it belongs, and the cell around the arm."""
+
+    number: int
+    """Of the structure, from 1."""
+    seed: int
+    robot_name: str
+    pipe: Pipe
+    world: World
+    """Table, posts and obstacles; without the pipe."""
+    T_world_start: Pose
+    T_world_goal: Pose
+    drawn: int = 1
+    """Cells drawn until this one was accepted."""
+    rejected: dict[str, int] = field(default_factory=dict)
+    """Cells turned down, by cause."""
+
+    @property
+    def robot(self) -> Robot:
+        return pipe_robot(self.robot_name)[0]
+
+    @property
+    def arm(self) -> JointGroup:
+        return pipe_robot(self.robot_name)[1]
+
+    @property
+    def gripper(self) -> Gripper:
+        return pipe_robot(self.robot_name)[2]
+
+    def grasps(self, count: int, seed: int = 1) -> list[PipeGrasp]:
+        """Grasps whose hand meets no other section of the pipe; fewer than `count` when no more fit on it."""
+        found: list[PipeGrasp] = []
+        wanted = count
+        while True:
+            drawn = self.pipe.sample_grasps(wanted, gripper=self.gripper, seed=seed)
+            found = [g for g, free in zip(drawn, self._hand_is_free(drawn), strict=True) if free]
+            if len(found) >= count or len(drawn) < wanted:
+                return found[:count]
+            wanted = 2 * wanted
+
+    def _hand_is_free(self, grasps: list[PipeGrasp]) -> NDArray[np.bool_]:
+        free = np.zeros(len(grasps), dtype=bool)
+        for section in {g.section for g in grasps}:
+            chosen = [i for i, g in enumerate(grasps) if g.section == section]
+            checker = _hand_checker(self.robot_name, self.pipe, section)
+            free[chosen] = checker.are_free([_flying(grasps[i].T_object_tool) for i in chosen], threads=1)
+        return free
+
+    def problem(self, grasps: list[PipeGrasp]) -> ManipulationProblem:
+        """For plan_manipulation: only the fingers may touch the pipe."""
+        return ManipulationProblem(
+            self.arm,
+            self.world,
+            self.pipe.shapes(),
+            self.T_world_start,
+            self.T_world_goal,
+            [CandidateGrasp(g.T_object_tool, g.opening, g.cost) for g in grasps],
+            gripper=self.gripper,
+            touch_links=sorted(FINGERS),
+            object_name="pipe",
+        )
+
+    def arm_holding(self, grasp: PipeGrasp) -> JointGroup:
+        """The arm with its fingers as far open as the grasp holds."""
+        return self.arm.with_reference(self.gripper.joint_values(grasp.opening))
+
+    def world_holding(self, grasp: PipeGrasp) -> World:
+        """The cell with the pipe in the hand, which only the fingers may touch."""
+        world = self.world.copy()
+        world.add("pipe", self.pipe.shapes(), self.T_world_start)
+        world.attach("pipe", "gripper_tcp", np.linalg.inv(grasp.T_object_tool), set(FINGERS))
+        return world
+
+    def ends(self, grasp: PipeGrasp, count: int = 8) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Collision-free configurations (k, 6) that hold the pipe by this grasp at its start and at its goal."""
+        arm, world = self.arm_holding(grasp), self.world_holding(grasp)
+        starts = arm.ik_all(self.T_world_start @ grasp.T_object_tool, count, world=world)
+        if len(starts) == 0:
+            return starts, starts
+        return starts, arm.ik_all(self.T_world_goal @ grasp.T_object_tool, count, world=world)
+
+
+def _flying(T: Pose) -> NDArray[np.float64]:
+    """(x, y, z, rotation vector) of a pose."""
+    R = T[:3, :3]
+    angle = acos(float(np.clip((np.trace(R) - 1) / 2, -1, 1)))
+    axis = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
+    if angle < 1e-9:
+        axis = np.zeros(3)
+    elif angle > pi - 1e-6:  # from the symmetric part
+        column = np.argmax(np.diag(R))
+        axis = R[:, column] + np.eye(3)[:, column]
+        axis *= angle / np.linalg.norm(axis)
+    else:
+        axis *= angle / (2 * sin(angle))
+    return np.concatenate([T[:3, 3], axis])
+
+
+@cache
+def _hand_checker(robot_name: str, pipe: Pipe, section: int) -> CollisionChecker:
+    """The hand, opened as wide as the section, flying among the pipe's other sections."""
+    robot, _, gripper = pipe_robot(robot_name)
+    opening = gripper.joint_values(pipe.diameters[section])
+    poses = robot.link_poses(opening)
+    T_tool_world = np.linalg.inv(poses["gripper_tcp"])
+    shapes = [
+        LinkShape(shape.shape, T_tool_world @ poses[link] @ shape.pose)
+        for link in ("gripper_link", *sorted(FINGERS))
+        for shape in robot.collisions(link)
+    ]
+    flying = Robot.from_strings(
+        '<robot name="hand"><link name="object"/><link name="tool"/><joint name="flight" type="floating">'
+        '<parent link="object"/><child link="tool"/></joint></robot>'
+    ).with_link("hand", "tool", np.eye(4), shapes)
+    world = World()
+    others = [shape for i, shape in enumerate(pipe.shapes()) if i != section]
+    if others:
+        world.add("pipe", others, np.eye(4))
+    return CollisionChecker(flying, world, flying.group(base_link="object", tip="hand"))
+
+
+# --- drawing cells -----------------------------------------------------------------------------------------------------
+_RINGS = {"tm14like": (0.45, 0.70), "kr6like": (0.40, 0.58)}  # around the arm's axis [m]
+_TABLE_TOP = -0.005  # the arm's foot stands on it without touching [m]
+_POST_RADIUS = 0.01
+_POST_GAP = 0.005  # between a post and the pipe above it [m]
+_CLEARANCE = 0.02  # between the pipe at rest and whatever else stands there [m]
+_TRIES = 500
+_ROADMAPS, _VERTICES = 6, 5000  # over which a cell must be solvable
+_CHECKS = 1_000_000  # the first seed of roadmaps and grasps that decide on a cell
+
+
+def pipe_cell(number: int, seed: int = 1, robot: str = "tm14like") -> PipeCell:
+    """The cell of one structure (1 to 8), drawn with a seed: the same every time.
+
+    Turned down and counted are cells without room for pipe or posts, those in which fewer than 3 of 100 grasps are
+    within reach at both ends, and those for which PRM*-MG finds no motion in one of six tries, each with a roadmap and
+    500 grasps of its own; for structure 6 also those whose first grasp within reach would do. Raises InvalidInput on a
+    number or robot that does not exist.
+    """
+    if number not in range(1, len(_STRUCTURES) + 1):
+        raise InvalidInput(f"number = {number}: must be from 1 to {len(_STRUCTURES)}")
+    pipe_robot(robot)
+    return _pipe_cell(number, seed, robot)
+
+
+@cache
+def _pipe_cell(number: int, seed: int, robot: str) -> PipeCell:
+    rng = np.random.default_rng([seed, number, ROBOTS.index(robot)])
+    rejected: Counter[str] = Counter()
+    for drawn in range(1, _TRIES + 1):
+        cell = _draw(number, seed, robot, rng)
+        cause = _fault(cell)
+        if not cause:
+            return replace(cell, drawn=drawn, rejected=dict(rejected))
+        rejected[cause] += 1
+    raise InvalidInput(f"number = {number}, seed = {seed}: none of {_TRIES} cells will do: {dict(rejected)}")
+
+
+def _draw(number: int, seed: int, robot: str, rng: np.random.Generator) -> PipeCell:
+    """Start to the left of the arm, goal to its right, obstacles ahead."""
+    pipe, style = pipe_structures()[number - 1], _STYLES[number - 1]
+    between = rng.uniform(-0.3, 0.3)  # direction of what stands between [rad]
+    T_world_start, T_world_goal = (
+        _resting(
+            pipe,
+            rng,
+            _ring(robot, style),
+            between + side * rng.uniform(0.9, 1.5),
+            _LOW if name in style.low else heights,
+        )
+        for name, side, heights in (("start", 1, (0.06, 0.20)), ("goal", -1, (0.06, 0.35)))
+    )
+    world = World()
+    world.add_box("table", [2.6, 2.6, 0.05], pose([0, 0, _TABLE_TOP - 0.025]))
+    behind = -0.38 * _direction(between)
+    world.add_box("wall", [0.04, 2.4, 1.5], pose([*behind, 0.75 + _TABLE_TOP], rpy=[0, 0, between]))
+    for name, T in (("start", T_world_start), ("goal", T_world_goal)):
+        for i, top in enumerate(_post_tops(pipe, T, rng)):
+            height = top[2] - _TABLE_TOP
+            world.add_cylinder(
+                f"{name} post {i + 1}", _POST_RADIUS, height, pose([top[0], top[1], _TABLE_TOP + height / 2])
+            )
+    for name, T in (("start", T_world_start), ("goal", T_world_goal)):
+        if name in style.bays:
+            _add_bay(world, name, pipe, T)
+    scale = _RINGS[robot][1] / _RINGS["tm14like"][1]
+    if style.partition:
+        _add_partition(world, between, scale, style, rng)
+    for i in range(style.columns):
+        radius, height = rng.uniform(0.03, 0.05), rng.uniform(0.5, 0.9) * scale
+        at = rng.uniform(0.40, 0.90) * scale * _direction(between + rng.uniform(-0.6, 0.6))
+        world.add_cylinder(f"column {i + 1}", radius, height, pose([at[0], at[1], _TABLE_TOP + height / 2]))
+    return PipeCell(number, seed, robot, pipe, world, T_world_start, T_world_goal)
+
+
+def _direction(angle: float) -> NDArray[np.float64]:
+    return np.array([np.cos(angle), np.sin(angle)])
+
+
+def _ring(robot: str, style: _Style) -> tuple[float, float]:
+    """Distances of centres of mass from the arm's axis [m]."""
+    near, far = _RINGS[robot]
+    return (far + 0.05, far + 0.15) if style.far else (near, far)
+
+
+def _resting(
+    pipe: Pipe, rng: np.random.Generator, ring: tuple[float, float], angle: float, heights: tuple[float, float]
+) -> Pose:
+    """Any of the 24 turns by right angles, any heading, the lowest point at a height within bounds."""
+    turn = pose([0, 0, 0], rpy=rng.integers(0, 4, 3) * (pi / 2))
+    T = pose([0, 0, 0], rpy=[0, 0, rng.uniform(-pi, pi)]) @ turn
+    radius = max(pipe.diameters) / 2
+    lowest = (pipe.nodes @ T[:3, :3].T)[:, 2].min() - radius
+    T[:2, 3] = rng.uniform(*ring) * _direction(angle)
+    T[2, 3] = rng.uniform(*heights) - lowest
+    return T
+
+
+def _post_tops(pipe: Pipe, T: Pose, rng: np.random.Generator) -> list[NDArray[np.float64]]:
+    """Two points below the pipe with nothing of it further down, the farthest apart of some draws."""
+    nodes = pipe.nodes @ T[:3, :3].T + T[:3, 3]
+    points, radii = [], []  # along the whole pipe
+    for (a, b), diameter in zip(pipe.sections, pipe.diameters, strict=True):
+        points.append(nodes[a] + np.linspace(0, 1, 41)[:, None] * (nodes[b] - nodes[a]))
+        radii.append(np.full(41, diameter / 2))
+    along, radius = np.concatenate(points), np.concatenate(radii)
+    tops = []
+    for i in rng.integers(0, len(along), 24):
+        beside = np.linalg.norm(along[:, :2] - along[i, :2], axis=1) > radius + _POST_RADIUS + _POST_GAP
+        above = along[:, 2] - radius >= along[i, 2] - radius[i] - 1e-9
+        if np.all(beside | above):
+            tops.append(along[i] - [0, 0, radius[i] + _POST_GAP])
+    pairs = [(a, b) for i, a in enumerate(tops) for b in tops[:i]]
+    return list(max(pairs, key=lambda pair: float(np.linalg.norm(pair[0] - pair[1])), default=tuple(tops)))
+
+
+def _add_bay(world: World, name: str, pipe: Pipe, T: Pose) -> None:
+    """Back and two sides around the resting pipe, open towards the arm's axis and above."""
+    heading = float(np.arctan2(T[1, 3], T[0, 3]))
+    T_world_bay = pose([0, 0, 0], rpy=[0, 0, heading])
+    nodes = (pipe.nodes @ T[:3, :3].T + T[:3, 3]) @ T_world_bay[:3, :3]
+    reach, thick = max(pipe.diameters) / 2 + _BAY_ROOM, 0.02
+    low, high = nodes.min(axis=0) - reach, nodes.max(axis=0) + reach
+    low[2], high[2] = _TABLE_TOP, nodes[:, 2].max()
+    depth, width, height = high - low
+    middle = (low + high) / 2
+    for part, size, at in (
+        ("back", [thick, width + 2 * thick, height], [high[0] + thick / 2, middle[1], middle[2]]),
+        ("left side", [depth, thick, height], [middle[0], high[1] + thick / 2, middle[2]]),
+        ("right side", [depth, thick, height], [middle[0], low[1] - thick / 2, middle[2]]),
+    ):
+        world.add_box(f"{name} bay {part}", size, T_world_bay @ pose(at))
+
+
+def _add_partition(world: World, between: float, scale: float, style: _Style, rng: np.random.Generator) -> None:
+    """A plate that stands out from near the arm, and a roof above it."""
+    near, far = 0.28 * scale, 1.15 * scale
+    middle = (near + far) / 2 * _direction(between)
+    height = style.partition * scale * rng.uniform(0.9, 1.1)
+    plate = pose([middle[0], middle[1], _TABLE_TOP + height / 2], rpy=[0, 0, between])
+    world.add_box("partition", [far - near, 0.03, height], plate)
+    if style.gap:
+        bottom = height + style.gap * scale * rng.uniform(0.95, 1.05)
+        world.add_box("roof", [2.6, 2.6, 0.04], pose([0, 0, bottom + 0.02]))
+
+
+def _fault(cell: PipeCell) -> str:
+    """Why a drawn cell will not do; empty when it will."""
+    for name, T in (("start", cell.T_world_start), ("goal", cell.T_world_goal)):
+        if _nearest(cell.pipe, cell.world, T, ignored=f"{name} post") < _CLEARANCE:
+            return f"no room for the pipe at its {name}"
+        if _nearest(cell.pipe, cell.world, T) < 0.8 * _POST_GAP:
+            return f"a post stands in the pipe at its {name}"
+    reachable = 0
+    for grasp in cell.grasps(100, seed=_CHECKS):
+        starts, goals = cell.ends(grasp, 1)
+        reachable += bool(len(starts) and len(goals))
+    if reachable < 3:
+        return "fewer than 3 of 100 grasps within reach"
+    for i in range(_ROADMAPS):
+        problem = cell.problem(cell.grasps(500, seed=_CHECKS + i))
+        found = plan_manipulation(problem, roadmap=_roadmap(cell.robot_name, i), time_limit=60.0)
+        if found.outcome != Outcome.solved:
+            return f"no motion over a roadmap of {_VERTICES} vertices"
+    return "the first grasp within reach will do" if _STYLES[cell.number - 1].picky and _first_carries(cell) else ""
+
+
+def _first_carries(cell: PipeCell) -> bool:
+    """Whether RRT-Connect finds a motion between arm configurations of the first grasp that reaches both ends."""
+    for grasp in cell.grasps(100):
+        starts, goals = cell.ends(grasp)
+        if len(starts) and len(goals):
+            break
+    arm, world = cell.arm_holding(grasp), cell.world_holding(grasp)
+    return any(
+        plan_motion(
+            cell.robot, arm, world, start=start, goal=goals, max_iterations=20_000, time_limit=600.0, shorten=False
+        ).outcome
+        == Outcome.solved
+        for start in starts
+    )
+
+
+@cache
+def _roadmap(robot: str, index: int) -> Roadmap:
+    return Roadmap.build(pipe_robot(robot)[1], vertices=_VERTICES, seed=_CHECKS + index)
+
+
+def _nearest(pipe: Pipe, world: World, T_world_pipe: Pose, ignored: str | None = None) -> float:
+    """Distance of the pipe from the scene, without the bodies whose names begin as said [m]."""
+    scene = world.copy()
+    for name in scene.objects:
+        if ignored is not None and name.startswith(ignored):
+            scene.remove(name)
+    body = Robot.from_strings(
+        '<robot name="pipe"><link name="world"/><link name="rail"/><joint name="rail" type="prismatic">'
+        '<parent link="world"/><child link="rail"/><limit lower="0" upper="1" velocity="1" effort="1"/></joint></robot>'
+    ).with_link("pipe", "rail", T_world_pipe, pipe.shapes())
+    checker = CollisionChecker(body, scene, body.group(base_link="world", tip="pipe"))
+    return checker.distance([0.0]).value

@@ -1,0 +1,160 @@
+"""The eight pipe structures, and the cells they are carried through."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+import mmgrasp as mg
+from mmgrasp.pipe_cells import ROBOTS, pipe_cell, pipe_robot, pipe_structures
+from mmgrasp.viz.carry import along, carry_scene, write_carry
+
+
+def distance_of_segments(a, b, c, d) -> float:
+    """Of two straight sections' centre lines, by sampling one and projecting on the other."""
+    points = a + np.linspace(0, 1, 201)[:, None] * (b - a)
+    t = np.clip((points - c) @ (d - c) / ((d - c) @ (d - c)), 0, 1)
+    return float(np.linalg.norm(points - c - t[:, None] * (d - c), axis=1).min())
+
+
+def test_structures_go_from_one_bend_to_eight_sections():
+    pipes = pipe_structures()
+    assert [len(p.sections) for p in pipes] == [2, 3, 3, 4, 5, 6, 7, 8]
+    for pipe in pipes:
+        np.testing.assert_allclose(pipe.centre_of_mass, 0, atol=1e-12)
+        for i, (a, b) in enumerate(pipe.sections):  # sections that share no node do not touch
+            for j, (c, d) in enumerate(pipe.sections[:i]):
+                if not {a, b} & {c, d}:
+                    gap = distance_of_segments(*(pipe.nodes[k] for k in (a, b, c, d)))
+                    assert gap > (pipe.diameters[i] + pipe.diameters[j]) / 2
+    # P2 table 3.3 [mm]
+    assert sorted(round(1000 * length) for length in pipes[4].lengths) == sorted([200, 200, 300, 200, 200])
+    assert sorted(round(1000 * length) for length in pipes[5].lengths) == sorted([200, 200, 150, 200, 400, 100])
+    assert sorted(round(1000 * length) for length in pipes[7].lengths) == sorted(
+        [200, 150, 200, 200, 400, 150, 100, 50]
+    )
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("number", [1, 3])
+def test_a_cell_is_what_it_says(number, robot):
+    cell = pipe_cell(number, seed=1, robot=robot)
+    assert cell.drawn == 1 + sum(cell.rejected.values())
+    for T in (cell.T_world_start, cell.T_world_goal):
+        np.testing.assert_allclose(T[:3, :3] @ T[:3, :3].T, np.eye(3), atol=1e-12)
+        lowest = (cell.pipe.nodes @ T[:3, :3].T + T[:3, 3])[:, 2].min() - max(cell.pipe.diameters) / 2
+        assert 0.02 - 1e-9 <= lowest <= 0.35
+    reachable = 0
+    for grasp in cell.grasps(40):
+        starts, goals = cell.ends(grasp, 4)
+        if len(starts) == 0 or len(goals) == 0:
+            continue
+        reachable += 1
+        arm, checker = cell.arm_holding(grasp), mg.CollisionChecker(cell.robot, cell.world_holding(grasp), cell.arm)
+        T_tool_object = np.linalg.inv(grasp.T_object_tool)
+        for q, T in ((starts[0], cell.T_world_start), (goals[-1], cell.T_world_goal)):
+            np.testing.assert_allclose(arm.fk(q) @ T_tool_object, T, atol=1e-4)
+            assert checker.is_free(q)
+    assert reachable >= 2
+
+
+def test_cells_repeat_by_seed_and_differ_between_seeds():
+    one = pipe_cell(1, seed=1)
+    pipe_cell.__globals__["_pipe_cell"].cache_clear()
+    again, other = pipe_cell(1, seed=1), pipe_cell(1, seed=2)
+    assert np.array_equal(one.T_world_start, again.T_world_start)
+    assert one.world.objects == again.world.objects
+    assert all(np.array_equal(one.world.pose_of(n), again.world.pose_of(n)) for n in one.world.objects)
+    assert not np.allclose(one.T_world_start, other.T_world_start)
+
+
+def test_grasps_leave_the_hand_free_and_keep_their_distance():
+    """Palm and fingers against the other sections, by the distance of sampled points of the hand."""
+    cell = pipe_cell(3)
+    grasps = cell.grasps(150)
+    assert len(grasps) == 150
+    assert [g.to_dict() for g in cell.grasps(40)] == [g.to_dict() for g in grasps[:40]]
+    for i, a in enumerate(grasps):
+        for b in grasps[:i]:
+            if (a.section, a.flipped) == (b.section, b.flipped):
+                turn = abs(math.remainder(a.angle - b.angle, 2 * math.pi))
+                assert abs(a.length - b.length) >= 0.01 or turn >= math.radians(5)
+    rng = np.random.default_rng(1)
+    robot, _, gripper = pipe_robot("tm14like")
+    poses = robot.link_poses(gripper.joint_values(cell.pipe.diameters[0]))
+    T_tool_world = np.linalg.inv(poses["gripper_tcp"])
+    points = []
+    for link in ("gripper_link", "left_finger_link", "right_finger_link"):
+        (shape,) = robot.collisions(link)
+        local = rng.uniform(-0.5, 0.5, (200, 3)) * shape.shape.size
+        T = T_tool_world @ poses[link] @ shape.pose
+        points.append(local @ T[:3, :3].T + T[:3, 3])
+    hand = np.concatenate(points)
+    refused = 0
+    for grasp in cell.pipe.sample_grasps(300, gripper=cell.gripper, seed=1):
+        kept = any(np.array_equal(grasp.T_object_tool, g.T_object_tool) for g in grasps)
+        placed = hand @ grasp.T_object_tool[:3, :3].T + grasp.T_object_tool[:3, 3]
+        inside = False
+        for i, (a, b) in enumerate(cell.pipe.sections):
+            if i != grasp.section:
+                p, d = cell.pipe.nodes[a], cell.pipe.nodes[b] - cell.pipe.nodes[a]
+                t = np.clip((placed - p) @ d / (d @ d), 0, 1)
+                inside |= bool((np.linalg.norm(placed - p - t[:, None] * d, axis=1) < cell.pipe.diameters[i] / 2).any())
+        assert not (kept and inside)
+        refused += inside
+    assert refused > 0, "some hands do meet the pipe"
+
+
+def test_not_every_grasp_that_reaches_both_ends_can_carry():
+    """P2's reason to plan over many grasps: in cell 6 the first reachable grasp fails where another one carries the pipe."""
+    cell = pipe_cell(6)
+    assert cell.rejected["the first grasp within reach will do"] >= 1
+    grasps = cell.grasps(500)
+    found = mg.plan_manipulation(cell.problem(grasps), vertices=5000, time_limit=100.0)
+    assert found.outcome == mg.Outcome.solved
+    carrier = grasps[found.grasp_index]
+    checker = mg.CollisionChecker(cell.robot, cell.world_holding(carrier), cell.arm_holding(carrier))
+    assert all(checker.edge_is_free(a, b, step=0.005) for a, b in itertools.pairwise(found.path))
+    first = next(grasp for grasp in grasps if all(map(len, cell.ends(grasp))))
+    starts, goals = cell.ends(first)
+    for start in starts:  # another planner than the generator's
+        tried = mg.plan_motion(
+            cell.robot, cell.arm_holding(first), cell.world_holding(first), start=start, goal=goals, planner="bi_est",
+            max_iterations=20_000, time_limit=600.0, shorten=False,
+        )  # fmt: skip
+        assert tried.outcome != mg.Outcome.solved
+
+
+def test_unknown_cells_are_refused():
+    with pytest.raises(mg.InvalidInput, match=r"number = 9: must be from 1 to 8"):
+        pipe_cell(9)
+    with pytest.raises(mg.InvalidInput, match=r"robot = 'kr6lik'.*kr6like"):
+        pipe_cell(1, robot="kr6lik")
+
+
+def test_a_picture_shows_the_pipe_from_start_to_goal(tmp_path):
+    cell = pipe_cell(1)
+    for grasp in cell.grasps(100):
+        starts, goals = cell.ends(grasp, 4)
+        if len(starts) and len(goals):
+            break
+    path = np.array([starts[0], (starts[0] + goals[0]) / 2, goals[0]])
+    moments = along(path, 5)
+    np.testing.assert_allclose(moments, starts[0] + np.linspace(0, 1, 5)[:, None] * (goals[0] - starts[0]), atol=1e-12)
+    scene = carry_scene(cell, grasp, path, pipes=3)
+    sections = len(cell.pipe.sections)
+    fixtures = sum(len(cell.world.shapes_of(n)) for n in cell.world.objects if not n.startswith("wall"))
+    links = sum(len(cell.robot.collisions(link)) for link in cell.robot.links)
+    assert len(scene.vertices) == fixtures + 3 * sections + links
+    for first, T in ((fixtures, cell.T_world_start), (fixtures + 2 * sections, cell.T_world_goal)):
+        drawn = np.concatenate(scene.vertices[first : first + sections])
+        placed = cell.pipe.nodes @ T[:3, :3].T + T[:3, 3]
+        radius = max(cell.pipe.diameters) / 2
+        np.testing.assert_allclose(drawn.min(axis=0), placed.min(axis=0) - radius, atol=2e-3)
+        np.testing.assert_allclose(drawn.max(axis=0), placed.max(axis=0) + radius, atol=2e-3)
+    file = write_carry(cell, grasp, path, tmp_path / "carry.png", width=160, height=120)
+    assert file.read_bytes().startswith(b"\x89PNG")
+    assert file.stat().st_size > 2000

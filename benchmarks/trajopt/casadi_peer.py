@@ -1,4 +1,4 @@
-"""The same problem written for casadi: (4.1)-(4.9) with v and omega for the base, five-point quadrature, same limits.
+"""The same problem written for casadi: (4.1)-(4.9) with v and omega for the base, eight-point quadrature, same limits.
 
 Built once per number of intervals, with the grasp as a parameter; only the solve is timed. Kinematics are taken over from the
 group: fixed transforms between its joints, found from two configurations of each.
@@ -11,8 +11,8 @@ import numpy as np
 
 import mmgrasp as mg
 
-NODES = np.array([0.046910077030668004, 0.23076534494715845, 0.5, 0.76923465505284155, 0.953089922969332])
-WEIGHTS = np.array([0.11846344252809454, 0.23931433524968324, 0.28444444444444444, 0.23931433524968324, 0.11846344252809454])
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
+NODES, WEIGHTS = (NODES + 1) / 2, WEIGHTS / 2
 
 
 class Peer:

@@ -5,10 +5,12 @@
 namespace mmgrasp::detail {
 namespace {
 
-// Gauss-Legendre on [0, 1], five points.
-constexpr double kNodes[] = {0.046910077030668004, 0.23076534494715845, 0.5, 0.76923465505284155, 0.953089922969332};
-constexpr double kWeights[] = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444, 0.23931433524968324,
-                               0.11846344252809454};
+// Gauss-Legendre on [0, 1], eight points.
+constexpr int kPoints = 8;
+constexpr double kNodes[] = {0.019855071751231856, 0.10166676129318664, 0.2372337950418355, 0.4082826787521751,
+                             0.591717321247825,    0.7627662049581645,  0.8983332387068134, 0.9801449282487682};
+constexpr double kWeights[] = {0.05061426814518815, 0.11119051722668725, 0.15685332293894366, 0.181341891689181,
+                               0.181341891689181,   0.15685332293894366, 0.11119051722668725, 0.05061426814518815};
 
 }  // namespace
 
@@ -20,7 +22,7 @@ void UnicycleArc::evaluate(const Locals& l, double s, int derivatives) {
     H[1].setZero();
   }
   const double h = l[5];
-  for (int k = 0; k < 5; ++k) {
+  for (int k = 0; k < kPoints; ++k) {
     const double at = s * kNodes[k], weight = s * kWeights[k];
     const double early = at - 0.5 * at * at, late = 0.5 * at * at;  // shares of omega0, omega1 in the turn
     const double rate = l[1] * early + l[2] * late, heading = l[0] + h * rate;

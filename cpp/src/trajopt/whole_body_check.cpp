@@ -10,6 +10,8 @@ namespace {
 
 using Eigen::VectorXd;
 
+constexpr int kSteps = 128;  // of Runge-Kutta per interval: good to 1e-9 m at intervals of 2 s
+
 /// The largest violation of each kind, in the order in which kinds are first named.
 class Ledger {
  public:
@@ -73,7 +75,7 @@ void check_motion(Ledger& ledger, const WholeBodyTrajectory& t) {
   for (std::size_t i = 0; i + 1 < t.size(); ++i) {
     const WholeBodyTrajectory one(group, {t.times()[i], t.times()[i + 1]}, {t.positions()[i], t.positions()[i + 1]},
                                   {t.drive()[i], t.drive()[i + 1]});
-    ends.push_back(one.rolled_out(32).back() - t.positions()[i + 1]);
+    ends.push_back(one.rolled_out(kSteps).back() - t.positions()[i + 1]);
   }
   ledger.open("dynamics", "rad or m", 1e-8);
   for (std::size_t i = 0; i < ends.size(); ++i) {
@@ -89,7 +91,7 @@ void check_motion(Ledger& ledger, const WholeBodyTrajectory& t) {
       ledger.note(std::abs(rate[0] * std::sin(q[2]) - rate[1] * std::cos(q[2])), t.times()[i], "sideways");
     }
   }
-  const std::vector<VectorXd> whole = t.rolled_out(32);
+  const std::vector<VectorXd> whole = t.rolled_out(kSteps);
   ledger.open("drift", "m", 1e-6 * static_cast<double>(t.size()));
   for (std::size_t i = 0; i < t.size(); ++i)
     ledger.note((whole[i] - t.positions()[i]).head<2>().norm(), t.times()[i], "x, y from the start on");

@@ -123,8 +123,8 @@ TEST(UnicycleArc, MatchesACircleAndALongIntegration) {
   circle << 0.3, 0.9, 0.9, 0.5, 0.5, 1.4;
   arc.evaluate(circle, 1, 0);
   const double r = 0.5 / 0.9, end = 0.3 + 0.9 * 1.4;
-  EXPECT_NEAR(arc.way[0], r * (std::sin(end) - std::sin(0.3)), 1e-11);
-  EXPECT_NEAR(arc.way[1], -r * (std::cos(end) - std::cos(0.3)), 1e-11);
+  EXPECT_NEAR(arc.way[0], r * (std::sin(end) - std::sin(0.3)), 1e-13);
+  EXPECT_NEAR(arc.way[1], -r * (std::cos(end) - std::cos(0.3)), 1e-13);
   Rng rng(8);
   for (int round = 0; round < 20; ++round) {
     detail::UnicycleArc::Locals l = random_vector(rng, 6, 1);

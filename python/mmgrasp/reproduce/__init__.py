@@ -25,6 +25,7 @@ from . import (
     rrt_mg,
     shelf,
     solver_regions,
+    three_ways,
     tracking,
 )
 from .entry import Context, Entry, Progress, Result, Sweep, sweep_here
@@ -47,6 +48,7 @@ TOPICS = (
     drive_by,
     tracking,
     physics,
+    three_ways,
 )
 ENTRIES: dict[str, Entry] = {e.name: e for topic in TOPICS for e in topic.ENTRIES}
 ALSO = {

@@ -25,6 +25,7 @@ const std::vector<OptionField<O>>& drive_by_fields() {
       option<O>("solver", &O::trajectory, &W::solver, "a name of nlp_solver_names()"),
       option<O>("tolerance", &O::trajectory, &W::tolerance, "relative optimality"),
       option<O>("max_iterations", &O::trajectory, &W::max_iterations, "per attempt"),
+      option<O>("attempt_time_limit", &O::trajectory, &W::time_limit, "wall-clock cap of one attempt [s]"),
       option<O>("smoothing", &O::trajectory, &W::smoothing,
                 "weight of the mean square of accelerations over their limits [s]"),
       option<O>("margin", &O::trajectory, &W::margin, "distance to keep from obstacles and from oneself [m]"),

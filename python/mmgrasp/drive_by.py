@@ -205,7 +205,7 @@ def _in_passing(
         start=[*here, *problem.home],
         tasks=tasks,
         goal=[*stop.pose, *lifted],
-        **{"waypoints": 45, "time_limit": 60.0, **options},
+        **{"waypoints": 45, "time_limit": 60.0, "attempt_time_limit": 30.0, **options},
     )
     made = DriveByPick(leg, leg, part.name, before, result, False, "")
     if result.outcome != Outcome.solved:

@@ -75,7 +75,12 @@ class Bottle:
         for yaw in SIDES:
             tasks, closing = self.tasks(yaw)
             found = _core.plan_drive_by(
-                robot, group, world, tasks=tasks, **ends, **{"waypoints": 55, "time_limit": 60.0, **options}
+                robot,
+                group,
+                world,
+                tasks=tasks,
+                **ends,
+                **{"waypoints": 55, "time_limit": 120.0, "attempt_time_limit": 60.0, **options},
             )
             if found.outcome == Outcome.solved:
                 return found, float(found.events[closing]["time"])

@@ -238,6 +238,7 @@ DriveByResult plan(const Robot& robot, const JointGroup& group, const World& wor
 void bind_trajopt(py::module_& m) {
   m.def("nlp_solver_names", &nlp_solver_names, "Names that plan_drive_by's `solver` takes.");
   m.def("_drive_by_option_table", [] { return option_table(drive_by_fields()); });
+  bind_drive_by_task(m);
   m.def(
       "_first_drive_by_guess",
       [](const JointGroup& group, const Eigen::VectorXd& start, const std::vector<DriveByTask>& tasks,
@@ -253,7 +254,6 @@ void bind_trajopt(py::module_& m) {
       },
       py::arg("group"), py::kw_only(), py::arg("start"), py::arg("tasks"), py::arg("goal"), py::arg("waypoints") = 35,
       "Where the first attempt begins, for benchmarks against other optimisers; None when a task is out of reach.");
-  bind_drive_by_task(m);
   bind_trajectory_class(m);
   bind_result(m);
   m.def("plan_drive_by", &plan, py::arg("robot"), py::arg("group"), py::arg("world"), py::kw_only(), py::arg("start"),

@@ -85,7 +85,7 @@ def test_the_bar_is_carried_from_start_to_goal():
     assert np.allclose(ARM.fk(result.path[-1]) @ tool_object, flat(0.6, -0.45, 0.9), atol=3e-4)
     world = scene()
     world.add("bar", [BAR])
-    world.attach("bar", "tip", tool_object, ["l3", "tip"])
+    world.attach("bar", "tip", tool_object, {"l3", "tip"})
     checker = mg.CollisionChecker(ARM.robot, world, ARM)
     for a, b in zip(result.path, result.path[1:], strict=False):
         assert checker.edge_is_free(a, b, 0.002)

@@ -11,7 +11,7 @@ import numpy
 import numpy.typing
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'Box', 'CapabilityMap', 'Capsule', 'CarryPlace', 'CollisionChecker', 'Contact', 'CuboidFit', 'Cylinder', 'DepthImage', 'DistanceResult', 'EdgeResult', 'Error', 'FingerJoint', 'FittedCuboid', 'Grasp', 'Graspability', 'Gripper', 'HeightMap', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'Mesh', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyProblem', 'PartSupplyResult', 'Pick', 'PickMotion', 'PinholeCamera', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Robot', 'ScoredGrasp', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'TourResult', 'Tray', 'Voxels', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'compute_base_regions', 'compute_disabled_pairs', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'least_stops', 'look_down', 'make_base_grid', 'make_height_map', 'maximal_intersections', 'minimal_stops', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_motion', 'plan_pick', 'plan_platform_locations', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_part_supply', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CandidateGrasp', 'CapabilityMap', 'Capsule', 'CarryPlace', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'CuboidFit', 'Cylinder', 'DepthImage', 'DistanceResult', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FingerJoint', 'FittedCuboid', 'Grasp', 'GraspReport', 'Graspability', 'Gripper', 'HeightMap', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyProblem', 'PartSupplyResult', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeGrasp', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'ScoredGrasp', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'ToolCone', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'drive_arc', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'least_stops', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_stops', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_pick', 'plan_platform_locations', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_part_supply', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Robot:
     """
     A robot as URDF and SRDF describe it. Immutable; joints and links by name.
@@ -719,6 +719,11 @@ class JointTrajectory:
     """
     A path on a clock; cubic Hermite between samples.
     """
+    def __init__(self, names: collections.abc.Sequence[str], times: numpy.typing.ArrayLike, positions: numpy.typing.ArrayLike, velocities: typing.Any = None, accelerations: typing.Any = None) -> None:
+        """
+        From samples: times (k,) from 0 and increasing [s], positions (k, n), and if given velocities and accelerations
+        (k, n). Without velocities the samples are joined by straight lines.
+        """
     def __len__(self) -> int:
         ...
     def __repr__(self) -> str:
@@ -857,6 +862,7 @@ class CollisionChecker:
             padding = 0.0: robot shapes are grown by this against the scene [m]
             check_self = True: robot (and what it holds) against itself
             check_scene = True: robot (and what it holds) against the scene
+            held_only = False: only what it holds, against the robot and the scene
         """
     def __repr__(self) -> str:
         ...
@@ -1292,6 +1298,26 @@ class Grasp:
         """
         Opening of the fingers while holding [m].
         """
+class ToolRegion:
+    """
+    A box of tool poses around a pose.
+    """
+    def __init__(self, pose: numpy.typing.ArrayLike, position: typing.Any = None, rotation: typing.Any = None) -> None:
+        """
+        pose (4, 4) times a translation within +-position [m] times a rotation rpy within +-rotation [rad].
+        """
+    def __repr__(self) -> str:
+        ...
+class ToolCone:
+    """
+    Path constraint: an axis of the tool stays near an axis of the world.
+    """
+    def __init__(self, tool_axis: numpy.typing.ArrayLike, world_axis: numpy.typing.ArrayLike, half_angle: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        """
+        tool_axis in the tip's frame; half_angle: the largest angle between the two [rad].
+        """
+    def __repr__(self) -> str:
+        ...
 class MotionStats:
     def __repr__(self) -> str:
         ...
@@ -1341,6 +1367,55 @@ class MotionResult:
     @property
     def stats(self) -> MotionStats:
         ...
+class CartesianResult:
+    """
+    What plan_cartesian found.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def branches(self) -> int:
+        """
+        Allowed configurations of the first pose.
+        """
+    @property
+    def cause(self) -> Rejection:
+        """
+        Why it ended there.
+        """
+    @property
+    def contact(self) -> Contact | None:
+        """
+        What touches there, when something does, or None.
+        """
+    @property
+    def corners(self) -> list[int]:
+        """
+        Waypoint at which each pose is reached.
+        """
+    @property
+    def fraction(self) -> float:
+        """
+        How far the best branch came, in [0, 1].
+        """
+    @property
+    def outcome(self) -> Outcome:
+        ...
+    @property
+    def path(self) -> typing.Any:
+        """
+        (k, n) or None.
+        """
+    @property
+    def rejections(self) -> Rejections:
+        ...
+    @property
+    def tried(self) -> int:
+        """
+        Of these: followed.
+        """
 class StraightLineResult:
     """
     What plan_straight_line found.
@@ -1371,6 +1446,389 @@ class StraightLineResult:
     def path(self) -> typing.Any:
         """
         (k, n) or None.
+        """
+class Roadmap:
+    """
+    Configurations of a group drawn from its joint box and joined when near, without any collision check: it serves every grasp, object and scene (P2 4.3.2.1). Immutable.
+    """
+    @staticmethod
+    def build(group: JointGroup, *, progress: typing.Any = None, **kwargs) -> Roadmap:
+        """
+        Draws and joins; a larger roadmap of the same seed holds a smaller one's vertices.
+        
+        Keyword options:
+            vertices = 5000: configurations drawn
+            gamma = 4.0: vertices nearer than gamma (log n / n)^(1/d) are joined [rad or m]
+            neighbours = 0: > 0: join that many nearest ones instead
+            seed = 1: same seed, same roadmap
+        """
+    @staticmethod
+    def load(path: typing.Any, group: JointGroup) -> Roadmap:
+        """
+        Raises IoError on a damaged file or one made for another robot, joints or limits.
+        """
+    def __len__(self) -> int:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def near(self, q: numpy.typing.ArrayLike) -> list[int]:
+        """
+        Vertices a new configuration would be joined with, ascending.
+        """
+    def save(self, path: typing.Any) -> None:
+        """
+        To a temporary name first, then renamed.
+        """
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def edges(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Pairs of vertices (m, 2), the smaller number first.
+        """
+    @property
+    def figures(self) -> dict:
+        """
+        Mean degree, connected parts, the largest one's vertices, connection radius, the joint box's volume, and the gamma that PRM* asks for.
+        """
+    @property
+    def vertices(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, joints)
+        """
+class CandidateGrasp:
+    """
+    One way to hold the object while it is carried.
+    """
+    def __init__(self, T_object_tool: numpy.typing.ArrayLike, opening: typing.SupportsFloat | typing.SupportsIndex = 0.0, cost: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> None:
+        """
+        Pose of the group's tip in the object's frame (4, 4); opening of the fingers while holding [m], used when the problem has a gripper; cost added to the path's length.
+        """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def T_object_tool(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def cost(self) -> float:
+        ...
+    @property
+    def opening(self) -> float:
+        ...
+class ManipulationProblem:
+    """
+    Carry an object from one pose to another with any of many grasps (P2 4.2).
+    """
+    def __init__(self, group: JointGroup, world: World, object: typing.Any, T_world_start: numpy.typing.ArrayLike, T_world_goal: numpy.typing.ArrayLike, grasps: typing.Any, *, gripper: Gripper | None = None, touch_links: collections.abc.Sequence[str] = [], object_name: str = 'object') -> None:
+        """
+        `object` is a LinkShape or a list of them, in its own frame; `world` is without it. `grasps` are CandidateGrasp, or poses of the tool in the object's frame as (m, 4, 4). With `gripper` the fingers are set to each grasp's opening. Links in `touch_links` may touch the object; none given: those of the end effector.
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def T_world_goal(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def T_world_start(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def grasps(self) -> list[CandidateGrasp]:
+        ...
+    @property
+    def group(self) -> JointGroup:
+        ...
+    @property
+    def object(self) -> list[LinkShape]:
+        ...
+    @property
+    def object_name(self) -> str:
+        ...
+    @property
+    def world(self) -> World:
+        ...
+class Improvement:
+    """
+    A better solution on the way.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def cost(self) -> float:
+        ...
+    @property
+    def grasp(self) -> int:
+        ...
+    @property
+    def seconds(self) -> float:
+        """
+        Since the search began.
+        """
+class GraspReport:
+    """
+    What became of one grasp before the search.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def goal(self) -> Rejections:
+        """
+        Likewise at the goal; not looked at when none is left at the start.
+        """
+    @property
+    def goal_solutions(self) -> int:
+        ...
+    @property
+    def start(self) -> Rejections:
+        """
+        Arm configurations turned down at the start, by cause.
+        """
+    @property
+    def start_solutions(self) -> int:
+        ...
+class ManipulationResult:
+    """
+    What plan_manipulation found.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def contacts(self) -> list[Contact]:
+        """
+        With invalid_start or invalid_goal: what touches there with the first grasp in collision.
+        """
+    @property
+    def cost(self) -> float:
+        """
+        Length of the path in joint space plus the grasp's cost.
+        """
+    @property
+    def grasp_index(self) -> int:
+        """
+        Of the problem's grasps; -1 unless solved.
+        """
+    @property
+    def grasps(self) -> list[GraspReport]:
+        """
+        A GraspReport for each grasp.
+        """
+    @property
+    def improvements(self) -> list[Improvement]:
+        ...
+    @property
+    def lower_bound(self) -> float:
+        """
+        No path costs less: with prm_star_mg none over this roadmap and these arm configurations.
+        """
+    @property
+    def outcome(self) -> Outcome:
+        ...
+    @property
+    def path(self) -> typing.Any:
+        """
+        Waypoints (k, n), joined by straight lines; None unless solved.
+        """
+    @property
+    def rejections(self) -> Rejections:
+        """
+        Sum over all grasps and both ends.
+        """
+    @property
+    def stats(self) -> dict:
+        ...
+class BaseTrackingResult:
+    """
+    A base driven along a plan, one row a period; poses are (x, y, theta).
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def actual(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k, 3)
+        """
+    @property
+    def commands(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k - 1, 3) platform velocities (v_x, v_y, omega)
+        """
+    @property
+    def desired(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k, 3)
+        """
+    @property
+    def final_error(self) -> float:
+        """
+        [m]
+        """
+    @property
+    def heading_errors(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k,) desired less actual [rad]
+        """
+    @property
+    def limited(self) -> int:
+        """
+        Commands that were scaled down to the base's limits.
+        """
+    @property
+    def max_error(self) -> float:
+        """
+        [m]
+        """
+    @property
+    def mean_error(self) -> float:
+        """
+        [m]
+        """
+    @property
+    def position_errors(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k,) [m]
+        """
+    @property
+    def times(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k,) [s]
+        """
+class BaseTracker:
+    """
+    The feedback law that keeps a base on its plan (P1 4.12 to 4.15), one command a period.
+    """
+    def __init__(self, robot: Robot, **kwargs) -> None:
+        """
+        Keyword options:
+            kp = 2.0: proportional gain [1/s]
+            ki = 0.1: integral gain [1/s^2]
+            kd = 0.3: derivative gain
+            offset = 0.2: distance of the tracked point from the wheel axis [m]
+            period = 0.02: a command is held this long [s]
+            feed_forward = True: adds the planned velocity
+            feedback = True: False: open loop, the planned velocities only
+            settle = 0.0: goes on this long after the plan's end [s]
+        """
+    def command(self, desired: numpy.typing.ArrayLike, desired_next: numpy.typing.ArrayLike, measured: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        Platform velocity (v_x, v_y, omega) to hold until the plan is at desired_next, one period on; poses are (x, y, theta).
+        """
+    def reset(self) -> None:
+        ...
+    @property
+    def limited(self) -> bool:
+        """
+        The last command was scaled down to the limits.
+        """
+    @property
+    def period(self) -> float:
+        ...
+class ClosingOutcome:
+    """
+    What one moment to begin closing comes to. Engagement: how far the finger tips are beyond the object's near face.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def both_touch(self) -> float:
+        """
+        The same when both fingers touch, were the object not pushed [m].
+        """
+    @property
+    def farther_tolerance(self) -> float:
+        """
+        It may stand this much farther [m].
+        """
+    @property
+    def gap(self) -> float:
+        """
+        Free space on either side of a centred object as the tips pass it [m].
+        """
+    @property
+    def holds(self) -> bool:
+        """
+        An object standing where planned is held.
+        """
+    @property
+    def lateral_tolerance(self) -> float:
+        """
+        It may stand this far to a side [m]; < 0: none.
+        """
+    @property
+    def nearer_tolerance(self) -> float:
+        """
+        It may stand this much nearer [m].
+        """
+    @property
+    def pushed(self) -> float:
+        """
+        How far the object slides before the palm [m].
+        """
+    @property
+    def start(self) -> float:
+        """
+        Engagement at which closing begins [m].
+        """
+    @property
+    def swept(self) -> float:
+        """
+        How far the tool goes beyond the planned grasp pose [m].
+        """
+class PushGrasp:
+    """
+    Closing windows of a grasp in passing, and both strategies of P1's figure 4.7.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def closing_time(self) -> float:
+        """
+        [s]
+        """
+    @property
+    def earliest(self) -> float:
+        """
+        First engagement at which closing may begin [m].
+        """
+    @property
+    def feasible(self) -> bool:
+        ...
+    @property
+    def latest(self) -> float:
+        """
+        Last engagement at which closing may begin [m].
+        """
+    @property
+    def max_tool_speed(self) -> float:
+        """
+        Fastest tool with a window [m/s].
+        """
+    @property
+    def plain(self) -> ClosingOutcome:
+        """
+        Closing while moving, so that both fingers touch at the planned pose.
+        """
+    @property
+    def push(self) -> ClosingOutcome:
+        """
+        Push-grasp: closing begins when the object is between the fingers.
+        """
+    @property
+    def window(self) -> float:
+        """
+        From the first to the last [s].
         """
 class Part:
     """
@@ -1966,6 +2424,133 @@ class PartSupplyResult:
     @property
     def timings(self) -> list[tuple[str, float]]:
         ...
+class DriveByTask:
+    """
+    Something the tool does on the way: T_world_tip, (4, 4), or candidates (m, 4, 4) of which any will do.
+    
+    tolerance: (6,) along x, y, z [m] and about them [rad] of the pose's own frame; free: names of axes that do not
+    matter, of x, y, z, roll, pitch, yaw; max_tool_speed [m/s] at the task; dwell [s] for which the tool's pose is
+    kept, e.g. while a gripper closes; object: name of the world's object that is held afterwards.
+    """
+    def __init__(self, T_world_tip: numpy.typing.ArrayLike, *, tolerance: typing.Any = None, free: collections.abc.Sequence[str] = [], max_tool_speed: typing.Any = None, dwell: typing.SupportsFloat | typing.SupportsIndex = 0.0, object: str = '') -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def candidates(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (m, 4, 4)
+        """
+    @property
+    def dwell(self) -> float:
+        ...
+    @property
+    def max_tool_speed(self) -> float:
+        ...
+    @property
+    def object(self) -> str:
+        ...
+class WholeBodyTrajectory:
+    """
+    Base and arm on one clock. Between waypoints the drive velocities are linear in time; for a diff-drive base they are
+    its speed v and turning rate omega, so that it never slips sideways.
+    """
+    def __len__(self) -> int:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def at(self, time: typing.SupportsFloat | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Configuration (n,) at a time [s], clamped at the ends.
+        """
+    def drive_at(self, time: typing.SupportsFloat | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Drive velocities (d,) at a time [s].
+        """
+    def rolled_out(self, steps: typing.SupportsInt | typing.SupportsIndex = 64) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k, n): where the robot is at the waypoints when only the drive velocities are followed from the first one.
+        """
+    def sampled(self, between: typing.SupportsInt | typing.SupportsIndex = 0) -> JointTrajectory:
+        """
+        A JointTrajectory of all waypoints and of `between` samples after each; x, y, theta first, with their velocities.
+        """
+    def to_csv(self, between: typing.SupportsInt | typing.SupportsIndex = 0) -> str:
+        """
+        Header time, names, name.velocity, name.acceleration, base.v, base.vy, base.omega, wheel.left, wheel.right.
+        """
+    @property
+    def drive(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k, d), columns as drive_names
+        """
+    @property
+    def drive_names(self) -> list[str]:
+        ...
+    @property
+    def duration(self) -> float:
+        """
+        [s]
+        """
+    @property
+    def names(self) -> list[str]:
+        ...
+    @property
+    def positions(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k, n)
+        """
+    @property
+    def times(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k,) [s], of the waypoints
+        """
+class DriveByResult:
+    """
+    What plan_drive_by found.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def attempts(self) -> int:
+        ...
+    @property
+    def duration(self) -> float:
+        """
+        [s]
+        """
+    @property
+    def events(self) -> list:
+        """
+        One dict per task: waypoint, time [s], candidate, base_speed and tool_speed [m/s].
+        """
+    @property
+    def iterations(self) -> int:
+        ...
+    @property
+    def outcome(self) -> Outcome:
+        ...
+    @property
+    def report(self) -> str:
+        """
+        What was tried, and what is broken where, by how much.
+        """
+    @property
+    def seconds(self) -> float:
+        ...
+    @property
+    def trajectory(self) -> WholeBodyTrajectory:
+        """
+        The answer or, when not solved, the best iterate; None when there was not even a guess.
+        """
+    @property
+    def violations(self) -> dict:
+        """
+        By kind of constraint: value (0 when kept), tolerance, unit, time [s], waypoint, what, kept; measured on a roll-out ten times
+        finer than the waypoints.
+        """
 class PinholeCamera:
     """
     Pinhole camera without distortion: looks along +z, x to the right of the image, y down.
@@ -2303,6 +2888,96 @@ class RandomPlacement:
     @property
     def parts(self) -> list[PlacedPart]:
         ...
+class PipeGrasp:
+    """
+    A parallel-jaw grasp of a pipe by P2's four variables (P2 3.2.3.1).
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def T_object_tool(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def angle(self) -> float:
+        """
+        Of the approach about the section, from its y axis [rad].
+        """
+    @property
+    def cost(self) -> float:
+        """
+        What a planner adds to its path's length.
+        """
+    @property
+    def flipped(self) -> bool:
+        """
+        By half a turn about the approach.
+        """
+    @property
+    def length(self) -> float:
+        """
+        Of the tool from the section's first node [m].
+        """
+    @property
+    def opening(self) -> float:
+        """
+        Of the fingers while holding [m].
+        """
+    @property
+    def section(self) -> int:
+        ...
+class Pipe:
+    """
+    A pipe structure: straight round sections between nodes in the object's frame (P2 3.2.2).
+    """
+    def __init__(self, nodes: numpy.typing.ArrayLike, sections: collections.abc.Sequence[typing.Annotated[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], "FixedSize(2)"]], diameters: typing.SupportsFloat | typing.SupportsIndex | collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]) -> None:
+        """
+        (n, 3) nodes [m], pairs of node indices from 0, and outer diameters [m]: one for all or one a section.
+        """
+    def __repr__(self) -> str:
+        ...
+    def grasp(self, section: typing.SupportsInt | typing.SupportsIndex, length: typing.SupportsFloat | typing.SupportsIndex, angle: typing.SupportsFloat | typing.SupportsIndex, flipped: bool = False, *, gripper: Gripper | None = None, **kwargs) -> PipeGrasp:
+        """
+        The grasp with these four variables (P2 3.2.3.1).
+        """
+    def sample_grasps(self, count: typing.SupportsInt | typing.SupportsIndex, *, gripper: Gripper | None = None, **kwargs) -> list[PipeGrasp]:
+        """
+        Grasps drawn over the whole pipe, at most `count`, none nearer to another than the spacings. Axes are the gripper's,
+        or approach x and closing y; so are opening and margin where no keyword gives them.
+        
+        Keyword options:
+            max_opening = 0.1: thicker sections get no grasps [m]
+            end_margin = 0.02: kept from either node of a section [m]
+            length_spacing = 0.01: grasps are this far apart along a section [m], or
+            angle_spacing = 0.08726646259971647: this far apart in angle [rad]
+            cost_per_metre = 0.0: cost for the distance from the centre of mass [1/m]
+            draws = 200: fruitless draws in a row that end the sampling
+            seed = 1: same seed, same grasps
+        """
+    def shapes(self, *, flat_ends: bool = False) -> list[LinkShape]:
+        """
+        LinkShapes in the object's frame: a capsule a section; with flat_ends cylinders and balls at the bends.
+        """
+    @property
+    def centre_of_mass(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        Of tubes with equal walls [m].
+        """
+    @property
+    def diameters(self) -> list[float]:
+        ...
+    @property
+    def lengths(self) -> list[float]:
+        """
+        Of the sections [m].
+        """
+    @property
+    def nodes(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def sections(self) -> list:
+        ...
 def _capability_option_table() -> dict:
     ...
 def _check_options(section: str, **kwargs) -> None:
@@ -2313,23 +2988,39 @@ def _checker_option_table() -> dict:
     ...
 def _cuboid_option_table() -> dict:
     ...
+def _drive_by_option_table() -> dict:
+    ...
 def _edge_option_table() -> dict:
     ...
+def _first_drive_by_guess(group: JointGroup, *, start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], tasks: collections.abc.Sequence[DriveByTask], goal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], waypoints: typing.SupportsInt | typing.SupportsIndex = 35) -> typing.Any:
+    """
+    Where the first attempt begins, for benchmarks against other optimisers; None when a task is out of reach.
+    """
 def _grasp_option_table() -> dict:
     ...
 def _graspability_option_table() -> dict:
     ...
 def _ik_option_table() -> dict:
     ...
+def _manipulation_option_table() -> dict:
+    ...
+def _pipe_grasp_option_table() -> dict:
+    ...
 def _platform_option_table() -> dict:
     ...
+def _push_option_table() -> dict:
+    ...
 def _reach_option_table() -> dict:
+    ...
+def _roadmap_option_table() -> dict:
     ...
 def _sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Gripper, **kwargs) -> tuple[list[Grasp], int]:
     """
     (grasps, too_wide): as sample_grasps, with the number dropped as too wide.
     """
 def _supply_option_table() -> dict:
+    ...
+def _tracking_option_table() -> dict:
     ...
 def cache_folder() -> str:
     """
@@ -2344,6 +3035,10 @@ def cheapest_assignment(costs: numpy.typing.ArrayLike) -> list[int]:
     """
     A column of its own for each row of (n, n) so that the sum of costs is least.
     """
+def closing_outcome(start: typing.SupportsFloat | typing.SupportsIndex, **kwargs) -> ClosingOutcome:
+    """
+    What beginning to close at an engagement [m] comes to; keywords as of push_grasp.
+    """
 def compute_base_regions(problem: PartSupplyProblem, database: ReachDatabase, grid: BaseGrid, *, progress: typing.Any = None) -> list[BaseRegion]:
     """
     P1 Algorithm 2 with exact inverse kinematics: one region for each tray with target parts.
@@ -2357,6 +3052,10 @@ def compute_disabled_pairs(robot: Robot, *, progress: typing.Any = None, **kwarg
         always_fraction = 0.95: a pair in collision at least this often is called always
         seed = 1: same seed, same pairs
         threads = 0: 0: all
+    """
+def drive_arc(pose: numpy.typing.ArrayLike, platform_velocity: numpy.typing.ArrayLike, time: typing.SupportsFloat | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    """
+    Base pose (x, y, theta) after `time` [s] at a constant platform velocity (v_x, v_y, omega): the exact arc.
     """
 def evaluate_graspability(map: HeightMap, gripper: Gripper, *, image: DepthImage | None = None, **kwargs) -> Graspability:
     """
@@ -2442,6 +3141,10 @@ def make_height_map(image: DepthImage, T_world_map: numpy.typing.ArrayLike, size
         hole_radius = 2: holes up to so many pixels from a measurement are filled
         jump = 0.01: neighbouring pixels that differ by more show different surfaces [m]
     """
+def manipulation_planner_names() -> list[str]:
+    """
+    Names that plan_manipulation's `planner` takes.
+    """
 def maximal_intersections(grid: BaseGrid, regions: collections.abc.Sequence, min_radius: typing.SupportsFloat | typing.SupportsIndex, *, max_boxes: typing.SupportsInt | typing.SupportsIndex = 50000000, progress: typing.Any = None) -> Intersections:
     """
     Those of the robust sets that are part of no other one: enough to prove a least number of stops.
@@ -2449,6 +3152,10 @@ def maximal_intersections(grid: BaseGrid, regions: collections.abc.Sequence, min
 def minimal_stops(grid: BaseGrid, intersections: collections.abc.Sequence[Intersection], trays: typing.SupportsInt | typing.SupportsIndex) -> StopSet:
     """
     The least number of intersections that cover all trays (P1 equation 3.1), with proof.
+    """
+def nlp_solver_names() -> list[str]:
+    """
+    Names that plan_drive_by's `solver` takes.
     """
 def optimised_order(grid: BaseGrid, cells: collections.abc.Sequence, groups: collections.abc.Sequence[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]], order: collections.abc.Sequence[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]], *, smallest_first: bool = False, restarts: typing.SupportsInt | typing.SupportsIndex = 20, rng_seed: typing.SupportsInt | typing.SupportsIndex = 1) -> OptimisedOrder:
     """
@@ -2462,18 +3169,91 @@ def plan_base_route(arm: JointGroup, world: World, *, home: numpy.typing.ArrayLi
     """
     A driveable, collision-free way of the whole robot with its arm at `home`; poses are x, y, theta.
     """
-def plan_motion(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, progress: typing.Any = None, **kwargs) -> MotionResult:
+def plan_cartesian(checker: CollisionChecker, tool_poses: numpy.typing.ArrayLike, near: typing.Any = None, *, progress: typing.Any = None, **kwargs) -> CartesianResult:
     """
-    A collision-free path of the group from `start` (n,) to `goal`, (n,) or several as (m, n).
+    The tip follows straight lines from pose to pose, from the inverse kinematics branch of the first pose that completes
+    them with the shortest way, counted from `near` (n,) when that is given.
+    
+    Keyword options:
+        position_step = 0.005: largest tool translation between two waypoints [m]
+        rotation_step = 0.02: largest tool rotation between two waypoints [rad]
+        max_joint_step = 0.2: a larger joint motion between waypoints is a jump
+        edge_step = 0.02: largest joint motion between two checks [rad or m]
+        max_branches = 64: configurations of the first pose that are followed at most
+    """
+def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, progress: typing.Any = None, **kwargs) -> DriveByResult:
+    """
+    The fastest motion of base and arm from `start` (n,), at rest, through the tasks in order to `goal`, at rest, without
+    stopping for them (P1 chapter 4). goal: a configuration (n,), or (2, n) with lower and upper bounds, infinite where it
+    does not matter. The world's objects and the robot itself are obstacles.
+    
+    Keyword options:
+        waypoints = 35: waypoints of the whole motion
+        attempts = 8: guesses tried until one leads to a solution
+        solutions = 1: solutions compared; the fastest is returned
+        stands = 64: configurations sought per task
+        time_limit = 20.0: wall-clock cap [s]
+        jerk_time = 0.0: accelerations may go from 0 to their limit in no less [s]; 0: no limit
+        collisions = True: the robot keeps clear of the world and of itself
+        seed = 1: same seed, same answer
+        threads = 1: 0: all; does not change the answer
+        solver = 'ipopt': a name of nlp_solver_names()
+        tolerance = 0.0001: relative optimality
+        max_iterations = 150: per attempt
+        attempt_time_limit = 10.0: wall-clock cap of one attempt [s]
+        smoothing = 0.01: weight of the mean square of accelerations over their limits [s]
+        margin = 0.005: distance to keep from obstacles and from oneself [m]
+        look_out = 0.15: pairs of bodies nearer than this are constrained [m]
+        refinements = 6: times that collision constraints may be added
+    """
+def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, progress: typing.Any = None, improved: typing.Any = None, **kwargs) -> ManipulationResult:
+    """
+    Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 chapters 4 and 5). Every grasp is looked at. `improved` is called with every better solution (an Improvement); what it raises ends the call.
+    
+    Keyword options:
+        planner = 'prm_star_mg': a name of manipulation_planner_names()
+        ik_solutions = 4: arm configurations tried for each grasp at each end
+        ik_restarts = 30: random starts of arms without a closed form
+        joint_step = 0.02: no joint moves more between two checks of an edge [rad or m]
+        workspace_step = 0.005: no point of the robot or the object moves more between two checks [m]
+        time_limit = 15.0: wall-clock cap on IK and search, without the roadmap's building [s]
+        seed = 1: same seed, same path
+        threads = 0: 0: all; does not change the answer
+        batch = 0: prm_star_mg: grasps searched together before paths are checked; 1: naive, 0: all
+        lazy_grasps = True: prm_star_mg: search a grasp only when its straight line could still win
+        straight = True: prm_star_mg: join start and goal configurations whatever their distance
+        max_vertices = 0: prm_star_mg: once the roadmap's best path is found, double its vertices up to this; 0: never
+        vertices = 5000: prm_star_mg without a roadmap given: configurations drawn
+        gamma = 4.0: likewise: vertices nearer than gamma (log n / n)^(1/d) are joined [rad or m]
+        neighbours = 0: likewise: > 0: join that many nearest ones instead
+        roadmap_seed = 1: likewise: same seed, same roadmap
+        max_samples = 1000: rrt_star_mg: budget in samples
+        step = 1.5: rrt_star_mg: longest edge grown towards a sample [rad or m]
+        rrt_gamma = 0.0: rrt_star_mg: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined; 0: as optimality asks
+        exploration = 0.5: rrt_star_mg: once solved, chance to grow the drawn grasp's own tree (P2's p_blt)
+        bidirectional = True: rrt_star_mg: trees from both ends
+        informed = True: rrt_star_mg: draw only where a better path can pass
+        goal_cost = 0.0: rrt_star_mg: ends with the first path that costs no more; inf: the first at all
+    """
+def plan_motion(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, goal: typing.Any = None, tool_poses: typing.Any = None, regions: collections.abc.Sequence[ToolRegion] = [], tool_cone: ToolCone | None = None, on_solution: typing.Any = None, progress: typing.Any = None, **kwargs) -> MotionResult:
+    """
+    A collision-free path of the group from `start` (n,) to any of its goals: `goal` (n,) or several as (m, n),
+    `tool_poses` of the tip, (4, 4) or a list, and `regions` of them, reached by inverse kinematics. `tool_cone`
+    holds on the whole path. on_solution(path, cost) is called with each better path. A diff-drive base turns on
+    the spot and drives straight.
     
     Keyword options:
         planner = 'rrt_connect': a name of planner_names()
         time_limit = 5.0: wall-clock cap [s]
-        max_iterations = 20000: budget in validity checks of states drawn
-        range = 0.0: longest tree edge [rad]; 0: a fifth of the joint box's diagonal
+        max_iterations = 20000: budget in states drawn
+        range = 0.0: longest tree edge [rad]; 0: a share of the joint box's diagonal
+        base_margin = 2.0: the base is drawn this far around start and goals [m]
         edge_step = 0.02: largest joint motion between two checks [rad or m]
+        workspace_step = inf: largest motion of any robot point between two checks [m]
         shorten = True: shortcut the path
         shorten_iterations = 200: tries of the shortening
+        ik_solutions = 8: IK solutions looked for at each tool pose
+        region_samples = 16: tool poses drawn in each region
         seed = 1: same seed, same path
     """
 def plan_pick(problem: PartSupplyProblem, database: ReachDatabase, base_pose: numpy.typing.ArrayLike, tray: typing.SupportsInt | typing.SupportsIndex, part: typing.SupportsInt | typing.SupportsIndex, remaining: collections.abc.Sequence[tuple[typing.SupportsInt | typing.SupportsIndex, typing.SupportsInt | typing.SupportsIndex]]) -> Pick:
@@ -2531,6 +3311,27 @@ def pose_to_xyz_quat(T: numpy.typing.ArrayLike) -> tuple[typing.Annotated[numpy.
 def pose_to_xyz_rpy(T: numpy.typing.ArrayLike) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"], typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]]:
     """
     Position (3,) and roll-pitch-yaw (3,) of a (4, 4) pose.
+    """
+def push_grasp(**kwargs) -> PushGrasp:
+    """
+    When a gripper that moves on may begin to close, and what error of the object's position it forgives (P1 4.3).
+    
+    Keyword options:
+        opening = 0.1: between the fingers before they close [m]
+        closing_speed = 0.1: how fast the opening shrinks [m/s]
+        tool_speed = 0.3: along the approach [m/s]
+        finger_length = 0.12: from the palm to the tips [m]
+        object_width = 0.05: along the closing direction [m]
+        grip_depth = 0.02: least engagement that holds [m]
+        planned_depth = 0.06: engagement at the planned grasp pose [m]
+        clearance = 0.0: kept on either side while the fingers pass the object [m]
+        max_push = 0.1: how far the object may slide before the palm [m]
+        along_error = 0.0: the object may stand this much nearer or farther [m]
+        lateral_error = 0.0: and this much to either side [m]
+    """
+def push_speed_limit(*, length: typing.SupportsFloat | typing.SupportsIndex, friction: typing.SupportsFloat | typing.SupportsIndex, restitution: typing.SupportsFloat | typing.SupportsIndex) -> float:
+    """
+    Fastest tool [m/s] before whose palm a hit object does not leap more than `length` [m].
     """
 def quat_xyzw_from_rotation(R: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 1]"]:
     """
@@ -2628,10 +3429,33 @@ def time_parameterize(path: numpy.typing.ArrayLike, velocity_limits: numpy.typin
     Keyword options:
         max_deviation = 0.01: corners are blended within this joint distance [rad]
         sample_period = 0.02: spacing of the samples [s]
+        jerk_limits = None: of each joint [rad/s^3]; None: no such limits
     """
 def time_parameterize_free(checker: CollisionChecker, path: numpy.typing.ArrayLike, *, edge_step: typing.SupportsFloat | typing.SupportsIndex = 0.01, **kwargs) -> JointTrajectory:
     """
     time_parameterize under the group's limits, the blended corners checked for collisions too.
+    """
+def track_base(robot: Robot, trajectory: JointTrajectory, **kwargs) -> BaseTrackingResult:
+    """
+    Drives the robot's base along the columns x, y, theta of a trajectory, with slip and noise (P1 4.4.2, figure 4.9).
+    
+    Keyword options:
+        kp = 2.0: proportional gain [1/s]
+        ki = 0.1: integral gain [1/s^2]
+        kd = 0.3: derivative gain
+        offset = 0.2: distance of the tracked point from the wheel axis [m]
+        period = 0.02: a command is held this long [s]
+        feed_forward = True: adds the planned velocity
+        feedback = True: False: open loop, the planned velocities only
+        settle = 0.0: goes on this long after the plan's end [s]
+        slip_left = 0.0: share of the left wheel's travel lost
+        slip_right = 0.0: the same of the right wheel
+        drift = (0.0, 0.0, 0.0): platform velocity added [m/s, m/s, rad/s]
+        travel_noise = 0.0: deviation of a wheel's travel after 1 m [m], growing with the root of the travel
+        position_noise = 0.0: deviation of a measured x or y [m]
+        heading_noise = 0.0: deviation of a measured heading [rad]
+        start_error = (0.0, 0.0, 0.0): where the base stands at first, less the plan
+        seed = 1: same seed, same run
     """
 def tray_shapes(size: numpy.typing.ArrayLike, wall: typing.SupportsFloat | typing.SupportsIndex = 0.005) -> list[LinkShape]:
     """

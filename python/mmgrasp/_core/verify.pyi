@@ -7,7 +7,7 @@ import mmgrasp._core
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['CheckedBody', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegFigures', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'Fault', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'check_plan']
+__all__: list[str] = ['CheckedBody', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegFigures', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'Fault', 'PathCheckResult', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'check_path', 'check_plan']
 class CheckedBody:
     def __init__(self, name: str, shapes: collections.abc.Sequence[mmgrasp._core.LinkShape], pose: numpy.typing.ArrayLike) -> None:
         ...
@@ -211,6 +211,25 @@ class PlanToCheck:
     @velocity_limits.setter
     def velocity_limits(self, arg0: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]) -> None:
         ...
+class PathCheckResult:
+    """
+    What check_path found.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def configurations_checked(self) -> int:
+        ...
+    @property
+    def free(self) -> bool:
+        ...
+    @property
+    def where(self) -> str:
+        """
+        Where and what is wrong; empty when free.
+        """
 class Fault:
     """
     One thing that is physically wrong with a plan.
@@ -275,6 +294,11 @@ class PlanCheckResult:
     @property
     def rates(self) -> list[StopRate]:
         ...
+def check_path(robot: mmgrasp._core.Robot, joints: collections.abc.Sequence[str], path: numpy.typing.ArrayLike, bodies: collections.abc.Sequence[CheckedBody], *, other_joints: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}, joint_step: typing.SupportsFloat | typing.SupportsIndex = 0.005) -> PathCheckResult:
+    """
+    Looks at waypoints (k, n) joined by straight lines, in steps of joint_step [rad or m]: limits, self-collisions and
+    collisions with the bodies, by KDL and FCL called directly.
+    """
 def check_plan(plan: PlanToCheck, *, progress: typing.Any = None, **kwargs) -> PlanCheckResult:
     """
     Checks a finished plan against its scenario.

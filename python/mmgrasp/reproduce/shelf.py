@@ -125,8 +125,10 @@ def _run(context: Context, with_base: bool) -> Result:
         result.exact("base and arm: RRT-Connect and EST solve every query", rates[0] == rates[2] == 100)
         result.trend("base and arm: every query of every planner is solved in time", overall == 100, clock=True)
     else:
-        result.trend("arm alone: fewer than half of the queries of PRM* and EST are solved", max(rates[1:]) < 50)
-        result.trend("RRT-Connect solves the most", rates[0] >= max(rates))
+        result.trend(
+            "arm alone: fewer than half of the queries of PRM* and EST are solved", max(rates[1:]) < 50, clock=True
+        )
+        result.trend("RRT-Connect solves the most", rates[0] >= max(rates), clock=True)
     result.setup = {
         "robot": "omni6 (six joints on an omnidirectional base; P3: seven)",
         "shelf [m]": f"front {FRONT} before the middle of the base, {DEPTH} deep, {WIDTH} wide, boards at {BOARDS}",

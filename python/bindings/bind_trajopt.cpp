@@ -241,11 +241,12 @@ void bind_trajopt(py::module_& m) {
   bind_drive_by_task(m);
   m.def(
       "_first_drive_by_guess",
-      [](const JointGroup& group, const Eigen::VectorXd& start, const std::vector<DriveByTask>& tasks,
-         const Eigen::VectorXd& goal, int waypoints) -> py::object {
+      [](const JointGroup& group, const ArrayLike& start, const std::vector<DriveByTask>& tasks, const ArrayLike& goal,
+         int waypoints) -> py::object {
         DriveByOptions options;
         options.waypoints = waypoints;
-        const auto first = first_drive_by_guess(group, start, tasks, {goal, goal}, options);
+        const Eigen::VectorXd from = vector_argument(start, "start", group.size());
+        const auto first = first_drive_by_guess(group, from, tasks, goal_argument(goal, group.size()), options);
         if (!first) return py::none();
         std::vector<int> intervals;
         for (const WholeBodySegment& s : first->problem.segments) intervals.push_back(s.intervals);

@@ -194,6 +194,7 @@ OTHERS: dict[str, Any] = {
     "random_placement.part": lambda: [BOX],
     "make_height_map.image": lambda: mg.render_depth([BOX], mg.PinholeCamera(width=8, height=6), POSE),
     "sections": lambda: [(0, 1)],
+    "_first_drive_by_guess.tasks": lambda: [mg.DriveByTask(POSE)],
     "diameters": lambda: 0.02,
     "shape": lambda: mg.Box([0.1, 0.1, 0.1]),
     "shapes": lambda: [BOX],

@@ -63,18 +63,14 @@ std::vector<Eigen::VectorXd> goals_argument(const ArrayLike& goal, Eigen::Index 
   return {vector_argument(goal, "goal", size)};
 }
 
-/// One pose (4, 4) or a list of them.
+/// One pose (4, 4) or several (m, 4, 4).
 Poses poses_argument(const ArrayLike& value, const std::string& name) {
   const py::array array = py::array::ensure(value);
-  PyErr_Clear();
-  if (array && array.ndim() == 2) return {pose_argument(value, name)};
+  if (!array) PyErr_Clear();
+  if (!array || array.ndim() != 3) return {pose_argument(value, name)};
   Poses poses;
-  if (!py::isinstance<py::sequence>(value) || py::isinstance<py::str>(value)) {
-    throw InvalidInput(name + ": must be a pose (4, 4) or a list of poses");
-  }
-  for (const py::handle item : value) {
-    const std::string field = name + "[" + std::to_string(poses.size()) + "]";
-    poses.push_back(pose_argument(py::reinterpret_borrow<ArrayLike>(item), field));
+  for (py::ssize_t i = 0; i < array.shape(0); ++i) {
+    poses.push_back(pose_argument(ArrayLike(py::object(array[py::int_(i)])), name));
   }
   return poses;
 }
@@ -185,7 +181,8 @@ void bind_motion(py::module_& m) {
       py::arg("goal") = py::none(), py::arg("tool_poses") = py::none(), py::arg("regions") = std::vector<ToolRegion>{},
       py::arg("tool_cone") = py::none(), py::arg("on_solution") = py::none(), py::arg("progress") = py::none(),
       ("A collision-free path of the group from `start` (n,) to any of its goals: `goal` (n,) or several as (m, n),\n"
-       "`tool_poses` of the tip, (4, 4) or a list, and `regions` of them, reached by inverse kinematics. `tool_cone`\n"
+       "`tool_poses` of the tip, (4, 4) or (m, 4, 4), and `regions` of them, reached by inverse kinematics. "
+       "`tool_cone`\n"
        "holds on the whole path. on_solution(path, cost) is called with each better path. A diff-drive base turns on\n"
        "the spot and drives straight." +
        option_help(motion_fields()))

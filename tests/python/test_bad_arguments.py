@@ -33,6 +33,9 @@ OPTIONAL = {
     "quat_xyzw",
     "base_pose",
     "accelerations",
+    "goal",
+    "near",
+    "tool_poses",
 }
 
 URDF = """<robot name="r"><link name="o"/>
@@ -120,6 +123,10 @@ VALUES: dict[str, Any] = {
     "tray_size": np.array([0.3, 0.4, 0.1]),
     "make_height_map.size": np.array([0.1, 0.2]),
     "T_world_tips": np.array([POSE, POSE]),
+    "tool_poses": np.array([POSE, POSE]),
+    "near": Q,
+    "tool_axis": np.array([0.0, 0, 1]),
+    "world_axis": np.array([0.0, 0, 1]),
     "T_base_tips": np.array([POSE, POSE]),
     "CarryPlace.size": np.array([0.1, 0.2]),
     "PartSupplyProblem.start": X_Y_THETA,
@@ -168,6 +175,7 @@ OBJECTS = {
 # Optional arguments that mean nothing without another one.
 COMPANIONS: dict[str, dict[str, Any]] = {
     "plan_platform_locations.T_link_camera": {"camera_link": "tip"},
+    "plan_motion.start": {"goal": Q},
     "fit_cuboids.T_world_tray": {"tray_size": [0.3, 0.4, 0.1]},
     "JointTrajectory.accelerations": {"velocities": np.zeros((2, 3))},
 }
@@ -227,6 +235,8 @@ OTHERS: dict[str, Any] = {
     "World.detach.name": lambda: "box",
     "ManipulationProblem.object": lambda: BOX,
     "ManipulationProblem.grasps": lambda: [mg.CandidateGrasp(np.eye(4))],
+    "verify.check_path.joints": lambda: ["i", "j", "k"],
+    "verify.check_path.bodies": lambda: [],
     "verify.CheckedStop.trays": lambda: ["tray"],
     "verify.CheckedIntersection.trays": lambda: ["tray"],
     "verify.CheckedRegion.tray": lambda: "tray",

@@ -113,10 +113,10 @@ CartesianResult plan_cartesian(CollisionChecker& checker, const Poses& T_world_t
                                const std::optional<Eigen::VectorXd>& near, const CartesianOptions& options,
                                const Monitor& monitor) {
   options.check();
-  require(T_world_tip.size() >= 2, "T_world_tip", static_cast<double>(T_world_tip.size()),
+  require(T_world_tip.size() >= 2, "tool_poses", static_cast<double>(T_world_tip.size()),
           "must hold two poses or more");
   for (std::size_t i = 0; i < T_world_tip.size(); ++i) {
-    checked_pose(T_world_tip[i].matrix(), "T_world_tip[" + std::to_string(i) + "]");
+    checked_pose(T_world_tip[i].matrix(), "tool_poses[" + std::to_string(i) + "]");
   }
   if (near) checker.group().check_configuration(*near, "near");
   return BranchSearch(checker, T_world_tip, near, options, monitor).run();

@@ -1,0 +1,87 @@
+"""MotionBenchMaker's problems beside OMPL's RRT-Connect with FCL, in one process; durations beside toppra and Ruckig.
+
+    python benchmarks/planners/run.py [--limit N] [--seeds N] [--no-peer] [--write]
+
+Writes the problems as text, builds and runs bench_mbm for both robots, and holds every set against its goals: at most a tenth
+of the peer's median, all paths free, and below 5 ms on bookshelf_* and table_pick. --write puts the table into
+benchmarks/README.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import platform
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from programs import BUILD, build_programs, lines_of, peers_environment
+from tables import ROOT, markdown, write_readme
+
+OURS, PEER = "mmgrasp, shortened", "OMPL RRTConnect + FCL"
+QUICK = ("bookshelf", "table_pick")
+
+
+def table(lines: list[dict]) -> str:
+    """One row for each set: processor time of a plan, and what the goals say."""
+    runs = {(line["on"], line["who"]): line for line in lines}
+    rows = []
+    for on in dict.fromkeys(line["on"] for line in lines):
+        ours, first, peer = (runs.get((on, who)) for who in (OURS, "mmgrasp", PEER))
+        ratio = ours["value"] / peer["value"] if peer else None
+        met = ours["verified"] >= 0.995 * ours["runs"] and ours["solved"] == ours["verified"]
+        met = met and (ratio is None or ratio <= 0.1) and (not on.startswith(QUICK) or ours["value"] < 5)
+        rows.append(
+            [
+                on,
+                f"{ours['verified']}/{ours['runs']}",
+                f"{first['value']:.2f}",
+                f"{ours['value']:.2f}",
+                f"{ours['p95']:.1f}",
+                f"{peer['value']:.1f}" if peer else "",
+                f"{peer['p95']:.0f}" if peer else "",
+                f"{peer['verified']}/{peer['runs']}" if peer else "",
+                f"{ratio:.3f}" if peer else "",
+                "yes" if met else "**no**",
+            ]
+        )
+    head = ["set", "free by FCL", "first path [ms]", "shortened [ms]", "p95", "OMPL + FCL [ms]", "p95", "free", "ratio"]
+    return markdown([*head, "goals"], rows)
+
+
+def timing_table(lines: list[dict]) -> str:
+    """Our durations over the peers'."""
+    keys = ("value", "least", "greatest")
+    rows = [[line["who"], line["on"], *(f"{line[k]:.4f}" for k in keys), f"{line['ms']:.1f}"] for line in lines]
+    return markdown(["durations", "on", "median ratio", "least", "greatest", "ms a path"], rows)
+
+
+def main() -> None:
+    """Measures and prints."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--limit", type=int, default=50, help="problems of each set")
+    parser.add_argument("--seeds", type=int, default=1)
+    parser.add_argument("--no-peer", action="store_true")
+    parser.add_argument("--peers", type=Path, default=ROOT / "build/peers_planners")
+    parser.add_argument("--write", action="store_true", help="update benchmarks/README.md")
+    arguments = parser.parse_args()
+    build_programs([], ["bench_mbm"])
+    lines = []
+    for robot in ("panda", "ur5"):
+        text = BUILD / f"mbm_{robot}.txt"
+        subprocess.run([sys.executable, HERE / "mbm_text.py", robot, text, "--limit", str(arguments.limit)], check=True)
+        peer = "0" if arguments.no_peer else "1"
+        lines += lines_of([BUILD / "benchmarks/bench_mbm", text, str(arguments.seeds), peer])
+    python = peers_environment(arguments.peers.absolute(), HERE / "peers.txt")
+    timing = lines_of([sys.executable, HERE / "bench_timing.py", "--peer", python])
+    text = f"{os.cpu_count()} cores, {platform.machine()}; {lines[0]['settings']}.\n\n{table(lines)}\n\n{timing_table(timing)}"
+    print(text)
+    if arguments.write:
+        write_readme("planners", text)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,151 @@
+"""Motions at the Python door: goals by pose, cones, reports of better paths, lines, jerk; and MotionBenchMaker's problems solved."""
+
+from __future__ import annotations
+
+import itertools
+import json
+
+import numpy as np
+import pytest
+
+import mmgrasp as mg
+from mmgrasp.cli import main
+from mmgrasp.motion_bench import read_motion_problem
+from mmgrasp.motion_bench_run import verify_motion
+
+LINK = 0.4
+URDF = "<robot name='planar'><link name='l0'/>" + "".join(
+    f"<link name='l{i}'><collision><origin xyz='{LINK / 2} 0 0'/><geometry><box size='{LINK} 0.04 0.04'/></geometry>"
+    f"</collision></link><joint name='j{i}' type='revolute'><parent link='l{i - 1}'/><child link='l{i}'/>"
+    f"<origin xyz='{0 if i == 1 else LINK} 0 0'/><axis xyz='0 0 1'/>"
+    "<limit lower='-2.8' upper='2.8' velocity='2' effort='1'/></joint>"
+    for i in range(1, 5)
+)
+URDF += f"<link name='tip'/><joint name='t' type='fixed'><parent link='l4'/><child link='tip'/><origin xyz='{LINK} 0 0'/></joint></robot>"
+SRDF = "<robot name='planar'>" + "".join(
+    f"<disable_collisions link1='l{i}' link2='l{k}' reason='User'/>" for i in range(5) for k in range(i)
+)
+SRDF += "</robot>"
+
+
+@pytest.fixture(scope="module")
+def robot() -> mg.Robot:
+    return mg.Robot.from_strings(URDF, SRDF)
+
+
+@pytest.fixture(scope="module")
+def arm(robot) -> mg.JointGroup:
+    return robot.group(base_link="l0", tip="tip")
+
+
+@pytest.fixture
+def world() -> mg.World:
+    world = mg.World()
+    world.add_box("wall", (0.7, 0.1, 0.2), mg.pose([1.2, 0, 0]))
+    return world
+
+
+def tip(q: np.ndarray) -> np.ndarray:
+    """x, y and heading of the tool by trigonometry."""
+    angles = np.cumsum(q)
+    return np.array([LINK * np.cos(angles).sum(), LINK * np.sin(angles).sum(), angles[-1]])
+
+
+START, GOAL = np.array([-0.9, 0.3, 0.3, 0.3]), np.array([0.9, -0.3, -0.3, -0.3])
+
+
+def test_goals_may_be_poses_and_regions(robot, arm, world):
+    wanted = mg.pose([0.6, 0.8, 0], rpy=[0, 0, 1.2])
+    found = mg.plan_motion(robot, arm, world, start=START, tool_poses=wanted)
+    assert found.outcome == mg.Outcome.solved
+    np.testing.assert_allclose(tip(found.path[-1])[:2], [0.6, 0.8], atol=1e-4)
+    region = mg.ToolRegion(wanted, position=[0.1, 0.1, 0], rotation=[0, 0, 0.3])
+    found = mg.plan_motion(robot, arm, world, start=START, goal=[[2.8, 2.8, 2.8, 9]], regions=[region])
+    assert found.goal_index == 1
+    assert np.hypot(*(tip(found.path[-1])[:2] - [0.6, 0.8])) <= 0.1 * 2**0.5 + 1e-4
+    with pytest.raises(mg.InvalidInput, match="goals"):
+        mg.plan_motion(robot, arm, world, start=START)
+
+
+def test_a_cone_holds_and_better_paths_are_reported(robot, arm, world):
+    cone = mg.ToolCone(tool_axis=[1, 0, 0], world_axis=[1, 0, 0], half_angle=0.3)
+    found = mg.plan_motion(robot, arm, world, start=START, goal=GOAL, tool_cone=cone)
+    for a, b in zip(found.path[:-1], found.path[1:], strict=True):
+        for s in np.linspace(0, 1, 20):
+            assert abs((a + s * (b - a)).sum()) <= 0.3 + 1e-9
+    costs = []
+    found = mg.plan_motion(
+        robot,
+        arm,
+        world,
+        start=START,
+        goal=GOAL,
+        planner="rrt_star",
+        max_iterations=1500,
+        time_limit=100,
+        on_solution=lambda path, cost: costs.append((cost, np.linalg.norm(np.diff(path, axis=0), axis=1).sum())),
+    )
+    assert len(costs) >= 2
+    assert all(b[0] < a[0] for a, b in itertools.pairwise(costs))
+    assert all(cost == pytest.approx(length) for cost, length in costs)
+    assert costs[-1][0] <= found.cost + 1e-9
+
+    def fail(path, cost):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        mg.plan_motion(robot, arm, world, start=START, goal=GOAL, on_solution=fail)
+
+
+def test_lines_from_pose_to_pose():
+    scene = mg.World()
+    robot = mg.Robot.from_strings(URDF, SRDF)
+    arm = robot.group(base_link="l0", tip="tip")
+    checker = mg.CollisionChecker(robot, scene, group=arm)
+    q = np.array([-0.9, 0.9, 0.9, 0.3])
+    first = arm.fk(q)
+    second = mg.pose([0.1, 0.1, 0]) @ first
+    found = mg.plan_cartesian(checker, [first, second], near=q, max_branches=3)
+    assert found.outcome == mg.Outcome.solved
+    assert found.corners == [0, len(found.path) - 1]
+    a, b = first[:2, 3], second[:2, 3]
+    for p in found.path:
+        off = tip(p)[:2] - a
+        assert abs(off[0] * (b - a)[1] - off[1] * (b - a)[0]) / np.linalg.norm(b - a) < 1e-4
+    assert json.dumps(found.to_dict())
+
+
+def test_jerk_limits():
+    distance, v, a, j = 3.0, 1.0, 2.0, 20.0
+    motion = mg.time_parameterize([[0.0], [distance]], [v], [a], jerk_limits=[j], sample_period=0.005)
+    assert motion.duration == pytest.approx(distance / v + v / a + a / j, rel=5e-3)
+    change = np.abs(np.diff(motion.accelerations, axis=0)) / np.diff(motion.times)[:, None]
+    assert change.max() <= j * (1 + 1e-6)
+
+
+@pytest.mark.parametrize("robot_name", ["panda", "ur5"])
+def test_motion_bench_maker_is_solved_and_verified(robot_name, data, capsys):
+    command = ["bench", "mbm", "--data", str(data), "--robot", robot_name, "--set", "table_pick", "box"]
+    assert main([*command, "--limit", "2", "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["holds"]
+    assert [row["solved"] for row in answer["rows"]] == [2, 2]
+    assert [row["verified"] for row in answer["rows"]] == [2, 2]
+    assert all(row["mean length [rad]"] > 1 for row in answer["rows"])
+
+
+def test_the_verification_finds_what_is_wrong(data):
+    folder = data / "planning/vamp_panda/problems/box_panda"
+    problem = read_motion_problem(folder / "scene0001.yaml", folder / "request0001.yaml")
+    panda = mg.Robot.load(data / "robots/panda_vamp/panda/panda.urdf", data / "robots/panda_vamp/panda/panda.srdf")
+    _, group = problem.setting(panda)
+    straight = np.array([problem.start_of(group), problem.goal_of(group)])
+    assert "touches" in verify_motion(problem, panda, straight)
+    assert "goal" in verify_motion(problem, panda, straight[[0, 0]])
+
+
+def test_the_bench_refuses_what_is_not_there(tmp_path, capsys):
+    assert main(["bench", "mbm", "--data", str(tmp_path)]) == 2
+    assert "--data" in capsys.readouterr().err
+    assert main(["bench", "mbm", "--set", "kitchen"]) == 2
+    assert "bookshelf_small" in capsys.readouterr().err

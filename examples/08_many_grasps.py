@@ -16,7 +16,7 @@ URDF = """<robot name="gantry"><link name="frame"/>
   <limit lower="0" upper="2" velocity="1" effort="1"/></joint>
 <joint name="y" type="prismatic"><parent link="bridge"/><child link="hand"/><axis xyz="0 1 0"/>
   <limit lower="0" upper="1.2" velocity="1" effort="1"/></joint></robot>"""
-LENGTH = 0.6
+LENGTH = 0.4
 
 gantry = mg.Robot.from_strings(URDF, "").group(base_link="frame", tip="hand")
 world = mg.World()
@@ -24,14 +24,15 @@ for i, (x, y, height) in enumerate([(0.7, 0.4, 0.8), (1.3, 0.85, 0.7), (1.3, 0.0
     world.add_box(f"post {i}", [0.06, height, 0.2], mg.pose([x, y, 0]))
 bar = mg.LinkShape(mg.Box([LENGTH, 0.02, 0.02]))
 places = np.linspace(-LENGTH / 2 + 0.02, LENGTH / 2 - 0.02, 25)
-grasps = np.array([mg.pose([place, 0, 0]) for place in places])
+# The farther from the middle, the more the bar's weight bends the hand: a cost beside the path's length.
+grasps = [mg.CandidateGrasp(mg.pose([place, 0, 0]), cost=0.5 * abs(place)) for place in places]
 problem = mg.ManipulationProblem(gantry, world, bar, mg.pose([0.33, 0.3, 0]), mg.pose([1.65, 0.9, 0]), grasps)
 
-roadmap = mg.Roadmap.build(gantry, vertices=600, gamma=1.5)
+roadmap = mg.Roadmap.build(gantry, vertices=1500, gamma=1.5)
 print(roadmap, roadmap.figures)
 result = mg.plan_manipulation(problem, roadmap=roadmap)
 print(result)
-print(f"held {places[result.grasp_index]:+.2f} m from the bar's middle; no path over the roadmap is shorter")
+print(f"held {places[result.grasp_index]:+.2f} m from the bar's middle; nothing over the roadmap costs less")
 worst = max(range(len(grasps)), key=lambda i: abs(places[i] - places[result.grasp_index]))
 other = mg.plan_manipulation(
     mg.ManipulationProblem(gantry, world, bar, problem.T_world_start, problem.T_world_goal, grasps[worst : worst + 1]),
@@ -44,7 +45,7 @@ def blocked_vertices(grasp: int) -> tuple[np.ndarray, np.ndarray]:
     """Which vertices the hand alone blocks, and which of the others the bar in the hand."""
     held = world.copy()
     held.add("bar", [bar])
-    held.attach("bar", "hand", np.linalg.inv(grasps[grasp]))
+    held.attach("bar", "hand", np.linalg.inv(grasps[grasp].T_object_tool))
     alone = mg.CollisionChecker(gantry.robot, world, gantry)
     bar_only = mg.CollisionChecker(gantry.robot, held, gantry, held_only=True)
     by_hand = np.array([not alone.is_free(q) for q in roadmap.vertices])

@@ -38,6 +38,8 @@ void ManipulationProblem::check() const {
     require(grasps[i].opening >= 0 && grasps[i].opening <= widest, name + "opening", grasps[i].opening,
             "must be in [0, the gripper's max_opening]");
   }
+  if (!world.attached().empty())
+    throw InvalidInput("world: holds '" + world.attached().begin()->first + "': must hold nothing yet");
   if (world.has(object_name)) throw InvalidInput("object_name = " + object_name + ": is a name of the world already");
 }
 

@@ -60,9 +60,11 @@ class CarryPlanner : public ::testing::TestWithParam<std::string> {
 
 TEST_P(CarryPlanner, SolvesAndThePathIsFreeByFcl) {
   const ManipulationProblem problem = test::bar_carry();
+  ManipulationOptions options = this->options();
+  options.prm.straight = false;
   double last = std::numeric_limits<double>::infinity();
   std::size_t told = 0;
-  const ManipulationResult result = plan_manipulation(problem, options(), nullptr, {}, [&](const Improvement& better) {
+  const ManipulationResult result = plan_manipulation(problem, options, nullptr, {}, [&](const Improvement& better) {
     EXPECT_LT(better.cost, last);
     last = better.cost;
     ++told;
@@ -77,6 +79,7 @@ TEST_P(CarryPlanner, SameSeedSamePathAtAnyNumberOfThreads) {
   const ManipulationProblem problem = test::bar_carry();
   ManipulationOptions options = this->options();
   options.threads = 1;
+  options.prm.straight = false;
   const ManipulationResult expected = plan_manipulation(problem, options);
   ASSERT_EQ(expected.outcome, Outcome::solved);
   for (const int threads : {1, 2, 3, 7}) {

@@ -57,7 +57,8 @@ double exhaustive_cost(const ManipulationProblem& problem, const ManipulationOpt
     for (std::size_t b = a + 1; b < nodes.size(); ++b) {
       const bool ends = a >= first_start && a < first_goal && b >= first_goal;
       const bool same_end = a >= first_start && !ends;
-      if (ends || (!same_end && (nodes[b] - nodes[a]).norm() < radius)) join(a, b);
+      const bool near = !same_end && (nodes[b] - nodes[a]).norm() < radius;
+      if (near || (ends && options.prm.straight)) join(a, b);
     }
   std::vector<double> cost(nodes.size(), std::numeric_limits<double>::infinity());
   using Entry = std::pair<double, std::size_t>;
@@ -174,6 +175,49 @@ TEST(PrmStarMg, EveryVariantFindsTheExhaustiveOptimum) {
       }
 }
 
+TEST(PrmStarMg, WithoutStraightEdgesTheRoadmapIsAllThereIs) {
+  const ManipulationProblem problem = test::bar_carry();
+  ManipulationOptions options = bar_options();
+  options.prm.straight = false;
+  const Roadmap roadmap = Roadmap::build(problem.group, options.prm.roadmap);
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t g = 0; g < problem.grasps.size(); ++g)
+    best = std::min(best, exhaustive_cost(problem, options, roadmap, static_cast<int>(g)));
+  ASSERT_TRUE(std::isfinite(best));
+  for (const int batch : {1, 7, 0})
+    for (const bool lazy : {false, true}) {
+      options.prm.batch = batch;
+      options.prm.lazy_grasps = lazy;
+      EXPECT_NEAR(plan_manipulation(problem, options, &roadmap).cost, best, 1e-9) << batch << lazy;
+    }
+}
+
+TEST(PrmStarMg, DensifyingEndsWithTheBestOfAllRoadmaps) {
+  const ManipulationProblem problem = test::bar_carry();
+  ManipulationOptions options = bar_options();
+  options.prm.straight = false;
+  double best = std::numeric_limits<double>::infinity();
+  std::vector<double> costs;
+  for (const int vertices : {300, 600, 1200}) {
+    options.prm.roadmap.vertices = vertices;
+    const ManipulationResult one = plan_manipulation(problem, options);
+    if (one.path) best = std::min(best, one.cost);
+    costs.push_back(one.path ? one.cost : std::numeric_limits<double>::infinity());
+  }
+  ASSERT_LT(best, costs.front());  // more vertices help
+  options.prm.roadmap.vertices = 300;
+  options.prm.max_vertices = 2399;
+  std::vector<double> told;
+  const ManipulationResult result =
+      plan_manipulation(problem, options, nullptr, {}, [&](const Improvement& better) { told.push_back(better.cost); });
+  ASSERT_EQ(result.outcome, Outcome::solved);
+  EXPECT_NEAR(result.cost, best, 1e-9);
+  EXPECT_EQ(told.back(), result.cost);
+  EXPECT_TRUE(std::is_sorted(told.rbegin(), told.rend()));
+  options.prm.max_vertices = 0;
+  EXPECT_NEAR(plan_manipulation(problem, options).cost, costs.front(), 1e-9);
+}
+
 TEST(PrmStarMg, PathCarriesTheObjectAndIsFree) {
   const ManipulationProblem problem = test::bar_carry();
   const ManipulationResult result = plan_manipulation(problem, bar_options());
@@ -251,6 +295,10 @@ TEST(PrmStarMg, RefusesNonsense) {
   problem = good;
   problem.grasps[1].cost = -1;
   refused(problem, "grasps[1].cost");
+  problem = good;
+  problem.world.add("bar", Shape(Box{{0.1, 0.1, 0.1}}), test::flat_pose(0, 0, 0));
+  problem.world.attach("bar", "tip", test::flat_pose(0, 0, 0));
+  refused(problem, "world: holds 'bar'");
   const Roadmap foreign = Roadmap::build(test::PlanarArm(4).group(), bar_options().prm.roadmap);
   EXPECT_THROW(plan_manipulation(good, bar_options(), &foreign), InvalidInput);
 }

@@ -25,7 +25,9 @@ def grasps(seed: int, count: int) -> list[np.ndarray]:
     kept: list[np.ndarray] = []
     while len(kept) < count:
         place = [rng.uniform(2, 8), rng.choice([-1, 1]) * rng.uniform(0.5, 2.5), rng.uniform(0.3, 1.1)]
-        pose = mg.pose(place, [rng.uniform(-np.pi, np.pi), rng.uniform(-np.pi / 3, np.pi / 3), rng.uniform(-np.pi, np.pi)])
+        pose = mg.pose(
+            place, [rng.uniform(-np.pi, np.pi), rng.uniform(-np.pi / 3, np.pi / 3), rng.uniform(-np.pi, np.pi)]
+        )
         for trial in range(8):
             at = np.zeros(10)
             at[:2] = np.array(place[:2]) + rng.uniform(-0.8, 0.8, 2)
@@ -73,7 +75,9 @@ def main() -> None:
                 )
             )  # fmt: skip
             if given.casadi:
-                guess = mg._core._first_drive_by_guess(group, start=START, tasks=tasks, goal=GOAL, waypoints=given.waypoints)
+                guess = mg._core._first_drive_by_guess(
+                    group, start=START, tasks=tasks, goal=GOAL, waypoints=given.waypoints
+                )
                 peer.prepare(guess["intervals"])
                 begun = time.perf_counter()
                 solved, duration = peer.solve(guess, pose)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import threading
-import time
 
 import numpy as np
 import pytest
@@ -13,6 +12,7 @@ import mmgrasp as mg
 from mmgrasp.reproduce.drive_by import GOAL, START, whole_body
 
 TASK = mg.pose([5.5, -2, 0.5], [1, 1, 0])
+PATIENT = {"time_limit": 600.0}  # how busy the machine is must not decide
 
 
 @pytest.fixture(scope="module")
@@ -27,13 +27,15 @@ def group() -> mg.JointGroup:
 
 @pytest.fixture(scope="module")
 def plan(robot, group) -> mg.DriveByResult:
-    return mg.plan_drive_by(robot, group, mg.World(), start=START, tasks=[mg.DriveByTask(TASK)], goal=GOAL)
+    return mg.plan_drive_by(robot, group, mg.World(), start=START, tasks=[mg.DriveByTask(TASK)], goal=GOAL, **PATIENT)
 
 
 def test_the_example_of_the_paper(plan, group):
     assert plan.outcome == mg.Outcome.solved, plan.report
     assert all(v["kept"] for v in plan.violations.values())
-    assert {"dynamics", "nonholonomic", "velocity", "acceleration", "task position", "collision"} <= set(plan.violations)
+    assert {"dynamics", "nonholonomic", "velocity", "acceleration", "task position", "collision"} <= set(
+        plan.violations
+    )
     (event,) = plan.events
     t = plan.trajectory
     assert np.allclose(group.fk(t.positions[event["waypoint"]]), TASK, atol=1e-6)
@@ -101,7 +103,7 @@ def test_fine_samples_keep_the_limits(plan, group):
 
 def test_same_seed_same_answer(plan, robot, group):
     again = mg.plan_drive_by(
-        robot, group, mg.World(), start=START, tasks=[mg.DriveByTask(TASK)], goal=GOAL, threads=2
+        robot, group, mg.World(), start=START, tasks=[mg.DriveByTask(TASK)], goal=GOAL, threads=2, **PATIENT
     )
     assert again.trajectory.to_csv() == plan.trajectory.to_csv()
 
@@ -121,7 +123,7 @@ def test_goal_as_a_box(robot, group):
     lower[:3] = upper[:3] = [8, 1, 0.5]
     found = mg.plan_drive_by(
         robot, group, mg.World(), start=START, tasks=[mg.DriveByTask(mg.pose([4, 1, 0.8], [0, 0.3, 1]))],
-        goal=np.stack([lower, upper]),
+        goal=np.stack([lower, upper]), **PATIENT,
     )  # fmt: skip
     assert found.outcome == mg.Outcome.solved, found.report
     assert np.allclose(found.trajectory.positions[-1, :3], [8, 1, 0.5])
@@ -147,7 +149,15 @@ def test_start_in_collision(robot, group):
 
 def test_best_iterate_when_time_ends(robot, group):
     found = mg.plan_drive_by(
-        robot, group, mg.World(), start=START, tasks=[mg.DriveByTask(TASK)], goal=GOAL, max_iterations=2, attempts=1
+        robot,
+        group,
+        mg.World(),
+        start=START,
+        tasks=[mg.DriveByTask(TASK)],
+        goal=GOAL,
+        max_iterations=2,
+        attempts=1,
+        **PATIENT,
     )
     assert found.outcome == mg.Outcome.timeout
     assert found.trajectory is not None
@@ -188,7 +198,9 @@ def test_bad_tasks():
 
 def test_contradictory_base_limits(group):
     with pytest.raises(mg.InvalidInput, match="linear_velocity"):
-        mg.Robot.from_strings("<robot name='r'><link name='a'/></robot>", base="diff_drive", base_limits={"linear_velocity": 0})
+        mg.Robot.from_strings(
+            "<robot name='r'><link name='a'/></robot>", base="diff_drive", base_limits={"linear_velocity": 0}
+        )
 
 
 def test_arm_alone(robot):
@@ -197,7 +209,7 @@ def test_arm_alone(robot):
     start = np.array([0.3, -0.5, 0, 1.2, 0, 0.8, 0])
     middle = arm.fk(start + [0.4, 0.2, 0.1, 0.1, 0.2, 0.1, 0.3])
     found = mg.plan_drive_by(
-        robot, arm, mg.World(), start=start, tasks=[mg.DriveByTask(middle)], goal=start, collisions=False
+        robot, arm, mg.World(), start=start, tasks=[mg.DriveByTask(middle)], goal=start, collisions=False, **PATIENT
     )
     assert found.outcome == mg.Outcome.solved, found.report
     assert np.allclose(arm.fk(found.trajectory.positions[found.events[0]["waypoint"]]), middle, atol=1e-6)
@@ -208,7 +220,7 @@ def test_threads_run_side_by_side(robot, group, plan):
 
     def work():
         found.append(
-            mg.plan_drive_by(robot, group, mg.World(), start=START, tasks=[mg.DriveByTask(TASK)], goal=GOAL)
+            mg.plan_drive_by(robot, group, mg.World(), start=START, tasks=[mg.DriveByTask(TASK)], goal=GOAL, **PATIENT)
         )
 
     threads = [threading.Thread(target=work) for _ in range(3)]
@@ -220,17 +232,14 @@ def test_threads_run_side_by_side(robot, group, plan):
 
 
 def test_interrupt_ends_it(robot, group):
-    class Stop(Exception):
+    class StopError(Exception):
         pass
 
-    begun = time.monotonic()
-
     def progress(stage: str, fraction: float) -> None:
-        raise Stop
+        raise StopError
 
-    with pytest.raises(Stop):
+    with pytest.raises(StopError):
         mg.plan_drive_by(
             robot, group, mg.World(), start=START, tasks=[mg.DriveByTask(TASK)], goal=GOAL, waypoints=400,
             progress=progress, time_limit=300.0,
         )  # fmt: skip
-    assert begun > 0

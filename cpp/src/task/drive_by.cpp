@@ -256,7 +256,7 @@ class DriveBy {
   WholeBodyResult optimize(const Attempt& a, double warm_start = 0) {
     WholeBodyOptions options = options_.trajectory;
     options.warm_start = std::max(options.warm_start, warm_start);
-    options.time_limit = std::max(1e-3, std::min(options.time_limit, options_.time_limit - seconds()));
+    options.time_limit = std::max(1e-3, options_.time_limit - seconds());
     return optimize_whole_body(a.problem, a.guess, options, a.checkers, monitor_);
   }
 

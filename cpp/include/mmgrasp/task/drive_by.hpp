@@ -37,7 +37,7 @@ struct MMGRASP_EXPORT DriveByOptions {
   int attempts = 8;          ///< Guesses tried until one leads to a solution; > 0.
   int solutions = 1;         ///< Solutions compared, the fastest is returned; > 0.
   int stands = 64;           ///< Configurations sought per task; > 0.
-  double time_limit = 20.0;  ///< Wall-clock cap [s]; > 0.
+  double time_limit = 60.0;  ///< Wall-clock cap [s]; > 0.
   double jerk_time = 0;      ///< See WholeBodyProblem [s], >= 0; 0: no limit on jerk.
   bool collisions = true;    ///< The robot keeps clear of the world and of itself.
   unsigned seed = 1;         ///< Same seed, same answer.

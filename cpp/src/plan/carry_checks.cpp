@@ -32,7 +32,12 @@ int moved_by(const JointGroup& group, int link) {
 }  // namespace
 
 CarryChecks::CarryChecks(const ManipulationProblem& problem, const EdgeOptions& edge, int workers)
-    : problem_(problem), edge_(edge), robot_(static_cast<std::size_t>(workers)), held_(robot_.size()) {
+    : problem_(problem),
+      edge_(edge),
+      path_edge_(edge),
+      robot_(static_cast<std::size_t>(workers)),
+      held_(robot_.size()) {
+  path_edge_.joint_step = std::min(path_edge_.joint_step, kFineStep);
   std::map<double, int> openings;
   for (const CandidateGrasp& grasp : problem.grasps) {
     const double opening = problem.gripper ? grasp.opening : 0;
@@ -94,13 +99,20 @@ HeldChecker& CarryChecks::held(int worker, int grasp) {
   return holding(held_[static_cast<std::size_t>(worker)][static_cast<std::size_t>(opening_of(grasp))], grasp, true);
 }
 
-int CarryChecks::blocked_edge(int grasp, const JointPath& path) {
+bool CarryChecks::path_edge_is_free(int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   HeldChecker& checker = holding(whole_[static_cast<std::size_t>(opening_of(grasp))], grasp, false);
-  EdgeOptions fine;
-  fine.joint_step = kFineStep;
+  return checker.edge_is_free(a, b, path_edge_);
+}
+
+int CarryChecks::blocked_edge(int grasp, const JointPath& path) {
   for (std::size_t i = 0; i + 1 < path.waypoints.size(); ++i)
-    if (!checker.edge_is_free(path.waypoints[i], path.waypoints[i + 1], fine)) return static_cast<int>(i);
+    if (!path_edge_is_free(grasp, path.waypoints[i], path.waypoints[i + 1])) return static_cast<int>(i);
   return -1;
+}
+
+void CarryChecks::coarsen(double factor) {
+  edge_.joint_step *= factor;
+  edge_.workspace_step *= factor;
 }
 
 bool CarryChecks::robot_is_free(int worker, int opening, const Eigen::VectorXd& q) {

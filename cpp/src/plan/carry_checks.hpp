@@ -36,8 +36,12 @@ class CarryChecks {
   bool held_is_free(int worker, int grasp, const Eigen::VectorXd& q);
   bool held_edge_is_free(int worker, int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
   Rejection held_rejection(int worker, int grasp, const Eigen::VectorXd& q);
-  /// The first edge of a finished path that is not free for robot and object together at 0.005 rad or m; -1: all are.
+  /// Robot and object together, at 0.005 rad or m and no coarser than the options say: for finished paths.
+  bool path_edge_is_free(int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
+  /// The first edge of a finished path that is not free by path_edge_is_free(); -1: all are.
   int blocked_edge(int grasp, const JointPath& path);
+  /// Edges are cut into steps this many times as long from here on, those of finished paths excepted.
+  void coarsen(double factor);
   /// A checker of everything.
   CollisionChecker whole(int grasp) const;
   const ManipulationProblem& problem() const { return problem_; }
@@ -60,7 +64,7 @@ class CarryChecks {
   World world_with(int grasp) const;
 
   const ManipulationProblem& problem_;
-  EdgeOptions edge_;
+  EdgeOptions edge_, path_edge_;
   std::vector<JointGroup> groups_;  ///< One an opening.
   std::vector<int> opening_of_;     ///< Per grasp.
   std::string tip_;

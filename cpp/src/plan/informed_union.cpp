@@ -8,6 +8,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr int kTries = 10000;       // Draws before a union is called too thin.
+constexpr double kAround = 0.1;     // [rad or m]
 constexpr double kThin = 1e-9;      // Ellipsoids longer than their axis by less than this share have no inside.
 constexpr int kGuesses = 64;        // Random ellipsoids asked before all of them are.
 constexpr double kScanShare = 0.1;  // Time to ask one grasp, by that of one draw.
@@ -27,13 +28,16 @@ InformedUnion::InformedUnion(const GraspEnds& ends, const Eigen::VectorXd& lower
       cost_(std::numeric_limits<double>::infinity()),
       grasps_(ends.size()),
       ball_(ends.dimension() + 1) {
-  for (int g = 0; g < ends.size(); ++g)
+  for (int g = 0; g < ends.size(); ++g) {
+    first_of_.push_back(all_.size());
     for (int s = 0; s < ends.count(g, GraspEnds::kStart); ++s)
       for (int k = 0; k < ends.count(g, GraspEnds::kGoal); ++k) {
         const double squared =
             squared_distance(ends.end(g, GraspEnds::kStart, s), ends.end(g, GraspEnds::kGoal, k), ends.dimension());
         all_.push_back({g, s, k, std::sqrt(squared), 0});
       }
+  }
+  first_of_.push_back(all_.size());
   pairs_.reserve(all_.size());
   first_pair_.reserve(static_cast<std::size_t>(ends.size()) + 1);
 }
@@ -66,7 +70,7 @@ void InformedUnion::prepare() {
   }
 }
 
-void InformedUnion::draw_ellipsoid(Rng& rng, const Pair& pair, double* q) {
+void InformedUnion::draw_ellipsoid(Rng& rng, const Pair& pair, double c, double* q) {
   const int d = ends_.dimension();
   // A direction from normal numbers, two at a time, and a radius.
   double squared = 0;
@@ -77,7 +81,6 @@ void InformedUnion::draw_ellipsoid(Rng& rng, const Pair& pair, double* q) {
   }
   for (int i = 0; i < d; ++i) squared += ball_[i] * ball_[i];
   const double length = std::pow(rng.uniform(), 1.0 / d) / std::sqrt(squared);
-  const double c = cost_ - ends_.cost(pair.grasp);
   const double along = 0.5 * c * length, across = 0.5 * std::sqrt(c * c - pair.c_min * pair.c_min) * length;
   const double* start = ends_.end(pair.grasp, GraspEnds::kStart, pair.start);
   const double* goal = ends_.end(pair.grasp, GraspEnds::kGoal, pair.goal);
@@ -140,6 +143,13 @@ int InformedUnion::draw_box(Rng& rng, double* q) {
   return grasps_ > 0 ? static_cast<int>(rng.index(static_cast<std::size_t>(grasps_))) : -1;
 }
 
+void InformedUnion::draw_around(Rng& rng, int grasp, double factor, double* q) {
+  const std::size_t first = first_of_[static_cast<std::size_t>(grasp)];
+  const Pair& pair = all_[first + rng.index(first_of_[static_cast<std::size_t>(grasp) + 1] - first)];
+  draw_ellipsoid(rng, pair, pair.c_min * factor + kAround, q);
+  for (Eigen::Index i = 0; i < lower_.size(); ++i) q[i] = std::clamp(q[i], lower_[i], upper_[i]);
+}
+
 int InformedUnion::draw(Rng& rng, double* q) {
   if (std::isinf(cost_)) return draw_box(rng, q);
   if (!prepared_) prepare();
@@ -158,7 +168,7 @@ int InformedUnion::draw(Rng& rng, double* q) {
     const auto pair = std::upper_bound(pairs_.begin(), pairs_.end(), at,
                                        [](double value, const Pair& entry) { return value < entry.volume; });
     const auto index = static_cast<std::size_t>(std::min(pair - pairs_.begin(), std::ptrdiff_t(pairs_.size()) - 1));
-    draw_ellipsoid(rng, pairs_[index], q);
+    draw_ellipsoid(rng, pairs_[index], cost_ - ends_.cost(pairs_[index].grasp), q);
     if (in_box(q) && first_to_contain(index, q)) {
       const int grasp = any_containing(rng, q);
       // Rounding can leave a draw on the very edge outside of its own ellipsoid.

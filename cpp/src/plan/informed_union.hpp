@@ -31,6 +31,9 @@ class MMGRASP_EXPORT InformedUnion {
   int draw(Rng& rng, double* q);
   /// Uniform over the joint box, whatever the cost, and over the grasps that can still win.
   int draw_box(Rng& rng, double* q);
+  /// From the ellipsoid of one of a grasp's pairs for paths `factor` times as long as its straight line, and a little;
+  /// where that leaves the box, at its border. Whatever the cost.
+  void draw_around(Rng& rng, int grasp, double factor, double* q);
 
  private:
   struct Pair {
@@ -41,7 +44,7 @@ class MMGRASP_EXPORT InformedUnion {
 
   void prepare();
   double volume(const Pair& pair) const;
-  void draw_ellipsoid(Rng& rng, const Pair& pair, double* q);
+  void draw_ellipsoid(Rng& rng, const Pair& pair, double c, double* q);
   bool in_box(const double* q) const;
   bool in_pair(const Pair& pair, const double* q) const;
   bool first_to_contain(std::size_t pair, const double* q) const;
@@ -54,6 +57,7 @@ class MMGRASP_EXPORT InformedUnion {
   int grasps_;
   std::vector<Pair> all_;                ///< Of each grasp side by side, in the order of the grasps.
   std::vector<Pair> pairs_;              ///< Those with an ellipsoid.
+  std::vector<std::size_t> first_of_;    ///< Of each grasp, in `all_`; and their number.
   std::vector<std::size_t> first_pair_;  ///< Of each grasp, in `pairs_`.
   bool prepared_ = false;
   Eigen::VectorXd ball_;

@@ -26,7 +26,13 @@ constexpr double kSame = 1e-9;  // Configurations nearer than this are the same 
 constexpr int kHopeless = -2;
 constexpr int kStraight = 32;        // Straight lines tried before the first sample.
 constexpr int kDuplicates = 4;       // Vertices of other trees taken over by one new vertex.
-constexpr double kPiece = 0.1;       // Of a step, when an edge is followed as far as it is free.
+constexpr int kHalvings = 3;         // To find how far along an edge the way is free.
+constexpr int kRounds = 8;           // Trees of single grasps that grow with one sample, until there is a path.
+constexpr double kAround = 0.8;      // Samples drawn near a straight line, until there is a path.
+constexpr double kNarrowest = 1.1;   // Paths they may lie on, by the straight line's length: at least ...
+constexpr double kWidest = 2.5;      // ... and this much more.
+constexpr double kCorners = 0.3;     // Corners of the best path cut, by samples drawn.
+constexpr double kCoarse = 8;        // Steps along the trees' edges, by those of finished paths.
 constexpr int kGuesses = 32;         // Random grasps asked before all of them are.
 constexpr double kGammaSlack = 1.1;  // Above the least that optimality asks for.
 
@@ -55,15 +61,19 @@ RrtStarMg::RrtStarMg(CarryInput& input, ManipulationResult& result)
       rng_(input.options.seed, 0x727274),
       gamma_(options_.gamma > 0 ? options_.gamma : least_gamma(input.problem.group)),
       best_(kInfinite),
-      bridge_of_(static_cast<std::size_t>(ends_.size()), -1),
+      own_(static_cast<std::size_t>(ends_.size())),
+      bridge_of_(own_.size(), -1),
       to_go_(bridge_of_.size()),
       to_go_stamp_(bridge_of_.size(), -1),
       blocked_stamp_(bridge_of_.size(), -1),
       q_(input.problem.group.size()),
       q_a_(q_.size()),
-      q_b_(q_.size()) {}
+      q_b_(q_.size()) {
+  input_.checks.coarsen(kCoarse);
+}
 
 void RrtStarMg::run() {
+  input_.monitor.report("search", 0);
   try_straight_lines();
   int i = 0;
   for (; i < options_.max_samples && informed_.grasps() > 0 && !(solved() && best_ <= options_.goal_cost); ++i) {
@@ -74,11 +84,37 @@ void RrtStarMg::run() {
   result_.stats.samples = static_cast<std::size_t>(i);
   result_.stats.vertices = static_cast<std::size_t>(forest_.vertex_count());
   result_.lower_bound = std::min(best_, ends_.straight_cost(0));
+  if (options_.keep_trees) keep_trees();
   if (solved()) {
     result_.outcome = Outcome::solved;
   } else {
     result_.outcome = input_.monitor.stopped() ? Outcome::stopped : Outcome::timeout;
   }
+}
+
+void RrtStarMg::keep_trees() {
+  for (int grasp = 0; grasp < ends_.size(); ++grasp)
+    for (const int side : {GraspEnds::kStart, GraspEnds::kGoal}) {
+      std::vector<int> place(static_cast<std::size_t>(forest_.vertex_count()), -1), members;
+      forest_.each_in_tree(Forest::tree(grasp, side), [&](int v) {
+        place[static_cast<std::size_t>(v)] = static_cast<int>(members.size());
+        members.push_back(v);
+      });
+      if (members.empty()) continue;
+      SearchTree tree;
+      tree.grasp = ends_.grasp(grasp);
+      tree.from_goal = side == GraspEnds::kGoal;
+      tree.vertices.resize(ends_.dimension(), static_cast<Eigen::Index>(members.size()));
+      tree.costs.resize(tree.vertices.cols());
+      for (std::size_t i = 0; i < members.size(); ++i) {
+        const Forest::Vertex& vertex = forest_.vertex(members[i]);
+        tree.vertices.col(static_cast<Eigen::Index>(i)) =
+            Eigen::Map<const Eigen::VectorXd>(forest_.at(members[i]), ends_.dimension());
+        tree.costs[static_cast<Eigen::Index>(i)] = vertex.cost;
+        tree.parents.push_back(vertex.parent < 0 ? -1 : place[static_cast<std::size_t>(vertex.parent)]);
+      }
+      result_.trees.push_back(std::move(tree));
+    }
 }
 
 double RrtStarMg::radius(int vertices) const {
@@ -105,17 +141,39 @@ void RrtStarMg::sample(int side) {
   if (again >= 0) {
     made = extend_tree(tree, again);
   } else {
-    const bool informed = options_.informed && solved();
-    const int grasp = informed ? informed_.draw(rng_, q_.data()) : informed_.draw_box(rng_, q_.data());
-    if (grasp < 0) return;
-    const int configuration = forest_.add_configuration(q_.data());
-    if (solved() && rng_.uniform() < options_.exploration) {
-      made = extend_tree(Forest::tree(grasp, side), configuration);
-    } else {
-      made = extend_forest(side, configuration);
-    }
+    if (!solved()) return sample_early(side);
+    made = sample_informed(side);
+    if (rng_.uniform() < kCorners) cut_corner();
   }
   if (made >= 0) connect(made);
+}
+
+int RrtStarMg::sample_informed(int side) {
+  const int grasp = options_.informed ? informed_.draw(rng_, q_.data()) : informed_.draw_box(rng_, q_.data());
+  if (grasp < 0) return -1;
+  const int configuration = forest_.add_configuration(q_.data());
+  if (rng_.uniform() < options_.exploration) return extend_tree(Forest::tree(grasp, side), configuration);
+  return extend_forest(side, configuration);
+}
+
+// Beyond the paper, until there is a path. One configuration is offered to the forest, as in the paper, and to the
+// trees of some grasps: what is found out about the robot there serves them all. Most configurations are drawn near the
+// straight line of one of these, for few joint boxes are much larger than the ways through them.
+void RrtStarMg::sample_early(int side) {
+  int grasp = pick_early();
+  if (options_.informed && rng_.uniform() < kAround) {
+    const double width = rng_.uniform();
+    informed_.draw_around(rng_, grasp, kNarrowest + kWidest * width * width, q_.data());
+  } else {
+    informed_.draw_box(rng_, q_.data());
+  }
+  const int configuration = forest_.add_configuration(q_.data());
+  const int made = extend_forest(side, configuration);
+  if (made >= 0) connect(made);
+  for (int i = 0; i < kRounds && !solved(); ++i, grasp = pick_early()) {
+    const int grown = extend_tree(Forest::tree(grasp, side), configuration);
+    if (grown >= 0) connect(grown);
+  }
 }
 
 int RrtStarMg::take_reassigned(int side, int& tree) {
@@ -163,7 +221,8 @@ int RrtStarMg::extend_tree(int tree, int configuration) {
   forest_.near_in_tree(tree, forest_.configuration(target), radius(forest_.tree_size(tree)), near_);
   include_nearest(nearest, target);
   const int made = add_best(target, kInfinite);
-  if (made >= 0) rewire(made);
+  if (made < 0) return solved() ? -1 : advance(nearest, target);
+  rewire(made);
   return made;
 }
 
@@ -183,25 +242,30 @@ int RrtStarMg::extend_forest(int side, int configuration) {
   return made;
 }
 
-// Beyond the paper, until there is a path: as far along a blocked edge as it is free.
+// Beyond the paper, until there is a path.
 int RrtStarMg::advance(int from, int target) {
   const Forest::Vertex start = forest_.vertex(from);
   const int grasp = Forest::grasp_of(start.tree), d = ends_.dimension();
-  const double whole = std::sqrt(squared_distance(forest_.at(from), forest_.configuration(target), d));
-  const double piece = options_.step * kPiece;
-  const auto pieces = static_cast<int>(whole / piece);
   int last = start.configuration;
-  for (int i = 1; i <= pieces; ++i) {
-    const double share = i * piece / whole;
+  double done = 0, share = 0.5;
+  for (int i = 0; i < kHalvings; ++i, share *= 0.5) {
     const double* a = forest_.at(from);
     const double* b = forest_.configuration(target);
-    for (int k = 0; k < d; ++k) q_[k] = a[k] + (b[k] - a[k]) * share;
+    for (int k = 0; k < d; ++k) q_[k] = a[k] + (b[k] - a[k]) * (done + share);
     const int next = forest_.add_configuration(q_.data());
-    if (!configuration_is_free(grasp, next) || !edge_is_free(grasp, last, next)) break;
+    if (!configuration_is_free(grasp, next) || !edge_is_free(grasp, last, next)) continue;
     last = next;
+    done += share;
   }
   if (last == start.configuration) return -1;
   return forest_.add(from, last, std::sqrt(squared_distance(forest_.at(from), forest_.configuration(last), d)));
+}
+
+// The k-th cheapest-looking grasp with a chance that falls as 1 / k: whoever must be tried to get through, no grasp
+// waits much longer than its place in the list.
+int RrtStarMg::pick_early() {
+  const double count = ends_.size();
+  return std::min(ends_.size() - 1, static_cast<int>(std::pow(count + 1, rng_.uniform())) - 1);
 }
 
 void RrtStarMg::include_nearest(int nearest, int target) {
@@ -263,7 +327,7 @@ void RrtStarMg::rewire(int made) {
     forest_.reparent(entry.vertex, made, entry.distance);
     changed = true;
   }
-  if (changed && solved()) refresh(grasp);
+  if (changed && bridge_of_[static_cast<std::size_t>(grasp)] >= 0) refresh(grasp);
 }
 
 // What stands in other trees nearby and could serve this one (P2 5.3.2).

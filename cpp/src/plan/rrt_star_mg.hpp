@@ -1,13 +1,14 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
 #include "plan/carry_planner.hpp"
+#include "plan/check_memory.hpp"
 #include "plan/forest.hpp"
 #include "plan/informed_union.hpp"
-#include "plan/robot_memory.hpp"
 
 namespace mmgrasp::detail {
 
@@ -18,8 +19,6 @@ class RrtStarMg {
   RrtStarMg(CarryInput& input, ManipulationResult& result);
 
   void run();
-  const Forest& forest() const { return forest_; }
-  double best() const { return best_; }
 
  private:
   using Near = Forest::Near;
@@ -31,12 +30,21 @@ class RrtStarMg {
     int next;  ///< Of the same grasp, or -1.
   };
 
+  /// The cheapest path of a grasp; not checked finely unless it was the best once.
+  struct Own {
+    double cost = std::numeric_limits<double>::infinity();
+    int bridge = -1;
+  };
+
   bool solved() const { return result_.path.has_value(); }
   double radius(int vertices) const;
+  void keep_trees();
 
   // Growing (rrt_star_mg.cpp). Those that grow return the new vertex, or -1.
   void try_straight_lines();
   void sample(int side);
+  int sample_informed(int side);
+  void sample_early(int side);
   int extend_tree(int tree, int configuration);
   int extend_forest(int side, int configuration);
   /// A configuration towards `target`, at most one step from vertex `from`; -1 when there is no way to go.
@@ -44,8 +52,10 @@ class RrtStarMg {
   void include_nearest(int nearest, int configuration);
   /// Adds `configuration` below the one of near_ that is cheapest by equation (5.1) and has a free edge to it.
   int add_best(int configuration, double bound);
-  /// Grows the tree of `from` towards a configuration that cannot be reached in one edge.
+  /// Grows the tree of `from` along a blocked edge towards a configuration, about as far as it is free.
   int advance(int from, int target);
+  /// A grasp to grow before there is a path.
+  int pick_early();
   void rewire(int made);
   void duplicate_into(int made);
   int take_reassigned(int side, int& tree);
@@ -57,10 +67,21 @@ class RrtStarMg {
   /// True when a path better than the best goes through this vertex now.
   bool connect(int vertex);
   double cost_of(const Bridge& bridge) const;
-  /// Looks at all bridges of a grasp again and takes the cheapest if it beats the best path.
+  /// Looks at all bridges of a grasp again: its own path is over the cheapest, the best path too if that beats it.
   void refresh(int grasp);
   bool accept(int bridge);
+  /// Edges that skip vertices of the grasp's path.
+  void straighten(int grasp);
+  /// Replaces a random corner of the best path, or of another grasp's, by an edge between points on both its sides,
+  /// when that is free.
+  void cut_corner();
+  /// Fills chain_ with the grasp's own path; false when there is none.
+  bool follow(int grasp);
+  /// Of nodes_, whose configurations are the path's: the first edge that does not pass the final check; -1: all do.
+  int blocked_edge(int grasp, const JointPath& path);
+  void add_bridge(int a, int b);
   void unbridge(int grasp, int bridge);
+  double apart(int a, int b) const;
   void prune();
   void leaving(int v);
 
@@ -70,15 +91,20 @@ class RrtStarMg {
   GraspEnds ends_;
   InformedUnion informed_;
   Forest forest_;
-  RobotMemory memory_;
+  CheckMemory robot_;     ///< By opening.
+  CheckMemory verified_;  ///< By grasp: edges that were on a path and looked at finely.
   Rng rng_;
   double gamma_;
   double best_;
+  int best_grasp_ = -1;
+  std::vector<Own> own_;         ///< Per grasp.
+  std::vector<int> contenders_;  ///< Grasps with a path of their own, and some that lost it.
   std::vector<Bridge> bridges_;
   std::vector<int> bridge_of_;  ///< Per grasp: its last one, or -1.
   std::vector<int> reassign_;   ///< Configurations that left their tree and may serve another (X_reassign).
   std::vector<Near> near_;
   std::vector<int> nodes_;
+  std::vector<int> chain_[2];       ///< Of the best path: from its bridge to the roots, per side.
   std::vector<double> to_go_;       ///< Per grasp: distance from the new configuration to its other end ...
   std::vector<int> to_go_stamp_;    ///< ... valid for this configuration.
   std::vector<int> blocked_stamp_;  ///< Per grasp: the object in hand collides at this configuration.

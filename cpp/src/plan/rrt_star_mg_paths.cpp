@@ -12,6 +12,9 @@ namespace {
 constexpr double kBetter = 1e-6;  // Paths shorter by less than this share are not news.
 constexpr double kSlack = 1e-9;   // Rounding of estimates: the best path's own vertices stay.
 constexpr double kSame = 1e-9;
+constexpr double kPromising = 1.5;  // Paths of other grasps worth keeping, by the best one.
+constexpr double kOthers = 0.5;     // Corners cut on these.
+constexpr double kInside = 0.999;   // Points on an edge keep off its end.
 
 bool costlier(const Forest::Near& a, const Forest::Near& b) {
   return a.key != b.key ? a.key > b.key : a.vertex > b.vertex;
@@ -21,11 +24,11 @@ bool costlier(const Forest::Near& a, const Forest::Near& b) {
 
 bool RrtStarMg::robot_is_free(int grasp, int configuration) {
   const int opening = ends_.opening(grasp);
-  const int known = memory_.recall(opening, configuration, configuration);
+  const int known = robot_.recall(opening, configuration, configuration);
   if (known >= 0) return known == 1;
   std::copy_n(forest_.configuration(configuration), q_a_.size(), q_a_.data());
   const bool free = input_.checks.robot_is_free(0, opening, q_a_);
-  memory_.keep(opening, configuration, configuration, free);
+  robot_.keep(opening, configuration, configuration, free);
   return free;
 }
 
@@ -38,7 +41,7 @@ bool RrtStarMg::configuration_is_free(int grasp, int configuration) {
 // Both ends are known to be free. What is held is larger than a link as a rule, and hits first.
 bool RrtStarMg::edge_is_free(int grasp, int a, int b) {
   const int opening = ends_.opening(grasp);
-  const int known = memory_.recall(opening, a, b);
+  const int known = robot_.recall(opening, a, b);
   if (known == 0) return false;
   std::copy_n(forest_.configuration(a), q_a_.size(), q_a_.data());
   std::copy_n(forest_.configuration(b), q_b_.size(), q_b_.data());
@@ -47,7 +50,7 @@ bool RrtStarMg::edge_is_free(int grasp, int a, int b) {
   if (known == 1) return true;
   ++result_.stats.edges_checked_robot;
   const bool free = input_.checks.robot_edge_is_free(0, opening, q_a_, q_b_);
-  memory_.keep(opening, a, b, free);
+  robot_.keep(opening, a, b, free);
   return free;
 }
 
@@ -76,28 +79,29 @@ bool RrtStarMg::connect(int vertex) {
   }
   std::make_heap(near_.begin(), near_.end(), costlier);
   const double before = own.cost + ends_.cost(grasp);
+  // A grasp without a path of its own may begin with one that is somewhat too long: corners will be cut.
+  const double bound = grasp == best_grasp_
+                           ? best_ * (1 - kBetter)
+                           : std::min(best_ * kPromising, own_[static_cast<std::size_t>(grasp)].cost * (1 - kBetter));
   for (auto last = near_.end(); last != near_.begin(); --last) {
     std::pop_heap(near_.begin(), last, costlier);
     const Near entry = *(last - 1);
-    if (before + entry.key >= best_ * (1 - kBetter)) return false;
+    if (before + entry.key >= bound) return false;
     if (!edge_is_free(grasp, forest_.vertex(entry.vertex).configuration, own.configuration)) continue;
-    const auto index = static_cast<int>(bridges_.size());
-    int& head = bridge_of_[static_cast<std::size_t>(grasp)];
-    bridges_.push_back({side == GraspEnds::kStart ? vertex : entry.vertex,
-                        side == GraspEnds::kStart ? entry.vertex : vertex, entry.distance, head});
-    head = index;
+    add_bridge(vertex, entry.vertex);
+    if (own_[static_cast<std::size_t>(grasp)].bridge < 0) contenders_.push_back(grasp);
     refresh(grasp);
     return true;
   }
-  if (!solved()) advance(nearest, own.configuration);
+  if (!solved() && options_.bidirectional) advance(nearest, own.configuration);
   return false;
 }
 
 void RrtStarMg::refresh(int grasp) {
   for (;;) {
     int* link = &bridge_of_[static_cast<std::size_t>(grasp)];
-    int cheapest = -1;
-    double least = best_ * (1 - kBetter);
+    Own& own = own_[static_cast<std::size_t>(grasp)];
+    own = {};
     while (*link >= 0) {
       const int index = *link;
       Bridge& bridge = bridges_[static_cast<std::size_t>(index)];
@@ -105,16 +109,16 @@ void RrtStarMg::refresh(int grasp) {
         *link = bridge.next;
         continue;
       }
-      if (cost_of(bridge) < least) {
-        least = cost_of(bridge);
-        cheapest = index;
-      }
+      const double cost = cost_of(bridge);
+      if (cost < own.cost) own = {cost, index};
       link = &bridge.next;
     }
-    if (cheapest < 0) return;
-    if (accept(cheapest)) {
+    if (!(own.cost < best_ * (1 - kBetter))) return;
+    if (accept(own.bridge)) {
+      best_grasp_ = grasp;
       prune();
-      return;
+      if (best_ <= options_.goal_cost) return;
+      straighten(grasp);
     }
   }
 }
@@ -132,7 +136,7 @@ bool RrtStarMg::accept(int index) {
   JointPath path;
   for (const int v : nodes_)
     path.waypoints.push_back(Eigen::Map<const Eigen::VectorXd>(forest_.at(v), ends_.dimension()));
-  const int blocked = input_.checks.blocked_edge(ends_.grasp(grasp), path);
+  const int blocked = blocked_edge(grasp, path);
   if (blocked < 0) {
     best_ = cost_of(bridge);
     take_path(input_, ends_.grasp(grasp), best_, std::move(path), result_);
@@ -147,6 +151,111 @@ bool RrtStarMg::accept(int index) {
     forest_.remove_below(below, [](int) {});
   }
   return false;
+}
+
+bool RrtStarMg::follow(int grasp) {
+  for (auto& chain : chain_) chain.clear();
+  const int index = own_[static_cast<std::size_t>(grasp)].bridge;
+  if (index < 0) return false;
+  const Bridge& bridge = bridges_[static_cast<std::size_t>(index)];
+  if (!forest_.vertex(bridge.a).alive || !forest_.vertex(bridge.b).alive) return false;
+  for (int v = bridge.a; v >= 0; v = forest_.vertex(v).parent) chain_[0].push_back(v);
+  for (int v = bridge.b; v >= 0; v = forest_.vertex(v).parent) chain_[1].push_back(v);
+  return true;
+}
+
+double RrtStarMg::apart(int a, int b) const {
+  return std::sqrt(squared_distance(forest_.at(a), forest_.at(b), ends_.dimension()));
+}
+
+void RrtStarMg::add_bridge(int a, int b) {
+  const int grasp = Forest::grasp_of(forest_.vertex(a).tree);
+  const bool swap = Forest::side_of(forest_.vertex(a).tree) == GraspEnds::kGoal;
+  int& head = bridge_of_[static_cast<std::size_t>(grasp)];
+  bridges_.push_back({swap ? b : a, swap ? a : b, apart(a, b), head});
+  head = static_cast<int>(bridges_.size()) - 1;
+}
+
+// Beyond the paper, and no more than rewiring along the path: each vertex below the earliest one before it that sees
+// it.
+void RrtStarMg::straighten(int grasp) {
+  if (!follow(grasp)) return;
+  const auto sees = [&](int a, int b) {
+    return edge_is_free(grasp, forest_.vertex(a).configuration, forest_.vertex(b).configuration);
+  };
+  for (const auto& chain : chain_)
+    for (std::size_t i = 0; i + 2 < chain.size(); ++i)
+      for (std::size_t k = chain.size() - 1; k > i + 1; --k) {
+        const double length = apart(chain[i], chain[k]);
+        if (forest_.vertex(chain[k]).cost + length >= forest_.vertex(chain[i]).cost * (1 - kBetter)) continue;
+        if (!sees(chain[i], chain[k])) continue;
+        forest_.reparent(chain[i], chain[k], length);
+        break;
+      }
+  if (!follow(grasp)) return;
+  for (std::size_t i = 0; i < chain_[0].size(); ++i)
+    for (std::size_t k = 0; k < chain_[1].size(); ++k) {
+      const int a = chain_[0][chain_[0].size() - 1 - i], b = chain_[1][chain_[1].size() - 1 - k];
+      const double cost = forest_.vertex(a).cost + apart(a, b) + forest_.vertex(b).cost + ends_.cost(grasp);
+      if (cost >= best_ * (1 - kBetter) ||
+          cost >= cost_of(bridges_[static_cast<std::size_t>(own_[static_cast<std::size_t>(grasp)].bridge)]) - kSame)
+        continue;
+      if (!sees(a, b)) continue;
+      add_bridge(a, b);
+      return;
+    }
+}
+
+void RrtStarMg::cut_corner() {
+  int grasp = best_grasp_;
+  if (rng_.uniform() < kOthers && !contenders_.empty()) {
+    const std::size_t at = rng_.index(contenders_.size());
+    grasp = contenders_[at];
+    if (grasp >= informed_.grasps() || own_[static_cast<std::size_t>(grasp)].bridge < 0) {
+      contenders_[at] = contenders_.back();
+      contenders_.pop_back();
+      own_[static_cast<std::size_t>(grasp)] = {};
+      return;
+    }
+  }
+  if (!follow(grasp)) return refresh(grasp);
+  const std::size_t corners = chain_[0].size() + chain_[1].size() - 2;
+  if (corners == 0) return;
+  std::size_t at = rng_.index(corners);
+  const int side = at < chain_[0].size() - 1 ? 0 : 1;
+  if (side == 1) at -= chain_[0].size() - 1;
+  const int corner = chain_[side][at], before = chain_[side][at + 1];
+  const int after = at > 0 ? chain_[side][at - 1] : chain_[1 - side].front();
+  int points[2];
+  for (int i = 0; i < 2; ++i) {
+    const double share = 1 - rng_.uniform() * rng_.uniform();
+    const double *from = forest_.at(corner), *to = forest_.at(i == 0 ? before : after);
+    for (int k = 0; k < ends_.dimension(); ++k) q_[k] = from[k] + (to[k] - from[k]) * share * kInside;
+    points[i] = forest_.add_configuration(q_.data());
+  }
+  if (!edge_is_free(grasp, points[0], points[1])) return;
+  const auto length = [&](int a, int b) {
+    return std::sqrt(squared_distance(forest_.configuration(a), forest_.configuration(b), ends_.dimension()));
+  };
+  const int first = forest_.add(before, points[0], length(forest_.vertex(before).configuration, points[0]));
+  const int second = forest_.add(first, points[1], length(points[0], points[1]));
+  if (at > 0) {
+    forest_.reparent(after, second, length(points[1], forest_.vertex(after).configuration));
+  } else {
+    add_bridge(second, after);
+  }
+  refresh(grasp);
+}
+
+int RrtStarMg::blocked_edge(int grasp, const JointPath& path) {
+  for (std::size_t i = 0; i + 1 < nodes_.size(); ++i) {
+    const int a = forest_.vertex(nodes_[i]).configuration, b = forest_.vertex(nodes_[i + 1]).configuration;
+    if (verified_.recall(grasp, a, b) == 1) continue;
+    if (!input_.checks.path_edge_is_free(ends_.grasp(grasp), path.waypoints[i], path.waypoints[i + 1]))
+      return static_cast<int>(i);
+    verified_.keep(grasp, a, b, true);
+  }
+  return -1;
 }
 
 void RrtStarMg::unbridge(int grasp, int index) {

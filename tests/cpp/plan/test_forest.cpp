@@ -10,7 +10,7 @@
 #include <tuple>
 
 #include "mmgrasp/core/random.hpp"
-#include "plan/robot_memory.hpp"
+#include "plan/check_memory.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -179,9 +179,9 @@ TEST(Forest, BooksThatDisagreeAreNoticed) {
   EXPECT_THROW(forest.check_books(), std::logic_error);
 }
 
-TEST(RobotMemory, KeepsWhatItWasTold) {
+TEST(CheckMemory, KeepsWhatItWasTold) {
   Rng rng(8);
-  RobotMemory memory;
+  CheckMemory memory;
   std::map<std::tuple<int, int, int>, bool> told;
   for (int i = 0; i < 20000; ++i) {
     const int opening = static_cast<int>(rng.index(5)), a = static_cast<int>(rng.index(300)),

@@ -186,6 +186,22 @@ TEST(InformedUnion, GraspsThatContainADrawAreEquallyLikely) {
   }
 }
 
+TEST(InformedUnion, DrawsAroundAGraspStayNearItsLine) {
+  const GraspEnds ends = crossing_ellipses();
+  InformedUnion drawn(ends, Vector2d(-2, -2), Vector2d(2, 2));
+  Rng rng(1);
+  for (int grasp = 0; grasp < ends.size(); ++grasp)
+    for (int i = 0; i < 500; ++i) {
+      Vector2d q;
+      drawn.draw_around(rng, grasp, 1.3, q.data());
+      EXPECT_LE(q.cwiseAbs().maxCoeff(), 2);
+      // The longest straight line of any pair is twice the root of eight; what leaves the box is set back to its
+      // border.
+      EXPECT_LT(ends.estimate(grasp, q.data()) - ends.cost(grasp), 1.3 * std::sqrt(32.0) + 0.11);
+      if (grasp == 0) EXPECT_LT(2 * (q - Vector2d(1.5, 1.2)).norm(), 0.1 + 1e-9);
+    }
+}
+
 TEST(InformedUnion, NothingIsDrawnWhereNothingCanBeBetter) {
   const GraspEnds ends = crossing_ellipses();
   InformedUnion drawn(ends, Vector2d(-2, -2), Vector2d(2, 2));

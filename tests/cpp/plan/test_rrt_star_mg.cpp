@@ -69,6 +69,68 @@ TEST(RrtStarMg, EverySwitchLeavesPathsSound) {
       }
 }
 
+/// What is handed over must be trees: whole, of free edges, rooted in the grasp's own arm configurations.
+TEST(RrtStarMg, TreesAreWholeAndFree) {
+  const ManipulationProblem problem = bar_carry();
+  for (const int samples : {60, 1500}) {
+    ManipulationOptions options = tree_options(samples);
+    options.rrt.keep_trees = true;
+    const ManipulationResult result = plan_manipulation(problem, options);
+    ASSERT_FALSE(result.trees.empty());
+    std::size_t edges = 0;
+    for (const SearchTree& tree : result.trees) {
+      const CandidateGrasp& grasp = problem.grasps[static_cast<std::size_t>(tree.grasp)];
+      CollisionChecker checker(problem.group, test::carrying(problem, grasp));
+      const Pose T_world_tip = (tree.from_goal ? problem.T_world_goal : problem.T_world_start) * grasp.T_object_tool;
+      ASSERT_EQ(tree.vertices.cols(), static_cast<Eigen::Index>(tree.parents.size()));
+      int roots = 0;
+      for (std::size_t i = 0; i < tree.parents.size(); ++i) {
+        const auto col = static_cast<Eigen::Index>(i);
+        const Eigen::VectorXd q = tree.vertices.col(col);
+        EXPECT_TRUE(problem.group.within_limits(q, 1e-9));
+        if (tree.parents[i] < 0) {
+          ++roots;
+          EXPECT_EQ(tree.costs[col], 0);
+          EXPECT_LT((problem.group.fk(q).matrix() - T_world_tip.matrix()).norm(), 3e-4);
+          continue;
+        }
+        ++edges;
+        const Eigen::VectorXd p = tree.vertices.col(tree.parents[i]);
+        EXPECT_NEAR(tree.costs[col], tree.costs[tree.parents[i]] + (q - p).norm(), 1e-9);
+        // At the steps the trees' edges are looked at.
+        EXPECT_TRUE(checker.edge_is_free(p, q, 0.16));
+        std::size_t steps = 0;
+        for (int v = static_cast<int>(i); v >= 0; v = tree.parents[static_cast<std::size_t>(v)])
+          ASSERT_LE(++steps, tree.parents.size());
+      }
+      EXPECT_GE(roots, 1);
+      EXPECT_LE(roots, options.ik_solutions);
+    }
+    EXPECT_GT(edges, 10u);
+  }
+}
+
+TEST(RrtStarMg, SamplesAloneDecideAtAnyNumberOfThreads) {
+  const ManipulationProblem problem = bar_carry();
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    std::vector<ManipulationResult> results;
+    for (const int threads : {1, 2, 5}) {
+      ManipulationOptions options = tree_options(400);
+      options.threads = threads;
+      options.seed = seed;
+      results.push_back(plan_manipulation(problem, options));
+    }
+    for (const ManipulationResult& result : results) {
+      ASSERT_EQ(result.outcome, Outcome::solved);
+      EXPECT_EQ(result.path->waypoints, results[0].path->waypoints);
+      EXPECT_EQ(result.cost, results[0].cost);
+      EXPECT_EQ(result.grasp_index, results[0].grasp_index);
+      EXPECT_EQ(result.stats.samples, results[0].stats.samples);
+      EXPECT_EQ(result.improvements.size(), results[0].improvements.size());
+    }
+  }
+}
+
 TEST(RrtStarMg, CostsOfGraspsCount) {
   ManipulationProblem problem = bar_carry();
   const ManipulationResult cheap = plan_manipulation(problem, tree_options());

@@ -110,6 +110,7 @@ struct MMGRASP_EXPORT ManipulationResult {
   std::vector<GraspReport> grasps;  ///< One a grasp.
   std::vector<Contact> contacts;    ///< With invalid_start or invalid_goal: what touches there with the first grasp.
   Rejections rejections;            ///< Sum over all grasps and both ends.
+  std::vector<SearchTree> trees;  ///< Of rrt_star_mg when it was asked to keep them; those of grasps still in the race.
   ManipulationStats stats;
 };
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <vector>
+
 #include "mmgrasp/core/export.hpp"
 
 namespace mmgrasp {
@@ -19,7 +22,17 @@ struct MMGRASP_EXPORT RrtStarMgOptions {
   bool bidirectional = true;  ///< Trees from both ends; off: from the start only.
   bool informed = true;  ///< Once a path is known: draw only where a better one can pass; off: in the whole joint box.
   double goal_cost = 0;  ///< Ends with the first path that costs no more; >= 0, infinite: with the first at all.
+  bool keep_trees = false;  ///< Hand over the trees with the result, for pictures and tests.
   void check() const;
+};
+
+/// One tree of RRT*-MG as it stood at the end: of one grasp, from its starts or from its goals.
+struct MMGRASP_EXPORT SearchTree {
+  int grasp = -1;
+  bool from_goal = false;
+  Eigen::MatrixXd vertices;  ///< One column each.
+  std::vector<int> parents;  ///< Of each vertex: another one, or -1 for the grasp's arm configurations.
+  Eigen::VectorXd costs;     ///< Length of the way from the root.
 };
 
 }  // namespace mmgrasp

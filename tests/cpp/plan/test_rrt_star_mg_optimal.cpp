@@ -152,17 +152,19 @@ TEST(RrtStarMgOptimal, ConvergesToTheBestOfAllGrasps) {
     const double best = *std::min_element(lengths.begin(), lengths.end());
     ASSERT_LT(best, 9);
     std::vector<double> excess;
-    for (const int samples : {300, 8000}) {
+    for (const int samples : {300, 5000}) {
       double sum = 0;
-      for (unsigned seed = 1; seed <= 5; ++seed) {
+      for (unsigned seed = 1; seed <= 3; ++seed) {
         const ManipulationResult result = plan_manipulation(problem, options_of(samples, seed));
         ASSERT_EQ(result.outcome, Outcome::solved) << wall << samples;
         // The grid's path is a real one, taut only as far as corners were cut: ours may be shorter, by little.
         EXPECT_GT(result.cost, 0.97 * best);
-        if (samples == 8000) EXPECT_LT(result.cost, 1.02 * best) << wall << " seed " << seed;
+        if (samples == 5000) {
+          EXPECT_LT(result.cost, 1.02 * best) << wall << " seed " << seed;
+        }
         sum += result.cost / best - 1;
       }
-      excess.push_back(sum / 5);
+      excess.push_back(sum / 3);
     }
     EXPECT_LE(excess[1], excess[0] + 1e-9);
   }

@@ -7,7 +7,7 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr int kPatience = 60;           // Attempts without a gain after which a path counts as short.
+constexpr int kPatience = 30;           // Attempts without a gain after which a path counts as short.
 constexpr double kSmallestGain = 1e-3;  // Relative to the path's length; less is not worth another corner.
 
 using Waypoints = std::vector<Eigen::VectorXd>;

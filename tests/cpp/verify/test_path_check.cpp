@@ -35,7 +35,7 @@ TEST(PathCheck, FindsWhereTheArmMeetsABox) {
   const PathCheckResult hit = check_path(path);
   EXPECT_FALSE(hit.free);
   EXPECT_NE(hit.where.find("'l2' touches 'box'"), std::string::npos) << hit.where;
-  // It comes from below: the corner (0.85, -0.05) and half the arm's width meet at this angle.
+  // It comes from below: the corner (0.75, -0.05) and half the arm's width meet at this angle.
   const double angle = -std::atan2(0.05, 0.75) - std::asin(0.01 / std::hypot(0.75, 0.05));
   const double found = std::stod(hit.where.substr(hit.where.find("at ") + 3)) * 2 - 1;
   EXPECT_NEAR(found, angle, 0.006);

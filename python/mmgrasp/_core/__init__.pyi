@@ -2992,7 +2992,7 @@ def _drive_by_option_table() -> dict:
     ...
 def _edge_option_table() -> dict:
     ...
-def _first_drive_by_guess(group: JointGroup, *, start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], tasks: collections.abc.Sequence[DriveByTask], goal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"], waypoints: typing.SupportsInt | typing.SupportsIndex = 35) -> typing.Any:
+def _first_drive_by_guess(group: JointGroup, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, waypoints: typing.SupportsInt | typing.SupportsIndex = 35) -> typing.Any:
     """
     Where the first attempt begins, for benchmarks against other optimisers; None when a task is out of reach.
     """
@@ -3192,7 +3192,7 @@ def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy
         attempts = 8: guesses tried until one leads to a solution
         solutions = 1: solutions compared; the fastest is returned
         stands = 64: configurations sought per task
-        time_limit = 20.0: wall-clock cap [s]
+        time_limit = 60.0: wall-clock cap [s]
         jerk_time = 0.0: accelerations may go from 0 to their limit in no less [s]; 0: no limit
         collisions = True: the robot keeps clear of the world and of itself
         seed = 1: same seed, same answer
@@ -3200,7 +3200,7 @@ def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy
         solver = 'ipopt': a name of nlp_solver_names()
         tolerance = 0.0001: relative optimality
         max_iterations = 150: per attempt
-        attempt_time_limit = 10.0: wall-clock cap of one attempt [s]
+        attempt_time_limit = 60.0: wall-clock cap of one attempt [s]
         smoothing = 0.01: weight of the mean square of accelerations over their limits [s]
         margin = 0.005: distance to keep from obstacles and from oneself [m]
         look_out = 0.15: pairs of bodies nearer than this are constrained [m]
@@ -3238,7 +3238,7 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
 def plan_motion(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, goal: typing.Any = None, tool_poses: typing.Any = None, regions: collections.abc.Sequence[ToolRegion] = [], tool_cone: ToolCone | None = None, on_solution: typing.Any = None, progress: typing.Any = None, **kwargs) -> MotionResult:
     """
     A collision-free path of the group from `start` (n,) to any of its goals: `goal` (n,) or several as (m, n),
-    `tool_poses` of the tip, (4, 4) or a list, and `regions` of them, reached by inverse kinematics. `tool_cone`
+    `tool_poses` of the tip, (4, 4) or (m, 4, 4), and `regions` of them, reached by inverse kinematics. `tool_cone`
     holds on the whole path. on_solution(path, cost) is called with each better path. A diff-drive base turns on
     the spot and drives straight.
     

@@ -131,6 +131,8 @@ VALUES: dict[str, Any] = {
     "CarryPlace.size": np.array([0.1, 0.2]),
     "PartSupplyProblem.start": X_Y_THETA,
     "PartSupplyProblem.goal": X_Y_THETA,
+    "least_stops.start": np.array([0.5, 0.25]),
+    "least_stops.goal": np.array([0.25, 0.5]),
     "plan_base_route.start": X_Y_THETA,
     "plan_base_route.goal": X_Y_THETA,
     "platform_velocity": X_Y_THETA,
@@ -176,6 +178,7 @@ OBJECTS = {
 COMPANIONS: dict[str, dict[str, Any]] = {
     "plan_platform_locations.T_link_camera": {"camera_link": "tip"},
     "plan_motion.start": {"goal": Q},
+    "least_stops.goal": {"start": np.array([0.5, 0.25])},
     "fit_cuboids.T_world_tray": {"tray_size": [0.3, 0.4, 0.1]},
     "JointTrajectory.accelerations": {"velocities": np.zeros((2, 3))},
 }
@@ -202,6 +205,7 @@ OTHERS: dict[str, Any] = {
     "random_placement.part": lambda: [BOX],
     "make_height_map.image": lambda: mg.render_depth([BOX], mg.PinholeCamera(width=8, height=6), POSE),
     "sections": lambda: [(0, 1)],
+    "least_stops.regions": lambda: [mg.BaseRegion("tray", np.ones((1, 3, 4), np.uint8), GRID)],
     "_first_drive_by_guess.tasks": lambda: [mg.DriveByTask(POSE)],
     "diameters": lambda: 0.02,
     "shape": lambda: mg.Box([0.1, 0.1, 0.1]),

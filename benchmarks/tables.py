@@ -23,3 +23,10 @@ def write_readme(section: str, text: str) -> None:
         raise SystemExit(f"{path}: has no marker {begin}")
     pattern = re.compile(re.escape(begin) + ".*?" + re.escape(end), re.DOTALL)
     path.write_text(pattern.sub(lambda _: f"{begin}\n{text}\n{end}", page))
+
+
+def show(section: str, text: str, write: bool) -> None:
+    """Prints a section's tables and, when asked to, puts them into benchmarks/README.md."""
+    print(text)
+    if write:
+        write_readme(section, text)

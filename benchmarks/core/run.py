@@ -21,7 +21,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from goals import GOALS, Goal
 from programs import build_programs, full_table, lines_of, peers_environment
-from tables import ROOT, markdown, write_readme
+from tables import ROOT, markdown, show
 
 SLOW = {"exactness"}  # 100,000 queries against FCL: run when asked for
 
@@ -92,9 +92,7 @@ def main() -> None:
             lines += lines_of([python, script])
     cores = f"{os.cpu_count()} cores, {platform.machine()}"
     text = f"{cores}.\n\n{goal_table(lines)}\n\nAll measurements:\n\n{full_table(lines)}"
-    print(text)
-    if arguments.write:
-        write_readme("core", text)
+    show("core", text, arguments.write)
 
 
 if __name__ == "__main__":

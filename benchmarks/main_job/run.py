@@ -20,7 +20,7 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from tables import ROOT, markdown, write_readme
+from tables import ROOT, markdown, show
 
 SCENARIOS = {
     "shipped storeroom": (ROOT / "python/mmgrasp/assets/scenarios/storeroom.yaml", 10.0),
@@ -92,9 +92,7 @@ def main() -> None:
         print(f"{name}: {results[name]['total']:.2f} s", file=sys.stderr)
     machine = f"{os.cpu_count()} cores, {platform.machine()}, Python {platform.python_version()}"
     text = f"Median of {arguments.runs} runs, {machine}.\n\n{table(results)}"
-    print(text)
-    if arguments.write:
-        write_readme("main_job", text)
+    show("main_job", text, arguments.write)
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from programs import BUILD, build_programs, lines_of, peers_environment
-from tables import ROOT, markdown, write_readme
+from tables import ROOT, markdown, show
 
 OURS, PEER = "mmgrasp, shortened", "OMPL RRTConnect + FCL"
 QUICK = ("bookshelf", "table_pick")
@@ -78,9 +78,7 @@ def main() -> None:
     python = peers_environment(arguments.peers.absolute(), HERE / "peers.txt")
     timing = lines_of([sys.executable, HERE / "bench_timing.py", "--peer", python])
     text = f"{os.cpu_count()} cores, {platform.machine()}; {lines[0]['settings']}.\n\n{table(lines)}\n\n{timing_table(timing)}"
-    print(text)
-    if arguments.write:
-        write_readme("planners", text)
+    show("planners", text, arguments.write)
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from goals import GOALS, Goal
 from programs import BUILD, build_programs, full_table, lines_of, peers_environment
-from tables import ROOT, markdown, write_readme
+from tables import ROOT, markdown, show
 
 KEPT = BUILD / "task_lines.json"
 CACHE = BUILD / "reach-cache"
@@ -128,9 +128,7 @@ def main() -> None:
     lines = compared([line for name in commands(False, "", peer) for line in newest(kept.get(name, {}))])
     cores = f"{os.cpu_count()} cores, {platform.machine()}"
     text = f"{cores}.\n\n{goal_table(lines)}\n\nAll measurements:\n\n{full_table(lines)}"
-    print(text)
-    if arguments.write:
-        write_readme("task", text)
+    show("task", text, arguments.write)
 
 
 if __name__ == "__main__":

@@ -27,13 +27,11 @@ struct SeparatingPlane {
 };
 
 /// Gaps along separating planes at one fraction of an interval. Variables: locals of an IntervalPoint.
-class CollisionTerm : public Term {
+class CollisionTerm : public CurvedTerm {
  public:
   CollisionTerm(const IntervalPoint& point, std::vector<SeparatingPlane> planes);
   void value(const double* x, double* out) const override;
-  std::vector<std::pair<int, int>> jacobian_pattern() const override { return full_jacobian(); }
   void jacobian(const double* x, double* out) const override;
-  std::vector<std::pair<int, int>> hessian_pattern() const override { return full_hessian(); }
   void hessian(const double* x, const double* multipliers, double* out) const override;
 
  private:

@@ -13,14 +13,14 @@ UnicycleArc::Locals arc_locals(const double* x) {
 
 }  // namespace
 
-Pattern Term::full_jacobian() const {
+Pattern Term::jacobian_pattern() const {
   Pattern result;
   for (int i = 0; i < rows(); ++i)
     for (int j = 0; j < static_cast<int>(variables.size()); ++j) result.push_back({i, j});
   return result;
 }
 
-Pattern Term::full_hessian() const {
+Pattern CurvedTerm::hessian_pattern() const {
   Pattern result;
   for (int i = 0; i < static_cast<int>(variables.size()); ++i)
     for (int j = 0; j <= i; ++j) result.push_back({i, j});

@@ -23,14 +23,17 @@ class Term {
 
   int rows() const { return static_cast<int>(lower.size()); }
   virtual void value(const double* x, double* out) const = 0;
-  virtual std::vector<std::pair<int, int>> jacobian_pattern() const = 0;
+  virtual std::vector<std::pair<int, int>> jacobian_pattern() const;  ///< Every row and variable unless told otherwise.
   virtual void jacobian(const double* x, double* out) const = 0;
   virtual std::vector<std::pair<int, int>> hessian_pattern() const { return {}; }  ///< Row >= column.
   virtual void hessian(const double*, const double*, double*) const {}
+};
 
- protected:
-  std::vector<std::pair<int, int>> full_jacobian() const;
-  std::vector<std::pair<int, int>> full_hessian() const;
+/// A term whose second derivatives join all of its variables.
+class CurvedTerm : public Term {
+ public:
+  std::vector<std::pair<int, int>> hessian_pattern() const override;
+  void hessian(const double* x, const double* multipliers, double* out) const override = 0;
 };
 
 /// lower <= sum_i factor_i x_i <= upper.
@@ -38,7 +41,6 @@ class LinearTerm : public Term {
  public:
   explicit LinearTerm(std::vector<double> factors) : factors_(std::move(factors)) {}
   void value(const double* x, double* out) const override;
-  std::vector<std::pair<int, int>> jacobian_pattern() const override { return full_jacobian(); }
   void jacobian(const double*, double* out) const override;
 
  private:
@@ -49,7 +51,6 @@ class LinearTerm : public Term {
 class PositionStep : public Term {
  public:
   void value(const double* x, double* out) const override;
-  std::vector<std::pair<int, int>> jacobian_pattern() const override { return full_jacobian(); }
   void jacobian(const double* x, double* out) const override;
   std::vector<std::pair<int, int>> hessian_pattern() const override { return {{4, 2}, {4, 3}}; }
   void hessian(const double*, const double* multipliers, double* out) const override;
@@ -59,7 +60,6 @@ class PositionStep : public Term {
 class VelocityStep : public Term {
  public:
   void value(const double* x, double* out) const override;
-  std::vector<std::pair<int, int>> jacobian_pattern() const override { return full_jacobian(); }
   void jacobian(const double* x, double* out) const override;
   std::vector<std::pair<int, int>> hessian_pattern() const override { return {{3, 2}}; }
   void hessian(const double*, const double* multipliers, double* out) const override;
@@ -70,7 +70,6 @@ class VelocityStep : public Term {
 class BulgeTerm : public Term {
  public:
   void value(const double* x, double* out) const override;
-  std::vector<std::pair<int, int>> jacobian_pattern() const override { return full_jacobian(); }
   void jacobian(const double* x, double* out) const override;
   std::vector<std::pair<int, int>> hessian_pattern() const override { return {{2, 1}}; }
   void hessian(const double*, const double* multipliers, double* out) const override;
@@ -80,7 +79,6 @@ class BulgeTerm : public Term {
 class SquareSum : public Term {
  public:
   void value(const double* x, double* out) const override;
-  std::vector<std::pair<int, int>> jacobian_pattern() const override { return full_jacobian(); }
   void jacobian(const double* x, double* out) const override;
   std::vector<std::pair<int, int>> hessian_pattern() const override { return {{0, 0}, {1, 1}}; }
   void hessian(const double*, const double* multipliers, double* out) const override;

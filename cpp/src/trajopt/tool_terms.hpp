@@ -9,14 +9,12 @@
 namespace mmgrasp::detail {
 
 /// Some of the six errors of a ToolConstraint (P1 4.4). Variables: the chain's steps.
-class ToolPoseTerm : public Term {
+class ToolPoseTerm : public CurvedTerm {
  public:
   /// Rows with infinite bounds are left out.
   ToolPoseTerm(std::shared_ptr<const ToolChain> chain, const ToolConstraint& constraint);
   void value(const double* x, double* out) const override;
-  std::vector<std::pair<int, int>> jacobian_pattern() const override { return full_jacobian(); }
   void jacobian(const double* x, double* out) const override;
-  std::vector<std::pair<int, int>> hessian_pattern() const override { return full_hessian(); }
   void hessian(const double* x, const double* multipliers, double* out) const override;
 
  private:
@@ -29,14 +27,12 @@ class ToolPoseTerm : public Term {
 
 /// Velocity of the tool along given directions, and the square of its speed. Variables: the configuration's steps, then
 /// drive velocities in the same order; a diff-drive base has v and omega instead of its three.
-class ToolVelocityTerm : public Term {
+class ToolVelocityTerm : public CurvedTerm {
  public:
   /// One row per direction (world); an empty matrix: one row, the squared speed.
   ToolVelocityTerm(std::shared_ptr<const ToolChain> chain, bool diff_drive, const Eigen::Matrix3Xd& directions);
   void value(const double* x, double* out) const override;
-  std::vector<std::pair<int, int>> jacobian_pattern() const override { return full_jacobian(); }
   void jacobian(const double* x, double* out) const override;
-  std::vector<std::pair<int, int>> hessian_pattern() const override { return full_hessian(); }
   void hessian(const double* x, const double* multipliers, double* out) const override;
 
  private:

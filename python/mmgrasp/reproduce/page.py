@@ -81,10 +81,17 @@ def write_picture(result: dict[str, Any], path: Path) -> bool:
     return True
 
 
+def _one_line_a_key(result: dict[str, Any]) -> str:
+    """JSON whose changes can be read: a line for each table row and each other key, however large its value."""
+    rows = ",\n  ".join(json.dumps(row, allow_nan=False) for row in result["rows"])
+    others = (f'"{key}": {json.dumps(value, allow_nan=False)}' for key, value in result.items() if key != "rows")
+    return "{\n" + ",\n".join([*others, f'"rows": [\n  {rows}\n]']) + "\n}\n"
+
+
 def store(result: dict[str, Any], out: Path) -> Path:
     """Writes a result's JSON and picture below the folder and the page of all results stored there; returns the page."""
     folder = out / FOLDER
-    write_file(folder / f"{result['name']}.json", json.dumps(result, allow_nan=False, indent=1) + "\n")
+    write_file(folder / f"{result['name']}.json", _one_line_a_key(result))
     write_picture(result, folder / f"{result['name']}.png")
     return write_page(out)
 

@@ -27,11 +27,15 @@ struct HeldBox {
   }
 };
 
-TEST(HeldOnly, ContactsAreThoseOfTheHeldObject) {
-  const HeldBox scene;
+CheckerOptions held_only() {
   CheckerOptions options;
   options.held_only = true;
-  CollisionChecker whole(scene.group, scene.world), held(scene.group, scene.world, options);
+  return options;
+}
+
+TEST(HeldOnly, ContactsAreThoseOfTheHeldObject) {
+  const HeldBox scene;
+  CollisionChecker whole(scene.group, scene.world), held(scene.group, scene.world, held_only());
   Rng rng(3);
   int touching = 0, robot_alone = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -53,9 +57,7 @@ TEST(HeldOnly, ContactsAreThoseOfTheHeldObject) {
 
 TEST(HeldOnly, DistanceIsThatOfTheHeldObject) {
   const HeldBox scene;
-  CheckerOptions options;
-  options.held_only = true;
-  CollisionChecker whole(scene.group, scene.world), held(scene.group, scene.world, options);
+  CollisionChecker whole(scene.group, scene.world), held(scene.group, scene.world, held_only());
   Rng rng(4);
   for (int i = 0; i < 200; ++i) {
     const Eigen::VectorXd q = rng.uniform(scene.group.sample_lower(), scene.group.sample_upper());
@@ -68,9 +70,7 @@ TEST(HeldOnly, DistanceIsThatOfTheHeldObject) {
 
 TEST(HeldOnly, EdgesAreStoppedByTheHeldObjectAlone) {
   const HeldBox scene;
-  CheckerOptions options;
-  options.held_only = true;
-  CollisionChecker whole(scene.group, scene.world), held(scene.group, scene.world, options);
+  CollisionChecker whole(scene.group, scene.world), held(scene.group, scene.world, held_only());
   Rng rng(5);
   int blocked = 0;
   for (int i = 0; i < 300; ++i) {

@@ -9,6 +9,7 @@
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/optim/nlp_solver.hpp"
 #include "support/formula_problem.hpp"
+#include "support/vec.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -16,14 +17,10 @@ namespace {
 using Eigen::VectorXd;
 using test::FormulaProblem;
 using test::kInf;
+using test::vec;
 using V = std::vector<test::SecondOrder>;
 using Rows = std::vector<FormulaProblem::Row>;
 
-VectorXd vec(std::initializer_list<double> values) {
-  VectorXd v(static_cast<Eigen::Index>(values.size()));
-  std::copy(values.begin(), values.end(), v.data());
-  return v;
-}
 VectorXd all(Eigen::Index n, double value) {
   return VectorXd::Constant(n, value);
 }

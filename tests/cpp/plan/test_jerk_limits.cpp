@@ -4,17 +4,13 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/plan/time_parameterization.hpp"
+#include "support/vec.hpp"
 
 namespace mmgrasp {
 namespace {
 
 using Eigen::VectorXd;
-
-VectorXd vec(std::initializer_list<double> values) {
-  VectorXd v(static_cast<Eigen::Index>(values.size()));
-  std::copy(values.begin(), values.end(), v.data());
-  return v;
-}
+using test::vec;
 
 TimingOptions with_jerk(const VectorXd& limits, double deviation = 0.01) {
   TimingOptions options;

@@ -9,20 +9,16 @@
 #include "mmgrasp/core/error.hpp"
 #include "plan/fcl_planar.hpp"
 #include "plan/planar_arm.hpp"
+#include "support/vec.hpp"
 
 namespace mmgrasp {
 namespace {
 
 using Eigen::VectorXd;
 using test::SceneBox;
+using test::vec;
 
 constexpr double kLength = 0.4;
-
-VectorXd vec(std::initializer_list<double> values) {
-  VectorXd v(static_cast<Eigen::Index>(values.size()));
-  std::copy(values.begin(), values.end(), v.data());
-  return v;
-}
 
 TEST(PlanMotion, KnowsItsPlanners) {
   const std::vector<std::string> names = planner_names();

@@ -6,20 +6,16 @@
 #include "mmgrasp/plan/motion.hpp"
 #include "plan/fcl_planar.hpp"
 #include "plan/planar_arm.hpp"
+#include "support/vec.hpp"
 
 namespace mmgrasp {
 namespace {
 
 using Eigen::VectorXd;
 using test::SceneBox;
+using test::vec;
 
 constexpr double kLength = 0.4;
-
-VectorXd vec(std::initializer_list<double> values) {
-  VectorXd v(static_cast<Eigen::Index>(values.size()));
-  std::copy(values.begin(), values.end(), v.data());
-  return v;
-}
 
 /// The tip of a planar arm at x, y with its axis at `angle`.
 Pose planar_pose(double x, double y, double angle) {
@@ -164,24 +160,31 @@ double nearest_box(const std::vector<SceneBox>& scene, const Eigen::Vector2d& p)
   return nearest;
 }
 
-class BaseMotion : public ::testing::TestWithParam<std::string> {};
+/// Past a wall.
+class BaseMotion : public ::testing::TestWithParam<std::string> {
+ protected:
+  MotionResult plan(const Platform& platform) const {
+    CollisionChecker checker(*platform.group, test::make_world(wall_));
+    MotionOptions options;
+    options.planner = GetParam();
+    options.max_iterations = 3000;
+    options.time_limit = 100;
+    return plan_motion(checker, start_, {goal_}, options);
+  }
+
+  const std::vector<SceneBox> wall_{{{1.5, 0.5, 0}, {0.2, 3.0, 0.5}}};
+  const VectorXd start_ = vec({0, 0, 0.5, 0}), goal_ = vec({3, 0.4, -2.0, 1.0});
+};
 
 TEST_P(BaseMotion, ADiffDriveTurnsAndDrivesStraight) {
   const Platform platform(BaseKind::diff_drive);
-  const std::vector<SceneBox> wall{{{1.5, 0.5, 0}, {0.2, 3.0, 0.5}}};
-  CollisionChecker checker(*platform.group, test::make_world(wall));
-  MotionOptions options;
-  options.planner = GetParam();
-  options.max_iterations = 3000;
-  options.time_limit = 100;
-  const VectorXd start = vec({0, 0, 0.5, 0}), goal = vec({3, 0.4, -2.0, 1.0});
-  const MotionResult result = plan_motion(checker, start, {goal}, options);
+  const MotionResult result = plan(platform);
   ASSERT_EQ(result.outcome, Outcome::solved);
-  EXPECT_EQ(result.path->waypoints.front(), start);
+  EXPECT_EQ(result.path->waypoints.front(), start_);
   const VectorXd end = result.path->waypoints.back();
-  EXPECT_LT((end.head<2>() - goal.head<2>()).norm(), 1e-12);
-  EXPECT_NEAR(std::remainder(end[2] - goal[2], 2 * M_PI), 0, 1e-12);
-  EXPECT_NEAR(end[3], goal[3], 1e-12);
+  EXPECT_LT((end.head<2>() - goal_.head<2>()).norm(), 1e-12);
+  EXPECT_NEAR(std::remainder(end[2] - goal_[2], 2 * M_PI), 0, 1e-12);
+  EXPECT_NEAR(end[3], goal_[3], 1e-12);
   int drives = 0;
   for (std::size_t i = 0; i + 1 < result.path->waypoints.size(); ++i) {
     const VectorXd &a = result.path->waypoints[i], &b = result.path->waypoints[i + 1];
@@ -192,7 +195,7 @@ TEST_P(BaseMotion, ADiffDriveTurnsAndDrivesStraight) {
       EXPECT_NEAR(way[0] * std::sin(a[2]) - way[1] * std::cos(a[2]), 0, 1e-6) << "slips sideways";
     }
     for (int k = 0; k <= 200; ++k) {
-      EXPECT_GE(nearest_box(wall, (a + k / 200.0 * (b - a)).head<2>()), Platform::kRadius - 2e-3);
+      EXPECT_GE(nearest_box(wall_, (a + k / 200.0 * (b - a)).head<2>()), Platform::kRadius - 2e-3);
     }
   }
   EXPECT_GE(drives, 2);
@@ -200,21 +203,14 @@ TEST_P(BaseMotion, ADiffDriveTurnsAndDrivesStraight) {
 
 TEST_P(BaseMotion, AnOmniBaseMovesAsItLikes) {
   const Platform platform(BaseKind::omni);
-  const std::vector<SceneBox> wall{{{1.5, 0.5, 0}, {0.2, 3.0, 0.5}}};
-  CollisionChecker checker(*platform.group, test::make_world(wall));
-  MotionOptions options;
-  options.planner = GetParam();
-  options.max_iterations = 3000;
-  options.time_limit = 100;
-  const VectorXd start = vec({0, 0, 0.5, 0}), goal = vec({3, 0.4, -2.0, 1.0});
-  const MotionResult result = plan_motion(checker, start, {goal}, options);
+  const MotionResult result = plan(platform);
   ASSERT_EQ(result.outcome, Outcome::solved);
   // Round the wall's lower end: the shortest way there is by rulers, without turns.
   EXPECT_GE(result.cost, 2 * std::hypot(1.5, 1.0));
   for (std::size_t i = 0; i + 1 < result.path->waypoints.size(); ++i) {
     const VectorXd &a = result.path->waypoints[i], &b = result.path->waypoints[i + 1];
     for (int k = 0; k <= 200; ++k) {
-      EXPECT_GE(nearest_box(wall, (a + k / 200.0 * (b - a)).head<2>()), Platform::kRadius - 2e-3);
+      EXPECT_GE(nearest_box(wall_, (a + k / 200.0 * (b - a)).head<2>()), Platform::kRadius - 2e-3);
     }
   }
 }

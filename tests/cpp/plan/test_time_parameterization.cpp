@@ -10,17 +10,13 @@
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "plan/planar_arm.hpp"
+#include "support/vec.hpp"
 
 namespace mmgrasp {
 namespace {
 
 using Eigen::VectorXd;
-
-VectorXd vec(std::initializer_list<double> values) {
-  VectorXd v(static_cast<Eigen::Index>(values.size()));
-  std::copy(values.begin(), values.end(), v.data());
-  return v;
-}
+using test::vec;
 
 /// Rest to rest over `distance` under both limits: triangle or trapezoid of velocity.
 double bang_bang_time(double distance, double velocity, double acceleration) {

@@ -8,18 +8,14 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "support/fetchlike.hpp"
+#include "support/vec.hpp"
 
 namespace mmgrasp {
 namespace {
 
 using Eigen::VectorXd;
+using test::vec;
 constexpr double kInf = std::numeric_limits<double>::infinity();
-
-VectorXd vec(std::initializer_list<double> values) {
-  VectorXd v(static_cast<Eigen::Index>(values.size()));
-  std::copy(values.begin(), values.end(), v.data());
-  return v;
-}
 
 const VectorXd kStart = VectorXd::Zero(10);
 const VectorXd kGoal = vec({10, 0, -1, 1.13, 0.3, 1.9, 1.1, 2.1, 0.5, 2.5});

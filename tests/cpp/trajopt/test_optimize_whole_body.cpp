@@ -8,17 +8,13 @@
 #include "mmgrasp/core/error.hpp"
 #include "support/fetchlike.hpp"
 #include "support/small_robots.hpp"
+#include "support/vec.hpp"
 
 namespace mmgrasp {
 namespace {
 
 using Eigen::VectorXd;
-
-VectorXd vec(std::initializer_list<double> values) {
-  VectorXd v(static_cast<Eigen::Index>(values.size()));
-  std::copy(values.begin(), values.end(), v.data());
-  return v;
-}
+using test::vec;
 
 /// Straight lines start - task - goal.
 WholeBodyGuess straight(const WholeBodyProblem& problem, const std::vector<VectorXd>& knots, double step) {

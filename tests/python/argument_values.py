@@ -1,0 +1,220 @@
+"""Good values for the arguments of the binary module, by the argument's name (test_bad_arguments.py)."""
+
+from __future__ import annotations
+
+import functools
+from typing import Any
+
+import numpy as np
+
+import mmgrasp as mg
+from conftest import REPOSITORY
+
+CORPUS = REPOSITORY / "tests" / "fuzz" / "corpus"
+URDF = """<robot name="r"><link name="o"/>
+<link name="a"><collision><geometry><box size="0.1 0.1 0.4"/></geometry></collision></link><link name="b"/><link name="tip"/>
+<joint name="i" type="revolute"><parent link="o"/><child link="a"/><axis xyz="0 0 1"/><limit lower="-3" upper="3" velocity="1"/></joint>
+<joint name="j" type="revolute"><parent link="a"/><child link="b"/><origin xyz="0 0 0.3"/><axis xyz="0 1 0"/><limit lower="-2" upper="2" velocity="1"/></joint>
+<joint name="k" type="prismatic"><parent link="b"/><child link="tip"/><origin xyz="0.2 0 0"/><axis xyz="1 0 0"/><limit lower="0" upper="1" velocity="1"/></joint>
+</robot>"""
+
+ROBOT = mg.Robot.from_strings(URDF, base="omni")
+ARM = ROBOT.group(base_link="o", tip="tip").with_acceleration_limits([1, 1, 1])
+Q = np.array([0.25, 0.5, 0.5])
+POSE = ARM.fk(Q)
+WHOLE_BODY = ROBOT.group(base_link="o", tip="tip", with_base=True)
+GRID = mg.BaseGrid([0.0, 0.0], 0.1, 4, 3)
+
+
+def world() -> mg.World:
+    world = mg.World()
+    world.add_box("box", [0.1, 0.1, 0.1], mg.pose([3, 3, 3]))
+    return world
+
+
+def held() -> mg.World:
+    held = world()
+    held.attach("box", "tip")
+    return held
+
+
+def gripper() -> mg.Gripper:
+    return mg.Gripper(
+        "tip", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.05, finger_width=0.02
+    )
+
+
+BOX = mg.LinkShape(mg.Box([0.05, 0.05, 0.05]))
+PART = mg.Part("part", [BOX], POSE, [mg.Grasp(np.eye(4), 0.05)])
+TRAY = mg.Tray("tray", np.eye(4), [0.3, 0.3, 0.1], [PART])
+CARRY = mg.CarryPlace(np.eye(4), [0.3, 0.3])
+X_Y_THETA = np.array([0.5, 0.25, 0.75])
+
+# Good arrays by the argument's name, and by class or function where the name means something else there.
+VALUES: dict[str, Any] = {
+    "q": Q,
+    "q0": Q,
+    "q1": Q,
+    "seed": Q,
+    "Q": np.array([Q, Q / 2]),
+    "path": np.array([Q, Q / 2]),
+    "start": Q,
+    "goal": Q,
+    "home": Q,
+    "limits": np.ones(3),
+    "velocity_limits": np.ones(3),
+    "acceleration_limits": np.ones(3),
+    "size": np.array([0.1, 0.2, 0.3]),
+    "points": np.array([[1.0, 2, 3], [4, 5, 6]]),
+    "centres": np.array([[1.0, 2, 3], [4, 5, 6]]),
+    "point": np.array([0.1, 0.2, 0.3]),
+    "pick_point": np.array([0.1, 0.2, 0.3]),
+    "place_point": np.array([0.1, 0.2, 0.3]),
+    "direction": np.array([0.0, 0.0, 1.0]),
+    "normal": np.array([0.0, 0.0, 1.0]),
+    "approach": np.array([1.0, 0, 0]),
+    "closing": np.array([0.0, 1, 0]),
+    "xyz": np.array([1.0, 2, 3]),
+    "rpy": np.array([0.1, 0.2, 0.3]),
+    "quat_xyzw": np.array([0.0, 0, 0, 1]),
+    "R": np.eye(3),
+    "lengths": np.ones((3, 3)),
+    "costs": np.ones((3, 3)),
+    "drive_times": np.ones((4, 4)),
+    "route_lengths.positions": np.array([X_Y_THETA, X_Y_THETA]),
+    "cells": np.ones((1, 3, 4), np.uint8),
+    "base_pose": X_Y_THETA,
+    "positions": np.ones((2, 3)),
+    "velocities": np.ones((2, 3)),
+    "accelerations": np.ones((2, 3)),
+    "centre": np.array([0.5, 0.5]),
+    "origin": np.array([0.5, 0.5]),
+    "pose": POSE,
+    "T": POSE,
+    "eye": np.array([0.1, 0.2, 0.3]),
+    "nodes": np.array([[0.0, 0, 0], [0.3, 0, 0]]),
+    "tray_size": np.array([0.3, 0.4, 0.1]),
+    "make_height_map.size": np.array([0.1, 0.2]),
+    "T_world_tips": np.array([POSE, POSE]),
+    "tool_poses": np.array([POSE, POSE]),
+    "near": Q,
+    "tool_axis": np.array([0.0, 0, 1]),
+    "world_axis": np.array([0.0, 0, 1]),
+    "T_base_tips": np.array([POSE, POSE]),
+    "CarryPlace.size": np.array([0.1, 0.2]),
+    "PartSupplyProblem.start": X_Y_THETA,
+    "PartSupplyProblem.goal": X_Y_THETA,
+    "least_stops.start": np.array([0.5, 0.25]),
+    "least_stops.goal": np.array([0.25, 0.5]),
+    "plan_base_route.start": X_Y_THETA,
+    "plan_base_route.goal": X_Y_THETA,
+    "platform_velocity": X_Y_THETA,
+    "drive_arc.pose": X_Y_THETA,
+    "BaseTracker.command": X_Y_THETA,
+    "desired": X_Y_THETA,
+    "desired_next": X_Y_THETA,
+    "measured": X_Y_THETA,
+    "JointTrajectory.times": np.array([0.0, 1.0]),
+    "joint_velocity": X_Y_THETA,
+    "IkSeedDatabase.add.q": np.array([0.5, 0.25, 0.75, *Q]),
+    "verify.CheckedStop.pose": X_Y_THETA,
+    "verify.CheckedRegion.cells": np.ones(12, np.uint8),
+}
+
+
+@functools.cache
+def capability_map() -> mg.CapabilityMap:
+    return mg.CapabilityMap.build(ARM, upper=(1, 1, 2), voxel=1, poses=2, threads=1)
+
+
+OBJECTS = {
+    "Robot": lambda: ROBOT,
+    "JointGroup": lambda: ARM,
+    "World": world,
+    "World.detach": held,
+    "CollisionChecker": lambda: mg.CollisionChecker(ROBOT, world(), ARM),
+    "ReachDatabase": lambda: mg.ReachDatabase.build(ARM, samples=1000, threads=1),
+    "CapabilityMap": capability_map,
+    "PinholeCamera": mg.PinholeCamera,
+    "BaseTracker": lambda: mg.BaseTracker(ROBOT),
+    "IkObjective": lambda: mg.joint_limit_objective(ARM),
+    "IkSeedDatabase": lambda: mg.IkSeedDatabase(WHOLE_BODY),
+    "Roadmap": lambda: mg.Roadmap.build(ARM, vertices=10),
+    "JointTrajectory": lambda: mg.time_parameterize([Q, Q / 2], np.ones(3), np.ones(3), names=["i", "j", "k"]),
+    "PartSupplyProblem": lambda: mg.PartSupplyProblem(
+        ROBOT, ARM, gripper(), world(), [TRAY], Q, X_Y_THETA, X_Y_THETA, CARRY
+    ),
+}
+
+# The arguments beside the array.
+# Optional arguments that mean nothing without another one.
+COMPANIONS: dict[str, dict[str, Any]] = {
+    "plan_platform_locations.T_link_camera": {"camera_link": "tip"},
+    "plan_motion.start": {"goal": Q},
+    "least_stops.goal": {"start": np.array([0.5, 0.25])},
+    "fit_cuboids.T_world_tray": {"tray_size": [0.3, 0.4, 0.1]},
+    "JointTrajectory.accelerations": {"velocities": np.zeros((2, 3))},
+}
+OTHERS: dict[str, Any] = {
+    "robot": lambda: ROBOT,
+    "JointTrajectory.names": lambda: ["i", "j", "k"],
+    "depth": lambda: np.ones((480, 640), np.float32),
+    "height": lambda: np.ones((3, 4)),
+    "group": lambda: ARM,
+    "arm": lambda: ARM,
+    "world": world,
+    "scene": world,
+    "checker": OBJECTS["CollisionChecker"],
+    "plan_platform_locations.checker": lambda: mg.CollisionChecker(ROBOT, world(), WHOLE_BODY),
+    "camera_link": lambda: "tip",
+    "theta": lambda: 0.5,
+    "database": OBJECTS["ReachDatabase"],
+    "problem": OBJECTS["PartSupplyProblem"],
+    "gripper": gripper,
+    "grid": lambda: GRID,
+    "carry": lambda: CARRY,
+    "camera": mg.PinholeCamera,
+    "render_depth.scene": lambda: [BOX],
+    "random_placement.part": lambda: [BOX],
+    "make_height_map.image": lambda: mg.render_depth([BOX], mg.PinholeCamera(width=8, height=6), POSE),
+    "sections": lambda: [(0, 1)],
+    "least_stops.regions": lambda: [mg.BaseRegion("tray", np.ones((1, 3, 4), np.uint8), GRID)],
+    "_first_drive_by_guess.tasks": lambda: [mg.DriveByTask(POSE)],
+    "diameters": lambda: 0.02,
+    "shape": lambda: mg.Box([0.1, 0.1, 0.1]),
+    "shapes": lambda: [BOX],
+    "parts": lambda: [PART],
+    "trays": lambda: [TRAY],
+    "tasks": lambda: [],
+    "remaining": lambda: [(0, 0)],
+    "other": lambda: mg.Robot.from_strings('<robot name="s"><link name="a"/></robot>'),
+    "parent_link": lambda: "tip",
+    "tcp_link": lambda: "tip",
+    "link": lambda: "tip",
+    "headings": lambda: [0.0],
+    "distances": lambda: [0.5, 1.0],
+    "nx": lambda: 4,
+    "ny": lambda: 3,
+    "tray": lambda: 0,
+    "BaseRegion.tray": lambda: "tray",
+    "part": lambda: 0,
+    "times": lambda: [0.0, 1.0],
+    "stop_times": lambda: [1.0, 2.0],
+    "robots": lambda: 1,
+    "holding": lambda: False,
+    "kind": lambda: "approach",
+    "name": lambda: "fresh",
+    "World.add_mesh.path": lambda: CORPUS / "stl" / "tetrahedron.stl",
+    "LinkShape.mesh.path": lambda: CORPUS / "stl" / "tetrahedron.stl",
+    "World.add_octree.path": lambda: CORPUS / "bt" / "one_leaf.bt",
+    "World.move.name": lambda: "box",
+    "World.attach.name": lambda: "box",
+    "World.detach.name": lambda: "box",
+    "ManipulationProblem.object": lambda: BOX,
+    "ManipulationProblem.grasps": lambda: [mg.CandidateGrasp(np.eye(4))],
+    "verify.check_path.joints": lambda: ["i", "j", "k"],
+    "verify.check_path.bodies": lambda: [],
+    "verify.CheckedStop.trays": lambda: ["tray"],
+    "verify.CheckedIntersection.trays": lambda: ["tray"],
+    "verify.CheckedRegion.tray": lambda: "tray",
+}

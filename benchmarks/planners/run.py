@@ -1,4 +1,5 @@
-"""MotionBenchMaker's problems beside OMPL's RRT-Connect with FCL, in one process; durations beside toppra and Ruckig.
+"""MotionBenchMaker's problems beside OMPL's RRT-Connect with FCL, in one process, and beside RoboPlan and sscbirrt;
+durations beside toppra and Ruckig.
 
     python benchmarks/planners/run.py [--limit N] [--seeds N] [--no-peer] [--write]
 
@@ -59,6 +60,25 @@ def timing_table(lines: list[dict]) -> str:
     return markdown(["durations", "on", "median ratio", "least", "greatest", "ms a path"], rows)
 
 
+def ordinary_table(lines: list[dict]) -> str:
+    """Programs that plan and shorten the same problems; the goal is half the median of the fastest peer, all paths free."""
+    fastest = min(line["value"] for line in lines[1:])
+    rows = []
+    for line in lines:
+        free = [f"{line[key]}/{line['runs']}" for key in ("solved", "free at 0.01 rad", "free at 0.005 rad")]
+        row = [
+            line["who"],
+            line["settings"],
+            f"{line['value']:.1f}",
+            f"{line['p95']:.0f}",
+            *free,
+            f"{line['length']:.2f}",
+        ]
+        rows.append([*row, f"{line['value'] / fastest:.2f}"])
+    head = ["program", "settings", "median [ms]", "p95", "solved", "free at 0.01 rad", "at 0.005 rad", "length [rad]"]
+    return markdown([*head, "of the fastest peer's median"], rows)
+
+
 def main() -> None:
     """Measures and prints."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -77,7 +97,9 @@ def main() -> None:
         lines += lines_of([BUILD / "benchmarks/bench_mbm", text, str(arguments.seeds), peer])
     python = peers_environment(arguments.peers.absolute(), HERE / "peers.txt")
     timing = lines_of([sys.executable, HERE / "bench_timing.py", "--peer", python])
-    text = f"{os.cpu_count()} cores, {platform.machine()}; {lines[0]['settings']}.\n\n{table(lines)}\n\n{timing_table(timing)}"
+    ordinary = lines_of([sys.executable, HERE / "bench_ordinary.py", "--peer", python])
+    head = f"{os.cpu_count()} cores, {platform.machine()}; {lines[0]['settings']}."
+    text = "\n\n".join([head, table(lines), ordinary_table(ordinary), timing_table(timing)])
     show("planners", text, arguments.write)
 
 

@@ -12,7 +12,7 @@ namespace mmgrasp::detail {
 
 /// A few rows of constraints on a few variables. Everything is written in the term's own numbering: value and bounds of
 /// its rows, the non-zeros of its Jacobian, the lower triangle of its Hessian, each in the order of the pattern.
-class Term {
+class MMGRASP_EXPORT Term {
  public:
   virtual ~Term() = default;
   std::vector<int> variables;  ///< Their numbers in the problem.

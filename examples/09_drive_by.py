@@ -51,9 +51,7 @@ for yaw in (-0.6, -0.9, -1.2, -0.3):
         mg.DriveByTask(T_grasp @ mg.pose([-0.12, 0, 0]), tolerance=[0.005] * 3 + [0.03] * 3),
         mg.DriveByTask(T_grasp, dwell=(opening - 0.056) / 0.1 + 0.15, object="bottle"),
     ]
-    found = mg.plan_drive_by(
-        robot, body, world, start=start, tasks=tasks, goal=goal, waypoints=45, time_limit=60, attempt_time_limit=30
-    )
+    found = mg.plan_drive_by(robot, body, world, start=start, tasks=tasks, goal=goal, waypoints=45)
     if found.outcome == mg.Outcome.solved:
         break
 print(found)

@@ -1,8 +1,8 @@
 #include "bindings.hpp"
 #include "mmgrasp/grasp/push_grasp.hpp"
+#include "push_fields.hpp"
 
 namespace mmgrasp::python {
-namespace {
 
 using namespace py::literals;
 
@@ -22,6 +22,8 @@ const std::vector<OptionField<PushGraspProblem>>& push_fields() {
       option<P>("lateral_error", &P::lateral_error, "and this much to either side [m]")};
   return fields;
 }
+
+namespace {
 
 py::dict outcome_dict(const ClosingOutcome& o) {
   return py::dict("start"_a = o.start, "both_touch"_a = o.both_touch, "pushed"_a = o.pushed, "swept"_a = o.swept,

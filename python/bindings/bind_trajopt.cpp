@@ -3,6 +3,7 @@
 #include "bindings.hpp"
 #include "mmgrasp/optim/nlp_solver.hpp"
 #include "mmgrasp/task/drive_by.hpp"
+#include "push_fields.hpp"
 
 namespace mmgrasp::python {
 namespace {
@@ -15,8 +16,11 @@ const std::vector<OptionField<O>>& drive_by_fields() {
   static const std::vector<OptionField<O>> fields{
       option<O>("waypoints", &O::waypoints, "waypoints of the whole motion"),
       option<O>("attempts", &O::attempts, "guesses tried until one leads to a solution"),
-      option<O>("solutions", &O::solutions, "solutions compared; the fastest is returned"),
-      option<O>("stands", &O::stands, "configurations sought per task"),
+      option<O>("solutions", &O::solutions, "solutions compared of one choice of candidates"),
+      option<O>("choices", &O::choices,
+                "choices of candidates planned; the fastest motion is returned; 1: the choice that looks quickest"),
+      option<O>("stands", &O::stands, "configurations sought per candidate"),
+      option<O>("iterations", &O::iterations, "of all attempts; after so many no other begins"),
       option<O>("time_limit", &O::time_limit, "wall-clock cap [s]"),
       option<O>("jerk_time", &O::jerk_time, "accelerations may go from 0 to their limit in no less [s]; 0: no limit"),
       option<O>("collisions", &O::collisions, "the robot keeps clear of the world and of itself"),
@@ -24,7 +28,8 @@ const std::vector<OptionField<O>>& drive_by_fields() {
       option<O>("threads", &O::threads, "0: all; does not change the answer"),
       option<O>("solver", &O::trajectory, &W::solver, "a name of nlp_solver_names()"),
       option<O>("tolerance", &O::trajectory, &W::tolerance, "relative optimality"),
-      option<O>("max_iterations", &O::trajectory, &W::max_iterations, "per attempt"),
+      option<O>("max_iterations", &O::trajectory, &W::max_iterations,
+                "of one solve; an attempt has at most 1 + refinements"),
       option<O>("attempt_time_limit", &O::trajectory, &W::time_limit, "wall-clock cap of one attempt [s]"),
       option<O>("smoothing", &O::trajectory, &W::smoothing,
                 "weight of the mean square of accelerations over their limits [s]"),
@@ -46,8 +51,8 @@ py::dict violations_dict(const std::vector<Violation>& violations) {
 }
 
 py::dict event_dict(const DriveByEvent& e) {
-  return py::dict("waypoint"_a = e.waypoint, "time"_a = e.time, "candidate"_a = e.candidate,
-                  "base_speed"_a = e.base_speed, "tool_speed"_a = e.tool_speed);
+  return py::dict("waypoint"_a = e.waypoint, "time"_a = e.time, "close_time"_a = e.close_time,
+                  "candidate"_a = e.candidate, "base_speed"_a = e.base_speed, "tool_speed"_a = e.tool_speed);
 }
 
 Poses candidates_argument(const ArrayLike& value) {
@@ -78,18 +83,43 @@ std::vector<bool> free_axes(const std::vector<std::string>& names) {
   return free;
 }
 
+/// Keywords of push_grasp, and approach and free_length.
+DriveByPush push_argument(const py::dict& given) {
+  DriveByPush push;
+  py::dict closing;
+  for (const auto& [key, value] : given) {
+    const std::string name = py::cast<std::string>(key);
+    if (name == "approach") {
+      push.approach = vector_argument(py::reinterpret_borrow<py::object>(value), "approach", 3);
+    } else if (name == "free_length") {
+      convert(value, name, push.free_length);
+    } else {
+      closing[key] = value;
+    }
+  }
+  push.closing = read_options(push_fields(), py::kwargs(closing), "push");
+  return push;
+}
+
 void bind_drive_by_task(py::module_& m) {
-  py::class_<DriveByTask>(m, "DriveByTask",
-                          "Something the tool does on the way: T_world_tip, (4, 4), or candidates (m, 4, 4) of which "
-                          "any will do.\n\n"
-                          "tolerance: (6,) along x, y, z [m] and about them [rad] of the pose's own frame; free: names "
-                          "of axes that do not\n"
-                          "matter, of x, y, z, roll, pitch, yaw; max_tool_speed [m/s] at the task; dwell [s] for which "
-                          "the tool's pose is\n"
-                          "kept, e.g. while a gripper closes; object: name of the world's object that is held "
-                          "afterwards.")
+  py::class_<DriveByTask>(
+      m, "DriveByTask",
+      "Something the tool does on the way: T_world_tip, (4, 4), or candidates (m, 4, 4) of which "
+      "any will do.\n\n"
+      "tolerance: (6,) along x, y, z [m] and about them [rad] of the pose's own frame; free: names "
+      "of axes that do not\n"
+      "matter, of x, y, z, roll, pitch, yaw; max_tool_speed [m/s] at the task; dwell [s] for which "
+      "the tool's pose is\n"
+      "kept, e.g. while a gripper closes; object: name of the world's object that is held "
+      "afterwards.\n\n"
+      "push: a gripper that closes while the hand moves on (P1 4.3): dict of push_grasp's keywords, "
+      "approach (3,), an axis of\n"
+      "the tip's frame, and free_length [m], the straight way before the finger tips reach the "
+      "object. T_world_tip is then\n"
+      "the planned grasp; tolerance, free, max_tool_speed and dwell are left out.")
       .def(py::init([](const ArrayLike& T_world_tip, const py::object& tolerance, const std::vector<std::string>& free,
-                       const py::object& max_tool_speed, double dwell, const std::string& object) {
+                       const py::object& max_tool_speed, double dwell, const std::string& object,
+                       const std::optional<py::dict>& push) {
              DriveByTask task;
              task.candidates = candidates_argument(T_world_tip);
              if (!tolerance.is_none()) task.tolerance = vector_argument(tolerance, "tolerance", 6);
@@ -104,16 +134,21 @@ void bind_drive_by_task(py::module_& m) {
              task.dwell = finite_argument(dwell, "dwell");
              if (task.dwell < 0) throw InvalidInput("dwell: must be at least 0");
              task.object = object;
+             if (push) task.push = push_argument(*push);
              return task;
            }),
            py::arg("T_world_tip"), py::kw_only(), py::arg("tolerance") = py::none(),
            py::arg("free") = std::vector<std::string>{}, py::arg("max_tool_speed") = py::none(), py::arg("dwell") = 0.0,
-           py::arg("object") = "")
+           py::arg("object") = "", py::arg("push") = py::none())
       .def_property_readonly(
           "candidates", [](const DriveByTask& t) { return to_array(t.candidates); }, "(m, 4, 4)")
       .def_readonly("max_tool_speed", &DriveByTask::max_tool_speed)
       .def_readonly("dwell", &DriveByTask::dwell)
       .def_readonly("object", &DriveByTask::object)
+      .def_property_readonly(
+          "push",
+          [](const DriveByTask& t) { return t.push ? py::cast(push_grasp(t.push->closing)) : py::object(py::none()); },
+          "What push_grasp says: closing time, window, tolerance to the object's position; None without one.")
       .def("__repr__", [](const DriveByTask& t) {
         return "DriveByTask(" + std::to_string(t.candidates.size()) +
                (t.candidates.size() == 1 ? " pose" : " candidates") + ")";
@@ -173,11 +208,12 @@ void bind_result(py::module_& m) {
             for (const DriveByEvent& e : r.events) events.append(event_dict(e));
             return events;
           },
-          "One dict per task: waypoint, time [s], candidate, base_speed and tool_speed [m/s].")
+          "One dict per task: waypoint, time and close_time [s], candidate, base_speed and tool_speed [m/s].")
       .def_property_readonly(
           "violations", [](const DriveByResult& r) { return violations_dict(r.violations); },
           "By kind of constraint: value (0 when kept), tolerance, unit, time [s], waypoint, what, kept; measured on a "
           "roll-out ten times\nfiner than the waypoints.")
+      .def_readonly("choices", &DriveByResult::choices, "Choices of candidates planned.")
       .def_readonly("attempts", &DriveByResult::attempts)
       .def_readonly("iterations", &DriveByResult::iterations)
       .def_readonly("seconds", &DriveByResult::seconds)
@@ -196,8 +232,9 @@ void bind_result(py::module_& m) {
              for (const DriveByEvent& e : r.events) events.append(event_dict(e));
              return py::dict("outcome"_a = to_string(r.outcome), "duration"_a = r.duration(),
                              "trajectory"_a = trajectory, "events"_a = events,
-                             "violations"_a = violations_dict(r.violations), "attempts"_a = r.attempts,
-                             "iterations"_a = r.iterations, "seconds"_a = r.seconds, "report"_a = r.report);
+                             "violations"_a = violations_dict(r.violations), "choices"_a = r.choices,
+                             "attempts"_a = r.attempts, "iterations"_a = r.iterations, "seconds"_a = r.seconds,
+                             "report"_a = r.report);
            })
       .def("__repr__", [](const DriveByResult& r) {
         return std::string("DriveByResult(") + to_string(r.outcome) +

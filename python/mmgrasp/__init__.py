@@ -149,7 +149,7 @@ from ._core import (
     wheel_speeds,
     with_sampled_pairs,
 )
-from .drive_by import DriveByPick, DriveByPlan, plan_drive_by_picks, push_grasp_tasks
+from .drive_by import DriveByPick, DriveByPlan, plan_drive_by_picks
 from .part_supply import PartSupplyPlan, plan_part_supply
 from .random_trays import TrayScan, parts_of_grasps, scan_random_tray, scan_tray, union_of_grasps
 from .scenario import Scenario, load_scenario
@@ -285,7 +285,6 @@ __all__ = [
     "pose_to_xyz_quat",
     "pose_to_xyz_rpy",
     "push_grasp",
-    "push_grasp_tasks",
     "push_speed_limit",
     "quat_xyzw_from_rotation",
     "random_placement",

@@ -114,42 +114,8 @@ class DriveByPlan:
         return written
 
 
-def push_grasp_tasks(
-    T_world_grasp: np.ndarray,
-    gripper: _core.Gripper,
-    closing: _core.PushGrasp,
-    *,
-    planned_depth: float,
-    tool_speed: float,
-    object: str = "",
-    free_length: float = 0.10,
-) -> list[_core.DriveByTask]:
-    """The three tasks of a push-grasp in passing (P1 4.3): before the object, closing begins, both fingers touch.
-
-    All three stand in line along the approach, none is passed faster than `tool_speed` [m/s] (the first a little faster);
-    `closing` is what `push_grasp` gave for these numbers. The gripper is to close at the second task's time. `free_length` is
-    the straight way before the finger tips reach the object [m].
-    """
-
-    def moved(distance: float) -> np.ndarray:
-        T = np.array(T_world_grasp, float)
-        T[:3, 3] += distance * T[:3, :3] @ np.asarray(gripper.approach)
-        return T
-
-    def task(distance: float, speed: float, **keywords: Any) -> _core.DriveByTask:
-        return _core.DriveByTask(moved(distance), max_tool_speed=speed, **keywords)
-
-    loose = [0.005] * 3 + [0.03] * 3
-    slides = closing.push.pushed > 0  # before the palm; else it stays where it is until both fingers touch
-    return [
-        task(-planned_depth - free_length, 1.2 * tool_speed, tolerance=loose),
-        task(closing.push.start - planned_depth, tool_speed, object=object if slides else ""),
-        task(closing.push.both_touch - planned_depth, tool_speed, object="" if slides else object),
-    ]
-
-
 def plan_drive_by_picks(plan: PartSupplyPlan, *, progress: Progress = None, **options: Any) -> DriveByPlan:
-    """Tries to take the first part at each stop in passing. Keywords are those of `plan_drive_by`, here with 45 waypoints and 60 s a stop.
+    """Tries to take the first part at each stop in passing. Keywords are those of `plan_drive_by`, here with 45 waypoints.
 
     Raises InvalidInput for a plan that is not solved and for a robot that does not drive.
     """
@@ -205,7 +171,7 @@ def _in_passing(
         start=[*here, *problem.home],
         tasks=tasks,
         goal=[*stop.pose, *lifted],
-        **{"waypoints": 45, "time_limit": 60.0, "attempt_time_limit": 30.0, **options},
+        **{"waypoints": 45, **options},
     )
     made = DriveByPick(leg, leg, part.name, before, result, False, "")
     if result.outcome != Outcome.solved:

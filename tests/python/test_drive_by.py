@@ -176,6 +176,8 @@ def test_best_iterate_when_time_ends(robot, group):
         ({"solver": "snopt"}, "ipopt, slsqp"),
         ({"smooting": 1}, "smoothing"),
         ({"tolerance": 0}, "tolerance"),
+        ({"iterations": 0}, "iterations"),
+        ({"choices": 0}, "choices"),
         ({"tasks": [mg.DriveByTask(np.eye(4), object="ghost")]}, "ghost"),
     ],
 )
@@ -194,6 +196,24 @@ def test_bad_tasks():
         mg.DriveByTask(TASK, dwell=-1)
     with pytest.raises(mg.InvalidInput, match="tolerance"):
         mg.DriveByTask(TASK, tolerance=[0, 0, 0, 0, 0, -1])
+
+
+def test_push_grasp_as_data():
+    push = {"opening": 0.08, "tool_speed": 0.3, "along_error": 0.01, "approach": [1, 0, 0], "free_length": 0.08}
+    task = mg.DriveByTask(TASK, push=push)
+    expected = mg.push_grasp(opening=0.08, tool_speed=0.3, along_error=0.01)
+    assert task.push.to_dict() == expected.to_dict()
+    assert mg.DriveByTask(TASK).push is None
+    with pytest.raises(mg.InvalidInput, match="tool_speed"):
+        mg.DriveByTask(TASK, push={"tol_speed": 0.3})
+    with pytest.raises(mg.InvalidInput, match="approach"):
+        mg.DriveByTask(TASK, push={"approach": [1, 0]})
+
+
+def test_push_grasp_has_its_own_limits(robot, group):
+    task = mg.DriveByTask(TASK, push={}, dwell=0.2)
+    with pytest.raises(mg.InvalidInput, match=r"tasks\[0\].push with dwell"):
+        mg.plan_drive_by(robot, group, mg.World(), start=START, tasks=[task], goal=GOAL)
 
 
 def test_contradictory_base_limits(group):

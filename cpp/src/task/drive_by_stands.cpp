@@ -8,6 +8,7 @@
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
 #include "mmgrasp/robot/ik.hpp"
+#include "task/no_clock.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -31,6 +32,15 @@ Pose drawn_pose(const DriveByTask& task, int candidate, Rng& rng) {
     if (task.free[static_cast<std::size_t>(i)])
       T.rotate(Eigen::AngleAxisd(rng.uniform(-M_PI, M_PI), Eigen::Vector3d::Unit(i - 3)));
   return T;
+}
+
+IkOptions stand_ik() {
+  IkOptions ik;
+  ik.restarts = 0;
+  ik.position_tolerance = 1e-5;
+  ik.max_iterations = 40;
+  ik.time_limit = kNoClock;
+  return ik;
 }
 
 }  // namespace
@@ -65,26 +75,23 @@ VectorXd unwound(const JointGroup& group, const VectorXd& from, VectorXd to) {
 std::vector<Stand> find_stands(const JointGroup& group, CollisionChecker* checker, const DriveByTask& task,
                                const VectorXd& before, const VectorXd& after, const DriveByOptions& options,
                                unsigned stream, const Monitor& monitor) {
-  const std::size_t count = static_cast<std::size_t>(options.stands);
+  const std::size_t each = static_cast<std::size_t>(options.stands), count = each * task.candidates.size();
   std::vector<Stand> found;
   const int threads = resolve_threads(options.threads);
   std::vector<CollisionChecker> checkers;
   for (int i = 0; checker && i < threads; ++i) checkers.push_back(checker->clone());
-  IkOptions ik;
-  ik.restarts = 0;
-  ik.position_tolerance = 1e-5;
-  ik.max_iterations = 40;
+  const IkOptions ik = stand_ik();
   const double along = group.has_base() ? direction(before, after, before[2]) : 0;
   std::size_t first = 0;
   const auto try_one = [&](std::size_t index, int worker) {
-    const std::size_t item = first + index;
+    const std::size_t item = first + index % each;
     Rng rng(options.seed, 1000003u * (stream + 1) + item);
-    const int candidate = static_cast<int>(item % task.candidates.size());
+    const int candidate = static_cast<int>(index / each);
     const Pose T = drawn_pose(task, candidate, rng);
     const double share = rng.uniform(0.2, 0.8);
     VectorXd seed = (1 - share) * before + share * after;
     // The first tries keep the arm near the way, later ones look anywhere.
-    if (item * 3 >= count) {
+    if (item * 3 >= each) {
       const VectorXd any = rng.uniform(group.sample_lower(), group.sample_upper());
       seed.tail(seed.size() - (group.has_base() ? 3 : 0)) = any.tail(seed.size() - (group.has_base() ? 3 : 0));
     }
@@ -106,7 +113,7 @@ std::vector<Stand> find_stands(const JointGroup& group, CollisionChecker* checke
   const auto any = [&] {
     return std::any_of(found.begin(), found.end(), [](const Stand& s) { return s.q.size() > 0; });
   };
-  for (int round = 0; round < kRounds && !any() && !monitor.stopped(); ++round, first += count) {
+  for (int round = 0; round < kRounds && !any() && !monitor.stopped(); ++round, first += each) {
     found.assign(count, {});
     parallel_for(count, threads, try_one, monitor);
   }
@@ -126,8 +133,24 @@ std::vector<Stand> find_stands(const JointGroup& group, CollisionChecker* checke
   return result;
 }
 
-std::vector<std::vector<Stand>> choose_stands(const JointGroup& group, const std::vector<std::vector<Stand>>& stands,
-                                              const VectorXd& start, const VectorXd& goal, int count) {
+std::vector<Stand> follow_stands(const JointGroup& group, CollisionChecker* checker, const DriveByStep& step,
+                                 const std::vector<Stand>& before, const Monitor& monitor) {
+  const ConfigurationFilter valid = [&](const VectorXd& q) {
+    return checker ? checker->rejection(q) : Rejection::none;
+  };
+  std::vector<Stand> result;
+  for (const Stand& stand : before) {
+    const Pose& T = step.candidates[static_cast<std::size_t>(stand.candidate)];
+    const IkResult r = solve_ik(group, T, stand.q, stand_ik(), valid, {monitor.stop, {}});
+    if (r.outcome == Outcome::solved) result.push_back({unwound(group, stand.q, r.q), stand.candidate});
+  }
+  return result;
+}
+
+std::vector<std::vector<Stand>> choose_stands(const JointGroup& group, const std::vector<DriveByStep>& steps,
+                                              const std::vector<std::vector<Stand>>& stands, const VectorXd& start,
+                                              const VectorXd& goal, int count) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
   // Each round takes the quickest chain; stands it used become dearer for the next ones.
   constexpr double kUsed = 1.5;  // [s] per use
   std::vector<std::vector<double>> penalty;
@@ -138,11 +161,12 @@ std::vector<std::vector<Stand>> choose_stands(const JointGroup& group, const std
     std::vector<std::vector<double>> cost;
     std::vector<std::vector<std::size_t>> from;
     for (std::size_t t = 0; t < stands.size(); ++t) {
-      cost.push_back(std::vector<double>(stands[t].size(), std::numeric_limits<double>::infinity()));
+      cost.push_back(std::vector<double>(stands[t].size(), kNever));
       from.push_back(std::vector<std::size_t>(stands[t].size(), 0));
       for (std::size_t i = 0; i < stands[t].size(); ++i) {
         if (t == 0) cost[t][i] = travel_time(group, start, stands[t][i].q);
         for (std::size_t j = 0; t > 0 && j < stands[t - 1].size(); ++j) {
+          if (steps[t].way > 0 && stands[t - 1][j].candidate != stands[t][i].candidate) continue;
           const double c = cost[t - 1][j] + travel_time(group, stands[t - 1][j].q, stands[t][i].q);
           if (c < cost[t][i]) {
             cost[t][i] = c;
@@ -153,7 +177,7 @@ std::vector<std::vector<Stand>> choose_stands(const JointGroup& group, const std
       }
     }
     std::size_t best = 0;
-    double least = std::numeric_limits<double>::infinity();
+    double least = kNever;
     for (std::size_t i = 0; i < stands.back().size(); ++i) {
       const double c = cost.back()[i] + travel_time(group, stands.back()[i].q, goal);
       if (c < least) {
@@ -161,6 +185,7 @@ std::vector<std::vector<Stand>> choose_stands(const JointGroup& group, const std
         best = i;
       }
     }
+    if (least == kNever) break;
     std::vector<std::size_t> chain(stands.size());
     for (std::size_t t = stands.size(); t-- > 0;) {
       chain[t] = best;

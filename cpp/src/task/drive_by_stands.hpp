@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "mmgrasp/collision/checker.hpp"
-#include "mmgrasp/task/drive_by.hpp"
+#include "task/drive_by_steps.hpp"
 
 namespace mmgrasp::detail {
 
@@ -20,13 +20,20 @@ double travel_time(const JointGroup& group, const Eigen::VectorXd& from, const E
 Eigen::VectorXd unwound(const JointGroup& group, const Eigen::VectorXd& from, Eigen::VectorXd to);
 
 /// Configurations for a task on the way from `before` to `after`, best first; the base is sought beside the tool,
-/// looking along the way. `checker` may be null.
+/// looking along the way. Each candidate is tried as if it were the only one. `checker` may be null.
 std::vector<Stand> find_stands(const JointGroup& group, CollisionChecker* checker, const DriveByTask& task,
                                const Eigen::VectorXd& before, const Eigen::VectorXd& after,
                                const DriveByOptions& options, unsigned stream, const Monitor& monitor);
 
-/// Chains of one stand per task, quickest first, at most `count`; each differs from the ones before it.
-std::vector<std::vector<Stand>> choose_stands(const JointGroup& group, const std::vector<std::vector<Stand>>& stands,
+/// For a step to which a straight way leads: beside each stand of the step before the nearest one with the same
+/// candidate, where there is one.
+std::vector<Stand> follow_stands(const JointGroup& group, CollisionChecker* checker, const DriveByStep& step,
+                                 const std::vector<Stand>& before, const Monitor& monitor);
+
+/// Chains of one stand per step, quickest first, at most `count`; each differs from the ones before it. A straight way
+/// joins stands of one candidate. Empty when there is no such chain.
+std::vector<std::vector<Stand>> choose_stands(const JointGroup& group, const std::vector<DriveByStep>& steps,
+                                              const std::vector<std::vector<Stand>>& stands,
                                               const Eigen::VectorXd& start, const Eigen::VectorXd& goal, int count);
 
 }  // namespace mmgrasp::detail

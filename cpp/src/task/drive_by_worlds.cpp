@@ -9,7 +9,7 @@ constexpr int kTouching = 2;  // intervals before and after a task in which hand
 
 }  // namespace
 
-DriveByWorlds::DriveByWorlds(const JointGroup& group, const World& world, const std::vector<DriveByTask>& tasks)
+DriveByWorlds::DriveByWorlds(const JointGroup& group, const World& world, const std::vector<DriveByStep>& tasks)
     : group_(group), world_(world), tasks_(tasks) {}
 
 World DriveByWorlds::left(std::size_t task) const {
@@ -36,12 +36,16 @@ std::vector<CollisionChecker*> DriveByWorlds::along(const std::vector<int>& inte
   for (std::size_t s = 0; s < intervals.size(); ++s) {
     CollisionChecker* here = &before(s);
     CollisionChecker *taken = here, *taking = s < tasks_.size() ? &at(s) : here;
-    if (s > 0 && !tasks_[s - 1].object.empty()) {
-      World world = left(s - 1);
-      const Pose T_world_object = world.objects().at(tasks_[s - 1].object).T_world_object;
-      world.attach(tasks_[s - 1].object, tip, group_.fk(chain[s - 1].q).inverse() * T_world_object);
+    // A push-grasp may have it between the fingers before its last step.
+    std::size_t by = s;
+    while (by > 0 && tasks_[by - 1].object.empty() && !tasks_[by - 1].begins) --by;
+    if (by > 0 && !tasks_[by - 1].object.empty()) {
+      World world = left(by - 1);
+      const std::string& object = tasks_[by - 1].object;
+      const Pose T_world_object = world.objects().at(object).T_world_object;
+      world.attach(object, tip, group_.fk(chain[by - 1].q).inverse() * T_world_object);
       here = &held_.try_emplace(s, group_, world).first->second;
-      taken = &at(s - 1);
+      if (by == s) taken = &at(s - 1);
     }
     const int n = intervals[s];
     for (int i = 0; i < n; ++i) {

@@ -4,15 +4,15 @@
 #include <vector>
 
 #include "mmgrasp/collision/checker.hpp"
-#include "mmgrasp/task/drive_by.hpp"
 #include "task/drive_by_stands.hpp"
+#include "task/drive_by_steps.hpp"
 
 namespace mmgrasp::detail {
 
 /// The world as it changes while parts are taken.
 class DriveByWorlds {
  public:
-  DriveByWorlds(const JointGroup& group, const World& world, const std::vector<DriveByTask>& tasks);
+  DriveByWorlds(const JointGroup& group, const World& world, const std::vector<DriveByStep>& tasks);
 
   CollisionChecker& before(std::size_t task);  ///< On the way to a task; earlier parts are gone.
   CollisionChecker& at(std::size_t task);      ///< While its part is taken: neither there nor held.
@@ -22,7 +22,7 @@ class DriveByWorlds {
  private:
   const JointGroup& group_;
   const World& world_;
-  const std::vector<DriveByTask>& tasks_;
+  const std::vector<DriveByStep>& tasks_;
   World left(std::size_t task) const;  ///< Without the parts of tasks before this one.
   std::map<std::size_t, CollisionChecker> before_, at_, held_;
 };

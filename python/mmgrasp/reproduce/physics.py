@@ -76,8 +76,8 @@ def frames_of_one_run(seed: int, count: int) -> dict[str, Any]:
         "grasped": run.grasped,
         "displacement": part.displacement,
         "duration": found.duration,
-        "base speed": found.events[1]["base_speed"],
-        "tool speed": found.events[1]["tool_speed"],
+        "base speed": found.events[-1]["base_speed"],
+        "tool speed": found.events[-1]["tool_speed"],
     }
 
 
@@ -194,8 +194,8 @@ def carried_out(x: float, y: float, push: bool, shares: list[float], seed: int) 
         runs = [bottle.run(found, close_at, speed=share, seed=seed, frame_period=10.0) for share in shares]
         out |= {
             "duration": found.duration,
-            "base speed": found.events[1]["base_speed"],
-            "tool speed": found.events[1]["tool_speed"],
+            "base speed": found.events[-1]["base_speed"],
+            "tool speed": found.events[-1]["tool_speed"],
             "grasped": [r.grasped for r in runs],
             "base error": [r.base_error for r in runs],
         }

@@ -76,8 +76,6 @@ def passing(samples: int, seed: int) -> dict[str, Any]:
         tasks=tasks,
         goal=[*problem.goal, *problem.home],
         waypoints=60,
-        time_limit=240.0,
-        attempt_time_limit=60.0,
         seed=seed,
     )
     if found.outcome != Outcome.solved:

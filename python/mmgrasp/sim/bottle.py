@@ -45,21 +45,25 @@ class Bottle:
         pose = _core.pose([self.x, self.y, TABLE + HEIGHT / 2])
         return SimPart("bottle", [LinkShape(Cylinder(RADIUS, HEIGHT))], pose, mass=0.3)
 
-    def tasks(self, yaw: float) -> tuple[list[_core.DriveByTask], int]:
-        """What the hand does, coming from a direction, and at which task it closes."""
-        from ..drive_by import push_grasp_tasks
-
+    def tasks(self, yaw: float) -> list[_core.DriveByTask]:
+        """What the hand does, coming from a direction; it closes at the last task."""
         T_grasp = _core.pose([self.x, self.y, TABLE + GRASP_HEIGHT], rpy=[0, 0, yaw])
         if not self.push:
             T_before = T_grasp @ _core.pose([-0.12, 0, 0])
             dwell = (OPENING - 2 * RADIUS) / 0.1 + 0.15
             before = _core.DriveByTask(T_before, tolerance=[0.005] * 3 + [0.03] * 3)
-            return [before, _core.DriveByTask(T_grasp, dwell=dwell, object="bottle")], 1
-        numbers = {"tool_speed": TOOL_SPEED, "planned_depth": DEPTH}
-        closing = _core.push_grasp(
-            opening=OPENING, object_width=2 * RADIUS, finger_length=FINGERS, max_push=0.02, along_error=0.02, **numbers
-        )
-        return push_grasp_tasks(T_grasp, robot_setup().gripper, closing, object="bottle", **numbers), 1
+            return [before, _core.DriveByTask(T_grasp, dwell=dwell, object="bottle")]
+        push = {
+            "opening": OPENING,
+            "object_width": 2 * RADIUS,
+            "finger_length": FINGERS,
+            "planned_depth": DEPTH,
+            "tool_speed": TOOL_SPEED,
+            "max_push": 0.02,
+            "along_error": 0.02,
+            "approach": robot_setup().gripper.approach,
+        }
+        return [_core.DriveByTask(T_grasp, object="bottle", push=push)]
 
     def plan(self, **options: Any) -> tuple[_core.DriveByResult, float]:
         """The motion and the time at which the hand begins to close [s]; the first direction that works is taken."""
@@ -73,17 +77,11 @@ class Bottle:
         ends = {"start": [0.0, 0.0, 0.0, *setup.home], "goal": [WAY, 0.0, 0.0, *setup.home]}
         found = None
         for yaw in SIDES:
-            tasks, closing = self.tasks(yaw)
             found = _core.plan_drive_by(
-                robot,
-                group,
-                world,
-                tasks=tasks,
-                **ends,
-                **{"waypoints": 55, "time_limit": 120.0, "attempt_time_limit": 60.0, **options},
+                robot, group, world, tasks=self.tasks(yaw), **ends, **{"waypoints": 55, **options}
             )
             if found.outcome == Outcome.solved:
-                return found, float(found.events[closing]["time"])
+                return found, float(found.events[-1]["close_time"])
         assert found is not None
         return found, 0.0
 

@@ -195,6 +195,129 @@ TEST(DriveBy, CarriesThePartItTook) {
     EXPECT_FALSE(checker.first_contact(t.at(from + (t.duration() - from) * i / 400)).has_value()) << i;
 }
 
+TEST(DriveBy, ReturnsTheFastestOfThePlansOfEachCandidate) {
+  const JointGroup group = test::fetchlike_whole_body();
+  const std::vector<Pose> poses{pose_from_xyz_rpy({5, -1.6, 0.5}, {0, 0.2, -2.8}),
+                                pose_from_xyz_rpy({5, -1.6, 0.5}, {0, 0.2, 2.4}),
+                                pose_from_xyz_rpy({5, -1.6, 0.5}, {0, 0.2, -1})};
+  double best = kInf;
+  int fastest = -1, solved = 0;
+  for (int c = 0; c < 3; ++c) {
+    const DriveByResult alone =
+        plan_drive_by(group, World(), kStart, {grasp_at(poses[static_cast<std::size_t>(c)])}, {kGoal, kGoal});
+    if (!alone.usable()) continue;
+    ++solved;
+    if (alone.duration() >= best) continue;
+    best = alone.duration();
+    fastest = c;
+  }
+  ASSERT_GE(solved, 2);
+  DriveByTask any;
+  any.candidates = poses;
+  const DriveByResult r = plan_drive_by(group, World(), kStart, {any}, {kGoal, kGoal});
+  expect_sound(r, {any});
+  EXPECT_EQ(r.duration(), best);
+  EXPECT_EQ(r.events[0].candidate, fastest);
+  EXPECT_EQ(r.choices, 3);
+}
+
+TEST(DriveBy, LeavesOutCandidatesThatCannotBeFaster) {
+  const JointGroup group = test::fetchlike_whole_body();
+  DriveByTask task;
+  // 12 m aside and back takes at least (24 - two reaches) / 0.6 m/s.
+  task.candidates = {pose_from_xyz_rpy({5, -12, 0.7}, {0, 0.2, -1}), pose_from_xyz_rpy({5, -1, 0.7}, {0, 0.2, -1})};
+  const DriveByResult r = plan_drive_by(group, World(), kStart, {task}, {kGoal, kGoal});
+  expect_sound(r, {task});
+  EXPECT_EQ(r.events[0].candidate, 1);
+  EXPECT_EQ(r.choices, 1);
+  EXPECT_NE(r.report.find("left out"), std::string::npos) << r.report;
+  const DriveByResult aside = plan_drive_by(group, World(), kStart, {grasp_at(task.candidates[0])}, {kGoal, kGoal});
+  ASSERT_TRUE(aside.usable()) << aside.report;
+  EXPECT_GT(aside.duration(), r.duration());
+}
+
+TEST(DriveBy, ClockDoesNotDecideWhenItDoesNotEndThePlan) {
+  const JointGroup group = test::fetchlike_whole_body();
+  const std::vector<DriveByTask> tasks{grasp_at(pose_from_xyz_rpy({4, 1, 0.8}, {0, 0.3, 1}))};
+  DriveByOptions few;
+  few.trajectory.max_iterations = 3;
+  few.iterations = 10;
+  const DriveByResult r = plan_drive_by(group, World(), kStart, tasks, {kGoal, kGoal}, few);
+  EXPECT_EQ(r.outcome, Outcome::timeout) << r.report;
+  EXPECT_EQ(r.iterations, 12);  // no attempt begins after ten
+  EXPECT_EQ(r.attempts, 4);
+}
+
+TEST(DriveBy, ClosesWhileTheHandMovesOn) {
+  const JointGroup group = test::fetchlike_whole_body();
+  DriveByTask task = grasp_at(pose_from_xyz_rpy({5, -1, 0.75}, {0, 0, -0.8}));
+  DriveByPush push;
+  push.closing.opening = 0.08;
+  push.closing.along_error = 0.02;
+  push.closing.max_push = 0.02;
+  push.free_length = 0.08;
+  task.push = push;
+  DriveByOptions options;
+  options.waypoints = 45;
+  const DriveByResult r = plan_drive_by(group, World(), kStart, {task}, {kGoal, kGoal}, options);
+  ASSERT_EQ(r.outcome, Outcome::solved) << r.report;
+  ASSERT_EQ(r.events.size(), 1u);
+  const DriveByEvent& e = r.events[0];
+  const PushGrasp closing = push_grasp(push.closing);
+  EXPECT_NEAR(closing.closing_time, (0.08 - 0.05) / 0.1, 1e-12);
+  EXPECT_GE(e.time - e.close_time, closing.closing_time - 1e-9);
+  EXPECT_LE(e.time - e.close_time, 1.1 * closing.closing_time + 1e-9);
+  EXPECT_GT(e.tool_speed, 0.1);
+  EXPECT_LE(e.tool_speed, 1.05 * push.closing.tool_speed + 1e-6);
+  EXPECT_GT(e.base_speed, 0.1);
+  // Engagement along the approach: straight from before the object until both fingers touch.
+  const auto tool = [&](double time) -> Eigen::Vector3d {
+    return task.candidates[0].inverse() * group.fk(r.trajectory->at(time)).translation();
+  };
+  const double depth = push.closing.planned_depth;
+  EXPECT_NEAR(tool(e.close_time).x() + depth, closing.push.start, 1e-5);
+  EXPECT_NEAR(tool(e.time).x() + depth, closing.push.both_touch, 1e-5);
+  double first = e.close_time;
+  while (first > 0 && tool(first).x() + depth > -0.9 * push.free_length) first -= 0.01;
+  double before = -kInf;
+  for (double t = first; t < e.time; t += 0.01) {
+    const Eigen::Vector3d at = tool(t);
+    EXPECT_LT(at.tail<2>().norm(), 0.01) << t;
+    EXPECT_GT(at.x(), before) << t;
+    before = at.x();
+  }
+}
+
+TEST(DriveBy, RefusesPushesThatCannotHold) {
+  const JointGroup group = test::fetchlike_whole_body();
+  DriveByTask task = grasp_at(pose_from_xyz_rpy({5, -1, 0.75}, {0, 0, -0.8}));
+  task.push.emplace();
+  const auto refused = [&](const DriveByTask& t, const std::string& field) {
+    try {
+      plan_drive_by(group, World(), kStart, {t}, {kGoal, kGoal});
+      ADD_FAILURE() << field;
+    } catch (const InvalidInput& error) {
+      EXPECT_NE(std::string(error.what()).find(field), std::string::npos) << error.what();
+    }
+  };
+  DriveByTask wrong = task;
+  wrong.push->approach = {0.6, 0.8, 0};
+  refused(wrong, "approach");
+  wrong = task;
+  wrong.push->free_length = 0;
+  refused(wrong, "free_length");
+  wrong = task;
+  wrong.push->closing.lateral_error = 0.02;
+  wrong.push->closing.tool_speed = 0.6;  // 0.1 m/s * 0.22 m / 0.04 m is the most
+  refused(wrong, "tool_speed");
+  wrong = task;
+  wrong.dwell = 0.3;
+  refused(wrong, "dwell");
+  wrong = task;
+  wrong.max_tool_speed = 0.1;
+  refused(wrong, "max_tool_speed");
+}
+
 TEST(DriveBy, ReportsWhatCannotBe) {
   const JointGroup group = test::fetchlike_whole_body();
   const std::vector<DriveByTask> tasks{grasp_at(pose_from_xyz_rpy({5, 0, 4}, {0, 0, 0}))};

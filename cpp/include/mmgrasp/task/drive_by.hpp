@@ -10,10 +10,20 @@
 #include "mmgrasp/collision/world.hpp"
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/monitor.hpp"
+#include "mmgrasp/grasp/push_grasp.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
 #include "mmgrasp/trajopt/optimize_whole_body.hpp"
 
 namespace mmgrasp {
+
+/// A gripper that closes while the hand moves on along the approach (P1 4.3). The task's poses are the planned grasp,
+/// at engagement closing.planned_depth; the hand comes straight, closing begins where push_grasp() says and takes as
+/// long as the fingers need.
+struct MMGRASP_EXPORT DriveByPush {
+  PushGraspProblem closing;
+  Eigen::Vector3d approach = Eigen::Vector3d::UnitX();  ///< In the tip's frame: one of its axes, of either sign.
+  double free_length = 0.10;  ///< Straight way before the finger tips reach the object [m]; > 0.
+};
 
 /// Something the tool does on the way.
 struct MMGRASP_EXPORT DriveByTask {
@@ -25,6 +35,7 @@ struct MMGRASP_EXPORT DriveByTask {
   /// Object of the world that is held afterwards, in place of what was held before; empty: none. The hand may touch it
   /// from two intervals before the task on, and it may touch what it stands on until two intervals after.
   std::string object;
+  std::optional<DriveByPush> push;  ///< Without dwell, max_tool_speed, tolerance and free axes.
 };
 
 /// Where the motion ends.
@@ -33,23 +44,28 @@ struct MMGRASP_EXPORT DriveByGoal {
 };
 
 struct MMGRASP_EXPORT DriveByOptions {
-  int waypoints = 35;        ///< >= 2 + 2 per task.
-  int attempts = 8;          ///< Guesses tried until one leads to a solution; > 0.
-  int solutions = 1;         ///< Solutions compared, the fastest is returned; > 0.
-  int stands = 64;           ///< Configurations sought per task; > 0.
-  double time_limit = 60.0;  ///< Wall-clock cap [s]; > 0.
-  double jerk_time = 0;      ///< See WholeBodyProblem [s], >= 0; 0: no limit on jerk.
-  bool collisions = true;    ///< The robot keeps clear of the world and of itself.
-  unsigned seed = 1;         ///< Same seed, same answer.
-  int threads = 1;           ///< For the search of configurations; 0: all.
+  int waypoints = 35;  ///< >= 2 + 2 per task, 2 + 6 per push-grasp.
+  int attempts = 8;    ///< Guesses tried until one leads to a solution; > 0.
+  int solutions = 1;   ///< Solutions compared of one choice of candidates; > 0.
+  /// Choices of candidates planned, the fastest motion is returned; those that a lower bound shows to be slower are
+  /// left out. 1: the choice that looks quickest and leads to a solution. > 0.
+  int choices = 8;
+  int stands = 64;            ///< Configurations sought per candidate; > 0.
+  int iterations = 1500;      ///< Of all attempts; after so many no other begins; > 0.
+  double time_limit = 600.0;  ///< Wall-clock cap [s], for plans that are not to end by their iterations; > 0.
+  double jerk_time = 0;       ///< See WholeBodyProblem [s], >= 0; 0: no limit on jerk.
+  bool collisions = true;     ///< The robot keeps clear of the world and of itself.
+  unsigned seed = 1;          ///< Same seed, same answer.
+  int threads = 1;            ///< For the search of configurations; 0: all.
   WholeBodyOptions trajectory;
   void check() const;
 };
 
 /// What happens at one task.
 struct MMGRASP_EXPORT DriveByEvent {
-  int waypoint = 0;
-  double time = 0;  ///< [s]
+  int waypoint = 0;       ///< Of a push-grasp: where both fingers touch.
+  double time = 0;        ///< [s]
+  double close_time = 0;  ///< When a gripper begins to close [s].
   int candidate = 0;
   double base_speed = 0;  ///< [m/s]
   double tool_speed = 0;  ///< [m/s]
@@ -60,6 +76,7 @@ struct MMGRASP_EXPORT DriveByResult {
   std::shared_ptr<const WholeBodyTrajectory> trajectory;  ///< Null when there was not even a guess.
   std::vector<DriveByEvent> events;                       ///< One per task.
   std::vector<Violation> violations;                      ///< Of the trajectory.
+  int choices = 0;                                        ///< Choices of candidates planned.
   int attempts = 0;
   int iterations = 0;  ///< Of all attempts.
   double seconds = 0;

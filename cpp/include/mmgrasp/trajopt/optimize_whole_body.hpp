@@ -27,8 +27,8 @@ struct MMGRASP_EXPORT WholeBodyGuess {
 struct MMGRASP_EXPORT WholeBodyOptions {
   std::string solver = "ipopt";  ///< A name of nlp_solver_names().
   double tolerance = 1e-4;       ///< Relative optimality, in (0, 1).
-  int max_iterations = 150;      ///< > 0
-  double time_limit = 60.0;      ///< Wall-clock cap [s]; > 0.
+  int max_iterations = 150;      ///< Of one solve, of which there are at most 1 + refinements; > 0.
+  double time_limit = 600.0;     ///< Wall-clock cap [s], for runs that are not to end by their iterations; > 0.
   double smoothing = 1e-2;       ///< [s], >= 0: weight of the mean square of accelerations over their limits.
   double warm_start = 0;         ///< See NlpOptions.
   double margin = 0.005;         ///< Collisions: distance to keep [m]; >= 0.

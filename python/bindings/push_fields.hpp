@@ -1,0 +1,11 @@
+#pragma once
+
+#include "bindings.hpp"
+#include "mmgrasp/grasp/push_grasp.hpp"
+
+namespace mmgrasp::python {
+
+/// Keywords of push_grasp.
+const std::vector<OptionField<PushGraspProblem>>& push_fields();
+
+}  // namespace mmgrasp::python

@@ -100,6 +100,8 @@ struct PairPlan {
   std::vector<int> moving, fixed;   ///< Shapes the group moves, and the others; those checked against the scene first.
   int moving_in_scene = 0, fixed_in_scene = 0;  ///< How many of them are checked against the scene.
   std::vector<ShapePair> varying;               ///< Relative pose depends on the configuration.
+  std::vector<PairBlock> blocks;                ///< All varying pairs, by their balls.
+  std::vector<int> pair_of;                     ///< Per lane of a block: its number in `varying`.
   std::vector<ShapePair> constant;              ///< It does not: one look per reference is enough.
   MotionRates rates;  ///< Within the joints' limits; not finite where a sliding joint has none.
 
@@ -107,6 +109,7 @@ struct PairPlan {
   MotionRates rates_along(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) const;
 
  private:
+  void block_pairs();
   MotionRates bound_motion(const Eigen::VectorXd& largest) const;
 };
 

@@ -63,10 +63,14 @@ struct CollisionChecker::Impl {
   bool pair_collides_exactly(const detail::ShapePair& pair);
   bool hits_scene_exactly(int shape, int scene_shape);
   /// Whether the two touch (kOverlap), stay apart while they come no more than `motion` [m] closer (kApart), or
-  /// neither.
-  detail::CoverAnswer pair_within(const detail::ShapePair& pair, double motion);
+  /// neither. Without motion only the first is asked. `hulls_meet`: their hulls did not long ago, so that those are not
+  /// asked; set when they do.
+  detail::CoverAnswer pair_within(const detail::ShapePair& pair, double motion, char& hulls_meet);
   detail::CoverAnswer scene_within(int shape, int scene_shape, double motion);
   bool balls_apart(const detail::ShapePair& pair) const;
+  Eigen::Vector3d ball_centre(int ball) const {
+    return {placed_balls.x[ball], placed_balls.y[ball], placed_balls.z[ball]};
+  }
   /// False when plan->moving[body] hits a bounded scene shape. Clears `proven` unless it stays free while none of its
   /// points moves more than `motion` [m].
   bool body_is_free(int body, double motion, bool& proven);
@@ -99,7 +103,8 @@ struct CollisionChecker::Impl {
   std::size_t queries = 0;
 
   std::vector<double> frames;       ///< Of the last configuration; see Kernels::place_frames.
-  std::vector<float> ball_centres;  ///< Per ball of the plan: x, y, z, radius.
+  std::vector<float> ball_numbers;  ///< Of the last configuration; what `placed_balls` shows.
+  detail::BallRows placed_balls;    ///< In the order of the plan.
   bool frames_valid = false;
   Poses links;  ///< Of the last configuration given to place().
   bool links_valid = false;
@@ -113,7 +118,7 @@ struct CollisionChecker::Impl {
     int shape, other;  ///< `other`: a scene shape, or the number of a varying pair.
   };
   std::vector<Near> near, unsure;
-  std::vector<std::uint8_t> masks;
+  std::vector<std::uint8_t> masks, pair_masks;
 
   std::optional<bool> constant_self;  ///< Pairs whose relative pose no configuration changes.
   std::optional<bool> fixed_scene;    ///< Links that no configuration moves, against the scene.

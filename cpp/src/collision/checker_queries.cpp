@@ -41,24 +41,25 @@ float slack_of(const FloatRigid& T, float extent_a, float extent_b) {
 
 // A body's cover, placed at T_a, against the bounding box of the other one.
 CoverAnswer cover_against_box(const detail::BallCover& cover, const Rigid& T_a, const detail::Solid& other,
-                              const Rigid& T_b, double grow) {
+                              const Rigid& T_b, double grow, bool seek_overlap) {
   Rigid box = T_a.to(T_b);
   box.t += box.R * other.box_centre;
   const FloatRigid T = to_float(box);
   const float half[3] = {static_cast<float>(other.box_half[0]), static_cast<float>(other.box_half[1]),
                          static_cast<float>(other.box_half[2])};
   const float slack = slack_of(T, cover.extent(), std::max({half[0], half[1], half[2]}));
-  return detail::kernels().cover_box(cover.view(), T, half, static_cast<float>(grow), slack);
+  return detail::kernels().cover_box(cover.view(), T, half, static_cast<float>(grow), slack, seek_overlap);
 }
 
 // A body's balls, placed at T_balls, in the field of a body at T_field.
 CoverAnswer balls_in_field(const detail::DistanceField& field, const Rigid& T_field, const detail::CoverLevels& balls,
-                           const Rigid& T_balls, double grow) {
+                           const Rigid& T_balls, double grow, bool seek_overlap) {
   const FloatRigid T = to_float(T_field.to(T_balls));
   detail::CoverView levels[detail::BodyBounds::kLevels];
   for (std::size_t i = 0; i < balls.size(); ++i) levels[i] = balls[i].view();
   return detail::kernels().field_cover(field.view(), levels, static_cast<int>(balls.size()), T,
-                                       static_cast<float>(grow), slack_of(T, field.extent(), balls[0].extent()));
+                                       static_cast<float>(grow), slack_of(T, field.extent(), balls[0].extent()),
+                                       seek_overlap);
 }
 
 // Of two solids or the hulls around them; `touching` also where there is no such hull.
@@ -77,11 +78,15 @@ CollisionChecker::Impl::Impl(std::shared_ptr<const detail::Snapshot> snapshot_in
       plan(std::make_shared<detail::PairPlan>(*snapshot, group_in)),
       group(group_in),
       frames(16 * static_cast<std::size_t>(plan->frames.count())),
-      ball_centres(4 * plan->balls.size()),
       balls(snapshot->shapes.size(), Eigen::Vector3d::Zero()),
       poses(snapshot->shapes.size()),
       pose_stamp(snapshot->shapes.size(), 0),
-      moves(snapshot->shapes.size(), 0) {
+      moves(snapshot->shapes.size(), 0),
+      pair_masks(plan->blocks.size()) {
+  const std::size_t row = (plan->balls.size() + detail::kLanes - 1) / detail::kLanes * detail::kLanes;
+  ball_numbers.resize(4 * row);
+  float* const x = ball_numbers.data();
+  placed_balls = {x, x + row, x + 2 * row, x + 3 * row};
   for (const int s : plan->moving) moves[s] = 1;
 }
 
@@ -102,7 +107,7 @@ void CollisionChecker::Impl::place_balls(const double* q) {
   }
   plan->frames.place(q, frames.data());
   const std::size_t count = first ? plan->balls.size() : plan->moving.size();
-  detail::kernels().place_balls(plan->balls.data(), static_cast<int>(count), frames.data(), ball_centres.data());
+  detail::kernels().place_balls(plan->balls.data(), static_cast<int>(count), frames.data(), placed_balls);
 }
 
 void CollisionChecker::Impl::place(const Eigen::VectorXd& q) {
@@ -133,8 +138,9 @@ const Rigid& CollisionChecker::Impl::pose(int s) {
 }
 
 bool CollisionChecker::Impl::balls_apart(const detail::ShapePair& pair) const {
-  const float *a = ball_centres.data() + 4 * pair.ball_a, *b = ball_centres.data() + 4 * pair.ball_b;
-  const float dx = a[0] - b[0], dy = a[1] - b[1], dz = a[2] - b[2], reach = a[3] + b[3];
+  const auto& [x, y, z, radius] = placed_balls;
+  const int a = pair.ball_a, b = pair.ball_b;
+  const float dx = x[a] - x[b], dy = y[a] - y[b], dz = z[a] - z[b], reach = radius[a] + radius[b];
   return dx * dx + dy * dy + dz * dz > reach * reach;
 }
 
@@ -142,9 +148,10 @@ CoverAnswer CollisionChecker::Impl::pair_balls(const detail::ShapePair& pair, do
   const detail::BodyShape &a = snapshot->shapes[pair.a], &b = snapshot->shapes[pair.b];
   if (a.bounds->balls().empty() || b.bounds->balls().empty()) return detail::kMaybe;
   const Rigid &T_a = pose(pair.a), &T_b = pose(pair.b);
-  const CoverAnswer first = cover_against_box(a.bounds->balls(), T_a, *b.solid, T_b, more);
+  const bool seek_overlap = more == 0;
+  const CoverAnswer first = cover_against_box(a.bounds->balls(), T_a, *b.solid, T_b, more, seek_overlap);
   if (first == detail::kApart || (first == detail::kOverlap && b.solid->is_box)) return first;
-  const CoverAnswer second = cover_against_box(b.bounds->balls(), T_b, *a.solid, T_a, more);
+  const CoverAnswer second = cover_against_box(b.bounds->balls(), T_b, *a.solid, T_a, more, seek_overlap);
   if (second == detail::kApart || (second == detail::kOverlap && a.solid->is_box)) return second;
   if (more > kFieldReach) return detail::kMaybe;
   // The larger body as the field: the smaller one has the smaller balls.
@@ -153,7 +160,7 @@ CoverAnswer CollisionChecker::Impl::pair_balls(const detail::ShapePair& pair, do
                             const Rigid& T_balls) {
     const auto& field = body.bounds->detail(*body.solid).field;
     if (field == nullptr) return detail::kMaybe;
-    return balls_in_field(*field, T_body, balls.bounds->detail(*balls.solid).covers, T_balls, more);
+    return balls_in_field(*field, T_body, balls.bounds->detail(*balls.solid).covers, T_balls, more, seek_overlap);
   };
   const CoverAnswer answer = a_larger ? by_field(a, T_a, b, T_b) : by_field(b, T_b, a, T_a);
   if (answer != detail::kMaybe) return answer;
@@ -186,29 +193,28 @@ CoverAnswer CollisionChecker::Impl::scene_balls(int s, int scene_shape, double m
   // Padding pushes out the corners of a box by up to sqrt(3) of it.
   const double grow = (shape.padded != shape.solid ? 1.75 * snapshot->options.padding : 0) + more;
   if (other.solid->kind == detail::SolidKind::voxels) {
-    const float* ball = ball_centres.data() + 4 * plan->ball_of[s];
-    const Eigen::Vector3d centre(ball[0], ball[1], ball[2]);
-    if (other.solid->field->distance(other.T_world.R.transpose() * (centre - other.T_world.t)) > ball[3] + more)
+    const int ball = plan->ball_of[s];
+    if (other.solid->field->distance(other.T_world.R.transpose() * (ball_centre(ball) - other.T_world.t)) >
+        placed_balls.radius[ball] + more)
       return detail::kApart;
     const auto& covers = shape.bounds->detail(*shape.solid).covers;
-    return balls_in_field(*other.solid->field, other.T_world, covers, pose(s), grow);
+    return balls_in_field(*other.solid->field, other.T_world, covers, pose(s), grow, more == 0);
   }
-  const CoverAnswer answer = cover_against_box(shape.bounds->balls(), pose(s), *other.solid, other.T_world, grow);
+  const CoverAnswer answer =
+      cover_against_box(shape.bounds->balls(), pose(s), *other.solid, other.T_world, grow, more == 0);
   return answer == detail::kOverlap && !other.solid->is_box ? detail::kMaybe : answer;
 }
 
-CoverAnswer CollisionChecker::Impl::pair_within(const detail::ShapePair& pair, double motion) {
-  if (motion <= kGapReach) {
+CoverAnswer CollisionChecker::Impl::pair_within(const detail::ShapePair& pair, double motion, char& hulls_meet) {
+  if (motion > 0 && motion <= kGapReach) {
     const CoverAnswer balls = pair_balls(pair, motion);
     if (balls != CoverAnswer::kMaybe) return balls;
-    const detail::Solid &a = *snapshot->shapes[pair.a].solid, &b = *snapshot->shapes[pair.b].solid;
-    switch (hull_nearness(a, pose(pair.a), b, pose(pair.b), motion)) {
-      case Nearness::beyond:
-        return CoverAnswer::kApart;
-      case Nearness::near:
-        return CoverAnswer::kMaybe;
-      case Nearness::touching:
-        break;
+    if (!hulls_meet) {
+      const detail::Solid &a = *snapshot->shapes[pair.a].solid, &b = *snapshot->shapes[pair.b].solid;
+      const Nearness hulls = hull_nearness(a, pose(pair.a), b, pose(pair.b), motion);
+      if (hulls == Nearness::beyond) return CoverAnswer::kApart;
+      if (hulls == Nearness::near) return CoverAnswer::kMaybe;
+      hulls_meet = 1;
     }
   }
   return pair_collides(pair) ? CoverAnswer::kOverlap : CoverAnswer::kMaybe;
@@ -248,16 +254,16 @@ void CollisionChecker::Impl::gather_near(int first, int last) {
   if (packs.flat()) {
     const int count = packs.count();
     masks.resize(static_cast<std::size_t>(count * (last - first)));
-    detail::kernels().balls_meet(packs.data(), count, ball_centres.data() + 4 * first, last - first, masks.data(),
-                                 nullptr);
+    detail::kernels().balls_meet(packs.data(), count, placed_balls.from(first), last - first, masks.data(), nullptr);
     for (int b = first; b < last; ++b) {
       for (int k = 0; k < count; ++k) add(b, k, masks[static_cast<std::size_t>((b - first) * count + k)]);
     }
     return;
   }
   for (int b = first; b < last; ++b) {
-    const float* ball = ball_centres.data() + 4 * b;
-    packs.packs_near(ball, [&](int pack) {
+    const detail::BallRows ball = placed_balls.from(b);
+    const float at[4] = {*ball.x, *ball.y, *ball.z, *ball.radius};
+    packs.packs_near(at, [&](int pack) {
       std::uint8_t mask = 0;
       detail::kernels().balls_meet(packs.data() + pack, 1, ball, 1, &mask, nullptr);
       add(b, pack, mask);
@@ -268,12 +274,13 @@ void CollisionChecker::Impl::gather_near(int first, int last) {
 
 bool CollisionChecker::Impl::body_is_free(int body, double motion, bool& proven) {
   const detail::ScenePacks& packs = snapshot->packs;
-  const float* ball = ball_centres.data() + 4 * body;
+  const detail::BallRows ball = placed_balls.from(body);
   const int s = plan->moving[static_cast<std::size_t>(body)];
   // A body that moves far is only looked at where it is: what its ball, grown by the motion, meets would hardly ever
   // turn out to stay clear.
   const bool far = motion > kGapReach;
-  const float grown[4] = {ball[0], ball[1], ball[2], static_cast<float>(ball[3] + (far ? 0 : motion))};
+  float grown_radius = static_cast<float>(*ball.radius + (far ? 0 : motion));
+  const detail::BallRows grown{ball.x, ball.y, ball.z, &grown_radius};
   const auto hits_any = [&](int pack, unsigned mask) {
     for (; mask != 0; mask &= mask - 1) {
       const int other = packs.item(pack, __builtin_ctz(mask));
@@ -291,7 +298,7 @@ bool CollisionChecker::Impl::body_is_free(int body, double motion, bool& proven)
     }
     return false;
   };
-  const auto stays_far = [&](float nearest) { return std::sqrt(nearest) - ball[3] > motion; };
+  const auto stays_far = [&](float nearest) { return std::sqrt(nearest) - *ball.radius > motion; };
   if (packs.flat()) {
     std::uint8_t flat_masks[detail::ScenePacks::kFlat];
     float nearest = std::numeric_limits<float>::infinity();
@@ -303,7 +310,7 @@ bool CollisionChecker::Impl::body_is_free(int body, double motion, bool& proven)
     }
     return true;
   }
-  const float reach[4] = {ball[0], ball[1], ball[2], static_cast<float>(ball[3] + motion)};
+  const float reach[4] = {*ball.x, *ball.y, *ball.z, static_cast<float>(*ball.radius + motion)};
   return !packs.packs_near(reach, [&](int pack) {
     std::uint8_t mask = 0;
     float nearest = 0;
@@ -350,17 +357,20 @@ bool CollisionChecker::Impl::self_collides() {
   if (*constant_self) return true;
   if (last_pair >= 0 && pair_collides(plan->varying[last_pair])) return true;
   unsure.clear();
-  for (std::size_t i = 0; i < plan->varying.size(); ++i) {
-    const detail::ShapePair& pair = plan->varying[i];
-    if (balls_apart(pair)) continue;
-    const CoverAnswer answer = pair_balls(pair);
-    if (answer == detail::kApart) continue;
-    if (answer == detail::kMaybe) {
-      unsure.push_back({0, static_cast<int>(i)});
-      continue;
+  detail::kernels().pairs_meet(plan->blocks.data(), static_cast<int>(plan->blocks.size()), placed_balls,
+                               pair_masks.data());
+  for (std::size_t block = 0; block < plan->blocks.size(); ++block) {
+    for (unsigned mask = pair_masks[block]; mask != 0; mask &= mask - 1) {
+      const int i = plan->pair_of[block * detail::kLanes + static_cast<std::size_t>(__builtin_ctz(mask))];
+      const CoverAnswer answer = pair_balls(plan->varying[i]);
+      if (answer == detail::kApart) continue;
+      if (answer == detail::kMaybe) {
+        unsure.push_back({0, i});
+        continue;
+      }
+      last_pair = i;
+      return true;
     }
-    last_pair = static_cast<int>(i);
-    return true;
   }
   for (const Near& entry : unsure) {
     if (!pair_collides_exactly(plan->varying[entry.other])) continue;

@@ -21,11 +21,10 @@ double surely(double motion) {
 constexpr std::size_t kBroad = 256;
 
 // From below.
-double gap_to(const SceneShape& other, const float* ball) {
-  const Eigen::Vector3d centre(ball[0], ball[1], ball[2]);
+double gap_to(const SceneShape& other, const Eigen::Vector3d& centre, double radius) {
   const Eigen::Vector3d in_other = other.T_world.R.transpose() * (centre - other.T_world.t);
-  if (other.solid->kind == detail::SolidKind::voxels) return other.solid->field->distance(in_other) - ball[3];
-  return other.solid->normal.dot(in_other) - other.solid->offset - ball[3];
+  if (other.solid->kind == detail::SolidKind::voxels) return other.solid->field->distance(in_other) - radius;
+  return other.solid->normal.dot(in_other) - other.solid->offset - radius;
 }
 
 }  // namespace
@@ -39,6 +38,7 @@ CollisionChecker::Impl::EdgeWalk::EdgeWalk(Impl& checker, const Eigen::VectorXd&
   const detail::MotionRates& rates = checker.plan->rates.finite ? checker.plan->rates : own;
   body_motion_ = rates.shapes.transpose() * step;
   pair_motion_ = rates.pairs.transpose() * step;
+  hulls_meet_.assign(checker.plan->varying.size(), 0);
 }
 
 bool CollisionChecker::Impl::EdgeWalk::all_free() {
@@ -102,7 +102,8 @@ bool CollisionChecker::Impl::EdgeWalk::bodies_free(const Interval& interval, dou
     bool proven = true;
     if (!checker_.body_is_free(body, motion, proven)) return false;
     for (int i = snapshot.packed; i < static_cast<int>(snapshot.scene.size()); ++i) {
-      if (gap_to(snapshot.scene[i], checker_.ball_centres.data() + 4 * body) > motion) continue;
+      const double gap = gap_to(snapshot.scene[i], checker_.ball_centre(body), checker_.placed_balls.radius[body]);
+      if (gap > motion) continue;
       proven = false;
       if (checker_.hits_scene(checker_.plan->moving[body], i)) return false;
     }
@@ -115,12 +116,13 @@ bool CollisionChecker::Impl::EdgeWalk::pairs_free(const Interval& interval, doub
   for (std::size_t n = interval.pairs; n < interval.end; ++n) {
     const int index = open_[n];
     const ShapePair& pair = checker_.plan->varying[index];
-    const float* a = checker_.ball_centres.data() + 4 * pair.ball_a;
-    const float* b = checker_.ball_centres.data() + 4 * pair.ball_b;
-    const double gap = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) - a[3] - b[3];
+    const float* radius = checker_.placed_balls.radius;
+    const double gap = (checker_.ball_centre(pair.ball_a) - checker_.ball_centre(pair.ball_b)).norm() -
+                       radius[pair.ball_a] - radius[pair.ball_b];
     const double motion = surely(pair_motion_[index] * reach);
     if (gap > motion) continue;
-    const detail::CoverAnswer answer = checker_.pair_within(pair, motion);
+    // The last look within an interval proves nothing about others.
+    const detail::CoverAnswer answer = checker_.pair_within(pair, reach > 0 ? motion : 0, hulls_meet_[index]);
     if (answer == detail::kApart) continue;
     if (answer == detail::kOverlap) {
       checker_.last_pair = index;

@@ -33,6 +33,7 @@ class CollisionChecker::Impl::EdgeWalk {
   long pieces_;
   Eigen::VectorXd body_motion_, pair_motion_;  ///< Per piece [m].
   std::vector<int> open_;
+  std::vector<char> hulls_meet_;  ///< Per varying pair; see pair_within.
 };
 
 }  // namespace mmgrasp

@@ -18,6 +18,19 @@ struct BoxPack {
   float axes[9][kLanes];  ///< Row k of the inverse rotation: 3k .. 3k + 2.
   float centre[3][kLanes];
   float half[3][kLanes];
+  float radius[kLanes];  ///< Of the ball around the box.
+};
+
+/// Placed balls, coordinate by coordinate; the arrays end with whole lanes.
+struct BallRows {
+  float *x, *y, *z, *radius;
+  BallRows from(int ball) const { return {x + ball, y + ball, z + ball, radius + ball}; }
+};
+
+/// A ball and up to eight others in a row that it may meet.
+struct PairBlock {
+  int ball, first;     ///< The others are first .. first + kLanes - 1.
+  std::uint8_t lanes;  ///< Which of them make pairs.
 };
 
 /// How a frame moves: about its own z, along it, or by a rotation vector (three columns).
@@ -69,18 +82,22 @@ struct Kernels {
   const char* name;
   /// frames: 16 numbers each, columns R0 R1 R2 p of four; frame 0 is given.
   void (*place_frames)(const FrameStep* steps, int count, const double* q, double* frames);
-  /// World centre (x, y, z) and radius of each ball, the radius with a slack for single precision.
-  void (*place_balls)(const FrameBall* balls, int count, const double* frames, float* out);
+  /// World centre and radius of each ball, the radius with a slack for single precision.
+  void (*place_balls)(const FrameBall* balls, int count, const double* frames, const BallRows& out);
   /// masks[b * packs + k]: which boxes of pack k ball b meets. nearest[b], unless null: least squared distance of the
   /// ball's centre to any box.
-  void (*balls_meet)(const BoxPack* packs, int pack_count, const float* balls, int ball_count, std::uint8_t* masks,
+  void (*balls_meet)(const BoxPack* packs, int pack_count, const BallRows& balls, int ball_count, std::uint8_t* masks,
                      float* nearest);
-  /// Cover against a box placed in its frame. `grow` is added to the outer radii, `slack` covers rounding.
-  CoverAnswer (*cover_box)(const CoverView& cover, const FloatRigid& box, const float* half, float grow, float slack);
+  /// masks[i]: which pairs of block i meet.
+  void (*pairs_meet)(const PairBlock* blocks, int block_count, const BallRows& balls, std::uint8_t* masks);
+  /// Cover against a box placed in its frame. `grow` is added to the outer radii, `slack` covers rounding. Without
+  /// `seek_overlap` the first ball that may touch ends the search.
+  CoverAnswer (*cover_box)(const CoverView& cover, const FloatRigid& box, const float* half, float grow, float slack,
+                           bool seek_overlap);
   /// A field against covers placed in its frame, each level with kLanes balls for each ball of the level above: only
   /// where a ball may touch are its parts looked at.
   CoverAnswer (*field_cover)(const FieldView& field, const CoverView* levels, int level_count,
-                             const FloatRigid& cover_in_field, float grow, float slack);
+                             const FloatRigid& cover_in_field, float grow, float slack, bool seek_overlap);
 };
 
 /// The quickest this machine can run, unless use_collision_kernels() chose others.

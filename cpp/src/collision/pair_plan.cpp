@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <map>
 
 #include "collision/bodies.hpp"
 
@@ -90,9 +92,29 @@ PairPlan::PairPlan(const Snapshot& snapshot, const JointGroup& group) : frames(g
       (moved_by[a.link] == moved_by[b.link] ? constant : varying).push_back(pair);
     }
   }
+  block_pairs();
   // Limits are kept up to rounding.
   rates = bound_motion(group.lower().cwiseAbs().cwiseMax(group.upper().cwiseAbs()) +
                        Eigen::VectorXd::Constant(group.size(), 1e-6));
+}
+
+void PairPlan::block_pairs() {
+  std::map<std::pair<int, int>, std::array<int, kLanes>> lanes;
+  for (std::size_t i = 0; i < varying.size(); ++i) {
+    const auto [ball, other] = std::minmax(varying[i].ball_a, varying[i].ball_b);
+    const auto [block, fresh] = lanes.try_emplace({ball, other / kLanes * kLanes});
+    if (fresh) block->second.fill(-1);
+    block->second[static_cast<std::size_t>(other % kLanes)] = static_cast<int>(i);
+  }
+  for (const auto& [at, pairs] : lanes) {
+    PairBlock block{at.first, at.second, 0};
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const int pair = pairs[static_cast<std::size_t>(lane)];
+      if (pair >= 0) block.lanes = static_cast<std::uint8_t>(block.lanes | 1u << lane);
+      pair_of.push_back(pair);
+    }
+    blocks.push_back(block);
+  }
 }
 
 MotionRates PairPlan::rates_along(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) const {

@@ -17,6 +17,7 @@ void put(BoxPack& pack, int lane, const Rigid& T, const Eigen::Vector3d& half) {
     const double rounding = 2e-6 * (T.t.lpNorm<1>() + half.lpNorm<1>());
     pack.half[k][lane] = static_cast<float>(half[k] + rounding);
   }
+  pack.radius[lane] = static_cast<float>(half.norm() + 4e-6 * (T.t.lpNorm<1>() + half.lpNorm<1>()));
 }
 
 }  // namespace

@@ -71,8 +71,10 @@ TEST(HeldChecker, SaysWhatACheckerMadeForThePoseSays) {
       }
       EXPECT_GT(blocked, 20);
       EXPECT_GT(blocked_edges, 20);
-      if (link > 0) EXPECT_GT(free, 50);
-      if (link > 0) EXPECT_GT(free_edges, 20);
+      if (link > 0) {
+        EXPECT_GT(free, 50);
+        EXPECT_GT(free_edges, 20);
+      }
     }
   }
 }

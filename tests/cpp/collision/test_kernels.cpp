@@ -122,7 +122,7 @@ TEST_P(CollisionKernels, FramesEqualProductsOfTransforms) {
 
     const FrameBall ball{{0.1, -0.2, 0.3}, 0.07, 5};
     float placed[4];
-    kernels().place_balls(&ball, 1, frames, placed);
+    kernels().place_balls(&ball, 1, frames, {placed, placed + 1, placed + 2, placed + 3});
     const Vector3d centre = expected[5] * Vector3d(0.1, -0.2, 0.3);
     const double moved_by = (Vector3d(placed[0], placed[1], placed[2]) - centre).norm();
     EXPECT_GE(placed[3], 0.07 + moved_by);  // what rounding moved, the radius makes good
@@ -145,15 +145,21 @@ TEST_P(CollisionKernels, BallsMeetBoxesWhenTheyDo) {
           pack.centre[k][lane] = static_cast<float>(box.centre[k]);
           pack.half[k][lane] = static_cast<float>(box.half[k]);
         }
+        pack.radius[lane] = static_cast<float>(box.half.norm() * (1 + 1e-6));
       }
     }
     const Vector3d centre = point_within(random, 1).cast<float>().cast<double>();
     const double radius = static_cast<float>(random.uniform(0.05, 0.5));
-    const float ball[4] = {static_cast<float>(centre.x()), static_cast<float>(centre.y()),
-                           static_cast<float>(centre.z()), static_cast<float>(radius)};
+    float numbers[4] = {static_cast<float>(centre.x()), static_cast<float>(centre.y()), static_cast<float>(centre.z()),
+                        static_cast<float>(radius)};
+    const BallRows ball{numbers, numbers + 1, numbers + 2, numbers + 3};
     std::uint8_t masks[2] = {};
     float nearest = 0;
     kernels().balls_meet(packs, 2, ball, 1, masks, &nearest);
+    std::uint8_t without_nearest[2] = {};
+    kernels().balls_meet(packs, 2, ball, 1, without_nearest, nullptr);
+    EXPECT_EQ(masks[0], without_nearest[0]);
+    EXPECT_EQ(masks[1], without_nearest[1]);
     double least = 1e9;
     for (int i = 0; i < 16; ++i) {
       const double distance = boxes[i].distance(centre);
@@ -173,6 +179,48 @@ TEST_P(CollisionKernels, BallsMeetBoxesWhenTheyDo) {
   EXPECT_GT(apart, 300);
 }
 
+TEST_P(CollisionKernels, PairsOfBallsMeetWhenTheyDo) {
+  Rng random(9);
+  constexpr int kBalls = 21;
+  int met = 0, apart = 0;
+  for (int round = 0; round < 200; ++round) {
+    constexpr int kRow = 24;
+    std::vector<float> numbers(4 * kRow);
+    const BallRows balls{&numbers[0], &numbers[kRow], &numbers[2 * kRow], &numbers[3 * kRow]};
+    for (int i = 0; i < kBalls; ++i) {
+      for (float* coordinate : {balls.x, balls.y, balls.z}) coordinate[i] = static_cast<float>(random.uniform(-1, 1));
+      balls.radius[i] = static_cast<float>(random.uniform(0.05, 0.6));
+    }
+    std::vector<PairBlock> blocks;
+    for (int i = 0; i < kBalls; ++i) {
+      const int first = static_cast<int>(random.index(3)) * kLanes;
+      // Lanes beyond the last ball belong to no pair.
+      const unsigned lanes = first + kLanes > kBalls ? (1u << (kBalls - first)) - 1 : 0xffu;
+      blocks.push_back({i, first, static_cast<std::uint8_t>(random.index(256) & lanes)});
+    }
+    std::vector<std::uint8_t> masks(blocks.size());
+    kernels().pairs_meet(blocks.data(), kBalls, balls, masks.data());
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const bool said = (masks[b] >> lane & 1) != 0;
+        if ((blocks[b].lanes >> lane & 1) == 0) {
+          EXPECT_FALSE(said);
+          continue;
+        }
+        const int i = blocks[b].ball, k = blocks[b].first + lane;
+        const double gap = std::hypot(balls.x[i] - balls.x[k], balls.y[i] - balls.y[k], balls.z[i] - balls.z[k]) -
+                           balls.radius[i] - balls.radius[k];
+        if (std::abs(gap) > kSlack) {
+          EXPECT_EQ(said, gap < 0);
+        }
+        ++(said ? met : apart);
+      }
+    }
+  }
+  EXPECT_GT(met, 1000);
+  EXPECT_GT(apart, 1000);
+}
+
 TEST_P(CollisionKernels, CoverAgainstBoxIsNeverSureAndWrong) {
   Rng random(7);
   int answers[3] = {};
@@ -188,8 +236,12 @@ TEST_P(CollisionKernels, CoverAgainstBoxIsNeverSureAndWrong) {
                            static_cast<float>(box.half[2])};
     const double grow = random.uniform(0, 0.01);
     const CoverView view = cover.view();
-    const CoverAnswer answer = kernels().cover_box(view, to_float(box.R, box.centre), half, static_cast<float>(grow),
-                                                   static_cast<float>(kSlack));
+    const auto ask = [&](bool seek_overlap) {
+      return kernels().cover_box(view, to_float(box.R, box.centre), half, static_cast<float>(grow),
+                                 static_cast<float>(kSlack), seek_overlap);
+    };
+    const CoverAnswer answer = ask(true);
+    EXPECT_EQ(ask(false) == kApart, answer == kApart);
     ++answers[answer];
     bool outer_meets = false, inner_meets = false, outer_far = true;
     for (int i = 0; i < cover.filled; ++i) {
@@ -248,7 +300,11 @@ void field_is_never_sure_and_wrong(bool of_centres) {
     const CoverView levels[2] = {coarse.view(), fine.view()};
     const Matrix3d R = any_rotation(random);
     const Vector3d t = point_within(random, 0.4);
-    const CoverAnswer answer = kernels().field_cover(field, levels, 2, to_float(R, t), 0, static_cast<float>(kSlack));
+    const auto ask = [&](bool seek_overlap) {
+      return kernels().field_cover(field, levels, 2, to_float(R, t), 0, static_cast<float>(kSlack), seek_overlap);
+    };
+    const CoverAnswer answer = ask(true);
+    EXPECT_EQ(ask(false) == kApart, answer == kApart);
     ++answers[answer];
     double least = 1e9, least_centre = 1e9;
     for (int i = 0; i < fine.filled; ++i) {

@@ -29,6 +29,9 @@ const std::vector<OptionField<O>>& manipulation_fields() {
   static const std::vector<OptionField<O>> fields{
       option<O>("planner", &O::planner, "a name of manipulation_planner_names()"),
       option<O>("ik_solutions", &O::ik_solutions, "arm configurations tried for each grasp at each end"),
+      option<O>("first_grasps", &O::first_grasps,
+                "grasps whose arm configurations are found before the first search, then twice as many until there is "
+                "a path; 0: all"),
       option<O>("ik_restarts", &O::ik, &IkOptions::restarts, "random starts of arms without a closed form"),
       option<O>("joint_step", &O::edge, &EdgeOptions::joint_step,
                 "no joint moves more between two checks of an edge [rad or m]"),
@@ -45,6 +48,7 @@ const std::vector<OptionField<O>>& manipulation_fields() {
              "prm_star_mg: join start and goal configurations whatever their distance"),
       of_prm("max_vertices", &PrmStarMgOptions::max_vertices,
              "prm_star_mg: once the roadmap's best path is found, double its vertices up to this; 0: never"),
+      of_prm("shorten", &PrmStarMgOptions::shorten, "prm_star_mg: shorten the roadmap's best path at the end"),
       of_roadmap("vertices", &RoadmapOptions::vertices, "prm_star_mg without a roadmap given: configurations drawn"),
       of_roadmap("gamma", &RoadmapOptions::gamma,
                  "likewise: vertices nearer than gamma (log n / n)^(1/d) are joined [rad or m]"),
@@ -136,8 +140,9 @@ py::object path_array(const ManipulationResult& result) {
 py::dict stats_dict(const ManipulationStats& s) {
   return py::dict("ik_seconds"_a = s.ik_seconds, "roadmap_seconds"_a = s.roadmap_seconds,
                   "search_seconds"_a = s.search_seconds, "graph_searches"_a = s.graph_searches,
-                  "grasps_searched"_a = s.grasps_searched, "edges_checked_robot"_a = s.edges_checked_robot,
-                  "edges_checked_held"_a = s.edges_checked_held, "samples"_a = s.samples, "vertices"_a = s.vertices);
+                  "grasps_searched"_a = s.grasps_searched, "roadmap_cost"_a = s.roadmap_cost,
+                  "edges_checked_robot"_a = s.edges_checked_robot, "edges_checked_held"_a = s.edges_checked_held,
+                  "samples"_a = s.samples, "vertices"_a = s.vertices);
 }
 
 py::dict report_dict(const GraspReport& r) {
@@ -232,7 +237,7 @@ void bind_problem(py::module_& m) {
 
 void bind_result(py::module_& m) {
   py::class_<Improvement>(m, "Improvement", "A better solution on the way.")
-      .def_readonly("seconds", &Improvement::seconds, "Since the search began.")
+      .def_readonly("seconds", &Improvement::seconds, "Since the call began, the first roadmap's building left out.")
       .def_readonly("cost", &Improvement::cost)
       .def_readonly("grasp", &Improvement::grasp)
       .def("to_dict", &improvement_dict)

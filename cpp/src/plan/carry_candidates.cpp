@@ -1,15 +1,20 @@
 #include "plan/carry_candidates.hpp"
 
+#include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <limits>
+#include <numeric>
 
 #include "mmgrasp/core/parallel.hpp"
+#include "mmgrasp/core/random.hpp"
 #include "plan/arm_configurations.hpp"
 
 namespace mmgrasp::detail {
 
 namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr std::size_t kSideBySide = 16;  // Grasps that are worth a thread.
 
 Pose pose_of_tool(const ManipulationProblem& problem, int grasp, bool at_goal) {
   const Pose& T_world_object = at_goal ? problem.T_world_goal : problem.T_world_start;
@@ -22,79 +27,111 @@ IkOptions ik_of(const ManipulationOptions& options, int grasp) {
   return ik;
 }
 
+// Neighbours in the caller's list tend to fail together.
+std::vector<int> shuffled(std::size_t count, unsigned seed) {
+  std::vector<int> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  Rng rng(seed, 0x6d67);
+  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[rng.index(i)]);
+  return order;
+}
+
 }  // namespace
 
 double CarryCandidate::straight_cost() const {
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinite;
   for (const Eigen::VectorXd& s : starts)
     for (const Eigen::VectorXd& g : goals) least = std::min(least, (g - s).norm());
   return least + cost;
 }
 
-bool find_candidates(const ManipulationProblem& problem, const ManipulationOptions& options, CarryChecks& checks,
-                     std::vector<CarryCandidate>& candidates, std::vector<GraspReport>& reports,
-                     const Monitor& monitor) {
-  const std::size_t count = problem.grasps.size();
-  reports.assign(count, {});
-  std::vector<CarryCandidate> found(count);
-  const auto begin = std::chrono::steady_clock::now();
+CarryCandidates::CarryCandidates(const ManipulationProblem& problem, const ManipulationOptions& options,
+                                 CarryChecks& checks, const CarryClock& clock, const Monitor& monitor,
+                                 ManipulationResult& result)
+    : problem_(problem),
+      options_(options),
+      checks_(checks),
+      clock_(clock),
+      monitor_(monitor),
+      result_(result),
+      order_(shuffled(problem.grasps.size(), options.seed)),
+      next_(options.first_grasps > 0 ? static_cast<std::size_t>(options.first_grasps) : order_.size()) {
+  result_.grasps.assign(order_.size(), {});
+}
+
+bool CarryCandidates::find_more(bool all) {
+  if (complete()) return false;
+  const double begin = clock_.seconds();
+  const std::size_t count = std::min(all ? order_.size() : next_, order_.size() - seen_);
+  std::vector<CarryCandidate> looked_at(count);
   std::atomic<bool> late{false};
-  const auto solve = [&](std::size_t index, int worker) {
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
-    if (spent.count() > options.time_limit) {
+  const auto work = [&](std::size_t i, int worker) {
+    if (clock_.seconds() > options_.time_limit) {
       late = true;
       return;
     }
-    const int grasp = static_cast<int>(index);
-    const CandidateGrasp& candidate = problem.grasps[index];
-    CarryCandidate& out = found[index];
-    out.grasp = grasp;
-    out.opening = checks.opening_of(grasp);
-    out.cost = candidate.cost;
-    const auto one_end = [&](bool at_goal, Rejections& rejections, int& left) {
-      const auto valid = [&](const Eigen::VectorXd& q) {
-        // What is held first: there is less of it, and it hits the scene in any configuration or in none.
-        ReachVerdict verdict{checks.held_rejection(worker, grasp, q), false};
-        if (verdict.cause == Rejection::scene) {
-          verdict.final = true;
-        } else if (verdict.cause == Rejection::none) {
-          verdict.cause = checks.robot_rejection(worker, out.opening, q);
-          verdict.final = verdict.cause == Rejection::scene && checks.tool_hits_scene(worker, out.opening, q);
-        }
-        return verdict;
-      };
-      std::vector<Eigen::VectorXd> solutions =
-          arm_configurations(checks.group(out.opening), pose_of_tool(problem, grasp, at_goal), options.ik_solutions,
-                             ik_of(options, grasp), valid, rejections);
-      left = static_cast<int>(solutions.size());
-      return solutions;
-    };
-    out.starts = one_end(false, reports[index].start, reports[index].start_solutions);
-    if (!out.starts.empty()) out.goals = one_end(true, reports[index].goal, reports[index].goal_solutions);
+    const int grasp = order_[seen_ + i];
+    looked_at[i] = look_at(grasp, worker, result_.grasps[static_cast<std::size_t>(grasp)]);
   };
-  if (!parallel_for(count, options.threads, solve, monitor, "grasps") || late) return false;
-  candidates.clear();
-  for (CarryCandidate& candidate : found)
-    if (!candidate.starts.empty() && !candidate.goals.empty()) candidates.push_back(std::move(candidate));
-  return true;
+  const bool whole =
+      parallel_for(count, count >= kSideBySide ? options_.threads : 1, work, monitor_, "grasps") && !late;
+  for (CarryCandidate& candidate : looked_at)
+    if (!candidate.goals.empty()) found_.push_back(std::move(candidate));
+  if (whole) seen_ += count;
+  next_ = 2 * count;
+  result_.stats.ik_seconds += clock_.seconds() - begin;
+  return whole;
 }
 
-std::vector<Contact> first_contacts(CarryChecks& checks, const ManipulationOptions& options,
-                                    const std::vector<GraspReport>& reports, bool at_goal) {
-  const ManipulationProblem& problem = checks.problem();
-  for (std::size_t i = 0; i < reports.size(); ++i) {
-    const Rejections& seen = at_goal ? reports[i].goal : reports[i].start;
+CarryCandidate CarryCandidates::look_at(int grasp, int worker, GraspReport& report) {
+  CarryCandidate out;
+  out.grasp = grasp;
+  out.opening = checks_.opening_of(grasp);
+  out.cost = problem_.grasps[static_cast<std::size_t>(grasp)].cost;
+  const auto valid = [&](const Eigen::VectorXd& q) {
+    // What is held first: there is less of it, and it hits the scene in any configuration or in none.
+    ReachVerdict verdict{checks_.held_rejection(worker, grasp, q), false};
+    if (verdict.cause == Rejection::scene) {
+      verdict.final = true;
+    } else if (verdict.cause == Rejection::none) {
+      verdict.cause = checks_.robot_rejection(worker, out.opening, q);
+      verdict.final = verdict.cause == Rejection::scene && checks_.tool_hits_scene(worker, out.opening, q);
+    }
+    return verdict;
+  };
+  const auto one_end = [&](bool at_goal, Rejections& rejections, int& left) {
+    std::vector<Eigen::VectorXd> solutions =
+        arm_configurations(checks_.group(out.opening), pose_of_tool(problem_, grasp, at_goal), options_.ik_solutions,
+                           ik_of(options_, grasp), valid, rejections);
+    left = static_cast<int>(solutions.size());
+    return solutions;
+  };
+  out.starts = one_end(false, report.start, report.start_solutions);
+  if (!out.starts.empty()) out.goals = one_end(true, report.goal, report.goal_solutions);
+  return out;
+}
+
+double CarryCandidates::least_cost_left() const {
+  double least = kInfinite;
+  for (std::size_t i = seen_; i < order_.size(); ++i)
+    least = std::min(least, problem_.grasps[static_cast<std::size_t>(order_[i])].cost);
+  return least;
+}
+
+std::vector<Contact> CarryCandidates::first_contacts(bool at_goal) {
+  for (std::size_t i = 0; i < result_.grasps.size(); ++i) {
+    const Rejections& seen = at_goal ? result_.grasps[i].goal : result_.grasps[i].start;
     if (seen.scene + seen.self_collision == 0) continue;
     const int grasp = static_cast<int>(i);
     std::vector<Contact> contacts;
-    CollisionChecker checker = checks.whole(grasp);
+    CollisionChecker checker = checks_.whole(grasp);
     Rejections unused;
     const auto look = [&](const Eigen::VectorXd& q) {
       if (contacts.empty()) contacts = checker.contacts(q);
       return ReachVerdict{Rejection::none, true};
     };
-    arm_configurations(checks.group(checks.opening_of(grasp)), pose_of_tool(problem, grasp, at_goal),
-                       options.ik_solutions, ik_of(options, grasp), look, unused);
+    arm_configurations(checks_.group(checks_.opening_of(grasp)), pose_of_tool(problem_, grasp, at_goal),
+                       options_.ik_solutions, ik_of(options_, grasp), look, unused);
     if (!contacts.empty()) return contacts;
   }
   return {};

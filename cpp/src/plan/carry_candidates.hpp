@@ -5,6 +5,7 @@
 #include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
 #include "plan/carry_checks.hpp"
+#include "plan/carry_clock.hpp"
 
 namespace mmgrasp::detail {
 
@@ -18,14 +19,39 @@ struct CarryCandidate {
   double straight_cost() const;
 };
 
-/// Solves IK for every grasp at both ends (P2 4.3.2.3, with several solutions) and keeps those with both; `reports`
-/// gets one entry a grasp. False when stopped or out of time.
-bool find_candidates(const ManipulationProblem& problem, const ManipulationOptions& options, CarryChecks& checks,
-                     std::vector<CarryCandidate>& candidates, std::vector<GraspReport>& reports,
-                     const Monitor& monitor);
+/// The grasps of a problem with arm configurations at both ends (P2 4.3.2.3, with several solutions), found for some
+/// more of them at a time, in an order drawn by the seed: a planner can search those it has before it asks for others.
+class CarryCandidates {
+ public:
+  /// `result` gets a report for each grasp, and the time spent.
+  CarryCandidates(const ManipulationProblem& problem, const ManipulationOptions& options, CarryChecks& checks,
+                  const CarryClock& clock, const Monitor& monitor, ManipulationResult& result);
 
-/// What touches at the start (or goal) with the first grasp that reports a collision there; empty when none does.
-std::vector<Contact> first_contacts(CarryChecks& checks, const ManipulationOptions& options,
-                                    const std::vector<GraspReport>& reports, bool at_goal);
+  /// Those found so far; find_more() adds at the end.
+  const std::vector<CarryCandidate>& found() const { return found_; }
+  /// Looks at more grasps, `all` that are left or twice as many as the last time. False when none was left, or when
+  /// stopped or out of time.
+  bool find_more(bool all);
+  /// Every grasp was looked at.
+  bool complete() const { return seen_ == order_.size(); }
+  /// No path with any grasp not yet looked at costs less; infinite when there is none.
+  double least_cost_left() const;
+
+  /// What touches at the start (or goal) with the first grasp that reports a collision there; empty when none does.
+  std::vector<Contact> first_contacts(bool at_goal);
+
+ private:
+  CarryCandidate look_at(int grasp, int worker, GraspReport& report);
+
+  const ManipulationProblem& problem_;
+  const ManipulationOptions& options_;
+  CarryChecks& checks_;
+  const CarryClock& clock_;
+  const Monitor& monitor_;
+  ManipulationResult& result_;
+  std::vector<int> order_;
+  std::size_t seen_ = 0, next_;  ///< Of order_: how many were looked at, and how many come next.
+  std::vector<CarryCandidate> found_;
+};
 
 }  // namespace mmgrasp::detail

@@ -1,6 +1,7 @@
 #include "plan/carry_checks.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 namespace mmgrasp::detail {
@@ -101,7 +102,10 @@ HeldChecker& CarryChecks::held(int worker, int grasp) {
 
 bool CarryChecks::path_edge_is_free(int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   HeldChecker& checker = holding(whole_[static_cast<std::size_t>(opening_of(grasp))], grasp, false);
-  return checker.edge_is_free(a, b, path_edge_);
+  // Optimal paths graze, and who looks again by joint steps alone looks at other configurations.
+  EdgeOptions by_joints = path_edge_;
+  by_joints.workspace_step = std::numeric_limits<double>::infinity();
+  return checker.edge_is_free(a, b, path_edge_) && checker.edge_is_free(a, b, by_joints);
 }
 
 int CarryChecks::blocked_edge(int grasp, const JointPath& path) {

@@ -5,7 +5,6 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
-#include "plan/carry_candidates.hpp"
 #include "plan/carry_planner.hpp"
 #include "plan/roadmap_data.hpp"
 
@@ -52,6 +51,7 @@ void PrmStarMgOptions::check() const {
 void ManipulationOptions::check() const {
   detail::carry_planner(planner);
   require(ik_solutions > 0, "ik_solutions", ik_solutions, "must be > 0");
+  require(first_grasps >= 0, "first_grasps", first_grasps, "must be >= 0");
   require(time_limit > 0, "time_limit", time_limit, "must be > 0 [s]");
   edge.check();
   ik.check();
@@ -69,28 +69,21 @@ ManipulationResult plan_manipulation(const ManipulationProblem& problem, const M
   }
   const detail::CarryPlanner& planner = detail::carry_planner(options.planner);
   ManipulationResult result;
-  const detail::CarryClock clock;
+  detail::CarryClock clock;
   detail::CarryChecks checks(problem, options.edge, resolve_threads(options.threads));
-  std::vector<detail::CarryCandidate> candidates;
-  const bool all_seen = detail::find_candidates(problem, options, checks, candidates, result.grasps, monitor);
-  result.stats.ik_seconds = clock.seconds();
+  detail::CarryCandidates candidates(problem, options, checks, clock, monitor, result);
+  detail::CarryInput input{problem, options, roadmap, checks, candidates, improved, monitor, clock};
+  planner.run(input, result);
+  result.stats.search_seconds = clock.seconds() - result.stats.ik_seconds;
   bool any_start = false;
   for (const GraspReport& report : result.grasps) {
     any_start |= report.start_solutions > 0;
     result.rejections += report.start;
     result.rejections += report.goal;
   }
-  if (!all_seen) {
-    result.outcome = monitor.stopped() ? Outcome::stopped : Outcome::timeout;
-  } else if (candidates.empty()) {
+  if (candidates.complete() && candidates.found().empty()) {
     result.outcome = any_start ? Outcome::invalid_goal : Outcome::invalid_start;
-    result.contacts = detail::first_contacts(checks, options, result.grasps, any_start);
-  } else {
-    detail::CarryInput input{
-        problem,  options, roadmap, checks, std::move(candidates), options.time_limit - result.stats.ik_seconds,
-        improved, monitor};
-    planner.run(input, result);
-    result.stats.search_seconds = input.clock.seconds();
+    result.contacts = candidates.first_contacts(any_start);
   }
   return result;
 }

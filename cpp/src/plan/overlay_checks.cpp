@@ -31,8 +31,10 @@ std::vector<RobotItem> asked_once(std::vector<RobotItem> items) {
 }  // namespace
 
 OverlayChecks::OverlayChecks(const Roadmap& roadmap, CarryChecks& checks, std::vector<RoadmapKnowledge>& knowledge,
-                             int threads, ManipulationStats& stats)
-    : roadmap_(roadmap), checks_(checks), knowledge_(knowledge), threads_(threads), stats_(stats) {}
+                             int threads, const Monitor& monitor, ManipulationStats& stats)
+    : roadmap_(roadmap), checks_(checks), knowledge_(knowledge), threads_(threads), stats_(stats) {
+  stop_.stop = monitor.stop;
+}
 
 std::vector<char> OverlayChecks::check(const std::vector<GraspOverlay*>& paths) {
   paths_ = &paths;
@@ -46,7 +48,7 @@ std::vector<char> OverlayChecks::check(const std::vector<GraspOverlay*>& paths) 
 }
 
 void OverlayChecks::run(std::size_t count, std::size_t worth, const std::function<void(std::size_t, int)>& work) {
-  parallel_for(count, count >= worth ? threads_ : 1, work);
+  parallel_for(count, count >= worth ? threads_ : 1, work, stop_);
 }
 
 // The ends were checked with their IK.

@@ -15,9 +15,10 @@ namespace mmgrasp::detail {
 class OverlayChecks {
  public:
   OverlayChecks(const Roadmap& roadmap, CarryChecks& checks, std::vector<RoadmapKnowledge>& knowledge, int threads,
-                ManipulationStats& stats);
+                const Monitor& monitor, ManipulationStats& stats);
 
-  /// Whether each path is free; what was learned goes to the overlays and to the robot's knowledge.
+  /// Whether each path is free; what was learned goes to the overlays and to the robot's knowledge. When stopped on the
+  /// way, answers and knowledge are worth nothing.
   std::vector<char> check(const std::vector<GraspOverlay*>& paths);
 
  private:
@@ -46,6 +47,7 @@ class OverlayChecks {
   CarryChecks& checks_;
   std::vector<RoadmapKnowledge>& knowledge_;
   int threads_;
+  Monitor stop_;  ///< Silent.
   ManipulationStats& stats_;
   const std::vector<GraspOverlay*>* paths_ = nullptr;
   std::vector<char> live_;

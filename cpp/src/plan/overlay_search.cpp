@@ -9,6 +9,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr std::size_t kBreath = 256;  // Nodes between two questions whether to give up.
 
 }  // namespace
 
@@ -79,11 +80,14 @@ void OverlaySearch::expand_vertex(const Entry& at, const RoadmapKnowledge& robot
   }
 }
 
-bool OverlaySearch::search(GraspOverlay& overlay, const RoadmapKnowledge& robot, double bound) {
+OverlaySearch::End OverlaySearch::search(GraspOverlay& overlay, const RoadmapKnowledge& robot, double bound,
+                                         std::size_t patience) {
   begin(overlay);
   limit_ = (bound - overlay.candidate.cost) * (1 + kSlack);
   for (int s = 0; s < overlay.starts(); ++s) relax(overlay.vertex_count + s, 0, -1, 0);
   int reached = -1;
+  bool gave_up = false;
+  std::size_t looked_at = 0, gone_on = 0;
   while (!heap_.empty()) {
     const Entry top = heap_.front();
     std::pop_heap(heap_.begin(), heap_.end(), later);
@@ -93,6 +97,9 @@ bool OverlaySearch::search(GraspOverlay& overlay, const RoadmapKnowledge& robot,
       reached = top.node;
       break;
     }
+    reached_ = top.key + overlay.candidate.cost;
+    gave_up = ++looked_at % kBreath == 0 && stopped && stopped();
+    if (gave_up) break;
     if (top.node >= overlay.vertex_count) {
       for (const int link : overlay.from_start[static_cast<std::size_t>(top.node - overlay.vertex_count)])
         follow(top.node, top.cost, link);
@@ -104,13 +111,18 @@ bool OverlaySearch::search(GraspOverlay& overlay, const RoadmapKnowledge& robot,
       robot.set_vertex(top.node, is_free);
       state = is_free ? RoadmapKnowledge::free : RoadmapKnowledge::blocked;
     }
-    if (state != RoadmapKnowledge::blocked) expand_vertex(top, robot);
+    if (state == RoadmapKnowledge::blocked) continue;
+    // Those found blocked do not count: how many there are depends on what other threads have found out meanwhile.
+    gave_up = gone_on++ == patience;
+    if (gave_up) break;
+    expand_vertex(top, robot);
   }
   for (const int link : overlay.into_goals)
     first_goal_link_[static_cast<std::size_t>(overlay.links[static_cast<std::size_t>(link)].from)] = -1;
-  if (reached < 0) return false;
+  if (gave_up) return End::gave_up;
+  if (reached < 0) return End::none;
   take_path(overlay, reached);
-  return true;
+  return End::found;
 }
 
 void OverlaySearch::take_path(GraspOverlay& overlay, int goal) const {

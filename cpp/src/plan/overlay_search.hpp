@@ -1,26 +1,37 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
+#include "mmgrasp/core/export.hpp"
 #include "plan/grasp_overlay.hpp"
 
 namespace mmgrasp::detail {
 
 /// Shortest paths over the roadmap and one overlay: A* with the straight line to the nearest goal as heuristic and an
 /// upper bound (P2 Algorithm 4.2). Scratch is reused: one object per thread.
-class OverlaySearch {
+class MMGRASP_EXPORT OverlaySearch {
  public:
+  enum class End { found, none, gave_up };
+
   explicit OverlaySearch(const Roadmap& roadmap);
 
   /// Asked of a vertex the robot is not yet known to pass or not, when the search would go on from it; empty: such
   /// vertices count as free. Must answer the same whenever it is asked.
   std::function<bool(int vertex)> robot_is_free;
+  /// Asked now and then whether to give up; empty: never.
+  std::function<bool()> stopped;
 
   /// Finds the cheapest path not known to be blocked that costs at most `bound` (with a relative slack of 1e-9, since
-  /// the bound may be this very path, summed in another order). False when there is none.
-  bool search(GraspOverlay& overlay, const RoadmapKnowledge& robot, double bound);
+  /// the bound may be this very path, summed in another order). Gives up when it would go on from more than `patience`
+  /// vertices.
+  End search(GraspOverlay& overlay, const RoadmapKnowledge& robot, double bound,
+             std::size_t patience = std::numeric_limits<std::size_t>::max());
+  /// After giving up: no path costs less.
+  double reached() const { return reached_; }
 
  private:
   struct Node {
@@ -48,7 +59,7 @@ class OverlaySearch {
   std::vector<Entry> heap_;
   std::uint32_t round_ = 0;
   const GraspOverlay* overlay_ = nullptr;
-  double limit_ = 0;
+  double limit_ = 0, reached_ = 0;
 };
 
 /// Cost of the best path that leaves one of the overlay's starts for a node of an earlier path and a later node of that

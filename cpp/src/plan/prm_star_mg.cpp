@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 
 #include "mmgrasp/core/parallel.hpp"
-#include "mmgrasp/core/random.hpp"
+#include "plan/carry_shortening.hpp"
 #include "plan/overlay_checks.hpp"
 #include "plan/overlay_search.hpp"
 
@@ -18,6 +17,10 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t kSplices = 16;       // Earlier paths from which bounds are spliced.
 constexpr std::size_t kLargestRound = 32;  // Grasps looked at side by side; whatever the number of threads.
 constexpr std::size_t kSearches = 4;       // Graph searches that are worth a thread.
+constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
+// As long as there is no path and grasps are left to look at: what one that was found is worth before the next ones
+// are, in searches and checks, and vertices a grasp's first search goes on from.
+constexpr std::size_t kLooks = 4, kPatience = 100;
 // With more openings than these, vertices are checked for the robot on paths only.
 constexpr int kSharingOpenings = 8;
 
@@ -29,26 +32,29 @@ class RoadmapSearch {
         roadmap_(roadmap),
         result_(result),
         threads_(resolve_threads(input.options.threads)),
-        checks_(roadmap, input.checks, knowledge_, threads_, result.stats),
+        checks_(roadmap, input.checks, knowledge_, threads_, input.monitor, result.stats),
         best_(result.path ? result.cost : kInfinite) {
     for (int i = 0; i < input.checks.opening_count(); ++i) knowledge_.emplace_back(roadmap);
-    for (const CarryCandidate& candidate : input.candidates) overlays_.emplace_back(roadmap, candidate);
-    for (int worker = 0; worker < threads_; ++worker) searches_.emplace_back(roadmap);
+    for (int worker = 0; worker < threads_; ++worker) {
+      searches_.emplace_back(roadmap);
+      searches_.back().stopped = [this] { return input_.out_of_time(); };
+    }
   }
 
   /// False when time ran out before all grasps were searched.
   bool run() {
-    const std::vector<int> order = shuffled();
-    const std::size_t all = std::max<std::size_t>(1, order.size());
-    const std::size_t size = input_.options.prm.batch > 0 ? static_cast<std::size_t>(input_.options.prm.batch) : all;
-    bool whole = true;
-    for (std::size_t first = 0; first < order.size() && whole; first += size) {
-      input_.monitor.report("search", static_cast<double>(first) / static_cast<double>(order.size()));
-      const std::size_t last = std::min(order.size(), first + size);
-      whole = search_batch({order.begin() + static_cast<long>(first), order.begin() + static_cast<long>(last)});
-    }
+    const bool heap_of_all = input_.options.prm.batch == 0 && input_.options.prm.lazy_grasps;
+    do {
+      const std::size_t before = overlays_.size();
+      take_candidates();
+      if (!heap_of_all) continue;
+      for (std::size_t i = before; i < overlays_.size(); ++i) push_straight(static_cast<int>(i));
+      look(kLooks * (overlays_.size() - before));
+    } while (!input_.out_of_time() && input_.candidates.find_more(best_ < kInfinite));
+    const bool whole = input_.candidates.complete() && (heap_of_all ? search_heap() : search_batches());
     result_.lower_bound = best_;
     if (!whole) {
+      result_.lower_bound = std::min(result_.lower_bound, input_.candidates.least_cost_left());
       for (const Entry& open : heap_) result_.lower_bound = std::min(result_.lower_bound, open.key);
       // Grasps that were not begun are bounded by their straight lines.
       for (const GraspOverlay& overlay : overlays_)
@@ -66,22 +72,28 @@ class RoadmapSearch {
   };
   static bool later(const Entry& a, const Entry& b) { return a.key != b.key ? a.key > b.key : a.overlay > b.overlay; }
 
-  std::vector<int> shuffled() const {
-    std::vector<int> order(overlays_.size());
-    std::iota(order.begin(), order.end(), 0);
-    Rng rng(input_.options.seed, 0x6d67);
-    for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[rng.index(i)]);
-    return order;
-  }
-
   GraspOverlay& overlay(int index) { return overlays_[static_cast<std::size_t>(index)]; }
 
-  void push(double key, int index, bool searched) {
-    heap_.push_back({key, index, searched});
-    std::push_heap(heap_.begin(), heap_.end(), later);
+  void take_candidates() {
+    const std::vector<CarryCandidate>& found = input_.candidates.found();
+    for (std::size_t i = overlays_.size(); i < found.size(); ++i) {
+      overlays_.emplace_back(roadmap_, found[i]);
+      overlays_.back().patience = kPatience;
+    }
   }
 
-  bool find_path(int worker, int index, double bound) {
+  void push(const Entry& entry) {
+    heap_.push_back(entry);
+    std::push_heap(heap_.begin(), heap_.end(), later);
+  }
+  void push_straight(int index) {
+    const double straight = overlay(index).candidate.straight_cost();
+    if (straight < best_) push({straight, index, false});
+  }
+  bool promising() const { return !heap_.empty() && heap_.front().key < best_; }
+
+  /// What is left to do with a grasp that was searched, if anything.
+  std::optional<Entry> find_path(int worker, int index, double bound) {
     GraspOverlay& o = overlay(index);
     o.connect(roadmap_, input_.options.prm.straight, best_);
     OverlaySearch& search = searches_[static_cast<std::size_t>(worker)];
@@ -92,22 +104,24 @@ class RoadmapSearch {
         return input_.checks.robot_is_free(worker, opening, roadmap_.vertices().col(v));
       };
     }
-    return search.search(o, knowledge_[static_cast<std::size_t>(opening)], bound);
+    const RoadmapKnowledge& robot = knowledge_[static_cast<std::size_t>(opening)];
+    const std::size_t patience = input_.candidates.complete() ? kNoLimit : o.patience;
+    const OverlaySearch::End end = search.search(o, robot, bound, patience);
+    if (end == OverlaySearch::End::none) return std::nullopt;
+    if (end == OverlaySearch::End::found) return Entry{o.path_cost, index, true};
+    o.patience *= 2;
+    return Entry{search.reached(), index, false};
+  }
+
+  /// A first path over the grasps known so far, with no more than so many steps: others may be easier.
+  void look(std::size_t steps) {
+    for (std::size_t i = 0; i < steps && best_ == kInfinite && promising() && !input_.out_of_time(); ++i) round(1);
   }
 
   /// False when time ran out; what is open is then left in the heap.
-  bool search_batch(const std::vector<int>& batch) {
-    heap_.clear();
-    if (input_.options.prm.lazy_grasps) {
-      for (const int index : batch) {
-        const double straight = overlay(index).candidate.straight_cost();
-        if (straight < best_) push(straight, index, false);
-      }
-    } else if (!search_all(batch)) {
-      return false;
-    }
+  bool search_heap() {
     std::size_t size = 1;
-    while (!heap_.empty() && heap_.front().key < best_) {
+    while (promising()) {
       if (input_.out_of_time()) return false;
       round(size);
       size = std::min(2 * size, kLargestRound);
@@ -115,11 +129,31 @@ class RoadmapSearch {
     return true;
   }
 
+  bool search_batches() {
+    const std::size_t count = overlays_.size();
+    const std::size_t size = input_.options.prm.batch > 0 ? static_cast<std::size_t>(input_.options.prm.batch) : count;
+    for (std::size_t first = 0; first < count; first += size) {
+      input_.monitor.report("search", static_cast<double>(first) / static_cast<double>(count));
+      if (!search_batch(static_cast<int>(first), static_cast<int>(std::min(count, first + size)))) return false;
+    }
+    return true;
+  }
+
+  bool search_batch(int first, int last) {
+    heap_.clear();
+    if (input_.options.prm.lazy_grasps) {
+      for (int index = first; index < last; ++index) push_straight(index);
+    } else if (!search_all(first, last)) {
+      return false;
+    }
+    return search_heap();
+  }
+
   /// Searches every grasp of the batch before anything is checked, each bounded by the best path and by what can be
   /// spliced from those found before it (P2 lines 6-15).
-  bool search_all(const std::vector<int>& batch) {
+  bool search_all(int first, int last) {
     std::vector<int> found;
-    for (const int index : batch) {
+    for (int index = first; index < last; ++index) {
       if (overlay(index).candidate.straight_cost() >= best_) continue;
       if (input_.out_of_time()) return false;
       overlay(index).connect(roadmap_, input_.options.prm.straight, best_);
@@ -127,9 +161,10 @@ class RoadmapSearch {
       for (std::size_t i = found.size() > kSplices ? found.size() - kSplices : 0; i < found.size(); ++i)
         bound = std::min(bound, spliced_cost(roadmap_, overlay(index), overlay(found[i]).nodes));
       ++result_.stats.graph_searches;
-      if (!find_path(0, index, bound)) continue;
-      found.push_back(index);
-      push(overlay(index).path_cost, index, true);
+      const std::optional<Entry> left = find_path(0, index, bound);
+      if (!left) continue;
+      push(*left);
+      if (left->searched) found.push_back(index);
     }
     return true;
   }
@@ -137,30 +172,31 @@ class RoadmapSearch {
   /// Takes the most promising grasps, checks the paths of those that have one, and searches the others and those whose
   /// path is blocked. A free path becomes the best even while others could still be better.
   void round(std::size_t size) {
-    std::vector<int> to_search;
+    std::vector<Entry> taken;
+    std::vector<int> to_search, checked;
     std::vector<GraspOverlay*> to_check;
-    std::vector<int> checked;
-    while (!heap_.empty() && heap_.front().key < best_ && to_search.size() + checked.size() < size) {
+    while (promising() && taken.size() < size) {
       std::pop_heap(heap_.begin(), heap_.end(), later);
-      const Entry top = heap_.back();
+      taken.push_back(heap_.back());
       heap_.pop_back();
-      if (top.searched) {
-        checked.push_back(top.overlay);
-        to_check.push_back(&overlay(top.overlay));
-      } else {
-        to_search.push_back(top.overlay);
-      }
+      const Entry& top = taken.back();
+      (top.searched ? checked : to_search).push_back(top.overlay);
+      if (top.searched) to_check.push_back(&overlay(top.overlay));
     }
     const std::vector<char> free = checks_.check(to_check);
+    if (input_.monitor.stopped()) {
+      for (const Entry& entry : taken) push(entry);
+      return;
+    }
     for (std::size_t i = 0; i < checked.size(); ++i)
       if (!free[i] || !accept(checked[i])) to_search.push_back(checked[i]);
-    std::vector<char> found(to_search.size());
+    std::vector<std::optional<Entry>> left(to_search.size());
     // Not min(bound, spliced): a spliced path may be blocked (errata on Algorithm 4.3).
     parallel_for(to_search.size(), to_search.size() >= kSearches ? threads_ : 1,
-                 [&](std::size_t i, int worker) { found[i] = find_path(worker, to_search[i], best_); });
+                 [&](std::size_t i, int worker) { left[i] = find_path(worker, to_search[i], best_); });
     result_.stats.graph_searches += to_search.size();
-    for (std::size_t i = 0; i < to_search.size(); ++i)
-      if (found[i]) push(overlay(to_search[i]).path_cost, to_search[i], true);
+    for (const std::optional<Entry>& entry : left)
+      if (entry) push(*entry);
   }
 
   /// Checks a free path once more, finely and with everything at once, and takes it when it is the best. False (and the
@@ -195,9 +231,10 @@ class RoadmapSearch {
 /// The roadmap to begin with, built unless given; nothing when stopped.
 std::optional<Roadmap> first_roadmap(CarryInput& input, ManipulationResult& result) {
   if (input.roadmap) return *input.roadmap;
+  const CarryClock clock;
   const Roadmap own = Roadmap::build(input.problem.group, input.options.prm.roadmap, input.monitor);
-  result.stats.roadmap_seconds = input.clock.seconds();
-  input.clock.start();
+  result.stats.roadmap_seconds = clock.seconds();
+  input.clock.leave_out(result.stats.roadmap_seconds);
   if (input.monitor.stopped()) return std::nullopt;
   return own;
 }
@@ -205,7 +242,10 @@ std::optional<Roadmap> first_roadmap(CarryInput& input, ManipulationResult& resu
 }  // namespace
 
 void run_prm_star_mg(CarryInput& input, ManipulationResult& result) {
-  std::optional<Roadmap> roadmap = first_roadmap(input, result);
+  while (input.candidates.found().empty() && input.candidates.find_more(false)) {
+  }
+  std::optional<Roadmap> roadmap;
+  if (!input.candidates.found().empty()) roadmap = first_roadmap(input, result);
   bool whole = false;
   while (roadmap) {
     whole = RoadmapSearch(input, *roadmap, result).run();
@@ -216,10 +256,14 @@ void run_prm_star_mg(CarryInput& input, ManipulationResult& result) {
     roadmap = Roadmap::build(input.problem.group, denser, input.monitor);
     if (input.out_of_time()) break;
   }
-  if (result.path)
+  if (result.path) {
     result.outcome = Outcome::solved;
-  else
+    result.stats.roadmap_cost = result.cost;
+    if (input.options.prm.shorten) shorten_carry(input, result);
+    result.lower_bound = std::min(result.lower_bound, result.cost);
+  } else {
     result.outcome = input.monitor.stopped() ? Outcome::stopped : whole ? Outcome::infeasible : Outcome::timeout;
+  }
 }
 
 }  // namespace mmgrasp::detail

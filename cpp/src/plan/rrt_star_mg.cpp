@@ -24,6 +24,7 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kSame = 1e-9;  // Configurations nearer than this are the same [rad or m].
 constexpr int kHopeless = -2;
+constexpr int kFirst = 16;           // Samples for each grasp found, as long as others are left to look at.
 constexpr int kStraight = 32;        // Straight lines tried before the first sample.
 constexpr int kDuplicates = 4;       // Vertices of other trees taken over by one new vertex.
 constexpr int kHalvings = 3;         // To find how far along an edge the way is free.
@@ -51,16 +52,16 @@ double least_gamma(const JointGroup& group) {
 
 }  // namespace
 
-RrtStarMg::RrtStarMg(CarryInput& input, ManipulationResult& result)
+RrtStarMg::RrtStarMg(CarryInput& input, const RrtStarMgOptions& options, ManipulationResult& result)
     : input_(input),
       result_(result),
-      options_(input.options.rrt),
-      ends_(std::move(input.candidates)),
+      options_(options),
+      ends_(input.candidates.found()),
       informed_(ends_, input.problem.group.sample_lower(), input.problem.group.sample_upper()),
       forest_(ends_),
       rng_(input.options.seed, 0x727274),
       gamma_(options_.gamma > 0 ? options_.gamma : least_gamma(input.problem.group)),
-      best_(kInfinite),
+      best_(result.path ? result.cost : kInfinite),
       own_(static_cast<std::size_t>(ends_.size())),
       bridge_of_(own_.size(), -1),
       to_go_(bridge_of_.size()),
@@ -69,27 +70,46 @@ RrtStarMg::RrtStarMg(CarryInput& input, ManipulationResult& result)
       q_(input.problem.group.size()),
       q_a_(q_.size()),
       q_b_(q_.size()) {
-  input_.checks.coarsen(kCoarse);
+  if (result.path) prune();
 }
 
 void RrtStarMg::run() {
   input_.monitor.report("search", 0);
   try_straight_lines();
+  const double goal = std::min(options_.goal_cost, std::numeric_limits<double>::max());
   int i = 0;
-  for (; i < options_.max_samples && informed_.grasps() > 0 && !(solved() && best_ <= options_.goal_cost); ++i) {
+  for (; i < options_.max_samples && informed_.grasps() > 0 && best_ > goal; ++i) {
     if (input_.out_of_time()) break;
+    // Not before another grasp has one: the path may be a poor one, and trees that have one grow less evenly.
+    if (!solved() && result_.path && !contenders_.empty()) plant();
     if (i % 64 == 0) input_.monitor.report("search", static_cast<double>(i) / options_.max_samples);
     sample(options_.bidirectional ? i % 2 : GraspEnds::kStart);
   }
-  result_.stats.samples = static_cast<std::size_t>(i);
-  result_.stats.vertices = static_cast<std::size_t>(forest_.vertex_count());
-  result_.lower_bound = std::min(best_, ends_.straight_cost(0));
+  result_.stats.samples += static_cast<std::size_t>(i);
+  result_.stats.vertices += static_cast<std::size_t>(forest_.vertex_count());
+  result_.lower_bound = std::min({best_, ends_.straight_cost(0), input_.candidates.least_cost_left()});
   if (options_.keep_trees) keep_trees();
-  if (solved()) {
+  if (result_.path) {
     result_.outcome = Outcome::solved;
   } else {
     result_.outcome = input_.monitor.stopped() ? Outcome::stopped : Outcome::timeout;
   }
+}
+
+void RrtStarMg::plant() {
+  int grasp = 0;
+  while (ends_.grasp(grasp) != result_.grasp_index) ++grasp;
+  best_grasp_ = grasp;
+  if (grasp >= informed_.grasps()) return;  // It is the straight line.
+  const std::vector<Eigen::VectorXd>& path = result_.path->waypoints;
+  int at = forest_.nearest_in_tree(Forest::tree(grasp, GraspEnds::kStart), path.front().data());
+  for (std::size_t i = 1; i + 1 < path.size(); ++i)
+    at = forest_.add(at, forest_.add_configuration(path[i].data()), (path[i] - path[i - 1]).norm());
+  add_bridge(at, forest_.nearest_in_tree(Forest::tree(grasp, GraspEnds::kGoal), path.back().data()));
+  contenders_.push_back(grasp);
+  refresh(grasp);
+  straighten(grasp);
+  refresh(grasp);
 }
 
 void RrtStarMg::keep_trees() {
@@ -264,8 +284,8 @@ int RrtStarMg::advance(int from, int target) {
 // The k-th cheapest-looking grasp with a chance that falls as 1 / k: whoever must be tried to get through, no grasp
 // waits much longer than its place in the list.
 int RrtStarMg::pick_early() {
-  const double count = ends_.size();
-  return std::min(ends_.size() - 1, static_cast<int>(std::pow(count + 1, rng_.uniform())) - 1);
+  const int count = informed_.grasps();
+  return std::min(count - 1, static_cast<int>(std::pow(count + 1.0, rng_.uniform())) - 1);
 }
 
 void RrtStarMg::include_nearest(int nearest, int target) {
@@ -352,7 +372,27 @@ void RrtStarMg::duplicate_into(int made) {
 }
 
 void run_rrt_star_mg(CarryInput& input, ManipulationResult& result) {
-  RrtStarMg(input, result).run();
+  CarryCandidates& candidates = input.candidates;
+  const RrtStarMgOptions& options = input.options.rrt;
+  input.checks.coarsen(kCoarse);
+  RrtStarMgOptions first = options;
+  first.goal_cost = kInfinite;
+  first.keep_trees = false;
+  std::size_t tried = 0;
+  while (candidates.find_more(result.path.has_value()) && !candidates.complete() && !result.path) {
+    first.max_samples = kFirst * static_cast<int>(candidates.found().size() - tried);
+    first.max_samples = std::min(first.max_samples, options.max_samples - static_cast<int>(result.stats.samples));
+    tried = candidates.found().size();
+    if (first.max_samples > 0) RrtStarMg(input, first, result).run();
+    if (result.path && result.cost <= options.goal_cost) return;
+  }
+  RrtStarMgOptions left = options;
+  left.max_samples -= static_cast<int>(result.stats.samples);
+  if (!candidates.found().empty()) {
+    RrtStarMg(input, left, result).run();
+  } else {
+    result.outcome = input.monitor.stopped() ? Outcome::stopped : Outcome::timeout;
+  }
 }
 
 }  // namespace detail

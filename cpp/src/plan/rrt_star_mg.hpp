@@ -16,7 +16,8 @@ namespace mmgrasp::detail {
 /// the new vertex). One thread, so that the samples alone decide what is found.
 class RrtStarMg {
  public:
-  RrtStarMg(CarryInput& input, ManipulationResult& result);
+  /// Over the grasps known now; goes on from the result's path when it has one.
+  RrtStarMg(CarryInput& input, const RrtStarMgOptions& options, ManipulationResult& result);
 
   void run();
 
@@ -36,9 +37,12 @@ class RrtStarMg {
     int bridge = -1;
   };
 
-  bool solved() const { return result_.path.has_value(); }
+  /// There is a path in the trees.
+  bool solved() const { return best_grasp_ >= 0; }
   double radius(int vertices) const;
   void keep_trees();
+  /// Puts the path that the result had beforehand into the trees of its grasp.
+  void plant();
 
   // Growing (rrt_star_mg.cpp). Those that grow return the new vertex, or -1.
   void try_straight_lines();
@@ -87,7 +91,7 @@ class RrtStarMg {
 
   CarryInput& input_;
   ManipulationResult& result_;
-  const RrtStarMgOptions& options_;
+  const RrtStarMgOptions options_;
   GraspEnds ends_;
   InformedUnion informed_;
   Forest forest_;

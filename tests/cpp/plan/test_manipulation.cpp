@@ -21,6 +21,7 @@ ManipulationOptions bar_options() {
   options.prm.roadmap.gamma = 5;
   options.ik_solutions = 2;
   options.time_limit = 100;
+  options.prm.shorten = false;
   return options;
 }
 
@@ -161,18 +162,21 @@ TEST(PrmStarMg, EveryVariantFindsTheExhaustiveOptimum) {
   ASSERT_LT(feasible, 20);
   for (const int batch : {1, 4, 0})
     for (const bool lazy : {false, true})
-      for (const int threads : {1, 2}) {
-        options.prm.batch = batch;
-        options.prm.lazy_grasps = lazy;
-        options.threads = threads;
-        const ManipulationResult result = plan_manipulation(problem, options, &roadmap);
-        ASSERT_EQ(result.outcome, Outcome::solved) << batch << lazy;
-        EXPECT_NEAR(result.cost, best, 1e-9) << batch << lazy;
-        EXPECT_NEAR(result.path->length(), best, 1e-9);
-        EXPECT_NEAR(result.lower_bound, best, 1e-9);
-        // With everything in one batch the first solution is the best.
-        EXPECT_TRUE(batch != 0 || result.improvements.size() == 1u);
-      }
+      for (const int threads : {1, 2})
+        for (const int first_grasps : {0, 1, 6}) {
+          options.prm.batch = batch;
+          options.prm.lazy_grasps = lazy;
+          options.threads = threads;
+          options.first_grasps = first_grasps;
+          const ManipulationResult result = plan_manipulation(problem, options, &roadmap);
+          ASSERT_EQ(result.outcome, Outcome::solved) << batch << lazy << first_grasps;
+          EXPECT_NEAR(result.cost, best, 1e-9) << batch << lazy << first_grasps;
+          EXPECT_NEAR(result.path->length(), best, 1e-9);
+          EXPECT_NEAR(result.lower_bound, best, 1e-9);
+          EXPECT_EQ(result.stats.roadmap_cost, result.cost);
+          // With everything in one batch the first solution is the best.
+          EXPECT_TRUE(batch != 0 || first_grasps != 0 || result.improvements.size() == 1u);
+        }
 }
 
 TEST(PrmStarMg, WithoutStraightEdgesTheRoadmapIsAllThereIs) {

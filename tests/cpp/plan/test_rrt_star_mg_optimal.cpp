@@ -140,6 +140,7 @@ ManipulationOptions options_of(int samples, unsigned seed = 1) {
   options.rrt.max_samples = samples;
   options.seed = seed;
   options.time_limit = 300;
+  options.first_grasps = 0;
   return options;
 }
 
@@ -167,6 +168,14 @@ TEST(RrtStarMgOptimal, ConvergesToTheBestOfAllGrasps) {
       excess.push_back(sum / 3);
     }
     EXPECT_LE(excess[1], excess[0] + 1e-9);
+    // With a first path of a few grasps to begin with.
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      ManipulationOptions options = options_of(5000, seed);
+      options.first_grasps = 2;
+      const ManipulationResult result = plan_manipulation(problem, options);
+      EXPECT_GT(result.cost, 0.97 * best);
+      EXPECT_LT(result.cost, 1.04 * best) << wall << " seed " << seed;
+    }
   }
 }
 

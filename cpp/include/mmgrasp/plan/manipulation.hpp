@@ -56,12 +56,18 @@ struct MMGRASP_EXPORT PrmStarMgOptions {
   /// Once the best path over the roadmap is found, double its vertices and go on, as long as there are no more than
   /// this; 0: never. Building denser roadmaps counts as search.
   int max_vertices = 0;
+  /// Shorten the best path over the roadmap at the end, as plan_motion does; off: as in the paper.
+  bool shorten = true;
   void check() const;
 };
 
 struct MMGRASP_EXPORT ManipulationOptions {
-  std::string planner = "prm_star_mg";         ///< A name of manipulation_planner_names().
-  int ik_solutions = 4;                        ///< Arm configurations tried for each grasp at each end; > 0.
+  std::string planner = "prm_star_mg";  ///< A name of manipulation_planner_names().
+  int ik_solutions = 4;                 ///< Arm configurations tried for each grasp at each end; > 0.
+  /// Grasps whose arm configurations are found before the first search. As long as there is no path, twice as many
+  /// follow each time, then all others at once: a first path need not wait for all of them. 0: all before any search,
+  /// as in the paper. >= 0.
+  int first_grasps = 4;
   EdgeOptions edge{0.02, 0.005, false, 1e-4};  ///< How finely edges are checked.
   IkOptions ik;
   double time_limit = 15;  ///< Wall-clock cap on IK and search together, without the roadmap's building [s]; > 0.
@@ -83,13 +89,14 @@ struct MMGRASP_EXPORT GraspReport {
 
 /// A better solution on the way.
 struct MMGRASP_EXPORT Improvement {
-  double seconds = 0;  ///< Since the search began; IK and the roadmap's building come before.
+  double seconds = 0;  ///< Since the call began, the first roadmap's building left out.
   double cost = 0;
   int grasp = -1;
 };
 
 struct MMGRASP_EXPORT ManipulationStats {
   double ik_seconds = 0, roadmap_seconds = 0, search_seconds = 0;
+  double roadmap_cost = 0;  ///< Of prm_star_mg's best path before it was shortened.
   std::size_t graph_searches = 0;
   std::size_t grasps_searched = 0;
   std::size_t edges_checked_robot = 0;  ///< For the robot alone, shared by all grasps of an opening.
@@ -104,10 +111,10 @@ struct MMGRASP_EXPORT ManipulationResult {
   std::optional<JointPath> path;  ///< Set if and only if solved; checked again at 0.005 rad with the object in hand.
   double cost = 0;                ///< Path length plus the grasp's cost.
   /// No path costs less: with prm_star_mg none over this roadmap and these arm configurations, otherwise the least
-  /// straight line of any grasp.
+  /// straight line of any grasp. At most `cost`: a path that was shortened has left the roadmap.
   double lower_bound = 0;
   std::vector<Improvement> improvements;
-  std::vector<GraspReport> grasps;  ///< One a grasp.
+  std::vector<GraspReport> grasps;  ///< One a grasp; empty for those not looked at when the run ended early.
   std::vector<Contact> contacts;    ///< With invalid_start or invalid_goal: what touches there with the first grasp.
   Rejections rejections;            ///< Sum over all grasps and both ends.
   std::vector<SearchTree> trees;  ///< Of rrt_star_mg when it was asked to keep them; those of grasps still in the race.
@@ -115,9 +122,9 @@ struct MMGRASP_EXPORT ManipulationResult {
 };
 
 /// Collision-free path of the group that carries the object from start to goal with the best of the grasps. Every grasp
-/// is looked at, none sampled away. No grasp reachable at the start: invalid_start; at the goal: invalid_goal;
-/// `rejections` and `grasps` say why. With `roadmap` the graph is not built again; it must be of the same robot and
-/// joints. `improved` is called with every better solution.
+/// is looked at, none sampled away, unless the clock, the stop token or `goal_cost` ends the run. No grasp reachable at
+/// the start: invalid_start; at the goal: invalid_goal; `rejections` and `grasps` say why. With `roadmap` the graph is
+/// not built again; it must be of the same robot and joints. `improved` is called with every better solution.
 MMGRASP_EXPORT ManipulationResult plan_manipulation(const ManipulationProblem& problem,
                                                     const ManipulationOptions& options = {},
                                                     const Roadmap* roadmap = nullptr, const Monitor& monitor = {},

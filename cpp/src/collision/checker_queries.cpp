@@ -1,6 +1,7 @@
 // The hot query: frames, balls against boxes eight by eight, covers, and only then the exact narrow phase.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -39,25 +40,49 @@ float slack_of(const FloatRigid& T, float extent_a, float extent_b) {
   return 2e-6f * (std::abs(T.t[0]) + std::abs(T.t[1]) + std::abs(T.t[2]) + 3 * (extent_a + extent_b));
 }
 
+// The bounding box of a body, in the frame of another one.
+struct SeenBox {
+  SeenBox(const Rigid& T_from, const detail::Solid& solid, const Rigid& T_solid) {
+    Rigid box = T_from.to(T_solid);
+    box.t += box.R * solid.box_centre;
+    T = to_float(box);
+    for (int k = 0; k < 3; ++k) half[k] = static_cast<float>(solid.box_half[k]);
+  }
+  float slack(const detail::BallCover& cover) const {
+    return slack_of(T, cover.extent(), std::max({half[0], half[1], half[2]}));
+  }
+  FloatRigid T;
+  float half[3];
+};
+
+// Of all levels.
+std::array<detail::CoverView, detail::BodyBounds::kLevels> views(const detail::CoverLevels& covers) {
+  std::array<detail::CoverView, detail::BodyBounds::kLevels> out;
+  for (std::size_t i = 0; i < covers.size(); ++i) out[i] = covers[i].view();
+  return out;
+}
+
 // A body's cover, placed at T_a, against the bounding box of the other one.
 CoverAnswer cover_against_box(const detail::BallCover& cover, const Rigid& T_a, const detail::Solid& other,
                               const Rigid& T_b, double grow, bool seek_overlap) {
-  Rigid box = T_a.to(T_b);
-  box.t += box.R * other.box_centre;
-  const FloatRigid T = to_float(box);
-  const float half[3] = {static_cast<float>(other.box_half[0]), static_cast<float>(other.box_half[1]),
-                         static_cast<float>(other.box_half[2])};
-  const float slack = slack_of(T, cover.extent(), std::max({half[0], half[1], half[2]}));
-  return detail::kernels().cover_box(cover.view(), T, half, static_cast<float>(grow), slack, seek_overlap);
+  const SeenBox box(T_a, other, T_b);
+  return detail::kernels().cover_box(cover.view(), box.T, box.half, static_cast<float>(grow), box.slack(cover),
+                                     seek_overlap);
+}
+
+// The same for its cover in all levels.
+CoverAnswer balls_against_box(const detail::CoverLevels& covers, const Rigid& T_a, const detail::Solid& other,
+                              const Rigid& T_b, double grow, bool seek_overlap) {
+  const SeenBox box(T_a, other, T_b);
+  return detail::kernels().box_cover(views(covers).data(), static_cast<int>(covers.size()), box.T, box.half,
+                                     static_cast<float>(grow), box.slack(covers[0]), seek_overlap);
 }
 
 // A body's balls, placed at T_balls, in the field of a body at T_field.
 CoverAnswer balls_in_field(const detail::DistanceField& field, const Rigid& T_field, const detail::CoverLevels& balls,
                            const Rigid& T_balls, double grow, bool seek_overlap) {
   const FloatRigid T = to_float(T_field.to(T_balls));
-  detail::CoverView levels[detail::BodyBounds::kLevels];
-  for (std::size_t i = 0; i < balls.size(); ++i) levels[i] = balls[i].view();
-  return detail::kernels().field_cover(field.view(), levels, static_cast<int>(balls.size()), T,
+  return detail::kernels().field_cover(field.view(), views(balls).data(), static_cast<int>(balls.size()), T,
                                        static_cast<float>(grow), slack_of(T, field.extent(), balls[0].extent()),
                                        seek_overlap);
 }
@@ -154,6 +179,12 @@ CoverAnswer CollisionChecker::Impl::pair_balls(const detail::ShapePair& pair, do
   const CoverAnswer second = cover_against_box(b.bounds->balls(), T_b, *a.solid, T_a, more, seek_overlap);
   if (second == detail::kApart || (second == detail::kOverlap && a.solid->is_box)) return second;
   if (more > kFieldReach) return detail::kMaybe;
+  // A box needs no field.
+  if (a.solid->is_box != b.solid->is_box) {
+    const detail::BodyShape &box = a.solid->is_box ? a : b, &other = a.solid->is_box ? b : a;
+    const Rigid &T_box = a.solid->is_box ? T_a : T_b, &T_other = a.solid->is_box ? T_b : T_a;
+    return balls_against_box(other.bounds->detail(*other.solid).covers, T_other, *box.solid, T_box, more, seek_overlap);
+  }
   // The larger body as the field: the smaller one has the smaller balls.
   const bool a_larger = a.solid->ball_radius > b.solid->ball_radius;
   const auto by_field = [&](const detail::BodyShape& body, const Rigid& T_body, const detail::BodyShape& balls,

@@ -98,6 +98,9 @@ struct Kernels {
   /// where a ball may touch are its parts looked at.
   CoverAnswer (*field_cover)(const FieldView& field, const CoverView* levels, int level_count,
                              const FloatRigid& cover_in_field, float grow, float slack, bool seek_overlap);
+  /// A box placed in the frame of such covers against them.
+  CoverAnswer (*box_cover)(const CoverView* levels, int level_count, const FloatRigid& box, const float* half,
+                           float grow, float slack, bool seek_overlap);
 };
 
 /// The quickest this machine can run, unless use_collision_kernels() chose others.

@@ -325,6 +325,47 @@ void field_is_never_sure_and_wrong(bool of_centres) {
   for (const int count : answers) EXPECT_GT(count, 100);
 }
 
+TEST_P(CollisionKernels, LevelsOfCoversAgainstBoxAreNeverSureAndWrong) {
+  Rng random(13);
+  int answers[3] = {};
+  for (int round = 0; round < 3000; ++round) {
+    Cover coarse, fine;
+    for (int i = 0; i < kLanes; ++i) {
+      const Vector3d centre = point_within(random, 0.2);
+      coarse.add(centre, 0.06, -1);
+      for (int k = 0; k < kLanes; ++k) fine.add(centre + point_within(random, 0.02), 0.02, round % 2 == 0 ? 0.01 : -1);
+    }
+    const CoverView levels[2] = {coarse.view(), fine.view()};
+    Box box = any_box(random);
+    box.centre *= 0.6;
+    const float half[3] = {static_cast<float>(box.half[0]), static_cast<float>(box.half[1]),
+                           static_cast<float>(box.half[2])};
+    const auto ask = [&](bool seek_overlap) {
+      return kernels().box_cover(levels, 2, to_float(box.R, box.centre), half, 0, static_cast<float>(kSlack),
+                                 seek_overlap);
+    };
+    const CoverAnswer answer = ask(true);
+    EXPECT_EQ(ask(false) == kApart, answer == kApart);
+    ++answers[answer];
+    double least = 1e9, least_inner = 1e9;
+    for (int i = 0; i < fine.filled; ++i) {
+      const double d = box.distance(fine.centre(i));
+      least = std::min(least, d - fine.outer[i]);
+      if (fine.inner[i] > 0) least_inner = std::min(least_inner, d - fine.inner[i]);
+    }
+    if (least < 0) {
+      EXPECT_NE(answer, kApart);
+    }
+    if (least > 2 * kSlack) {
+      EXPECT_EQ(answer, kApart);
+    }
+    if (least_inner > 0) {
+      EXPECT_NE(answer, kOverlap);
+    }
+  }
+  for (const int count : answers) EXPECT_GT(count, 100);
+}
+
 TEST_P(CollisionKernels, FieldOfCellsIsNeverSureAndWrong) {
   field_is_never_sure_and_wrong(false);
 }

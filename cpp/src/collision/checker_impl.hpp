@@ -68,8 +68,14 @@ struct CollisionChecker::Impl {
   detail::CoverAnswer pair_within(const detail::ShapePair& pair, double motion, char& hulls_meet);
   detail::CoverAnswer scene_within(int shape, int scene_shape, double motion);
   bool balls_apart(const detail::ShapePair& pair) const;
+  /// In the order of the plan.
+  detail::BallRows placed_balls() const {
+    const float* x = ball_numbers.data();
+    return {x, x + ball_row, x + 2 * ball_row, x + 3 * ball_row};
+  }
   Eigen::Vector3d ball_centre(int ball) const {
-    return {placed_balls.x[ball], placed_balls.y[ball], placed_balls.z[ball]};
+    const detail::BallRows balls = placed_balls();
+    return {balls.x[ball], balls.y[ball], balls.z[ball]};
   }
   /// False when plan->moving[body] hits a bounded scene shape. Clears `proven` unless it stays free while none of its
   /// points moves more than `motion` [m].
@@ -103,8 +109,8 @@ struct CollisionChecker::Impl {
   std::size_t queries = 0;
 
   std::vector<double> frames;       ///< Of the last configuration; see Kernels::place_frames.
-  std::vector<float> ball_numbers;  ///< Of the last configuration; what `placed_balls` shows.
-  detail::BallRows placed_balls;    ///< In the order of the plan.
+  std::vector<float> ball_numbers;  ///< Of the last configuration; see placed_balls.
+  int ball_row;                     ///< Balls of the plan, whole lanes.
   bool frames_valid = false;
   Poses links;  ///< Of the last configuration given to place().
   bool links_valid = false;

@@ -103,15 +103,13 @@ CollisionChecker::Impl::Impl(std::shared_ptr<const detail::Snapshot> snapshot_in
       plan(std::make_shared<detail::PairPlan>(*snapshot, group_in)),
       group(group_in),
       frames(16 * static_cast<std::size_t>(plan->frames.count())),
+      ball_row(static_cast<int>((plan->balls.size() + detail::kLanes - 1) / detail::kLanes * detail::kLanes)),
       balls(snapshot->shapes.size(), Eigen::Vector3d::Zero()),
       poses(snapshot->shapes.size()),
       pose_stamp(snapshot->shapes.size(), 0),
       moves(snapshot->shapes.size(), 0),
       pair_masks(plan->blocks.size()) {
-  const std::size_t row = (plan->balls.size() + detail::kLanes - 1) / detail::kLanes * detail::kLanes;
-  ball_numbers.resize(4 * row);
-  float* const x = ball_numbers.data();
-  placed_balls = {x, x + row, x + 2 * row, x + 3 * row};
+  ball_numbers.resize(4 * static_cast<std::size_t>(ball_row));
   for (const int s : plan->moving) moves[s] = 1;
 }
 
@@ -132,7 +130,8 @@ void CollisionChecker::Impl::place_balls(const double* q) {
   }
   plan->frames.place(q, frames.data());
   const std::size_t count = first ? plan->balls.size() : plan->moving.size();
-  detail::kernels().place_balls(plan->balls.data(), static_cast<int>(count), frames.data(), placed_balls);
+  detail::kernels().place_balls(plan->balls.data(), static_cast<int>(count), frames.data(), ball_numbers.data(),
+                                ball_row);
 }
 
 void CollisionChecker::Impl::place(const Eigen::VectorXd& q) {
@@ -163,7 +162,7 @@ const Rigid& CollisionChecker::Impl::pose(int s) {
 }
 
 bool CollisionChecker::Impl::balls_apart(const detail::ShapePair& pair) const {
-  const auto& [x, y, z, radius] = placed_balls;
+  const auto [x, y, z, radius] = placed_balls();
   const int a = pair.ball_a, b = pair.ball_b;
   const float dx = x[a] - x[b], dy = y[a] - y[b], dz = z[a] - z[b], reach = radius[a] + radius[b];
   return dx * dx + dy * dy + dz * dz > reach * reach;
@@ -226,7 +225,7 @@ CoverAnswer CollisionChecker::Impl::scene_balls(int s, int scene_shape, double m
   if (other.solid->kind == detail::SolidKind::voxels) {
     const int ball = plan->ball_of[s];
     if (other.solid->field->distance(other.T_world.R.transpose() * (ball_centre(ball) - other.T_world.t)) >
-        placed_balls.radius[ball] + more)
+        placed_balls().radius[ball] + more)
       return detail::kApart;
     const auto& covers = shape.bounds->detail(*shape.solid).covers;
     return balls_in_field(*other.solid->field, other.T_world, covers, pose(s), grow, more == 0);
@@ -285,14 +284,14 @@ void CollisionChecker::Impl::gather_near(int first, int last) {
   if (packs.flat()) {
     const int count = packs.count();
     masks.resize(static_cast<std::size_t>(count * (last - first)));
-    detail::kernels().balls_meet(packs.data(), count, placed_balls.from(first), last - first, masks.data(), nullptr);
+    detail::kernels().balls_meet(packs.data(), count, placed_balls().from(first), last - first, masks.data(), nullptr);
     for (int b = first; b < last; ++b) {
       for (int k = 0; k < count; ++k) add(b, k, masks[static_cast<std::size_t>((b - first) * count + k)]);
     }
     return;
   }
   for (int b = first; b < last; ++b) {
-    const detail::BallRows ball = placed_balls.from(b);
+    const detail::BallRows ball = placed_balls().from(b);
     const float at[4] = {*ball.x, *ball.y, *ball.z, *ball.radius};
     packs.packs_near(at, [&](int pack) {
       std::uint8_t mask = 0;
@@ -305,7 +304,7 @@ void CollisionChecker::Impl::gather_near(int first, int last) {
 
 bool CollisionChecker::Impl::body_is_free(int body, double motion, bool& proven) {
   const detail::ScenePacks& packs = snapshot->packs;
-  const detail::BallRows ball = placed_balls.from(body);
+  const detail::BallRows ball = placed_balls().from(body);
   const int s = plan->moving[static_cast<std::size_t>(body)];
   // A body that moves far is only looked at where it is: what its ball, grown by the motion, meets would hardly ever
   // turn out to stay clear.
@@ -388,7 +387,7 @@ bool CollisionChecker::Impl::self_collides() {
   if (*constant_self) return true;
   if (last_pair >= 0 && pair_collides(plan->varying[last_pair])) return true;
   unsure.clear();
-  detail::kernels().pairs_meet(plan->blocks.data(), static_cast<int>(plan->blocks.size()), placed_balls,
+  detail::kernels().pairs_meet(plan->blocks.data(), static_cast<int>(plan->blocks.size()), placed_balls(),
                                pair_masks.data());
   for (std::size_t block = 0; block < plan->blocks.size(); ++block) {
     for (unsigned mask = pair_masks[block]; mask != 0; mask &= mask - 1) {

@@ -102,7 +102,7 @@ bool CollisionChecker::Impl::EdgeWalk::bodies_free(const Interval& interval, dou
     bool proven = true;
     if (!checker_.body_is_free(body, motion, proven)) return false;
     for (int i = snapshot.packed; i < static_cast<int>(snapshot.scene.size()); ++i) {
-      const double gap = gap_to(snapshot.scene[i], checker_.ball_centre(body), checker_.placed_balls.radius[body]);
+      const double gap = gap_to(snapshot.scene[i], checker_.ball_centre(body), checker_.placed_balls().radius[body]);
       if (gap > motion) continue;
       proven = false;
       if (checker_.hits_scene(checker_.plan->moving[body], i)) return false;
@@ -116,7 +116,7 @@ bool CollisionChecker::Impl::EdgeWalk::pairs_free(const Interval& interval, doub
   for (std::size_t n = interval.pairs; n < interval.end; ++n) {
     const int index = open_[n];
     const ShapePair& pair = checker_.plan->varying[index];
-    const float* radius = checker_.placed_balls.radius;
+    const float* radius = checker_.placed_balls().radius;
     const double gap = (checker_.ball_centre(pair.ball_a) - checker_.ball_centre(pair.ball_b)).norm() -
                        radius[pair.ball_a] - radius[pair.ball_b];
     const double motion = surely(pair_motion_[index] * reach);

@@ -23,7 +23,7 @@ struct BoxPack {
 
 /// Placed balls, coordinate by coordinate; the arrays end with whole lanes.
 struct BallRows {
-  float *x, *y, *z, *radius;
+  const float *x, *y, *z, *radius;
   BallRows from(int ball) const { return {x + ball, y + ball, z + ball, radius + ball}; }
 };
 
@@ -82,8 +82,9 @@ struct Kernels {
   const char* name;
   /// frames: 16 numbers each, columns R0 R1 R2 p of four; frame 0 is given.
   void (*place_frames)(const FrameStep* steps, int count, const double* q, double* frames);
-  /// World centre and radius of each ball, the radius with a slack for single precision.
-  void (*place_balls)(const FrameBall* balls, int count, const double* frames, const BallRows& out);
+  /// World centre and radius of each ball, the radius with a slack for single precision: x, y, z and radius in rows of
+  /// `row` numbers.
+  void (*place_balls)(const FrameBall* balls, int count, const double* frames, float* out, int row);
   /// masks[b * packs + k]: which boxes of pack k ball b meets. nearest[b], unless null: least squared distance of the
   /// ball's centre to any box.
   void (*balls_meet)(const BoxPack* packs, int pack_count, const BallRows& balls, int ball_count, std::uint8_t* masks,

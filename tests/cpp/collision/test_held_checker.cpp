@@ -63,7 +63,9 @@ TEST(HeldChecker, SaysWhatACheckerMadeForThePoseSays) {
           ++(made.is_free(a) ? free : blocked);
           // Steps need not be the same ones: the held object's motion bounds them alone, not the robot's.
           const bool expected = check_edge(made, a, b, edge).free;
-          if (!held_only) EXPECT_EQ(turned.edge_is_free(a, b, edge), expected);
+          if (!held_only) {
+            EXPECT_EQ(turned.edge_is_free(a, b, edge), expected);
+          }
           edge.joint_step = 0.02;
           EXPECT_EQ(turned.edge_is_free(a, b, {0.02}), check_edge(made, a, b, {0.02}).free);
           ++(expected ? free_edges : blocked_edges);

@@ -122,7 +122,7 @@ TEST_P(CollisionKernels, FramesEqualProductsOfTransforms) {
 
     const FrameBall ball{{0.1, -0.2, 0.3}, 0.07, 5};
     float placed[4];
-    kernels().place_balls(&ball, 1, frames, {placed, placed + 1, placed + 2, placed + 3});
+    kernels().place_balls(&ball, 1, frames, placed, 1);
     const Vector3d centre = expected[5] * Vector3d(0.1, -0.2, 0.3);
     const double moved_by = (Vector3d(placed[0], placed[1], placed[2]) - centre).norm();
     EXPECT_GE(placed[3], 0.07 + moved_by);  // what rounding moved, the radius makes good
@@ -187,10 +187,8 @@ TEST_P(CollisionKernels, PairsOfBallsMeetWhenTheyDo) {
     constexpr int kRow = 24;
     std::vector<float> numbers(4 * kRow);
     const BallRows balls{&numbers[0], &numbers[kRow], &numbers[2 * kRow], &numbers[3 * kRow]};
-    for (int i = 0; i < kBalls; ++i) {
-      for (float* coordinate : {balls.x, balls.y, balls.z}) coordinate[i] = static_cast<float>(random.uniform(-1, 1));
-      balls.radius[i] = static_cast<float>(random.uniform(0.05, 0.6));
-    }
+    for (int i = 0; i < 3 * kRow; ++i) numbers[i] = static_cast<float>(random.uniform(-1, 1));
+    for (int i = 3 * kRow; i < 4 * kRow; ++i) numbers[i] = static_cast<float>(random.uniform(0.05, 0.6));
     std::vector<PairBlock> blocks;
     for (int i = 0; i < kBalls; ++i) {
       const int first = static_cast<int>(random.index(3)) * kLanes;

@@ -121,7 +121,8 @@ void solve_spherical(const Screws& s, const Motion& G, bool reversed, Branches& 
   branches.free = branches.free || positions.free;
   const Vector3d y = across(s.h[5]);
   for (int i = 0; i < positions.count; ++i) {
-    const auto& [a, b, c] = positions.value[static_cast<std::size_t>(i)];
+    const auto& found = positions.value[static_cast<std::size_t>(i)];
+    const double a = found[0], b = found[1], c = found[2];
     const auto back = [&](const Vector3d& x) { return turned(s.h[2], -c, turned(s.h[1], -b, turned(s.h[0], -a, x))); };
     const Vector3d Rh = back(G.R * s.h[5]), Ry = back(G.R * y);
     for (const double fifth : noted(angles_to_plane(s.h[4], s.h[3], s.h[5], s.h[3].dot(Rh)), branches.free)) {

@@ -65,7 +65,7 @@ def problem(**changes) -> mg.ManipulationProblem:
     return mg.ManipulationProblem(**{**arguments, **changes})
 
 
-OPTIONS = {"vertices": 300, "gamma": 5, "ik_solutions": 2, "time_limit": 100}
+OPTIONS = {"vertices": 300, "gamma": 5, "ik_solutions": 2, "time_limit": 100, "shorten": False}
 
 
 def plan(**changes) -> mg.ManipulationResult:
@@ -106,7 +106,7 @@ def test_variants_threads_and_a_loaded_roadmap_agree(tmp_path, batch):
     expected = plan()
     for threads in (1, 2):
         found = mg.plan_manipulation(
-            problem(), roadmap=loaded, batch=batch, threads=threads, ik_solutions=2, time_limit=100
+            problem(), roadmap=loaded, batch=batch, threads=threads, ik_solutions=2, time_limit=100, shorten=False
         )
         assert found.cost == pytest.approx(expected.cost, abs=1e-12)
         assert found.stats["roadmap_seconds"] == 0

@@ -7,6 +7,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "mmgrasp/core/export.hpp"
 #include "plan/carry_candidates.hpp"
 
 namespace mmgrasp::detail {
@@ -43,7 +44,7 @@ class RoadmapKnowledge {
 /// they join the roadmap, and what the object in hand was found to block or to pass. Nodes are numbered: roadmap
 /// vertices, then starts, then goals. A step from one node to the next is an edge of the roadmap (>= 0) or a link of
 /// the overlay (-1 - link).
-struct GraspOverlay {
+struct MMGRASP_EXPORT GraspOverlay {
   struct Link {
     int from, to;  ///< Nodes; one end at least is a start or a goal.
     double length;

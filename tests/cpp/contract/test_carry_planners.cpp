@@ -1,6 +1,7 @@
 // What every planner of manipulation_planner_names() promises.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -215,6 +216,56 @@ TEST_P(CarryPlanner, StopsWithWhatItHas) {
   const ManipulationResult result =
       plan_manipulation(problem, options, nullptr, monitor, [&](const Improvement&) { monitor.stop.stop(); });
   expect_sound(problem, result);
+}
+
+/// The bar's grasps many times over.
+ManipulationProblem with_many_grasps() {
+  ManipulationProblem problem = test::bar_carry();
+  const std::vector<CandidateGrasp> once = problem.grasps;
+  for (int i = 1; i < 15; ++i) problem.grasps.insert(problem.grasps.end(), once.begin(), once.end());
+  return problem;
+}
+
+TEST_P(CarryPlanner, TheFirstPathNeedNotWaitForAllGrasps) {
+  ManipulationOptions options = this->options();
+  const ManipulationProblem problem = with_many_grasps();
+  for (const int first_grasps : {4, 0}) {
+    options.first_grasps = first_grasps;
+    Monitor monitor;
+    const ManipulationResult result =
+        plan_manipulation(problem, options, nullptr, monitor, [&](const Improvement&) { monitor.stop.stop(); });
+    expect_sound(problem, result);
+    const auto looked_at = std::count_if(result.grasps.begin(), result.grasps.end(), [](const GraspReport& report) {
+      return report.start.total() > 0 || report.start_solutions > 0;
+    });
+    if (first_grasps == 0) {
+      EXPECT_EQ(looked_at, 300);
+    } else {
+      EXPECT_LT(looked_at, 150);
+    }
+  }
+}
+
+TEST_P(CarryPlanner, EveryGraspIsLookedAtInWhateverOrder) {
+  ManipulationOptions options = this->options();
+  const ManipulationProblem problem = with_many_grasps();
+  options.first_grasps = 0;
+  const ManipulationResult expected = plan_manipulation(problem, options);
+  for (const int first_grasps : {1, 4, 1000}) {
+    options.first_grasps = first_grasps;
+    const ManipulationResult result = plan_manipulation(problem, options);
+    ASSERT_EQ(result.grasps.size(), expected.grasps.size());
+    for (std::size_t i = 0; i < result.grasps.size(); ++i) {
+      EXPECT_EQ(result.grasps[i].start_solutions, expected.grasps[i].start_solutions);
+      EXPECT_EQ(result.grasps[i].goal_solutions, expected.grasps[i].goal_solutions);
+      EXPECT_EQ(result.grasps[i].start.total(), expected.grasps[i].start.total());
+      EXPECT_EQ(result.grasps[i].goal.total(), expected.grasps[i].goal.total());
+    }
+    EXPECT_EQ(result.rejections.scene, expected.rejections.scene);
+    EXPECT_EQ(result.rejections.self_collision, expected.rejections.self_collision);
+  }
+  options.first_grasps = -1;
+  EXPECT_THROW(plan_manipulation(problem, options), InvalidInput);
 }
 
 TEST_P(CarryPlanner, AnInvalidStartSaysWhy) {

@@ -224,8 +224,16 @@ TEST(PrmStarMg, DensifyingEndsWithTheBestOfAllRoadmaps) {
 
 TEST(PrmStarMg, PathCarriesTheObjectAndIsFree) {
   const ManipulationProblem problem = test::bar_carry();
-  const ManipulationResult result = plan_manipulation(problem, bar_options());
+  ManipulationOptions options = bar_options();
+  options.prm.straight = false;
+  const ManipulationResult over_roadmap = plan_manipulation(problem, options);
+  options.prm.shorten = true;
+  const ManipulationResult result = plan_manipulation(problem, options);
   ASSERT_EQ(result.outcome, Outcome::solved);
+  EXPECT_LT(result.cost, 0.95 * over_roadmap.cost);
+  EXPECT_NEAR(result.cost, result.path->length(), 1e-9);
+  EXPECT_EQ(result.stats.roadmap_cost, over_roadmap.cost);
+  EXPECT_EQ(result.improvements.size(), over_roadmap.improvements.size() + 1);
   const CandidateGrasp& grasp = problem.grasps[static_cast<std::size_t>(result.grasp_index)];
   CollisionChecker checker(problem.group, test::carrying(problem, grasp));
   const auto& waypoints = result.path->waypoints;

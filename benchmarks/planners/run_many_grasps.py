@@ -1,0 +1,122 @@
+"""Carries with any of 500 grasps beside one planner and a list of grasps.
+
+    python benchmarks/planners/run_many_grasps.py [--write] [options of many_grasps.py]
+
+--write puts the tables into benchmarks/README.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import platform
+import statistics
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from programs import BUILD, build_programs, lines_of
+from tables import markdown, show
+
+OURS = ("ours, prm_star_mg", "ours, rrt_star_mg")
+WITH_OURS = "one by one, ours"  # our RRT-Connect is not what people use today: told apart
+SOONER, CHEAPER = 5, 0.9  # goals
+
+Runs = dict[tuple[int, int], dict]
+
+
+def least(values) -> float:
+    """Infinite when there is nothing."""
+    return min((v for v in values if v is not None), default=math.inf)
+
+
+def milliseconds(values) -> str:
+    found = [1e3 * v for v in values if v is not None]
+    return f"{statistics.median(found):.2f}" if found else ""
+
+
+def ratio(programs: dict[str, Runs], name: str, others: list[str]) -> str:
+    """Median over the problems of the soonest of the others over ours."""
+    ratios = []
+    for key, own in programs[name].items():
+        first = least(programs[other][key]["first"] for other in others)
+        if own["first"] is not None and first < math.inf:
+            ratios.append(first / own["first"])
+    return f"{statistics.median(ratios):.1f}" if ratios else ""
+
+
+def cheaper(programs: dict[str, Runs], name: str, others: list[str]) -> int:
+    """Problems in which it ends with a cheaper path than all others."""
+    return sum(
+        own["cost"] is not None and own["cost"] < least(programs[other][key]["cost"] for other in others)
+        for key, own in programs[name].items()
+    )
+
+
+def many_table(lines: list[dict]) -> str:
+    programs: dict[str, Runs] = {}
+    for line in lines:
+        programs.setdefault(line["program"], {})[line["cell"], line["run"]] = line
+    today = [name for name in programs if name not in OURS and name != WITH_OURS]
+    solved_by_all = set.intersection(
+        *({key for key, line in runs.items() if line["cost"] is not None} for runs in programs.values())
+    )
+    rows = []
+    for name, runs in programs.items():
+        firsts = [line["first"] for line in runs.values()]
+        costs = [runs[key]["cost"] for key in solved_by_all]
+        row = [
+            name,
+            f"{sum(f is not None for f in firsts)}/{len(runs)}",
+            milliseconds(firsts),
+            f"{1e3 * max((f for f in firsts if f is not None), default=math.nan):.1f}",
+            f"{statistics.mean(costs):.3f}" if costs else "",
+        ]
+        if name in OURS and today:
+            others = [*today, *([WITH_OURS] if WITH_OURS in programs else [])]
+            won = cheaper(programs, name, others)
+            sooner = ratio(programs, name, today)
+            met = bool(sooner) and float(sooner) >= SOONER and won >= CHEAPER * len(runs)
+            row += [sooner, ratio(programs, name, others), f"{won}/{len(runs)}", "yes" if met else "**no**"]
+        else:
+            row += [""] * 4
+        rows.append(row)
+    head = ["program", "solved", "first path, median [ms]", "slowest", f"cost, mean over {len(solved_by_all)}"]
+    return markdown([*head, "sooner than the best", "our RRT-Connect among them", "cheaper than all", "goals"], rows)
+
+
+def odds_table(lines: list[dict]) -> str:
+    """Few or all of the grasps good."""
+    rows = [
+        [
+            line["who"],
+            line["on"],
+            f"{line['value']:.1f}",
+            f"{line['slowest']:.1f}",
+            f"{line['processor']:.1f}",
+            f"{line['solved']}/{line['runs']}",
+            "yes" if line["solved"] == line["runs"] and line["value"] <= 100 else "**no**",
+        ]
+        for line in lines
+    ]
+    return markdown(["planner", "grasps", "whole call, median [ms]", "slowest", "processor", "solved", "goals"], rows)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--write", action="store_true", help="update benchmarks/README.md")
+    given, rest = parser.parse_known_args()
+    settings, *lines = lines_of([sys.executable, HERE / "many_grasps.py", *rest])
+    build_programs([], ["bench_many_grasps"])
+    odds = []
+    for planner in ("prm_star_mg", "rrt_star_mg"):
+        odds += lines_of([BUILD / "benchmarks/bench_many_grasps", "0", planner])
+    told = ", ".join(f"{key} {value}" for key, value in settings["settings"].items() if key != "programs")
+    head = f"{os.cpu_count()} cores, {platform.machine()}; {told}."
+    show("many_grasps", "\n\n".join([head, many_table(lines), odds_table(odds)]), given.write)
+
+
+if __name__ == "__main__":
+    main()

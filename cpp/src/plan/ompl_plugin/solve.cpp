@@ -169,6 +169,7 @@ int run(const MmgraspOmplProblem& problem) {
   context->restart();
   planner->solve(ob::PlannerTerminationCondition([context] { return context->finished(); }));
   context->watch({});
+  planner->clear();  // LazyPRM frees its states here and nowhere else
 
   if (!definition->hasExactSolution()) {
     return context->finished() ? MMGRASP_OMPL_BUDGET_SPENT : MMGRASP_OMPL_EXHAUSTED;

@@ -47,8 +47,8 @@ MMGRASP_INLINE Xyz four_of(Lanes v, int first) {
 MMGRASP_INLINE void scatter4(const Lanes* rows, double* out, long stride) {
 #if MMGRASP_LANES == 2
   for (int r = 0; r < 4; r += 2) {
-    *reinterpret_cast<LanesAt*>(out + r) = __builtin_shufflevector(rows[r], rows[r + 1], 0, 2);
-    *reinterpret_cast<LanesAt*>(out + stride + r) = __builtin_shufflevector(rows[r], rows[r + 1], 1, 3);
+    store_lanes(out + r, __builtin_shufflevector(rows[r], rows[r + 1], 0, 2));
+    store_lanes(out + stride + r, __builtin_shufflevector(rows[r], rows[r + 1], 1, 3));
   }
 #else
   for (int first = 0; first < MMGRASP_LANES; first += 4) {

@@ -3,11 +3,9 @@
 
 using Lanes = double __attribute__((vector_size(8 * MMGRASP_LANES)));
 using LaneBits = long long __attribute__((vector_size(8 * MMGRASP_LANES)));
-using LanesAt = double __attribute__((vector_size(8 * MMGRASP_LANES), aligned(8), may_alias));  // anywhere in memory
 /// x, y, z and one entry to spare.
 using Xyz = double __attribute__((vector_size(32)));
 using XyzBits = long long __attribute__((vector_size(32)));
-using XyzAt = double __attribute__((vector_size(32), aligned(8), may_alias));
 
 #define MMGRASP_INLINE MMGRASP_TARGET inline __attribute__((always_inline))
 
@@ -22,11 +20,22 @@ MMGRASP_INLINE Lanes spread_lanes(double a) {
 MMGRASP_INLINE Xyz load3(const double* a) {
   return Xyz{a[0], a[1], a[2], 0};
 }
+// Numbers may lie anywhere in memory.
 MMGRASP_INLINE Xyz load4(const double* a) {
-  return *reinterpret_cast<const XyzAt*>(a);
+  Xyz v;
+  __builtin_memcpy(&v, a, sizeof v);
+  return v;
 }
 MMGRASP_INLINE void store4(double* a, Xyz v) {
-  *reinterpret_cast<XyzAt*>(a) = v;
+  __builtin_memcpy(a, &v, sizeof v);
+}
+MMGRASP_INLINE Lanes load_lanes(const double* a) {
+  Lanes v;
+  __builtin_memcpy(&v, a, sizeof v);
+  return v;
+}
+MMGRASP_INLINE void store_lanes(double* a, Lanes v) {
+  __builtin_memcpy(a, &v, sizeof v);
 }
 MMGRASP_INLINE Xyz cross(Xyz a, Xyz b) {
   const Xyz a_yzx = __builtin_shufflevector(a, a, 1, 2, 0, 3), b_yzx = __builtin_shufflevector(b, b, 1, 2, 0, 3);
@@ -88,13 +97,12 @@ MMGRASP_INLINE void turn(const TurnTable& turns, const double* q, double* sines,
   for (int i = 0; i < turns.count; i += MMGRASP_LANES) {
     Lanes value;
     for (int k = 0; k < MMGRASP_LANES; ++k) value[k] = q[turns.column[i + k]];
-    const Lanes angle = value * *reinterpret_cast<const LanesAt*>(turns.multiplier + i) +
-                        *reinterpret_cast<const LanesAt*>(turns.offset + i);
+    const Lanes angle = value * load_lanes(turns.multiplier + i) + load_lanes(turns.offset + i);
     large |= reinterpret_cast<LaneBits>(too_large(angle));
     Lanes s, c;
     sincos(angle, s, c);
-    *reinterpret_cast<LanesAt*>(sines + i) = s;
-    *reinterpret_cast<LanesAt*>(cosines + i) = c;
+    store_lanes(sines + i, s);
+    store_lanes(cosines + i, c);
   }
   if (__builtin_expect(!any(reinterpret_cast<Lanes>(large)), 1)) return;
   turn_any(turns, q, sines, cosines);

@@ -13,8 +13,8 @@ the roadmap does not. Times are processor time. Programs:
     all goals           OMPL's RRT-Connect from one start of every grasp to all its goals, budgets doubled from round to round
     informed            OMPL's Informed RRT* for each grasp in turn, the same total time shared out evenly
 
-The first path of a program that goes on counts when it is found, that of the others before it is shortened. Costs are those of
-the best path after `--seconds`, for programs that end with their first path of that one, shortened as plan_motion does.
+First paths are timed `--repeats` times, before they are shortened, and the median counts. Costs are those of the best path after
+`--seconds`, for programs that end with their first path of that one, shortened as plan_motion does.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import statistics
 import time
 
 import mmgrasp as mg
@@ -29,10 +30,15 @@ from mmgrasp.pipe_cells import PipeCell, pipe_cell
 
 UNLIMITED = 10_000_000
 VERTICES, NEIGHBOURS, DENSEST = 5000, 12, 40_000
+NONE = {"first": None, "cost": None}
+
+
+class Enough(Exception):
+    """Ends a call with its first path."""
 
 
 def ours(planner: str):
-    def run(cell: PipeCell, grasps: list[mg.PipeGrasp], seed: int, given: argparse.Namespace) -> dict:
+    def run(cell: PipeCell, grasps: list[mg.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool) -> dict:
         options: dict = {"planner": planner, "seed": seed, "threads": 1, "time_limit": given.seconds}
         if planner == "prm_star_mg":
             options["roadmap"] = mg.Roadmap.build(cell.arm, vertices=VERTICES, neighbours=NEIGHBOURS, seed=seed)
@@ -40,11 +46,18 @@ def ours(planner: str):
         else:
             options["max_samples"] = UNLIMITED
         problem, told = cell.problem(grasps), []
+
+        def improved(_) -> None:
+            told.append(time.process_time() - begin)
+            if only_first:
+                raise Enough
+
         begin = time.process_time()
-        result = mg.plan_manipulation(problem, improved=lambda _: told.append(time.process_time() - begin), **options)
-        if result.outcome != mg.Outcome.solved:
-            return {"first": None, "cost": None}
-        return {"first": told[0], "cost": result.cost}
+        try:
+            result = mg.plan_manipulation(problem, improved=improved, **options)
+        except Enough:
+            return {**NONE, "first": told[0]}
+        return {"first": told[0], "cost": result.cost} if result.outcome == mg.Outcome.solved else NONE
 
     return run
 
@@ -72,54 +85,65 @@ def plan(cell: PipeCell, grasp: mg.PipeGrasp, start, goals, **options):
     )
 
 
-def first_of(cell: PipeCell, grasp: mg.PipeGrasp, begin: float, start, goals, **options) -> dict | None:
+def first_of(cell: PipeCell, grasp: mg.PipeGrasp, begin: float, only_first: bool, *ends, **options) -> dict | None:
     """Time until a path is found, and its length once shortened; None without one."""
-    if plan(cell, grasp, start, goals, shorten=False, **options).outcome != mg.Outcome.solved:
+    if plan(cell, grasp, *ends, shorten=False, **options).outcome != mg.Outcome.solved:
         return None
     first = time.process_time() - begin
-    shortened = plan(cell, grasp, start, goals, **options)
+    if only_first:
+        return {**NONE, "first": first}
+    shortened = plan(cell, grasp, *ends, **options)
     return {"first": first, "cost": shortened.cost if shortened.outcome == mg.Outcome.solved else None}
 
 
 def one_by_one(planner: str):
-    def run(cell: PipeCell, grasps: list[mg.PipeGrasp], seed: int, given: argparse.Namespace) -> dict:
+    def run(cell: PipeCell, grasps: list[mg.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool) -> dict:
         begin, ends = time.process_time(), Ends(cell, grasps)
         for i in ends.usable():
             starts, goals = ends[i]
-            limits = {"time_limit": given.each / len(starts), "max_iterations": UNLIMITED}
+            options = {
+                "planner": planner,
+                "seed": seed,
+                "time_limit": given.each / len(starts),
+                "max_iterations": UNLIMITED,
+            }
             for start in starts:
-                found = first_of(cell, grasps[i], begin, start, goals, planner=planner, seed=seed, **limits)
+                found = first_of(cell, grasps[i], begin, only_first, start, goals, **options)
                 if found:
                     return found
             if time.process_time() - begin > given.cap:
                 break
-        return {"first": None, "cost": None}
+        return NONE
 
     return run
 
 
-def all_goals(cell: PipeCell, grasps: list[mg.PipeGrasp], seed: int, given: argparse.Namespace) -> dict:
+def all_goals(
+    cell: PipeCell, grasps: list[mg.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool
+) -> dict:
     begin, ends, budget = time.process_time(), Ends(cell, grasps), 100
     while time.process_time() - begin < given.cap:
         for i in ends.usable():
             starts, goals = ends[i]
-            limits = {"max_iterations": budget, "time_limit": given.cap}
-            found = first_of(cell, grasps[i], begin, starts[0], goals, planner="ompl_rrt_connect", seed=seed, **limits)
+            options = {"planner": "ompl_rrt_connect", "seed": seed, "time_limit": given.cap, "max_iterations": budget}
+            found = first_of(cell, grasps[i], begin, only_first, starts[0], goals, **options)
             if found:
                 return found
             if time.process_time() - begin > given.cap:
                 break
         budget *= 2
-    return {"first": None, "cost": None}
+    return NONE
 
 
-def informed(cell: PipeCell, grasps: list[mg.PipeGrasp], seed: int, given: argparse.Namespace) -> dict:
+def informed(
+    cell: PipeCell, grasps: list[mg.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool
+) -> dict:
     begin, ends, told = time.process_time(), Ends(cell, grasps), []
     usable = list(ends.usable())
     best = math.inf
     for turn, i in enumerate(usable):
         left = given.seconds - (time.process_time() - begin)
-        if left <= 0:
+        if left <= 0 or (only_first and told):
             break
         starts, goals = ends[i]
         found = plan(
@@ -128,7 +152,7 @@ def informed(cell: PipeCell, grasps: list[mg.PipeGrasp], seed: int, given: argpa
         )  # fmt: skip
         if found.outcome == mg.Outcome.solved:
             best = min(best, found.cost)
-    return {"first": told[0], "cost": best} if best < math.inf else {"first": None, "cost": None}
+    return {"first": told[0], "cost": best} if best < math.inf else NONE
 
 
 PROGRAMS = {
@@ -147,6 +171,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1, help="of the cells")
     parser.add_argument("--grasps", type=int, default=500)
     parser.add_argument("--runs", type=int, default=2, help="lists of grasps for each cell")
+    parser.add_argument("--repeats", type=int, default=5, help="of first paths")
     parser.add_argument("--seconds", type=float, default=5.0, help="total time of the anytime programs [s]")
     parser.add_argument("--each", type=float, default=1.0, help="time for one grasp of `one by one` [s]")
     parser.add_argument("--cap", type=float, default=60.0, help="after which a program without a path gives up [s]")
@@ -160,7 +185,11 @@ def main() -> None:
             reachable = sum(1 for _ in Ends(cell, grasps).usable())
             for name in given.programs:
                 line = {"cell": number, "run": run, "reachable": reachable, "program": name}
-                print(json.dumps({**line, **PROGRAMS[name](cell, grasps, run + 1, given)}), flush=True)
+                found = PROGRAMS[name](cell, grasps, run + 1, given, False)
+                if found["first"] is not None:
+                    again = [PROGRAMS[name](cell, grasps, run + 1, given, True) for _ in range(given.repeats)]
+                    found["first"] = statistics.median(a["first"] for a in again if a["first"] is not None)
+                print(json.dumps({**line, **found}), flush=True)
 
 
 if __name__ == "__main__":

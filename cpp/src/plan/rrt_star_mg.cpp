@@ -24,7 +24,7 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kSame = 1e-9;  // Configurations nearer than this are the same [rad or m].
 constexpr int kHopeless = -2;
-constexpr int kFirst = 16;           // Samples for each grasp found, as long as others are left to look at.
+constexpr int kFirst = 4;            // Samples for each grasp found, as long as others are left to look at.
 constexpr int kStraight = 32;        // Straight lines tried before the first sample.
 constexpr int kDuplicates = 4;       // Vertices of other trees taken over by one new vertex.
 constexpr int kHalvings = 3;         // To find how far along an edge the way is free.

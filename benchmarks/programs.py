@@ -24,6 +24,12 @@ def peers_environment(folder: Path, requirements: Path) -> Path:
     return python
 
 
+def packages_of(python: Path) -> str:
+    """The folder a virtual environment installs packages into."""
+    command = [python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))"]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
+
+
 def build_programs(options: list[str], targets: list[str]) -> list[Path]:
     """Configures and builds; returns the programs. No targets: everything."""
     environment = {**os.environ, "CCACHE_BASEDIR": str(ROOT)}

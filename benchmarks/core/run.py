@@ -13,23 +13,16 @@ from __future__ import annotations
 import argparse
 import os
 import platform
-import subprocess
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from goals import GOALS, Goal
-from programs import build_programs, full_table, lines_of, peers_environment
+from programs import build_programs, full_table, lines_of, packages_of, peers_environment
 from tables import ROOT, markdown, show
 
 SLOW = {"exactness"}  # 100,000 queries against FCL: run when asked for
-
-
-def packages_of(python: Path) -> str:
-    """The folder a virtual environment installs packages into."""
-    command = [python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))"]
-    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
 
 
 def matching(goal: Goal, lines: list[dict]) -> list[tuple[dict, dict | None]]:

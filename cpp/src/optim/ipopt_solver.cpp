@@ -246,6 +246,14 @@ class IpoptSolver : public NlpSolver {
     settings->SetStringValue("mu_strategy", "adaptive");
     settings->SetNumericValue("mu_min", std::min(1e-6, 0.01 * options.tolerance));
     settings->SetStringValue("honor_original_bounds", "yes");
+    // Ipopt scales the problem itself and refines where residuals are large: twice is only slower.
+    settings->SetIntegerValue("mumps_scaling", 0);
+    settings->SetIntegerValue("mumps_permuting_scaling", 0);
+    settings->SetIntegerValue("min_refinement_steps", 0);
+    if (options.barrier > 0) {
+      settings->SetStringValue("mu_strategy", "monotone");
+      settings->SetNumericValue("mu_init", options.barrier);
+    }
     if (options.warm_start > 0) {
       settings->SetStringValue("mu_strategy", "monotone");
       settings->SetNumericValue("mu_init", options.warm_start);

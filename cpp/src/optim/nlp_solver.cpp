@@ -50,6 +50,7 @@ void NlpOptions::check() const {
           "must be positive");
   require(max_iterations > 0, "max_iterations", max_iterations, "must be positive");
   require(time_limit > 0, "time_limit", time_limit, "must be positive");
+  require(barrier >= 0 && std::isfinite(barrier), "barrier", barrier, "must be at least 0");
   require(warm_start >= 0 && std::isfinite(warm_start), "warm_start", warm_start, "must be at least 0");
 }
 

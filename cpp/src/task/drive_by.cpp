@@ -16,6 +16,7 @@ using detail::Stand;
 using Eigen::VectorXd;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr int kShort = 40;        // iterations of a solve in the first attempts
 constexpr int kMoreAttempts = 2;  // of each choice of candidates once there is a motion to beat
 
 std::string number(double value) {
@@ -138,7 +139,8 @@ class DriveBy {
                 std::to_string(options_.stands) + " tries at a time)";
       return {};
     }
-    return detail::drive_by_choices(group_, steps_, stands, start_, goal_, options_);
+    const auto collisions = [&](const std::vector<Stand>& chain) { return attempts_->collisions(chain); };
+    return detail::drive_by_choices(group_, steps_, stands, start_, goal_, options_, collisions);
   }
 
   /// Where the robot is about at a step, before anything is known: the base below the tool.
@@ -157,27 +159,37 @@ class DriveBy {
     return "[" + text + "]";
   }
 
+  /// Every chain with a short patience first: what can be solved mostly is within few iterations.
   void attempt_all(const DriveByChoice& choice, DriveByResult& result) {
-    int solutions = 0, left = result.usable() ? kMoreAttempts : options_.attempts;
-    for (const auto& chain : choice.chains) {
-      if (left-- <= 0 || over(result)) break;
-      std::vector<int> waypoints;
-      const WholeBodyResult r = attempts_->solve(chain, waypoints);
-      ++result.attempts;
-      result.iterations += r.iterations;
-      result.report += "attempt " + std::to_string(result.attempts) + ", candidates " + name(choice) + ": " +
-                       describe(r) + (r.usable() ? ", " + number(r.trajectory->duration()) + " s" : "") + "\n";
-      const bool better = r.usable() ? !result.usable() || r.trajectory->duration() < result.duration()
-                                     : !result.usable() && detail::broken(r) < least_broken_;
-      if (better) {
-        if (!r.usable()) least_broken_ = detail::broken(r);
-        result.outcome = r.outcome;
-        result.trajectory = r.trajectory;
-        result.violations = r.violations;
-        result.events = events_of(*r.trajectory, steps_, waypoints, chain);
+    int solutions = 0;
+    const std::size_t most = result.usable() ? kMoreAttempts : choice.chains.size();
+    const int patient = options_.trajectory.max_iterations;
+    for (const int patience : {std::min(kShort, patient), patient}) {
+      for (std::size_t i = 0; i < std::min(most, choice.chains.size()) && !over(result); ++i) {
+        if (attempt(choice, i, patience, result) && ++solutions >= options_.solutions) return;
       }
-      if (r.usable() && ++solutions >= options_.solutions) break;
+      if (solutions > 0 || result.usable() || patience == patient) return;
     }
+  }
+
+  bool attempt(const DriveByChoice& choice, std::size_t index, int patience, DriveByResult& result) {
+    const std::vector<Stand>& chain = choice.chains[index];
+    std::vector<int> waypoints;
+    const WholeBodyResult r = attempts_->solve(chain, patience, waypoints);
+    ++result.attempts;
+    result.iterations += r.iterations;
+    result.report += "attempt " + std::to_string(result.attempts) + ", candidates " + name(choice) + ": " +
+                     describe(r) + (r.usable() ? ", " + number(r.trajectory->duration()) + " s" : "") + "\n";
+    const bool better = r.usable() ? !result.usable() || r.trajectory->duration() < result.duration()
+                                   : !result.usable() && detail::broken(r) < least_broken_;
+    if (better) {
+      if (!r.usable()) least_broken_ = detail::broken(r);
+      result.outcome = r.outcome;
+      result.trajectory = r.trajectory;
+      result.violations = r.violations;
+      result.events = events_of(*r.trajectory, steps_, waypoints, chain);
+    }
+    return r.usable();
   }
 
   const JointGroup& group_;

@@ -13,8 +13,9 @@ using Eigen::VectorXd;
 constexpr int kDwellIntervals = 4;
 constexpr int kCoarse = 35;       // waypoints of a first solution when many are asked for
 constexpr double kRefine = 1e-3;  // barrier with which it is refined
-constexpr double kStill = 0.02;   // of a tool whose pose is kept, along each axis at the waypoints [m/s]
-constexpr double kLonger = 1.1;   // than the fingers need to close
+constexpr int kShortRefinements = 3;
+constexpr double kStill = 0.02;  // of a tool whose pose is kept, along each axis at the waypoints [m/s]
+constexpr double kLonger = 1.1;  // than the fingers need to close
 
 /// What a push-grasp asks of the way to a step.
 void keep_straight(DriveByAttempt& a, std::size_t segment, const DriveByStep& step, int candidate) {
@@ -44,7 +45,16 @@ DriveByAttempts::DriveByAttempts(const JointGroup& group, const VectorXd& start,
                                  const Monitor& monitor)
     : group_(group), start_(start), steps_(steps), goal_(goal), options_(options), worlds_(worlds), monitor_(monitor) {}
 
-WholeBodyResult DriveByAttempts::solve(const std::vector<Stand>& chain, std::vector<int>& waypoints) {
+int DriveByAttempts::collisions(const std::vector<Stand>& chain) {
+  const DriveByAttempt a = prepared(chain, options_.waypoints);
+  int count = 0;
+  for (std::size_t i = 1; i < a.checkers.size(); ++i)
+    count += a.checkers[i] && !a.checkers[i]->is_free(a.guess.positions[i]);
+  return count;
+}
+
+WholeBodyResult DriveByAttempts::solve(const std::vector<Stand>& chain, int iterations, std::vector<int>& waypoints) {
+  iterations_ = iterations;
   const int few = std::max(kCoarse, 2 + 4 * static_cast<int>(steps_.size()));
   DriveByAttempt a =
       prepared(chain, std::min(options_.waypoints, options_.waypoints > 2 * kCoarse ? few : options_.waypoints));
@@ -87,6 +97,10 @@ WholeBodyResult DriveByAttempts::around_obstacles(DriveByAttempt& a, const std::
 WholeBodyResult DriveByAttempts::optimize(const DriveByAttempt& a, double warm_start) {
   WholeBodyOptions options = options_.trajectory;
   options.warm_start = std::max(options.warm_start, warm_start);
+  if (iterations_ < options.max_iterations) {
+    options.max_iterations = iterations_;
+    options.refinements = std::min(options.refinements, kShortRefinements);
+  }
   options.time_limit = std::max(1e-3, std::min(options.time_limit, options_.time_limit - seconds()));
   return optimize_whole_body(a.problem, a.guess, options, a.checkers, monitor_);
 }

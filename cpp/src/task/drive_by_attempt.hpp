@@ -30,8 +30,11 @@ class DriveByAttempts {
 
   DriveByAttempt prepared(const std::vector<Stand>& chain, int waypoints);
   /// Straight through the stands, and around obstacles when that fails or is bound to; many waypoints start from the
-  /// solution with few. `waypoints` are those of the steps.
-  WholeBodyResult solve(const std::vector<Stand>& chain, std::vector<int>& waypoints);
+  /// solution with few. `waypoints` are those of the steps; no solve takes more than `iterations`,
+  /// and fewer than the options allow also mean fewer refinements.
+  WholeBodyResult solve(const std::vector<Stand>& chain, int iterations, std::vector<int>& waypoints);
+  /// At how many of its waypoints the first guess collides.
+  int collisions(const std::vector<Stand>& chain);
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
 
  private:
@@ -46,6 +49,7 @@ class DriveByAttempts {
   const DriveByGoal& goal_;
   const DriveByOptions& options_;
   DriveByWorlds* worlds_;
+  int iterations_ = 0;  // of one solve
   const Monitor& monitor_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };

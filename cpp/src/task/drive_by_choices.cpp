@@ -13,6 +13,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
+constexpr int kSpare = 3;           // chains looked at for each that is tried
+constexpr double kCollision = 0.3;  // what a colliding waypoint of a guess counts as [s]
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 /// From rest to rest.
@@ -91,13 +93,22 @@ double least_duration(const JointGroup& group, const VectorXd& start, const Driv
 
 std::vector<DriveByChoice> drive_by_choices(const JointGroup& group, const std::vector<DriveByStep>& steps,
                                             const std::vector<std::vector<Stand>>& stands, const VectorXd& start,
-                                            const DriveByGoal& goal, const DriveByOptions& options) {
+                                            const DriveByGoal& goal, const DriveByOptions& options,
+                                            const std::function<int(const std::vector<Stand>&)>& collisions) {
   const VectorXd end = start.cwiseMax(goal.lower).cwiseMin(goal.upper);
   std::vector<DriveByChoice> choices;
   std::set<std::vector<int>> seen;
   const auto add = [&](const std::vector<std::vector<Stand>>& among) {
-    DriveByChoice choice{choose_stands(group, steps, among, start, end, options.attempts)};
+    DriveByChoice choice{choose_stands(group, steps, among, start, end, kSpare * options.attempts)};
     if (choice.chains.empty()) return;
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t i = 0; i < choice.chains.size(); ++i)
+      order.push_back({chain_time(group, choice.chains[i], start, end) + kCollision * collisions(choice.chains[i]), i});
+    std::sort(order.begin(), order.end());
+    order.resize(std::min(order.size(), static_cast<std::size_t>(options.attempts)));
+    std::vector<std::vector<Stand>> chains;
+    for (const auto& [cost, i] : order) chains.push_back(std::move(choice.chains[i]));
+    choice.chains = std::move(chains);
     const std::vector<Stand>& chain = choice.chains.front();
     std::vector<int> candidates;
     for (std::size_t i = 0; i < steps.size(); ++i) {

@@ -11,7 +11,8 @@
 namespace mmgrasp {
 namespace {
 
-constexpr double kRepair = 1e-2;  // barrier with which a solution is mended
+constexpr double kBarrier = 1e-2;  // the first; durations are of the order of 10 s
+constexpr double kRepair = 1e-2;   // barrier with which a solution is mended
 
 std::shared_ptr<const WholeBodyTrajectory> trajectory_of(const WholeBodyProblem& problem,
                                                          const detail::WholeBodyNlp& nlp, const Eigen::VectorXd& x) {
@@ -51,6 +52,7 @@ WholeBodyResult optimize_whole_body(const WholeBodyProblem& problem, const Whole
   nlp_options.tolerance = options.tolerance;
   nlp_options.constraint_tolerance = 5e-9;
   nlp_options.max_iterations = options.max_iterations;
+  nlp_options.barrier = kBarrier;
   nlp_options.warm_start = options.warm_start;
 
   WholeBodyResult result;

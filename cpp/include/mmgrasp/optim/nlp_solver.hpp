@@ -17,6 +17,7 @@ struct MMGRASP_EXPORT NlpOptions {
   double constraint_tolerance = 1e-8;  ///< Largest violation of a solved problem; > 0.
   int max_iterations = 500;            ///< > 0
   double time_limit = 30.0;            ///< Wall-clock cap [s]; > 0.
+  double barrier = 0;  ///< Ipopt only: the first barrier parameter, lowered steadily; 0: chosen in each step.
   /// Ipopt only: 0 starts afresh; > 0 trusts the guess and starts with this barrier parameter.
   double warm_start = 0;
   void check() const;

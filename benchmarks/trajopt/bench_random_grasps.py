@@ -1,0 +1,60 @@
+"""Random grasp poses taken in passing, nothing in the way: ours, and casadi + Ipopt on the same problem from the same guess.
+
+    python benchmarks/trajopt/bench_random_grasps.py [--count 200] [--seeds 1 2 3] [--waypoints 35] [--peer FOLDER]
+
+--peer names the site-packages folder of casadi; its runs alternate with ours. Solved means for ours: judged on the roll-out.
+"""
+
+from __future__ import annotations
+
+import statistics
+import sys
+
+from grasp_cases import GOAL, START, arguments, grasps, line, plan, timed, whole_body
+
+import mmgrasp as mg
+
+
+def main() -> None:
+    parser = arguments(__doc__, count=200, waypoints=35)
+    parser.add_argument("--peer", help="site-packages folder with casadi")
+    given = parser.parse_args()
+    _, group = whole_body()
+    peer = None
+    if given.peer:
+        sys.path.append(given.peer)
+        from casadi_peer import Peer
+
+        peer = Peer(group)
+    for seed in given.seeds:
+        ours: list[tuple[float, mg.DriveByResult]] = []
+        theirs: list[tuple[float, tuple[bool, float]]] = []
+        for pose in grasps(seed, given.count):
+            tasks = [mg.DriveByTask(pose)]
+            ours.append(timed(lambda: plan(tasks, waypoints=given.waypoints, collisions=False)))  # noqa: B023
+            if peer is None:
+                continue
+            guess = mg._core._first_drive_by_guess(
+                group, start=START, tasks=tasks, goal=GOAL, waypoints=given.waypoints
+            )
+            peer.prepare(guess["intervals"])
+            theirs.append(timed(lambda: peer.solve(guess, pose)))  # noqa: B023
+        on, settings = f"seed {seed}", f"{given.count} poses, {given.waypoints} waypoints"
+        solved = [r for _, r in ours if r.outcome == mg.Outcome.solved]
+        line(
+            "random grasps", on, "mmgrasp", [t for t, _ in ours], settings,
+            solved=len(solved) / len(ours),
+            at_once=sum(r.attempts == 1 for r in solved) / len(ours),
+            base_above=sum(r.events[0]["base_speed"] > 0.1 for r in solved) / max(1, len(solved)),
+            duration=statistics.median(r.duration for r in solved),
+        )  # fmt: skip
+        if peer is not None:
+            line(
+                "random grasps", on, "casadi + Ipopt", [t for t, _ in theirs], settings,
+                solved=sum(ok for _, (ok, _) in theirs) / len(theirs),
+                duration=statistics.median(d for _, (ok, d) in theirs if ok),
+            )  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()

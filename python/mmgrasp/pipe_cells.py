@@ -21,6 +21,7 @@ from ._core import (
     InvalidInput,
     Outcome,
     Pipe,
+    PipeGrasp,
     Roadmap,
     Robot,
     World,
@@ -50,17 +51,19 @@ class _Style:
     """Near the end of the arm's reach."""
     bays: tuple[str, ...] = ()
     """Which of start and goal lie in a bay: back and sides, open towards the arm and above."""
+    scarce: bool = False
+    """Fewer than 30 % of single grasps may be within reach at both ends."""
 
 
 _STYLES = (
     _Style(columns=2),
     _Style(columns=2, partition=0.35),
     _Style(low=("start", "goal"), far=True),
-    _Style(bays=("goal",), partition=0.30, far=True),
+    _Style(bays=("goal",), partition=0.30, far=True, scarce=True),
     _Style(partition=0.30, gap=0.48),
     _Style(partition=0.30, gap=0.46, picky=True),
-    _Style(bays=("start", "goal")),
-    _Style(low=("start",), bays=("start", "goal"), columns=2),
+    _Style(bays=("start", "goal"), scarce=True),
+    _Style(low=("start",), bays=("start", "goal"), columns=2, scarce=True),
 )
 _LOW = (0.02, 0.05)  # height of the lowest point [m]
 _BAY_ROOM = 0.10  # between the pipe and the walls of its bay [m]
@@ -70,6 +73,7 @@ _POST_RADIUS = 0.01
 _POST_GAP = 0.005  # between a post and the pipe above it [m]
 _CLEARANCE = 0.02  # between the pipe at rest and whatever else stands there [m]
 _TRIES = 500
+_SCARCE = 0.3  # of single grasps
 _ROADMAPS, _VERTICES = 6, 5000  # over which a cell must be solvable
 _CHECKS = 1_000_000  # the first seed of roadmaps and grasps that decide on a cell
 
@@ -79,8 +83,8 @@ def pipe_cell(number: int, seed: int = 1, robot: str = "tm14like") -> PipeCell:
 
     Turned down and counted are cells without room for pipe or posts, those in which fewer than 3 of 100 grasps are
     within reach at both ends, and those for which PRM*-MG finds no motion in one of six tries, each with a roadmap and
-    500 grasps of its own; for structure 6 also those whose first grasp within reach would do. Raises InvalidInput on a
-    number or robot that does not exist.
+    500 grasps of its own; for structures 4, 7 and 8 also those in which 30 % of 500 grasps or more are within reach, for
+    structure 6 those whose first grasp within reach would do. Raises InvalidInput on a number or robot that does not exist.
     """
     if number not in range(1, len(_STYLES) + 1):
         raise InvalidInput(f"number = {number}: must be from 1 to {len(_STYLES)}")
@@ -216,18 +220,24 @@ def _fault(cell: PipeCell) -> str:
             return f"no room for the pipe at its {name}"
         if _nearest(cell.pipe, cell.world, T) < 0.8 * _POST_GAP:
             return f"a post stands in the pipe at its {name}"
-    reachable = 0
-    for grasp in cell.grasps(100, seed=_CHECKS):
-        starts, goals = cell.ends(grasp, 1)
-        reachable += bool(len(starts) and len(goals))
-    if reachable < 3:
+    style = _STYLES[cell.number - 1]
+    if _reachable(cell, cell.grasps(100, seed=_CHECKS)) < 3:
         return "fewer than 3 of 100 grasps within reach"
+    if style.scarce:
+        grasps = cell.grasps(500, seed=_CHECKS)
+        if _reachable(cell, grasps) >= _SCARCE * len(grasps):
+            return "30 % of the grasps within reach, or more"
     for i in range(_ROADMAPS):
         problem = cell.problem(cell.grasps(500, seed=_CHECKS + i))
         found = plan_manipulation(problem, roadmap=_roadmap(cell.robot_name, i), time_limit=60.0)
         if found.outcome != Outcome.solved:
             return f"no motion over a roadmap of {_VERTICES} vertices"
-    return "the first grasp within reach will do" if _STYLES[cell.number - 1].picky and _first_carries(cell) else ""
+    return "the first grasp within reach will do" if style.picky and _first_carries(cell) else ""
+
+
+def _reachable(cell: PipeCell, grasps: list[PipeGrasp]) -> int:
+    """Grasps by which the arm can hold the pipe at its start and at its goal."""
+    return sum(all(map(len, cell.ends(grasp, 1))) for grasp in grasps)
 
 
 def _first_carries(cell: PipeCell) -> bool:

@@ -42,7 +42,7 @@ int Forest::create(int tree, int parent, int configuration, double cost) {
   ++own.size;
   alike_[static_cast<std::size_t>(configuration)] = v;
   vertices_.push_back(made);
-  index_[side_of(tree)].insert(v, this->configuration(configuration));
+  ++side_size_[side_of(tree)];
   return v;
 }
 
@@ -103,7 +103,14 @@ void Forest::remove_leaf(int v) {
   int* link = &alike_[static_cast<std::size_t>(own.configuration)];
   while (*link != v) link = &vertices_[static_cast<std::size_t>(*link)].next_alike;
   *link = own.next_alike;
-  index_[side_of(own.tree)].remove(v);
+  --side_size_[side_of(own.tree)];
+  if (v < indexed_) index_[side_of(own.tree)].remove(v);
+}
+
+const ForestIndex& Forest::index(int side) const {
+  for (; indexed_ < vertex_count(); ++indexed_)
+    if (vertex(indexed_).alive) index_[side_of(vertex(indexed_).tree)].insert(indexed_, at(indexed_));
+  return index_[side];
 }
 
 int Forest::find(int tree, int configuration) const {
@@ -124,8 +131,9 @@ bool Forest::walk(int tree) const {
 int Forest::nearest_in_tree(int tree, const double* q) const {
   double squared = std::numeric_limits<double>::infinity();
   if (!walk(tree))
-    return index_[side_of(tree)].nearest(
-        q, [&](int v) { return vertex(v).tree == tree; }, squared);
+    return index(side_of(tree))
+        .nearest(
+            q, [&](int v) { return vertex(v).tree == tree; }, squared);
   int best = -1;
   each_in_tree(tree, [&](int v) {
     const double found = squared_distance(at(v), q, static_cast<int>(dimension_));
@@ -138,14 +146,14 @@ int Forest::nearest_in_tree(int tree, const double* q) const {
 
 int Forest::nearest_on_side(int side, const double* q) const {
   double squared;
-  return index_[side].nearest(
+  return index(side).nearest(
       q, [](int) { return true; }, squared);
 }
 
 void Forest::near_in_tree(int tree, const double* q, double radius, std::vector<Near>& out) const {
   out.clear();
   if (!walk(tree)) {
-    index_[side_of(tree)].within(q, radius, [&](int v, double squared) {
+    index(side_of(tree)).within(q, radius, [&](int v, double squared) {
       if (vertex(v).tree == tree) out.push_back({v, std::sqrt(squared)});
     });
     return;
@@ -158,7 +166,7 @@ void Forest::near_in_tree(int tree, const double* q, double radius, std::vector<
 
 void Forest::near_on_side(int side, const double* q, double radius, std::vector<Near>& out) const {
   out.clear();
-  index_[side].within(q, radius, [&](int v, double squared) { out.push_back({v, std::sqrt(squared)}); });
+  index(side).within(q, radius, [&](int v, double squared) { out.push_back({v, std::sqrt(squared)}); });
 }
 
 void Forest::check_books() const {
@@ -174,8 +182,9 @@ void Forest::check_books() const {
     ++on_side[side_of(own.tree)];
     demand(find(own.tree, own.configuration) >= 0, "a vertex its configuration does not know");
     double squared;
-    const int found = index_[side_of(own.tree)].nearest(
-        at(v), [&](int u) { return u == v; }, squared);
+    const int found = index(side_of(own.tree))
+                          .nearest(
+                              at(v), [&](int u) { return u == v; }, squared);
     demand(found == v && squared == 0, "a vertex the index does not know, or elsewhere");
     if (own.parent < 0) {
       demand(own.cost == 0, "a root with a cost");
@@ -197,7 +206,9 @@ void Forest::check_books() const {
                  [&](int v) { listed += vertex(v).alive && vertex(v).tree == static_cast<int>(t); });
     demand(listed == in_tree[t] && trees_[t].size == listed, "a tree's list or size");
   }
-  for (const int side : {0, 1}) demand(index_[side].size() == on_side[side], "the index's size");
+  for (const int side : {0, 1})
+    demand(index(side).size() == on_side[side] && static_cast<std::size_t>(side_size(side)) == on_side[side],
+           "the index's size");
 }
 
 }  // namespace mmgrasp::detail

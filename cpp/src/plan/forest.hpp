@@ -42,7 +42,7 @@ class MMGRASP_EXPORT Forest {
   const Vertex& vertex(int v) const { return vertices_[static_cast<std::size_t>(v)]; }
   int vertex_count() const { return static_cast<int>(vertices_.size()); }  ///< Removed ones included.
   int tree_size(int tree) const { return trees_[static_cast<std::size_t>(tree)].size; }
-  int side_size(int side) const { return static_cast<int>(index_[side].size()); }
+  int side_size(int side) const { return side_size_[side]; }
   int configuration_count() const { return static_cast<int>(alike_.size()); }
   const double* configuration(int c) const { return values_.data() + static_cast<std::size_t>(c) * dimension_; }
   const double* at(int v) const { return configuration(vertex(v).configuration); }
@@ -95,6 +95,8 @@ class MMGRASP_EXPORT Forest {
   void unlink(int v);
   /// Small trees are quicker to walk than to look for among all the others.
   bool walk(int tree) const;
+  /// The index of a side with all vertices. They are put there when it is first asked: many carries end before.
+  const ForestIndex& index(int side) const;
 
   const GraspEnds& ends_;
   std::size_t dimension_;
@@ -102,7 +104,9 @@ class MMGRASP_EXPORT Forest {
   std::vector<int> alike_;      ///< Per configuration: one of its vertices, or -1.
   std::vector<Vertex> vertices_;
   std::vector<Tree> trees_;
-  ForestIndex index_[2];  ///< Per side.
+  int side_size_[2] = {0, 0};
+  mutable ForestIndex index_[2];  ///< Per side.
+  mutable int indexed_ = 0;       ///< Vertices before this one are in there, or were removed.
   std::vector<int> stack_;
 };
 

@@ -12,6 +12,13 @@
 
 namespace mmgrasp::detail {
 
+constexpr double kSame = 1e-9;  ///< Configurations nearer than this are the same [rad or m].
+
+/// Puts the cheapest on top of a heap.
+inline bool costlier(const Forest::Near& a, const Forest::Near& b) {
+  return a.key != b.key ? a.key > b.key : a.vertex > b.vertex;
+}
+
 /// RRT*-MG (P2 chapter 5, Algorithm 5.13 with its errata: line 17 goes on with the next sample, lines 14 and 20 return
 /// the new vertex). One thread, so that the samples alone decide what is found.
 class RrtStarMg {
@@ -44,11 +51,16 @@ class RrtStarMg {
   /// Puts the path that the result had beforehand into the trees of its grasp.
   void plant();
 
-  // Growing (rrt_star_mg.cpp). Those that grow return the new vertex, or -1.
+  // Sampling (rrt_star_mg.cpp). Returns the new vertex, or -1.
   void try_straight_lines();
   void sample(int side);
   int sample_informed(int side);
   void sample_early(int side);
+  /// A grasp to grow before there is a path.
+  int pick_early();
+  int take_reassigned(int side, int& tree);
+
+  // Growing (rrt_star_mg_growth.cpp). Those that grow return the new vertex, or -1.
   int extend_tree(int tree, int configuration);
   int extend_forest(int side, int configuration);
   /// A configuration towards `target`, at most one step from vertex `from`; -1 when there is no way to go.
@@ -56,13 +68,10 @@ class RrtStarMg {
   void include_nearest(int nearest, int configuration);
   /// Adds `configuration` below the one of near_ that is cheapest by equation (5.1) and has a free edge to it.
   int add_best(int configuration, double bound);
-  /// Grows the tree of `from` along a blocked edge towards a configuration, about as far as it is free.
+  /// Grows the tree of `from` half the way along a blocked edge to a configuration, when that half is free.
   int advance(int from, int target);
-  /// A grasp to grow before there is a path.
-  int pick_early();
   void rewire(int made);
   void duplicate_into(int made);
-  int take_reassigned(int side, int& tree);
 
   // Collisions and paths (rrt_star_mg_paths.cpp).
   bool robot_is_free(int grasp, int configuration);

@@ -9,16 +9,11 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kBetter = 1e-6;  // Paths shorter by less than this share are not news.
-constexpr double kSlack = 1e-9;   // Rounding of estimates: the best path's own vertices stay.
-constexpr double kSame = 1e-9;
+constexpr double kBetter = 1e-6;    // Paths shorter by less than this share are not news.
+constexpr double kSlack = 1e-9;     // Rounding of estimates: the best path's own vertices stay.
 constexpr double kPromising = 1.5;  // Paths of other grasps worth keeping, by the best one.
 constexpr double kOthers = 0.5;     // Corners cut on these.
 constexpr double kInside = 0.999;   // Points on an edge keep off its end.
-
-bool costlier(const Forest::Near& a, const Forest::Near& b) {
-  return a.key != b.key ? a.key > b.key : a.vertex > b.vertex;
-}
 
 }  // namespace
 

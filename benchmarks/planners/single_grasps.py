@@ -1,19 +1,25 @@
 """How hard the pipe cells are: which single grasps admit a motion within a time, one JSON line a cell.
 
-    python benchmarks/planners/single_grasps.py [--cells 1 2 ...] [--seeds 1 2 3] [--grasps 100] [--seconds 10]
+    python benchmarks/planners/single_grasps.py [--cells 1 2 ...] [--seeds 1 2 3] [--grasps 500] [--seconds 10] [--write]
 
 A grasp fails when the arm does not reach both ends with it, or when RRT-Connect, restarted with a doubled budget until
-the time is over, finds no motion between any of its arm configurations. Processor time, one thread.
+the time is over, finds no motion between any of its arm configurations. Processor time, one thread. --write puts the
+table into benchmarks/README.md.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import sys
 import time
+from pathlib import Path
 
 import mmgrasp as mg
 from mmgrasp.pipe_cells import ROBOTS, PipeCell, pipe_cell
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from tables import markdown, show
 
 
 def carries(cell: PipeCell, grasp: mg.PipeGrasp, seconds: float) -> str:
@@ -38,14 +44,35 @@ def carries(cell: PipeCell, grasp: mg.PipeGrasp, seconds: float) -> str:
     return "failed"
 
 
+def table(lines: list[dict]) -> str:
+    """One row a cell."""
+    rows = [
+        [
+            str(line["cell"]),
+            str(line["seed"]),
+            line["robot"],
+            str(line["grasps"]),
+            f"{line['within reach']:.1%}",
+            f"{line['admit a motion']:.1%}",
+            line["first within reach"] or "",
+            ", ".join(f"{cause}: {count}" for cause, count in line["cells turned down"].items()),
+        ]
+        for line in lines
+    ]
+    head = ["cell", "seed", "arm", "grasps", "within reach", f"admit a motion in {lines[0]['seconds']:g} s"]
+    return markdown([*head, "the first within reach", "cells turned down"], rows)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--cells", type=int, nargs="+", default=list(range(1, 9)))
     parser.add_argument("--seeds", type=int, nargs="+", default=[1])
     parser.add_argument("--robot", choices=ROBOTS, default=ROBOTS[0])
-    parser.add_argument("--grasps", type=int, default=100)
+    parser.add_argument("--grasps", type=int, default=500)
     parser.add_argument("--seconds", type=float, default=10.0)
+    parser.add_argument("--write", action="store_true", help="update benchmarks/README.md")
     given = parser.parse_args()
+    lines = []
     for seed in given.seeds:
         for number in given.cells:
             cell = pipe_cell(number, seed=seed, robot=given.robot)
@@ -62,7 +89,9 @@ def main() -> None:
                 "seconds": given.seconds,
                 "cells turned down": cell.rejected,
             }
+            lines.append(line)
             print(json.dumps(line), flush=True)
+    show("single grasps", table(lines), given.write)
 
 
 if __name__ == "__main__":

@@ -71,17 +71,28 @@ def test_cells_repeat_by_seed_and_differ_between_seeds():
     assert not np.allclose(one.T_world_start, other.T_world_start)
 
 
-def test_grasps_leave_the_hand_free_and_keep_their_distance():
-    """Palm and fingers against the other sections, by the distance of sampled points of the hand."""
-    cell = pipe_cell(3)
-    grasps = cell.grasps(150)
-    assert len(grasps) == 150
-    assert [g.to_dict() for g in cell.grasps(40)] == [g.to_dict() for g in grasps[:40]]
+@pytest.mark.parametrize("number", range(1, 9))
+def test_grasps_keep_their_distance(number):
+    """1 cm along the section or 5 degrees about it."""
+    pipe = pipe_structures()[number - 1]
+    grasps = pipe.sample_grasps(500, gripper=pipe_robot("tm14like")[2], seed=1)
+    assert len(grasps) == 500
+    alike = 0
     for i, a in enumerate(grasps):
         for b in grasps[:i]:
             if (a.section, a.flipped) == (b.section, b.flipped):
                 turn = abs(math.remainder(a.angle - b.angle, 2 * math.pi))
                 assert abs(a.length - b.length) >= 0.01 or turn >= math.radians(5)
+                alike += abs(a.length - b.length) < 0.01 or turn < math.radians(5)
+    assert alike > 0, "some differ in one of the two alone"
+
+
+def test_grasps_leave_the_hand_free():
+    """Palm and fingers against the other sections, by the distance of sampled points of the hand."""
+    cell = pipe_cell(3)
+    grasps = cell.grasps(150)
+    assert len(grasps) == 150
+    assert [g.to_dict() for g in cell.grasps(40)] == [g.to_dict() for g in grasps[:40]]
     rng = np.random.default_rng(1)
     robot, _, gripper = pipe_robot("tm14like")
     poses = robot.link_poses(gripper.joint_values(cell.pipe.diameters[0]))
@@ -108,6 +119,24 @@ def test_grasps_leave_the_hand_free_and_keep_their_distance():
     assert refused > 0, "some hands do meet the pipe"
 
 
+@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("number", range(1, 9))
+def test_both_arms_carry_every_structure(number, robot):
+    """With another planner than the one the generator asks, over other grasps."""
+    cell = pipe_cell(number, robot=robot)
+    grasps = cell.grasps(500)
+    found = mg.plan_manipulation(
+        cell.problem(grasps), planner="rrt_star_mg", max_samples=5000, goal_cost=1e9, time_limit=600.0
+    )
+    assert found.outcome == mg.Outcome.solved
+    carrier = grasps[found.grasp_index]
+    arm, T_tool_object = cell.arm_holding(carrier), np.linalg.inv(carrier.T_object_tool)
+    np.testing.assert_allclose(arm.fk(found.path[0]) @ T_tool_object, cell.T_world_start, atol=1e-4)
+    np.testing.assert_allclose(arm.fk(found.path[-1]) @ T_tool_object, cell.T_world_goal, atol=1e-4)
+    checker = mg.CollisionChecker(cell.robot, cell.world_holding(carrier), arm)
+    assert all(checker.edge_is_free(a, b, step=0.005) for a, b in itertools.pairwise(found.path))
+
+
 def test_not_every_grasp_that_reaches_both_ends_can_carry():
     """P2's reason to plan over many grasps: in cell 6 the first reachable grasp fails where another one carries the pipe."""
     cell = pipe_cell(6)
@@ -126,6 +155,22 @@ def test_not_every_grasp_that_reaches_both_ends_can_carry():
             max_iterations=20_000, time_limit=600.0, shorten=False,
         )  # fmt: skip
         assert tried.outcome != mg.Outcome.solved
+
+
+@pytest.mark.parametrize("number", [4, 7, 8])
+def test_few_single_grasps_reach_both_ends(number):
+    """What cannot hold the pipe at both ends admits no motion: counted over other grasps than the generator's."""
+    cell = pipe_cell(number)
+    grasps = cell.grasps(500)
+    assert len(grasps) == 500
+    reached = sum(all(map(len, cell.ends(grasp, 1))) for grasp in grasps)
+    assert 0.1 * 500 < reached < 0.3 * 500
+
+
+def test_cells_with_too_many_grasps_within_reach_are_turned_down():
+    cell = pipe_cell(4, seed=2)
+    assert cell.rejected["30 % of the grasps within reach, or more"] >= 1
+    assert cell.drawn == 1 + sum(cell.rejected.values())
 
 
 def test_unknown_cells_are_refused():

@@ -13,6 +13,7 @@ constexpr double kBetter = 1e-6;    // Paths shorter by less than this share are
 constexpr double kSlack = 1e-9;     // Rounding of estimates: the best path's own vertices stay.
 constexpr double kPromising = 1.5;  // Paths of other grasps worth keeping, by the best one.
 constexpr double kOthers = 0.5;     // Corners cut on these.
+constexpr double kClose = 0.5;      // Corners cut close to them.
 constexpr double kInside = 0.999;   // Points on an edge keep off its end.
 
 }  // namespace
@@ -221,9 +222,12 @@ void RrtStarMg::cut_corner() {
   if (side == 1) at -= chain_[0].size() - 1;
   const int corner = chain_[side][at], before = chain_[side][at + 1];
   const int after = at > 0 ? chain_[side][at - 1] : chain_[1 - side].front();
+  // Far from the corner at first; what is nearly taut can only be cut close to it.
+  const bool close = rng_.uniform() < kClose;
   int points[2];
   for (int i = 0; i < 2; ++i) {
-    const double share = 1 - rng_.uniform() * rng_.uniform();
+    const double drawn = rng_.uniform() * rng_.uniform();
+    const double share = close ? drawn : 1 - drawn;
     const double *from = forest_.at(corner), *to = forest_.at(i == 0 ? before : after);
     for (int k = 0; k < ends_.dimension(); ++k) q_[k] = from[k] + (to[k] - from[k]) * share * kInside;
     points[i] = forest_.add_configuration(q_.data());

@@ -84,6 +84,17 @@ def test_every_entry_has_the_shape_and_its_picture(name, quick, tmp_path):
         assert picture.stat().st_size > 5000
 
 
+def test_other_seeds_stand_beside_the_first(quick, tmp_path):
+    first = quick("p1-figure-3.9")
+    store(first, tmp_path)
+    fault = {"kind": "T", "what": "the sky is green", "holds": False, "clock": False}
+    page = store({**first, "seed": 2, "checks": [first["checks"][0], fault]}, tmp_path).read_text()
+    assert "Seed 2: 1 of 2 statements hold; not: the sky is green." in page
+    kept = [json.loads((tmp_path / "reproduction" / f"p1-figure-3.9{end}.json").read_text()) for end in ("", "-seed-2")]
+    assert [k["seed"] for k in kept] == [1, 2]
+    assert page.count(markdown(first).splitlines()[0]) == 1
+
+
 @pytest.mark.parametrize("name", ENTRIES)
 def test_exact_values_and_trends_hold(name, quick):
     late = [c["what"] for c in quick(name)["checks"] if not c["holds"] and not c["clock"]]

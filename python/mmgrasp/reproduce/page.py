@@ -89,11 +89,28 @@ def _one_line_a_key(result: dict[str, Any]) -> str:
 
 
 def store(result: dict[str, Any], out: Path) -> Path:
-    """Writes a result's JSON and picture below the folder and the page of all results stored there; returns the page."""
+    """Writes a result's JSON and picture below the folder and the page of all results stored there; returns the page.
+
+    Seed 1 is the one shown. Those of other seeds are kept beside it, and the page says which statements hold for them.
+    """
     folder = out / FOLDER
-    write_file(folder / f"{result['name']}.json", _one_line_a_key(result))
-    write_picture(result, folder / f"{result['name']}.png")
+    if result["seed"] == 1:
+        write_file(folder / f"{result['name']}.json", _one_line_a_key(result))
+        write_picture(result, folder / f"{result['name']}.png")
+    else:
+        write_file(folder / f"{result['name']}-seed-{result['seed']}.json", _one_line_a_key(result))
     return write_page(out)
+
+
+def _other_seeds(folder: Path, name: str) -> list[str]:
+    """A line for each result of another seed."""
+    lines = []
+    for path in sorted(folder.glob(f"{name}-seed-*.json")):
+        result = json.loads(path.read_text())
+        broken = [check["what"] for check in result["checks"] if not check["holds"]]
+        holding = f"{len(result['checks']) - len(broken)} of {len(result['checks'])} statements hold"
+        lines.append(f"Seed {result['seed']}: {holding}{''.join('; not: ' + what for what in broken)}.\n")
+    return lines
 
 
 def write_page(out: Path) -> Path:
@@ -105,6 +122,7 @@ def write_page(out: Path) -> Path:
             continue
         picture = f"{FOLDER}/{name}.png"
         sections.append(markdown(json.loads(path.read_text()), picture if (out / picture).is_file() else None))
+        sections += _other_seeds(out / FOLDER, name)
     page = out / "reproduction.md"
     write_file(page, "\n".join(sections))
     return page

@@ -29,7 +29,7 @@ def grasps_of(cell: PipeCell, run: int) -> list[Any]:
     return cell.grasps(2000, seed=1000 * cell.seed + run)
 
 
-@functools.lru_cache(maxsize=4)
+@functools.lru_cache(maxsize=20)  # ten runs, two sizes
 def roadmap_of(robot: str, vertices: int, run: int) -> Roadmap:
     return Roadmap.build(pipe_robot(robot)[1], vertices=vertices, gamma=GAMMA, seed=run + 1)
 

@@ -46,7 +46,7 @@ class _Style:
     low: tuple[str, ...] = ()
     """Which of start and goal lie close to the table: most grasps would need a hand below it."""
     picky: bool = False
-    """The first grasp within reach must not do: RRT-Connect finds no motion for it."""
+    """The first grasp within reach of the larger arm must not do: RRT-Connect finds no motion for it."""
     far: bool = False
     """Near the end of the arm's reach."""
     bays: tuple[str, ...] = ()
@@ -68,6 +68,8 @@ _STYLES = (
 _LOW = (0.02, 0.05)  # height of the lowest point [m]
 _BAY_ROOM = 0.10  # between the pipe and the walls of its bay [m]
 _RINGS = {"tm14like": (0.45, 0.70), "kr6like": (0.40, 0.58)}  # around the arm's axis [m]
+_PARTITIONS = {"tm14like": 1.0, "kr6like": 0.5}  # heights, by the style's
+_ROOFS = {"tm14like": 0.0, "kr6like": 0.13}  # gaps wider than the style's [m]: pipes are as long for a shorter arm
 _TABLE_TOP = -0.005  # the arm's foot stands on it without touching [m]
 _POST_RADIUS = 0.01
 _POST_GAP = 0.005  # between a post and the pipe above it [m]
@@ -84,7 +86,7 @@ def pipe_cell(number: int, seed: int = 1, robot: str = "tm14like") -> PipeCell:
     Turned down and counted are cells without room for pipe or posts, those in which fewer than 3 of 100 grasps are
     within reach at both ends, and those for which PRM*-MG finds no motion in one of six tries, each with a roadmap and
     500 grasps of its own; for structures 4, 7 and 8 also those in which 30 % of 500 grasps or more are within reach, for
-    structure 6 those whose first grasp within reach would do. Raises InvalidInput on a number or robot that does not exist.
+    structure 6 and the TM14-like arm those whose first grasp within reach would do. Raises InvalidInput on a number or robot that does not exist.
     """
     if number not in range(1, len(_STYLES) + 1):
         raise InvalidInput(f"number = {number}: must be from 1 to {len(_STYLES)}")
@@ -132,12 +134,11 @@ def _draw(number: int, seed: int, robot: str, rng: np.random.Generator) -> PipeC
     for name, T in (("start", T_world_start), ("goal", T_world_goal)):
         if name in style.bays:
             _add_bay(world, name, pipe, T)
-    scale = _RINGS[robot][1] / _RINGS["tm14like"][1]
     if style.partition:
-        _add_partition(world, between, scale, style, rng)
+        _add_partition(world, between, robot, style, rng)
     for i in range(style.columns):
-        radius, height = rng.uniform(0.03, 0.05), rng.uniform(0.5, 0.9) * scale
-        at = rng.uniform(0.40, 0.90) * scale * _direction(between + rng.uniform(-0.6, 0.6))
+        radius, height = rng.uniform(0.03, 0.05), rng.uniform(0.5, 0.9) * _scale(robot)
+        at = rng.uniform(0.40, 0.90) * _scale(robot) * _direction(between + rng.uniform(-0.6, 0.6))
         world.add_cylinder(f"column {i + 1}", radius, height, pose([at[0], at[1], _TABLE_TOP + height / 2]))
     return PipeCell(number, seed, robot, pipe, world, T_world_start, T_world_goal)
 
@@ -201,15 +202,20 @@ def _add_bay(world: World, name: str, pipe: Pipe, T: Pose) -> None:
         world.add_box(f"{name} bay {part}", size, T_world_bay @ pose(at))
 
 
-def _add_partition(world: World, between: float, scale: float, style: _Style, rng: np.random.Generator) -> None:
+def _scale(robot: str) -> float:
+    """How far the arm reaches, by the larger one."""
+    return _RINGS[robot][1] / _RINGS["tm14like"][1]
+
+
+def _add_partition(world: World, between: float, robot: str, style: _Style, rng: np.random.Generator) -> None:
     """A plate that stands out from near the arm, and a roof above it."""
-    near, far = 0.28 * scale, 1.15 * scale
+    near, far = 0.28 * _scale(robot), 1.15 * _scale(robot)
     middle = (near + far) / 2 * _direction(between)
-    height = style.partition * scale * rng.uniform(0.9, 1.1)
+    height = style.partition * _PARTITIONS[robot] * rng.uniform(0.9, 1.1)
     plate = pose([middle[0], middle[1], _TABLE_TOP + height / 2], rpy=[0, 0, between])
     world.add_box("partition", [far - near, 0.03, height], plate)
     if style.gap:
-        bottom = height + style.gap * scale * rng.uniform(0.95, 1.05)
+        bottom = height + (style.gap + _ROOFS[robot]) * rng.uniform(0.95, 1.05)
         world.add_box("roof", [2.6, 2.6, 0.04], pose([0, 0, bottom + 0.02]))
 
 
@@ -232,7 +238,8 @@ def _fault(cell: PipeCell) -> str:
         found = plan_manipulation(problem, roadmap=_roadmap(cell.robot_name, i), time_limit=60.0)
         if found.outcome != Outcome.solved:
             return f"no motion over a roadmap of {_VERTICES} vertices"
-    return "the first grasp within reach will do" if style.picky and _first_carries(cell) else ""
+    picky = style.picky and cell.robot_name == "tm14like"
+    return "the first grasp within reach will do" if picky and _first_carries(cell) else ""
 
 
 def _reachable(cell: PipeCell, grasps: list[PipeGrasp]) -> int:

@@ -86,7 +86,8 @@ def pipe_cell(number: int, seed: int = 1, robot: str = "tm14like") -> PipeCell:
     Turned down and counted are cells without room for pipe or posts, those in which fewer than 3 of 100 grasps are
     within reach at both ends, and those for which PRM*-MG finds no motion in one of six tries, each with a roadmap and
     500 grasps of its own; for structures 4, 7 and 8 also those in which 30 % of 500 grasps or more are within reach, for
-    structure 6 and the TM14-like arm those whose first grasp within reach would do. Raises InvalidInput on a number or robot that does not exist.
+    structure 6 and the TM14-like arm those whose first grasp within reach would do. Raises InvalidInput on a number or
+    robot that does not exist.
     """
     if number not in range(1, len(_STYLES) + 1):
         raise InvalidInput(f"number = {number}: must be from 1 to {len(_STYLES)}")

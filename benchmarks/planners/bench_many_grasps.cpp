@@ -3,8 +3,6 @@
 //
 //     bench_many_grasps [threads, 0: all] [planner]
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -19,13 +17,6 @@ namespace {
 using namespace mmgrasp;
 
 constexpr int kGrasps = 500, kRuns = 20;
-
-/// Of this process, all threads together: the machine may be shared.
-double processor_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 Pose at(double x, double y, double z) {
   Pose T = Pose::Identity();
@@ -72,11 +63,11 @@ void measure(const Roadmap& roadmap, const std::string& kind, const Manipulation
   double cost = 0;
   for (unsigned run = 0; run <= kRuns; ++run) {  // the first one warms up
     const ManipulationProblem problem = problem_of(roadmap.group(), kind, std::max(run, 1u));
-    const double begin = bench::now(), begin_processor = processor_seconds();
+    const double begin = bench::now(), begin_processor = bench::processor_seconds();
     const ManipulationResult result = plan_manipulation(problem, options, &roadmap);
     if (run == 0) continue;
     seconds.push_back(bench::now() - begin);
-    processor.push_back(processor_seconds() - begin_processor);
+    processor.push_back(bench::processor_seconds() - begin_processor);
     solved += result.path ? 1 : 0;
     cost += result.cost / kRuns;
   }

@@ -4,8 +4,6 @@
 //
 //     bench_mbm <problems.txt> [seeds] [peer: 0 or 1] [only this set]
 
-#include <time.h>
-
 #include <algorithm>
 #include <map>
 
@@ -18,13 +16,6 @@
 namespace {
 
 constexpr double kWorkspaceStep = 0.005, kVerifyStep = 0.005, kLimit = 10;
-
-/// Of this process; plans and peers run in one thread. The machine may be shared.
-double processor_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 double quantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
@@ -85,10 +76,10 @@ int main(int argc, char** argv) {
         options.max_iterations = 100000000;
         options.shorten = shorten;
         options.seed = static_cast<unsigned>(seed);
-        const double begin = processor_seconds();
-        const mmgrasp::MotionResult result = plan_motion(checker, problem.start, {problem.goal}, options);
+        const double begin = bench::processor_seconds();
+        const mmgrasp::MotionResult result = plan_motion(checker, problem.start, problem.goals, options);
         Runs& run = runs[shorten ? "mmgrasp, shortened" : "mmgrasp"];
-        run.milliseconds.push_back(1e3 * (processor_seconds() - begin));
+        run.milliseconds.push_back(1e3 * (bench::processor_seconds() - begin));
         run.wall.push_back(1e3 * result.stats.seconds);
         run.queries += result.stats.collision_queries;
         if (!result.path) continue;
@@ -101,10 +92,10 @@ int main(int argc, char** argv) {
         }
       }
       if (!with_peer) continue;
-      const double begin = processor_seconds();
-      const auto answer = peer.solve(problem.start, problem.goal, range, static_cast<unsigned>(seed), kLimit);
+      const double begin = bench::processor_seconds();
+      const auto answer = peer.solve(problem.start, problem.goals, range, static_cast<unsigned>(seed), kLimit);
       Runs& run = runs["OMPL RRTConnect + FCL"];
-      run.milliseconds.push_back(1e3 * (processor_seconds() - begin));
+      run.milliseconds.push_back(1e3 * (bench::processor_seconds() - begin));
       run.wall.push_back(1e3 * answer.seconds);
       run.solved += answer.solved;
       run.verified += answer.solved && verified(judge, answer.path);

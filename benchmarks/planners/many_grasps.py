@@ -1,13 +1,14 @@
 """Planning over many grasps at once beside what people do with one planner and a list of grasps.
 
-    python benchmarks/planners/many_grasps.py [--cells 1 2 ...] [--grasps 500] [--runs 2] [--seconds 5]
+    python benchmarks/planners/many_grasps.py [--cells 1 2 ...] [--grasps 500] [--runs 2] [--seconds 5] [--fcl PROGRAM]
 
 Prints one JSON line with the settings, then one for each cell, run and program. Everything runs in this process on one
-thread, over the same cells, grasps, collision checker and edge step; inverse kinematics counts for all, building
+thread, over the same cells, grasps and edge step, and but for `today` with our collision checker; inverse kinematics counts for all, building
 the roadmap does not. Times are processor time. Programs:
 
     ours, prm_star_mg   over a roadmap of 5000 vertices built beforehand, which then grows as long as there is time
     ours, rrt_star_mg   until the time is over
+    today               one by one with FCL for collisions, as people put OMPL and FCL together; no cost of its own
     one by one          OMPL's RRT-Connect for each grasp in turn, `--each` seconds for it, until one succeeds
     one by one, ours    the same with our RRT-Connect
     all goals           OMPL's RRT-Connect from one start of every grasp to all its goals, budgets doubled from round to round
@@ -23,7 +24,12 @@ import argparse
 import json
 import math
 import statistics
+import subprocess
+import tempfile
 import time
+from pathlib import Path
+
+from carry_text import write_carries
 
 import mmgrasp as mg
 from mmgrasp.pipe_cells import PipeCell, pipe_cell
@@ -118,6 +124,27 @@ def one_by_one(planner: str):
     return run
 
 
+def today(cell: PipeCell, grasps: list[mg.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool) -> dict:
+    begin, ends = time.process_time(), Ends(cell, grasps)
+    planning, apart = 0.0, 0.0  # [s] in the other program; on what it is told
+    for i in ends.usable():
+        told = time.process_time()
+        starts, goals = ends[i]
+        with tempfile.TemporaryDirectory() as folder:
+            text = Path(folder) / "carries.txt"
+            write_carries(cell, [(grasps[i], start, goals) for start in starts], text)
+            command = [given.fcl, text, str(seed), str(given.each / len(starts))]
+            answer = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+        apart += time.process_time() - told
+        planning += answer["seconds"]
+        spent = time.process_time() - begin - apart + planning
+        if answer["solved"]:
+            return {**NONE, "first": spent}
+        if spent > given.cap:
+            break
+    return NONE
+
+
 def all_goals(
     cell: PipeCell, grasps: list[mg.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool
 ) -> dict:
@@ -159,6 +186,7 @@ def informed(
 PROGRAMS = {
     "ours, prm_star_mg": ours("prm_star_mg"),
     "ours, rrt_star_mg": ours("rrt_star_mg"),
+    "today": today,
     "one by one": one_by_one("ompl_rrt_connect"),
     "one by one, ours": one_by_one("rrt_connect"),
     "all goals": all_goals,
@@ -176,8 +204,11 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=5.0, help="total time of the anytime programs [s]")
     parser.add_argument("--each", type=float, default=1.0, help="time for one grasp of `one by one` [s]")
     parser.add_argument("--cap", type=float, default=60.0, help="after which a program without a path gives up [s]")
+    parser.add_argument("--fcl", help="the program bench_carry_fcl")
     parser.add_argument("--programs", nargs="+", choices=list(PROGRAMS), default=list(PROGRAMS))
     given = parser.parse_args()
+    if given.fcl is None:
+        given.programs.remove("today")
     print(json.dumps({"settings": {**vars(given), "vertices": VERTICES, "neighbours": NEIGHBOURS}}), flush=True)
     for number in given.cells:
         cell = pipe_cell(number, seed=given.seed)

@@ -18,7 +18,8 @@ struct MbmProblem {
   std::string set, name;
   mmgrasp::JointGroup group;
   mmgrasp::World world;
-  Eigen::VectorXd start, goal;
+  Eigen::VectorXd start;
+  std::vector<Eigen::VectorXd> goals;
 };
 
 /// Reads the problems and gives each the robot with the links its scene allows to touch.
@@ -43,11 +44,12 @@ class MbmReader {
         finish(out);
         entry_ = {};
         words >> entry_.name >> entry_.group;
-      } else if (what == "start" || what == "goal") {
-        std::string joint;
-        double value = 0;
-        words >> joint >> value;
-        (what == "start" ? entry_.start : entry_.goal)[joint] = value;
+      } else if (what == "start") {
+        add_value(words, entry_.start);
+      } else if (what == "goal") {
+        add_value(words, entry_.goals.back());
+      } else if (what == "another_goal") {
+        entry_.goals.emplace_back();
       } else if (what == "allow") {
         std::string a, b;
         words >> a >> b;
@@ -63,10 +65,18 @@ class MbmReader {
  private:
   struct Entry {
     std::string name, group;
-    std::map<std::string, double> start, goal;
+    std::map<std::string, double> start;
+    std::vector<std::map<std::string, double>> goals{1};
     std::set<std::pair<std::string, std::string>> allowed;
     std::map<std::string, mmgrasp::WorldObject> objects;
   };
+
+  static void add_value(std::istringstream& words, std::map<std::string, double>& values) {
+    std::string joint;
+    double value = 0;
+    words >> joint >> value;
+    values[joint] = value;
+  }
 
   void add_shape(std::istringstream& words) {
     std::string object, kind;
@@ -93,6 +103,12 @@ class MbmReader {
     entry_.objects[object].shapes.push_back(placed);
   }
 
+  static Eigen::VectorXd of_group(const mmgrasp::JointGroup& group, const std::map<std::string, double>& values) {
+    Eigen::VectorXd q(group.size());
+    for (int i = 0; i < group.size(); ++i) q[i] = values.at(group.names()[static_cast<std::size_t>(i)]);
+    return q;
+  }
+
   void finish(std::vector<MbmProblem>& out) {
     if (entry_.name.empty()) return;
     using namespace mmgrasp;
@@ -115,12 +131,9 @@ class MbmReader {
                        entry_.name,
                        group.with_reference(reference),
                        {},
-                       Eigen::VectorXd(group.size()),
-                       Eigen::VectorXd(group.size())};
-    for (int i = 0; i < group.size(); ++i) {
-      problem.start[i] = entry_.start.at(group.names()[static_cast<std::size_t>(i)]);
-      problem.goal[i] = entry_.goal.at(group.names()[static_cast<std::size_t>(i)]);
-    }
+                       of_group(group, entry_.start),
+                       {}};
+    for (const auto& goal : entry_.goals) problem.goals.push_back(of_group(group, goal));
     for (const auto& [name, object] : entry_.objects) problem.world.add(name, object);
     out.push_back(std::move(problem));
   }

@@ -38,7 +38,10 @@ class OmplPeer {
     std::vector<Eigen::VectorXd> path;
   };
 
-  Answer solve(const Eigen::VectorXd& start, const Eigen::VectorXd& goal, double range, unsigned seed, double limit) {
+  Answer solve(const Eigen::VectorXd& start, const std::vector<Eigen::VectorXd>& goals, double range, unsigned seed,
+               double limit) {
+    std::vector<double> ends;
+    for (const Eigen::VectorXd& goal : goals) ends.insert(ends.end(), goal.begin(), goal.end());
     const Eigen::VectorXd lower = group_.sample_lower(), upper = group_.sample_upper();
     const std::vector<unsigned char> wraps(group_.wraps().begin(), group_.wraps().end());
     answer_ = {};
@@ -49,8 +52,8 @@ class OmplPeer {
     problem.upper = upper.data();
     problem.wraps = wraps.data();
     problem.start = start.data();
-    problem.goal_count = 1;
-    problem.goals = goal.data();
+    problem.goal_count = static_cast<int>(goals.size());
+    problem.goals = ends.data();
     problem.range = range;
     problem.seed = seed;
     problem.max_iterations = 100000000;

@@ -46,10 +46,14 @@ DriveByAttempts::DriveByAttempts(const JointGroup& group, const VectorXd& start,
     : group_(group), start_(start), steps_(steps), goal_(goal), options_(options), worlds_(worlds), monitor_(monitor) {}
 
 int DriveByAttempts::collisions(const std::vector<Stand>& chain) {
-  const DriveByAttempt a = prepared(chain, options_.waypoints);
+  if (!worlds_) return 0;
+  const DriveByAttempt a = prepared(chain, options_.waypoints, false);
   int count = 0;
-  for (std::size_t i = 1; i < a.checkers.size(); ++i)
-    count += a.checkers[i] && !a.checkers[i]->is_free(a.guess.positions[i]);
+  std::size_t step = 0;
+  for (int i = 1; i < a.problem.intervals(); ++i) {
+    while (step < a.waypoints.size() && i > a.waypoints[step]) ++step;
+    count += !worlds_->at(step).is_free(a.guess.positions[static_cast<std::size_t>(i)]);
+  }
   return count;
 }
 
@@ -105,7 +109,7 @@ WholeBodyResult DriveByAttempts::optimize(const DriveByAttempt& a, double warm_s
   return optimize_whole_body(a.problem, a.guess, options, a.checkers, monitor_);
 }
 
-DriveByAttempt DriveByAttempts::prepared(const std::vector<Stand>& chain, int waypoints) {
+DriveByAttempt DriveByAttempts::prepared(const std::vector<Stand>& chain, int waypoints, bool checked) {
   DriveByAttempt a{WholeBodyProblem(group_), {start_}, {}, {}, {}, {}, {}};
   for (const Stand& stand : chain) a.knots.push_back(stand.q);
   a.knots.push_back(goal_near(goal_, a.knots.back()));
@@ -115,13 +119,14 @@ DriveByAttempt DriveByAttempts::prepared(const std::vector<Stand>& chain, int wa
   a.problem.jerk_time = options_.jerk_time;
   a.times = segment_times(group_, a.knots);
   a.intervals = share_intervals(waypoints - 1, a.times);
-  if (worlds_) a.checkers = worlds_->along(a.intervals, chain);
+  const bool checkers = worlds_ && checked;
+  if (checkers) a.checkers = worlds_->along(a.intervals, chain);
   // A task that takes time is a segment of its own.
   for (std::size_t t = steps_.size(); t-- > 0;) {
     if (steps_[t].dwell <= 0) continue;
     const auto at = static_cast<std::ptrdiff_t>(t) + 1;
     const int end = std::accumulate(a.intervals.begin(), a.intervals.begin() + at, 0);
-    if (worlds_) a.checkers.insert(a.checkers.begin() + end, kDwellIntervals, &worlds_->at(t));
+    if (checkers) a.checkers.insert(a.checkers.begin() + end, kDwellIntervals, &worlds_->at(t));
     a.knots.insert(a.knots.begin() + at, chain[t].q);
     a.intervals.insert(a.intervals.begin() + at, kDwellIntervals);
     a.times.insert(a.times.begin() + at, steps_[t].dwell);

@@ -28,7 +28,8 @@ class DriveByAttempts {
                   const DriveByGoal& goal, const DriveByOptions& options, DriveByWorlds* worlds,
                   const Monitor& monitor);
 
-  DriveByAttempt prepared(const std::vector<Stand>& chain, int waypoints);
+  /// `checked`: with the checkers of its intervals, which are built anew for parts that are held.
+  DriveByAttempt prepared(const std::vector<Stand>& chain, int waypoints, bool checked = true);
   /// Straight through the stands, and around obstacles when that fails or is bound to; many waypoints start from the
   /// solution with few. `waypoints` are those of the steps; no solve takes more than `iterations`,
   /// and fewer than the options allow also mean fewer refinements.

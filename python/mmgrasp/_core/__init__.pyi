@@ -1565,7 +1565,7 @@ class Improvement:
     @property
     def seconds(self) -> float:
         """
-        Since the search began.
+        Since the call began, the first roadmap's building left out.
         """
 class GraspReport:
     """
@@ -2431,8 +2431,12 @@ class DriveByTask:
     tolerance: (6,) along x, y, z [m] and about them [rad] of the pose's own frame; free: names of axes that do not
     matter, of x, y, z, roll, pitch, yaw; max_tool_speed [m/s] at the task; dwell [s] for which the tool's pose is
     kept, e.g. while a gripper closes; object: name of the world's object that is held afterwards.
+    
+    push: a gripper that closes while the hand moves on (P1 4.3): dict of push_grasp's keywords, approach (3,), an axis of
+    the tip's frame, and free_length [m], the straight way before the finger tips reach the object. T_world_tip is then
+    the planned grasp; tolerance, free, max_tool_speed and dwell are left out.
     """
-    def __init__(self, T_world_tip: numpy.typing.ArrayLike, *, tolerance: typing.Any = None, free: collections.abc.Sequence[str] = [], max_tool_speed: typing.Any = None, dwell: typing.SupportsFloat | typing.SupportsIndex = 0.0, object: str = '') -> None:
+    def __init__(self, T_world_tip: numpy.typing.ArrayLike, *, tolerance: typing.Any = None, free: collections.abc.Sequence[str] = [], max_tool_speed: typing.Any = None, dwell: typing.SupportsFloat | typing.SupportsIndex = 0.0, object: str = '', push: dict | None = None) -> None:
         ...
     def __repr__(self) -> str:
         ...
@@ -2450,6 +2454,11 @@ class DriveByTask:
     @property
     def object(self) -> str:
         ...
+    @property
+    def push(self) -> typing.Any:
+        """
+        What push_grasp says: closing time, window, tolerance to the object's position; None without one.
+        """
 class WholeBodyTrajectory:
     """
     Base and arm on one clock. Between waypoints the drive velocities are linear in time; for a diff-drive base they are
@@ -2517,6 +2526,11 @@ class DriveByResult:
     def attempts(self) -> int:
         ...
     @property
+    def choices(self) -> int:
+        """
+        Choices of candidates planned.
+        """
+    @property
     def duration(self) -> float:
         """
         [s]
@@ -2524,7 +2538,7 @@ class DriveByResult:
     @property
     def events(self) -> list:
         """
-        One dict per task: waypoint, time [s], candidate, base_speed and tool_speed [m/s].
+        One dict per task: waypoint, time and close_time [s], candidate, base_speed and tool_speed [m/s].
         """
     @property
     def iterations(self) -> int:
@@ -3190,17 +3204,19 @@ def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy
     Keyword options:
         waypoints = 35: waypoints of the whole motion
         attempts = 8: guesses tried until one leads to a solution
-        solutions = 1: solutions compared; the fastest is returned
-        stands = 64: configurations sought per task
-        time_limit = 60.0: wall-clock cap [s]
+        solutions = 1: solutions compared of one choice of candidates
+        choices = 8: choices of candidates planned; the fastest motion is returned; 1: the choice that looks quickest
+        stands = 64: configurations sought per candidate
+        iterations = 1500: of all attempts; after so many no other begins
+        time_limit = 600.0: wall-clock cap [s]
         jerk_time = 0.0: accelerations may go from 0 to their limit in no less [s]; 0: no limit
         collisions = True: the robot keeps clear of the world and of itself
         seed = 1: same seed, same answer
         threads = 1: 0: all; does not change the answer
         solver = 'ipopt': a name of nlp_solver_names()
         tolerance = 0.0001: relative optimality
-        max_iterations = 150: per attempt
-        attempt_time_limit = 60.0: wall-clock cap of one attempt [s]
+        max_iterations = 150: of one solve; an attempt has at most 1 + refinements
+        attempt_time_limit = 600.0: wall-clock cap of one attempt [s]
         smoothing = 0.01: weight of the mean square of accelerations over their limits [s]
         margin = 0.005: distance to keep from obstacles and from oneself [m]
         look_out = 0.15: pairs of bodies nearer than this are constrained [m]
@@ -3213,6 +3229,7 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
     Keyword options:
         planner = 'prm_star_mg': a name of manipulation_planner_names()
         ik_solutions = 4: arm configurations tried for each grasp at each end
+        first_grasps = 4: grasps whose arm configurations are found before the first search, then twice as many until there is a path; 0: all
         ik_restarts = 30: random starts of arms without a closed form
         joint_step = 0.02: no joint moves more between two checks of an edge [rad or m]
         workspace_step = 0.005: no point of the robot or the object moves more between two checks [m]
@@ -3223,6 +3240,7 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         lazy_grasps = True: prm_star_mg: search a grasp only when its straight line could still win
         straight = True: prm_star_mg: join start and goal configurations whatever their distance
         max_vertices = 0: prm_star_mg: once the roadmap's best path is found, double its vertices up to this; 0: never
+        shorten = True: prm_star_mg: shorten the roadmap's best path at the end
         vertices = 5000: prm_star_mg without a roadmap given: configurations drawn
         gamma = 4.0: likewise: vertices nearer than gamma (log n / n)^(1/d) are joined [rad or m]
         neighbours = 0: likewise: > 0: join that many nearest ones instead

@@ -35,11 +35,11 @@ class Planner : public ::testing::TestWithParam<std::string> {
   const std::vector<SceneBox> posts{{{0.25, 0.25, 0}, {0.05, 0.05, 0.2}}, {{0.25, -0.25, 0}, {0.05, 0.05, 0.2}}};
   const VectorXd start = vec(-1.0, 0.2, 0.2), goal = vec(1.0, -0.2, -0.2);
 
-#ifdef __SANITIZE_ADDRESS__
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   void SetUp() override {
     const std::set<std::string> informed{"informed_rrt_star", "bit_star", "abit_star", "ait_star"};
     if (informed.count(GetParam())) {
-      GTEST_SKIP() << "AddressSanitizer refuses RTLD_DEEPBIND, without which OMPL's ellipsoids run into KDL's Eigen";
+      GTEST_SKIP() << "Sanitizers refuse RTLD_DEEPBIND, without which OMPL's ellipsoids run into KDL's Eigen";
     }
   }
 #endif

@@ -207,7 +207,7 @@ def main() -> None:
     parser.add_argument("--fcl", help="the program bench_carry_fcl")
     parser.add_argument("--programs", nargs="+", choices=list(PROGRAMS), default=list(PROGRAMS))
     given = parser.parse_args()
-    if given.fcl is None:
+    if given.fcl is None and "today" in given.programs:
         given.programs.remove("today")
     print(json.dumps({"settings": {**vars(given), "vertices": VERTICES, "neighbours": NEIGHBOURS}}), flush=True)
     for number in given.cells:

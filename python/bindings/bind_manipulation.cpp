@@ -1,3 +1,4 @@
+#include <cmath>
 #include <optional>
 
 #include "bindings.hpp"
@@ -25,13 +26,22 @@ OptionField<O> of_roadmap(const char* name, Value RoadmapOptions::*member, const
           [=](const O& o) { return py::cast(o.prm.roadmap.*member); }, help};
 }
 
+/// May be infinite, which other numbers may not.
+void convert_goal_cost(O& options, const py::handle& value) {
+  const bool infinite = PyFloat_Check(value.ptr()) && PyFloat_AS_DOUBLE(value.ptr()) == HUGE_VAL;
+  if (infinite)
+    options.rrt.goal_cost = HUGE_VAL;
+  else
+    convert(value, "goal_cost", options.rrt.goal_cost);
+}
+
 const std::vector<OptionField<O>>& manipulation_fields() {
   static const std::vector<OptionField<O>> fields{
       option<O>("planner", &O::planner, "a name of manipulation_planner_names()"),
       option<O>("ik_solutions", &O::ik_solutions, "arm configurations tried for each grasp at each end"),
       option<O>("first_grasps", &O::first_grasps,
-                "grasps whose arm configurations are found before the first search, then twice as many until there is "
-                "a path; 0: all"),
+                "grasps looked at, one by one, before those without a first path are searched again, then twice as "
+                "many; 0: all before any search"),
       option<O>("ik_restarts", &O::ik, &IkOptions::restarts, "random starts of arms without a closed form"),
       option<O>("joint_step", &O::edge, &EdgeOptions::joint_step,
                 "no joint moves more between two checks of an edge [rad or m]"),
@@ -62,8 +72,8 @@ const std::vector<OptionField<O>>& manipulation_fields() {
              "rrt_star_mg: once solved, chance to grow the drawn grasp's own tree (P2's p_blt)"),
       of_rrt("bidirectional", &RrtStarMgOptions::bidirectional, "rrt_star_mg: trees from both ends"),
       of_rrt("informed", &RrtStarMgOptions::informed, "rrt_star_mg: draw only where a better path can pass"),
-      of_rrt("goal_cost", &RrtStarMgOptions::goal_cost,
-             "rrt_star_mg: ends with the first path that costs no more; inf: the first at all")};
+      {"goal_cost", convert_goal_cost, [](const O& o) { return py::cast(o.rrt.goal_cost); },
+       "rrt_star_mg: ends with the first path that costs no more; inf: the first at all"}};
   return fields;
 }
 

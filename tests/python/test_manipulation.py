@@ -264,3 +264,16 @@ def test_other_threads_run_meanwhile():
     done.set()
     thread.join()
     assert len(ticks) > 5
+
+
+def test_goal_cost_may_be_infinite():
+    told = []
+    first = mg.plan_manipulation(
+        problem(), planner="rrt_star_mg", goal_cost=float("inf"), seed=3, time_limit=100.0, improved=told.append
+    )
+    assert first.outcome == mg.Outcome.solved
+    assert len(told) == 1
+    assert first.cost == told[0].cost
+    for wrong in (float("nan"), -float("inf"), -1.0):
+        with pytest.raises(mg.InvalidInput, match="goal_cost"):
+            mg.plan_manipulation(problem(), planner="rrt_star_mg", goal_cost=wrong)

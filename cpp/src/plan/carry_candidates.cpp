@@ -54,15 +54,14 @@ CarryCandidates::CarryCandidates(const ManipulationProblem& problem, const Manip
       clock_(clock),
       monitor_(monitor),
       result_(result),
-      order_(shuffled(problem.grasps.size(), options.seed)),
-      next_(options.first_grasps > 0 ? static_cast<std::size_t>(options.first_grasps) : order_.size()) {
+      order_(shuffled(problem.grasps.size(), options.seed)) {
   result_.grasps.assign(order_.size(), {});
 }
 
-bool CarryCandidates::find_more(bool all) {
+bool CarryCandidates::find_more(std::size_t count) {
   if (complete()) return false;
   const double begin = clock_.seconds();
-  const std::size_t count = std::min(all ? order_.size() : next_, order_.size() - seen_);
+  count = std::min(count, order_.size() - seen_);
   std::vector<CarryCandidate> looked_at(count);
   std::atomic<bool> late{false};
   const auto work = [&](std::size_t i, int worker) {
@@ -78,7 +77,6 @@ bool CarryCandidates::find_more(bool all) {
   for (CarryCandidate& candidate : looked_at)
     if (!candidate.goals.empty()) found_.push_back(std::move(candidate));
   if (whole) seen_ += count;
-  next_ = 2 * count;
   result_.stats.ik_seconds += clock_.seconds() - begin;
   return whole;
 }
@@ -115,6 +113,12 @@ double CarryCandidates::least_cost_left() const {
   double least = kInfinite;
   for (std::size_t i = seen_; i < order_.size(); ++i)
     least = std::min(least, problem_.grasps[static_cast<std::size_t>(order_[i])].cost);
+  return least;
+}
+
+double CarryCandidates::least_cost() const {
+  double least = least_cost_left();
+  for (const CarryCandidate& candidate : found_) least = std::min(least, candidate.straight_cost());
   return least;
 }
 

@@ -29,13 +29,15 @@ class CarryCandidates {
 
   /// Those found so far; find_more() adds at the end.
   const std::vector<CarryCandidate>& found() const { return found_; }
-  /// Looks at more grasps, `all` that are left or twice as many as the last time. False when none was left, or when
-  /// stopped or out of time.
-  bool find_more(bool all);
+  /// Looks at so many more grasps, or all that are left. False when none was left, or when stopped or out of time.
+  bool find_more(std::size_t count);
+  bool find_rest() { return find_more(order_.size()); }
   /// Every grasp was looked at.
   bool complete() const { return seen_ == order_.size(); }
   /// No path with any grasp not yet looked at costs less; infinite when there is none.
   double least_cost_left() const;
+  /// No path with any grasp costs less: straight lines of those found, costs of those not yet looked at.
+  double least_cost() const;
 
   /// What touches at the start (or goal) with the first grasp that reports a collision there; empty when none does.
   std::vector<Contact> first_contacts(bool at_goal);
@@ -50,7 +52,7 @@ class CarryCandidates {
   const Monitor& monitor_;
   ManipulationResult& result_;
   std::vector<int> order_;
-  std::size_t seen_ = 0, next_;  ///< Of order_: how many were looked at, and how many come next.
+  std::size_t seen_ = 0;  ///< Of order_: how many were looked at.
   std::vector<CarryCandidate> found_;
 };
 

@@ -100,6 +100,10 @@ HeldChecker& CarryChecks::held(int worker, int grasp) {
   return holding(held_[static_cast<std::size_t>(worker)][static_cast<std::size_t>(opening_of(grasp))], grasp, true);
 }
 
+bool CarryChecks::edge_is_free(int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return holding(whole_[static_cast<std::size_t>(opening_of(grasp))], grasp, false).edge_is_free(a, b, edge_);
+}
+
 bool CarryChecks::path_edge_is_free(int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   HeldChecker& checker = holding(whole_[static_cast<std::size_t>(opening_of(grasp))], grasp, false);
   // Optimal paths graze, and who looks again by joint steps alone looks at other configurations.

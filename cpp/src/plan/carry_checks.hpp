@@ -36,6 +36,8 @@ class CarryChecks {
   bool held_is_free(int worker, int grasp, const Eigen::VectorXd& q);
   bool held_edge_is_free(int worker, int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
   Rejection held_rejection(int worker, int grasp, const Eigen::VectorXd& q);
+  /// Robot and object together, at the options' steps. For one thread.
+  bool edge_is_free(int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
   /// Robot and object together, at 0.005 rad or m, and no coarser than the options say: for finished paths.
   bool path_edge_is_free(int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
   /// The first edge of a finished path that is not free by path_edge_is_free(); -1: all are.

@@ -26,11 +26,12 @@ const CarryPlanner& carry_planner(const std::string& name) {
   throw InvalidInput("planner = \"" + name + "\": must be one of " + known);
 }
 
-void take_path(const CarryInput& input, int grasp, double cost, JointPath path, ManipulationResult& result) {
-  result.grasp_index = grasp;
-  result.cost = cost;
-  result.path = std::move(path);
-  result.improvements.push_back({input.clock.seconds(), cost, grasp});
+void take_path(const CarryInput& input, Carry carry, ManipulationResult& result) {
+  if (result.path && carry.cost >= result.cost) return;
+  result.grasp_index = carry.grasp;
+  result.cost = carry.cost;
+  result.path = std::move(carry.path);
+  result.improvements.push_back({input.clock.seconds(), carry.cost, carry.grasp});
   if (input.improved) input.improved(result.improvements.back());
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,16 @@ struct CarryInput {
   bool out_of_time() const { return monitor.stopped() || clock.seconds() > options.time_limit; }
 };
 
-/// Takes a path (checked already) as the best so far: fills the result's path, grasp and cost, and tells `improved`.
-void take_path(const CarryInput& input, int grasp, double cost, JointPath path, ManipulationResult& result);
+/// A path with one of the grasps.
+struct Carry {
+  int grasp = -1;
+  double cost = std::numeric_limits<double>::infinity();  ///< Without a path: infinite.
+  JointPath path;
+};
+
+/// Takes a path (checked already) when it is the cheapest so far: fills the result's path, grasp and cost, and tells
+/// `improved`.
+void take_path(const CarryInput& input, Carry carry, ManipulationResult& result);
 
 /// One way to plan a carry. `run` sets outcome and lower bound, and the path through take_path(). When it finds no
 /// candidate at all, what it sets does not matter.

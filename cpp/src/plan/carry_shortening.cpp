@@ -1,5 +1,6 @@
 #include "plan/carry_shortening.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "plan/motion_edges.hpp"
@@ -13,9 +14,8 @@ constexpr double kNothing = 1e-9;  // Gain that is none.
 
 }  // namespace
 
-void shorten_carry(const CarryInput& input, ManipulationResult& result) {
-  const int grasp = result.grasp_index;
-  CollisionChecker checker = input.checks.whole(grasp);
+void shorten_carry(const CarryInput& input, const Carry& carry, ManipulationResult& result) {
+  CollisionChecker checker = input.checks.whole(carry.grasp);
   MotionOptions options;
   options.edge_step = input.options.edge.joint_step;
   options.workspace_step = input.options.edge.workspace_step;
@@ -24,13 +24,14 @@ void shorten_carry(const CarryInput& input, ManipulationResult& result) {
   Rng rng(input.options.seed, 0x736f);
   ShorteningOptions shortening;
   shortening.stopped = [&] { return input.out_of_time(); };
+  const double fixed = input.problem.grasps[static_cast<std::size_t>(carry.grasp)].cost;
   for (const double finer : {1.0, kFiner}) {
-    JointPath path = *result.path;
+    Carry shorter = carry;
     shortening.finer = finer;
-    shorten_path(edges, path, rng, shortening);
-    const double cost = path.length() + input.problem.grasps[static_cast<std::size_t>(grasp)].cost;
-    if (cost > result.cost - kNothing || input.out_of_time()) return;
-    if (input.checks.blocked_edge(grasp, path) < 0) return take_path(input, grasp, cost, std::move(path), result);
+    shorten_path(edges, shorter.path, rng, shortening);
+    shorter.cost = shorter.path.length() + fixed;
+    if (shorter.cost > std::min(carry.cost, result.cost) - kNothing || input.out_of_time()) return;
+    if (input.checks.blocked_edge(carry.grasp, shorter.path) < 0) return take_path(input, std::move(shorter), result);
   }
 }
 

@@ -4,8 +4,8 @@
 
 namespace mmgrasp::detail {
 
-/// Shortens the result's path as plan_motion does, its grasp in hand, and takes what is shorter and free. Not for
-/// platforms that turn and drive.
-void shorten_carry(const CarryInput& input, ManipulationResult& result);
+/// Shortens a free path as plan_motion does, its grasp in hand; the result takes what comes of it when that is free and
+/// its cheapest. Not for platforms that turn and drive.
+void shorten_carry(const CarryInput& input, const Carry& carry, ManipulationResult& result);
 
 }  // namespace mmgrasp::detail

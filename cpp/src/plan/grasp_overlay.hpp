@@ -77,8 +77,6 @@ struct MMGRASP_EXPORT GraspOverlay {
   std::vector<int> blocked_vertices, blocked_edges;
   std::unordered_set<int> passed_vertices, passed_edges;
 
-  std::size_t patience = 0;  ///< Of its next search, as long as there are grasps to look at.
-
   /// The path found last: nodes, and the steps between them.
   std::vector<int> nodes, steps;
   double path_cost = 0;  ///< With the grasp's cost.

@@ -28,14 +28,16 @@ void ManipulationProblem::check() const {
   require_rigid(T_world_start, "T_world_start");
   require_rigid(T_world_goal, "T_world_goal");
   if (gripper) gripper->check();
+  const double widest = gripper ? gripper->max_opening : 1e9;
   for (std::size_t i = 0; i < grasps.size(); ++i) {
+    const CandidateGrasp& grasp = grasps[i];
+    const bool good_cost = std::isfinite(grasp.cost) && grasp.cost >= 0;
+    const bool good_opening = grasp.opening >= 0 && grasp.opening <= widest;
+    if (good_cost && good_opening && is_rigid(grasp.T_object_tool)) continue;
     const std::string name = "grasps[" + std::to_string(i) + "].";
-    require_rigid(grasps[i].T_object_tool, name + "T_object_tool");
-    require(std::isfinite(grasps[i].cost) && grasps[i].cost >= 0, name + "cost", grasps[i].cost,
-            "must be finite and >= 0");
-    const double widest = gripper ? gripper->max_opening : 1e9;
-    require(grasps[i].opening >= 0 && grasps[i].opening <= widest, name + "opening", grasps[i].opening,
-            "must be in [0, the gripper's max_opening]");
+    require_rigid(grasp.T_object_tool, name + "T_object_tool");
+    require(good_cost, name + "cost", grasp.cost, "must be finite and >= 0");
+    require(good_opening, name + "opening", grasp.opening, "must be in [0, the gripper's max_opening]");
   }
   if (!world.attached().empty())
     throw InvalidInput("world: holds '" + world.attached().begin()->first + "': must hold nothing yet");

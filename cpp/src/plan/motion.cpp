@@ -138,11 +138,12 @@ class MotionSearch {
     query.max_iterations = options_.max_iterations;
     query.time_limit = std::clamp(time_left(), 1e-3, 1e7);
     query.stopped = [&] { return monitor_.stopped(); };
-    if (options_.planner == kOwnPlanner) return detail::rrt_connect(edges_, query, finer);
     query.is_free = [&](const Eigen::VectorXd& q) { return edges_.is_free(q); };
     query.edge_is_free = [&, finer](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
       return edges_.edge_is_free(a, b, finer);
     };
+    if (edges_.constrained()) query.project = [&](Eigen::VectorXd& q) { return edges_.project(q); };
+    if (options_.planner == kOwnPlanner) return detail::rrt_connect(query);
     if (options_.improved) {
       query.improved = [&](const std::vector<Eigen::VectorXd>& waypoints) { report(continuous(waypoints)); };
     }

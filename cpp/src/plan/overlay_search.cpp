@@ -80,14 +80,13 @@ void OverlaySearch::expand_vertex(const Entry& at, const RoadmapKnowledge& robot
   }
 }
 
-OverlaySearch::End OverlaySearch::search(GraspOverlay& overlay, const RoadmapKnowledge& robot, double bound,
-                                         std::size_t patience) {
+OverlaySearch::End OverlaySearch::search(GraspOverlay& overlay, const RoadmapKnowledge& robot, double bound) {
   begin(overlay);
   limit_ = (bound - overlay.candidate.cost) * (1 + kSlack);
   for (int s = 0; s < overlay.starts(); ++s) relax(overlay.vertex_count + s, 0, -1, 0);
   int reached = -1;
   bool gave_up = false;
-  std::size_t looked_at = 0, gone_on = 0;
+  std::size_t looked_at = 0;
   while (!heap_.empty()) {
     const Entry top = heap_.front();
     std::pop_heap(heap_.begin(), heap_.end(), later);
@@ -112,9 +111,6 @@ OverlaySearch::End OverlaySearch::search(GraspOverlay& overlay, const RoadmapKno
       state = is_free ? RoadmapKnowledge::free : RoadmapKnowledge::blocked;
     }
     if (state == RoadmapKnowledge::blocked) continue;
-    // Those found blocked do not count: how many there are depends on what other threads have found out meanwhile.
-    gave_up = gone_on++ == patience;
-    if (gave_up) break;
     expand_vertex(top, robot);
   }
   for (const int link : overlay.into_goals)

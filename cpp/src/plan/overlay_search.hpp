@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <vector>
 
 #include "mmgrasp/core/export.hpp"
@@ -26,10 +25,8 @@ class MMGRASP_EXPORT OverlaySearch {
   std::function<bool()> stopped;
 
   /// Finds the cheapest path not known to be blocked that costs at most `bound` (with a relative slack of 1e-9, since
-  /// the bound may be this very path, summed in another order). Gives up when it would go on from more than `patience`
-  /// vertices.
-  End search(GraspOverlay& overlay, const RoadmapKnowledge& robot, double bound,
-             std::size_t patience = std::numeric_limits<std::size_t>::max());
+  /// the bound may be this very path, summed in another order).
+  End search(GraspOverlay& overlay, const RoadmapKnowledge& robot, double bound);
   /// After giving up: no path costs less.
   double reached() const { return reached_; }
 

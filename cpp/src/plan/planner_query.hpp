@@ -20,6 +20,8 @@ struct PlannerQuery {
   double time_limit = 1;
   std::function<bool(const Eigen::VectorXd&)> is_free;
   std::function<bool(const Eigen::VectorXd&, const Eigen::VectorXd&)> edge_is_free;
+  /// Brings a configuration back to where paths may run; false when that fails. Empty: they may run anywhere.
+  std::function<bool(Eigen::VectorXd&)> project;
   std::function<bool()> stopped;
   /// Called with each path that is shorter than those before, by planners that go on after their first.
   std::function<void(const std::vector<Eigen::VectorXd>& waypoints)> improved;

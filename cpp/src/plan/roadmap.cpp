@@ -26,7 +26,7 @@ void RoadmapOptions::check() const {
   require(neighbours >= 0, "neighbours", neighbours, "must be >= 0");
 }
 
-bool Roadmap::Data::draw(const Monitor& monitor) {
+bool Roadmap::Data::draw(detail::Until& until) {
   const Eigen::VectorXd lower = group.sample_lower(), upper = group.sample_upper();
   for (Eigen::Index i = 0; i < lower.size(); ++i) {
     require(std::isfinite(upper[i] - lower[i]), "group: width of '" + group.names()[static_cast<std::size_t>(i)] + "'",
@@ -36,12 +36,14 @@ bool Roadmap::Data::draw(const Monitor& monitor) {
   constexpr Eigen::Index kBlock = 1024;
   const Eigen::Index count = vertices.cols();
   const auto draw_block = [&](std::size_t block, int) {
+    until.breathe();
     const Eigen::Index first = static_cast<Eigen::Index>(block) * kBlock;
     // A stream each, so that vertex i does not depend on how many there are.
     for (Eigen::Index i = first; i < std::min(first + kBlock, count); ++i)
       vertices.col(i) = Rng(options.seed, static_cast<std::uint64_t>(i)).uniform(lower, upper);
   };
-  return parallel_for(static_cast<std::size_t>((count + kBlock - 1) / kBlock), 0, draw_block, monitor, "roadmap");
+  return parallel_for(static_cast<std::size_t>((count + kBlock - 1) / kBlock), 0, draw_block, until.monitor(),
+                      "roadmap");
 }
 
 void Roadmap::Data::index() {
@@ -74,16 +76,18 @@ void Roadmap::Data::near(const double* q, std::vector<int>& out) const {
   std::sort(out.begin(), out.end());
 }
 
-bool Roadmap::Data::join(const Monitor& monitor) {
+bool Roadmap::Data::join(detail::Until& until) {
   const auto count = static_cast<std::size_t>(vertices.cols());
   // With a fixed number of neighbours the vertex itself is its nearest one.
   std::vector<std::vector<int>> joined(count);
   RoadmapOptions& own = options;
   const int wanted = own.neighbours;
   if (wanted > 0) own.neighbours = wanted + 1;
-  const bool done = parallel_for(
-      count, 0, [&](std::size_t v, int) { near(vertices.col(static_cast<Eigen::Index>(v)).data(), joined[v]); },
-      monitor, "roadmap");
+  const auto join_one = [&](std::size_t v, int) {
+    until.breathe();
+    near(vertices.col(static_cast<Eigen::Index>(v)).data(), joined[v]);
+  };
+  const bool done = parallel_for(count, 0, join_one, until.monitor(), "roadmap");
   own.neighbours = wanted;
   if (!done) return false;
   ends.clear();
@@ -120,17 +124,23 @@ void Roadmap::Data::make_arcs() {
 
 Roadmap::Roadmap(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
 
-Roadmap Roadmap::build(const JointGroup& group, const RoadmapOptions& options, const Monitor& monitor) {
+Roadmap detail::build_roadmap(const JointGroup& group, const RoadmapOptions& options, const Monitor& monitor,
+                              const std::function<bool()>& over) {
   options.check();
-  auto data = std::make_shared<Data>(group, options);
-  if (data->draw(monitor)) {
+  Until until(monitor, over);
+  auto data = std::make_shared<Roadmap::Data>(group, options);
+  if (data->draw(until)) {
     data->index();
-    if (data->join(monitor)) return Roadmap(data);
+    if (data->join(until)) return Roadmap(data);
   }
-  data = std::make_shared<Data>(group, options);
+  data = std::make_shared<Roadmap::Data>(group, options);
   data->vertices.resize(group.size(), 0);
   data->make_arcs();
   return Roadmap(data);
+}
+
+Roadmap Roadmap::build(const JointGroup& group, const RoadmapOptions& options, const Monitor& monitor) {
+  return detail::build_roadmap(group, options, monitor, [&] { return monitor.stopped(); });
 }
 
 const JointGroup& Roadmap::group() const {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <nanoflann.hpp>
 #include <utility>
@@ -28,6 +31,27 @@ struct ColumnCloud {
 using ColumnTree =
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, ColumnCloud>, ColumnCloud, -1, int>;
 
+/// A monitor that is stopped as soon as `over` says so, which is asked now and then.
+class Until {
+ public:
+  Until(const Monitor& monitor, const std::function<bool()>& over) : over_(over) { own_.progress = monitor.progress; }
+  const Monitor& monitor() const { return own_; }
+  /// To be called with every step, by any thread.
+  void breathe() {
+    if (steps_++ % kSteps == 0 && over_()) own_.stop.stop();
+  }
+
+ private:
+  static constexpr std::size_t kSteps = 64;
+  const std::function<bool()>& over_;
+  Monitor own_;
+  std::atomic<std::size_t> steps_{0};
+};
+
+/// Roadmap::build that is empty when `over` ended it. `over` is asked by several threads.
+MMGRASP_EXPORT Roadmap build_roadmap(const JointGroup& group, const RoadmapOptions& options, const Monitor& monitor,
+                                     const std::function<bool()>& over);
+
 /// What a group must agree on to use a roadmap: the robot's joints, and which of them it moves where. Shapes, disabled
 /// pairs and where the root stands do not matter.
 std::uint64_t kinematics_key(const JointGroup& group);
@@ -38,13 +62,13 @@ struct Roadmap::Data {
   Data(const JointGroup& group_in, const RoadmapOptions& options_in) : group(group_in), options(options_in) {}
 
   /// Draws the vertices; false when stopped.
-  bool draw(const Monitor& monitor);
+  bool draw(detail::Until& until);
   /// Makes the search tree over the vertices.
   void index();
   double radius() const;
   void near(const double* q, std::vector<int>& out) const;
   /// Joins near vertices; false when stopped.
-  bool join(const Monitor& monitor);
+  bool join(detail::Until& until);
   /// Makes the arcs of `ends`.
   void make_arcs();
 

@@ -22,10 +22,8 @@ enum class Growth { trapped, advanced, reached };
 
 class Connect {
  public:
-  Connect(MotionEdges& edges, const PlannerQuery& query, double finer)
-      : edges_(edges),
-        query_(query),
-        finer_(finer),
+  explicit Connect(const PlannerQuery& query)
+      : query_(query),
         rng_(query.seed, 2),
         range_(query.range > 0 ? query.range : kRangeShare * (query.upper - query.lower).norm()),
         deadline_(Clock::now() +
@@ -44,7 +42,7 @@ class Connect {
     for (int i = 0; i < query_.max_iterations && !over(); ++i) {
       const int growing = trees_[0].size() <= trees_[1].size() ? 0 : 1;
       draw();
-      if (edges_.constrained() && !edges_.project(sample_)) continue;
+      if (query_.project && !query_.project(sample_)) continue;
       int node = trees_[growing].nearest(sample_);
       if (extend(trees_[growing], node, sample_) == Growth::trapped) continue;
       trees_[growing].get(node, meet_);
@@ -84,14 +82,14 @@ class Connect {
     } else {
       next_ = from_ + next_ * (range_ / distance);
       wrap(next_);
-      if (edges_.constrained()) {
-        if (!edges_.project(next_)) return Growth::trapped;
+      if (query_.project) {
+        if (!query_.project(next_)) return Growth::trapped;
         wrap(next_);
         // What the projection takes back is no step towards the target.
         if (way(next_, target, way_) > distance - kProgress * range_) return Growth::trapped;
       }
     }
-    if (!edges_.edge_is_free(from_, next_, finer_)) return Growth::trapped;
+    if (!query_.edge_is_free(from_, next_)) return Growth::trapped;
     node = tree.add(next_, node);
     return reached ? Growth::reached : Growth::advanced;
   }
@@ -118,9 +116,7 @@ class Connect {
     return answer;
   }
 
-  MotionEdges& edges_;
   const PlannerQuery& query_;
-  const double finer_;
   Rng rng_;
   const double range_;
   const Clock::time_point deadline_;
@@ -130,8 +126,8 @@ class Connect {
 
 }  // namespace
 
-PlannerAnswer rrt_connect(MotionEdges& edges, const PlannerQuery& query, double finer) {
-  return Connect(edges, query, finer).run();
+PlannerAnswer rrt_connect(const PlannerQuery& query) {
+  return Connect(query).run();
 }
 
 }  // namespace mmgrasp::detail

@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "mmgrasp/core/error.hpp"
+#include "plan/carry_shortening.hpp"
+#include "plan/first_carry.hpp"
 
 namespace mmgrasp {
 
@@ -22,7 +24,6 @@ namespace detail {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr int kFirst = 4;            // Samples for each grasp found, as long as others are left to look at.
 constexpr int kStraight = 32;        // Straight lines tried before the first sample.
 constexpr int kRounds = 8;           // Trees of single grasps that grow with one sample, until there is a path.
 constexpr double kAround = 0.8;      // Samples drawn near a straight line, until there is a path.
@@ -217,23 +218,18 @@ int RrtStarMg::take_reassigned(int side, int& tree) {
 
 void run_rrt_star_mg(CarryInput& input, ManipulationResult& result) {
   CarryCandidates& candidates = input.candidates;
-  const RrtStarMgOptions& options = input.options.rrt;
-  input.checks.coarsen(kCoarse);
-  RrtStarMgOptions first = options;
-  first.goal_cost = kInfinite;
-  first.keep_trees = false;
-  std::size_t tried = 0;
-  while (candidates.find_more(result.path.has_value()) && !candidates.complete() && !result.path) {
-    first.max_samples = kFirst * static_cast<int>(candidates.found().size() - tried);
-    first.max_samples = std::min(first.max_samples, options.max_samples - static_cast<int>(result.stats.samples));
-    tried = candidates.found().size();
-    if (first.max_samples > 0) RrtStarMg(input, first, result).run();
-    if (result.path && result.cost <= options.goal_cost) return;
+  const Carry first = find_first_carry(input, result);
+  const auto good_enough = [&] { return result.path && result.cost <= input.options.rrt.goal_cost; };
+  if (first.grasp >= 0 && !good_enough()) shorten_carry(input, first, result);
+  if (good_enough()) {
+    result.outcome = Outcome::solved;
+    result.lower_bound = std::min(result.cost, candidates.least_cost());
+    return;
   }
-  RrtStarMgOptions left = options;
-  left.max_samples -= static_cast<int>(result.stats.samples);
+  candidates.find_rest();
+  input.checks.coarsen(kCoarse);
   if (!candidates.found().empty()) {
-    RrtStarMg(input, left, result).run();
+    RrtStarMg(input, input.options.rrt, result).run();
   } else {
     result.outcome = input.monitor.stopped() ? Outcome::stopped : Outcome::timeout;
   }

@@ -135,7 +135,7 @@ bool RrtStarMg::accept(int index) {
   const int blocked = blocked_edge(grasp, path);
   if (blocked < 0) {
     best_ = cost_of(bridge);
-    take_path(input_, ends_.grasp(grasp), best_, std::move(path), result_);
+    take_path(input_, {ends_.grasp(grasp), best_, std::move(path)}, result_);
     return true;
   }
   // A thin obstacle was stepped over: what hangs on that edge goes.

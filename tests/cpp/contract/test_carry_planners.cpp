@@ -246,6 +246,57 @@ TEST_P(CarryPlanner, TheFirstPathNeedNotWaitForAllGrasps) {
   }
 }
 
+TEST_P(CarryPlanner, AFirstPathNeedsTheEndsOfFewGrasps) {
+  const ManipulationProblem all = test::bar_carry();
+  const ManipulationResult any = plan_manipulation(all, options());
+  ASSERT_TRUE(any.path);
+  ManipulationProblem problem = all;
+  // Whichever comes first will do, but none of them straight.
+  problem.grasps.assign(200, all.grasps[static_cast<std::size_t>(any.grasp_index)]);
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    std::vector<ManipulationResult> results;
+    for (const int threads : {1, 3}) {
+      ManipulationOptions options = this->options();
+      options.seed = seed;
+      options.threads = threads;
+      Monitor monitor;
+      results.push_back(
+          plan_manipulation(problem, options, nullptr, monitor, [&](const Improvement&) { monitor.stop.stop(); }));
+      expect_sound(problem, results.back());
+      EXPECT_GT(results.back().path->waypoints.size(), 2u);
+      const auto looked_at = std::count_if(
+          results.back().grasps.begin(), results.back().grasps.end(),
+          [](const GraspReport& report) { return report.start.total() > 0 || report.start_solutions > 0; });
+      EXPECT_LE(looked_at, 4) << seed;
+    }
+    EXPECT_EQ(results[0].path->waypoints, results[1].path->waypoints);
+  }
+}
+
+TEST_P(CarryPlanner, TheFirstPathDoesNotEndTheSearch) {
+  const ManipulationProblem problem = test::bar_carry();
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    ManipulationOptions options = this->options();
+    options.seed = seed;
+    options.first_grasps = 0;
+    const ManipulationResult without = plan_manipulation(problem, options);
+    options.first_grasps = 4;
+    const ManipulationResult with = plan_manipulation(problem, options);
+    expect_sound(problem, with);
+    ASSERT_TRUE(without.path);
+    EXPECT_LE(with.cost, with.improvements.front().cost);
+    EXPECT_LE(with.stats.roadmap_cost, with.improvements.front().cost);
+    if (GetParam() == "prm_star_mg") {
+      // The roadmap's optimum, whatever the bound it was found with, or a first path cheaper than it.
+      if (with.stats.roadmap_cost > 0) {
+        EXPECT_NEAR(with.stats.roadmap_cost, without.stats.roadmap_cost, 1e-9);
+      } else {
+        EXPECT_LE(with.cost, without.stats.roadmap_cost * (1 + 1e-9));
+      }
+    }
+  }
+}
+
 TEST_P(CarryPlanner, EveryGraspIsLookedAtInWhateverOrder) {
   ManipulationOptions options = this->options();
   const ManipulationProblem problem = with_many_grasps();

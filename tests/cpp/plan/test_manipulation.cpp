@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <fstream>
 #include <limits>
@@ -11,6 +12,7 @@
 #include "mmgrasp/core/error.hpp"
 #include "plan/bar_carry.hpp"
 #include "plan/planar_arm.hpp"
+#include "plan/roadmap_data.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -113,6 +115,24 @@ TEST(Roadmap, LargerOneHoldsTheSmallerOnesVertices) {
   options.vertices = 200;
   const Roadmap large = Roadmap::build(arm.group(), options);
   EXPECT_EQ(small.vertices(), large.vertices().leftCols(50));
+}
+
+TEST(Roadmap, BuildingEndsWhenItIsOver) {
+  const test::PlanarArm arm(3);
+  RoadmapOptions options;
+  options.vertices = 200'000;
+  options.neighbours = 8;
+  // While vertices are drawn; while they are joined.
+  for (const int last : {3, 400}) {
+    std::atomic<int> asked{0};
+    const Roadmap roadmap = detail::build_roadmap(arm.group(), options, {}, [&] { return ++asked >= last; });
+    EXPECT_EQ(roadmap.size(), 0);
+    EXPECT_EQ(roadmap.edge_count(), 0);
+    EXPECT_LT(asked, last + 100);
+  }
+  Monitor monitor;
+  monitor.stop.stop();
+  EXPECT_EQ(Roadmap::build(arm.group(), options, monitor).size(), 0);
 }
 
 TEST(Roadmap, FileHoldsAllOfItAndNothingElseIsTaken) {
@@ -220,6 +240,15 @@ TEST(PrmStarMg, DensifyingEndsWithTheBestOfAllRoadmaps) {
   EXPECT_TRUE(std::is_sorted(told.rbegin(), told.rend()));
   options.prm.max_vertices = 0;
   EXPECT_NEAR(plan_manipulation(problem, options).cost, costs.front(), 1e-9);
+}
+
+TEST(PrmStarMg, DensifyingHeedsTheClock) {
+  ManipulationOptions options = bar_options();
+  options.prm.max_vertices = 10'000'000;  // Would take minutes.
+  options.time_limit = 0.5;
+  const ManipulationResult result = plan_manipulation(test::bar_carry(), options);
+  EXPECT_EQ(result.outcome, Outcome::solved);
+  EXPECT_LE(result.lower_bound, result.cost);
 }
 
 TEST(PrmStarMg, PathCarriesTheObjectAndIsFree) {

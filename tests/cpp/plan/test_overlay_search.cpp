@@ -51,21 +51,28 @@ TEST_F(WithoutAWay, StopsSoonAndSaysHowFarItCame) {
   EXPECT_LE(asked_, stop_at_ + 256);
   EXPECT_GE(search_.reached(), straight - 1e-9);
   const double before = search_.reached();
-  EXPECT_EQ(search_.search(overlay_, RoadmapKnowledge(roadmap_), 1e9, 5000), OverlaySearch::End::gave_up);
+  // Stopped already.
+  EXPECT_EQ(search_.search(overlay_, RoadmapKnowledge(roadmap_), 1e9), OverlaySearch::End::gave_up);
   EXPECT_GE(search_.reached(), straight - 1e-9);
   stop_ = false;
-  EXPECT_EQ(search_.search(overlay_, RoadmapKnowledge(roadmap_), 1e9, 5000), OverlaySearch::End::gave_up);
+  asked_ = 0;
+  stop_at_ = 5000;
+  EXPECT_EQ(search_.search(overlay_, RoadmapKnowledge(roadmap_), 1e9), OverlaySearch::End::gave_up);
   EXPECT_GT(search_.reached(), before);
 }
 
-TEST_F(WithoutAWay, PatienceCountsVerticesItGoesOnFrom) {
-  EXPECT_EQ(search_.search(overlay_, robot_, 1e9, 500), OverlaySearch::End::gave_up);
-  EXPECT_EQ(asked_, 501);
-  // What is known by now is not asked again.
-  EXPECT_EQ(search_.search(overlay_, robot_, 1e9, 500), OverlaySearch::End::gave_up);
-  EXPECT_EQ(asked_, 501);
+TEST_F(WithoutAWay, WhatIsKnownIsNotAskedAgain) {
+  stop_at_ = 500;
+  EXPECT_EQ(search_.search(overlay_, robot_, 1e9), OverlaySearch::End::gave_up);
+  const int asked = asked_;
+  EXPECT_EQ(search_.search(overlay_, robot_, 1e9), OverlaySearch::End::gave_up);
+  EXPECT_EQ(asked_, asked);
+  stop_ = false;
   EXPECT_EQ(search_.search(overlay_, robot_, 1e9), OverlaySearch::End::none);
   EXPECT_GT(asked_, kVertices / 2);
+  const int all = asked_;
+  EXPECT_EQ(search_.search(overlay_, robot_, 1e9), OverlaySearch::End::none);
+  EXPECT_EQ(asked_, all);
 }
 
 }  // namespace

@@ -64,9 +64,9 @@ struct MMGRASP_EXPORT PrmStarMgOptions {
 struct MMGRASP_EXPORT ManipulationOptions {
   std::string planner = "prm_star_mg";  ///< A name of manipulation_planner_names().
   int ik_solutions = 4;                 ///< Arm configurations tried for each grasp at each end; > 0.
-  /// Grasps whose arm configurations are found before the first search. As long as there is no path, twice as many
-  /// follow each time, then all others at once: a first path need not wait for all of them. 0: all before any search,
-  /// as in the paper. >= 0.
+  /// A first path is looked for while arm configurations are found, grasp by grasp: after so many those before them are
+  /// searched again, then twice as many follow, and so on. 0: all arm configurations before any search, as in the paper
+  /// (also for "prm_star_mg" with `straight` or `shorten` off). >= 0.
   int first_grasps = 4;
   EdgeOptions edge{0.02, 0.005, false, 1e-4};  ///< How finely edges are checked.
   IkOptions ik;
@@ -96,7 +96,8 @@ struct MMGRASP_EXPORT Improvement {
 
 struct MMGRASP_EXPORT ManipulationStats {
   double ik_seconds = 0, roadmap_seconds = 0, search_seconds = 0;
-  double roadmap_cost = 0;  ///< Of prm_star_mg's best path before it was shortened.
+  /// Of prm_star_mg's best path over the roadmap, before it was shortened; 0: none costs less than the first path.
+  double roadmap_cost = 0;
   std::size_t graph_searches = 0;
   std::size_t grasps_searched = 0;
   std::size_t edges_checked_robot = 0;  ///< For the robot alone, shared by all grasps of an opening.

@@ -51,8 +51,9 @@ py::dict violations_dict(const std::vector<Violation>& violations) {
 }
 
 py::dict event_dict(const DriveByEvent& e) {
-  return py::dict("waypoint"_a = e.waypoint, "time"_a = e.time, "close_time"_a = e.close_time,
-                  "candidate"_a = e.candidate, "base_speed"_a = e.base_speed, "tool_speed"_a = e.tool_speed);
+  return py::dict("waypoint"_a = e.waypoint, "time"_a = e.time, "close_time"_a = e.close_time, "object"_a = e.object,
+                  "held_time"_a = e.held_time, "candidate"_a = e.candidate, "base_speed"_a = e.base_speed,
+                  "tool_speed"_a = e.tool_speed);
 }
 
 Poses candidates_argument(const ArrayLike& value) {
@@ -111,7 +112,9 @@ void bind_drive_by_task(py::module_& m) {
       "matter, of x, y, z, roll, pitch, yaw; max_tool_speed [m/s] at the task; dwell [s] for which "
       "the tool's pose is\n"
       "kept, e.g. while a gripper closes; object: name of the world's object that is held "
-      "afterwards.\n\n"
+      "afterwards; the hand may touch it,\n"
+      "and it what it stands on, for `touching` intervals before and after. 0: never before the task, nothing after "
+      "it.\n\n"
       "push: a gripper that closes while the hand moves on (P1 4.3): dict of push_grasp's keywords, "
       "approach (3,), an axis of\n"
       "the tip's frame, and free_length [m], the straight way before the finger tips reach the "
@@ -119,7 +122,7 @@ void bind_drive_by_task(py::module_& m) {
       "the planned grasp; tolerance, free, max_tool_speed and dwell are left out.")
       .def(py::init([](const ArrayLike& T_world_tip, const py::object& tolerance, const std::vector<std::string>& free,
                        const py::object& max_tool_speed, double dwell, const std::string& object,
-                       const std::optional<py::dict>& push) {
+                       const std::optional<py::dict>& push, int touching) {
              DriveByTask task;
              task.candidates = candidates_argument(T_world_tip);
              if (!tolerance.is_none()) task.tolerance = vector_argument(tolerance, "tolerance", 6);
@@ -134,16 +137,19 @@ void bind_drive_by_task(py::module_& m) {
              task.dwell = finite_argument(dwell, "dwell");
              if (task.dwell < 0) throw InvalidInput("dwell: must be at least 0");
              task.object = object;
+             task.touching = touching;
+             if (touching < 0) throw InvalidInput("touching: must be at least 0");
              if (push) task.push = push_argument(*push);
              return task;
            }),
            py::arg("T_world_tip"), py::kw_only(), py::arg("tolerance") = py::none(),
            py::arg("free") = std::vector<std::string>{}, py::arg("max_tool_speed") = py::none(), py::arg("dwell") = 0.0,
-           py::arg("object") = "", py::arg("push") = py::none())
+           py::arg("object") = "", py::arg("push") = py::none(), py::arg("touching") = 2)
       .def_property_readonly(
           "candidates", [](const DriveByTask& t) { return to_array(t.candidates); }, "(m, 4, 4)")
       .def_readonly("max_tool_speed", &DriveByTask::max_tool_speed)
       .def_readonly("dwell", &DriveByTask::dwell)
+      .def_readonly("touching", &DriveByTask::touching)
       .def_readonly("object", &DriveByTask::object)
       .def_property_readonly(
           "push",
@@ -208,7 +214,8 @@ void bind_result(py::module_& m) {
             for (const DriveByEvent& e : r.events) events.append(event_dict(e));
             return events;
           },
-          "One dict per task: waypoint, time and close_time [s], candidate, base_speed and tool_speed [m/s].")
+          "One dict per task: waypoint, time and close_time [s], object (what is held then) and held_time [s], "
+          "candidate, base_speed and\ntool_speed [m/s].")
       .def_property_readonly(
           "violations", [](const DriveByResult& r) { return violations_dict(r.violations); },
           "By kind of constraint: value (0 when kept), tolerance, unit, time [s], waypoint, what, kept; measured on a "
@@ -218,6 +225,10 @@ void bind_result(py::module_& m) {
       .def_readonly("iterations", &DriveByResult::iterations)
       .def_readonly("seconds", &DriveByResult::seconds)
       .def_readonly("report", &DriveByResult::report, "What was tried, and what is broken where, by how much.")
+      .def("to_csv", &drive_by_csv, py::arg("between") = 0,
+           "The trajectory's to_csv with two columns more: task, its index in the row of a task's waypoint, and held, "
+           "the "
+           "object in the hand.")
       .def("to_dict",
            [](const DriveByResult& r) {
              py::object trajectory = py::none();

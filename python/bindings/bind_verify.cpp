@@ -63,6 +63,11 @@ void bind_parts(py::module_& m) {
              return CheckedPick{stop, std::move(tray), std::move(part), grasp, std::move(motions)};
            }),
            py::arg("stop"), py::arg("tray"), py::arg("part"), py::arg("grasp"), py::arg("motions"));
+  py::class_<CheckedDriveBy>(m, "CheckedDriveBy")
+      .def(py::init([](int pick, double close_at, double closed_at, CheckedMotion motion) {
+             return CheckedDriveBy{pick, close_at, closed_at, std::move(motion)};
+           }),
+           py::arg("pick"), py::arg("close_at"), py::arg("closed_at"), py::arg("motion"));
   py::class_<CheckedStop>(m, "CheckedStop")
       .def(py::init([](const ArrayLike& pose, double radius, std::vector<std::string> trays) {
              return CheckedStop{vector3_argument(pose, "stop pose"), radius, std::move(trays)};
@@ -124,6 +129,8 @@ void bind_plan_to_check(py::module_& m) {
       .def_readwrite("stops", &PlanToCheck::stops)
       .def_readwrite("route", &PlanToCheck::route)
       .def_readwrite("picks", &PlanToCheck::picks)
+      .def_readwrite("drive_by", &PlanToCheck::drive_by)
+      .def_readwrite("closing_speed", &PlanToCheck::closing_speed)
       .def_readwrite("lower_bound", &PlanToCheck::lower_bound)
       .def_readwrite("route_figures", &PlanToCheck::route_figures)
       .def_readwrite("intersections", &PlanToCheck::intersections)

@@ -185,6 +185,10 @@ def run_plan(arguments: argparse.Namespace, console: Console) -> int:
         if arguments.drive_by and plan.outcome == Outcome.solved:
             passing = plan_drive_by_picks(plan, progress=report)
             passing.save(arguments.out)
+            if not arguments.no_pictures:
+                from .viz.report import write_report
+
+                write_report(passing.plan_to_dict(), arguments.out)
     if plan.outcome != Outcome.solved:
         console.print(f"no plan: {plan.outcome.name}", style="bold red", markup=False)
         for obstruction in plan.obstructions:

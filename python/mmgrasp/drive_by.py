@@ -23,6 +23,8 @@ from .part_supply import PartSupplyPlan
 
 CLOSING_SPEED = 0.1  # of the gripper's opening [m/s] (P1 4.4.1)
 SETTLING = 0.1  # fingers press before the part is lifted [s]
+WITHIN = 1e-7  # of the goal [rad]
+BETWEEN = 9  # samples written between waypoints
 MERGED = ("reach", "approach", "lift")  # motions of a pick that the drive takes in
 
 
@@ -32,18 +34,29 @@ class DriveByPick:
 
     leg: int
     stop: int
+    pick: int
+    """Index into the plan's picks."""
     part: str
     stop_and_pick: float
     """Drive, reach, approach, close, lift, one after the other [s]."""
-    result: _core.DriveByResult | None
-    used: bool
-    why: str
+    opening: float
+    """Of the hand as it comes [m]."""
+    dwell: float
+    """The fingers close and press this long [s]."""
+    result: _core.DriveByResult
+    used: bool = False
+    why: str = ""
     """What speaks against the motion in passing, or how fast it is at the grasp."""
 
     @property
     def drive_by(self) -> float:
         """What it takes now [s]."""
-        return self.result.duration if self.used and self.result is not None else self.stop_and_pick
+        return self.result.duration if self.used else self.stop_and_pick
+
+    @property
+    def close_at(self) -> float:
+        """When the fingers begin to close [s]."""
+        return float(self.result.events[-1]["close_time"])
 
     def to_dict(self) -> dict[str, Any]:
         out: dict[str, Any] = {
@@ -54,13 +67,29 @@ class DriveByPick:
             "drive_by": self.drive_by,
             "used": self.used,
             "why": self.why,
+            "attempts": self.result.attempts,
+            "iterations": self.result.iterations,
+            "seconds": self.result.seconds,
+            "report": self.result.report,
         }
-        if self.result is not None:
-            out["report"] = self.result.report
-        if self.used and self.result is not None:
+        if self.used:
             out["events"] = self.result.events
             out["violations"] = self.result.violations
         return out
+
+    def motion(self) -> dict[str, Any]:
+        """What plan.json says of a motion that is used (docs/plan_format.md)."""
+        samples = self.result.trajectory.sampled(between=BETWEEN)
+        return {
+            "pick": self.pick,
+            "opening": self.opening,
+            "close_at": self.close_at,
+            "closed_at": self.close_at + self.dwell,
+            "times": samples.times.tolist(),
+            "positions": samples.positions.tolist(),
+            "velocities": samples.velocities.tolist(),
+            "accelerations": samples.accelerations.tolist(),
+        }
 
 
 @dataclass
@@ -91,8 +120,13 @@ class DriveByPlan:
         """The same with the parts taken in passing [s]."""
         return self.stop_and_pick - self.saved
 
+    def plan_to_dict(self) -> dict[str, Any]:
+        """The content of plan.json with what is done in passing, so that `mmgrasp verify` checks it as well."""
+        motions = [pick.motion() for pick in self.picks if pick.used]
+        return self.plan.to_dict() | {"drive_by": {"closing_speed": CLOSING_SPEED, "motions": motions}}
+
     def to_dict(self) -> dict[str, Any]:
-        """Plain values."""
+        """Times and reports, as in drive_by.json."""
         return {
             "format": "mmgrasp-drive-by",
             "version": 1,
@@ -103,19 +137,20 @@ class DriveByPlan:
         }
 
     def save(self, folder: str | os.PathLike[str]) -> list[Path]:
-        """drive_by.json, and one CSV for each motion in passing (x, y, theta first; wheel speeds last)."""
-        written = [Path(folder) / "drive_by.json"]
-        write_file(written[0], json.dumps(self.to_dict(), allow_nan=False) + "\n")
+        """drive_by.json, plan.json, and one CSV for each motion in passing (x, y, theta first; then wheel speeds, tasks and what is held)."""
+        written = [Path(folder) / "drive_by.json", Path(folder) / "plan.json"]
+        for path, content in zip(written, (self.to_dict(), self.plan_to_dict()), strict=True):
+            write_file(path, json.dumps(content, allow_nan=False) + "\n")
         for pick in self.picks:
-            if pick.used and pick.result is not None:
+            if pick.used:
                 name = "".join(c if c.isalnum() or c in "_.-" else "_" for c in pick.part)
                 written.append(Path(folder) / "trajectories" / f"drive_by_{pick.leg:02d}_{name}.csv")
-                write_file(written[-1], pick.result.trajectory.to_csv(between=9))
+                write_file(written[-1], pick.result.to_csv(between=BETWEEN))
         return written
 
 
 def plan_drive_by_picks(plan: PartSupplyPlan, *, progress: Progress = None, **options: Any) -> DriveByPlan:
-    """Tries to take the first part at each stop in passing. Keywords are those of `plan_drive_by`, here with 45 waypoints and 600 iterations a stop.
+    """Tries to take the first part at each stop in passing. Keywords are those of `plan_drive_by`, here with 35 waypoints and 900 iterations a stop.
 
     Raises InvalidInput for a plan that is not solved and for a robot that does not drive.
     """
@@ -128,15 +163,11 @@ def plan_drive_by_picks(plan: PartSupplyPlan, *, progress: Progress = None, **op
     gone: set[tuple[int, int]] = set()
     here = np.asarray(problem.start, float)
     for leg, stop in enumerate(plan.stops):
-        if progress is not None:
-            progress("drive-by", leg / len(plan.stops))
-        picks = [pick for pick in plan.picks if pick.stop == leg]
+        picks = [i for i, pick in enumerate(plan.picks) if pick.stop == leg]
         if picks:
-            out.picks.append(_in_passing(plan, problem, leg, here, picks[0], gone, options))
-        gone.update((pick.tray, pick.part) for pick in picks)
+            out.picks.append(_in_passing(plan, problem, leg, here, picks[0], gone, progress, options))
+        gone.update((plan.picks[i].tray, plan.picks[i].part) for i in picks)
         here = np.asarray(stop.pose, float)
-    if progress is not None:
-        progress("drive-by", 1.0)
     return out
 
 
@@ -145,10 +176,12 @@ def _in_passing(
     problem: _core.PartSupplyProblem,
     leg: int,
     here: np.ndarray,
-    pick: Pick,
+    index: int,
     gone: set[tuple[int, int]],
+    progress: Progress,
     options: dict[str, Any],
 ) -> DriveByPick:
+    pick = plan.picks[index]
     part = problem.trays[pick.tray].parts[pick.part]
     opening, width = _openings(problem, pick)
     merged = [m for m in pick.motions if m.kind in MERGED]
@@ -157,31 +190,42 @@ def _in_passing(
     T_grasp = part.T_world_part @ part.grasps[pick.grasp].T_object_tcp
     T_before = T_grasp.copy()
     T_before[:3, 3] -= problem.options["approach_distance"] * T_grasp[:3, :3] @ np.asarray(problem.gripper.approach)
+    dwell = closing + SETTLING
     tasks = [
         _core.DriveByTask(T_before, tolerance=[0.003] * 3 + [0.02] * 3),
-        _core.DriveByTask(T_grasp, dwell=closing + SETTLING, object=part.name),
+        _core.DriveByTask(T_grasp, dwell=dwell, object=part.name, touching=0),
     ]
-    stop = plan.stops[leg]
-    lifted = merged[-1].trajectory.positions[-1]
-    group = _moving_group(plan, problem, opening)
+    # The arm's numbers as the pick before left them: continuous joints may be whole turns from home.
+    start = np.array([*here, *merged[0].trajectory.positions[0]])
+    stage = f"drive-by {leg + 1} of {len(plan.stops)}: {part.name}"
     result = _core.plan_drive_by(
         problem.robot,
-        group,
+        _moving_group(plan, problem, opening),
         _world(problem, gone),
-        start=[*here, *problem.home],
+        start=start,
         tasks=tasks,
-        goal=[*stop.pose, *lifted],
-        **{"waypoints": 45, "iterations": 600, **options},
+        goal=_exactly(start, [*plan.stops[leg].pose, *merged[-1].trajectory.positions[-1]]),
+        progress=progress and (lambda _, fraction: progress(stage, fraction)),
+        **{"waypoints": 35, "iterations": 900, **options},
     )
-    made = DriveByPick(leg, leg, part.name, before, result, False, "")
+    made = DriveByPick(leg, leg, index, part.name, before, opening, dwell, result)
     if result.outcome != Outcome.solved:
         made.why = f"no motion in passing found in {result.attempts} attempts ({result.outcome.name})"
     elif result.duration >= before:
         made.why = f"in passing it would take {result.duration:.1f} s"
     else:
         made.used = True
-        made.why = f"base at {result.events[1]['base_speed']:.2f} m/s as the hand closes"
+        made.why = f"base at {result.events[-1]['base_speed']:.2f} m/s as the hand closes"
     return made
+
+
+def _exactly(start: np.ndarray, goal: list[float]) -> np.ndarray:
+    """The goal as a box (2, n), so that joints more than half a turn away are reached as they stand: the next motion begins there."""
+    box = np.array([goal, goal], float)
+    far = np.abs(box[0] - start) > np.pi
+    far[:3] = False
+    box[:, far] += np.array([[-WITHIN], [WITHIN]])
+    return box
 
 
 def _openings(problem: _core.PartSupplyProblem, pick: Pick) -> tuple[float, float]:

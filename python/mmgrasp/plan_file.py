@@ -300,6 +300,17 @@ def _read_answer(plan: checks.PlanToCheck, root: Node) -> None:
     ]
     plan.route = [list(leg["poses"].array(3)) for leg in root["route"].elements()]
     plan.picks = [_read_pick(node, len(plan.arm_joints)) for node in root["picks"].elements()]
+    if "drive_by" in root.raw:
+        plan.closing_speed = root["drive_by"]["closing_speed"].number(above=0)
+        plan.drive_by = [
+            checks.CheckedDriveBy(
+                node["pick"].integer(),
+                node["close_at"].number(),
+                node["closed_at"].number(),
+                _read_motion(node, "drive-by", False, 3 + len(plan.arm_joints)),
+            )
+            for node in root["drive_by"]["motions"].elements()
+        ]
     plan.lower_bound = root["lower_bound"].integer(least=0)
     plan.route_figures = [
         checks.CheckedLegFigures(*(leg[key].number() for key in ("length", "turning", "duration")))
@@ -336,20 +347,21 @@ def _cells(node: Node, layers: int, ny: int, nx: int) -> np.ndarray:
     return cells.reshape(-1)
 
 
+def _read_motion(node: Node, kind: str, holding: bool, columns: int) -> checks.CheckedMotion:
+    times = node["times"].numbers()
+    if not times:
+        node["times"].fail("must not be empty")
+    rows = [node[key].array(columns) for key in ("positions", "velocities", "accelerations")]
+    if any(len(values) != len(times) for values in rows):
+        node["times"].fail("must be as many as positions, velocities and accelerations")
+    return checks.CheckedMotion(kind, node["opening"].number(), holding, times, *rows)
+
+
 def _read_pick(node: Node, joints: int) -> checks.CheckedPick:
-    motions = []
-    for motion in node["motions"].elements():
-        times = motion["times"].numbers()
-        if not times:
-            motion["times"].fail("must not be empty")
-        rows = [motion[key].array(joints) for key in ("positions", "velocities", "accelerations")]
-        if any(len(values) != len(times) for values in rows):
-            motion["times"].fail("must be as many as positions, velocities and accelerations")
-        motions.append(
-            checks.CheckedMotion(
-                motion["kind"].string(), motion["opening"].number(), motion["holding"].boolean(), times, *rows
-            )
-        )
+    motions = [
+        _read_motion(motion, motion["kind"].string(), motion["holding"].boolean(), joints)
+        for motion in node["motions"].elements()
+    ]
     return checks.CheckedPick(
         node["stop"].integer(), node["tray"].string(), node["part"].string(), node["grasp"].integer(), motions
     )

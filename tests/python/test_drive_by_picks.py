@@ -2,32 +2,160 @@
 
 from __future__ import annotations
 
+import copy
+import io
 import json
 
+import jsonschema
+import numpy as np
 import pytest
 
 import mmgrasp as mg
+from mmgrasp.plan_file import plan_schema
+from mmgrasp.viz.report import report_html
+from mmgrasp.viz.timeline import Timeline
 
 
-def test_first_picks_in_passing(small_plan, tmp_path):
-    """Whatever is found is shorter than what it replaces, stands where the plan goes on, and adds up."""
-    passing = mg.plan_drive_by_picks(small_plan, attempts=2)
-    assert len(passing.picks) == len(small_plan.stops)
+@pytest.fixture(scope="module")
+def passing(small_plan):
+    stages: list[str] = []
+    found = mg.plan_drive_by_picks(small_plan, progress=lambda stage, _: stages.append(stage))
+    assert stages
+    assert set(stages) <= {f"drive-by 1 of 1: {found.picks[0].part}"}
+    return found
+
+
+@pytest.fixture(scope="module")
+def content(passing) -> dict:
+    return passing.plan_to_dict()
+
+
+def codes(plan: dict) -> set[str]:
+    return {fault.code for fault in mg.verify_plan(plan, samples=20).faults}
+
+
+def test_the_first_pick_is_done_in_passing(passing, small_plan):
+    """It is shorter than what it replaces, begins where the plan does, and stands where the plan goes on."""
+    (done,) = passing.picks
+    pick = small_plan.picks[0]
     problem = small_plan.scenario.problem()
-    assert passing.saved == pytest.approx(passing.stop_and_pick - passing.drive_by)
-    assert passing.saved == pytest.approx(sum(p.stop_and_pick - p.drive_by for p in passing.picks))
-    for done in passing.picks:
-        pick = next(p for p in small_plan.picks if p.stop == done.stop)
-        assert done.part == problem.trays[pick.tray].parts[pick.part].name
-        assert done.why
-        if not done.used:
-            assert done.drive_by == done.stop_and_pick
-            continue
-        assert done.drive_by < done.stop_and_pick
-        q = done.result.trajectory.positions
-        lift = next(m for m in pick.motions if m.kind == "lift").trajectory.positions[-1]
-        assert q[0] == pytest.approx([*problem.start, *problem.home], abs=1e-6)
-        assert q[-1][3:] == pytest.approx(lift, abs=1e-6)
-    files = passing.save(tmp_path)
-    assert json.loads(files[0].read_text())["saved"] == passing.saved
-    assert len(files) == 1 + sum(p.used for p in passing.picks)
+    assert done.used, done.result.report
+    assert done.pick == 0
+    assert done.part == problem.trays[pick.tray].parts[pick.part].name
+    assert done.drive_by == done.result.duration < done.stop_and_pick
+    motions = {m.kind: m for m in pick.motions}
+    arm = sum(motions[kind].trajectory.duration for kind in ("reach", "approach", "lift"))
+    width = problem.trays[pick.tray].parts[pick.part].grasps[pick.grasp].width
+    closing = (motions["reach"].opening - width) / 0.1
+    drive = small_plan.route[0].duration(small_plan.scenario.setup.robot)
+    assert done.stop_and_pick == pytest.approx(drive + arm + closing)
+    assert passing.saved == pytest.approx(done.stop_and_pick - done.drive_by)
+    assert passing.drive_by == pytest.approx(passing.stop_and_pick - passing.saved)
+    q = done.result.trajectory.positions
+    assert q[0] == pytest.approx([*problem.start, *motions["reach"].trajectory.positions[0]], abs=1e-6)
+    assert q[-1][3:] == pytest.approx(motions["carry"].trajectory.positions[0], abs=1e-6)
+    assert done.result.events[-1]["base_speed"] > 0.02
+
+
+def test_the_plan_holds_for_the_independent_check(content):
+    verdict = mg.verify_plan(content, samples=50)
+    assert verdict.ok, verdict.faults
+    jsonschema.validate(content, plan_schema())
+
+
+def spoiled(content: dict) -> tuple[dict, dict]:
+    plan = copy.deepcopy(content)
+    return plan, plan["drive_by"]["motions"][0]
+
+
+def test_what_is_wrong_in_passing_is_found(content):
+    """The plan without it stays good; with one thing changed in it each time the check names that."""
+    plan, motion = spoiled(content)
+    for row in motion["positions"]:
+        row[1] += 0.05  # beside the start
+    assert "route-ends" in codes(plan)
+    plan, motion = spoiled(content)
+    motion["times"] = [t / 1.5 for t in motion["times"]]
+    motion["velocities"] = [[1.5 * v for v in row] for row in motion["velocities"]]
+    motion["close_at"], motion["closed_at"] = motion["close_at"] / 1.5, motion["closed_at"] / 1.5
+    assert {"base-limit", "velocity-limit", "acceleration-limit"} <= codes(plan)
+    plan, motion = spoiled(content)
+    motion["closed_at"] = motion["close_at"] + 0.1  # 2 cm at 0.1 m/s
+    assert "closing-time" in codes(plan)
+    plan, motion = spoiled(content)
+    motion["close_at"] -= 0.5  # the hand still moves
+    assert "grasp-missed" in codes(plan)
+    plan, motion = spoiled(content)
+    middle = next(i for i, t in enumerate(motion["times"]) if t > motion["close_at"]) // 2
+    x, y = motion["positions"][middle][:2]
+    shape = {"type": "box", "pose": {"xyz": [0, 0, 0], "quat_xyzw": [0, 0, 0, 1]}, "size": [0.1, 0.1, 0.1]}
+    crate = {"name": "crate", "pose": {"xyz": [x, y, 0.1], "quat_xyzw": [0, 0, 0, 1]}, "shapes": [shape]}
+    plan["scenario"]["obstacles"].append(crate)
+    where = [f.where for f in mg.verify_plan(plan, samples=20).faults if f.code == "scene-collision"]
+    assert any("drive-by" in text for text in where)
+    plan, motion = spoiled(content)
+    motion["pick"] = 1
+    assert "drive-by-pick" in codes(plan)
+
+
+def test_what_is_written(passing, small_plan, content, tmp_path):
+    """A stranger with the CSV alone: wheel speeds lead the base along, joints follow their velocities, accelerations fit, and the
+    grasp is where the marks say."""
+    files = {path.name: path for path in passing.save(tmp_path)}
+    assert json.loads(files["drive_by.json"].read_text())["saved"] == passing.saved
+    assert json.loads(files["plan.json"].read_text()) == json.loads(json.dumps(content))
+    (name,) = [name for name in files if name.endswith(".csv")]
+    lines = files[name].read_text()
+    table = np.genfromtxt(io.StringIO(lines), delimiter=",", names=True, deletechars="", dtype=None, encoding="utf-8")
+    problem = small_plan.scenario.problem()
+    h = np.diff(table["time"])
+    separation = problem.robot.base_limits["wheel_separation"]
+    x, y, theta = (table[c][0] for c in ("x", "y", "theta"))
+    for i in range(len(h)):
+        s = (np.arange(200) + 0.5) / 200
+        left = table["wheel.left"][i] + s * (table["wheel.left"][i + 1] - table["wheel.left"][i])
+        right = table["wheel.right"][i] + s * (table["wheel.right"][i + 1] - table["wheel.right"][i])
+        turn = np.cumsum((right - left) / separation) * h[i] / 200
+        heading = theta + turn - (right - left) / separation * h[i] / 400
+        x += np.mean((left + right) / 2 * np.cos(heading)) * h[i]
+        y += np.mean((left + right) / 2 * np.sin(heading)) * h[i]
+        theta += turn[-1]
+        assert np.hypot(x - table["x"][i + 1], y - table["y"][i + 1]) < 1e-4
+        assert abs(theta - table["theta"][i + 1]) < 1e-4
+    for joint in problem.arm.names:
+        v, a = table[f"{joint}.velocity"], table[f"{joint}.acceleration"]
+        assert np.allclose(np.diff(table[joint]), h / 2 * (v[1:] + v[:-1]), atol=1e-7)
+        assert np.allclose(np.diff(v), h * a[:-1], atol=1e-6)
+    (done,) = passing.picks
+    taken = table["time"][table["task"] == 1]  # the grasp; task 0 is the place before it
+    assert len(taken) == 1
+    assert taken[0] == pytest.approx(done.close_at)
+    held = table["held"]
+    assert set(held[table["time"] < done.close_at - 1e-9]) == {""}
+    assert set(held[table["time"] >= done.close_at + done.dwell]) == {done.part}
+
+
+def test_clock_and_report_know_of_it(content, passing, small_plan):
+    (done,) = passing.picks
+    timeline, before = Timeline(content), Timeline(small_plan.to_dict())
+    motion = content["drive_by"]["motions"][0]
+    assert timeline.duration < before.duration
+    start, end = timeline.state_at(0.0), timeline.state_at(done.drive_by - 1e-9)
+    assert start.base == pytest.approx(motion["positions"][0][:3])
+    assert end.arm == pytest.approx(motion["positions"][-1][3:], abs=1e-6)
+    assert timeline.state_at(motion["closed_at"] - 0.01).held is None
+    assert timeline.state_at(motion["closed_at"] + 0.01).held[0] == done.part
+    assert len(timeline.grasp_times()) == len(content["picks"])
+    assert "Parts taken in passing" in report_html(content)
+    assert "Parts taken in passing" not in report_html(small_plan.to_dict())
+
+
+def test_it_can_be_stopped(small_plan):
+    class StopError(Exception):
+        pass
+
+    def progress(stage: str, fraction: float) -> None:
+        raise StopError
+
+    with pytest.raises(StopError):
+        mg.plan_drive_by_picks(small_plan, progress=progress)

@@ -48,6 +48,10 @@ std::vector<DriveByEvent> events_of(const WholeBodyTrajectory& t, const std::vec
     e.waypoint = waypoints[i];
     e.time = t.times()[at];
     if (steps[i].closes) e.close_time = e.time;
+    if (!steps[i].object.empty()) {
+      e.object = steps[i].object;
+      e.held_time = t.times()[at + (steps[i].dwell > 0 ? detail::kDwellIntervals : 0)];
+    }
     e.candidate = chain[i].candidate;
     e.base_speed = t.group().has_base() ? rate.head<2>().norm() : 0;
     e.tool_speed = (t.group().jacobian(t.positions()[at]) * rate).head<3>().norm();

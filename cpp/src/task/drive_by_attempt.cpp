@@ -10,7 +10,6 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr int kDwellIntervals = 4;
 constexpr int kCoarse = 35;       // waypoints of a first solution when many are asked for
 constexpr double kRefine = 1e-3;  // barrier with which it is refined
 constexpr int kShortRefinements = 3;

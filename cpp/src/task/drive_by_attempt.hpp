@@ -10,6 +10,8 @@
 
 namespace mmgrasp::detail {
 
+constexpr int kDwellIntervals = 4;  // of a task that takes time
+
 /// A chain of stands as a problem with a first guess.
 struct DriveByAttempt {
   WholeBodyProblem problem;

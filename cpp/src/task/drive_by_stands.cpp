@@ -101,6 +101,9 @@ std::vector<Stand> find_stands(const JointGroup& group, CollisionChecker* checke
       seed[1] = T.translation().y() + radius * std::sin(angle);
       seed[2] = along + kHeadingSpread * rng.normal();
     }
+    // Numbers of joints without limits may be whole turns away: what is sampled is one turn.
+    for (int i = 0; i < group.size(); ++i)
+      if (group.wraps()[static_cast<std::size_t>(i)]) seed[i] = wrap_angle(seed[i]);
     seed = seed.cwiseMax(group.sample_lower()).cwiseMin(group.sample_upper());
     const ConfigurationFilter valid = [&](const VectorXd& q) {
       return checker ? checkers[static_cast<std::size_t>(worker)].rejection(q) : Rejection::none;

@@ -3,12 +3,6 @@
 #include <algorithm>
 
 namespace mmgrasp::detail {
-namespace {
-
-constexpr int kTouching = 2;  // intervals before and after a task in which hand, part and support may touch
-
-}  // namespace
-
 DriveByWorlds::DriveByWorlds(const JointGroup& group, const World& world, const std::vector<DriveByStep>& tasks)
     : group_(group), world_(world), tasks_(tasks) {}
 
@@ -36,6 +30,8 @@ std::vector<CollisionChecker*> DriveByWorlds::along(const std::vector<int>& inte
   for (std::size_t s = 0; s < intervals.size(); ++s) {
     CollisionChecker* here = &before(s);
     CollisionChecker *taken = here, *taking = s < tasks_.size() ? &at(s) : here;
+    const int touching_after = s > 0 ? tasks_[s - 1].touching : 0;
+    const int touching_before = s < tasks_.size() ? tasks_[s].touching : 0;
     // A push-grasp may have it between the fingers before its last step.
     std::size_t by = s;
     while (by > 0 && tasks_[by - 1].object.empty() && !tasks_[by - 1].begins) --by;
@@ -49,7 +45,7 @@ std::vector<CollisionChecker*> DriveByWorlds::along(const std::vector<int>& inte
     }
     const int n = intervals[s];
     for (int i = 0; i < n; ++i) {
-      const bool first = s > 0 && i < kTouching, last = s < tasks_.size() && i >= n - kTouching;
+      const bool first = i < touching_after, last = i >= n - touching_before;
       const bool object = s < tasks_.size() && !tasks_[s].object.empty();
       result.push_back(first && taken != here ? taken : last && object ? taking : here);
     }

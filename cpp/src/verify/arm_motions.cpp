@@ -4,6 +4,7 @@
 
 #include "mmgrasp/core/parallel.hpp"
 #include "verify/context.hpp"
+#include "verify/hand_check.hpp"
 #include "verify/hermite.hpp"
 #include "verify/motion_limits.hpp"
 #include "verify/tool_path.hpp"
@@ -16,8 +17,6 @@ constexpr std::array<const char*, kKinds> kKindNames = {"reach", "approach", "li
 constexpr double kJoin = 1e-6;        // Ends that must coincide [rad or m].
 constexpr double kRest = 1e-3;        // Speed that counts as rest [rad/s or m/s].
 constexpr double kOpening = 1e-6;     // [m]
-constexpr double kGripPlay = 0.01;    // Fingers may close this far below a grasp's width to meet the part [m],
-constexpr double kGripShare = 0.25;   // or this share of it.
 constexpr double kMaxSteps = 200000;  // Configurations of one motion: 2000 rad at the default step.
 
 bool is_holding(int kind) {
@@ -40,6 +39,7 @@ class PickCheck {
         pick_(plan_.picks[index]),
         index_(index),
         judge_(judge),
+        hand_(context, judge, faults),
         faults_(faults) {}
 
   /// False when its motions hold no usable numbers.
@@ -163,58 +163,23 @@ class PickCheck {
   }
 
   void check_collisions() {
-    check_fingers(plan_.home, 0, motion(kReach).opening, context_.pick_name(index_) + ", fingers opening at home");
+    hand_.check_fingers(plan_.home, 0, motion(kReach).opening,
+                        context_.pick_name(index_) + ", fingers opening at home");
     walk(kReach);
     walk(kApproach);
     const Eigen::VectorXd& at_grasp = motion(kApproach).positions.back();
     judge_.hold(body_, T_tip_part_);
-    check_grip(at_grasp);
-    check_fingers(at_grasp, motion(kApproach).opening, grasp_->width, context_.pick_name(index_) + ", fingers closing");
+    hand_.check_grip(at_grasp, grasp_->width, context_.pick_name(index_));
+    hand_.check_fingers(at_grasp, motion(kApproach).opening, grasp_->width,
+                        context_.pick_name(index_) + ", fingers closing");
     walk(kLift);
     walk(kCarry);
     judge_.drop();
-    check_fingers(motion(kCarry).positions.back(), grasp_->width, motion(kRetreat).opening,
-                  context_.pick_name(index_) + ", fingers opening over the bin");
+    hand_.check_fingers(motion(kCarry).positions.back(), grasp_->width, motion(kRetreat).opening,
+                        context_.pick_name(index_) + ", fingers opening over the bin");
     walk(kRetreat);
-    check_fingers(plan_.home, motion(kRetreat).opening, 0, context_.pick_name(index_) + ", fingers closing at home");
-  }
-
-  bool collides(const Eigen::VectorXd& q, double opening, const std::string& where) {
-    const Touch touch = judge_.touch(q, opening);
-    if (!touch) return false;
-    const char* code = touch.kind == TouchKind::self   ? "self-collision"
-                       : touch.kind == TouchKind::held ? "held-collision"
-                                                       : "scene-collision";
-    fault(code, where, "'" + touch.a + "' touches '" + touch.b + "'");
-    return true;
-  }
-
-  /// Fingers moving with the arm at rest.
-  void check_fingers(const Eigen::VectorXd& q, double from, double to, const std::string& where) {
-    double travel = 0;
-    for (const CheckedFinger& finger : plan_.fingers) {
-      travel = std::max(travel, std::abs((finger.open - finger.closed) * (to - from) / plan_.max_opening));
-    }
-    const int steps = static_cast<int>(std::min(std::ceil(travel / context_.options.joint_step), 1000.0));
-    for (int i = 0; i <= steps; ++i) {
-      const double opening = steps ? from + (to - from) * i / steps : from;
-      if (collides(q, opening, where + " at " + text(opening) + " m")) return;
-    }
-  }
-
-  /// Two fingers must meet the part at once, at the grasp's width or somewhat below it: collision shapes may stand back
-  /// a little from the pads that the width is meant for. Otherwise nothing is held.
-  void check_grip(const Eigen::VectorXd& q) {
-    constexpr int kSteps = 20;
-    const double below = std::min(grasp_->width, std::max(kGripPlay, kGripShare * grasp_->width));
-    int most = 0;
-    for (int i = 0; i <= kSteps && most < 2; ++i) {
-      most = std::max(most, judge_.fingers_touching_held(q, grasp_->width - below * i / kSteps));
-    }
-    if (most >= 2) return;
-    fault("grasp-empty", context_.pick_name(index_),
-          "closing from " + text(grasp_->width) + " m to " + text(grasp_->width - below) + " m, " +
-              (most == 0 ? "no finger touches the part" : "only one finger link touches the part"));
+    hand_.check_fingers(plan_.home, motion(kRetreat).opening, 0,
+                        context_.pick_name(index_) + ", fingers closing at home");
   }
 
   void walk(int kind) {
@@ -237,7 +202,7 @@ class PickCheck {
         const double s = step / steps;
         const Eigen::VectorXd q = segment.at(s);
         const std::string where = name(kind) + ", t = " + text(m.times[i] + s * segment.duration()) + " s";
-        free = !collides(q, opening, where);
+        free = !hand_.collides(q, opening, where);
         if (kind == kApproach && is_straight) is_straight = straight.check(judge_.tip(q), where, faults_);
       }
     }
@@ -248,6 +213,7 @@ class PickCheck {
   const CheckedPick& pick_;
   std::size_t index_;
   Judge& judge_;
+  HandCheck hand_;
   Faults& faults_;
   const CheckedPart* part_ = nullptr;
   const CheckedGrasp* grasp_ = nullptr;

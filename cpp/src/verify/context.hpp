@@ -42,6 +42,8 @@ bool check_structure(const PlanToCheck& plan, Faults& faults, ArmSetup& setup, s
 void check_pick_list(Context& context, Faults& faults);
 /// The five motions of each pick (arm_motions.cpp).
 void check_arm_motions(const Context& context, Faults& faults, std::size_t& configurations);
+/// Drive and pick in one (drive_by.cpp).
+void check_drive_by(const Context& context, Faults& faults, std::size_t& configurations);
 /// Base route, home and start (route.cpp).
 void check_route(const Context& context, Faults& faults, std::size_t& configurations);
 /// Every target part graspable from everywhere in the uncertainty discs (robustness.cpp).

@@ -140,6 +140,7 @@ void Structure::scalars() {
   need(finite(Eigen::VectorXd(plan.bin_size)) && plan.bin_size.minCoeff() > 0, "carry",
        "the bin's size must be positive");
   need(finite(plan.drop_gap) && plan.drop_gap >= 0, "carry", "drop_gap must not be negative");
+  need(finite(plan.closing_speed) && plan.closing_speed > 0, "closing_speed", "must be positive");
   for (std::size_t i = 0; i < plan.stops.size(); ++i) {
     need(finite(Eigen::VectorXd(plan.stops[i].pose)) && finite(plan.stops[i].radius), "stop " + std::to_string(i),
          "must be finite");

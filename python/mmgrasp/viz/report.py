@@ -65,7 +65,7 @@ def report_html(plan: dict[str, Any], pictures_dir: Path | None = None) -> str:
     name = plan["scenario"].get("name", "plan")
     sections = [_headline(plan), _obstructions(plan), _top_view(plan)]
     if plan["outcome"] == "solved":
-        sections += [_stops(plan), _picks(plan)]
+        sections += [_stops(plan), _picks(plan), _in_passing(plan)]
     sections += [_alternatives(plan), _candidates(plan), _pictures(plan, pictures_dir), _timings(plan), _facts(plan)]
     return (
         '<!doctype html><html lang="en"><head><meta charset="utf-8">'
@@ -194,6 +194,26 @@ def _picks(plan) -> str:
         )
     head = ["pick", "stop", "tray", "part", "grasp", *(f"{k} [s]" for k in kinds), "all [s]"]
     return "<h2>Picks</h2>" + table(head, rows, {0, 1, 4, 5, 6, 7, 8, 9, 10})
+
+
+def _in_passing(plan) -> str:
+    if "drive_by" not in plan:
+        return ""
+    speed = plan["drive_by"]["closing_speed"]
+    rows = []
+    for motion in plan["drive_by"]["motions"]:
+        pick = plan["picks"][motion["pick"]]
+        part = next(p for p in plan["scenario"]["parts"] if p["name"] == pick["part"])
+        closing = (motion["opening"] - part["grasps"][pick["grasp"]]["width"]) / speed
+        arm = sum(m["times"][-1] for m in pick["motions"] if m["kind"] in ("reach", "approach", "lift"))
+        stopping = plan["route"][pick["stop"]]["duration"] + arm + closing
+        now = motion["times"][-1]
+        cells = [str(pick["stop"] + 1), _tray(plan, pick["tray"]), escape(pick["part"])]
+        rows.append([*cells, clock(stopping), clock(now), clock(stopping - now)])
+    note = "The drive to a stop and the first pick there, up to its lift, as one motion of base and arm that does not stop for the part."
+    head = ["stop", "tray", "part", "stop and pick", "in passing", "saved"]
+    body = table(head, rows, {0, 3, 4, 5}) if rows else "<p>None was found to be faster.</p>"
+    return f"<h2>Parts taken in passing</h2><p class='lead'>{note}</p>" + body
 
 
 def _alternatives(plan) -> str:

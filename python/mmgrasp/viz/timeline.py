@@ -28,12 +28,13 @@ class Segment:
     label: str
     start: float
     duration: float
-    kind: str  # "drive", "motion" or "grip"
+    kind: str  # "drive", "motion", "grip" or "drive-by"
     data: Any
     held: tuple[str, np.ndarray] | None = None
     gone: frozenset[str] = frozenset()
     base: np.ndarray = field(default_factory=lambda: np.zeros(3))
     opening: float = 0.0
+    after: float = 0.0  # of the motion's own clock, where the segment begins [s]
 
 
 def pose_matrix(pose: dict[str, Any]) -> np.ndarray:
@@ -60,25 +61,37 @@ class Timeline:
         gone: frozenset[str] = frozenset()
         clock = 0.0
         stops = plan["stops"]
+        passing = {motion["pick"]: motion for motion in plan.get("drive_by", {"motions": []})["motions"]}
         for index, leg in enumerate(plan["route"]):
             goal = "the goal" if index == len(stops) else f"stop {index + 1}"
-            poses = np.asarray(leg["poses"], float).reshape(-1, 3)
-            clock = self._add(Segment(f"drive to {goal}", clock, float(leg["duration"]), "drive", poses, gone=gone))
-            for pick in plan["picks"]:
-                if pick["stop"] == index:
-                    clock = self._add_pick(pick, np.asarray(stops[index]["pose"], float), parts, gone, clock)
-                    gone = gone | {pick["part"]}
+            picks = [(i, pick) for i, pick in enumerate(plan["picks"]) if pick["stop"] == index]
+            if not picks or picks[0][0] not in passing:
+                poses = np.asarray(leg["poses"], float).reshape(-1, 3)
+                clock = self._add(Segment(f"drive to {goal}", clock, float(leg["duration"]), "drive", poses, gone=gone))
+            for i, pick in picks:
+                base = np.asarray(stops[index]["pose"], float)
+                clock = self._add_pick(pick, base, parts, gone, clock, passing.get(i))
+                gone = gone | {pick["part"]}
         self.duration = clock
 
     def _add(self, segment: Segment) -> float:
         self.segments.append(segment)
         return segment.start + segment.duration
 
-    def _add_pick(self, pick, base, parts, gone, clock):
+    def _add_pick(self, pick, base, parts, gone, clock, passing=None):
         name = pick["part"]
         grasp = parts[name]["grasps"][pick["grasp"]]
         in_hand = (name, np.linalg.inv(pose_matrix(grasp["pose"])))
-        for motion in pick["motions"]:
+        motions = pick["motions"]
+        if passing is not None:
+            held, end = float(passing["closed_at"]), float(passing["times"][-1])
+            coming = Segment(f"drive by {name}", clock, held, "drive-by", (passing, grasp["width"]), None, gone)
+            leaving = Segment(f"drive on with {name}", clock + held, end - held, "drive-by", coming.data, in_hand, gone)
+            leaving.after = held
+            clock = self._add(coming)
+            clock = self._add(leaving)
+            motions = [m for m in motions if m["kind"] in ("carry", "retreat")]
+        for motion in motions:
             held = in_hand if motion["holding"] else None
             binned = gone | {name} if motion["kind"] == "retreat" else gone
             label = f"{motion['kind']} {name}"
@@ -109,6 +122,12 @@ class Timeline:
         if segment.kind == "drive":
             share = local / segment.duration if segment.duration > 0 else 1.0
             return State(along_route(segment.data, share), self.home, 0.0, None, segment.gone)
+        if segment.kind == "drive-by":
+            motion, width = segment.data
+            when = segment.after + local
+            row = [np.interp(when, motion["times"], column) for column in np.transpose(motion["positions"])]
+            opening = np.interp(when, [motion["close_at"], motion["closed_at"]], [motion["opening"], width])
+            return State(np.array(row[:3]), np.array(row[3:]), float(opening), segment.held, segment.gone)
         motion = segment.data
         times = np.asarray(motion["times"], float)
         positions = np.asarray(motion["positions"], float)
@@ -120,8 +139,10 @@ class Timeline:
         """(stop index, time at which the part is reached), one for each pick."""
         result = []
         for segment in self.segments:
-            if segment.kind == "grip" and segment.label.startswith("grasp "):
-                name = segment.label.removeprefix("grasp ")
+            for word in ("grasp ", "drive on with "):
+                if segment.kind == "motion" or not segment.label.startswith(word):
+                    continue
+                name = segment.label.removeprefix(word)
                 stop = next(p["stop"] for p in self.plan["picks"] if p["part"] == name)
                 result.append((stop, segment.start))
         return result

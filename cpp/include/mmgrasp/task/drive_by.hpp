@@ -33,8 +33,10 @@ struct MMGRASP_EXPORT DriveByTask {
   double max_tool_speed = std::numeric_limits<double>::infinity();  ///< At the task [m/s]; > 0 (P1 4.3).
   double dwell = 0;  ///< [s], >= 0: the tool's pose is kept that long, e.g. while a gripper closes.
   /// Object of the world that is held afterwards, in place of what was held before; empty: none. The hand may touch it
-  /// from two intervals before the task on, and it may touch what it stands on until two intervals after.
+  /// from `touching` intervals before the task on, and it may touch what it stands on until as many after. 0: the open
+  /// hand keeps clear of it up to the task, and what is held keeps clear of everything from the task on.
   std::string object;
+  int touching = 2;                 ///< >= 0
   std::optional<DriveByPush> push;  ///< Without dwell, max_tool_speed, tolerance and free axes.
 };
 
@@ -66,6 +68,8 @@ struct MMGRASP_EXPORT DriveByEvent {
   int waypoint = 0;       ///< Of a push-grasp: where both fingers touch.
   double time = 0;        ///< [s]
   double close_time = 0;  ///< When a gripper begins to close [s].
+  std::string object;     ///< What is held from then on; empty: nothing new.
+  double held_time = 0;   ///< From when it is held [s]: the end of the dwell.
   int candidate = 0;
   double base_speed = 0;  ///< [m/s]
   double tool_speed = 0;  ///< [m/s]
@@ -85,6 +89,10 @@ struct MMGRASP_EXPORT DriveByResult {
   bool usable() const { return outcome == Outcome::solved || outcome == Outcome::approximate; }
   double duration() const { return trajectory ? trajectory->duration() : 0; }
 };
+
+/// The trajectory's to_csv with two columns more: `task`, its index in the row of a task's waypoint, and `held`, the
+/// object in the hand. Throws InvalidInput without a trajectory.
+MMGRASP_EXPORT std::string drive_by_csv(const DriveByResult& result, int between = 0);
 
 /// The fastest motion of base and arm from `start` (at rest) through the tasks, in order, to the goal (at rest),
 /// without stopping for them (P1 chapter 4). What P1 leaves to trials is done here: configurations at the tasks, the

@@ -56,6 +56,15 @@ struct MMGRASP_EXPORT CheckedPick {
   std::vector<CheckedMotion> motions;
 };
 
+/// Drive to a stop and the first pick there up to its lift, in one motion of base and arm. The fingers open before it,
+/// and close while the tool keeps its place in the room.
+struct MMGRASP_EXPORT CheckedDriveBy {
+  int pick = -1;         ///< Index into the plan's picks.
+  double close_at = 0;   ///< The fingers begin to close [s],
+  double closed_at = 0;  ///< and from here on hold the part [s].
+  CheckedMotion motion;  ///< Rows hold x, y, theta, then the arm's joints; `opening` is that before closing.
+};
+
 struct MMGRASP_EXPORT CheckedStop {
   Eigen::Vector3d pose = Eigen::Vector3d::Zero();
   double radius = 0;
@@ -114,6 +123,8 @@ struct MMGRASP_EXPORT PlanToCheck {
   std::vector<CheckedStop> stops;
   std::vector<std::vector<Eigen::Vector3d>> route;  ///< stops.size() + 1 legs of base poses.
   std::vector<CheckedPick> picks;
+  std::vector<CheckedDriveBy> drive_by;  ///< What of route and picks is done in passing.
+  double closing_speed = 0.1;            ///< Of the opening [m/s], for drive_by.
   int lower_bound = 0;
   std::vector<CheckedLegFigures> route_figures;  ///< One a leg; empty: not given.
   std::vector<CheckedIntersection> intersections;
@@ -144,6 +155,9 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 ///   `scene-collision`, `held-collision`;
 /// - what it is for: `not-straight` (approach), `grasp-missed`, `grasp-empty` (fewer than two fingers close on it),
 ///   `no-lift`, `release-outside`, `release-tilted`, `release-height`;
+/// - a motion in passing, besides those of arm motions: `drive-by-pick` (not the first of its stop, twice, unknown),
+///   `closing-time` (outside the motion, or faster than the fingers), `base-limit` (velocity or acceleration of base or
+///   wheels), `base-off-course` (where its velocities do not lead);
 /// - the route: `route-legs` (their number), `route-ends`, `route-not-driveable`, `route-collision`, `too-long`;
 /// - stops: `region-malformed`, `region-missing`, `region-too-small`, `stop-heading`, `stop-radius`,
 ///   `stop-outside-region`, `not-minimal`, `lower-bound`, `not-robust`;

@@ -1,0 +1,109 @@
+#include "verify/base_course.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace mmgrasp::verify {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kSlack = 0.01;      // Relative, of limits.
+constexpr double kOffCourse = 1e-3;  // After the whole motion [m], [rad].
+constexpr double kSideways = 1e-3;   // [m/s]
+
+/// Velocity in the platform's frame: ahead, to the left, turning.
+Vector3d platform_velocity(const Eigen::VectorXd& q, const Eigen::VectorXd& rate) {
+  const double c = std::cos(q[2]), s = std::sin(q[2]);
+  return {c * rate[0] + s * rate[1], -s * rate[0] + c * rate[1], rate[2]};
+}
+
+/// What drives the base, in a frame in which it changes linearly between samples: the platform's, or for an omni base
+/// the world's.
+Vector3d drive_of(BaseKind base, const Eigen::VectorXd& q, const Eigen::VectorXd& rate) {
+  return base == BaseKind::diff_drive ? platform_velocity(q, rate) : Vector3d(rate.head<3>());
+}
+
+/// A base that follows its velocities, linear over the time h, without slipping sideways.
+Vector3d driven(BaseKind base, Vector3d pose, const Vector3d& from, const Vector3d& to, double h) {
+  if (base != BaseKind::diff_drive) return pose + 0.5 * h * (from + to);
+  constexpr int kSteps = 16;  // Simpson's rule over each, the heading in closed form
+  const double start = pose.z();
+  const auto ahead = [&](double s) {
+    const double theta = start + h * s * (from.z() + 0.5 * s * (to.z() - from.z()));
+    const double v = from.x() + s * (to.x() - from.x());
+    return Eigen::Vector2d(v * std::cos(theta), v * std::sin(theta));
+  };
+  for (int i = 0; i < kSteps; ++i) {
+    const double a = static_cast<double>(i) / kSteps, b = static_cast<double>(i + 1) / kSteps;
+    pose.head<2>() += h / kSteps / 6 * (ahead(a) + 4 * ahead(0.5 * (a + b)) + ahead(b));
+  }
+  pose.z() = start + 0.5 * h * (from.z() + to.z());
+  return pose;
+}
+
+struct Limit {
+  const char* what;
+  double limit;
+  double value = 0, time = 0;
+
+  void see(double now, double at) {
+    if (std::abs(now) <= value) return;
+    value = std::abs(now);
+    time = at;
+  }
+};
+
+void check_limits(const PlanToCheck& plan, const CheckedMotion& motion, const std::vector<Vector3d>& drive,
+                  const std::string& where, Faults& faults) {
+  const BaseLimits& limits = plan.robot.base_limits();
+  const bool diff_drive = plan.robot.base() == BaseKind::diff_drive;
+  Limit speed{"speed [m/s]", limits.linear_velocity}, turning{"turning rate [rad/s]", limits.angular_velocity};
+  Limit wheel{"wheel speed [m/s]", limits.wheel_velocity};
+  Limit gain{"acceleration [m/s^2]", limits.linear_acceleration};
+  Limit spin{"angular acceleration [rad/s^2]", limits.angular_acceleration};
+  for (std::size_t i = 0; i < drive.size(); ++i) {
+    const double t = motion.times[i];
+    speed.see(drive[i].head<2>().norm(), t);
+    turning.see(drive[i].z(), t);
+    const double rim = 0.5 * limits.wheel_separation * std::abs(drive[i].z());
+    if (diff_drive) wheel.see(std::abs(drive[i].x()) + rim, t);
+    if (i == 0) continue;
+    const double h = motion.times[i] - motion.times[i - 1];
+    gain.see((drive[i] - drive[i - 1]).head<2>().norm() / h, t);
+    spin.see((drive[i] - drive[i - 1]).z() / h, t);
+  }
+  for (const Limit& l : {speed, turning, wheel, gain, spin}) {
+    if (l.value <= (1 + kSlack) * l.limit) continue;
+    faults.push_back({"base-limit", where + ", t = " + text(l.time) + " s",
+                      std::string(l.what) + " of the base is " + text(l.value) + ", the limit " + text(l.limit)});
+  }
+}
+
+}  // namespace
+
+void check_base_course(const PlanToCheck& plan, const CheckedMotion& motion, const std::string& where, Faults& faults) {
+  const BaseKind base = plan.robot.base();
+  std::vector<Vector3d> drive;
+  for (std::size_t i = 0; i < motion.times.size(); ++i)
+    drive.push_back(drive_of(base, motion.positions[i], motion.velocities[i]));
+  check_limits(plan, motion, drive, where, faults);
+  Vector3d pose = motion.positions.front().head<3>();
+  for (std::size_t i = 0; i < drive.size(); ++i) {
+    const double t = motion.times[i];
+    if (i > 0) pose = driven(base, pose, drive[i - 1], drive[i], t - motion.times[i - 1]);
+    const Vector3d off = motion.positions[i].head<3>() - pose;
+    const double aside = base == BaseKind::diff_drive ? std::abs(drive[i].y()) : 0;
+    if (off.cwiseAbs().maxCoeff() <= kOffCourse && aside <= kSideways) continue;
+    faults.push_back({"base-off-course", where + ", t = " + text(t) + " s",
+                      aside > kSideways ? "the base slides sideways at " + text(aside) + " m/s"
+                                        : "its velocities lead to " + text(pose) + ", the plan says " +
+                                              text(Vector3d(motion.positions[i].head<3>()))});
+    return;
+  }
+}
+
+}  // namespace mmgrasp::verify

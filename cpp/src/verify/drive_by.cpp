@@ -1,0 +1,233 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "mmgrasp/core/parallel.hpp"
+#include "verify/base_course.hpp"
+#include "verify/context.hpp"
+#include "verify/hand_check.hpp"
+#include "verify/hermite.hpp"
+#include "verify/motion_limits.hpp"
+#include "verify/tool_path.hpp"
+
+namespace mmgrasp::verify {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr double kJoin = 1e-6;       // Ends that must coincide [rad or m].
+constexpr double kRest = 1e-3;       // Speed that counts as rest [rad/s or m/s].
+constexpr double kStill = 2e-3;      // The tool may move so far while the fingers close [m],
+constexpr double kStillTurn = 0.02;  // and turn so far [rad].
+constexpr double kMaxSteps = 200000;
+
+/// The columns of the arm alone.
+CheckedMotion arm_of(const CheckedMotion& motion) {
+  CheckedMotion arm = motion;
+  for (auto* rows : {&arm.positions, &arm.velocities, &arm.accelerations})
+    for (VectorXd& row : *rows) row = VectorXd(row.tail(row.size() - 3));
+  return arm;
+}
+
+/// One motion through a grasp.
+class DriveByCheck {
+ public:
+  DriveByCheck(const Context& context, std::size_t index, Judge& judge, Faults& faults)
+      : context_(context),
+        plan_(context.plan),
+        drive_by_(plan_.drive_by[index]),
+        motion_(drive_by_.motion),
+        judge_(judge),
+        hand_(context, judge, faults),
+        faults_(faults) {}
+
+  void run() {
+    const CheckedPick& pick = plan_.picks[static_cast<std::size_t>(drive_by_.pick)];
+    where_ = context_.pick_name(static_cast<std::size_t>(drive_by_.pick)) + ", drive-by";
+    if (!check_motion_shape(motion_, 3 + judge_.kinematics().arm_size(), where_, faults_)) return;
+    for (const VectorXd& row : motion_.accelerations)
+      if (row.size() != motion_.positions.front().size()) return fault("motion-shape", "accelerations are too few");
+    part_ = &plan_.parts[static_cast<std::size_t>(context_.pick_part[static_cast<std::size_t>(drive_by_.pick)])];
+    width_ = part_->grasps[static_cast<std::size_t>(pick.grasp)].width;
+    T_world_grasp_ = part_->body.T_world_body * part_->grasps[static_cast<std::size_t>(pick.grasp)].T_object_tcp;
+    check_motion_limits(context_, judge_.kinematics(), arm_of(motion_), where_, faults_);
+    check_base_course(plan_, motion_, where_, faults_);
+    check_ends(pick);
+    if (check_closing()) walk();
+  }
+
+ private:
+  void fault(const char* code, const std::string& message) { faults_.push_back({code, where_, message}); }
+  static Vector3d base(const VectorXd& q) { return q.head<3>(); }
+  static VectorXd arm(const VectorXd& q) { return q.tail(q.size() - 3); }
+
+  void check_ends(const CheckedPick& pick) {
+    const VectorXd &first = motion_.positions.front(), &last = motion_.positions.back();
+    const std::size_t stop = static_cast<std::size_t>(pick.stop);
+    const auto stands = [this](const VectorXd& q, const Vector3d& wanted, const char* verb) {
+      const bool there =
+          (base(q) - wanted).head<2>().norm() <= kJoin && std::abs(wrap_angle(q[2] - wanted.z())) <= kJoin;
+      if (!there) fault("route-ends", std::string(verb) + " at " + text(base(q)) + ", must be " + text(wanted));
+    };
+    stands(first, stop == 0 ? plan_.start : plan_.stops[stop - 1].pose, "starts");
+    stands(last, plan_.stops[stop].pose, "ends");
+    if (pick.motions.size() < 4) return;  // said at the pick
+    const auto joins = [this](const VectorXd& q, const CheckedMotion& other, const VectorXd& wanted) {
+      if (wanted.size() != q.size() - 3) return;  // said at the pick
+      const double by = (arm(q) - wanted).cwiseAbs().maxCoeff();
+      if (by > kJoin) fault("discontinuous", "a joint is off by " + text(by) + " where it meets '" + other.kind + "'");
+    };
+    const CheckedMotion &reach = pick.motions[0], &carry = pick.motions[3];
+    if (!reach.positions.empty()) joins(first, reach, reach.positions.front());
+    if (!carry.positions.empty()) joins(last, carry, carry.positions.front());
+    for (const VectorXd& v : {motion_.velocities.front(), motion_.velocities.back()})
+      if (v.cwiseAbs().maxCoeff() > kRest)
+        fault("not-at-rest", "moves at " + text(v.cwiseAbs().maxCoeff()) + " at an end");
+  }
+
+  bool check_closing() {
+    const double opening = motion_.opening;
+    if (!(opening >= width_ && opening <= plan_.max_opening + 1e-6)) {
+      fault("opening", text(opening) + " m is outside [" + text(width_) + ", " + text(plan_.max_opening) + "]");
+      return false;
+    }
+    const double needed = (opening - width_) / plan_.closing_speed, taken = drive_by_.closed_at - drive_by_.close_at;
+    const bool inside = drive_by_.close_at >= motion_.times.front() && drive_by_.closed_at < motion_.times.back();
+    if (inside && taken >= needed - 1e-6) return true;
+    fault("closing-time", "the fingers close from " + text(drive_by_.close_at) + " to " + text(drive_by_.closed_at) +
+                              " s: must lie inside the motion and take at least " + text(needed) + " s");
+    return false;
+  }
+
+  /// Of the fingers at a time.
+  double opening(double t) const {
+    const double share = (t - drive_by_.close_at) / (drive_by_.closed_at - drive_by_.close_at);
+    return motion_.opening + std::clamp(share, 0.0, 1.0) * (width_ - motion_.opening);
+  }
+
+  void walk() {
+    const std::size_t pick = static_cast<std::size_t>(drive_by_.pick);
+    judge_.drop();
+    context_.set_parts_before(judge_, pick);
+    judge_.set_base(base(motion_.positions.front()));
+    hand_.check_fingers(arm(motion_.positions.front()), 0, motion_.opening, where_ + ", fingers opening");
+    double taken = 0;
+    for (std::size_t i = 0; i + 1 < motion_.times.size(); ++i) {
+      const HermiteSegment segment(motion_, i);
+      // The moments of closing are looked at as they stand.
+      std::vector<double> shares{0, 1};
+      for (const double t : {drive_by_.close_at, drive_by_.closed_at}) {
+        const double s = (t - motion_.times[i]) / segment.duration();
+        if (s > 0 && s < 1) shares.insert(shares.end() - 1, s);
+      }
+      const double steps = std::max(1.0, std::ceil(steps_of(segment)));
+      taken += steps;
+      if (!(taken <= kMaxSteps)) return fault("too-long", "travels farther than can be checked");
+      for (int k = 1; k < static_cast<int>(steps); ++k) shares.push_back(k / steps);
+      std::sort(shares.begin(), shares.end());
+      for (const double s : shares)
+        if ((i == 0 || s > 0) && !good_at(segment.at(s), motion_.times[i] + s * segment.duration())) return;
+    }
+  }
+
+  double steps_of(const HermiteSegment& segment) const {
+    const auto travel = [&](int j) {
+      const Range v = segment.velocity_range(j);
+      return std::max(-v.low, v.high) * segment.duration();
+    };
+    double steps = std::max({travel(0), travel(1), 0.5 * travel(2)}) / context_.options.base_step;
+    for (int j = 3; j < motion_.positions.front().size(); ++j)
+      steps = std::max(steps, travel(j) / context_.options.joint_step);
+    return steps;
+  }
+
+  bool good_at(const VectorXd& q, double t) {
+    const std::string where = where_ + ", t = " + text(t) + " s";
+    judge_.set_base(base(q));
+    if (t >= drive_by_.close_at && !held_) {
+      const Pose T_world_tip = judge_.tip(arm(q));
+      // While they close the part stands where it stood; fingers may touch it from now on.
+      const std::size_t body = context_.body_of_part(static_cast<int>(part_ - plan_.parts.data()));
+      judge_.hold(body, T_world_tip.inverse() * part_->body.T_world_body);
+      if (!closing_) check_grasp_reached(context_, T_world_grasp_, T_world_tip, where, faults_);
+      closing_ = true;
+      if (!still_at(T_world_tip, where)) return false;
+      if (t >= drive_by_.closed_at) {
+        held_ = true;
+        hand_.check_grip(arm(q), width_, where);
+      }
+    }
+    return !hand_.collides(arm(q), opening(t), where);
+  }
+
+  bool still_at(const Pose& T_world_tip, const std::string& where) {
+    const double moved = (T_world_tip.translation() - T_world_grasp_.translation()).norm();
+    const double turned = rotation_distance(T_world_tip, T_world_grasp_);
+    if (moved <= kStill && turned <= kStillTurn) return true;
+    faults_.push_back({"grasp-missed", where,
+                       "the tool is " + text(moved) + " m and " + text(turned) +
+                           " rad from the grasp while the fingers close, allowed are " + text(kStill) + " m and " +
+                           text(kStillTurn) + " rad"});
+    return false;
+  }
+
+  const Context& context_;
+  const PlanToCheck& plan_;
+  const CheckedDriveBy& drive_by_;
+  const CheckedMotion& motion_;
+  Judge& judge_;
+  HandCheck hand_;
+  Faults& faults_;
+  std::string where_;
+  const CheckedPart* part_ = nullptr;
+  double width_ = 0;
+  Pose T_world_grasp_ = Pose::Identity();
+  bool closing_ = false, held_ = false;
+};
+
+/// Those that name the first pick of a stop, once; faults for the others.
+std::vector<std::size_t> known_picks(const Context& context, Faults& faults) {
+  const PlanToCheck& plan = context.plan;
+  std::vector<std::size_t> known;
+  std::set<int> seen;
+  for (std::size_t i = 0; i < plan.drive_by.size(); ++i) {
+    const int pick = plan.drive_by[i].pick;
+    std::string wrong;
+    if (pick < 0 || pick >= static_cast<int>(plan.picks.size())) {
+      wrong = "there is no pick " + std::to_string(pick);
+    } else {
+      const CheckedPick& p = plan.picks[static_cast<std::size_t>(pick)];
+      const int part = context.pick_part[static_cast<std::size_t>(pick)];
+      const bool resolved = part >= 0 && p.stop >= 0 && p.stop < static_cast<int>(plan.stops.size()) && p.grasp >= 0 &&
+                            p.grasp < static_cast<int>(plan.parts[static_cast<std::size_t>(part)].grasps.size());
+      if (!resolved) continue;  // said at the pick
+      if (!seen.insert(pick).second) wrong = "pick " + std::to_string(pick) + " is done in passing twice";
+      if (pick > 0 && plan.picks[static_cast<std::size_t>(pick) - 1].stop == p.stop)
+        wrong = "pick " + std::to_string(pick) + " is not the first of its stop";
+    }
+    if (wrong.empty())
+      known.push_back(i);
+    else
+      faults.push_back({"drive-by-pick", "drive-by " + std::to_string(i), wrong});
+  }
+  return known;
+}
+
+}  // namespace
+
+void check_drive_by(const Context& context, Faults& faults, std::size_t& configurations) {
+  const std::vector<std::size_t> known = known_picks(context, faults);
+  std::vector<Judge> judges(static_cast<std::size_t>(resolve_threads(context.options.threads)), Judge(context.stage));
+  std::vector<Faults> found(known.size());
+  parallel_for(
+      known.size(), context.options.threads,
+      [&](std::size_t i, int worker) {
+        DriveByCheck(context, known[i], judges[static_cast<std::size_t>(worker)], found[i]).run();
+      },
+      context.monitor, "drive-by");
+  for (const Faults& some : found) faults.insert(faults.end(), some.begin(), some.end());
+  for (const Judge& judge : judges) configurations += judge.queries();
+}
+
+}  // namespace mmgrasp::verify

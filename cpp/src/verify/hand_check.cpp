@@ -1,0 +1,49 @@
+#include "verify/hand_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mmgrasp::verify {
+namespace {
+
+constexpr double kGripPlay = 0.01;   // Fingers may close this far below a grasp's width to meet the part [m],
+constexpr double kGripShare = 0.25;  // or this share of it.
+
+}  // namespace
+
+bool HandCheck::collides(const Eigen::VectorXd& arm, double opening, const std::string& where) {
+  const Touch touch = judge_.touch(arm, opening);
+  if (!touch) return false;
+  const char* code = touch.kind == TouchKind::self   ? "self-collision"
+                     : touch.kind == TouchKind::held ? "held-collision"
+                                                     : "scene-collision";
+  faults_.push_back({code, where, "'" + touch.a + "' touches '" + touch.b + "'"});
+  return true;
+}
+
+void HandCheck::check_fingers(const Eigen::VectorXd& arm, double from, double to, const std::string& where) {
+  double travel = 0;
+  for (const CheckedFinger& finger : context_.plan.fingers) {
+    travel = std::max(travel, std::abs((finger.open - finger.closed) * (to - from) / context_.plan.max_opening));
+  }
+  const int steps = static_cast<int>(std::min(std::ceil(travel / context_.options.joint_step), 1000.0));
+  for (int i = 0; i <= steps; ++i) {
+    const double opening = steps ? from + (to - from) * i / steps : from;
+    if (collides(arm, opening, where + " at " + text(opening) + " m")) return;
+  }
+}
+
+void HandCheck::check_grip(const Eigen::VectorXd& arm, double width, const std::string& where) {
+  constexpr int kSteps = 20;
+  const double below = std::min(width, std::max(kGripPlay, kGripShare * width));
+  int most = 0;
+  for (int i = 0; i <= kSteps && most < 2; ++i) {
+    most = std::max(most, judge_.fingers_touching_held(arm, width - below * i / kSteps));
+  }
+  if (most >= 2) return;
+  faults_.push_back({"grasp-empty", where,
+                     "closing from " + text(width) + " m to " + text(width - below) + " m, " +
+                         (most == 0 ? "no finger touches the part" : "only one finger link touches the part")});
+}
+
+}  // namespace mmgrasp::verify

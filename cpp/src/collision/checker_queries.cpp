@@ -32,6 +32,9 @@ constexpr double kFieldReach = 0.02;
 // Gaps are not looked for where a body moves farther than this: most would not do [m].
 constexpr double kGapReach = 0.1;
 
+// The bodies themselves are only asked for gaps up to this [m]: wider ones are rarely left once balls and hulls were.
+constexpr double kExactReach = 0.01;
+
 // Hulls this close are left to the exact answer [m].
 constexpr double kTouch = 1e-7;
 
@@ -197,7 +200,7 @@ CoverAnswer CollisionChecker::Impl::pair_balls(const detail::ShapePair& pair, do
   return a_larger ? by_field(b, T_b, a, T_a) : by_field(a, T_a, b, T_b);
 }
 
-bool CollisionChecker::Impl::pair_collides_exactly(const detail::ShapePair& pair) {
+bool CollisionChecker::Impl::pair_collides_exactly(const detail::ShapePair& pair, double more) {
   const detail::BodyShape &a = snapshot->shapes[pair.a], &b = snapshot->shapes[pair.b];
   if (a.solid->kind == detail::SolidKind::mesh && b.solid->kind == detail::SolidKind::mesh) {
     // Few large triangles look for their like in a field around the smaller body.
@@ -205,9 +208,9 @@ bool CollisionChecker::Impl::pair_collides_exactly(const detail::ShapePair& pair
     const detail::BodyShape &first = field_of_a ? a : b, &second = field_of_a ? b : a;
     return detail::meshes_collide(*first.solid, pose(field_of_a ? pair.a : pair.b),
                                   *first.bounds->detail(*first.solid).field, *second.solid,
-                                  pose(field_of_a ? pair.b : pair.a));
+                                  pose(field_of_a ? pair.b : pair.a), more);
   }
-  return detail::solids_collide(*a.solid, pose(pair.a), *b.solid, pose(pair.b));
+  return detail::solids_collide(*a.solid, pose(pair.a), *b.solid, pose(pair.b), more);
 }
 
 bool CollisionChecker::Impl::pair_collides(const detail::ShapePair& pair) {
@@ -246,6 +249,7 @@ CoverAnswer CollisionChecker::Impl::pair_within(const detail::ShapePair& pair, d
       if (hulls == Nearness::near) return CoverAnswer::kMaybe;
       hulls_meet = 1;
     }
+    if (motion <= kExactReach && !pair_collides_exactly(pair, motion)) return CoverAnswer::kApart;
   }
   return pair_collides(pair) ? CoverAnswer::kOverlap : CoverAnswer::kMaybe;
 }
@@ -262,12 +266,13 @@ CoverAnswer CollisionChecker::Impl::scene_within(int s, int scene_shape, double 
     case Nearness::touching:
       break;
   }
+  if (motion <= kExactReach && !hits_scene_exactly(s, scene_shape, motion)) return CoverAnswer::kApart;
   return hits_scene(s, scene_shape) ? CoverAnswer::kOverlap : CoverAnswer::kMaybe;
 }
 
-bool CollisionChecker::Impl::hits_scene_exactly(int s, int scene_shape) {
+bool CollisionChecker::Impl::hits_scene_exactly(int s, int scene_shape, double more) {
   const detail::SceneShape& other = snapshot->scene[scene_shape];
-  return detail::solids_collide(*snapshot->shapes[s].padded, pose(s), *other.solid, other.T_world);
+  return detail::solids_collide(*snapshot->shapes[s].padded, pose(s), *other.solid, other.T_world, more);
 }
 
 bool CollisionChecker::Impl::hits_scene(int s, int scene_shape) {

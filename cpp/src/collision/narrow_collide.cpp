@@ -223,15 +223,15 @@ bool plane_collides(const Solid& plane, const Solid& b, const Rigid& b_in_a, dou
 
 }  // namespace
 
-bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b) {
+bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double more) {
   if (a.never_collides() || b.never_collides()) return false;
-  if (a.kind != SolidKind::plane && b.kind == SolidKind::plane) return solids_collide(b, T_b, a, T_a);
+  if (a.kind != SolidKind::plane && b.kind == SolidKind::plane) return solids_collide(b, T_b, a, T_a, more);
   const bool a_is_tree = a.kind == SolidKind::mesh || a.kind == SolidKind::voxels;
   const bool b_is_tree = b.kind == SolidKind::mesh || b.kind == SolidKind::voxels;
-  if (!a_is_tree && b_is_tree && a.kind != SolidKind::plane) return solids_collide(b, T_b, a, T_a);
+  if (!a_is_tree && b_is_tree && a.kind != SolidKind::plane) return solids_collide(b, T_b, a, T_a, more);
 
   const PairFrame frame(T_a, T_b);
-  const double margin = a.margin + b.margin;
+  const double margin = a.margin + b.margin + more;
   if (a.kind == SolidKind::plane) return plane_collides(a, b, frame.b_in_a, margin);
 
   const Eigen::Vector3d between = frame.b_in_a * b.box_centre - a.box_centre;
@@ -251,9 +251,10 @@ bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigi
   return inside(a, b, frame.b_in_a) || inside(b, a, T_b.to(T_a));
 }
 
-bool meshes_collide(const Solid& a, const Rigid& T_a, const DistanceField& field, const Solid& b, const Rigid& T_b) {
+bool meshes_collide(const Solid& a, const Rigid& T_a, const DistanceField& field, const Solid& b, const Rigid& T_b,
+                    double more) {
   const PairFrame frame(T_a, T_b);
-  const double margin = a.margin + b.margin;
+  const double margin = a.margin + b.margin + more;
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
   if (a.has_hull && b.has_hull && !convex_collide(a.core, b.core, frame.b_in_a, margin, axis)) return false;
   if (a.has_inner && b.has_inner && convex_collide(a.inner, b.inner, frame.b_in_a, margin, axis)) return true;

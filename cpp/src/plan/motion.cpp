@@ -20,8 +20,9 @@ using Clock = std::chrono::steady_clock;
 using detail::nearest_turn;
 
 constexpr const char* kOwnPlanner = "rrt_connect";
-constexpr int kAttempts = 4;  // Searches, when paths fail the finer check.
-constexpr double kFiner = 8;  // How many times finer paths are looked at before they are returned.
+constexpr int kAttempts = 4;            // Searches, when paths fail the finer check.
+constexpr double kNearEnds = M_PI / 2;  // How far from start and goal joints are mostly drawn [rad or m].
+constexpr double kFiner = 8;            // How many times finer paths are looked at before they are returned.
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -132,6 +133,7 @@ class MotionSearch {
     if (checker_.group().has_base()) bound_base(query);
     query.wraps = wraps_;
     query.start = detail::wrapped(wraps_, start_);
+    look_first_near_ends(query);
     for (const auto& goal : ends_) query.goals.push_back(detail::wrapped(wraps_, goal.q));
     query.range = options_.range;
     query.seed = options_.seed + 7919u * static_cast<unsigned>(attempt);
@@ -167,6 +169,17 @@ class MotionSearch {
       }
       query.lower[i] = std::max(query.lower[i], low - options_.base_margin);
       query.upper[i] = std::min(query.upper[i], high + options_.base_margin);
+    }
+  }
+
+  /// Most ways lead through the joint angles between the ends: a joint that may turn twice has many others.
+  void look_first_near_ends(detail::PlannerQuery& query) const {
+    const Eigen::VectorXd &a = start_, &b = ends_.front().q;
+    query.near_lower = query.lower;
+    query.near_upper = query.upper;
+    for (Eigen::Index i = checker_.group().has_base() ? 2 : 0; i < start_.size(); ++i) {
+      query.near_lower[i] = std::max(query.lower[i], std::min(a[i], b[i]) - kNearEnds);
+      query.near_upper[i] = std::min(query.upper[i], std::max(a[i], b[i]) + kNearEnds);
     }
   }
 

@@ -11,6 +11,7 @@ namespace mmgrasp::detail {
 struct PlannerQuery {
   std::string planner;
   Eigen::VectorXd lower, upper;
+  Eigen::VectorXd near_lower, near_upper;  ///< Where samples are mostly drawn, within the limits; empty: anywhere.
   std::vector<bool> wraps;
   Eigen::VectorXd start;
   std::vector<Eigen::VectorXd> goals;

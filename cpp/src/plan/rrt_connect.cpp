@@ -15,6 +15,7 @@ using Clock = std::chrono::steady_clock;
 
 // Of the sampling box's diagonal, when the caller names no range: measured on the problems of docs/methods/plan.md.
 constexpr double kRangeShare = 0.05;
+constexpr double kAnywhere = 0.1;  // Share of samples from all that the limits allow.
 constexpr double kSame = 1e-9;
 constexpr double kProgress = 0.05;  // Of a step's length, once the constraint has taken its share.
 
@@ -58,9 +59,12 @@ class Connect {
   bool over() const { return query_.stopped() || Clock::now() >= deadline_; }
 
   void draw() {
+    const bool anywhere = query_.near_lower.size() == 0 || rng_.uniform(0.0, 1.0) < kAnywhere;
+    const Eigen::VectorXd& lower = anywhere ? query_.lower : query_.near_lower;
+    const Eigen::VectorXd& upper = anywhere ? query_.upper : query_.near_upper;
     for (Eigen::Index i = 0; i < sample_.size(); ++i) {
       const bool wraps = query_.wraps[static_cast<std::size_t>(i)];
-      sample_[i] = wraps ? rng_.uniform(-M_PI, M_PI) : rng_.uniform(query_.lower[i], query_.upper[i]);
+      sample_[i] = wraps ? rng_.uniform(-M_PI, M_PI) : rng_.uniform(lower[i], upper[i]);
     }
   }
 

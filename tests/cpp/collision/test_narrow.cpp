@@ -1,0 +1,63 @@
+#include "collision/narrow.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "collision/distance_field.hpp"
+#include "mmgrasp/core/random.hpp"
+
+// Whether two bodies are farther apart than a given gap, against their distance.
+
+namespace mmgrasp::detail {
+namespace {
+
+/// A ring of boxes around z: not convex, of several parts.
+TriangleMesh ring(int count, double radius) {
+  TriangleMesh mesh;
+  const auto box = shape_mesh(Box{{0.05, 0.03, 0.02}});
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * M_PI * i / count;
+    const Eigen::Affine3d T = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * Eigen::Translation3d(radius, 0, 0);
+    const int first = static_cast<int>(mesh.vertices.size());
+    for (const auto& v : box->vertices) mesh.vertices.push_back(T * v);
+    for (const auto& t : box->triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  mesh.closed = true;
+  return mesh;
+}
+
+Rigid random_pose(Rng& rng) {
+  Pose T = Pose::Identity();
+  T.linear() = rng.rotation().toRotationMatrix();
+  T.translation() = Eigen::Vector3d(rng.uniform(-0.25, 0.25), rng.uniform(-0.25, 0.25), rng.uniform(-0.25, 0.25));
+  return Rigid(T);
+}
+
+TEST(Narrow, SaysWhetherAGapIsWiderThanAsked) {
+  const auto large = std::make_shared<const TriangleMesh>(ring(12, 0.2));
+  const auto small = std::make_shared<const TriangleMesh>(ring(5, 0.06));
+  const auto a = make_solid(MeshShape{large}), b = make_solid(MeshShape{small}), can = make_solid(Cylinder{0.04, 0.1});
+  const DistanceField field(*small, *b);
+  Rng rng(5);
+  int wider = 0, narrower = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Rigid T_a = random_pose(rng), T_b = random_pose(rng);
+    for (const Solid* other : {b.get(), can.get()}) {
+      const double distance = solids_distance(*a, T_a, *other, T_b).distance;
+      if (distance <= 0) continue;
+      for (const double share : {0.2, 0.999, 1.001, 5.0}) {
+        const double gap = share * distance;
+        const bool within = solids_collide(*a, T_a, *other, T_b, gap);
+        EXPECT_EQ(within, share > 1) << "distance " << distance << ", asked for " << gap;
+        if (other == b.get()) EXPECT_EQ(meshes_collide(*b, T_b, field, *a, T_a, gap), within) << distance;
+        ++(within ? narrower : wider);
+      }
+    }
+  }
+  EXPECT_GT(wider, 2000);
+  EXPECT_GT(narrower, 2000);
+}
+
+}  // namespace
+}  // namespace mmgrasp::detail

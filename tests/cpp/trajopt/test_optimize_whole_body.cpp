@@ -89,6 +89,24 @@ TEST(OptimizeWholeBody, SolvesTheExampleOfP1) {
               17 * r.trajectory->times()[1] + 17 * (r.trajectory->times()[34] - r.trajectory->times()[33]), 1e-9);
 }
 
+TEST(OptimizeWholeBody, SolvesInTheSameWayWhateverWasSolvedBefore) {
+  const JointGroup group = test::fetchlike_whole_body();
+  WholeBodyProblem problem = example(group);
+  const VectorXd middle = 0.5 * (problem.start + problem.goal_lower);
+  const auto solve = [&](double y) {
+    problem.tool[0].T_world_tip.translation().y() = y;
+    const WholeBodyResult r =
+        optimize_whole_body(problem, straight(problem, {problem.start, middle, problem.goal_lower}, 0.6));
+    EXPECT_EQ(r.outcome, Outcome::solved) << r.message;
+    return r.trajectory->to_csv();
+  };
+  const std::vector<double> places{-2, -1.8, -1.6};
+  std::vector<std::string> forwards, backwards;
+  for (std::size_t i = 0; i < places.size(); ++i) forwards.push_back(solve(places[i]));
+  for (std::size_t i = places.size(); i-- > 0;) backwards.insert(backwards.begin(), solve(places[i]));
+  EXPECT_EQ(forwards, backwards);
+}
+
 TEST(OptimizeWholeBody, MeetsBangBangOptimaInOneAndTwoDimensions) {
   for (const double d : {0.3, 0.9, 2.0}) {
     const JointGroup one = sliders(1);

@@ -12,6 +12,9 @@ namespace mmgrasp {
 /// Solvers and interpolation leave rounding at the limits.
 constexpr double kLimitSlack = 1e-9;
 
+/// Gaps are not looked for where a body moves farther than this: most would not do [m].
+constexpr double kGapReach = 0.1;
+
 namespace detail {
 
 /// A pair of shapes, with a number its distance is not below.

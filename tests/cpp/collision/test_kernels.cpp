@@ -261,6 +261,29 @@ TEST_P(CollisionKernels, CoverAgainstBoxIsNeverSureAndWrong) {
   for (const int count : answers) EXPECT_GT(count, 100);
 }
 
+/// Two levels: big balls, each with eight small ones inside it.
+struct TwoLevels {
+  TwoLevels(Rng& random, double within, double inner) {
+    for (int i = 0; i < kLanes; ++i) {
+      const Vector3d centre = point_within(random, within);
+      coarse.add(centre, 0.06, -1);
+      for (int k = 0; k < kLanes; ++k) fine.add(centre + point_within(random, 0.02), 0.02, inner);
+    }
+    views[0] = coarse.view();
+    views[1] = fine.view();
+  }
+  Cover coarse, fine;
+  CoverView views[2];
+};
+
+/// What balls of a cover may be told: `least` is the smallest gap of their outer balls, those above `surely_apart` must
+/// be told apart; `overlap_possible`: an inner ball meets the body.
+void expect_never_sure_and_wrong(CoverAnswer answer, double least, double surely_apart, bool overlap_possible) {
+  if (least < 0) EXPECT_NE(answer, kApart);
+  if (least > surely_apart) EXPECT_EQ(answer, kApart);
+  if (!overlap_possible) EXPECT_NE(answer, kOverlap);
+}
+
 /// The field of a ball of radius 0.2 about the origin. Each cell holds the distance of its centre, or a lower bound of
 /// all distances within it.
 void field_is_never_sure_and_wrong(bool of_centres) {
@@ -288,18 +311,12 @@ void field_is_never_sure_and_wrong(bool of_centres) {
   Rng random(11);
   int answers[3] = {};
   for (int round = 0; round < 4000; ++round) {
-    // Four big balls, each with eight small ones inside it.
-    Cover coarse, fine;
-    for (int i = 0; i < kLanes; ++i) {
-      const Vector3d centre = point_within(random, 0.12);
-      coarse.add(centre, 0.06, -1);
-      for (int k = 0; k < kLanes; ++k) fine.add(centre + point_within(random, 0.02), 0.02, round % 2 == 0 ? 0.01 : -1);
-    }
-    const CoverView levels[2] = {coarse.view(), fine.view()};
+    const TwoLevels levels(random, 0.12, round % 2 == 0 ? 0.01 : -1);
+    const Cover& fine = levels.fine;
     const Matrix3d R = any_rotation(random);
     const Vector3d t = point_within(random, 0.4);
     const auto ask = [&](bool seek_overlap) {
-      return kernels().field_cover(field, levels, 2, to_float(R, t), 0, static_cast<float>(kSlack), seek_overlap);
+      return kernels().field_cover(field, levels.views, 2, to_float(R, t), 0, static_cast<float>(kSlack), seek_overlap);
     };
     const CoverAnswer answer = ask(true);
     EXPECT_EQ(ask(false) == kApart, answer == kApart);
@@ -310,15 +327,8 @@ void field_is_never_sure_and_wrong(bool of_centres) {
       least = std::min(least, d - fine.outer[i]);
       if (fine.inner[i] > 0) least_centre = std::min(least_centre, d);
     }
-    if (least < 0) {
-      EXPECT_NE(answer, kApart);
-    }
-    if (least > (of_centres ? 1 : 2) * std::sqrt(3.0) * kStep + kQuantum) {
-      EXPECT_EQ(answer, kApart);
-    }
-    if (least_centre > 0) {
-      EXPECT_NE(answer, kOverlap);
-    }
+    const double surely_apart = (of_centres ? 1 : 2) * std::sqrt(3.0) * kStep + kQuantum;
+    expect_never_sure_and_wrong(answer, least, surely_apart, least_centre <= 0);
   }
   for (const int count : answers) EXPECT_GT(count, 100);
 }
@@ -327,19 +337,14 @@ TEST_P(CollisionKernels, LevelsOfCoversAgainstBoxAreNeverSureAndWrong) {
   Rng random(13);
   int answers[3] = {};
   for (int round = 0; round < 3000; ++round) {
-    Cover coarse, fine;
-    for (int i = 0; i < kLanes; ++i) {
-      const Vector3d centre = point_within(random, 0.2);
-      coarse.add(centre, 0.06, -1);
-      for (int k = 0; k < kLanes; ++k) fine.add(centre + point_within(random, 0.02), 0.02, round % 2 == 0 ? 0.01 : -1);
-    }
-    const CoverView levels[2] = {coarse.view(), fine.view()};
+    const TwoLevels levels(random, 0.2, round % 2 == 0 ? 0.01 : -1);
+    const Cover& fine = levels.fine;
     Box box = any_box(random);
     box.centre *= 0.6;
     const float half[3] = {static_cast<float>(box.half[0]), static_cast<float>(box.half[1]),
                            static_cast<float>(box.half[2])};
     const auto ask = [&](bool seek_overlap) {
-      return kernels().box_cover(levels, 2, to_float(box.R, box.centre), half, 0, static_cast<float>(kSlack),
+      return kernels().box_cover(levels.views, 2, to_float(box.R, box.centre), half, 0, static_cast<float>(kSlack),
                                  seek_overlap);
     };
     const CoverAnswer answer = ask(true);
@@ -351,15 +356,7 @@ TEST_P(CollisionKernels, LevelsOfCoversAgainstBoxAreNeverSureAndWrong) {
       least = std::min(least, d - fine.outer[i]);
       if (fine.inner[i] > 0) least_inner = std::min(least_inner, d - fine.inner[i]);
     }
-    if (least < 0) {
-      EXPECT_NE(answer, kApart);
-    }
-    if (least > 2 * kSlack) {
-      EXPECT_EQ(answer, kApart);
-    }
-    if (least_inner > 0) {
-      EXPECT_NE(answer, kOverlap);
-    }
+    expect_never_sure_and_wrong(answer, least, 2 * kSlack, least_inner <= 0);
   }
   for (const int count : answers) EXPECT_GT(count, 100);
 }

@@ -51,9 +51,11 @@ py::dict violations_dict(const std::vector<Violation>& violations) {
 }
 
 py::dict event_dict(const DriveByEvent& e) {
-  return py::dict("waypoint"_a = e.waypoint, "time"_a = e.time, "close_time"_a = e.close_time, "object"_a = e.object,
-                  "held_time"_a = e.held_time, "candidate"_a = e.candidate, "base_speed"_a = e.base_speed,
-                  "tool_speed"_a = e.tool_speed);
+  return py::dict(
+      "waypoint"_a = e.waypoint, "time"_a = e.time, "close_time"_a = e.close_time, "object"_a = e.object,
+      "held_time"_a = e.held_time,
+      "T_tip_object"_a = e.object.empty() ? py::none() : py::object(to_array(e.T_tip_object).attr("tolist")()),
+      "candidate"_a = e.candidate, "base_speed"_a = e.base_speed, "tool_speed"_a = e.tool_speed);
 }
 
 Poses candidates_argument(const ArrayLike& value) {
@@ -214,7 +216,8 @@ void bind_result(py::module_& m) {
             for (const DriveByEvent& e : r.events) events.append(event_dict(e));
             return events;
           },
-          "One dict per task: waypoint, time and close_time [s], object (what is held then) and held_time [s], "
+          "One dict per task: waypoint, time and close_time [s], object (what is held then), held_time [s] and "
+          "T_tip_object, "
           "candidate, base_speed and\ntool_speed [m/s].")
       .def_property_readonly(
           "violations", [](const DriveByResult& r) { return violations_dict(r.violations); },

@@ -37,8 +37,9 @@ std::string describe(const WholeBodyResult& r) {
   return text;
 }
 
-std::vector<DriveByEvent> events_of(const WholeBodyTrajectory& t, const std::vector<DriveByStep>& steps,
-                                    const std::vector<int>& waypoints, const std::vector<Stand>& chain) {
+std::vector<DriveByEvent> events_of(const WholeBodyTrajectory& t, const World& world,
+                                    const std::vector<DriveByStep>& steps, const std::vector<int>& waypoints,
+                                    const std::vector<Stand>& chain) {
   std::vector<DriveByEvent> events;
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
     const std::size_t at = static_cast<std::size_t>(waypoints[i]);
@@ -50,6 +51,8 @@ std::vector<DriveByEvent> events_of(const WholeBodyTrajectory& t, const std::vec
     if (steps[i].closes) e.close_time = e.time;
     if (!steps[i].object.empty()) {
       e.object = steps[i].object;
+      const Pose& T_world_object = world.objects().at(e.object).T_world_object;
+      e.T_tip_object = detail::held_pose(steps[i], t.group().fk(t.positions()[at]), T_world_object);
       e.held_time = t.times()[at + (steps[i].dwell > 0 ? detail::kDwellIntervals : 0)];
     }
     e.candidate = chain[i].candidate;
@@ -65,6 +68,7 @@ class DriveBy {
   DriveBy(const JointGroup& group, const World& world, const VectorXd& start, const std::vector<DriveByTask>& tasks,
           const DriveByGoal& goal, const DriveByOptions& options, const Monitor& monitor)
       : group_(group),
+        world_(world),
         start_(start),
         steps_(detail::steps_of(tasks)),
         goal_(goal),
@@ -191,12 +195,13 @@ class DriveBy {
       result.outcome = r.outcome;
       result.trajectory = r.trajectory;
       result.violations = r.violations;
-      result.events = events_of(*r.trajectory, steps_, waypoints, chain);
+      result.events = events_of(*r.trajectory, world_, steps_, waypoints, chain);
     }
     return r.usable();
   }
 
   const JointGroup& group_;
+  const World& world_;
   VectorXd start_;
   std::vector<DriveByStep> steps_;
   DriveByGoal goal_;

@@ -70,6 +70,8 @@ void add_push(const DriveByTask& task, std::size_t index, std::vector<DriveBySte
     step.max_tool_speed = kSlack * closing.tool_speed;
     if (slides == (back == 2)) step.object = task.object;
   }
+  // It stands still until the palm has it.
+  if (slides) steps[steps.size() - 2].slides_in = grasp.push.both_touch - grasp.push.start - grasp.push.pushed;
 }
 
 }  // namespace
@@ -106,6 +108,11 @@ void check_tasks(const std::vector<DriveByTask>& tasks, const World& world) {
     require(task.dwell >= 0 && std::isfinite(task.dwell), field + ".dwell", task.dwell, "must be at least 0");
     if (task.push) check_push(task, field + ".push");
   }
+}
+
+Pose held_pose(const DriveByStep& step, const Pose& T_world_tip, const Pose& T_world_object) {
+  const Eigen::Vector3d nearer = -step.slides_in * step.sign * Eigen::Vector3d::Unit(step.axis);
+  return Eigen::Translation3d(nearer) * (T_world_tip.inverse() * T_world_object);
 }
 
 ToolConstraint constraint_at(const DriveByStep& step, int candidate, int waypoint) {

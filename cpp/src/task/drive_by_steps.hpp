@@ -16,12 +16,16 @@ struct DriveByStep : DriveByTask {
   double way = 0;        ///< > 0: from the step before straight along the approach, so far [m].
   int axis = 0;          ///< Of the tip's frame: the approach.
   double sign = 1;       ///< Of the approach along it.
+  double slides_in = 0;  ///< The object comes this much nearer to the hand before it moves with it [m].
 };
 
 std::vector<DriveByStep> steps_of(const std::vector<DriveByTask>& tasks);
 
 /// Throws InvalidInput naming task, field and rule.
 void check_tasks(const std::vector<DriveByTask>& tasks, const World& world);
+
+/// T_tip_object of the step's object once it moves with the tip, which is at T_world_tip at the step.
+Pose held_pose(const DriveByStep& step, const Pose& T_world_tip, const Pose& T_world_object);
 
 /// Bounds on the tool at the step's own waypoint.
 ToolConstraint constraint_at(const DriveByStep& step, int candidate, int waypoint);

@@ -39,7 +39,7 @@ std::vector<CollisionChecker*> DriveByWorlds::along(const std::vector<int>& inte
       World world = left(by - 1);
       const std::string& object = tasks_[by - 1].object;
       const Pose T_world_object = world.objects().at(object).T_world_object;
-      world.attach(object, tip, group_.fk(chain[by - 1].q).inverse() * T_world_object);
+      world.attach(object, tip, held_pose(tasks_[by - 1], group_.fk(chain[by - 1].q), T_world_object));
       here = &held_.try_emplace(s, group_, world).first->second;
       if (by == s) taken = &at(s - 1);
     }

@@ -288,6 +288,43 @@ TEST(DriveBy, ClosesWhileTheHandMovesOn) {
   }
 }
 
+TEST(DriveBy, TheObjectOfAPushLiesInTheHandWhereThePalmHasIt) {
+  // An object of 5 cm whose near face the finger tips pass by 6 cm at the planned grasp: its middle lies this far from
+  // the tip along the approach, until the palm, 12 cm behind the finger tips, or the fingers have it.
+  const JointGroup group = test::fetchlike_whole_body();
+  for (const bool slides : {false, true}) {
+    DriveByTask task = grasp_at(pose_from_xyz_rpy({5, -1, 0.75}, {0, 0, -0.8}));
+    const double middle = 0.01;
+    const Pose T_world_object = task.candidates[0] * Eigen::Translation3d(middle, 0, 0);
+    World world;
+    world.add("can", Cylinder{0.025, 0.1}, T_world_object);
+    task.object = "can";
+    task.push.emplace();
+    PushGraspProblem& closing = task.push->closing;
+    closing.tool_speed = slides ? 0.4 : 0.1;
+    closing.opening = 0.08;
+    closing.along_error = 0.01;
+    closing.max_push = slides ? 0.3 : 0.0;
+    DriveByOptions options;
+    options.waypoints = 45;
+    options.collisions = false;
+    const DriveByResult r = plan_drive_by(group, world, kStart, {task}, {kGoal, kGoal}, options);
+    ASSERT_EQ(r.outcome, Outcome::solved) << r.report;
+    const DriveByEvent& e = r.events[0];
+    EXPECT_EQ(e.object, "can");
+    const PushGrasp found = push_grasp(closing);
+    EXPECT_EQ(found.push.pushed > 0, slides);
+    const double engagement = std::min(found.push.both_touch, closing.finger_length);
+    const Eigen::Vector3d expected(middle - (engagement - closing.planned_depth), 0, 0);
+    EXPECT_LT((e.T_tip_object.translation() - expected).norm(), 1e-5) << slides;
+    // Where it is put down in the room by then: pushed along the approach, and no farther.
+    const Pose T_world_tip = group.fk(r.trajectory->at(e.time));
+    const Eigen::Vector3d moved = task.candidates[0].linear().transpose() *
+                                  ((T_world_tip * e.T_tip_object).translation() - T_world_object.translation());
+    EXPECT_LT((moved - Eigen::Vector3d(found.push.pushed, 0, 0)).norm(), 1e-4) << slides;
+  }
+}
+
 TEST(DriveBy, RefusesPushesThatCannotHold) {
   const JointGroup group = test::fetchlike_whole_body();
   DriveByTask task = grasp_at(pose_from_xyz_rpy({5, -1, 0.75}, {0, 0, -0.8}));

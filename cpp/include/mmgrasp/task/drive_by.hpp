@@ -65,11 +65,12 @@ struct MMGRASP_EXPORT DriveByOptions {
 
 /// What happens at one task.
 struct MMGRASP_EXPORT DriveByEvent {
-  int waypoint = 0;       ///< Of a push-grasp: where both fingers touch.
-  double time = 0;        ///< [s]
-  double close_time = 0;  ///< When a gripper begins to close [s].
-  std::string object;     ///< What is held from then on; empty: nothing new.
-  double held_time = 0;   ///< From when it is held [s]: the end of the dwell.
+  int waypoint = 0;                      ///< Of a push-grasp: where both fingers touch.
+  double time = 0;                       ///< [s]
+  double close_time = 0;                 ///< When a gripper begins to close [s].
+  std::string object;                    ///< What is held from then on; empty: nothing new.
+  Pose T_tip_object = Pose::Identity();  ///< As it is held.
+  double held_time = 0;                  ///< From when it is held [s]: the end of the dwell.
   int candidate = 0;
   double base_speed = 0;  ///< [m/s]
   double tool_speed = 0;  ///< [m/s]

@@ -210,13 +210,23 @@ def _in_passing(
     )
     made = DriveByPick(leg, leg, index, part.name, before, opening, dwell, result)
     if result.outcome != Outcome.solved:
-        made.why = f"no motion in passing found in {result.attempts} attempts ({result.outcome.name})"
+        made.why = f"{result.attempts} attempts, {result.outcome.name}: {_broken(result)}"
     elif result.duration >= before:
         made.why = f"in passing it would take {result.duration:.1f} s"
     else:
         made.used = True
         made.why = f"base at {result.events[-1]['base_speed']:.2f} m/s as the hand closes"
     return made
+
+
+def _broken(result: _core.DriveByResult) -> str:
+    """What stands against the best iterate, in one line."""
+    broken = [
+        f"{kind} {v['value']:.2g} {v['unit']} ({v['what']}, {v['time']:.1f} s)"
+        for kind, v in result.violations.items()
+        if not v["kept"]
+    ]
+    return "; ".join(broken) or result.report.strip()
 
 
 def _exactly(start: np.ndarray, goal: list[float]) -> np.ndarray:

@@ -10,6 +10,7 @@ import pytest
 
 import mmgrasp as mg
 from mmgrasp import sim
+from mmgrasp.sim.bottle import Bottle
 from mmgrasp.sim.passing import Passing, posture
 from mmgrasp.sim.pictures import frames, write_gif, write_strip
 from sim_scenes import TABLE, approach, arm, box, gripper, robot, table
@@ -255,3 +256,27 @@ def test_push_grasp_forgives_what_plain_closing_does_not():
         assert passing.promised() == push
         run = passing.run(frame_period=10.0)
         assert run.grasped == push, run.parts["box"].cause
+
+
+@physics
+def test_the_plan_knows_where_the_bottle_lies_in_the_hand():
+    """A push-grasp in one motion of base and arm: from the moment it is held the part is in physics where the plan has it, to 1 cm."""
+    bottle = Bottle()
+    found, close_at = bottle.plan()
+    assert found.outcome == mg.Outcome.solved, found.report
+    (event,) = found.events
+    assert event["object"] == "bottle"
+    quiet = {"travel_noise": 0.0, "position_noise": 0.0, "heading_noise": 0.0}
+    run = bottle.run(found, close_at, hold=0.5, **quiet)
+    assert run.grasped, run.parts["bottle"].cause
+    hand = bottle.simulation().gripper.tcp_link
+    offsets = []
+    for state in run.states:
+        if state["time"] < event["held_time"] + 0.2:
+            continue
+        x, y, theta = state["base"]
+        T_world_hand = robot().link_poses(state["joints"], mg.pose([x, y, 0], [0, 0, theta]))[hand]
+        T_hand_part = np.linalg.inv(T_world_hand) @ state["parts"]["bottle"]
+        offsets.append(np.linalg.norm(T_hand_part[:3, 3] - np.array(event["T_tip_object"])[:3, 3]))
+    assert len(offsets) > 50
+    assert max(offsets) < 0.01

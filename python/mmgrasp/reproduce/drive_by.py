@@ -294,6 +294,7 @@ def draw_discontinuity(result: dict[str, Any]):
     drawing = result["drawing"]
     axis.step(drawing["shifts"], drawing["intervals"], color="#8a8f98", label="common: nearest interval")
     axis.axhline(drawing["waypoint"], color="#1f6fb4", label="a waypoint of its own")
+    axis.yaxis.get_major_locator().set_params(integer=True)
     axis.set(xlabel="shift of the whole way [m]", ylabel="waypoint the task depends on")
     axis.legend(frameon=False)
     return fig

@@ -57,6 +57,25 @@ def test_verify_accepts_the_plan(out, small_path, capfd):
     assert json.loads(capfd.readouterr().out)["ok"] is True
 
 
+def test_plan_in_passing(small_path, tmp_path, capfd):
+    """The command's table says what is saved, and verify looks at the motion in passing too."""
+    assert main(["plan", str(small_path), "-o", str(tmp_path), "--drive-by", "--no-pictures"]) == 0
+    printed = capfd.readouterr()
+    assert "parts taken in passing" in printed.out
+    assert "drive-by 1 of 1" in printed.err
+    saved = json.loads((tmp_path / "drive_by.json").read_text())["saved"]
+    assert saved > 1.0
+    assert f"{saved:.1f} s" in printed.out
+    assert len(list((tmp_path / "trajectories").glob("drive_by_*.csv"))) == 1
+    assert main(["verify", str(tmp_path / "plan.json"), "--scenario", str(small_path)]) == 0
+    plan = read_plan(tmp_path / "plan.json")
+    motion = plan["drive_by"]["motions"][0]
+    motion["closed_at"] = motion["close_at"]
+    (tmp_path / "spoiled.json").write_text(json.dumps(plan))
+    assert main(["verify", str(tmp_path / "spoiled.json")]) == 1
+    assert "closing-time" in capfd.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("content", "piece"),
     [

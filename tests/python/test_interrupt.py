@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -64,3 +65,20 @@ def test_the_command_ends_on_ctrl_c(small, write, tmp_path):
     assert "Traceback" not in error
     assert not (tmp_path / "out").exists()
     assert not list((tmp_path / "cache").rglob("*.reach"))
+
+
+def test_a_plan_survives_when_motions_in_passing_are_interrupted(small_path, tmp_path):
+    """What is found first is a plan of its own: Ctrl-C later ends the command at once and leaves that whole."""
+    command = [sys.executable, "-m", "mmgrasp.cli", "plan", str(small_path), "-o", str(tmp_path), "--drive-by"]
+    process = subprocess.Popen([*command, "--no-pictures"], stderr=subprocess.PIPE, text=True)
+    assert process.stderr is not None
+    for line in process.stderr:
+        if "drive-by 1 of 1" in line:
+            break
+    process.send_signal(signal.SIGINT)
+    error = process.communicate(timeout=60)[1]
+    assert process.returncode == 130
+    assert "Traceback" not in error
+    assert not (tmp_path / "drive_by.json").exists()
+    assert "drive_by" not in json.loads((tmp_path / "plan.json").read_text())
+    assert mg.verify_plan(tmp_path / "plan.json", samples=20).ok

@@ -269,6 +269,16 @@ DriveByGoal goal_argument(const ArrayLike& goal, Eigen::Index size) {
   return {q, q};
 }
 
+DriveByResult shorten(const JointGroup& group, const World& world, const std::vector<DriveByTask>& tasks,
+                      std::vector<double> times, const ArrayLike& positions, std::vector<double> task_times,
+                      const py::object& progress, const py::kwargs& options) {
+  const DriveByOptions read = read_options(drive_by_fields(), options, "shorten_drive_by");
+  const KnownMotion known{std::move(times), rows_argument(positions, "positions", group.size()), std::move(task_times)};
+  const JointGroup with_pairs = with_sampled_pairs(group);
+  return LongCall(progress).run(
+      [&](const Monitor& monitor) { return shorten_drive_by(with_pairs, world, tasks, known, read, monitor); });
+}
+
 DriveByResult plan(const Robot& robot, const JointGroup& group, const World& world, const ArrayLike& start,
                    const std::vector<DriveByTask>& tasks, const ArrayLike& goal, const py::object& progress,
                    const py::kwargs& options) {
@@ -317,6 +327,11 @@ void bind_trajopt(py::module_& m) {
          "does not matter. The world's objects and the robot itself are obstacles." +
          option_help(drive_by_fields()))
             .c_str());
+  m.def("shorten_drive_by", &shorten, py::arg("group"), py::arg("world"), py::kw_only(), py::arg("tasks"),
+        py::arg("times"), py::arg("positions"), py::arg("task_times"), py::arg("progress") = py::none(),
+        "plan_drive_by from a motion that is known instead of guesses: positions (m, n) at times [s], straight between "
+        "them, free of\ncollisions, from rest to rest, at each task at its time; e.g. a drive and a pick one after the "
+        "other. One solve near that\nmotion. Tasks have one pose and no push. Keywords are those of plan_drive_by.");
 }
 
 }  // namespace mmgrasp::python

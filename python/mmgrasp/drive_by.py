@@ -1,8 +1,9 @@
 """Parts taken in passing: the first pick at a stop merged with the drive to it (P1 chapter 4 in the main job).
 
 A plan of `plan_part_supply` drives, stops and then picks. Here the leg to a stop and the first pick there, up to the lifted part,
-become one motion of base and arm through the grasp; the base does not stop for it. Where no such motion is found, or a slower one,
-stop-and-pick stays. Everything after the lift is carried out as planned before.
+become one motion of base and arm through the grasp; the base does not stop for it. The motions as planned, one after the other, are
+where the search begins (`shorten_drive_by`); only where that fails are others guessed (`plan_drive_by`). Where no such motion is found, or
+a slower one, stop-and-pick stays. Everything after the lift is carried out as planned before.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from .part_supply import PartSupplyPlan
 
 CLOSING_SPEED = 0.1  # of the gripper's opening [m/s] (P1 4.4.1)
 SETTLING = 0.1  # fingers press before the part is lifted [s]
+WAYPOINTS = (35, 45)  # tried one after the other
 WITHIN = 1e-7  # of the goal [rad]
 BETWEEN = 9  # samples written between waypoints
 MERGED = ("reach", "approach", "lift")  # motions of a pick that the drive takes in
@@ -44,6 +46,8 @@ class DriveByPick:
     dwell: float
     """The fingers close and press this long [s]."""
     result: _core.DriveByResult
+    report: str
+    """What was tried."""
     used: bool = False
     why: str = ""
     """What speaks against the motion in passing, or how fast it is at the grasp."""
@@ -67,10 +71,7 @@ class DriveByPick:
             "drive_by": self.drive_by,
             "used": self.used,
             "why": self.why,
-            "attempts": self.result.attempts,
-            "iterations": self.result.iterations,
-            "seconds": self.result.seconds,
-            "report": self.result.report,
+            "report": self.report,
         }
         if self.used:
             out["events"] = self.result.events
@@ -150,7 +151,7 @@ class DriveByPlan:
 
 
 def plan_drive_by_picks(plan: PartSupplyPlan, *, progress: Progress = None, **options: Any) -> DriveByPlan:
-    """Tries to take the first part at each stop in passing. Keywords are those of `plan_drive_by`, here with 35 waypoints and 900 iterations a stop.
+    """Tries to take the first part at each stop in passing. Keywords are those of `plan_drive_by`.
 
     Raises InvalidInput for a plan that is not solved and for a robot that does not drive.
     """
@@ -198,17 +199,24 @@ def _in_passing(
     # The arm's numbers as the pick before left them: continuous joints may be whole turns from home.
     start = np.array([*here, *merged[0].trajectory.positions[0]])
     stage = f"drive-by {leg + 1} of {len(plan.stops)}: {part.name}"
-    result = _core.plan_drive_by(
-        problem.robot,
-        _moving_group(plan, problem, opening),
-        _world(problem, gone),
-        start=start,
-        tasks=tasks,
-        goal=_exactly(start, [*plan.stops[leg].pose, *merged[-1].trajectory.positions[-1]]),
-        progress=progress and (lambda _, fraction: progress(stage, fraction)),
-        **{"waypoints": 35, "iterations": 900, **options},
-    )
-    made = DriveByPick(leg, leg, index, part.name, before, opening, dwell, result)
+    group, world = _moving_group(plan, problem, opening), _world(problem, gone)
+    told = progress and (lambda _, fraction: progress(stage, fraction))
+    known = _one_after_the_other(plan.route[leg].poses, plan.route[leg].duration(problem.robot), merged, dwell)
+    reports = []
+    for waypoints in [options["waypoints"]] if "waypoints" in options else WAYPOINTS:
+        keywords = {**options, "waypoints": waypoints}
+        result = _core.shorten_drive_by(group, world, tasks=tasks, **known, progress=told, **keywords)
+        reports.append(result.report)
+        if result.outcome == Outcome.solved:
+            break
+    else:
+        goal = _exactly(start, [*plan.stops[leg].pose, *merged[-1].trajectory.positions[-1]])
+        keywords = {"iterations": 600, **keywords}
+        result = _core.plan_drive_by(
+            problem.robot, group, world, start=start, tasks=tasks, goal=goal, progress=told, **keywords
+        )
+        reports.append(result.report)
+    made = DriveByPick(leg, leg, index, part.name, before, opening, dwell, result, "".join(reports))
     if result.outcome != Outcome.solved:
         made.why = f"{result.attempts} attempts, {result.outcome.name}: {_broken(result)}"
     elif result.duration >= before:
@@ -217,6 +225,31 @@ def _in_passing(
         made.used = True
         made.why = f"base at {result.events[-1]['base_speed']:.2f} m/s as the hand closes"
     return made
+
+
+def _one_after_the_other(
+    poses: np.ndarray, driving: float, motions: list[_core.PickMotion], dwell: float
+) -> dict[str, Any]:
+    """Drive, reach, approach, closing and lift as times and rows of base and arm; the tasks are at the ends of reach and approach."""
+    poses = np.asarray(poses, float)
+    steps = np.abs(np.diff(poses, axis=0))
+    shares = np.concatenate([[0.0], np.cumsum(np.hypot(steps[:, 0], steps[:, 1]) + 0.5 * steps[:, 2])])
+    home = motions[0].trajectory.positions[0]
+    moves = np.concatenate([[True], np.diff(shares) > 0])
+    times = list(driving * shares[moves] / shares[-1])
+    rows = [np.concatenate([pose, home]) for pose in poses[moves]]
+    reached = []
+    for motion in motions:
+        trajectory = motion.trajectory
+        begin = times[-1]
+        times += [begin + t for t in trajectory.times[1:]]
+        rows += [np.concatenate([poses[-1], q]) for q in trajectory.positions[1:]]
+        if motion.kind in ("reach", "approach"):
+            reached.append(times[-1])
+        if motion.kind == "approach":
+            times.append(times[-1] + dwell)
+            rows.append(rows[-1])
+    return {"times": times, "positions": np.array(rows), "task_times": reached}
 
 
 def _broken(result: _core.DriveByResult) -> str:

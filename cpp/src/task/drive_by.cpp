@@ -1,11 +1,11 @@
 #include "mmgrasp/task/drive_by.hpp"
 
 #include <cmath>
-#include <sstream>
 
 #include "mmgrasp/core/error.hpp"
 #include "task/drive_by_attempt.hpp"
 #include "task/drive_by_choices.hpp"
+#include "task/drive_by_events.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -18,49 +18,6 @@ using Eigen::VectorXd;
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr int kShort = 40;        // iterations of a solve in the first attempts
 constexpr int kMoreAttempts = 2;  // of each choice of candidates once there is a motion to beat
-
-std::string number(double value) {
-  std::ostringstream out;
-  out.precision(3);
-  out << value;
-  return out.str();
-}
-
-std::string describe(const WholeBodyResult& r) {
-  std::string text =
-      std::string(to_string(r.outcome)) + " after " + std::to_string(r.iterations) + " iterations (" + r.message + ")";
-  for (const Violation& v : r.violations) {
-    if (v.kept()) continue;
-    text += "; " + v.kind + " (" + v.what + ") broken by " + number(v.value) + " " + v.unit + " at waypoint " +
-            std::to_string(v.waypoint) + ", " + number(v.time) + " s";
-  }
-  return text;
-}
-
-std::vector<DriveByEvent> events_of(const WholeBodyTrajectory& t, const World& world,
-                                    const std::vector<DriveByStep>& steps, const std::vector<int>& waypoints,
-                                    const std::vector<Stand>& chain) {
-  std::vector<DriveByEvent> events;
-  for (std::size_t i = 0; i < waypoints.size(); ++i) {
-    const std::size_t at = static_cast<std::size_t>(waypoints[i]);
-    if (steps[i].begins) events.emplace_back();
-    DriveByEvent& e = events.back();
-    const VectorXd rate = configuration_velocity(t.group(), t.positions()[at], t.drive()[at]);
-    e.waypoint = waypoints[i];
-    e.time = t.times()[at];
-    if (steps[i].closes) e.close_time = e.time;
-    if (!steps[i].object.empty()) {
-      e.object = steps[i].object;
-      const Pose& T_world_object = world.objects().at(e.object).T_world_object;
-      e.T_tip_object = detail::held_pose(steps[i], t.group().fk(t.positions()[at]), T_world_object);
-      e.held_time = t.times()[at + (steps[i].dwell > 0 ? detail::kDwellIntervals : 0)];
-    }
-    e.candidate = chain[i].candidate;
-    e.base_speed = t.group().has_base() ? rate.head<2>().norm() : 0;
-    e.tool_speed = (t.group().jacobian(t.positions()[at]) * rate).head<3>().norm();
-  }
-  return events;
-}
 
 /// One plan: keeps what the attempts share.
 class DriveBy {
@@ -101,7 +58,8 @@ class DriveBy {
     for (const DriveByChoice& choice : choices) {
       if (result.choices > 0 && over(result)) break;
       if (result.usable() && choice.bound >= result.duration()) {
-        result.report += "candidates " + name(choice) + ": left out, not below " + number(choice.bound) + " s\n";
+        result.report +=
+            "candidates " + name(choice) + ": left out, not below " + detail::number(choice.bound) + " s\n";
         continue;
       }
       monitor_.report("choices", static_cast<double>(result.choices) / static_cast<double>(choices.size()));
@@ -187,7 +145,8 @@ class DriveBy {
     ++result.attempts;
     result.iterations += r.iterations;
     result.report += "attempt " + std::to_string(result.attempts) + ", candidates " + name(choice) + ": " +
-                     describe(r) + (r.usable() ? ", " + number(r.trajectory->duration()) + " s" : "") + "\n";
+                     detail::describe(r) + (r.usable() ? ", " + detail::number(r.trajectory->duration()) + " s" : "") +
+                     "\n";
     const bool better = r.usable() ? !result.usable() || r.trajectory->duration() < result.duration()
                                    : !result.usable() && detail::broken(r) < least_broken_;
     if (better) {
@@ -195,7 +154,7 @@ class DriveBy {
       result.outcome = r.outcome;
       result.trajectory = r.trajectory;
       result.violations = r.violations;
-      result.events = events_of(*r.trajectory, world_, steps_, waypoints, chain);
+      result.events = detail::events_of(*r.trajectory, world_, steps_, waypoints, chain);
     }
     return r.usable();
   }

@@ -103,6 +103,21 @@ MMGRASP_EXPORT DriveByResult plan_drive_by(const JointGroup& group, const World&
                                            const std::vector<DriveByTask>& tasks, const DriveByGoal& goal,
                                            const DriveByOptions& options = {}, const Monitor& monitor = {});
 
+/// A motion from rest to rest through tasks, free of collisions, that may stop on the way, e.g. a drive and a pick one
+/// after the other.
+struct MMGRASP_EXPORT KnownMotion {
+  std::vector<double> times;               ///< [s], increasing; at least two.
+  std::vector<Eigen::VectorXd> positions;  ///< One a time; straight between them.
+  std::vector<double> task_times;          ///< When each task is reached [s]; the dwell follows.
+};
+
+/// The same as plan_drive_by, from a motion that is known instead of guesses: from its first position to its last, in
+/// the numbers as they stand. One solve near that motion; the answer need not be the fastest, and takes the way round
+/// obstacles that is known. Each task has one candidate and no push. Of the options those for guesses are not used.
+MMGRASP_EXPORT DriveByResult shorten_drive_by(const JointGroup& group, const World& world,
+                                              const std::vector<DriveByTask>& tasks, const KnownMotion& known,
+                                              const DriveByOptions& options = {}, const Monitor& monitor = {});
+
 /// What plan_drive_by's first attempt hands to the optimiser, without collisions; empty when a task is out of reach.
 struct MMGRASP_EXPORT DriveByStart {
   WholeBodyProblem problem;

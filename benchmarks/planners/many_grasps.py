@@ -6,7 +6,7 @@ Prints one JSON line with the settings, then one for each cell, run and program.
 thread, over the same cells, grasps and edge step, and but for `today` with our collision checker; inverse kinematics counts for all, building
 the roadmap does not. Times are processor time. Programs:
 
-    ours, prm_star_mg   over a roadmap of 5000 vertices built beforehand, which then grows as long as there is time
+    ours, prm_star_mg   over a roadmap of 5000 vertices built beforehand, then refined until the time is over
     ours, rrt_star_mg   until the time is over
     today               one by one with FCL for collisions, as people put OMPL and FCL together; no cost of its own
     one by one          OMPL's RRT-Connect for each grasp in turn, `--each` seconds for it, until one succeeds
@@ -14,13 +14,16 @@ the roadmap does not. Times are processor time. Programs:
     all goals           OMPL's RRT-Connect from one start of every grasp to all its goals, budgets doubled from round to round
     informed            OMPL's Informed RRT* for each grasp in turn, the same total time shared out evenly
 
-First paths are timed `--repeats` times, before they are shortened, and the median counts. Costs are those of the best path after
-`--seconds`, for programs that end with their first path of that one, shortened as plan_motion does.
+All of them are given up to eight arm configurations of a grasp at each end. First paths are timed `--repeats` times, before
+they are shortened, and the median counts. Costs are joint-space lengths of the best path after `--seconds`, for programs that
+end with their first path of that one. All final paths are shortened, each by plan_motion's own shortening: `informed` one
+of every grasp, those that end with their first path that one, ours the first and the roadmap's, and in refinement each round's.
 """
 
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import math
 import statistics
@@ -32,10 +35,11 @@ from pathlib import Path
 from carry_text import write_carries
 
 import mmgrasp as mg
-from mmgrasp.pipe_cells import PipeCell, pipe_cell
+from mmgrasp.pipe_cells import ROBOTS, PipeCell, pipe_cell
 
 UNLIMITED = 10_000_000
-VERTICES, NEIGHBOURS, DENSEST = 5000, 12, 40_000
+VERTICES, NEIGHBOURS = 5000, 12
+CONFIGURATIONS = 8  # of the arm, for a grasp at each end
 NONE = {"first": None, "cost": None}
 
 
@@ -46,9 +50,10 @@ class Enough(Exception):  # noqa: N818 - it is no error
 def ours(planner: str):
     def run(cell: PipeCell, grasps: list[mg.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool) -> dict:
         options: dict = {"planner": planner, "seed": seed, "threads": 1, "time_limit": given.seconds}
+        options["ik_solutions"] = CONFIGURATIONS
         if planner == "prm_star_mg":
             options["roadmap"] = mg.Roadmap.build(cell.arm, vertices=VERTICES, neighbours=NEIGHBOURS, seed=seed)
-            options["max_vertices"] = DENSEST
+            options["refinements"] = UNLIMITED
         else:
             options["max_samples"] = UNLIMITED
         problem, told = cell.problem(grasps), []
@@ -76,7 +81,7 @@ class Ends:
 
     def __getitem__(self, i: int):
         if i not in self.kept:
-            self.kept[i] = self.cell.ends(self.grasps[i], 4)
+            self.kept[i] = self.cell.ends(self.grasps[i], CONFIGURATIONS)
         return self.kept[i]
 
     def usable(self):
@@ -197,6 +202,7 @@ PROGRAMS = {
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--cells", type=int, nargs="+", default=list(range(1, 9)))
+    parser.add_argument("--robots", nargs="+", choices=ROBOTS, default=list(ROBOTS))
     parser.add_argument("--seed", type=int, default=1, help="of the cells")
     parser.add_argument("--grasps", type=int, default=500)
     parser.add_argument("--runs", type=int, default=2, help="lists of grasps for each cell")
@@ -209,14 +215,15 @@ def main() -> None:
     given = parser.parse_args()
     if given.fcl is None and "today" in given.programs:
         given.programs.remove("today")
-    print(json.dumps({"settings": {**vars(given), "vertices": VERTICES, "neighbours": NEIGHBOURS}}), flush=True)
-    for number in given.cells:
-        cell = pipe_cell(number, seed=given.seed)
+    fixed = {"vertices": VERTICES, "neighbours": NEIGHBOURS, "configurations": CONFIGURATIONS}
+    print(json.dumps({"settings": {**vars(given), **fixed}}), flush=True)
+    for robot, number in itertools.product(given.robots, given.cells):
+        cell = pipe_cell(number, seed=given.seed, robot=robot)
         for run in range(given.runs):
             grasps = cell.grasps(given.grasps, seed=1000 + run)
             reachable = sum(1 for _ in Ends(cell, grasps).usable())
             for name in given.programs:
-                line = {"cell": number, "run": run, "reachable": reachable, "program": name}
+                line = {"robot": robot, "cell": number, "run": run, "reachable": reachable, "program": name}
                 found = PROGRAMS[name](cell, grasps, run + 1, given, False)
                 if found["first"] is not None:
                     again = [PROGRAMS[name](cell, grasps, run + 1, given, True) for _ in range(given.repeats)]

@@ -23,8 +23,9 @@ from tables import markdown, show
 OURS = ("ours, prm_star_mg", "ours, rrt_star_mg")
 TODAY = "today"  # the others have our collision checker, which is not what people use: told apart
 SOONER, CHEAPER = 5, 0.9  # goals
+SAME = 1e-6  # relative, of costs that are equal
 
-Runs = dict[tuple[int, int], dict]
+Runs = dict[tuple[str, int, int], dict]
 
 
 def least(values) -> float:
@@ -47,18 +48,22 @@ def ratio(programs: dict[str, Runs], name: str, others: list[str]) -> str:
     return f"{statistics.median(ratios):.1f}" if ratios else ""
 
 
-def cheaper(programs: dict[str, Runs], name: str, others: list[str]) -> int:
-    """Problems in which it ends with a cheaper path than all others."""
-    return sum(
-        own["cost"] is not None and own["cost"] < least(programs[other][key]["cost"] for other in others)
-        for key, own in programs[name].items()
-    )
+def counts(programs: dict[str, Runs], name: str, others: list[str]) -> tuple[int, int]:
+    """Problems in which it ends with a cheaper path than all others, and with one as cheap as the cheapest of them."""
+    won = equal = 0
+    for key, own in programs[name].items():
+        best = least(programs[other][key]["cost"] for other in others)
+        if own["cost"] is None:
+            continue
+        won += own["cost"] < best * (1 - SAME)
+        equal += math.isclose(own["cost"], best, rel_tol=SAME)
+    return won, equal
 
 
 def many_table(lines: list[dict]) -> str:
     programs: dict[str, Runs] = {}
     for line in lines:
-        programs.setdefault(line["program"], {})[line["cell"], line["run"]] = line
+        programs.setdefault(line["program"], {})[line["robot"], line["cell"], line["run"]] = line
     peers = [name for name in programs if name not in OURS]
     ended = {name: runs for name, runs in programs.items() if name != TODAY}
     solved_by_all = set.intersection(
@@ -76,15 +81,17 @@ def many_table(lines: list[dict]) -> str:
             f"{statistics.mean(costs):.3f}" if costs else "",
         ]
         if name in OURS and TODAY in programs:
-            won = cheaper(programs, name, peers)
+            won, equal = counts(programs, name, peers)
             sooner = ratio(programs, name, [TODAY])
             met = bool(sooner) and float(sooner) >= SOONER and won >= CHEAPER * len(runs)
-            row += [sooner, ratio(programs, name, peers), f"{won}/{len(runs)}", "yes" if met else "**no**"]
+            row += [sooner, ratio(programs, name, peers), f"{won}/{len(runs)}", f"{equal}", "yes" if met else "**no**"]
         else:
-            row += [""] * 4
+            row += [""] * 5
         rows.append(row)
     head = ["program", "solved", "first path, median [ms]", "slowest", f"cost, mean over {len(solved_by_all)}"]
-    return markdown([*head, "sooner than today", "than any, with our checker too", "cheaper than all", "goals"], rows)
+    return markdown(
+        [*head, "sooner than today", "than any, with our checker too", "cheaper than all", "equal", "goals"], rows
+    )
 
 
 def odds_table(lines: list[dict]) -> str:

@@ -59,6 +59,8 @@ const std::vector<OptionField<O>>& manipulation_fields() {
       of_prm("max_vertices", &PrmStarMgOptions::max_vertices,
              "prm_star_mg: once the roadmap's best path is found, double its vertices up to this; 0: never"),
       of_prm("shorten", &PrmStarMgOptions::shorten, "prm_star_mg: shorten the roadmap's best path at the end"),
+      of_prm("refinements", &PrmStarMgOptions::refinements,
+             "prm_star_mg: then search so many small roadmaps drawn where a cheaper path can pass"),
       of_roadmap("vertices", &RoadmapOptions::vertices, "prm_star_mg without a roadmap given: configurations drawn"),
       of_roadmap("gamma", &RoadmapOptions::gamma,
                  "likewise: vertices nearer than gamma (log n / n)^(1/d) are joined [rad or m]"),

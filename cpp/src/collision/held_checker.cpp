@@ -25,7 +25,6 @@ HeldChecker::HeldChecker(const CollisionChecker& checker)
     if (!snapshot_->bodies[static_cast<std::size_t>(snapshot_->shapes[s].body)].held) continue;
     parts_.push_back({static_cast<int>(s), Rigid(attached.begin()->second.shapes[next++].T_link_shape)});
   }
-  bound_motion();
 }
 
 void HeldChecker::hold(const Pose& T_link_object) {
@@ -48,11 +47,12 @@ void HeldChecker::hold(const Pose& T_link_object) {
   // What does not depend on the configuration may depend on the pose in the hand.
   impl.constant_self.reset();
   impl.nearest_still.reset();
-  bound_motion();
+  bounded_ = false;
 }
 
 // As PairPlan does, for what the object has a part in.
 void HeldChecker::bound_motion() {
+  bounded_ = true;
   const auto held = [&](int ball) {
     return std::any_of(parts_.begin(), parts_.end(),
                        [&](const Part& part) { return plan_->ball_of[static_cast<std::size_t>(part.shape)] == ball; });
@@ -87,6 +87,7 @@ void HeldChecker::bound_motion() {
 }
 
 bool HeldChecker::edge_is_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, const EdgeOptions& options) {
+  if (!bounded_) bound_motion();
   if (options.continuous) return check_edge(checker_, q0, q1, options).free;
   return stepped_edge_is_free(checker_, motion_, q0, q1, options);
 }

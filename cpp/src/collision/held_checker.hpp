@@ -33,6 +33,7 @@ class MMGRASP_EXPORT HeldChecker {
     Rigid in_object;
   };
 
+  /// What edges need to know, and single configurations do not.
   void bound_motion();
 
   CollisionChecker checker_;
@@ -41,6 +42,7 @@ class MMGRASP_EXPORT HeldChecker {
   std::vector<Part> parts_;
   Eigen::VectorXd largest_, column_;
   Eigen::VectorXd motion_;  ///< As mmgrasp::motion_bounds().
+  bool bounded_ = false;
 };
 
 /// Free by the steps of `options`, with motion_bounds() known: quicker than check_edge(), which finds out where an edge

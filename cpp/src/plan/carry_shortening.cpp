@@ -14,14 +14,14 @@ constexpr double kNothing = 1e-9;  // Gain that is none.
 
 }  // namespace
 
-void shorten_carry(const CarryInput& input, const Carry& carry, ManipulationResult& result) {
+void shorten_carry(const CarryInput& input, const Carry& carry, ManipulationResult& result, unsigned round) {
   CollisionChecker checker = input.checks.whole(carry.grasp);
   MotionOptions options;
   options.edge_step = input.options.edge.joint_step;
   options.workspace_step = input.options.edge.workspace_step;
   MotionEdges edges(checker, options);
   if (edges.steered()) return;
-  Rng rng(input.options.seed, 0x736f);
+  Rng rng(input.options.seed, 0x736f + 0x10000u * round);
   ShorteningOptions shortening;
   shortening.stopped = [&] { return input.out_of_time(); };
   const double fixed = input.problem.grasps[static_cast<std::size_t>(carry.grasp)].cost;

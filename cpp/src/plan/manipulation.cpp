@@ -47,6 +47,7 @@ void ManipulationProblem::check() const {
 void PrmStarMgOptions::check() const {
   require(batch >= 0, "batch", batch, "must be >= 0");
   require(max_vertices >= 0 && max_vertices <= 10'000'000, "max_vertices", max_vertices, "must be in [0, 10000000]");
+  require(refinements >= 0, "refinements", refinements, "must be >= 0");
   roadmap.check();
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "plan/carry_refinement.hpp"
 #include "plan/carry_shortening.hpp"
 #include "plan/first_carry.hpp"
 #include "plan/roadmap_data.hpp"
@@ -38,7 +39,7 @@ void run_prm_star_mg(CarryInput& input, ManipulationResult& result) {
   bool whole = false;
   while (roadmap) {
     const double before = best.cost;
-    whole = RoadmapSearch(input, *roadmap, best, result).run();
+    whole = RoadmapSearch(input, *roadmap, options.straight, input.options.threads, best, result).run();
     if (options.shorten && best.cost < before) shorten_carry(input, best, result);
     if (!whole || 2.0 * roadmap->size() > options.max_vertices) break;
     // The same seed gives the same vertices, and more of them.
@@ -51,6 +52,7 @@ void run_prm_star_mg(CarryInput& input, ManipulationResult& result) {
   if (result.path) {
     result.outcome = Outcome::solved;
     result.lower_bound = std::min(result.lower_bound, result.cost);
+    if (whole) refine_carry(input, result);
   } else {
     result.outcome = input.monitor.stopped() ? Outcome::stopped : whole ? Outcome::infeasible : Outcome::timeout;
   }

@@ -76,7 +76,7 @@ void Roadmap::Data::near(const double* q, std::vector<int>& out) const {
   std::sort(out.begin(), out.end());
 }
 
-bool Roadmap::Data::join(detail::Until& until) {
+bool Roadmap::Data::join(detail::Until& until, int threads) {
   const auto count = static_cast<std::size_t>(vertices.cols());
   // With a fixed number of neighbours the vertex itself is its nearest one.
   std::vector<std::vector<int>> joined(count);
@@ -87,7 +87,7 @@ bool Roadmap::Data::join(detail::Until& until) {
     until.breathe();
     near(vertices.col(static_cast<Eigen::Index>(v)).data(), joined[v]);
   };
-  const bool done = parallel_for(count, 0, join_one, until.monitor(), "roadmap");
+  const bool done = parallel_for(count, threads, join_one, until.monitor(), "roadmap");
   own.neighbours = wanted;
   if (!done) return false;
   ends.clear();
@@ -131,11 +131,24 @@ Roadmap detail::build_roadmap(const JointGroup& group, const RoadmapOptions& opt
   auto data = std::make_shared<Roadmap::Data>(group, options);
   if (data->draw(until)) {
     data->index();
-    if (data->join(until)) return Roadmap(data);
+    if (data->join(until, 0)) return Roadmap(data);
   }
   data = std::make_shared<Roadmap::Data>(group, options);
   data->vertices.resize(group.size(), 0);
   data->make_arcs();
+  return Roadmap(data);
+}
+
+Roadmap detail::roadmap_over(const JointGroup& group, int neighbours, Eigen::MatrixXd vertices) {
+  RoadmapOptions options;
+  options.vertices = static_cast<int>(vertices.cols());
+  options.neighbours = neighbours;
+  auto data = std::make_shared<Roadmap::Data>(group, options);
+  data->vertices = std::move(vertices);
+  data->index();
+  const std::function<bool()> never = [] { return false; };
+  Until until({}, never);
+  data->join(until, 1);
   return Roadmap(data);
 }
 

@@ -52,6 +52,9 @@ class Until {
 MMGRASP_EXPORT Roadmap build_roadmap(const JointGroup& group, const RoadmapOptions& options, const Monitor& monitor,
                                      const std::function<bool()>& over);
 
+/// A small roadmap over given configurations, one column each, made by the calling thread.
+Roadmap roadmap_over(const JointGroup& group, int neighbours, Eigen::MatrixXd vertices);
+
 /// What a group must agree on to use a roadmap: the robot's joints, and which of them it moves where. Shapes, disabled
 /// pairs and where the root stands do not matter.
 std::uint64_t kinematics_key(const JointGroup& group);
@@ -68,7 +71,7 @@ struct Roadmap::Data {
   double radius() const;
   void near(const double* q, std::vector<int>& out) const;
   /// Joins near vertices; false when stopped.
-  bool join(detail::Until& until);
+  bool join(detail::Until& until, int threads);
   /// Makes the arcs of `ends`.
   void make_arcs();
 

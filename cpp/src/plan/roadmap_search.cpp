@@ -16,12 +16,14 @@ constexpr int kSharingOpenings = 8;
 
 }  // namespace
 
-RoadmapSearch::RoadmapSearch(const CarryInput& input, const Roadmap& roadmap, Carry& best, ManipulationResult& result)
+RoadmapSearch::RoadmapSearch(const CarryInput& input, const Roadmap& roadmap, bool straight, int threads, Carry& best,
+                             ManipulationResult& result)
     : input_(input),
       roadmap_(roadmap),
+      straight_(straight),
       best_(best),
       result_(result),
-      threads_(resolve_threads(input.options.threads)),
+      threads_(resolve_threads(threads)),
       checks_(roadmap, input.checks, knowledge_, threads_, input.monitor, result.stats) {
   for (const CarryCandidate& candidate : input.candidates.found()) overlays_.emplace_back(roadmap_, candidate);
   for (int i = 0; i < input.checks.opening_count(); ++i) knowledge_.emplace_back(roadmap);
@@ -57,7 +59,7 @@ void RoadmapSearch::push_straight(int index) {
 
 std::optional<RoadmapSearch::Entry> RoadmapSearch::find_path(int worker, int index, double bound) {
   GraspOverlay& o = overlay(index);
-  o.connect(roadmap_, input_.options.prm.straight, best_.cost);
+  o.connect(roadmap_, straight_, best_.cost);
   OverlaySearch& search = searches_[static_cast<std::size_t>(worker)];
   const int opening = o.candidate.opening;
   search.robot_is_free = {};
@@ -108,7 +110,7 @@ bool RoadmapSearch::search_all(int first, int last) {
   for (int index = first; index < last; ++index) {
     if (overlay(index).candidate.straight_cost() >= best_.cost) continue;
     if (input_.out_of_time()) return false;
-    overlay(index).connect(roadmap_, input_.options.prm.straight, best_.cost);
+    overlay(index).connect(roadmap_, straight_, best_.cost);
     double bound = best_.cost;
     for (std::size_t i = found.size() > kSplices ? found.size() - kSplices : 0; i < found.size(); ++i)
       bound = std::min(bound, spliced_cost(roadmap_, overlay(index), overlay(found[i]).nodes));

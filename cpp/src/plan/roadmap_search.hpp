@@ -13,8 +13,10 @@ namespace mmgrasp::detail {
 /// One search of one roadmap for all grasps (P2 Algorithm 4.3).
 class RoadmapSearch {
  public:
-  /// Looks for paths over the roadmap that cost less than `best`, which they replace.
-  RoadmapSearch(const CarryInput& input, const Roadmap& roadmap, Carry& best, ManipulationResult& result);
+  /// Looks for paths over the roadmap, or `straight` from start to goal, that cost less than `best`, which they
+  /// replace.
+  RoadmapSearch(const CarryInput& input, const Roadmap& roadmap, bool straight, int threads, Carry& best,
+                ManipulationResult& result);
 
   /// False when time ran out before all grasps were searched.
   bool run();
@@ -49,6 +51,7 @@ class RoadmapSearch {
 
   const CarryInput& input_;
   const Roadmap& roadmap_;
+  const bool straight_;
   Carry& best_;
   ManipulationResult& result_;
   int threads_;

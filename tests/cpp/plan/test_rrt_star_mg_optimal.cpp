@@ -176,6 +176,17 @@ TEST(RrtStarMgOptimal, ConvergesToTheBestOfAllGrasps) {
       EXPECT_GT(result.cost, 0.97 * best);
       EXPECT_LT(result.cost, 1.04 * best) << wall << " seed " << seed;
     }
+    // So does the other planner once it draws small roadmaps where a cheaper path can pass.
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      ManipulationOptions options = options_of(1, seed);
+      options.planner = "prm_star_mg";
+      options.prm.roadmap.vertices = 300;
+      options.prm.roadmap.gamma = 5;
+      options.prm.refinements = 150;
+      const ManipulationResult result = plan_manipulation(problem, options);
+      EXPECT_GT(result.cost, 0.97 * best);
+      EXPECT_LT(result.cost, 1.02 * best) << wall << " seed " << seed;
+    }
   }
 }
 

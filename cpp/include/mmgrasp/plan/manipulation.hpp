@@ -58,6 +58,9 @@ struct MMGRASP_EXPORT PrmStarMgOptions {
   int max_vertices = 0;
   /// Shorten the best path over the roadmap at the end, as plan_motion does; off: as in the paper.
   bool shorten = true;
+  /// Once that is done: rounds with small roadmaps drawn where a cheaper path can pass (informed sets of all grasps),
+  /// each of which is searched for a better one; as many as the clock allows at most; >= 0.
+  int refinements = 0;
   void check() const;
 };
 

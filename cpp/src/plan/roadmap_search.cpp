@@ -14,6 +14,11 @@ constexpr std::size_t kSearches = 4;       // Graph searches that are worth a th
 // With more openings than these, vertices are checked for the robot on paths only.
 constexpr int kSharingOpenings = 8;
 
+/// No path between ends farther apart than this can win, shortened or not.
+double farthest_ends(const Carry& best, const ManipulationResult& result) {
+  return result.path ? std::min(best.cost, result.cost) : best.cost;
+}
+
 }  // namespace
 
 RoadmapSearch::RoadmapSearch(const CarryInput& input, const Roadmap& roadmap, bool straight, int threads, Carry& best,
@@ -54,12 +59,12 @@ void RoadmapSearch::push(const Entry& entry) {
 
 void RoadmapSearch::push_straight(int index) {
   const double straight = overlay(index).candidate.straight_cost();
-  if (straight < best_.cost) push({straight, index, false});
+  if (straight < farthest_ends(best_, result_)) push({straight, index, false});
 }
 
 std::optional<RoadmapSearch::Entry> RoadmapSearch::find_path(int worker, int index, double bound) {
   GraspOverlay& o = overlay(index);
-  o.connect(roadmap_, straight_, best_.cost);
+  o.connect(roadmap_, straight_, farthest_ends(best_, result_));
   OverlaySearch& search = searches_[static_cast<std::size_t>(worker)];
   const int opening = o.candidate.opening;
   search.robot_is_free = {};
@@ -108,9 +113,9 @@ bool RoadmapSearch::search_batch(int first, int last) {
 bool RoadmapSearch::search_all(int first, int last) {
   std::vector<int> found;
   for (int index = first; index < last; ++index) {
-    if (overlay(index).candidate.straight_cost() >= best_.cost) continue;
+    if (overlay(index).candidate.straight_cost() >= farthest_ends(best_, result_)) continue;
     if (input_.out_of_time()) return false;
-    overlay(index).connect(roadmap_, straight_, best_.cost);
+    overlay(index).connect(roadmap_, straight_, farthest_ends(best_, result_));
     double bound = best_.cost;
     for (std::size_t i = found.size() > kSplices ? found.size() - kSplices : 0; i < found.size(); ++i)
       bound = std::min(bound, spliced_cost(roadmap_, overlay(index), overlay(found[i]).nodes));

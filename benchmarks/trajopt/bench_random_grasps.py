@@ -1,5 +1,8 @@
 """Random grasp poses taken in passing, nothing in the way: ours, and casadi + Ipopt on the same problem from the same guess.
 
+"random grasps" is the whole call: search of configurations, first guess, solves, judging. "solve alone" is one solve from the first
+guess by either, ours with setting up the problem and judging its roll-out, casadi's with a problem built beforehand.
+
     python benchmarks/trajopt/bench_random_grasps.py [--count 200] [--seeds 1 2 3] [--waypoints 35] [--peer FOLDER]
 
 --peer names the site-packages folder of casadi; its runs alternate with ours. Solved means for ours: judged on the roll-out.
@@ -28,15 +31,19 @@ def main() -> None:
         peer = Peer(group)
     for seed in given.seeds:
         ours: list[tuple[float, mg.DriveByResult]] = []
+        alone: list[tuple[float, tuple[bool, float]]] = []
         theirs: list[tuple[float, tuple[bool, float]]] = []
         for pose in grasps(seed, given.count):
             tasks = [mg.DriveByTask(pose)]
             ours.append(timed(lambda: plan(tasks, waypoints=given.waypoints, collisions=False)))  # noqa: B023
-            if peer is None:
-                continue
             guess = mg._core._first_drive_by_guess(
                 group, start=START, tasks=tasks, goal=GOAL, waypoints=given.waypoints
             )
+            if guess is None:
+                continue
+            alone.append(timed(guess["solve"]))
+            if peer is None:
+                continue
             peer.prepare(guess["intervals"])
             theirs.append(timed(lambda: peer.solve(guess, pose)))  # noqa: B023
         on, settings = f"seed {seed}", f"{given.count} poses, {given.waypoints} waypoints"
@@ -48,11 +55,13 @@ def main() -> None:
             base_above=sum(r.events[0]["base_speed"] > 0.1 for r in solved) / max(1, len(solved)),
             duration=statistics.median(r.duration for r in solved),
         )  # fmt: skip
-        if peer is not None:
+        for who, solves in (("mmgrasp", alone), ("casadi + Ipopt", theirs)):
+            if not solves:
+                continue
             line(
-                "random grasps", on, "casadi + Ipopt", [t for t, _ in theirs], settings,
-                solved=sum(ok for _, (ok, _) in theirs) / len(theirs),
-                duration=statistics.median(d for _, (ok, d) in theirs if ok),
+                "solve alone", on, who, [t for t, _ in solves], settings,
+                solved=sum(ok for _, (ok, _) in solves) / len(solves),
+                duration=statistics.median(d for _, (ok, d) in solves if ok),
             )  # fmt: skip
 
 

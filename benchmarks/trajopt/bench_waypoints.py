@@ -2,7 +2,7 @@
 
     python benchmarks/trajopt/bench_waypoints.py [--count 20] [--seeds 1] [--most 300]
 
-More than 70 waypoints start from the solution with 35. `slope` is that of log time over log waypoints, from 35 up; `spread` the
+More than 150 waypoints start from the solution with 35. `slope` is that of log time over log waypoints, from 35 up; `spread` the
 largest difference of a pose's durations from 50 waypoints up, over the least of them.
 """
 

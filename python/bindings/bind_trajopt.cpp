@@ -311,11 +311,18 @@ void bind_trajopt(py::module_& m) {
         if (!first) return py::none();
         std::vector<int> intervals;
         for (const WholeBodySegment& s : first->problem.segments) intervals.push_back(s.intervals);
+        const auto solve = [first = *first] {
+          const WholeBodyResult r = optimize_whole_body(first.problem, first.guess);
+          return py::make_tuple(r.outcome == Outcome::solved, r.trajectory->duration());
+        };
         return py::dict("positions"_a = rows_to_array(first->guess.positions), "steps"_a = first->guess.steps,
-                        "intervals"_a = intervals, "goal"_a = first->problem.goal_lower);
+                        "intervals"_a = intervals, "goal"_a = first->problem.goal_lower,
+                        "solve"_a = py::cpp_function(solve));
       },
       py::arg("group"), py::kw_only(), py::arg("start"), py::arg("tasks"), py::arg("goal"), py::arg("waypoints") = 35,
-      "Where the first attempt begins, for benchmarks against other optimisers; None when a task is out of reach.");
+      "Where the first attempt begins, for benchmarks against other optimisers; None when a task is out of reach. "
+      "solve() "
+      "takes it from there, judging included: whether it is solved, and the duration.");
   bind_trajectory_class(m);
   bind_result(m);
   m.def("plan_drive_by", &plan, py::arg("robot"), py::arg("group"), py::arg("world"), py::kw_only(), py::arg("start"),

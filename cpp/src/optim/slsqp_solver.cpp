@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <string>
+#include <thread>
 #include <vector>
 
+#include "optim/handoff.hpp"
 #include "optim/nlp_backends.hpp"
 
 namespace mmgrasp::detail {
@@ -39,53 +43,52 @@ class Dense {
   int evaluations = 0;
   double latest() const { return value_; }
 
-  double objective(unsigned n, const double* x, double* gradient) {
+  /// False: the run has to end.
+  bool objective(unsigned n, const double* x, double& value, double* gradient) {
     return guarded([&] {
-      move(n, x);
+      if (!move(n, x)) return false;
+      value = value_;
       if (gradient) problem_.gradient(x_, Eigen::Map<VectorXd>(gradient, n));
-      return value_;
+      return true;
     });
   }
-  void sides(const std::vector<Side>& which, unsigned n, const double* x, double* out, double* gradient) {
-    guarded([&] {
-      move(n, x);
+  bool sides(const std::vector<Side>& which, unsigned n, const double* x, double* out, double* gradient) {
+    return guarded([&] {
+      if (!move(n, x)) return false;
       for (std::size_t i = 0; i < which.size(); ++i) out[i] = which[i].factor * (c_[which[i].row] - which[i].bound);
       if (gradient) rows(which, n, gradient);
-      return 0.0;
+      return true;
     });
   }
 
  private:
   template <typename Function>
-  double guarded(Function&& function) {
-    if (clock_.over()) throw nlopt::forced_stop();
-    double value = 0;
+  bool guarded(Function&& function) {
+    if (clock_.over()) return false;
     try {
-      value = function();
-    } catch (const nlopt::forced_stop&) {
-      throw;
+      return function();
     } catch (...) {
       clock_.error = std::current_exception();
-      throw nlopt::forced_stop();
+      return false;
     }
-    return value;
   }
 
   /// SLSQP turns in circles on numbers that are not finite, so they end it.
-  void move(unsigned n, const double* x) {
+  bool move(unsigned n, const double* x) {
     const Eigen::Map<const VectorXd> to(x, n);
-    if (x_.size() > 0 && x_ == to) return;
+    if (x_.size() > 0 && x_ == to) return true;
     x_ = to;
-    if (!x_.allFinite()) throw nlopt::forced_stop();
+    if (!x_.allFinite()) return false;
     value_ = problem_.objective(x_);
     if (c_.size() > 0) problem_.constraints(x_, c_);
     if (jacobian_.size() > 0) problem_.jacobian(x_, jacobian_);
-    if (!std::isfinite(value_) || !c_.allFinite() || !jacobian_.allFinite()) throw nlopt::forced_stop();
+    if (!std::isfinite(value_) || !c_.allFinite() || !jacobian_.allFinite()) return false;
     ++evaluations;
     double violation = 0;
     for (Eigen::Index i = 0; i < c_.size(); ++i)
       violation = std::max({violation, bounds_.lower[i] - c_[i], c_[i] - bounds_.upper[i]});
     best_.offer(x_.cwiseMax(variables_.lower).cwiseMin(variables_.upper), value_, violation);
+    return true;
   }
 
   void rows(const std::vector<Side>& which, unsigned n, double* gradient) {
@@ -110,21 +113,62 @@ class Dense {
   double value_ = 0;
 };
 
-double objective_of(unsigned n, const double* x, double* gradient, void* dense) {
-  return static_cast<Dense*>(dense)->objective(n, x, gradient);
-}
-void equal_of(unsigned, double* out, unsigned n, const double* x, double* gradient, void* dense) {
-  auto* d = static_cast<Dense*>(dense);
-  d->sides(d->equal, n, x, out, gradient);
-}
-void below_of(unsigned, double* out, unsigned n, const double* x, double* gradient, void* dense) {
-  auto* d = static_cast<Dense*>(dense);
-  d->sides(d->below, n, x, out, gradient);
-}
-
 std::vector<double> list(const VectorXd& v) {
   return {v.data(), v.data() + v.size()};
 }
+
+/// One run of NLopt in a thread of its own, which may outlast its caller. Of the caller it touches `dense` alone, and
+/// that only while the caller serves.
+struct Run {
+  Handoff handoff;
+  Dense* dense;
+  std::vector<double> lower, upper, at, equal, below;  ///< Of the latter two the tolerances.
+  double ftol = 0;
+  int evaluations = 0;
+  nlopt::result code = nlopt::FAILURE;
+  std::string message;
+
+  void solve() {
+    try {
+      nlopt::opt solver(nlopt::LD_SLSQP, static_cast<unsigned>(at.size()));
+      solver.set_lower_bounds(lower);
+      solver.set_upper_bounds(upper);
+      solver.set_min_objective(&objective_of, this);
+      if (!equal.empty()) solver.add_equality_mconstraint(&equal_of, this, equal);
+      if (!below.empty()) solver.add_inequality_mconstraint(&below_of, this, below);
+      solver.set_ftol_rel(ftol);
+      solver.set_xtol_rel(1e-12);
+      solver.set_maxeval(evaluations);
+      double value = 0;
+      code = solver.optimize(at, value);
+      message = code == nlopt::MAXEVAL_REACHED ? "evaluations exceeded" : "converged";
+    } catch (const std::exception& error) {
+      message = error.what();
+    }
+    handoff.finish();
+  }
+
+ private:
+  template <typename Function>
+  void ask(Function&& function) {
+    bool goes_on = false;
+    if (!handoff.ask([&] { goes_on = function(); }) || !goes_on) throw nlopt::forced_stop();
+  }
+  static double objective_of(unsigned n, const double* x, double* gradient, void* data) {
+    Run* run = static_cast<Run*>(data);
+    double value = 0;
+    run->ask([&] { return run->dense->objective(n, x, value, gradient); });
+    return value;
+  }
+  static void equal_of(unsigned, double* out, unsigned n, const double* x, double* gradient, void* data) {
+    Run* run = static_cast<Run*>(data);
+    run->ask([&] { return run->dense->sides(run->dense->equal, n, x, out, gradient); });
+  }
+  static void below_of(unsigned, double* out, unsigned n, const double* x, double* gradient, void* data) {
+    Run* run = static_cast<Run*>(data);
+    run->ask([&] { return run->dense->sides(run->dense->below, n, x, out, gradient); });
+  }
+};
 
 class SlsqpSolver : public NlpSolver {
  public:
@@ -140,17 +184,17 @@ class SlsqpSolver : public NlpSolver {
     VectorXd last = guess.cwiseMax(variables.lower).cwiseMin(variables.upper);
     nlopt::result code = nlopt::FAILURE;
     std::string message;
-    try {
-      // A single short step ends a run of it: an answer is one when a fresh run from there finds nothing better.
-      for (double before = 0; dense.evaluations < options.max_iterations; before = dense.latest()) {
-        const bool first = dense.evaluations == 0;
-        code = optimize(dense, variables, options, last);
-        const double now = dense.latest();
-        if (!first && std::abs(now - before) <= options.tolerance * std::max(1.0, std::abs(now))) break;
-      }
-      message = code == nlopt::MAXEVAL_REACHED ? "evaluations exceeded" : "converged";
-    } catch (const std::exception& error) {
-      message = error.what();
+    // A single short step ends a run of it: an answer is one when a fresh run from there finds nothing better.
+    for (double before = 0; dense.evaluations < options.max_iterations; before = dense.latest()) {
+      const bool first = dense.evaluations == 0;
+      const std::shared_ptr<const Run> run = optimize(dense, variables, options, clock, last);
+      if (!run) break;
+      code = run->code;
+      message = run->message;
+      if (code < 0) break;
+      last = Eigen::Map<const VectorXd>(run->at.data(), last.size());
+      const double now = dense.latest();
+      if (!first && std::abs(now - before) <= options.tolerance * std::max(1.0, std::abs(now))) break;
     }
     if (clock.error) std::rethrow_exception(clock.error);
     const bool converged = code == nlopt::SUCCESS || code == nlopt::FTOL_REACHED || code == nlopt::XTOL_REACHED;
@@ -160,24 +204,25 @@ class SlsqpSolver : public NlpSolver {
     return result;
   }
 
-  static nlopt::result optimize(Dense& dense, const Bounds& variables, const NlpOptions& options, VectorXd& x) {
-    nlopt::opt solver(nlopt::LD_SLSQP, static_cast<unsigned>(x.size()));
-    solver.set_lower_bounds(list(variables.lower));
-    solver.set_upper_bounds(list(variables.upper));
-    solver.set_min_objective(&objective_of, &dense);
-    const auto tolerances = [&](const std::vector<Side>& sides) {
-      return std::vector<double>(sides.size(), 0.5 * options.constraint_tolerance);
-    };
-    if (!dense.equal.empty()) solver.add_equality_mconstraint(&equal_of, &dense, tolerances(dense.equal));
-    if (!dense.below.empty()) solver.add_inequality_mconstraint(&below_of, &dense, tolerances(dense.below));
-    solver.set_ftol_rel(options.tolerance);
-    solver.set_xtol_rel(1e-12);
-    solver.set_maxeval(options.max_iterations - dense.evaluations);
-    std::vector<double> at = list(x);
-    double value = 0;
-    const nlopt::result code = solver.optimize(at, value);
-    x = Eigen::Map<const VectorXd>(at.data(), x.size());
-    return code;
+  /// Null when the caller left before the end.
+  static std::shared_ptr<const Run> optimize(Dense& dense, const Bounds& variables, const NlpOptions& options,
+                                             const SolveClock& clock, const VectorXd& from) {
+    const auto run = std::make_shared<Run>();
+    run->dense = &dense;
+    run->lower = list(variables.lower);
+    run->upper = list(variables.upper);
+    run->at = list(from);
+    run->equal.assign(dense.equal.size(), 0.5 * options.constraint_tolerance);
+    run->below.assign(dense.below.size(), 0.5 * options.constraint_tolerance);
+    run->ftol = options.tolerance;
+    run->evaluations = options.max_iterations - dense.evaluations;
+    std::thread thread([run] { run->solve(); });
+    if (run->handoff.serve([&] { return clock.over(); })) {
+      thread.join();
+      return run;
+    }
+    thread.detach();
+    return nullptr;
   }
 };
 

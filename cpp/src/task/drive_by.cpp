@@ -11,13 +11,14 @@ namespace mmgrasp {
 namespace {
 
 using detail::DriveByChoice;
+using detail::DriveByPatience;
 using detail::DriveByStep;
 using detail::Stand;
 using Eigen::VectorXd;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr int kShort = 40;        // iterations of a solve in the first attempts
-constexpr int kMoreAttempts = 2;  // of each choice of candidates once there is a motion to beat
+constexpr int kShort = 40;                // iterations of a solve in the first attempts
+constexpr std::size_t kMoreAttempts = 2;  // of each choice of candidates once there is a motion to beat
 
 /// One plan: keeps what the attempts share.
 class DriveBy {
@@ -125,20 +126,23 @@ class DriveBy {
     return "[" + text + "]";
   }
 
-  /// Every chain with a short patience first: what can be solved mostly is within few iterations.
+  /// Every chain with a short patience first: what can be solved mostly is within few iterations. Ways around obstacles
+  /// are sampled and along the road by turns, the second time the other way round.
   void attempt_all(const DriveByChoice& choice, DriveByResult& result) {
     int solutions = 0;
-    const std::size_t most = result.usable() ? kMoreAttempts : choice.chains.size();
+    const std::size_t most = std::min(result.usable() ? kMoreAttempts : choice.chains.size(), choice.chains.size());
     const int patient = options_.trajectory.max_iterations;
-    for (const int patience : {std::min(kShort, patient), patient}) {
-      for (std::size_t i = 0; i < std::min(most, choice.chains.size()) && !over(result); ++i) {
+    const std::size_t rounds = patient > kShort && !result.usable() ? 2 : 1;
+    for (std::size_t round = 0; round < rounds && solutions == 0; ++round) {
+      for (std::size_t i = 0; i < most && !over(result); ++i) {
+        const DriveByPatience patience{round == 0 ? std::min(kShort, patient) : patient, round > 0,
+                                       (i + round) % 2 == 1};
         if (attempt(choice, i, patience, result) && ++solutions >= options_.solutions) return;
       }
-      if (solutions > 0 || result.usable() || patience == patient) return;
     }
   }
 
-  bool attempt(const DriveByChoice& choice, std::size_t index, int patience, DriveByResult& result) {
+  bool attempt(const DriveByChoice& choice, std::size_t index, const DriveByPatience& patience, DriveByResult& result) {
     const std::vector<Stand>& chain = choice.chains[index];
     std::vector<int> waypoints;
     const WholeBodyResult r = attempts_->solve(chain, patience, waypoints);

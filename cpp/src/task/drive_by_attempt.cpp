@@ -10,11 +10,11 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr int kCoarse = 35;       // waypoints of a first solution when many are asked for
+constexpr int kCoarse = 35;       // waypoints of a first solution
+constexpr int kMany = 150;        // when more than these are asked for
 constexpr double kRefine = 1e-3;  // barrier with which it is refined
-constexpr int kShortRefinements = 3;
-constexpr double kStill = 0.02;  // of a tool whose pose is kept, along each axis at the waypoints [m/s]
-constexpr double kLonger = 1.1;  // than the fingers need to close
+constexpr double kStill = 0.02;   // of a tool whose pose is kept, along each axis at the waypoints [m/s]
+constexpr double kLonger = 1.1;   // than the fingers need to close
 
 /// What a push-grasp asks of the way to a step.
 void keep_straight(DriveByAttempt& a, std::size_t segment, const DriveByStep& step, int candidate) {
@@ -56,12 +56,14 @@ int DriveByAttempts::collisions(const std::vector<Stand>& chain) {
   return count;
 }
 
-WholeBodyResult DriveByAttempts::solve(const std::vector<Stand>& chain, int iterations, std::vector<int>& waypoints) {
-  iterations_ = iterations;
+WholeBodyResult DriveByAttempts::solve(const std::vector<Stand>& chain, const DriveByPatience& patience,
+                                       std::vector<int>& waypoints) {
+  iterations_ = patience.iterations;
   const int few = std::max(kCoarse, 2 + 4 * static_cast<int>(steps_.size()));
   DriveByAttempt a =
-      prepared(chain, std::min(options_.waypoints, options_.waypoints > 2 * kCoarse ? few : options_.waypoints));
-  WholeBodyResult r = around_obstacles(a, chain);
+      prepared(chain, std::min(options_.waypoints, options_.waypoints > kMany ? few : options_.waypoints));
+  lead_around_obstacles(a, chain, patience);
+  WholeBodyResult r = optimize(a);
   if (r.usable() && a.problem.waypoints() < options_.waypoints) {
     DriveByAttempt fine = prepared(chain, options_.waypoints);
     fine.problem.goal_lower = a.problem.goal_lower;
@@ -80,43 +82,40 @@ WholeBodyResult DriveByAttempts::solve(const std::vector<Stand>& chain, int iter
   return r;
 }
 
-WholeBodyResult DriveByAttempts::around_obstacles(DriveByAttempt& a, const std::vector<Stand>& chain) {
-  const bool obstacles = worlds_ && group_.has_base() && !worlds_->before(0).world().objects().empty();
-  if (obstacles && base_collides(a.checkers, a.guess)) guide(a);
-  const WholeBodyResult first = optimize(a);
-  if (first.usable() || !obstacles || a.guess.free || monitor_.stopped()) return first;
-  const bool collides = std::any_of(first.violations.begin(), first.violations.end(),
-                                    [](const Violation& v) { return v.kind == "collision" && !v.kept(); });
-  if (!collides) return first;
-  DriveByAttempt other = prepared(chain, a.problem.waypoints());
-  if (!guide(other)) return first;
-  WholeBodyResult second = optimize(other);
-  second.iterations += first.iterations;
-  if (!second.usable() && broken(second) >= broken(first)) return first;
-  a = std::move(other);
-  return second;
+void DriveByAttempts::lead_around_obstacles(DriveByAttempt& a, const std::vector<Stand>& chain,
+                                            const DriveByPatience& patience) {
+  if (!worlds_ || (!patience.guided && collisions(chain) == 0)) return;
+  const std::optional<DriveByRoute> way = route(chain, a, patience.by_road);
+  if (way) a = prepared(chain, a.problem.waypoints(), true, &*way);
 }
 
 WholeBodyResult DriveByAttempts::optimize(const DriveByAttempt& a, double warm_start) {
   WholeBodyOptions options = options_.trajectory;
   options.warm_start = std::max(options.warm_start, warm_start);
-  if (iterations_ < options.max_iterations) {
-    options.max_iterations = iterations_;
-    options.refinements = std::min(options.refinements, kShortRefinements);
-  }
+  options.max_iterations = std::min(options.max_iterations, iterations_);
   options.time_limit = std::max(1e-3, std::min(options.time_limit, options_.time_limit - seconds()));
   return optimize_whole_body(a.problem, a.guess, options, a.checkers, monitor_);
 }
 
-DriveByAttempt DriveByAttempts::prepared(const std::vector<Stand>& chain, int waypoints, bool checked) {
-  DriveByAttempt a{WholeBodyProblem(group_), {start_}, {}, {}, {}, {}, {}};
-  for (const Stand& stand : chain) a.knots.push_back(stand.q);
-  a.knots.push_back(goal_near(goal_, a.knots.back()));
+DriveByAttempt DriveByAttempts::prepared(const std::vector<Stand>& chain, int waypoints, bool checked,
+                                         const DriveByRoute* route) {
+  DriveByAttempt a{WholeBodyProblem(group_), knots_of(chain), {}, {}, {}, {}, {}};
   a.problem.start = start_;
   a.problem.goal_lower = goal_.lower;
   a.problem.goal_upper = goal_.upper;
   a.problem.jerk_time = options_.jerk_time;
   a.times = segment_times(group_, a.knots);
+  std::vector<GuidedWay> ways;
+  if (route) {
+    // A way may take full turns: the goal is that much further round.
+    const VectorXd turns = route->knots.back() - a.knots.back();
+    a.problem.goal_lower += turns;
+    a.problem.goal_upper += turns;
+    a.knots = route->knots;
+    ways = route->ways;
+    for (std::size_t k = 0; k < ways.size(); ++k)
+      if (!ways[k].points.empty()) a.times[k] = std::max(a.times[k], 1.1 * ways[k].times.back());
+  }
   a.intervals = share_intervals(waypoints - 1, a.times);
   const bool checkers = worlds_ && checked;
   if (checkers) a.checkers = worlds_->along(a.intervals, chain);
@@ -126,7 +125,8 @@ DriveByAttempt DriveByAttempts::prepared(const std::vector<Stand>& chain, int wa
     const auto at = static_cast<std::ptrdiff_t>(t) + 1;
     const int end = std::accumulate(a.intervals.begin(), a.intervals.begin() + at, 0);
     if (checkers) a.checkers.insert(a.checkers.begin() + end, kDwellIntervals, &worlds_->at(t));
-    a.knots.insert(a.knots.begin() + at, chain[t].q);
+    a.knots.insert(a.knots.begin() + at, VectorXd(a.knots[t + 1]));
+    if (route) ways.insert(ways.begin() + at, GuidedWay());
     a.intervals.insert(a.intervals.begin() + at, kDwellIntervals);
     a.times.insert(a.times.begin() + at, steps_[t].dwell);
   }
@@ -144,30 +144,44 @@ DriveByAttempt DriveByAttempts::prepared(const std::vector<Stand>& chain, int wa
       ++a.problem.tool.back().waypoint;
     }
   }
-  a.guess = guess_through(group_, a.knots, a.intervals, a.times);
+  a.guess = guess_through(group_, a.knots, a.intervals, a.times, ways);
+  a.guess.free = route != nullptr;
   return a;
 }
 
-bool DriveByAttempts::guide(DriveByAttempt& a) {
-  std::vector<GuidedBase> guides;
-  std::size_t step = 0;
-  for (std::size_t k = 0; k + 1 < a.knots.size(); ++k) {
-    guides.emplace_back();
-    if ((a.knots[k + 1] - a.knots[k]).head<2>().norm() < 1e-9) continue;  // a task that takes time
-    const std::size_t to = step++;
-    if (to < steps_.size() && steps_[to].way > 0) continue;
-    guides[k] = guided_base(group_, worlds_->at(to), a.knots[k], a.knots[k + 1], monitor_);
-    if (guides[k].poses.empty()) return false;
-    a.times[k] = std::max(a.times[k], 1.1 * drive_time(group_, guides[k].poses));
-    // The way may take a full turn: everything after it is that much further round.
-    const double turn = guides[k].poses.back()[2] - a.knots[k + 1][2];
-    for (std::size_t later = k + 1; later < a.knots.size(); ++later) a.knots[later][2] += turn;
-    a.problem.goal_lower[2] += turn;
-    a.problem.goal_upper[2] += turn;
+std::vector<VectorXd> DriveByAttempts::knots_of(const std::vector<Stand>& chain) const {
+  std::vector<VectorXd> knots{start_};
+  for (const Stand& stand : chain) knots.push_back(stand.q);
+  knots.push_back(goal_near(goal_, knots.back()));
+  return knots;
+}
+
+CollisionChecker& DriveByAttempts::checker_between(const DriveByAttempt& a, std::size_t step, const VectorXd& from,
+                                                   const VectorXd& to) {
+  const int first = step == 0 ? 0 : a.waypoints[step - 1];
+  const int last = step < a.waypoints.size() ? a.waypoints[step] : a.problem.intervals();
+  CollisionChecker* held = a.checkers[static_cast<std::size_t>((first + last) / 2)];
+  return held && held->is_free(from) && held->is_free(to) ? *held : worlds_->at(step);
+}
+
+std::optional<DriveByRoute> DriveByAttempts::route(const std::vector<Stand>& chain, const DriveByAttempt& a,
+                                                   bool by_road) {
+  if (!roads_) roads_.emplace(group_, worlds_->before(0), start_, goal_near(goal_, start_), options_.seed, monitor_);
+  const std::vector<VectorXd> knots = knots_of(chain);
+  DriveByRoute route{{start_}, {}};
+  VectorXd turns = VectorXd::Zero(start_.size());
+  for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
+    const VectorXd from = knots[k] + turns, to = knots[k + 1] + turns;
+    route.knots.push_back(to);
+    route.ways.emplace_back();
+    if (k < steps_.size() && steps_[k].way > 0) continue;  // it has to be straight
+    auto way = roads_->way(checker_between(a, k, from, to), from, to, by_road);
+    if (!way) return {};
+    turns = way->points.back() - knots[k + 1];
+    route.knots.back() = way->points.back();
+    route.ways.back() = std::move(*way);
   }
-  a.guess = guess_through(group_, a.knots, a.intervals, a.times, guides);
-  a.guess.free = true;
-  return true;
+  return route;
 }
 
 }  // namespace mmgrasp::detail

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <vector>
 
 #include "task/drive_by_guess.hpp"
+#include "task/drive_by_route.hpp"
 #include "task/drive_by_stands.hpp"
 #include "task/drive_by_steps.hpp"
 #include "task/drive_by_worlds.hpp"
@@ -23,6 +25,19 @@ struct DriveByAttempt {
   WholeBodyGuess guess;
 };
 
+/// The stands of a chain, up to full turns, and ways between them.
+struct DriveByRoute {
+  std::vector<Eigen::VectorXd> knots;  ///< From the start to the goal.
+  std::vector<GuidedWay> ways;
+};
+
+/// How a chain is tried.
+struct DriveByPatience {
+  int iterations = 0;    ///< Of one solve at most.
+  bool guided = false;   ///< Led around obstacles even when the straight guess meets none.
+  bool by_road = false;  ///< See DriveByRoads::way.
+};
+
 /// Makes chains of stands into motions. What it is given has to outlive it; `worlds` null: nothing can collide.
 class DriveByAttempts {
  public:
@@ -30,21 +45,26 @@ class DriveByAttempts {
                   const DriveByGoal& goal, const DriveByOptions& options, DriveByWorlds* worlds,
                   const Monitor& monitor);
 
-  /// `checked`: with the checkers of its intervals, which are built anew for parts that are held.
-  DriveByAttempt prepared(const std::vector<Stand>& chain, int waypoints, bool checked = true);
-  /// Straight through the stands, and around obstacles when that fails or is bound to; many waypoints start from the
-  /// solution with few. `waypoints` are those of the steps; no solve takes more than `iterations`,
-  /// and fewer than the options allow also mean fewer refinements.
-  WholeBodyResult solve(const std::vector<Stand>& chain, int iterations, std::vector<int>& waypoints);
+  /// `checked`: with the checkers of its intervals, which are built anew for parts that are held. `route` null:
+  /// straight from stand to stand.
+  DriveByAttempt prepared(const std::vector<Stand>& chain, int waypoints, bool checked = true,
+                          const DriveByRoute* route = nullptr);
+  /// From a guess straight through the stands, or around obstacles when that collides; very many waypoints start from
+  /// the solution with few. `waypoints` are those of the steps.
+  WholeBodyResult solve(const std::vector<Stand>& chain, const DriveByPatience& patience, std::vector<int>& waypoints);
   /// At how many of its waypoints the first guess collides.
   int collisions(const std::vector<Stand>& chain);
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
 
  private:
-  WholeBodyResult around_obstacles(DriveByAttempt& a, const std::vector<Stand>& chain);
+  void lead_around_obstacles(DriveByAttempt& a, const std::vector<Stand>& chain, const DriveByPatience& patience);
   WholeBodyResult optimize(const DriveByAttempt& a, double warm_start = 0);
-  /// Leads the base around obstacles; false when no way was found.
-  bool guide(DriveByAttempt& a);
+  std::vector<Eigen::VectorXd> knots_of(const std::vector<Stand>& chain) const;
+  /// Ways around obstacles; nothing when some are not found.
+  std::optional<DriveByRoute> route(const std::vector<Stand>& chain, const DriveByAttempt& a, bool by_road);
+  /// What can collide on the way to a step: with the part that is held, where that does not touch at either end.
+  CollisionChecker& checker_between(const DriveByAttempt& a, std::size_t step, const Eigen::VectorXd& from,
+                                    const Eigen::VectorXd& to);
 
   const JointGroup& group_;
   const Eigen::VectorXd& start_;
@@ -52,6 +72,7 @@ class DriveByAttempts {
   const DriveByGoal& goal_;
   const DriveByOptions& options_;
   DriveByWorlds* worlds_;
+  std::optional<DriveByRoads> roads_;
   int iterations_ = 0;  // of one solve
   const Monitor& monitor_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();

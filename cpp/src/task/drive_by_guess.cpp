@@ -73,29 +73,14 @@ class BaseWay {
   bool straight_ = false, backwards_ = false, curve_ = false;
 };
 
-/// Seconds from one pose to the next.
-double leg_time(const JointGroup& group, const Vector3d& from, const Vector3d& to) {
-  const BaseLimits limits = driving_limits(group.robot().base(), group.robot().base_limits());
-  return (to - from).head<2>().norm() / limits.linear_velocity + std::abs(to[2] - from[2]) / limits.angular_velocity;
-}
-
-/// Pose after share s of the time that a drive takes.
-Vector3d along_drive(const JointGroup& group, const std::vector<Vector3d>& poses, double s) {
-  double left = s * drive_time(group, poses);
-  for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
-    const double time = leg_time(group, poses[i], poses[i + 1]);
-    if (left < time) return poses[i] + left / time * (poses[i + 1] - poses[i]);
-    left -= time;
-  }
-  return poses.back();
-}
-
 }  // namespace
 
-double drive_time(const JointGroup& group, const std::vector<Vector3d>& poses) {
-  double time = 0;
-  for (std::size_t i = 0; i + 1 < poses.size(); ++i) time += leg_time(group, poses[i], poses[i + 1]);
-  return time;
+VectorXd GuidedWay::at(double time) const {
+  const auto after = std::upper_bound(times.begin(), times.end(), time);
+  if (after == times.end()) return points.back();
+  const std::size_t i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, after - times.begin()));
+  const double share = (time - times[i - 1]) / (times[i] - times[i - 1]);
+  return points[i - 1] + share * (points[i] - points[i - 1]);
 }
 
 std::vector<double> segment_times(const JointGroup& group, const std::vector<VectorXd>& knots) {
@@ -130,8 +115,7 @@ std::vector<int> share_intervals(int intervals, const std::vector<double>& times
 
 WholeBodyGuess guess_through(const JointGroup& group, const std::vector<VectorXd>& knots,
                              const std::vector<int>& intervals, const std::vector<double>& times,
-                             const std::vector<GuidedBase>& guides) {
-  constexpr double kArm = 0.4;  // share of a guided way in which the arm moves
+                             const std::vector<GuidedWay>& ways) {
   WholeBodyGuess guess;
   for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
     const VectorXd &from = knots[k], &to = knots[k + 1];
@@ -139,11 +123,8 @@ WholeBodyGuess guess_through(const JointGroup& group, const std::vector<VectorXd
     for (int i = 0; i < n; ++i) {
       const double s = eased(static_cast<double>(i) / n, k == 0, k + 2 == knots.size());
       VectorXd q = from + s * (to - from);
-      if (!guides.empty() && !guides[k].poses.empty()) {
-        const double arm = std::clamp(guides[k].arm_waits ? 1 - (1 - s) / kArm : s / kArm, 0.0, 1.0);
-        q = from + arm * (to - from);
-        q.head<3>() = along_drive(group, guides[k].poses, s);
-        guess.positions.push_back(q);
+      if (!ways.empty() && !ways[k].points.empty()) {
+        guess.positions.push_back(ways[k].at(s * ways[k].times.back()));
         continue;
       }
       if (group.has_base()) q.head<3>() = BaseWay(from.head<3>(), to.head<3>(), group.robot().base()).at(s);

@@ -12,20 +12,18 @@ std::vector<double> segment_times(const JointGroup& group, const std::vector<Eig
 /// `intervals` shared out in proportion to times, at least three each.
 std::vector<int> share_intervals(int intervals, const std::vector<double>& times);
 
-/// A drive of the base that the arm's part of a way has to wait for.
-struct GuidedBase {
-  std::vector<Eigen::Vector3d> poses;  ///< Straight drives and turns; empty: the base is not guided.
-  bool arm_waits = true;               ///< The arm moves at the end of the way; else at its beginning.
+/// A way that is known to be free of collisions: straight between its points.
+struct GuidedWay {
+  std::vector<Eigen::VectorXd> points;  ///< Empty: the way is not guided.
+  std::vector<double> times;            ///< At the points, from 0 [s].
+  Eigen::VectorXd at(double time) const;
 };
 
-/// Seconds it takes without stopping at corners.
-double drive_time(const JointGroup& group, const std::vector<Eigen::Vector3d>& poses);
-
 /// Through the knots: the arm straight, the base along a smooth curve that looks where it drives, or turning, driving
-/// and turning where it would have to turn back. `guides` is empty or holds one per way.
+/// and turning where it would have to turn back; or along `ways`, empty or one between each two knots.
 WholeBodyGuess guess_through(const JointGroup& group, const std::vector<Eigen::VectorXd>& knots,
                              const std::vector<int>& intervals, const std::vector<double>& times,
-                             const std::vector<GuidedBase>& guides = {});
+                             const std::vector<GuidedWay>& ways = {});
 
 /// The same motion with other numbers of intervals per segment.
 WholeBodyGuess resampled(const WholeBodyTrajectory& trajectory, const std::vector<double>& segment_ends,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace mmgrasp::detail {
 namespace {
@@ -11,6 +12,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kRegular = 3;          // samples of each interval
+constexpr double kFar = 2.0;         // up to where bodies that have to be parted are looked at [m]
 constexpr int kFiner = 10;           // when looking for collisions
 constexpr double kLeastRoom = 2e-4;  // the check takes gaps below 1e-4 m for contact
 
@@ -57,6 +59,38 @@ void add_gap(const SeparatingPlane& plane, const VectorXd& q, double factor, dou
     *value -= factor * plane.normal.dot(plane.p_b);
   }
 }
+
+double gap(const SeparatingPlane& plane, const VectorXd& q) {
+  double value = 0;
+  add_gap(plane, q, 1, &value, nullptr, nullptr);
+  return value;
+}
+
+/// Planes between bodies in one configuration.
+class PlaneMaker {
+ public:
+  PlaneMaker(CollisionChecker& checker, const VectorXd& q) : checker_(checker), q_(q) {
+    checker.group().link_poses(q, T_world_link_);
+  }
+  const VectorXd& q() const { return q_; }
+  std::vector<DistanceResult> distances(double within) { return checker_.distances(q_, within); }
+  SeparatingPlane plane(const DistanceResult& d, double margin) const {
+    SeparatingPlane plane;
+    plane.a = chain_to(checker_, d.a, d.point_a, T_world_link_);
+    if (d.with_scene)
+      plane.p_b = d.point_b;
+    else
+      plane.b = chain_to(checker_, d.b, d.point_b, T_world_link_);
+    plane.normal = (d.point_a - d.point_b) / d.value;
+    plane.margin = margin;
+    return plane;
+  }
+
+ private:
+  CollisionChecker& checker_;
+  VectorXd q_;
+  Poses T_world_link_;
+};
 
 }  // namespace
 
@@ -118,56 +152,94 @@ bool CollisionRows::look_along(const WholeBodyTrajectory& trajectory) {
   return collides;
 }
 
-void CollisionRows::keep_clear(const WholeBodyTrajectory& trajectory) {
+void CollisionRows::keep_clear(const std::vector<VectorXd>& positions) {
+  reference_ = positions;
   for (int i = 0; i < static_cast<int>(checkers_.size()); ++i) {
     CollisionChecker* checker = checkers_[static_cast<std::size_t>(i)];
     if (!checker) continue;
-    for (const DistanceResult& d : checker->distances(trajectory.positions()[static_cast<std::size_t>(i)], look_out_))
+    for (const DistanceResult& d : checker->distances(positions[static_cast<std::size_t>(i)], look_out_))
       if (d.with_scene && d.gradient.cwiseAbs().maxCoeff() > 0) watched_.insert({true, d.a, d.b});
   }
-  take_planes(trajectory);
+  const std::map<Pair, double> rooms = rooms_along(positions);
+  for (const Sample& sample : regular_samples()) take_planes_at(sample, reference(sample), rooms);
 }
 
-double CollisionRows::room(const Pair& pair, const WholeBodyTrajectory& trajectory) {
-  double room = margin_;
+std::map<CollisionRows::Pair, double> CollisionRows::rooms_along(const std::vector<VectorXd>& positions) {
+  std::map<Pair, double> rooms;
+  for (const Pair& pair : watched_) rooms[pair] = margin_;
   for (int waypoint : pinned_) {
     const int interval = std::min(waypoint, static_cast<int>(checkers_.size()) - 1);
     CollisionChecker* checker = checkers_[static_cast<std::size_t>(interval)];
     if (!checker) continue;
-    const VectorXd& q = trajectory.positions()[static_cast<std::size_t>(waypoint)];
+    const VectorXd& q = positions[static_cast<std::size_t>(waypoint)];
     for (const DistanceResult& d : checker->distances(q, 2 * margin_ + 1e-6)) {
-      if (Pair{d.with_scene, d.a, d.b} == pair && d.value > 0) room = std::min(room, 0.5 * d.value);
+      const auto room = rooms.find({d.with_scene, d.a, d.b});
+      if (room != rooms.end() && d.value > 0) room->second = std::min(room->second, 0.5 * d.value);
     }
   }
-  return std::max(room, kLeastRoom);
+  for (auto& [pair, room] : rooms) room = std::max(room, kLeastRoom);
+  return rooms;
+}
+
+std::set<CollisionRows::Sample> CollisionRows::regular_samples() const {
+  std::set<Sample> samples;
+  for (int i = 0; i < static_cast<int>(checkers_.size()); ++i)
+    for (int k = 0; k < kRegular; ++k) samples.insert({i, static_cast<double>(k) / kRegular});
+  return samples;
+}
+
+VectorXd CollisionRows::reference(const Sample& sample) const {
+  const auto& [i, s] = sample;
+  const std::size_t at = static_cast<std::size_t>(i);
+  return (1 - s) * reference_[at] + s * reference_[at + 1];
 }
 
 void CollisionRows::take_planes(const WholeBodyTrajectory& trajectory) {
-  std::map<Pair, double> rooms;
-  for (const Pair& pair : watched_) rooms[pair] = room(pair, trajectory);
-  std::set<Sample> samples = samples_;
-  for (int i = 0; i < static_cast<int>(checkers_.size()); ++i)
-    for (int k = 0; k < kRegular; ++k) samples.insert({i, static_cast<double>(k) / kRegular});
-  for (const auto& [i, s] : samples) {
-    CollisionChecker* checker = checkers_[static_cast<std::size_t>(i)];
-    if (!checker || (i == 0 && s == 0)) continue;
-    const VectorXd q = at_sample(trajectory, i, s);
-    Poses T_world_link;
-    checker->group().link_poses(q, T_world_link);
-    for (const DistanceResult& d : checker->distances(q, look_out_)) {
-      const Pair pair{d.with_scene, d.a, d.b};
-      if (watched_.count(pair) == 0 || std::abs(d.value) < 1e-9) continue;
-      if (d.gradient.cwiseAbs().maxCoeff() < 1e-12) continue;  // nothing can be done about it
-      SeparatingPlane plane;
-      plane.a = chain_to(*checker, d.a, d.point_a, T_world_link);
-      if (d.with_scene)
-        plane.p_b = d.point_b;
-      else
-        plane.b = chain_to(*checker, d.b, d.point_b, T_world_link);
-      plane.normal = (d.point_a - d.point_b) / d.value;
-      plane.margin = rooms.at(pair);
-      planes_[{i, s}][pair] = plane;
+  const std::map<Pair, double> rooms = rooms_along(trajectory.positions());
+  std::set<Sample> samples = regular_samples();
+  samples.insert(samples_.begin(), samples_.end());
+  for (const Sample& sample : samples)
+    take_planes_at(sample, at_sample(trajectory, sample.first, sample.second), rooms);
+}
+
+void CollisionRows::take_planes_at(const Sample& sample, const VectorXd& q, const std::map<Pair, double>& rooms) {
+  CollisionChecker* checker = checkers_[static_cast<std::size_t>(sample.first)];
+  if (!checker || sample == Sample{0, 0.0}) return;
+  PlaneMaker here(*checker, q);
+  std::optional<PlaneMaker> apart;  // where they are known to be
+  std::map<Pair, DistanceResult> known;
+  for (const DistanceResult& d : here.distances(look_out_)) {
+    const Pair pair{d.with_scene, d.a, d.b};
+    if (watched_.count(pair) == 0 || std::abs(d.value) < 1e-9) continue;
+    if (d.gradient.cwiseAbs().maxCoeff() < 1e-12) continue;  // nothing can be done about it
+    std::vector<SeparatingPlane>& planes = planes_[sample][pair];
+    const double room = rooms.at(pair);
+    if (reference_.empty()) {
+      planes = {here.plane(d, room)};
+      continue;
     }
+    if (!planes.empty() && d.value > 0) continue;
+    if (!apart) {
+      apart.emplace(*checker, reference(sample));
+      for (const DistanceResult& r : apart->distances(kFar)) known[{r.with_scene, r.a, r.b}] = r;
+    }
+    const auto r = known.find(pair);
+    if (r == known.end() || r->second.value < room) {
+      planes = {here.plane(d, room)};
+      continue;
+    }
+    SeparatingPlane parted = apart->plane(r->second, room);
+    if (d.value > 0) {
+      planes.push_back(parted);
+      continue;
+    }
+    // Points fixed to the bodies stand for whole bodies: what they missed is asked for on top, as far as there is room.
+    for (SeparatingPlane& plane : planes)
+      plane.margin = std::max(plane.margin, std::min(plane.margin - d.value, 0.8 * gap(plane, apart->q())));
+    // Whichever of the points in question is further beyond.
+    SeparatingPlane touching = here.plane(d, room);
+    touching.normal = parted.normal;
+    planes.push_back(gap(parted, q) < gap(touching, q) ? parted : touching);
   }
 }
 
@@ -177,10 +249,11 @@ void CollisionRows::add_to(WholeBodyNlp& nlp, bool diff_drive) const {
     const auto& [i, s] = sample;
     std::vector<SeparatingPlane> list;
     std::string names;
-    for (const auto& [pair, plane] : planes) {
-      list.push_back(plane);
+    for (const auto& [pair, several] : planes) {
+      list.insert(list.end(), several.begin(), several.end());
       names += (names.empty() ? "" : ", ") + std::get<1>(pair) + " and " + std::get<2>(pair);
     }
+    if (list.empty()) continue;
     auto term = std::make_unique<CollisionTerm>(IntervalPoint(layout.columns(), diff_drive, s), std::move(list));
     term->waypoint = i;
     term->what = names;

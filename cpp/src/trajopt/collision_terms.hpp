@@ -50,22 +50,29 @@ class CollisionRows {
   /// Looks along a trajectory; false when nothing collides. Pairs that collide anywhere are constrained from then on
   /// wherever they are within look_out.
   bool look_along(const WholeBodyTrajectory& trajectory);
-  /// For a trajectory that is known to be free: constrains what is within look_out of the scene.
-  void keep_clear(const WholeBodyTrajectory& trajectory);
+  /// `positions`, one per waypoint, are known to be free, also straight between them: what is within look_out of the
+  /// scene there is constrained. Bodies that collide later are parted as they are parted there, so that this way stays
+  /// within all constraints.
+  void keep_clear(const std::vector<Eigen::VectorXd>& positions);
   void add_to(WholeBodyNlp& nlp, bool diff_drive) const;
 
  private:
   using Pair = std::tuple<bool, std::string, std::string>;  // with the scene; a; b
   using Sample = std::pair<int, double>;                    // interval, fraction
   void take_planes(const WholeBodyTrajectory& trajectory);
-  double room(const Pair& pair, const WholeBodyTrajectory& trajectory);
+  void take_planes_at(const Sample& sample, const Eigen::VectorXd& q, const std::map<Pair, double>& rooms);
+  Eigen::VectorXd reference(const Sample& sample) const;
+  std::set<Sample> regular_samples() const;
+  /// The distance that each pair is asked to keep.
+  std::map<Pair, double> rooms_along(const std::vector<Eigen::VectorXd>& positions);
 
   std::vector<CollisionChecker*> checkers_;
   std::vector<int> pinned_;
   double margin_, look_out_;
   std::set<Pair> watched_;
   std::set<Sample> samples_;  // beside the regular ones
-  std::map<Sample, std::map<Pair, SeparatingPlane>> planes_;
+  std::vector<Eigen::VectorXd> reference_;
+  std::map<Sample, std::map<Pair, std::vector<SeparatingPlane>>> planes_;
 };
 
 }  // namespace mmgrasp::detail

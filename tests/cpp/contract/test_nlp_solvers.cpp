@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <thread>
 
 #include "mmgrasp/core/error.hpp"
@@ -30,6 +31,47 @@ struct Published {
   FormulaProblem problem;
   VectorXd start;
   double optimum;
+};
+
+/// min sum (x_i - i)^4, neighbours' products at least 1.
+class LongChain : public NonlinearProblem {
+ public:
+  explicit LongChain(int n) : n_(n) {
+    for (int i = 0; i + 1 < n; ++i) {
+      jacobian_.add(i, i);
+      jacobian_.add(i, i + 1);
+      hessian_.add(i + 1, i);
+    }
+    for (int i = 0; i < n; ++i) hessian_.add(i, i);
+  }
+  std::function<void()> on_first_jacobian;
+
+  Bounds variable_bounds() const override { return {all(n_, -kInf), all(n_, kInf)}; }
+  Bounds constraint_bounds() const override { return {all(n_ - 1, 1), all(n_ - 1, kInf)}; }
+  double objective(const VectorXd& x) override { return (x - places()).array().pow(4).sum(); }
+  void gradient(const VectorXd& x, Eigen::Ref<VectorXd> out) override { out = 4 * (x - places()).array().pow(3); }
+  void constraints(const VectorXd& x, Eigen::Ref<VectorXd> out) override {
+    out = x.head(n_ - 1).cwiseProduct(x.tail(n_ - 1));
+  }
+  const SparsePattern& jacobian_pattern() const override { return jacobian_; }
+  void jacobian(const VectorXd& x, Eigen::Ref<VectorXd> values) override {
+    for (int i = 0; i + 1 < n_; ++i) {
+      values[2 * i] = x[i + 1];
+      values[2 * i + 1] = x[i];
+    }
+    if (on_first_jacobian) on_first_jacobian();
+    on_first_jacobian = nullptr;
+  }
+  const SparsePattern& hessian_pattern() const override { return hessian_; }
+  void hessian(const VectorXd& x, double factor, const VectorXd& multipliers, Eigen::Ref<VectorXd> values) override {
+    values.head(n_ - 1) = multipliers;
+    values.tail(n_) = factor * 12 * (x - places()).array().square();
+  }
+
+ private:
+  VectorXd places() const { return VectorXd::LinSpaced(n_, 0, n_ - 1); }
+  int n_;
+  SparsePattern jacobian_, hessian_;
 };
 
 std::vector<Published> hock_schittkowski() {
@@ -232,6 +274,26 @@ TEST_P(NlpSolvers, EndWhenTold) {
   const NlpResult r = solver_->solve(p.problem, p.start, {}, monitor);
   EXPECT_EQ(r.outcome, Outcome::stopped);
   EXPECT_LE(p.problem.evaluations, 6);
+  EXPECT_TRUE(r.x.allFinite());
+}
+
+TEST_P(NlpSolvers, EndWhenToldWhileTheyComputeThemselves) {
+  // A dense solver is busy with the first step for minutes, without a callback.
+  LongChain problem(1500);
+  Monitor monitor;
+  std::thread teller;
+  problem.on_first_jacobian = [&] {
+    teller = std::thread([&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(300));
+      monitor.stop.stop();
+    });
+  };
+  NlpOptions options;
+  options.tolerance = 1e-300;  // nothing is good enough to end before
+  options.max_iterations = 1000000;
+  const NlpResult r = solver_->solve(problem, all(1500, 0.5), options, monitor);
+  teller.join();
+  EXPECT_NE(r.outcome, Outcome::solved);
   EXPECT_TRUE(r.x.allFinite());
 }
 

@@ -24,6 +24,10 @@ from .part_supply import PartSupplyPlan
 
 CLOSING_SPEED = 0.1  # of the gripper's opening [m/s] (P1 4.4.1)
 SETTLING = 0.1  # fingers press before the part is lifted [s]
+APPROACH_SPEED = (
+    0.25  # of the tool as it comes to the part [m/s]; arms that brake from more in so short a way overshoot
+)
+PLANNED_SHARE = 5 / 6  # of the base's speed; what is left corrects its way
 WAYPOINTS = (35, 45)  # tried one after the other
 WITHIN = 1e-7  # of the goal [rad]
 BETWEEN = 9  # samples written between waypoints
@@ -193,7 +197,7 @@ def _in_passing(
     T_before[:3, 3] -= problem.options["approach_distance"] * T_grasp[:3, :3] @ np.asarray(problem.gripper.approach)
     dwell = closing + SETTLING
     tasks = [
-        _core.DriveByTask(T_before, tolerance=[0.003] * 3 + [0.02] * 3),
+        _core.DriveByTask(T_before, tolerance=[0.003] * 3 + [0.02] * 3, max_tool_speed=APPROACH_SPEED),
         _core.DriveByTask(T_grasp, dwell=dwell, object=part.name, touching=0),
     ]
     # The arm's numbers as the pick before left them: continuous joints may be whole turns from home.
@@ -213,7 +217,7 @@ def _in_passing(
         goal = _exactly(start, [*plan.stops[leg].pose, *merged[-1].trajectory.positions[-1]])
         keywords = {"iterations": 600, **keywords}
         result = _core.plan_drive_by(
-            problem.robot, group, world, start=start, tasks=tasks, goal=goal, progress=told, **keywords
+            group.robot, group, world, start=start, tasks=tasks, goal=goal, progress=told, **keywords
         )
         reports.append(result.report)
     made = DriveByPick(leg, leg, index, part.name, before, opening, dwell, result, "".join(reports))
@@ -277,9 +281,18 @@ def _openings(problem: _core.PartSupplyProblem, pick: Pick) -> tuple[float, floa
     return pick.motions[0].opening, width
 
 
+def _slower(robot: _core.Robot) -> _core.Robot:
+    """The robot whose base is planned slower than it can drive: a tracker that has nothing in hand stays behind for ever."""
+    limits = {key: value for key, value in robot.base_limits.items() if np.isfinite(value)}
+    for key in ("linear_velocity", "angular_velocity", "wheel_velocity"):
+        if key in limits:
+            limits[key] *= PLANNED_SHARE
+    return _core.Robot.from_strings(robot.to_urdf(), robot.to_srdf(), base=robot.base, base_limits=limits)
+
+
 def _moving_group(plan: PartSupplyPlan, problem: _core.PartSupplyProblem, opening: float) -> JointGroup:
     joints = {**plan.scenario.setup.other_joints, **problem.gripper.joint_values(opening)}
-    group = problem.robot.group(problem.arm.name, tip=problem.gripper.tcp_link, with_base=True)
+    group = _slower(problem.robot).group(problem.arm.name, tip=problem.gripper.tcp_link, with_base=True)
     return group.with_reference(joints)
 
 

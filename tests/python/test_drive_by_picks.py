@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
+from mmgrasp import sim
 from mmgrasp.plan_file import plan_schema
 from mmgrasp.viz.report import report_html
 from mmgrasp.viz.timeline import Timeline
@@ -133,6 +134,21 @@ def test_what_is_written(passing, small_plan, content, tmp_path):
     held = table["held"]
     assert set(held[table["time"] < done.close_at - 1e-9]) == {""}
     assert set(held[table["time"] >= done.close_at + done.dwell]) == {done.part}
+
+
+def test_physics_takes_the_part(passing, small_plan):
+    """Contact and friction only, with a little noise of the wheels: the part is held at the end, its neighbours stand where they stood."""
+    pytest.importorskip("mujoco")
+    (done,) = passing.picks
+    problem, setup = small_plan.scenario.problem(), small_plan.scenario.setup
+    parts = [sim.SimPart(p.name, p.shapes, p.T_world_part, mass=0.1) for p in problem.trays[0].parts]
+    trial = sim.Simulation(setup.robot, problem.scene, parts, gripper=setup.gripper, joints=setup.other_joints)
+    # At half speed: plans know limits of joints, not of their motors, which cannot follow this one at full speed.
+    how = {"close_at": done.close_at, "opening": done.opening, "speed": 0.5, "hold": 1.0, "travel_noise": 0.001}
+    run = trial.run(done.result.trajectory.sampled(between=9), **how)
+    assert run.parts[done.part].grasped, run.parts[done.part].cause
+    assert run.parts[done.part].rise > 0.05
+    assert max(p.displacement for name, p in run.parts.items() if name != done.part) < 0.002
 
 
 def test_clock_and_report_know_of_it(content, passing, small_plan):

@@ -177,6 +177,30 @@ TEST(DriveBy, DrivesAroundAWall) {
   for (const VectorXd& q : r.trajectory->sampled(39).positions) EXPECT_FALSE(checker.first_contact(q).has_value());
 }
 
+TEST(DriveBy, PassesThroughAFurnishedRoom) {
+  // Walls from either side beyond the middle of the lane, walls along it, a table below the grasp or a board above it.
+  const JointGroup group = test::fetchlike_whole_body();
+  for (const double pitch : {0.4, -0.5}) {
+    World world;
+    const auto block = [&](const char* name, const Eigen::Vector3d& size, const Eigen::Vector3d& centre) {
+      world.add(name, Box{size}, pose_from_xyz_rpy(centre, {0, 0, 0}));
+    };
+    block("wall 0", {0.1, 2.8, 1.5}, {2.4, -1.1, 0.75});
+    block("wall 1", {0.1, 2.8, 1.5}, {7.6, 1.1, 0.75});
+    block("side wall 0", {13, 0.1, 1.5}, {5, -4, 0.75});
+    block("side wall 1", {13, 0.1, 1.5}, {5, 4, 0.75});
+    if (pitch > 0)
+      block("table", {0.6, 0.5, 0.6}, {5, -1.2, 0.3});
+    else
+      block("board", {0.6, 0.5, 0.04}, {5, -1.2, 0.86});
+    const std::vector<DriveByTask> tasks{grasp_at(pose_from_xyz_rpy({5, -1.2, 0.72}, {0, pitch, -0.8}))};
+    const DriveByResult r = plan_drive_by(group, world, kStart, tasks, {kGoal, kGoal});
+    expect_sound(r, tasks);
+    CollisionChecker checker(group, world);
+    for (const VectorXd& q : r.trajectory->sampled(39).positions) EXPECT_FALSE(checker.first_contact(q).has_value());
+  }
+}
+
 TEST(DriveBy, CarriesThePartItTook) {
   const JointGroup group = test::fetchlike_whole_body();
   World world;

@@ -11,7 +11,7 @@ import numpy
 import numpy.typing
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CandidateGrasp', 'CapabilityMap', 'Capsule', 'CarryPlace', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'CuboidFit', 'Cylinder', 'DepthImage', 'DistanceResult', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FingerJoint', 'FittedCuboid', 'Grasp', 'GraspReport', 'Graspability', 'Gripper', 'HeightMap', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyProblem', 'PartSupplyResult', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeGrasp', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'ScoredGrasp', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'ToolCone', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'drive_arc', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'least_stops', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_stops', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_pick', 'plan_platform_locations', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_part_supply', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CandidateGrasp', 'CapabilityMap', 'Capsule', 'CarryPlace', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'CuboidFit', 'Cylinder', 'DepthImage', 'DistanceResult', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FingerJoint', 'FittedCuboid', 'Grasp', 'GraspReport', 'Graspability', 'Gripper', 'HeightMap', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyProblem', 'PartSupplyResult', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeGrasp', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'ScoredGrasp', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'ToolCone', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'drive_arc', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'least_stops', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_stops', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_pick', 'plan_platform_locations', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_part_supply', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Robot:
     """
     A robot as URDF and SRDF describe it. Immutable; joints and links by name.
@@ -2430,13 +2430,14 @@ class DriveByTask:
     
     tolerance: (6,) along x, y, z [m] and about them [rad] of the pose's own frame; free: names of axes that do not
     matter, of x, y, z, roll, pitch, yaw; max_tool_speed [m/s] at the task; dwell [s] for which the tool's pose is
-    kept, e.g. while a gripper closes; object: name of the world's object that is held afterwards.
+    kept, e.g. while a gripper closes; object: name of the world's object that is held afterwards; the hand may touch it,
+    and it what it stands on, for `touching` intervals before and after. 0: never before the task, nothing after it.
     
     push: a gripper that closes while the hand moves on (P1 4.3): dict of push_grasp's keywords, approach (3,), an axis of
     the tip's frame, and free_length [m], the straight way before the finger tips reach the object. T_world_tip is then
     the planned grasp; tolerance, free, max_tool_speed and dwell are left out.
     """
-    def __init__(self, T_world_tip: numpy.typing.ArrayLike, *, tolerance: typing.Any = None, free: collections.abc.Sequence[str] = [], max_tool_speed: typing.Any = None, dwell: typing.SupportsFloat | typing.SupportsIndex = 0.0, object: str = '', push: dict | None = None) -> None:
+    def __init__(self, T_world_tip: numpy.typing.ArrayLike, *, tolerance: typing.Any = None, free: collections.abc.Sequence[str] = [], max_tool_speed: typing.Any = None, dwell: typing.SupportsFloat | typing.SupportsIndex = 0.0, object: str = '', push: dict | None = None, touching: typing.SupportsInt | typing.SupportsIndex = 2) -> None:
         ...
     def __repr__(self) -> str:
         ...
@@ -2459,6 +2460,9 @@ class DriveByTask:
         """
         What push_grasp says: closing time, window, tolerance to the object's position; None without one.
         """
+    @property
+    def touching(self) -> int:
+        ...
 class WholeBodyTrajectory:
     """
     Base and arm on one clock. Between waypoints the drive velocities are linear in time; for a diff-drive base they are
@@ -2520,6 +2524,10 @@ class DriveByResult:
     """
     def __repr__(self) -> str:
         ...
+    def to_csv(self, between: typing.SupportsInt | typing.SupportsIndex = 0) -> str:
+        """
+        The trajectory's to_csv with two columns more: task, its index in the row of a task's waypoint, and held, the object in the hand.
+        """
     def to_dict(self) -> dict:
         ...
     @property
@@ -2538,7 +2546,8 @@ class DriveByResult:
     @property
     def events(self) -> list:
         """
-        One dict per task: waypoint, time and close_time [s], candidate, base_speed and tool_speed [m/s].
+        One dict per task: waypoint, time and close_time [s], object (what is held then), held_time [s] and T_tip_object, candidate, base_speed and
+        tool_speed [m/s].
         """
     @property
     def iterations(self) -> int:
@@ -3008,7 +3017,7 @@ def _edge_option_table() -> dict:
     ...
 def _first_drive_by_guess(group: JointGroup, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, waypoints: typing.SupportsInt | typing.SupportsIndex = 35) -> typing.Any:
     """
-    Where the first attempt begins, for benchmarks against other optimisers; None when a task is out of reach.
+    Where the first attempt begins, for benchmarks against other optimisers; None when a task is out of reach. solve() takes it from there, judging included: whether it is solved, and the duration.
     """
 def _grasp_option_table() -> dict:
     ...
@@ -3229,7 +3238,7 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
     Keyword options:
         planner = 'prm_star_mg': a name of manipulation_planner_names()
         ik_solutions = 4: arm configurations tried for each grasp at each end
-        first_grasps = 4: grasps whose arm configurations are found before the first search, then twice as many until there is a path; 0: all
+        first_grasps = 4: grasps looked at, one by one, before those without a first path are searched again, then twice as many; 0: all before any search
         ik_restarts = 30: random starts of arms without a closed form
         joint_step = 0.02: no joint moves more between two checks of an edge [rad or m]
         workspace_step = 0.005: no point of the robot or the object moves more between two checks [m]
@@ -3241,6 +3250,7 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         straight = True: prm_star_mg: join start and goal configurations whatever their distance
         max_vertices = 0: prm_star_mg: once the roadmap's best path is found, double its vertices up to this; 0: never
         shorten = True: prm_star_mg: shorten the roadmap's best path at the end
+        refinements = 0: prm_star_mg: then search so many small roadmaps drawn where a cheaper path can pass
         vertices = 5000: prm_star_mg without a roadmap given: configurations drawn
         gamma = 4.0: likewise: vertices nearer than gamma (log n / n)^(1/d) are joined [rad or m]
         neighbours = 0: likewise: > 0: join that many nearest ones instead
@@ -3416,6 +3426,12 @@ def self_distance_objective(checker: CollisionChecker, margin: typing.SupportsFl
 def share_stops(drive_times: numpy.typing.ArrayLike, stop_times: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], robots: typing.SupportsInt | typing.SupportsIndex) -> SharedTours:
     """
     Shares stops among robots so that the last is done as early as can be. `drive_times` is (n + 2 k, n + 2 k): stops, k starts, k goals; infinite: no way.
+    """
+def shorten_drive_by(group: JointGroup, world: World, *, tasks: collections.abc.Sequence[DriveByTask], times: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], positions: numpy.typing.ArrayLike, task_times: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], progress: typing.Any = None, **kwargs) -> DriveByResult:
+    """
+    plan_drive_by from a motion that is known instead of guesses: positions (m, n) at times [s], straight between them, free of
+    collisions, from rest to rest, at each task at its time; e.g. a drive and a pick one after the other. One solve near that
+    motion. Tasks have one pose and no push. Keywords are those of plan_drive_by.
     """
 def shortest_visiting_tour(lengths: numpy.typing.ArrayLike) -> TourResult:
     """

@@ -7,7 +7,7 @@ import mmgrasp._core
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['CheckedBody', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegFigures', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'Fault', 'PathCheckResult', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'check_path', 'check_plan']
+__all__: list[str] = ['CheckedBody', 'CheckedDriveBy', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegFigures', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'Fault', 'PathCheckResult', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'check_path', 'check_plan']
 class CheckedBody:
     def __init__(self, name: str, shapes: collections.abc.Sequence[mmgrasp._core.LinkShape], pose: numpy.typing.ArrayLike) -> None:
         ...
@@ -25,6 +25,9 @@ class CheckedMotion:
         ...
 class CheckedPick:
     def __init__(self, stop: typing.SupportsInt | typing.SupportsIndex, tray: str, part: str, grasp: typing.SupportsInt | typing.SupportsIndex, motions: collections.abc.Sequence[CheckedMotion]) -> None:
+        ...
+class CheckedDriveBy:
+    def __init__(self, pick: typing.SupportsInt | typing.SupportsIndex, close_at: typing.SupportsFloat | typing.SupportsIndex, closed_at: typing.SupportsFloat | typing.SupportsIndex, motion: CheckedMotion) -> None:
         ...
 class CheckedStop:
     def __init__(self, pose: numpy.typing.ArrayLike, radius: typing.SupportsFloat | typing.SupportsIndex, trays: collections.abc.Sequence[str]) -> None:
@@ -84,6 +87,18 @@ class PlanToCheck:
         ...
     @clearance.setter
     def clearance(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def closing_speed(self) -> float:
+        ...
+    @closing_speed.setter
+    def closing_speed(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def drive_by(self) -> list[CheckedDriveBy]:
+        ...
+    @drive_by.setter
+    def drive_by(self, arg0: collections.abc.Sequence[CheckedDriveBy]) -> None:
         ...
     @property
     def drop_gap(self) -> float:

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "optim/handoff.hpp"
+#include "optim/nearest_kept.hpp"
 #include "optim/nlp_backends.hpp"
 
 namespace mmgrasp::detail {
@@ -197,6 +198,8 @@ class SlsqpSolver : public NlpSolver {
       if (!first && std::abs(now - before) <= options.tolerance * std::max(1.0, std::abs(now))) break;
     }
     if (clock.error) std::rethrow_exception(clock.error);
+    // It ends by the objective, which tells little of constraints kept to a millionth.
+    if (code > 0 && !clock.over()) last = nearest_kept(problem, last);
     const bool converged = code == nlopt::SUCCESS || code == nlopt::FTOL_REACHED || code == nlopt::XTOL_REACHED;
     NlpResult result = judged(problem, last, converged, code == nlopt::MAXEVAL_REACHED, best, guess, options, clock);
     result.iterations = dense.evaluations;

@@ -185,8 +185,9 @@ def run_times(context: Context) -> Result:
         values["iterations"] = (None, ours["iterations"])
         values["duration [s]"] = (None, ours["duration"])
         values["outcome"] = (None, ours["outcome"])
-    sparse = [o for i, o in zip(items, found, strict=True) if i["solver"] == "ipopt"]
-    result.exact("Ipopt solves every size", all(o["outcome"] == "solved" for o in sparse))
+    for solver, name in (("ipopt", "Ipopt"), ("slsqp", "SLSQP")):
+        outcomes = [o["outcome"] for i, o in zip(items, found, strict=True) if i["solver"] == solver]
+        result.exact(f"{name} solves every size", all(outcome == "solved" for outcome in outcomes))
     fine = [o["duration"] for i, o in zip(items, found, strict=True) if i["solver"] == "ipopt" and i["waypoints"] >= 50]
     if fine:
         result.trend("from 50 waypoints up durations agree within 2 %", max(fine) <= 1.02 * min(fine))

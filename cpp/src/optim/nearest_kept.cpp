@@ -1,0 +1,61 @@
+#include "optim/nearest_kept.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+namespace mmgrasp::detail {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int kSteps = 4;
+constexpr double kDamping = 1e-14;  // Of the largest entry: rows may repeat each other.
+
+/// How far each constraint is beyond its bounds.
+VectorXd beyond(NonlinearProblem& problem, const Bounds& bounds, const VectorXd& x) {
+  VectorXd c(bounds.lower.size());
+  problem.constraints(x, c);
+  return c - c.cwiseMax(bounds.lower).cwiseMin(bounds.upper);
+}
+
+/// All rows; zero where the variable is at a bound.
+MatrixXd movable_jacobian(NonlinearProblem& problem, const Bounds& variables, Eigen::Index rows, const VectorXd& x) {
+  const SparsePattern& pattern = problem.jacobian_pattern();
+  VectorXd values(static_cast<Eigen::Index>(pattern.size()));
+  problem.jacobian(x, values);
+  MatrixXd J = MatrixXd::Zero(rows, x.size());
+  for (std::size_t i = 0; i < pattern.size(); ++i) {
+    const int k = pattern.columns[i];
+    if (x[k] > variables.lower[k] && x[k] < variables.upper[k])
+      J(pattern.rows[i], k) += values[static_cast<Eigen::Index>(i)];
+  }
+  return J;
+}
+
+}  // namespace
+
+VectorXd nearest_kept(NonlinearProblem& problem, const VectorXd& x) {
+  const Bounds variables = problem.variable_bounds(), bounds = problem.constraint_bounds();
+  VectorXd at = x;
+  if (bounds.lower.size() == 0) return at;
+  VectorXd off = beyond(problem, bounds, at);
+  for (int step = 0; step < kSteps && off.lpNorm<Eigen::Infinity>() > 0; ++step) {
+    MatrixXd J = movable_jacobian(problem, variables, off.size(), at);
+    for (Eigen::Index i = 0; i < off.size(); ++i)
+      if (off[i] == 0) J.row(i).setZero();
+    MatrixXd gram = J * J.transpose();
+    gram.diagonal().array() += kDamping * gram.diagonal().maxCoeff();
+    for (Eigen::Index i = 0; i < off.size(); ++i)
+      if (J.row(i).isZero(0)) gram(i, i) = 1;
+    const VectorXd next =
+        (at - J.transpose() * gram.ldlt().solve(off)).cwiseMax(variables.lower).cwiseMin(variables.upper);
+    const VectorXd next_off = beyond(problem, bounds, next);
+    if (!(next_off.lpNorm<Eigen::Infinity>() < off.lpNorm<Eigen::Infinity>())) break;
+    at = next;
+    off = next_off;
+  }
+  return at;
+}
+
+}  // namespace mmgrasp::detail

@@ -186,6 +186,7 @@ OTHERS: dict[str, Any] = {
     "parts": lambda: [PART],
     "trays": lambda: [TRAY],
     "tasks": lambda: [],
+    "task_times": lambda: [],
     "remaining": lambda: [(0, 0)],
     "other": lambda: mg.Robot.from_strings('<robot name="s"><link name="a"/></robot>'),
     "parent_link": lambda: "tip",

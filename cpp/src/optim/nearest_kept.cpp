@@ -1,6 +1,7 @@
 #include "optim/nearest_kept.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 namespace mmgrasp::detail {
@@ -10,12 +11,17 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kSteps = 4;
-constexpr double kDamping = 1e-14;  // Of the largest entry: rows may repeat each other.
+constexpr double kDamping = 1e-13;  // Of the largest entry: rows may repeat each other.
+constexpr double kAtBound = 1e-4;   // Constraints this near to a bound are kept where they are.
+
+VectorXd constraints_at(NonlinearProblem& problem, Eigen::Index count, const VectorXd& x) {
+  VectorXd c(count);
+  problem.constraints(x, c);
+  return c;
+}
 
 /// How far each constraint is beyond its bounds.
-VectorXd beyond(NonlinearProblem& problem, const Bounds& bounds, const VectorXd& x) {
-  VectorXd c(bounds.lower.size());
-  problem.constraints(x, c);
+VectorXd beyond(const Bounds& bounds, const VectorXd& c) {
   return c - c.cwiseMax(bounds.lower).cwiseMin(bounds.upper);
 }
 
@@ -39,20 +45,22 @@ VectorXd nearest_kept(NonlinearProblem& problem, const VectorXd& x) {
   const Bounds variables = problem.variable_bounds(), bounds = problem.constraint_bounds();
   VectorXd at = x;
   if (bounds.lower.size() == 0) return at;
-  VectorXd off = beyond(problem, bounds, at);
+  VectorXd c = constraints_at(problem, bounds.lower.size(), at);
+  VectorXd off = beyond(bounds, c);
   for (int step = 0; step < kSteps && off.lpNorm<Eigen::Infinity>() > 0; ++step) {
     MatrixXd J = movable_jacobian(problem, variables, off.size(), at);
     for (Eigen::Index i = 0; i < off.size(); ++i)
-      if (off[i] == 0) J.row(i).setZero();
+      if (off[i] == 0 && std::min(c[i] - bounds.lower[i], bounds.upper[i] - c[i]) > kAtBound) J.row(i).setZero();
     MatrixXd gram = J * J.transpose();
     gram.diagonal().array() += kDamping * gram.diagonal().maxCoeff();
     for (Eigen::Index i = 0; i < off.size(); ++i)
       if (J.row(i).isZero(0)) gram(i, i) = 1;
     const VectorXd next =
         (at - J.transpose() * gram.ldlt().solve(off)).cwiseMax(variables.lower).cwiseMin(variables.upper);
-    const VectorXd next_off = beyond(problem, bounds, next);
+    const VectorXd next_c = constraints_at(problem, c.size(), next), next_off = beyond(bounds, next_c);
     if (!(next_off.lpNorm<Eigen::Infinity>() < off.lpNorm<Eigen::Infinity>())) break;
     at = next;
+    c = next_c;
     off = next_off;
   }
   return at;

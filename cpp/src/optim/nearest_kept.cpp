@@ -10,7 +10,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kSteps = 4;
+constexpr int kSteps = 8;
 constexpr double kDamping = 1e-13;  // Of the largest entry: rows may repeat each other.
 constexpr double kAtBound = 1e-4;   // Constraints this near to a bound are kept where they are.
 
@@ -39,6 +39,19 @@ MatrixXd movable_jacobian(NonlinearProblem& problem, const Bounds& variables, Ei
   return J;
 }
 
+/// One Newton step of least length on what is off, with the constraints nearer than `hold` to a bound kept there.
+VectorXd stepped(NonlinearProblem& problem, const Bounds& variables, const Bounds& bounds, const VectorXd& at,
+                 const VectorXd& c, const VectorXd& off, double hold) {
+  MatrixXd J = movable_jacobian(problem, variables, off.size(), at);
+  for (Eigen::Index i = 0; i < off.size(); ++i)
+    if (off[i] == 0 && std::min(c[i] - bounds.lower[i], bounds.upper[i] - c[i]) >= hold) J.row(i).setZero();
+  MatrixXd gram = J * J.transpose();
+  gram.diagonal().array() += kDamping * gram.diagonal().maxCoeff();
+  for (Eigen::Index i = 0; i < off.size(); ++i)
+    if (J.row(i).isZero(0)) gram(i, i) = 1;
+  return (at - J.transpose() * gram.ldlt().solve(off)).cwiseMax(variables.lower).cwiseMin(variables.upper);
+}
+
 }  // namespace
 
 VectorXd nearest_kept(NonlinearProblem& problem, const VectorXd& x) {
@@ -48,20 +61,18 @@ VectorXd nearest_kept(NonlinearProblem& problem, const VectorXd& x) {
   VectorXd c = constraints_at(problem, bounds.lower.size(), at);
   VectorXd off = beyond(bounds, c);
   for (int step = 0; step < kSteps && off.lpNorm<Eigen::Infinity>() > 0; ++step) {
-    MatrixXd J = movable_jacobian(problem, variables, off.size(), at);
-    for (Eigen::Index i = 0; i < off.size(); ++i)
-      if (off[i] == 0 && std::min(c[i] - bounds.lower[i], bounds.upper[i] - c[i]) > kAtBound) J.row(i).setZero();
-    MatrixXd gram = J * J.transpose();
-    gram.diagonal().array() += kDamping * gram.diagonal().maxCoeff();
-    for (Eigen::Index i = 0; i < off.size(); ++i)
-      if (J.row(i).isZero(0)) gram(i, i) = 1;
-    const VectorXd next =
-        (at - J.transpose() * gram.ldlt().solve(off)).cwiseMax(variables.lower).cwiseMin(variables.upper);
-    const VectorXd next_c = constraints_at(problem, c.size(), next), next_off = beyond(bounds, next_c);
-    if (!(next_off.lpNorm<Eigen::Infinity>() < off.lpNorm<Eigen::Infinity>())) break;
-    at = next;
-    c = next_c;
-    off = next_off;
+    const double before = off.lpNorm<Eigen::Infinity>();
+    const VectorXd from = at, from_c = c, from_off = off;
+    // Held ones may leave no room to move, free ones may be pushed beyond.
+    for (const double hold : {kAtBound, 0.0}) {
+      const VectorXd next = stepped(problem, variables, bounds, from, from_c, from_off, hold);
+      const VectorXd next_c = constraints_at(problem, c.size(), next), next_off = beyond(bounds, next_c);
+      if (!(next_off.lpNorm<Eigen::Infinity>() < off.lpNorm<Eigen::Infinity>())) continue;
+      at = next;
+      c = next_c;
+      off = next_off;
+    }
+    if (off.lpNorm<Eigen::Infinity>() == before) break;
   }
   return at;
 }

@@ -233,7 +233,8 @@ void bind_problem(py::module_& m) {
            "`object` is a LinkShape or a list of them, in its own frame; `world` is without it. `grasps` are "
            "CandidateGrasp, or poses of the tool in the object's frame as (m, 4, 4). With `gripper` the fingers are "
            "set to each grasp's opening. Links in `touch_links` may touch the object; none given: those of the end "
-           "effector.")
+           "effector. The group may be an arm or an arm on an omni base; a diff_drive base is refused, since it could "
+           "not drive the paths.")
       .def_property_readonly("T_world_start", [](const ManipulationProblem& p) { return to_array(p.T_world_start); })
       .def_property_readonly("T_world_goal", [](const ManipulationProblem& p) { return to_array(p.T_world_goal); })
       .def_readonly("group", &ManipulationProblem::group)

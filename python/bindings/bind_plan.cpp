@@ -218,7 +218,8 @@ void bind_line(py::module_& m) {
                                   pose_argument(T_world_to, "T_world_to"), read);
       },
       py::arg("checker"), py::arg("start"), py::arg("T_world_to"),
-      ("The tool moves on a straight line from the pose of `start` to T_world_to." + option_help(line_fields()))
+      ("The tool moves on a straight line from the pose of `start` to T_world_to. A group that moves a diff_drive base "
+       "is\nrefused: it could not follow such a path." + option_help(line_fields()))
           .c_str());
 }
 
@@ -276,7 +277,8 @@ void bind_cartesian(py::module_& m) {
       py::arg("checker"), py::arg("tool_poses"), py::arg("near") = py::none(), py::kw_only(),
       py::arg("progress") = py::none(),
       ("The tip follows straight lines from pose to pose, from the inverse kinematics branch of the first pose that "
-       "completes\nthem with the shortest way, counted from `near` (n,) when that is given." +
+       "completes\nthem with the shortest way, counted from `near` (n,) when that is given. A group that moves a diff_drive base "
+       "is\nrefused: it could not follow such a path." +
        option_help(cartesian_fields()))
           .c_str());
 }

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -11,6 +12,8 @@
 
 namespace mmgrasp {
 namespace {
+
+constexpr int kMostThreads = 1024;  // Workers have scratch of their own: more would only fill the memory.
 
 /// What the workers of one call share.
 struct Loop {
@@ -59,7 +62,8 @@ struct Loop {
 }  // namespace
 
 int resolve_threads(int threads) {
-  require(threads >= 0, "threads", threads, "must be 0 (all) or positive");
+  require(threads >= 0 && threads <= kMostThreads, "threads", std::to_string(threads),
+          "must be 0 (all) or positive, at most " + std::to_string(kMostThreads));
   return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 

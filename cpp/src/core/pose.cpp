@@ -76,17 +76,22 @@ double rotation_distance(const Pose& a, const Pose& b) {
 }
 
 Pose checked_pose(const Eigen::Matrix4d& T, const std::string& field) {
+  // Messages are put together for what is refused only: lists of grasps hold thousands of poses.
+  const auto want = [&](bool ok, const char* what, double value, const char* rule) {
+    if (!ok) require(false, field + what, value, rule);
+  };
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column)
-      require(std::isfinite(T(row, column)), field + "(" + std::to_string(row) + ", " + std::to_string(column) + ")",
-              T(row, column), "must be finite");
+      if (!std::isfinite(T(row, column)))
+        want(false, ("(" + std::to_string(row) + ", " + std::to_string(column) + ")").c_str(), T(row, column),
+             "must be finite");
   const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
   const double skew = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  require(skew <= 1e-6, field + " rotation, largest entry of R^T R - I", skew, "must be at most 1e-6");
+  want(skew <= 1e-6, " rotation, largest entry of R^T R - I", skew, "must be at most 1e-6");
   const double determinant = R.determinant();
-  require(determinant > 0, field + " rotation determinant", determinant, "must be +1 (a mirror is no rotation)");
+  want(determinant > 0, " rotation determinant", determinant, "must be +1 (a mirror is no rotation)");
   const double last_row = (T.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff();
-  require(last_row <= 1e-9, field + " last row, distance from 0 0 0 1", last_row, "must be 0");
+  want(last_row <= 1e-9, " last row, distance from 0 0 0 1", last_row, "must be 0");
   Pose pose = Pose::Identity();
   pose.linear() = R;
   pose.translation() = T.topRightCorner<3, 1>();

@@ -5,6 +5,7 @@
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/robot/ik_branches.hpp"
 #include "plan/joint_angles.hpp"
+#include "plan/steered_base.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -113,6 +114,7 @@ CartesianResult plan_cartesian(CollisionChecker& checker, const Poses& T_world_t
                                const std::optional<Eigen::VectorXd>& near, const CartesianOptions& options,
                                const Monitor& monitor) {
   options.check();
+  detail::refuse_steered_base(checker.group(), "plan_cartesian");
   require(T_world_tip.size() >= 2, "tool_poses", static_cast<double>(T_world_tip.size()),
           "must hold two poses or more");
   for (std::size_t i = 0; i < T_world_tip.size(); ++i) {

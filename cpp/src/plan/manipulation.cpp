@@ -7,35 +7,24 @@
 #include "mmgrasp/core/parallel.hpp"
 #include "plan/carry_planner.hpp"
 #include "plan/roadmap_data.hpp"
+#include "plan/steered_base.hpp"
 
 namespace mmgrasp {
-namespace {
-
-bool is_rigid(const Pose& T) {
-  return T.matrix().allFinite() && (T.linear() * T.linear().transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-6 &&
-         T.linear().determinant() > 0;
-}
-
-void require_rigid(const Pose& T, const std::string& field) {
-  if (!is_rigid(T)) throw InvalidInput(field + ": must be a rigid transform of finite numbers (rotation orthonormal)");
-}
-
-}  // namespace
-
 void ManipulationProblem::check() const {
+  detail::refuse_steered_base(group, "plan_manipulation");
   require(!object.empty(), "object", "[]", "must have at least one shape");
   require(!grasps.empty(), "grasps", "[]", "must hold at least one grasp");
-  require_rigid(T_world_start, "T_world_start");
-  require_rigid(T_world_goal, "T_world_goal");
+  checked_pose(T_world_start.matrix(), "T_world_start");
+  checked_pose(T_world_goal.matrix(), "T_world_goal");
   if (gripper) gripper->check();
   const double widest = gripper ? gripper->max_opening : 1e9;
   for (std::size_t i = 0; i < grasps.size(); ++i) {
     const CandidateGrasp& grasp = grasps[i];
     const bool good_cost = std::isfinite(grasp.cost) && grasp.cost >= 0;
     const bool good_opening = grasp.opening >= 0 && grasp.opening <= widest;
-    if (good_cost && good_opening && is_rigid(grasp.T_object_tool)) continue;
     const std::string name = "grasps[" + std::to_string(i) + "].";
-    require_rigid(grasp.T_object_tool, name + "T_object_tool");
+    checked_pose(grasp.T_object_tool.matrix(), name + "T_object_tool");
+    if (good_cost && good_opening) continue;
     require(good_cost, name + "cost", grasp.cost, "must be finite and >= 0");
     require(good_opening, name + "opening", grasp.opening, "must be in [0, the gripper's max_opening]");
   }

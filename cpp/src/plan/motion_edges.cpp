@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "mmgrasp/collision/edge.hpp"
+#include "plan/steered_base.hpp"
 #include "plan/turn_drive_turn.hpp"
 
 namespace mmgrasp::detail {
@@ -23,7 +24,7 @@ MotionEdges::MotionEdges(CollisionChecker& checker, const MotionOptions& options
       wraps_(group_.wraps()),
       joint_step_(options.edge_step),
       workspace_step_(options.workspace_step),
-      steered_(group_.has_base() && group_.robot().base() == BaseKind::diff_drive),
+      steered_(has_steered_base(group_)),
       cone_(options.tool_cone) {
   if (std::isfinite(workspace_step_)) bounds_ = motion_bounds(checker);
   if (cone_) {

@@ -7,16 +7,13 @@
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "plan/informed_union.hpp"
 #include "plan/roadmap_data.hpp"
 
 namespace mmgrasp {
 namespace {
 
 constexpr int kLeafSize = 12;
-
-double unit_ball_volume(double d) {
-  return std::pow(M_PI, 0.5 * d) / std::tgamma(0.5 * d + 1);
-}
 
 }  // namespace
 
@@ -58,10 +55,10 @@ double Roadmap::Data::radius() const {
   return options.gamma * std::pow(std::log(n) / n, 1 / d);
 }
 
-void Roadmap::Data::near(const double* q, std::vector<int>& out) const {
+void Roadmap::Data::near(const double* q, int neighbours, std::vector<int>& out) const {
   out.clear();
-  if (options.neighbours > 0) {
-    const auto wanted = static_cast<std::size_t>(std::min<Eigen::Index>(options.neighbours, vertices.cols()));
+  if (neighbours > 0) {
+    const auto wanted = static_cast<std::size_t>(std::min<Eigen::Index>(neighbours, vertices.cols()));
     out.resize(wanted);
     std::vector<double> squared(wanted);
     out.resize(tree->knnSearch(q, wanted, out.data(), squared.data()));
@@ -80,16 +77,12 @@ bool Roadmap::Data::join(detail::Until& until, int threads) {
   const auto count = static_cast<std::size_t>(vertices.cols());
   // With a fixed number of neighbours the vertex itself is its nearest one.
   std::vector<std::vector<int>> joined(count);
-  RoadmapOptions& own = options;
-  const int wanted = own.neighbours;
-  if (wanted > 0) own.neighbours = wanted + 1;
+  const int wanted = options.neighbours > 0 ? options.neighbours + 1 : 0;
   const auto join_one = [&](std::size_t v, int) {
     until.breathe();
-    near(vertices.col(static_cast<Eigen::Index>(v)).data(), joined[v]);
+    near(vertices.col(static_cast<Eigen::Index>(v)).data(), wanted, joined[v]);
   };
-  const bool done = parallel_for(count, threads, join_one, until.monitor(), "roadmap");
-  own.neighbours = wanted;
-  if (!done) return false;
+  if (!parallel_for(count, threads, join_one, until.monitor(), "roadmap")) return false;
   ends.clear();
   for (std::size_t v = 0; v < count; ++v) {
     for (const int u : joined[v]) {
@@ -184,7 +177,7 @@ std::pair<int, int> Roadmap::ends(int edge) const {
 void Roadmap::near(const Eigen::VectorXd& q, std::vector<int>& out) const {
   data_->group.check_configuration(q, "q");
   out.clear();
-  if (size() > 0) data_->near(q.data(), out);
+  if (size() > 0) data_->near(q.data(), options().neighbours, out);
 }
 
 double Roadmap::radius() const {
@@ -195,7 +188,8 @@ RoadmapFigures Roadmap::figures() const {
   RoadmapFigures out;
   const auto d = static_cast<double>(data_->group.size());
   out.volume = (data_->group.sample_upper() - data_->group.sample_lower()).prod();
-  out.gamma_star = 2 * std::pow(1 + 1 / d, 1 / d) * std::pow(out.volume / unit_ball_volume(d), 1 / d);
+  out.gamma_star =
+      2 * std::pow(1 + 1 / d, 1 / d) * std::pow(out.volume / detail::unit_ball_volume(data_->group.size()), 1 / d);
   if (size() == 0) return out;
   out.mean_degree = 2.0 * edge_count() / size();
   out.radius = data_->radius();

@@ -69,7 +69,8 @@ struct Roadmap::Data {
   /// Makes the search tree over the vertices.
   void index();
   double radius() const;
-  void near(const double* q, std::vector<int>& out) const;
+  /// The nearest so many vertices, or with 0 those nearer than radius(); ascending.
+  void near(const double* q, int neighbours, std::vector<int>& out) const;
   /// Joins near vertices; false when stopped.
   bool join(detail::Until& until, int threads);
   /// Makes the arcs of `ends`.

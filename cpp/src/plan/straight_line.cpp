@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
+#include "plan/steered_base.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -151,6 +152,7 @@ void StraightLineOptions::check() const {
 StraightLineResult plan_straight_line(CollisionChecker& checker, const Eigen::VectorXd& q_start, const Pose& T_world_to,
                                       const StraightLineOptions& options) {
   options.check();
+  detail::refuse_steered_base(checker.group(), "plan_straight_line");
   checker.group().check_configuration(q_start, "q_start");
   const Pose goal = checked_pose(T_world_to.matrix(), "T_world_to");
   return LineFollower(checker, q_start, goal, options).run();

@@ -30,7 +30,8 @@ struct MMGRASP_EXPORT CartesianResult {
 /// of the joints ends a try (plan_straight_line). Every inverse kinematics branch of the first pose is tried, seven
 /// joints with their redundant one sampled; what comes back is the complete one with the shortest way: `near`, when it
 /// is given, to the first waypoint and then along the path. A `near` that puts the tool at the first pose is itself the
-/// first branch. Throws InvalidInput on fewer than two poses, poses that are none, and bad options.
+/// first branch. Throws InvalidInput on fewer than two poses, poses that are none, bad options, and a group with a
+/// diff-drive base, which cannot follow such a path.
 MMGRASP_EXPORT CartesianResult plan_cartesian(CollisionChecker& checker, const Poses& T_world_tip,
                                               const std::optional<Eigen::VectorXd>& near = std::nullopt,
                                               const CartesianOptions& options = {}, const Monitor& monitor = {});

@@ -30,7 +30,8 @@ struct MMGRASP_EXPORT CandidateGrasp {
 
 /// Carry an object from one pose to another with any of many grasps (P2 4.2): the planner chooses the grasp.
 struct MMGRASP_EXPORT ManipulationProblem {
-  JointGroup group;               ///< Arm, or base and arm; its tip is the tool.
+  /// Arm, or arm and omni base; its tip is the tool. A diff-drive base could not drive the paths: it is refused.
+  JointGroup group;
   World world;                    ///< Without the object.
   std::vector<LinkShape> object;  ///< In the object's frame.
   Pose T_world_start = Pose::Identity(), T_world_goal = Pose::Identity();
@@ -38,7 +39,7 @@ struct MMGRASP_EXPORT ManipulationProblem {
   std::optional<Gripper> gripper{};     ///< Sets the fingers to each grasp's opening.
   std::set<std::string> touch_links{};  ///< Links that may touch the object; empty: the end effector's.
   std::string object_name = "object";
-  /// Throws InvalidInput: no grasps, a pose that is no rigid transform (index and field named), a negative cost.
+  /// Throws InvalidInput: a diff-drive base, no grasps, a pose that is no rigid transform (index and field named), a negative cost.
   void check() const;
 };
 

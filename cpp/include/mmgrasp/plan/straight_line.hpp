@@ -29,7 +29,7 @@ struct MMGRASP_EXPORT StraightLineResult {
 /// The tool moves on a straight line (rotation by slerp) from the pose of q_start to T_world_to, by dense IK in small
 /// steps. Between waypoints, too, it stays within 1e-4 m of the line (with the default IK tolerance), and edges are
 /// free at an eighth of edge_step. The outcome is solved, infeasible or invalid_start. Throws InvalidInput on bad
-/// lengths, poses or options.
+/// lengths, poses or options, and on a group with a diff-drive base, which cannot follow such a path.
 MMGRASP_EXPORT StraightLineResult plan_straight_line(CollisionChecker& checker, const Eigen::VectorXd& q_start,
                                                      const Pose& T_world_to, const StraightLineOptions& options = {});
 

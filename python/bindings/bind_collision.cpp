@@ -1,6 +1,8 @@
 #include "bindings.hpp"
+#include "given.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/collision/edge.hpp"
+#include "same_robot.hpp"
 
 namespace mmgrasp::python {
 namespace {
@@ -92,12 +94,11 @@ void bind_checker(py::module_& m) {
       m, "CollisionChecker",
       "Collision questions about one group in a snapshot of the world: later changes of the world\n"
       "are not seen. Links pairs are sampled (and cached) when no SRDF says which never touch.")
-      .def(py::init([](const Robot& robot, const World& world, const JointGroup& group, const py::kwargs& options) {
-             if (group.robot().hash() != robot.hash()) {
-               throw InvalidInput("group: belongs to another robot ('" + group.robot().name() +
-                                  "') than the one given ('" + robot.name() + "')");
-             }
-             return CollisionChecker(with_sampled_pairs(group), world,
+      .def(py::init([](const Given<Robot>& robot, const Given<World>& world, const Given<JointGroup>& given_group,
+                       const py::kwargs& options) {
+             const JointGroup& group = taken(given_group, "group");
+             check_same_robot(taken(robot, "robot"), group);
+             return CollisionChecker(with_sampled_pairs(group), taken(world, "world"),
                                      read_options(checker_fields(), options, "CollisionChecker"));
            }),
            py::arg("robot"), py::arg("world"), py::arg("group"), option_help(checker_fields()).c_str())

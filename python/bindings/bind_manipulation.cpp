@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "bindings.hpp"
+#include "given.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
 
 namespace mmgrasp::python {
@@ -35,21 +36,10 @@ void convert_goal_cost(O& options, const py::handle& value) {
     convert(value, "goal_cost", options.rrt.goal_cost);
 }
 
-const std::vector<OptionField<O>>& manipulation_fields() {
-  static const std::vector<OptionField<O>> fields{
-      option<O>("planner", &O::planner, "a name of manipulation_planner_names()"),
-      option<O>("ik_solutions", &O::ik_solutions, "arm configurations tried for each grasp at each end"),
-      option<O>("first_grasps", &O::first_grasps,
-                "grasps looked at, one by one, before those without a first path are searched again, then twice as "
-                "many; 0: all before any search"),
-      option<O>("ik_restarts", &O::ik, &IkOptions::restarts, "random starts of arms without a closed form"),
-      option<O>("joint_step", &O::edge, &EdgeOptions::joint_step,
-                "no joint moves more between two checks of an edge [rad or m]"),
-      option<O>("workspace_step", &O::edge, &EdgeOptions::workspace_step,
-                "no point of the robot or the object moves more between two checks [m]"),
-      option<O>("time_limit", &O::time_limit, "wall-clock cap on IK and search, without the roadmap's building [s]"),
-      option<O>("seed", &O::seed, "same seed, same path"),
-      option<O>("threads", &O::threads, "0: all; does not change the answer"),
+using Fields = std::vector<OptionField<O>>;
+
+const Fields& prm_fields() {
+  static const Fields fields{
       of_prm("batch", &PrmStarMgOptions::batch,
              "prm_star_mg: grasps searched together before paths are checked; 1: naive, 0: all"),
       of_prm("lazy_grasps", &PrmStarMgOptions::lazy_grasps,
@@ -65,7 +55,12 @@ const std::vector<OptionField<O>>& manipulation_fields() {
       of_roadmap("gamma", &RoadmapOptions::gamma,
                  "likewise: vertices nearer than gamma (log n / n)^(1/d) are joined [rad or m]"),
       of_roadmap("neighbours", &RoadmapOptions::neighbours, "likewise: > 0: join that many nearest ones instead"),
-      of_roadmap("roadmap_seed", &RoadmapOptions::seed, "likewise: same seed, same roadmap"),
+      of_roadmap("roadmap_seed", &RoadmapOptions::seed, "likewise: same seed, same roadmap")};
+  return fields;
+}
+
+const Fields& rrt_fields() {
+  static const Fields fields{
       of_rrt("max_samples", &RrtStarMgOptions::max_samples, "rrt_star_mg: budget in samples"),
       of_rrt("step", &RrtStarMgOptions::step, "rrt_star_mg: longest edge grown towards a sample [rad or m]"),
       of_rrt("rrt_gamma", &RrtStarMgOptions::gamma,
@@ -75,8 +70,41 @@ const std::vector<OptionField<O>>& manipulation_fields() {
       of_rrt("bidirectional", &RrtStarMgOptions::bidirectional, "rrt_star_mg: trees from both ends"),
       of_rrt("informed", &RrtStarMgOptions::informed, "rrt_star_mg: draw only where a better path can pass"),
       {"goal_cost", convert_goal_cost, [](const O& o) { return py::cast(o.rrt.goal_cost); },
-       "rrt_star_mg: ends with the first path that costs no more; inf: the first at all"}};
+       "rrt_star_mg: ends with the first path that costs no more; inf: the first at all"},
+      of_rrt("keep_trees", &RrtStarMgOptions::keep_trees, "rrt_star_mg: hand over the trees with the result")};
   return fields;
+}
+
+const Fields& manipulation_fields() {
+  static const Fields fields = [] {
+    Fields all{
+        option<O>("planner", &O::planner, "a name of manipulation_planner_names()"),
+        option<O>("ik_solutions", &O::ik_solutions, "arm configurations tried for each grasp at each end"),
+        option<O>("first_grasps", &O::first_grasps,
+                  "grasps looked at, one by one, before those without a first path are searched again, then twice as "
+                  "many; 0: all before any search"),
+        option<O>("ik_restarts", &O::ik, &IkOptions::restarts, "random starts of arms without a closed form"),
+        option<O>("joint_step", &O::edge, &EdgeOptions::joint_step,
+                  "no joint moves more between two checks of an edge [rad or m]"),
+        option<O>("workspace_step", &O::edge, &EdgeOptions::workspace_step,
+                  "no point of the robot or the object moves more between two checks [m]"),
+        option<O>("time_limit", &O::time_limit, "wall-clock cap on IK and search, without the roadmap's building [s]"),
+        option<O>("seed", &O::seed, "same seed, same path"),
+        option<O>("threads", &O::threads, "0: all; does not change the answer")};
+    for (const Fields* own : {&prm_fields(), &rrt_fields()}) all.insert(all.end(), own->begin(), own->end());
+    return all;
+  }();
+  return fields;
+}
+
+/// Options of the planner that is not taken would change nothing, which the caller should hear of.
+void refuse_options_of_others(const py::kwargs& given, bool with_roadmap, const std::string& planner) {
+  const bool prm = planner == "prm_star_mg";
+  const std::string other = prm ? "rrt_star_mg" : "prm_star_mg";
+  const std::string rule = " is an option of " + other + ", not of " + planner;
+  for (const OptionField<O>& field : prm ? rrt_fields() : prm_fields())
+    if (given.contains(field.name)) throw InvalidInput(field.name + ":" + rule);
+  if (with_roadmap && !prm) throw InvalidInput("roadmap:" + rule);
 }
 
 /// A list of CandidateGrasp, or poses as (m, 4, 4).
@@ -115,6 +143,15 @@ std::vector<LinkShape> object_argument(const py::object& value) {
     return py::cast<std::vector<LinkShape>>(value);
   } catch (const py::cast_error&) {
     refuse_value("object", value, "a LinkShape or a list of them");
+  }
+}
+
+using Strings = std::vector<std::string>;
+
+void refuse_unknown(const py::kwargs& unknown, const Strings& known) {
+  for (const auto& [key, value] : unknown) {
+    const std::string name = py::cast<std::string>(key);
+    throw InvalidInput("ManipulationProblem(" + name + "=...): unknown keyword" + nearest_name(name, known));
   }
 }
 
@@ -159,7 +196,7 @@ py::dict stats_dict(const ManipulationStats& s) {
 
 py::dict report_dict(const GraspReport& r) {
   return py::dict("start"_a = to_dict(r.start), "goal"_a = to_dict(r.goal), "start_solutions"_a = r.start_solutions,
-                  "goal_solutions"_a = r.goal_solutions);
+                  "goal_solutions"_a = r.goal_solutions, "searched"_a = r.searched);
 }
 
 py::dict improvement_dict(const Improvement& i) {
@@ -193,9 +230,9 @@ std::string result_text(const ManipulationResult& r) {
 
 void bind_problem(py::module_& m) {
   py::class_<CandidateGrasp>(m, "CandidateGrasp", "One way to hold the object while it is carried.")
-      .def(py::init([](const ArrayLike& T_object_tool, double opening, double cost) {
-             return CandidateGrasp{pose_argument(T_object_tool, "T_object_tool"), finite_argument(opening, "opening"),
-                                   finite_argument(cost, "cost")};
+      .def(py::init([](const ArrayLike& T_object_tool, const Given<double>& opening, const Given<double>& cost) {
+             return CandidateGrasp{pose_argument(T_object_tool, "T_object_tool"), taken(opening, "opening"),
+                                   taken(cost, "cost")};
            }),
            "T_object_tool"_a, "opening"_a = 0.0, "cost"_a = 0.0,
            "Pose of the group's tip in the object's frame (4, 4); opening of the fingers while holding [m], used when "
@@ -212,24 +249,27 @@ void bind_problem(py::module_& m) {
            [](const CandidateGrasp& g) { return "CandidateGrasp(at " + text(g.T_object_tool.translation()) + ")"; });
   py::class_<ManipulationProblem>(m, "ManipulationProblem",
                                   "Carry an object from one pose to another with any of many grasps (P2 4.2).")
-      .def(py::init([](const JointGroup& group, const World& world, const py::object& object,
+      .def(py::init([](const Given<JointGroup>& group, const Given<World>& world, const py::object& object,
                        const ArrayLike& T_world_start, const ArrayLike& T_world_goal, const py::object& grasps,
-                       const std::optional<Gripper>& gripper, const std::vector<std::string>& touch_links,
-                       const std::string& object_name) {
-             ManipulationProblem problem{with_sampled_pairs(group),
-                                         world,
+                       const std::optional<Given<Gripper>>& gripper, const Given<Strings>& touch_links,
+                       const Given<std::string>& object_name, const py::kwargs& unknown) {
+             refuse_unknown(unknown, {"group", "world", "object", "T_world_start", "T_world_goal", "grasps", "gripper",
+                                      "touch_links", "object_name"});
+             ManipulationProblem problem{with_sampled_pairs(taken(group, "group")),
+                                         taken(world, "world"),
                                          object_argument(object),
                                          pose_argument(T_world_start, "T_world_start"),
                                          pose_argument(T_world_goal, "T_world_goal"),
-                                         grasps_argument(grasps),
-                                         gripper,
-                                         {touch_links.begin(), touch_links.end()},
-                                         object_name};
+                                         grasps_argument(grasps)};
+             if (gripper) problem.gripper = taken(*gripper, "gripper");
+             const Strings links = taken(touch_links, "touch_links", "names of links");
+             problem.touch_links = {links.begin(), links.end()};
+             problem.object_name = taken(object_name, "object_name");
              problem.check();
              return problem;
            }),
            "group"_a, "world"_a, "object"_a, "T_world_start"_a, "T_world_goal"_a, "grasps"_a, py::kw_only(),
-           "gripper"_a = py::none(), "touch_links"_a = std::vector<std::string>{}, "object_name"_a = "object",
+           "gripper"_a = py::none(), "touch_links"_a = Strings{}, "object_name"_a = "object",
            "`object` is a LinkShape or a list of them, in its own frame; `world` is without it. `grasps` are "
            "CandidateGrasp, or poses of the tool in the object's frame as (m, 4, 4). With `gripper` the fingers are "
            "set to each grasp's opening. Links in `touch_links` may touch the object; none given: those of the end "
@@ -249,6 +289,25 @@ void bind_problem(py::module_& m) {
 }
 
 void bind_result(py::module_& m) {
+  py::class_<SearchTree>(m, "SearchTree",
+                         "One tree of RRT*-MG as it stood at the end: of one grasp, from its starts or its goals.")
+      .def_readonly("grasp", &SearchTree::grasp)
+      .def_readonly("from_goal", &SearchTree::from_goal)
+      .def_property_readonly(
+          "vertices", [](const SearchTree& t) { return Eigen::MatrixXd(t.vertices.transpose()); }, "(n, joints)")
+      .def_readonly("parents", &SearchTree::parents,
+                    "Of each vertex: another one, or -1 for the grasp's arm configurations.")
+      .def_readonly("costs", &SearchTree::costs, "Length of the way from the root, (n,).")
+      .def("to_dict",
+           [](const SearchTree& t) {
+             return py::dict("grasp"_a = t.grasp, "from_goal"_a = t.from_goal,
+                             "vertices"_a = py::cast(Eigen::MatrixXd(t.vertices.transpose())).attr("tolist")(),
+                             "parents"_a = t.parents, "costs"_a = py::cast(t.costs).attr("tolist")());
+           })
+      .def("__repr__", [](const SearchTree& t) {
+        return "SearchTree(grasp " + std::to_string(t.grasp) + ", from its " + (t.from_goal ? "goals, " : "starts, ") +
+               std::to_string(t.parents.size()) + " vertices)";
+      });
   py::class_<Improvement>(m, "Improvement", "A better solution on the way.")
       .def_readonly("seconds", &Improvement::seconds, "Since the call began, the first roadmap's building left out.")
       .def_readonly("cost", &Improvement::cost)
@@ -258,11 +317,12 @@ void bind_result(py::module_& m) {
         return "Improvement(cost " + std::string(py::repr(py::float_(i.cost))) + ", grasp " + std::to_string(i.grasp) +
                ", after " + std::string(py::repr(py::float_(i.seconds))) + " s)";
       });
-  py::class_<GraspReport>(m, "GraspReport", "What became of one grasp before the search.")
+  py::class_<GraspReport>(m, "GraspReport", "What became of one grasp.")
       .def_readonly("start", &GraspReport::start, "Arm configurations turned down at the start, by cause.")
       .def_readonly("goal", &GraspReport::goal, "Likewise at the goal; not looked at when none is left at the start.")
       .def_readonly("start_solutions", &GraspReport::start_solutions)
       .def_readonly("goal_solutions", &GraspReport::goal_solutions)
+      .def_readonly("searched", &GraspReport::searched, "Its paths were looked for over a roadmap.")
       .def("to_dict", &report_dict)
       .def("__repr__", [](const GraspReport& r) {
         return "GraspReport(start: " + std::to_string(r.start_solutions) + " left, turned down " + r.start.summary() +
@@ -280,6 +340,8 @@ void bind_result(py::module_& m) {
       .def_readonly("rejections", &ManipulationResult::rejections, "Sum over all grasps and both ends.")
       .def_readonly("contacts", &ManipulationResult::contacts,
                     "With invalid_start or invalid_goal: what touches there with the first grasp in collision.")
+      .def_readonly("trees", &ManipulationResult::trees,
+                    "With keep_trees: a SearchTree for each grasp still in the race and each end.")
       .def_property_readonly("stats", [](const ManipulationResult& r) { return stats_dict(r.stats); })
       .def("to_dict", &result_dict)
       .def("__repr__", &result_text);
@@ -297,12 +359,15 @@ void bind_manipulation(py::module_& m) {
   m.def("manipulation_planner_names", &manipulation_planner_names, "Names that plan_manipulation's `planner` takes.");
   m.def(
       "plan_manipulation",
-      [](const ManipulationProblem& problem, const std::optional<Roadmap>& roadmap, const py::object& progress,
-         const py::object& improved, const py::kwargs& options) {
+      [](const Given<ManipulationProblem>& given_problem, const std::optional<Given<Roadmap>>& given_roadmap,
+         const py::object& progress, const py::object& improved, const py::kwargs& options) {
+        const ManipulationProblem& problem = taken(given_problem, "problem");
+        const Roadmap* roadmap = given_roadmap ? &taken(*given_roadmap, "roadmap") : nullptr;
         const ManipulationOptions read = read_options(manipulation_fields(), options, "plan_manipulation");
+        refuse_options_of_others(options, roadmap != nullptr, read.planner);
         Improved callback(improved);
         ManipulationResult result = LongCall(progress).run([&](const Monitor& monitor) {
-          return plan_manipulation(problem, read, roadmap ? &*roadmap : nullptr, monitor, callback.function(monitor));
+          return plan_manipulation(problem, read, roadmap, monitor, callback.function(monitor));
         });
         callback.raise();
         return result;

@@ -1,8 +1,10 @@
 #include "bindings.hpp"
+#include "given.hpp"
 #include "mmgrasp/plan/cartesian.hpp"
 #include "mmgrasp/plan/motion.hpp"
 #include "mmgrasp/plan/straight_line.hpp"
 #include "mmgrasp/plan/time_parameterization.hpp"
+#include "same_robot.hpp"
 
 namespace mmgrasp::python {
 namespace {
@@ -70,21 +72,20 @@ Poses poses_argument(const ArrayLike& value, const std::string& name) {
   if (!array || array.ndim() != 3) return {pose_argument(value, name)};
   Poses poses;
   for (py::ssize_t i = 0; i < array.shape(0); ++i) {
-    poses.push_back(pose_argument(ArrayLike(py::object(array[py::int_(i)])), name));
+    const std::string entry = name + "[" + std::to_string(i) + "]";
+    poses.push_back(pose_argument(ArrayLike(py::object(array[py::int_(i)])), entry));
   }
   return poses;
 }
 
-MotionResult plan(const Robot& robot, const JointGroup& group, const World& world, const ArrayLike& start,
-                  const py::object& goal, const py::object& tool_poses, const std::vector<ToolRegion>& regions,
-                  const std::optional<ToolCone>& tool_cone, const py::object& on_solution, const py::object& progress,
-                  const py::kwargs& options) {
-  if (group.robot().hash() != robot.hash()) {
-    throw InvalidInput("group: belongs to another robot ('" + group.robot().name() + "') than the one given ('" +
-                       robot.name() + "')");
-  }
+MotionResult plan(const Given<Robot>& given_robot, const Given<JointGroup>& given_group, const Given<World>& world,
+                  const ArrayLike& start, const py::object& goal, const py::object& tool_poses,
+                  const Given<std::vector<ToolRegion>>& regions, const std::optional<Given<ToolCone>>& tool_cone,
+                  const py::object& on_solution, const py::object& progress, const py::kwargs& options) {
+  const JointGroup& group = taken(given_group, "group");
+  check_same_robot(taken(given_robot, "robot"), group);
   MotionOptions read = read_options(motion_fields(), options, "plan_motion");
-  read.tool_cone = tool_cone;
+  if (tool_cone) read.tool_cone = taken(*tool_cone, "tool_cone");
   if (!on_solution.is_none()) {
     read.improved = [&](const JointPath& path, double cost) {
       const py::gil_scoped_acquire gil;
@@ -96,8 +97,8 @@ MotionResult plan(const Robot& robot, const JointGroup& group, const World& worl
   if (!goal.is_none()) goals.configurations = goals_argument(py::reinterpret_borrow<ArrayLike>(goal), group.size());
   if (!tool_poses.is_none())
     goals.tool_poses = poses_argument(py::reinterpret_borrow<ArrayLike>(tool_poses), "tool_poses");
-  goals.regions = regions;
-  CollisionChecker checker(with_sampled_pairs(group), world);
+  goals.regions = taken(regions, "regions", "ToolRegion");
+  CollisionChecker checker(with_sampled_pairs(group), taken(world, "world"));
   return LongCall(progress).run(
       [&](const Monitor& monitor) { return plan_motion_to(checker, from, goals, read, monitor); });
 }
@@ -119,9 +120,9 @@ void bind_goals(py::module_& m) {
                ", rotation=" + std::string(py::repr(py::cast(r.rotation))) + ")";
       });
   py::class_<ToolCone>(m, "ToolCone", "Path constraint: an axis of the tool stays near an axis of the world.")
-      .def(py::init([](const ArrayLike& tool_axis, const ArrayLike& world_axis, double half_angle) {
+      .def(py::init([](const ArrayLike& tool_axis, const ArrayLike& world_axis, const Given<double>& half_angle) {
              ToolCone cone{vector3_argument(tool_axis, "tool_axis"), vector3_argument(world_axis, "world_axis"),
-                           half_angle};
+                           taken(half_angle, "half_angle")};
              cone.check();
              return cone;
            }),
@@ -154,7 +155,9 @@ void bind_motion(py::module_& m) {
       .def_readonly("cost", &MotionResult::cost, "Length of the path in joint space.")
       .def_readonly("goal_index", &MotionResult::goal_index)
       .def_readonly("contacts", &MotionResult::contacts, "With invalid_start or invalid_goal: what touches.")
-      .def_readonly("rejections", &MotionResult::rejections)
+      .def_readonly("rejections", &MotionResult::rejections, "Of the start, or of goals, turned down.")
+      .def_readonly("beyond_limits", &MotionResult::beyond_limits,
+                    "With invalid_start or invalid_goal: which joint is outside of its limits, its value and these.")
       .def_readonly("stats", &MotionResult::stats)
       .def("to_dict",
            [](const MotionResult& r) {
@@ -164,7 +167,8 @@ void bind_motion(py::module_& m) {
              for (const Contact& c : r.contacts) contacts.append(py::cast(c).attr("to_dict")());
              return py::dict("outcome"_a = to_string(r.outcome), "path"_a = path, "cost"_a = r.cost,
                              "goal_index"_a = r.goal_index, "contacts"_a = contacts,
-                             "rejections"_a = to_dict(r.rejections), "stats"_a = py::cast(r.stats).attr("to_dict")());
+                             "rejections"_a = to_dict(r.rejections), "beyond_limits"_a = r.beyond_limits,
+                             "stats"_a = py::cast(r.stats).attr("to_dict")());
            })
       .def("__repr__", [](const MotionResult& r) {
         std::string out = std::string("MotionResult(") + to_string(r.outcome);
@@ -173,6 +177,7 @@ void bind_motion(py::module_& m) {
                  std::string(py::repr(py::float_(r.cost)));
         }
         for (const Contact& c : r.contacts) out += ", '" + c.a + "' touches '" + c.b + "'";
+        if (!r.beyond_limits.empty()) out += ", " + r.beyond_limits;
         return out + ")";
       });
   m.def("planner_names", &planner_names, "Names that plan_motion's `planner` takes.");
@@ -219,7 +224,8 @@ void bind_line(py::module_& m) {
       },
       py::arg("checker"), py::arg("start"), py::arg("T_world_to"),
       ("The tool moves on a straight line from the pose of `start` to T_world_to. A group that moves a diff_drive base "
-       "is\nrefused: it could not follow such a path." + option_help(line_fields()))
+       "is\nrefused: it could not follow such a path." +
+       option_help(line_fields()))
           .c_str());
 }
 
@@ -277,7 +283,8 @@ void bind_cartesian(py::module_& m) {
       py::arg("checker"), py::arg("tool_poses"), py::arg("near") = py::none(), py::kw_only(),
       py::arg("progress") = py::none(),
       ("The tip follows straight lines from pose to pose, from the inverse kinematics branch of the first pose that "
-       "completes\nthem with the shortest way, counted from `near` (n,) when that is given. A group that moves a diff_drive base "
+       "completes\nthem with the shortest way, counted from `near` (n,) when that is given. A group that moves a "
+       "diff_drive base "
        "is\nrefused: it could not follow such a path." +
        option_help(cartesian_fields()))
           .c_str());

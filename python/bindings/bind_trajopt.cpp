@@ -4,6 +4,7 @@
 #include "mmgrasp/optim/nlp_solver.hpp"
 #include "mmgrasp/task/drive_by.hpp"
 #include "push_fields.hpp"
+#include "same_robot.hpp"
 
 namespace mmgrasp::python {
 namespace {
@@ -282,10 +283,7 @@ DriveByResult shorten(const JointGroup& group, const World& world, const std::ve
 DriveByResult plan(const Robot& robot, const JointGroup& group, const World& world, const ArrayLike& start,
                    const std::vector<DriveByTask>& tasks, const ArrayLike& goal, const py::object& progress,
                    const py::kwargs& options) {
-  if (group.robot().hash() != robot.hash()) {
-    throw InvalidInput("group: belongs to another robot ('" + group.robot().name() + "') than the one given ('" +
-                       robot.name() + "')");
-  }
+  check_same_robot(robot, group);
   const DriveByOptions read = read_options(drive_by_fields(), options, "plan_drive_by");
   const Eigen::VectorXd from = vector_argument(start, "start", group.size());
   const DriveByGoal to = goal_argument(goal, group.size());

@@ -122,8 +122,8 @@ def build_parser() -> argparse.ArgumentParser:
     )
     bench.add_argument("--robot", nargs="+", default=["panda", "ur5"], metavar="NAME")
     bench.add_argument("--set", nargs="+", metavar="NAME", help="bookshelf_small, ...; default: all seven")
-    bench.add_argument("--limit", type=_count, default=50, metavar="N", help="problems of each set (default 50)")
-    bench.add_argument("--seeds", type=_count, default=1, metavar="N", help="runs of each problem (default 1)")
+    bench.add_argument("--limit", type=_at_least_one, default=50, metavar="N", help="problems of each set (default 50)")
+    bench.add_argument("--seeds", type=_at_least_one, default=1, metavar="N", help="runs of each problem (default 1)")
     bench.add_argument("--planner", default="rrt_connect", help="a name of planner_names()")
     bench.add_argument("--json", action="store_true")
     bench.set_defaults(run=run_bench)
@@ -154,6 +154,13 @@ def _count(text: str) -> int:
         value = -1
     if not 0 <= value <= 2**31 - 1:
         raise argparse.ArgumentTypeError(f"{text!r} is no whole number >= 0")
+    return value
+
+
+def _at_least_one(text: str) -> int:
+    value = _count(text)
+    if value == 0:
+        raise argparse.ArgumentTypeError("0 is none: must be at least 1")
     return value
 
 
@@ -348,8 +355,8 @@ def run_bench(arguments: argparse.Namespace, console: Console) -> int:
             arguments.data,
             arguments.robot,
             arguments.set or MBM_SETS,
-            max(arguments.limit, 1),
-            range(1, 1 + max(arguments.seeds, 1)),
+            arguments.limit,
+            range(1, 1 + arguments.seeds),
             progress=report,
             planner=arguments.planner,
         )

@@ -87,12 +87,14 @@ def pipe_cell(number: int, seed: int = 1, robot: str = "tm14like") -> PipeCell:
     within reach at both ends, and those for which PRM*-MG finds no motion in one of six tries, each with a roadmap and
     500 grasps of its own; for structures 4, 7 and 8 also those in which 30 % of 500 grasps or more are within reach, for
     structure 6 and the TM14-like arm those whose first grasp within reach would do. Raises InvalidInput on a number or
-    robot that does not exist.
+    robot that does not exist and on a negative seed.
     """
     if number not in range(1, len(_STYLES) + 1):
         raise InvalidInput(f"number = {number}: must be from 1 to {len(_STYLES)}")
+    if not isinstance(seed, int | np.integer) or seed < 0:
+        raise InvalidInput(f"seed = {seed!r}: must be a whole number >= 0")
     pipe_robot(robot)
-    return _pipe_cell(number, seed, robot)
+    return _pipe_cell(number, int(seed), robot)
 
 
 @cache

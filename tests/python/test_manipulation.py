@@ -178,7 +178,14 @@ def test_only_one_of_many_grasps_leads_there():
         ({"object": []}, ["object"]),
         ({"object": 3}, ["object"]),
         ({"object_name": "post"}, ["object_name", "post"]),
-        ({"touch_links": ["hand"]}, ["hand"]),
+        ({"touch_links": ["hand"]}, ["touch_links = hand"]),
+        ({"touch_links": ["l33"]}, ["touch_links = l33", "l3"]),
+        ({"touch_links": "l3"}, ["touch_links = 'l3'", "a list"]),
+        ({"world": None}, ["world = None", "a World"]),
+        ({"group": "arm"}, ["group = 'arm'", "a JointGroup"]),
+        ({"gripper": "wide"}, ["gripper = 'wide'", "a Gripper"]),
+        ({"object_name": 3}, ["object_name = 3"]),
+        ({"touch_link": ["l3"]}, ["touch_link=", "did you mean touch_links"]),
     ],
 )
 def test_bad_problems_are_refused(changes, words):
@@ -193,6 +200,65 @@ def test_poses_of_grasps_must_be_rigid():
         mg.CandidateGrasp(2 * np.eye(4))
     with pytest.raises(mg.InvalidInput, match="opening"):
         mg.CandidateGrasp(np.eye(4), opening=float("nan"))
+    with pytest.raises(mg.InvalidInput, match="cost = 'a'"):
+        mg.CandidateGrasp(np.eye(4), cost="a")
+
+
+def test_what_is_no_problem_and_no_roadmap_is_refused_by_name():
+    with pytest.raises(mg.InvalidInput, match="problem = 3: must be a ManipulationProblem"):
+        mg.plan_manipulation(3)
+    with pytest.raises(mg.InvalidInput, match="roadmap = 'x': must be a Roadmap"):
+        mg.plan_manipulation(problem(), roadmap="x")
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("batch", 1), ("lazy_grasps", True), ("refinements", 5), ("shorten", False), ("vertices", 50), ("gamma", 4.0)],
+)
+def test_options_of_prm_star_mg_are_not_rrt_star_mgs(name, value):
+    with pytest.raises(mg.InvalidInput, match=f"{name}: is an option of prm_star_mg, not of rrt_star_mg"):
+        mg.plan_manipulation(problem(), planner="rrt_star_mg", **{name: value})
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("max_samples", 9), ("step", 0.5), ("rrt_gamma", 1.0), ("goal_cost", 2.0), ("keep_trees", True)]
+)
+def test_options_of_rrt_star_mg_are_not_prm_star_mgs(name, value):
+    with pytest.raises(mg.InvalidInput, match=f"{name}: is an option of rrt_star_mg, not of prm_star_mg"):
+        mg.plan_manipulation(problem(), **{name: value})
+
+
+def test_a_roadmap_is_of_no_use_to_rrt_star_mg():
+    roadmap = mg.Roadmap.build(ARM, vertices=20)
+    with pytest.raises(mg.InvalidInput, match="roadmap: is an option of prm_star_mg"):
+        mg.plan_manipulation(problem(), planner="rrt_star_mg", roadmap=roadmap)
+
+
+def test_trees_are_handed_over_when_asked_for():
+    given = {"planner": "rrt_star_mg", "max_samples": 500, "time_limit": 100.0}
+    assert mg.plan_manipulation(problem(), **given).trees == []
+    found = mg.plan_manipulation(problem(), keep_trees=True, **given)
+    assert {tree.from_goal for tree in found.trees} == {False, True}
+    for tree in found.trees:
+        assert tree.vertices.shape == (len(tree.parents), 3) and len(tree.costs) == len(tree.parents)
+        T_end = flat(0.6, -0.45, 0.9) if tree.from_goal else flat(0.55, 0.45, 1.2)
+        for q, parent, cost in zip(tree.vertices, tree.parents, tree.costs, strict=True):
+            if parent < 0:
+                assert cost == 0
+                assert np.allclose(ARM.fk(q), T_end @ GRASPS[tree.grasp].T_object_tool, atol=3e-4)
+            else:
+                way = np.linalg.norm(q - tree.vertices[parent])
+                assert cost == pytest.approx(tree.costs[parent] + way, abs=1e-9)
+    assert json.loads(json.dumps(found.trees[0].to_dict()))["grasp"] == found.trees[0].grasp
+
+
+def test_grasps_searched_are_counted_once():
+    found = mg.plan_manipulation(problem(), **{**OPTIONS, "shorten": True}, refinements=20)
+    reached = [report for report in found.grasps if report.start_solutions and report.goal_solutions]
+    searched = [report for report in found.grasps if report.searched]
+    assert 0 < found.stats["grasps_searched"] == len(searched) <= len(reached) <= 20
+    # Refinement rounds search again what was searched before.
+    assert found.stats["graph_searches"] > 20
 
 
 @pytest.mark.parametrize(
@@ -208,6 +274,8 @@ def test_poses_of_grasps_must_be_rigid():
         ({"ik_solutions": 0}, ["ik_solutions"]),
         ({"joint_step": 0}, ["joint_step"]),
         ({"seed": -1}, ["seed"]),
+        ({"threads": -1}, ["threads"]),
+        ({"threads": 10**6}, ["threads = 1000000", "1024"]),
     ],
 )
 def test_bad_options_are_refused(options, words):
@@ -219,8 +287,10 @@ def test_bad_options_are_refused(options, words):
 
 def test_a_roadmap_of_another_robot_is_refused(tmp_path):
     other = mg.Roadmap.build(planar_arm(length=0.5), vertices=50)
-    with pytest.raises(mg.InvalidInput, match="another robot"):
+    with pytest.raises(mg.InvalidInput, match=r"another robot.*origins, axes or limits"):
         mg.plan_manipulation(problem(), roadmap=other)
+    with pytest.raises(mg.InvalidInput, match="for j1, j2, not for j1, j2, j3"):
+        mg.plan_manipulation(problem(), roadmap=mg.Roadmap.build(planar_arm(joints=2), vertices=50))
     other.save(tmp_path / "other.roadmap")
     with pytest.raises(mg.IoError, match="another robot"):
         mg.Roadmap.load(tmp_path / "other.roadmap", ARM)

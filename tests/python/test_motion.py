@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
+from conftest import ASSETS
 from mmgrasp.cli import main
 from mmgrasp.motion_bench import read_motion_problem
 from mmgrasp.motion_bench_run import verify_motion
@@ -149,3 +150,84 @@ def test_the_bench_refuses_what_is_not_there(tmp_path, capsys):
     assert "--data" in capsys.readouterr().err
     assert main(["bench", "mbm", "--set", "kitchen"]) == 2
     assert "bookshelf_small" in capsys.readouterr().err
+    for option in ("--limit", "--seeds"):
+        with pytest.raises(SystemExit) as refused:
+            main(["bench", "mbm", "--data", str(tmp_path), option, "0"])
+        assert refused.value.code == 2
+        told = capsys.readouterr().err
+        assert option in told and "at least 1" in told
+
+
+def test_a_start_beyond_limits_is_told_by_joint_value_and_limits(robot, arm, world):
+    found = mg.plan_motion(robot, arm, world, start=[0, 0, 3.25, 0], goal=GOAL)
+    assert found.outcome == mg.Outcome.invalid_start
+    assert found.rejections.limits == 1
+    for word in ("j3", "3.25", "[-2.8, 2.8]"):
+        assert word in found.beyond_limits and word in repr(found)
+    assert found.to_dict()["beyond_limits"] == found.beyond_limits
+    found = mg.plan_motion(robot, arm, world, start=START, goal=[0, -2.9, 0, 0])
+    assert found.outcome == mg.Outcome.invalid_goal
+    assert found.rejections.limits == 1
+    for word in ("j2", "-2.9", "[-2.8, 2.8]"):
+        assert word in found.beyond_limits
+    assert mg.plan_motion(robot, arm, world, start=START, goal=GOAL).beyond_limits == ""
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"world": None}, ["world = None", "a World"]),
+        ({"robot": "planar"}, ["robot = 'planar'", "a Robot"]),
+        ({"group": 3}, ["group = 3", "a JointGroup"]),
+        ({"tool_cone": "up"}, ["tool_cone = 'up'", "a ToolCone"]),
+        ({"regions": 7}, ["regions = 7", "ToolRegion"]),
+        ({"tool_poses": [np.eye(4), 2 * np.eye(4)]}, ["tool_poses[1]"]),
+    ],
+)
+def test_bad_arguments_are_refused_by_name(robot, arm, world, changes, words):
+    given = {"robot": robot, "group": arm, "world": world, "start": START, "goal": GOAL, **changes}
+    with pytest.raises(mg.InvalidInput) as refused:
+        mg.plan_motion(**given)
+    for word in words:
+        assert word in str(refused.value)
+
+
+def test_a_group_of_another_robot_is_told_by_what_differs(robot, world):
+    def other(urdf: str = URDF, srdf: str = SRDF, **options) -> mg.Robot:
+        return mg.Robot.from_strings(urdf, srdf, **options)
+
+    for another, words in [
+        (other(URDF.replace("j3", "elbow")), "'elbow', not 'j3'"),
+        (other(URDF.replace("upper='2.8'", "upper='2.7'")), "'j1' has other limits"),
+        (other(URDF.replace(f"xyz='{LINK} 0 0'", "xyz='0.5 0 0'")), "'j2' has another type, origin or axis"),
+        (other(srdf="<robot name='planar'/>"), "pairs of its links"),
+        (other(base="omni"), "base is omni, not fixed"),
+        (other(URDF.replace(f"size='{LINK} 0.04 0.04'", "size='0.1 0.1 0.1'")), "shapes"),
+    ]:
+        group = another.group(base_link="l0", tip="tip")
+        with pytest.raises(mg.InvalidInput, match="another robot") as refused:
+            mg.plan_motion(robot, group, world, start=START, goal=GOAL)
+        assert words in str(refused.value)
+        with pytest.raises(mg.InvalidInput, match="another robot"):
+            mg.CollisionChecker(robot, world, group)
+
+
+def test_a_diff_drive_base_is_not_moved_sideways():
+    folder = ASSETS / "robots" / "fetchlike"
+    robot = mg.Robot.load(folder / "fetchlike.urdf", folder / "fetchlike.srdf", base="diff_drive")
+    group = robot.group("arm", with_base=True)
+    checker = mg.CollisionChecker(robot, mg.World(), group)
+    q = np.zeros(len(group.names))
+    aside = mg.pose([0, 0.2, 0]) @ group.fk(q)
+    box = mg.LinkShape(mg.Box([0.02, 0.02, 0.02]))
+    calls = {
+        "plan_straight_line": lambda: mg.plan_straight_line(checker, q, aside),
+        "plan_cartesian": lambda: mg.plan_cartesian(checker, [group.fk(q), aside], near=q),
+        "plan_manipulation": lambda: mg.ManipulationProblem(
+            group, mg.World(), box, group.fk(q), aside, [mg.CandidateGrasp(np.eye(4))]
+        ),
+    }
+    for name, call in calls.items():
+        with pytest.raises(mg.InvalidInput, match="diff_drive") as refused:
+            call()
+        assert name in str(refused.value) and "group = " in str(refused.value)

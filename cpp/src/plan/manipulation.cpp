@@ -8,8 +8,35 @@
 #include "plan/carry_planner.hpp"
 #include "plan/roadmap_data.hpp"
 #include "plan/steered_base.hpp"
+#include "robot/near_name.hpp"
 
 namespace mmgrasp {
+namespace {
+
+void check_touch_link(const Robot& robot, const std::string& link) {
+  if (robot.has_link(link)) return;
+  std::vector<std::string> names;
+  for (const Link& known : robot.links()) names.push_back(known.name);
+  throw InvalidInput("touch_links = " + link + ": robot '" + robot.name() + "' has no such link" +
+                     detail::near_miss(link, names));
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
+void check_roadmap(const JointGroup& own, const JointGroup& group) {
+  if (detail::kinematics_key(own) == detail::kinematics_key(group)) return;
+  const std::string given = listed(own.names()), wanted = listed(group.names());
+  throw InvalidInput("roadmap: was built for another robot or other joints than the problem's group: " +
+                     (given == wanted ? "joints of the robot have other origins, axes or limits"
+                                      : "for " + given + ", not for " + wanted));
+}
+
+}  // namespace
+
 void ManipulationProblem::check() const {
   detail::refuse_steered_base(group, "plan_manipulation");
   require(!object.empty(), "object", "[]", "must have at least one shape");
@@ -17,6 +44,7 @@ void ManipulationProblem::check() const {
   checked_pose(T_world_start.matrix(), "T_world_start");
   checked_pose(T_world_goal.matrix(), "T_world_goal");
   if (gripper) gripper->check();
+  for (const std::string& link : touch_links) check_touch_link(group.robot(), link);
   const double widest = gripper ? gripper->max_opening : 1e9;
   for (std::size_t i = 0; i < grasps.size(); ++i) {
     const CandidateGrasp& grasp = grasps[i];
@@ -56,9 +84,7 @@ ManipulationResult plan_manipulation(const ManipulationProblem& problem, const M
                                      const std::function<void(const Improvement&)>& improved) {
   problem.check();
   options.check();
-  if (roadmap && detail::kinematics_key(roadmap->group()) != detail::kinematics_key(problem.group)) {
-    throw InvalidInput("roadmap: was built for another robot or other joints than the problem's group");
-  }
+  if (roadmap) check_roadmap(roadmap->group(), problem.group);
   const detail::CarryPlanner& planner = detail::carry_planner(options.planner);
   ManipulationResult result;
   detail::CarryClock clock;

@@ -6,6 +6,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "plan/beyond_limits.hpp"
 #include "plan/joint_angles.hpp"
 #include "plan/motion_edges.hpp"
 #include "plan/motion_goals.hpp"
@@ -70,7 +71,10 @@ class MotionSearch {
   void end(Outcome outcome) { result_.outcome = outcome; }
 
   bool start_is_valid() {
-    if (edges_.is_free(start_)) return true;
+    const Rejection cause = edges_.rejection(start_);
+    if (cause == Rejection::none) return true;
+    result_.rejections.add(cause);
+    if (cause == Rejection::limits) result_.beyond_limits = detail::beyond_limits(checker_.group(), start_);
     result_.contacts = checker_.contacts(start_);
     end(Outcome::invalid_start);
     return false;
@@ -80,6 +84,8 @@ class MotionSearch {
   bool find_goals() {
     ends_ = detail::allowed_goals(edges_, goals_, options_, monitor_, result_.rejections, result_.contacts);
     if (ends_.empty()) {
+      for (std::size_t i = 0; i < goals_.configurations.size() && result_.beyond_limits.empty(); ++i)
+        result_.beyond_limits = detail::beyond_limits(checker_.group(), goals_.configurations[i]);
       end(monitor_.stopped() ? Outcome::stopped : Outcome::invalid_goal);
       return false;
     }

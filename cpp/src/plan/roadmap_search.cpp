@@ -48,7 +48,11 @@ bool RoadmapSearch::run() {
     for (const GraspOverlay& overlay : overlays_)
       if (!overlay.connected) result_.lower_bound = std::min(result_.lower_bound, overlay.candidate.straight_cost());
   }
-  for (const GraspOverlay& overlay : overlays_) result_.stats.grasps_searched += overlay.connected ? 1 : 0;
+  for (const GraspOverlay& overlay : overlays_) {
+    bool& searched = result_.grasps[static_cast<std::size_t>(overlay.candidate.grasp)].searched;
+    result_.stats.grasps_searched += overlay.connected && !searched ? 1 : 0;
+    searched |= overlay.connected;
+  }
   return whole;
 }
 

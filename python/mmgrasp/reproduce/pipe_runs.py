@@ -36,15 +36,14 @@ def roadmap_of(robot: str, vertices: int, run: int) -> Roadmap:
 
 def carry(cell: PipeCell, count: int, run: int, *, vertices: int = 0, **options: Any) -> dict[str, Any]:
     """One call of plan_manipulation as plain values; with `vertices` over the run's roadmap of that size."""
-    roadmap = roadmap_of(cell.robot_name, vertices, run) if vertices else None
+    if vertices:
+        options.update(roadmap=roadmap_of(cell.robot_name, vertices, run), shorten=False)
     result = plan_manipulation(
         cell.problem(grasps_of(cell, run)[:count]),
-        roadmap=roadmap,
         seed=run + 1,
         threads=1,
         time_limit=TIME_LIMIT,
         first_grasps=0,
-        shorten=False,
         **options,
     )
     solved = result.outcome == Outcome.solved

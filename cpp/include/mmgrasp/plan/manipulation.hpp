@@ -39,7 +39,8 @@ struct MMGRASP_EXPORT ManipulationProblem {
   std::optional<Gripper> gripper{};     ///< Sets the fingers to each grasp's opening.
   std::set<std::string> touch_links{};  ///< Links that may touch the object; empty: the end effector's.
   std::string object_name = "object";
-  /// Throws InvalidInput: a diff-drive base, no grasps, a pose that is no rigid transform (index and field named), a negative cost.
+  /// Throws InvalidInput: a diff-drive base, no grasps, a pose that is no rigid transform (index and field named), a
+  /// negative cost.
   void check() const;
 };
 
@@ -85,10 +86,11 @@ struct MMGRASP_EXPORT ManipulationOptions {
 /// "prm_star_mg" searches a roadmap (P2 chapter 4), "rrt_star_mg" grows trees and gets better with time (chapter 5).
 MMGRASP_EXPORT std::vector<std::string> manipulation_planner_names();
 
-/// What became of one grasp before the search.
+/// What became of one grasp.
 struct MMGRASP_EXPORT GraspReport {
   Rejections start, goal;                       ///< Arm configurations turned down at either end.
   int start_solutions = 0, goal_solutions = 0;  ///< Those left.
+  bool searched = false;                        ///< By prm_star_mg, over a roadmap.
 };
 
 /// A better solution on the way.
@@ -103,7 +105,7 @@ struct MMGRASP_EXPORT ManipulationStats {
   /// Of prm_star_mg's best path over the roadmap, before it was shortened; 0: none costs less than the first path.
   double roadmap_cost = 0;
   std::size_t graph_searches = 0;
-  std::size_t grasps_searched = 0;
+  std::size_t grasps_searched = 0;      ///< By prm_star_mg over a roadmap or more: each grasp counts once.
   std::size_t edges_checked_robot = 0;  ///< For the robot alone, shared by all grasps of an opening.
   std::size_t edges_checked_held = 0;   ///< For what it holds.
   std::size_t samples = 0;              ///< Drawn by rrt_star_mg, or used again.

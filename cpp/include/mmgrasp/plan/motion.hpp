@@ -62,7 +62,10 @@ struct MMGRASP_EXPORT MotionResult {
   double cost = 0;                ///< Its length.
   int goal_index = -1;            ///< Which of the goals it reaches.
   std::vector<Contact> contacts;  ///< With invalid_start or invalid_goal: what touches.
-  Rejections rejections;          ///< Of goals turned down; grasp_filter counts those outside the tool cone.
+  /// Of the start, or of goals, turned down; grasp_filter counts those outside the tool cone.
+  Rejections rejections;
+  /// With invalid_start or invalid_goal: which joint is outside of its limits, its value and these; empty: none is.
+  std::string beyond_limits;
   MotionStats stats;
 };
 

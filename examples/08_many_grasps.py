@@ -1,7 +1,8 @@
 """A gantry carries a bar past two posts: the planner chooses where along the bar to hold it (P2 chapter 4).
 
 One roadmap serves all grasps; each keeps a small overlay of what it blocks. With a file name as argument it draws two
-overlays: the plane is the configuration space of the gantry.
+overlays, with a second one the forest that RRT*-MG grows for five of the grasps (P2 chapter 5): the plane is the
+configuration space of the gantry.
 """
 
 import sys
@@ -30,47 +31,86 @@ problem = mg.ManipulationProblem(gantry, world, bar, mg.pose([0.33, 0.3, 0]), mg
 
 roadmap = mg.Roadmap.build(gantry, vertices=1500, gamma=1.5)
 print(roadmap, roadmap.figures)
-result = mg.plan_manipulation(problem, roadmap=roadmap)
+result = mg.plan_manipulation(problem, roadmap=roadmap, shorten=False)
 print(result)
 print(f"held {places[result.grasp_index]:+.2f} m from the bar's middle; nothing over the roadmap costs less")
 worst = max(range(len(grasps)), key=lambda i: abs(places[i] - places[result.grasp_index]))
-other = mg.plan_manipulation(
-    mg.ManipulationProblem(gantry, world, bar, problem.T_world_start, problem.T_world_goal, grasps[worst : worst + 1]),
-    roadmap=roadmap,
-)
+
+
+def with_grasps(chosen: list[mg.CandidateGrasp]) -> mg.ManipulationProblem:
+    return mg.ManipulationProblem(gantry, world, bar, problem.T_world_start, problem.T_world_goal, chosen)
+
+
+other = mg.plan_manipulation(with_grasps([grasps[worst]]), roadmap=roadmap, shorten=False)
 print(f"held {places[worst]:+.2f} m from it alone: {other}")
 
+five = list(range(0, 25, 6))
+forest = mg.plan_manipulation(
+    with_grasps([grasps[i] for i in five]), planner="rrt_star_mg", max_samples=200, step=0.3, keep_trees=True
+)
+print(f"by trees, with {len(five)} of the grasps: {forest}, {len(forest.trees)} trees in the race")
 
-def blocked_vertices(grasp: int) -> tuple[np.ndarray, np.ndarray]:
-    """Which vertices the hand alone blocks, and which of the others the bar in the hand."""
+
+def blocked(grasp: mg.CandidateGrasp, configurations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Which configurations the hand alone blocks, and which of the others the bar in the hand."""
     held = world.copy()
     held.add("bar", [bar])
-    held.attach("bar", "hand", np.linalg.inv(grasps[grasp].T_object_tool))
+    held.attach("bar", "hand", np.linalg.inv(grasp.T_object_tool))
     alone = mg.CollisionChecker(gantry.robot, world, gantry)
     bar_only = mg.CollisionChecker(gantry.robot, held, gantry, held_only=True)
-    by_hand = np.array([not alone.is_free(q) for q in roadmap.vertices])
-    return by_hand, ~by_hand & np.array([not bar_only.is_free(q) for q in roadmap.vertices])
+    by_hand = np.array([not alone.is_free(q) for q in configurations])
+    return by_hand, ~by_hand & np.array([not bar_only.is_free(q) for q in configurations])
 
 
-if len(sys.argv) > 1:
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
+def draw_overlays(file: str) -> None:
+    from matplotlib import pyplot as plt
     from matplotlib.collections import LineCollection
 
     figure, axes = plt.subplots(1, 2, figsize=(13, 4.4), sharey=True)
     for axis, grasp, found in zip(axes, (result.grasp_index, worst), (result, other), strict=True):
-        by_hand, by_bar = blocked_vertices(grasp)
+        by_hand, by_bar = blocked(grasps[grasp], roadmap.vertices)
         ends = roadmap.vertices[roadmap.edges]
         axis.add_collection(LineCollection(ends, colors="0.85", linewidths=0.5))
         open_ = ~by_hand & ~by_bar
         for mask, colour, label in ((open_, "0.6", "free"), (by_hand, "k", "hand"), (by_bar, "C1", "bar in hand")):
             axis.plot(*roadmap.vertices[mask].T, ".", color=colour, ms=4, label=label)
         if found.path is not None:
-            axis.plot(*found.path.T, "C0-o", lw=2, ms=5, label=f"path, {found.cost:.2f} m")
+            axis.plot(*found.path.T, "C0-o", lw=2, ms=5, label="best path")
         axis.set(xlim=(0, 2), ylim=(0, 1.2), aspect="equal", xlabel="x [m]")
-        axis.set_title(f"held {places[grasp]:+.2f} m from the middle")
+        axis.set_title(f"held {places[grasp]:+.2f} m from the middle: cost {found.cost:.2f} m")
     axes[0].set_ylabel("y [m]")
     axes[0].legend(loc="lower center", bbox_to_anchor=(1.05, -0.38), ncol=4, frameon=False)
-    figure.savefig(sys.argv[1], dpi=80, bbox_inches="tight")
+    figure.savefig(file, dpi=80, bbox_inches="tight")
+
+
+def draw_forest(file: str) -> None:
+    from matplotlib import pyplot as plt
+    from matplotlib.collections import LineCollection
+
+    figure, axis = plt.subplots(figsize=(9, 5.6))
+    x, y = np.meshgrid(np.linspace(0, 2, 201), np.linspace(0, 1.2, 121))
+    by_hand, by_bar = blocked(grasps[five[forest.grasp_index]], np.column_stack([x.ravel(), y.ravel()]))
+    shade = np.where(by_hand, 0.75, np.where(by_bar, 0.9, 1.0)).reshape(x.shape)
+    axis.imshow(shade, origin="lower", extent=(0, 2, 0, 1.2), cmap="gray", vmin=0, vmax=1)
+    for tree in sorted(forest.trees, key=lambda tree: tree.grasp):
+        colour, grown = f"C{tree.grasp}", np.array(tree.parents) >= 0
+        ways = np.stack([tree.vertices[grown], tree.vertices[np.array(tree.parents)[grown]]], axis=1)
+        axis.add_collection(
+            LineCollection(ways, colors=colour, linewidths=1, linestyles="--" if tree.from_goal else "-")
+        )
+        place = f"held {places[five[tree.grasp]]:+.2f} m from the middle"
+        roots = tree.vertices[~grown].T
+        axis.plot(*roots, "s" if tree.from_goal else "o", color=colour, label=None if tree.from_goal else place)
+    axis.plot(*forest.path.T, "k", lw=2.5, label=f"best path, cost {forest.cost:.2f} m")
+    axis.set(xlim=(0, 2), ylim=(0, 1.2), aspect="equal", xlabel="x [m]", ylabel="y [m]")
+    axis.legend(loc="lower center", bbox_to_anchor=(0.5, -0.36), ncol=3, frameon=False)
+    figure.savefig(file, dpi=80, bbox_inches="tight")
+
+
+if len(sys.argv) > 1:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    draw_overlays(sys.argv[1])
+if len(sys.argv) > 2:
+    draw_forest(sys.argv[2])

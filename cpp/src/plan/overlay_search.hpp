@@ -29,6 +29,8 @@ class MMGRASP_EXPORT OverlaySearch {
   End search(GraspOverlay& overlay, const RoadmapKnowledge& robot, double bound);
   /// After giving up: no path costs less.
   double reached() const { return reached_; }
+  /// Ways to nodes left open by the last search: what an upper bound keeps small.
+  std::size_t open() const { return heap_.size(); }
 
  private:
   struct Node {
@@ -62,6 +64,6 @@ class MMGRASP_EXPORT OverlaySearch {
 /// Cost of the best path that leaves one of the overlay's starts for a node of an earlier path and a later node of that
 /// path for one of its goals (P2 4.3.2.5): an upper bound as long as nothing of it is known to be blocked. Infinite
 /// when there is none.
-double spliced_cost(const Roadmap& roadmap, const GraspOverlay& overlay, const std::vector<int>& nodes);
+MMGRASP_EXPORT double spliced_cost(const Roadmap& roadmap, const GraspOverlay& overlay, const std::vector<int>& nodes);
 
 }  // namespace mmgrasp::detail

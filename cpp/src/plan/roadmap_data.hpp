@@ -53,7 +53,7 @@ MMGRASP_EXPORT Roadmap build_roadmap(const JointGroup& group, const RoadmapOptio
                                      const std::function<bool()>& over);
 
 /// A small roadmap over given configurations, one column each, made by the calling thread.
-Roadmap roadmap_over(const JointGroup& group, int neighbours, Eigen::MatrixXd vertices);
+MMGRASP_EXPORT Roadmap roadmap_over(const JointGroup& group, int neighbours, Eigen::MatrixXd vertices);
 
 /// What a group must agree on to use a roadmap: the robot's joints, and which of them it moves where. Shapes, disabled
 /// pairs and where the root stands do not matter.

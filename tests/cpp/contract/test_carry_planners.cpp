@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <string>
 #include <thread>
 
 #include "mmgrasp/core/error.hpp"
@@ -205,6 +207,38 @@ TEST_P(CarryPlanner, TheClockIsACap) {
   const ManipulationResult result = plan_manipulation(walled(), options);
   EXPECT_EQ(result.outcome, Outcome::timeout);
   EXPECT_FALSE(result.path);
+}
+
+/// A monitor that calls `act` once, when a part of the search, but not all of it, is done.
+Monitor within_search(std::function<void()> act) {
+  Monitor monitor;
+  monitor.progress = [act = std::move(act), done = false](const std::string& stage, double fraction) mutable {
+    if (done || stage != "search" || fraction <= 0 || fraction >= 1) return;
+    done = true;
+    act();
+  };
+  return monitor;
+}
+
+TEST_P(CarryPlanner, ClockAndStopTokenEndASearchThatHasBegun) {
+  ManipulationOptions options = this->options();
+  options.first_grasps = 0;
+  options.prm.batch = 3;
+  const ManipulationResult whole = plan_manipulation(walled(), options);
+  for (const bool by_clock : {true, false}) {
+    options.time_limit = by_clock ? 1.0 : 100.0;
+    Monitor monitor;
+    monitor = within_search([&] {
+      // The clock runs out here, wherever it stood.
+      if (by_clock) std::this_thread::sleep_for(std::chrono::duration<double>(options.time_limit));
+      if (!by_clock) monitor.stop.stop();
+    });
+    const ManipulationResult cut = plan_manipulation(walled(), options, nullptr, monitor);
+    EXPECT_EQ(cut.outcome, by_clock ? Outcome::timeout : Outcome::stopped);
+    EXPECT_FALSE(cut.path);
+    EXPECT_GT(cut.stats.samples + cut.stats.graph_searches, 0u);
+    EXPECT_LT(cut.stats.samples + cut.stats.graph_searches, whole.stats.samples + whole.stats.graph_searches);
+  }
 }
 
 TEST_P(CarryPlanner, StopsWithWhatItHas) {

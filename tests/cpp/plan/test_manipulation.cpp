@@ -107,6 +107,23 @@ TEST(Roadmap, JoinsExactlyTheNearOnes) {
   EXPECT_NEAR(roadmap.figures().gamma_star, 2 * std::cbrt(4.0 / 3) * 5.6 / std::cbrt(4.0 / 3 * M_PI), 1e-9);
 }
 
+/// The setting of P2's experiments: sparse, in many parts, and far below the gamma that PRM* asks for.
+TEST(Roadmap, SixJointsAskForMoreThanTheGammaOfThePaper) {
+  const test::PlanarArm arm(6, 0.2, 0.02, false, M_PI);
+  RoadmapOptions options;
+  options.vertices = 5000;
+  options.gamma = 4;
+  const RoadmapFigures figures = Roadmap::build(arm.group(), options).figures();
+  // The unit ball in six dimensions holds pi^3 / 6.
+  EXPECT_NEAR(figures.gamma_star, 2 * std::pow(7.0 / 6, 1.0 / 6) * 2 * M_PI / std::pow(M_PI * M_PI * M_PI / 6, 1.0 / 6),
+              1e-4);  // limits are written with six digits
+  EXPECT_GT(figures.gamma_star, 2 * options.gamma);
+  EXPECT_GT(figures.mean_degree, 1.5);
+  EXPECT_LT(figures.mean_degree, 3);
+  EXPECT_GT(figures.components, 500);
+  EXPECT_LT(figures.largest_component, 4500);
+}
+
 TEST(Roadmap, LargerOneHoldsTheSmallerOnesVertices) {
   const test::PlanarArm arm(3);
   RoadmapOptions options;

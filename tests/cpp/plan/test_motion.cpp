@@ -110,21 +110,20 @@ TEST(PlanMotion, ThinObstaclesAreNotCut) {
   // through.
   const test::PlanarArm arm(2, kLength, 0.01);
   const std::vector<SceneBox> scene{{{0.65, 0, 0}, {0.2, 0.001, 0.2}}};
+  int solved = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
     CollisionChecker checker(arm.group(), test::make_world(scene));
     MotionOptions options;
     options.edge_step = 0.08;
     options.seed = seed;
     const MotionResult result = plan_motion(checker, vec({-0.5, 0.1}), {vec({0.5, -0.1})}, options);
-    if (!result.path) {
-      EXPECT_NE(result.outcome, Outcome::solved);
-      continue;
-    }
-    for (std::size_t i = 0; i + 1 < result.path->waypoints.size(); ++i) {
-      EXPECT_TRUE(
-          checker.edge_is_free(result.path->waypoints[i], result.path->waypoints[i + 1], options.edge_step / 8));
-    }
+    EXPECT_EQ(result.outcome == Outcome::solved, result.path.has_value());
+    if (!result.path) continue;
+    ++solved;
+    // Ten times finer than the planner's own last look: the tip then moves less than the plate is thick.
+    EXPECT_GT(test::fcl_path_clearance(arm, kLength, *result.path, scene, options.edge_step / 80), 0) << seed;
   }
+  EXPECT_GE(solved, 15);
 }
 
 TEST(PlanMotion, ContinuousJointsCrossHalfATurn) {

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
 #include "plan/planar_arm.hpp"
 
 namespace mmgrasp::detail {
@@ -73,6 +78,101 @@ TEST_F(WithoutAWay, WhatIsKnownIsNotAskedAgain) {
   const int all = asked_;
   EXPECT_EQ(search_.search(overlay_, robot_, 1e9), OverlaySearch::End::none);
   EXPECT_EQ(asked_, all);
+}
+
+/// Overlays of grasps with ends close to each other, as those of neighbouring grasps are, over one roadmap.
+class Splicing : public ::testing::Test {
+ protected:
+  Splicing() : robot_(roadmap_), search_(roadmap_) {
+    for (int i = 0; i < 8; ++i) {
+      CarryCandidate candidate;
+      candidate.grasp = i;
+      candidate.cost = 0.01 * i;
+      candidate.starts = {Eigen::Vector3d(1.5, 0.5 + 0.05 * i, -0.5), Eigen::Vector3d(1.4, 0.3, -0.9 + 0.04 * i)};
+      candidate.goals = {Eigen::Vector3d(-1.5, 1.0 - 0.03 * i, 0.4)};
+      overlays_.emplace_back(roadmap_, candidate);
+      overlays_.back().connect(roadmap_, false, 1e9);
+    }
+  }
+
+  static Roadmap roadmap() {
+    RoadmapOptions options;
+    options.vertices = 3000;
+    options.neighbours = 10;
+    return Roadmap::build(test::PlanarArm(3).group(), options);
+  }
+
+  /// Every way onto the path and off it again, added up one by one.
+  double by_hand(const GraspOverlay& overlay, const std::vector<int>& nodes) const {
+    double best = std::numeric_limits<double>::infinity();
+    for (std::size_t in = 1; in + 1 < nodes.size(); ++in)
+      for (std::size_t out = in; out + 1 < nodes.size(); ++out) {
+        double along = 0;
+        for (std::size_t k = in; k < out; ++k)
+          along += (roadmap_.vertices().col(nodes[k + 1]) - roadmap_.vertices().col(nodes[k])).norm();
+        for (const GraspOverlay::Link& first : overlay.links)
+          for (const GraspOverlay::Link& last : overlay.links)
+            if (first.from >= overlay.vertex_count && first.to == nodes[in] && !first.blocked &&
+                last.to >= overlay.first_goal() && last.from == nodes[out] && !last.blocked)
+              best = std::min(best, first.length + along + last.length + overlay.candidate.cost);
+      }
+    return best;
+  }
+
+  Roadmap roadmap_ = roadmap();
+  std::vector<GraspOverlay> overlays_;
+  RoadmapKnowledge robot_;
+  OverlaySearch search_;
+};
+
+TEST_F(Splicing, IsTheCheapestWayOntoAnEarlierPathAndOffIt) {
+  ASSERT_EQ(search_.search(overlays_[0], robot_, 1e9), OverlaySearch::End::found);
+  const std::vector<int> path = overlays_[0].nodes;
+  int finite = 0;
+  for (GraspOverlay& overlay : overlays_) {
+    const double expected = by_hand(overlay, path);
+    if (!std::isfinite(expected)) {
+      EXPECT_EQ(spliced_cost(roadmap_, overlay, path), expected);
+      continue;
+    }
+    ++finite;
+    EXPECT_NEAR(spliced_cost(roadmap_, overlay, path), expected, 1e-12);
+    // What is known to be blocked is no way on.
+    for (GraspOverlay::Link& link : overlay.links) link.blocked = link.to == path[1] || link.from == path[1];
+    const double other = by_hand(overlay, path);
+    EXPECT_GE(other, expected);
+    if (std::isfinite(other)) {
+      EXPECT_NEAR(spliced_cost(roadmap_, overlay, path), other, 1e-12);
+    } else {
+      EXPECT_EQ(spliced_cost(roadmap_, overlay, path), other);
+    }
+    for (GraspOverlay::Link& link : overlay.links) link.blocked = false;
+  }
+  EXPECT_GE(finite, 4);
+  EXPECT_NEAR(spliced_cost(roadmap_, overlays_[0], path), overlays_[0].path_cost, 1e-12);
+}
+
+TEST_F(Splicing, BoundsTheSearchAndLeavesTheOptimum) {
+  ASSERT_EQ(search_.search(overlays_[0], robot_, 1e9), OverlaySearch::End::found);
+  const std::vector<int> path = overlays_[0].nodes;
+  std::size_t open = 0, open_bounded = 0;
+  for (std::size_t i = 1; i < overlays_.size(); ++i) {
+    GraspOverlay& overlay = overlays_[i];
+    const double bound = spliced_cost(roadmap_, overlay, path);
+    ASSERT_EQ(search_.search(overlay, robot_, 1e9), OverlaySearch::End::found);
+    open += search_.open();
+    const double optimum = overlay.path_cost;
+    const std::vector<int> nodes = overlay.nodes;
+    EXPECT_GE(bound, optimum * (1 - 1e-12));
+    ASSERT_EQ(search_.search(overlay, robot_, bound), OverlaySearch::End::found);
+    open_bounded += search_.open();
+    EXPECT_EQ(overlay.path_cost, optimum);
+    EXPECT_EQ(overlay.nodes, nodes);
+    // Below the optimum there is nothing; at it, however it was summed, the path itself.
+    EXPECT_EQ(search_.search(overlay, robot_, optimum * (1 - 1e-6)), OverlaySearch::End::none);
+    EXPECT_EQ(search_.search(overlay, robot_, optimum * (1 - 1e-12)), OverlaySearch::End::found);
+  }
+  EXPECT_LT(open_bounded, open / 2);
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <vector>
 
 #include "mmgrasp/core/error.hpp"
 #include "plan/bar_carry.hpp"
@@ -67,6 +69,115 @@ TEST(RrtStarMg, EverySwitchLeavesPathsSound) {
         options.rrt.exploration = exploration;
         expect_sound(problem, plan_manipulation(problem, options));
       }
+}
+
+/// Where the trees of a few runs grew.
+struct Growth {
+  double all = 0, from_goals = 0, of_best = 0;
+  double outside = 0;  ///< Where no path through the vertex is cheaper than the one found.
+  double cost = 0;     ///< Mean.
+};
+
+double nearest_root(const std::vector<SearchTree>& trees, int grasp, bool from_goal, const Eigen::VectorXd& q) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const SearchTree& tree : trees) {
+    if (tree.grasp != grasp || tree.from_goal != from_goal) continue;
+    for (std::size_t i = 0; i < tree.parents.size(); ++i)
+      if (tree.parents[i] < 0) least = std::min(least, (tree.vertices.col(static_cast<Eigen::Index>(i)) - q).norm());
+  }
+  return least;
+}
+
+Growth growth_with(const std::function<void(RrtStarMgOptions&)>& change) {
+  const ManipulationProblem problem = bar_carry();
+  Growth out;
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    ManipulationOptions options = tree_options(1500);
+    options.seed = seed;
+    options.rrt.keep_trees = true;
+    change(options.rrt);
+    const ManipulationResult result = plan_manipulation(problem, options);
+    EXPECT_EQ(result.stats.samples, 1500u);
+    out.cost += result.cost / 3;
+    for (const SearchTree& tree : result.trees)
+      for (std::size_t i = 0; i < tree.parents.size(); ++i) {
+        if (tree.parents[i] < 0) continue;
+        const Eigen::VectorXd q = tree.vertices.col(static_cast<Eigen::Index>(i));
+        const double through =
+            nearest_root(result.trees, tree.grasp, false, q) + nearest_root(result.trees, tree.grasp, true, q);
+        out.all += 1;
+        out.from_goals += tree.from_goal;
+        out.of_best += tree.grasp == result.grasp_index;
+        out.outside += through >= result.cost;
+      }
+  }
+  EXPECT_GT(out.all, 1000);
+  return out;
+}
+
+TEST(RrtStarMg, WithoutBidirectionalTreesGrowFromTheStartsAlone) {
+  EXPECT_EQ(growth_with([](RrtStarMgOptions& o) { o.bidirectional = false; }).from_goals, 0);
+  EXPECT_GT(growth_with([](RrtStarMgOptions&) {}).from_goals, 300);
+}
+
+TEST(RrtStarMg, InformedTreesGrowWhereABetterPathCanPass) {
+  const Growth informed = growth_with([](RrtStarMgOptions& o) { o.exploration = 1; });
+  const Growth anywhere = growth_with([](RrtStarMgOptions& o) {
+    o.exploration = 1;
+    o.informed = false;
+  });
+  EXPECT_LT(informed.outside, 0.2 * informed.all);
+  EXPECT_GT(anywhere.outside, 0.5 * anywhere.all);
+  EXPECT_LT(informed.cost, anywhere.cost);
+}
+
+TEST(RrtStarMg, ExplorationGrowsTheOtherGraspsTreesToo) {
+  const Growth exploiting = growth_with([](RrtStarMgOptions& o) { o.exploration = 0; });
+  const Growth exploring = growth_with([](RrtStarMgOptions& o) { o.exploration = 1; });
+  EXPECT_GT(exploiting.of_best / exploiting.all, exploring.of_best / exploring.all + 0.1);
+}
+
+/// P2 Algorithm 5.13, line 13.
+TEST(RrtStarMg, ExplorationBeginsWithAPath) {
+  ManipulationProblem problem = bar_carry();
+  problem.world.add("wall", Shape(Box{{1.3, 0.02, 0.2}}), flat_pose(0.75, 0, 0));
+  std::vector<ManipulationStats> stats;
+  for (const double exploration : {0.0, 1.0}) {
+    ManipulationOptions options = tree_options(600);
+    options.rrt.exploration = exploration;
+    const ManipulationResult result = plan_manipulation(problem, options);
+    ASSERT_FALSE(result.path);
+    stats.push_back(result.stats);
+  }
+  EXPECT_GT(stats[0].vertices, 600u);
+  EXPECT_EQ(stats[0].vertices, stats[1].vertices);
+  EXPECT_EQ(stats[0].edges_checked_robot, stats[1].edges_checked_robot);
+  EXPECT_EQ(stats[0].edges_checked_held, stats[1].edges_checked_held);
+}
+
+/// Errata on Algorithm 5.13, line 17: the print would end with the first sample that no tree can use.
+TEST(RrtStarMg, SamplesThatServeNoTreeDoNotEndTheSearch) {
+  ManipulationOptions options = tree_options(3000);
+  options.rrt.exploration = 0;
+  options.rrt.informed = false;  // Most of the box is of no use once there is a path.
+  const ManipulationResult result = plan_manipulation(bar_carry(), options);
+  ASSERT_EQ(result.outcome, Outcome::solved);
+  EXPECT_EQ(result.stats.samples, 3000u);
+  EXPECT_LT(result.stats.vertices, 1500u);
+}
+
+/// Errata on Algorithm 5.13, lines 14 and 20: as printed, nothing would be joined to what exploring adds.
+TEST(RrtStarMg, ExploringAloneJoinsTheTreesOfOtherGrasps) {
+  int others = 0;
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    ManipulationOptions options = tree_options(1500);
+    options.seed = seed;
+    options.rrt.exploration = 1;
+    const ManipulationResult result = plan_manipulation(bar_carry(), options);
+    expect_sound(bar_carry(), result);
+    others += result.grasp_index != result.improvements.front().grasp;
+  }
+  EXPECT_GE(others, 2);
 }
 
 /// What is handed over must be trees: whole, of free edges, rooted in the grasp's own arm configurations.

@@ -332,11 +332,12 @@ void bind_trajopt(py::module_& m) {
          "does not matter. The world's objects and the robot itself are obstacles." +
          option_help(drive_by_fields()))
             .c_str());
-  m.def("shorten_drive_by", &shorten, py::arg("group"), py::arg("world"), py::kw_only(), py::arg("tasks"),
-        py::arg("times"), py::arg("positions"), py::arg("task_times"), py::arg("progress") = py::none(),
-        "plan_drive_by from a motion that is known instead of guesses: positions (m, n) at times [s], straight between "
-        "them, free of\ncollisions, from rest to rest, at each task at its time; e.g. a drive and a pick one after the "
-        "other. One solve near that\nmotion. Tasks have one pose and no push. Keywords are those of plan_drive_by.");
+  m.def(
+      "shorten_drive_by", &shorten, py::arg("group"), py::arg("world"), py::kw_only(), py::arg("tasks"),
+      py::arg("times"), py::arg("positions"), py::arg("task_times"), py::arg("progress") = py::none(),
+      "plan_drive_by from a motion that is known instead of guesses: positions (m, n) at times [s], straight between "
+      "them, free of\ncollisions, from rest to rest, at each task at its time; e.g. a drive and a pick one after the "
+      "other. The answer is near that\nmotion. Tasks have one pose and no push. Keywords are those of plan_drive_by.");
 }
 
 }  // namespace mmgrasp::python

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
+from conftest import ASSETS
 from mmgrasp import sim
 from mmgrasp.plan_file import plan_schema
 from mmgrasp.viz.report import report_html
@@ -56,6 +57,20 @@ def test_the_first_pick_is_done_in_passing(passing, small_plan):
     assert q[0] == pytest.approx([*problem.start, *motions["reach"].trajectory.positions[0]], abs=1e-6)
     assert q[-1][3:] == pytest.approx(motions["carry"].trajectory.positions[0], abs=1e-6)
     assert done.result.events[-1]["base_speed"] > 0.02
+
+
+def test_the_storeroom_is_shortened_from_its_own_plan():
+    """Its three stops need no motion guessed from nothing, and the base drives on at each."""
+    found = mg.plan_drive_by_picks(mg.plan_part_supply(ASSETS / "scenarios" / "storeroom.yaml"))
+    assert len(found.picks) == 3
+    for done in found.picks:
+        assert done.used, done.report
+        tried = done.report.splitlines()
+        assert all(line.startswith("from a known motion: ") for line in tried), done.report
+        assert "solved" in tried[-1]
+        assert done.drive_by < 0.65 * done.stop_and_pick
+    verdict = mg.verify_plan(found.plan_to_dict(), samples=20)
+    assert verdict.ok, verdict.faults
 
 
 def test_the_plan_holds_for_the_independent_check(content):

@@ -93,17 +93,25 @@ DriveByResult shorten_drive_by(const JointGroup& group, const World& world, cons
   a.problem.check();
   a.guess = guess_along(known, tasks, a.intervals);
   monitor.report("shortening", 0);
-  const WholeBodyResult r = optimize_whole_body(a.problem, a.guess, options.trajectory, a.checkers, monitor);
   DriveByResult result;
+  result.choices = 1;
+  WholeBodyResult r;
+  // Bodies parted as they lie in the known motion leave that motion feasible, but hold the new one back where it is
+  // elsewhere at the same waypoint.
+  for (const bool parts_bodies : {false, true}) {
+    a.guess.parts_bodies = parts_bodies;
+    r = optimize_whole_body(a.problem, a.guess, options.trajectory, a.checkers, monitor);
+    ++result.attempts;
+    result.iterations += r.iterations;
+    result.report += "from a known motion: " + detail::describe(r) +
+                     (r.usable() ? ", " + detail::number(r.trajectory->duration()) + " s" : "") + "\n";
+    if (r.usable() || a.checkers.empty() || monitor.stopped()) break;
+  }
   result.outcome = monitor.stopped() && !r.usable() ? Outcome::stopped : r.outcome;
   result.trajectory = r.trajectory;
   result.violations = r.violations;
   result.events = detail::events_of(*r.trajectory, world, steps, a.waypoints, chain);
-  result.choices = result.attempts = 1;
-  result.iterations = r.iterations;
   result.seconds = attempts.seconds();
-  result.report = "from a known motion: " + detail::describe(r) +
-                  (r.usable() ? ", " + detail::number(r.trajectory->duration()) + " s" : "") + "\n";
   return result;
 }
 

@@ -152,7 +152,7 @@ bool CollisionRows::look_along(const WholeBodyTrajectory& trajectory) {
   return collides;
 }
 
-void CollisionRows::keep_clear(const std::vector<VectorXd>& positions) {
+void CollisionRows::keep_clear(const std::vector<VectorXd>& positions, bool parts_bodies) {
   reference_ = positions;
   for (int i = 0; i < static_cast<int>(checkers_.size()); ++i) {
     CollisionChecker* checker = checkers_[static_cast<std::size_t>(i)];
@@ -162,6 +162,7 @@ void CollisionRows::keep_clear(const std::vector<VectorXd>& positions) {
   }
   const std::map<Pair, double> rooms = rooms_along(positions);
   for (const Sample& sample : regular_samples()) take_planes_at(sample, reference(sample), rooms);
+  if (!parts_bodies) reference_.clear();
 }
 
 std::map<CollisionRows::Pair, double> CollisionRows::rooms_along(const std::vector<VectorXd>& positions) {

@@ -51,9 +51,9 @@ class CollisionRows {
   /// wherever they are within look_out.
   bool look_along(const WholeBodyTrajectory& trajectory);
   /// `positions`, one per waypoint, are known to be free, also straight between them: what is within look_out of the
-  /// scene there is constrained. Bodies that collide later are parted as they are parted there, so that this way stays
-  /// within all constraints.
-  void keep_clear(const std::vector<Eigen::VectorXd>& positions);
+  /// scene there is constrained. With `parts_bodies`, those that collide later are parted as they are parted there, so
+  /// that this way stays within all constraints.
+  void keep_clear(const std::vector<Eigen::VectorXd>& positions, bool parts_bodies);
   void add_to(WholeBodyNlp& nlp, bool diff_drive) const;
 
  private:

@@ -63,7 +63,7 @@ WholeBodyResult optimize_whole_body(const WholeBodyProblem& problem, const Whole
   {
     const detail::WholeBodyNlp nlp(problem, options.smoothing);
     x = nlp.pack(guess);
-    if (!checkers.empty() && guess.free) rows.keep_clear(guess.positions);
+    if (!checkers.empty() && guess.free) rows.keep_clear(guess.positions, guess.parts_bodies);
   }
   for (int round = 0;; ++round) {
     detail::WholeBodyNlp nlp(problem, options.smoothing);

@@ -112,8 +112,9 @@ struct MMGRASP_EXPORT KnownMotion {
 };
 
 /// The same as plan_drive_by, from a motion that is known instead of guesses: from its first position to its last, in
-/// the numbers as they stand. One solve near that motion; the answer need not be the fastest, and takes the way round
-/// obstacles that is known. Each task has one candidate and no push. Of the options those for guesses are not used.
+/// the numbers as they stand. The answer is near that motion, need not be the fastest, and takes the way round
+/// obstacles that is known; two attempts at most. Each task has one candidate and no push. Of the options those for
+/// guesses are not used.
 MMGRASP_EXPORT DriveByResult shorten_drive_by(const JointGroup& group, const World& world,
                                               const std::vector<DriveByTask>& tasks, const KnownMotion& known,
                                               const DriveByOptions& options = {}, const Monitor& monitor = {});

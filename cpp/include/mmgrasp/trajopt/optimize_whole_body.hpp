@@ -22,6 +22,8 @@ struct MMGRASP_EXPORT WholeBodyGuess {
   std::vector<Eigen::VectorXd> drive;  ///< Empty: from differences of the positions.
   std::vector<double> steps;           ///< [s], > 0.
   bool free = false;  ///< It is known to be free of collisions: the search starts with constraints along it.
+  /// With `free`: bodies that collide later are parted the way they lie here. Off for motions that will move far.
+  bool parts_bodies = true;
 };
 
 struct MMGRASP_EXPORT WholeBodyOptions {

@@ -2,7 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 namespace mmgrasp::detail {
 namespace {
@@ -14,67 +14,84 @@ constexpr int kSteps = 8;
 constexpr double kDamping = 1e-13;  // Of the largest entry: rows may repeat each other.
 constexpr double kAtBound = 1e-4;   // Constraints this near to a bound are kept where they are.
 
-VectorXd constraints_at(NonlinearProblem& problem, Eigen::Index count, const VectorXd& x) {
-  VectorXd c(count);
-  problem.constraints(x, c);
-  return c;
-}
+/// A place on the way, with its constraints.
+struct Place {
+  VectorXd x, c;
+  VectorXd off;  // How far each constraint is beyond its bounds.
+  double broken() const { return off.lpNorm<Eigen::Infinity>(); }
+};
 
-/// How far each constraint is beyond its bounds.
-VectorXd beyond(const Bounds& bounds, const VectorXd& c) {
-  return c - c.cwiseMax(bounds.lower).cwiseMin(bounds.upper);
-}
+/// Newton's method for constraints that are off.
+class Newton {
+ public:
+  explicit Newton(NonlinearProblem& problem)
+      : problem_(problem), variables_(problem.variable_bounds()), bounds_(problem.constraint_bounds()) {}
 
-/// All rows; zero where the variable is at a bound.
-MatrixXd movable_jacobian(NonlinearProblem& problem, const Bounds& variables, Eigen::Index rows, const VectorXd& x) {
-  const SparsePattern& pattern = problem.jacobian_pattern();
-  VectorXd values(static_cast<Eigen::Index>(pattern.size()));
-  problem.jacobian(x, values);
-  MatrixXd J = MatrixXd::Zero(rows, x.size());
-  for (std::size_t i = 0; i < pattern.size(); ++i) {
-    const int k = pattern.columns[i];
-    if (x[k] > variables.lower[k] && x[k] < variables.upper[k])
-      J(pattern.rows[i], k) += values[static_cast<Eigen::Index>(i)];
+  Eigen::Index constraints() const { return bounds_.lower.size(); }
+
+  Place at(const VectorXd& x) const {
+    Place place{x, VectorXd(constraints()), {}};
+    problem_.constraints(x, place.c);
+    place.off = place.c - place.c.cwiseMax(bounds_.lower).cwiseMin(bounds_.upper);
+    return place;
   }
-  return J;
-}
 
-/// One Newton step of least length on what is off, with the constraints nearer than `hold` to a bound kept there.
-VectorXd stepped(NonlinearProblem& problem, const Bounds& variables, const Bounds& bounds, const VectorXd& at,
-                 const VectorXd& c, const VectorXd& off, double hold) {
-  MatrixXd J = movable_jacobian(problem, variables, off.size(), at);
-  for (Eigen::Index i = 0; i < off.size(); ++i)
-    if (off[i] == 0 && std::min(c[i] - bounds.lower[i], bounds.upper[i] - c[i]) >= hold) J.row(i).setZero();
-  MatrixXd gram = J * J.transpose();
-  gram.diagonal().array() += kDamping * gram.diagonal().maxCoeff();
-  for (Eigen::Index i = 0; i < off.size(); ++i)
-    if (J.row(i).isZero(0)) gram(i, i) = 1;
-  return (at - J.transpose() * gram.ldlt().solve(off)).cwiseMax(variables.lower).cwiseMin(variables.upper);
-}
+  /// Where one step leads; the place itself where it does not help.
+  Place next(const Place& from) const {
+    Place best = from;
+    // Held ones may leave no room to move, free ones may be pushed beyond.
+    for (const double hold : {kAtBound, 0.0}) {
+      Place place = at(stepped(from, hold));
+      if (place.broken() < best.broken()) best = std::move(place);
+    }
+    return best;
+  }
+
+ private:
+  /// One step of least length on what is off, with the constraints nearer than `hold` to a bound kept there.
+  VectorXd stepped(const Place& from, double hold) const {
+    MatrixXd J = movable_jacobian(from.x);
+    for (Eigen::Index i = 0; i < constraints(); ++i) {
+      const double room = std::min(from.c[i] - bounds_.lower[i], bounds_.upper[i] - from.c[i]);
+      if (from.off[i] == 0 && room >= hold) J.row(i).setZero();
+    }
+    MatrixXd gram = J * J.transpose();
+    gram.diagonal().array() += kDamping * gram.diagonal().maxCoeff();
+    for (Eigen::Index i = 0; i < constraints(); ++i)
+      if (J.row(i).isZero(0)) gram(i, i) = 1;
+    return (from.x - J.transpose() * gram.ldlt().solve(from.off)).cwiseMax(variables_.lower).cwiseMin(variables_.upper);
+  }
+
+  /// All rows; zero where the variable is at a bound.
+  MatrixXd movable_jacobian(const VectorXd& x) const {
+    const SparsePattern& pattern = problem_.jacobian_pattern();
+    VectorXd values(static_cast<Eigen::Index>(pattern.size()));
+    problem_.jacobian(x, values);
+    MatrixXd J = MatrixXd::Zero(constraints(), x.size());
+    for (std::size_t i = 0; i < pattern.size(); ++i) {
+      const int k = pattern.columns[i];
+      if (x[k] > variables_.lower[k] && x[k] < variables_.upper[k])
+        J(pattern.rows[i], k) += values[static_cast<Eigen::Index>(i)];
+    }
+    return J;
+  }
+
+  NonlinearProblem& problem_;
+  const Bounds variables_, bounds_;
+};
 
 }  // namespace
 
 VectorXd nearest_kept(NonlinearProblem& problem, const VectorXd& x) {
-  const Bounds variables = problem.variable_bounds(), bounds = problem.constraint_bounds();
-  VectorXd at = x;
-  if (bounds.lower.size() == 0) return at;
-  VectorXd c = constraints_at(problem, bounds.lower.size(), at);
-  VectorXd off = beyond(bounds, c);
-  for (int step = 0; step < kSteps && off.lpNorm<Eigen::Infinity>() > 0; ++step) {
-    const double before = off.lpNorm<Eigen::Infinity>();
-    const VectorXd from = at, from_c = c, from_off = off;
-    // Held ones may leave no room to move, free ones may be pushed beyond.
-    for (const double hold : {kAtBound, 0.0}) {
-      const VectorXd next = stepped(problem, variables, bounds, from, from_c, from_off, hold);
-      const VectorXd next_c = constraints_at(problem, c.size(), next), next_off = beyond(bounds, next_c);
-      if (!(next_off.lpNorm<Eigen::Infinity>() < off.lpNorm<Eigen::Infinity>())) continue;
-      at = next;
-      c = next_c;
-      off = next_off;
-    }
-    if (off.lpNorm<Eigen::Infinity>() == before) break;
+  const Newton newton(problem);
+  if (newton.constraints() == 0) return x;
+  Place place = newton.at(x);
+  for (int step = 0; step < kSteps && place.broken() > 0; ++step) {
+    Place next = newton.next(place);
+    if (!(next.broken() < place.broken())) break;
+    place = std::move(next);
   }
-  return at;
+  return place.x;
 }
 
 }  // namespace mmgrasp::detail

@@ -6,6 +6,7 @@
 #include "verify/context.hpp"
 #include "verify/hand_check.hpp"
 #include "verify/hermite.hpp"
+#include "verify/motion_checks.hpp"
 #include "verify/motion_limits.hpp"
 #include "verify/tool_path.hpp"
 
@@ -14,20 +15,14 @@ namespace {
 
 enum Kind { kReach, kApproach, kLift, kCarry, kRetreat, kKinds };
 constexpr std::array<const char*, kKinds> kKindNames = {"reach", "approach", "lift", "carry", "retreat"};
-constexpr double kJoin = 1e-6;        // Ends that must coincide [rad or m].
-constexpr double kRest = 1e-3;        // Speed that counts as rest [rad/s or m/s].
-constexpr double kOpening = 1e-6;     // [m]
-constexpr double kMaxSteps = 200000;  // Configurations of one motion: 2000 rad at the default step.
+constexpr double kOpening = 1e-6;  // [m]
 
 bool is_holding(int kind) {
   return kind == kLift || kind == kCarry;
 }
 
-/// One motion after another: a controller takes the numbers as they stand, so a whole turn between them is a step, too.
-void check_join(const CheckedMotion& before, const CheckedMotion& after, const std::string& where, Faults& faults) {
-  const double by = (before.positions.back() - after.positions.front()).cwiseAbs().maxCoeff();
-  if (by <= kJoin) return;
-  faults.push_back({"discontinuous", where, "does not start where the last ended: a joint is off by " + text(by)});
+void check_follows(const CheckedMotion& before, const CheckedMotion& after, const std::string& where, Faults& faults) {
+  check_join(before.positions.back(), after.positions.front(), where, "does not start where the last ended", faults);
 }
 
 /// Everything about one pick. Broken motions end the checks that need them, not the others.
@@ -137,13 +132,12 @@ class PickCheck {
     at_home(motion(kReach).positions.front(), kReach, "does not start at home");
     at_home(motion(kRetreat).positions.back(), kRetreat, "does not end at home");
     for (int kind = 1; kind < kKinds; ++kind) {
-      check_join(motion(kind - 1), motion(kind), name(kind), faults_);
-      const double jump = (motion(kind - 1).velocities.back() - motion(kind).velocities.front()).cwiseAbs().maxCoeff();
+      check_follows(motion(kind - 1), motion(kind), name(kind), faults_);
+      const double jump = largest_of(motion(kind - 1).velocities.back() - motion(kind).velocities.front());
       if (jump > kRest) fault("discontinuous", name(kind), "a velocity jumps by " + text(jump) + " at its start");
     }
     const auto rest = [this](const Eigen::VectorXd& v, int kind, const char* end) {
-      const double speed = v.cwiseAbs().maxCoeff();
-      if (speed > kRest) fault("not-at-rest", name(kind), "moves at " + text(speed) + " at its " + end);
+      check_rest(v, name(kind), end, faults_);
     };
     rest(motion(kReach).velocities.front(), kReach, "start");
     rest(motion(kApproach).velocities.back(), kApproach, "end");
@@ -186,18 +180,14 @@ class PickCheck {
     const CheckedMotion& m = motion(kind);
     const double opening = std::min(std::max(m.opening, 0.0), plan_.max_opening);
     StraightnessCheck straight(plan_.approach, judge_.tip(motion(kApproach).positions.back()));
-    double taken = 0;
+    StepBudget budget;
     bool free = true, is_straight = true;
     for (std::size_t i = 0; i + 1 < m.times.size() && free; ++i) {
       const HermiteSegment segment(m, i);
       double travel = 0;  // no joint moves farther than this in the segment
-      for (int j = 0; j < judge_.kinematics().arm_size(); ++j) {
-        const Range v = segment.velocity_range(j);
-        travel = std::max(travel, std::max(-v.low, v.high) * segment.duration());
-      }
+      for (int j = 0; j < judge_.kinematics().arm_size(); ++j) travel = std::max(travel, segment.travel(j));
       const double steps = std::max(1.0, std::ceil(travel / context_.options.joint_step));
-      taken += steps;
-      if (!(taken <= kMaxSteps)) return fault("too-long", name(kind), "its joints travel farther than can be checked");
+      if (!budget.spend(steps, name(kind), faults_)) return;
       for (int step = i == 0 ? 0 : 1; step <= static_cast<int>(steps) && free; ++step) {
         const double s = step / steps;
         const Eigen::VectorXd q = segment.at(s);
@@ -226,8 +216,8 @@ void check_picks_join(const Context& context, const std::vector<char>& usable, F
   for (std::size_t pick = 1; pick < usable.size(); ++pick) {
     if (!usable[pick - 1] || !usable[pick]) continue;
     const std::vector<CheckedPick>& picks = context.plan.picks;
-    check_join(picks[pick - 1].motions.back(), picks[pick].motions.front(), context.pick_name(pick) + ", reach",
-               faults);
+    check_follows(picks[pick - 1].motions.back(), picks[pick].motions.front(), context.pick_name(pick) + ", reach",
+                  faults);
   }
 }
 

@@ -7,6 +7,7 @@
 #include "verify/context.hpp"
 #include "verify/hand_check.hpp"
 #include "verify/hermite.hpp"
+#include "verify/motion_checks.hpp"
 #include "verify/motion_limits.hpp"
 #include "verify/tool_path.hpp"
 
@@ -16,11 +17,8 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kJoin = 1e-6;       // Ends that must coincide [rad or m].
-constexpr double kRest = 1e-3;       // Speed that counts as rest [rad/s or m/s].
 constexpr double kStill = 2e-3;      // The tool may move so far while the fingers close [m],
 constexpr double kStillTurn = 0.02;  // and turn so far [rad].
-constexpr double kMaxSteps = 200000;
 
 /// The columns of the arm alone.
 CheckedMotion arm_of(const CheckedMotion& motion) {
@@ -74,16 +72,14 @@ class DriveByCheck {
     stands(last, plan_.stops[stop].pose, "ends");
     if (pick.motions.size() < 4) return;  // said at the pick
     const auto joins = [this](const VectorXd& q, const CheckedMotion& other, const VectorXd& wanted) {
-      if (wanted.size() != q.size() - 3) return;  // said at the pick
-      const double by = (arm(q) - wanted).cwiseAbs().maxCoeff();
-      if (by > kJoin) fault("discontinuous", "a joint is off by " + text(by) + " where it meets '" + other.kind + "'");
+      if (wanted.size() == q.size() - 3)  // else said at the pick
+        check_join(arm(q), wanted, where_, "does not meet '" + other.kind + "'", faults_);
     };
     const CheckedMotion &reach = pick.motions[0], &carry = pick.motions[3];
     if (!reach.positions.empty()) joins(first, reach, reach.positions.front());
     if (!carry.positions.empty()) joins(last, carry, carry.positions.front());
-    for (const VectorXd& v : {motion_.velocities.front(), motion_.velocities.back()})
-      if (v.cwiseAbs().maxCoeff() > kRest)
-        fault("not-at-rest", "moves at " + text(v.cwiseAbs().maxCoeff()) + " at an end");
+    check_rest(motion_.velocities.front(), where_, "start", faults_);
+    check_rest(motion_.velocities.back(), where_, "end", faults_);
   }
 
   bool check_closing() {
@@ -112,7 +108,7 @@ class DriveByCheck {
     context_.set_parts_before(judge_, pick);
     judge_.set_base(base(motion_.positions.front()));
     hand_.check_fingers(arm(motion_.positions.front()), 0, motion_.opening, where_ + ", fingers opening");
-    double taken = 0;
+    StepBudget budget;
     for (std::size_t i = 0; i + 1 < motion_.times.size(); ++i) {
       const HermiteSegment segment(motion_, i);
       // The moments of closing are looked at as they stand.
@@ -122,8 +118,7 @@ class DriveByCheck {
         if (s > 0 && s < 1) shares.insert(shares.end() - 1, s);
       }
       const double steps = std::max(1.0, std::ceil(steps_of(segment)));
-      taken += steps;
-      if (!(taken <= kMaxSteps)) return fault("too-long", "travels farther than can be checked");
+      if (!budget.spend(steps, where_, faults_)) return;
       for (int k = 1; k < static_cast<int>(steps); ++k) shares.push_back(k / steps);
       std::sort(shares.begin(), shares.end());
       for (const double s : shares)
@@ -132,13 +127,10 @@ class DriveByCheck {
   }
 
   double steps_of(const HermiteSegment& segment) const {
-    const auto travel = [&](int j) {
-      const Range v = segment.velocity_range(j);
-      return std::max(-v.low, v.high) * segment.duration();
-    };
-    double steps = std::max({travel(0), travel(1), 0.5 * travel(2)}) / context_.options.base_step;
+    double steps =
+        std::max({segment.travel(0), segment.travel(1), 0.5 * segment.travel(2)}) / context_.options.base_step;
     for (int j = 3; j < motion_.positions.front().size(); ++j)
-      steps = std::max(steps, travel(j) / context_.options.joint_step);
+      steps = std::max(steps, segment.travel(j) / context_.options.joint_step);
     return steps;
   }
 

@@ -52,6 +52,11 @@ Range HermiteSegment::velocity_range(int j) const {
   return range;
 }
 
+double HermiteSegment::travel(int j) const {
+  const Range v = velocity_range(j);
+  return std::max(-v.low, v.high) * h_;
+}
+
 double HermiteSegment::needed_acceleration(int j) const {
   // Under |a| <= A the double integrator gets from (p0, v0) to (p1, v1) in time h if and only if |dv| <= A h and
   // |dp - h (v0 + v1) / 2| <= (A^2 h^2 - dv^2) / (4 A): solved for the least A.

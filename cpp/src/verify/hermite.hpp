@@ -21,6 +21,7 @@ class HermiteSegment {
   Eigen::VectorXd at(double s) const;     ///< s in [0, 1].
   Range position_range(int joint) const;  ///< Exact: ends and the roots of the velocity.
   Range velocity_range(int joint) const;  ///< Exact: ends and the vertex.
+  double travel(int joint) const;         ///< It moves no farther than this: its highest speed times the duration.
   /// The least constant bound on acceleration with which any motion can join the two samples: |v1 - v0| / h, and more
   /// when the positions do not fit the velocities. Zero when the samples say exactly uniform motion.
   double needed_acceleration(int joint) const;

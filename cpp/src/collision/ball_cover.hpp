@@ -39,7 +39,7 @@ class BallCover {
 using CoverLevels = std::vector<BallCover>;
 
 /// What stands in for a body before its exact shape is looked at (padding not included).
-class BodyBounds {
+class MMGRASP_EXPORT BodyBounds {
  public:
   static constexpr int kLevels = 3;
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "collision/ball_cover.hpp"
+#include "collision/gap_table.hpp"
 #include "collision/moving_frames.hpp"
 #include "collision/scene_packs.hpp"
 #include "collision/solid.hpp"
@@ -47,7 +48,7 @@ struct SceneShape {
 };
 
 /// Robot and world prepared for checking. Immutable; shared by all clones.
-struct Snapshot {
+struct MMGRASP_EXPORT Snapshot {
   Snapshot(const Robot& robot_in, const World& world_in, const CheckerOptions& options_in);
 
   Robot robot;
@@ -74,6 +75,9 @@ struct ShapePair {
   int a = 0, b = 0;
   int ball_a = 0, ball_b = 0;  ///< Their places among the plan's balls.
   double reach = 0;            ///< Sum of the bounding spheres' radii.
+  /// Of two links with meshes that two turning joints part, and the columns of these joints.
+  std::shared_ptr<const GapTable> gaps;
+  std::array<int, 2> columns{};
 };
 
 /// Where a shape sits among the frames of a group.
@@ -90,7 +94,7 @@ struct MotionRates {
 };
 
 /// Which pairs one group must look at, and how its shapes move.
-struct PairPlan {
+struct MMGRASP_EXPORT PairPlan {
   PairPlan(const Snapshot& snapshot, const JointGroup& group);
 
   MovingFrames frames;
@@ -110,6 +114,7 @@ struct PairPlan {
 
  private:
   void block_pairs();
+  void find_gap_tables(const Snapshot& snapshot);
   MotionRates bound_motion(const Eigen::VectorXd& largest) const;
 };
 

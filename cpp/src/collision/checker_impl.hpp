@@ -63,8 +63,8 @@ struct CollisionChecker::Impl {
   /// What the balls of the two say; the first one's grown by `more` [m], when only "apart" means anything.
   detail::CoverAnswer pair_balls(const detail::ShapePair& pair, double more = 0);
   detail::CoverAnswer scene_balls(int shape, int scene_shape, double more = 0);
-  /// With `more` > 0 [m] false proves a gap wider than that, and true nothing.
-  bool pair_collides_exactly(const detail::ShapePair& pair, double more = 0);
+  /// With `more` > 0 [m] false proves a gap wider than that, and true nothing. `hulls_meet`: their hulls are known to.
+  bool pair_collides_exactly(const detail::ShapePair& pair, double more = 0, bool hulls_meet = false);
   bool hits_scene_exactly(int shape, int scene_shape, double more = 0);
   /// Whether the two touch (kOverlap), stay apart while they come no more than `motion` [m] closer (kApart), or
   /// neither. Without motion only the first is asked. `hulls_meet`: their hulls did not long ago, so that those are not

@@ -133,7 +133,7 @@ CoverAnswer CollisionChecker::Impl::pair_balls(const detail::ShapePair& pair, do
   return a_larger ? by_field(b, T_b, a, T_a) : by_field(a, T_a, b, T_b);
 }
 
-bool CollisionChecker::Impl::pair_collides_exactly(const detail::ShapePair& pair, double more) {
+bool CollisionChecker::Impl::pair_collides_exactly(const detail::ShapePair& pair, double more, bool hulls_meet) {
   const detail::BodyShape &a = snapshot->shapes[pair.a], &b = snapshot->shapes[pair.b];
   if (a.solid->kind == detail::SolidKind::mesh && b.solid->kind == detail::SolidKind::mesh) {
     // Few large triangles look for their like in a field around the smaller body.
@@ -141,7 +141,7 @@ bool CollisionChecker::Impl::pair_collides_exactly(const detail::ShapePair& pair
     const detail::BodyShape &first = field_of_a ? a : b, &second = field_of_a ? b : a;
     return detail::meshes_collide(*first.solid, pose(field_of_a ? pair.a : pair.b),
                                   *first.bounds->detail(*first.solid).field, *second.solid,
-                                  pose(field_of_a ? pair.b : pair.a), more);
+                                  pose(field_of_a ? pair.b : pair.a), more, hulls_meet);
   }
   return detail::solids_collide(*a.solid, pose(pair.a), *b.solid, pose(pair.b), more);
 }
@@ -182,7 +182,7 @@ CoverAnswer CollisionChecker::Impl::pair_within(const detail::ShapePair& pair, d
       if (hulls == Nearness::near) return CoverAnswer::kMaybe;
       hulls_meet = 1;
     }
-    if (motion <= kExactReach && !pair_collides_exactly(pair, motion)) return CoverAnswer::kApart;
+    if (motion <= kExactReach && !pair_collides_exactly(pair, motion, true)) return CoverAnswer::kApart;
   }
   return pair_collides(pair) ? CoverAnswer::kOverlap : CoverAnswer::kMaybe;
 }

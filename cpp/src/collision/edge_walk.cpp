@@ -121,6 +121,15 @@ bool CollisionChecker::Impl::EdgeWalk::pairs_free(const Interval& interval, doub
                        radius[pair.ball_a] - radius[pair.ball_b];
     const double motion = surely(pair_motion_[index] * reach);
     if (gap > motion) continue;
+    if (pair.gaps) {
+      const double wanted = reach > 0 ? motion : 0;
+      const double apart = pair.gaps->at_least(q_[pair.columns[0]], q_[pair.columns[1]], wanted);
+      if (apart > wanted) continue;
+      if (apart > 0) {
+        open_.push_back(index);
+        continue;
+      }
+    }
     // The last look within an interval proves nothing about others.
     const detail::CoverAnswer answer = checker_.pair_within(pair, reach > 0 ? motion : 0, hulls_meet_[index]);
     if (answer == detail::kApart) continue;

@@ -78,10 +78,9 @@ void HeldChecker::bound_motion() {
   for (Eigen::Index i = 0; i < rates.pairs.cols(); ++i) {
     const ShapePair& pair = plan_->varying[static_cast<std::size_t>(i)];
     if (!held(pair.ball_a) && !held(pair.ball_b)) continue;
-    const int common = frames.common_frame(frame(pair.ball_a), frame(pair.ball_b));
     column_.setZero();
-    frames.add_rates(frame(pair.ball_a), radius(pair.ball_a), common, largest_, column_);
-    frames.add_rates(frame(pair.ball_b), radius(pair.ball_b), common, largest_, column_);
+    frames.add_closing_rates(plan_->balls[static_cast<std::size_t>(pair.ball_a)],
+                             plan_->balls[static_cast<std::size_t>(pair.ball_b)], largest_, column_);
     rates.pairs.col(i) = column_;
   }
 }

@@ -12,6 +12,63 @@ Eigen::Matrix3d z_to(const Eigen::Vector3d& axis) {
   return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
 }
 
+// Where a body may be, seen from some frame, whatever the values of the joints in between.
+struct Region {
+  Eigen::Vector3d centre;
+  double radius;
+};
+
+// Whatever the joint's value, seen from its frame before it moves; as good the other way round.
+Region swept(const FrameStep& step, Region region, const Eigen::VectorXd& largest) {
+  switch (step.motion) {
+    case FrameMotion::turn:
+      region.radius += region.centre.head<2>().norm();
+      region.centre.head<2>().setZero();
+      break;
+    case FrameMotion::slide:
+      region.radius +=
+          std::abs(step.offset) + (step.multiplier != 0 ? std::abs(step.multiplier) * largest[step.column] : 0);
+      break;
+    case FrameMotion::ball:
+      region.radius += region.centre.norm();
+      region.centre.setZero();
+      break;
+  }
+  return region;
+}
+
+// How far a body's points move per unit of the joint's value, seen from the joint's frame.
+double rate_about(const FrameStep& step, const Region& region) {
+  const double factor = std::abs(step.multiplier);
+  switch (step.motion) {
+    case FrameMotion::turn:
+      return factor * (region.centre.head<2>().norm() + region.radius);
+    case FrameMotion::slide:
+      return factor;
+    case FrameMotion::ball:
+      break;
+  }
+  return region.centre.norm() + region.radius;
+}
+
+// rates[i]: how fast the body in `ball` moves about joint path[i]; the path leads from its frame up to joint `top` - 1
+// and down from joint `top` on.
+std::vector<double> rates_on_path(const std::vector<const FrameStep*>& path, std::size_t top, const FrameBall& ball,
+                                  const Eigen::VectorXd& largest) {
+  std::vector<double> rates;
+  Region region{Eigen::Vector3d(ball.p), ball.radius};
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const FrameStep& step = *path[i];
+    const Rigid T = MovingFrames::rest(step);
+    const bool up = i < top;
+    if (!up) region.centre = T.R.transpose() * (region.centre - T.t);
+    rates.push_back(rate_about(step, region));
+    region = swept(step, region, largest);
+    if (up) region.centre = T * region.centre;
+  }
+  return rates;
+}
+
 int column_of(const JointGroup& group, int index) {
   const Joint& joint = group.robot().joints()[index];
   const std::vector<int>& driven = group.joints();
@@ -58,7 +115,8 @@ std::vector<Motion> motions_of(const Joint& joint) {
 
 }  // namespace
 
-MovingFrames::MovingFrames(const JointGroup& group) : has_base_(group.has_base()) {
+MovingFrames::MovingFrames(const JointGroup& group)
+    : has_base_(group.has_base()), columns_(static_cast<int>(group.size())) {
   const Robot& robot = group.robot();
   const Poses reference = robot.link_poses(group.reference());
   frame_of_.assign(robot.links().size(), 0);
@@ -114,6 +172,10 @@ Rigid MovingFrames::get(const double* frame) {
   return T;
 }
 
+Rigid MovingFrames::rest(const FrameStep& step) {
+  return {Eigen::Map<const Eigen::Matrix<double, 4, 3>>(step.R).topRows<3>(), Eigen::Vector3d(step.p)};
+}
+
 void MovingFrames::place(const double* q, double* frames) const {
   if (has_base_) {
     const double c = std::cos(q[2]), s = std::sin(q[2]);
@@ -144,6 +206,25 @@ void MovingFrames::add_rates(int frame, double radius, int against, const Eigen:
   rates[0] += 1;
   rates[1] += 1;
   rates[2] += radius;
+}
+
+void MovingFrames::add_closing_rates(const FrameBall& a, const FrameBall& b, const Eigen::VectorXd& largest,
+                                     Eigen::VectorXd& rates) const {
+  const int common = common_frame(a.frame, b.frame);
+  std::vector<const FrameStep*> path, down;
+  for (int frame = a.frame; frame != common; frame = path.back()->parent) path.push_back(&steps_[frame - 1]);
+  for (int frame = b.frame; frame != common; frame = down.back()->parent) down.push_back(&steps_[frame - 1]);
+  const std::size_t up = path.size();
+  path.insert(path.end(), down.rbegin(), down.rend());
+  const std::vector<double> of_a = rates_on_path(path, up, a, largest);
+  std::reverse(path.begin(), path.end());
+  const std::vector<double> of_b = rates_on_path(path, path.size() - up, b, largest);
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const FrameStep& step = *path[i];
+    const double rate = std::min(of_a[path.size() - 1 - i], of_b[i]);
+    // A rotation vector's rate is never less than the angular velocity it makes.
+    for (int k = 0; k < (step.motion == FrameMotion::ball ? 3 : 1); ++k) rates[step.column + k] += rate;
+  }
 }
 
 int MovingFrames::common_frame(int a, int b) const {

@@ -12,9 +12,9 @@ MMGRASP_EXPORT bool solids_collide(const Solid& a, const Rigid& T_a, const Solid
 
 class DistanceField;
 /// The same answer for two meshes whose bodies are known to be close, sooner: `field` (of a) says which triangles of b
-/// need no look.
+/// need no look, `hulls_meet` that their hulls do.
 MMGRASP_EXPORT bool meshes_collide(const Solid& a, const Rigid& T_a, const DistanceField& field, const Solid& b,
-                                   const Rigid& T_b, double more = 0);
+                                   const Rigid& T_b, double more = 0, bool hulls_meet = false);
 
 /// distance = normal . (on_a - on_b).
 struct SolidGap {

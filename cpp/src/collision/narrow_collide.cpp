@@ -252,11 +252,12 @@ bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigi
 }
 
 bool meshes_collide(const Solid& a, const Rigid& T_a, const DistanceField& field, const Solid& b, const Rigid& T_b,
-                    double more) {
+                    double more, bool hulls_meet) {
   const PairFrame frame(T_a, T_b);
   const double margin = a.margin + b.margin + more;
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
-  if (a.has_hull && b.has_hull && !convex_collide(a.core, b.core, frame.b_in_a, margin, axis)) return false;
+  if (!hulls_meet && a.has_hull && b.has_hull && !convex_collide(a.core, b.core, frame.b_in_a, margin, axis))
+    return false;
   if (a.has_inner && b.has_inner && convex_collide(a.inner, b.inner, frame.b_in_a, margin, axis)) return true;
   if (tree_hits_field(a, field, b, frame, margin)) return true;
   return inside(a, b, frame.b_in_a) || inside(b, a, T_b.to(T_a));

@@ -87,15 +87,50 @@ PairPlan::PairPlan(const Snapshot& snapshot, const JointGroup& group) : frames(g
       if (a.body == b.body || a.solid->never_collides() || b.solid->never_collides()) continue;
       if (snapshot.options.held_only && !snapshot.bodies[a.body].held && !snapshot.bodies[b.body].held) continue;
       if (never_needs_check(snapshot, snapshot.bodies[a.body], snapshot.bodies[b.body], assembly)) continue;
-      const ShapePair pair{static_cast<int>(i), static_cast<int>(j), ball_of[i], ball_of[j],
-                           a.solid->ball_radius + b.solid->ball_radius};
+      const ShapePair pair{static_cast<int>(i),
+                           static_cast<int>(j),
+                           ball_of[i],
+                           ball_of[j],
+                           a.solid->ball_radius + b.solid->ball_radius,
+                           nullptr,
+                           {}};
       (moved_by[a.link] == moved_by[b.link] ? constant : varying).push_back(pair);
     }
   }
   block_pairs();
+  find_gap_tables(snapshot);
   // Limits are kept up to rounding.
   rates = bound_motion(group.lower().cwiseAbs().cwiseMax(group.upper().cwiseAbs()) +
                        Eigen::VectorXd::Constant(group.size(), 1e-6));
+}
+
+void PairPlan::find_gap_tables(const Snapshot& snapshot) {
+  for (ShapePair& pair : varying) {
+    const BodyShape &a = snapshot.shapes[pair.a], &b = snapshot.shapes[pair.b];
+    if (a.solid->kind != SolidKind::mesh || b.solid->kind != SolidKind::mesh) continue;
+    if (snapshot.bodies[a.body].held || snapshot.bodies[b.body].held) continue;
+    // Frames are numbered from the root outwards.
+    const bool b_outer = placed[pair.b].frame > placed[pair.a].frame;
+    const PlacedShape &inner = placed[b_outer ? pair.a : pair.b], &outer = placed[b_outer ? pair.b : pair.a];
+    if (outer.frame == 0) continue;
+    const FrameStep& second = frames.steps()[outer.frame - 1];
+    if (second.parent == 0) continue;
+    const FrameStep& first = frames.steps()[second.parent - 1];
+    const auto plain = [](const FrameStep& s) {
+      return s.motion == FrameMotion::turn && s.multiplier == 1 && s.offset == 0;
+    };
+    if (first.parent != inner.frame || !plain(first) || !plain(second)) continue;
+    Eigen::VectorXd rates = Eigen::VectorXd::Zero(frames.columns());
+    frames.add_closing_rates(balls[pair.ball_a], balls[pair.ball_b], rates, rates);
+    TwoTurns turns;
+    turns.before = inner.in_frame.to(MovingFrames::rest(first));
+    turns.between = MovingFrames::rest(second);
+    turns.after = outer.in_frame;
+    turns.rates = {rates[first.column], rates[second.column]};
+    pair.gaps = b_outer ? shared_gap_table({a.solid, a.bounds}, {b.solid, b.bounds}, turns)
+                        : shared_gap_table({b.solid, b.bounds}, {a.solid, a.bounds}, turns);
+    pair.columns = {first.column, second.column};
+  }
 }
 
 void PairPlan::block_pairs() {
@@ -135,10 +170,8 @@ MotionRates PairPlan::bound_motion(const Eigen::VectorXd& largest) const {
   out.pairs.resize(largest.size(), static_cast<Eigen::Index>(varying.size()));
   for (Eigen::Index i = 0; i < out.pairs.cols(); ++i) {
     const ShapePair& pair = varying[i];
-    const int a = balls[pair.ball_a].frame, b = balls[pair.ball_b].frame, common = frames.common_frame(a, b);
     column.setZero();
-    frames.add_rates(a, radius(pair.ball_a), common, largest, column);
-    frames.add_rates(b, radius(pair.ball_b), common, largest, column);
+    frames.add_closing_rates(balls[pair.ball_a], balls[pair.ball_b], largest, column);
     out.pairs.col(i) = column;
   }
   out.finite = out.shapes.allFinite() && out.pairs.allFinite();

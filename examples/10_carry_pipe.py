@@ -4,7 +4,7 @@ import mmgrasp as mg
 from mmgrasp.pipe_cells import pipe_cell
 from mmgrasp.viz.carry import write_carry
 
-cell = pipe_cell(6, seed=1)
+cell = pipe_cell(5, seed=1)
 print(f"{cell.pipe} between a partition and a roof; cells turned down before this one: {cell.rejected or 'none'}")
 grasps = cell.grasps(300)
 problem = cell.problem(grasps)  # cell, pipe, both poses and all grasps; only the fingers may touch the pipe

@@ -44,8 +44,6 @@ const Fields& prm_fields() {
              "prm_star_mg: grasps searched together before paths are checked; 1: naive, 0: all"),
       of_prm("lazy_grasps", &PrmStarMgOptions::lazy_grasps,
              "prm_star_mg: search a grasp only when its straight line could still win"),
-      of_prm("straight", &PrmStarMgOptions::straight,
-             "prm_star_mg: join start and goal configurations whatever their distance"),
       of_prm("max_vertices", &PrmStarMgOptions::max_vertices,
              "prm_star_mg: once the roadmap's best path is found, double its vertices up to this; 0: never"),
       of_prm("shorten", &PrmStarMgOptions::shorten, "prm_star_mg: shorten the roadmap's best path at the end"),
@@ -83,6 +81,7 @@ const Fields& manipulation_fields() {
         option<O>("first_grasps", &O::first_grasps,
                   "grasps looked at, one by one, before those without a first path are searched again, then twice as "
                   "many; 0: all before any search"),
+        option<O>("straight", &O::straight, "try straight joint lines from start to goal"),
         option<O>("ik_restarts", &O::ik, &IkOptions::restarts, "random starts of arms without a closed form"),
         option<O>("joint_step", &O::edge, &EdgeOptions::joint_step,
                   "no joint moves more between two checks of an edge [rad or m]"),

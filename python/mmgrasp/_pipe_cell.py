@@ -118,6 +118,7 @@ class PipeCell:
     """Of the structure, from 1."""
     seed: int
     robot_name: str
+    style: str
     pipe: Pipe
     world: World
     """Table, posts and obstacles; without the pipe."""

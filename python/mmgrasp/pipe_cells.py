@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from ._core import (
     CollisionChecker,
     InvalidInput,
+    ManipulationResult,
     Outcome,
     Pipe,
-    PipeGrasp,
     Roadmap,
     Robot,
     World,
@@ -30,6 +30,7 @@ from ._core import (
     pose,
 )
 from ._pipe_cell import FINGERS, ROBOTS, PipeCell, Pose, pipe_robot, pipe_structures
+from ._reading import near_miss
 
 __all__ = ["FINGERS", "ROBOTS", "PipeCell", "pipe_cell", "pipe_robot", "pipe_structures"]
 
@@ -55,16 +56,28 @@ class _Style:
     """Fewer than 30 % of single grasps may be within reach at both ends."""
 
 
-_STYLES = (
-    _Style(columns=2),
-    _Style(columns=2, partition=0.35),
-    _Style(low=("start", "goal"), far=True),
-    _Style(bays=("goal",), partition=0.30, far=True, scarce=True),
-    _Style(partition=0.30, gap=0.48),
-    _Style(partition=0.30, gap=0.46, picky=True),
-    _Style(bays=("start", "goal"), scarce=True),
-    _Style(low=("start",), bays=("start", "goal"), columns=2, scarce=True),
-)
+_STYLES = {
+    "narrow": (
+        _Style(bays=("start", "goal")),
+        _Style(partition=0.30, gap=0.60),
+        _Style(bays=("goal",), partition=0.50),
+        _Style(bays=("start", "goal"), far=True, scarce=True),
+        _Style(partition=0.30, gap=0.60),
+        _Style(bays=("start", "goal")),
+        _Style(bays=("start", "goal"), scarce=True),
+        _Style(bays=("goal",), partition=0.50, scarce=True, picky=True),
+    ),
+    "open": (
+        _Style(columns=1),
+        _Style(low=("start", "goal")),
+        _Style(low=("start", "goal"), far=True),
+        _Style(bays=("goal",), far=True),
+        _Style(columns=1),
+        _Style(low=("start",)),
+        _Style(columns=1),
+        _Style(low=("start", "goal"), far=True),
+    ),
+}
 _LOW = (0.02, 0.05)  # height of the lowest point [m]
 _BAY_ROOM = 0.10  # between the pipe and the walls of its bay [m]
 _RINGS = {"tm14like": (0.45, 0.70), "kr6like": (0.40, 0.58)}  # around the arm's axis [m]
@@ -75,34 +88,41 @@ _POST_RADIUS = 0.01
 _POST_GAP = 0.005  # between a post and the pipe above it [m]
 _CLEARANCE = 0.02  # between the pipe at rest and whatever else stands there [m]
 _TRIES = 500
-_SCARCE = 0.3  # of single grasps
-_ROADMAPS, _VERTICES = 6, 5000  # over which a cell must be solvable
+_FEWEST, _SCARCE = 0.03, 0.3  # of single grasps
+_LISTS = {"narrow": 6, "open": 9}  # of 500 grasps, each of which must do over a roadmap of its own
+_VERTICES, _NEIGHBOURS = 5000, 12
 _CHECKS = 1_000_000  # the first seed of roadmaps and grasps that decide on a cell
+_PICKY_BUDGETS = (2_000, 4_000, 8_000, 16_000, 32_000, 64_000)  # iterations of RRT-Connect, each from all starts
 
 
-def pipe_cell(number: int, seed: int = 1, robot: str = "tm14like") -> PipeCell:
+def pipe_cell(number: int, seed: int = 1, robot: str = "tm14like", style: str = "narrow") -> PipeCell:
     """The cell of one structure (1 to 8), drawn with a seed: the same every time.
 
-    Turned down and counted are cells without room for pipe or posts, those in which fewer than 3 of 100 grasps are
-    within reach at both ends, and those for which PRM*-MG finds no motion in one of six tries, each with a roadmap and
-    500 grasps of its own; for structures 4, 7 and 8 also those in which 30 % of 500 grasps or more are within reach, for
-    structure 6 and the TM14-like arm those whose first grasp within reach would do. Raises InvalidInput on a number or
-    robot that does not exist and on a negative seed.
+    Turned down and counted are cells without room for pipe or posts, those in which fewer than 3 % of 500 grasps are
+    within reach at both ends, and those in which PRM*-MG without straight lines fails for one of six lists of 500
+    grasps, each with a roadmap of 5000 vertices of its own. "open" cells are for P2's setting: roadmaps have its gamma
+    of 4, and there are nine lists. "narrow" ones take more than luck: in none of them does a straight joint line carry
+    the pipe by one of 500 grasps; roadmaps join 12 nearest vertices. For some structures cells are turned down in which
+    30 % of the grasps or more are within reach, for structure 8, "narrow" and the TM14-like arm also those whose first
+    grasp within reach would do. Raises InvalidInput on a number, robot or style that does not exist and on a negative
+    seed.
     """
-    if number not in range(1, len(_STYLES) + 1):
-        raise InvalidInput(f"number = {number}: must be from 1 to {len(_STYLES)}")
+    if number not in range(1, 9):
+        raise InvalidInput(f"number = {number}: must be from 1 to 8")
+    if style not in _STYLES:
+        raise InvalidInput(f"style = {style!r}: must be one of {', '.join(_STYLES)}{near_miss(style, list(_STYLES))}")
     if not isinstance(seed, int | np.integer) or seed < 0:
         raise InvalidInput(f"seed = {seed!r}: must be a whole number >= 0")
     pipe_robot(robot)
-    return _pipe_cell(number, int(seed), robot)
+    return _pipe_cell(number, int(seed), robot, style)
 
 
 @cache
-def _pipe_cell(number: int, seed: int, robot: str) -> PipeCell:
+def _pipe_cell(number: int, seed: int, robot: str, style: str) -> PipeCell:
     rng = np.random.default_rng([seed, number, ROBOTS.index(robot)])
     rejected: Counter[str] = Counter()
     for drawn in range(1, _TRIES + 1):
-        cell = _draw(number, seed, robot, rng)
+        cell = _draw(number, seed, robot, style, rng)
         cause = _fault(cell)
         if not cause:
             return replace(cell, drawn=drawn, rejected=dict(rejected))
@@ -110,9 +130,9 @@ def _pipe_cell(number: int, seed: int, robot: str) -> PipeCell:
     raise InvalidInput(f"number = {number}, seed = {seed}: none of {_TRIES} cells will do: {dict(rejected)}")
 
 
-def _draw(number: int, seed: int, robot: str, rng: np.random.Generator) -> PipeCell:
+def _draw(number: int, seed: int, robot: str, kind: str, rng: np.random.Generator) -> PipeCell:
     """Start to the left of the arm, goal to its right, obstacles ahead."""
-    pipe, style = pipe_structures()[number - 1], _STYLES[number - 1]
+    pipe, style = pipe_structures()[number - 1], _STYLES[kind][number - 1]
     between = rng.uniform(-0.3, 0.3)  # direction of what stands between [rad]
     T_world_start, T_world_goal = (
         _resting(
@@ -143,7 +163,7 @@ def _draw(number: int, seed: int, robot: str, rng: np.random.Generator) -> PipeC
         radius, height = rng.uniform(0.03, 0.05), rng.uniform(0.5, 0.9) * _scale(robot)
         at = rng.uniform(0.40, 0.90) * _scale(robot) * _direction(between + rng.uniform(-0.6, 0.6))
         world.add_cylinder(f"column {i + 1}", radius, height, pose([at[0], at[1], _TABLE_TOP + height / 2]))
-    return PipeCell(number, seed, robot, pipe, world, T_world_start, T_world_goal)
+    return PipeCell(number, seed, robot, kind, pipe, world, T_world_start, T_world_goal)
 
 
 def _direction(angle: float) -> NDArray[np.float64]:
@@ -229,54 +249,62 @@ def _fault(cell: PipeCell) -> str:
             return f"no room for the pipe at its {name}"
         if _nearest(cell.pipe, cell.world, T) < 0.8 * _POST_GAP:
             return f"a post stands in the pipe at its {name}"
-    style = _STYLES[cell.number - 1]
-    if _reachable(cell, cell.grasps(100, seed=_CHECKS)) < 3:
-        return "fewer than 3 of 100 grasps within reach"
-    if style.scarce:
-        grasps = cell.grasps(500, seed=_CHECKS)
-        if _reachable(cell, grasps) >= _SCARCE * len(grasps):
-            return "30 % of the grasps within reach, or more"
-    for i in range(_ROADMAPS):
-        problem = cell.problem(cell.grasps(500, seed=_CHECKS + i))
-        # Over the roadmap alone: another way to a first path would make other cells.
-        found = plan_manipulation(
-            problem,
-            planner="prm_star_mg",
-            roadmap=_roadmap(cell.robot_name, i),
-            first_grasps=0,
-            shorten=False,
-            time_limit=60.0,
-        )
-        if found.outcome != Outcome.solved:
+    return _fault_of_motion(cell)
+
+
+def _fault_of_motion(cell: PipeCell) -> str:
+    style, narrow = _STYLES[cell.style][cell.number - 1], cell.style == "narrow"
+    straight = _carried(cell, 0, _roadmap(cell.robot_name, 0, vertices=2), straight=True)
+    within_reach = sum(g.start_solutions > 0 and g.goal_solutions > 0 for g in straight.grasps) / len(straight.grasps)
+    if within_reach < _FEWEST:
+        return "fewer than 3 % of the grasps within reach"
+    if style.scarce and within_reach >= _SCARCE:
+        return "30 % of the grasps within reach, or more"
+    if narrow and straight.outcome == Outcome.solved:
+        return "a straight line will do"
+    graph = {"neighbours": _NEIGHBOURS} if narrow else {}
+    for i in range(_LISTS[cell.style]):
+        if _carried(cell, i, _roadmap(cell.robot_name, i, vertices=_VERTICES, **graph)).outcome != Outcome.solved:
             return f"no motion over a roadmap of {_VERTICES} vertices"
     picky = style.picky and cell.robot_name == "tm14like"
     return "the first grasp within reach will do" if picky and _first_carries(cell) else ""
 
 
-def _reachable(cell: PipeCell, grasps: list[PipeGrasp]) -> int:
-    """Grasps by which the arm can hold the pipe at its start and at its goal."""
-    return sum(all(map(len, cell.ends(grasp, 1))) for grasp in grasps)
+def _carried(cell: PipeCell, index: int, roadmap: Roadmap, straight: bool = False) -> ManipulationResult:
+    """Over the roadmap alone: another way to a first path would make other cells."""
+    problem = cell.problem(cell.grasps(500, seed=_CHECKS + index))
+    return plan_manipulation(
+        problem,
+        planner="prm_star_mg",
+        roadmap=roadmap,
+        straight=straight,
+        first_grasps=0,
+        shorten=False,
+        time_limit=600.0,
+    )
 
 
 def _first_carries(cell: PipeCell) -> bool:
     """Whether RRT-Connect finds a motion between arm configurations of the first grasp that reaches both ends."""
-    for grasp in cell.grasps(100):
+    for grasp in cell.grasps(500):
         starts, goals = cell.ends(grasp)
         if len(starts) and len(goals):
             break
     arm, world = cell.arm_holding(grasp), cell.world_holding(grasp)
     return any(
         plan_motion(
-            cell.robot, arm, world, start=start, goal=goals, max_iterations=20_000, time_limit=600.0, shorten=False
+            cell.robot, arm, world, start=start, goal=goals, max_iterations=budget, time_limit=600.0, shorten=False,
+            seed=budget,
         ).outcome
         == Outcome.solved
+        for budget in _PICKY_BUDGETS
         for start in starts
-    )
+    )  # fmt: skip
 
 
 @cache
-def _roadmap(robot: str, index: int) -> Roadmap:
-    return Roadmap.build(pipe_robot(robot)[1], vertices=_VERTICES, seed=_CHECKS + index)
+def _roadmap(robot: str, index: int, **graph: int) -> Roadmap:
+    return Roadmap.build(pipe_robot(robot)[1], seed=_CHECKS + index, **graph)
 
 
 def _nearest(pipe: Pipe, world: World, T_world_pipe: Pose, ignored: str | None = None) -> float:

@@ -29,7 +29,7 @@ void run_prm_star_mg(CarryInput& input, ManipulationResult& result) {
   const PrmStarMgOptions& options = input.options.prm;
   // A first path leaves the roadmap, as shortened ones and straight edges do.
   Carry best;
-  if (options.straight && options.shorten) best = find_first_carry(input, result);
+  if (input.options.straight && options.shorten) best = find_first_carry(input, result);
   if (best.grasp >= 0) shorten_carry(input, best, result);
   // Paths over the roadmap have to beat the first one as it was found: they will be shortened too.
   const double first = best.cost;
@@ -39,7 +39,7 @@ void run_prm_star_mg(CarryInput& input, ManipulationResult& result) {
   bool whole = false;
   while (roadmap) {
     const double before = best.cost;
-    whole = RoadmapSearch(input, *roadmap, options.straight, input.options.threads, best, result).run();
+    whole = RoadmapSearch(input, *roadmap, input.options.straight, input.options.threads, best, result).run();
     if (options.shorten && best.cost < before) shorten_carry(input, best, result);
     if (!whole || 2.0 * roadmap->size() > options.max_vertices) break;
     // The same seed gives the same vertices, and more of them.

@@ -67,7 +67,7 @@ RrtStarMg::RrtStarMg(CarryInput& input, const RrtStarMgOptions& options, Manipul
 
 void RrtStarMg::run() {
   input_.monitor.report("search", 0);
-  try_straight_lines();
+  if (input_.options.straight) try_straight_lines();
   const double goal = std::min(options_.goal_cost, std::numeric_limits<double>::max());
   int i = 0;
   for (; i < options_.max_samples && informed_.grasps() > 0 && best_ > goal; ++i) {

@@ -6,10 +6,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..pipe_cells import pipe_cell
 from .drawing import figure
 from .entry import Context, Entry, Result
-from .pipe_runs import PROBLEMS, carry, describe, describe_roadmap, difference, items_of, mean, not_reversed, told
+from .pipe_runs import (
+    PROBLEMS,
+    carry,
+    describe,
+    describe_roadmap,
+    difference,
+    items_of,
+    mean,
+    not_reversed,
+    p2_cell,
+    told,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,7 +37,7 @@ def _scale(context: Context) -> tuple[list[int], int, tuple[int, ...]]:
 # --- figures 5.5 and 5.6 ----------------------------------------------------------------------------------------------
 def both_planners(number: int, seed: int, run: int, counts: tuple[int, ...], large: int) -> dict[str, Any]:
     """One run of each planner for each number of grasps; PRM*-MG in its standard variant, a fifth of the grasps a batch."""
-    cell = pipe_cell(number, seed=seed)
+    cell = p2_cell(number, seed)
     found: dict[str, list[dict[str, Any]]] = {}
     for count in counts:
         batch = max(1, count // 5)
@@ -111,7 +121,7 @@ COLUMNS = ("success rate [%]", "initial time [ms]", "optimal time [ms]", "initia
 
 def versions(number: int, seed: int, run: int, counts: tuple[int, ...], samples: int) -> dict[str, Any]:
     """V1: trees from the start alone, samples from the whole joint box. V2: from both ends, informed."""
-    cell = pipe_cell(number, seed=seed)
+    cell = p2_cell(number, seed)
     found = {}
     for name, on in (("V1", False), ("V2", True)):
         options = {"planner": "rrt_star_mg", "max_samples": samples, "bidirectional": on, "informed": on}
@@ -177,7 +187,7 @@ TABLE_5_3 = {1.0: (100, 1779, 3.49), 0.5: (100, 2809, 3.49), 0.0: (100, 1213, 3.
 
 
 def explorations(number: int, seed: int, run: int, count: int, samples: int) -> dict[str, Any]:
-    cell = pipe_cell(number, seed=seed)
+    cell = p2_cell(number, seed)
     found = [
         carry(cell, count, run, planner="rrt_star_mg", max_samples=samples, exploration=share) for share in EXPLORATION
     ]

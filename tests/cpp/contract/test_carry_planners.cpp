@@ -64,7 +64,7 @@ class CarryPlanner : public ::testing::TestWithParam<std::string> {
 TEST_P(CarryPlanner, SolvesAndThePathIsFreeByFcl) {
   const ManipulationProblem problem = test::bar_carry();
   ManipulationOptions options = this->options();
-  options.prm.straight = false;
+  options.straight = false;
   double last = std::numeric_limits<double>::infinity();
   std::size_t told = 0;
   const ManipulationResult result = plan_manipulation(problem, options, nullptr, {}, [&](const Improvement& better) {
@@ -82,7 +82,7 @@ TEST_P(CarryPlanner, SameSeedSamePathAtAnyNumberOfThreads) {
   const ManipulationProblem problem = test::bar_carry();
   ManipulationOptions options = this->options();
   options.threads = 1;
-  options.prm.straight = false;
+  options.straight = false;
   const ManipulationResult expected = plan_manipulation(problem, options);
   ASSERT_EQ(expected.outcome, Outcome::solved);
   for (const int threads : {1, 2, 3, 7}) {

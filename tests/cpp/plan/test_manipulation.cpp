@@ -61,7 +61,7 @@ double exhaustive_cost(const ManipulationProblem& problem, const ManipulationOpt
       const bool ends = a >= first_start && a < first_goal && b >= first_goal;
       const bool same_end = a >= first_start && !ends;
       const bool near = !same_end && (nodes[b] - nodes[a]).norm() < radius;
-      if (near || (ends && options.prm.straight)) join(a, b);
+      if (near || (ends && options.straight)) join(a, b);
     }
   std::vector<double> cost(nodes.size(), std::numeric_limits<double>::infinity());
   using Entry = std::pair<double, std::size_t>;
@@ -219,7 +219,7 @@ TEST(PrmStarMg, EveryVariantFindsTheExhaustiveOptimum) {
 TEST(PrmStarMg, WithoutStraightEdgesTheRoadmapIsAllThereIs) {
   const ManipulationProblem problem = test::bar_carry();
   ManipulationOptions options = bar_options();
-  options.prm.straight = false;
+  options.straight = false;
   const Roadmap roadmap = Roadmap::build(problem.group, options.prm.roadmap);
   double best = std::numeric_limits<double>::infinity();
   for (std::size_t g = 0; g < problem.grasps.size(); ++g)
@@ -236,7 +236,7 @@ TEST(PrmStarMg, WithoutStraightEdgesTheRoadmapIsAllThereIs) {
 TEST(PrmStarMg, DensifyingEndsWithTheBestOfAllRoadmaps) {
   const ManipulationProblem problem = test::bar_carry();
   ManipulationOptions options = bar_options();
-  options.prm.straight = false;
+  options.straight = false;
   double best = std::numeric_limits<double>::infinity();
   std::vector<double> costs;
   for (const int vertices : {300, 600, 1200}) {
@@ -271,7 +271,7 @@ TEST(PrmStarMg, DensifyingHeedsTheClock) {
 TEST(PrmStarMg, PathCarriesTheObjectAndIsFree) {
   const ManipulationProblem problem = test::bar_carry();
   ManipulationOptions options = bar_options();
-  options.prm.straight = false;
+  options.straight = false;
   const ManipulationResult over_roadmap = plan_manipulation(problem, options);
   options.prm.shorten = true;
   const ManipulationResult result = plan_manipulation(problem, options);

@@ -74,7 +74,7 @@ TEST_F(OneVertex, IsNotClosedToAllGraspsByWhatOneOfThemHolds) {
   const Gate gate = find_gate();
   const Roadmap roadmap = detail::roadmap_over(problem_.group, 1, gate.q);
   ManipulationOptions options;
-  options.prm.straight = false;
+  options.straight = false;
   options.prm.shorten = false;
   options.ik_solutions = 2;
   options.time_limit = 100;
@@ -102,7 +102,7 @@ TEST_F(OneVertex, IsNotClosedToAllGraspsByWhatOneOfThemHolds) {
 TEST_F(OneVertex, IsClosedToAllGraspsByTheRobotItself) {
   const Gate gate = find_gate();
   ManipulationOptions options;
-  options.prm.straight = false;
+  options.straight = false;
   options.prm.shorten = false;
   options.ik_solutions = 2;
   options.time_limit = 100;

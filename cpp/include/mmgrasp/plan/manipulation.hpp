@@ -51,9 +51,6 @@ struct MMGRASP_EXPORT PrmStarMgOptions {
   int batch = 0;
   /// Search a grasp only when its straight-line cost could still win (beyond P2); off: as in the paper.
   bool lazy_grasps = true;
-  /// Join start and goal configurations by a straight edge whatever their distance (beyond P2); off: when the roadmap
-  /// would join them.
-  bool straight = true;
   RoadmapOptions roadmap;  ///< Used when no roadmap is given.
   /// Once the best path over the roadmap is found, double its vertices and go on, as long as there are no more than
   /// this; 0: never. Building denser roadmaps counts as search.
@@ -73,6 +70,10 @@ struct MMGRASP_EXPORT ManipulationOptions {
   /// searched again, then twice as many follow, and so on. 0: all arm configurations before any search, as in the paper
   /// (also for "prm_star_mg" with `straight` or `shorten` off). >= 0.
   int first_grasps = 4;
+  /// Try straight joint lines from start to goal (beyond P2): "prm_star_mg" joins all start and goal configurations,
+  /// "rrt_star_mg" asks those of the cheapest-looking grasps before the first sample. Off: start and goal are joined
+  /// when the roadmap would join them, and by trees.
+  bool straight = true;
   EdgeOptions edge{0.02, 0.005, false, 1e-4};  ///< How finely edges are checked.
   IkOptions ik;
   double time_limit = 15;  ///< Wall-clock cap on IK and search together, without the roadmap's building [s]; > 0.

@@ -127,7 +127,9 @@ std::shared_ptr<const GapTable> shared_gap_table(const TableBody& a, const Table
   const auto it = known.find(key);
   if (it != known.end()) return it->second.table;
   if (known.size() >= kMaxTables) known.erase(known.begin());
-  auto table = std::make_shared<const GapTable>(a, b, turns);
+  // Whoever uses the table holds the solids, but perhaps bounds that another thread made of them.
+  std::shared_ptr<const GapTable> table(new GapTable(a, b, turns),
+                                        [kept = std::pair(a.bounds, b.bounds)](const GapTable* old) { delete old; });
   known[key] = {a.solid, b.solid, table};
   return table;
 }

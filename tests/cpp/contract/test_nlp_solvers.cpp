@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <thread>
+#include <vector>
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/optim/nlp_solver.hpp"
@@ -203,6 +204,21 @@ TEST_P(NlpSolvers, RepeatThemselves) {
     EXPECT_EQ(a.x, b.x);
     EXPECT_EQ(a.iterations, b.iterations);
   }
+}
+
+/// Also for ThreadSanitizer: solvers keep nothing that calls of other threads could change.
+TEST_P(NlpSolvers, AnswerTheSameFromSeveralThreadsAtOnce) {
+  const auto answers = [&] {
+    std::vector<VectorXd> found;
+    for (Published& p : hock_schittkowski()) found.push_back(solver_->solve(p.problem, p.start).x);
+    return found;
+  };
+  const std::vector<VectorXd> alone = answers();
+  std::vector<std::vector<VectorXd>> found(4);
+  std::vector<std::thread> threads;
+  for (std::vector<VectorXd>& mine : found) threads.emplace_back([&] { mine = answers(); });
+  for (std::thread& thread : threads) thread.join();
+  for (const std::vector<VectorXd>& theirs : found) EXPECT_EQ(theirs, alone);
 }
 
 TEST_P(NlpSolvers, SayInfeasibleAndKeepTheLeastViolatedPoint) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -166,18 +167,20 @@ TEST(RrtStarMg, SamplesThatServeNoTreeDoNotEndTheSearch) {
   EXPECT_LT(result.stats.vertices, 1500u);
 }
 
-/// Errata on Algorithm 5.13, lines 14 and 20: as printed, nothing would be joined to what exploring adds.
+/// Errata on Algorithm 5.13, lines 14 and 20: as printed, nothing would be joined to what exploring adds, and most runs
+/// would stay with the grasp that was quickest.
 TEST(RrtStarMg, ExploringAloneJoinsTheTreesOfOtherGrasps) {
-  int others = 0;
+  std::vector<double> costs;
   for (unsigned seed = 1; seed <= 5; ++seed) {
     ManipulationOptions options = tree_options(1500);
     options.seed = seed;
     options.rrt.exploration = 1;
     const ManipulationResult result = plan_manipulation(bar_carry(), options);
     expect_sound(bar_carry(), result);
-    others += result.grasp_index != result.improvements.front().grasp;
+    costs.push_back(result.cost);
   }
-  EXPECT_GE(others, 2);
+  const auto [least, most] = std::minmax_element(costs.begin(), costs.end());
+  EXPECT_LT(*most, 1.03 * *least);
 }
 
 /// What is handed over must be trees: whole, of free edges, rooted in the grasp's own arm configurations.

@@ -129,6 +129,7 @@ def _run(context: Context, with_base: bool) -> Result:
             "arm alone: fewer than half of the queries of PRM* and EST are solved", max(rates[1:]) < 50, clock=True
         )
         result.trend("RRT-Connect solves the most", rates[0] >= max(rates), clock=True)
+    result.trend("PRM* solves no fewer than EST, as P3 prints", rates[1] >= rates[2], clock=True)
     result.setup = {
         "robot": "omni6 (six joints on an omnidirectional base; P3: seven)",
         "shelf [m]": f"front {FRONT} before the middle of the base, {DEPTH} deep, {WIDTH} wide, boards at {BOARDS}",

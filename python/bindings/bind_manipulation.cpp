@@ -199,7 +199,8 @@ py::dict report_dict(const GraspReport& r) {
 }
 
 py::dict improvement_dict(const Improvement& i) {
-  return py::dict("seconds"_a = i.seconds, "cost"_a = i.cost, "grasp"_a = i.grasp);
+  return py::dict("seconds"_a = i.seconds, "cost"_a = i.cost, "grasp"_a = i.grasp,
+                  "path"_a = rows_to_array(i.path.waypoints).attr("tolist")());
 }
 
 py::dict result_dict(const ManipulationResult& r) {
@@ -311,6 +312,8 @@ void bind_result(py::module_& m) {
       .def_readonly("seconds", &Improvement::seconds, "Since the call began, the first roadmap's building left out.")
       .def_readonly("cost", &Improvement::cost)
       .def_readonly("grasp", &Improvement::grasp)
+      .def_property_readonly(
+          "path", [](const Improvement& i) { return rows_to_array(i.path.waypoints); }, "Waypoints (k, n).")
       .def("to_dict", &improvement_dict)
       .def("__repr__", [](const Improvement& i) {
         return "Improvement(cost " + std::string(py::repr(py::float_(i.cost))) + ", grasp " + std::to_string(i.grasp) +

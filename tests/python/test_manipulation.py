@@ -80,6 +80,9 @@ def test_the_bar_is_carried_from_start_to_goal():
     assert result.cost == pytest.approx(np.linalg.norm(np.diff(result.path, axis=0), axis=1).sum(), abs=1e-12)
     assert result.lower_bound == pytest.approx(result.cost)
     assert improvements[-1].cost == result.cost and improvements[-1].grasp == result.grasp_index
+    assert np.array_equal(improvements[-1].path, result.path)
+    for better in improvements:
+        assert better.cost == pytest.approx(np.linalg.norm(np.diff(better.path, axis=0), axis=1).sum(), abs=1e-12)
     tool_object = np.linalg.inv(grasp.T_object_tool)
     assert np.allclose(ARM.fk(result.path[0]) @ tool_object, flat(0.55, 0.45, 1.2), atol=3e-4)
     assert np.allclose(ARM.fk(result.path[-1]) @ tool_object, flat(0.6, -0.45, 0.9), atol=3e-4)

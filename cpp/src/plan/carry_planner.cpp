@@ -30,8 +30,8 @@ void take_path(const CarryInput& input, Carry carry, ManipulationResult& result)
   if (result.path && carry.cost >= result.cost) return;
   result.grasp_index = carry.grasp;
   result.cost = carry.cost;
+  result.improvements.push_back({input.clock.seconds(), carry.cost, carry.grasp, carry.path});
   result.path = std::move(carry.path);
-  result.improvements.push_back({input.clock.seconds(), carry.cost, carry.grasp});
   if (input.improved) input.improved(result.improvements.back());
 }
 

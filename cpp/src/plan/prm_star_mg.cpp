@@ -52,7 +52,7 @@ void run_prm_star_mg(CarryInput& input, ManipulationResult& result) {
   if (result.path) {
     result.outcome = Outcome::solved;
     result.lower_bound = std::min(result.lower_bound, result.cost);
-    if (whole) refine_carry(input, result);
+    if (whole && options.shorten) refine_carry(input, result);
   } else {
     result.outcome = input.monitor.stopped() ? Outcome::stopped : whole ? Outcome::infeasible : Outcome::timeout;
   }

@@ -58,8 +58,8 @@ struct MMGRASP_EXPORT PrmStarMgOptions {
   /// Shorten the best path over the roadmap at the end, as plan_motion does; off: as in the paper.
   bool shorten = true;
   /// Once that is done: rounds with small roadmaps drawn where a cheaper path can pass (informed sets of all grasps),
-  /// each of which is searched for a better one; as many as the clock allows at most; >= 0.
-  int refinements = 0;
+  /// each of which is searched for a better one; as many as the clock allows at most; none with `shorten` off; >= 0.
+  int refinements = 16;
   void check() const;
 };
 
@@ -99,6 +99,7 @@ struct MMGRASP_EXPORT Improvement {
   double seconds = 0;  ///< Since the call began, the first roadmap's building left out.
   double cost = 0;
   int grasp = -1;
+  JointPath path;  ///< Looked at as the result's is.
 };
 
 struct MMGRASP_EXPORT ManipulationStats {

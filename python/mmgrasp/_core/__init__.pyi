@@ -11,7 +11,7 @@ import numpy
 import numpy.typing
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CandidateGrasp', 'CapabilityMap', 'Capsule', 'CarryPlace', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'CuboidFit', 'Cylinder', 'DepthImage', 'DistanceResult', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FingerJoint', 'FittedCuboid', 'Grasp', 'GraspReport', 'Graspability', 'Gripper', 'HeightMap', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyProblem', 'PartSupplyResult', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeGrasp', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'ScoredGrasp', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'ToolCone', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'drive_arc', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'least_stops', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_stops', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_pick', 'plan_platform_locations', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_part_supply', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CandidateGrasp', 'CapabilityMap', 'Capsule', 'CarryPlace', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'CuboidFit', 'Cylinder', 'DepthImage', 'DistanceResult', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FingerJoint', 'FittedCuboid', 'Grasp', 'GraspReport', 'Graspability', 'Gripper', 'HeightMap', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyProblem', 'PartSupplyResult', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeGrasp', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'ScoredGrasp', 'SearchTree', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'ToolCone', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'drive_arc', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'least_stops', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_stops', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_pick', 'plan_platform_locations', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_part_supply', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Robot:
     """
     A robot as URDF and SRDF describe it. Immutable; joints and links by name.
@@ -1341,6 +1341,11 @@ class MotionResult:
     def to_dict(self) -> dict:
         ...
     @property
+    def beyond_limits(self) -> str:
+        """
+        With invalid_start or invalid_goal: which joint is outside of its limits, its value and these.
+        """
+    @property
     def contacts(self) -> list[Contact]:
         """
         With invalid_start or invalid_goal: what touches.
@@ -1363,7 +1368,9 @@ class MotionResult:
         """
     @property
     def rejections(self) -> Rejections:
-        ...
+        """
+        Of the start, or of goals, turned down.
+        """
     @property
     def stats(self) -> MotionStats:
         ...
@@ -1521,9 +1528,9 @@ class ManipulationProblem:
     """
     Carry an object from one pose to another with any of many grasps (P2 4.2).
     """
-    def __init__(self, group: JointGroup, world: World, object: typing.Any, T_world_start: numpy.typing.ArrayLike, T_world_goal: numpy.typing.ArrayLike, grasps: typing.Any, *, gripper: Gripper | None = None, touch_links: collections.abc.Sequence[str] = [], object_name: str = 'object') -> None:
+    def __init__(self, group: JointGroup, world: World, object: typing.Any, T_world_start: numpy.typing.ArrayLike, T_world_goal: numpy.typing.ArrayLike, grasps: typing.Any, *, gripper: Gripper | None = None, touch_links: collections.abc.Sequence[str] = [], object_name: str = 'object', **kwargs) -> None:
         """
-        `object` is a LinkShape or a list of them, in its own frame; `world` is without it. `grasps` are CandidateGrasp, or poses of the tool in the object's frame as (m, 4, 4). With `gripper` the fingers are set to each grasp's opening. Links in `touch_links` may touch the object; none given: those of the end effector.
+        `object` is a LinkShape or a list of them, in its own frame; `world` is without it. `grasps` are CandidateGrasp, or poses of the tool in the object's frame as (m, 4, 4). With `gripper` the fingers are set to each grasp's opening. Links in `touch_links` may touch the object; none given: those of the end effector. The group may be an arm or an arm on an omni base; a diff_drive base is refused, since it could not drive the paths.
         """
     def __repr__(self) -> str:
         ...
@@ -1548,6 +1555,35 @@ class ManipulationProblem:
     @property
     def world(self) -> World:
         ...
+class SearchTree:
+    """
+    One tree of RRT*-MG as it stood at the end: of one grasp, from its starts or its goals.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def costs(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Length of the way from the root, (n,).
+        """
+    @property
+    def from_goal(self) -> bool:
+        ...
+    @property
+    def grasp(self) -> int:
+        ...
+    @property
+    def parents(self) -> list[int]:
+        """
+        Of each vertex: another one, or -1 for the grasp's arm configurations.
+        """
+    @property
+    def vertices(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, joints)
+        """
 class Improvement:
     """
     A better solution on the way.
@@ -1563,13 +1599,18 @@ class Improvement:
     def grasp(self) -> int:
         ...
     @property
+    def path(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Waypoints (k, n).
+        """
+    @property
     def seconds(self) -> float:
         """
         Since the call began, the first roadmap's building left out.
         """
 class GraspReport:
     """
-    What became of one grasp before the search.
+    What became of one grasp.
     """
     def __repr__(self) -> str:
         ...
@@ -1583,6 +1624,11 @@ class GraspReport:
     @property
     def goal_solutions(self) -> int:
         ...
+    @property
+    def searched(self) -> bool:
+        """
+        Its paths were looked for over a roadmap.
+        """
     @property
     def start(self) -> Rejections:
         """
@@ -1643,6 +1689,11 @@ class ManipulationResult:
     @property
     def stats(self) -> dict:
         ...
+    @property
+    def trees(self) -> list[SearchTree]:
+        """
+        With keep_trees: a SearchTree for each grasp still in the race and each end.
+        """
 class BaseTrackingResult:
     """
     A base driven along a plan, one row a period; poses are (x, y, theta).
@@ -3195,7 +3246,8 @@ def plan_base_route(arm: JointGroup, world: World, *, home: numpy.typing.ArrayLi
 def plan_cartesian(checker: CollisionChecker, tool_poses: numpy.typing.ArrayLike, near: typing.Any = None, *, progress: typing.Any = None, **kwargs) -> CartesianResult:
     """
     The tip follows straight lines from pose to pose, from the inverse kinematics branch of the first pose that completes
-    them with the shortest way, counted from `near` (n,) when that is given.
+    them with the shortest way, counted from `near` (n,) when that is given. A group that moves a diff_drive base is
+    refused: it could not follow such a path.
     
     Keyword options:
         position_step = 0.005: largest tool translation between two waypoints [m]
@@ -3239,6 +3291,7 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         planner = 'prm_star_mg': a name of manipulation_planner_names()
         ik_solutions = 4: arm configurations tried for each grasp at each end
         first_grasps = 4: grasps looked at, one by one, before those without a first path are searched again, then twice as many; 0: all before any search
+        straight = True: try straight joint lines from start to goal
         ik_restarts = 30: random starts of arms without a closed form
         joint_step = 0.02: no joint moves more between two checks of an edge [rad or m]
         workspace_step = 0.005: no point of the robot or the object moves more between two checks [m]
@@ -3247,10 +3300,9 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         threads = 0: 0: all; does not change the answer
         batch = 0: prm_star_mg: grasps searched together before paths are checked; 1: naive, 0: all
         lazy_grasps = True: prm_star_mg: search a grasp only when its straight line could still win
-        straight = True: prm_star_mg: join start and goal configurations whatever their distance
         max_vertices = 0: prm_star_mg: once the roadmap's best path is found, double its vertices up to this; 0: never
         shorten = True: prm_star_mg: shorten the roadmap's best path at the end
-        refinements = 0: prm_star_mg: then search so many small roadmaps drawn where a cheaper path can pass
+        refinements = 16: prm_star_mg: then search so many small roadmaps drawn where a cheaper path can pass
         vertices = 5000: prm_star_mg without a roadmap given: configurations drawn
         gamma = 4.0: likewise: vertices nearer than gamma (log n / n)^(1/d) are joined [rad or m]
         neighbours = 0: likewise: > 0: join that many nearest ones instead
@@ -3262,6 +3314,7 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         bidirectional = True: rrt_star_mg: trees from both ends
         informed = True: rrt_star_mg: draw only where a better path can pass
         goal_cost = 0.0: rrt_star_mg: ends with the first path that costs no more; inf: the first at all
+        keep_trees = False: rrt_star_mg: hand over the trees with the result
     """
 def plan_motion(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, goal: typing.Any = None, tool_poses: typing.Any = None, regions: collections.abc.Sequence[ToolRegion] = [], tool_cone: ToolCone | None = None, on_solution: typing.Any = None, progress: typing.Any = None, **kwargs) -> MotionResult:
     """
@@ -3304,7 +3357,8 @@ def plan_platform_locations(checker: CollisionChecker, T_world_pick: numpy.typin
     """
 def plan_straight_line(checker: CollisionChecker, start: numpy.typing.ArrayLike, T_world_to: numpy.typing.ArrayLike, **kwargs) -> StraightLineResult:
     """
-    The tool moves on a straight line from the pose of `start` to T_world_to.
+    The tool moves on a straight line from the pose of `start` to T_world_to. A group that moves a diff_drive base is
+    refused: it could not follow such a path.
     
     Keyword options:
         position_step = 0.005: largest tool translation between two waypoints [m]
@@ -3430,7 +3484,7 @@ def share_stops(drive_times: numpy.typing.ArrayLike, stop_times: collections.abc
 def shorten_drive_by(group: JointGroup, world: World, *, tasks: collections.abc.Sequence[DriveByTask], times: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], positions: numpy.typing.ArrayLike, task_times: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], progress: typing.Any = None, **kwargs) -> DriveByResult:
     """
     plan_drive_by from a motion that is known instead of guesses: positions (m, n) at times [s], straight between them, free of
-    collisions, from rest to rest, at each task at its time; e.g. a drive and a pick one after the other. One solve near that
+    collisions, from rest to rest, at each task at its time; e.g. a drive and a pick one after the other. The answer is near that
     motion. Tasks have one pose and no push. Keywords are those of plan_drive_by.
     """
 def shortest_visiting_tour(lengths: numpy.typing.ArrayLike) -> TourResult:

@@ -274,6 +274,7 @@ TEST(PrmStarMg, PathCarriesTheObjectAndIsFree) {
   options.straight = false;
   const ManipulationResult over_roadmap = plan_manipulation(problem, options);
   options.prm.shorten = true;
+  options.prm.refinements = 0;
   const ManipulationResult result = plan_manipulation(problem, options);
   ASSERT_EQ(result.outcome, Outcome::solved);
   EXPECT_LT(result.cost, 0.95 * over_roadmap.cost);

@@ -59,7 +59,7 @@ struct MMGRASP_EXPORT PrmStarMgOptions {
   bool shorten = true;
   /// Once that is done: rounds with small roadmaps drawn where a cheaper path can pass (informed sets of all grasps),
   /// each of which is searched for a better one; as many as the clock allows at most; none with `shorten` off; >= 0.
-  int refinements = 16;
+  int refinements = 4;
   void check() const;
 };
 

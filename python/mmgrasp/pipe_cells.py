@@ -107,10 +107,10 @@ def pipe_cell(number: int, seed: int = 1, robot: str = "tm14like", style: str = 
     grasp within reach would do. Raises InvalidInput on a number, robot or style that does not exist and on a negative
     seed.
     """
-    if number not in range(1, 9):
-        raise InvalidInput(f"number = {number}: must be from 1 to 8")
     if style not in _STYLES:
         raise InvalidInput(f"style = {style!r}: must be one of {', '.join(_STYLES)}{near_miss(style, list(_STYLES))}")
+    if number not in range(1, len(_STYLES[style]) + 1):
+        raise InvalidInput(f"number = {number!r}: must be from 1 to {len(_STYLES[style])}")
     if not isinstance(seed, int | np.integer) or seed < 0:
         raise InvalidInput(f"seed = {seed!r}: must be a whole number >= 0")
     pipe_robot(robot)
@@ -130,9 +130,9 @@ def _pipe_cell(number: int, seed: int, robot: str, style: str) -> PipeCell:
     raise InvalidInput(f"number = {number}, seed = {seed}: none of {_TRIES} cells will do: {dict(rejected)}")
 
 
-def _draw(number: int, seed: int, robot: str, kind: str, rng: np.random.Generator) -> PipeCell:
+def _draw(number: int, seed: int, robot: str, style_name: str, rng: np.random.Generator) -> PipeCell:
     """Start to the left of the arm, goal to its right, obstacles ahead."""
-    pipe, style = pipe_structures()[number - 1], _STYLES[kind][number - 1]
+    pipe, style = pipe_structures()[number - 1], _STYLES[style_name][number - 1]
     between = rng.uniform(-0.3, 0.3)  # direction of what stands between [rad]
     T_world_start, T_world_goal = (
         _resting(
@@ -163,7 +163,7 @@ def _draw(number: int, seed: int, robot: str, kind: str, rng: np.random.Generato
         radius, height = rng.uniform(0.03, 0.05), rng.uniform(0.5, 0.9) * _scale(robot)
         at = rng.uniform(0.40, 0.90) * _scale(robot) * _direction(between + rng.uniform(-0.6, 0.6))
         world.add_cylinder(f"column {i + 1}", radius, height, pose([at[0], at[1], _TABLE_TOP + height / 2]))
-    return PipeCell(number, seed, robot, kind, pipe, world, T_world_start, T_world_goal)
+    return PipeCell(number, seed, robot, style_name, pipe, world, T_world_start, T_world_goal)
 
 
 def _direction(angle: float) -> NDArray[np.float64]:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 COUNTS = (25, 50, 100, 500, 1000, 2000)
 VERTICES = 5000
 NEIGHBOURS = 12  # beyond P2: what a roadmap that does not fall to pieces reaches
+NEAREST = f"success rate, {NEIGHBOURS} nearest joined"
 SUCCESS = {25: 0.85, 50: 0.9125, 100: 0.9625, 500: 1.0, 1000: 1.0, 2000: 1.0}
 VARIANTS = ("naive", "standard", "batch")
 # Time to the first solution, in all [s], cost of the first solution; of naive, standard, batch.
@@ -77,19 +78,13 @@ def run_success(context: Context) -> Result:
         solved = [d["found"][k]["solved"] for d in done]
         rates.append(float(np.mean(solved)))
         values["success rate"] = (SUCCESS[count], rates[-1])
-        values[f"success rate, {NEIGHBOURS} nearest joined"] = (
-            None,
-            float(np.mean([d["found"][k]["solved, nearest"] for d in done])),
-        )
+        values[NEAREST] = (None, float(np.mean([d["found"][k]["solved, nearest"] for d in done])))
         values["grasps within reach at both ends"] = (None, mean(d["found"][k]["reachable"] for d in done))
     for number in problems:
         values = result.row({"grasps": f"problem {number}"})
         mine = [d for d in done if d["number"] == number]
         values["success rate"] = (None, mean(float(f["solved"]) for d in mine for f in d["found"]))
-        values[f"success rate, {NEIGHBOURS} nearest joined"] = (
-            None,
-            mean(float(f["solved, nearest"]) for d in mine for f in d["found"]),
-        )
+        values[NEAREST] = (None, mean(float(f["solved, nearest"]) for d in mine for f in d["found"]))
         values["grasps within reach at both ends"] = (None, mean(d["found"][-1]["reachable"] for d in mine))
     result.trend("more grasps, more success", all(a <= b for a, b in itertools.pairwise(rates)))
     result.exact(

@@ -1,9 +1,7 @@
 #include "bindings.hpp"
 #include "given.hpp"
-#include "mmgrasp/plan/cartesian.hpp"
 #include "mmgrasp/plan/motion.hpp"
-#include "mmgrasp/plan/straight_line.hpp"
-#include "mmgrasp/plan/time_parameterization.hpp"
+#include "plan_arguments.hpp"
 #include "same_robot.hpp"
 
 namespace mmgrasp::python {
@@ -29,53 +27,12 @@ const std::vector<OptionField<MotionOptions>>& motion_fields() {
   return fields;
 }
 
-const std::vector<OptionField<TimingOptions>>& timing_fields() {
-  using O = TimingOptions;
-  static const std::vector<OptionField<O>> fields{
-      option<O>("max_deviation", &O::max_deviation, "corners are blended within this joint distance [rad]"),
-      option<O>("sample_period", &O::sample_period, "spacing of the samples [s]"),
-      {"jerk_limits",
-       [](O& o, const py::handle& v) {
-         o.jerk_limits = v.is_none() ? Eigen::VectorXd() : vector_argument(v, "jerk_limits");
-       },
-       [](const O&) { return py::object(py::none()); }, "of each joint [rad/s^3]; None: no such limits"}};
-  return fields;
-}
-
-const std::vector<OptionField<StraightLineOptions>>& line_fields() {
-  using O = StraightLineOptions;
-  static const std::vector<OptionField<O>> fields{
-      option<O>("position_step", &O::position_step, "largest tool translation between two waypoints [m]"),
-      option<O>("rotation_step", &O::rotation_step, "largest tool rotation between two waypoints [rad]"),
-      option<O>("max_joint_step", &O::max_joint_step, "a larger joint motion between two waypoints is a jump"),
-      option<O>("edge_step", &O::edge_step, "largest joint motion between two checks [rad or m]")};
-  return fields;
-}
-
-py::object path_array(const std::optional<JointPath>& path) {
-  if (!path) return py::none();
-  return rows_to_array(path->waypoints);
-}
-
 /// One goal (n,) or several (m, n).
 std::vector<Eigen::VectorXd> goals_argument(const ArrayLike& goal, Eigen::Index size) {
   const py::array array = py::array::ensure(goal);
   PyErr_Clear();
   if (array && array.ndim() == 2) return rows_argument(goal, "goal", size);
   return {vector_argument(goal, "goal", size)};
-}
-
-/// One pose (4, 4) or several (m, 4, 4).
-Poses poses_argument(const ArrayLike& value, const std::string& name) {
-  const py::array array = py::array::ensure(value);
-  if (!array) PyErr_Clear();
-  if (!array || array.ndim() != 3) return {pose_argument(value, name)};
-  Poses poses;
-  for (py::ssize_t i = 0; i < array.shape(0); ++i) {
-    const std::string entry = name + "[" + std::to_string(i) + "]";
-    poses.push_back(pose_argument(ArrayLike(py::object(array[py::int_(i)])), entry));
-  }
-  return poses;
 }
 
 MotionResult plan(const Given<Robot>& given_robot, const Given<JointGroup>& given_group, const Given<World>& world,
@@ -161,11 +118,9 @@ void bind_motion(py::module_& m) {
       .def_readonly("stats", &MotionResult::stats)
       .def("to_dict",
            [](const MotionResult& r) {
-             py::object path = path_array(r.path);
-             if (!path.is_none()) path = path.attr("tolist")();
              py::list contacts;
              for (const Contact& c : r.contacts) contacts.append(py::cast(c).attr("to_dict")());
-             return py::dict("outcome"_a = to_string(r.outcome), "path"_a = path, "cost"_a = r.cost,
+             return py::dict("outcome"_a = to_string(r.outcome), "path"_a = path_list(r.path), "cost"_a = r.cost,
                              "goal_index"_a = r.goal_index, "contacts"_a = contacts,
                              "rejections"_a = to_dict(r.rejections), "beyond_limits"_a = r.beyond_limits,
                              "stats"_a = py::cast(r.stats).attr("to_dict")());
@@ -180,6 +135,7 @@ void bind_motion(py::module_& m) {
         if (!r.beyond_limits.empty()) out += ", " + r.beyond_limits;
         return out + ")";
       });
+  m.def("_motion_option_table", [] { return option_table(motion_fields()); });
   m.def("planner_names", &planner_names, "Names that plan_motion's `planner` takes.");
   m.def(
       "plan_motion", &plan, py::arg("robot"), py::arg("group"), py::arg("world"), py::kw_only(), py::arg("start"),
@@ -194,137 +150,13 @@ void bind_motion(py::module_& m) {
           .c_str());
 }
 
-void bind_line(py::module_& m) {
-  py::class_<StraightLineResult>(m, "StraightLineResult", "What plan_straight_line found.")
-      .def_readonly("outcome", &StraightLineResult::outcome)
-      .def_property_readonly(
-          "path", [](const StraightLineResult& r) { return path_array(r.path); }, "(k, n) or None.")
-      .def_readonly("fraction", &StraightLineResult::fraction, "How far along the line it came, in [0, 1].")
-      .def_readonly("cause", &StraightLineResult::cause, "Why it ended there.")
-      .def_readonly("contact", &StraightLineResult::contact, "What touches there, when something does, or None.")
-      .def("to_dict",
-           [](const StraightLineResult& r) {
-             py::object path = path_array(r.path);
-             if (!path.is_none()) path = path.attr("tolist")();
-             return py::dict("outcome"_a = to_string(r.outcome), "path"_a = path, "fraction"_a = r.fraction,
-                             "cause"_a = to_string(r.cause),
-                             "contact"_a = r.contact ? py::cast(*r.contact).attr("to_dict")() : py::none());
-           })
-      .def("__repr__", [](const StraightLineResult& r) {
-        return std::string("StraightLineResult(") + to_string(r.outcome) + ", fraction " +
-               std::string(py::repr(py::float_(r.fraction))) +
-               (r.contact ? ", '" + r.contact->a + "' touches '" + r.contact->b + "'" : "") + ")";
-      });
-  m.def(
-      "plan_straight_line",
-      [](CollisionChecker& checker, const ArrayLike& start, const ArrayLike& T_world_to, const py::kwargs& options) {
-        const StraightLineOptions read = read_options(line_fields(), options, "plan_straight_line");
-        return plan_straight_line(checker, vector_argument(start, "start", checker.group().size()),
-                                  pose_argument(T_world_to, "T_world_to"), read);
-      },
-      py::arg("checker"), py::arg("start"), py::arg("T_world_to"),
-      ("The tool moves on a straight line from the pose of `start` to T_world_to. A group that moves a diff_drive base "
-       "is\nrefused: it could not follow such a path." +
-       option_help(line_fields()))
-          .c_str());
-}
-
-const std::vector<OptionField<CartesianOptions>>& cartesian_fields() {
-  using O = CartesianOptions;
-  using L = StraightLineOptions;
-  static const std::vector<OptionField<O>> fields{
-      option<O>("position_step", &O::line, &L::position_step, "largest tool translation between two waypoints [m]"),
-      option<O>("rotation_step", &O::line, &L::rotation_step, "largest tool rotation between two waypoints [rad]"),
-      option<O>("max_joint_step", &O::line, &L::max_joint_step, "a larger joint motion between waypoints is a jump"),
-      option<O>("edge_step", &O::line, &L::edge_step, "largest joint motion between two checks [rad or m]"),
-      option<O>("max_branches", &O::max_branches, "configurations of the first pose that are followed at most")};
-  return fields;
-}
-
-void bind_cartesian(py::module_& m) {
-  py::class_<CartesianResult>(m, "CartesianResult", "What plan_cartesian found.")
-      .def_readonly("outcome", &CartesianResult::outcome)
-      .def_property_readonly(
-          "path", [](const CartesianResult& r) { return path_array(r.path); }, "(k, n) or None.")
-      .def_readonly("corners", &CartesianResult::corners, "Waypoint at which each pose is reached.")
-      .def_readonly("fraction", &CartesianResult::fraction, "How far the best branch came, in [0, 1].")
-      .def_readonly("cause", &CartesianResult::cause, "Why it ended there.")
-      .def_readonly("contact", &CartesianResult::contact, "What touches there, when something does, or None.")
-      .def_readonly("branches", &CartesianResult::branches, "Allowed configurations of the first pose.")
-      .def_readonly("tried", &CartesianResult::tried, "Of these: followed.")
-      .def_readonly("rejections", &CartesianResult::rejections)
-      .def("to_dict",
-           [](const CartesianResult& r) {
-             py::object path = path_array(r.path);
-             if (!path.is_none()) path = path.attr("tolist")();
-             return py::dict("outcome"_a = to_string(r.outcome), "path"_a = path, "corners"_a = r.corners,
-                             "fraction"_a = r.fraction, "cause"_a = to_string(r.cause),
-                             "contact"_a = r.contact ? py::cast(*r.contact).attr("to_dict")() : py::none(),
-                             "branches"_a = r.branches, "tried"_a = r.tried, "rejections"_a = to_dict(r.rejections));
-           })
-      .def("__repr__", [](const CartesianResult& r) {
-        return std::string("CartesianResult(") + to_string(r.outcome) + ", fraction " +
-               std::string(py::repr(py::float_(r.fraction))) + ", " + std::to_string(r.tried) + " of " +
-               std::to_string(r.branches) + " branches tried)";
-      });
-  m.def(
-      "plan_cartesian",
-      [](CollisionChecker& checker, const ArrayLike& tool_poses, const py::object& near, const py::object& progress,
-         const py::kwargs& options) {
-        const CartesianOptions read = read_options(cartesian_fields(), options, "plan_cartesian");
-        const Poses poses = poses_argument(tool_poses, "tool_poses");
-        std::optional<Eigen::VectorXd> from;
-        if (!near.is_none()) {
-          from = vector_argument(py::reinterpret_borrow<ArrayLike>(near), "near", checker.group().size());
-        }
-        return LongCall(progress).run(
-            [&](const Monitor& monitor) { return plan_cartesian(checker, poses, from, read, monitor); });
-      },
-      py::arg("checker"), py::arg("tool_poses"), py::arg("near") = py::none(), py::kw_only(),
-      py::arg("progress") = py::none(),
-      ("The tip follows straight lines from pose to pose, from the inverse kinematics branch of the first pose that "
-       "completes\nthem with the shortest way, counted from `near` (n,) when that is given. A group that moves a "
-       "diff_drive base "
-       "is\nrefused: it could not follow such a path." +
-       option_help(cartesian_fields()))
-          .c_str());
-}
-
 }  // namespace
 
 void bind_plan(py::module_& m) {
   bind_goals(m);
   bind_motion(m);
-  bind_cartesian(m);
-  bind_line(m);
-  m.def(
-      "time_parameterize",
-      [](const ArrayLike& path, const ArrayLike& velocity_limits, const ArrayLike& acceleration_limits,
-         const std::vector<std::string>& names, const py::kwargs& options) {
-        const TimingOptions read = read_options(timing_fields(), options, "time_parameterize");
-        const JointPath waypoints{rows_argument(path, "path")};
-        const Eigen::Index n = waypoints.waypoints.empty() ? -1 : waypoints.waypoints[0].size();
-        const Eigen::VectorXd velocity = vector_argument(velocity_limits, "velocity_limits", n);
-        const Eigen::VectorXd acceleration = vector_argument(acceleration_limits, "acceleration_limits", n);
-        py::gil_scoped_release release;
-        return time_parameterize(waypoints, velocity, acceleration, read, names);
-      },
-      py::arg("path"), py::arg("velocity_limits"), py::arg("acceleration_limits"), py::kw_only(),
-      py::arg("names") = std::vector<std::string>{},
-      ("Near time-optimal timing of waypoints (k, n), at rest at both ends; corners are blended, which may leave the "
-       "path\n"
-       "by max_deviation." +
-       option_help(timing_fields()))
-          .c_str());
-  m.def(
-      "time_parameterize_free",
-      [](CollisionChecker& checker, const ArrayLike& path, double edge_step, const py::kwargs& options) {
-        const TimingOptions read = read_options(timing_fields(), options, "time_parameterize_free");
-        return time_parameterize_free(checker, JointPath{rows_argument(path, "path", checker.group().size())}, read,
-                                      edge_step);
-      },
-      py::arg("checker"), py::arg("path"), py::kw_only(), py::arg("edge_step") = 0.01,
-      "time_parameterize under the group's limits, the blended corners checked for collisions too.");
+  bind_tool_lines(m);
+  bind_timing(m);
 }
 
 }  // namespace mmgrasp::python

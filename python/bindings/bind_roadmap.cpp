@@ -1,4 +1,5 @@
 #include "bindings.hpp"
+#include "given.hpp"
 #include "mmgrasp/plan/roadmap.hpp"
 
 namespace mmgrasp::python {
@@ -50,7 +51,8 @@ void bind_roadmap(py::module_& m) {
                       "check: it serves every grasp, object and scene (P2 4.3.2.1). Immutable.")
       .def_static(
           "build",
-          [](const JointGroup& group, const py::object& progress, const py::kwargs& options) {
+          [](const Given<JointGroup>& given_group, const py::object& progress, const py::kwargs& options) {
+            const JointGroup& group = taken(given_group, "group");
             const RoadmapOptions read = read_options(roadmap_fields(), options, "Roadmap.build");
             return LongCall(progress).run([&](const Monitor& monitor) { return Roadmap::build(group, read, monitor); });
           },
@@ -60,7 +62,8 @@ void bind_roadmap(py::module_& m) {
               .c_str())
       .def_static(
           "load",
-          [](const py::object& path, const JointGroup& group) {
+          [](const py::object& path, const Given<JointGroup>& given_group) {
+            const JointGroup& group = taken(given_group, "group");
             const std::string file = path_argument(path, "path");
             py::gil_scoped_release release;
             return Roadmap::load(file, group);

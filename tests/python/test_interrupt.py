@@ -10,9 +10,11 @@ import sys
 import threading
 import time
 
+import numpy as np
 import pytest
 
 import mmgrasp as mg
+from argument_values import ARM, OBJECTS, POSE, Q
 
 
 @pytest.fixture(autouse=True)
@@ -38,6 +40,40 @@ def test_building_a_database_can_be_interrupted(small_path, tmp_path):
     timer.join()
     assert time.monotonic() - begun < 60, "the whole build would take an hour"
     assert [p.name for p in tmp_path.iterdir() if not p.name.endswith(".partial")] == [], "finished parts at most"
+
+
+CHECKER = OBJECTS["CollisionChecker"]()
+AHEAD = ARM.fk(Q + [0, 0, 0.2])
+LONG_PATH = np.cumsum(np.random.default_rng(1).normal(size=(20_000, 3)) / 10, axis=0)
+ENDLESS = {
+    "plan_straight_line": lambda **k: mg.plan_straight_line(CHECKER, Q, AHEAD, position_step=1e-12, **k),
+    "plan_cartesian": lambda **k: mg.plan_cartesian(CHECKER, [POSE, AHEAD], near=Q, position_step=1e-12, **k),
+    "time_parameterize": lambda **k: mg.time_parameterize(LONG_PATH, [1] * 3, [1] * 3, jerk_limits=[1] * 3, **k),
+    "time_parameterize_free": lambda **k: mg.time_parameterize_free(CHECKER, [Q, Q / 2], edge_step=1e-12, **k),
+}
+
+
+@pytest.mark.parametrize("name", ENDLESS)
+def test_lines_and_timing_can_be_interrupted(name):
+    """With the lock held, the timer could not even send the signal."""
+    timer = interrupt_soon()
+    with pytest.raises(KeyboardInterrupt):
+        ENDLESS[name]()
+    timer.join()
+
+
+def test_lines_and_timing_tell_their_progress():
+    calls = {
+        "straight line": lambda **k: mg.plan_straight_line(CHECKER, Q, AHEAD, **k),
+        "cartesian path": lambda **k: mg.plan_cartesian(CHECKER, [POSE, AHEAD], near=Q, **k),
+        "limit jerk": lambda **k: mg.time_parameterize([Q, Q / 2], [1] * 3, [1] * 3, jerk_limits=[1] * 3, **k),
+        "check timed path": lambda **k: mg.time_parameterize_free(CHECKER, [Q, Q / 2], **k),
+    }
+    for stage, call in calls.items():
+        told = []
+        call(progress=lambda *now, told=told: told.append(now))
+        assert told and {name for name, _ in told} == {stage}
+        assert all(0 <= fraction <= 1 for _, fraction in told)
 
 
 def test_an_error_in_the_progress_callback_ends_the_call(small_path):

@@ -210,6 +210,9 @@ def test_poses_of_grasps_must_be_rigid():
 def test_what_is_no_problem_and_no_roadmap_is_refused_by_name():
     with pytest.raises(mg.InvalidInput, match="problem = 3: must be a ManipulationProblem"):
         mg.plan_manipulation(3)
+    for call in (lambda: mg.Roadmap.build(group=3), lambda: mg.Roadmap.load("some.roadmap", group=3)):
+        with pytest.raises(mg.InvalidInput, match="group = 3: must be a JointGroup"):
+            call()
     with pytest.raises(mg.InvalidInput, match="roadmap = 'x': must be a Roadmap"):
         mg.plan_manipulation(problem(), roadmap="x")
 

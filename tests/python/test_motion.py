@@ -192,6 +192,61 @@ def test_bad_arguments_are_refused_by_name(robot, arm, world, changes, words):
         assert word in str(refused.value)
 
 
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"checker": 3}, ["checker = 3", "a CollisionChecker"]),
+        ({"checker": None}, ["checker = None", "a CollisionChecker"]),
+        ({"checker": mg.World()}, ["checker = ", "a CollisionChecker"]),
+    ],
+)
+def test_a_wrong_checker_is_refused_by_name(changes, words):
+    calls = [
+        lambda checker: mg.plan_straight_line(checker, START, np.eye(4)),
+        lambda checker: mg.plan_cartesian(checker, [np.eye(4)] * 2),
+        lambda checker: mg.time_parameterize_free(checker, [START, GOAL]),
+    ]
+    for call in calls:
+        with pytest.raises(mg.InvalidInput) as refused:
+            call(**changes)
+        for word in words:
+            assert word in str(refused.value)
+
+
+def test_wrong_timing_arguments_are_refused_by_name(robot, arm, world):
+    checker = mg.CollisionChecker(robot, world, arm)
+    for call, words in [
+        (lambda: mg.time_parameterize_free(checker, [START, GOAL], edge_step="fine"), ["edge_step = 'fine'", "number"]),
+        (lambda: mg.time_parameterize_free(checker, [START, GOAL], edge_step=0), ["edge_step = 0", "> 0"]),
+        (lambda: mg.time_parameterize([START, GOAL], [1] * 4, [1] * 4, names=5), ["names = 5", "names of joints"]),
+        (lambda: mg.time_parameterize([START, GOAL], [1] * 4, [1] * 4, sample_period=1e-13), ["sample_period", "1e8"]),
+    ]:
+        with pytest.raises(mg.InvalidInput) as refused:
+            call()
+        for word in words:
+            assert word in str(refused.value)
+
+
+def test_a_tool_line_from_a_start_that_is_not_allowed_says_why(robot, arm):
+    q = np.array([-0.9, 0.9, 0.9, 0.3])
+    first, scene = arm.fk(q), mg.World()
+    scene.add_box("crate", [0.05, 0.05, 0.05], first)
+    checker = mg.CollisionChecker(robot, scene, arm)
+    second = mg.pose([0.1, 0.1, 0]) @ first
+    for found in (mg.plan_cartesian(checker, [first, second], near=q), mg.plan_straight_line(checker, q, second)):
+        assert found.outcome == mg.Outcome.invalid_start
+        assert found.cause == mg.Rejection.scene
+        assert found.contact is not None and found.contact.b == "crate"
+        assert "touches 'crate'" in repr(found)
+        assert found.to_dict()["contact"]["b"] == "crate"
+    checker = mg.CollisionChecker(robot, mg.World(), arm)
+    found = mg.plan_straight_line(checker, [0, 0, 3.25, 0], second)
+    assert found.outcome == mg.Outcome.invalid_start
+    for word in ("j3", "3.25", "[-2.8, 2.8]"):
+        assert word in found.beyond_limits and word in repr(found)
+    assert found.to_dict()["beyond_limits"] == found.beyond_limits
+
+
 def test_a_group_of_another_robot_is_told_by_what_differs(robot, world):
     def other(urdf: str = URDF, srdf: str = SRDF, **options) -> mg.Robot:
         return mg.Robot.from_strings(urdf, srdf, **options)

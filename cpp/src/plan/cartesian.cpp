@@ -4,6 +4,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/robot/ik_branches.hpp"
+#include "plan/beyond_limits.hpp"
 #include "plan/joint_angles.hpp"
 #include "plan/steered_base.hpp"
 
@@ -21,36 +22,53 @@ class BranchSearch {
     find_branches();
     result_.branches = static_cast<int>(branches_.size());
     for (const auto& q : branches_) {
-      if (result_.tried == options_.max_branches || way_to(q) >= best_cost_) break;
-      if (monitor_.stopped()) {
-        result_.outcome = Outcome::stopped;
-        result_.path.reset();
-        return std::move(result_);
-      }
+      if (result_.tried == options_.max_branches || way_to(q) >= best_cost_ || monitor_.stopped()) break;
       follow(q);
-      ++result_.tried;
+      monitor_.report("cartesian path", static_cast<double>(++result_.tried) / result_.branches);
     }
-    if (branches_.empty()) result_.cause = most(result_.rejections);
     result_.outcome = result_.path ? Outcome::solved : Outcome::infeasible;
+    if (branches_.empty()) refuse_start();
+    if (monitor_.stopped()) {
+      result_.outcome = Outcome::stopped;
+      result_.path.reset();
+      result_.corners.clear();
+    }
     return std::move(result_);
   }
 
  private:
   void find_branches() {
-    IkOptions ik = options_.line.ik;
-    IkBranches found = solve_ik_branches(
-        checker_.group(), poses_.front(), ik, [&](const Eigen::VectorXd& q) { return checker_.rejection(q); }, 0,
-        monitor_);
+    const IkOptions& ik = options_.line.ik;
+    const auto allowed = [&](const Eigen::VectorXd& q) {
+      const Rejection cause = checker_.rejection(q);
+      if (cause == Rejection::scene && !scene_contact_) scene_contact_ = checker_.first_contact(q);
+      if (cause == Rejection::self_collision && !self_contact_) self_contact_ = checker_.first_contact(q);
+      return cause;
+    };
+    IkBranches found = solve_ik_branches(checker_.group(), poses_.front(), ik, allowed, 0, monitor_);
     result_.rejections = found.rejections;
     branches_ = std::move(found.solutions);
     if (!near_) return;
     for (auto& q : branches_) q = turned_to_near(q);
     std::stable_sort(branches_.begin(), branches_.end(),
                      [&](const auto& a, const auto& b) { return way_to(a) < way_to(b); });
+    if (near_is_there() && checker_.is_free(*near_)) branches_.insert(branches_.begin(), *near_);
+  }
+
+  bool near_is_there() const {
+    const IkOptions& ik = options_.line.ik;
     const Pose at = checker_.group().fk(*near_);
-    const bool there = (at.translation() - poses_.front().translation()).norm() <= ik.position_tolerance &&
-                       rotation_distance(at, poses_.front()) <= ik.rotation_tolerance;
-    if (there && checker_.is_free(*near_)) branches_.insert(branches_.begin(), *near_);
+    return (at.translation() - poses_.front().translation()).norm() <= ik.position_tolerance &&
+           rotation_distance(at, poses_.front()) <= ik.rotation_tolerance;
+  }
+
+  /// Says what keeps the arm from the first pose.
+  void refuse_start() {
+    result_.cause = most(result_.rejections);
+    if (result_.cause != Rejection::reach) result_.outcome = Outcome::invalid_start;
+    if (result_.cause == Rejection::scene) result_.contact = scene_contact_;
+    if (result_.cause == Rejection::self_collision) result_.contact = self_contact_;
+    if (near_ && near_is_there()) result_.beyond_limits = detail::beyond_limits(checker_.group(), *near_);
   }
 
   /// In the turn of continuous joints that is nearest.
@@ -64,8 +82,10 @@ class BranchSearch {
     JointPath path{{first}};
     std::vector<int> corners{0};
     const double lines = static_cast<double>(poses_.size() - 1);
+    Monitor stop;  // Silent: progress is told by branches.
+    stop.stop = monitor_.stop;
     for (std::size_t i = 1; i < poses_.size(); ++i) {
-      StraightLineResult line = plan_straight_line(checker_, path.waypoints.back(), poses_[i], options_.line);
+      StraightLineResult line = plan_straight_line(checker_, path.waypoints.back(), poses_[i], options_.line, stop);
       if (line.outcome != Outcome::solved) {
         const double fraction = (static_cast<double>(i - 1) + line.fraction) / lines;
         if (result_.path || fraction < result_.fraction) return;
@@ -98,6 +118,7 @@ class BranchSearch {
   const std::optional<Eigen::VectorXd>& near_;
   const CartesianOptions& options_;
   const Monitor& monitor_;
+  std::optional<Contact> scene_contact_, self_contact_;  ///< Of the first pose's configurations.
   std::vector<Eigen::VectorXd> branches_;
   double best_cost_ = std::numeric_limits<double>::infinity();
   CartesianResult result_;

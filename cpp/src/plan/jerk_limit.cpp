@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "plan/timing_stop.hpp"
 #include "plan/trajectory_sampling.hpp"
 
 namespace mmgrasp::detail {
@@ -100,10 +101,11 @@ JointTrajectory with_waits(const JointTrajectory& motion, double wait) {
 
 /// Whether the average over `window` keeps the jerk limits: its jerk is linear between the times at which either end
 /// of the window meets a sample, so that looking on both sides of these is enough.
-bool keeps_jerk(const Cubics& motion, double window, const Eigen::VectorXd& jerk_limits) {
+bool keeps_jerk(const Cubics& motion, double window, const Eigen::VectorXd& jerk_limits, const StopToken& stop) {
   const double side = 1e-9 * (motion.duration() + window);
   const Eigen::ArrayXd bound = window * jerk_limits.array() * (1 + 1e-9);
   for (const double t : motion.times()) {
+    end_if_stopped(stop);
     for (const double near : {t - side, t + side}) {
       const Eigen::ArrayXd here = motion.acceleration(near).array();
       for (const double far : {near - window, near + window}) {
@@ -114,11 +116,13 @@ bool keeps_jerk(const Cubics& motion, double window, const Eigen::VectorXd& jerk
   return true;
 }
 
-JointTrajectory averaged(const Cubics& motion, const Eigen::VectorXd& origin, double window, double period) {
+JointTrajectory averaged(const Cubics& motion, const Eigen::VectorXd& origin, double window, double period,
+                         const StopToken& stop) {
   JointTrajectory out;
   const double duration = motion.duration() + window;
   const int count = std::max(2, static_cast<int>(std::ceil(duration / std::min(period, window / kSamplesAWindow))));
   for (int i = 0; i <= count; ++i) {
+    end_if_stopped(stop);
     // The window that begins at the motion's start is the average's end of rest.
     const double t = duration * i / count, from = t - window;
     out.times.push_back(t);
@@ -155,19 +159,20 @@ void slow_down(JointTrajectory& motion, const Eigen::VectorXd& velocity_limits,
 
 JointTrajectory limit_jerk(const JointTrajectory& motion, const Eigen::VectorXd& velocity_limits,
                            const Eigen::VectorXd& acceleration_limits, const Eigen::VectorXd& jerk_limits,
-                           double period) {
+                           double period, const StopToken& stop) {
   if (motion.times.size() < 2) return motion;
   double enough = 0;
   for (const auto& a : motion.accelerations)
     enough = std::max(enough, 2.1 * (a.cwiseAbs().cwiseQuotient(jerk_limits)).maxCoeff());
   const auto cubics = [&](double window) { return Cubics(with_waits(motion, window)); };
-  while (!keeps_jerk(cubics(enough), enough, jerk_limits)) enough *= 1.5;
+  const auto keeps = [&](double window) { return keeps_jerk(cubics(window), window, jerk_limits, stop); };
+  while (!keeps(enough)) enough *= 1.5;
   double least = 0;
   for (int i = 0; i < kBisections; ++i) {
     const double middle = 0.5 * (least + enough);
-    (keeps_jerk(cubics(middle), middle, jerk_limits) ? enough : least) = middle;
+    (keeps(middle) ? enough : least) = middle;
   }
-  JointTrajectory out = averaged(cubics(enough), motion.positions.front(), enough, period);
+  JointTrajectory out = averaged(cubics(enough), motion.positions.front(), enough, period, stop);
   out.names = motion.names;
   slow_down(out, velocity_limits, acceleration_limits, jerk_limits);
   return out;

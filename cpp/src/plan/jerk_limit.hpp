@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/robot/trajectory.hpp"
 
 namespace mmgrasp::detail {
@@ -10,8 +11,9 @@ namespace mmgrasp::detail {
 /// within the window's convex hull (so on every straight edge), keeps all limits that are the same everywhere, and its
 /// jerk is the difference of two accelerations T apart, over T. T is the least that bisection finds to keep
 /// `jerk_limits` [rad/s^3]. At inner stops the motion waits for T, so that no corner is cut. Names are passed on.
+/// Throws TimingStopped.
 JointTrajectory limit_jerk(const JointTrajectory& motion, const Eigen::VectorXd& velocity_limits,
                            const Eigen::VectorXd& acceleration_limits, const Eigen::VectorXd& jerk_limits,
-                           double period);
+                           double period, const StopToken& stop);
 
 }  // namespace mmgrasp::detail

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "plan/timing_stop.hpp"
+
 namespace mmgrasp::detail {
 namespace {
 
@@ -59,8 +61,8 @@ struct PathTiming::Bounds {
 };
 
 PathTiming::PathTiming(const BlendedPath& path, const Eigen::VectorXd& velocity_limits,
-                       const Eigen::VectorXd& acceleration_limits)
-    : path_(path), velocity_limits_(velocity_limits), acceleration_limits_(acceleration_limits) {
+                       const Eigen::VectorXd& acceleration_limits, const StopToken& stop)
+    : path_(path), velocity_limits_(velocity_limits), acceleration_limits_(acceleration_limits), stop_(stop) {
   make_grid();
   integrate();
 }
@@ -77,6 +79,7 @@ void PathTiming::make_grid() {
   }
   speed_limits_.assign(intervals_.size() + 1, std::numeric_limits<double>::infinity());
   for (std::size_t k = 0; k < intervals_.size(); ++k) {
+    end_if_stopped(stop_);
     const Interval& interval = intervals_[k];
     const auto& segment = segments[interval.segment];
     for (const bool end : {false, true}) {
@@ -116,10 +119,14 @@ void PathTiming::integrate() {
   const std::size_t n = intervals_.size();
   std::vector<double> drivable(n + 1);  // Largest x from which the rest of the path can be driven.
   drivable[n] = 0;
-  for (std::size_t k = n; k-- > 0;) drivable[k] = bounds(k, drivable[k + 1]).largest_x();
+  for (std::size_t k = n; k-- > 0;) {
+    end_if_stopped(stop_);
+    drivable[k] = bounds(k, drivable[k + 1]).largest_x();
+  }
   x_.assign(n + 1, 0);
   times_.assign(n + 1, 0);
   for (std::size_t k = 0; k < n; ++k) {
+    end_if_stopped(stop_);
     const double step = intervals_[k].s1 - intervals_[k].s0;
     const double u = bounds(k, drivable[k + 1]).lowest_upper(x_[k]).at(x_[k]);
     x_[k + 1] = std::clamp(x_[k] + 2 * step * u, 0.0, drivable[k + 1]);
@@ -149,6 +156,7 @@ PathTiming::State PathTiming::at(double time) const {
 std::vector<double> PathTiming::jumps(double relative) const {
   std::vector<double> result;
   for (std::size_t k = 1; k < intervals_.size(); ++k) {
+    end_if_stopped(stop_);
     const Eigen::VectorXd before = state(k - 1, times_[k] - times_[k - 1]).acceleration;
     const Eigen::VectorXd after = state(k, 0).acceleration;
     const double jump = ((after - before).cwiseAbs().cwiseQuotient(acceleration_limits_)).maxCoeff();

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "mmgrasp/core/error.hpp"
+#include "plan/beyond_limits.hpp"
 #include "plan/steered_base.hpp"
 
 namespace mmgrasp {
@@ -35,11 +37,20 @@ class ToolLine {
   Eigen::Quaterniond rotation_from_, rotation_to_;
 };
 
+/// At least one; what is finer than anybody can wait for goes on until it is stopped.
+std::int64_t step_count(double steps) {
+  return static_cast<std::int64_t>(std::clamp(std::ceil(steps), 1.0, 1e15));
+}
+
 class LineFollower {
  public:
   LineFollower(CollisionChecker& checker, const Eigen::VectorXd& start, const Pose& goal,
-               const StraightLineOptions& options)
-      : checker_(checker), group_(checker.group()), options_(options), line_(group_.fk(start), goal) {
+               const StraightLineOptions& options, const Monitor& monitor)
+      : checker_(checker),
+        group_(checker.group()),
+        options_(options),
+        monitor_(monitor),
+        line_(group_.fk(start), goal) {
     path_.waypoints.push_back(start);
   }
 
@@ -47,15 +58,21 @@ class LineFollower {
     result_.cause = checker_.rejection(path_.waypoints.front());
     if (result_.cause != Rejection::none) {
       result_.outcome = Outcome::invalid_start;
+      if (result_.cause == Rejection::limits)
+        result_.beyond_limits = detail::beyond_limits(group_, path_.waypoints.front());
       note_contact(path_.waypoints.front());
       return std::move(result_);
     }
     const double steps =
         std::max(line_.translation() / options_.position_step, line_.rotation() / options_.rotation_step);
-    const int count = std::max(1, static_cast<int>(std::ceil(steps - 1e-9)));
-    smallest_step_ = 1.0 / count / (1 << kHalvings);
-    for (int i = 1; i <= count; ++i) {
-      if (!advance(static_cast<double>(i) / count)) return std::move(result_);
+    const std::int64_t count = step_count(steps - 1e-9);
+    smallest_step_ = 1.0 / static_cast<double>(count) / (1 << kHalvings);
+    for (std::int64_t i = 1; i <= count; ++i) {
+      if (!advance(static_cast<double>(i) / static_cast<double>(count))) {
+        if (monitor_.stopped()) result_.outcome = Outcome::stopped;
+        return std::move(result_);
+      }
+      monitor_.report("straight line", result_.fraction);
     }
     result_.outcome = Outcome::solved;
     result_.path = std::move(path_);
@@ -65,6 +82,7 @@ class LineFollower {
  private:
   /// Goes on from the last waypoint to `fraction`, halving the step where the tool would leave the line on the way.
   bool advance(double fraction) {
+    if (monitor_.stopped()) return false;
     Eigen::VectorXd next = first_guess(fraction);
     if (!refine_ik(group_, line_.at(fraction), next, options_.ik, workspace_)) {
       next = path_.waypoints.back();
@@ -77,8 +95,7 @@ class LineFollower {
       if (fraction - result_.fraction < 1.5 * smallest_step_) return fail(Rejection::reach);
       return advance(middle) && advance(fraction);
     }
-    const Rejection cause = edge_rejection(previous, next);
-    if (cause != Rejection::none) return fail(cause);
+    if (!edge_is_free(previous, next)) return false;
     velocity_ = (next - previous) / (fraction - result_.fraction);
     path_.waypoints.push_back(next);
     result_.fraction = fraction;
@@ -104,17 +121,19 @@ class LineFollower {
     return Rejection::reach;
   }
 
-  Rejection edge_rejection(const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
+  /// False, with the cause noted, when it is not, and when stopped.
+  bool edge_is_free(const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
     const double step = options_.edge_step / 8;
-    const int count = std::max(1, static_cast<int>(std::ceil((to - from).cwiseAbs().maxCoeff() / step)));
-    for (int i = 1; i <= count; ++i) {
-      const Eigen::VectorXd q = from + (static_cast<double>(i) / count) * (to - from);
+    const std::int64_t count = step_count((to - from).cwiseAbs().maxCoeff() / step);
+    for (std::int64_t i = 1; i <= count; ++i) {
+      if (monitor_.stopped()) return false;
+      const Eigen::VectorXd q = from + (static_cast<double>(i) / static_cast<double>(count)) * (to - from);
       const Rejection cause = checker_.rejection(q);
       if (cause == Rejection::none) continue;
       if (cause != Rejection::limits) note_contact(q);
-      return cause;
+      return fail(cause);
     }
-    return Rejection::none;
+    return true;
   }
 
   void note_contact(const Eigen::VectorXd& q) { result_.contact = checker_.first_contact(q); }
@@ -128,6 +147,7 @@ class LineFollower {
   CollisionChecker& checker_;
   const JointGroup group_;
   const StraightLineOptions& options_;
+  const Monitor& monitor_;
   const ToolLine line_;
   JointPath path_;
   double smallest_step_ = 0;
@@ -150,12 +170,12 @@ void StraightLineOptions::check() const {
 }
 
 StraightLineResult plan_straight_line(CollisionChecker& checker, const Eigen::VectorXd& q_start, const Pose& T_world_to,
-                                      const StraightLineOptions& options) {
+                                      const StraightLineOptions& options, const Monitor& monitor) {
   options.check();
   detail::refuse_steered_base(checker.group(), "plan_straight_line");
   checker.group().check_configuration(q_start, "q_start");
   const Pose goal = checked_pose(T_world_to.matrix(), "T_world_to");
-  return LineFollower(checker, q_start, goal, options).run();
+  return LineFollower(checker, q_start, goal, options, monitor).run();
 }
 
 }  // namespace mmgrasp

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "mmgrasp/core/error.hpp"
 #include "plan/blended_path.hpp"
 #include "plan/jerk_limit.hpp"
 #include "plan/path_timing.hpp"
+#include "plan/timing_stop.hpp"
 #include "plan/trajectory_sampling.hpp"
 
 namespace mmgrasp {
@@ -71,20 +73,22 @@ void check_samples(const JointTrajectory& trajectory, const Eigen::VectorXd& vel
   }
 }
 
-/// A path on a clock, with the geometry it came from.
+/// A path on a clock, with the geometry it came from. What times it throws TimingStopped.
 class TimedPath {
  public:
   TimedPath(Waypoints waypoints, Eigen::VectorXd velocity_limits, Eigen::VectorXd acceleration_limits,
-            const TimingOptions& options)
+            const TimingOptions& options, const Monitor& monitor)
       : waypoints_(std::move(waypoints)),
         velocity_limits_(std::move(velocity_limits)),
         acceleration_limits_(std::move(acceleration_limits)),
         jerk_limits_(options.jerk_limits),
-        period_(options.sample_period) {}
+        period_(options.sample_period),
+        monitor_(monitor) {}
 
   /// One deviation per inner waypoint.
   JointTrajectory trajectory(const std::vector<double>& deviations) const {
     if (waypoints_.size() < 2) return at_rest(waypoints_.front());
+    monitor_.report("time path", 0);
     const detail::BlendedPath path(waypoints_, deviations);
     JointTrajectory result = jerk_limits_.size() == 0 ? fastest(path, 1) : smoothest(path);
     result.positions.front() = waypoints_.front();
@@ -97,7 +101,7 @@ class TimedPath {
 
   JointTrajectory fastest(const detail::BlendedPath& path, double acceleration_share) const {
     const Eigen::VectorXd accelerations = acceleration_share * acceleration_limits_;
-    const detail::PathTiming timing(path, kAim * velocity_limits_, kAim * accelerations);
+    const detail::PathTiming timing(path, kAim * velocity_limits_, kAim * accelerations, monitor_.stop);
     return detail::sample_trajectory(timing, velocity_limits_, accelerations, period_);
   }
 
@@ -105,8 +109,9 @@ class TimedPath {
   JointTrajectory smoothest(const detail::BlendedPath& path) const {
     JointTrajectory best;
     for (double share = 1; share > kLeastShare; share *= kShareStep) {
-      JointTrajectory trial =
-          detail::limit_jerk(fastest(path, share), velocity_limits_, acceleration_limits_, jerk_limits_, period_);
+      monitor_.report("limit jerk", std::log(share) / std::log(kLeastShare));
+      JointTrajectory trial = detail::limit_jerk(fastest(path, share), velocity_limits_, acceleration_limits_,
+                                                 jerk_limits_, period_, monitor_.stop);
       if (best.times.empty() || trial.duration() < best.duration()) best = std::move(trial);
     }
     return best;
@@ -127,11 +132,13 @@ class TimedPath {
   Waypoints waypoints_;
   Eigen::VectorXd velocity_limits_, acceleration_limits_, jerk_limits_;
   double period_;
+  const Monitor& monitor_;
 };
 
 /// Configurations at which the interpolated trajectory is not free, looked at in steps in which no joint moves more
-/// than `step`; within one interval the first is enough.
-Waypoints blocked_configurations(CollisionChecker& checker, const JointTrajectory& trajectory, double step) {
+/// than `step`; within one interval the first is enough. Throws TimingStopped.
+Waypoints blocked_configurations(CollisionChecker& checker, const JointTrajectory& trajectory, double step,
+                                 const Monitor& monitor) {
   const Eigen::VectorXd& lower = checker.group().lower();
   const Eigen::VectorXd& upper = checker.group().upper();
   Waypoints blocked;
@@ -142,6 +149,7 @@ Waypoints blocked_configurations(CollisionChecker& checker, const JointTrajector
   };
   if (!free(trajectory.positions.front())) blocked.push_back(trajectory.positions.front());
   for (std::size_t i = 0; i + 1 < trajectory.times.size(); ++i) {
+    monitor.report("check timed path", static_cast<double>(i) / static_cast<double>(trajectory.times.size()));
     const double h = trajectory.times[i + 1] - trajectory.times[i];
     double fastest = 0;
     for (Eigen::Index j = 0; j < lower.size(); ++j) {
@@ -149,9 +157,11 @@ Waypoints blocked_configurations(CollisionChecker& checker, const JointTrajector
       fastest = std::max(
           fastest, detail::cubic_peak_speed(mean, trajectory.velocities[i][j], trajectory.velocities[i + 1][j], h));
     }
-    const int count = std::max(1, static_cast<int>(std::ceil(fastest * h / step)));
-    for (int k = 1; k <= count; ++k) {
-      const Eigen::VectorXd q = trajectory.at(trajectory.times[i] + h * k / count);
+    const auto count = static_cast<std::int64_t>(std::clamp(std::ceil(fastest * h / step), 1.0, 1e15));
+    for (std::int64_t k = 1; k <= count; ++k) {
+      detail::end_if_stopped(monitor.stop);
+      const double t = trajectory.times[i] + h * static_cast<double>(k) / static_cast<double>(count);
+      const Eigen::VectorXd q = trajectory.at(t);
       if (free(q)) continue;
       blocked.push_back(q);
       break;
@@ -160,12 +170,14 @@ Waypoints blocked_configurations(CollisionChecker& checker, const JointTrajector
   return blocked;
 }
 
-/// Halves the deviation of each corner next to a blocked configuration. False when none of them can come closer.
-bool tighten(const TimedPath& timed, const Waypoints& blocked, std::vector<double>& deviations) {
+/// Halves the deviation of each corner next to a blocked configuration. False when none of them can come closer. Throws
+/// TimingStopped.
+bool tighten(const TimedPath& timed, const Waypoints& blocked, std::vector<double>& deviations, const StopToken& stop) {
   std::vector<bool> touched(deviations.size(), false);
   bool changed = false;
   for (const auto& q : blocked) {
     if (deviations.empty()) return false;
+    detail::end_if_stopped(stop);
     const std::size_t corner = timed.nearest_corner(q);
     if (touched[corner] || deviations[corner] == 0) continue;
     touched[corner] = changed = true;
@@ -173,6 +185,19 @@ bool tighten(const TimedPath& timed, const Waypoints& blocked, std::vector<doubl
     if (deviations[corner] < kSmallestDeviation) deviations[corner] = 0;
   }
   return changed;
+}
+
+/// Empty when the straight edges are not free. Throws TimingStopped.
+JointTrajectory free_trajectory(CollisionChecker& checker, const TimedPath& timed, double max_deviation,
+                                double edge_step, const Monitor& monitor) {
+  std::vector<double> deviations(timed.corner_count(), max_deviation);
+  for (;;) {
+    JointTrajectory trajectory = timed.trajectory(deviations);
+    const Waypoints blocked = blocked_configurations(checker, trajectory, edge_step, monitor);
+    trajectory.names = checker.group().names();
+    if (blocked.empty()) return trajectory;
+    if (!tighten(timed, blocked, deviations, monitor.stop)) return {};
+  }
 }
 
 }  // namespace
@@ -186,7 +211,7 @@ void TimingOptions::check() const {
 
 JointTrajectory time_parameterize(const JointPath& path, const Eigen::VectorXd& velocity_limits,
                                   const Eigen::VectorXd& acceleration_limits, const TimingOptions& options,
-                                  const std::vector<std::string>& names) {
+                                  const std::vector<std::string>& names, const Monitor& monitor) {
   options.check();
   check_path(path);
   const Eigen::Index size = path.waypoints.front().size();
@@ -195,15 +220,20 @@ JointTrajectory time_parameterize(const JointPath& path, const Eigen::VectorXd& 
   if (options.jerk_limits.size() > 0) check_limits(options.jerk_limits, size, "jerk_limits");
   require(names.empty() || static_cast<Eigen::Index>(names.size()) == size, "names", static_cast<double>(names.size()),
           "must be empty or have one entry per joint (" + std::to_string(size) + ")");
-  const TimedPath timed(without_repeats(path.waypoints), velocity_limits, acceleration_limits, options);
-  JointTrajectory trajectory = timed.trajectory(std::vector<double>(timed.corner_count(), options.max_deviation));
-  trajectory.names = names;
-  for (Eigen::Index i = 0; names.empty() && i < size; ++i) trajectory.names.push_back("joint_" + std::to_string(i + 1));
-  return trajectory;
+  const TimedPath timed(without_repeats(path.waypoints), velocity_limits, acceleration_limits, options, monitor);
+  try {
+    JointTrajectory trajectory = timed.trajectory(std::vector<double>(timed.corner_count(), options.max_deviation));
+    trajectory.names = names;
+    for (Eigen::Index i = 0; names.empty() && i < size; ++i)
+      trajectory.names.push_back("joint_" + std::to_string(i + 1));
+    return trajectory;
+  } catch (const detail::TimingStopped&) {
+    return {};
+  }
 }
 
 JointTrajectory time_parameterize_free(CollisionChecker& checker, const JointPath& path, const TimingOptions& options,
-                                       double edge_step) {
+                                       double edge_step, const Monitor& monitor) {
   options.check();
   check_path(path);
   require(std::isfinite(edge_step) && edge_step > 0, "edge_step", edge_step, "must be finite and > 0");
@@ -212,14 +242,12 @@ JointTrajectory time_parameterize_free(CollisionChecker& checker, const JointPat
   check_limits(group.velocity_limits(), group.size(), "velocity_limits");
   check_limits(group.acceleration_limits(), group.size(), "acceleration_limits");
   if (options.jerk_limits.size() > 0) check_limits(options.jerk_limits, group.size(), "jerk_limits");
-  const TimedPath timed(without_repeats(path.waypoints), group.velocity_limits(), group.acceleration_limits(), options);
-  std::vector<double> deviations(timed.corner_count(), options.max_deviation);
-  for (;;) {
-    JointTrajectory trajectory = timed.trajectory(deviations);
-    const Waypoints blocked = blocked_configurations(checker, trajectory, edge_step);
-    trajectory.names = group.names();
-    if (blocked.empty()) return trajectory;
-    if (!tighten(timed, blocked, deviations)) return {};
+  const TimedPath timed(without_repeats(path.waypoints), group.velocity_limits(), group.acceleration_limits(), options,
+                        monitor);
+  try {
+    return free_trajectory(checker, timed, options.max_deviation, edge_step, monitor);
+  } catch (const detail::TimingStopped&) {
+    return {};
   }
 }
 

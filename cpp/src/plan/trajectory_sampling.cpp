@@ -5,11 +5,15 @@
 #include <utility>
 #include <vector>
 
+#include "mmgrasp/core/error.hpp"
+#include "plan/timing_stop.hpp"
+
 namespace mmgrasp::detail {
 namespace {
 
 constexpr double kJump = 0.004;          // Acceleration jumps above this part of a limit get a sample of their own.
 constexpr double kSmallestGap = 1e-5;    // Between samples at jumps [s].
+constexpr double kMostSamples = 1e8;     // More would fill the memory.
 constexpr double kSmallestSplit = 2e-4;  // Shorter intervals are not halved [s].
 
 using State = PathTiming::State;
@@ -34,6 +38,8 @@ class Sampler {
       : timing_(timing), velocity_limits_(velocity_limits), acceleration_limits_(acceleration_limits) {}
 
   JointTrajectory run(double period) {
+    require(timing_.duration() / period <= kMostSamples, "sample_period", period,
+            "must leave at most 1e8 samples: the motion takes " + std::to_string(timing_.duration()) + " s");
     samples_.push_back({0, timing_.at(0)});
     for (double end : break_times()) {
       const double begin = samples_.back().time;
@@ -60,6 +66,7 @@ class Sampler {
   /// Appends the sample at `time`, after those that keep the cubics in between within limits.
   void append(double time) { append({time, timing_.at(time)}); }
   void append(Sample sample) {
+    end_if_stopped(timing_.stop());
     const Sample& previous = samples_.back();
     const double gap = sample.time - previous.time;
     const Load load = hermite_load(previous, sample);

@@ -12,7 +12,8 @@ double cubic_peak_speed(double mean, double v0, double v1, double h);
 
 /// Samples at most `period` apart whose cubic Hermite interpolation, which is what gets executed, keeps both limits.
 /// Samples stand where accelerations jump, and closer together where a cubic would overshoot; what little is left over
-/// is taken away by slowing the whole motion down.
+/// is taken away by slowing the whole motion down. Throws TimingStopped, and InvalidInput on a `period` that would give
+/// more samples than memory holds.
 JointTrajectory sample_trajectory(const PathTiming& timing, const Eigen::VectorXd& velocity_limits,
                                   const Eigen::VectorXd& acceleration_limits, double period);
 

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
@@ -118,6 +120,91 @@ TEST(Cartesian, SaysHowFarItCame) {
   EXPECT_EQ(nowhere.outcome, Outcome::infeasible);
   EXPECT_EQ(nowhere.branches, 0);
   EXPECT_EQ(nowhere.cause, Rejection::reach);
+}
+
+TEST(Cartesian, AStartInCollisionNamesThePair) {
+  const test::PumaArm arm;
+  VectorXd q(6);
+  q << 0.3, -0.8, 1.2, 0.4, 0.7, 0.2;
+  Poses poses{arm.group().fk(q), arm.group().fk(q)};
+  poses[1].translation() += Eigen::Vector3d(0, 0.05, 0.05);
+  World world;
+  Pose at = Pose::Identity();
+  at.translation() = poses[0].translation();
+  world.add("ball", Sphere{0.05}, at);
+  CollisionChecker checker(arm.group(), world);
+  for (const bool with_near : {false, true}) {
+    const CartesianResult result =
+        plan_cartesian(checker, poses, with_near ? std::optional<VectorXd>(q) : std::nullopt);
+    EXPECT_EQ(result.outcome, Outcome::invalid_start);
+    EXPECT_EQ(result.branches, 0);
+    EXPECT_EQ(result.cause, Rejection::scene);
+    ASSERT_TRUE(result.contact);
+    EXPECT_EQ(result.contact->b, "ball");
+    EXPECT_TRUE(result.contact->with_scene);
+    EXPECT_EQ(result.beyond_limits, "");
+  }
+}
+
+TEST(Cartesian, AStartBeyondLimitsIsToldByJointValueAndLimits) {
+  // Bent either way, the elbow is bent further than it may be.
+  const test::PumaArm arm(0.3);
+  CollisionChecker checker(arm.group(), World{});
+  VectorXd q(6);
+  q << 0.3, -0.8, 1.2, 0.4, 0.7, 0.2;
+  Poses poses{arm.group().fk(q), arm.group().fk(q)};
+  poses[1].translation() -= Eigen::Vector3d(0, 0, 0.02);
+  const CartesianResult result = plan_cartesian(checker, poses, q);
+  EXPECT_EQ(result.outcome, Outcome::invalid_start);
+  EXPECT_EQ(result.cause, Rejection::limits);
+  EXPECT_GT(result.rejections.limits, 0u);
+  EXPECT_FALSE(result.contact);
+  for (const char* word : {"j3", "1.2", "[-0.3, 0.3]"})
+    EXPECT_NE(result.beyond_limits.find(word), std::string::npos) << result.beyond_limits;
+}
+
+TEST(Cartesian, FollowsNothingMoreOnceStopped) {
+  const test::PumaArm arm;
+  CollisionChecker checker(arm.group(), World{});
+  VectorXd q(6);
+  q << 0.3, -0.8, 1.2, 0.4, 0.7, 0.2;
+  Poses poses{arm.group().fk(q), arm.group().fk(q)};
+  poses[1].translation() += Eigen::Vector3d(0, 0.05, 0.05);
+  ASSERT_GT(plan_cartesian(checker, poses).tried, 2);
+  int reports = 0;
+  std::size_t queries = 0;
+  Monitor monitor;
+  monitor.progress = [&](const std::string& stage, double) {
+    if (stage != "cartesian path") return;
+    ++reports;
+    queries = checker.queries();
+    monitor.stop.stop();
+  };
+  const CartesianResult result = plan_cartesian(checker, poses, std::nullopt, {}, monitor);
+  EXPECT_EQ(result.outcome, Outcome::stopped);
+  EXPECT_FALSE(result.path);
+  EXPECT_TRUE(result.corners.empty());
+  EXPECT_EQ(result.tried, 1);
+  EXPECT_EQ(reports, 1);
+  EXPECT_EQ(checker.queries(), queries);
+}
+
+TEST(Cartesian, StopsWithinALine) {
+  const test::PumaArm arm;
+  CollisionChecker checker(arm.group(), World{});
+  VectorXd q(6);
+  q << 0.3, -0.8, 1.2, 0.4, 0.7, 0.2;
+  Poses poses{arm.group().fk(q), arm.group().fk(q)};
+  poses[1].translation() += Eigen::Vector3d(0, 0.05, 0.05);
+  CartesianOptions options;
+  options.line.position_step = 1e-12;  // Hours for one line.
+  Monitor monitor;
+  std::thread stopper([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    monitor.stop.stop();
+  });
+  EXPECT_EQ(plan_cartesian(checker, poses, q, options, monitor).outcome, Outcome::stopped);
+  stopper.join();
 }
 
 TEST(Cartesian, RefusesBadInput) {

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <fstream>
+#include <thread>
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
@@ -145,6 +147,65 @@ TEST(StraightLine, AStartInCollisionIsRefused) {
   EXPECT_EQ(result.cause, Rejection::scene);
   ASSERT_TRUE(result.contact);
   EXPECT_EQ(result.contact->b, "ball");
+}
+
+TEST(StraightLine, AStartBeyondLimitsIsToldByJointValueAndLimits) {
+  const test::PumaArm arm(1.6);
+  CollisionChecker checker(arm.group(), World{});
+  VectorXd q(6);
+  q << 0.1, -1.0, 1.75, 0.0, 0.8, 0.0;
+  const StraightLineResult result = plan_straight_line(checker, q, arm.group().fk(q));
+  EXPECT_EQ(result.outcome, Outcome::invalid_start);
+  EXPECT_EQ(result.cause, Rejection::limits);
+  for (const char* word : {"j3", "1.75", "[-1.6, 1.6]"})
+    EXPECT_NE(result.beyond_limits.find(word), std::string::npos) << result.beyond_limits;
+  q[2] = 1.5;
+  EXPECT_EQ(plan_straight_line(checker, q, arm.group().fk(q)).beyond_limits, "");
+}
+
+TEST(StraightLine, DoesNothingMoreOnceStopped) {
+  const test::PumaArm arm;
+  CollisionChecker checker(arm.group(), World{});
+  VectorXd q(6);
+  q << 0.1, -1.0, 1.5, 0.0, 0.8, 0.0;
+  const Pose to = moved(arm.group().fk(q), {0, 0.1, 0});
+  std::vector<double> reported;
+  std::size_t queries = 0;
+  Monitor monitor;
+  monitor.progress = [&](const std::string&, double fraction) {
+    reported.push_back(fraction);
+    if (reported.size() != 3) return;
+    queries = checker.queries();
+    monitor.stop.stop();
+  };
+  const StraightLineResult result = plan_straight_line(checker, q, to, {}, monitor);
+  EXPECT_EQ(result.outcome, Outcome::stopped);
+  EXPECT_FALSE(result.path);
+  EXPECT_EQ(reported.size(), 3u);
+  EXPECT_EQ(result.fraction, reported.back());
+  EXPECT_NEAR(result.fraction, 3 * StraightLineOptions{}.position_step / 0.1, 1e-9);
+  EXPECT_EQ(checker.queries(), queries);
+}
+
+TEST(StraightLine, StepsTooFineToWaitForCanBeStopped) {
+  const test::PumaArm arm;
+  VectorXd q(6);
+  q << 0.1, -1.0, 1.5, 0.0, 0.8, 0.0;
+  const Pose to = moved(arm.group().fk(q), {0, 0.1, 0});
+  StraightLineOptions many_waypoints, many_checks;
+  many_waypoints.position_step = 1e-12;
+  many_checks.edge_step = 1e-12;
+  for (const StraightLineOptions& options : {many_waypoints, many_checks}) {
+    CollisionChecker checker(arm.group(), World{});
+    Monitor monitor;
+    std::thread stopper([&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      monitor.stop.stop();
+    });
+    const StraightLineResult result = plan_straight_line(checker, q, to, options, monitor);
+    stopper.join();
+    EXPECT_EQ(result.outcome, Outcome::stopped);
+  }
 }
 
 TEST(StraightLine, NoMotionIsATrivialLine) {

@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
@@ -233,6 +237,62 @@ TEST(TimeParameterization, RefusesBadInput) {
   EXPECT_THROW(time_parameterize(path, vec({1, 1}), vec({1, 1}), options), InvalidInput);
 }
 
+/// Without jerk limits quick, with them minutes of work.
+JointPath long_path() {
+  Rng rng(1);
+  JointPath path{{VectorXd::Zero(6)}};
+  for (int i = 0; i < 3000; ++i)
+    path.waypoints.push_back(path.waypoints.back() +
+                             rng.uniform(VectorXd::Constant(6, -0.2), VectorXd::Constant(6, 0.2)));
+  return path;
+}
+
+TEST(TimeParameterization, StopsBetweenItsTries) {
+  TimingOptions options;
+  options.jerk_limits = vec({20, 20});
+  const JointPath path{{vec({0, 0}), vec({0.5, 0.5}), vec({0.1, 0.4})}};
+  std::vector<std::string> stages;
+  Monitor monitor;
+  monitor.progress = [&](const std::string& stage, double fraction) {
+    EXPECT_TRUE(fraction >= 0 && fraction <= 1) << fraction;
+    stages.push_back(stage);
+  };
+  EXPECT_FALSE(time_parameterize(path, vec({1, 1}), vec({2, 2}), options, {}, monitor).times.empty());
+  ASSERT_GT(std::count(stages.begin(), stages.end(), "limit jerk"), 3);
+  stages.clear();
+  monitor.progress = [&](const std::string& stage, double) {
+    stages.push_back(stage);
+    if (stage == "limit jerk") monitor.stop.stop();
+  };
+  EXPECT_TRUE(time_parameterize(path, vec({1, 1}), vec({2, 2}), options, {}, monitor).times.empty());
+  EXPECT_EQ(stages, (std::vector<std::string>{"time path", "limit jerk"}));
+}
+
+TEST(TimeParameterization, StopsWithinATry) {
+  TimingOptions options;
+  options.jerk_limits = VectorXd::Constant(6, 20);
+  Monitor monitor;
+  std::thread stopper([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    monitor.stop.stop();
+  });
+  const VectorXd limits = VectorXd::Ones(6);
+  EXPECT_TRUE(time_parameterize(long_path(), limits, limits, options, {}, monitor).times.empty());
+  stopper.join();
+}
+
+TEST(TimeParameterization, RefusesMoreSamplesThanMemoryHolds) {
+  TimingOptions options;
+  options.sample_period = 1e-12;
+  const JointPath path{{vec({0, 0}), vec({1, 2})}};
+  try {
+    time_parameterize(path, vec({1, 1}), vec({2, 2}), options);
+    FAIL();
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("sample_period = 1e-12"), std::string::npos) << error.what();
+  }
+}
+
 /// A bent path of a planar arm past a small ball that only a wide blend of its corner touches.
 struct CornerScene {
   JointPath path;
@@ -282,6 +342,35 @@ TEST(TimeParameterizeFree, ComesCloserToACornerThatIsInTheWay) {
     EXPECT_EQ(trajectory.names, arm.group().names());
     expect_sound(trajectory, scene->path, arm.group().velocity_limits(), arm.group().acceleration_limits(), 0.3);
   }
+}
+
+TEST(TimeParameterizeFree, ChecksNothingMoreOnceStopped) {
+  const test::PlanarArm arm(2);
+  const JointPath path{{vec({0.4, -0.8}), vec({0.4, 0.3}), vec({1.2, 0.3})}};
+  CollisionChecker checker(arm.group(), World{});
+  std::size_t queries = 0, reports = 0;
+  Monitor monitor;
+  monitor.progress = [&](const std::string& stage, double) {
+    if (stage != "check timed path" || ++reports != 3) return;
+    queries = checker.queries();
+    monitor.stop.stop();
+  };
+  EXPECT_TRUE(time_parameterize_free(checker, path, {}, 0.01, monitor).times.empty());
+  EXPECT_EQ(reports, 3u);
+  EXPECT_GT(queries, 0u);
+  EXPECT_EQ(checker.queries(), queries);
+}
+
+TEST(TimeParameterizeFree, ChecksTooFineToWaitForCanBeStopped) {
+  const test::PlanarArm arm(2);
+  CollisionChecker checker(arm.group(), World{});
+  Monitor monitor;
+  std::thread stopper([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    monitor.stop.stop();
+  });
+  EXPECT_TRUE(time_parameterize_free(checker, {{vec({0.4, -0.8}), vec({0.4, 0.3})}}, {}, 1e-12, monitor).times.empty());
+  stopper.join();
 }
 
 TEST(TimeParameterizeFree, APathThroughAnObstacleGivesNothing) {

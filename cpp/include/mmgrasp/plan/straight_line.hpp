@@ -1,9 +1,11 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/robot/ik.hpp"
 #include "mmgrasp/robot/trajectory.hpp"
 
@@ -24,13 +26,15 @@ struct MMGRASP_EXPORT StraightLineResult {
   double fraction = 0;                ///< How far along the line the last good waypoint lies, in [0, 1].
   Rejection cause = Rejection::none;  ///< Why it ended there: reach (also: a jump), limits, self_collision, scene.
   std::optional<Contact> contact;     ///< What touches there, when something does.
+  std::string beyond_limits;          ///< With invalid_start: as in MotionResult. Empty: none is.
 };
 
 /// The tool moves on a straight line (rotation by slerp) from the pose of q_start to T_world_to, by dense IK in small
 /// steps. Between waypoints, too, it stays within 1e-4 m of the line (with the default IK tolerance), and edges are
-/// free at an eighth of edge_step. The outcome is solved, infeasible or invalid_start. Throws InvalidInput on bad
-/// lengths, poses or options, and on a group with a diff-drive base, which cannot follow such a path.
+/// free at an eighth of edge_step. The outcome is solved, infeasible, invalid_start or stopped. Throws InvalidInput on
+/// bad lengths, poses or options, and on a group with a diff-drive base, which cannot follow such a path.
 MMGRASP_EXPORT StraightLineResult plan_straight_line(CollisionChecker& checker, const Eigen::VectorXd& q_start,
-                                                     const Pose& T_world_to, const StraightLineOptions& options = {});
+                                                     const Pose& T_world_to, const StraightLineOptions& options = {},
+                                                     const Monitor& monitor = {});
 
 }  // namespace mmgrasp

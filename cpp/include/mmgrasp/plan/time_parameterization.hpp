@@ -6,6 +6,7 @@
 
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/robot/trajectory.hpp"
 
 namespace mmgrasp {
@@ -23,18 +24,20 @@ struct MMGRASP_EXPORT TimingOptions {
 /// Near time-optimal timing of a path under velocity and acceleration limits, at rest at both ends: corners are blended
 /// by circular arcs, then path velocity is maximised by forward and backward integration on a fine grid. Every sample
 /// keeps both limits (checked before return, slack 1e-6 relative), and so does the cubic Hermite interpolation between
-/// them. A path that goes nowhere gives one sample at time 0. Names default to joint_1, joint_2, ... Throws
-/// InvalidInput on wrong lengths or limits that are not finite and > 0.
+/// them. A path that goes nowhere gives one sample at time 0. Names default to joint_1, joint_2, ... Returns an empty
+/// trajectory (no times) when stopped. Throws InvalidInput on wrong lengths or limits that are not finite and > 0.
 MMGRASP_EXPORT JointTrajectory time_parameterize(const JointPath& path, const Eigen::VectorXd& velocity_limits,
                                                  const Eigen::VectorXd& acceleration_limits,
                                                  const TimingOptions& options = {},
-                                                 const std::vector<std::string>& names = {});
+                                                 const std::vector<std::string>& names = {},
+                                                 const Monitor& monitor = {});
 
 /// time_parameterize whose interpolated trajectory is checked for collisions at `edge_step` [rad or m]: the deviation
 /// of a corner next to one is halved (down to 0, stopping there) until the whole trajectory is free. Returns an empty
-/// trajectory (no times) when the straight edges of the path themselves are not free. Limits and names are those of the
-/// checker's group.
+/// trajectory (no times) when the straight edges of the path themselves are not free, and when stopped. Limits and
+/// names are those of the checker's group.
 MMGRASP_EXPORT JointTrajectory time_parameterize_free(CollisionChecker& checker, const JointPath& path,
-                                                      const TimingOptions& options = {}, double edge_step = 0.01);
+                                                      const TimingOptions& options = {}, double edge_step = 0.01,
+                                                      const Monitor& monitor = {});
 
 }  // namespace mmgrasp

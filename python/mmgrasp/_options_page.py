@@ -17,6 +17,19 @@ SECTIONS = (
     ("ik", "Inverse kinematics, keywords of `JointGroup.ik` and its kin (`IkOptions`)", _core._ik_option_table, set()),
     ("collision_checker", "Keywords of `CollisionChecker` (`CheckerOptions`)", _core._checker_option_table, set()),
     ("check_edge", "Keywords of `CollisionChecker.check_edge` (`EdgeOptions`)", _core._edge_option_table, set()),
+    ("plan_motion", "Motions of arm and base, keywords (`MotionOptions`)", _core._motion_option_table, set()),
+    (
+        "plan_cartesian",
+        "Straight tool lines, keywords; those of `plan_straight_line` are all but `max_branches` (`CartesianOptions`)",
+        _core._cartesian_option_table,
+        set(),
+    ),
+    (
+        "time_parameterize",
+        "Timing of paths, keywords; also of `time_parameterize_free` (`TimingOptions`)",
+        _core._timing_option_table,
+        set(),
+    ),
     ("roadmap", "Keywords of `Roadmap.build` (`RoadmapOptions`)", _core._roadmap_option_table, set()),
     (
         "plan_manipulation",

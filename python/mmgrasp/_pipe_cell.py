@@ -15,7 +15,6 @@ from ._core import (
     CollisionChecker,
     FingerJoint,
     Gripper,
-    InvalidInput,
     JointGroup,
     LinkShape,
     ManipulationProblem,
@@ -25,7 +24,7 @@ from ._core import (
     World,
 )
 from ._files import shipped
-from ._reading import near_miss
+from ._reading import check_name
 
 Pose = NDArray[np.float64]
 ROBOTS = ("tm14like", "kr6like")
@@ -91,8 +90,7 @@ def pipe_robot(name: str) -> tuple[Robot, JointGroup, Gripper]:
     Joints that could turn further are kept to half a turn either way. P2's gamma* of about 10 belongs to that box; in the
     whole one the thesis' roadmap of 5000 vertices has a mean degree below one and falls to pieces.
     """
-    if name not in ROBOTS:
-        raise InvalidInput(f"robot = {name!r}: must be one of {', '.join(ROBOTS)}{near_miss(name, list(ROBOTS))}")
+    check_name("robot", name, ROBOTS)
     urdf, srdf = (shipped(f"asset:robots/{name}/{name}.{kind}").read_text() for kind in ("urdf", "srdf"))
     urdf = re.sub(r'(lower|upper)="(-?)([0-9.]+)"', lambda m: f'{m[1]}="{m[2]}{min(float(m[3]), _HALF_TURN):g}"', urdf)
     robot = Robot.from_strings(urdf, srdf)

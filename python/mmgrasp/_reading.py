@@ -6,7 +6,7 @@ import difflib
 import json
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -26,6 +26,15 @@ def near_miss(wrong: str, known: list[str]) -> str:
     """ "; did you mean x?", or the list of what is known."""
     close = difflib.get_close_matches(wrong, known, 1, 0.5)
     return f"; did you mean {close[0]}?" if close else "; known are " + ", ".join(known)
+
+
+def check_name(field: str, value: Any, known: Collection[str]) -> None:
+    """Raises InvalidInput, with the one that was probably meant, unless the value is one of the known names."""
+    if isinstance(value, str) and value in known:
+        return
+    close = difflib.get_close_matches(value, known, 1, 0.5) if isinstance(value, str) else []
+    meant = f"; did you mean {close[0]}?" if close else ""
+    raise InvalidInput(f"{field} = {value!r}: must be one of {', '.join(known)}{meant}")
 
 
 class Document:

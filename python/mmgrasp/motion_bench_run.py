@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from ._core import InvalidInput, IoError, Robot, plan_motion
+from ._core import IoError, Robot, plan_motion
 from ._core.verify import CheckedBody, check_path
+from ._reading import check_name
 from .motion_bench import MBM_SETS, MotionProblem, read_motion_problems
 
 ROBOTS = ("panda", "ur5")
@@ -106,13 +107,12 @@ def run_motion_bench(
 ) -> list[SetResult]:
     """Every set of every robot; `data` holds robots/<name>_vamp and planning/vamp_<name>."""
     for name in sets:
-        if name not in MBM_SETS:
-            raise InvalidInput(f"set '{name}': must be one of {', '.join(MBM_SETS)}")
+        check_name("set", name, MBM_SETS)
+    for name in robots:
+        check_name("robot", name, ROBOTS)
     options = {"time_limit": 10.0, "max_iterations": 2**31 - 1, "workspace_step": 0.005} | options
     results = []
     for done, (robot_name, name) in enumerate(itertools.product(robots, sets)):
-        if robot_name not in ROBOTS:
-            raise InvalidInput(f"robot '{robot_name}': must be one of {', '.join(ROBOTS)}")
         folder = data / f"robots/{robot_name}_vamp/{robot_name}"
         if not folder.is_dir():
             raise IoError(f"{folder}: is not there; --data names the folder with robots/ and planning/")

@@ -30,7 +30,7 @@ from ._core import (
     pose,
 )
 from ._pipe_cell import FINGERS, ROBOTS, PipeCell, Pose, pipe_robot, pipe_structures
-from ._reading import near_miss
+from ._reading import check_name
 
 __all__ = ["FINGERS", "ROBOTS", "PipeCell", "pipe_cell", "pipe_robot", "pipe_structures"]
 
@@ -107,14 +107,18 @@ def pipe_cell(number: int, seed: int = 1, robot: str = "tm14like", style: str = 
     grasp within reach would do. Raises InvalidInput on a number, robot or style that does not exist and on a negative
     seed.
     """
-    if style not in _STYLES:
-        raise InvalidInput(f"style = {style!r}: must be one of {', '.join(_STYLES)}{near_miss(style, list(_STYLES))}")
-    if number not in range(1, len(_STYLES[style]) + 1):
-        raise InvalidInput(f"number = {number!r}: must be from 1 to {len(_STYLES[style])}")
-    if not isinstance(seed, int | np.integer) or seed < 0:
+    check_name("style", style, _STYLES)
+    check_name("robot", robot, ROBOTS)
+    most = len(_STYLES[style])
+    if not _is_whole(number) or not 1 <= number <= most:
+        raise InvalidInput(f"number = {number!r}: must be from 1 to {most}")
+    if not _is_whole(seed) or seed < 0:
         raise InvalidInput(f"seed = {seed!r}: must be a whole number >= 0")
-    pipe_robot(robot)
-    return _pipe_cell(number, int(seed), robot, style)
+    return _pipe_cell(int(number), int(seed), robot, style)
+
+
+def _is_whole(value: object) -> bool:
+    return isinstance(value, int | np.integer) and not isinstance(value, bool)
 
 
 @cache

@@ -234,13 +234,18 @@ def test_cells_with_too_many_grasps_within_reach_are_turned_down():
 def test_unknown_cells_are_refused():
     with pytest.raises(mg.InvalidInput, match=r"number = 9: must be from 1 to 8"):
         pipe_cell(9)
+    for number in ("one", 1.0, True, None, -1):
+        with pytest.raises(mg.InvalidInput, match=f"number = {number!r}: must be from 1 to 8"):
+            pipe_cell(number)
     for seed in (-1, 0.5, "one"):
         with pytest.raises(mg.InvalidInput, match="seed = "):
             pipe_cell(1, seed=seed)
     with pytest.raises(mg.InvalidInput, match=r"robot = 'kr6lik'.*kr6like"):
         pipe_cell(1, robot="kr6lik")
-    with pytest.raises(mg.InvalidInput, match=r"style = 'opn': must be one of narrow, open.*open"):
-        pipe_cell(1, style="opn")
+    for style, meant in (("opn", "; did you mean open?"), ("wide", ""), (3, ""), (["open"], "")):
+        with pytest.raises(mg.InvalidInput) as refused:
+            pipe_cell(1, style=style)
+        assert str(refused.value) == f"style = {style!r}: must be one of narrow, open{meant}"
     with pytest.raises(mg.InvalidInput, match=r"seed = -1: must be a whole number >= 0"):
         pipe_cell(1, seed=-1)
 

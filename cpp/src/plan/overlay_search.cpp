@@ -33,6 +33,7 @@ double OverlaySearch::to_goal(int node) const {
 void OverlaySearch::begin(const GraspOverlay& overlay) {
   overlay_ = &overlay;
   ++round_;
+  opened_ = 0;
   heap_.clear();
   const auto count = static_cast<std::size_t>(overlay.first_goal() + overlay.goals());
   if (nodes_.size() < count) nodes_.resize(count);
@@ -56,6 +57,7 @@ void OverlaySearch::relax(int node, double cost, int parent, int step) {
   at.cost = cost;
   at.parent = parent;
   at.step = step;
+  ++opened_;
   heap_.push_back({key, cost, node});
   std::push_heap(heap_.begin(), heap_.end(), later);
 }

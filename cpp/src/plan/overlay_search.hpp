@@ -29,7 +29,8 @@ class MMGRASP_EXPORT OverlaySearch {
   End search(GraspOverlay& overlay, const RoadmapKnowledge& robot, double bound);
   /// After giving up: no path costs less.
   double reached() const { return reached_; }
-  /// Ways to nodes left open by the last search: what an upper bound keeps small.
+  /// Ways to nodes put into the queue by the last search, and those left there: what an upper bound keeps small.
+  std::size_t opened() const { return opened_; }
   std::size_t open() const { return heap_.size(); }
 
  private:
@@ -57,6 +58,7 @@ class MMGRASP_EXPORT OverlaySearch {
   std::vector<int> first_goal_link_;
   std::vector<Entry> heap_;
   std::uint32_t round_ = 0;
+  std::size_t opened_ = 0;
   const GraspOverlay* overlay_ = nullptr;
   double limit_ = 0, reached_ = 0;
 };

@@ -107,6 +107,9 @@ struct MMGRASP_EXPORT ManipulationStats {
   /// Of prm_star_mg's best path over the roadmap, before it was shortened; 0: none costs less than the first path.
   double roadmap_cost = 0;
   std::size_t graph_searches = 0;
+  /// Ways put into the queues of graph searches that ran before any path was checked (prm_star_mg, `lazy_grasps` off):
+  /// what bounds spliced from the paths of other grasps keep small (P2 4.3.2.5).
+  std::size_t ways_opened = 0;
   std::size_t grasps_searched = 0;      ///< By prm_star_mg over a roadmap or more: each grasp counts once.
   std::size_t edges_checked_robot = 0;  ///< For the robot alone, shared by all grasps of an opening.
   std::size_t edges_checked_held = 0;   ///< For what it holds.

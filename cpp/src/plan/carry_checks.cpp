@@ -32,12 +32,15 @@ int moved_by(const JointGroup& group, int link) {
 
 }  // namespace
 
-CarryChecks::CarryChecks(const ManipulationProblem& problem, const EdgeOptions& edge, int workers)
+CarryChecks::CarryChecks(const ManipulationProblem& problem, const EdgeOptions& edge, double search_steps, int workers)
     : problem_(problem),
       edge_(edge),
+      search_edge_(edge),
       path_edge_(edge),
       robot_(static_cast<std::size_t>(workers)),
       held_(robot_.size()) {
+  search_edge_.joint_step *= search_steps;
+  search_edge_.workspace_step *= search_steps;
   path_edge_.joint_step = std::min(path_edge_.joint_step, kFineStep);
   std::map<double, int> openings;
   for (const CandidateGrasp& grasp : problem.grasps) {
@@ -118,18 +121,13 @@ int CarryChecks::blocked_edge(int grasp, const JointPath& path) {
   return -1;
 }
 
-void CarryChecks::coarsen(double factor) {
-  edge_.joint_step *= factor;
-  edge_.workspace_step *= factor;
-}
-
 bool CarryChecks::robot_is_free(int worker, int opening, const Eigen::VectorXd& q) {
   return robot(worker, opening).checker.is_free(q);
 }
 bool CarryChecks::robot_edge_is_free(int worker, int opening, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   Bare& own = robot(worker, opening);
-  if (edge_.continuous) return check_edge(own.checker, a, b, edge_).free;
-  return stepped_edge_is_free(own.checker, own.motion, a, b, edge_);
+  if (search_edge_.continuous) return check_edge(own.checker, a, b, search_edge_).free;
+  return stepped_edge_is_free(own.checker, own.motion, a, b, search_edge_);
 }
 Rejection CarryChecks::robot_rejection(int worker, int opening, const Eigen::VectorXd& q) {
   return robot(worker, opening).checker.rejection(q);
@@ -143,7 +141,7 @@ bool CarryChecks::held_is_free(int worker, int grasp, const Eigen::VectorXd& q) 
   return held(worker, grasp).is_free(q);
 }
 bool CarryChecks::held_edge_is_free(int worker, int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  return held(worker, grasp).edge_is_free(a, b, edge_);
+  return held(worker, grasp).edge_is_free(a, b, search_edge_);
 }
 Rejection CarryChecks::held_rejection(int worker, int grasp, const Eigen::VectorXd& q) {
   return held(worker, grasp).rejection(q);

@@ -19,7 +19,9 @@ namespace mmgrasp::detail {
 /// first needed; from grasp to grasp only the object's pose in the hand changes.
 class CarryChecks {
  public:
-  CarryChecks(const ManipulationProblem& problem, const EdgeOptions& edge, int workers);
+  /// Edges asked for the robot alone and for the held object are cut into steps `search_steps` times as long as `edge`
+  /// says.
+  CarryChecks(const ManipulationProblem& problem, const EdgeOptions& edge, double search_steps, int workers);
 
   int opening_count() const { return static_cast<int>(groups_.size()); }
   int opening_of(int grasp) const { return opening_of_[static_cast<std::size_t>(grasp)]; }
@@ -42,8 +44,6 @@ class CarryChecks {
   bool path_edge_is_free(int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
   /// The first edge of a finished path that is not free by path_edge_is_free(); -1: all are.
   int blocked_edge(int grasp, const JointPath& path);
-  /// Edges are cut into steps this many times as long from here on, those of finished paths excepted.
-  void coarsen(double factor);
   /// A checker of everything.
   CollisionChecker whole(int grasp) const;
   const ManipulationProblem& problem() const { return problem_; }
@@ -66,7 +66,7 @@ class CarryChecks {
   World world_with(int grasp) const;
 
   const ManipulationProblem& problem_;
-  EdgeOptions edge_, path_edge_;
+  EdgeOptions edge_, search_edge_, path_edge_;
   std::vector<JointGroup> groups_;  ///< One an opening.
   std::vector<int> opening_of_;     ///< Per grasp.
   std::string tip_;

@@ -11,8 +11,8 @@ namespace detail {
 namespace {
 
 constexpr CarryPlanner kPlanners[] = {
-    {"prm_star_mg", run_prm_star_mg},
-    {"rrt_star_mg", run_rrt_star_mg},
+    {"prm_star_mg", run_prm_star_mg, 1},
+    {"rrt_star_mg", run_rrt_star_mg, 8},  // Most edges of trees are never part of a path.
 };
 
 }  // namespace

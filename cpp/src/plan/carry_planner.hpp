@@ -38,11 +38,13 @@ struct Carry {
 /// `improved`.
 void take_path(const CarryInput& input, Carry carry, ManipulationResult& result);
 
-/// One way to plan a carry. `run` sets outcome and lower bound, and the path through take_path(). When it finds no
-/// candidate at all, what it sets does not matter.
+/// One way to plan a carry. `run` sets the lower bound, and the path through take_path(); it returns whether all that
+/// it can find was looked at, so that without a path there is none. When there is no candidate at all, what it sets and
+/// returns does not matter.
 struct CarryPlanner {
   const char* name;
-  void (*run)(CarryInput& input, ManipulationResult& result);
+  bool (*run)(CarryInput& input, ManipulationResult& result);
+  double edge_steps;  ///< Along edges not yet part of a path, by those asked for.
 };
 
 /// Throws InvalidInput listing the known names.

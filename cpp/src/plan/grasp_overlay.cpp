@@ -12,15 +12,16 @@ Eigen::VectorXd GraspOverlay::configuration(const Roadmap& roadmap, int node) co
   return node < first_goal() ? start(node - vertex_count) : goal(node - first_goal());
 }
 
-void GraspOverlay::set_step(int step, bool is_free) {
-  if (step < 0) {
-    link(step).passed = is_free;
-    link(step).blocked = !is_free;
+void GraspOverlay::set_step(Step step, bool is_free) {
+  const int number = step.number();
+  if (step.is_link()) {
+    link(number).passed = is_free;
+    link(number).blocked = !is_free;
   } else if (is_free) {
-    passed_edges.insert(step);
+    passed_edges.insert(number);
   } else {
-    passed_edges.erase(step);
-    blocked_edges.push_back(step);
+    passed_edges.erase(number);
+    blocked_edges.push_back(number);
   }
 }
 

@@ -40,10 +40,23 @@ class RoadmapKnowledge {
   Array vertices_, edges_;
 };
 
+/// What leads from one node of a path to the next: an edge of the roadmap or a link of the overlay, by its number.
+class Step {
+ public:
+  Step() = default;
+  static Step edge(int number) { return Step(number); }
+  static Step link(int number) { return Step(-1 - number); }
+  bool is_link() const { return code_ < 0; }
+  int number() const { return is_link() ? -1 - code_ : code_; }
+
+ private:
+  explicit Step(int code) : code_(code) {}
+  int code_ = 0;
+};
+
 /// The least that is kept for one grasp in place of a copy of the roadmap (P2's privateGraph, 4.3.2.2): its ends, how
 /// they join the roadmap, and what the object in hand was found to block or to pass. Nodes are numbered: roadmap
-/// vertices, then starts, then goals. A step from one node to the next is an edge of the roadmap (>= 0) or a link of
-/// the overlay (-1 - link).
+/// vertices, then starts, then goals.
 struct MMGRASP_EXPORT GraspOverlay {
   struct Link {
     int from, to;  ///< Nodes; one end at least is a start or a goal.
@@ -62,11 +75,13 @@ struct MMGRASP_EXPORT GraspOverlay {
   /// roadmap would. Ends that no path of at most `bound` can have stay alone: later bounds are no larger.
   void connect(const Roadmap& roadmap, bool straight, double bound);
   Eigen::VectorXd configuration(const Roadmap& roadmap, int node) const;
-  Link& link(int step) { return links[static_cast<std::size_t>(-1 - step)]; }
-  const Link& link(int step) const { return links[static_cast<std::size_t>(-1 - step)]; }
-  bool passed(int step) const { return step < 0 ? link(step).passed : passed_edges.count(step) > 0; }
+  Link& link(int number) { return links[static_cast<std::size_t>(number)]; }
+  const Link& link(int number) const { return links[static_cast<std::size_t>(number)]; }
+  bool passed(Step step) const {
+    return step.is_link() ? link(step.number()).passed : passed_edges.count(step.number()) > 0;
+  }
   /// What the object in hand says of a step.
-  void set_step(int step, bool is_free);
+  void set_step(Step step, bool is_free);
 
   CarryCandidate candidate;
   int vertex_count;
@@ -78,7 +93,8 @@ struct MMGRASP_EXPORT GraspOverlay {
   std::unordered_set<int> passed_vertices, passed_edges;
 
   /// The path found last: nodes, and the steps between them.
-  std::vector<int> nodes, steps;
+  std::vector<int> nodes;
+  std::vector<Step> steps;
   double path_cost = 0;  ///< With the grasp's cost.
 };
 

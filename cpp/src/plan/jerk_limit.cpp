@@ -17,12 +17,14 @@ constexpr int kSamplesAWindow = 8;  // The average changes over a window's time.
 /// A motion as cubics between samples, standing still before and after, with its integral.
 class Cubics {
  public:
-  explicit Cubics(const JointTrajectory& motion) : times_(motion.times), positions_(motion.positions) {
+  /// Throws TimingStopped.
+  Cubics(const JointTrajectory& motion, const StopToken& stop) : times_(motion.times), positions_(motion.positions) {
     velocities_ = motion.velocities;
     const Eigen::VectorXd origin = positions_.front();
     for (auto& p : positions_) p -= origin;  // Sums of small numbers round less.
     integrals_.push_back(Eigen::VectorXd::Zero(origin.size()));
     for (std::size_t i = 0; i + 1 < times_.size(); ++i) {
+      end_if_stopped(stop);
       const double h = times_[i + 1] - times_[i];
       integrals_.push_back(integrals_.back() + 0.5 * h * (positions_[i] + positions_[i + 1]) +
                            h * h / 12 * (velocities_[i] - velocities_[i + 1]));
@@ -81,10 +83,11 @@ class Cubics {
 };
 
 /// The motion with a wait of `wait` seconds at each inner stop.
-JointTrajectory with_waits(const JointTrajectory& motion, double wait) {
+JointTrajectory with_waits(const JointTrajectory& motion, double wait, const StopToken& stop) {
   JointTrajectory out;
   double late = 0;
   for (std::size_t i = 0; i < motion.times.size(); ++i) {
+    end_if_stopped(stop);
     const auto add = [&] {
       out.times.push_back(motion.times[i] + late);
       out.positions.push_back(motion.positions[i]);
@@ -164,7 +167,7 @@ JointTrajectory limit_jerk(const JointTrajectory& motion, const Eigen::VectorXd&
   double enough = 0;
   for (const auto& a : motion.accelerations)
     enough = std::max(enough, 2.1 * (a.cwiseAbs().cwiseQuotient(jerk_limits)).maxCoeff());
-  const auto cubics = [&](double window) { return Cubics(with_waits(motion, window)); };
+  const auto cubics = [&](double window) { return Cubics(with_waits(motion, window, stop), stop); };
   const auto keeps = [&](double window) { return keeps_jerk(cubics(window), window, jerk_limits, stop); };
   while (!keeps(enough)) enough *= 1.5;
   double least = 0;

@@ -1,5 +1,6 @@
 #include "mmgrasp/plan/manipulation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -33,6 +34,17 @@ void check_roadmap(const JointGroup& own, const JointGroup& group) {
   throw InvalidInput("roadmap: was built for another robot or other joints than the problem's group: " +
                      (given == wanted ? "joints of the robot have other origins, axes or limits"
                                       : "for " + given + ", not for " + wanted));
+}
+
+Outcome outcome_of(const detail::CarryInput& input, bool exhausted, const ManipulationResult& result) {
+  if (input.candidates.complete() && input.candidates.found().empty()) {
+    const bool any_start = std::any_of(result.grasps.begin(), result.grasps.end(),
+                                       [](const GraspReport& report) { return report.start_solutions > 0; });
+    return any_start ? Outcome::invalid_goal : Outcome::invalid_start;
+  }
+  if (result.path) return Outcome::solved;
+  if (input.monitor.stopped()) return Outcome::stopped;
+  return exhausted ? Outcome::infeasible : Outcome::timeout;
 }
 
 }  // namespace
@@ -88,21 +100,18 @@ ManipulationResult plan_manipulation(const ManipulationProblem& problem, const M
   const detail::CarryPlanner& planner = detail::carry_planner(options.planner);
   ManipulationResult result;
   detail::CarryClock clock;
-  detail::CarryChecks checks(problem, options.edge, resolve_threads(options.threads));
+  detail::CarryChecks checks(problem, options.edge, planner.edge_steps, resolve_threads(options.threads));
   detail::CarryCandidates candidates(problem, options, checks, clock, monitor, result);
   detail::CarryInput input{problem, options, roadmap, checks, candidates, improved, monitor, clock};
-  planner.run(input, result);
+  const bool exhausted = planner.run(input, result);
   result.stats.search_seconds = clock.seconds() - result.stats.ik_seconds;
-  bool any_start = false;
   for (const GraspReport& report : result.grasps) {
-    any_start |= report.start_solutions > 0;
     result.rejections += report.start;
     result.rejections += report.goal;
   }
-  if (candidates.complete() && candidates.found().empty()) {
-    result.outcome = any_start ? Outcome::invalid_goal : Outcome::invalid_start;
-    result.contacts = candidates.first_contacts(any_start);
-  }
+  result.outcome = outcome_of(input, exhausted, result);
+  if (result.outcome == Outcome::invalid_start) result.contacts = candidates.first_contacts(false);
+  if (result.outcome == Outcome::invalid_goal) result.contacts = candidates.first_contacts(true);
   return result;
 }
 

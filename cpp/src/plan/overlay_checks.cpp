@@ -13,10 +13,12 @@ namespace {
 constexpr double kSampleSpacing = 0.4;  // [rad or m] Of the few configurations an edge is first looked at.
 constexpr std::size_t kCheap = 64;      // Configurations that are worth a thread.
 
-/// One question an opening's robot is asked, however many paths lead over it.
+/// One question an opening's robot is asked about a vertex or an edge of the roadmap, however many paths lead over it.
 struct RobotItem {
   int opening, what, path, place;
 };
+
+/// Of equal questions the one for the first path is kept.
 
 std::vector<RobotItem> asked_once(std::vector<RobotItem> items) {
   const auto key = [](const RobotItem& i) { return std::tie(i.opening, i.what, i.path, i.place); };
@@ -84,11 +86,11 @@ void OverlayChecks::vertices_for_held() {
   }
   std::vector<char> answers(items.size());
   run(items.size(), kCheap, [&](std::size_t i, int worker) {
-    const GraspOverlay& overlay = *(*paths_)[static_cast<std::size_t>(items[i].path)];
-    answers[i] = checks_.held_is_free(worker, overlay.candidate.grasp, roadmap_.vertices().col(items[i].what));
+    answers[i] =
+        checks_.held_is_free(worker, overlay_of(items[i]).candidate.grasp, roadmap_.vertices().col(items[i].what));
   });
   for (std::size_t i = 0; i < items.size(); ++i) {
-    GraspOverlay& overlay = *(*paths_)[static_cast<std::size_t>(items[i].path)];
+    GraspOverlay& overlay = overlay_of(items[i]);
     if (answers[i]) {
       overlay.passed_vertices.insert(items[i].what);
     } else {
@@ -109,18 +111,25 @@ std::vector<OverlayChecks::Item> OverlayChecks::open_steps() const {
   return items;
 }
 
-std::pair<Eigen::VectorXd, Eigen::VectorXd> OverlayChecks::ends(int path, int place) const {
-  const GraspOverlay& overlay = *(*paths_)[static_cast<std::size_t>(path)];
-  return {overlay.configuration(roadmap_, overlay.nodes[static_cast<std::size_t>(place)]),
-          overlay.configuration(roadmap_, overlay.nodes[static_cast<std::size_t>(place) + 1])};
+GraspOverlay& OverlayChecks::overlay_of(const Item& item) const {
+  return *(*paths_)[static_cast<std::size_t>(item.path)];
+}
+
+Step OverlayChecks::step_of(const Item& item) const {
+  return overlay_of(item).steps[static_cast<std::size_t>(item.what)];
+}
+
+std::pair<Eigen::VectorXd, Eigen::VectorXd> OverlayChecks::ends(const Item& step) const {
+  const GraspOverlay& overlay = overlay_of(step);
+  const auto place = static_cast<std::size_t>(step.what);
+  return {overlay.configuration(roadmap_, overlay.nodes[place]),
+          overlay.configuration(roadmap_, overlay.nodes[place + 1])};
 }
 
 void OverlayChecks::take_steps(const std::vector<Item>& items, const std::vector<char>& answers, bool final) {
   for (std::size_t i = 0; i < items.size(); ++i) {
-    GraspOverlay& overlay = *(*paths_)[static_cast<std::size_t>(items[i].path)];
-    const int step = overlay.steps[static_cast<std::size_t>(items[i].what)];
     if (!answers[i]) live_[static_cast<std::size_t>(items[i].path)] = 0;
-    if (!answers[i] || final) overlay.set_step(step, answers[i] != 0);
+    if (!answers[i] || final) overlay_of(items[i]).set_step(step_of(items[i]), answers[i] != 0);
   }
 }
 
@@ -129,13 +138,13 @@ void OverlayChecks::samples() {
   const std::vector<Item> items = open_steps();
   std::vector<char> answers(items.size());
   run(items.size(), kCheap / 4, [&](std::size_t i, int worker) {
-    const CarryCandidate& candidate = (*paths_)[static_cast<std::size_t>(items[i].path)]->candidate;
-    const int step = (*paths_)[static_cast<std::size_t>(items[i].path)]->steps[static_cast<std::size_t>(items[i].what)];
-    const auto [a, b] = ends(items[i].path, items[i].what);
+    const CarryCandidate& candidate = overlay_of(items[i]).candidate;
+    const bool is_link = step_of(items[i]).is_link();
+    const auto [a, b] = ends(items[i]);
     const auto is_free = [&](double t) {
       const Eigen::VectorXd q = a + t * (b - a);
       return checks_.held_is_free(worker, candidate.grasp, q) &&
-             (step >= 0 || checks_.robot_is_free(worker, candidate.opening, q));
+             (!is_link || checks_.robot_is_free(worker, candidate.opening, q));
     };
     // The middles first: 1/2, 1/4, 3/4, 1/8, ...
     const int depth = static_cast<int>(std::ceil(std::log2(std::max(1.0, (b - a).norm() / kSampleSpacing))));
@@ -147,51 +156,57 @@ void OverlayChecks::samples() {
   take_steps(items, answers, false);
 }
 
-void OverlayChecks::edges_for_robot() {
-  std::vector<RobotItem> items;
+std::vector<OverlayChecks::Item> OverlayChecks::open_steps_of_robot() const {
+  std::vector<Item> items;
+  std::vector<RobotItem> edges;
   for (const Item& item : open_steps()) {
-    const GraspOverlay& overlay = *(*paths_)[static_cast<std::size_t>(item.path)];
-    const int step = overlay.steps[static_cast<std::size_t>(item.what)];
-    if (step >= 0) {
-      if (robot_of(overlay).edge(step) == RoadmapKnowledge::unknown)
-        items.push_back({overlay.candidate.opening, step, item.path, item.what});
-    } else if (!overlay.link(step).robot_passed) {
-      // Nobody else has this link: an opening of its own keeps it apart.
-      items.push_back({-1 - item.path, step, item.path, item.what});
+    const GraspOverlay& overlay = overlay_of(item);
+    const Step step = step_of(item);
+    if (step.is_link()) {  // No other path has it.
+      if (!overlay.link(step.number()).robot_passed) items.push_back(item);
+    } else if (robot_of(overlay).edge(step.number()) == RoadmapKnowledge::unknown) {
+      edges.push_back({overlay.candidate.opening, step.number(), item.path, item.what});
     }
   }
-  items = asked_once(std::move(items));
+  for (const RobotItem& edge : asked_once(std::move(edges))) items.push_back({edge.path, edge.place});
+  return items;
+}
+
+void OverlayChecks::take_step_of_robot(const Item& item, bool is_free) {
+  GraspOverlay& overlay = overlay_of(item);
+  const Step step = step_of(item);
+  if (!step.is_link()) return robot_of(overlay).set_edge(step.number(), is_free);
+  GraspOverlay::Link& link = overlay.link(step.number());
+  link.robot_passed = is_free;
+  link.blocked = !is_free;
+}
+
+bool OverlayChecks::robot_blocks(const GraspOverlay& overlay) const {
+  return std::any_of(overlay.steps.begin(), overlay.steps.end(), [&](Step step) {
+    return step.is_link() ? overlay.link(step.number()).blocked
+                          : robot_of(overlay).edge(step.number()) == RoadmapKnowledge::blocked;
+  });
+}
+
+void OverlayChecks::edges_for_robot() {
+  const std::vector<Item> items = open_steps_of_robot();
   std::vector<char> answers(items.size());
   run(items.size(), 2, [&](std::size_t i, int worker) {
-    const auto [a, b] = ends(items[i].path, items[i].place);
-    const int opening = (*paths_)[static_cast<std::size_t>(items[i].path)]->candidate.opening;
-    answers[i] = checks_.robot_edge_is_free(worker, opening, a, b);
+    const auto [a, b] = ends(items[i]);
+    answers[i] = checks_.robot_edge_is_free(worker, overlay_of(items[i]).candidate.opening, a, b);
   });
   stats_.edges_checked_robot += items.size();
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    GraspOverlay& overlay = *(*paths_)[static_cast<std::size_t>(items[i].path)];
-    if (items[i].what >= 0) {
-      robot_of(overlay).set_edge(items[i].what, answers[i] != 0);
-    } else {
-      overlay.link(items[i].what).robot_passed = answers[i] != 0;
-      overlay.link(items[i].what).blocked = answers[i] == 0;
-      if (!answers[i]) live_[static_cast<std::size_t>(items[i].path)] = 0;
-    }
-  }
-  for (std::size_t p = 0; p < paths_->size(); ++p) {
-    const GraspOverlay& overlay = *(*paths_)[p];
-    for (const int step : overlay.steps)
-      if (step >= 0 && robot_of(overlay).edge(step) == RoadmapKnowledge::blocked) live_[p] = 0;
-  }
+  for (std::size_t i = 0; i < items.size(); ++i) take_step_of_robot(items[i], answers[i] != 0);
+  for (std::size_t p = 0; p < paths_->size(); ++p)
+    if (robot_blocks(*(*paths_)[p])) live_[p] = 0;
 }
 
 void OverlayChecks::edges_for_held() {
   const std::vector<Item> items = open_steps();
   std::vector<char> answers(items.size());
   run(items.size(), 2, [&](std::size_t i, int worker) {
-    const auto [a, b] = ends(items[i].path, items[i].what);
-    answers[i] =
-        checks_.held_edge_is_free(worker, (*paths_)[static_cast<std::size_t>(items[i].path)]->candidate.grasp, a, b);
+    const auto [a, b] = ends(items[i]);
+    answers[i] = checks_.held_edge_is_free(worker, overlay_of(items[i]).candidate.grasp, a, b);
   });
   stats_.edges_checked_held += items.size();
   take_steps(items, answers, true);

@@ -36,10 +36,17 @@ class OverlayChecks {
   void run(std::size_t count, std::size_t worth, const std::function<void(std::size_t, int)>& work);
   /// Steps that the object in hand is not known to pass, of paths not yet found blocked.
   std::vector<Item> open_steps() const;
-  std::pair<Eigen::VectorXd, Eigen::VectorXd> ends(int path, int place) const;
+  /// Of these, edges of the roadmap that nobody asked about yet for the robot alone, each once, and links.
+  std::vector<Item> open_steps_of_robot() const;
+  GraspOverlay& overlay_of(const Item& item) const;
+  Step step_of(const Item& item) const;
+  std::pair<Eigen::VectorXd, Eigen::VectorXd> ends(const Item& step) const;
+  void take_step_of_robot(const Item& item, bool is_free);
+  /// Whether the robot alone is known not to pass one of the path's steps.
+  bool robot_blocks(const GraspOverlay& overlay) const;
   /// What the object in hand says of steps; unless `final`, free steps stay open.
   void take_steps(const std::vector<Item>& items, const std::vector<char>& answers, bool final);
-  RoadmapKnowledge& robot_of(const GraspOverlay& overlay) {
+  RoadmapKnowledge& robot_of(const GraspOverlay& overlay) const {
     return knowledge_[static_cast<std::size_t>(overlay.candidate.opening)];
   }
 

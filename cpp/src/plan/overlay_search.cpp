@@ -40,11 +40,10 @@ void OverlaySearch::begin(const GraspOverlay& overlay) {
   for (const int v : overlay.blocked_vertices) nodes_[static_cast<std::size_t>(v)].blocked = round_;
   for (const int e : overlay.blocked_edges) edge_blocked_[static_cast<std::size_t>(e)] = round_;
   for (std::size_t i = overlay.into_goals.size(); i-- > 0;)
-    first_goal_link_[static_cast<std::size_t>(overlay.links[static_cast<std::size_t>(overlay.into_goals[i])].from)] =
-        static_cast<int>(i);
+    first_goal_link_[static_cast<std::size_t>(overlay.link(overlay.into_goals[i]).from)] = static_cast<int>(i);
 }
 
-void OverlaySearch::relax(int node, double cost, int parent, int step) {
+void OverlaySearch::relax(int node, double cost, int parent, Step step) {
   Node& at = nodes_[static_cast<std::size_t>(node)];
   if (at.blocked == round_) return;
   if (at.stamp != round_) {
@@ -63,8 +62,8 @@ void OverlaySearch::relax(int node, double cost, int parent, int step) {
 }
 
 void OverlaySearch::follow(int from, double cost, int link) {
-  const GraspOverlay::Link& l = overlay_->links[static_cast<std::size_t>(link)];
-  if (!l.blocked) relax(l.to, cost + l.length, from, -1 - link);
+  const GraspOverlay::Link& l = overlay_->link(link);
+  if (!l.blocked) relax(l.to, cost + l.length, from, Step::link(link));
 }
 
 void OverlaySearch::expand_vertex(const Entry& at, const RoadmapKnowledge& robot) {
@@ -72,12 +71,12 @@ void OverlaySearch::expand_vertex(const Entry& at, const RoadmapKnowledge& robot
     if (robot.vertex(arc->to) == RoadmapKnowledge::blocked || robot.edge(arc->edge) == RoadmapKnowledge::blocked ||
         edge_blocked_[static_cast<std::size_t>(arc->edge)] == round_)
       continue;
-    relax(arc->to, at.cost + arc->length, at.node, arc->edge);
+    relax(arc->to, at.cost + arc->length, at.node, Step::edge(arc->edge));
   }
   const int first = first_goal_link_[static_cast<std::size_t>(at.node)];
   for (int i = first; i >= 0 && i < static_cast<int>(overlay_->into_goals.size()); ++i) {
     const int link = overlay_->into_goals[static_cast<std::size_t>(i)];
-    if (overlay_->links[static_cast<std::size_t>(link)].from != at.node) break;
+    if (overlay_->link(link).from != at.node) break;
     follow(at.node, at.cost, link);
   }
 }
@@ -85,7 +84,7 @@ void OverlaySearch::expand_vertex(const Entry& at, const RoadmapKnowledge& robot
 OverlaySearch::End OverlaySearch::search(GraspOverlay& overlay, const RoadmapKnowledge& robot, double bound) {
   begin(overlay);
   limit_ = (bound - overlay.candidate.cost) * (1 + kSlack);
-  for (int s = 0; s < overlay.starts(); ++s) relax(overlay.vertex_count + s, 0, -1, 0);
+  for (int s = 0; s < overlay.starts(); ++s) relax(overlay.vertex_count + s, 0, -1, {});
   int reached = -1;
   bool gave_up = false;
   std::size_t looked_at = 0;
@@ -115,8 +114,7 @@ OverlaySearch::End OverlaySearch::search(GraspOverlay& overlay, const RoadmapKno
     if (state == RoadmapKnowledge::blocked) continue;
     expand_vertex(top, robot);
   }
-  for (const int link : overlay.into_goals)
-    first_goal_link_[static_cast<std::size_t>(overlay.links[static_cast<std::size_t>(link)].from)] = -1;
+  for (const int link : overlay.into_goals) first_goal_link_[static_cast<std::size_t>(overlay.link(link).from)] = -1;
   if (gave_up) return End::gave_up;
   if (reached < 0) return End::none;
   take_path(overlay, reached);

@@ -36,7 +36,8 @@ class MMGRASP_EXPORT OverlaySearch {
  private:
   struct Node {
     double cost, to_goal;
-    int parent, step;
+    int parent;
+    Step step;                             ///< From the parent.
     std::uint32_t stamp = 0, blocked = 0;  ///< Rounds in which it was reached, and in which it is blocked.
   };
   struct Entry {
@@ -48,7 +49,7 @@ class MMGRASP_EXPORT OverlaySearch {
   void begin(const GraspOverlay& overlay);
   void expand_vertex(const Entry& at, const RoadmapKnowledge& robot);
   void follow(int from, double cost, int link);
-  void relax(int node, double cost, int parent, int step);
+  void relax(int node, double cost, int parent, Step step);
   double to_goal(int node) const;
   void take_path(GraspOverlay& overlay, int goal) const;
 

@@ -25,7 +25,7 @@ std::optional<Roadmap> first_roadmap(CarryInput& input, ManipulationResult& resu
 
 }  // namespace
 
-void run_prm_star_mg(CarryInput& input, ManipulationResult& result) {
+bool run_prm_star_mg(CarryInput& input, ManipulationResult& result) {
   const PrmStarMgOptions& options = input.options.prm;
   // A first path leaves the roadmap, as shortened ones and straight edges do.
   Carry best;
@@ -50,12 +50,10 @@ void run_prm_star_mg(CarryInput& input, ManipulationResult& result) {
   }
   if (best.cost < first) result.stats.roadmap_cost = best.cost;
   if (result.path) {
-    result.outcome = Outcome::solved;
     result.lower_bound = std::min(result.lower_bound, result.cost);
     if (whole && options.shorten) refine_carry(input, result);
-  } else {
-    result.outcome = input.monitor.stopped() ? Outcome::stopped : whole ? Outcome::infeasible : Outcome::timeout;
   }
+  return whole;
 }
 
 }  // namespace mmgrasp::detail

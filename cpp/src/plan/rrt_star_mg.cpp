@@ -30,7 +30,6 @@ constexpr double kAround = 0.8;      // Samples drawn near a straight line, unti
 constexpr double kNarrowest = 1.1;   // Paths they may lie on, by the straight line's length: at least ...
 constexpr double kWidest = 2.5;      // ... and this much more.
 constexpr double kCorners = 0.3;     // Corners of the best path cut, by samples drawn.
-constexpr double kCoarse = 8;        // Steps along the trees' edges, by those of finished paths.
 constexpr int kGuesses = 32;         // Random grasps asked before all of them are.
 constexpr double kGammaSlack = 1.1;  // Above the least that optimality asks for.
 
@@ -81,11 +80,6 @@ void RrtStarMg::run() {
   result_.stats.vertices += static_cast<std::size_t>(forest_.vertex_count());
   result_.lower_bound = std::min({best_, ends_.straight_cost(0), input_.candidates.least_cost_left()});
   if (options_.keep_trees) keep_trees();
-  if (result_.path) {
-    result_.outcome = Outcome::solved;
-  } else {
-    result_.outcome = input_.monitor.stopped() ? Outcome::stopped : Outcome::timeout;
-  }
 }
 
 void RrtStarMg::plant() {
@@ -216,23 +210,18 @@ int RrtStarMg::take_reassigned(int side, int& tree) {
   return -1;
 }
 
-void run_rrt_star_mg(CarryInput& input, ManipulationResult& result) {
+bool run_rrt_star_mg(CarryInput& input, ManipulationResult& result) {
   CarryCandidates& candidates = input.candidates;
   const Carry first = find_first_carry(input, result);
   const auto good_enough = [&] { return result.path && result.cost <= input.options.rrt.goal_cost; };
   if (first.grasp >= 0 && !good_enough()) shorten_carry(input, first, result);
   if (good_enough()) {
-    result.outcome = Outcome::solved;
     result.lower_bound = std::min(result.cost, candidates.least_cost());
-    return;
+    return false;
   }
   candidates.find_rest();
-  input.checks.coarsen(kCoarse);
-  if (!candidates.found().empty()) {
-    RrtStarMg(input, input.options.rrt, result).run();
-  } else {
-    result.outcome = input.monitor.stopped() ? Outcome::stopped : Outcome::timeout;
-  }
+  if (!candidates.found().empty()) RrtStarMg(input, input.options.rrt, result).run();
+  return false;  // Trees can always grow on.
 }
 
 }  // namespace detail

@@ -124,6 +124,6 @@ class RrtStarMg {
   Eigen::VectorXd q_, q_a_, q_b_;   ///< Scratch.
 };
 
-void run_rrt_star_mg(CarryInput& input, ManipulationResult& result);
+bool run_rrt_star_mg(CarryInput& input, ManipulationResult& result);
 
 }  // namespace mmgrasp::detail

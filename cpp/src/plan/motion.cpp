@@ -38,6 +38,15 @@ void check_planner_name(const std::string& name) {
   require(false, "planner", "\"" + name + "\"", "must be one of " + known);
 }
 
+/// Such a planner has no budget left for a second search when its path fails the finer check, and the shortest of many
+/// paths is the one that grazes obstacles.
+bool keeps_improving(const std::string& name) {
+  if (name == kOwnPlanner) return false;
+  const std::vector<detail::OmplPlanner> planners = detail::ompl_planners();
+  return std::any_of(planners.begin(), planners.end(),
+                     [&](const auto& planner) { return planner.name == name && planner.keeps_improving; });
+}
+
 /// One call of plan_motion.
 class MotionSearch {
  public:
@@ -50,6 +59,7 @@ class MotionSearch {
         goals_(goals),
         options_(options),
         monitor_(monitor),
+        keeps_improving_(keeps_improving(options.planner)),
         queries_before_(checker.queries()) {}
 
   MotionResult run() {
@@ -113,8 +123,8 @@ class MotionSearch {
 
   void search() {
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
-      // A path that fails the finer check has cut a thin obstacle: look more closely from then on.
-      const double finer = attempt == 0 ? 1 : kFiner;
+      // A path that fails the finer check has cut an obstacle: look more closely from then on.
+      const double finer = attempt == 0 && !keeps_improving_ ? 1 : kFiner;
       const detail::PlannerAnswer answer = ask_planner(finer, attempt);
       if (monitor_.stopped()) return end(Outcome::stopped);
       if (!answer.solved) return end(answer.exhausted ? Outcome::infeasible : Outcome::timeout);
@@ -152,7 +162,7 @@ class MotionSearch {
     };
     if (edges_.constrained()) query.project = [&](Eigen::VectorXd& q) { return edges_.project(q); };
     if (options_.planner == kOwnPlanner) return detail::rrt_connect(query);
-    if (options_.improved) {
+    if (options_.improved && keeps_improving_) {
       query.improved = [&](const std::vector<Eigen::VectorXd>& waypoints) { report(continuous(waypoints)); };
     }
     return detail::solve_with_ompl(query);
@@ -246,6 +256,7 @@ class MotionSearch {
   const MotionGoals& goals_;
   const MotionOptions& options_;
   const Monitor& monitor_;
+  const bool keeps_improving_;
   const Clock::time_point begin_ = Clock::now();
   const std::size_t queries_before_;
   std::vector<detail::GoalConfiguration> ends_;
@@ -257,7 +268,7 @@ class MotionSearch {
 
 std::vector<std::string> planner_names() {
   std::vector<std::string> names{kOwnPlanner};
-  for (auto& name : detail::ompl_planner_names()) names.push_back(std::move(name));
+  for (auto& planner : detail::ompl_planners()) names.push_back(std::move(planner.name));
   return names;
 }
 

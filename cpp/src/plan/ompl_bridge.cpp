@@ -141,10 +141,11 @@ std::vector<double> flattened(const std::vector<Eigen::VectorXd>& rows) {
 
 }  // namespace
 
-std::vector<std::string> ompl_planner_names() {
-  std::vector<std::string> names;
-  for (int i = 0; i < plugin().planner_count; ++i) names.emplace_back(plugin().planner_name(i));
-  return names;
+std::vector<OmplPlanner> ompl_planners() {
+  std::vector<OmplPlanner> planners;
+  for (int i = 0; i < plugin().planner_count; ++i)
+    planners.push_back({plugin().planner_name(i), plugin().planner_keeps_improving(i) != 0});
+  return planners;
 }
 
 PlannerAnswer solve_with_ompl(const PlannerQuery& query) {

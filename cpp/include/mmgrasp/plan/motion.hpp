@@ -42,7 +42,7 @@ struct MMGRASP_EXPORT MotionOptions {
   int ik_solutions = 8;
   int region_samples = 16;  ///< Tool poses drawn in each region; > 0.
   /// Called with each better path while a planner that keeps improving is at work, and with the final one; from the
-  /// calling thread. The paths are free at the planner's edge steps, the final one is checked more finely.
+  /// calling thread. All of them are free at an eighth of the edge steps.
   std::function<void(const JointPath& path, double cost)> improved;
   unsigned seed = 1;
   void check() const;

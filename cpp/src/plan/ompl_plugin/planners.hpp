@@ -14,6 +14,8 @@ struct PlannerEntry {
   bool runs_alone;
   /// Spends rounds without drawing states: rounds count towards the budget, too.
   bool count_rounds;
+  /// Goes on after its first path until its budget is spent.
+  bool keeps_improving;
   /// Longest tree edge when the caller names none, as a share of the joint box's diagonal; 0: OMPL's choice (a fifth).
   double range_share;
 };

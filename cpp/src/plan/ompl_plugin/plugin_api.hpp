@@ -42,6 +42,7 @@ struct MmgraspOmplApi {
   int version;  ///< kMmgraspOmplApiVersion of the plugin.
   int planner_count;
   const char* (*planner_name)(int index);
+  int (*planner_keeps_improving)(int index);        ///< Goes on after its first path until its budget is spent.
   int (*solve)(const MmgraspOmplProblem* problem);  ///< Returns a MmgraspOmplStatus; throws nothing.
 };
 
@@ -50,5 +51,5 @@ __attribute__((visibility("default"))) const MmgraspOmplApi* mmgrasp_ompl_api();
 
 }  // extern "C"
 
-constexpr int kMmgraspOmplApiVersion = 2;
+constexpr int kMmgraspOmplApiVersion = 3;
 constexpr const char* kMmgraspOmplApiSymbol = "mmgrasp_ompl_api";

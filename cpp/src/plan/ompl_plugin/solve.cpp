@@ -194,6 +194,10 @@ const char* planner_name(int index) {
   return kPlanners[index].name;
 }
 
+int planner_keeps_improving(int index) {
+  return kPlanners[index].keeps_improving ? 1 : 0;
+}
+
 }  // namespace
 }  // namespace mmgrasp_ompl
 
@@ -202,7 +206,7 @@ const MmgraspOmplApi* mmgrasp_ompl_api() {
     ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
     ompl::msg::noOutputHandler();
     return MmgraspOmplApi{kMmgraspOmplApiVersion, static_cast<int>(mmgrasp_ompl::kPlannerCount),
-                          mmgrasp_ompl::planner_name, mmgrasp_ompl::solve};
+                          mmgrasp_ompl::planner_name, mmgrasp_ompl::planner_keeps_improving, mmgrasp_ompl::solve};
   }();
   return &api;
 }

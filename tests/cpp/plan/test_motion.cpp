@@ -105,6 +105,29 @@ TEST(PlanMotion, NarrowPassage) {
   }
 }
 
+TEST(PlanMotion, RoadmapsLeaveNarrowEnds) {
+  // The last of three links begins in a slot of 4 cm: hardly any vertex drawn anywhere sees that end.
+  const test::PlanarArm arm(3, kLength, 0.02);
+  const std::vector<SceneBox> slot{{{1.15, 0.07, 0}, {0.2, 0.1, 0.2}}, {{1.15, -0.07, 0}, {0.2, 0.1, 0.2}}};
+  const VectorXd inside = vec({0.6, -1.2, 0.6}), outside = vec({1.8, -0.6, -0.6});
+  for (const std::string planner : {"prm", "prm_star", "lazy_prm_star"}) {
+    int solved = 0;
+    for (unsigned seed = 1; seed <= 40; ++seed) {
+      CollisionChecker checker(arm.group(), test::make_world(slot));
+      MotionOptions options;
+      options.planner = planner;
+      options.seed = seed;
+      options.time_limit = 60;
+      options.max_iterations = 400;
+      const MotionResult result = plan_motion(checker, inside, {outside}, options);
+      if (result.outcome != Outcome::solved) continue;
+      ++solved;
+      EXPECT_GT(test::fcl_path_clearance(arm, kLength, *result.path, slot, options.edge_step / 8), 0);
+    }
+    EXPECT_EQ(solved, 40) << planner;
+  }
+}
+
 TEST(PlanMotion, ThinObstaclesAreNotCut) {
   // A plate far thinner than what the links move within a coarse edge_step: the finer check must catch what slips
   // through.

@@ -12,6 +12,8 @@ namespace ob = ompl::base;
 namespace {
 
 constexpr double kTwoPi = 2 * M_PI;
+constexpr double kAroundEnds = 0.2;  // Share of a roadmap's draws.
+constexpr double kNearest = 1e-3;    // Least size of a box around an end, as a share of the bounds.
 
 /// Draws from a generator of its own: OMPL's are seeded from one per process, and would differ from run to run.
 class SeededSampler : public ob::StateSampler {
@@ -21,6 +23,7 @@ class SeededSampler : public ob::StateSampler {
 
   void sampleUniform(ob::State* state) override {
     context_->count_draw();
+    if (context_->roadmap() && uniform() < kAroundEnds) return sample_around_end(state);
     const auto& bounds = space_->getBounds();
     for (unsigned int i = 0; i < space_->getDimension(); ++i) {
       values(state)[i] = between(bounds.low[i], bounds.high[i]);
@@ -44,6 +47,21 @@ class SeededSampler : public ob::StateSampler {
   }
 
  private:
+  /// In a box around the start or a goal, of any size down to kNearest: all orders of magnitude alike.
+  void sample_around_end(ob::State* state) {
+    const MmgraspOmplProblem& problem = context_->problem();
+    const int goal = static_cast<int>(uniform() * 2 * problem.goal_count) - problem.goal_count;
+    const double* end = goal < 0 ? problem.start : problem.goals + goal * problem.size;
+    const double share = std::pow(kNearest, uniform());
+    const auto& bounds = space_->getBounds();
+    for (unsigned int i = 0; i < space_->getDimension(); ++i) {
+      const double reach = share * (bounds.high[i] - bounds.low[i]);
+      values(state)[i] =
+          space_->wraps(i) ? std::remainder(end[i] + between(-reach, reach) / 2, kTwoPi)
+                           : between(std::max(bounds.low[i], end[i] - reach), std::min(bounds.high[i], end[i] + reach));
+    }
+  }
+
   double uniform() { return static_cast<double>(generator_() >> 11) * 0x1.0p-53; }
   double between(double low, double high) { return low + (high - low) * uniform(); }
   double normal() { return std::sqrt(-2 * std::log(1 - uniform())) * std::cos(kTwoPi * uniform()); }

@@ -20,6 +20,7 @@ class JointSpace : public ompl::base::RealVectorStateSpace {
   explicit JointSpace(std::shared_ptr<RunContext> context);
 
   bool any_wraps() const { return any_wraps_; }
+  bool wraps(unsigned int index) const { return wraps_[index]; }
   double distance(const ompl::base::State* a, const ompl::base::State* b) const override;
   void interpolate(const ompl::base::State* from, const ompl::base::State* to, double t,
                    ompl::base::State* state) const override;

@@ -37,20 +37,20 @@ ob::PlannerPtr make_prm_star(const ob::SpaceInformationPtr& si) {
 const PlannerEntry kPlanners[] = {
     // Measured on the 7-joint arm problems of docs/methods/plan.md: a fifth of the diagonal takes two to three times as
     // long.
-    {"ompl_rrt_connect", make<og::RRTConnect>, false, false, false, 0.05},
-    {"rrt", make<og::RRT>, true, false, false, 0},
-    {"est", make<og::EST>, true, true, false, 0},
-    {"bi_est", make<og::BiEST>, true, true, false, 0},
-    {"kpiece", make<og::KPIECE1>, true, true, false, 0},
-    {"bkpiece", make<og::BKPIECE1>, true, true, false, 0},
-    {"prm", make_prm, true, false, false, 0},
-    {"prm_star", make_prm_star, true, false, true, 0},
-    {"lazy_prm_star", make<og::LazyPRMstar>, true, true, true, 0},
-    {"rrt_star", make<og::RRTstar>, true, true, true, 0},
-    {"informed_rrt_star", make<og::InformedRRTstar>, true, true, true, 0},
-    {"bit_star", make<og::BITstar>, true, true, true, 0},
-    {"abit_star", make<og::ABITstar>, true, true, true, 0},
-    {"ait_star", make<og::AITstar>, true, true, true, 0},
+    {"ompl_rrt_connect", make<og::RRTConnect>, false, false, false, false, 0.05},
+    {"rrt", make<og::RRT>, true, false, false, false, 0},
+    {"est", make<og::EST>, true, true, false, false, 0},
+    {"bi_est", make<og::BiEST>, true, true, false, false, 0},
+    {"kpiece", make<og::KPIECE1>, true, true, false, false, 0},
+    {"bkpiece", make<og::BKPIECE1>, true, true, false, false, 0},
+    {"prm", make_prm, true, false, false, true, 0},
+    {"prm_star", make_prm_star, true, false, true, true, 0},
+    {"lazy_prm_star", make<og::LazyPRMstar>, true, true, true, true, 0},
+    {"rrt_star", make<og::RRTstar>, true, true, true, false, 0},
+    {"informed_rrt_star", make<og::InformedRRTstar>, true, true, true, false, 0},
+    {"bit_star", make<og::BITstar>, true, true, true, false, 0},
+    {"abit_star", make<og::ABITstar>, true, true, true, false, 0},
+    {"ait_star", make<og::AITstar>, true, true, true, false, 0},
 };
 const std::size_t kPlannerCount = sizeof(kPlanners) / sizeof(kPlanners[0]);
 

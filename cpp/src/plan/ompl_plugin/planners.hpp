@@ -16,6 +16,8 @@ struct PlannerEntry {
   bool count_rounds;
   /// Goes on after its first path until its budget is spent.
   bool keeps_improving;
+  /// Draws a roadmap in which the ends are two vertices, instead of growing trees from them.
+  bool roadmap;
   /// Longest tree edge when the caller names none, as a share of the joint box's diagonal; 0: OMPL's choice (a fifth).
   double range_share;
 };

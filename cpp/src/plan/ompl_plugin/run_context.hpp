@@ -12,13 +12,17 @@ namespace mmgrasp_ompl {
 /// What one run has spent of its budget, shared by sampler, validity checker and termination condition.
 class RunContext {
  public:
-  RunContext(const MmgraspOmplProblem& problem, bool count_rounds)
+  RunContext(const MmgraspOmplProblem& problem, bool count_rounds, bool roadmap)
       : problem_(problem),
         count_rounds_(count_rounds),
+        roadmap_(roadmap),
         deadline_(std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                                          std::chrono::duration<double>(problem.time_limit))) {}
 
   const MmgraspOmplProblem& problem() const { return problem_; }
+
+  /// Ends are joined through vertices drawn near them alone; trees grow from them.
+  bool roadmap() const { return roadmap_; }
 
   /// Called at every look at the budget.
   void watch(std::function<void()> look) { look_ = std::move(look); }
@@ -48,7 +52,7 @@ class RunContext {
   bool stopped() const { return problem_.stopped(problem_.user) != 0 || std::chrono::steady_clock::now() >= deadline_; }
 
   const MmgraspOmplProblem& problem_;
-  bool count_rounds_;
+  bool count_rounds_, roadmap_;
   std::chrono::steady_clock::time_point deadline_;
   long draws_ = 0, checks_ = 0, rounds_ = 0;
   std::uint64_t samplers_ = 0;

@@ -147,7 +147,7 @@ int run(const MmgraspOmplProblem& problem) {
     return MMGRASP_OMPL_FAILED;
   }
   const RunLock lock(entry->runs_alone, problem.seed);
-  const auto context = std::make_shared<RunContext>(problem, entry->count_rounds);
+  const auto context = std::make_shared<RunContext>(problem, entry->count_rounds, entry->roadmap);
   const auto space = std::make_shared<JointSpace>(context);
   const auto si = std::make_shared<ob::SpaceInformation>(space);
   si->setStateValidityChecker(std::make_shared<JointValidity>(si, context));

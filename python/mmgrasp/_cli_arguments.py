@@ -7,6 +7,8 @@ from pathlib import Path
 
 from . import _core
 
+_LARGEST = 2**31 - 1
+
 
 class _Parser(argparse.ArgumentParser):
     """An argument parser whose options may not be abbreviated: a script keeps its meaning when options are added."""
@@ -138,21 +140,19 @@ def _add_cluster_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _count(text: str) -> int:
+def _count(text: str, least: int = 0) -> int:
     try:
         value = int(text)
     except ValueError:
         value = -1
-    if not 0 <= value <= 2**31 - 1:
-        raise argparse.ArgumentTypeError(f"{text!r} is no whole number >= 0")
+    if not least <= value <= _LARGEST:
+        rule = f"at most {_LARGEST}" if value > _LARGEST else f"at least {least}"
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a whole number, {rule}")
     return value
 
 
 def _at_least_one(text: str) -> int:
-    value = _count(text)
-    if value == 0:
-        raise argparse.ArgumentTypeError("0 is none: must be at least 1")
-    return value
+    return _count(text, least=1)
 
 
 def _package(text: str) -> tuple[str, str]:

@@ -18,6 +18,17 @@ def shipped(path: str | os.PathLike[str]) -> Path:
     return ASSETS / text.removeprefix("asset:") if text.startswith("asset:") else Path(text)
 
 
+def check_folder(path: Path) -> None:
+    """Raises IoError unless the folder is there or can be made: for calls that work long before they write."""
+    there = path
+    while not there.exists() and there != there.parent:
+        there = there.parent
+    if not there.is_dir():
+        raise IoError(f"{path}: cannot be written: {there} is no folder")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise IoError(f"{path}: cannot be written: no permission to write into {there}")
+
+
 def write_file(path: Path, content: str | bytes) -> None:
     """Writes all or nothing: a reader never sees half a file."""
     data = content.encode() if isinstance(content, str) else content

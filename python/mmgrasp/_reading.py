@@ -37,6 +37,14 @@ def check_name(field: str, value: Any, known: Collection[str]) -> None:
     raise InvalidInput(f"{field} = {value!r}: must be one of {', '.join(known)}{meant}")
 
 
+def bad_yaml(path: str | Path, error: yaml.YAMLError) -> InvalidInput:
+    """What the parser said, in one line with the file's."""
+    mark = getattr(error, "problem_mark", None)
+    where = f"{path}:{mark.line + 1}" if mark else str(path)
+    problem = getattr(error, "problem", None) or str(error).splitlines()[0]
+    return InvalidInput(f"{where}: is no valid YAML: {problem}")
+
+
 class Document:
     """A parsed file: raw values, and the line of each key where the format has lines."""
 
@@ -241,10 +249,7 @@ def read_yaml(path: Path) -> Document:
         node = loader.get_single_node()
         raw = {} if node is None else _plain(loader, node, (), lines, str(path))
     except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        where = f"{path}:{mark.line + 1}" if mark else str(path)
-        problem = getattr(error, "problem", None) or str(error).splitlines()[0]
-        raise InvalidInput(f"{where}: is no valid YAML: {problem}") from None
+        raise bad_yaml(path, error) from None
     except ValueError as error:
         if isinstance(error, InvalidInput):
             raise

@@ -18,7 +18,7 @@ from ._cli_arguments import build_parser
 from ._cli_tables import bench_table, drive_by_summary, print_verdict, summary
 from ._console import Reporter
 from ._core import Error, InvalidInput, Outcome
-from ._files import write_file
+from ._files import check_folder, write_file
 from ._reading import read_json
 from .check import check_robot, describe
 from .drive_by import plan_drive_by_picks
@@ -31,6 +31,7 @@ DONE, FAULTY, BAD_INPUT, NO_PLAN, INTERRUPTED = 0, 1, 2, 3, 130
 
 
 def run_plan(arguments: argparse.Namespace, console: Console) -> int:
+    check_folder(arguments.out)
     with Reporter(console) as report:
         scenario = load_scenario(
             arguments.scenario, robot=arguments.robot, seed=arguments.seed, threads=arguments.threads, progress=report
@@ -140,8 +141,8 @@ def run_bench(arguments: argparse.Namespace, console: Console) -> int:
     with Reporter(console) as report:
         results = run_motion_bench(
             arguments.data,
-            arguments.robot,
-            arguments.set or MBM_SETS,
+            list(dict.fromkeys(arguments.robot)),
+            list(dict.fromkeys(arguments.set or MBM_SETS)),
             arguments.limit,
             range(1, 1 + arguments.seeds),
             progress=report,
@@ -166,6 +167,8 @@ def run_reproduce(arguments: argparse.Namespace, console: Console) -> int:
             print(f"{entry.name:<24}{entry.title}")
         return DONE
     names = [e for name in arguments.name for e in (again.ENTRIES if name == "all" else [again.entry(name).name])]
+    if arguments.out:
+        check_folder(arguments.out)
     results = []
     with Reporter(console) as report, _sweep(arguments) as sweep:
         for name in dict.fromkeys(names):

@@ -27,6 +27,7 @@ from ._core import (
     World,
     pose,
 )
+from ._reading import bad_yaml
 
 MBM_SETS = ("bookshelf_small", "bookshelf_tall", "bookshelf_thin", "box", "cage", "table_pick", "table_under_pick")
 """The sets of problems that MotionBenchMaker makes for an arm."""
@@ -136,7 +137,7 @@ class _File:
         except (OSError, UnicodeDecodeError) as error:
             raise IoError(f"{path}: {error}") from error
         except yaml.YAMLError as error:
-            raise InvalidInput(f"{path}: {error}") from error
+            raise bad_yaml(path, error) from None
 
     def of(self, value: Any, *keys: str) -> Any:
         for key in keys:

@@ -130,6 +130,11 @@ def test_check_of_a_robot_with_missing_mesh(tmp_path, capfd):
         (["check", "none.urdf", "--package", "p"], 2, "NAME=DIR"),
         (["verify", "none.json"], 2, "none.json"),
         (["view", "none.json"], 2, "none.json"),
+        (["plan", "none.yaml", "-o", "x", "--seed", "4294967296"], 2, "at most 2147483647"),
+        (["bench", "mbm", "--seeds", "-3"], 2, "at least 1"),
+        (["bench", "mbm", "--robot", "panda", "ur6"], 2, "robot = 'ur6': must be one of panda, ur5; did you mean ur5?"),
+        (["reproduce", "p2-figure-4"], 2, "did you mean p2-figure-4.6?"),
+        (["reproduce", "all", "none"], 2, "name = 'none'"),
     ],
 )
 def test_exit_codes(arguments, code, piece, tmp_path):
@@ -155,6 +160,17 @@ def test_output_folder_that_cannot_be(small_plan, tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(mg.IoError, match="file"):
         small_plan.save(tmp_path / "file" / "plan.json")
+
+
+def test_output_folders_that_cannot_be_are_told_before_anything_runs(small_path, tmp_path, capfd):
+    (tmp_path / "file").write_text("")
+    for command in (["plan", str(small_path)], ["reproduce", "p2-figure-4.5"]):
+        for out in (tmp_path / "file", tmp_path / "file" / "below"):
+            assert main([*command, "--out", str(out)]) == 2
+            told = capfd.readouterr()
+            assert f"{out}: cannot be written: {tmp_path / 'file'} is no folder" in told.err
+            assert "s]" not in told.err, "a stage had begun"
+            assert not told.out
 
 
 def test_view_draws_a_picture(out, tmp_path):

@@ -201,6 +201,11 @@ def test_an_absent_scheduler_is_named(tmp_path):
         pass
 
 
+def test_what_is_no_address_is_refused():
+    with pytest.raises(mg.InvalidInput, match="scheduler = 'nonsense'"), cluster.connect(scheduler="nonsense"):
+        pass
+
+
 def test_store_keeps_results(tmp_path):
     store = ShardStore(tmp_path)
     store.put("ab12", {"x": 1.5})

@@ -15,7 +15,7 @@ import pytest
 
 import mmgrasp as mg
 from mmgrasp.cli import main
-from mmgrasp.reproduce import ENTRIES, reproduce
+from mmgrasp.reproduce import ENTRIES, entry, reproduce
 from mmgrasp.reproduce.page import markdown, store
 from mmgrasp.reproduce.rows import PAPER_ROWS
 from mmgrasp.reproduce.setup import Row, database, robot_setup
@@ -160,6 +160,12 @@ def test_the_command_lists_and_refuses(capfd):
     assert listed == list(ENTRIES)
     assert main(["reproduce", "p1-table-3.33"]) == 2
     assert "p1-table-3.3" in capfd.readouterr().err
+
+
+def test_names_may_be_written_in_capitals():
+    assert entry("P2-TABLE-4.2") is entry("p2-table-4.2")
+    with pytest.raises(mg.InvalidInput, match=r"name = 'P2-TABLE-9.9': .*did you mean p2-table"):
+        entry("P2-TABLE-9.9")
 
 
 def test_a_figure_is_found_by_its_table(capfd):

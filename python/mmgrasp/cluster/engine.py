@@ -182,7 +182,7 @@ def connect(
             )
         try:
             client = stack.enter_context(Client(address, timeout=timeout))
-        except (OSError, TimeoutError) as error:
+        except (OSError, TimeoutError, ValueError) as error:  # ValueError: no address at all
             raise InvalidInput(f"scheduler = {scheduler!r}: cannot be reached: {error}") from None
         engine = Engine(client, store)
         client.subscribe_topic(TOPIC, engine.heard)

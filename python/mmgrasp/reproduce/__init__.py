@@ -63,10 +63,11 @@ ALSO = {
 
 def entry(name: str) -> Entry:
     """An entry by its name, or by that of a figure it draws."""
-    name = ALSO.get(name, name)
-    if name not in ENTRIES:
-        raise InvalidInput(f"name = {name!r}: no such table or figure{near_miss(name, [*ENTRIES, *ALSO])}")
-    return ENTRIES[name]
+    wanted = str(name).lower()
+    wanted = ALSO.get(wanted, wanted)
+    if wanted not in ENTRIES:
+        raise InvalidInput(f"name = {name!r}: no such table or figure{near_miss(wanted, [*ENTRIES, *ALSO])}")
+    return ENTRIES[wanted]
 
 
 def reproduce(

@@ -3,6 +3,7 @@
 
 #include "bindings.hpp"
 #include "mmgrasp/reach/capability_map.hpp"
+#include "plan_arguments.hpp"
 
 namespace mmgrasp::python {
 namespace {
@@ -33,17 +34,6 @@ const std::vector<OptionField<CapabilityOptions>>& capability_fields() {
       option<O>("seed", &O::seed, "same seed, same map"),
       option<O>("threads", &O::threads, "0: all; does not change the answer")};
   return fields;
-}
-
-/// (m, 4, 4), or one (4, 4).
-Poses poses_argument(const ArrayLike& value, const std::string& name) {
-  const auto array = py::array::ensure(value);
-  if (!array) PyErr_Clear();
-  if (!array || array.ndim() != 3) return {pose_argument(value, name)};
-  Poses poses;
-  for (py::ssize_t i = 0; i < array.shape(0); ++i)
-    poses.push_back(pose_argument(ArrayLike(py::object(array[py::int_(i)])), name));
-  return poses;
 }
 
 /// A read-only view that keeps the map alive.

@@ -43,7 +43,7 @@ MotionResult plan(const Given<Robot>& given_robot, const Given<JointGroup>& give
   check_same_robot(taken(given_robot, "robot"), group);
   MotionOptions read = read_options(motion_fields(), options, "plan_motion");
   if (tool_cone) read.tool_cone = taken(*tool_cone, "tool_cone");
-  if (!on_solution.is_none()) {
+  if (!function_argument(on_solution, "on_solution").is_none()) {
     read.improved = [&](const JointPath& path, double cost) {
       const py::gil_scoped_acquire gil;
       on_solution(rows_to_array(path.waypoints), cost);
@@ -55,6 +55,8 @@ MotionResult plan(const Given<Robot>& given_robot, const Given<JointGroup>& give
   if (!tool_poses.is_none())
     goals.tool_poses = poses_argument(py::reinterpret_borrow<ArrayLike>(tool_poses), "tool_poses");
   goals.regions = taken(regions, "regions", "ToolRegion");
+  if (goal.is_none() && tool_poses.is_none() && goals.regions.empty())
+    throw InvalidInput("goal = None: must be given, or else tool_poses or regions");
   CollisionChecker checker(with_sampled_pairs(group), taken(world, "world"));
   return LongCall(progress).run(
       [&](const Monitor& monitor) { return plan_motion_to(checker, from, goals, read, monitor); });
@@ -131,6 +133,7 @@ void bind_motion(py::module_& m) {
           out += ", " + std::to_string(r.path->waypoints.size()) + " waypoints, cost " +
                  std::string(py::repr(py::float_(r.cost)));
         }
+        if (!r.path && r.rejections.total() > 0) out += ", turned down: " + r.rejections.summary();
         for (const Contact& c : r.contacts) out += ", '" + c.a + "' touches '" + c.b + "'";
         if (!r.beyond_limits.empty()) out += ", " + r.beyond_limits;
         return out + ")";

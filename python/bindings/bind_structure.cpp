@@ -2,6 +2,7 @@
 #include <variant>
 
 #include "bindings.hpp"
+#include "given.hpp"
 #include "mmgrasp/structure/pipe.hpp"
 #include "mmgrasp/structure/pipe_grasps.hpp"
 
@@ -116,7 +117,9 @@ void bind_structure(py::module_& m) {
           py::arg("gripper") = py::none(), "The grasp with these four variables (P2 3.2.3.1).")
       .def(
           "sample_grasps",
-          [](const Pipe& p, int count, const std::optional<Gripper>& gripper, const py::kwargs& options) {
+          [](const Pipe& p, const Given<int>& given_count, const std::optional<Gripper>& gripper,
+             const py::kwargs& options) {
+            const int count = taken(given_count, "count");
             const PipeGraspOptions read = grasp_options(gripper, options, "sample_grasps");
             py::gil_scoped_release release;
             return sample_pipe_grasps(p, count, read);

@@ -21,8 +21,9 @@ const std::vector<OptionField<StraightLineOptions>>& line_fields() {
   return fields;
 }
 
-std::string why(const std::optional<Contact>& contact, const std::string& beyond_limits) {
-  return (contact ? ", '" + contact->a + "' touches '" + contact->b + "'" : "") +
+std::string why(Rejection cause, const std::optional<Contact>& contact, const std::string& beyond_limits) {
+  return (cause == Rejection::none ? "" : std::string(", cause ") + to_string(cause)) +
+         (contact ? ", '" + contact->a + "' touches '" + contact->b + "'" : "") +
          (beyond_limits.empty() ? "" : ", " + beyond_limits);
 }
 
@@ -45,7 +46,7 @@ void bind_line(py::module_& m) {
            })
       .def("__repr__", [](const StraightLineResult& r) {
         return std::string("StraightLineResult(") + to_string(r.outcome) + ", fraction " +
-               std::string(py::repr(py::float_(r.fraction))) + why(r.contact, r.beyond_limits) + ")";
+               std::string(py::repr(py::float_(r.fraction))) + why(r.cause, r.contact, r.beyond_limits) + ")";
       });
   m.def(
       "plan_straight_line",
@@ -102,7 +103,7 @@ void bind_cartesian(py::module_& m) {
       .def("__repr__", [](const CartesianResult& r) {
         return std::string("CartesianResult(") + to_string(r.outcome) + ", fraction " +
                std::string(py::repr(py::float_(r.fraction))) + ", " + std::to_string(r.tried) + " of " +
-               std::to_string(r.branches) + " branches tried" + why(r.contact, r.beyond_limits) +
+               std::to_string(r.branches) + " branches tried" + why(r.cause, r.contact, r.beyond_limits) +
                (r.branches == 0 ? ", turned down: " + r.rejections.summary() : "") + ")";
       });
   m.def(

@@ -47,6 +47,12 @@ inline double taken(const Given<double>& value, const char* name) {
   return out;
 }
 
+inline int taken(const Given<int>& value, const char* name) {
+  int out = 0;
+  convert(value, name, out);
+  return out;
+}
+
 inline std::string taken(const Given<std::string>& value, const char* name) {
   std::string out;
   convert(value, name, out);

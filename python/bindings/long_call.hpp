@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "mmgrasp/core/monitor.hpp"
+#include "options.hpp"
 
 namespace mmgrasp::python {
 
@@ -22,7 +23,7 @@ namespace py = pybind11;
 /// KeyboardInterrupt.
 class LongCall {
  public:
-  explicit LongCall(py::object progress) : progress_(std::move(progress)) {
+  explicit LongCall(py::object progress) : progress_(function_argument(std::move(progress), "progress")) {
     monitor_.progress = [this](const std::string& stage, double fraction) {
       std::lock_guard lock(mutex_);
       latest_ = {stage, fraction};

@@ -3,6 +3,11 @@
 #include <cmath>
 
 namespace mmgrasp::python {
+namespace {
+
+constexpr std::size_t kLongest = 200;  // Characters of a value in a message.
+
+}  // namespace
 
 std::string nearest_name(const std::string& wrong, const std::vector<std::string>& known) {
   const py::list matches = py::module_::import("difflib").attr("get_close_matches")(wrong, known, 1, 0.5);
@@ -13,7 +18,15 @@ std::string nearest_name(const std::string& wrong, const std::vector<std::string
 }
 
 void refuse_value(const std::string& name, const py::handle& value, const char* rule) {
-  throw InvalidInput(name + " = " + std::string(py::repr(value)) + ": must be " + rule);
+  const py::object given = py::repr(value);
+  const bool whole = py::len(given) <= kLongest;
+  const auto shown = py::cast<std::string>(whole ? given : py::object(given[py::slice(0, kLongest, 1)]));
+  throw InvalidInput(name + " = " + shown + (whole ? "" : "...") + ": must be " + rule);
+}
+
+py::object function_argument(py::object value, const char* name) {
+  if (!value.is_none() && PyCallable_Check(value.ptr()) == 0) refuse_value(name, value, "a function, or None");
+  return value;
 }
 
 void convert(const py::handle& value, const std::string& name, double& out) {

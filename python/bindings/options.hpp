@@ -24,6 +24,8 @@ struct OptionField {
 
 std::string nearest_name(const std::string& wrong, const std::vector<std::string>& known);
 [[noreturn]] void refuse_value(const std::string& name, const py::handle& value, const char* rule);
+/// A function that is called on the way, or None.
+py::object function_argument(py::object value, const char* name);
 void convert(const py::handle& value, const std::string& name, double& out);
 void convert(const py::handle& value, const std::string& name, int& out);
 void convert(const py::handle& value, const std::string& name, std::int64_t& out);

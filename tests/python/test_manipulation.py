@@ -213,6 +213,8 @@ def test_what_is_no_problem_and_no_roadmap_is_refused_by_name():
     for call in (lambda: mg.Roadmap.build(group=3), lambda: mg.Roadmap.load("some.roadmap", group=3)):
         with pytest.raises(mg.InvalidInput, match="group = 3: must be a JointGroup"):
             call()
+    with pytest.raises(mg.InvalidInput, match="improved = 3: must be a function, or None"):
+        mg.plan_manipulation(problem(), improved=3)
     with pytest.raises(mg.InvalidInput, match="roadmap = 'x': must be a Roadmap"):
         mg.plan_manipulation(problem(), roadmap="x")
 

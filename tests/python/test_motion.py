@@ -182,6 +182,10 @@ def test_a_start_beyond_limits_is_told_by_joint_value_and_limits(robot, arm, wor
         ({"tool_cone": "up"}, ["tool_cone = 'up'", "a ToolCone"]),
         ({"regions": 7}, ["regions = 7", "ToolRegion"]),
         ({"tool_poses": [np.eye(4), 2 * np.eye(4)]}, ["tool_poses[1]"]),
+        ({"progress": "yes"}, ["progress = 'yes'", "a function, or None"]),
+        ({"on_solution": 3}, ["on_solution = 3", "a function, or None"]),
+        ({"goal": None}, ["goal = None", "tool_poses or regions"]),
+        ({"world": "x" * 100_000}, ["world = 'xxx", "xxx...: must be a World"]),
     ],
 )
 def test_bad_arguments_are_refused_by_name(robot, arm, world, changes, words):

@@ -43,11 +43,16 @@ bool Roadmap::Data::draw(detail::Until& until) {
                       "roadmap");
 }
 
-void Roadmap::Data::index() {
-  cloud = std::make_unique<detail::ColumnCloud>(detail::ColumnCloud{vertices});
-  tree = std::make_unique<detail::ColumnTree>(static_cast<int>(vertices.rows()), *cloud,
-                                              nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
-  tree->buildIndex();
+bool Roadmap::Data::index(detail::Until& until) {
+  cloud = std::make_unique<detail::ColumnCloud>(detail::ColumnCloud{vertices, &until});
+  try {
+    tree = std::make_unique<detail::ColumnTree>(static_cast<int>(vertices.rows()), *cloud,
+                                                nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
+  } catch (const detail::ColumnCloud::Stopped&) {
+    return false;
+  }
+  cloud->until = nullptr;
+  return true;
 }
 
 double Roadmap::Data::radius() const {
@@ -83,21 +88,25 @@ bool Roadmap::Data::join(detail::Until& until, int threads) {
     near(vertices.col(static_cast<Eigen::Index>(v)).data(), wanted, joined[v]);
   };
   if (!parallel_for(count, threads, join_one, until.monitor(), "roadmap")) return false;
+  // Who was found from the far end only is added to the near end's list, which then holds every edge once.
+  for (std::size_t v = 0; v < count; ++v) {
+    if (until.breathe()) return false;
+    for (const int u : joined[v])
+      if (static_cast<std::size_t>(u) < v) joined[static_cast<std::size_t>(u)].push_back(static_cast<int>(v));
+  }
   ends.clear();
   for (std::size_t v = 0; v < count; ++v) {
-    for (const int u : joined[v]) {
-      const auto a = static_cast<int>(std::min<std::size_t>(v, static_cast<std::size_t>(u)));
-      const auto b = static_cast<int>(std::max<std::size_t>(v, static_cast<std::size_t>(u)));
-      if (a != b) ends.emplace_back(a, b);
-    }
+    if (until.breathe()) return false;
+    std::vector<int>& others = joined[v];
+    std::sort(others.begin(), others.end());
+    others.erase(std::unique(others.begin(), others.end()), others.end());
+    for (const int u : others)
+      if (static_cast<std::size_t>(u) > v) ends.emplace_back(static_cast<int>(v), u);
   }
-  std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-  make_arcs();
-  return true;
+  return make_arcs(until);
 }
 
-void Roadmap::Data::make_arcs() {
+bool Roadmap::Data::make_arcs(detail::Until& until) {
   const auto count = static_cast<std::size_t>(vertices.cols());
   first.assign(count + 1, 0);
   for (const auto& [a, b] : ends) {
@@ -108,11 +117,13 @@ void Roadmap::Data::make_arcs() {
   arcs.resize(2 * ends.size());
   std::vector<int> next(first.begin(), first.end() - 1);
   for (std::size_t e = 0; e < ends.size(); ++e) {
+    if (e % 256 == 0 && until.breathe()) return false;
     const auto [a, b] = ends[e];
     const double length = (vertices.col(a) - vertices.col(b)).norm();
     arcs[static_cast<std::size_t>(next[static_cast<std::size_t>(a)]++)] = {b, static_cast<int>(e), length};
     arcs[static_cast<std::size_t>(next[static_cast<std::size_t>(b)]++)] = {a, static_cast<int>(e), length};
   }
+  return true;
 }
 
 Roadmap::Roadmap(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
@@ -122,13 +133,11 @@ Roadmap detail::build_roadmap(const JointGroup& group, const RoadmapOptions& opt
   options.check();
   Until until(monitor, over);
   auto data = std::make_shared<Roadmap::Data>(group, options);
-  if (data->draw(until)) {
-    data->index();
-    if (data->join(until, 0)) return Roadmap(data);
-  }
+  if (data->draw(until) && data->index(until) && data->join(until, 0)) return Roadmap(data);
   data = std::make_shared<Roadmap::Data>(group, options);
   data->vertices.resize(group.size(), 0);
-  data->make_arcs();
+  Until never;
+  data->make_arcs(never);
   return Roadmap(data);
 }
 
@@ -138,10 +147,9 @@ Roadmap detail::roadmap_over(const JointGroup& group, int neighbours, Eigen::Mat
   options.neighbours = neighbours;
   auto data = std::make_shared<Roadmap::Data>(group, options);
   data->vertices = std::move(vertices);
-  data->index();
-  const std::function<bool()> never = [] { return false; };
-  Until until({}, never);
-  data->join(until, 1);
+  Until never;
+  data->index(never);
+  data->join(never, 1);
   return Roadmap(data);
 }
 

@@ -15,11 +15,37 @@ namespace mmgrasp {
 
 namespace detail {
 
-/// Columns of a matrix as nanoflann wants them.
+/// A monitor that is stopped as soon as `over` says so, which is asked now and then.
+class Until {
+ public:
+  Until() : over_(kNever) {}  ///< Never stopped.
+  Until(const Monitor& monitor, const std::function<bool()>& over) : over_(over) { own_.progress = monitor.progress; }
+  const Monitor& monitor() const { return own_; }
+  /// To be called with every step, by any thread. Whether it is stopped.
+  bool breathe() {
+    if (steps_++ % kSteps == 0 && over_()) own_.stop.stop();
+    return own_.stopped();
+  }
+
+ private:
+  static constexpr std::size_t kSteps = 64;
+  inline static const std::function<bool()> kNever = [] { return false; };
+  const std::function<bool()>& over_;
+  Monitor own_;
+  std::atomic<std::size_t> steps_{0};
+};
+
+/// Columns of a matrix as nanoflann wants them. Coordinates are read one by one only while the search tree is made,
+/// which has no other place where it could be stopped.
 struct ColumnCloud {
+  struct Stopped {};
   const Eigen::MatrixXd& columns;
+  Until* until = nullptr;  ///< While the tree is made: throws Stopped.
+  mutable std::size_t reads = 0;
+
   std::size_t kdtree_get_point_count() const { return static_cast<std::size_t>(columns.cols()); }
   double kdtree_get_pt(std::size_t i, std::size_t k) const {
+    if (until && ++reads % 1024 == 0 && until->breathe()) throw Stopped{};
     return columns(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i));
   }
   template <class Box>
@@ -28,25 +54,18 @@ struct ColumnCloud {
   }
 };
 
-using ColumnTree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, ColumnCloud>, ColumnCloud, -1, int>;
-
-/// A monitor that is stopped as soon as `over` says so, which is asked now and then.
-class Until {
- public:
-  Until(const Monitor& monitor, const std::function<bool()>& over) : over_(over) { own_.progress = monitor.progress; }
-  const Monitor& monitor() const { return own_; }
-  /// To be called with every step, by any thread.
-  void breathe() {
-    if (steps_++ % kSteps == 0 && over_()) own_.stop.stop();
+/// Squared distances straight from the columns.
+struct ColumnMetric : nanoflann::L2_Simple_Adaptor<double, ColumnCloud> {
+  using L2_Simple_Adaptor::L2_Simple_Adaptor;
+  double evalMetric(const double* a, std::size_t i, std::size_t size) const {
+    const double* b = data_source.columns.data() + i * size;
+    double sum = 0;
+    for (std::size_t k = 0; k < size; ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
+    return sum;
   }
-
- private:
-  static constexpr std::size_t kSteps = 64;
-  const std::function<bool()>& over_;
-  Monitor own_;
-  std::atomic<std::size_t> steps_{0};
 };
+
+using ColumnTree = nanoflann::KDTreeSingleIndexAdaptor<ColumnMetric, ColumnCloud, -1, int>;
 
 /// Roadmap::build that is empty when `over` ended it. `over` is asked by several threads.
 MMGRASP_EXPORT Roadmap build_roadmap(const JointGroup& group, const RoadmapOptions& options, const Monitor& monitor,
@@ -66,15 +85,15 @@ struct Roadmap::Data {
 
   /// Draws the vertices; false when stopped.
   bool draw(detail::Until& until);
-  /// Makes the search tree over the vertices.
-  void index();
+  /// Makes the search tree over the vertices; false when stopped.
+  bool index(detail::Until& until);
   double radius() const;
   /// The nearest so many vertices, or with 0 those nearer than radius(); ascending.
   void near(const double* q, int neighbours, std::vector<int>& out) const;
   /// Joins near vertices; false when stopped.
   bool join(detail::Until& until, int threads);
-  /// Makes the arcs of `ends`.
-  void make_arcs();
+  /// Makes the arcs of `ends`; false when stopped.
+  bool make_arcs(detail::Until& until);
 
   JointGroup group;
   RoadmapOptions options;

@@ -115,8 +115,9 @@ Roadmap Roadmap::load(const std::string& path, const JointGroup& group) {
     if (pair[0] < 0 || pair[0] >= pair[1] || pair[1] >= header.vertices) throw IoError(path + ": is damaged: bad edge");
     data->ends.emplace_back(pair[0], pair[1]);
   }
-  if (data->vertices.cols() > 0) data->index();
-  data->make_arcs();
+  detail::Until never;
+  if (data->vertices.cols() > 0) data->index(never);
+  data->make_arcs(never);
   return Roadmap(data);
 }
 

@@ -1,0 +1,124 @@
+#include "bindings.hpp"
+#include "mmgrasp/plan/manipulation.hpp"
+#include "plan_arguments.hpp"
+
+namespace mmgrasp::python {
+namespace {
+
+using namespace py::literals;
+
+py::dict stats_dict(const ManipulationStats& s) {
+  return py::dict("ik_seconds"_a = s.ik_seconds, "roadmap_seconds"_a = s.roadmap_seconds,
+                  "search_seconds"_a = s.search_seconds, "graph_searches"_a = s.graph_searches,
+                  "ways_opened"_a = s.ways_opened, "grasps_searched"_a = s.grasps_searched,
+                  "roadmap_cost"_a = s.roadmap_cost, "edges_checked_robot"_a = s.edges_checked_robot,
+                  "edges_checked_held"_a = s.edges_checked_held, "samples"_a = s.samples, "vertices"_a = s.vertices);
+}
+
+py::dict report_dict(const GraspReport& r) {
+  return py::dict("start"_a = to_dict(r.start), "goal"_a = to_dict(r.goal), "start_solutions"_a = r.start_solutions,
+                  "goal_solutions"_a = r.goal_solutions, "searched"_a = r.searched);
+}
+
+py::dict improvement_dict(const Improvement& i) {
+  return py::dict("seconds"_a = i.seconds, "cost"_a = i.cost, "grasp"_a = i.grasp,
+                  "path"_a = rows_to_array(i.path.waypoints).attr("tolist")());
+}
+
+py::dict result_dict(const ManipulationResult& r) {
+  py::list improvements, grasps, contacts;
+  for (const Improvement& i : r.improvements) improvements.append(improvement_dict(i));
+  for (const GraspReport& g : r.grasps) grasps.append(report_dict(g));
+  for (const Contact& c : r.contacts) contacts.append(py::cast(c).attr("to_dict")());
+  return py::dict("outcome"_a = to_string(r.outcome), "grasp_index"_a = r.grasp_index, "path"_a = path_list(r.path),
+                  "cost"_a = r.cost, "lower_bound"_a = r.lower_bound, "improvements"_a = improvements,
+                  "grasps"_a = grasps, "rejections"_a = to_dict(r.rejections), "contacts"_a = contacts,
+                  "stats"_a = stats_dict(r.stats));
+}
+
+std::string result_text(const ManipulationResult& r) {
+  std::string out = std::string("ManipulationResult(") + to_string(r.outcome);
+  if (r.path) {
+    out += ", grasp " + std::to_string(r.grasp_index) + " of " + std::to_string(r.grasps.size()) + ", " +
+           std::to_string(r.path->waypoints.size()) + " waypoints, cost " + std::string(py::repr(py::float_(r.cost)));
+  } else {
+    out += ", turned down: " + r.rejections.summary();
+  }
+  for (const Contact& c : r.contacts) out += ", '" + c.a + "' touches '" + c.b + "'";
+  return out + ")";
+}
+
+void bind_tree(py::module_& m) {
+  py::class_<SearchTree>(m, "SearchTree",
+                         "One tree of RRT*-MG as it stood at the end: of one grasp, from its starts or its goals.")
+      .def_readonly("grasp", &SearchTree::grasp)
+      .def_readonly("from_goal", &SearchTree::from_goal)
+      .def_property_readonly(
+          "vertices", [](const SearchTree& t) { return Eigen::MatrixXd(t.vertices.transpose()); }, "(n, joints)")
+      .def_readonly("parents", &SearchTree::parents,
+                    "Of each vertex: another one, or -1 for the grasp's arm configurations.")
+      .def_readonly("costs", &SearchTree::costs, "Length of the way from the root, (n,).")
+      .def("to_dict",
+           [](const SearchTree& t) {
+             return py::dict("grasp"_a = t.grasp, "from_goal"_a = t.from_goal,
+                             "vertices"_a = py::cast(Eigen::MatrixXd(t.vertices.transpose())).attr("tolist")(),
+                             "parents"_a = t.parents, "costs"_a = py::cast(t.costs).attr("tolist")());
+           })
+      .def("__repr__", [](const SearchTree& t) {
+        return "SearchTree(grasp " + std::to_string(t.grasp) + ", from its " + (t.from_goal ? "goals, " : "starts, ") +
+               std::to_string(t.parents.size()) + " vertices)";
+      });
+}
+
+void bind_parts(py::module_& m) {
+  py::class_<Improvement>(m, "Improvement", "A better solution on the way.")
+      .def_readonly("seconds", &Improvement::seconds, "Since the call began, the first roadmap's building left out.")
+      .def_readonly("cost", &Improvement::cost)
+      .def_readonly("grasp", &Improvement::grasp)
+      .def_property_readonly(
+          "path", [](const Improvement& i) { return rows_to_array(i.path.waypoints); }, "Waypoints (k, n).")
+      .def("to_dict", &improvement_dict)
+      .def("__repr__", [](const Improvement& i) {
+        return "Improvement(cost " + std::string(py::repr(py::float_(i.cost))) + ", grasp " + std::to_string(i.grasp) +
+               ", after " + std::string(py::repr(py::float_(i.seconds))) + " s)";
+      });
+  py::class_<GraspReport>(m, "GraspReport", "What became of one grasp.")
+      .def_readonly("start", &GraspReport::start, "Arm configurations turned down at the start, by cause.")
+      .def_readonly("goal", &GraspReport::goal, "Likewise at the goal; not looked at when none is left at the start.")
+      .def_readonly("start_solutions", &GraspReport::start_solutions)
+      .def_readonly("goal_solutions", &GraspReport::goal_solutions)
+      .def_readonly("searched", &GraspReport::searched, "Its paths were looked for over a roadmap.")
+      .def("to_dict", &report_dict)
+      .def("__repr__", [](const GraspReport& r) {
+        return "GraspReport(start: " + std::to_string(r.start_solutions) + " left, turned down " + r.start.summary() +
+               "; goal: " + std::to_string(r.goal_solutions) + " left, turned down " + r.goal.summary() + ")";
+      });
+}
+
+}  // namespace
+
+void bind_carry_result(py::module_& m) {
+  bind_tree(m);
+  bind_parts(m);
+  py::class_<ManipulationResult>(m, "ManipulationResult", "What plan_manipulation found.")
+      .def_readonly("outcome", &ManipulationResult::outcome)
+      .def_readonly("grasp_index", &ManipulationResult::grasp_index, "Of the problem's grasps; -1 unless solved.")
+      .def_property_readonly(
+          "path", [](const ManipulationResult& r) { return path_array(r.path); },
+          "Waypoints (k, n), joined by straight lines; None unless solved.")
+      .def_readonly("cost", &ManipulationResult::cost, "Length of the path in joint space plus the grasp's cost.")
+      .def_readonly("lower_bound", &ManipulationResult::lower_bound,
+                    "No path costs less: with prm_star_mg none over this roadmap and these arm configurations.")
+      .def_readonly("improvements", &ManipulationResult::improvements)
+      .def_readonly("grasps", &ManipulationResult::grasps, "A GraspReport for each grasp.")
+      .def_readonly("rejections", &ManipulationResult::rejections, "Sum over all grasps and both ends.")
+      .def_readonly("contacts", &ManipulationResult::contacts,
+                    "With invalid_start or invalid_goal: what touches there with the first grasp in collision.")
+      .def_readonly("trees", &ManipulationResult::trees,
+                    "With keep_trees: a SearchTree for each grasp still in the race and each end.")
+      .def_property_readonly("stats", [](const ManipulationResult& r) { return stats_dict(r.stats); })
+      .def("to_dict", &result_dict)
+      .def("__repr__", &result_text);
+}
+
+}  // namespace mmgrasp::python

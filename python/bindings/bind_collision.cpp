@@ -128,8 +128,8 @@ void bind_checker(py::module_& m) {
           "Infinite when there is no pair.")
       .def(
           "distances",
-          [](CollisionChecker& c, const ArrayLike& q, double within) {
-            return c.distances(configuration(c, q, "q"), within);
+          [](CollisionChecker& c, const ArrayLike& q, const Given<double>& within) {
+            return c.distances(configuration(c, q, "q"), taken(within, "within"));
           },
           py::arg("q"), py::arg("within"),
           "Every pair of bodies nearer than `within` [m], nearest first, each with its gradient.")
@@ -164,7 +164,8 @@ void bind_checker(py::module_& m) {
       .def("clone", &CollisionChecker::clone, "The same checker with scratch of its own, for another thread.")
       .def(
           "edge_is_free",
-          [](CollisionChecker& c, const ArrayLike& q0, const ArrayLike& q1, double step) {
+          [](CollisionChecker& c, const ArrayLike& q0, const ArrayLike& q1, const Given<double>& given_step) {
+            const double step = taken(given_step, "step");
             if (!(step > 0)) throw InvalidInput("step = " + std::to_string(step) + ": must be > 0");
             return c.edge_is_free(configuration(c, q0, "q0"), configuration(c, q1, "q1"), step);
           },

@@ -25,11 +25,11 @@ const std::vector<OptionField<PipeGraspOptions>>& pipe_grasp_fields() {
 }
 
 /// Axes from the gripper; its opening and margin where no keyword gives them.
-PipeGraspOptions grasp_options(const std::optional<Gripper>& gripper, const py::kwargs& keywords,
+PipeGraspOptions grasp_options(const std::optional<Given<Gripper>>& gripper, const py::kwargs& keywords,
                                const char* function) {
   PipeGraspOptions read = read_options(pipe_grasp_fields(), keywords, function);
   if (!gripper) return read;
-  const PipeGraspOptions own = pipe_grasp_options(*gripper);
+  const PipeGraspOptions own = pipe_grasp_options(taken(*gripper, "gripper"));
   read.approach = own.approach;
   read.closing = own.closing;
   if (!keywords.contains("max_opening")) read.max_opening = own.max_opening;
@@ -37,11 +37,22 @@ PipeGraspOptions grasp_options(const std::optional<Gripper>& gripper, const py::
   return read;
 }
 
-Pipe make_pipe(const ArrayLike& nodes, std::vector<std::array<int, 2>> sections,
-               const std::variant<double, std::vector<double>>& diameters) {
+using Sections = std::vector<std::array<int, 2>>;
+using Diameters = std::variant<double, std::vector<double>>;
+
+Diameters diameters_argument(const Given<Diameters>& value) {
+  try {
+    return py::cast<Diameters>(value);
+  } catch (const py::cast_error&) {
+    refuse_value("diameters", value, "a number or a list of numbers");
+  }
+}
+
+Pipe make_pipe(const ArrayLike& nodes, const Given<Sections>& sections, const Given<Diameters>& given_diameters) {
+  const Diameters diameters = diameters_argument(given_diameters);
   Pipe pipe;
   for (const Eigen::VectorXd& node : rows_argument(nodes, "nodes", 3)) pipe.nodes.emplace_back(node);
-  pipe.sections = std::move(sections);
+  pipe.sections = taken(sections, "sections", "pairs of whole numbers");
   if (const auto* one = std::get_if<double>(&diameters)) {
     pipe.diameters.assign(pipe.sections.size(), *one);
   } else {
@@ -110,14 +121,14 @@ void bind_structure(py::module_& m) {
       .def(
           "grasp",
           [](const Pipe& p, int section, double length, double angle, bool flipped,
-             const std::optional<Gripper>& gripper, const py::kwargs& options) {
+             const std::optional<Given<Gripper>>& gripper, const py::kwargs& options) {
             return place_pipe_grasp(p, section, length, angle, flipped, grasp_options(gripper, options, "grasp"));
           },
           py::arg("section"), py::arg("length"), py::arg("angle"), py::arg("flipped") = false, py::kw_only(),
           py::arg("gripper") = py::none(), "The grasp with these four variables (P2 3.2.3.1).")
       .def(
           "sample_grasps",
-          [](const Pipe& p, const Given<int>& given_count, const std::optional<Gripper>& gripper,
+          [](const Pipe& p, const Given<int>& given_count, const std::optional<Given<Gripper>>& gripper,
              const py::kwargs& options) {
             const int count = taken(given_count, "count");
             const PipeGraspOptions read = grasp_options(gripper, options, "sample_grasps");

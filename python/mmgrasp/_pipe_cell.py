@@ -15,6 +15,7 @@ from ._core import (
     CollisionChecker,
     FingerJoint,
     Gripper,
+    InvalidInput,
     JointGroup,
     LinkShape,
     ManipulationProblem,
@@ -160,13 +161,17 @@ class PipeCell:
 
     def problem(self, grasps: list[PipeGrasp]) -> ManipulationProblem:
         """For plan_manipulation: only the fingers may touch the pipe."""
+        try:
+            candidates = [CandidateGrasp(g.T_object_tool, g.opening, g.cost) for g in grasps]
+        except (TypeError, AttributeError):
+            raise InvalidInput(f"grasps = {grasps!r}: must be a list of PipeGrasp") from None
         return ManipulationProblem(
             self.arm,
             self.world,
             self.pipe.shapes(),
             self.T_world_start,
             self.T_world_goal,
-            [CandidateGrasp(g.T_object_tool, g.opening, g.cost) for g in grasps],
+            candidates,
             gripper=self.gripper,
             touch_links=sorted(FINGERS),
             object_name="pipe",

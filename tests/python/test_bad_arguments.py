@@ -240,6 +240,7 @@ def test_numbers_that_are_none(number):
         lambda: mg.Grasp(np.eye(4), number),
         lambda: mg.CollisionChecker(ROBOT, world, ARM, padding=number),
         lambda: OBJECTS["CollisionChecker"]().edge_is_free(Q, Q, number),
+        lambda: OBJECTS["CollisionChecker"]().distances(Q, number),
         lambda: ROBOT.link_poses({"i": number}),
         lambda: ROBOT.values({"i": number}),
         lambda: ARM.within_limits(Q, number),

@@ -231,6 +231,12 @@ def test_cells_with_too_many_grasps_within_reach_are_turned_down():
     assert cell.drawn == 1 + sum(cell.rejected.values())
 
 
+def test_what_are_no_grasps_is_refused():
+    for grasps in (5, [5], [np.eye(4)]):
+        with pytest.raises(mg.InvalidInput, match=r"(?s)grasps = .*: must be a list of PipeGrasp"):
+            pipe_cell(1).problem(grasps)
+
+
 def test_unknown_cells_are_refused():
     with pytest.raises(mg.InvalidInput, match=r"number = 9: must be from 1 to 8"):
         pipe_cell(9)

@@ -161,6 +161,8 @@ def test_pipe_and_grasps_in_python():
         ([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [(0, 1)], 0.02, r"nodes\[2\]"),
         ([[0, 0, 0], [1, 0, np.nan]], [(0, 1)], 0.02, "nodes"),
         ([[0, 0], [1, 0]], [(0, 1)], 0.02, "nodes"),
+        ([[0, 0, 0], [1, 0, 0]], [0, 1], 0.02, r"sections = \[0, 1\]: must be a list of pairs of whole numbers"),
+        ([[0, 0, 0], [1, 0, 0]], [(0, 1)], "thick", "diameters = 'thick': must be a number or a list of numbers"),
     ],
 )
 def test_bad_pipes_are_refused(nodes, sections, diameters, message):
@@ -172,6 +174,11 @@ def test_bad_grasp_arguments_are_refused():
     pipe = mg.Pipe([[0, 0, 0], [0.3, 0, 0]], [(0, 1)], 0.02)
     with pytest.raises(mg.InvalidInput, match="count = -1"):
         pipe.sample_grasps(-1)
+    with pytest.raises(mg.InvalidInput, match=r"count = 2\.5: must be a whole number"):
+        pipe.sample_grasps(2.5)
+    for call in (pipe.sample_grasps, lambda *a, **k: pipe.grasp(0, 0.1, 0.0, **k)):
+        with pytest.raises(mg.InvalidInput, match="gripper = 'hand': must be a Gripper"):
+            call(1, gripper="hand")
     with pytest.raises(mg.InvalidInput, match=r"lenght_spacing.*length_spacing"):
         pipe.sample_grasps(1, lenght_spacing=0.02)
     with pytest.raises(mg.InvalidInput, match="section = 1"):

@@ -1,7 +1,7 @@
 // How long calls run on after their stop token was set: a Panda whose goal lies behind walls that it cannot pass, every
 // planner by name, stopped at times drawn from 20 ms on. Prints one JSON line per call, value: the slowest.
 //
-//     bench_stop [runs of each, default 20] [latest stop in seconds, default 1]
+//     bench_stop [runs of each, default 20] [latest stop in seconds, default 1] [name of the only one]
 
 #include <algorithm>
 #include <chrono>
@@ -123,14 +123,21 @@ Call timing(const JointGroup& arm) {
   };
 }
 
-void measure(const std::string& name, const Call& call, int runs, double latest) {
+struct Settings {
+  int runs = 20;
+  double latest = 1;  // [s]
+  std::string only;   // Empty: all.
+};
+
+void measure(const std::string& name, const Call& call, const Settings& given) {
+  if (!given.only.empty() && name != given.only) return;
   Rng rng(1);
   std::vector<double> late;
   int stopped = 0;
-  for (int run = 0; run < runs; ++run) {
+  for (int run = 0; run < given.runs; ++run) {
     Monitor monitor;
     double set = 0;
-    std::thread stopper([&, wait = rng.uniform(kEarliest, latest)] {
+    std::thread stopper([&, wait = rng.uniform(kEarliest, given.latest)] {
       std::this_thread::sleep_for(std::chrono::duration<double>(wait));
       set = bench::now();
       monitor.stop.stop();
@@ -142,24 +149,25 @@ void measure(const std::string& name, const Call& call, int runs, double latest)
   }
   std::sort(late.begin(), late.end());
   char more[160], settings[80];
-  std::snprintf(settings, sizeof settings, "stopped after %.2g to %.2g s", kEarliest, latest);
+  std::snprintf(settings, sizeof settings, "stopped after %.2g to %.2g s", kEarliest, given.latest);
   std::snprintf(more, sizeof more, "\"median\": %.3g, \"stopped\": %d, \"runs\": %d, \"goal\": %.0f",
-                late[late.size() / 2], stopped, runs, kGoal);
+                late[late.size() / 2], stopped, given.runs, kGoal);
   bench::print({"stop token", "Panda between walls", name, "ms", late.back(), more, settings});
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int runs = argc > 1 ? std::max(1, std::atoi(argv[1])) : 20;
-  const double latest = argc > 2 ? std::max(kEarliest, std::atof(argv[2])) : 1;
+  Settings given;
+  if (argc > 1) given.runs = std::max(1, std::atoi(argv[1]));
+  if (argc > 2) given.latest = std::max(kEarliest, std::atof(argv[2]));
+  if (argc > 3) given.only = argv[3];
   const JointGroup arm = bench::arms().front().group;
   CollisionChecker checker(arm, walled());
   if (!checker.is_free(beside(kTurn)) || !checker.is_free(beside(-kTurn))) throw Error("start and goal must be free");
-  for (const std::string& planner : planner_names()) measure(planner, motion(arm, planner), runs, latest);
+  for (const std::string& planner : planner_names()) measure(planner, motion(arm, planner), given);
   const ManipulationProblem problem = carry_problem(arm);
-  for (const std::string& planner : manipulation_planner_names())
-    measure(planner, carry(problem, planner), runs, latest);
-  measure("plan_cartesian", tool_line(arm), runs, latest);
-  measure("time_parameterize", timing(arm), runs, latest);
+  for (const std::string& planner : manipulation_planner_names()) measure(planner, carry(problem, planner), given);
+  measure("plan_cartesian", tool_line(arm), given);
+  measure("time_parameterize", timing(arm), given);
 }

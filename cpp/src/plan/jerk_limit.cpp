@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "plan/timing_stop.hpp"
@@ -18,8 +19,10 @@ constexpr int kSamplesAWindow = 8;  // The average changes over a window's time.
 class Cubics {
  public:
   /// Throws TimingStopped.
-  Cubics(const JointTrajectory& motion, const StopToken& stop) : times_(motion.times), positions_(motion.positions) {
-    velocities_ = motion.velocities;
+  Cubics(JointTrajectory motion, const StopToken& stop)
+      : times_(std::move(motion.times)),
+        positions_(std::move(motion.positions)),
+        velocities_(std::move(motion.velocities)) {
     const Eigen::VectorXd origin = positions_.front();
     for (auto& p : positions_) p -= origin;  // Sums of small numbers round less.
     integrals_.push_back(Eigen::VectorXd::Zero(origin.size()));

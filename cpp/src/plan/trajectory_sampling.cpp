@@ -101,6 +101,7 @@ class Sampler {
     const double factor = std::max({1.0, worst_.velocity, std::sqrt(worst_.acceleration)});
     JointTrajectory trajectory;
     for (const Sample& sample : samples_) {
+      end_if_stopped(timing_.stop());
       trajectory.times.push_back(sample.time * factor);
       trajectory.positions.push_back(sample.state.position);
       trajectory.velocities.push_back(sample.state.velocity / factor);

@@ -8,6 +8,7 @@ import threading
 import numpy as np
 
 import mmgrasp as mg
+from argument_values import ARM, OBJECTS, Q
 from conftest import ASSETS
 
 
@@ -33,6 +34,30 @@ def test_same_database_at_one_and_two_threads(small_path, tmp_path):
     first, second = ({f.name: f.read_bytes() for f in folder.iterdir()} for folder in files)
     assert len(first) == 6
     assert first == second
+
+
+def test_lines_of_several_threads_share_one_checker():
+    """Each call has scratch of its own, so that they may run side by side and next to questions to the checker."""
+    checker = OBJECTS["CollisionChecker"]()
+    lines = [ARM.fk(Q + [0, 0, along]) for along in (0.1, 0.2, 0.4, 0.6)]  # the last one beyond a limit
+
+    def follow(to: np.ndarray) -> tuple:
+        found = mg.plan_straight_line(checker, Q, to, position_step=1e-4)
+        return found.outcome, found.fraction, None if found.path is None else found.path.tobytes()
+
+    alone = [follow(to) for to in lines]
+    assert len(set(alone)) == len(lines)
+    together: list[list] = [[] for _ in lines]
+    workers = [
+        threading.Thread(target=lambda k=k: together[k].extend(follow(lines[k]) for _ in range(5)))
+        for k in range(len(lines))
+    ]
+    for worker in workers:
+        worker.start()
+    while any(worker.is_alive() for worker in workers):
+        assert checker.is_free(Q)
+    for k, answers in enumerate(together):
+        assert answers == [alone[k]] * 5
 
 
 def test_threads_share_one_seed_database():

@@ -45,7 +45,7 @@ const PlannerEntry kPlanners[] = {
     {"bkpiece", make<og::BKPIECE1>, true, true, false, false, 0},
     {"prm", make_prm, true, false, false, true, 0},
     {"prm_star", make_prm_star, true, false, true, true, 0},
-    {"lazy_prm_star", make<og::LazyPRMstar>, true, true, true, true, 0},
+    {"lazy_prm_star", make<og::LazyPRMstar>, true, true, true, true, 0, true},
     {"rrt_star", make<og::RRTstar>, true, true, true, false, 0},
     {"informed_rrt_star", make<og::InformedRRTstar>, true, true, true, false, 0},
     {"bit_star", make<og::BITstar>, true, true, true, false, 0},

@@ -20,6 +20,8 @@ struct PlannerEntry {
   bool roadmap;
   /// Longest tree edge when the caller names none, as a share of the joint box's diagonal; 0: OMPL's choice (a fifth).
   double range_share;
+  /// One round may take seconds (edges blocked one by one, each followed by a search), with no look at the budget.
+  bool long_rounds = false;
 };
 
 extern const PlannerEntry kPlanners[];

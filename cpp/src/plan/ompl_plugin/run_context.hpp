@@ -9,13 +9,17 @@
 
 namespace mmgrasp_ompl {
 
+/// Thrown out of a planner whose rounds take any time, when the caller's stop token is set: nobody wants its path then.
+struct RunStopped {};
+
 /// What one run has spent of its budget, shared by sampler, validity checker and termination condition.
 class RunContext {
  public:
-  RunContext(const MmgraspOmplProblem& problem, bool count_rounds, bool roadmap)
+  RunContext(const MmgraspOmplProblem& problem, bool count_rounds, bool roadmap, bool long_rounds)
       : problem_(problem),
         count_rounds_(count_rounds),
         roadmap_(roadmap),
+        long_rounds_(long_rounds),
         deadline_(std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                                          std::chrono::duration<double>(problem.time_limit))) {}
 
@@ -35,8 +39,9 @@ class RunContext {
     ++checks_;
     return !stopped() && problem_.is_free(problem_.user, q) != 0;
   }
-  /// A stopped run refuses every edge, so that even a planner deep inside one iteration ends soon.
+  /// A stopped run refuses every edge, so that even a planner deep inside one iteration ends soon. Throws RunStopped.
   bool edge_is_free(const double* q0, const double* q1) {
+    if (long_rounds_ && problem_.stopped(problem_.user) != 0) throw RunStopped{};
     return !stopped() && problem_.edge_is_free(problem_.user, q0, q1) != 0;
   }
 
@@ -52,7 +57,7 @@ class RunContext {
   bool stopped() const { return problem_.stopped(problem_.user) != 0 || std::chrono::steady_clock::now() >= deadline_; }
 
   const MmgraspOmplProblem& problem_;
-  bool count_rounds_, roadmap_;
+  bool count_rounds_, roadmap_, long_rounds_;
   std::chrono::steady_clock::time_point deadline_;
   long draws_ = 0, checks_ = 0, rounds_ = 0;
   std::uint64_t samplers_ = 0;

@@ -147,7 +147,7 @@ int run(const MmgraspOmplProblem& problem) {
     return MMGRASP_OMPL_FAILED;
   }
   const RunLock lock(entry->runs_alone, problem.seed);
-  const auto context = std::make_shared<RunContext>(problem, entry->count_rounds, entry->roadmap);
+  const auto context = std::make_shared<RunContext>(problem, entry->count_rounds, entry->roadmap, entry->long_rounds);
   const auto space = std::make_shared<JointSpace>(context);
   const auto si = std::make_shared<ob::SpaceInformation>(space);
   si->setStateValidityChecker(std::make_shared<JointValidity>(si, context));
@@ -167,7 +167,13 @@ int run(const MmgraspOmplProblem& problem) {
   }
   // What setting up has drawn and checked is not the caller's budget.
   context->restart();
-  planner->solve(ob::PlannerTerminationCondition([context] { return context->finished(); }));
+  try {
+    planner->solve(ob::PlannerTerminationCondition([context] { return context->finished(); }));
+  } catch (const RunStopped&) {
+    context->watch({});
+    planner->clear();
+    return MMGRASP_OMPL_BUDGET_SPENT;
+  }
   context->watch({});
   planner->clear();  // LazyPRM frees its states here and nowhere else
 

@@ -95,12 +95,12 @@ Call carry(const ManipulationProblem& problem, const std::string& planner) {
   };
 }
 
-/// Across the wall in steps of a thousandth of a millimetre.
+/// Across the wall in steps of a tenth of a micrometre.
 Call tool_line(const JointGroup& arm) {
   return [&arm](const Monitor& monitor) {
     CollisionChecker checker(arm, walled());
     CartesianOptions options;
-    options.line.position_step = 1e-6;
+    options.line.position_step = 1e-7;
     const Pose from = arm.fk(beside(kTurn));
     Pose to = from;
     to.translation().y() = -to.translation().y();

@@ -48,7 +48,7 @@ void InformedUnion::set_cost(double cost) {
   prepared_ = false;
 }
 
-double InformedUnion::volume(const Pair& pair) const {
+double InformedUnion::ellipsoid_volume(const Pair& pair) const {
   const double c = cost_ - ends_.cost(pair.grasp);
   if (!(c > pair.c_min * (1 + kThin))) return 0;
   const double across = 0.25 * (c * c - pair.c_min * pair.c_min);
@@ -63,11 +63,28 @@ void InformedUnion::prepare() {
   for (const Pair& pair : all_) {
     if (pair.grasp >= grasps_) break;
     while (static_cast<int>(first_pair_.size()) <= pair.grasp) first_pair_.push_back(pairs_.size());
-    const double own = volume(pair);
+    const double own = ellipsoid_volume(pair);
     if (!(own > 0)) continue;
     pairs_.push_back(pair);
     pairs_.back().volume = sum += own;
   }
+  first_pair_.resize(static_cast<std::size_t>(grasps_) + 1, pairs_.size());
+}
+
+double InformedUnion::volume(int grasp) {
+  if (std::isinf(cost_)) return box_volume_;
+  if (!prepared_) prepare();
+  if (grasp >= grasps_) return 0;
+  const auto up_to = [&](std::size_t pair) { return pair > 0 ? pairs_[pair - 1].volume : 0; };
+  const auto own = static_cast<std::size_t>(grasp);
+  const double sum = up_to(first_pair_[own + 1]) - up_to(first_pair_[own]);
+  return std::min(sum, box_volume_);
+}
+
+double InformedUnion::volume() {
+  if (std::isinf(cost_)) return box_volume_;
+  if (!prepared_) prepare();
+  return pairs_.empty() ? 0 : std::min(pairs_.back().volume, box_volume_);
 }
 
 void InformedUnion::draw_ellipsoid(Rng& rng, const Pair& pair, double c, double* q) {

@@ -24,6 +24,11 @@ class MMGRASP_EXPORT InformedUnion {
   double cost() const { return cost_; }
   /// Grasps whose set is not empty: the first so many.
   int grasps() const { return grasps_; }
+  /// Volume of a grasp's set and of the union, or more: that of the ellipsoids together, which may overlap and leave
+  /// the box, at most the box.
+  double volume(int grasp);
+  double volume();
+  double box_volume() const { return box_volume_; }
   bool contains(int grasp, const double* q) const { return ends_.estimate(grasp, q) < cost_; }
 
   /// Writes a configuration to `q` and returns a grasp: uniform among the ellipsoids that contain it. -1 when the union
@@ -43,7 +48,7 @@ class MMGRASP_EXPORT InformedUnion {
   };
 
   void prepare();
-  double volume(const Pair& pair) const;
+  double ellipsoid_volume(const Pair& pair) const;
   void draw_ellipsoid(Rng& rng, const Pair& pair, double c, double* q);
   bool in_box(const double* q) const;
   bool in_pair(const Pair& pair, const double* q) const;
@@ -58,7 +63,7 @@ class MMGRASP_EXPORT InformedUnion {
   std::vector<Pair> all_;                ///< Of each grasp side by side, in the order of the grasps.
   std::vector<Pair> pairs_;              ///< Those with an ellipsoid.
   std::vector<std::size_t> first_of_;    ///< Of each grasp, in `all_`; and their number.
-  std::vector<std::size_t> first_pair_;  ///< Of each grasp, in `pairs_`.
+  std::vector<std::size_t> first_pair_;  ///< Of each grasp, in `pairs_`; and their number.
   bool prepared_ = false;
   Eigen::VectorXd ball_;
 };

@@ -24,22 +24,13 @@ namespace detail {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr int kStraight = 32;        // Straight lines tried before the first sample.
-constexpr int kRounds = 8;           // Trees of single grasps that grow with one sample, until there is a path.
-constexpr double kAround = 0.8;      // Samples drawn near a straight line, until there is a path.
-constexpr double kNarrowest = 1.1;   // Paths they may lie on, by the straight line's length: at least ...
-constexpr double kWidest = 2.5;      // ... and this much more.
-constexpr double kCorners = 0.3;     // Corners of the best path cut, by samples drawn.
-constexpr int kGuesses = 32;         // Random grasps asked before all of them are.
-constexpr double kGammaSlack = 1.1;  // Above the least that optimality asks for.
-
-// RRT* joins a new vertex with all nearer than gamma (log n / n)^(1 / (d + 1)) (Karaman and Frazzoli, with the exponent
-// that Solovey and others proved sufficient), gamma from the volume of the joint box.
-double least_gamma(const JointGroup& group) {
-  const int d = group.size();
-  const double volume = (group.sample_upper() - group.sample_lower()).prod() / unit_ball_volume(d);
-  return kGammaSlack * 2 * std::pow((1 + 1.0 / d) * volume, 1.0 / (d + 1));
-}
+constexpr int kStraight = 32;       // Straight lines tried before the first sample.
+constexpr int kRounds = 8;          // Trees of single grasps that grow with one sample, until there is a path.
+constexpr double kAround = 0.8;     // Samples drawn near a straight line, until there is a path.
+constexpr double kNarrowest = 1.1;  // Paths they may lie on, by the straight line's length: at least ...
+constexpr double kWidest = 2.5;     // ... and this much more.
+constexpr double kCorners = 0.3;    // Corners of the best path cut, by samples drawn.
+constexpr int kGuesses = 32;        // Random grasps asked before all of them are.
 
 }  // namespace
 
@@ -51,7 +42,6 @@ RrtStarMg::RrtStarMg(CarryInput& input, const RrtStarMgOptions& options, Manipul
       informed_(ends_, input.problem.group.sample_lower(), input.problem.group.sample_upper()),
       forest_(ends_),
       rng_(input.options.seed, 0x727274),
-      gamma_(options_.gamma > 0 ? options_.gamma : least_gamma(input.problem.group)),
       best_(result.path ? result.cost : kInfinite),
       own_(static_cast<std::size_t>(ends_.size())),
       bridge_of_(own_.size(), -1),

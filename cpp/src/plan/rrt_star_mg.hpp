@@ -46,7 +46,6 @@ class RrtStarMg {
 
   /// There is a path in the trees.
   bool solved() const { return best_grasp_ >= 0; }
-  double radius(int vertices) const;
   void keep_trees();
   /// Puts the path that the result had beforehand into the trees of its grasp.
   void plant();
@@ -65,6 +64,11 @@ class RrtStarMg {
   int extend_forest(int side, int configuration);
   /// A configuration towards `target`, at most one step from vertex `from`; -1 when there is no way to go.
   int steer(int from, int target);
+  /// Fill near_ with the vertices that one at `q` may be joined with.
+  void look_near_in_tree(int tree, const double* q);
+  void look_near_on_side(int side, const double* q);
+  double radius(int vertices) const;
+  void keep_near(int vertices, double volume);
   void include_nearest(int nearest, int configuration);
   /// Adds `configuration` below the one of near_ that is cheapest by equation (5.1) and has a free edge to it.
   int add_best(int configuration, double bound);
@@ -106,8 +110,8 @@ class RrtStarMg {
   Forest forest_;
   CheckMemory robot_;     ///< By opening.
   CheckMemory verified_;  ///< By grasp: edges that were on a path and looked at finely.
+  CheckMemory blocked_;   ///< By grasp: edges that would have straightened a path.
   Rng rng_;
-  double gamma_;
   double best_;
   int best_grasp_ = -1;
   std::vector<Own> own_;         ///< Per grasp.

@@ -11,13 +11,46 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr int kHopeless = -2;
+constexpr int kFewest = 4;      // Vertices joined in small trees.
 constexpr int kDuplicates = 4;  // Vertices of other trees taken over by one new vertex.
 
 }  // namespace
 
 double RrtStarMg::radius(int vertices) const {
+  if (!(options_.gamma > 0)) return options_.step;
   const double n = std::max(2, vertices);
-  return std::min(gamma_ * std::pow(std::log(n) / n, 1.0 / (ends_.dimension() + 1)), options_.step);
+  return std::min(options_.gamma * std::pow(std::log(n) / n, 1.0 / (ends_.dimension() + 1)), options_.step);
+}
+
+void RrtStarMg::look_near_in_tree(int tree, const double* q) {
+  forest_.near_in_tree(tree, q, radius(forest_.tree_size(tree)), near_);
+  keep_near(forest_.tree_size(tree), informed_.volume(Forest::grasp_of(tree)));
+}
+
+void RrtStarMg::look_near_on_side(int side, const double* q) {
+  forest_.near_on_side(side, q, radius(forest_.side_size(side)), near_);
+  keep_near(forest_.side_size(side), informed_.volume());
+}
+
+// RRT*'s radius for vertices that are uniform in a set of this volume (Karaman and Frazzoli; of the informed set as in
+// Informed RRT* and BIT*) holds 2 (1 + 1/d) log n of them; log n times as many are kept, so that constants do not
+// matter in the end. Ellipsoids of good paths are thin, and a ball wider than they are holds fewer than that: as many
+// of the nearest are kept, too.
+void RrtStarMg::keep_near(int vertices, double volume) {
+  if (options_.gamma > 0) return;
+  if (!options_.informed) volume = informed_.box_volume();
+  const double n = std::max(2, vertices), d = ends_.dimension();
+  const double joined = 2 * (1 + 1 / d) * std::log(n) * std::log(n);
+  const auto count = static_cast<std::ptrdiff_t>(std::ceil(joined)) + kFewest;
+  if (static_cast<std::ptrdiff_t>(near_.size()) <= count) return;
+  const auto nearer = [](const Near& a, const Near& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.vertex < b.vertex;
+  };
+  std::nth_element(near_.begin(), near_.begin() + count, near_.end(), nearer);
+  const double ball = std::pow(volume / unit_ball_volume(ends_.dimension()) * joined / n, 1 / d);
+  near_.erase(
+      std::partition(near_.begin() + count, near_.end(), [&](const Near& near) { return near.distance < ball; }),
+      near_.end());
 }
 
 int RrtStarMg::steer(int from, int target) {
@@ -36,9 +69,10 @@ int RrtStarMg::extend_tree(int tree, int configuration) {
   const int nearest = forest_.nearest_in_tree(tree, forest_.configuration(configuration));
   const int target = steer(nearest, configuration);
   if (target < 0 || forest_.find(tree, target) >= 0) return -1;
-  forest_.near_in_tree(tree, forest_.configuration(target), radius(forest_.tree_size(tree)), near_);
+  look_near_in_tree(tree, forest_.configuration(target));
   include_nearest(nearest, target);
-  const int made = add_best(target, kInfinite);
+  // Where no cheaper path can pass, trees grow only while they are offered the whole box.
+  const int made = add_best(target, options_.informed ? best_ : kInfinite);
   if (made < 0) return solved() ? -1 : advance(nearest, target);
   rewire(made);
   return made;
@@ -49,7 +83,7 @@ int RrtStarMg::extend_forest(int side, int configuration) {
   const int nearest = forest_.nearest_on_side(side, forest_.configuration(configuration));
   const int target = steer(nearest, configuration);
   if (target < 0) return -1;
-  forest_.near_on_side(side, forest_.configuration(target), radius(forest_.side_size(side)), near_);
+  look_near_on_side(side, forest_.configuration(target));
   include_nearest(nearest, target);
   const int made = add_best(target, best_);
   // No tree nearby can be improved from here; another grasp's may (P2 5.3.4).

@@ -67,7 +67,7 @@ bool RrtStarMg::connect(int vertex) {
   const double distance = std::sqrt(squared_distance(from, to, d));
   const double share = distance > options_.step ? options_.step / distance : 1;
   for (int i = 0; i < d; ++i) q_[i] = from[i] + (to[i] - from[i]) * share;
-  forest_.near_in_tree(other, q_.data(), radius(forest_.tree_size(other)), near_);
+  look_near_in_tree(other, q_.data());
   include_nearest(nearest, own.configuration);
   for (Near& entry : near_) {
     entry.distance = std::sqrt(squared_distance(forest_.at(entry.vertex), to, d));
@@ -176,8 +176,13 @@ void RrtStarMg::add_bridge(int a, int b) {
 // it.
 void RrtStarMg::straighten(int grasp) {
   if (!follow(grasp)) return;
+  // Paths that follow one another share most vertices, and most of these edges are blocked.
   const auto sees = [&](int a, int b) {
-    return edge_is_free(grasp, forest_.vertex(a).configuration, forest_.vertex(b).configuration);
+    const int from = forest_.vertex(a).configuration, to = forest_.vertex(b).configuration;
+    if (blocked_.recall(grasp, from, to) == 0) return false;
+    const bool free = edge_is_free(grasp, from, to);
+    if (!free) blocked_.keep(grasp, from, to, false);
+    return free;
   };
   for (const auto& chain : chain_)
     for (std::size_t i = 0; i + 2 < chain.size(); ++i)

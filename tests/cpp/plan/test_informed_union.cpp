@@ -222,5 +222,26 @@ TEST(InformedUnion, NothingIsDrawnWhereNothingCanBeBetter) {
   EXPECT_EQ(drawn.draw(rng, q.data()), -1);
 }
 
+/// An ellipse of axes c and sqrt(c^2 - c_min^2), a ball, and a pair that the cost drops.
+TEST(InformedUnion, VolumesAreThoseOfTheEllipsoids) {
+  const GraspEnds ends({candidate({Vector2d(-1, 0)}, {Vector2d(1, 0)}), candidate({Vector2d(0, 5)}, {Vector2d(0, 5)}),
+                        candidate({Vector2d(-1, -5), Vector2d(-1, -5.5)}, {Vector2d(1, -5)})});
+  InformedUnion informed(ends, Vector2d(-10, -10), Vector2d(10, 10));
+  EXPECT_DOUBLE_EQ(informed.volume(), 400);
+  EXPECT_DOUBLE_EQ(informed.volume(2), 400);
+  informed.set_cost(2.03);  // The third grasp's second pair is farther apart.
+  const double ellipse = M_PI / 4 * 2.03 * std::sqrt(2.03 * 2.03 - 4), ball = M_PI / 4 * 2.03 * 2.03;
+  // Grasps are in the order of their straight lines: the ball's first.
+  EXPECT_NEAR(informed.volume(0), ball, 1e-12);
+  EXPECT_NEAR(informed.volume(1), ellipse, 1e-12);
+  EXPECT_NEAR(informed.volume(2), ellipse, 1e-12);
+  EXPECT_NEAR(informed.volume(), ball + 2 * ellipse, 1e-12);
+  informed.set_cost(1);
+  EXPECT_EQ(informed.volume(2), 0);
+  InformedUnion small(ends, Vector2d(-0.1, -0.1), Vector2d(0.1, 0.1));
+  small.set_cost(9);
+  EXPECT_DOUBLE_EQ(small.volume(0), 0.04);
+}
+
 }  // namespace
 }  // namespace mmgrasp::detail

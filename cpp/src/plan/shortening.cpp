@@ -8,7 +8,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr int kPatience = 30;           // Attempts without a gain after which a path counts as short.
-constexpr double kSmallestGain = 1e-3;  // Relative to the path's length; less is not worth another corner.
+constexpr double kSmallestGain = 2e-3;  // Relative to the path's length; less is not worth looking at.
 
 using Waypoints = std::vector<Eigen::VectorXd>;
 

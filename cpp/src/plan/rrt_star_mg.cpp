@@ -23,7 +23,6 @@ void RrtStarMgOptions::check() const {
 namespace detail {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr int kStraight = 32;       // Straight lines tried before the first sample.
 constexpr int kRounds = 8;          // Trees of single grasps that grow with one sample, until there is a path.
 constexpr double kAround = 0.8;     // Samples drawn near a straight line, until there is a path.

@@ -12,7 +12,9 @@
 
 namespace mmgrasp::detail {
 
-constexpr double kSame = 1e-9;  ///< Configurations nearer than this are the same [rad or m].
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kSame = 1e-9;    ///< Configurations nearer than this are the same [rad or m].
+constexpr double kBetter = 1e-6;  ///< Paths shorter by less than this share are not news.
 
 /// Puts the cheapest on top of a heap.
 inline bool costlier(const Forest::Near& a, const Forest::Near& b) {
@@ -40,7 +42,7 @@ class RrtStarMg {
 
   /// The cheapest path of a grasp; not checked finely unless it was the best once.
   struct Own {
-    double cost = std::numeric_limits<double>::infinity();
+    double cost = kInfinite;
     int bridge = -1;
   };
 
@@ -87,20 +89,32 @@ class RrtStarMg {
   /// Looks at all bridges of a grasp again: its own path is over the cheapest, the best path too if that beats it.
   void refresh(int grasp);
   bool accept(int bridge);
+  /// Of nodes_, whose configurations are the path's: the first edge that does not pass the final check; -1: all do.
+  int blocked_edge(int grasp, const JointPath& path);
+  void add_bridge(int a, int b);
+  void unbridge(int grasp, int bridge);
+  double apart(int a, int b) const;   ///< Two vertices.
+  double length(int a, int b) const;  ///< Between two configurations.
+  void prune();
+  void leaving(int v);
+
+  // Pulling paths taut (rrt_star_mg_taut.cpp).
+  /// A corner of a path and its neighbours there; the bridge may be between it and the one after it.
+  struct Corner {
+    int before, corner, after;  ///< Vertices.
+    bool at_bridge;
+  };
   /// Edges that skip vertices of the grasp's path.
   void straighten(int grasp);
   /// Replaces a random corner of the best path, or of another grasp's, by an edge between points on both its sides,
   /// when that is free.
   void cut_corner();
+  /// The best path's grasp or, as often, another one with a path of its own; -1 when that one has lost it.
+  int pick_path();
+  /// Of the path in chain_; false when that is a straight line.
+  bool pick_corner(Corner& out);
   /// Fills chain_ with the grasp's own path; false when there is none.
   bool follow(int grasp);
-  /// Of nodes_, whose configurations are the path's: the first edge that does not pass the final check; -1: all do.
-  int blocked_edge(int grasp, const JointPath& path);
-  void add_bridge(int a, int b);
-  void unbridge(int grasp, int bridge);
-  double apart(int a, int b) const;
-  void prune();
-  void leaving(int v);
 
   CarryInput& input_;
   ManipulationResult& result_;

@@ -9,7 +9,6 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr int kHopeless = -2;
 constexpr int kFewest = 4;      // Vertices joined in small trees.
 constexpr int kDuplicates = 4;  // Vertices of other trees taken over by one new vertex.

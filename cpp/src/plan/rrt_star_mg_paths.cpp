@@ -9,12 +9,8 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kBetter = 1e-6;    // Paths shorter by less than this share are not news.
 constexpr double kSlack = 1e-9;     // Rounding of estimates: the best path's own vertices stay.
 constexpr double kPromising = 1.5;  // Paths of other grasps worth keeping, by the best one.
-constexpr double kOthers = 0.5;     // Corners cut on these.
-constexpr double kClose = 0.5;      // Corners cut close to them.
-constexpr double kInside = 0.999;   // Points on an edge keep off its end.
 
 }  // namespace
 
@@ -149,19 +145,12 @@ bool RrtStarMg::accept(int index) {
   return false;
 }
 
-bool RrtStarMg::follow(int grasp) {
-  for (auto& chain : chain_) chain.clear();
-  const int index = own_[static_cast<std::size_t>(grasp)].bridge;
-  if (index < 0) return false;
-  const Bridge& bridge = bridges_[static_cast<std::size_t>(index)];
-  if (!forest_.vertex(bridge.a).alive || !forest_.vertex(bridge.b).alive) return false;
-  for (int v = bridge.a; v >= 0; v = forest_.vertex(v).parent) chain_[0].push_back(v);
-  for (int v = bridge.b; v >= 0; v = forest_.vertex(v).parent) chain_[1].push_back(v);
-  return true;
+double RrtStarMg::apart(int a, int b) const {
+  return length(forest_.vertex(a).configuration, forest_.vertex(b).configuration);
 }
 
-double RrtStarMg::apart(int a, int b) const {
-  return std::sqrt(squared_distance(forest_.at(a), forest_.at(b), ends_.dimension()));
+double RrtStarMg::length(int a, int b) const {
+  return std::sqrt(squared_distance(forest_.configuration(a), forest_.configuration(b), ends_.dimension()));
 }
 
 void RrtStarMg::add_bridge(int a, int b) {
@@ -170,85 +159,6 @@ void RrtStarMg::add_bridge(int a, int b) {
   int& head = bridge_of_[static_cast<std::size_t>(grasp)];
   bridges_.push_back({swap ? b : a, swap ? a : b, apart(a, b), head});
   head = static_cast<int>(bridges_.size()) - 1;
-}
-
-// Beyond the paper, and no more than rewiring along the path: each vertex below the earliest one before it that sees
-// it.
-void RrtStarMg::straighten(int grasp) {
-  if (!follow(grasp)) return;
-  // Paths that follow one another share most vertices, and most of these edges are blocked.
-  const auto sees = [&](int a, int b) {
-    const int from = forest_.vertex(a).configuration, to = forest_.vertex(b).configuration;
-    if (blocked_.recall(grasp, from, to) == 0) return false;
-    const bool free = edge_is_free(grasp, from, to);
-    if (!free) blocked_.keep(grasp, from, to, false);
-    return free;
-  };
-  for (const auto& chain : chain_)
-    for (std::size_t i = 0; i + 2 < chain.size(); ++i)
-      for (std::size_t k = chain.size() - 1; k > i + 1; --k) {
-        const double length = apart(chain[i], chain[k]);
-        if (forest_.vertex(chain[k]).cost + length >= forest_.vertex(chain[i]).cost * (1 - kBetter)) continue;
-        if (!sees(chain[i], chain[k])) continue;
-        forest_.reparent(chain[i], chain[k], length);
-        break;
-      }
-  if (!follow(grasp)) return;
-  for (std::size_t i = 0; i < chain_[0].size(); ++i)
-    for (std::size_t k = 0; k < chain_[1].size(); ++k) {
-      const int a = chain_[0][chain_[0].size() - 1 - i], b = chain_[1][chain_[1].size() - 1 - k];
-      const double cost = forest_.vertex(a).cost + apart(a, b) + forest_.vertex(b).cost + ends_.cost(grasp);
-      if (cost >= best_ * (1 - kBetter) ||
-          cost >= cost_of(bridges_[static_cast<std::size_t>(own_[static_cast<std::size_t>(grasp)].bridge)]) - kSame)
-        continue;
-      if (!sees(a, b)) continue;
-      add_bridge(a, b);
-      return;
-    }
-}
-
-void RrtStarMg::cut_corner() {
-  int grasp = best_grasp_;
-  if (rng_.uniform() < kOthers && !contenders_.empty()) {
-    const std::size_t at = rng_.index(contenders_.size());
-    grasp = contenders_[at];
-    if (grasp >= informed_.grasps() || own_[static_cast<std::size_t>(grasp)].bridge < 0) {
-      contenders_[at] = contenders_.back();
-      contenders_.pop_back();
-      own_[static_cast<std::size_t>(grasp)] = {};
-      return;
-    }
-  }
-  if (!follow(grasp)) return refresh(grasp);
-  const std::size_t corners = chain_[0].size() + chain_[1].size() - 2;
-  if (corners == 0) return;
-  std::size_t at = rng_.index(corners);
-  const int side = at < chain_[0].size() - 1 ? 0 : 1;
-  if (side == 1) at -= chain_[0].size() - 1;
-  const int corner = chain_[side][at], before = chain_[side][at + 1];
-  const int after = at > 0 ? chain_[side][at - 1] : chain_[1 - side].front();
-  // Far from the corner at first; what is nearly taut can only be cut close to it.
-  const bool close = rng_.uniform() < kClose;
-  int points[2];
-  for (int i = 0; i < 2; ++i) {
-    const double drawn = rng_.uniform() * rng_.uniform();
-    const double share = close ? drawn : 1 - drawn;
-    const double *from = forest_.at(corner), *to = forest_.at(i == 0 ? before : after);
-    for (int k = 0; k < ends_.dimension(); ++k) q_[k] = from[k] + (to[k] - from[k]) * share * kInside;
-    points[i] = forest_.add_configuration(q_.data());
-  }
-  if (!edge_is_free(grasp, points[0], points[1])) return;
-  const auto length = [&](int a, int b) {
-    return std::sqrt(squared_distance(forest_.configuration(a), forest_.configuration(b), ends_.dimension()));
-  };
-  const int first = forest_.add(before, points[0], length(forest_.vertex(before).configuration, points[0]));
-  const int second = forest_.add(first, points[1], length(points[0], points[1]));
-  if (at > 0) {
-    forest_.reparent(after, second, length(points[1], forest_.vertex(after).configuration));
-  } else {
-    add_bridge(second, after);
-  }
-  refresh(grasp);
 }
 
 int RrtStarMg::blocked_edge(int grasp, const JointPath& path) {

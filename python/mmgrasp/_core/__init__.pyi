@@ -1374,6 +1374,42 @@ class MotionResult:
     @property
     def stats(self) -> MotionStats:
         ...
+class StraightLineResult:
+    """
+    What plan_straight_line found.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def beyond_limits(self) -> str:
+        """
+        With invalid_start: which joint is outside of its limits, its value and these.
+        """
+    @property
+    def cause(self) -> Rejection:
+        """
+        Why it ended there.
+        """
+    @property
+    def contact(self) -> Contact | None:
+        """
+        What touches there, when something does, or None.
+        """
+    @property
+    def fraction(self) -> float:
+        """
+        How far along the line it came, in [0, 1].
+        """
+    @property
+    def outcome(self) -> Outcome:
+        ...
+    @property
+    def path(self) -> typing.Any:
+        """
+        (k, n) or None.
+        """
 class CartesianResult:
     """
     What plan_cartesian found.
@@ -1382,6 +1418,11 @@ class CartesianResult:
         ...
     def to_dict(self) -> dict:
         ...
+    @property
+    def beyond_limits(self) -> str:
+        """
+        With invalid_start: which joint of `near` is outside of its limits, its value and these.
+        """
     @property
     def branches(self) -> int:
         """
@@ -1417,42 +1458,13 @@ class CartesianResult:
         """
     @property
     def rejections(self) -> Rejections:
-        ...
+        """
+        Of the first pose's configurations, by cause.
+        """
     @property
     def tried(self) -> int:
         """
         Of these: followed.
-        """
-class StraightLineResult:
-    """
-    What plan_straight_line found.
-    """
-    def __repr__(self) -> str:
-        ...
-    def to_dict(self) -> dict:
-        ...
-    @property
-    def cause(self) -> Rejection:
-        """
-        Why it ended there.
-        """
-    @property
-    def contact(self) -> Contact | None:
-        """
-        What touches there, when something does, or None.
-        """
-    @property
-    def fraction(self) -> float:
-        """
-        How far along the line it came, in [0, 1].
-        """
-    @property
-    def outcome(self) -> Outcome:
-        ...
-    @property
-    def path(self) -> typing.Any:
-        """
-        (k, n) or None.
         """
 class Roadmap:
     """
@@ -3054,6 +3066,8 @@ class Pipe:
         ...
 def _capability_option_table() -> dict:
     ...
+def _cartesian_option_table() -> dict:
+    ...
 def _check_options(section: str, **kwargs) -> None:
     """
     Raises InvalidInput when an option of a scenario's section is out of range.
@@ -3078,6 +3092,8 @@ def _ik_option_table() -> dict:
     ...
 def _manipulation_option_table() -> dict:
     ...
+def _motion_option_table() -> dict:
+    ...
 def _pipe_grasp_option_table() -> dict:
     ...
 def _platform_option_table() -> dict:
@@ -3093,6 +3109,8 @@ def _sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Gripper
     (grasps, too_wide): as sample_grasps, with the number dropped as too wide.
     """
 def _supply_option_table() -> dict:
+    ...
+def _timing_option_table() -> dict:
     ...
 def _tracking_option_table() -> dict:
     ...
@@ -3309,7 +3327,7 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         roadmap_seed = 1: likewise: same seed, same roadmap
         max_samples = 1000: rrt_star_mg: budget in samples
         step = 1.5: rrt_star_mg: longest edge grown towards a sample [rad or m]
-        rrt_gamma = 0.0: rrt_star_mg: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined; 0: as optimality asks
+        rrt_gamma = 0.0: rrt_star_mg: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined; 0: about 2 (1 + 1/d) (log n)^2 of n
         exploration = 0.5: rrt_star_mg: once solved, chance to grow the drawn grasp's own tree (P2's p_blt)
         bidirectional = True: rrt_star_mg: trees from both ends
         informed = True: rrt_star_mg: draw only where a better path can pass
@@ -3355,7 +3373,7 @@ def plan_platform_locations(checker: CollisionChecker, T_world_pick: numpy.typin
         seed = 1: same seed, same answer
         time_limit = 10.0: wall-clock cap [s]
     """
-def plan_straight_line(checker: CollisionChecker, start: numpy.typing.ArrayLike, T_world_to: numpy.typing.ArrayLike, **kwargs) -> StraightLineResult:
+def plan_straight_line(checker: CollisionChecker, start: numpy.typing.ArrayLike, T_world_to: numpy.typing.ArrayLike, *, progress: typing.Any = None, **kwargs) -> StraightLineResult:
     """
     The tool moves on a straight line from the pose of `start` to T_world_to. A group that moves a diff_drive base is
     refused: it could not follow such a path.
@@ -3509,7 +3527,7 @@ def solve_set_cover(elements: typing.SupportsInt | typing.SupportsIndex, sets: c
     """
     Fewest (or cheapest) sets that cover all of 0..elements-1, with a proof (P1, equation 3.1).
     """
-def time_parameterize(path: numpy.typing.ArrayLike, velocity_limits: numpy.typing.ArrayLike, acceleration_limits: numpy.typing.ArrayLike, *, names: collections.abc.Sequence[str] = [], **kwargs) -> JointTrajectory:
+def time_parameterize(path: numpy.typing.ArrayLike, velocity_limits: numpy.typing.ArrayLike, acceleration_limits: numpy.typing.ArrayLike, *, names: collections.abc.Sequence[str] = [], progress: typing.Any = None, **kwargs) -> JointTrajectory:
     """
     Near time-optimal timing of waypoints (k, n), at rest at both ends; corners are blended, which may leave the path
     by max_deviation.
@@ -3519,9 +3537,15 @@ def time_parameterize(path: numpy.typing.ArrayLike, velocity_limits: numpy.typin
         sample_period = 0.02: spacing of the samples [s]
         jerk_limits = None: of each joint [rad/s^3]; None: no such limits
     """
-def time_parameterize_free(checker: CollisionChecker, path: numpy.typing.ArrayLike, *, edge_step: typing.SupportsFloat | typing.SupportsIndex = 0.01, **kwargs) -> JointTrajectory:
+def time_parameterize_free(checker: CollisionChecker, path: numpy.typing.ArrayLike, *, edge_step: typing.SupportsFloat | typing.SupportsIndex = 0.01, progress: typing.Any = None, **kwargs) -> JointTrajectory:
     """
-    time_parameterize under the group's limits, the blended corners checked for collisions too.
+    time_parameterize under the limits of the checker's group, the blended corners checked for collisions too, no joint moving
+    more than edge_step between two checks [rad or m]. Without any times when the straight edges of the path are not free.
+    
+    Keyword options:
+        max_deviation = 0.01: corners are blended within this joint distance [rad]
+        sample_period = 0.02: spacing of the samples [s]
+        jerk_limits = None: of each joint [rad/s^3]; None: no such limits
     """
 def track_base(robot: Robot, trajectory: JointTrajectory, **kwargs) -> BaseTrackingResult:
     """

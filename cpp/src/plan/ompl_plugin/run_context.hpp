@@ -9,17 +9,17 @@
 
 namespace mmgrasp_ompl {
 
-/// Thrown out of a planner whose rounds take any time, when the caller's stop token is set: nobody wants its path then.
+/// Thrown out of a planner whose rounds take any time: when the caller's stop token is set, for nobody wants its path
+/// then, or when the clock has run out and it has no path to lose.
 struct RunStopped {};
 
 /// What one run has spent of its budget, shared by sampler, validity checker and termination condition.
 class RunContext {
  public:
-  RunContext(const MmgraspOmplProblem& problem, bool count_rounds, bool roadmap, bool long_rounds)
+  RunContext(const MmgraspOmplProblem& problem, bool count_rounds, bool roadmap)
       : problem_(problem),
         count_rounds_(count_rounds),
         roadmap_(roadmap),
-        long_rounds_(long_rounds),
         deadline_(std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                                          std::chrono::duration<double>(problem.time_limit))) {}
 
@@ -30,6 +30,8 @@ class RunContext {
 
   /// Called at every look at the budget.
   void watch(std::function<void()> look) { look_ = std::move(look); }
+  /// For planners whose rounds may take seconds without a look at the budget; they tell whether they have a path.
+  void throw_when_stopped(std::function<bool()> has_path) { has_path_ = std::move(has_path); }
   void restart() { draws_ = checks_ = rounds_ = 0; }
   void count_draw() { ++draws_; }
   /// Different for each sampler of a run, the same in every run.
@@ -41,7 +43,7 @@ class RunContext {
   }
   /// A stopped run refuses every edge, so that even a planner deep inside one iteration ends soon. Throws RunStopped.
   bool edge_is_free(const double* q0, const double* q1) {
-    if (long_rounds_ && problem_.stopped(problem_.user) != 0) throw RunStopped{};
+    if (has_path_ && stopped() && (problem_.stopped(problem_.user) != 0 || !has_path_())) throw RunStopped{};
     return !stopped() && problem_.edge_is_free(problem_.user, q0, q1) != 0;
   }
 
@@ -57,11 +59,12 @@ class RunContext {
   bool stopped() const { return problem_.stopped(problem_.user) != 0 || std::chrono::steady_clock::now() >= deadline_; }
 
   const MmgraspOmplProblem& problem_;
-  bool count_rounds_, roadmap_, long_rounds_;
+  bool count_rounds_, roadmap_;
   std::chrono::steady_clock::time_point deadline_;
   long draws_ = 0, checks_ = 0, rounds_ = 0;
   std::uint64_t samplers_ = 0;
   std::function<void()> look_;
+  std::function<bool()> has_path_;
 };
 
 }  // namespace mmgrasp_ompl

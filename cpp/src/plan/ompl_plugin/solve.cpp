@@ -147,7 +147,7 @@ int run(const MmgraspOmplProblem& problem) {
     return MMGRASP_OMPL_FAILED;
   }
   const RunLock lock(entry->runs_alone, problem.seed);
-  const auto context = std::make_shared<RunContext>(problem, entry->count_rounds, entry->roadmap, entry->long_rounds);
+  const auto context = std::make_shared<RunContext>(problem, entry->count_rounds, entry->roadmap);
   const auto space = std::make_shared<JointSpace>(context);
   const auto si = std::make_shared<ob::SpaceInformation>(space);
   si->setStateValidityChecker(std::make_shared<JointValidity>(si, context));
@@ -164,6 +164,10 @@ int run(const MmgraspOmplProblem& problem) {
     definition->setIntermediateSolutionCallback([&](const ob::Planner*, const std::vector<const ob::State*>& states,
                                                     const ob::Cost cost) { improvements.add(states, cost.value()); });
     context->watch([&] { improvements.look_into_definition(); });
+  }
+  if (entry->long_rounds) {
+    const auto best_cost = planner->getPlannerProgressProperties().at("best cost REAL");
+    context->throw_when_stopped([best_cost] { return std::isfinite(std::stod(best_cost())); });
   }
   // What setting up has drawn and checked is not the caller's budget.
   context->restart();

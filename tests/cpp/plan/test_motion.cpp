@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <future>
 #include <limits>
+#include <thread>
 
 #include "mmgrasp/core/error.hpp"
 #include "plan/fcl_planar.hpp"
@@ -176,6 +180,58 @@ TEST(PlanMotion, AStartBeyondOneTurnKeepsItsNumbers) {
   ASSERT_EQ(result.outcome, Outcome::solved);
   EXPECT_EQ(result.path->waypoints.front(), vec({7.0, -4.0}));
   EXPECT_LT((result.path->waypoints.back() - vec({7.3, -4.1})).norm(), 1e-12);
+}
+
+TEST(PlanMotion, WaitingForAnotherPlannerEndsByClockAndStop) {
+  // The arm has to fold to pass the box.
+  const test::PlanarArm arm(2, kLength);
+  const World world = test::make_world({{{0.7, 0, 0}, {0.1, 0.1, 0.2}}});
+  const VectorXd start = vec({-0.5, 0.1}), goal = vec({0.5, -0.1});
+  const auto plan = [&](const std::string& planner, double time_limit, const Monitor& monitor) {
+    CollisionChecker checker(arm.group(), world);
+    MotionOptions options;
+    options.planner = planner;
+    options.time_limit = time_limit;
+    options.max_iterations = 100000;
+    return plan_motion(checker, start, {goal}, options, monitor).outcome;
+  };
+  // A planner that draws seeds for itself alone stands still within its search.
+  std::promise<void> standing, go_on;
+  std::atomic<bool> stands{false};
+  std::thread holder([&] {
+    CollisionChecker checker(arm.group(), world);
+    MotionOptions options;
+    options.planner = "rrt_star";
+    options.max_iterations = 2000;
+    options.time_limit = 100;
+    options.improved = [&, first = true](const JointPath&, double) mutable {
+      if (!first) return;
+      first = false;
+      stands = true;
+      standing.set_value();
+      go_on.get_future().wait_for(std::chrono::seconds(30));  // A waiter that ends by nothing else fails then.
+      stands = false;
+    };
+    EXPECT_EQ(plan_motion(checker, start, {goal}, options).outcome, Outcome::solved);
+  });
+  const bool begun = standing.get_future().wait_for(std::chrono::seconds(100)) == std::future_status::ready;
+  EXPECT_TRUE(begun);
+  for (const std::string planner : {"bi_est", "ompl_rrt_connect"}) {
+    if (!begun) break;
+    EXPECT_EQ(plan(planner, 0.05, {}), Outcome::timeout) << planner;
+    Monitor monitor;
+    std::thread stopper([&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      monitor.stop.stop();
+    });
+    EXPECT_EQ(plan(planner, 100, monitor), Outcome::stopped) << planner;
+    stopper.join();
+    EXPECT_TRUE(stands) << planner << " waited for the other to end";
+  }
+  go_on.set_value();
+  holder.join();
+  for (const std::string planner : {"bi_est", "ompl_rrt_connect"})
+    EXPECT_EQ(plan(planner, 100, {}), Outcome::solved) << planner;
 }
 
 TEST(PlanMotion, RefusesBadInput) {

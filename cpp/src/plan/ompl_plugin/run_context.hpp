@@ -47,6 +47,9 @@ class RunContext {
     return !stopped() && problem_.edge_is_free(problem_.user, q0, q1) != 0;
   }
 
+  /// By its caller or its clock.
+  bool stopped() const { return problem_.stopped(problem_.user) != 0 || std::chrono::steady_clock::now() >= deadline_; }
+
   /// The termination condition: called by planners once per round or more often.
   bool finished() {
     ++rounds_;
@@ -56,8 +59,6 @@ class RunContext {
   }
 
  private:
-  bool stopped() const { return problem_.stopped(problem_.user) != 0 || std::chrono::steady_clock::now() >= deadline_; }
-
   const MmgraspOmplProblem& problem_;
   bool count_rounds_, roadmap_;
   std::chrono::steady_clock::time_point deadline_;

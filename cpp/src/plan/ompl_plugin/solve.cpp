@@ -5,6 +5,7 @@
 #include <ompl/util/RandomNumbers.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <exception>
@@ -33,29 +34,36 @@ const PlannerEntry* find_planner(const char* name) {
 
 /// Every run creates OMPL objects that draw seeds from the process-wide generator. Planners that depend on these seeds
 /// hold it exclusively from seeding to the end; the others share.
-std::shared_mutex& seed_mutex() {
-  static std::shared_mutex mutex;
+std::shared_timed_mutex& seed_mutex() {
+  static std::shared_timed_mutex mutex;
   return mutex;
 }
 
+/// The seed mutex for one run, which waits for it as long as its budget lasts.
 class RunLock {
  public:
-  RunLock(bool alone, unsigned seed) : alone_(alone) {
-    if (!alone_) {
-      seed_mutex().lock_shared();
-      return;
+  RunLock(bool alone, const RunContext& context) : alone_(alone) {
+    while (!held_ && !context.stopped()) {
+      // Not try_lock_for, whose lock on the steady clock ThreadSanitizer does not see.
+      const auto look = std::chrono::system_clock::now() + kLook;
+      held_ = alone_ ? seed_mutex().try_lock_until(look) : seed_mutex().try_lock_shared_until(look);
     }
-    seed_mutex().lock();
     // OMPL complains that seeds were drawn before (its log is off) and restarts its generator all the same; 0 it
     // ignores.
-    ompl::RNG::setSeed(seed == 0 ? 0x9e3779b9u : seed);
+    const unsigned seed = context.problem().seed;
+    if (held_ && alone_) ompl::RNG::setSeed(seed == 0 ? 0x9e3779b9u : seed);
   }
-  ~RunLock() { alone_ ? seed_mutex().unlock() : seed_mutex().unlock_shared(); }
+  ~RunLock() {
+    if (held_) alone_ ? seed_mutex().unlock() : seed_mutex().unlock_shared();
+  }
   RunLock(const RunLock&) = delete;
   RunLock& operator=(const RunLock&) = delete;
 
+  bool held() const { return held_; }
+
  private:
-  bool alone_;
+  static constexpr std::chrono::milliseconds kLook{10};  // Between looks at the budget.
+  bool alone_, held_ = false;
 };
 
 void copy_in(const double* from, int size, ob::State* to) {
@@ -146,8 +154,9 @@ int run(const MmgraspOmplProblem& problem) {
     problem.fail(problem.user, "unknown planner");
     return MMGRASP_OMPL_FAILED;
   }
-  const RunLock lock(entry->runs_alone, problem.seed);
   const auto context = std::make_shared<RunContext>(problem, entry->count_rounds, entry->roadmap);
+  const RunLock lock(entry->runs_alone, *context);
+  if (!lock.held()) return MMGRASP_OMPL_BUDGET_SPENT;
   const auto space = std::make_shared<JointSpace>(context);
   const auto si = std::make_shared<ob::SpaceInformation>(space);
   si->setStateValidityChecker(std::make_shared<JointValidity>(si, context));

@@ -64,11 +64,20 @@ class BranchSearch {
 
   /// Says what keeps the arm from the first pose.
   void refuse_start() {
+    if (near_ && near_is_there()) return refuse_near();
     result_.cause = most(result_.rejections);
     if (result_.cause != Rejection::reach) result_.outcome = Outcome::invalid_start;
     if (result_.cause == Rejection::scene) result_.contact = scene_contact_;
     if (result_.cause == Rejection::self_collision) result_.contact = self_contact_;
-    if (near_ && near_is_there()) result_.beyond_limits = detail::beyond_limits(checker_.group(), *near_);
+  }
+
+  /// `near` reaches the first pose, whatever inverse kinematics found.
+  void refuse_near() {
+    result_.outcome = Outcome::invalid_start;
+    result_.cause = checker_.rejection(*near_);
+    if (result_.cause == Rejection::scene || result_.cause == Rejection::self_collision)
+      result_.contact = checker_.first_contact(*near_);
+    result_.beyond_limits = detail::beyond_limits(checker_.group(), *near_);
   }
 
   /// In the turn of continuous joints that is nearest.

@@ -8,6 +8,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "plan/planar_arm.hpp"
 #include "plan/puma_arm.hpp"
 
 namespace mmgrasp {
@@ -161,6 +162,34 @@ TEST(Cartesian, AStartBeyondLimitsIsToldByJointValueAndLimits) {
   EXPECT_FALSE(result.contact);
   for (const char* word : {"j3", "1.2", "[-0.3, 0.3]"})
     EXPECT_NE(result.beyond_limits.find(word), std::string::npos) << result.beyond_limits;
+}
+
+TEST(Cartesian, ANearThatIsThereIsJudgedWhenNoBranchIsFound) {
+  const test::PlanarArm arm(5);
+  CartesianOptions options;
+  options.line.ik.max_iterations = 1;  // Inverse kinematics gets nowhere.
+  options.line.ik.restarts = 0;
+  World world;
+  VectorXd beyond(5), touching(5);
+  beyond << 2.9, -0.4, 0.3, 0.2, 0.5;
+  touching << 0.3, -0.4, 0.3, 0.2, 0.5;
+  const Pose at = arm.group().fk(touching);
+  world.add("ball", Sphere{0.05}, at);
+  CollisionChecker checker(arm.group(), world);
+  for (const VectorXd& near : {beyond, touching}) {
+    Poses poses{arm.group().fk(near), arm.group().fk(near)};
+    poses[1].translation() *= 0.9;
+    const CartesianResult unknown = plan_cartesian(checker, poses, std::nullopt, options);
+    ASSERT_EQ(unknown.cause, Rejection::reach);
+    EXPECT_EQ(unknown.outcome, Outcome::infeasible);
+    const CartesianResult result = plan_cartesian(checker, poses, near, options);
+    EXPECT_EQ(result.outcome, Outcome::invalid_start);
+    const bool is_beyond = near == beyond;
+    EXPECT_EQ(result.cause, is_beyond ? Rejection::limits : Rejection::scene);
+    EXPECT_EQ(result.contact ? result.contact->b : "", is_beyond ? "" : "ball");
+    for (const char* word : {"j1", "2.9", "[-2.8, 2.8]"})
+      EXPECT_EQ(result.beyond_limits.find(word) != std::string::npos, is_beyond) << result.beyond_limits;
+  }
 }
 
 TEST(Cartesian, FollowsNothingMoreOnceStopped) {

@@ -166,27 +166,28 @@ def test_fcl_finds_a_pipe_that_is_carried_through_a_post():
 
 def test_trees_of_good_paths_join_few_of_the_vertices_within_a_step():
     """Nearly all are within one in the ellipsoids of good paths, and most edges to them are blocked."""
-    cell = pipe_cell(3, style="open")
+    cell = pipe_cell(8, style="open")
     carry = cell.problem(cell.grasps(500))
-    edges, costs = [], []
+    edges, excess = [], []
     for gamma in (0.0, 1000.0):  # the latter joins all within `step`
         runs = [
             mg.plan_manipulation(
                 carry,
                 planner="rrt_star_mg",
-                max_samples=3000,
+                max_samples=6000,
                 rrt_gamma=gamma,
+                exploration=1.0,
                 straight=False,
                 first_grasps=0,
                 seed=seed,
                 time_limit=600.0,
             )
-            for seed in (1, 2, 3)
+            for seed in range(1, 6)
         ]
         edges.append(sum(run.stats["edges_checked_held"] for run in runs))
-        costs.append(np.mean([run.cost for run in runs]))
+        excess.append(np.mean([run.cost / run.lower_bound - 1 for run in runs]))
     assert edges[0] < edges[1] / 2
-    assert costs[0] < 1.02 * costs[1]
+    assert excess[0] < excess[1] + 0.002, excess
 
 
 def test_not_every_grasp_that_reaches_both_ends_can_carry():

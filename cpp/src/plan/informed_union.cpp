@@ -59,26 +59,23 @@ void InformedUnion::prepare() {
   prepared_ = true;
   pairs_.clear();
   first_pair_.clear();
+  volumes_.assign(static_cast<std::size_t>(grasps_), 0);
   double sum = 0;
   for (const Pair& pair : all_) {
     if (pair.grasp >= grasps_) break;
     while (static_cast<int>(first_pair_.size()) <= pair.grasp) first_pair_.push_back(pairs_.size());
     const double own = ellipsoid_volume(pair);
     if (!(own > 0)) continue;
+    volumes_[static_cast<std::size_t>(pair.grasp)] += own;
     pairs_.push_back(pair);
     pairs_.back().volume = sum += own;
   }
-  first_pair_.resize(static_cast<std::size_t>(grasps_) + 1, pairs_.size());
 }
 
 double InformedUnion::volume(int grasp) {
   if (std::isinf(cost_)) return box_volume_;
   if (!prepared_) prepare();
-  if (grasp >= grasps_) return 0;
-  const auto up_to = [&](std::size_t pair) { return pair > 0 ? pairs_[pair - 1].volume : 0; };
-  const auto own = static_cast<std::size_t>(grasp);
-  const double sum = up_to(first_pair_[own + 1]) - up_to(first_pair_[own]);
-  return std::min(sum, box_volume_);
+  return grasp < grasps_ ? std::min(volumes_[static_cast<std::size_t>(grasp)], box_volume_) : 0;
 }
 
 double InformedUnion::volume() {

@@ -63,7 +63,8 @@ class MMGRASP_EXPORT InformedUnion {
   std::vector<Pair> all_;                ///< Of each grasp side by side, in the order of the grasps.
   std::vector<Pair> pairs_;              ///< Those with an ellipsoid.
   std::vector<std::size_t> first_of_;    ///< Of each grasp, in `all_`; and their number.
-  std::vector<std::size_t> first_pair_;  ///< Of each grasp, in `pairs_`; and their number.
+  std::vector<std::size_t> first_pair_;  ///< Of each grasp, in `pairs_`.
+  std::vector<double> volumes_;          ///< Of each grasp: of its ellipsoids together.
   bool prepared_ = false;
   Eigen::VectorXd ball_;
 };

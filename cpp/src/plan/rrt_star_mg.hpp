@@ -70,8 +70,9 @@ class RrtStarMg {
   void look_near_in_tree(int tree, const double* q);
   void look_near_on_side(int side, const double* q);
   double radius(int vertices) const;
+  /// Drops of near_ what n vertices in an informed set of this volume need not be joined with, unless `gamma` is given.
   void keep_near(int vertices, double volume);
-  void include_nearest(int nearest, int configuration);
+  void include_nearest(int nearest, int target);
   /// Adds `configuration` below the one of near_ that is cheapest by equation (5.1) and has a free edge to it.
   int add_best(int configuration, double bound);
   /// Grows the tree of `from` half the way along a blocked edge to a configuration, when that half is free.

@@ -32,14 +32,14 @@ void RrtStarMg::look_near_on_side(int side, const double* q) {
 }
 
 // RRT*'s radius for vertices that are uniform in a set of this volume (Karaman and Frazzoli; of the informed set as in
-// Informed RRT* and BIT*) holds 2 (1 + 1/d) log n of them; log n times as many are kept, so that constants do not
-// matter in the end. Ellipsoids of good paths are thin, and a ball wider than they are holds fewer than that: as many
-// of the nearest are kept, too.
+// Informed RRT* and BIT*) holds 2 (1 + 1/d) log n of them. With 2 n^(1/(d+1)) times as many it is in the end larger
+// than any constant times (log n / n)^(1/(d+1)), which Solovey and others ask for. Ellipsoids of good paths are thin,
+// and a ball wider than they are holds fewer: as many of the nearest are kept, too.
 void RrtStarMg::keep_near(int vertices, double volume) {
   if (options_.gamma > 0) return;
   if (!options_.informed) volume = informed_.box_volume();
   const double n = std::max(2, vertices), d = ends_.dimension();
-  const double joined = 2 * (1 + 1 / d) * std::log(n) * std::log(n);
+  const double joined = 4 * (1 + 1 / d) * std::log(n) * std::pow(n, 1 / (d + 1));
   const auto count = static_cast<std::ptrdiff_t>(std::ceil(joined)) + kFewest;
   if (static_cast<std::ptrdiff_t>(near_.size()) <= count) return;
   const auto nearer = [](const Near& a, const Near& b) {
@@ -72,6 +72,7 @@ int RrtStarMg::extend_tree(int tree, int configuration) {
   include_nearest(nearest, target);
   // Where no cheaper path can pass, trees grow only while they are offered the whole box.
   const int made = add_best(target, options_.informed ? best_ : kInfinite);
+  if (made == kHopeless) return -1;
   if (made < 0) return solved() ? -1 : advance(nearest, target);
   rewire(made);
   return made;
@@ -86,7 +87,10 @@ int RrtStarMg::extend_forest(int side, int configuration) {
   include_nearest(nearest, target);
   const int made = add_best(target, best_);
   // No tree nearby can be improved from here; another grasp's may (P2 5.3.4).
-  if (made == kHopeless) reassign_.push_back(configuration);
+  if (made == kHopeless) {
+    reassign_.push_back(configuration);
+    return -1;
+  }
   if (made < 0) return solved() ? -1 : advance(nearest, target);
   rewire(made);
   if (solved()) duplicate_into(made);
@@ -107,8 +111,7 @@ int RrtStarMg::advance(int from, int target) {
 void RrtStarMg::include_nearest(int nearest, int target) {
   for (const Near& entry : near_)
     if (entry.vertex == nearest) return;
-  near_.push_back(
-      {nearest, std::sqrt(squared_distance(forest_.at(nearest), forest_.configuration(target), ends_.dimension()))});
+  near_.push_back({nearest, length(forest_.vertex(nearest).configuration, target)});
 }
 
 int RrtStarMg::add_best(int configuration, double bound) {

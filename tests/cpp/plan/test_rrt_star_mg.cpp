@@ -74,7 +74,7 @@ TEST(RrtStarMg, EverySwitchLeavesPathsSound) {
 
 /// Where the trees of a few runs grew.
 struct Growth {
-  double all = 0, from_goals = 0, of_best = 0;
+  double all = 0, from_goals = 0;
   double outside = 0;  ///< Where no path through the vertex is cheaper than the one found.
   double cost = 0;     ///< Mean.
 };
@@ -108,7 +108,6 @@ Growth growth_with(const std::function<void(RrtStarMgOptions&)>& change) {
             nearest_root(result.trees, tree.grasp, false, q) + nearest_root(result.trees, tree.grasp, true, q);
         out.all += 1;
         out.from_goals += tree.from_goal;
-        out.of_best += tree.grasp == result.grasp_index;
         out.outside += through >= result.cost;
       }
   }
@@ -188,7 +187,8 @@ TEST(RrtStarMg, SamplesThatServeNoTreeDoNotEndTheSearch) {
   const ManipulationResult result = plan_manipulation(bar_carry(), options);
   ASSERT_EQ(result.outcome, Outcome::solved);
   EXPECT_EQ(result.stats.samples, 3000u);
-  EXPECT_LT(result.stats.vertices, 1500u);
+  // One that serves a tree adds a vertex or more: a third of them did not.
+  EXPECT_LT(result.stats.vertices, 2000u);
 }
 
 /// Errata on Algorithm 5.13, lines 14 and 20: as printed, nothing would be joined to what exploring adds, and most runs

@@ -13,8 +13,9 @@ struct MMGRASP_EXPORT RrtStarMgOptions {
   int max_samples = 1000;
   /// Longest edge grown towards a sample (P2's eta), and longest connection radius [rad or m]; > 0.
   double step = 1.5;
-  /// Vertices nearer than gamma (log n / n)^(1/(d+1)) are joined, at most `step`. 0: those that stand as near as
-  /// 2 (1 + 1/d) (log n)^2 of n would in the informed set, and as many of the nearest. >= 0.
+  /// > 0: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined, at most `step`. 0: all within the radius that
+  /// would hold k = 4 (1 + 1/d) n^(1/(d+1)) log n of n vertices spread evenly in the informed set, and the k nearest at
+  /// least.
   double gamma = 0;
   /// Once a path is known: chance to grow the tree of the grasp that was drawn with the sample (exploration) and not
   /// the cheapest-looking one nearby (exploitation): P2's p_blt, in [0, 1]. Above 0 every grasp's tree keeps growing.

@@ -56,7 +56,7 @@ MotionResult plan(const Given<Robot>& given_robot, const Given<JointGroup>& give
     goals.tool_poses = poses_argument(py::reinterpret_borrow<ArrayLike>(tool_poses), "tool_poses");
   goals.regions = taken(regions, "regions", "ToolRegion");
   if (goal.is_none() && tool_poses.is_none() && goals.regions.empty())
-    throw InvalidInput("goal = None: there are no goals: must be given, or else tool_poses or regions");
+    throw InvalidInput("goal = None: give goal, tool_poses or regions");
   CollisionChecker checker(with_sampled_pairs(group), taken(world, "world"));
   return LongCall(progress).run(
       [&](const Monitor& monitor) { return plan_motion_to(checker, from, goals, read, monitor); });

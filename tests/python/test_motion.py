@@ -64,7 +64,7 @@ def test_goals_may_be_poses_and_regions(robot, arm, world):
     found = mg.plan_motion(robot, arm, world, start=START, goal=[[2.8, 2.8, 2.8, 9]], regions=[region])
     assert found.goal_index == 1
     assert np.hypot(*(tip(found.path[-1])[:2] - [0.6, 0.8])) <= 0.1 * 2**0.5 + 1e-4
-    with pytest.raises(mg.InvalidInput, match="goals"):
+    with pytest.raises(mg.InvalidInput, match="give goal, tool_poses or regions"):
         mg.plan_motion(robot, arm, world, start=START)
 
 
@@ -184,7 +184,7 @@ def test_a_start_beyond_limits_is_told_by_joint_value_and_limits(robot, arm, wor
         ({"tool_poses": [np.eye(4), 2 * np.eye(4)]}, ["tool_poses[1]"]),
         ({"progress": "yes"}, ["progress = 'yes'", "a function, or None"]),
         ({"on_solution": 3}, ["on_solution = 3", "a function, or None"]),
-        ({"goal": None}, ["goal = None", "tool_poses or regions"]),
+        ({"goal": None}, ["goal = None: give goal, tool_poses or regions"]),
         ({"world": "x" * 100_000}, ["world = 'xxx", "xxx...: must be a World"]),
     ],
 )
@@ -223,7 +223,8 @@ def test_wrong_timing_arguments_are_refused_by_name(robot, arm, world):
         (lambda: mg.time_parameterize_free(checker, [START, GOAL], edge_step="fine"), ["edge_step = 'fine'", "number"]),
         (lambda: mg.time_parameterize_free(checker, [START, GOAL], edge_step=0), ["edge_step = 0", "> 0"]),
         (lambda: mg.time_parameterize([START, GOAL], [1] * 4, [1] * 4, names=5), ["names = 5", "names of joints"]),
-        (lambda: mg.time_parameterize([START, GOAL], [1] * 4, [1] * 4, sample_period=1e-13), ["sample_period", "1e8"]),
+        (lambda: mg.time_parameterize([START, GOAL], [1] * 4, [1] * 4, sample_period=1e-13), ["sample_period", "1e7"]),
+        (lambda: mg.time_parameterize([[0], [2]], [1], [1], sample_period=1e-7), ["sample_period = 1e-07", "takes 3"]),
     ]:
         with pytest.raises(mg.InvalidInput) as refused:
             call()

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kJump = 0.004;          // Acceleration jumps above this part of a limit get a sample of their own.
 constexpr double kSmallestGap = 1e-5;    // Between samples at jumps [s].
-constexpr double kMostSamples = 1e8;     // More would fill the memory.
 constexpr double kSmallestSplit = 2e-4;  // Shorter intervals are not halved [s].
 
 using State = PathTiming::State;
@@ -39,7 +38,7 @@ class Sampler {
 
   JointTrajectory run(double period) {
     require(timing_.duration() / period <= kMostSamples, "sample_period", period,
-            "must leave at most 1e8 samples: the motion takes " + std::to_string(timing_.duration()) + " s");
+            "must leave at most 1e7 samples: the motion takes " + std::to_string(timing_.duration()) + " s");
     samples_.push_back({0, timing_.at(0)});
     for (double end : break_times()) {
       const double begin = samples_.back().time;

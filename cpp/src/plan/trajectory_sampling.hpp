@@ -7,6 +7,8 @@
 
 namespace mmgrasp::detail {
 
+constexpr double kMostSamples = 1e7;  // Of seven joints, 2 GB.
+
 /// Largest speed of the cubic with end speeds v0 and v1 and mean speed `mean` over a time h.
 double cubic_peak_speed(double mean, double v0, double v1, double h);
 

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "mmgrasp/core/error.hpp"
 #include "plan/timing_stop.hpp"
 #include "plan/trajectory_sampling.hpp"
 
@@ -14,6 +15,8 @@ namespace {
 constexpr int kBisections = 24;
 constexpr double kStopped = 1e-9;   // Slower than this counts as a stop [rad/s].
 constexpr int kSamplesAWindow = 8;  // The average changes over a window's time.
+// A shorter ramp of the acceleration counts as a jump: third differences of samples so close are rounding [s].
+constexpr double kShortestWindow = 1e-4;
 
 /// A motion as cubics between samples, standing still before and after, with its integral.
 class Cubics {
@@ -44,6 +47,21 @@ class Cubics {
     const Piece p = piece(t);
     return integrals_[p.i] + p.h * (p.s * positions_[p.i] +
                                     p.s * p.s * (0.5 * p.h * velocities_[p.i] + p.s * (p.c2 / 3 + p.s * p.c3 / 4)));
+  }
+  /// The mean position over a time of a few samples: unlike the difference of two integrals, precise at any length.
+  Eigen::VectorXd mean(double from, double to) const {
+    const Eigen::VectorXd origin = position(from);
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(origin.size()), begin = sum;
+    double t = from;
+    auto next = std::upper_bound(times_.begin(), times_.end(), from);
+    while (t < to) {
+      const double end = next == times_.end() ? to : std::min(*next++, to);
+      const Eigen::VectorXd middle = position(0.5 * (t + end)) - origin, last = position(end) - origin;
+      sum += (end - t) / 6 * (begin + 4 * middle + last);  // Simpson's rule is exact for cubics.
+      begin = last;
+      t = end;
+    }
+    return origin + sum / (to - from);
   }
   Eigen::VectorXd position(double t) const {
     if (t <= 0) return positions_.front();
@@ -108,7 +126,7 @@ JointTrajectory with_waits(const JointTrajectory& motion, double wait, const Sto
 /// Whether the average over `window` keeps the jerk limits: its jerk is linear between the times at which either end
 /// of the window meets a sample, so that looking on both sides of these is enough.
 bool keeps_jerk(const Cubics& motion, double window, const Eigen::VectorXd& jerk_limits, const StopToken& stop) {
-  const double side = 1e-9 * (motion.duration() + window);
+  const double side = std::min(1e-9 * (motion.duration() + window), 1e-3 * window);
   const Eigen::ArrayXd bound = window * jerk_limits.array() * (1 + 1e-9);
   for (const double t : motion.times()) {
     end_if_stopped(stop);
@@ -122,17 +140,43 @@ bool keeps_jerk(const Cubics& motion, double window, const Eigen::VectorXd& jerk
   return true;
 }
 
+/// Under such a window samples a window's part apart everywhere would be far more than asked for.
+bool is_short(double window, double period) {
+  return 2 * window < period;
+}
+
+/// From 0 to the average's end. Between the times at which an end of the window meets a sample, its jerk is linear:
+/// under a short window samples crowd around these times alone.
+std::vector<double> sample_times(const Cubics& motion, double window, double period) {
+  const double duration = motion.duration() + window;
+  std::vector<double> events{duration};
+  if (is_short(window, period)) {
+    for (const double t : motion.times()) events.insert(events.end(), {t, t + window});
+    std::sort(events.begin(), events.end());
+  }
+  std::vector<double> times{0};
+  for (const double event : events) {
+    const double begin = times.back(), gap = event - begin, step = window / kSamplesAWindow;
+    if (gap < 0.5 * step) continue;
+    const double parts = is_short(window, period) ? std::min<double>(gap / step, kSamplesAWindow) : gap / step;
+    const int count = static_cast<int>(std::ceil(std::max(gap / period, parts)));
+    for (int i = 1; i <= count; ++i) times.push_back(i == count ? event : begin + gap * i / count);
+  }
+  times.back() = duration;
+  return times;
+}
+
 JointTrajectory averaged(const Cubics& motion, const Eigen::VectorXd& origin, double window, double period,
                          const StopToken& stop) {
   JointTrajectory out;
-  const double duration = motion.duration() + window;
-  const int count = std::max(2, static_cast<int>(std::ceil(duration / std::min(period, window / kSamplesAWindow))));
-  for (int i = 0; i <= count; ++i) {
+  const bool precise = is_short(window, period);
+  for (const double t : sample_times(motion, window, period)) {
     end_if_stopped(stop);
     // The window that begins at the motion's start is the average's end of rest.
-    const double t = duration * i / count, from = t - window;
+    const double from = t - window;
     out.times.push_back(t);
-    out.positions.push_back(origin + (motion.integral(t) - motion.integral(from)) / window);
+    out.positions.push_back(origin +
+                            (precise ? motion.mean(from, t) : (motion.integral(t) - motion.integral(from)) / window));
     out.velocities.push_back((motion.position(t) - motion.position(from)) / window);
     out.accelerations.push_back((motion.velocity(t) - motion.velocity(from)) / window);
   }
@@ -167,18 +211,22 @@ JointTrajectory limit_jerk(const JointTrajectory& motion, const Eigen::VectorXd&
                            const Eigen::VectorXd& acceleration_limits, const Eigen::VectorXd& jerk_limits,
                            double period, const StopToken& stop) {
   if (motion.times.size() < 2) return motion;
-  double enough = 0;
+  double least = kShortestWindow, enough = 2 * kShortestWindow;
   for (const auto& a : motion.accelerations)
     enough = std::max(enough, 2.1 * (a.cwiseAbs().cwiseQuotient(jerk_limits)).maxCoeff());
   const auto cubics = [&](double window) { return Cubics(with_waits(motion, window, stop), stop); };
   const auto keeps = [&](double window) { return keeps_jerk(cubics(window), window, jerk_limits, stop); };
+  if (keeps(least)) return motion;
   while (!keeps(enough)) enough *= 1.5;
-  double least = 0;
   for (int i = 0; i < kBisections; ++i) {
     const double middle = 0.5 * (least + enough);
     (keeps(middle) ? enough : least) = middle;
   }
-  JointTrajectory out = averaged(cubics(enough), motion.positions.front(), enough, period, stop);
+  const Cubics slow = cubics(enough);
+  const double most = (slow.duration() + enough) / std::min(period, enough / kSamplesAWindow);
+  require(is_short(enough, period) || most <= kMostSamples, "jerk_limits", jerk_limits.minCoeff(),
+          "must be so high that the motion takes at most 1e7 samples");
+  JointTrajectory out = averaged(slow, motion.positions.front(), enough, period, stop);
   out.names = motion.names;
   slow_down(out, velocity_limits, acceleration_limits, jerk_limits);
   return out;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/plan/time_parameterization.hpp"
@@ -96,6 +97,58 @@ TEST(JerkLimits, StopsKeepThePathExactly) {
   }
   expect_kept(motion, v, a, j);
 }
+
+/// Round a square, with corners blended or stopped at.
+class SquareJerk : public ::testing::TestWithParam<double> {
+ protected:
+  JointTrajectory timed(const VectorXd& jerk, double period = 0.02) const {
+    TimingOptions options = with_jerk(jerk, GetParam());
+    options.sample_period = period;
+    return time_parameterize(path_, ones_, ones_, options);
+  }
+  const JointPath path_{{vec({0, 0}), vec({1, 0}), vec({1, 1}), vec({0, 1})}};
+  const VectorXd ones_ = vec({1, 1});
+};
+
+TEST_P(SquareJerk, LimitsThatNeverBindChangeNothing) {
+  const JointTrajectory fast = timed({});
+  EXPECT_GT(fast.times.size(), 100u);
+  for (const double j : {1e6, 1e12, 1e300}) {
+    const JointTrajectory motion = timed(vec({j, j}));
+    EXPECT_EQ(motion.times, fast.times) << j;
+    EXPECT_EQ(motion.positions, fast.positions) << j;
+    EXPECT_EQ(motion.velocities, fast.velocities) << j;
+    EXPECT_EQ(motion.accelerations, fast.accelerations) << j;
+  }
+}
+
+TEST_P(SquareJerk, HighLimitsAreKeptByFewSamples) {
+  const JointTrajectory fast = timed({});
+  for (const double j : {250.0, 1e3, 3e3, 8e3}) {
+    const JointTrajectory motion = timed(vec({j, j}));
+    expect_kept(motion, ones_, ones_, vec({j, j}));
+    // A window of 2 a / j at most, waited for at two corners, and the end's.
+    EXPECT_GT(motion.duration(), fast.duration() - 1e-9) << j;
+    EXPECT_LT(motion.duration(), fast.duration() * 1.003 + 3 * 2.0 / j) << j;
+    EXPECT_LT(motion.times.size(), 25 * fast.times.size()) << j;
+    for (double t = 0; t < fast.duration(); t += 0.01)
+      EXPECT_LT((motion.at(t * motion.duration() / fast.duration()) - fast.at(t)).norm(), 0.02 + 6 / j) << j;
+  }
+}
+
+TEST_P(SquareJerk, LimitsThatWouldFillTheMemoryAreRefused) {
+  for (const double j : {1e-20, 1e-100}) {
+    try {
+      timed(vec({1, j}));
+      FAIL() << j;
+    } catch (const InvalidInput& error) {
+      EXPECT_NE(std::string(error.what()).find("jerk_limits = "), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("1e7 samples"), std::string::npos) << error.what();
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Corners, SquareJerk, ::testing::Values(0.0, 0.01));
 
 TEST(JerkLimits, RefusesBadInput) {
   const JointPath path{{vec({0, 0}), vec({1, 0})}};

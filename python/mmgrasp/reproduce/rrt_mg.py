@@ -221,10 +221,10 @@ def _explored(context: Context, name: str, problems: list[int], runs: int, paper
         not_reversed(costs[1], costs[2]),
     )
     if not context.quick:
-        for row in result.rows:
-            theirs, ours = row["values"]["optimal time [ms]"]
+        for key, values in result.rows:
+            theirs, ours = values["optimal time [ms]"]
             result.trend(
-                f"p_blt {row['key']['p_blt']:g}: best solution within a tenth of the paper's {theirs} ms",
+                f"p_blt {key['p_blt']:g}: best solution within a tenth of the paper's {theirs} ms",
                 ours is not None and ours <= 0.1 * theirs,
                 clock=True,
             )

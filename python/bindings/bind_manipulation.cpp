@@ -63,7 +63,8 @@ const Fields& rrt_fields() {
       of_rrt("max_samples", &RrtStarMgOptions::max_samples, "rrt_star_mg: budget in samples"),
       of_rrt("step", &RrtStarMgOptions::step, "rrt_star_mg: longest edge grown towards a sample [rad or m]"),
       of_rrt("rrt_gamma", &RrtStarMgOptions::gamma,
-             "rrt_star_mg: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined; 0: about 4 (1 + 1/d) n^(1/(d+1)) log n of n"),
+             "rrt_star_mg: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined; 0: about 4 (1 + 1/d) "
+             "n^(1/(d+1)) log n of n"),
       of_rrt("exploration", &RrtStarMgOptions::exploration,
              "rrt_star_mg: once solved, chance to grow the drawn grasp's own tree (P2's p_blt)"),
       of_rrt("bidirectional", &RrtStarMgOptions::bidirectional, "rrt_star_mg: trees from both ends"),

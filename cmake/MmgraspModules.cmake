@@ -1,4 +1,4 @@
-# mmgrasp_module(name [LINK targets...]): cpp/src/<name>/*.cpp as an object library that joins libmmgrasp.
+# mmgrasp_module(name [LINK targets...]): every .cpp below cpp/src/<name>/ as an object library that joins libmmgrasp.
 # mmgrasp_library(): the one shared library made of all modules.
 # mmgrasp_ompl_plugin(): the private plugin that alone links OMPL (docs/methods/plan.md says why).
 set_property(GLOBAL PROPERTY MMGRASP_MODULES "")
@@ -16,7 +16,8 @@ endif()
 
 function(mmgrasp_module name)
   cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cpp/src/${name}/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cpp/src/${name}/*.cpp)
+  list(FILTER sources EXCLUDE REGEX "/ompl_plugin/")
   if(NOT sources)
     return()
   endif()

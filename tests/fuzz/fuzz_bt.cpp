@@ -1,6 +1,6 @@
 // OctoMap files, .bt and .ot: what is accepted holds finite voxels on the grid of its resolution.
 #include "expect.hpp"
-#include "geometry/octree_reader.hpp"
+#include "geometry/readers/octree_reader.hpp"
 #include "mmgrasp/core/error.hpp"
 
 using namespace mmgrasp;

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "expect.hpp"
-#include "geometry/pcd_reader.hpp"
+#include "geometry/readers/pcd_reader.hpp"
 #include "mmgrasp/core/error.hpp"
 
 using namespace mmgrasp;

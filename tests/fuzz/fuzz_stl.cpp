@@ -1,6 +1,6 @@
 // STL, text and binary: a mesh that was read is clean, and the hull of its vertices exists or is refused.
 #include "expect.hpp"
-#include "geometry/mesh_readers.hpp"
+#include "geometry/readers/mesh_readers.hpp"
 #include "mmgrasp/core/error.hpp"
 
 using namespace mmgrasp;

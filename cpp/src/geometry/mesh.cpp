@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <unordered_map>
 
-#include "geometry/file_content.hpp"
-#include "geometry/mesh_readers.hpp"
 #include "geometry/mesh_topology.hpp"
+#include "geometry/readers/file_content.hpp"
+#include "geometry/readers/mesh_readers.hpp"
 
 namespace mmgrasp {
 

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <map>
 
-#include "geometry/file_content.hpp"
-#include "geometry/mesh_readers.hpp"
-#include "geometry/octree_reader.hpp"
+#include "geometry/readers/file_content.hpp"
+#include "geometry/readers/mesh_readers.hpp"
+#include "geometry/readers/octree_reader.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {

@@ -1,7 +1,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "geometry/mesh_readers.hpp"
+#include "geometry/readers/mesh_readers.hpp"
 
 namespace mmgrasp::detail {
 

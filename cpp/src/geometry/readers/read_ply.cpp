@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "geometry/mesh_readers.hpp"
+#include "geometry/readers/mesh_readers.hpp"
 
 namespace mmgrasp::detail {
 

@@ -1,4 +1,4 @@
-#include "geometry/decimate_outwards.hpp"
+#include "geometry/simplify/decimate_outwards.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "geometry/mesh_readers.hpp"
+#include "geometry/readers/mesh_readers.hpp"
 
 namespace mmgrasp::detail {
 

@@ -3,9 +3,9 @@
 #include <cstring>
 #include <limits>
 
-#include "geometry/file_content.hpp"
-#include "geometry/mesh_readers.hpp"
-#include "geometry/pcd_reader.hpp"
+#include "geometry/readers/file_content.hpp"
+#include "geometry/readers/mesh_readers.hpp"
+#include "geometry/readers/pcd_reader.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {

@@ -1,6 +1,6 @@
 #include <charconv>
 
-#include "geometry/mesh_readers.hpp"
+#include "geometry/readers/mesh_readers.hpp"
 
 namespace mmgrasp::detail {
 

@@ -6,7 +6,7 @@
 #include <assimp/Importer.hpp>
 
 #include "core/xml_markup.hpp"
-#include "geometry/mesh_readers.hpp"
+#include "geometry/readers/mesh_readers.hpp"
 
 namespace mmgrasp::detail {
 

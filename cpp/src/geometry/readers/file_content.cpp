@@ -1,4 +1,4 @@
-#include "geometry/file_content.hpp"
+#include "geometry/readers/file_content.hpp"
 
 #include <filesystem>
 #include <fstream>

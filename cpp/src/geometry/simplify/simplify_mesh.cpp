@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/decimate_outwards.hpp"
+#include "geometry/simplify/decimate_outwards.hpp"
 #include "geometry/triangle_tree.hpp"
 #include "mmgrasp/core/error.hpp"
 

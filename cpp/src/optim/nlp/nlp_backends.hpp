@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "mmgrasp/optim/nlp_solver.hpp"
-#include "optim/best_iterate.hpp"
+#include "optim/nlp/best_iterate.hpp"
 
 namespace mmgrasp::detail {
 

@@ -1,4 +1,4 @@
-#include "optim/nearest_kept.hpp"
+#include "optim/set_cover/nearest_kept.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "optim/set_cover_reduction.hpp"
+#include "optim/set_cover/set_cover_reduction.hpp"
 
 #include <algorithm>
 

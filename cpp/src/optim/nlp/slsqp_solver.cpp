@@ -7,9 +7,9 @@
 #include <thread>
 #include <vector>
 
-#include "optim/handoff.hpp"
-#include "optim/nearest_kept.hpp"
-#include "optim/nlp_backends.hpp"
+#include "optim/nlp/handoff.hpp"
+#include "optim/nlp/nlp_backends.hpp"
+#include "optim/set_cover/nearest_kept.hpp"
 
 namespace mmgrasp::detail {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "mmgrasp/core/error.hpp"
-#include "optim/set_cover_branching.hpp"
-#include "optim/set_cover_prices.hpp"
-#include "optim/set_cover_reduction.hpp"
+#include "optim/set_cover/set_cover_branching.hpp"
+#include "optim/set_cover/set_cover_prices.hpp"
+#include "optim/set_cover/set_cover_reduction.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
-#include "optim/nlp_backends.hpp"
+#include "optim/nlp/nlp_backends.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -1,4 +1,4 @@
-#include "optim/tour_search.hpp"
+#include "optim/tour/tour_search.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -13,7 +13,7 @@
 #include <mutex>
 #include <thread>
 
-#include "optim/nlp_backends.hpp"
+#include "optim/nlp/nlp_backends.hpp"
 
 namespace mmgrasp::detail {
 namespace {

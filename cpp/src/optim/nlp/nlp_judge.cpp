@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "optim/nlp_backends.hpp"
+#include "optim/nlp/nlp_backends.hpp"
 
 namespace mmgrasp::detail {
 

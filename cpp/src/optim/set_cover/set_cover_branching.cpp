@@ -1,4 +1,4 @@
-#include "optim/set_cover_branching.hpp"
+#include "optim/set_cover/set_cover_branching.hpp"
 
 #include <coin/Cbc_C_Interface.h>
 
@@ -8,7 +8,7 @@
 #include <memory>
 #include <mutex>
 
-#include "optim/set_cover_prices.hpp"
+#include "optim/set_cover/set_cover_prices.hpp"
 
 namespace mmgrasp::detail {
 namespace {

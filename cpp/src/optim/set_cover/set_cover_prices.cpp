@@ -1,4 +1,4 @@
-#include "optim/set_cover_prices.hpp"
+#include "optim/set_cover/set_cover_prices.hpp"
 
 #include <algorithm>
 #include <cmath>

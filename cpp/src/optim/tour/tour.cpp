@@ -6,8 +6,8 @@
 #include <string>
 
 #include "mmgrasp/core/error.hpp"
-#include "optim/tour_bounds.hpp"
-#include "optim/tour_search.hpp"
+#include "optim/tour/tour_bounds.hpp"
+#include "optim/tour/tour_search.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -1,4 +1,4 @@
-#include "optim/tour_bounds.hpp"
+#include "optim/tour/tour_bounds.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "mmgrasp/robot/joint_group.hpp"
-#include "robot/ik_closed_form.hpp"
+#include "robot/ik/ik_closed_form.hpp"
 
 namespace mmgrasp::detail {
 

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "mmgrasp/core/random.hpp"
-#include "robot/ik_candidates.hpp"
-#include "robot/ik_descent.hpp"
+#include "robot/ik/ik_candidates.hpp"
+#include "robot/ik/ik_descent.hpp"
 
 namespace mmgrasp::detail {
 namespace {

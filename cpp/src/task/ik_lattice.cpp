@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "robot/ik_closed_form.hpp"
+#include "robot/ik/ik_closed_form.hpp"
 #include "task/no_clock.hpp"
 #include "task/warm_descent.hpp"
 

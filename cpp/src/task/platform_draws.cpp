@@ -5,8 +5,8 @@
 
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/robot/ik_objective.hpp"
-#include "robot/ik_starts.hpp"
-#include "robot/manipulability.hpp"
+#include "robot/ik/ik_starts.hpp"
+#include "robot/kinematics/manipulability.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -1,0 +1,17 @@
+#include "robot/kinematics/chain_kernel.hpp"
+
+#ifdef MMGRASP_X86_KERNELS
+#define MMGRASP_TARGET __attribute__((target("avx2,fma,avx512f,avx512dq,avx512vl")))
+#define MMGRASP_LANES 8
+
+namespace mmgrasp::detail {
+namespace {
+
+#include "robot/kinematics/chain_batch.inl"
+
+}  // namespace
+
+const KinematicsKernels kAvx512Kinematics{"avx512", MMGRASP_LANES, &single, &batch, &links};
+
+}  // namespace mmgrasp::detail
+#endif

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mmgrasp/robot/joint_group.hpp"
+#include "robot/kinematics/chain_kernel.hpp"
+
+namespace mmgrasp {
+namespace detail {
+
+constexpr int kMaxGroupSize = kMaxColumns;  ///< Lets Jacobians live on the stack.
+
+/// Storage of a TurnTable.
+struct Turns {
+  std::vector<int> column;
+  std::vector<double> multiplier, offset;
+  int add(int at_column, double by, double from);  ///< Returns the entry's index.
+  TurnTable padded();                              ///< Fills the last block; the table is what the kernels read.
+};
+
+/// A floating joint on the way to the tip, between the turns about z that belong to its neighbours.
+struct BallFrame {
+  int column = 0;
+  Eigen::Matrix3d before, after;
+};
+
+/// A joint of the group, or one that mimics it, as a mover of points.
+struct Mover {
+  int joint = 0;
+  int column = 0;
+  double multiplier = 1;
+  Eigen::Vector3d axis;  ///< Turn or slide: in the parent link.
+  int next = -1;         ///< The mover above it.
+};
+
+/// Where the configuration goes: the chain to the tip and every link, flat. Not copied, so that the tables may point
+/// into their storage.
+struct GroupKinematics {
+  GroupKinematics() = default;
+  GroupKinematics(const GroupKinematics&) = delete;
+  GroupKinematics& operator=(const GroupKinematics&) = delete;
+
+  Chain chain;
+  double first_turn = 0;  ///< About the root's z, before the chain begins.
+  std::vector<BallFrame> balls;
+
+  std::vector<LinkStep> steps;  ///< Every link but the root, breadth first.
+  std::vector<int> all_steps, moving_steps;
+  std::vector<int> moving_links;
+  TurnTable link_turns;
+  struct Given {
+    int joint, column;
+  };
+  std::vector<Given> given;  ///< Planar and floating joints of the group.
+
+  std::vector<Mover> movers;
+  std::vector<int> mover_of_link;  ///< The nearest one above or at each link; -1: nothing but the base moves it.
+
+  std::vector<Segment> segment_storage;
+  std::vector<int> still_storage;
+  Turns chain_turn_storage, link_turn_storage;
+};
+
+/// Everything of a group but where its root stands; shared by all its copies.
+struct GroupModel {
+  Robot robot;
+  std::string name;
+  std::vector<std::string> names;
+  std::vector<int> joints;  ///< Robot joint of each column; -1 for the base's.
+  bool has_base = false;
+  int tip_link = 0;
+  Eigen::VectorXd lower, upper, velocity, acceleration, reference;
+  std::vector<bool> wraps;
+  std::shared_ptr<const GroupKinematics> kinematics;
+  double reach = 0;  ///< Bound on the distance from first_joint (or the root) to the tip [m].
+  Eigen::Vector3d first_joint = Eigen::Vector3d::Zero();  ///< Where the chain starts, in the root.
+
+  explicit GroupModel(Robot r) : robot(std::move(r)) {}
+  int base_columns() const { return has_base ? 3 : 0; }
+};
+
+/// Fills the kinematics from robot, joints, limits, tip and reference.
+void flatten(GroupModel& model);
+
+/// How one robot joint depends on the configuration; column -1 when it stands still.
+struct Drive {
+  int column = -1;
+  double multiplier = 1, offset = 0;
+};
+Drive drive_of(const GroupModel& model, int joint);
+/// T_parent_child of a joint that stands at the reference.
+Pose standing_pose(const GroupModel& model, const Joint& joint);
+void flatten_chain(GroupModel& model, GroupKinematics& kinematics);
+void flatten_links(const GroupModel& model, GroupKinematics& kinematics);
+
+/// Joint indices must be movable and not mimic; `tip_link` any link.
+JointGroup make_group(const Robot& robot, const std::string& name, const std::vector<int>& joints, int tip_link,
+                      bool with_base);
+
+}  // namespace detail
+
+struct JointGroup::Data {
+  Data(std::shared_ptr<const detail::GroupModel> model, const Pose& T_world_root);
+  std::shared_ptr<const detail::GroupModel> model;
+  Pose T_world_root;
+  const detail::GroupKinematics* kinematics;  ///< The model's.
+  detail::RootPose root;                      ///< T_world_root with the chain's first turn.
+};
+
+}  // namespace mmgrasp

@@ -1,0 +1,211 @@
+#include <algorithm>
+#include <cmath>
+
+#include "mmgrasp/core/error.hpp"
+#include "robot/kinematics/joint_group_data.hpp"
+#include "robot/model/joint_motion.hpp"
+
+namespace mmgrasp {
+namespace detail {
+namespace {
+
+Eigen::Matrix3d turn_about(const Eigen::Vector3d& axis, double angle) {
+  return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+}
+
+/// One motion about or along z of its frame, before the chain is flat.
+struct Elementary {
+  Eigen::Matrix3d R;  ///< From the frame after the motion before.
+  Eigen::Vector3d p;
+  Motion motion = Motion::turn;
+  Drive drive;
+};
+
+/// Collects motions; what stands still between them is gathered in `fixed`.
+struct Path {
+  std::vector<Elementary> motions;
+  Pose fixed = Pose::Identity();
+
+  /// A motion along or about the z axis of `align`, seen from where the path has come to.
+  void add(const Eigen::Matrix3d& align, Motion motion, const Drive& drive) {
+    motions.push_back({fixed.linear() * align, fixed.translation(), motion, drive});
+    fixed.setIdentity();
+    fixed.linear() = align.transpose();
+  }
+  void slide(const Eigen::Matrix3d& frame, int axis, const Drive& drive) {
+    // z, x and y in turn come to lie along the frame's axis.
+    Eigen::Matrix3d align;
+    align.col(2) = frame.col(axis);
+    align.col(0) = frame.col((axis + 1) % 3);
+    align.col(1) = frame.col((axis + 2) % 3);
+    add(align, Motion::slide, drive);
+  }
+};
+
+Eigen::Matrix3d rotation_from_z(const Eigen::Vector3d& axis) {
+  if (axis == -Eigen::Vector3d::UnitZ()) return Eigen::Vector3d(1, -1, -1).asDiagonal();
+  return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
+}
+
+void add_joint(const Joint& joint, const Drive& drive, Path& path) {
+  path.fixed = path.fixed * joint.T_parent_joint;
+  const auto column = [&](int i) { return Drive{drive.column + i, 1, 0}; };
+  switch (joint.type) {
+    case JointType::fixed:
+      break;
+    case JointType::revolute:
+    case JointType::continuous:
+      path.add(rotation_from_z(joint.axis), Motion::turn, drive);
+      break;
+    case JointType::prismatic:
+      path.add(rotation_from_z(joint.axis), Motion::slide, drive);
+      break;
+    case JointType::planar: {
+      const Eigen::Matrix3d plane = planar_frame(joint.axis);
+      for (int i = 0; i < 2; ++i) path.slide(plane, i, column(i));
+      path.add(plane, Motion::turn, column(2));
+      break;
+    }
+    case JointType::floating:
+      for (int i = 0; i < 3; ++i) path.slide(Eigen::Matrix3d::Identity(), i, column(i));
+      path.add(Eigen::Matrix3d::Identity(), Motion::ball, column(3));
+      break;
+  }
+}
+
+Path path_to_tip(const GroupModel& model) {
+  const std::vector<Joint>& joints = model.robot.joints();
+  std::vector<int> way;
+  for (int link = model.tip_link; link > 0; link = joints[static_cast<std::size_t>(link - 1)].parent_link)
+    way.push_back(link - 1);
+  Path path;
+  for (auto index = way.rbegin(); index != way.rend(); ++index) {
+    const Joint& joint = joints[static_cast<std::size_t>(*index)];
+    const Drive drive = drive_of(model, *index);
+    if (drive.column < 0)
+      path.fixed = path.fixed * standing_pose(model, joint);
+    else
+      add_joint(joint, drive, path);
+  }
+  return path;
+}
+
+/// R = Rz(before) Rx(turn) Rz(after).
+struct ZxzAngles {
+  double before = 0, after = 0;
+  double turn_cos = 1, turn_sin = 0;
+};
+
+ZxzAngles zxz(const Eigen::Matrix3d& R) {
+  ZxzAngles angles;
+  angles.turn_cos = R(2, 2);
+  const double tilt = std::hypot(R(0, 2), R(1, 2));
+  if (tilt > 4e-16) {                              // else the axes coincide to rounding, and there is but one angle
+    angles.turn_sin = R(1, 2) > 0 ? -tilt : tilt;  // of the two ways the one with the smaller turn before
+    angles.before = std::atan2(R(0, 2) / angles.turn_sin, -R(1, 2) / angles.turn_sin);
+  }
+  const double c = std::cos(angles.before), s = std::sin(angles.before);
+  const Eigen::Vector2d x(c * R(0, 0) + s * R(1, 0), c * R(1, 0) - s * R(0, 0));  // column x before the turn about z
+  angles.after = std::atan2(angles.turn_cos * x[1] + angles.turn_sin * R(2, 0), x[0]);
+  return angles;
+}
+
+/// Range of a slide as a length, for the reach bound.
+double travel(const GroupModel& model, const Elementary& motion) {
+  if (motion.motion != Motion::slide) return 0;
+  const double a = motion.drive.multiplier * model.lower[motion.drive.column] + motion.drive.offset;
+  const double b = motion.drive.multiplier * model.upper[motion.drive.column] + motion.drive.offset;
+  return std::max(std::abs(a), std::abs(b));
+}
+
+void bound_reach(const Path& path, GroupModel& model) {
+  const Eigen::Vector3d p_tip = path.fixed.translation();
+  model.reach = 0;
+  model.first_joint = path.motions.empty() ? p_tip : path.motions.front().p;
+  if (path.motions.empty()) return;
+  model.reach = p_tip.norm();
+  for (std::size_t i = 0; i < path.motions.size(); ++i)
+    model.reach += travel(model, path.motions[i]) + (i > 0 ? path.motions[i].p.norm() : 0.0);
+}
+
+double wrapped(double angle) {
+  return std::abs(angle) > M_PI ? std::remainder(angle, 2 * M_PI) : angle;
+}
+
+void copy(const Eigen::Matrix3d& R, double* to) {
+  Eigen::Map<Eigen::Matrix3d>(to, 3, 3) = R;
+}
+
+}  // namespace
+
+int Turns::add(int at_column, double by, double from) {
+  column.push_back(at_column);
+  multiplier.push_back(by);
+  offset.push_back(from);
+  return static_cast<int>(column.size()) - 1;
+}
+
+TurnTable Turns::padded() {
+  const int count = static_cast<int>(column.size());
+  while (column.size() % kTurnBlock != 0) add(0, 0, 0);
+  return {count, column.data(), multiplier.data(), offset.data()};
+}
+
+void flatten_chain(GroupModel& model, GroupKinematics& kinematics) {
+  const Path path = path_to_tip(model);
+  const int count = static_cast<int>(path.motions.size());
+  require(count <= kMaxSegments, "group \"" + model.name + "\" motions on the way to its tip", count,
+          "must be at most " + std::to_string(kMaxSegments));
+  bound_reach(path, model);
+  std::vector<ZxzAngles> angles;
+  for (const Elementary& motion : path.motions) angles.push_back(zxz(motion.R));
+  kinematics.first_turn = count > 0 ? angles.front().before : 0.0;
+  std::vector<bool> seen(model.names.size(), false);
+  for (int i = 0; i < model.base_columns(); ++i) seen[static_cast<std::size_t>(i)] = true;
+  for (int i = 0; i < count; ++i) {
+    const Elementary& motion = path.motions[static_cast<std::size_t>(i)];
+    const ZxzAngles& own = angles[static_cast<std::size_t>(i)];
+    const double next = i + 1 < count ? angles[static_cast<std::size_t>(i + 1)].before : 0.0;
+    Segment segment;
+    const Eigen::Vector3d p = turn_about(Eigen::Vector3d::UnitZ(), -own.before) * motion.p;
+    std::copy(p.data(), p.data() + 3, segment.p);
+    segment.turn_cos = own.turn_cos;
+    segment.turn_sin = own.turn_sin;
+    segment.multiplier = motion.drive.multiplier;
+    segment.offset = motion.drive.offset;
+    segment.column = motion.drive.column;
+    segment.motion = motion.motion;
+    segment.adds = seen[static_cast<std::size_t>(segment.column)];
+    seen[static_cast<std::size_t>(segment.column)] = true;
+    const double between = wrapped(own.after + next);
+    if (motion.motion == Motion::turn) {
+      kinematics.chain_turn_storage.add(segment.column, segment.multiplier, wrapped(own.after + next + segment.offset));
+    } else {
+      kinematics.chain_turn_storage.add(0, 0, motion.motion == Motion::slide ? between : 0.0);
+    }
+    if (motion.motion == Motion::ball) {
+      segment.ball = static_cast<int>(kinematics.balls.size());
+      kinematics.balls.push_back({segment.column, turn_about(Eigen::Vector3d::UnitZ(), own.after),
+                                  turn_about(Eigen::Vector3d::UnitZ(), next)});
+      for (int k = 0; k < 3; ++k) seen[static_cast<std::size_t>(segment.column + k)] = true;
+    }
+    kinematics.segment_storage.push_back(segment);
+  }
+  if (model.has_base) kinematics.chain_turn_storage.add(2, 1, kinematics.first_turn);
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (!seen[i]) kinematics.still_storage.push_back(static_cast<int>(i));
+
+  Chain& chain = kinematics.chain;
+  chain.segments = count;
+  chain.segment = kinematics.segment_storage.data();
+  chain.turns = kinematics.chain_turn_storage.padded();
+  chain.base = model.has_base;
+  chain.columns = static_cast<int>(model.names.size());
+  chain.still_columns = static_cast<int>(kinematics.still_storage.size());
+  chain.still_column = kinematics.still_storage.data();
+  copy(path.fixed.linear(), chain.R_tip);
+  std::copy(path.fixed.translation().data(), path.fixed.translation().data() + 3, chain.p_tip);
+}
+
+}  // namespace detail
+}  // namespace mmgrasp

@@ -1,0 +1,136 @@
+#include <array>
+#include <cmath>
+
+#include "mmgrasp/core/error.hpp"
+#include "robot/kinematics/joint_group_data.hpp"
+#include "robot/model/joint_motion.hpp"
+
+namespace mmgrasp {
+namespace {
+
+using detail::Ball;
+using detail::BallFrame;
+using detail::GroupKinematics;
+using detail::Mover;
+
+/// Works out the balls of a chain; most have none, and pay nothing.
+class Balls {
+ public:
+  Balls(const GroupKinematics& kinematics, const double* q) {
+    if (kinematics.balls.empty()) return;
+    for (std::size_t i = 0; i < kinematics.balls.size(); ++i) {
+      const BallFrame& frame = kinematics.balls[i];
+      const Eigen::Map<const Eigen::Vector3d> w(q + frame.column);
+      Eigen::Map<Eigen::Matrix3d>(balls_[i].R, 3, 3) = frame.before * detail::rotation_of(w) * frame.after;
+      Eigen::Map<Eigen::Matrix3d>(balls_[i].axes, 3, 3) = frame.before * detail::left_jacobian(w);
+    }
+  }
+  const Ball* data() const { return balls_; }
+
+ private:
+  Ball balls_[detail::kMaxBalls];  // not initialised on purpose
+};
+
+}  // namespace
+
+Pose JointGroup::fk(const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  Pose T_world_tip;
+  const Balls balls(*data_->kinematics, q.data());
+  detail::kinematics_kernels().single(data_->kinematics->chain, data_->root, q.data(), balls.data(), T_world_tip.data(),
+                                      nullptr, 0);
+  return T_world_tip;
+}
+
+Matrix6Xd JointGroup::jacobian(const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  Matrix6Xd J(6, size());
+  Pose T_world_tip;
+  fk_jacobian(q, T_world_tip, J);
+  return J;
+}
+
+void JointGroup::fk_jacobian(const Eigen::Ref<const Eigen::VectorXd>& q, Pose& T_world_tip,
+                             Eigen::Ref<Matrix6Xd> J) const {
+  const Balls balls(*data_->kinematics, q.data());
+  detail::kinematics_kernels().single(data_->kinematics->chain, data_->root, q.data(), balls.data(), T_world_tip.data(),
+                                      J.data(), J.outerStride());
+}
+
+void JointGroup::link_poses(const Eigen::Ref<const Eigen::VectorXd>& q, Poses& T_world_link, bool moved_only) const {
+  const GroupKinematics& kinematics = *data_->kinematics;
+  const std::size_t count = robot().links().size();
+  const bool all = !moved_only || T_world_link.size() != count;
+  if (T_world_link.size() != count) T_world_link.assign(count, Pose::Identity());
+  if (all || has_base()) T_world_link[0] = has_base() ? pose_from_planar(q.head<3>()) : data_->T_world_root;
+  alignas(32) double given[16 * (detail::kMaxColumns / 3 + 1)];
+  for (std::size_t i = 0; i < kinematics.given.size(); ++i) {
+    const Joint& joint = robot().joints()[static_cast<std::size_t>(kinematics.given[i].joint)];
+    Eigen::Map<Eigen::Matrix4d>(given + 16 * i) =
+        (joint.T_parent_joint * detail::joint_motion(joint, q.data() + kinematics.given[i].column)).matrix();
+    given[16 * i + 15] = 0;
+  }
+  const std::vector<int>& order = all ? kinematics.all_steps : kinematics.moving_steps;
+  detail::kinematics_kernels().links(kinematics.steps.data(), order.data(), static_cast<int>(order.size()),
+                                     kinematics.link_turns, q.data(), given, T_world_link[0].data());
+}
+
+Matrix6Xd JointGroup::jacobian(const Eigen::Ref<const Eigen::VectorXd>& q, int link,
+                               const Eigen::Vector3d& p_link_point) const {
+  const int count = static_cast<int>(robot().links().size());
+  require(link >= 0 && link < count, "link", link, "must be in [0, " + std::to_string(count) + ")");
+  Poses T_world_link;
+  link_poses(q, T_world_link);
+  Matrix6Xd J(6, size());
+  point_jacobian(T_world_link, q, link, T_world_link[static_cast<std::size_t>(link)] * p_link_point, J);
+  return J;
+}
+
+void JointGroup::point_jacobian(const Poses& T_world_link, const Eigen::Ref<const Eigen::VectorXd>& q, int link,
+                                const Eigen::Vector3d& p_world_point, Eigen::Ref<Matrix6Xd> J) const {
+  const GroupKinematics& kinematics = *data_->kinematics;
+  const std::vector<Joint>& joints = robot().joints();
+  J.setZero();
+  for (int i = kinematics.mover_of_link[static_cast<std::size_t>(link)]; i >= 0;) {
+    const Mover& mover = kinematics.movers[static_cast<std::size_t>(i)];
+    i = mover.next;
+    const Joint& joint = joints[static_cast<std::size_t>(mover.joint)];
+    const auto R_parent = T_world_link[static_cast<std::size_t>(joint.parent_link)].linear();
+    // Whatever turns, turns about the child's origin.
+    const Eigen::Vector3d lever =
+        p_world_point - T_world_link[static_cast<std::size_t>(joint.child_link)].translation();
+    const auto turn = [&](int column, const Eigen::Vector3d& w) {
+      J.col(column).head<3>() += w.cross(lever);
+      J.col(column).tail<3>() += w;
+    };
+    switch (joint.type) {
+      case JointType::fixed:
+        break;
+      case JointType::revolute:
+      case JointType::continuous:
+        turn(mover.column, mover.multiplier * (R_parent * mover.axis));
+        break;
+      case JointType::prismatic:
+        J.col(mover.column).head<3>() += mover.multiplier * (R_parent * mover.axis);
+        break;
+      case JointType::planar: {
+        const Eigen::Matrix3d R = R_parent * joint.T_parent_joint.linear() * detail::planar_frame(joint.axis);
+        J.block<3, 2>(0, mover.column) = R.leftCols<2>();
+        turn(mover.column + 2, R.col(2));
+        break;
+      }
+      case JointType::floating: {
+        const Eigen::Matrix3d R = R_parent * joint.T_parent_joint.linear();
+        J.block<3, 3>(0, mover.column) = R;
+        const Eigen::Matrix3d W = R * detail::left_jacobian(q.segment<3>(mover.column + 3));
+        for (int k = 0; k < 3; ++k) turn(mover.column + 3 + k, W.col(k));
+        break;
+      }
+    }
+  }
+  if (!has_base()) return;
+  const Eigen::Vector3d lever = p_world_point - T_world_link[0].translation();
+  J(0, 0) = 1;
+  J(1, 1) = 1;
+  J.col(2) << -lever[1], lever[0], 0, 0, 0, 1;
+}
+
+}  // namespace mmgrasp

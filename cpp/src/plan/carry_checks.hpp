@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "collision/held_checker.hpp"
+#include "collision/edge/held_checker.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
 #include "mmgrasp/robot/trajectory.hpp"

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "collision/bodies.hpp"
-#include "collision/narrow.hpp"
+#include "collision/checker/bodies.hpp"
+#include "collision/narrow/narrow.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "support/mesh_robots.hpp"
 

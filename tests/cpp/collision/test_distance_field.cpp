@@ -1,11 +1,11 @@
-#include "collision/distance_field.hpp"
+#include "collision/broad/distance_field.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "collision/solid.hpp"
+#include "collision/narrow/solid.hpp"
 #include "mmgrasp/core/random.hpp"
 
 // What a distance field of a mesh promises, against distances to every triangle by vector algebra of its own.

@@ -1,11 +1,11 @@
-#include "collision/gap_table.hpp"
+#include "collision/checker/gap_table.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <thread>
 
-#include "collision/narrow.hpp"
+#include "collision/narrow/narrow.hpp"
 #include "mmgrasp/core/random.hpp"
 
 // What a table says of two dented bodies, against the gap measured in the very pose. The pose is composed here by

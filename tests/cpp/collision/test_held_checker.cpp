@@ -1,4 +1,4 @@
-#include "collision/held_checker.hpp"
+#include "collision/edge/held_checker.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "collision/kernels.hpp"
+#include "collision/broad/kernels.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "collision/narrow.hpp"
+#include "collision/narrow/narrow.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "collision/distance_field.hpp"
+#include "collision/broad/distance_field.hpp"
 #include "mmgrasp/core/random.hpp"
 
 // Whether two bodies are farther apart than a given gap, against their distance.

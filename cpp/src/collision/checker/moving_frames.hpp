@@ -1,0 +1,52 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/broad/kernels.hpp"
+#include "collision/narrow/convex.hpp"
+#include "mmgrasp/robot/joint_group.hpp"
+
+namespace mmgrasp::detail {
+
+/// Forward kinematics for collision checks: one frame for each joint the group moves, links rigidly joined to it (or
+/// held at the reference) folded in. Frame 0 is the robot's root. Immutable.
+class MMGRASP_EXPORT MovingFrames {
+ public:
+  explicit MovingFrames(const JointGroup& group);
+
+  int count() const { return static_cast<int>(steps_.size()) + 1; }
+  bool has_base() const { return has_base_; }
+  int frame_of(int link) const { return frame_of_[link]; }
+  const Rigid& link_in_frame(int link) const { return link_in_frame_[link]; }
+
+  /// frames: 16 numbers each (see Kernels::place_frames). The root must have been set unless the group has the base.
+  void place(const double* q, double* frames) const;
+  static void set(const Rigid& T, double* frame);
+  static Rigid get(const double* frame);
+
+  const std::vector<FrameStep>& steps() const { return steps_; }
+  /// A joint's frame in its parent's while the joint is at zero.
+  static Rigid rest(const FrameStep& step);
+  /// Numbers in a configuration.
+  int columns() const { return columns_; }
+  /// Bound on how fast a point at most `radius` from the origin of `frame` moves against frame `against` (one on its
+  /// way to the root, or -1: the world) per unit of each column [m/rad or m/m] while no column exceeds `largest` in
+  /// magnitude; added to `rates`.
+  void add_rates(int frame, double radius, int against, const Eigen::VectorXd& largest, Eigen::VectorXd& rates) const;
+  /// Bound on how fast the bodies within two balls can close a gap between them, likewise. Turning about a joint
+  /// between them closes it no faster than the nearer of the two can move: either may be taken for the one that turns.
+  void add_closing_rates(const FrameBall& a, const FrameBall& b, const Eigen::VectorXd& largest,
+                         Eigen::VectorXd& rates) const;
+
+ private:
+  bool has_base_;
+  int columns_;
+  /// The last frame on both ways to the root.
+  int common_frame(int a, int b) const;
+
+  std::vector<FrameStep> steps_;
+  std::vector<int> frame_of_;
+  std::vector<Rigid> link_in_frame_;
+};
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <limits>
+
+#include "collision/narrow/solid.hpp"
+
+namespace mmgrasp::detail {
+
+/// True when a, placed at T_a, and b at T_b touch (or come within the sum of their margins). Closed meshes are solid.
+/// With `more` > 0 [m], false means that they are farther apart by more than that; true proves nothing.
+MMGRASP_EXPORT bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double more = 0);
+
+class DistanceField;
+/// The same answer for two meshes whose bodies are known to be close, sooner: `field` (of a) says which triangles of b
+/// need no look, `hulls_meet` that their hulls do.
+MMGRASP_EXPORT bool meshes_collide(const Solid& a, const Rigid& T_a, const DistanceField& field, const Solid& b,
+                                   const Rigid& T_b, double more = 0, bool hulls_meet = false);
+
+/// distance = normal . (on_a - on_b).
+struct SolidGap {
+  double distance = std::numeric_limits<double>::infinity();  ///< [m]; negative when they overlap.
+  Eigen::Vector3d on_a = Eigen::Vector3d::Zero();             ///< World frame.
+  Eigen::Vector3d on_b = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< Unit, world frame, the way a goes to get away from b.
+};
+
+/// Gap between the two, margins not counted. Exact below `bound`; otherwise the distance is infinite. Overlap: the
+/// exact depth for convex bodies; for meshes that of their hulls (bounding boxes where there is no hull), which no
+/// shift needs to exceed; for voxels that of the deepest cell.
+MMGRASP_EXPORT SolidGap solids_distance(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b,
+                                        double bound = std::numeric_limits<double>::infinity());
+
+/// A number the distance is not below, from bounding boxes; cheap. Minus infinity for planes and where boxes overlap.
+double boxes_gap(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b);
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,266 @@
+#include <algorithm>
+
+#include "collision/broad/distance_field.hpp"
+#include "collision/narrow/narrow.hpp"
+
+namespace mmgrasp::detail {
+
+namespace {
+
+// Everything about a pair that its tests share: b seen from a.
+struct PairFrame {
+  PairFrame(const Rigid& T_a, const Rigid& T_b) : b_in_a(T_a.to(T_b)), abs_R(b_in_a.R.cwiseAbs()) {}
+  Rigid b_in_a;
+  Eigen::Matrix3d abs_R;
+};
+
+bool nodes_overlap(const BoxTree::Node& a, const BoxTree::Node& b, const PairFrame& frame, double margin) {
+  return boxes_overlap(a.half, b.half, frame.b_in_a.R, frame.abs_R, frame.b_in_a * b.centre - a.centre, margin);
+}
+
+bool pieces_collide(const Convex& a, const Convex& b, const Rigid& b_in_a, double margin) {
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  return convex_collide(a, b, b_in_a, margin, axis);
+}
+
+// Some triangle or voxel of a against the convex body b.
+bool tree_hits_convex(const Solid& a, const Solid& b, const PairFrame& frame, double margin) {
+  BoxTree::Node body;
+  body.centre = b.box_centre;
+  body.half = b.box_half;
+  int stack[64], size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const BoxTree::Node& node = a.tree.nodes()[stack[--size]];
+    if (!nodes_overlap(node, body, frame, margin)) continue;
+    if (node.count == 0) {
+      stack[size++] = node.first + 1;
+      stack[size++] = node.first;
+      continue;
+    }
+    for (int i = node.first; i < node.first + node.count; ++i) {
+      if (pieces_collide(a.piece(i), b.core, frame.b_in_a, margin)) return true;
+    }
+  }
+  return false;
+}
+
+bool leaves_collide(const Solid& a, const BoxTree::Node& na, const Solid& b, const BoxTree::Node& nb,
+                    const Rigid& b_in_a, double margin) {
+  for (int i = na.first; i < na.first + na.count; ++i) {
+    const Convex piece = a.piece(i);
+    for (int j = nb.first; j < nb.first + nb.count; ++j) {
+      if (pieces_collide(piece, b.piece(j), b_in_a, margin)) return true;
+    }
+  }
+  return false;
+}
+
+// Triangles and voxels of both, larger node first.
+bool tree_hits_tree(const Solid& a, const Solid& b, const PairFrame& frame, double margin) {
+  std::pair<int, int> stack[160];
+  int size = 0;
+  stack[size++] = {0, 0};
+  while (size > 0) {
+    const auto [ia, ib] = stack[--size];
+    const BoxTree::Node &na = a.tree.nodes()[ia], &nb = b.tree.nodes()[ib];
+    if (!nodes_overlap(na, nb, frame, margin)) continue;
+    if (na.count > 0 && nb.count > 0) {
+      if (leaves_collide(a, na, b, nb, frame.b_in_a, margin)) return true;
+    } else if (nb.count > 0 || (na.count == 0 && na.half.squaredNorm() > nb.half.squaredNorm())) {
+      stack[size++] = {na.first + 1, ib};
+      stack[size++] = {na.first, ib};
+    } else {
+      stack[size++] = {ia, nb.first + 1};
+      stack[size++] = {ia, nb.first};
+    }
+  }
+  return false;
+}
+
+// The space a triangle takes, for boxes that do not meet it: its bounds, its plane and the planes through its edges.
+class TriangleSpace {
+ public:
+  TriangleSpace(const Convex& triangle, const Rigid& placed, double margin) {
+    const double* p = triangle.points;
+    Eigen::Vector3d corner[3];
+    Eigen::AlignedBox3d bounds;
+    for (int i = 0; i < 3; ++i) {
+      corner[i] = placed * Eigen::Vector3d(p[i], p[3 + i], p[6 + i]);
+      bounds.extend(corner[i]);
+    }
+    const double grown = margin + 1e-9;
+    centre_ = bounds.center();
+    half_ = 0.5 * bounds.sizes() + Eigen::Vector3d::Constant(grown);
+    const Eigen::Vector3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+    add(normal, corner[0], grown);
+    add(-normal, corner[0], grown);
+    for (int i = 0; i < 3; ++i) add((corner[(i + 1) % 3] - corner[i]).cross(normal), corner[i], grown);
+  }
+
+  bool misses(const BoxTree::Node& box) const {
+    if (((box.centre - centre_).cwiseAbs() - box.half - half_).maxCoeff() > 0) return true;
+    for (int i = 0; i < count_; ++i) {
+      if (normal_[i].dot(box.centre) - normal_[i].cwiseAbs().dot(box.half) > offset_[i]) return true;
+    }
+    return false;
+  }
+
+ private:
+  // Slivers have no direction worth trusting.
+  void add(const Eigen::Vector3d& normal, const Eigen::Vector3d& point, double grown) {
+    const double length = normal.norm();
+    if (!(length > 1e-10 * half_.squaredNorm())) return;
+    normal_[count_] = normal / length;
+    offset_[count_] = normal_[count_].dot(point) + grown;
+    ++count_;
+  }
+
+  Eigen::Vector3d centre_, half_, normal_[5];
+  double offset_[5];
+  int count_ = 0;
+};
+
+// A single triangle (a hull of three points) of another body against the tree.
+bool tree_hits_triangle(const Solid& a, const Convex& triangle, const Rigid& b_in_a, double margin) {
+  const TriangleSpace space(triangle, b_in_a, margin);
+  int stack[64], size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const BoxTree::Node& node = a.tree.nodes()[stack[--size]];
+    if (space.misses(node)) continue;
+    if (node.count == 0) {
+      stack[size++] = node.first + 1;
+      stack[size++] = node.first;
+      continue;
+    }
+    for (int i = node.first; i < node.first + node.count; ++i) {
+      if (pieces_collide(a.piece(i), triangle, b_in_a, margin)) return true;
+    }
+  }
+  return false;
+}
+
+// True when the field proves the triangle farther away than the margin, cutting it in halves where it must.
+bool field_clears(const DistanceField& field, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                  const Eigen::Vector3d& c, double margin, int cuts) {
+  const Eigen::Vector3d middle = (a + b + c) / 3;
+  const double distance = field.distance(middle) - margin;
+  if (distance <= 0) return false;
+  const double squared = std::max({(a - middle).squaredNorm(), (b - middle).squaredNorm(), (c - middle).squaredNorm()});
+  if (distance * distance > squared) return true;
+  if (cuts == 0) return false;
+  const auto halves = [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Eigen::Vector3d& other) {
+    const Eigen::Vector3d half = 0.5 * (from + to);
+    return field_clears(field, from, half, other, margin, cuts - 1) &&
+           field_clears(field, half, to, other, margin, cuts - 1);
+  };
+  const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
+  if (ab >= bc && ab >= ca) return halves(a, b, c);
+  return bc >= ca ? halves(b, c, a) : halves(c, a, b);
+}
+
+// More halves cost more than the exact look they may save.
+constexpr int kCuts = 1;
+
+// Triangles of b that the field of a cannot rule out, against the tree of a.
+bool tree_hits_field(const Solid& a, const DistanceField& field, const Solid& b, const PairFrame& frame,
+                     double margin) {
+  int stack[64], size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const BoxTree::Node& node = b.tree.nodes()[stack[--size]];
+    if (field.distance(frame.b_in_a * node.centre) > node.half.norm() + margin) continue;
+    if (node.count == 0) {
+      stack[size++] = node.first + 1;
+      stack[size++] = node.first;
+      continue;
+    }
+    for (int i = node.first; i < node.first + node.count; ++i) {
+      const Convex triangle = b.piece(i);
+      const double* p = triangle.points;
+      Eigen::Vector3d corner[3];
+      for (int c = 0; c < 3; ++c) corner[c] = frame.b_in_a * Eigen::Vector3d(p[c], p[3 + c], p[6 + c]);
+      if (field_clears(field, corner[0], corner[1], corner[2], margin, kCuts)) continue;
+      if (tree_hits_triangle(a, triangle, frame.b_in_a, margin)) return true;
+    }
+  }
+  return false;
+}
+
+// b inside the closed mesh a, given that their surfaces do not meet: then each connected part is in or out as a whole.
+bool inside(const Solid& a, const Solid& b, const Rigid& b_in_a) {
+  if (a.kind != SolidKind::mesh || !a.closed) return false;
+  if (b.kind == SolidKind::convex) return a.contains(b_in_a * b.core.centre);
+  for (const Eigen::Vector3d& point : b.part_points) {
+    if (a.contains(b_in_a * point)) return true;
+  }
+  return false;
+}
+
+double lowest_along(const Solid& body, const Eigen::Vector3d& normal) {
+  if (body.kind == SolidKind::convex) return normal.dot(body.core.support(-normal)) - body.core.radius * normal.norm();
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const auto& t : body.triangles) {
+    for (int c = 0; c < 3; ++c)
+      lowest = std::min(lowest, normal[0] * t[c] + normal[1] * t[3 + c] + normal[2] * t[6 + c]);
+  }
+  const double half = body.cell_half * normal.lpNorm<1>();
+  for (const Eigen::Vector3d& cell : body.cells) lowest = std::min(lowest, normal.dot(cell) - half);
+  return lowest;
+}
+
+bool plane_collides(const Solid& plane, const Solid& b, const Rigid& b_in_a, double margin) {
+  const Eigen::Vector3d normal = b_in_a.R.transpose() * plane.normal;  // in the frame of b
+  const double shift = plane.normal.dot(b_in_a.t);
+  if (b.kind == SolidKind::plane) {
+    // Half-spaces miss each other only when they look away from each other with a gap between.
+    const bool opposite = (normal + b.normal).norm() < 1e-9;
+    return !opposite || shift - b.offset <= plane.offset + margin;
+  }
+  return lowest_along(b, normal) + shift <= plane.offset + margin;
+}
+
+}  // namespace
+
+bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double more) {
+  if (a.never_collides() || b.never_collides()) return false;
+  if (a.kind != SolidKind::plane && b.kind == SolidKind::plane) return solids_collide(b, T_b, a, T_a, more);
+  const bool a_is_tree = a.kind == SolidKind::mesh || a.kind == SolidKind::voxels;
+  const bool b_is_tree = b.kind == SolidKind::mesh || b.kind == SolidKind::voxels;
+  if (!a_is_tree && b_is_tree && a.kind != SolidKind::plane) return solids_collide(b, T_b, a, T_a, more);
+
+  const PairFrame frame(T_a, T_b);
+  const double margin = a.margin + b.margin + more;
+  if (a.kind == SolidKind::plane) return plane_collides(a, b, frame.b_in_a, margin);
+
+  const Eigen::Vector3d between = frame.b_in_a * b.box_centre - a.box_centre;
+  if (!boxes_overlap(a.box_half, b.box_half, frame.b_in_a.R, frame.abs_R, between, margin)) return false;
+  if (a.is_box && b.is_box) return true;
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  const bool a_bounded = !a_is_tree || a.has_hull, b_bounded = !b_is_tree || b.has_hull;
+  if (a_bounded && b_bounded) {
+    const bool hit = convex_collide(a.core, b.core, frame.b_in_a, margin, axis);
+    if (!hit || (!a_is_tree && !b_is_tree)) return hit;
+  }
+  if ((!a_is_tree || a.has_inner) && (!b_is_tree || b.has_inner)) {
+    if (convex_collide(a_is_tree ? a.inner : a.core, b_is_tree ? b.inner : b.core, frame.b_in_a, margin, axis))
+      return true;
+  }
+  if (b_is_tree ? tree_hits_tree(a, b, frame, margin) : tree_hits_convex(a, b, frame, margin)) return true;
+  return inside(a, b, frame.b_in_a) || inside(b, a, T_b.to(T_a));
+}
+
+bool meshes_collide(const Solid& a, const Rigid& T_a, const DistanceField& field, const Solid& b, const Rigid& T_b,
+                    double more, bool hulls_meet) {
+  const PairFrame frame(T_a, T_b);
+  const double margin = a.margin + b.margin + more;
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  if (!hulls_meet && a.has_hull && b.has_hull && !convex_collide(a.core, b.core, frame.b_in_a, margin, axis))
+    return false;
+  if (a.has_inner && b.has_inner && convex_collide(a.inner, b.inner, frame.b_in_a, margin, axis)) return true;
+  if (tree_hits_field(a, field, b, frame, margin)) return true;
+  return inside(a, b, frame.b_in_a) || inside(b, a, T_b.to(T_a));
+}
+
+}  // namespace mmgrasp::detail

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
-#include "reach/reach_data.hpp"
+#include "reach/database/reach_data.hpp"
 
 namespace mmgrasp {
 namespace detail {

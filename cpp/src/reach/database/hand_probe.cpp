@@ -1,4 +1,4 @@
-#include "reach/hand_probe.hpp"
+#include "reach/database/hand_probe.hpp"
 
 #include "mmgrasp/core/random.hpp"
 

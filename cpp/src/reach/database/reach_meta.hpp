@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "reach/reach_data.hpp"
+#include "reach/database/reach_data.hpp"
 
 namespace mmgrasp::detail {
 

@@ -1,4 +1,4 @@
-#include "reach/shard_store.hpp"
+#include "reach/database/shard_store.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -11,7 +11,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "reach/crc32.hpp"
-#include "reach/reach_data.hpp"
+#include "reach/database/reach_data.hpp"
 
 namespace mmgrasp::detail {
 namespace {

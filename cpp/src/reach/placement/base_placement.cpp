@@ -9,8 +9,8 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
-#include "reach/reach_data.hpp"
-#include "reach/seeded_ik.hpp"
+#include "reach/database/reach_data.hpp"
+#include "reach/database/seeded_ik.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/hash.hpp"
-#include "reach/reach_data.hpp"
+#include "reach/database/reach_data.hpp"
 
 namespace mmgrasp {
 

@@ -4,8 +4,8 @@
 
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/robot/ik.hpp"
-#include "reach/branch_table.hpp"
-#include "reach/hand_probe.hpp"
+#include "reach/database/branch_table.hpp"
+#include "reach/database/hand_probe.hpp"
 
 namespace mmgrasp::detail {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "reach/shard_store.hpp"
+#include "reach/database/shard_store.hpp"
 
 namespace mmgrasp::detail {
 

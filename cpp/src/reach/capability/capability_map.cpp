@@ -5,7 +5,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/hash.hpp"
-#include "reach/capability_data.hpp"
+#include "reach/capability/capability_data.hpp"
 
 namespace mmgrasp {
 namespace {

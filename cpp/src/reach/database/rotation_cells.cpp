@@ -1,4 +1,4 @@
-#include "reach/rotation_cells.hpp"
+#include "reach/database/rotation_cells.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "reach/sample_shard.hpp"
+#include "reach/database/sample_shard.hpp"
 
 namespace mmgrasp::detail {
 

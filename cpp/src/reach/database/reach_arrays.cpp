@@ -1,6 +1,6 @@
 #include "mmgrasp/reach/reach_arrays.hpp"
 
-#include "reach/reach_data.hpp"
+#include "reach/database/reach_data.hpp"
 
 namespace mmgrasp {
 

@@ -1,11 +1,11 @@
-#include "reach/shard_merge.hpp"
+#include "reach/database/shard_merge.hpp"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <map>
 
-#include "reach/reach_data.hpp"
+#include "reach/database/reach_data.hpp"
 
 namespace mmgrasp::detail {
 namespace {

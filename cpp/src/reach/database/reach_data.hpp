@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "mmgrasp/reach/reach_database.hpp"
+#include "reach/database/rotation_cells.hpp"
+#include "reach/database/stored_arm.hpp"
 #include "reach/npy_file.hpp"
-#include "reach/rotation_cells.hpp"
-#include "reach/stored_arm.hpp"
 
 namespace mmgrasp::detail {
 

@@ -1,4 +1,4 @@
-#include "reach/reach_meta.hpp"
+#include "reach/database/reach_meta.hpp"
 
 #include <algorithm>
 #include <cstdio>

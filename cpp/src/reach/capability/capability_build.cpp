@@ -6,8 +6,8 @@
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/reach/reach_database.hpp"
-#include "reach/capability_data.hpp"
-#include "reach/pose_search.hpp"
+#include "reach/capability/capability_data.hpp"
+#include "reach/database/pose_search.hpp"
 
 namespace mmgrasp {
 namespace {

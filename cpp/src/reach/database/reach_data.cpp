@@ -1,4 +1,4 @@
-#include "reach/reach_data.hpp"
+#include "reach/database/reach_data.hpp"
 
 #include <sys/mman.h>
 

@@ -6,7 +6,7 @@
 #include <shared_mutex>
 #include <vector>
 
-#include "reach/cell_counter.hpp"
+#include "reach/database/cell_counter.hpp"
 
 namespace mmgrasp::detail {
 

@@ -1,4 +1,4 @@
-#include "reach/stored_arm.hpp"
+#include "reach/database/stored_arm.hpp"
 
 #include <algorithm>
 #include <cmath>

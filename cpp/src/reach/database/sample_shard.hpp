@@ -8,9 +8,9 @@
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/reach/reach_database.hpp"
-#include "reach/fill_table.hpp"
-#include "reach/rotation_cells.hpp"
-#include "reach/stored_arm.hpp"
+#include "reach/database/fill_table.hpp"
+#include "reach/database/rotation_cells.hpp"
+#include "reach/database/stored_arm.hpp"
 
 namespace mmgrasp::detail {
 

@@ -1,4 +1,4 @@
-#include "reach/pose_search.hpp"
+#include "reach/database/pose_search.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "reach/branch_table.hpp"
+#include "reach/database/branch_table.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,11 +5,11 @@
 #include <iterator>
 
 #include "mmgrasp/core/error.hpp"
-#include "reach/capability_data.hpp"
+#include "reach/capability/capability_data.hpp"
 #include "reach/crc32.hpp"
+#include "reach/database/reach_data.hpp"
 #include "reach/json_value.hpp"
 #include "reach/npy_file.hpp"
-#include "reach/reach_data.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -12,8 +12,8 @@
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/reach/reach_parts.hpp"
-#include "reach/reach_meta.hpp"
-#include "reach/shard_merge.hpp"
+#include "reach/database/reach_meta.hpp"
+#include "reach/database/shard_merge.hpp"
 
 namespace mmgrasp {
 namespace {

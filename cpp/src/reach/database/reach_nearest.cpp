@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mmgrasp/core/error.hpp"
-#include "reach/reach_data.hpp"
+#include "reach/database/reach_data.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
-#include "reach/reach_meta.hpp"
+#include "reach/database/reach_meta.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -1,4 +1,4 @@
-#include "reach/sample_shard.hpp"
+#include "reach/database/sample_shard.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/robot/kinematics_batch.hpp"
-#include "reach/reach_data.hpp"
+#include "reach/database/reach_data.hpp"
 
 namespace mmgrasp::detail {
 namespace {

@@ -1,4 +1,4 @@
-#include "grasp/graspability_layers.hpp"
+#include "grasp/graspability/graspability_layers.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "grasp/row_spans.hpp"
+#include "grasp/hand/row_spans.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "grasp/contact_pairs.hpp"
+#include "grasp/sampling/contact_pairs.hpp"
 #include "mmgrasp/core/random.hpp"
 
 namespace mmgrasp::detail {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "grasp/row_spans.hpp"
+#include "grasp/hand/row_spans.hpp"
 #include "mmgrasp/grasp/graspability.hpp"
 
 namespace mmgrasp::detail {

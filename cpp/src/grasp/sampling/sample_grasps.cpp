@@ -2,7 +2,7 @@
 #include <cmath>
 #include <map>
 
-#include "grasp/contact_pairs.hpp"
+#include "grasp/sampling/contact_pairs.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/grasp/grasp.hpp"
 

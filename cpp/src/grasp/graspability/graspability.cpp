@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "grasp/graspability_layers.hpp"
+#include "grasp/graspability/graspability_layers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "grasp/graspability_layers.hpp"
+#include "grasp/graspability/graspability_layers.hpp"
 
 namespace mmgrasp::detail {
 namespace {

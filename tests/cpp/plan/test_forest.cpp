@@ -1,4 +1,4 @@
-#include "plan/forest.hpp"
+#include "plan/manipulation/rrt_star_mg/forest.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <tuple>
 
 #include "mmgrasp/core/random.hpp"
-#include "plan/check_memory.hpp"
+#include "plan/motion/check_memory.hpp"
 
 namespace mmgrasp::detail {
 namespace {

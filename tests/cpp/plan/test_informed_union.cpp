@@ -1,4 +1,4 @@
-#include "plan/informed_union.hpp"
+#include "plan/manipulation/common/informed_union.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include "mmgrasp/core/error.hpp"
 #include "plan/bar_carry.hpp"
 #include "plan/planar_arm.hpp"
-#include "plan/roadmap_data.hpp"
+#include "plan/roadmap/roadmap_data.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -1,5 +1,5 @@
 // What is shared between grasps, and what is not: the robot's contacts are all grasps', the held object's one grasp's.
-#include "plan/overlay_checks.hpp"
+#include "plan/manipulation/prm_star_mg/overlay_checks.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/robot/ik.hpp"
 #include "plan/bar_carry.hpp"
-#include "plan/roadmap_data.hpp"
+#include "plan/roadmap/roadmap_data.hpp"
 
 namespace mmgrasp {
 namespace {

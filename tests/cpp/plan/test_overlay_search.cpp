@@ -1,4 +1,4 @@
-#include "plan/overlay_search.hpp"
+#include "plan/manipulation/prm_star_mg/overlay_search.hpp"
 
 #include <gtest/gtest.h>
 

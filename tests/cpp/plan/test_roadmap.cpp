@@ -11,7 +11,7 @@
 
 #include "mmgrasp/core/parallel.hpp"
 #include "plan/planar_arm.hpp"
-#include "plan/roadmap_data.hpp"
+#include "plan/roadmap/roadmap_data.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -1,4 +1,4 @@
-#include "plan/roadmap_search.hpp"
+#include "plan/manipulation/prm_star_mg/roadmap_search.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,157 @@
+#include "mmgrasp/plan/cartesian.hpp"
+
+#include <algorithm>
+
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/robot/ik_branches.hpp"
+#include "plan/motion/beyond_limits.hpp"
+#include "plan/motion/joint_angles.hpp"
+#include "plan/motion/steered_base.hpp"
+
+namespace mmgrasp {
+namespace {
+
+/// Begins with what is nearest to `near`, or as inverse kinematics orders them.
+class BranchSearch {
+ public:
+  BranchSearch(CollisionChecker& checker, const Poses& poses, const std::optional<Eigen::VectorXd>& near,
+               const CartesianOptions& options, const Monitor& monitor)
+      : checker_(checker), poses_(poses), near_(near), options_(options), monitor_(monitor) {}
+
+  CartesianResult run() {
+    find_branches();
+    result_.branches = static_cast<int>(branches_.size());
+    for (const auto& q : branches_) {
+      if (result_.tried == options_.max_branches || way_to(q) >= best_cost_ || monitor_.stopped()) break;
+      follow(q);
+      monitor_.report("cartesian path", static_cast<double>(++result_.tried) / result_.branches);
+    }
+    result_.outcome = result_.path ? Outcome::solved : Outcome::infeasible;
+    if (branches_.empty()) refuse_start();
+    if (monitor_.stopped()) {
+      result_.outcome = Outcome::stopped;
+      result_.path.reset();
+      result_.corners.clear();
+    }
+    return std::move(result_);
+  }
+
+ private:
+  void find_branches() {
+    const IkOptions& ik = options_.line.ik;
+    const auto allowed = [&](const Eigen::VectorXd& q) {
+      const Rejection cause = checker_.rejection(q);
+      if (cause == Rejection::scene && !scene_contact_) scene_contact_ = checker_.first_contact(q);
+      if (cause == Rejection::self_collision && !self_contact_) self_contact_ = checker_.first_contact(q);
+      return cause;
+    };
+    IkBranches found = solve_ik_branches(checker_.group(), poses_.front(), ik, allowed, 0, monitor_);
+    result_.rejections = found.rejections;
+    branches_ = std::move(found.solutions);
+    if (!near_) return;
+    for (auto& q : branches_) q = turned_to_near(q);
+    std::stable_sort(branches_.begin(), branches_.end(),
+                     [&](const auto& a, const auto& b) { return way_to(a) < way_to(b); });
+    if (near_is_there() && checker_.is_free(*near_)) branches_.insert(branches_.begin(), *near_);
+  }
+
+  bool near_is_there() const {
+    const IkOptions& ik = options_.line.ik;
+    const Pose at = checker_.group().fk(*near_);
+    return (at.translation() - poses_.front().translation()).norm() <= ik.position_tolerance &&
+           rotation_distance(at, poses_.front()) <= ik.rotation_tolerance;
+  }
+
+  /// Says what keeps the arm from the first pose.
+  void refuse_start() {
+    if (near_ && near_is_there()) return refuse_near();
+    result_.cause = most(result_.rejections);
+    if (result_.cause != Rejection::reach) result_.outcome = Outcome::invalid_start;
+    if (result_.cause == Rejection::scene) result_.contact = scene_contact_;
+    if (result_.cause == Rejection::self_collision) result_.contact = self_contact_;
+  }
+
+  /// `near` reaches the first pose, whatever inverse kinematics found.
+  void refuse_near() {
+    result_.outcome = Outcome::invalid_start;
+    result_.cause = checker_.rejection(*near_);
+    if (result_.cause == Rejection::scene || result_.cause == Rejection::self_collision)
+      result_.contact = checker_.first_contact(*near_);
+    result_.beyond_limits = detail::beyond_limits(checker_.group(), *near_);
+  }
+
+  /// In the turn of continuous joints that is nearest.
+  Eigen::VectorXd turned_to_near(const Eigen::VectorXd& q) const {
+    return detail::nearest_turn(checker_.group().wraps(), *near_, q);
+  }
+
+  double way_to(const Eigen::VectorXd& q) const { return near_ ? (q - *near_).norm() : 0; }
+
+  void follow(const Eigen::VectorXd& first) {
+    JointPath path{{first}};
+    std::vector<int> corners{0};
+    const double lines = static_cast<double>(poses_.size() - 1);
+    Monitor stop;  // Silent: progress is told by branches.
+    stop.stop = monitor_.stop;
+    for (std::size_t i = 1; i < poses_.size(); ++i) {
+      StraightLineResult line = plan_straight_line(checker_, path.waypoints.back(), poses_[i], options_.line, stop);
+      if (line.outcome != Outcome::solved) {
+        const double fraction = (static_cast<double>(i - 1) + line.fraction) / lines;
+        if (result_.path || fraction < result_.fraction) return;
+        result_.fraction = fraction;
+        result_.cause = line.cause;
+        result_.contact = std::move(line.contact);
+        return;
+      }
+      path.waypoints.insert(path.waypoints.end(), line.path->waypoints.begin() + 1, line.path->waypoints.end());
+      corners.push_back(static_cast<int>(path.waypoints.size()) - 1);
+    }
+    const double cost = way_to(first) + path.length();
+    if (cost >= best_cost_) return;
+    best_cost_ = cost;
+    result_.path = std::move(path);
+    result_.corners = std::move(corners);
+    result_.fraction = 1;
+    result_.cause = Rejection::none;
+    result_.contact.reset();
+  }
+
+  static Rejection most(const Rejections& r) {
+    if (r.scene > 0) return Rejection::scene;
+    if (r.self_collision > 0) return Rejection::self_collision;
+    return r.limits > 0 ? Rejection::limits : Rejection::reach;
+  }
+
+  CollisionChecker& checker_;
+  const Poses& poses_;
+  const std::optional<Eigen::VectorXd>& near_;
+  const CartesianOptions& options_;
+  const Monitor& monitor_;
+  std::optional<Contact> scene_contact_, self_contact_;  ///< Of the first pose's configurations.
+  std::vector<Eigen::VectorXd> branches_;
+  double best_cost_ = std::numeric_limits<double>::infinity();
+  CartesianResult result_;
+};
+
+}  // namespace
+
+void CartesianOptions::check() const {
+  line.check();
+  require(max_branches > 0, "max_branches", max_branches, "must be > 0");
+}
+
+CartesianResult plan_cartesian(CollisionChecker& checker, const Poses& T_world_tip,
+                               const std::optional<Eigen::VectorXd>& near, const CartesianOptions& options,
+                               const Monitor& monitor) {
+  options.check();
+  detail::refuse_steered_base(checker.group(), "plan_cartesian");
+  require(T_world_tip.size() >= 2, "tool_poses", static_cast<double>(T_world_tip.size()),
+          "must hold two poses or more");
+  for (std::size_t i = 0; i < T_world_tip.size(); ++i) {
+    checked_pose(T_world_tip[i].matrix(), "tool_poses[" + std::to_string(i) + "]");
+  }
+  if (near) checker.group().check_configuration(*near, "near");
+  return BranchSearch(checker, T_world_tip, near, options, monitor).run();
+}
+
+}  // namespace mmgrasp

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "mmgrasp/core/monitor.hpp"
+#include "mmgrasp/plan/manipulation.hpp"
+#include "plan/manipulation/common/carry_candidates.hpp"
+#include "plan/manipulation/common/carry_checks.hpp"
+#include "plan/manipulation/common/carry_clock.hpp"
+
+namespace mmgrasp::detail {
+
+/// What a planner of carries is given: everything but the way to search.
+struct CarryInput {
+  const ManipulationProblem& problem;
+  const ManipulationOptions& options;
+  const Roadmap* roadmap;  ///< The caller's; null when none was given.
+  CarryChecks& checks;
+  CarryCandidates& candidates;  ///< None found yet.
+  const std::function<void(const Improvement&)>& improved;
+  const Monitor& monitor;
+  CarryClock& clock;  ///< Of the whole call; a planner leaves out preparation that is not to count.
+
+  bool out_of_time() const { return monitor.stopped() || clock.seconds() > options.time_limit; }
+};
+
+/// A path with one of the grasps.
+struct Carry {
+  int grasp = -1;
+  double cost = std::numeric_limits<double>::infinity();  ///< Without a path: infinite.
+  JointPath path;
+};
+
+/// Takes a path (checked already) when it is the cheapest so far: fills the result's path, grasp and cost, and tells
+/// `improved`.
+void take_path(const CarryInput& input, Carry carry, ManipulationResult& result);
+
+/// One way to plan a carry. `run` sets the lower bound, and the path through take_path(); it returns whether all that
+/// it can find was looked at, so that without a path there is none. When there is no candidate at all, what it sets and
+/// returns does not matter.
+struct CarryPlanner {
+  const char* name;
+  bool (*run)(CarryInput& input, ManipulationResult& result);
+  double edge_steps;  ///< Along edges not yet part of a path, by those asked for.
+};
+
+/// Throws InvalidInput listing the known names.
+const CarryPlanner& carry_planner(const std::string& name);
+
+}  // namespace mmgrasp::detail

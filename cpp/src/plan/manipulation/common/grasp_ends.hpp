@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mmgrasp/core/export.hpp"
+#include "plan/manipulation/common/carry_candidates.hpp"
+
+namespace mmgrasp::detail {
+
+/// Arm configurations of many grasps at both ends of a carry, packed for the inner loops of RRT*-MG. Grasps are kept by
+/// ascending straight cost, so that those that can still win are always the first ones.
+class MMGRASP_EXPORT GraspEnds {
+ public:
+  static constexpr int kStart = 0, kGoal = 1;
+
+  explicit GraspEnds(std::vector<CarryCandidate> candidates);
+
+  int size() const { return static_cast<int>(candidates_.size()); }
+  int dimension() const { return dimension_; }
+  /// How many of the first grasps have a straight cost below this.
+  int below(double cost) const;
+
+  int grasp(int index) const { return candidates_[static_cast<std::size_t>(index)].grasp; }
+  int opening(int index) const { return candidates_[static_cast<std::size_t>(index)].opening; }
+  double cost(int index) const { return candidates_[static_cast<std::size_t>(index)].cost; }
+  /// Least cost any path with this grasp can have.
+  double straight_cost(int index) const { return straight_[static_cast<std::size_t>(index)]; }
+  int count(int index, int side) const { return spans_[span(index, side)].count; }
+  const double* end(int index, int side, int k) const {
+    return values_.data() + (spans_[span(index, side)].first + k) * dimension_;
+  }
+  /// Distance to the nearest end on a side.
+  double distance(int index, int side, const double* q) const;
+  /// Least cost of a path with this grasp through `q`: its informed set (P2 5.2.3.1) is where this is below the cost to
+  /// beat. The union over its pairs of ends when there are several.
+  double estimate(int index, const double* q) const;
+
+ private:
+  struct Span {
+    int first, count;
+  };
+  static std::size_t span(int index, int side) { return static_cast<std::size_t>(2 * index + side); }
+
+  int dimension_;
+  std::vector<CarryCandidate> candidates_;
+  std::vector<double> straight_;
+  std::vector<Span> spans_;
+  std::vector<double> values_;
+};
+
+/// Euclidean distance of two configurations, squared.
+inline double squared_distance(const double* a, const double* b, int dimension) {
+  double sum = 0;
+  for (int i = 0; i < dimension; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return sum;
+}
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,118 @@
+#include "mmgrasp/plan/manipulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/parallel.hpp"
+#include "plan/manipulation/common/carry_planner.hpp"
+#include "plan/motion/steered_base.hpp"
+#include "plan/roadmap/roadmap_data.hpp"
+#include "robot/near_name.hpp"
+
+namespace mmgrasp {
+namespace {
+
+void check_touch_link(const Robot& robot, const std::string& link) {
+  if (robot.has_link(link)) return;
+  std::vector<std::string> names;
+  for (const Link& known : robot.links()) names.push_back(known.name);
+  throw InvalidInput("touch_links = " + link + ": robot '" + robot.name() + "' has no such link" +
+                     detail::near_miss(link, names));
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
+void check_roadmap(const JointGroup& own, const JointGroup& group) {
+  if (detail::kinematics_key(own) == detail::kinematics_key(group)) return;
+  const std::string given = listed(own.names()), wanted = listed(group.names());
+  throw InvalidInput("roadmap: was built for another robot or other joints than the problem's group: " +
+                     (given == wanted ? "joints of the robot have other origins, axes or limits"
+                                      : "for " + given + ", not for " + wanted));
+}
+
+Outcome outcome_of(const detail::CarryInput& input, bool exhausted, const ManipulationResult& result) {
+  if (input.candidates.complete() && input.candidates.found().empty()) {
+    const bool any_start = std::any_of(result.grasps.begin(), result.grasps.end(),
+                                       [](const GraspReport& report) { return report.start_solutions > 0; });
+    return any_start ? Outcome::invalid_goal : Outcome::invalid_start;
+  }
+  if (result.path) return Outcome::solved;
+  if (input.monitor.stopped()) return Outcome::stopped;
+  return exhausted ? Outcome::infeasible : Outcome::timeout;
+}
+
+}  // namespace
+
+void ManipulationProblem::check() const {
+  detail::refuse_steered_base(group, "plan_manipulation");
+  require(!object.empty(), "object", "[]", "must have at least one shape");
+  require(!grasps.empty(), "grasps", "[]", "must hold at least one grasp");
+  checked_pose(T_world_start.matrix(), "T_world_start");
+  checked_pose(T_world_goal.matrix(), "T_world_goal");
+  if (gripper) gripper->check();
+  for (const std::string& link : touch_links) check_touch_link(group.robot(), link);
+  const double widest = gripper ? gripper->max_opening : 1e9;
+  for (std::size_t i = 0; i < grasps.size(); ++i) {
+    const CandidateGrasp& grasp = grasps[i];
+    const bool good_cost = std::isfinite(grasp.cost) && grasp.cost >= 0;
+    const bool good_opening = grasp.opening >= 0 && grasp.opening <= widest;
+    const std::string name = "grasps[" + std::to_string(i) + "].";
+    checked_pose(grasp.T_object_tool.matrix(), name + "T_object_tool");
+    if (good_cost && good_opening) continue;
+    require(good_cost, name + "cost", grasp.cost, "must be finite and >= 0");
+    require(good_opening, name + "opening", grasp.opening, "must be in [0, the gripper's max_opening]");
+  }
+  if (!world.attached().empty())
+    throw InvalidInput("world: holds '" + world.attached().begin()->first + "': must hold nothing yet");
+  if (world.has(object_name)) throw InvalidInput("object_name = " + object_name + ": is a name of the world already");
+}
+
+void PrmStarMgOptions::check() const {
+  require(batch >= 0, "batch", batch, "must be >= 0");
+  require(max_vertices >= 0 && max_vertices <= 10'000'000, "max_vertices", max_vertices, "must be in [0, 10000000]");
+  require(refinements >= 0, "refinements", refinements, "must be >= 0");
+  roadmap.check();
+}
+
+void ManipulationOptions::check() const {
+  detail::carry_planner(planner);
+  require(ik_solutions > 0, "ik_solutions", ik_solutions, "must be > 0");
+  require(first_grasps >= 0, "first_grasps", first_grasps, "must be >= 0");
+  require(time_limit > 0, "time_limit", time_limit, "must be > 0 [s]");
+  edge.check();
+  ik.check();
+  prm.check();
+  rrt.check();
+}
+
+ManipulationResult plan_manipulation(const ManipulationProblem& problem, const ManipulationOptions& options,
+                                     const Roadmap* roadmap, const Monitor& monitor,
+                                     const std::function<void(const Improvement&)>& improved) {
+  problem.check();
+  options.check();
+  if (roadmap) check_roadmap(roadmap->group(), problem.group);
+  const detail::CarryPlanner& planner = detail::carry_planner(options.planner);
+  ManipulationResult result;
+  detail::CarryClock clock;
+  detail::CarryChecks checks(problem, options.edge, planner.edge_steps, resolve_threads(options.threads));
+  detail::CarryCandidates candidates(problem, options, checks, clock, monitor, result);
+  detail::CarryInput input{problem, options, roadmap, checks, candidates, improved, monitor, clock};
+  const bool exhausted = planner.run(input, result);
+  result.stats.search_seconds = clock.seconds() - result.stats.ik_seconds;
+  for (const GraspReport& report : result.grasps) {
+    result.rejections += report.start;
+    result.rejections += report.goal;
+  }
+  result.outcome = outcome_of(input, exhausted, result);
+  if (result.outcome == Outcome::invalid_start) result.contacts = candidates.first_contacts(false);
+  if (result.outcome == Outcome::invalid_goal) result.contacts = candidates.first_contacts(true);
+  return result;
+}
+
+}  // namespace mmgrasp

@@ -1,0 +1,164 @@
+#include "plan/manipulation/prm_star_mg/overlay_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+namespace mmgrasp::detail {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr std::size_t kBreath = 256;  // Nodes between two questions whether to give up.
+
+}  // namespace
+
+OverlaySearch::OverlaySearch(const Roadmap& roadmap)
+    : roadmap_(roadmap),
+      edge_blocked_(static_cast<std::size_t>(roadmap.edge_count()), 0),
+      first_goal_link_(static_cast<std::size_t>(roadmap.size()), -1) {}
+
+double OverlaySearch::to_goal(int node) const {
+  double least = kInfinite;
+  const auto nearest = [&](const auto& q) {
+    for (const Eigen::VectorXd& goal : overlay_->candidate.goals) least = std::min(least, (goal - q).squaredNorm());
+  };
+  if (node < overlay_->vertex_count)
+    nearest(roadmap_.vertices().col(node));
+  else
+    nearest(overlay_->configuration(roadmap_, node));
+  return std::sqrt(least);
+}
+
+void OverlaySearch::begin(const GraspOverlay& overlay) {
+  overlay_ = &overlay;
+  ++round_;
+  opened_ = 0;
+  heap_.clear();
+  const auto count = static_cast<std::size_t>(overlay.first_goal() + overlay.goals());
+  if (nodes_.size() < count) nodes_.resize(count);
+  for (const int v : overlay.blocked_vertices) nodes_[static_cast<std::size_t>(v)].blocked = round_;
+  for (const int e : overlay.blocked_edges) edge_blocked_[static_cast<std::size_t>(e)] = round_;
+  for (std::size_t i = overlay.into_goals.size(); i-- > 0;)
+    first_goal_link_[static_cast<std::size_t>(overlay.link(overlay.into_goals[i]).from)] = static_cast<int>(i);
+}
+
+void OverlaySearch::relax(int node, double cost, int parent, Step step) {
+  Node& at = nodes_[static_cast<std::size_t>(node)];
+  if (at.blocked == round_) return;
+  if (at.stamp != round_) {
+    at.stamp = round_;
+    at.cost = kInfinite;
+    at.to_goal = to_goal(node);
+  }
+  const double key = cost + at.to_goal;
+  if (cost >= at.cost || key > limit_) return;
+  at.cost = cost;
+  at.parent = parent;
+  at.step = step;
+  ++opened_;
+  heap_.push_back({key, cost, node});
+  std::push_heap(heap_.begin(), heap_.end(), later);
+}
+
+void OverlaySearch::follow(int from, double cost, int link) {
+  const GraspOverlay::Link& l = overlay_->link(link);
+  if (!l.blocked) relax(l.to, cost + l.length, from, Step::link(link));
+}
+
+void OverlaySearch::expand_vertex(const Entry& at, const RoadmapKnowledge& robot) {
+  for (const Roadmap::Arc* arc = roadmap_.begin(at.node); arc != roadmap_.end(at.node); ++arc) {
+    if (robot.vertex(arc->to) == RoadmapKnowledge::blocked || robot.edge(arc->edge) == RoadmapKnowledge::blocked ||
+        edge_blocked_[static_cast<std::size_t>(arc->edge)] == round_)
+      continue;
+    relax(arc->to, at.cost + arc->length, at.node, Step::edge(arc->edge));
+  }
+  const int first = first_goal_link_[static_cast<std::size_t>(at.node)];
+  for (int i = first; i >= 0 && i < static_cast<int>(overlay_->into_goals.size()); ++i) {
+    const int link = overlay_->into_goals[static_cast<std::size_t>(i)];
+    if (overlay_->link(link).from != at.node) break;
+    follow(at.node, at.cost, link);
+  }
+}
+
+OverlaySearch::End OverlaySearch::search(GraspOverlay& overlay, const RoadmapKnowledge& robot, double bound) {
+  begin(overlay);
+  limit_ = (bound - overlay.candidate.cost) * (1 + kSlack);
+  for (int s = 0; s < overlay.starts(); ++s) relax(overlay.vertex_count + s, 0, -1, {});
+  int reached = -1;
+  bool gave_up = false;
+  std::size_t looked_at = 0;
+  while (!heap_.empty()) {
+    const Entry top = heap_.front();
+    std::pop_heap(heap_.begin(), heap_.end(), later);
+    heap_.pop_back();
+    if (top.cost > nodes_[static_cast<std::size_t>(top.node)].cost) continue;  // An older, longer way.
+    if (top.node >= overlay.first_goal()) {
+      reached = top.node;
+      break;
+    }
+    reached_ = top.key + overlay.candidate.cost;
+    gave_up = ++looked_at % kBreath == 0 && stopped && stopped();
+    if (gave_up) break;
+    if (top.node >= overlay.vertex_count) {
+      for (const int link : overlay.from_start[static_cast<std::size_t>(top.node - overlay.vertex_count)])
+        follow(top.node, top.cost, link);
+      continue;
+    }
+    RoadmapKnowledge::State state = robot.vertex(top.node);
+    if (state == RoadmapKnowledge::unknown && robot_is_free) {
+      const bool is_free = robot_is_free(top.node);
+      robot.set_vertex(top.node, is_free);
+      state = is_free ? RoadmapKnowledge::free : RoadmapKnowledge::blocked;
+    }
+    if (state == RoadmapKnowledge::blocked) continue;
+    expand_vertex(top, robot);
+  }
+  for (const int link : overlay.into_goals) first_goal_link_[static_cast<std::size_t>(overlay.link(link).from)] = -1;
+  if (gave_up) return End::gave_up;
+  if (reached < 0) return End::none;
+  take_path(overlay, reached);
+  return End::found;
+}
+
+void OverlaySearch::take_path(GraspOverlay& overlay, int goal) const {
+  overlay.nodes.clear();
+  overlay.steps.clear();
+  for (int node = goal; node >= 0; node = nodes_[static_cast<std::size_t>(node)].parent) {
+    overlay.nodes.push_back(node);
+    const Node& at = nodes_[static_cast<std::size_t>(node)];
+    if (at.parent >= 0) overlay.steps.push_back(at.step);
+  }
+  std::reverse(overlay.nodes.begin(), overlay.nodes.end());
+  std::reverse(overlay.steps.begin(), overlay.steps.end());
+  overlay.path_cost = nodes_[static_cast<std::size_t>(goal)].cost + overlay.candidate.cost;
+}
+
+double spliced_cost(const Roadmap& roadmap, const GraspOverlay& overlay, const std::vector<int>& nodes) {
+  std::unordered_map<int, double> along;  // Cost so far at each roadmap vertex of the path.
+  double sum = 0;
+  for (std::size_t i = 1; i + 1 < nodes.size(); ++i) {
+    if (i > 1) sum += (roadmap.vertices().col(nodes[i]) - roadmap.vertices().col(nodes[i - 1])).norm();
+    along.emplace(nodes[i], sum);
+  }
+  // Leaving the path later saves nothing but the way between: keep the best entry before each exit.
+  std::vector<std::pair<double, double>> entries, exits;  // Position along the path, cost of the link.
+  for (const GraspOverlay::Link& link : overlay.links) {
+    if (link.blocked) continue;
+    const auto in = along.find(link.to), out = along.find(link.from);
+    if (link.from >= overlay.vertex_count && in != along.end()) entries.emplace_back(in->second, link.length);
+    if (link.to >= overlay.vertex_count && out != along.end()) exits.emplace_back(out->second, link.length);
+  }
+  std::sort(entries.begin(), entries.end());
+  std::sort(exits.begin(), exits.end());
+  double best = kInfinite, entry = kInfinite;
+  std::size_t next = 0;
+  for (const auto& [position, length] : exits) {
+    for (; next < entries.size() && entries[next].first <= position; ++next)
+      entry = std::min(entry, entries[next].second - entries[next].first);
+    best = std::min(best, entry + position + length);
+  }
+  return best + overlay.candidate.cost;
+}
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,59 @@
+#include "plan/manipulation/prm_star_mg/prm_star_mg.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "plan/manipulation/common/carry_shortening.hpp"
+#include "plan/manipulation/common/first_carry.hpp"
+#include "plan/manipulation/prm_star_mg/carry_refinement.hpp"
+#include "plan/manipulation/prm_star_mg/roadmap_search.hpp"
+#include "plan/roadmap/roadmap_data.hpp"
+
+namespace mmgrasp::detail {
+namespace {
+
+/// The roadmap to begin with, built unless given; nothing when stopped.
+std::optional<Roadmap> first_roadmap(CarryInput& input, ManipulationResult& result) {
+  if (input.roadmap) return *input.roadmap;
+  const CarryClock clock;
+  const Roadmap own = Roadmap::build(input.problem.group, input.options.prm.roadmap, input.monitor);
+  result.stats.roadmap_seconds = clock.seconds();
+  input.clock.leave_out(result.stats.roadmap_seconds);
+  if (input.monitor.stopped()) return std::nullopt;
+  return own;
+}
+
+}  // namespace
+
+bool run_prm_star_mg(CarryInput& input, ManipulationResult& result) {
+  const PrmStarMgOptions& options = input.options.prm;
+  // A first path leaves the roadmap, as shortened ones and straight edges do.
+  Carry best;
+  if (input.options.straight && options.shorten) best = find_first_carry(input, result);
+  if (best.grasp >= 0) shorten_carry(input, best, result);
+  // Paths over the roadmap have to beat the first one as it was found: they will be shortened too.
+  const double first = best.cost;
+  input.candidates.find_rest();
+  std::optional<Roadmap> roadmap;
+  if (!input.candidates.found().empty()) roadmap = first_roadmap(input, result);
+  bool whole = false;
+  while (roadmap) {
+    const double before = best.cost;
+    whole = RoadmapSearch(input, *roadmap, input.options.straight, input.options.threads, best, result).run();
+    if (options.shorten && best.cost < before) shorten_carry(input, best, result);
+    if (!whole || 2.0 * roadmap->size() > options.max_vertices) break;
+    // The same seed gives the same vertices, and more of them.
+    RoadmapOptions denser = roadmap->options();
+    denser.vertices = 2 * roadmap->size();
+    roadmap = build_roadmap(input.problem.group, denser, input.monitor, [&] { return input.out_of_time(); });
+    if (input.out_of_time()) break;
+  }
+  if (best.cost < first) result.stats.roadmap_cost = best.cost;
+  if (result.path) {
+    result.lower_bound = std::min(result.lower_bound, result.cost);
+    if (whole && options.shorten) refine_carry(input, result);
+  }
+  return whole;
+}
+
+}  // namespace mmgrasp::detail

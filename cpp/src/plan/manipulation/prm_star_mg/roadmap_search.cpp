@@ -1,0 +1,179 @@
+#include "plan/manipulation/prm_star_mg/roadmap_search.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "mmgrasp/core/parallel.hpp"
+
+namespace mmgrasp::detail {
+namespace {
+
+constexpr std::size_t kSplices = 16;       // Earlier paths from which bounds are spliced.
+constexpr std::size_t kLargestRound = 32;  // Grasps looked at side by side; whatever the number of threads.
+constexpr std::size_t kSearches = 4;       // Graph searches that are worth a thread.
+// With more openings than these, vertices are checked for the robot on paths only.
+constexpr int kSharingOpenings = 8;
+
+/// No path between ends farther apart than this can win, shortened or not.
+double farthest_ends(const Carry& best, const ManipulationResult& result) {
+  return result.path ? std::min(best.cost, result.cost) : best.cost;
+}
+
+}  // namespace
+
+RoadmapSearch::RoadmapSearch(const CarryInput& input, const Roadmap& roadmap, bool straight, int threads, Carry& best,
+                             ManipulationResult& result)
+    : input_(input),
+      roadmap_(roadmap),
+      straight_(straight),
+      best_(best),
+      result_(result),
+      threads_(resolve_threads(threads)),
+      checks_(roadmap, input.checks, knowledge_, threads_, input.monitor, result.stats) {
+  for (const CarryCandidate& candidate : input.candidates.found()) overlays_.emplace_back(roadmap_, candidate);
+  for (int i = 0; i < input.checks.opening_count(); ++i) knowledge_.emplace_back(roadmap);
+  for (int worker = 0; worker < threads_; ++worker) {
+    searches_.emplace_back(roadmap);
+    searches_.back().stopped = [this] { return input_.out_of_time(); };
+  }
+}
+
+bool RoadmapSearch::run() {
+  const bool whole = input_.candidates.complete() && search_batches();
+  result_.lower_bound = best_.cost;
+  if (!whole) {
+    result_.lower_bound = std::min(result_.lower_bound, input_.candidates.least_cost_left());
+    for (const Entry& open : heap_) result_.lower_bound = std::min(result_.lower_bound, open.key);
+    // Grasps that were not begun are bounded by their straight lines.
+    for (const GraspOverlay& overlay : overlays_)
+      if (!overlay.connected) result_.lower_bound = std::min(result_.lower_bound, overlay.candidate.straight_cost());
+  }
+  for (const GraspOverlay& overlay : overlays_) {
+    bool& searched = result_.grasps[static_cast<std::size_t>(overlay.candidate.grasp)].searched;
+    result_.stats.grasps_searched += overlay.connected && !searched ? 1 : 0;
+    searched |= overlay.connected;
+  }
+  return whole;
+}
+
+void RoadmapSearch::push(const Entry& entry) {
+  heap_.push_back(entry);
+  std::push_heap(heap_.begin(), heap_.end(), later);
+}
+
+void RoadmapSearch::push_straight(int index) {
+  const double straight = overlay(index).candidate.straight_cost();
+  if (straight < farthest_ends(best_, result_)) push({straight, index, false});
+}
+
+std::optional<RoadmapSearch::Entry> RoadmapSearch::find_path(int worker, int index, double bound) {
+  GraspOverlay& o = overlay(index);
+  o.connect(roadmap_, straight_, farthest_ends(best_, result_));
+  OverlaySearch& search = searches_[static_cast<std::size_t>(worker)];
+  const int opening = o.candidate.opening;
+  search.robot_is_free = {};
+  if (input_.checks.opening_count() <= kSharingOpenings) {
+    search.robot_is_free = [this, worker, opening](int v) {
+      return input_.checks.robot_is_free(worker, opening, roadmap_.vertices().col(v));
+    };
+  }
+  const RoadmapKnowledge& robot = knowledge_[static_cast<std::size_t>(opening)];
+  const OverlaySearch::End end = search.search(o, robot, bound);
+  if (end == OverlaySearch::End::none) return std::nullopt;
+  if (end == OverlaySearch::End::found) return Entry{o.path_cost, index, true};
+  return Entry{search.reached(), index, false};  // Out of time.
+}
+
+bool RoadmapSearch::search_heap() {
+  std::size_t size = 1;
+  while (promising()) {
+    if (input_.out_of_time()) return false;
+    round(size);
+    size = std::min(2 * size, kLargestRound);
+  }
+  return true;
+}
+
+bool RoadmapSearch::search_batches() {
+  const std::size_t count = overlays_.size();
+  const std::size_t size = input_.options.prm.batch > 0 ? static_cast<std::size_t>(input_.options.prm.batch) : count;
+  for (std::size_t first = 0; first < count; first += size) {
+    input_.monitor.report("search", static_cast<double>(first) / static_cast<double>(count));
+    if (!search_batch(static_cast<int>(first), static_cast<int>(std::min(count, first + size)))) return false;
+  }
+  return true;
+}
+
+bool RoadmapSearch::search_batch(int first, int last) {
+  heap_.clear();
+  if (input_.options.prm.lazy_grasps) {
+    for (int index = first; index < last; ++index) push_straight(index);
+  } else if (!search_all(first, last)) {
+    return false;
+  }
+  return search_heap();
+}
+
+bool RoadmapSearch::search_all(int first, int last) {
+  std::vector<int> found;
+  for (int index = first; index < last; ++index) {
+    if (overlay(index).candidate.straight_cost() >= farthest_ends(best_, result_)) continue;
+    if (input_.out_of_time()) return false;
+    overlay(index).connect(roadmap_, straight_, farthest_ends(best_, result_));
+    double bound = best_.cost;
+    for (std::size_t i = found.size() > kSplices ? found.size() - kSplices : 0; i < found.size(); ++i)
+      bound = std::min(bound, spliced_cost(roadmap_, overlay(index), overlay(found[i]).nodes));
+    ++result_.stats.graph_searches;
+    const std::optional<Entry> left = find_path(0, index, bound);
+    result_.stats.ways_opened += searches_.front().opened();
+    if (!left) continue;
+    push(*left);
+    if (left->searched) found.push_back(index);
+  }
+  return true;
+}
+
+void RoadmapSearch::round(std::size_t size) {
+  std::vector<Entry> taken;
+  std::vector<int> to_search, checked;
+  std::vector<GraspOverlay*> to_check;
+  while (promising() && taken.size() < size) {
+    std::pop_heap(heap_.begin(), heap_.end(), later);
+    taken.push_back(heap_.back());
+    heap_.pop_back();
+    const Entry& top = taken.back();
+    (top.searched ? checked : to_search).push_back(top.overlay);
+    if (top.searched) to_check.push_back(&overlay(top.overlay));
+  }
+  const std::vector<char> free = checks_.check(to_check);
+  if (input_.monitor.stopped()) {
+    for (const Entry& entry : taken) push(entry);
+    return;
+  }
+  for (std::size_t i = 0; i < checked.size(); ++i)
+    if (!free[i] || !accept(checked[i])) to_search.push_back(checked[i]);
+  std::vector<std::optional<Entry>> left(to_search.size());
+  // Not min(bound, spliced): a spliced path may be blocked (errata on Algorithm 4.3).
+  parallel_for(to_search.size(), to_search.size() >= kSearches ? threads_ : 1,
+               [&](std::size_t i, int worker) { left[i] = find_path(worker, to_search[i], best_.cost); });
+  result_.stats.graph_searches += to_search.size();
+  for (const std::optional<Entry>& entry : left)
+    if (entry) push(*entry);
+}
+
+bool RoadmapSearch::accept(int index) {
+  GraspOverlay& o = overlay(index);
+  if (o.path_cost >= best_.cost) return true;
+  JointPath path;
+  for (const int node : o.nodes) path.waypoints.push_back(o.configuration(roadmap_, node));
+  const int blocked = input_.checks.blocked_edge(o.candidate.grasp, path);
+  if (blocked >= 0) {
+    o.set_step(o.steps[static_cast<std::size_t>(blocked)], false);
+    return false;
+  }
+  best_ = {o.candidate.grasp, o.path_cost, std::move(path)};
+  take_path(input_, best_, result_);
+  return true;
+}
+
+}  // namespace mmgrasp::detail

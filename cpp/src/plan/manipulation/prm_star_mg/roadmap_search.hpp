@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "plan/manipulation/common/carry_planner.hpp"
+#include "plan/manipulation/prm_star_mg/overlay_checks.hpp"
+#include "plan/manipulation/prm_star_mg/overlay_search.hpp"
+
+namespace mmgrasp::detail {
+
+/// One search of one roadmap for all grasps (P2 Algorithm 4.3).
+class RoadmapSearch {
+ public:
+  /// Looks for paths over the roadmap, or `straight` from start to goal, that cost less than `best`, which they
+  /// replace.
+  RoadmapSearch(const CarryInput& input, const Roadmap& roadmap, bool straight, int threads, Carry& best,
+                ManipulationResult& result);
+
+  /// False when time ran out before all grasps were searched.
+  bool run();
+
+ private:
+  struct Entry {
+    double key;
+    int overlay;
+    bool searched;  ///< The key is a path's cost, not only a bound.
+  };
+  static bool later(const Entry& a, const Entry& b) { return a.key != b.key ? a.key > b.key : a.overlay > b.overlay; }
+
+  GraspOverlay& overlay(int index) { return overlays_[static_cast<std::size_t>(index)]; }
+  void push(const Entry& entry);
+  void push_straight(int index);
+  bool promising() const { return !heap_.empty() && heap_.front().key < best_.cost; }
+  /// What is left to do with a grasp that was searched, if anything.
+  std::optional<Entry> find_path(int worker, int index, double bound);
+  bool search_batches();
+  bool search_batch(int first, int last);
+  /// Searches every grasp of the batch before anything is checked, each bounded by the best path and by what can be
+  /// spliced from those found before it (P2 lines 6-15).
+  bool search_all(int first, int last);
+  /// False when time ran out; what is open is then left in the heap.
+  bool search_heap();
+  /// Takes the most promising grasps, checks the paths of those that have one, and searches the others and those whose
+  /// path is blocked. A free path becomes the best even while others could still be better.
+  void round(std::size_t size);
+  /// Checks a free path once more, finely and with everything at once, and takes it when it is the best. False (and the
+  /// step at fault is blocked) when it fails: a thin obstacle was stepped over.
+  bool accept(int index);
+
+  const CarryInput& input_;
+  const Roadmap& roadmap_;
+  const bool straight_;
+  Carry& best_;
+  ManipulationResult& result_;
+  int threads_;
+  std::vector<RoadmapKnowledge> knowledge_;
+  OverlayChecks checks_;
+  std::vector<OverlaySearch> searches_;  ///< One per worker.
+  std::vector<GraspOverlay> overlays_;
+  std::vector<Entry> heap_;
+};
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,72 @@
+#include "plan/motion/arm_configurations.hpp"
+
+#include <algorithm>
+
+#include "mmgrasp/robot/ik_branches.hpp"
+#include "robot/ik/ik_candidates.hpp"
+#include "robot/ik/ik_failure.hpp"
+
+namespace mmgrasp::detail {
+namespace {
+
+constexpr int kCoarse = 8, kFine = 32;  // Values of a redundant joint.
+constexpr int kLastDescents = 8;        // Of arms with a closed form.
+
+}  // namespace
+
+std::vector<Eigen::VectorXd> arm_configurations(const JointGroup& group, const Pose& T_world_tip, int count,
+                                                const IkOptions& options, const ReachFilter& valid,
+                                                Rejections& rejections) {
+  std::vector<Eigen::VectorXd> solutions;
+  Rejections seen;
+  if (!maybe_in_reach(group, T_world_tip.translation())) {
+    rejections.add(Rejection::reach);
+    return solutions;
+  }
+  IkOptions descents = options;
+  for (const int values : {kCoarse, kFine}) {
+    const Candidates candidates = closed_form_candidates(group, T_world_tip, values);
+    if (!candidates.known_form) break;
+    seen = {};
+    std::vector<Eigen::VectorXd> reaching;
+    for (const Eigen::VectorXd& q : candidates.q) {
+      double position_error = 0, rotation_error = 0;
+      if (!group.within_limits(q))
+        seen.add(Rejection::limits);
+      else if (!confirm(group, T_world_tip, q, options, position_error, rotation_error))
+        seen.add(Rejection::reach);
+      else
+        reaching.push_back(q);
+    }
+    spread_apart(group, reaching);
+    bool final = false;
+    for (const Eigen::VectorXd& q : reaching) {
+      const ReachVerdict verdict = valid(q);
+      seen.add(verdict.cause);
+      if (verdict.cause == Rejection::none) solutions.push_back(q);
+      final = verdict.final;
+      if (final || static_cast<int>(solutions.size()) == count) break;
+    }
+    const bool all_seen = final || (candidates.redundant_joint < 0 && !candidates.free);
+    if (all_seen || !solutions.empty()) {
+      if (candidates.q.empty()) seen.add(Rejection::reach);
+      rejections += seen;
+      return solutions;
+    }
+    descents.restarts = std::min(options.restarts, (kLastDescents + count - 1) / count - 1);
+  }
+  bool any = seen.total() > 0, final = false;
+  solutions = solve_ik_all(group, T_world_tip, count, descents, [&](const Eigen::VectorXd& q) {
+    any = true;
+    if (final) return Rejection::scene;
+    const ReachVerdict verdict = valid(q);
+    seen.add(verdict.cause);
+    final = verdict.final;
+    return verdict.cause;
+  });
+  if (!any && solutions.empty()) seen.add(Rejection::reach);
+  rejections += seen;
+  return solutions;
+}
+
+}  // namespace mmgrasp::detail

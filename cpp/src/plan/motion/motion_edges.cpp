@@ -1,0 +1,120 @@
+#include "plan/motion/motion_edges.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "mmgrasp/collision/edge.hpp"
+#include "plan/motion/steered_base.hpp"
+#include "plan/motion/turn_drive_turn.hpp"
+
+namespace mmgrasp::detail {
+namespace {
+
+constexpr int kProjections = 20;      // Newton steps towards the cone.
+constexpr double kInsideCone = 0.9;   // Share of the half angle that a projection aims at.
+constexpr double kLargestTurn = 0.3;  // Of the tool in one step [rad].
+constexpr double kProjectionDamping = 1e-4;
+
+}  // namespace
+
+MotionEdges::MotionEdges(CollisionChecker& checker, const MotionOptions& options)
+    : checker_(checker),
+      group_(checker.group()),
+      wraps_(group_.wraps()),
+      joint_step_(options.edge_step),
+      workspace_step_(options.workspace_step),
+      steered_(has_steered_base(group_)),
+      cone_(options.tool_cone) {
+  if (std::isfinite(workspace_step_)) bounds_ = motion_bounds(checker);
+  if (cone_) {
+    cone_->tool_axis.normalize();
+    cone_->world_axis.normalize();
+  }
+}
+
+double MotionEdges::step(const Eigen::VectorXd& delta, double finer) const {
+  const double largest = delta.lpNorm<Eigen::Infinity>();
+  if (largest == 0 || bounds_.size() == 0) return joint_step_ / finer;
+  const double motion = bounds_.dot(delta.cwiseAbs());
+  return std::min(joint_step_, largest * workspace_step_ / motion) / finer;
+}
+
+double MotionEdges::tilt(const Eigen::VectorXd& q) const {
+  const Eigen::Vector3d axis = group_.fk(q).linear() * cone_->tool_axis;
+  return std::atan2(axis.cross(cone_->world_axis).norm(), axis.dot(cone_->world_axis));
+}
+
+bool MotionEdges::edge_keeps_cone(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double finer) const {
+  const Eigen::VectorXd delta = b - a;
+  const int pieces = std::max(1, static_cast<int>(std::ceil(delta.lpNorm<Eigen::Infinity>() / step(delta, finer))));
+  for (int i = 0; i <= pieces; ++i) {
+    if (tilt(a + (static_cast<double>(i) / pieces) * delta) > cone_->half_angle) return false;
+  }
+  return true;
+}
+
+Rejection MotionEdges::rejection(const Eigen::VectorXd& q) {
+  const Rejection cause = checker_.rejection(q);
+  if (cause != Rejection::none || !cone_) return cause;
+  return tilt(q) <= cone_->half_angle ? Rejection::none : Rejection::grasp_filter;
+}
+
+bool MotionEdges::is_free(const Eigen::VectorXd& q) {
+  return checker_.is_free(q) && (!cone_ || tilt(q) <= cone_->half_angle);
+}
+
+bool MotionEdges::straight_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double finer) {
+  if (cone_ && !edge_keeps_cone(a, b, finer)) return false;
+  delta_ = b - a;
+  return checker_.edge_is_free(a, b, step(delta_, finer));
+}
+
+void MotionEdges::connect(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Waypoints& way) const {
+  if (!steered_) {
+    way.push_back(b);
+    return;
+  }
+  append_turn_drive_turn(a, b, way);
+}
+
+bool MotionEdges::edge_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double finer) {
+  target_ = b;
+  for (Eigen::Index i = 0; i < target_.size(); ++i) {
+    if (wraps_[static_cast<std::size_t>(i)]) target_[i] = a[i] + std::remainder(b[i] - a[i], 2 * M_PI);
+  }
+  if (!steered_) return straight_is_free(a, target_, finer);
+  way_.clear();
+  connect(a, target_, way_);
+  for (std::size_t i = 0; i < way_.size(); ++i) {
+    if (!straight_is_free(i == 0 ? a : way_[i - 1], way_[i], finer)) return false;
+  }
+  return true;
+}
+
+bool MotionEdges::project(Eigen::VectorXd& q) {
+  if (!cone_) return true;
+  Pose T;
+  Matrix6Xd J(6, q.size());
+  for (int i = 0; i < kProjections; ++i) {
+    group_.fk_jacobian(q, T, J);
+    const Eigen::Vector3d axis = T.linear() * cone_->tool_axis;
+    Eigen::Vector3d turn = axis.cross(cone_->world_axis);
+    const double sine = turn.norm();
+    const double angle = std::atan2(sine, axis.dot(cone_->world_axis));
+    if (angle <= cone_->half_angle) return group_.within_limits(q);
+    // Upside down, any axis across the tool's will do.
+    turn = sine > 1e-9 ? Eigen::Vector3d(turn / sine) : axis.unitOrthogonal();
+    turn *= std::min(kLargestTurn, angle - kInsideCone * cone_->half_angle);
+    // Turning about the tool's own axis is free: only what is across it is asked for.
+    const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - axis * axis.transpose();
+    const Eigen::Matrix<double, 3, Eigen::Dynamic> turning = across * J.bottomRows<3>();
+    Eigen::Matrix3d gram = turning * turning.transpose();
+    gram.diagonal().array() += kProjectionDamping;
+    q += turning.transpose() * gram.ldlt().solve(turn);
+    for (Eigen::Index k = 0; k < q.size(); ++k) q[k] = std::clamp(q[k], group_.lower()[k], group_.upper()[k]);
+  }
+  return tilt(q) <= cone_->half_angle && group_.within_limits(q);
+}
+
+}  // namespace mmgrasp::detail

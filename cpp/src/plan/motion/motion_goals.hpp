@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "mmgrasp/core/monitor.hpp"
+#include "plan/motion/motion_edges.hpp"
+
+namespace mmgrasp::detail {
+
+/// A configuration a motion may end at, and which of the caller's goals that is.
+struct GoalConfiguration {
+  Eigen::VectorXd q;
+  int goal = -1;
+};
+
+/// The allowed configurations among the goals and those that inverse kinematics finds for their poses. What is turned
+/// down is counted by cause, a pose once; `contacts` says what touches in the first configuration turned down.
+std::vector<GoalConfiguration> allowed_goals(MotionEdges& edges, const MotionGoals& goals, const MotionOptions& options,
+                                             const Monitor& monitor, Rejections& rejections,
+                                             std::vector<Contact>& contacts);
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,137 @@
+#include "plan/motion/rrt_connect.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "mmgrasp/core/random.hpp"
+#include "plan/motion/configuration_tree.hpp"
+#include "plan/motion/joint_angles.hpp"
+
+namespace mmgrasp::detail {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Of the sampling box's diagonal, when the caller names no range: measured on the problems of docs/methods/plan.md.
+constexpr double kRangeShare = 0.05;
+constexpr double kAnywhere = 0.1;  // Share of samples from all that the limits allow.
+constexpr double kSame = 1e-9;
+constexpr double kProgress = 0.05;  // Of a step's length, once the constraint has taken its share.
+
+enum class Growth { trapped, advanced, reached };
+
+class Connect {
+ public:
+  explicit Connect(const PlannerQuery& query)
+      : query_(query),
+        rng_(query.seed, 2),
+        range_(query.range > 0 ? query.range : kRangeShare * (query.upper - query.lower).norm()),
+        deadline_(Clock::now() +
+                  std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(query.time_limit))),
+        trees_{ConfigurationTree(query.wraps), ConfigurationTree(query.wraps)},
+        sample_(query.start.size()),
+        from_(query.start.size()),
+        next_(query.start.size()),
+        meet_(query.start.size()),
+        way_(query.start.size()) {
+    trees_[0].add(query.start, -1);
+    for (const auto& goal : query.goals) trees_[1].add(goal, -1);
+  }
+
+  PlannerAnswer run() {
+    for (int i = 0; i < query_.max_iterations && !over(); ++i) {
+      const int growing = trees_[0].size() <= trees_[1].size() ? 0 : 1;
+      draw();
+      if (query_.project && !query_.project(sample_)) continue;
+      int node = trees_[growing].nearest(sample_);
+      if (extend(trees_[growing], node, sample_) == Growth::trapped) continue;
+      trees_[growing].get(node, meet_);
+      int other = trees_[1 - growing].nearest(meet_);
+      Growth growth = Growth::advanced;
+      while (growth == Growth::advanced && !over()) growth = extend(trees_[1 - growing], other, meet_);
+      if (growth == Growth::reached) return solved(growing == 0 ? node : other, growing == 0 ? other : node);
+    }
+    return {};
+  }
+
+ private:
+  bool over() const { return query_.stopped() || Clock::now() >= deadline_; }
+
+  void draw() {
+    const bool anywhere = query_.near_lower.size() == 0 || rng_.uniform(0.0, 1.0) < kAnywhere;
+    const Eigen::VectorXd& lower = anywhere ? query_.lower : query_.near_lower;
+    const Eigen::VectorXd& upper = anywhere ? query_.upper : query_.near_upper;
+    for (Eigen::Index i = 0; i < sample_.size(); ++i) {
+      const bool wraps = query_.wraps[static_cast<std::size_t>(i)];
+      sample_[i] = wraps ? rng_.uniform(-M_PI, M_PI) : rng_.uniform(lower[i], upper[i]);
+    }
+  }
+
+  /// The way from one configuration to another, the short way round; returns its length.
+  double way(const Eigen::VectorXd& from, const Eigen::VectorXd& to, Eigen::VectorXd& out) const {
+    out = to - from;
+    wrap(out);
+    return out.norm();
+  }
+
+  /// One step from `node`, which becomes the new node.
+  Growth extend(ConfigurationTree& tree, int& node, const Eigen::VectorXd& target) {
+    tree.get(node, from_);
+    const double distance = way(from_, target, next_);
+    if (distance < kSame) return Growth::reached;
+    const bool reached = distance <= range_ * (1 + 1e-9);
+    if (reached) {
+      next_ = target;
+    } else {
+      next_ = from_ + next_ * (range_ / distance);
+      wrap(next_);
+      if (query_.project) {
+        if (!query_.project(next_)) return Growth::trapped;
+        wrap(next_);
+        // What the projection takes back is no step towards the target.
+        if (way(next_, target, way_) > distance - kProgress * range_) return Growth::trapped;
+      }
+    }
+    if (!query_.edge_is_free(from_, next_)) return Growth::trapped;
+    node = tree.add(next_, node);
+    return reached ? Growth::reached : Growth::advanced;
+  }
+
+  void wrap(Eigen::VectorXd& q) const {
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      if (query_.wraps[static_cast<std::size_t>(i)]) q[i] = std::remainder(q[i], 2 * M_PI);
+    }
+  }
+
+  PlannerAnswer solved(int from_start, int from_goal) {
+    PlannerAnswer answer;
+    answer.solved = true;
+    Eigen::VectorXd q(query_.start.size());
+    for (int node = from_start; node >= 0; node = trees_[0].parent(node)) {
+      trees_[0].get(node, q);
+      answer.waypoints.push_back(q);
+    }
+    std::reverse(answer.waypoints.begin(), answer.waypoints.end());
+    for (int node = from_goal; node >= 0; node = trees_[1].parent(node)) {
+      trees_[1].get(node, q);
+      if ((q - answer.waypoints.back()).norm() > kSame) answer.waypoints.push_back(q);
+    }
+    return answer;
+  }
+
+  const PlannerQuery& query_;
+  Rng rng_;
+  const double range_;
+  const Clock::time_point deadline_;
+  ConfigurationTree trees_[2];
+  Eigen::VectorXd sample_, from_, next_, meet_, way_;
+};
+
+}  // namespace
+
+PlannerAnswer rrt_connect(const PlannerQuery& query) {
+  return Connect(query).run();
+}
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,157 @@
+#include "plan/motion/shortening.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace mmgrasp::detail {
+namespace {
+
+constexpr int kPatience = 30;           // Attempts without a gain after which a path counts as short.
+constexpr double kSmallestGain = 2e-3;  // Relative to the path's length; less is not worth looking at.
+
+using Waypoints = std::vector<Eigen::VectorXd>;
+
+struct PathPoint {
+  std::size_t edge = 0;  // Between waypoints edge and edge + 1.
+  Eigen::VectorXd q;
+};
+
+class Shortener {
+ public:
+  Shortener(MotionEdges& edges, Waypoints& waypoints, Rng& rng, const ShorteningOptions& options)
+      : edges_(edges), waypoints_(waypoints), rng_(rng), options_(options) {}
+
+  void run() {
+    remove_repeats();
+    skip_waypoints();
+    int without_gain = 0;
+    for (int i = 0; i < options_.iterations && without_gain < kPatience && waypoints_.size() > 2; ++i) {
+      if (options_.stopped()) return;
+      // A platform that turns and drives cannot move one value alone.
+      const bool gained = i % 3 == 2 && !edges_.steered() ? shortcut_one_joint() : shortcut();
+      without_gain = gained ? 0 : without_gain + 1;
+    }
+    skip_waypoints();
+  }
+
+ private:
+  bool free(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+    return edges_.straight_is_free(a, b, options_.finer);
+  }
+
+  static double length(const Waypoints& points) {
+    double sum = 0;
+    for (std::size_t i = 1; i < points.size(); ++i) sum += (points[i] - points[i - 1]).norm();
+    return sum;
+  }
+
+  void remove_repeats() {
+    Waypoints kept{waypoints_.front()};
+    for (std::size_t i = 1; i < waypoints_.size(); ++i) {
+      const bool last = i + 1 == waypoints_.size();
+      if ((waypoints_[i] - kept.back()).norm() > 1e-9) {
+        kept.push_back(waypoints_[i]);
+      } else if (last && kept.size() > 1) {
+        kept.back() = waypoints_[i];
+      } else if (last) {
+        kept.push_back(waypoints_[i]);
+      }
+    }
+    waypoints_ = std::move(kept);
+  }
+
+  /// From each waypoint straight to the farthest later one in sight.
+  void skip_waypoints() {
+    for (std::size_t i = 0; i + 2 < waypoints_.size(); ++i) {
+      for (std::size_t j = waypoints_.size() - 1; j > i + 1; --j) {
+        if (options_.stopped()) return;
+        const PathPoint a{i, waypoints_[i]}, b{j - 1, waypoints_[j]};
+        // A straight edge is never longer; turning and driving may be.
+        const double least_gain = edges_.steered() ? kSmallestGain * length(waypoints_) : -1e-9;
+        if (replace_if_better(a, b, stretch(a, b), joined(a.q, b.q), least_gain)) break;
+      }
+    }
+  }
+
+  PathPoint point_at(double s) const {
+    for (std::size_t i = 0; i + 1 < waypoints_.size(); ++i) {
+      const double edge = (waypoints_[i + 1] - waypoints_[i]).norm();
+      if (s <= edge && edge > 0) return {i, waypoints_[i] + (s / edge) * (waypoints_[i + 1] - waypoints_[i])};
+      s -= edge;
+    }
+    return {waypoints_.size() - 2, waypoints_.back()};
+  }
+
+  std::pair<PathPoint, PathPoint> random_points() {
+    const double total = length(waypoints_);
+    double s0 = rng_.uniform(0.0, total), s1 = rng_.uniform(0.0, total);
+    if (s0 > s1) std::swap(s0, s1);
+    return {point_at(s0), point_at(s1)};
+  }
+
+  /// The stretch between two points, corners included.
+  Waypoints stretch(const PathPoint& a, const PathPoint& b) const {
+    Waypoints points{a.q};
+    points.insert(points.end(), waypoints_.begin() + a.edge + 1, waypoints_.begin() + b.edge + 1);
+    points.push_back(b.q);
+    return points;
+  }
+
+  Waypoints joined(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
+    Waypoints points{a};
+    edges_.connect(a, b, points);
+    return points;
+  }
+
+  bool replace_if_better(const PathPoint& a, const PathPoint& b, const Waypoints& old_stretch, Waypoints new_stretch,
+                         double least_gain) {
+    if (length(old_stretch) - length(new_stretch) < least_gain) return false;
+    for (std::size_t i = 0; i + 1 < new_stretch.size(); ++i) {
+      if (!free(new_stretch[i], new_stretch[i + 1])) return false;
+    }
+    Waypoints result(waypoints_.begin(), waypoints_.begin() + a.edge + 1);
+    result.insert(result.end(), new_stretch.begin(), new_stretch.end());
+    // The new stretch may end whole turns away from where the old one did.
+    Eigen::VectorXd turns = new_stretch.back() - b.q;
+    for (double& turn : turns) turn = 2 * M_PI * std::round(turn / (2 * M_PI));
+    for (auto w = waypoints_.begin() + b.edge + 1; w != waypoints_.end(); ++w) result.push_back(*w + turns);
+    waypoints_ = std::move(result);
+    remove_repeats();
+    return true;
+  }
+
+  bool shortcut() {
+    const auto [a, b] = random_points();
+    if (a.edge == b.edge) return false;
+    return replace_if_better(a, b, stretch(a, b), joined(a.q, b.q), kSmallestGain * length(waypoints_));
+  }
+
+  bool shortcut_one_joint() {
+    const auto [a, b] = random_points();
+    const auto joint = static_cast<Eigen::Index>(rng_.index(static_cast<std::size_t>(a.q.size())));
+    if (a.edge == b.edge) return false;
+    const Waypoints old_stretch = stretch(a, b);
+    Waypoints new_stretch = old_stretch;
+    const double total = length(old_stretch);
+    double s = 0;
+    for (std::size_t i = 1; i + 1 < new_stretch.size(); ++i) {
+      s += (old_stretch[i] - old_stretch[i - 1]).norm();
+      new_stretch[i][joint] = a.q[joint] + (s / total) * (b.q[joint] - a.q[joint]);
+    }
+    return replace_if_better(a, b, old_stretch, std::move(new_stretch), kSmallestGain * length(waypoints_));
+  }
+
+  MotionEdges& edges_;
+  Waypoints& waypoints_;
+  Rng& rng_;
+  const ShorteningOptions& options_;
+};
+
+}  // namespace
+
+void shorten_path(MotionEdges& edges, JointPath& path, Rng& rng, const ShorteningOptions& options) {
+  if (path.waypoints.size() > 2) Shortener(edges, path.waypoints, rng, options).run();
+}
+
+}  // namespace mmgrasp::detail

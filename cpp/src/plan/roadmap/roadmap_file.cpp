@@ -1,0 +1,124 @@
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/hash.hpp"
+#include "plan/roadmap/roadmap_data.hpp"
+
+// A roadmap's file holds its vertices and edges as they are in memory: magic, key, sizes, numbers, checksum.
+namespace mmgrasp {
+namespace {
+
+constexpr char kMagic[] = "mmgrasp roadmap 1\n";
+
+struct Header {
+  std::uint64_t key;
+  std::int64_t joints, vertices, edges;
+  double gamma;
+  std::int64_t neighbours, seed;
+};
+
+void append(std::string& out, const void* bytes, std::size_t size) {
+  out.append(static_cast<const char*>(bytes), size);
+}
+
+std::string content_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw IoError(path + ": cannot be opened");
+  std::ostringstream content;
+  content << file.rdbuf();
+  return content.str();
+}
+
+}  // namespace
+
+std::uint64_t detail::kinematics_key(const JointGroup& group) {
+  Hasher hasher;
+  for (const Joint& joint : group.robot().joints()) {
+    hasher.add(joint.name).add(joint.type).add(joint.parent_link).add(joint.child_link);
+    hasher.add(Eigen::MatrixXd(joint.T_parent_joint.matrix())).add(Eigen::MatrixXd(joint.axis));
+    hasher.add(joint.mimic_joint).add(joint.mimic_multiplier).add(joint.mimic_offset);
+  }
+  for (const std::string& name : group.names()) hasher.add(name);
+  hasher.add(Eigen::MatrixXd(group.sample_lower())).add(Eigen::MatrixXd(group.sample_upper()));
+  return hasher.value();
+}
+
+void Roadmap::save(const std::string& path) const {
+  const Data& data = *data_;
+  const Header header{detail::kinematics_key(data.group),
+                      data.vertices.rows(),
+                      data.vertices.cols(),
+                      edge_count(),
+                      data.options.gamma,
+                      data.options.neighbours,
+                      data.options.seed};
+  std::string out(kMagic);
+  append(out, &header, sizeof header);
+  append(out, data.vertices.data(), sizeof(double) * static_cast<std::size_t>(data.vertices.size()));
+  for (const auto& [a, b] : data.ends) {
+    const std::int32_t pair[2] = {a, b};
+    append(out, pair, sizeof pair);
+  }
+  const std::uint64_t checksum = Hasher().add(out).value();
+  append(out, &checksum, sizeof checksum);
+  const std::string temporary = path + ".tmp";
+  {
+    std::ofstream file(temporary, std::ios::binary);
+    file.write(out.data(), static_cast<std::streamsize>(out.size()));
+    file.flush();
+    if (!file) throw IoError(temporary + ": cannot be written");
+  }
+  std::error_code error;
+  std::filesystem::rename(temporary, path, error);
+  if (error) throw IoError(path + ": cannot be written: " + error.message());
+}
+
+Roadmap Roadmap::load(const std::string& path, const JointGroup& group) {
+  const std::string content = content_of(path);
+  constexpr std::size_t kStart = sizeof kMagic - 1;
+  if (content.compare(0, kStart, kMagic) != 0) throw IoError(path + ": is no roadmap of this version");
+  if (content.size() < kStart + sizeof(Header) + sizeof(std::uint64_t)) throw IoError(path + ": is cut off");
+  const std::size_t body = content.size() - sizeof(std::uint64_t);
+  std::uint64_t checksum = 0;
+  std::memcpy(&checksum, content.data() + body, sizeof checksum);
+  if (Hasher().add(content.substr(0, body)).value() != checksum)
+    throw IoError(path + ": is damaged or cut off: its checksum does not match");
+  Header header{};
+  std::memcpy(&header, content.data() + kStart, sizeof header);
+  if (header.key != detail::kinematics_key(group)) {
+    throw IoError(path + ": was made for another robot, other joints or other limits than group '" + group.name() +
+                  "' of '" + group.robot().name() + "'");
+  }
+  const std::size_t vertex_bytes = sizeof(double) * static_cast<std::size_t>(header.joints * header.vertices);
+  const std::size_t edge_bytes = 2 * sizeof(std::int32_t) * static_cast<std::size_t>(header.edges);
+  if (header.joints != group.size() || header.vertices < 0 || header.edges < 0 ||
+      body != kStart + sizeof header + vertex_bytes + edge_bytes) {
+    throw IoError(path + ": is damaged: sizes do not fit");
+  }
+  RoadmapOptions options;
+  options.vertices = static_cast<int>(header.vertices);
+  options.gamma = header.gamma;
+  options.neighbours = static_cast<int>(header.neighbours);
+  options.seed = static_cast<unsigned>(header.seed);
+  auto data = std::make_shared<Data>(group, options);
+  const char* at = content.data() + kStart + sizeof header;
+  data->vertices.resize(header.joints, header.vertices);
+  std::memcpy(data->vertices.data(), at, vertex_bytes);
+  at += vertex_bytes;
+  data->ends.reserve(static_cast<std::size_t>(header.edges));
+  for (std::int64_t e = 0; e < header.edges; ++e, at += 2 * sizeof(std::int32_t)) {
+    std::int32_t pair[2];
+    std::memcpy(pair, at, sizeof pair);
+    if (pair[0] < 0 || pair[0] >= pair[1] || pair[1] >= header.vertices) throw IoError(path + ": is damaged: bad edge");
+    data->ends.emplace_back(pair[0], pair[1]);
+  }
+  detail::Until never;
+  if (data->vertices.cols() > 0) data->index(never);
+  data->make_arcs(never);
+  return Roadmap(data);
+}
+
+}  // namespace mmgrasp

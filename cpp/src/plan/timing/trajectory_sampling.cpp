@@ -1,0 +1,133 @@
+#include "plan/timing/trajectory_sampling.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "mmgrasp/core/error.hpp"
+#include "plan/timing/timing_stop.hpp"
+
+namespace mmgrasp::detail {
+namespace {
+
+constexpr double kJump = 0.004;          // Acceleration jumps above this part of a limit get a sample of their own.
+constexpr double kSmallestGap = 1e-5;    // Between samples at jumps [s].
+constexpr double kSmallestSplit = 2e-4;  // Shorter intervals are not halved [s].
+
+using State = PathTiming::State;
+
+std::pair<double, double> cubic_end_accelerations(double mean, double v0, double v1, double h) {
+  return {(6 * mean - 4 * v0 - 2 * v1) / h, (2 * v0 + 4 * v1 - 6 * mean) / h};
+}
+
+/// Largest |velocity| and |acceleration| over limits of a cubic between two samples.
+struct Load {
+  double velocity = 0, acceleration = 0;
+};
+
+struct Sample {
+  double time;
+  State state;
+};
+
+class Sampler {
+ public:
+  Sampler(const PathTiming& timing, const Eigen::VectorXd& velocity_limits, const Eigen::VectorXd& acceleration_limits)
+      : timing_(timing), velocity_limits_(velocity_limits), acceleration_limits_(acceleration_limits) {}
+
+  JointTrajectory run(double period) {
+    require(timing_.duration() / period <= kMostSamples, "sample_period", period,
+            "must leave at most 1e7 samples: the motion takes " + std::to_string(timing_.duration()) + " s");
+    samples_.push_back({0, timing_.at(0)});
+    for (double end : break_times()) {
+      const double begin = samples_.back().time;
+      const int count = std::max(1, static_cast<int>(std::ceil((end - begin) / period - 1e-9)));
+      for (int i = 1; i <= count; ++i) append(i == count ? end : begin + (end - begin) * i / count);
+    }
+    return slowed_down();
+  }
+
+ private:
+  /// Jump times and the end, none closer together than cubics can resolve.
+  std::vector<double> break_times() const {
+    std::vector<double> times;
+    double last = 0;
+    for (double t : timing_.jumps(kJump)) {
+      if (t - last < kSmallestGap || timing_.duration() - t < kSmallestGap) continue;
+      times.push_back(t);
+      last = t;
+    }
+    times.push_back(timing_.duration());
+    return times;
+  }
+
+  /// Appends the sample at `time`, after those that keep the cubics in between within limits.
+  void append(double time) { append({time, timing_.at(time)}); }
+  void append(Sample sample) {
+    end_if_stopped(timing_.stop());
+    const Sample& previous = samples_.back();
+    const double gap = sample.time - previous.time;
+    const Load load = hermite_load(previous, sample);
+    if (std::max(load.velocity, load.acceleration) > 1 && gap > kSmallestSplit) {
+      append(previous.time + 0.5 * gap);
+      append(std::move(sample));
+      return;
+    }
+    worst_.velocity = std::max(worst_.velocity, load.velocity);
+    worst_.acceleration = std::max(worst_.acceleration, load.acceleration);
+    samples_.push_back(std::move(sample));
+  }
+
+  Load hermite_load(const Sample& a, const Sample& b) const {
+    const double h = b.time - a.time;
+    Load load;
+    for (Eigen::Index i = 0; i < velocity_limits_.size(); ++i) {
+      const double mean = (b.state.position[i] - a.state.position[i]) / h;
+      const double v0 = a.state.velocity[i], v1 = b.state.velocity[i];
+      const auto [a0, a1] = cubic_end_accelerations(mean, v0, v1, h);
+      const double fastest = cubic_peak_speed(mean, v0, v1, h);
+      // The cubic's acceleration is linear: its extremes are at the ends.
+      const double hardest =
+          std::max({std::abs(a0), std::abs(a1), std::abs(a.state.acceleration[i]), std::abs(b.state.acceleration[i])});
+      load.velocity = std::max(load.velocity, fastest / velocity_limits_[i]);
+      load.acceleration = std::max(load.acceleration, hardest / acceleration_limits_[i]);
+    }
+    return load;
+  }
+
+  JointTrajectory slowed_down() const {
+    const double factor = std::max({1.0, worst_.velocity, std::sqrt(worst_.acceleration)});
+    JointTrajectory trajectory;
+    for (const Sample& sample : samples_) {
+      end_if_stopped(timing_.stop());
+      trajectory.times.push_back(sample.time * factor);
+      trajectory.positions.push_back(sample.state.position);
+      trajectory.velocities.push_back(sample.state.velocity / factor);
+      trajectory.accelerations.push_back(sample.state.acceleration / (factor * factor));
+    }
+    return trajectory;
+  }
+
+  const PathTiming& timing_;
+  const Eigen::VectorXd& velocity_limits_;
+  const Eigen::VectorXd& acceleration_limits_;
+  std::vector<Sample> samples_;
+  Load worst_;
+};
+
+}  // namespace
+
+double cubic_peak_speed(double mean, double v0, double v1, double h) {
+  const auto [a0, a1] = cubic_end_accelerations(mean, v0, v1, h);
+  const double at_ends = std::max(std::abs(v0), std::abs(v1));
+  // Where the acceleration changes sign, at h a0 / (a0 - a1), the speed has its extreme.
+  return a0 * a1 < 0 ? std::max(at_ends, std::abs(v0 + 0.5 * a0 * h * a0 / (a0 - a1))) : at_ends;
+}
+
+JointTrajectory sample_trajectory(const PathTiming& timing, const Eigen::VectorXd& velocity_limits,
+                                  const Eigen::VectorXd& acceleration_limits, double period) {
+  return Sampler(timing, velocity_limits, acceleration_limits).run(period);
+}
+
+}  // namespace mmgrasp::detail

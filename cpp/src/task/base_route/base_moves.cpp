@@ -1,0 +1,130 @@
+#include "task/base_route/base_moves.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mmgrasp/core/pose.hpp"
+
+namespace mmgrasp {
+namespace {
+
+constexpr double kTurnStep = 0.05;  // [rad]
+constexpr double kNear = 1e-9;      // [m]
+constexpr double kMargin = 1e-3;    // [m] on the quick test with boxes
+
+/// The robot's extent around its root's vertical axis with the arm at home.
+struct Extent {
+  double radius = 0, low = 0, high = 0;
+};
+
+Extent robot_extent(const JointGroup& arm, const Eigen::VectorXd& home) {
+  Poses poses;
+  arm.at(Pose::Identity()).link_poses(home, poses);
+  Extent extent;
+  bool first = true;
+  const std::vector<Link>& links = arm.robot().links();
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    for (const LinkShape& shape : links[i].collisions) {
+      const Eigen::AlignedBox3d box = shape_bounds(shape.shape, poses[i] * shape.T_link_shape);
+      const Eigen::Vector2d far = box.min().head<2>().cwiseAbs().cwiseMax(box.max().head<2>().cwiseAbs());
+      extent.radius = std::max(extent.radius, far.norm());
+      extent.low = first ? box.min().z() : std::min(extent.low, box.min().z());
+      extent.high = first ? box.max().z() : std::max(extent.high, box.max().z());
+      first = false;
+    }
+  }
+  return extent;
+}
+
+}  // namespace
+
+BaseClearance::BaseClearance(CollisionChecker& checker, const Eigen::VectorXd& home, double check_step)
+    : checker_(checker), home_(home), check_step_(check_step) {
+  const Extent extent = robot_extent(checker.group(), home);
+  radius_ = extent.radius;
+  for (const auto& [name, object] : checker.world().objects()) {
+    Eigen::AlignedBox3d box;
+    for (const LinkShape& shape : object.shapes) {
+      box.extend(shape_bounds(shape.shape, object.T_world_object * shape.T_link_shape));
+    }
+    if (box.min().z() > extent.high + kMargin || box.max().z() < extent.low - kMargin) continue;
+    obstacles_.emplace_back(Eigen::Vector2d(box.min().head<2>()), Eigen::Vector2d(box.max().head<2>()));
+  }
+  const Rejection here = checker.rejection(home);
+  home_is_sound_ = here != Rejection::limits && here != Rejection::self_collision;
+}
+
+bool BaseClearance::nothing_near(const Eigen::Vector2d& position) const {
+  const double reach = (radius_ + kMargin) * (radius_ + kMargin);
+  for (const Eigen::AlignedBox2d& box : obstacles_) {
+    if (!(box.squaredExteriorDistance(position) > reach)) return false;
+  }
+  return true;
+}
+
+bool BaseClearance::free(const Eigen::Vector3d& pose) {
+  if (!home_is_sound_) return false;
+  if (nothing_near(pose.head<2>())) return true;
+  checker_.set_root(pose_from_planar(pose));
+  return checker_.rejection(home_) == Rejection::none;
+}
+
+bool BaseClearance::segment_free(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const Eigen::Vector3d d = b - a;
+  const double travel = std::max(d.head<2>().norm() / check_step_, std::abs(d.z()) / kTurnStep);
+  const int steps = std::max(1, static_cast<int>(std::ceil(travel)));
+  if (!free(a) || !free(b)) return false;
+  for (int stride = steps; stride > 1; stride = (stride + 1) / 2) {  // coarse to fine: a blocked way shows early
+    const int half = (stride + 1) / 2;
+    for (int i = half; i < steps; i += half) {
+      if (i % stride == 0) continue;
+      if (!free(a + d * (static_cast<double>(i) / steps))) return false;
+    }
+  }
+  return true;
+}
+
+double way_cost(const Eigen::Vector3d& from, const std::vector<Eigen::Vector3d>& way, double turn_weight) {
+  double cost = 0;
+  Eigen::Vector3d last = from;
+  for (const Eigen::Vector3d& pose : way) {
+    cost += (pose - last).head<2>().norm() + turn_weight * std::abs(pose.z() - last.z());
+    last = pose;
+  }
+  return cost;
+}
+
+std::vector<std::vector<Eigen::Vector3d>> direct_ways(BaseKind base, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                                      double turn_weight) {
+  using Way = std::vector<Eigen::Vector3d>;
+  std::vector<Way> ways;
+  const Eigen::Vector2d d = b.head<2>() - a.head<2>();
+  const double whole = 2 * M_PI;
+  const auto turns = [&](double from, double to) {
+    const double shortest = wrap_angle(to - from);
+    if (std::abs(shortest) < 1e-12) return std::vector<double>{from};
+    return std::vector<double>{from + shortest, from + shortest - std::copysign(whole, shortest)};
+  };
+  if (base == BaseKind::omni || d.norm() < kNear) {
+    for (double theta : turns(a.z(), b.z())) ways.push_back({Eigen::Vector3d(b.x(), b.y(), theta)});
+  } else {
+    const double forwards = std::atan2(d.y(), d.x());
+    for (double direction : {forwards, forwards + M_PI}) {
+      for (double first : turns(a.z(), direction)) {
+        for (double second : turns(first, b.z())) {
+          Way way;
+          if (std::abs(first - a.z()) > 1e-12) way.emplace_back(a.x(), a.y(), first);
+          way.emplace_back(b.x(), b.y(), first);
+          if (std::abs(second - first) > 1e-12) way.emplace_back(b.x(), b.y(), second);
+          ways.push_back(way);
+        }
+      }
+    }
+  }
+  std::stable_sort(ways.begin(), ways.end(), [&](const Way& one, const Way& other) {
+    return way_cost(a, one, turn_weight) < way_cost(a, other, turn_weight) - 1e-12;
+  });
+  return ways;
+}
+
+}  // namespace mmgrasp

@@ -1,0 +1,144 @@
+#include "mmgrasp/task/base_route.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/pose.hpp"
+#include "mmgrasp/robot/base_motion.hpp"
+#include "task/base_route/base_search.hpp"
+#include "task/base_route/floor_field.hpp"
+
+namespace mmgrasp {
+namespace {
+
+constexpr int kShorteningChecks = 400;  // Direct ways tried for shortening.
+
+using Poses3 = std::vector<Eigen::Vector3d>;
+
+bool path_free(BaseClearance& clearance, const Poses3& poses, std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) {
+    if (!clearance.segment_free(poses[i], poses[i + 1])) return false;
+  }
+  return true;
+}
+
+double path_cost(const Poses3& poses, std::size_t first, std::size_t last, double turn_weight) {
+  return way_cost(poses[first],
+                  Poses3(poses.begin() + static_cast<std::ptrdiff_t>(first) + 1,
+                         poses.begin() + static_cast<std::ptrdiff_t>(last) + 1),
+                  turn_weight);
+}
+
+/// Takes out poses in the middle of one drive or one turn.
+void merge_primitives(BaseKind base, Poses3& poses) {
+  for (std::size_t i = 1; i + 1 < poses.size();) {
+    const Eigen::Vector3d a = poses[i] - poses[i - 1], b = poses[i + 1] - poses[i];
+    const double la = a.head<2>().norm(), lb = b.head<2>().norm();
+    const bool turn = la < 1e-9 && lb < 1e-9 && a.z() * b.z() >= 0;
+    const bool drive = std::abs(a.z()) < 1e-12 && std::abs(b.z()) < 1e-12 && a.head<2>().dot(b.head<2>()) > 0 &&
+                       std::abs(a.x() * b.y() - a.y() * b.x()) < 1e-12 * std::max(1.0, la * lb);
+    const bool idle = a.norm() < 1e-12;
+    if (idle || (turn && (base != BaseKind::fixed)) || drive) {
+      poses.erase(poses.begin() + static_cast<std::ptrdiff_t>(i));
+    } else {
+      ++i;
+    }
+  }
+}
+
+/// Replaces stretches by direct ways while that is cheaper, the longest stretches first.
+void shorten(BaseClearance& clearance, const BaseSearchSettings& settings, Poses3& poses) {
+  int checks = 0;
+  bool changed = true;
+  while (changed && checks < kShorteningChecks) {
+    changed = false;
+    for (std::size_t span = poses.size() - 1; span >= 2 && !changed; --span) {
+      for (std::size_t i = 0; i + span < poses.size() && !changed && checks < kShorteningChecks; ++i) {
+        const std::size_t j = i + span;
+        const double now = path_cost(poses, i, j, settings.turn_weight);
+        for (const Poses3& way : direct_ways(settings.base, poses[i], poses[j], settings.turn_weight)) {
+          if (way_cost(poses[i], way, settings.turn_weight) > now - 1e-6 || checks >= kShorteningChecks) break;
+          ++checks;
+          Poses3 trial = {poses[i]};
+          trial.insert(trial.end(), way.begin(), way.end());
+          if (!path_free(clearance, trial, 0, trial.size() - 1)) continue;
+          const double turns = trial.back().z() - poses[j].z();  // later headings keep their count of turns
+          Poses3 joined(poses.begin(), poses.begin() + static_cast<std::ptrdiff_t>(i));
+          joined.insert(joined.end(), trial.begin(), trial.end());
+          for (std::size_t k = j + 1; k < poses.size(); ++k) joined.push_back(poses[k] + Eigen::Vector3d(0, 0, turns));
+          poses = std::move(joined);
+          changed = true;
+          break;
+        }
+      }
+    }
+  }
+}
+
+double trapezoid(double distance, double velocity, double acceleration) {
+  if (distance <= 0) return 0;
+  if (distance * acceleration <= velocity * velocity) return 2 * std::sqrt(distance / acceleration);
+  return distance / velocity + velocity / acceleration;
+}
+
+}  // namespace
+
+void BaseRouteOptions::check() const {
+  require(std::isfinite(resolution) && resolution > 0, "route.resolution", resolution, "must be positive and finite");
+  require(std::isfinite(check_step) && check_step > 0, "route.check_step", check_step, "must be positive and finite");
+}
+
+BasePath plan_base_route(CollisionChecker& checker, const Eigen::VectorXd& home, const Eigen::Vector3d& from,
+                         const Eigen::Vector3d& to, const BaseRouteOptions& options, const Monitor& monitor) {
+  options.check();
+  checker.group().check_configuration(home, "home");
+  require(from.allFinite(), "from", from.sum(), "must be finite");
+  require(to.allFinite(), "to", to.sum(), "must be finite");
+  BasePath path;
+  BaseClearance clearance(checker, home, options.check_step);
+  if (!clearance.free(from) || !clearance.free(to)) {
+    path.outcome = clearance.free(from) ? Outcome::invalid_goal : Outcome::invalid_start;
+    return path;
+  }
+  const bool same = (from - to).head<2>().norm() < 1e-9 && std::abs(wrap_angle(from.z() - to.z())) < 1e-9;
+  if (options.base == BaseKind::fixed && !same) return path;
+  const BaseLimits limits = driving_limits(options.base, checker.group().robot().base_limits());
+  const Eigen::AlignedBox2d bounds =
+      options.bounds.isEmpty() ? floor_bounds(checker.world(), {from, to}) : options.bounds;
+  const BaseSearchSettings settings{options.base, options.resolution, limits.linear_velocity / limits.angular_velocity,
+                                    bounds};
+  Poses3 poses = {from};
+  if (!same) {
+    auto found = search_base_path(clearance, from, to, settings, monitor);
+    if (!found) {
+      path.outcome = monitor.stopped() ? Outcome::stopped : Outcome::infeasible;
+      return path;
+    }
+    poses = std::move(*found);
+    shorten(clearance, settings, poses);
+    merge_primitives(options.base, poses);
+  }
+  BaseClearance fine(checker, home, 0.5 * options.check_step);
+  if (!path_free(fine, poses, 0, poses.size() - 1)) return path;
+  path.outcome = Outcome::solved;
+  path.poses = std::move(poses);
+  for (std::size_t i = 1; i < path.poses.size(); ++i) {
+    path.length += (path.poses[i] - path.poses[i - 1]).head<2>().norm();
+    path.turning += std::abs(path.poses[i].z() - path.poses[i - 1].z());
+  }
+  return path;
+}
+
+double base_path_duration(const BasePath& path, BaseKind base, const BaseLimits& base_limits) {
+  const BaseLimits limits = driving_limits(base, base_limits);
+  double duration = 0;
+  for (std::size_t i = 1; i < path.poses.size(); ++i) {
+    const Eigen::Vector3d d = path.poses[i] - path.poses[i - 1];
+    duration += std::max(trapezoid(d.head<2>().norm(), limits.linear_velocity, limits.linear_acceleration),
+                         trapezoid(std::abs(d.z()), limits.angular_velocity, limits.angular_acceleration));
+  }
+  return duration;
+}
+
+}  // namespace mmgrasp

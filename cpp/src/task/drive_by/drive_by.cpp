@@ -1,0 +1,233 @@
+#include "mmgrasp/task/drive_by.hpp"
+
+#include <cmath>
+
+#include "mmgrasp/core/error.hpp"
+#include "task/drive_by/drive_by_attempt.hpp"
+#include "task/drive_by/drive_by_choices.hpp"
+#include "task/drive_by/drive_by_events.hpp"
+
+namespace mmgrasp {
+namespace {
+
+using detail::DriveByChoice;
+using detail::DriveByPatience;
+using detail::DriveByStep;
+using detail::Stand;
+using Eigen::VectorXd;
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr int kShort = 40;                // iterations of a solve in the first attempts
+constexpr std::size_t kMoreAttempts = 2;  // of each choice of candidates once there is a motion to beat
+
+/// One plan: keeps what the attempts share.
+class DriveBy {
+ public:
+  DriveBy(const JointGroup& group, const World& world, const VectorXd& start, const std::vector<DriveByTask>& tasks,
+          const DriveByGoal& goal, const DriveByOptions& options, const Monitor& monitor)
+      : group_(group),
+        world_(world),
+        start_(start),
+        steps_(detail::steps_of(tasks)),
+        goal_(goal),
+        options_(options),
+        monitor_(monitor) {
+    for (int i = 0; i < group.size(); ++i) {
+      if (!group.wraps()[static_cast<std::size_t>(i)]) continue;
+      if (goal_.lower[i] != goal_.upper[i]) continue;
+      goal_.lower[i] = goal_.upper[i] = start[i] + wrap_angle(goal_.lower[i] - start[i]);
+    }
+    if (options.collisions) worlds_.emplace(group_, world, steps_);
+    attempts_.emplace(group_, start_, steps_, goal_, options_, worlds_ ? &*worlds_ : nullptr, monitor_);
+  }
+
+  DriveByResult run() {
+    DriveByResult result;
+    if (const auto touching = worlds_ ? worlds_->before(0).first_contact(start_) : std::nullopt) {
+      const Contact c = *touching;
+      result.outcome = Outcome::invalid_start;
+      result.report = "start: '" + c.a + "' touches '" + c.b + "'";
+      return result;
+    }
+    std::string missing;
+    const std::vector<DriveByChoice> choices = find_choices(missing);
+    if (choices.empty()) {
+      result.outcome = monitor_.stopped() ? Outcome::stopped : Outcome::infeasible;
+      result.report = missing;
+      return result;
+    }
+    for (const DriveByChoice& choice : choices) {
+      if (result.choices > 0 && over(result)) break;
+      if (result.usable() && choice.bound >= result.duration()) {
+        result.report +=
+            "candidates " + name(choice) + ": left out, not below " + detail::number(choice.bound) + " s\n";
+        continue;
+      }
+      monitor_.report("choices", static_cast<double>(result.choices) / static_cast<double>(choices.size()));
+      attempt_all(choice, result);
+      if (++result.choices == options_.choices) break;
+    }
+    if (!result.usable()) {
+      if (monitor_.stopped())
+        result.outcome = Outcome::stopped;
+      else if (over(result))
+        result.outcome = Outcome::timeout;
+    }
+    return result;
+  }
+
+  std::optional<DriveByStart> first_guess() {
+    std::string missing;
+    const std::vector<DriveByChoice> choices = find_choices(missing);
+    if (choices.empty()) return {};
+    detail::DriveByAttempt a = attempts_->prepared(choices.front().chains.front(), options_.waypoints);
+    return DriveByStart{std::move(a.problem), std::move(a.guess)};
+  }
+
+  double seconds() const { return attempts_->seconds(); }
+
+ private:
+  bool over(const DriveByResult& result) const {
+    return monitor_.stopped() || result.iterations >= options_.iterations || seconds() > options_.time_limit;
+  }
+
+  std::vector<DriveByChoice> find_choices(std::string& missing) {
+    const VectorXd goal = detail::goal_near(goal_, start_);
+    std::vector<std::vector<Stand>> stands;
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+      const VectorXd before = rough(static_cast<int>(i) - 1, goal), after = rough(static_cast<int>(i) + 1, goal);
+      CollisionChecker* checker = worlds_ ? &worlds_->at(i) : nullptr;
+      stands.push_back(steps_[i].way > 0 ? detail::follow_stands(group_, checker, steps_[i], stands.back(), monitor_)
+                                         : detail::find_stands(group_, checker, steps_[i], before, after, options_,
+                                                               static_cast<unsigned>(i), monitor_));
+      if (!stands.back().empty()) continue;
+      missing = "task " + std::to_string(steps_[i].task) + ": no configuration within the limits" +
+                (worlds_ ? " and free of collisions" : "") + " brings the tool there (" +
+                std::to_string(options_.stands) + " tries at a time)";
+      return {};
+    }
+    const auto collisions = [&](const std::vector<Stand>& chain) { return attempts_->collisions(chain); };
+    return detail::drive_by_choices(group_, steps_, stands, start_, goal_, options_, collisions);
+  }
+
+  /// Where the robot is about at a step, before anything is known: the base below the tool.
+  VectorXd rough(int step, const VectorXd& goal) const {
+    if (step < 0) return start_;
+    if (step >= static_cast<int>(steps_.size())) return goal;
+    VectorXd q = 0.5 * (start_ + goal);
+    if (group_.has_base()) q.head<2>() = steps_[static_cast<std::size_t>(step)].candidates[0].translation().head<2>();
+    return q;
+  }
+
+  static std::string name(const DriveByChoice& choice) {
+    std::string text;
+    for (const Stand& stand : choice.chains.front())
+      text += (text.empty() ? "" : ", ") + std::to_string(stand.candidate);
+    return "[" + text + "]";
+  }
+
+  /// Every chain with a short patience first: what can be solved mostly is within few iterations. Ways around obstacles
+  /// are sampled and along the road by turns, the second time the other way round.
+  void attempt_all(const DriveByChoice& choice, DriveByResult& result) {
+    int solutions = 0;
+    const std::size_t most = std::min(result.usable() ? kMoreAttempts : choice.chains.size(), choice.chains.size());
+    const int patient = options_.trajectory.max_iterations;
+    const std::size_t rounds = patient > kShort && !result.usable() ? 2 : 1;
+    for (std::size_t round = 0; round < rounds && solutions == 0; ++round) {
+      for (std::size_t i = 0; i < most && !over(result); ++i) {
+        const DriveByPatience patience{round == 0 ? std::min(kShort, patient) : patient, round > 0,
+                                       (i + round) % 2 == 1};
+        if (attempt(choice, i, patience, result) && ++solutions >= options_.solutions) return;
+      }
+    }
+  }
+
+  bool attempt(const DriveByChoice& choice, std::size_t index, const DriveByPatience& patience, DriveByResult& result) {
+    const std::vector<Stand>& chain = choice.chains[index];
+    std::vector<int> waypoints;
+    const WholeBodyResult r = attempts_->solve(chain, patience, waypoints);
+    ++result.attempts;
+    result.iterations += r.iterations;
+    result.report += "attempt " + std::to_string(result.attempts) + ", candidates " + name(choice) + ": " +
+                     detail::describe(r) + (r.usable() ? ", " + detail::number(r.trajectory->duration()) + " s" : "") +
+                     "\n";
+    const bool better = r.usable() ? !result.usable() || r.trajectory->duration() < result.duration()
+                                   : !result.usable() && detail::broken(r) < least_broken_;
+    if (better) {
+      if (!r.usable()) least_broken_ = detail::broken(r);
+      result.outcome = r.outcome;
+      result.trajectory = r.trajectory;
+      result.violations = r.violations;
+      result.events = detail::events_of(*r.trajectory, world_, steps_, waypoints, chain);
+    }
+    return r.usable();
+  }
+
+  const JointGroup& group_;
+  const World& world_;
+  VectorXd start_;
+  std::vector<DriveByStep> steps_;
+  DriveByGoal goal_;
+  const DriveByOptions& options_;
+  const Monitor& monitor_;
+  std::optional<detail::DriveByWorlds> worlds_;
+  std::optional<detail::DriveByAttempts> attempts_;
+  double least_broken_ = kInf;
+};
+
+}  // namespace
+
+void DriveByOptions::check() const {
+  require(waypoints >= 2, "waypoints", waypoints, "must be at least 2");
+  require(attempts > 0, "attempts", attempts, "must be positive");
+  require(solutions > 0, "solutions", solutions, "must be positive");
+  require(choices > 0, "choices", choices, "must be positive");
+  require(stands > 0, "stands", stands, "must be positive");
+  require(iterations > 0, "iterations", iterations, "must be positive");
+  require(time_limit > 0, "time_limit", time_limit, "must be positive");
+  require(jerk_time >= 0 && std::isfinite(jerk_time), "jerk_time", jerk_time, "must be at least 0");
+  require(threads >= 0, "threads", threads, "must be at least 0");
+  trajectory.check();
+}
+
+namespace {
+
+void check_call(const JointGroup& group, const World& world, const VectorXd& start,
+                const std::vector<DriveByTask>& tasks, const DriveByGoal& goal, const DriveByOptions& options) {
+  options.check();
+  detail::check_tasks(tasks, world);
+  const int least = 2 + 2 * static_cast<int>(detail::steps_of(tasks).size());
+  require(options.waypoints >= least, "waypoints", options.waypoints,
+          "must be at least " + std::to_string(least) + " for " + std::to_string(tasks.size()) + " tasks");
+  WholeBodyProblem ends(group);
+  ends.start = start;
+  ends.goal_lower = goal.lower;
+  ends.goal_upper = goal.upper;
+  ends.segments = {{1}};
+  ends.check();
+}
+
+}  // namespace
+
+DriveByResult plan_drive_by(const JointGroup& group, const World& world, const VectorXd& start,
+                            const std::vector<DriveByTask>& tasks, const DriveByGoal& goal,
+                            const DriveByOptions& options, const Monitor& monitor) {
+  check_call(group, world, start, tasks, goal, options);
+  DriveBy plan(group, world, start, tasks, goal, options, monitor);
+  DriveByResult result = plan.run();
+  result.seconds = plan.seconds();
+  return result;
+}
+
+std::optional<DriveByStart> first_drive_by_guess(const JointGroup& group, const VectorXd& start,
+                                                 const std::vector<DriveByTask>& tasks, const DriveByGoal& goal,
+                                                 const DriveByOptions& options) {
+  const World nothing;
+  const Monitor silent;
+  DriveByOptions blind = options;
+  blind.collisions = false;
+  check_call(group, nothing, start, tasks, goal, blind);
+  return DriveBy(group, nothing, start, tasks, goal, blind, silent).first_guess();
+}
+
+}  // namespace mmgrasp

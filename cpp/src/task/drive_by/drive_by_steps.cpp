@@ -1,0 +1,142 @@
+#include "task/drive_by/drive_by_steps.hpp"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "mmgrasp/core/error.hpp"
+
+namespace mmgrasp::detail {
+namespace {
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kAside = 0.003, kTilt = 0.03;  // off the straight way of a push-grasp [m], [rad]
+constexpr double kFaster = 1.2;                 // tool before the object, over its speed at the grasp
+constexpr double kSlack = 1.05;                 // of speed and duration while the fingers close
+
+/// The axis of the frame that a direction is, or -1.
+int axis_of(const Eigen::Vector3d& direction) {
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(std::abs(direction[k]) - 1) < 1e-9 && std::abs(direction.norm() - 1) < 1e-9) return k;
+  return -1;
+}
+
+void check_push(const DriveByTask& task, const std::string& field) {
+  const DriveByPush& push = *task.push;
+  push.closing.check();
+  require(axis_of(push.approach) >= 0, field + ".approach", push.approach.norm(),
+          "must be an axis of the tip's frame, of either sign");
+  require(push.free_length > 0 && std::isfinite(push.free_length), field + ".free_length", push.free_length,
+          "must be positive");
+  const PushGrasp grasp = push_grasp(push.closing);
+  require(grasp.feasible, field + ".tool_speed", push.closing.tool_speed,
+          "must leave a moment to close for every error asked for (at most " + std::to_string(grasp.max_tool_speed) +
+              " m/s)");
+  require(task.dwell == 0, field + " with dwell", task.dwell, "must be 0: the hand moves on");
+  require(task.max_tool_speed == kInf && task.tolerance.isZero() && task.free == std::vector<bool>(6, false),
+          field + " with max_tool_speed, tolerance or free", 1, "must be left out: the push-grasp has its own");
+}
+
+DriveByStep moved(const DriveByTask& task, std::size_t index, double along) {
+  DriveByStep step{task};
+  step.task = index;
+  step.axis = axis_of(task.push->approach);
+  step.sign = task.push->approach[step.axis];
+  step.object.clear();
+  for (Pose& T : step.candidates) T = T * Eigen::Translation3d(along * task.push->approach);
+  return step;
+}
+
+void add_push(const DriveByTask& task, std::size_t index, std::vector<DriveByStep>& steps) {
+  const PushGraspProblem& closing = task.push->closing;
+  const PushGrasp grasp = push_grasp(closing);
+  const double begin = grasp.push.start - closing.planned_depth, end = grasp.push.both_touch - closing.planned_depth;
+  const double first = std::min(-closing.planned_depth, begin) - task.push->free_length;
+  const bool slides = grasp.push.pushed > 0;  // before the palm; else it stays where it is until both fingers touch
+
+  steps.push_back(moved(task, index, first));
+  steps.back().closes = false;
+  steps.back().tolerance << 0.005, 0.005, 0.005, kTilt, kTilt, kTilt;
+  steps.back().max_tool_speed = kFaster * closing.tool_speed;
+  steps.push_back(moved(task, index, begin));
+  steps.back().way = begin - first;
+  steps.push_back(moved(task, index, end));
+  steps.back().way = end - begin;
+  steps.back().closes = false;
+  steps.back().duration = grasp.closing_time;
+  for (std::size_t back = 1; back <= 2; ++back) {
+    DriveByStep& step = steps[steps.size() - back];
+    step.begins = false;
+    step.max_tool_speed = kSlack * closing.tool_speed;
+    if (slides == (back == 2)) step.object = task.object;
+  }
+  // It stands still until the palm has it.
+  if (slides) steps[steps.size() - 2].slides_in = grasp.push.both_touch - grasp.push.start - grasp.push.pushed;
+}
+
+}  // namespace
+
+std::vector<DriveByStep> steps_of(const std::vector<DriveByTask>& tasks) {
+  std::vector<DriveByStep> steps;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (tasks[i].push) {
+      add_push(tasks[i], i, steps);
+      continue;
+    }
+    steps.push_back({tasks[i]});
+    steps.back().task = i;
+  }
+  return steps;
+}
+
+void check_tasks(const std::vector<DriveByTask>& tasks, const World& world) {
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const std::string field = "tasks[" + std::to_string(i) + "]";
+    const DriveByTask& task = tasks[i];
+    require(!task.candidates.empty(), field + ".candidates", 0, "must hold at least one pose");
+    for (std::size_t c = 0; c < task.candidates.size(); ++c)
+      checked_pose(task.candidates[c].matrix(), field + ".candidates[" + std::to_string(c) + "]");
+    for (int k = 0; k < 6; ++k) {
+      require(task.tolerance[k] >= 0 && std::isfinite(task.tolerance[k]),
+              field + ".tolerance[" + std::to_string(k) + "]", task.tolerance[k], "must be at least 0 and finite");
+    }
+    require(task.free.size() == 6, field + ".free", static_cast<double>(task.free.size()), "must have 6 entries");
+    require(task.max_tool_speed > 0, field + ".max_tool_speed", task.max_tool_speed, "must be positive");
+    require(task.object.empty() || world.objects().count(task.object) > 0, field + ".object", "'" + task.object + "'",
+            "must be an object of the world");
+    require(task.touching >= 0, field + ".touching", task.touching, "must be at least 0");
+    require(task.dwell >= 0 && std::isfinite(task.dwell), field + ".dwell", task.dwell, "must be at least 0");
+    if (task.push) check_push(task, field + ".push");
+  }
+}
+
+Pose held_pose(const DriveByStep& step, const Pose& T_world_tip, const Pose& T_world_object) {
+  const Eigen::Vector3d nearer = -step.slides_in * step.sign * Eigen::Vector3d::Unit(step.axis);
+  return Eigen::Translation3d(nearer) * (T_world_tip.inverse() * T_world_object);
+}
+
+ToolConstraint constraint_at(const DriveByStep& step, int candidate, int waypoint) {
+  ToolConstraint tool;
+  tool.waypoint = waypoint;
+  tool.T_world_tip = step.candidates[static_cast<std::size_t>(candidate)];
+  for (int k = 0; k < 6; ++k) {
+    const double slack = step.free[static_cast<std::size_t>(k)] ? kInf : step.tolerance[k];
+    tool.lower[k] = -slack;
+    tool.upper[k] = slack;
+  }
+  tool.max_speed = step.max_tool_speed;
+  return tool;
+}
+
+ToolConstraint constraint_before(const DriveByStep& step, int candidate, int waypoint) {
+  ToolConstraint tool = constraint_at(step, candidate, waypoint);
+  tool.upper << kAside, kAside, kAside, kTilt, kTilt, kTilt;
+  tool.lower = -tool.upper;
+  // Of the way only what lies before the step.
+  (step.sign > 0 ? tool.lower : tool.upper)[step.axis] = -step.sign * step.way;
+  (step.sign > 0 ? tool.upper : tool.lower)[step.axis] = 0;
+  (step.sign > 0 ? tool.velocity_lower : tool.velocity_upper)[step.axis] = 0;
+  return tool;
+}
+
+}  // namespace mmgrasp::detail

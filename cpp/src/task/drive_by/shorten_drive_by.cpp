@@ -1,0 +1,118 @@
+#include <algorithm>
+#include <cmath>
+
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/task/drive_by.hpp"
+#include "task/drive_by/drive_by_attempt.hpp"
+#include "task/drive_by/drive_by_events.hpp"
+
+namespace mmgrasp {
+namespace {
+
+using detail::Stand;
+using Eigen::VectorXd;
+
+VectorXd at(const KnownMotion& known, double time) {
+  const auto after = std::upper_bound(known.times.begin(), known.times.end(), time);
+  if (after == known.times.begin()) return known.positions.front();
+  if (after == known.times.end()) return known.positions.back();
+  const std::size_t i = static_cast<std::size_t>(after - known.times.begin());
+  const double share = (time - known.times[i - 1]) / (known.times[i] - known.times[i - 1]);
+  return known.positions[i - 1] + share * (known.positions[i] - known.positions[i - 1]);
+}
+
+void check_known(const JointGroup& group, const std::vector<DriveByTask>& tasks, const KnownMotion& known) {
+  require(known.times.size() >= 2, "times", static_cast<double>(known.times.size()), "must hold at least two");
+  require(known.positions.size() == known.times.size(), "positions", static_cast<double>(known.positions.size()),
+          "must be as many as times");
+  for (const VectorXd& q : known.positions) {
+    require(q.size() == group.size(), "positions", static_cast<double>(q.size()),
+            "must hold " + std::to_string(group.size()) + " values each");
+    require(q.allFinite(), "positions", q.sum(), "must be finite");
+  }
+  for (std::size_t i = 0; i < known.times.size(); ++i) {
+    const double before = i == 0 ? -std::numeric_limits<double>::infinity() : known.times[i - 1];
+    require(std::isfinite(known.times[i]) && known.times[i] > before, "times", known.times[i],
+            "must be finite and increase");
+  }
+  require(known.task_times.size() == tasks.size(), "task_times", static_cast<double>(known.task_times.size()),
+          "must be as many as tasks");
+  double free_from = known.times.front();
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const std::string field = "tasks[" + std::to_string(i) + "]";
+    require(tasks[i].candidates.size() == 1, field + ".candidates", static_cast<double>(tasks[i].candidates.size()),
+            "must hold one pose");
+    require(!tasks[i].push, field + ".push", 1, "must be left out");
+    require(known.task_times[i] > free_from, "task_times", known.task_times[i],
+            "must lie inside the motion, in order, after the dwell before");
+    free_from = known.task_times[i] + tasks[i].dwell;
+  }
+  require(free_from < known.times.back(), "task_times", free_from, "must end before the motion does");
+}
+
+/// The known motion at the waypoints of the problem.
+WholeBodyGuess guess_along(const KnownMotion& known, const std::vector<DriveByTask>& tasks,
+                           const std::vector<int>& intervals) {
+  std::vector<double> ends;
+  for (std::size_t t = 0; t < tasks.size(); ++t) {
+    ends.push_back(known.task_times[t]);
+    if (tasks[t].dwell > 0) ends.push_back(known.task_times[t] + tasks[t].dwell);
+  }
+  ends.push_back(known.times.back());
+  WholeBodyGuess guess;
+  guess.free = true;
+  double from = known.times.front();
+  for (std::size_t s = 0; s < intervals.size(); ++s) {
+    const double step = (ends[s] - from) / intervals[s];
+    for (int i = 0; i < intervals[s]; ++i) guess.positions.push_back(at(known, from + i * step));
+    guess.steps.push_back(step);
+    from = ends[s];
+  }
+  guess.positions.push_back(known.positions.back());
+  return guess;
+}
+
+}  // namespace
+
+DriveByResult shorten_drive_by(const JointGroup& group, const World& world, const std::vector<DriveByTask>& tasks,
+                               const KnownMotion& known, const DriveByOptions& options, const Monitor& monitor) {
+  options.check();
+  detail::check_tasks(tasks, world);
+  check_known(group, tasks, known);
+  const std::vector<detail::DriveByStep> steps = detail::steps_of(tasks);
+  const int least = 2 + 2 * static_cast<int>(steps.size());
+  require(options.waypoints >= least, "waypoints", options.waypoints, "must be at least " + std::to_string(least));
+  const VectorXd& start = known.positions.front();
+  const DriveByGoal goal{known.positions.back(), known.positions.back()};
+  std::optional<detail::DriveByWorlds> worlds;
+  if (options.collisions) worlds.emplace(group, world, steps);
+  detail::DriveByAttempts attempts(group, start, steps, goal, options, worlds ? &*worlds : nullptr, monitor);
+  std::vector<Stand> chain;
+  for (const double time : known.task_times) chain.push_back({at(known, time), 0});
+  detail::DriveByAttempt a = attempts.prepared(chain, options.waypoints);
+  a.problem.check();
+  a.guess = guess_along(known, tasks, a.intervals);
+  monitor.report("shortening", 0);
+  DriveByResult result;
+  result.choices = 1;
+  WholeBodyResult r;
+  // Bodies parted as they lie in the known motion leave that motion feasible, but hold the new one back where it is
+  // elsewhere at the same waypoint.
+  for (const bool parts_bodies : {false, true}) {
+    a.guess.parts_bodies = parts_bodies;
+    r = optimize_whole_body(a.problem, a.guess, options.trajectory, a.checkers, monitor);
+    ++result.attempts;
+    result.iterations += r.iterations;
+    result.report += "from a known motion: " + detail::describe(r) +
+                     (r.usable() ? ", " + detail::number(r.trajectory->duration()) + " s" : "") + "\n";
+    if (r.usable() || a.checkers.empty() || monitor.stopped()) break;
+  }
+  result.outcome = monitor.stopped() && !r.usable() ? Outcome::stopped : r.outcome;
+  result.trajectory = r.trajectory;
+  result.violations = r.violations;
+  result.events = detail::events_of(*r.trajectory, world, steps, a.waypoints, chain);
+  result.seconds = attempts.seconds();
+  return result;
+}
+
+}  // namespace mmgrasp

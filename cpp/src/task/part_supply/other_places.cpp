@@ -1,0 +1,62 @@
+#include "task/part_supply/other_places.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mmgrasp {
+namespace {
+
+/// Distance from a point to the cells that are not marked, and to the grid's end.
+double clearance(const BaseGrid& grid, const CellMask& shared, int heading, const Eigen::Vector2d& p) {
+  const double h = grid.resolution;
+  const Eigen::Vector2d low = p - grid.origin;
+  double least = std::min({low.x(), low.y(), grid.nx * h - low.x(), grid.ny * h - low.y()});
+  for (int iy = 0; iy < grid.ny; ++iy) {
+    for (int ix = 0; ix < grid.nx; ++ix) {
+      if (shared[grid.index(heading, ix, iy)]) continue;
+      const double dx = std::max({ix * h - low.x(), 0.0, low.x() - (ix + 1) * h});
+      const double dy = std::max({iy * h - low.y(), 0.0, low.y() - (iy + 1) * h});
+      least = std::min(least, std::hypot(dx, dy));
+    }
+  }
+  return least;
+}
+
+}  // namespace
+
+std::vector<Stop> other_places(const BaseGrid& grid, const std::vector<BaseRegion>& regions, const Stop& stop,
+                               double min_radius, double apart, std::size_t count) {
+  int heading = 0;
+  while (heading < static_cast<int>(grid.headings.size()) &&
+         std::abs(wrap_angle(grid.headings[static_cast<std::size_t>(heading)] - stop.pose.z())) > 1e-9) {
+    ++heading;
+  }
+  if (heading == static_cast<int>(grid.headings.size())) return {};
+  CellMask shared(grid.size(), 1);
+  for (int tray : stop.trays) {
+    for (std::size_t i = 0; i < shared.size(); ++i)
+      shared[i] = shared[i] && regions[static_cast<std::size_t>(tray)].cells[i];
+  }
+  std::vector<Stop> candidates;
+  for (int iy = 0; iy < grid.ny; ++iy) {
+    for (int ix = 0; ix < grid.nx; ++ix) {
+      if (!shared[grid.index(heading, ix, iy)]) continue;
+      Stop place = stop;
+      place.pose = grid.centre(heading, ix, iy);
+      place.radius = clearance(grid, shared, heading, place.pose.head<2>());
+      if (place.radius >= min_radius) candidates.push_back(place);
+    }
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Stop& a, const Stop& b) { return a.radius > b.radius; });
+  std::vector<Stop> chosen;
+  for (const Stop& place : candidates) {
+    bool is_far = (place.pose - stop.pose).head<2>().norm() >= apart;
+    for (const Stop& other : chosen) is_far = is_far && (place.pose - other.pose).head<2>().norm() >= apart;
+    if (is_far) chosen.push_back(place);
+    if (chosen.size() == count) break;
+  }
+  return chosen;
+}
+
+}  // namespace mmgrasp

@@ -11,7 +11,7 @@ if(TARGET mmgrasp_ompl)
   install(TARGETS mmgrasp_ompl LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
 endif()
 install(DIRECTORY cpp/include/mmgrasp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development
-        FILES_MATCHING PATTERN "*.hpp")
+        FILES_MATCHING PATTERN "*.hpp" PATTERN detail EXCLUDE)
 install(EXPORT mmgraspTargets NAMESPACE mmgrasp:: DESTINATION ${config_dir} COMPONENT development)
 configure_package_config_file(cmake/mmgraspConfig.cmake.in ${CMAKE_BINARY_DIR}/cmake/mmgraspConfig.cmake
                               INSTALL_DESTINATION ${config_dir})

@@ -3,7 +3,7 @@
 
 #include <cstdlib>
 
-#include "collision/exactness.hpp"
+#include "support/exactness.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "report.hpp"
 

@@ -3,12 +3,12 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
 namespace {
 
-constexpr double kTwoPi = 2 * 3.14159265358979323846;
 
 /// sin(x) / x
 double sinc(double x) {
@@ -38,7 +38,7 @@ Eigen::Vector3d arc_velocity(const Eigen::Vector3d& from, const Eigen::Vector3d&
   check_finite(to, "to");
   require(std::isfinite(time) && time > 0, "time", time, "must be finite and positive");
   const double turn = to.z() - from.z();
-  require(std::abs(turn) < kTwoPi, "to[2]", to.z(), "must lie less than a full turn from from[2]");
+  require(std::abs(turn) < detail::kTwoPi, "to[2]", to.z(), "must lie less than a full turn from from[2]");
   Eigen::Vector3d velocity;
   velocity.head<2>() = Eigen::Rotation2Dd(-(from.z() + turn / 2)) * (to - from).head<2>() / (time * sinc(turn / 2));
   velocity.z() = turn / time;
@@ -46,8 +46,8 @@ Eigen::Vector3d arc_velocity(const Eigen::Vector3d& from, const Eigen::Vector3d&
 }
 
 double wrapped_angle(double angle) {
-  const double wrapped = std::remainder(angle, kTwoPi);
-  return wrapped <= -kTwoPi / 2 ? wrapped + kTwoPi : wrapped;
+  const double wrapped = detail::shortest_turn(angle);
+  return wrapped <= -detail::kTwoPi / 2 ? wrapped + detail::kTwoPi : wrapped;
 }
 
 }  // namespace mmgrasp

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
+
 namespace mmgrasp {
 namespace {
 
@@ -54,7 +56,7 @@ std::size_t Rng::index(std::size_t size) {
 
 double Rng::normal() {
   const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
-  return radius * std::cos(2.0 * M_PI * uniform());
+  return radius * std::cos(detail::kTwoPi * uniform());
 }
 
 Eigen::VectorXd Rng::uniform(const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
@@ -66,8 +68,8 @@ Eigen::VectorXd Rng::uniform(const Eigen::VectorXd& lower, const Eigen::VectorXd
 Eigen::Quaterniond Rng::rotation() {
   // Shoemake's subgroup method.
   const double u = uniform();
-  const double a = 2.0 * M_PI * uniform();
-  const double b = 2.0 * M_PI * uniform();
+  const double a = detail::kTwoPi * uniform();
+  const double b = detail::kTwoPi * uniform();
   const double s = std::sqrt(1.0 - u);
   const double t = std::sqrt(u);
   return Eigen::Quaterniond(t * std::cos(b), s * std::sin(a), s * std::cos(a), t * std::sin(b));
@@ -75,7 +77,7 @@ Eigen::Quaterniond Rng::rotation() {
 
 Eigen::Vector2d Rng::in_disc(double radius) {
   const double r = radius * std::sqrt(uniform());
-  const double angle = 2.0 * M_PI * uniform();
+  const double angle = detail::kTwoPi * uniform();
   return {r * std::cos(angle), r * std::sin(angle)};
 }
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/mesh_topology.hpp"
+#include "mmgrasp/geometry/detail/mesh_topology.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
 

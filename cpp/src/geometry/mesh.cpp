@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <unordered_map>
 
-#include "geometry/mesh_topology.hpp"
-#include "geometry/readers/file_content.hpp"
+#include "mmgrasp/geometry/detail/mesh_topology.hpp"
+#include "mmgrasp/core/detail/file_content.hpp"
 #include "geometry/readers/mesh_readers.hpp"
 
 namespace mmgrasp {

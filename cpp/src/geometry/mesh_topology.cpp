@@ -1,4 +1,4 @@
-#include "geometry/mesh_topology.hpp"
+#include "mmgrasp/geometry/detail/mesh_topology.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <map>
 
-#include "geometry/readers/file_content.hpp"
+#include "mmgrasp/core/detail/file_content.hpp"
 #include "geometry/readers/mesh_readers.hpp"
 #include "geometry/readers/octree_reader.hpp"
 #include "mmgrasp/core/error.hpp"

@@ -1,8 +1,8 @@
 #include "mmgrasp/geometry/shape.hpp"
 
 #include <cmath>
-#include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
@@ -84,7 +84,7 @@ Eigen::AlignedBox3d shape_bounds(const Shape& shape, const Pose& T) {
                         },
                         [&](const Plane&) {
                           return around(Eigen::Vector3d::Zero(),
-                                        Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()));
+                                        Eigen::Vector3d::Constant(detail::kInfinity));
                         },
                         [&](const MeshShape& s) {
                           Eigen::AlignedBox3d box;

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <set>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/shape.hpp"
 
@@ -8,7 +9,6 @@ namespace mmgrasp {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 
 using Vertices = std::vector<Eigen::Vector3d>;
 using Triangles = std::vector<std::array<int, 3>>;
@@ -42,7 +42,7 @@ std::shared_ptr<const TriangleMesh> revolve(const std::vector<Eigen::Vector2d>& 
   const auto at = [&](std::size_t ring, int s) { return 2 + static_cast<int>(ring) * segments + s % segments; };
   for (const Eigen::Vector2d& ring : rings) {
     for (int s = 0; s < segments; ++s) {
-      const double angle = 2 * kPi * s / segments;
+      const double angle = detail::kTwoPi * s / segments;
       vertices.emplace_back(ring.x() * std::cos(angle), ring.x() * std::sin(angle), ring.y());
     }
   }
@@ -61,12 +61,12 @@ std::shared_ptr<const TriangleMesh> round_mesh(double radius, double length, int
   const int half = std::max(2, segments / 4);
   std::vector<Eigen::Vector2d> rings;
   for (int i = 1; i <= half; ++i) {
-    const double angle = -kPi / 2 + kPi / 2 * i / half;
+    const double angle = -detail::kPi / 2 + detail::kPi / 2 * i / half;
     rings.emplace_back(radius * std::cos(angle), radius * std::sin(angle) - length / 2);
   }
   if (length > 0) rings.emplace_back(radius, length / 2);
   for (int i = 1; i < half; ++i) {
-    const double angle = kPi / 2 * i / half;
+    const double angle = detail::kPi / 2 * i / half;
     rings.emplace_back(radius * std::cos(angle), radius * std::sin(angle) + length / 2);
   }
   return revolve(rings, -length / 2 - radius, length / 2 + radius, segments);

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "geometry/mesh_topology.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/geometry/detail/mesh_topology.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -65,7 +66,7 @@ int TriangleTree::build(int begin, int end) {
 }
 
 double TriangleTree::distance(const Vector3d& point) const {
-  double best = std::numeric_limits<double>::infinity();
+  double best = kInfinity;
   int stack[128];
   int size = 0;
   if (!nodes_.empty()) stack[size++] = 0;

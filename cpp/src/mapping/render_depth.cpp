@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mapping/shape_rays.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
@@ -13,7 +13,6 @@ namespace mmgrasp {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr int kBand = 16;  // rows of a work item
 
 struct Pixels {
@@ -24,7 +23,7 @@ struct Pixels {
 /// camera.
 template <typename Points>
 Pixels pixels_around(const PinholeCamera& camera, const Points& points) {
-  double lower[2] = {kNever, kNever}, upper[2] = {-kNever, -kNever};
+  double lower[2] = {detail::kInfinity, detail::kInfinity}, upper[2] = {-detail::kInfinity, -detail::kInfinity};
   for (const Vector3d& p : points) {
     if (p.z() < 1e-6) return {0, camera.width - 1, 0, camera.height - 1};
     const double uv[2] = {camera.cx + camera.fx * p.x() / p.z(), camera.cy + camera.fy * p.y() / p.z()};
@@ -77,7 +76,7 @@ class Renderer {
   }
 
   void render_band(int v0, int v1, float* depth) const {
-    std::vector<double> nearest(static_cast<std::size_t>(camera_.width) * (v1 - v0), kNever);
+    std::vector<double> nearest(static_cast<std::size_t>(camera_.width) * (v1 - v0), detail::kInfinity);
     for (const Analytic& body : analytic_) draw(body, v0, v1, nearest.data());
     for (const Triangle& triangle : triangles_) draw(triangle, v0, v1, nearest.data());
     for (std::size_t i = 0; i < nearest.size(); ++i) {

@@ -2,28 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
+
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Where the line is inside a convex body; empty when enter > leave.
 struct Span {
-  double enter = -kNever, leave = kNever;
+  double enter = -kInfinity, leave = kInfinity;
 };
 
 double first_of(const Span& span) {
-  if (span.enter > span.leave) return kNever;
-  return span.enter > 0 ? span.enter : span.leave > 0 && span.leave < kNever ? span.leave : kNever;
+  if (span.enter > span.leave) return kInfinity;
+  return span.enter > 0 ? span.enter : span.leave > 0 && span.leave < kInfinity ? span.leave : kInfinity;
 }
 
 void clip_slab(Span& span, double origin, double direction, double half) {
   if (direction == 0) {
-    if (std::abs(origin) > half) span = {kNever, -kNever};
+    if (std::abs(origin) > half) span = {kInfinity, -kInfinity};
     return;
   }
   double a = (-half - origin) / direction, b = (half - origin) / direction;
@@ -34,9 +34,9 @@ void clip_slab(Span& span, double origin, double direction, double half) {
 
 /// a t^2 + 2 b t + c <= 0
 Span clip_quadratic(double a, double b, double c) {
-  if (a <= 0) return c <= 0 ? Span{} : Span{kNever, -kNever};
+  if (a <= 0) return c <= 0 ? Span{} : Span{kInfinity, -kInfinity};
   const double root = b * b - a * c;
-  if (root < 0) return {kNever, -kNever};
+  if (root < 0) return {kInfinity, -kInfinity};
   const double s = std::sqrt(root);
   return {(-b - s) / a, (-b + s) / a};
 }
@@ -65,7 +65,7 @@ double first_hit(const Shape& shape, const Vector3d& o, const Vector3d& d) {
   if (const auto* s = std::get_if<Capsule>(&shape)) {
     // A union of three convex bodies that is convex itself: it is entered where the first is and left where the last
     // is.
-    Span all{kNever, -kNever};
+    Span all{kInfinity, -kInfinity};
     const auto join = [&](const Span& part) {
       if (part.enter > part.leave) return;
       all.enter = std::min(all.enter, part.enter);
@@ -79,10 +79,10 @@ double first_hit(const Shape& shape, const Vector3d& o, const Vector3d& d) {
   }
   if (const auto* s = std::get_if<Plane>(&shape)) {
     const double speed = s->normal.dot(d);
-    const double t = speed != 0 ? (s->offset - s->normal.dot(o)) / speed : kNever;
-    return t > 0 ? t : kNever;
+    const double t = speed != 0 ? (s->offset - s->normal.dot(o)) / speed : kInfinity;
+    return t > 0 ? t : kInfinity;
   }
-  return kNever;
+  return kInfinity;
 }
 
 }  // namespace mmgrasp::detail

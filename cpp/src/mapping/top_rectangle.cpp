@@ -5,11 +5,12 @@
 #include <complex>
 #include <numeric>
 
+#include "mmgrasp/core/detail/numbers.hpp"
+
 namespace mmgrasp::detail {
 namespace {
 
 using Eigen::Vector2d;
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kTail = 0.01;            // share of points left out at each end
 constexpr double kWhole = 0.85;           // fill from which a face counts as seen whole
 constexpr double kTrust = 5 * kPi / 180;  // the moments refine the angle by at most this

@@ -1,15 +1,14 @@
 #include "mmgrasp/optim/assignment.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <string>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
 
 std::vector<int> cheapest_assignment(const Eigen::MatrixXd& costs) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const std::string shape = "(" + std::to_string(costs.rows()) + ", " + std::to_string(costs.cols()) + ")";
   require(costs.rows() == costs.cols(), "shape of costs", shape, "must be square");
   require(costs.allFinite(), "costs", costs.sum(), "must be finite");
@@ -21,13 +20,13 @@ std::vector<int> cheapest_assignment(const Eigen::MatrixXd& costs) {
   for (std::size_t row = 1; row <= n; ++row) {
     row_of[0] = row;
     std::size_t column = 0;
-    std::fill(slack.begin(), slack.end(), kInfinity);
+    std::fill(slack.begin(), slack.end(), detail::kInfinity);
     std::fill(done.begin(), done.end(), 0);
     do {
       done[column] = 1;
       const std::size_t at = row_of[column];
       std::size_t next = 0;
-      double least = kInfinity;
+      double least = detail::kInfinity;
       for (std::size_t j = 1; j <= n; ++j) {
         if (done[j]) continue;
         const double reduced = costs(static_cast<Eigen::Index>(at - 1), static_cast<Eigen::Index>(j - 1)) -

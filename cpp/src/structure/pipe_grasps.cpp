@@ -5,6 +5,7 @@
 #include <numeric>
 #include <string>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
 
@@ -13,7 +14,6 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-constexpr double kPi = 3.14159265358979323846;
 
 /// Columns: approach, closing, and what makes them right-handed.
 Matrix3d hand_axes(const Vector3d& approach, const Vector3d& closing) {
@@ -129,7 +129,7 @@ std::vector<PipeGrasp> sample_pipe_grasps(const Pipe& pipe, int count, const Pip
     const double at = rng.uniform(0, room);
     const int section = static_cast<int>(std::upper_bound(up_to.begin(), up_to.end(), at) - up_to.begin());
     const double length = at - (section == 0 ? 0 : up_to[section - 1]) + options.end_margin;
-    const double angle = rng.uniform(-kPi, kPi);
+    const double angle = rng.uniform(-detail::kPi, detail::kPi);
     const bool flipped = rng.index(2) == 1;
     if (taken[2 * section + (flipped ? 1 : 0)].take(length, angle)) {
       grasps.push_back(place_pipe_grasp(pipe, section, length, angle, flipped, options));

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
+
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -100,7 +101,7 @@ CollisionTerm::CollisionTerm(const IntervalPoint& point, std::vector<SeparatingP
   const Eigen::Index rows = static_cast<Eigen::Index>(planes_.size());
   lower.resize(rows);
   for (Eigen::Index i = 0; i < rows; ++i) lower[i] = planes_[static_cast<std::size_t>(i)].margin;
-  upper = VectorXd::Constant(rows, std::numeric_limits<double>::infinity());
+  upper = VectorXd::Constant(rows, kInfinity);
 }
 
 void CollisionTerm::value(const double* x, double* out) const {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/collision/edge.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
 #include "mmgrasp/trajopt/optimize_whole_body.hpp"
@@ -28,7 +29,7 @@ class Ledger {
   void note(double value, double time, const std::string& what) {
     Violation& v = list_.back();
     if (!(value > v.value) && !std::isnan(value)) return;
-    v.value = std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
+    v.value = std::isnan(value) ? detail::kInfinity : value;
     v.time = time;
     v.what = what;
     const std::vector<double>& times = trajectory_.times();

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "trajopt/tool_terms.hpp"
 
@@ -11,7 +11,6 @@ namespace mmgrasp::detail {
 namespace {
 
 using Eigen::VectorXd;
-constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kLeastStep = 1e-4, kLongestStep = 100;  // [s] of a time step (P1 4.3)
 
 }  // namespace
@@ -58,8 +57,8 @@ WholeBodyNlp::WholeBodyNlp(const WholeBodyProblem& problem, double smoothing) : 
 
 void WholeBodyNlp::bound_variables() {
   const JointGroup& group = problem_.group;
-  bounds_.lower = VectorXd::Constant(layout_.size(), -kInf);
-  bounds_.upper = VectorXd::Constant(layout_.size(), kInf);
+  bounds_.lower = VectorXd::Constant(layout_.size(), -kInfinity);
+  bounds_.upper = VectorXd::Constant(layout_.size(), kInfinity);
   const auto box = [&](int index, double lower, double upper) {
     bounds_.lower[index] = lower;
     bounds_.upper[index] = upper;
@@ -69,7 +68,7 @@ void WholeBodyNlp::bound_variables() {
   for (int i = 0; i <= last; ++i) {
     for (int c = 0; c < layout_.columns(); ++c) {
       const bool turns = group.wraps()[static_cast<std::size_t>(c)];
-      box(layout_.q(i, c), turns ? -kInf : group.lower()[c], turns ? kInf : group.upper()[c]);
+      box(layout_.q(i, c), turns ? -kInfinity : group.lower()[c], turns ? kInfinity : group.upper()[c]);
     }
     for (int d = 0; d < layout_.drives(); ++d) box(layout_.v(i, d), -v[d], v[d]);
     if (i == last) continue;
@@ -168,12 +167,12 @@ void WholeBodyNlp::add_limits() {
       }
     }
     if (base == BaseKind::omni) {
-      make(std::make_unique<SquareSum>(), i, {layout_.v(i, 0), layout_.v(i, 1)}, -kInf,
+      make(std::make_unique<SquareSum>(), i, {layout_.v(i, 0), layout_.v(i, 1)}, -kInfinity,
            limits.linear_velocity * limits.linear_velocity, "velocity", "base");
     }
     if (i == layout_.intervals()) break;
     if (base == BaseKind::omni) {
-      make(std::make_unique<SquareSum>(), i, {layout_.a(i, 0), layout_.a(i, 1)}, -kInf,
+      make(std::make_unique<SquareSum>(), i, {layout_.a(i, 0), layout_.a(i, 1)}, -kInfinity,
            limits.linear_acceleration * limits.linear_acceleration, "acceleration", "base");
     }
     const int h = layout_.h(layout_.segment(i));
@@ -190,7 +189,7 @@ void WholeBodyNlp::add_limits() {
       for (int d = 0; d < layout_.drives(); ++d) {
         for (const double sign : {-1.0, 1.0}) {
           make(std::make_unique<LinearTerm>(std::vector<double>{sign, -sign, -a[d] / problem_.jerk_time}), i,
-               {layout_.a(i, d), layout_.a(i - 1, d), h}, -kInf, 0, "jerk",
+               {layout_.a(i, d), layout_.a(i - 1, d), h}, -kInfinity, 0, "jerk",
                drive_names(group)[static_cast<std::size_t>(d)]);
         }
       }
@@ -223,7 +222,7 @@ void WholeBodyNlp::add_tool() {
       add(std::move(term));
     };
     if (std::isfinite(tool.max_speed)) {
-      velocity(Eigen::Matrix3Xd(3, 0), VectorXd::Constant(1, -kInf),
+      velocity(Eigen::Matrix3Xd(3, 0), VectorXd::Constant(1, -kInfinity),
                VectorXd::Constant(1, tool.max_speed * tool.max_speed));
     }
     for (int axis = 0; axis < 3; ++axis) {

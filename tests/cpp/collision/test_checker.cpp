@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "collision/fcl_reference.hpp"
-#include "collision/free_body.hpp"
+#include "support/fcl_reference.hpp"
+#include "support/free_body.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <thread>
 
-#include "collision/fcl_reference.hpp"
+#include "support/fcl_reference.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/collision/disabled_pairs.hpp"
 #include "mmgrasp/core/random.hpp"

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "collision/fcl_reference.hpp"
-#include "collision/free_body.hpp"
+#include "support/fcl_reference.hpp"
+#include "support/free_body.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/core/random.hpp"
 

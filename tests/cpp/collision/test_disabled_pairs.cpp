@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "collision/fcl_reference.hpp"
+#include "support/fcl_reference.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "support/robot_support.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "collision/free_body.hpp"
+#include "support/free_body.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "support/robot_support.hpp"

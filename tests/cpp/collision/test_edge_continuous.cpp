@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "collision/free_body.hpp"
+#include "support/free_body.hpp"
 #include "mmgrasp/collision/edge.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "support/mesh_robots.hpp"

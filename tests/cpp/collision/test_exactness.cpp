@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "collision/exactness.hpp"
+#include "support/exactness.hpp"
 
 using namespace mmgrasp;
 

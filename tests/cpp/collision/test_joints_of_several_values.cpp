@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "collision/fcl_reference.hpp"
+#include "support/fcl_reference.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/collision/edge.hpp"
 #include "mmgrasp/core/random.hpp"

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "mmgrasp/core/error.hpp"
-#include "plan/fcl_carry.hpp"
+#include "support/fcl_carry.hpp"
 
 namespace mmgrasp {
 namespace {

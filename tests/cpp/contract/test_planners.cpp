@@ -11,8 +11,8 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/plan/motion.hpp"
-#include "plan/fcl_planar.hpp"
-#include "plan/planar_arm.hpp"
+#include "support/fcl_planar.hpp"
+#include "support/planar_arm.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "mmgrasp/core/error.hpp"
-#include "plan/bar_carry.hpp"
-#include "plan/fcl_carry.hpp"
+#include "support/bar_carry.hpp"
+#include "support/fcl_carry.hpp"
 
 namespace mmgrasp {
 namespace {

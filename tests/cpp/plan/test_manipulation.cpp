@@ -10,8 +10,8 @@
 #include <queue>
 
 #include "mmgrasp/core/error.hpp"
-#include "plan/bar_carry.hpp"
-#include "plan/planar_arm.hpp"
+#include "support/bar_carry.hpp"
+#include "support/planar_arm.hpp"
 #include "plan/roadmap/roadmap_data.hpp"
 
 namespace mmgrasp {

@@ -8,7 +8,7 @@
 
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/robot/ik.hpp"
-#include "plan/bar_carry.hpp"
+#include "support/bar_carry.hpp"
 #include "plan/roadmap/roadmap_data.hpp"
 
 namespace mmgrasp {

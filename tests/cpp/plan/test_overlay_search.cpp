@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "plan/planar_arm.hpp"
+#include "support/planar_arm.hpp"
 
 namespace mmgrasp::detail {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "mmgrasp/core/parallel.hpp"
-#include "plan/planar_arm.hpp"
+#include "support/planar_arm.hpp"
 #include "plan/roadmap/roadmap_data.hpp"
 
 namespace mmgrasp {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "plan/bar_carry.hpp"
+#include "support/bar_carry.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "mmgrasp/core/error.hpp"
-#include "plan/bar_carry.hpp"
+#include "support/bar_carry.hpp"
 
 namespace mmgrasp {
 namespace {

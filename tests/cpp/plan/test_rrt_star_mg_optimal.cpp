@@ -9,7 +9,7 @@
 
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/robot/ik.hpp"
-#include "plan/bar_carry.hpp"
+#include "support/bar_carry.hpp"
 
 namespace mmgrasp {
 namespace {

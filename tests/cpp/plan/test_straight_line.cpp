@@ -9,8 +9,8 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
-#include "plan/planar_arm.hpp"
-#include "plan/puma_arm.hpp"
+#include "support/planar_arm.hpp"
+#include "support/puma_arm.hpp"
 
 namespace mmgrasp {
 namespace {

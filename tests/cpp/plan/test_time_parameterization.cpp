@@ -13,7 +13,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
-#include "plan/planar_arm.hpp"
+#include "support/planar_arm.hpp"
 #include "support/vec.hpp"
 
 namespace mmgrasp {

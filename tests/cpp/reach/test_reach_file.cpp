@@ -3,7 +3,7 @@
 #include <thread>
 
 #include "mmgrasp/core/random.hpp"
-#include "reach/reach_folder.hpp"
+#include "support/reach_folder.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "collision/free_body.hpp"
+#include "support/free_body.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/grasp/graspability.hpp"
 #include "mmgrasp/grasp/random_placement.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
-#include "plan/planar_arm.hpp"
+#include "support/planar_arm.hpp"
 
 namespace mmgrasp::verify {
 namespace {

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "collision/narrow/solid.hpp"
 #include "collision/narrow/triangle_distance.hpp"
 
@@ -27,7 +27,7 @@ std::pair<Eigen::Vector3d, double> small_ball(const Points& points, int rounds) 
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& p : points) box.extend(p);
   Eigen::Vector3d centre = box.center(), best = centre;
-  double radius = std::numeric_limits<double>::infinity();
+  double radius = kInfinity;
   for (int i = 2; i < rounds + 2; ++i) {
     const Eigen::Vector3d* farthest = &points.front();
     double squared = -1;
@@ -133,7 +133,7 @@ std::vector<Points> cell_points(const TriangleMesh& mesh, const Grid& grid, cons
 }
 
 double surface_distance(const TriangleMesh& mesh, const Eigen::Vector3d& p) {
-  double best = std::numeric_limits<double>::infinity();
+  double best = kInfinity;
   for (const auto& t : mesh.triangles)
     best = std::min(best, triangle_distance(p, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
   return best;
@@ -243,7 +243,7 @@ void cover_convex(const TriangleMesh& mesh, double size, CoverLevels& levels) {
   const double rounding = 1e-6 * size;
   const std::vector<Face> faces = faces_of(mesh, size, rounding);
   const auto depth = [&](const Eigen::Vector3d& p) {
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     for (const Face& face : faces) least = std::min(least, face.offset - face.normal.dot(p));
     return least - 3 * rounding;
   };
@@ -277,7 +277,7 @@ void cover_box(const Eigen::Vector3d& size, CoverLevels& levels) {
 void cover_cylinder(const Cylinder& cylinder, CoverLevels& levels) {
   constexpr int kSegments = 24;
   Cylinder around = cylinder;
-  around.radius /= std::cos(M_PI / kSegments);
+  around.radius /= std::cos(kPi / kSegments);
   const auto mesh = shape_mesh(around, kSegments);
   const auto depth = [&](const Eigen::Vector3d& p) {
     return std::min(cylinder.radius - p.head<2>().norm(), 0.5 * cylinder.length - std::abs(p[2]));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "collision/checker/checker_impl.hpp"
 #include "mmgrasp/core/error.hpp"
 
@@ -67,7 +68,7 @@ double CollisionChecker::Impl::box_bound(const Candidate& pair, bool still) {
 
 void CollisionChecker::Impl::to_world(NearestPair& nearest) const {
   SolidGap& gap = nearest.gap;
-  if (nearest.pair.with_scene || gap.distance == std::numeric_limits<double>::infinity()) return;
+  if (nearest.pair.with_scene || gap.distance == detail::kInfinity) return;
   const int frame = plan->placed[nearest.pair.shape].frame;
   const detail::Rigid T = detail::MovingFrames::get(frames.data() + 16 * frame);
   gap.on_a = T * gap.on_a;
@@ -116,7 +117,7 @@ NearestPair CollisionChecker::Impl::nearest() {
 DistanceResult CollisionChecker::Impl::described(const NearestPair& nearest) const {
   DistanceResult out;
   const auto& [pair, gap] = nearest;
-  if (gap.distance == std::numeric_limits<double>::infinity()) return out;
+  if (gap.distance == detail::kInfinity) return out;
   out.value = gap.distance;
   out.point_a = gap.on_a;
   out.point_b = gap.on_b;
@@ -130,7 +131,7 @@ DistanceResult CollisionChecker::Impl::described(const NearestPair& nearest) con
 Eigen::VectorXd CollisionChecker::Impl::gradient(const NearestPair& nearest, const Eigen::VectorXd& q) {
   Eigen::VectorXd row = Eigen::VectorXd::Zero(group.size());
   const auto& [pair, gap] = nearest;
-  if (gap.distance == std::numeric_limits<double>::infinity()) return row;
+  if (gap.distance == detail::kInfinity) return row;
   point_jacobian.resize(6, group.size());
   const auto add = [&](int link, const Eigen::Vector3d& point, double sign) {
     group.point_jacobian(links, q, link, point, point_jacobian);

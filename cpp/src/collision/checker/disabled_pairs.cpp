@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "collision/checker/bodies.hpp"
 #include "collision/narrow/narrow.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -39,13 +40,12 @@ bool adjacent(const Robot& robot, int link_a, int link_b) {
 }
 
 Eigen::VectorXd random_values(const Robot& robot, Rng& rng) {
-  constexpr double kPi = 3.14159265358979323846;
   Eigen::VectorXd values = robot.default_values();
   for (const Joint& joint : robot.joints()) {
     if (joint.value_index < 0) continue;
     for (int k = 0; k < joint.value_count(); ++k) {
       const bool bounded = std::isfinite(joint.lower) && std::isfinite(joint.upper) && joint.value_count() == 1;
-      values[joint.value_index + k] = bounded ? rng.uniform(joint.lower, joint.upper) : rng.uniform(-kPi, kPi);
+      values[joint.value_index + k] = bounded ? rng.uniform(joint.lower, joint.upper) : rng.uniform(-detail::kPi, detail::kPi);
     }
   }
   return values;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "collision/narrow/convex_gap.hpp"
 #include "collision/narrow/narrow.hpp"
 
@@ -26,7 +27,7 @@ constexpr int cells_around(int level) {
 }
 
 double middle(int level, long i) {
-  return (static_cast<double>(i) + 0.5) * (2 * M_PI / cells_around(level));
+  return (static_cast<double>(i) + 0.5) * (kTwoPi / cells_around(level));
 }
 
 Rigid turned(const Rigid& T, double angle) {
@@ -47,12 +48,12 @@ long wrapped(long i, long n) {
 GapTable::GapTable(const TableBody& a, const TableBody& b, const TwoTurns& turns)
     : a_(*a.solid), b_(*b.solid), bounds_a_(*a.bounds), bounds_b_(*b.bounds), turns_(turns) {
   for (int level = 0; level < kLevels; ++level)
-    within_cell_[level] = (turns.rates[0] + turns.rates[1]) * M_PI / cells_around(level) + kSlack;
+    within_cell_[level] = (turns.rates[0] + turns.rates[1]) * kPi / cells_around(level) + kSlack;
 }
 GapTable::~GapTable() = default;
 
 double GapTable::at_least(double first, double second, double wanted) const {
-  constexpr double kPerRadian = kFinest / (2 * M_PI);
+  constexpr double kPerRadian = kFinest / kTwoPi;
   const long i = std::lround(std::floor(first * kPerRadian)), j = std::lround(std::floor(second * kPerRadian));
   const long in_i = wrapped(i, kFinest), in_j = wrapped(j, kFinest);
   first -= static_cast<double>(i - in_i) / kPerRadian;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "collision/checker/checker_access.hpp"
 
 namespace mmgrasp {
@@ -57,7 +58,7 @@ class Advance {
       ++checker_.queries;
       checker_.place(q0_ + delta_ * at);
       std::size_t kept = 0;
-      double next = std::numeric_limits<double>::infinity();
+      double next = kInfinity;
       for (Item item : open_) {
         if (item.clear_to <= at + kTogether) {
           const double gap = gap_of(item, item.rate * (end - at) + tolerance_);

@@ -1,11 +1,11 @@
 #include "collision/narrow/convex.hpp"
 
-#include <limits>
 
 #if defined(__SSE2__)
 #include <emmintrin.h>
 #endif
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "collision/narrow/difference.hpp"
 
 namespace mmgrasp::detail {
@@ -17,7 +17,7 @@ constexpr int kMaxIterations = 128;
 int farthest_scalar(const double* x, int count, const Eigen::Vector3d& d) {
   const double *y = x + count, *z = y + count;
   int best = 0;
-  double top = -std::numeric_limits<double>::infinity();
+  double top = -kInfinity;
   for (int i = 0; i < count; ++i) {
     const double value = x[i] * d[0] + y[i] * d[1] + z[i] * d[2];
     if (value > top) top = value, best = i;
@@ -30,7 +30,7 @@ int farthest_scalar(const double* x, int count, const Eigen::Vector3d& d) {
 int farthest_sse2(const double* x, int count, const Eigen::Vector3d& d) {
   const double *y = x + count, *z = y + count;
   const __m128d dx = _mm_set1_pd(d[0]), dy = _mm_set1_pd(d[1]), dz = _mm_set1_pd(d[2]);
-  __m128d top = _mm_set1_pd(-std::numeric_limits<double>::infinity()), best = _mm_setzero_pd();
+  __m128d top = _mm_set1_pd(-kInfinity), best = _mm_setzero_pd();
   __m128d index = _mm_set_pd(1, 0);
   const __m128d two = _mm_set1_pd(2);
   for (int i = 0; i < count; i += 2) {
@@ -89,7 +89,7 @@ bool convex_collide(const Convex& a, const Convex& b, const Rigid& b_in_a, doubl
   if (axis.squaredNorm() < 1e-20) axis = a.centre - b_in_a * b.centre;
   if (axis.squaredNorm() < 1e-20) axis = Eigen::Vector3d::UnitX();
   Simplex simplex;
-  double best = std::numeric_limits<double>::infinity();  // squared length of the simplex's closest point
+  double best = kInfinity;  // squared length of the simplex's closest point
   for (int i = 0; i < kMaxIterations; ++i) {
     const SimplexPoint p = difference(a, b, b_in_a, axis);
     const double along = axis.dot(p.w);

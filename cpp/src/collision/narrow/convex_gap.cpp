@@ -1,7 +1,7 @@
 #include "collision/narrow/convex_gap.hpp"
 
-#include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "collision/narrow/difference.hpp"
 
 namespace mmgrasp::detail {
@@ -18,7 +18,7 @@ GapKind convex_gap(const Convex& a, const Convex& b, const Rigid& b_in_a, double
   if (!(axis.squaredNorm() > 1e-20)) axis = a.centre - b_in_a * b.centre;
   if (!(axis.squaredNorm() > 1e-20)) axis = Eigen::Vector3d::UnitX();
   Simplex simplex, last;
-  double best = std::numeric_limits<double>::infinity();  // squared length of the simplex's closest point
+  double best = kInfinity;  // squared length of the simplex's closest point
   for (int i = 0; i < kMaxIterations; ++i) {
     const SimplexPoint p = difference(a, b, b_in_a, axis);
     const double along = axis.dot(p.w);
@@ -53,7 +53,7 @@ Nearness convex_nearness(const Convex& a, const Convex& b, const Rigid& b_in_a, 
   Eigen::Vector3d axis = a.centre - b_in_a * b.centre;
   if (!(axis.squaredNorm() > 1e-20)) axis = Eigen::Vector3d::UnitX();
   Simplex simplex;
-  double best = std::numeric_limits<double>::infinity();  // squared length of the simplex's closest point
+  double best = kInfinity;  // squared length of the simplex's closest point
   bool parted = false;
   for (int i = 0; i < kMaxIterations; ++i) {
     const SimplexPoint p = difference(a, b, b_in_a, axis);

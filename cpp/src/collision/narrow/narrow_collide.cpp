@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "collision/broad/distance_field.hpp"
 #include "collision/narrow/narrow.hpp"
 
@@ -200,7 +201,7 @@ bool inside(const Solid& a, const Solid& b, const Rigid& b_in_a) {
 
 double lowest_along(const Solid& body, const Eigen::Vector3d& normal) {
   if (body.kind == SolidKind::convex) return normal.dot(body.core.support(-normal)) - body.core.radius * normal.norm();
-  double lowest = std::numeric_limits<double>::infinity();
+  double lowest = kInfinity;
   for (const auto& t : body.triangles) {
     for (int c = 0; c < 3; ++c)
       lowest = std::min(lowest, normal[0] * t[c] + normal[1] * t[3 + c] + normal[2] * t[6 + c]);

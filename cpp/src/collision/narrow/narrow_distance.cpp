@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "collision/narrow/narrow.hpp"
 #include "collision/narrow/tree_gap.hpp"
 
@@ -26,7 +27,7 @@ Convex around(const Solid& s) {
 
 // Lowest point of a body along a direction of its own frame.
 std::pair<double, Eigen::Vector3d> lowest_point(const Solid& body, const Eigen::Vector3d& normal) {
-  std::pair<double, Eigen::Vector3d> best{std::numeric_limits<double>::infinity(), Eigen::Vector3d::Zero()};
+  std::pair<double, Eigen::Vector3d> best{kInfinity, Eigen::Vector3d::Zero()};
   const auto look_at = [&](const Convex& piece) {
     const Eigen::Vector3d point = piece.support(-normal) - piece.radius * normal;
     if (normal.dot(point) < best.first) best = {normal.dot(point), point};
@@ -141,11 +142,11 @@ bool find_gap(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b
 }  // namespace
 
 double boxes_gap(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b) {
-  if (a.kind == SolidKind::plane || b.kind == SolidKind::plane) return -std::numeric_limits<double>::infinity();
+  if (a.kind == SolidKind::plane || b.kind == SolidKind::plane) return -kInfinity;
   const Rigid b_in_a = T_a.to(T_b);
   const double gap =
       box_gap(a.box_half, b.box_half, b_in_a.R, b_in_a.R.cwiseAbs(), b_in_a * b.box_centre - a.box_centre);
-  return gap > 0 ? gap : -std::numeric_limits<double>::infinity();
+  return gap > 0 ? gap : -kInfinity;
 }
 
 SolidGap solids_distance(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double bound) {

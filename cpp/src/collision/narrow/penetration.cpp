@@ -2,9 +2,9 @@
 // approximated from inside by a polytope whose face nearest to the origin is pushed out until it lies on the surface.
 
 #include <array>
-#include <limits>
 #include <vector>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "collision/narrow/convex_gap.hpp"
 #include "collision/narrow/simplex.hpp"
 
@@ -104,7 +104,7 @@ class Polytope {
   // The point of the surface nearest to the origin, on both bodies. Of several faces in one plane only one holds it.
   void witness(Eigen::Vector3d& on_a, Eigen::Vector3d& on_b) const {
     const double offset = nearest().offset;
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     for (const Face& face : faces_) {
       if (face.offset > offset + 1e-9 * scale_) continue;
       Simplex simplex;
@@ -165,7 +165,7 @@ class Polytope {
 ConvexGap convex_penetration(const Convex& a, const Convex& b, const Rigid& b_in_a) {
   Polytope polytope(a, b, b_in_a);
   ConvexGap gap;
-  double depth = std::numeric_limits<double>::infinity();
+  double depth = kInfinity;
   Eigen::Vector3d outward = Eigen::Vector3d::UnitX();
   if (!polytope.start(outward)) {
     // Cores without volume (points, segments): they meet, and any shift out of their common plane parts them.

@@ -2,7 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <limits>
+
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 
@@ -14,7 +15,7 @@ struct Foot {
   int corner[3] = {0, 0, 0};
   double weight[3] = {1, 0, 0};
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
-  double squared = std::numeric_limits<double>::infinity();
+  double squared = kInfinity;
 };
 
 Foot on_corner(const SimplexPoint* p, int i) {

@@ -1,10 +1,10 @@
 #include "collision/narrow/solid.hpp"
 
-#include <limits>
 #include <map>
 #include <numeric>
 
-#include "geometry/mesh_topology.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/geometry/detail/mesh_topology.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp::detail {
@@ -56,7 +56,7 @@ void set_mesh_bounds(Solid& solid, const TriangleMesh& mesh) {
 double deepest_dent(const TriangleMesh& mesh, const std::vector<Eigen::Vector4d>& planes) {
   double deepest = 0;
   for (const auto& t : mesh.triangles) {
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     for (const Eigen::Vector4d& plane : planes) {
       double corner_depth = 0;
       for (const int corner : t) {
@@ -74,7 +74,7 @@ double deepest_dent(const TriangleMesh& mesh, const std::vector<Eigen::Vector4d>
 bool set_inner(Solid& solid, const TriangleMesh& mesh, const TriangleMesh& hull, std::vector<double>& inner_points) {
   const Eigen::Vector3d middle = solid.core.centre;
   std::vector<Eigen::Vector4d> planes;
-  double middle_depth = std::numeric_limits<double>::infinity();
+  double middle_depth = kInfinity;
   for (const auto& t : hull.triangles) {
     const Eigen::Vector3d& a = hull.vertices[t[0]];
     const Eigen::Vector3d normal = (hull.vertices[t[1]] - a).cross(hull.vertices[t[2]] - a).normalized();
@@ -218,7 +218,7 @@ void set_primitive(Solid& solid, const Shape& shape, double padding) {
 
 // Signed crossings of the generic ray from the point with the triangles of the tree.
 bool ray_meets_box(const BoxTree::Node& node, const Eigen::Vector3d& from, const Eigen::Vector3d& direction) {
-  double enter = 0, leave = std::numeric_limits<double>::infinity();
+  double enter = 0, leave = kInfinity;
   for (int k = 0; k < 3; ++k) {  // every component of the generic direction is positive
     const double slack = 1e-12 * (1 + std::abs(from[k]));
     enter = std::max(enter, (node.centre[k] - node.half[k] - slack - from[k]) / direction[k]);
@@ -280,8 +280,8 @@ std::shared_ptr<const Solid> make_solid(const Shape& shape, double padding) {
     solid->kind = SolidKind::plane;
     solid->normal = s->normal;
     solid->offset = s->offset + padding;
-    solid->box_half.setConstant(std::numeric_limits<double>::infinity());
-    solid->ball_radius = std::numeric_limits<double>::infinity();
+    solid->box_half.setConstant(kInfinity);
+    solid->ball_radius = kInfinity;
   } else {
     set_primitive(*solid, shape, padding);
   }

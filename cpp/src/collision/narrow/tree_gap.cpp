@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "mmgrasp/core/detail/numbers.hpp"
+
 namespace mmgrasp::detail {
 
 namespace {
@@ -71,7 +73,7 @@ class TreeGap {
     if (!is_tree(a_)) return lowest_a_;
     if (a_.kind == SolidKind::voxels) return normal_.dot(a_.cells[i]) - a_.cell_half * normal_.lpNorm<1>();
     const auto& t = a_.triangles[i];
-    double low = std::numeric_limits<double>::infinity();
+    double low = kInfinity;
     for (int c = 0; c < 3; ++c) low = std::min(low, normal_[0] * t[c] + normal_[1] * t[3 + c] + normal_[2] * t[6 + c]);
     return low;
   }
@@ -80,7 +82,7 @@ class TreeGap {
     const Eigen::Vector3d& n = normal_in_b_;
     if (b_.kind == SolidKind::voxels) return n.dot(b_.cells[j]) + b_.cell_half * n.lpNorm<1>() + shift_;
     const auto& t = b_.triangles[j];
-    double high = -std::numeric_limits<double>::infinity();
+    double high = -kInfinity;
     for (int c = 0; c < 3; ++c) high = std::max(high, n[0] * t[c] + n[1] * t[3 + c] + n[2] * t[6 + c]);
     return high + shift_;
   }

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <assimp/Importer.hpp>
 
-#include "core/xml_markup.hpp"
+#include "mmgrasp/core/detail/xml_markup.hpp"
 #include "geometry/readers/mesh_readers.hpp"
 
 namespace mmgrasp::detail {

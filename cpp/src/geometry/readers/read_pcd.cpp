@@ -3,7 +3,7 @@
 #include <cstring>
 #include <limits>
 
-#include "geometry/readers/file_content.hpp"
+#include "mmgrasp/core/detail/file_content.hpp"
 #include "geometry/readers/mesh_readers.hpp"
 #include "geometry/readers/pcd_reader.hpp"
 #include "mmgrasp/core/error.hpp"

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <queue>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "geometry/triangle_tree.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/simplify_mesh.hpp"
@@ -35,7 +35,7 @@ class DeviationSearch {
   double run(double limit) {
     while (!cells_.empty()) {
       const double bound = std::max(cells_.top().bound, farthest_);
-      if (farthest_ > limit) return std::numeric_limits<double>::infinity();
+      if (farthest_ > limit) return detail::kInfinity;
       const bool kept = bound <= limit;
       if (kept && (bound <= kClose * farthest_ || looked_at_ > kPolishCells)) return bound;
       if (looked_at_ > kMaxCells) return bound;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "geometry/simplify/decimate_outwards.hpp"
 #include "geometry/triangle_tree.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -151,7 +151,7 @@ class PrimitiveFit {
     double radius = 0;
     for (const Vector3d& v : mesh_.vertices) radius = std::max(radius, (v - centre).norm());
     // A ball about the same centre lies in the hull: no point of the sphere is farther from it than the radii differ.
-    double inner = std::numeric_limits<double>::infinity();
+    double inner = detail::kInfinity;
     for (const auto& t : hull_.triangles) {
       const Vector3d& a = hull_.vertices[t[0]];
       const Vector3d n = (hull_.vertices[t[1]] - a).cross(hull_.vertices[t[2]] - a);
@@ -173,7 +173,7 @@ class PrimitiveFit {
     std::vector<Eigen::Vector2d> shadow;
     for (const Vector3d& v : hull_.vertices) shadow.push_back((R.transpose() * v).head<2>());
     const Eigen::Vector2d centre = ball_centre(shadow);
-    double low = std::numeric_limits<double>::infinity(), high = -low, radius = 0;
+    double low = detail::kInfinity, high = -low, radius = 0;
     for (const Vector3d& v : mesh_.vertices) {
       const Vector3d p = R.transpose() * v;
       radius = std::max(radius, (p.head<2>() - centre).norm());
@@ -181,10 +181,10 @@ class PrimitiveFit {
       high = std::max(high, p.z());
     }
     // Largest on the rims; between two of the points taken there an arc is no farther from their chord than this.
-    const double sagitta = radius * (1 - std::cos(M_PI / kRim));
+    const double sagitta = radius * (1 - std::cos(detail::kPi / kRim));
     double deviation = 0;
     for (int i = 0; i < kRim && deviation + sagitta < best_.deviation; ++i) {
-      const double angle = 2 * M_PI * i / kRim;
+      const double angle = detail::kTwoPi * i / kRim;
       const Eigen::Vector2d rim = centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
       for (const double z : {low, high})
         deviation = std::max(deviation, tree_.distance(R * Vector3d(rim.x(), rim.y(), z)));
@@ -198,7 +198,7 @@ class PrimitiveFit {
   detail::TriangleTree tree_;
   MeshStandIn best_ = [] {
     MeshStandIn none;
-    none.deviation = std::numeric_limits<double>::infinity();
+    none.deviation = detail::kInfinity;
     return none;
   }();
 };

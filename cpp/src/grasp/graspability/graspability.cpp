@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "grasp/graspability/graspability_layers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
@@ -11,7 +12,6 @@
 namespace mmgrasp {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 
 /// One closing direction, opening and fingertip height.
 struct Item {
@@ -38,7 +38,7 @@ Eigen::Matrix3d hand_rotation(const Gripper& gripper, double angle) {
 
 /// Closing directions differ by the smaller angle between undirected lines.
 double line_angle(double a, double b) {
-  const double d = std::abs(std::remainder(a - b, kPi));
+  const double d = std::abs(std::remainder(a - b, detail::kPi));
   return d;
 }
 
@@ -119,7 +119,7 @@ class Evaluation {
   }
 
  private:
-  double angle(int orientation) const { return kPi * orientation / options_.orientations; }
+  double angle(int orientation) const { return detail::kPi * orientation / options_.orientations; }
 
   bool near_better(const ScoredGrasp& grasp, const std::vector<ScoredGrasp>& better) const {
     constexpr double kAlike = 0.55;  // [rad]: half the way to a direction that is another grasp of the same part

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "grasp/graspability/graspability_layers.hpp"
 
 namespace mmgrasp::detail {
@@ -11,7 +12,7 @@ using Eigen::Vector2d;
 
 /// Runs of the part between the fingers, one a row across the pads.
 struct Rows {
-  double left = std::numeric_limits<double>::infinity(), right = -left;
+  double left = kInfinity, right = -left;
   std::vector<double> lefts, rights;
   std::size_t held = 0, spanned = 0;
 };

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <string>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "grasp/hand/row_spans.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 
 /// A rectangle in the hand's frame: closing axis u, across it v.
 struct HandRectangle {
@@ -23,8 +23,8 @@ struct HandRectangle {
 
 /// Cosine and sine that give exactly the same masks a quarter turn further on.
 Eigen::Vector2d exact_direction(double angle) {
-  const double quarters = std::floor(angle / (kPi / 2) + 1e-12);
-  const double rest = angle - quarters * (kPi / 2);
+  const double quarters = std::floor(angle / (detail::kPi / 2) + 1e-12);
+  const double rest = angle - quarters * (detail::kPi / 2);
   Eigen::Vector2d d(std::cos(rest), std::sin(rest));
   if (std::abs(rest) < 1e-12) d = {1, 0};
   const int turns = static_cast<int>(std::fmod(std::fmod(quarters, 4.0) + 4.0, 4.0));

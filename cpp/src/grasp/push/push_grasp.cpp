@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
 namespace {
 
 constexpr double kGravity = 9.81;  // [m/s^2]
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void check_positive(double value, const char* field) {
   require(std::isfinite(value) && value > 0, field, value, "must be finite and positive");
@@ -27,7 +26,7 @@ double closing_time(const PushGraspProblem& p) {
 /// Engagement from which on closing may begin so that an object `aside` passes between the tips.
 double passing_start(const PushGraspProblem& p, double aside) {
   const double spare = p.opening - p.object_width - 2 * (aside + p.clearance);
-  return spare < 0 ? kInfinity : -p.tool_speed * spare / p.closing_speed;
+  return spare < 0 ? detail::kInfinity : -p.tool_speed * spare / p.closing_speed;
 }
 
 }  // namespace
@@ -83,7 +82,7 @@ PushGrasp push_grasp(const PushGraspProblem& problem) {
   if (room < p.grip_depth || 2 * aside > p.opening - p.object_width) {
     out.max_tool_speed = 0;
   } else {
-    out.max_tool_speed = aside > 0 ? p.closing_speed * room / (2 * aside) : kInfinity;
+    out.max_tool_speed = aside > 0 ? p.closing_speed * room / (2 * aside) : detail::kInfinity;
   }
 
   const double middle = (out.earliest + out.latest) / 2;
@@ -99,7 +98,7 @@ double push_speed_limit(double length, double friction, double restitution) {
   check_positive(length, "length");
   check_positive(friction, "friction");
   require(restitution >= 0 && restitution <= 1, "restitution", restitution, "must lie in [0, 1]");
-  return restitution == 0 ? kInfinity : std::sqrt(2 * friction * kGravity * length) / restitution;
+  return restitution == 0 ? detail::kInfinity : std::sqrt(2 * friction * kGravity * length) / restitution;
 }
 
 }  // namespace mmgrasp

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "grasp/sampling/contact_pairs.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 
 /// Pad positions along a free direction of half length `half`, the middle first. The outermost ones put a pad flush
 /// with the edge, or half a pad's way out when the part is shorter than the pad: fingertips must not always reach

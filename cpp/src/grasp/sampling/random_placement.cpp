@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
@@ -14,7 +15,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kSmallStep = 0.001;  // thinner parts than this could be passed through [m]
 constexpr double kOnFloor = 0.001;    // a part whose lowest point is no higher lies on the floor [m]
 
@@ -70,7 +70,7 @@ class Placer {
   bool fits_anywhere() {
     for (const RestingPose& rest : rests_) {
       for (int i = 0; i < 36; ++i) {
-        const Pose T = Eigen::Translation3d(Vector3d::Zero()) * Eigen::AngleAxisd(i * kPi / 36, Vector3d::UnitZ()) *
+        const Pose T = Eigen::Translation3d(Vector3d::Zero()) * Eigen::AngleAxisd(i * detail::kPi / 36, Vector3d::UnitZ()) *
                        rest.T_floor_part;
         if (room(bounds_of(part_, T)).minCoeff() >= 0) return true;
       }
@@ -115,7 +115,7 @@ class Placer {
     PlacedPart out;
     out.resting_pose = draw_rest();
     Pose T =
-        Pose(Eigen::AngleAxisd(rng_.uniform(-kPi, kPi), Vector3d::UnitZ())) * rests_[out.resting_pose].T_floor_part;
+        Pose(Eigen::AngleAxisd(rng_.uniform(-detail::kPi, detail::kPi), Vector3d::UnitZ())) * rests_[out.resting_pose].T_floor_part;
     const double rx = rng_.uniform(), ry = rng_.uniform();
     const Eigen::AlignedBox3d box = bounds_of(part_, T);
     const Vector2d free = room(box);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "grasp/sampling/contact_pairs.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/grasp/grasp.hpp"
@@ -12,7 +13,6 @@ namespace {
 using detail::ContactPair;
 using detail::ContactPairs;
 
-constexpr double kPi = 3.14159265358979323846;
 
 struct Candidate {
   Grasp grasp;
@@ -30,7 +30,7 @@ Eigen::Matrix3d align_axes(const Eigen::Vector3d& from_a, const Eigen::Vector3d&
 
 /// One of the 26 directions to a cube's face middles, edges and corners, nearest to a unit vector.
 int direction_bin(const Eigen::Vector3d& direction) {
-  const double threshold = std::sin(kPi / 8);  // half way between a face middle and an edge middle
+  const double threshold = std::sin(detail::kPi / 8);  // half way between a face middle and an edge middle
   int bin = 0;
   for (int i = 0; i < 3; ++i) bin = 3 * bin + (direction[i] > threshold ? 2 : direction[i] < -threshold ? 0 : 1);
   return bin;
@@ -84,7 +84,7 @@ void add_grasps(const ContactPair& pair, const Gripper& gripper, const GraspSamp
                 std::vector<Candidate>& candidates) {
   const Eigen::Vector3d side = pair.axis.cross(pair.first_approach);
   for (int i = 0; i < options.approaches; ++i) {
-    const double angle = 2 * kPi * i / options.approaches;
+    const double angle = detail::kTwoPi * i / options.approaches;
     const Eigen::Vector3d approach = (std::cos(angle) * pair.first_approach + std::sin(angle) * side).normalized();
     // The pads are alike, the arm is not: the hand turned by half a turn about the approach is a grasp of its own.
     for (const double flip : {1.0, -1.0}) {

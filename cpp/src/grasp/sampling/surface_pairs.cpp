@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "grasp/sampling/contact_pairs.hpp"
 #include "mmgrasp/core/random.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 
 struct Triangle {
   Eigen::Vector3d a, ab, ac, normal;  ///< normal: unit, by the winding.
@@ -139,7 +139,7 @@ SurfacePoint sample_point(const Surface& surface, Rng& rng) {
 /// Uniform over the cone of directions around `axis`.
 Eigen::Vector3d sample_in_cone(const Eigen::Vector3d& axis, double half_angle, Rng& rng) {
   const double cosine = rng.uniform(std::cos(half_angle), 1), sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-  const double around = rng.uniform(0, 2 * kPi);
+  const double around = rng.uniform(0, kTwoPi);
   const Eigen::Vector3d u = orthogonal_to(axis), v = axis.cross(u);
   return (cosine * axis + sine * (std::cos(around) * u + std::sin(around) * v)).normalized();
 }

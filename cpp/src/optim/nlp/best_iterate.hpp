@@ -3,8 +3,8 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
-#include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/optim/nlp_solver.hpp"
 
 namespace mmgrasp::detail {
@@ -25,7 +25,7 @@ class BestIterate {
   const Eigen::VectorXd& x() const { return x_; }
 
  private:
-  double tolerance_, objective_ = 0, violation_ = std::numeric_limits<double>::infinity();
+  double tolerance_, objective_ = 0, violation_ = kInfinity;
   Eigen::VectorXd x_;
 };
 

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -11,7 +12,7 @@ Eigen::VectorXd outside(const Eigen::VectorXd& x, const Bounds& bounds) {
   Eigen::VectorXd result(x.size());
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     result[i] = std::isfinite(x[i]) ? std::max({0.0, bounds.lower[i] - x[i], x[i] - bounds.upper[i]})
-                                    : std::numeric_limits<double>::infinity();
+                                    : detail::kInfinity;
   }
   return result;
 }

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <queue>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/random.hpp"
 
 namespace mmgrasp::detail {
@@ -181,7 +181,7 @@ PricedCover price_set_cover(const SetCoverProblem& problem, int max_steps) {
   best.chosen = greedy.cover(std::vector<double>(elements, 0.0), problem.costs);
   best.cost = cost_of(problem, best.chosen);
 
-  std::vector<double> prices(elements, std::numeric_limits<double>::infinity());
+  std::vector<double> prices(elements, kInfinity);
   for (std::size_t s = 0; s < problem.sets.size(); ++s) {
     for (int e : problem.sets[s]) {
       double& price = prices[static_cast<std::size_t>(e)];
@@ -189,7 +189,7 @@ PricedCover price_set_cover(const SetCoverProblem& problem, int max_steps) {
     }
   }
   best.prices = prices;
-  best.bound = -std::numeric_limits<double>::infinity();
+  best.bound = -kInfinity;
   double step = kFirstStep;
   int since = 0;
   std::vector<double> open(elements);

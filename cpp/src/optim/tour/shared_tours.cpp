@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <string>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/optim/tour.hpp"
 
@@ -13,7 +13,6 @@ namespace mmgrasp {
 namespace {
 
 constexpr int kExactStops = 12;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kGain = 1e-9;  // Relative: less is rounding.
 
 using Orders = std::vector<std::vector<int>>;
@@ -60,12 +59,12 @@ class Sharing {
   /// What each robot needs for each subset, then the best way to split all stops robot by robot.
   Orders exact() const {
     const std::size_t masks = std::size_t{1} << n_;
-    std::vector<double> so_far(masks, kInfinity);
+    std::vector<double> so_far(masks, detail::kInfinity);
     so_far[0] = 0;
     std::vector<std::vector<std::size_t>> share(static_cast<std::size_t>(robots_), std::vector<std::size_t>(masks, 0));
     for (int robot = 0; robot < robots_; ++robot) {
       const std::vector<double> alone = durations_of_subsets(robot);
-      std::vector<double> with(masks, kInfinity);
+      std::vector<double> with(masks, detail::kInfinity);
       for (std::size_t mask = 0; mask < masks; ++mask) {
         for (std::size_t own = mask;; own = (own - 1) & mask) {
           const double longest = std::max(so_far[mask ^ own], alone[own]);
@@ -95,14 +94,14 @@ class Sharing {
   std::vector<double> durations_of_subsets(int robot) const {
     const auto n = static_cast<std::size_t>(n_);
     const std::size_t masks = std::size_t{1} << n;
-    std::vector<double> ending(masks * n, kInfinity), total(masks, kInfinity);
+    std::vector<double> ending(masks * n, detail::kInfinity), total(masks, detail::kInfinity);
     total[0] = 0;
     for (int j = 0; j < n_; ++j)
       ending[(std::size_t{1} << j) * n + static_cast<std::size_t>(j)] = drive_(start(robot), j) + service(j);
     for (std::size_t mask = 1; mask < masks; ++mask) {
       for (int last = 0; last < n_; ++last) {
         const double here = ending[mask * n + static_cast<std::size_t>(last)];
-        if (here == kInfinity) continue;
+        if (here == detail::kInfinity) continue;
         total[mask] = std::min(total[mask], here + drive_(last, goal(robot)));
         for (int next = 0; next < n_; ++next) {
           if (mask >> next & 1) continue;
@@ -135,12 +134,12 @@ class Sharing {
     std::vector<int> all(static_cast<std::size_t>(n_));
     std::iota(all.begin(), all.end(), 0);
     const std::vector<int> tour = ordered(0, all);
-    std::vector<double> best(static_cast<std::size_t>(n_) + 1, kInfinity);
+    std::vector<double> best(static_cast<std::size_t>(n_) + 1, detail::kInfinity);
     best[0] = 0;
     std::vector<std::vector<int>> cut(static_cast<std::size_t>(robots_),
                                       std::vector<int>(static_cast<std::size_t>(n_) + 1, 0));
     for (int robot = 0; robot < robots_; ++robot) {
-      std::vector<double> with(best.size(), kInfinity);
+      std::vector<double> with(best.size(), detail::kInfinity);
       for (int end = 0; end <= n_; ++end) {
         for (int begin = 0; begin <= end; ++begin) {
           const std::vector<int> piece(tour.begin() + begin, tour.begin() + end);
@@ -199,7 +198,7 @@ class Sharing {
 
   std::vector<int> inserted(int robot, const std::vector<int>& order, int stop) const {
     std::vector<int> best;
-    double least = kInfinity;
+    double least = detail::kInfinity;
     for (std::size_t place = 0; place <= order.size(); ++place) {
       std::vector<int> trial = order;
       trial.insert(trial.begin() + static_cast<std::ptrdiff_t>(place), stop);
@@ -213,12 +212,12 @@ class Sharing {
 
   /// Someone has to serve the farthest stop; and all that must be done, shared evenly.
   double bound() const {
-    double farthest = 0, work = 0, home = kInfinity;
+    double farthest = 0, work = 0, home = detail::kInfinity;
     for (int robot = 0; robot < robots_; ++robot) {
       for (int i = 0; i < n_; ++i) home = std::min(home, drive_(i, goal(robot)));
     }
     for (int stop = 0; stop < n_; ++stop) {
-      double alone = kInfinity, arrival = kInfinity;
+      double alone = detail::kInfinity, arrival = detail::kInfinity;
       for (int robot = 0; robot < robots_; ++robot) {
         alone = std::min(alone, duration(robot, {stop}));
         arrival = std::min(arrival, drive_(start(robot), stop));

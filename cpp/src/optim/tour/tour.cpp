@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "optim/tour/tour_bounds.hpp"
 #include "optim/tour/tour_search.hpp"
@@ -14,7 +14,6 @@ namespace {
 
 constexpr int kExactStops = 15;
 constexpr double kProven = 1e-9;  // Relative gap that is rounding.
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void check_lengths(const Eigen::MatrixXd& lengths) {
   require(lengths.rows() == lengths.cols() && lengths.rows() >= 2, "lengths",
@@ -44,13 +43,13 @@ std::vector<int> exact_order(const Eigen::MatrixXd& lengths, int n) {
   if (n == 0) return {};
   const int start = n, goal = n + 1;
   const std::size_t masks = std::size_t{1} << n;
-  std::vector<double> best(masks * n, kInfinity);
+  std::vector<double> best(masks * n, detail::kInfinity);
   std::vector<signed char> previous(masks * n, -1);
   for (int j = 0; j < n; ++j) best[(std::size_t{1} << j) * n + j] = lengths(start, j);
   for (std::size_t mask = 1; mask < masks; ++mask) {
     for (int last = 0; last < n; ++last) {
       const double so_far = best[mask * n + last];
-      if (so_far == kInfinity) continue;
+      if (so_far == detail::kInfinity) continue;
       for (int next = 0; next < n; ++next) {
         if (mask >> next & 1) continue;
         const std::size_t to = (mask | std::size_t{1} << next) * n + next;
@@ -64,7 +63,7 @@ std::vector<int> exact_order(const Eigen::MatrixXd& lengths, int n) {
   }
   std::size_t mask = masks - 1;
   int last = -1;
-  double shortest = kInfinity;
+  double shortest = detail::kInfinity;
   for (int j = 0; j < n; ++j) {
     const double total = best[mask * n + j] + lengths(j, goal);
     if (total < shortest) {
@@ -102,10 +101,10 @@ TourResult shortest_visiting_tour(const Eigen::MatrixXd& lengths) {
   const bool exact = n <= kExactStops;
   const Eigen::MatrixXd finite = exact ? Eigen::MatrixXd() : with_large_finite(lengths);
   result.order = exact ? exact_order(lengths, n) : detail::short_order(finite);
-  result.length = static_cast<int>(result.order.size()) == n ? length_of(lengths, result.order) : kInfinity;
+  result.length = static_cast<int>(result.order.size()) == n ? length_of(lengths, result.order) : detail::kInfinity;
   if (!std::isfinite(result.length)) {
     result.proven = exact;
-    result.lower_bound = exact ? kInfinity : 0;
+    result.lower_bound = exact ? detail::kInfinity : 0;
     result.order.clear();
     result.outcome = exact ? Outcome::infeasible : Outcome::timeout;
     return result;

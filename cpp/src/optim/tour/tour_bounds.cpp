@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/optim/assignment.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMaxSteps = 1000;
 constexpr int kPatience = 20;
 constexpr double kLastStep = 1e-4;

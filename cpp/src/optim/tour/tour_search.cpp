@@ -1,8 +1,8 @@
 #include "optim/tour/tour_search.hpp"
 
 #include <algorithm>
-#include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/random.hpp"
 
 namespace mmgrasp::detail {
@@ -17,7 +17,7 @@ constexpr double kGain = 1e-10;  // Relative: less is rounding.
 std::vector<int> cheapest_insertion(const Eigen::MatrixXd& lengths, int n) {
   // Each stop knows its cheapest gap; only gaps that changed are looked at again.
   struct Gap {
-    double extra = std::numeric_limits<double>::infinity();
+    double extra = kInfinity;
     int before = -1;
   };
   std::vector<int> next(static_cast<std::size_t>(n) + 2, -1);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/robot/ik_branches.hpp"
 #include "plan/motion/beyond_limits.hpp"
@@ -129,7 +130,7 @@ class BranchSearch {
   const Monitor& monitor_;
   std::optional<Contact> scene_contact_, self_contact_;  ///< Of the first pose's configurations.
   std::vector<Eigen::VectorXd> branches_;
-  double best_cost_ = std::numeric_limits<double>::infinity();
+  double best_cost_ = detail::kInfinity;
   CartesianResult result_;
 };
 

@@ -9,7 +9,7 @@
 #include "plan/manipulation/common/carry_planner.hpp"
 #include "plan/motion/steered_base.hpp"
 #include "plan/roadmap/roadmap_data.hpp"
-#include "robot/near_name.hpp"
+#include "mmgrasp/core/detail/near_name.hpp"
 
 namespace mmgrasp {
 namespace {

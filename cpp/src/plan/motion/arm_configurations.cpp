@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "mmgrasp/robot/ik_branches.hpp"
-#include "robot/ik/ik_candidates.hpp"
-#include "robot/ik/ik_failure.hpp"
+#include "mmgrasp/robot/detail/ik_candidates.hpp"
+#include "mmgrasp/robot/detail/ik_failure.hpp"
 
 namespace mmgrasp::detail {
 namespace {

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
+
 namespace mmgrasp::detail {
 
 ConfigurationTree::ConfigurationTree(std::vector<bool> wraps)
@@ -23,7 +25,7 @@ int ConfigurationTree::add(const Eigen::VectorXd& q, int parent) {
 }
 
 int ConfigurationTree::nearest(const Eigen::VectorXd& q) const {
-  constexpr float kTurn = static_cast<float>(2 * M_PI);
+  constexpr float kTurn = static_cast<float>(kTwoPi);
   const std::size_t stride = static_cast<std::size_t>(size_) * kRow;
   const float* row = rows_.data();
   // One running minimum a lane: no comparison across lanes before the end.

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "plan/motion/beyond_limits.hpp"
@@ -22,7 +23,7 @@ using detail::nearest_turn;
 
 constexpr const char* kOwnPlanner = "rrt_connect";
 constexpr int kAttempts = 4;            // Searches, when paths fail the finer check.
-constexpr double kNearEnds = M_PI / 2;  // How far from start and goal joints are mostly drawn [rad or m].
+constexpr double kNearEnds = detail::kPi / 2;  // How far from start and goal joints are mostly drawn [rad or m].
 constexpr double kFiner = 8;            // How many times finer paths are looked at before they are returned.
 
 double seconds_since(Clock::time_point start) {
@@ -260,7 +261,7 @@ class MotionSearch {
   const Clock::time_point begin_ = Clock::now();
   const std::size_t queries_before_;
   std::vector<detail::GoalConfiguration> ends_;
-  double best_reported_ = std::numeric_limits<double>::infinity();
+  double best_reported_ = detail::kInfinity;
   MotionResult result_;
 };
 

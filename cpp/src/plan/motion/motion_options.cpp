@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/plan/motion.hpp"
 
@@ -10,14 +11,14 @@ void ToolCone::check() const {
           "must be finite and longer than 0");
   require(world_axis.allFinite() && world_axis.norm() > 1e-9, "tool_cone.world_axis", world_axis.norm(),
           "must be finite and longer than 0");
-  require(half_angle > 0 && half_angle <= M_PI, "tool_cone.half_angle", half_angle, "must be in (0, pi] [rad]");
+  require(half_angle > 0 && half_angle <= detail::kPi, "tool_cone.half_angle", half_angle, "must be in (0, pi] [rad]");
 }
 
 void ToolRegion::check(const std::string& field) const {
   checked_pose(T_world_region.matrix(), field + ".T_world_region");
   require(position.allFinite() && position.minCoeff() >= 0, field + ".position", position.minCoeff(),
           "must be finite and >= 0 [m]");
-  require(rotation.allFinite() && rotation.minCoeff() >= 0 && rotation.maxCoeff() <= M_PI, field + ".rotation",
+  require(rotation.allFinite() && rotation.minCoeff() >= 0 && rotation.maxCoeff() <= detail::kPi, field + ".rotation",
           rotation.minCoeff(), "must be in [0, pi] [rad]");
 }
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "plan/motion/configuration_tree.hpp"
 #include "plan/motion/joint_angles.hpp"
@@ -64,7 +65,7 @@ class Connect {
     const Eigen::VectorXd& upper = anywhere ? query_.upper : query_.near_upper;
     for (Eigen::Index i = 0; i < sample_.size(); ++i) {
       const bool wraps = query_.wraps[static_cast<std::size_t>(i)];
-      sample_[i] = wraps ? rng_.uniform(-M_PI, M_PI) : rng_.uniform(lower[i], upper[i]);
+      sample_[i] = wraps ? rng_.uniform(-kPi, kPi) : rng_.uniform(lower[i], upper[i]);
     }
   }
 
@@ -100,7 +101,7 @@ class Connect {
 
   void wrap(Eigen::VectorXd& q) const {
     for (Eigen::Index i = 0; i < q.size(); ++i) {
-      if (query_.wraps[static_cast<std::size_t>(i)]) q[i] = std::remainder(q[i], 2 * M_PI);
+      if (query_.wraps[static_cast<std::size_t>(i)]) q[i] = shortest_turn(q[i]);
     }
   }
 

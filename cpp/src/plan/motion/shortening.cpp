@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "mmgrasp/core/detail/numbers.hpp"
+
 namespace mmgrasp::detail {
 namespace {
 
@@ -114,7 +116,7 @@ class Shortener {
     result.insert(result.end(), new_stretch.begin(), new_stretch.end());
     // The new stretch may end whole turns away from where the old one did.
     Eigen::VectorXd turns = new_stretch.back() - b.q;
-    for (double& turn : turns) turn = 2 * M_PI * std::round(turn / (2 * M_PI));
+    for (double& turn : turns) turn = whole_turns(turn);
     for (auto w = waypoints_.begin() + b.edge + 1; w != waypoints_.end(); ++w) result.push_back(*w + turns);
     waypoints_ = std::move(result);
     remove_repeats();

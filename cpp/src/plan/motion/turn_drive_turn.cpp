@@ -2,18 +2,20 @@
 
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
+
 namespace mmgrasp::detail {
 namespace {
 
 constexpr double kNoDrive = 1e-9;  // A shorter way is none [m].
 
 double turn(double from, double to) {
-  return std::remainder(to - from, 2 * M_PI);
+  return shortest_turn(to - from);
 }
 
 /// `angle` plus the whole turns that bring it nearest to `near`.
 double in_turn_of(double angle, double near) {
-  return angle + 2 * M_PI * std::round((near - angle) / (2 * M_PI));
+  return angle + whole_turns(near - angle);
 }
 
 }  // namespace
@@ -29,10 +31,10 @@ void append_turn_drive_turn(const Eigen::VectorXd& from, const Eigen::VectorXd& 
   }
   // In [0, pi), so that both directions of travel see the same two headings in the same order.
   double heading = std::atan2(way[1], way[0]);
-  if (heading < 0) heading += M_PI;
-  if (heading >= M_PI) heading -= M_PI;
+  if (heading < 0) heading += kPi;
+  if (heading >= kPi) heading -= kPi;
   const auto turning = [&](double h) { return std::abs(turn(from[2], h)) + std::abs(turn(h, to[2])); };
-  if (turning(heading + M_PI) < turning(heading)) heading += M_PI;
+  if (turning(heading + kPi) < turning(heading)) heading += kPi;
   const double first = turn(from[2], heading), second = turn(heading, to[2]);
   const double total = std::abs(first) + drive + std::abs(second);
 

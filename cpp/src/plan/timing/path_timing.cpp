@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "plan/timing/timing_stop.hpp"
 
 namespace mmgrasp::detail {
@@ -24,7 +24,7 @@ struct PathTiming::Bounds {
     double at(double x) const { return at_zero + slope * x; }
   };
   std::vector<Line> lower, upper;
-  double largest = std::numeric_limits<double>::infinity();
+  double largest = kInfinity;
 
   /// |a u + b x| <= limit.
   void add(double a, double b, double limit) {
@@ -77,7 +77,7 @@ void PathTiming::make_grid() {
       intervals_.push_back({i, segments[i].length * k / count, segments[i].length * (k + 1) / count});
     }
   }
-  speed_limits_.assign(intervals_.size() + 1, std::numeric_limits<double>::infinity());
+  speed_limits_.assign(intervals_.size() + 1, kInfinity);
   for (std::size_t k = 0; k < intervals_.size(); ++k) {
     end_if_stopped(stop_);
     const Interval& interval = intervals_[k];

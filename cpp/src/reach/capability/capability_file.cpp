@@ -6,10 +6,10 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "reach/capability/capability_data.hpp"
-#include "reach/crc32.hpp"
+#include "mmgrasp/core/detail/crc32.hpp"
 #include "reach/database/reach_data.hpp"
-#include "reach/json_value.hpp"
-#include "reach/npy_file.hpp"
+#include "mmgrasp/core/detail/json_value.hpp"
+#include "mmgrasp/core/detail/npy_file.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/hash.hpp"
 #include "reach/capability/capability_data.hpp"
@@ -45,7 +46,7 @@ namespace detail {
 
 Poses sphere_poses(const CapabilityOptions& options) {
   const int directions = options.poses / options.rolls;
-  const double golden = M_PI * (3 - std::sqrt(5.0));
+  const double golden = kPi * (3 - std::sqrt(5.0));
   const Eigen::Vector3d approach = options.approach.normalized();
   Poses poses;
   for (int k = 0; k < directions; ++k) {
@@ -54,7 +55,7 @@ Poses sphere_poses(const CapabilityOptions& options) {
     const Eigen::Quaterniond point = Eigen::Quaterniond::FromTwoVectors(approach, -outwards);
     const double start = k * std::sqrt(2.0) - std::floor(k * std::sqrt(2.0));
     for (int roll = 0; roll < options.rolls; ++roll) {
-      const double angle = 2 * M_PI * (roll + start) / options.rolls;
+      const double angle = kTwoPi * (roll + start) / options.rolls;
       Pose pose = Pose::Identity();
       pose.linear() = (Eigen::AngleAxisd(angle, -outwards) * point).normalized().toRotationMatrix();
       pose.translation() = 0.5 * options.voxel * outwards;
@@ -225,7 +226,7 @@ double CapabilityMap::score(const Poses& T_world_tip, const Pose& T_world_root, 
     const Pose T = T_root_world * pose;
     const std::int64_t at = voxel_at(T.translation());
     if (at < 0) continue;
-    if (cone >= M_PI) {
+    if (cone >= detail::kPi) {
       sum += static_cast<double>(data_->index[static_cast<std::size_t>(at)]);
       continue;
     }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "mmgrasp/robot/joint_group.hpp"
-#include "robot/ik/ik_closed_form.hpp"
+#include "mmgrasp/robot/detail/ik_closed_form.hpp"
 
 namespace mmgrasp::detail {
 

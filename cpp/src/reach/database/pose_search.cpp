@@ -3,9 +3,10 @@
 #include <cmath>
 #include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/random.hpp"
-#include "robot/ik/ik_candidates.hpp"
-#include "robot/ik/ik_descent.hpp"
+#include "mmgrasp/robot/detail/ik_candidates.hpp"
+#include "mmgrasp/robot/detail/ik_descent.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -43,7 +44,7 @@ bool PoseSearch::start(const Pose& T_world_tip, std::uint64_t number) {
   cause_ = Rejection::reach;
   hopeless_ = hand_asked_ = false;
   sample_ = -1;
-  outside_.fill(std::numeric_limits<double>::infinity());
+  outside_.fill(kInfinity);
   return maybe_in_reach(arm_, T_world_tip.translation());
 }
 

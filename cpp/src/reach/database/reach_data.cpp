@@ -6,12 +6,12 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <numeric>
 #include <thread>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "reach/crc32.hpp"
+#include "mmgrasp/core/detail/crc32.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -135,7 +135,7 @@ void ReachDatabase::Data::measure() {
   std::vector<std::size_t> order(position_count());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::vector<char> seen(order.size(), 0);
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(detail::kInfinity), high = -low;
   Poses poses;
   const auto corner = [&](std::size_t p, int axis) {
     return options.position_cell * static_cast<double>(positions[3 * p + static_cast<std::size_t>(axis)]);

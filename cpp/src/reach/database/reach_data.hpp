@@ -13,7 +13,7 @@
 #include "mmgrasp/reach/reach_database.hpp"
 #include "reach/database/rotation_cells.hpp"
 #include "reach/database/stored_arm.hpp"
-#include "reach/npy_file.hpp"
+#include "mmgrasp/core/detail/npy_file.hpp"
 
 namespace mmgrasp::detail {
 

@@ -6,8 +6,8 @@
 #include <iterator>
 
 #include "mmgrasp/core/error.hpp"
-#include "reach/crc32.hpp"
-#include "reach/json_value.hpp"
+#include "mmgrasp/core/detail/crc32.hpp"
+#include "mmgrasp/core/detail/json_value.hpp"
 
 namespace mmgrasp::detail {
 namespace {

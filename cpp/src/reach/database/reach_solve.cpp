@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "reach/database/reach_data.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 /// Farthest-point order over joint values scaled by their ranges.
 void spread(std::vector<Eigen::VectorXd>& configurations, const Eigen::VectorXd& scale) {
-  std::vector<double> apart(configurations.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> apart(configurations.size(), detail::kInfinity);
   for (std::size_t chosen = 0; chosen + 2 < configurations.size(); ++chosen) {
     std::size_t farthest = chosen + 1;
     for (std::size_t i = chosen + 1; i < configurations.size(); ++i) {

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
+
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 
 /// Turns v by the smallest rotation that takes unit `from` to unit `to`; undefined for opposite vectors.
 Eigen::Vector3d carry(const Eigen::Vector3d& v, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
@@ -28,7 +29,7 @@ double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 RotationCells::RotationCells(double cell) {
   side_ = static_cast<std::uint32_t>(std::max(1.0, std::ceil(kPi / 2 / cell)));
-  rolls_ = static_cast<std::uint32_t>(std::max(3.0, std::ceil(2 * kPi / cell)));
+  rolls_ = static_cast<std::uint32_t>(std::max(3.0, std::ceil(kTwoPi / cell)));
   for (std::uint32_t face = 0; face < 6; ++face)
     for (std::uint32_t i = 0; i < side_; ++i)
       for (std::uint32_t j = 0; j < side_; ++j) add_cell(face, i, j);
@@ -71,7 +72,7 @@ void RotationCells::add_neighbours(std::uint32_t cell) {
       const Eigen::Vector3d corner = direction_at(face, i + di, j + dj);
       const Eigen::Vector3d u = corner.unitOrthogonal(), v = corner.cross(u);
       for (int k = 0; k < 16; ++k) {
-        const double angle = 2 * kPi * (k + 0.5) / 16;
+        const double angle = kTwoPi * (k + 0.5) / 16;
         found.push_back(direction_id(corner + 1e-6 * (std::cos(angle) * u + std::sin(angle) * v)));
       }
     }
@@ -99,7 +100,7 @@ double RotationCells::roll_at(const Eigen::Matrix3d& R, std::uint32_t direction)
   const Eigen::Vector3d &centre = centres_[direction], &zero = roll_zero_[direction];
   const Eigen::Vector3d x = carry(R.col(0), R.col(2), centre);
   const double roll = std::atan2(x.dot(centre.cross(zero)), x.dot(zero));
-  return (roll / (2 * kPi) + 0.5) * rolls_;
+  return (roll / kTwoPi + 0.5) * rolls_;
 }
 
 std::uint32_t RotationCells::roll_id(double roll) const {
@@ -128,7 +129,7 @@ double RotationCells::roll_error(const Eigen::Vector3d& direction, std::uint32_t
 }
 
 int RotationCells::near_cells(const Eigen::Matrix3d& R, NearCells& cells) const {
-  const double roll_width = 2 * kPi / rolls_;
+  const double roll_width = kTwoPi / rolls_;
   const Eigen::Vector3d z = R.col(2);
   const std::uint32_t own = direction_id(z);
   int count = 0;

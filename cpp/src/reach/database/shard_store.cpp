@@ -10,7 +10,7 @@
 #include <fstream>
 
 #include "mmgrasp/core/error.hpp"
-#include "reach/crc32.hpp"
+#include "mmgrasp/core/detail/crc32.hpp"
 #include "reach/database/reach_data.hpp"
 
 namespace mmgrasp::detail {

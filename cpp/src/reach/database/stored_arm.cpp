@@ -6,7 +6,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/hash.hpp"
-#include "robot/kinematics/joint_group_data.hpp"
+#include "mmgrasp/robot/detail/joint_group_data.hpp"
 
 namespace mmgrasp::detail {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <tuple>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "reach/database/reach_data.hpp"
@@ -15,7 +15,6 @@
 namespace mmgrasp {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 
 /// How many configurations the database holds for a tool at the height and in the rotation of a pose, turned by a
 /// heading, over the position cells of that height: what base positions are looked up in.
@@ -73,7 +72,7 @@ class Layer {
 struct BaseCells {
   BaseCells(const ReachDatabase& database, const Poses& targets, const BasePlacementOptions& options)
       : step(options.step), headings(options.headings) {
-    Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    Eigen::Vector2d low = Eigen::Vector2d::Constant(detail::kInfinity), high = -low;
     for (const Pose& T : targets) {
       low = low.cwiseMin(T.translation().head<2>());
       high = high.cwiseMax(T.translation().head<2>());
@@ -95,8 +94,8 @@ struct BaseCells {
             static_cast<double>(first[1] + place % count[1]) * step, heading(i / (count[0] * count[1]))};
   }
   double heading(std::int64_t h) const {
-    const double angle = 2 * kPi * static_cast<double>(h) / headings;
-    return angle > kPi ? angle - 2 * kPi : angle;
+    const double angle = detail::kTwoPi * static_cast<double>(h) / headings;
+    return angle > detail::kPi ? angle - detail::kTwoPi : angle;
   }
 
   /// visit(cell, configurations in the voxel) for every base pose whose voxel is not empty.
@@ -220,11 +219,11 @@ class PlacementSearch {
                         return std::tuple(votes[b], spare[b], a) < std::tuple(votes[a], spare[a], b);
                       });
     std::vector<Eigen::Vector3d> out;
-    const double apart = 2.5 * options_.step, turn = 1.5 * 2 * kPi / options_.headings;
+    const double apart = 2.5 * options_.step, turn = 1.5 * 2 * detail::kPi / options_.headings;
     for (std::size_t i = 0; i < ranked && static_cast<int>(out.size()) < options_.candidates; ++i) {
       const Eigen::Vector3d pose = cells.pose(order[i]);
       const bool close = std::any_of(out.begin(), out.end(), [&](const Eigen::Vector3d& other) {
-        return (pose - other).head<2>().norm() < apart && std::abs(std::remainder(pose[2] - other[2], 2 * kPi)) < turn;
+        return (pose - other).head<2>().norm() < apart && std::abs(detail::shortest_turn(pose[2] - other[2])) < turn;
       });
       if (!close) out.push_back(pose);
     }
@@ -261,7 +260,7 @@ class PlacementSearch {
                bases.begin() + static_cast<std::ptrdiff_t>(std::min(i + kPiece, bases.size()))});
       monitor_.report("base placement", static_cast<double>(i) / static_cast<double>(bases.size()));
     }
-    double shift = options_.step, turn = kPi / options_.headings;
+    double shift = options_.step, turn = detail::kPi / options_.headings;
     for (int round = 0; round < options_.refinements && best_.reached > 0 && !monitor_.stopped(); ++round) {
       if (look_at(around(best_.base_pose, shift, turn))) continue;
       shift /= 2;

@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/robot/ik_objective.hpp"
-#include "robot/ik/ik_candidates.hpp"
-#include "robot/ik/ik_descent.hpp"
-#include "robot/ik/ik_failure.hpp"
+#include "mmgrasp/robot/detail/ik_candidates.hpp"
+#include "mmgrasp/robot/detail/ik_descent.hpp"
+#include "mmgrasp/robot/detail/ik_failure.hpp"
 #include "robot/ik/ik_null_space.hpp"
-#include "robot/ik/ik_starts.hpp"
+#include "mmgrasp/robot/detail/ik_starts.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -130,7 +130,7 @@ class Search {
   IkResult result_;
   IkWorkspace workspace_;
   detail::FailureCause cause_;
-  double best_ = std::numeric_limits<double>::infinity();
+  double best_ = detail::kInfinity;
 };
 
 }  // namespace

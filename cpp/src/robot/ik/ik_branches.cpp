@@ -4,9 +4,9 @@
 #include <limits>
 
 #include "mmgrasp/core/error.hpp"
-#include "robot/ik/ik_candidates.hpp"
-#include "robot/ik/ik_failure.hpp"
-#include "robot/ik/ik_starts.hpp"
+#include "mmgrasp/robot/detail/ik_candidates.hpp"
+#include "mmgrasp/robot/detail/ik_failure.hpp"
+#include "mmgrasp/robot/detail/ik_starts.hpp"
 
 namespace mmgrasp {
 namespace {

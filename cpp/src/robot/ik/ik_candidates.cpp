@@ -1,8 +1,9 @@
-#include "robot/ik/ik_candidates.hpp"
+#include "mmgrasp/robot/detail/ik_candidates.hpp"
 
 #include <cmath>
 
-#include "robot/ik/ik_descent.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/robot/detail/ik_descent.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -104,8 +105,8 @@ Eigen::VectorXd turned_towards(const JointGroup& group, const Eigen::VectorXd& q
   Eigen::VectorXd turned = q;
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     double near = reference[i] + wrap_angle(q[i] - reference[i]);
-    if (near < group.lower()[i]) near += 2 * M_PI;
-    if (near > group.upper()[i]) near -= 2 * M_PI;
+    if (near < group.lower()[i]) near += kTwoPi;
+    if (near > group.upper()[i]) near -= kTwoPi;
     if (near >= group.lower()[i] && near <= group.upper()[i]) turned[i] = near;
   }
   return turned;

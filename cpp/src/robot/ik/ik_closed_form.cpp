@@ -1,4 +1,4 @@
-#include "robot/ik/ik_closed_form.hpp"
+#include "mmgrasp/robot/detail/ik_closed_form.hpp"
 
 #include <algorithm>
 #include <optional>

@@ -1,10 +1,11 @@
-#include "robot/ik/ik_descent.hpp"
+#include "mmgrasp/robot/detail/ik_descent.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "robot/kinematics/joint_group_data.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/robot/detail/joint_group_data.hpp"
 
 namespace mmgrasp {
 namespace detail {
@@ -81,7 +82,7 @@ DescentEnd descend(const JointGroup& group, const Pose& T_world_tip, Eigen::Vect
   if (keep_limits) clamp(group, q);
   DescentEnd end;
   Pose T_world_now;
-  double checkpoint = std::numeric_limits<double>::infinity();
+  double checkpoint = kInfinity;
   for (;; ++end.iterations) {
     group.fk_jacobian(q, T_world_now, workspace.J);
     const Vector6d error = pose_difference(T_world_now, T_world_tip);

@@ -2,11 +2,11 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/robot/ik_objective.hpp"
-#include "robot/ik/ik_descent.hpp"
+#include "mmgrasp/robot/detail/ik_descent.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -44,7 +44,7 @@ Eigen::VectorXd downhill(const JointGroup& group, const Eigen::VectorXd& q, cons
 
 /// The longest multiple of `step` that stays inside limits.
 double room(const JointGroup& group, const Eigen::VectorXd& q, const Eigen::VectorXd& step) {
-  double most = std::numeric_limits<double>::infinity();
+  double most = kInfinity;
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     if (step[i] > 0) most = std::min(most, (group.upper()[i] - q[i]) / step[i]);
     if (step[i] < 0) most = std::min(most, (group.lower()[i] - q[i]) / step[i]);

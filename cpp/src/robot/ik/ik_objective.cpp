@@ -3,11 +3,11 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "robot/ik/ik_closed_form.hpp"
-#include "robot/kinematics/manipulability.hpp"
+#include "mmgrasp/robot/detail/ik_closed_form.hpp"
+#include "mmgrasp/robot/detail/manipulability.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -27,8 +27,8 @@ class JointLimits final : public IkObjective {
       const double range = upper_[i] - lower_[i];
       // Base columns have a workspace, no limits that could harm them.
       const bool limited = std::isfinite(range) && !(group.has_base() && i < 3);
-      lower_[i] = limited ? lower_[i] + soft_fraction * range : -std::numeric_limits<double>::infinity();
-      upper_[i] = limited ? upper_[i] - soft_fraction * range : std::numeric_limits<double>::infinity();
+      lower_[i] = limited ? lower_[i] + soft_fraction * range : -detail::kInfinity;
+      upper_[i] = limited ? upper_[i] - soft_fraction * range : detail::kInfinity;
     }
   }
 

@@ -1,8 +1,8 @@
-#include "robot/ik/ik_starts.hpp"
+#include "mmgrasp/robot/detail/ik_starts.hpp"
 
 #include <algorithm>
 
-#include "robot/kinematics/joint_group_data.hpp"
+#include "mmgrasp/robot/detail/joint_group_data.hpp"
 
 namespace mmgrasp::detail {
 

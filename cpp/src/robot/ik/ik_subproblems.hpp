@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
+
 namespace mmgrasp::detail {
 
 /// The elementary problems that closed-form inverse kinematics is made of: which turns about given axes bring one
@@ -43,7 +45,7 @@ inline Angles solve_cosine(double a, double b, double c) {
   if (!(std::abs(ratio) <= 1 + kSlack)) return angles;
   const double middle = std::atan2(b, a);
   if (std::abs(ratio) >= 1) {
-    angles.add(ratio > 0 ? middle : middle + M_PI);
+    angles.add(ratio > 0 ? middle : middle + kPi);
     return angles;
   }
   const double half = std::acos(ratio);

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "robot/kinematics/joint_group_data.hpp"
+#include "mmgrasp/robot/detail/joint_group_data.hpp"
 #include "robot/model/joint_motion.hpp"
-#include "robot/near_name.hpp"
+#include "mmgrasp/core/detail/near_name.hpp"
 
 namespace mmgrasp {
 namespace detail {
@@ -15,7 +15,6 @@ const Joint& joint_of(const GroupModel& model, int index) {
   return model.robot.joints()[static_cast<std::size_t>(index)];
 }
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kAccelerationPerVelocity = 4.0;  // [1/s]: URDF knows no acceleration limits
 
 struct Column {
@@ -29,7 +28,7 @@ std::vector<Column> base_columns(const BaseLimits& limits) {
   const double w = limits.workspace, v = limits.linear_velocity, a = limits.linear_acceleration;
   return {{"x", -1, -w, w, v, a, false},
           {"y", -1, -w, w, v, a, false},
-          {"theta", -1, -kInfinite, kInfinite, limits.angular_velocity, limits.angular_acceleration, true}};
+          {"theta", -1, -kInfinity, kInfinity, limits.angular_velocity, limits.angular_acceleration, true}};
 }
 
 std::vector<Column> joint_columns(const Joint& joint, int index, double workspace) {
@@ -39,12 +38,12 @@ std::vector<Column> joint_columns(const Joint& joint, int index, double workspac
   };
   // A rotation vector's entries are no angles of their own: half turns either way hold every rotation.
   const auto rotation = [&](const char* axis) {
-    return Column{joint.name + "/" + axis, index, -M_PI, M_PI, v, a, false};
+    return Column{joint.name + "/" + axis, index, -kPi, kPi, v, a, false};
   };
   switch (joint.type) {
     case JointType::planar:
       return {translation("x"), translation("y"),
-              Column{joint.name + "/theta", index, -kInfinite, kInfinite, v, a, true}};
+              Column{joint.name + "/theta", index, -kInfinity, kInfinity, v, a, true}};
     case JointType::floating:
       return {translation("x"), translation("y"), translation("z"), rotation("rx"), rotation("ry"), rotation("rz")};
     default:

@@ -1,4 +1,4 @@
-#include "robot/kinematics/chain_kernel.hpp"
+#include "mmgrasp/robot/detail/chain_kernel.hpp"
 
 #ifdef MMGRASP_X86_KERNELS
 #define MMGRASP_TARGET __attribute__((target("avx2,fma,avx512f,avx512dq,avx512vl")))

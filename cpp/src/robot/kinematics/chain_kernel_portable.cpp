@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "robot/kinematics/chain_kernel.hpp"
+#include "mmgrasp/robot/detail/chain_kernel.hpp"
 
 #define MMGRASP_TARGET
 #define MMGRASP_LANES 2

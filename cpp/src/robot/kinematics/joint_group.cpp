@@ -2,8 +2,9 @@
 
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "robot/kinematics/joint_group_data.hpp"
+#include "mmgrasp/robot/detail/joint_group_data.hpp"
 
 namespace mmgrasp {
 
@@ -101,14 +102,14 @@ bool JointGroup::within_limits(const Eigen::VectorXd& q, double slack) const {
 Eigen::VectorXd JointGroup::sample_lower() const {
   Eigen::VectorXd bounds = lower();
   for (Eigen::Index i = 0; i < bounds.size(); ++i)
-    if (!std::isfinite(bounds[i])) bounds[i] = -M_PI;
+    if (!std::isfinite(bounds[i])) bounds[i] = -detail::kPi;
   return bounds;
 }
 
 Eigen::VectorXd JointGroup::sample_upper() const {
   Eigen::VectorXd bounds = upper();
   for (Eigen::Index i = 0; i < bounds.size(); ++i)
-    if (!std::isfinite(bounds[i])) bounds[i] = M_PI;
+    if (!std::isfinite(bounds[i])) bounds[i] = detail::kPi;
   return bounds;
 }
 

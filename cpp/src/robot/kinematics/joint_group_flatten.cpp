@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "robot/kinematics/joint_group_data.hpp"
+#include "mmgrasp/robot/detail/joint_group_data.hpp"
 #include "robot/model/joint_motion.hpp"
 
 namespace mmgrasp {
@@ -129,7 +130,7 @@ void bound_reach(const Path& path, GroupModel& model) {
 }
 
 double wrapped(double angle) {
-  return std::abs(angle) > M_PI ? std::remainder(angle, 2 * M_PI) : angle;
+  return std::abs(angle) > kPi ? shortest_turn(angle) : angle;
 }
 
 void copy(const Eigen::Matrix3d& R, double* to) {

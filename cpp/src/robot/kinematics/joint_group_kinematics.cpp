@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
-#include "robot/kinematics/joint_group_data.hpp"
+#include "mmgrasp/robot/detail/joint_group_data.hpp"
 #include "robot/model/joint_motion.hpp"
 
 namespace mmgrasp {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"
-#include "robot/kinematics/joint_group_data.hpp"
-#include "robot/kinematics/manipulability.hpp"
+#include "mmgrasp/robot/detail/joint_group_data.hpp"
+#include "mmgrasp/robot/detail/manipulability.hpp"
 
 namespace mmgrasp {
 namespace {

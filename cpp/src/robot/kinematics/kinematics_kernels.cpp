@@ -2,7 +2,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/robot/kinematics_batch.hpp"
-#include "robot/kinematics/chain_kernel.hpp"
+#include "mmgrasp/robot/detail/chain_kernel.hpp"
 
 namespace mmgrasp {
 namespace detail {

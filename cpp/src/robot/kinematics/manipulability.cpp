@@ -2,11 +2,11 @@
 
 #include <Eigen/QR>
 #include <cmath>
-#include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "robot/kinematics/joint_group_data.hpp"
-#include "robot/kinematics/manipulability.hpp"
+#include "mmgrasp/robot/detail/joint_group_data.hpp"
+#include "mmgrasp/robot/detail/manipulability.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -95,7 +95,7 @@ double force_manipulability(const JointGroup& group, const Eigen::VectorXd& q, c
   const SmallVector z = unit(direction);
   const Transposed Jt = jacobian_rows(group, q, z.size());
   const double torque = (Jt * z).norm();
-  return torque > kNothing * Jt.norm() ? 1 / torque : std::numeric_limits<double>::infinity();
+  return torque > kNothing * Jt.norm() ? 1 / torque : detail::kInfinity;
 }
 
 }  // namespace mmgrasp

@@ -5,7 +5,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "robot/model/robot_data.hpp"
-#include "robot/near_name.hpp"
+#include "mmgrasp/core/detail/near_name.hpp"
 
 namespace mmgrasp::detail {
 namespace {

@@ -6,8 +6,8 @@
 #include "mmgrasp/core/error.hpp"
 #include "robot/model/joint_motion.hpp"
 #include "robot/model/robot_data.hpp"
-#include "robot/near_name.hpp"
-#include "robot/xml_document.hpp"
+#include "mmgrasp/core/detail/near_name.hpp"
+#include "mmgrasp/core/detail/xml_document.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -10,7 +10,7 @@
 #include "robot/model/robot_data.hpp"
 #include "robot/model/srdf_reader.hpp"
 #include "robot/model/urdf_reader.hpp"
-#include "robot/xml_document.hpp"
+#include "mmgrasp/core/detail/xml_document.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "robot/model/robot_data.hpp"
-#include "robot/xml_document.hpp"
+#include "mmgrasp/core/detail/xml_document.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -1,11 +1,13 @@
 #include "robot/model/srdf_reader.hpp"
 
+#include <tinyxml.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "mmgrasp/core/detail/xml_document.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "robot/xml_document.hpp"
 
 namespace mmgrasp::detail {
 namespace {

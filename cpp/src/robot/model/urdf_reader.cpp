@@ -1,12 +1,14 @@
 #include "robot/model/urdf_reader.hpp"
 
+#include <tinyxml.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
 
+#include "mmgrasp/core/detail/xml_document.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "robot/xml_document.hpp"
 
 namespace mmgrasp::detail {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/robot/ik_objective.hpp"
-#include "robot/ik/ik_starts.hpp"
-#include "robot/kinematics/manipulability.hpp"
+#include "mmgrasp/robot/detail/ik_starts.hpp"
+#include "mmgrasp/robot/detail/manipulability.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "task/base_placement/platform_draws.hpp"
 
@@ -146,7 +147,7 @@ class Search {
   const Monitor& monitor_;
   PlatformEnd pick_, place_;
   std::vector<Pair> pairs_;  // each cheaper than the one before
-  double best_cost_ = std::numeric_limits<double>::infinity();
+  double best_cost_ = detail::kInfinity;
   std::size_t seen_pick_ = 0, seen_place_ = 0;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
@@ -11,7 +12,7 @@
 #include "mmgrasp/task/base_region.hpp"
 #include "task/base_region/ik_lattice.hpp"
 #include "task/base_region/warm_descent.hpp"
-#include "task/no_clock.hpp"
+#include "mmgrasp/core/detail/no_time_limit.hpp"
 #include "task/problem/scene.hpp"
 
 namespace mmgrasp {
@@ -415,7 +416,7 @@ bool BasePoseEvaluator::part_with_restarts(const Eigen::Vector3d& base_pose, int
     CollisionChecker& checker = impl_->checker_at(tables.opening[static_cast<std::size_t>(begin + g)], base_pose);
     IkOptions options;
     options.restarts = kCheckRestarts;
-    options.time_limit = kNoClock;
+    options.time_limit = detail::kNoTimeLimit;
     options.seed = static_cast<unsigned>(g) + 1;
     const IkResult found =
         solve_ik(tables.arm, T_base_part * part.grasps[static_cast<std::size_t>(g)].T_object_tcp, tables.problem->home,
@@ -434,7 +435,7 @@ double BasePoseEvaluator::missing_reach(const Eigen::Vector3d& base_pose, int tr
   const EvaluatorTables& tables = *impl_->tables;
   const Part& part = part_of(*tables.problem, tray, index);
   const Pose T_base_part = pose_from_planar(base_pose).inverse() * part.T_world_part;
-  double nearest = std::numeric_limits<double>::infinity();
+  double nearest = detail::kInfinity;
   for (int g = 0; g < static_cast<int>(part.grasps.size()); ++g) {
     if (hand_blocked(tray, index, g)) continue;
     const Eigen::Vector3d p = (T_base_part * part.grasps[static_cast<std::size_t>(g)].T_object_tcp).translation();

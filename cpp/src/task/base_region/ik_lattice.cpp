@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "robot/ik/ik_closed_form.hpp"
+#include "mmgrasp/robot/detail/ik_closed_form.hpp"
 #include "task/base_region/warm_descent.hpp"
-#include "task/no_clock.hpp"
+#include "mmgrasp/core/detail/no_time_limit.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -48,14 +48,14 @@ bool six_joints_in_closed_form(const JointGroup& arm) {
 IkLattice::IkLattice(const JointGroup& arm, const ReachDatabase& database, int seeds)
     : arm_(arm), database_(database), seeds_(seeds), closed_form_(six_joints_in_closed_form(arm)) {
   ik_.max_iterations = kIterations;
-  ik_.time_limit = kNoClock;
+  ik_.time_limit = detail::kNoTimeLimit;
 }
 
 IkBranches IkLattice::branches(const Pose& T_base_tcp) const {
   // Where a singularity makes the closed form fall back on random descents, their number and seed end them.
   IkOptions options;
   options.restarts = 0;
-  options.time_limit = kNoClock;
+  options.time_limit = detail::kNoTimeLimit;
   return solve_ik_branches(arm_, T_base_tcp, options);
 }
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/robot/ik.hpp"
 
 namespace mmgrasp {
@@ -65,7 +65,7 @@ WarmDescent::WarmDescent(const JointGroup& arm) : arm_(arm), J_(6, arm.size()), 
 
 bool WarmDescent::run(const Pose& T_base_tip, Eigen::VectorXd& q) {
   Pose T_base_now;
-  double before = std::numeric_limits<double>::infinity();
+  double before = detail::kInfinity;
   for (int iteration = 0, strikes = 0;; ++iteration) {
     arm_.fk_jacobian(q, T_base_now, J_);
     const Vector6d error = difference(T_base_now, T_base_tip);

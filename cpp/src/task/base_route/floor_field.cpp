@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <queue>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/task/base_route.hpp"
@@ -14,7 +14,6 @@
 namespace mmgrasp {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMargin = 2.0;      // [m] around what is in the scene
 constexpr double kMaxCells = 40000;  // Of a floor.
 constexpr double kJoin = 2.0;        // Cells around a place that it joins.
@@ -60,7 +59,7 @@ FloorField::FloorField(const CollisionChecker& checker, const Eigen::VectorXd& h
         for (std::size_t j = 0; j < places.size(); ++j) {
           if (j == i) continue;
           const Eigen::Vector2d to = places[j].head<2>();
-          double best = (from - to).norm() <= kJoin * resolution_ ? (from - to).norm() : kInfinity;
+          double best = (from - to).norm() <= kJoin * resolution_ ? (from - to).norm() : detail::kInfinity;
           around(to, [&](std::size_t cell, double distance) { best = std::min(best, field[cell] + distance); });
           lengths_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = best;
         }
@@ -81,7 +80,7 @@ void FloorField::look_at_rows(const CollisionChecker& checker, const Eigen::Vect
           for (unsigned axis = 0; axis < kAxes.size(); ++axis) {
             const double angle = std::atan2(static_cast<double>(kAxes[axis][1]), static_cast<double>(kAxes[axis][0]));
             const Eigen::Vector2d p = middle(ix, iy);
-            if (clearance.free({p.x(), p.y(), angle}) || clearance.free({p.x(), p.y(), angle + M_PI}))
+            if (clearance.free({p.x(), p.y(), angle}) || clearance.free({p.x(), p.y(), angle + detail::kPi}))
               free |= 1u << axis;
           }
           if (base == BaseKind::omni && free != 0) free = 0xff;
@@ -108,7 +107,7 @@ void FloorField::around(const Eigen::Vector2d& place, const Visit& visit) const 
 }
 
 std::vector<double> FloorField::search(const Eigen::Vector2d& from) const {
-  std::vector<double> field(free_.size(), kInfinity);
+  std::vector<double> field(free_.size(), detail::kInfinity);
   using Entry = std::pair<double, std::size_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
   around(from, [&](std::size_t cell, double distance) {

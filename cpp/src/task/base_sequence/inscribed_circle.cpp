@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <queue>
+
+#include "mmgrasp/core/detail/numbers.hpp"
 
 // Lengths in here are in cells: cell (ix, iy) is the square [ix, ix + 1] x [iy, iy + 1].
 namespace mmgrasp {
@@ -162,7 +163,7 @@ class DiscSearch {
   }
 
   static double radius_in(const Room& room, const Point& p) {
-    double least = std::numeric_limits<double>::infinity();
+    double least = detail::kInfinity;
     for (const Cell& b : room.blocked) least = std::min(least, distance_to(b, p));
     return least;
   }

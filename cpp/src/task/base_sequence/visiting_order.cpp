@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/optim/tour.hpp"
 #include "mmgrasp/task/part_supply.hpp"
@@ -126,7 +126,7 @@ class VisitingOrder {
     for (const auto& [i, j] : pairs) {
       const BasePath path = routes_.between(place(i), place(j));
       planned_.insert(std::minmax(i, j));
-      lengths_(i, j) = lengths_(j, i) = path.outcome == Outcome::solved ? path.length : kInfinity;
+      lengths_(i, j) = lengths_(j, i) = path.outcome == Outcome::solved ? path.length : detail::kInfinity;
     }
   }
 
@@ -164,7 +164,6 @@ class VisitingOrder {
 
   const Eigen::Vector3d& place(int i) const { return places_[static_cast<std::size_t>(i)]; }
 
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   BaseRoutes& routes_;
   int n_;
   std::vector<Eigen::Vector3d> places_;

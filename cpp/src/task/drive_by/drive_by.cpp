@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "task/drive_by/drive_by_attempt.hpp"
 #include "task/drive_by/drive_by_choices.hpp"
@@ -16,7 +17,6 @@ using detail::DriveByStep;
 using detail::Stand;
 using Eigen::VectorXd;
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr int kShort = 40;                // iterations of a solve in the first attempts
 constexpr std::size_t kMoreAttempts = 2;  // of each choice of candidates once there is a motion to beat
 
@@ -172,7 +172,7 @@ class DriveBy {
   const Monitor& monitor_;
   std::optional<detail::DriveByWorlds> worlds_;
   std::optional<detail::DriveByAttempts> attempts_;
-  double least_broken_ = kInf;
+  double least_broken_ = detail::kInfinity;
 };
 
 }  // namespace

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
 
 namespace mmgrasp::detail {
@@ -15,7 +15,6 @@ using Eigen::VectorXd;
 
 constexpr int kSpare = 3;           // chains looked at for each that is tried
 constexpr double kCollision = 0.3;  // what a colliding waypoint of a guess counts as [s]
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 /// From rest to rest.
 double rest_to_rest(double way, double velocity, double acceleration) {
@@ -40,7 +39,7 @@ double reach_bound(const JointGroup& group) {
 double slack_of(const DriveByStep& step) {
   double square = 0;
   for (int k = 0; k < 3; ++k)
-    square += step.free[static_cast<std::size_t>(k)] ? kInf : step.tolerance[k] * step.tolerance[k];
+    square += step.free[static_cast<std::size_t>(k)] ? kInfinity : step.tolerance[k] * step.tolerance[k];
   return std::sqrt(square);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
 #include "task/drive_by/drive_by_stands.hpp"
 
@@ -35,7 +36,7 @@ class BaseWay {
     first_ = wrap_angle(along - from[2]);
     last_ = wrap_angle(along - to[2]);
     straight_ = kind != BaseKind::diff_drive || way.norm() < 0.05;
-    backwards_ = std::abs(first_) > M_PI / 2 && std::abs(last_) > M_PI / 2;
+    backwards_ = std::abs(first_) > kPi / 2 && std::abs(last_) > kPi / 2;
     curve_ = !straight_ && (backwards_ || (std::abs(first_) < 1.4 && std::abs(last_) < 1.4));
   }
 

@@ -6,7 +6,7 @@
 #include "mmgrasp/plan/motion.hpp"
 #include "mmgrasp/task/base_route.hpp"
 #include "task/drive_by/drive_by_stands.hpp"
-#include "task/no_clock.hpp"
+#include "mmgrasp/core/detail/no_time_limit.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -51,7 +51,7 @@ JointGroup standing_arm(const JointGroup& group, const VectorXd& q, VectorXd& ho
 std::optional<DriveByRoads::Points> DriveByRoads::sampled(CollisionChecker& checker, const VectorXd& from,
                                                           const VectorXd& to, int tries) {
   MotionOptions options;
-  options.time_limit = kNoClock;
+  options.time_limit = detail::kNoTimeLimit;
   options.max_iterations = kDraws;
   options.shorten_iterations = kShortenings;
   std::optional<Points> best;

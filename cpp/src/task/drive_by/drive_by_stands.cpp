@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
 #include "mmgrasp/robot/ik.hpp"
-#include "task/no_clock.hpp"
+#include "mmgrasp/core/detail/no_time_limit.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -30,7 +30,7 @@ Pose drawn_pose(const DriveByTask& task, int candidate, Rng& rng) {
   Pose T = task.candidates[static_cast<std::size_t>(candidate)];
   for (int i = 3; i < 6; ++i)
     if (task.free[static_cast<std::size_t>(i)])
-      T.rotate(Eigen::AngleAxisd(rng.uniform(-M_PI, M_PI), Eigen::Vector3d::Unit(i - 3)));
+      T.rotate(Eigen::AngleAxisd(rng.uniform(-kPi, kPi), Eigen::Vector3d::Unit(i - 3)));
   return T;
 }
 
@@ -39,7 +39,7 @@ IkOptions stand_ik() {
   ik.restarts = 0;
   ik.position_tolerance = 1e-5;
   ik.max_iterations = 40;
-  ik.time_limit = kNoClock;
+  ik.time_limit = detail::kNoTimeLimit;
   return ik;
 }
 
@@ -96,7 +96,7 @@ std::vector<Stand> find_stands(const JointGroup& group, CollisionChecker* checke
       seed.tail(seed.size() - (group.has_base() ? 3 : 0)) = any.tail(seed.size() - (group.has_base() ? 3 : 0));
     }
     if (group.has_base()) {
-      const double angle = rng.uniform(-M_PI, M_PI), radius = rng.uniform(kNear, kFar);
+      const double angle = rng.uniform(-kPi, kPi), radius = rng.uniform(kNear, kFar);
       seed[0] = T.translation().x() + radius * std::cos(angle);
       seed[1] = T.translation().y() + radius * std::sin(angle);
       seed[2] = along + kHeadingSpread * rng.normal();
@@ -153,7 +153,6 @@ std::vector<Stand> follow_stands(const JointGroup& group, CollisionChecker* chec
 std::vector<std::vector<Stand>> choose_stands(const JointGroup& group, const std::vector<DriveByStep>& steps,
                                               const std::vector<std::vector<Stand>>& stands, const VectorXd& start,
                                               const VectorXd& goal, int count) {
-  constexpr double kNever = std::numeric_limits<double>::infinity();
   // Each round takes the quickest chain; stands it used become dearer for the next ones.
   constexpr double kUsed = 1.5;  // [s] per use
   std::vector<std::vector<double>> penalty;
@@ -164,7 +163,7 @@ std::vector<std::vector<Stand>> choose_stands(const JointGroup& group, const std
     std::vector<std::vector<double>> cost;
     std::vector<std::vector<std::size_t>> from;
     for (std::size_t t = 0; t < stands.size(); ++t) {
-      cost.push_back(std::vector<double>(stands[t].size(), kNever));
+      cost.push_back(std::vector<double>(stands[t].size(), kInfinity));
       from.push_back(std::vector<std::size_t>(stands[t].size(), 0));
       for (std::size_t i = 0; i < stands[t].size(); ++i) {
         if (t == 0) cost[t][i] = travel_time(group, start, stands[t][i].q);
@@ -180,7 +179,7 @@ std::vector<std::vector<Stand>> choose_stands(const JointGroup& group, const std
       }
     }
     std::size_t best = 0;
-    double least = kNever;
+    double least = kInfinity;
     for (std::size_t i = 0; i < stands.back().size(); ++i) {
       const double c = cost.back()[i] + travel_time(group, stands.back()[i].q, goal);
       if (c < least) {
@@ -188,7 +187,7 @@ std::vector<std::vector<Stand>> choose_stands(const JointGroup& group, const std
         best = i;
       }
     }
-    if (least == kNever) break;
+    if (least == kInfinity) break;
     std::vector<std::size_t> chain(stands.size());
     for (std::size_t t = stands.size(); t-- > 0;) {
       chain[t] = best;

@@ -1,15 +1,14 @@
 #include "task/drive_by/drive_by_steps.hpp"
 
 #include <cmath>
-#include <limits>
 #include <string>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kAside = 0.003, kTilt = 0.03;  // off the straight way of a push-grasp [m], [rad]
 constexpr double kFaster = 1.2;                 // tool before the object, over its speed at the grasp
 constexpr double kSlack = 1.05;                 // of speed and duration while the fingers close
@@ -33,7 +32,7 @@ void check_push(const DriveByTask& task, const std::string& field) {
           "must leave a moment to close for every error asked for (at most " + std::to_string(grasp.max_tool_speed) +
               " m/s)");
   require(task.dwell == 0, field + " with dwell", task.dwell, "must be 0: the hand moves on");
-  require(task.max_tool_speed == kInf && task.tolerance.isZero() && task.free == std::vector<bool>(6, false),
+  require(task.max_tool_speed == kInfinity && task.tolerance.isZero() && task.free == std::vector<bool>(6, false),
           field + " with max_tool_speed, tolerance or free", 1, "must be left out: the push-grasp has its own");
 }
 
@@ -120,7 +119,7 @@ ToolConstraint constraint_at(const DriveByStep& step, int candidate, int waypoin
   tool.waypoint = waypoint;
   tool.T_world_tip = step.candidates[static_cast<std::size_t>(candidate)];
   for (int k = 0; k < 6; ++k) {
-    const double slack = step.free[static_cast<std::size_t>(k)] ? kInf : step.tolerance[k];
+    const double slack = step.free[static_cast<std::size_t>(k)] ? kInfinity : step.tolerance[k];
     tool.lower[k] = -slack;
     tool.upper[k] = slack;
   }

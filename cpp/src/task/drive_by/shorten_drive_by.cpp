@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/task/drive_by.hpp"
 #include "task/drive_by/drive_by_attempt.hpp"
@@ -31,7 +32,7 @@ void check_known(const JointGroup& group, const std::vector<DriveByTask>& tasks,
     require(q.allFinite(), "positions", q.sum(), "must be finite");
   }
   for (std::size_t i = 0; i < known.times.size(); ++i) {
-    const double before = i == 0 ? -std::numeric_limits<double>::infinity() : known.times[i - 1];
+    const double before = i == 0 ? -detail::kInfinity : known.times[i - 1];
     require(std::isfinite(known.times[i]) && known.times[i] > before, "times", known.times[i],
             "must be finite and increase");
   }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "task/base_region/base_grid.hpp"
 #include "task/part_supply/advised_move.hpp"
 #include "task/problem/scene.hpp"
@@ -116,7 +117,7 @@ std::string advice(const PartExplanation& part, const Obstruction& o, std::size_
 double needed_opening(const Part& part, const Gripper& gripper) {
   Eigen::AlignedBox3d bounds;
   for (const LinkShape& shape : part.shapes) bounds.extend(shape_bounds(shape.shape, shape.T_link_shape));
-  double narrowest = std::numeric_limits<double>::infinity();
+  double narrowest = detail::kInfinity;
   for (int axis = 0; axis < 3; ++axis) {
     const bool upright = std::abs(part.T_world_part.linear()(2, axis)) > 0.7;
     const double extent = bounds.sizes()[axis];

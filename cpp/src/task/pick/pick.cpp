@@ -9,7 +9,7 @@
 #include "mmgrasp/plan/straight_line.hpp"
 #include "mmgrasp/plan/time_parameterization.hpp"
 #include "mmgrasp/robot/ik.hpp"
-#include "task/no_clock.hpp"
+#include "mmgrasp/core/detail/no_time_limit.hpp"
 #include "task/pick/joined_motions.hpp"
 #include "task/pick/pick_scene.hpp"
 #include "task/pick/release.hpp"
@@ -111,7 +111,7 @@ class PickPlanner {
     } else {
       IkOptions options;
       options.restarts = 4;
-      options.time_limit = kNoClock;
+      options.time_limit = detail::kNoTimeLimit;
       options.seed = seed_ + static_cast<unsigned>(grasp);
       for (const Eigen::VectorXd& q : solve_ik_all(checker.group(), T, kConfigurations, options)) judge(q);
     }

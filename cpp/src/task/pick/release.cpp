@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/robot/ik.hpp"
 #include "task/problem/full_turns.hpp"
 
@@ -14,7 +15,7 @@ constexpr int kSeeds = 3;
 constexpr double kInside = 0.4;  // Places lie within this part of the bin's size from its middle: clear of its edge.
 
 double lowest(const Part& part, const Pose& T) {
-  double z = std::numeric_limits<double>::infinity();
+  double z = detail::kInfinity;
   for (const LinkShape& shape : part.shapes)
     z = std::min(z, shape_bounds(shape.shape, T * shape.T_link_shape).min().z());
   return z;
@@ -31,7 +32,7 @@ std::vector<Pose> release_poses(const PartSupplyProblem& problem, const Pose& T_
   for (const auto& [x, y] : {std::pair{0, 0}, {0, 1}, {0, -1}, {1, 0}, {-1, 0}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}) {
     for (int k = 0; k < kYaws; ++k) {
       Pose T_world_part = Pose::Identity();
-      T_world_part.linear() = Eigen::AngleAxisd(2 * M_PI * k / kYaws, Eigen::Vector3d::UnitZ()).toRotationMatrix() *
+      T_world_part.linear() = Eigen::AngleAxisd(detail::kTwoPi * k / kYaws, Eigen::Vector3d::UnitZ()).toRotationMatrix() *
                               part.T_world_part.linear();
       Pose T_bin_part = T_world_bin.inverse() * T_world_part;
       T_bin_part.translation() = Eigen::Vector3d(kInside * x * carry.size.x(), kInside * y * carry.size.y(), 0);

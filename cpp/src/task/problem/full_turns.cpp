@@ -2,10 +2,12 @@
 
 #include <cmath>
 
+#include "mmgrasp/core/detail/numbers.hpp"
+
 namespace mmgrasp {
 
 void turn_towards(const JointGroup& group, const Eigen::VectorXd& reference, Eigen::VectorXd& q) {
-  constexpr double kTurn = 2 * M_PI;
+  constexpr double kTurn = detail::kTwoPi;
   const Robot& robot = group.robot();
   for (int j = 0; j < group.size(); ++j) {
     const int joint = group.joints()[j];

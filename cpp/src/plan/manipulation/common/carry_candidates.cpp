@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <limits>
 #include <numeric>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "plan/motion/arm_configurations.hpp"
@@ -13,7 +13,6 @@ namespace mmgrasp::detail {
 
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t kSideBySide = 16;  // Grasps that are worth a thread.
 
 Pose pose_of_tool(const ManipulationProblem& problem, int grasp, bool at_goal) {
@@ -39,7 +38,7 @@ std::vector<int> shuffled(std::size_t count, unsigned seed) {
 }  // namespace
 
 double CarryCandidate::straight_cost() const {
-  double least = kInfinite;
+  double least = kInfinity;
   for (const Eigen::VectorXd& s : starts)
     for (const Eigen::VectorXd& g : goals) least = std::min(least, (g - s).norm());
   return least + cost;
@@ -110,7 +109,7 @@ CarryCandidate CarryCandidates::look_at(int grasp, int worker, GraspReport& repo
 }
 
 double CarryCandidates::least_cost_left() const {
-  double least = kInfinite;
+  double least = kInfinity;
   for (std::size_t i = seen_; i < order_.size(); ++i)
     least = std::min(least, problem_.grasps[static_cast<std::size_t>(order_[i])].cost);
   return least;

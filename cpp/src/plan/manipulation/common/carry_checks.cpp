@@ -1,8 +1,9 @@
 #include "plan/manipulation/common/carry_checks.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <map>
+
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -111,7 +112,7 @@ bool CarryChecks::path_edge_is_free(int grasp, const Eigen::VectorXd& a, const E
   HeldChecker& checker = holding(whole_[static_cast<std::size_t>(opening_of(grasp))], grasp, false);
   // Optimal paths graze, and who looks again by joint steps alone looks at other configurations.
   EdgeOptions by_joints = path_edge_;
-  by_joints.workspace_step = std::numeric_limits<double>::infinity();
+  by_joints.workspace_step = kInfinity;
   return checker.edge_is_free(a, b, path_edge_) && checker.edge_is_free(a, b, by_joints);
 }
 

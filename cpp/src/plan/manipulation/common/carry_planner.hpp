@@ -1,10 +1,10 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
 #include "plan/manipulation/common/carry_candidates.hpp"
@@ -30,7 +30,7 @@ struct CarryInput {
 /// A path with one of the grasps.
 struct Carry {
   int grasp = -1;
-  double cost = std::numeric_limits<double>::infinity();  ///< Without a path: infinite.
+  double cost = kInfinity;  ///< Without a path: infinite.
   JointPath path;
 };
 

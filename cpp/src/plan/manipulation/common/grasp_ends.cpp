@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
+
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 
@@ -31,7 +32,7 @@ int GraspEnds::below(double cost) const {
 double GraspEnds::distance(int index, int side, const double* q) const {
   const Span& own = spans_[span(index, side)];
   const double* value = values_.data() + own.first * dimension_;
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   for (int k = 0; k < own.count; ++k, value += dimension_)
     least = std::min(least, squared_distance(value, q, dimension_));
   return std::sqrt(least);

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -15,17 +16,13 @@ constexpr double kScanShare = 0.1;  // Time to ask one grasp, by that of one dra
 
 }  // namespace
 
-double unit_ball_volume(int dimension) {
-  return std::pow(M_PI, 0.5 * dimension) / std::tgamma(0.5 * dimension + 1);
-}
-
 InformedUnion::InformedUnion(const GraspEnds& ends, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper)
     : ends_(ends),
       lower_(lower),
       upper_(upper),
       ball_volume_(unit_ball_volume(ends.dimension())),
       box_volume_((upper - lower).prod()),
-      cost_(std::numeric_limits<double>::infinity()),
+      cost_(kInfinity),
       grasps_(ends.size()),
       ball_(ends.dimension() + 1) {
   for (int g = 0; g < ends.size(); ++g) {
@@ -89,7 +86,7 @@ void InformedUnion::draw_ellipsoid(Rng& rng, const Pair& pair, double c, double*
   // A direction from normal numbers, two at a time, and a radius.
   double squared = 0;
   for (int i = 0; i < d; i += 2) {
-    const double radius = std::sqrt(-2 * std::log(1 - rng.uniform())), angle = 2 * M_PI * rng.uniform();
+    const double radius = std::sqrt(-2 * std::log(1 - rng.uniform())), angle = kTwoPi * rng.uniform();
     ball_[i] = radius * std::cos(angle);
     ball_[i + 1 < d ? i + 1 : d] = radius * std::sin(angle);
   }

@@ -69,7 +69,4 @@ class MMGRASP_EXPORT InformedUnion {
   Eigen::VectorXd ball_;
 };
 
-/// Volume of the unit ball.
-double unit_ball_volume(int dimension);
-
 }  // namespace mmgrasp::detail

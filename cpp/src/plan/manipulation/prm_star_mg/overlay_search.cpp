@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <unordered_map>
+
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t kBreath = 256;  // Nodes between two questions whether to give up.
 
 }  // namespace
@@ -19,7 +19,7 @@ OverlaySearch::OverlaySearch(const Roadmap& roadmap)
       first_goal_link_(static_cast<std::size_t>(roadmap.size()), -1) {}
 
 double OverlaySearch::to_goal(int node) const {
-  double least = kInfinite;
+  double least = kInfinity;
   const auto nearest = [&](const auto& q) {
     for (const Eigen::VectorXd& goal : overlay_->candidate.goals) least = std::min(least, (goal - q).squaredNorm());
   };
@@ -48,7 +48,7 @@ void OverlaySearch::relax(int node, double cost, int parent, Step step) {
   if (at.blocked == round_) return;
   if (at.stamp != round_) {
     at.stamp = round_;
-    at.cost = kInfinite;
+    at.cost = kInfinity;
     at.to_goal = to_goal(node);
   }
   const double key = cost + at.to_goal;
@@ -151,7 +151,7 @@ double spliced_cost(const Roadmap& roadmap, const GraspOverlay& overlay, const s
   }
   std::sort(entries.begin(), entries.end());
   std::sort(exits.begin(), exits.end());
-  double best = kInfinite, entry = kInfinite;
+  double best = kInfinity, entry = kInfinity;
   std::size_t next = 0;
   for (const auto& [position, length] : exits) {
     for (; next < entries.size() && entries[next].first <= position; ++next)

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
+
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -129,7 +130,7 @@ bool Forest::walk(int tree) const {
 }
 
 int Forest::nearest_in_tree(int tree, const double* q) const {
-  double squared = std::numeric_limits<double>::infinity();
+  double squared = kInfinity;
   if (!walk(tree))
     return index(side_of(tree))
         .nearest(

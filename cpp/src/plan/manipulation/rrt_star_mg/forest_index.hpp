@@ -2,9 +2,9 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/export.hpp"
 
 namespace mmgrasp::detail {
@@ -24,7 +24,7 @@ class MMGRASP_EXPORT ForestIndex {
   template <class Take>
   int nearest(const double* q, const Take& take, double& squared) const {
     int best = -1;
-    squared = std::numeric_limits<double>::infinity();
+    squared = kInfinity;
     search(q, squared, [&](int id, double found) {
       if (found >= squared || !take(id)) return;
       squared = found;

@@ -1,5 +1,6 @@
 // Sampling.
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "plan/manipulation/rrt_star_mg/rrt_star_mg.hpp"
 
 #include <algorithm>
@@ -41,7 +42,7 @@ RrtStarMg::RrtStarMg(CarryInput& input, const RrtStarMgOptions& options, Manipul
       informed_(ends_, input.problem.group.sample_lower(), input.problem.group.sample_upper()),
       forest_(ends_),
       rng_(input.options.seed, 0x727274),
-      best_(result.path ? result.cost : kInfinite),
+      best_(result.path ? result.cost : kInfinity),
       own_(static_cast<std::size_t>(ends_.size())),
       bridge_of_(own_.size(), -1),
       to_go_(bridge_of_.size()),

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <limits>
 #include <vector>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
 #include "plan/manipulation/common/carry_planner.hpp"
@@ -12,7 +12,6 @@
 
 namespace mmgrasp::detail {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kSame = 1e-9;    ///< Configurations nearer than this are the same [rad or m].
 constexpr double kBetter = 1e-6;  ///< Paths shorter by less than this share are not news.
 
@@ -42,7 +41,7 @@ class RrtStarMg {
 
   /// The cheapest path of a grasp; not checked finely unless it was the best once.
   struct Own {
-    double cost = kInfinite;
+    double cost = kInfinity;
     int bridge = -1;
   };
 

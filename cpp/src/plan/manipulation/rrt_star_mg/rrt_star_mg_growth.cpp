@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "plan/manipulation/rrt_star_mg/rrt_star_mg.hpp"
 
 namespace mmgrasp::detail {
@@ -71,7 +71,7 @@ int RrtStarMg::extend_tree(int tree, int configuration) {
   look_near_in_tree(tree, forest_.configuration(target));
   include_nearest(nearest, target);
   // Where no cheaper path can pass, trees grow only while they are offered the whole box.
-  const int made = add_best(target, options_.informed ? best_ : kInfinite);
+  const int made = add_best(target, options_.informed ? best_ : kInfinity);
   if (made == kHopeless) return -1;
   if (made < 0) return solved() ? -1 : advance(nearest, target);
   rewire(made);

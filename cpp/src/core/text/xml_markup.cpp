@@ -1,4 +1,4 @@
-#include "core/xml_markup.hpp"
+#include "mmgrasp/core/detail/xml_markup.hpp"
 
 #include <algorithm>
 #include <cctype>

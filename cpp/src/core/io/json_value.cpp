@@ -1,4 +1,4 @@
-#include "reach/json_value.hpp"
+#include "mmgrasp/core/detail/json_value.hpp"
 
 #include <cmath>
 #include <cstdio>

@@ -1,4 +1,4 @@
-#include "robot/utf8.hpp"
+#include "mmgrasp/core/detail/utf8.hpp"
 
 namespace mmgrasp::detail {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "mmgrasp/plan/manipulation.hpp"
-#include "plan/bar_carry.hpp"
+#include "support/bar_carry.hpp"
 
 namespace mmgrasp::test {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "robot/ik/ik_descent.hpp"
+#include "mmgrasp/robot/detail/ik_descent.hpp"
 
 namespace mmgrasp::detail {
 

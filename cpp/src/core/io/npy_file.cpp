@@ -1,4 +1,4 @@
-#include "reach/npy_file.hpp"
+#include "mmgrasp/core/detail/npy_file.hpp"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -10,7 +10,7 @@
 #include <cstring>
 
 #include "mmgrasp/core/error.hpp"
-#include "reach/crc32.hpp"
+#include "mmgrasp/core/detail/crc32.hpp"
 
 namespace mmgrasp::detail {
 

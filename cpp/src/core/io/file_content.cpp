@@ -1,4 +1,4 @@
-#include "geometry/readers/file_content.hpp"
+#include "mmgrasp/core/detail/file_content.hpp"
 
 #include <filesystem>
 #include <fstream>

@@ -1,12 +1,14 @@
-#include "robot/xml_document.hpp"
+#include "mmgrasp/core/detail/xml_document.hpp"
+
+#include <tinyxml.h>
 
 #include <charconv>
 #include <cmath>
 #include <cstring>
 
-#include "core/xml_markup.hpp"
+#include "mmgrasp/core/detail/utf8.hpp"
+#include "mmgrasp/core/detail/xml_markup.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "robot/utf8.hpp"
 
 namespace mmgrasp::detail {
 namespace {

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "collision/fcl_reference.hpp"
+#include "support/fcl_reference.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "support/mesh_robots.hpp"

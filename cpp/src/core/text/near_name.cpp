@@ -1,4 +1,4 @@
-#include "robot/near_name.hpp"
+#include "mmgrasp/core/detail/near_name.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "mmgrasp/plan/manipulation.hpp"
-#include "plan/planar_arm.hpp"
+#include "support/planar_arm.hpp"
 
 namespace mmgrasp::test {
 

@@ -8,7 +8,7 @@
 
 #include "mmgrasp/collision/world.hpp"
 #include "mmgrasp/robot/trajectory.hpp"
-#include "plan/planar_arm.hpp"
+#include "support/planar_arm.hpp"
 
 namespace mmgrasp::test {
 

@@ -1,12 +1,13 @@
 #pragma once
 
-#include <tinyxml.h>
-
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
+
+class TiXmlDocument;
+class TiXmlElement;
 
 namespace mmgrasp::detail {
 

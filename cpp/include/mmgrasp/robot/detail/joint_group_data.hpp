@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mmgrasp/robot/joint_group.hpp"
-#include "robot/kinematics/chain_kernel.hpp"
+#include "mmgrasp/robot/detail/chain_kernel.hpp"
 
 namespace mmgrasp {
 namespace detail {

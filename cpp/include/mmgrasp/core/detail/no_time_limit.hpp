@@ -1,8 +1,8 @@
 #pragma once
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
 /// Time limit of calls that their iterations end [s]: a busy machine must not change a plan.
-constexpr double kNoClock = 1e6;
+constexpr double kNoTimeLimit = 1e6;
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

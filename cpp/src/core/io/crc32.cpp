@@ -1,4 +1,4 @@
-#include "reach/crc32.hpp"
+#include "mmgrasp/core/detail/crc32.hpp"
 
 #include <array>
 #include <cstring>

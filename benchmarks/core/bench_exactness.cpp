@@ -3,9 +3,9 @@
 
 #include <cstdlib>
 
-#include "support/exactness.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "report.hpp"
+#include "support/exactness.hpp"
 
 int main(int argc, char** argv) {
   const int queries = argc > 1 ? std::atoi(argv[1]) : 100000;

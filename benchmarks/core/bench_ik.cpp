@@ -43,7 +43,7 @@ struct Case {
 
 Case make_case(const std::string& name, const Robot& robot, const std::string& base, const std::string& tip) {
   const JointGroup group = robot.chain(base, tip);
-  const Pose T_world_base = robot.link_poses(robot.default_values())[static_cast<std::size_t>(robot.link_index(base))];
+  const Pose T_world_base = robot.link_poses(robot.default_values())[robot.link_index(base)];
   Case c{name, group, T_world_base, {}, {}};
   Rng rng(2026);
   for (int i = 0; i < kPoses; ++i) {
@@ -98,7 +98,7 @@ struct Score {
 void report(const Case& c, const std::string& who, Score score, const std::string& more, const std::string& settings) {
   std::vector<double>& times = score.times;
   std::sort(times.begin(), times.end());
-  const auto at = [&](double share) { return times[static_cast<std::size_t>(share * (times.size() - 1))]; };
+  const auto at = [&](double share) { return times[share * (times.size() - 1)]; };
   double sum = 0;
   for (const double time : times) sum += time;
   std::ostringstream members;

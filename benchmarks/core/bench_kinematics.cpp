@@ -48,7 +48,7 @@ Program ours_single(const JointGroup& group) {
           [group](const Eigen::MatrixXd& Q, Answers& answers) {
             const Eigen::Index n = Q.rows();
             for (Eigen::Index i = 0; i < Q.cols(); ++i)
-              group.fk_jacobian(Q.col(i), answers.T[static_cast<std::size_t>(i)], answers.J.middleCols(n * i, n));
+              group.fk_jacobian(Q.col(i), answers.T[i], answers.J.middleCols(n * i, n));
           }};
 }
 
@@ -84,7 +84,7 @@ Program kdl(const JointGroup& group) {
               q.data = Q.col(i);
               fk->JntToCart(q, frame);
               jacobian->JntToJac(q, J);
-              Pose& T = answers.T[static_cast<std::size_t>(i)];
+              Pose& T = answers.T[i];
               T.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(frame.M.data);
               T.translation() = Eigen::Map<const Eigen::Vector3d>(frame.p.data);
               T.makeAffine();
@@ -102,10 +102,10 @@ pinocchio::Model arm_model(const JointGroup& group) {
   Pose fixed = Pose::Identity();  // since the last joint
   const auto placement = [](const Pose& T) { return pinocchio::SE3(T.linear(), T.translation()); };
   std::vector<int> way;
-  for (int link = group.tip_link(); link > 0; link = robot.joints()[static_cast<std::size_t>(way.back())].parent_link)
-    way.push_back(robot.links()[static_cast<std::size_t>(link)].parent_joint);
+  for (int link = group.tip_link(); link > 0; link = robot.joints()[way.back()].parent_link)
+    way.push_back(robot.links()[link].parent_joint);
   for (auto index = way.rbegin(); index != way.rend(); ++index) {
-    const Joint& joint = robot.joints()[static_cast<std::size_t>(*index)];
+    const Joint& joint = robot.joints()[*index];
     fixed = fixed * joint.T_parent_joint;
     if (joint.type == JointType::fixed) continue;
     const pinocchio::SE3 at = placement(fixed);
@@ -129,7 +129,7 @@ std::vector<Program> pinocchio_programs(const JointGroup& group) {
   const auto data = std::make_shared<pinocchio::Data>(*model);
   const pinocchio::FrameIndex frame = model->getFrameId("tip");
   const auto finish = [model, data, frame](Eigen::Index i, Answers& answers) {
-    Pose& T = answers.T[static_cast<std::size_t>(i)];
+    Pose& T = answers.T[i];
     T.linear() = data->oMf[frame].rotation();
     T.translation() = data->oMf[frame].translation();
     T.makeAffine();
@@ -163,9 +163,7 @@ std::vector<Program> pinocchio_programs(const JointGroup& group) {
 void compare(const Program& a, const Program& b, const Answers& x, const Answers& y) {
   double worst = (x.J - y.J).cwiseAbs().maxCoeff();
   for (int i = 0; i < kConfigurations; ++i)
-    worst = std::max(
-        worst,
-        (x.T[static_cast<std::size_t>(i)].matrix() - y.T[static_cast<std::size_t>(i)].matrix()).cwiseAbs().maxCoeff());
+    worst = std::max(worst, (x.T[i].matrix() - y.T[i].matrix()).cwiseAbs().maxCoeff());
   if (worst < kAgree) return;
   std::fprintf(stderr, "%s and %s (%s) differ by %g\n", a.who.c_str(), b.who.c_str(), b.settings.c_str(), worst);
   std::exit(1);

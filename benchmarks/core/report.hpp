@@ -32,7 +32,7 @@ double median_time(int rounds, const Work& work) {
     times.push_back(now() - start);
   }
   std::nth_element(times.begin(), times.begin() + rounds / 2, times.end());
-  return times[static_cast<std::size_t>(rounds / 2)];
+  return times[rounds / 2];
 }
 
 /// One line of the result, read by run.py. `value` is the number the ratio is made of, e.g. time per query in `unit`.

@@ -105,7 +105,7 @@ class MbmReader {
 
   static Eigen::VectorXd of_group(const mmgrasp::JointGroup& group, const std::map<std::string, double>& values) {
     Eigen::VectorXd q(group.size());
-    for (int i = 0; i < group.size(); ++i) q[i] = values.at(group.names()[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < group.size(); ++i) q[i] = values.at(group.names()[i]);
     return q;
   }
 

@@ -87,8 +87,7 @@ void judge(const Case& c, const CapabilityMap& map, int poses, int threads) {
     IkOptions own = ik;
     own.seed = static_cast<unsigned>(i + 1);
     const double begun = bench::now();
-    solved[i] = solve_collision_free_ik(checkers[static_cast<std::size_t>(worker)], target, middle, own).outcome ==
-                Outcome::solved;
+    solved[i] = solve_collision_free_ik(checkers[worker], target, middle, own).outcome == Outcome::solved;
     times[i] = bench::now() - begun;
     reached[i] = map.classified(voxel, pose) == Rejection::none;
     if (std::getenv("MMGRASP_BENCH_DIFFERENCES") && solved[i] != reached[i])

@@ -49,10 +49,7 @@ double straight_route(const std::vector<Stop>& stops, const Eigen::Vector2d& fro
   const auto n = static_cast<Eigen::Index>(places.size());
   return shortest_visiting_tour(
              Eigen::MatrixXd::NullaryExpr(
-                 n, n,
-                 [&](Eigen::Index i, Eigen::Index j) {
-                   return (places[static_cast<std::size_t>(i)] - places[static_cast<std::size_t>(j)]).norm();
-                 }))
+                 n, n, [&](Eigen::Index i, Eigen::Index j) { return (places[i] - places[j]).norm(); }))
       .length;
 }
 

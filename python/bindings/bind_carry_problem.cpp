@@ -84,7 +84,7 @@ void bind_grasp_candidate(py::module_& m) {
 void bind_carry_problem(py::module_& m) {
   bind_grasp_candidate(m);
   py::class_<ManipulationProblem>(m, "ManipulationProblem",
-                                  "Carry an object from one pose to another with any of many grasps (P2 4.2).")
+                                  "TransferPath an object from one pose to another with any of many grasps (P2 4.2).")
       .def(py::init([](const Given<JointGroup>& group, const Given<World>& world, const py::object& object,
                        const ArrayLike& T_world_start, const ArrayLike& T_world_goal, const py::object& grasps,
                        const std::optional<Given<Gripper>>& gripper, const Given<Strings>& touch_links,

@@ -157,7 +157,7 @@ void bind_group_methods(py::module_& m) {
             const IkBranches all = branches(g, pose_argument(T_world_tip, "T_world_tip"), world,
                                             read_options(ik_fields(), options, "ik_all"), std::clamp(count, 8, 48));
             std::vector<Eigen::VectorXd> first = all.solutions;
-            if (first.size() > static_cast<std::size_t>(count)) first.resize(static_cast<std::size_t>(count));
+            if (first.size() > static_cast<std::size_t>(count)) first.resize(count);
             return rows_to_array(first);
           },
           py::arg("T_world_tip"), py::arg("count") = 16, py::arg("world") = py::none(),

@@ -1,44 +1,80 @@
-"""Nobody includes whom they may not: an include regex against layers.toml, and graphlib for the order."""
+"""Nobody includes whom they may not: the includes against layers.toml, and graphlib for the order."""
 
 from __future__ import annotations
 
 import re
-import tomllib
 from graphlib import TopologicalSorter
 
 import pytest
 
-from conftest import REPOSITORY
+from layers import (
+    INCLUDED,
+    LAYERS,
+    MODULES,
+    PUBLIC,
+    REPOSITORY,
+    ROOMS,
+    SOURCE,
+    architecture_page,
+    edges_between_rooms,
+    files_of,
+    includes,
+    is_detail,
+    is_private,
+    module_of,
+    room_of,
+    target,
+)
 
-LAYERS = tomllib.loads((REPOSITORY / "layers.toml").read_text())
-INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 STANDARD = re.compile(r"[a-z_0-9]+|Eigen/\w+|unistd\.h")
 
 
-def files(*patterns: str):
-    for pattern in patterns:
-        yield from sorted(REPOSITORY.glob(pattern))
-
-
-def includes(path) -> list[tuple[str, str]]:
-    return INCLUDE.findall(path.read_text())
+def relative(path) -> str:
+    return path.relative_to(REPOSITORY).as_posix()
 
 
 def test_layers_are_a_hierarchy():
-    order = list(TopologicalSorter(LAYERS["modules"]).static_order())
+    order = list(TopologicalSorter(MODULES).static_order())
     assert order[0] == "core"
-    assert set(order) == set(LAYERS["modules"])
+    assert set(order) == set(MODULES)
+    for rooms in ROOMS.values():
+        assert set(TopologicalSorter(rooms).static_order()) == set(rooms)
 
 
-@pytest.mark.parametrize("module", sorted(LAYERS["modules"]))
+def test_every_folder_is_a_module_or_a_room():
+    folders = {path.relative_to(SOURCE).as_posix() for path in SOURCE.rglob("*") if path.is_dir()}
+    files = {path.parent.relative_to(SOURCE).as_posix() for path in SOURCE.rglob("*") if path.suffix in INCLUDED}
+    assert files <= folders
+    known = {f"{module}/{room}".rstrip("/") for module, rooms in ROOMS.items() for room in rooms}
+    assert {folder for folder in files if "/" in folder} <= known
+    assert {folder.split("/")[0] for folder in folders} <= set(MODULES)
+
+
+@pytest.mark.parametrize("module", sorted(MODULES))
 def test_module_includes_only_what_it_may(module):
-    allowed = {module, *LAYERS["modules"][module]}
+    allowed = {module, *MODULES[module]}
     wrong = []
-    for path in files(f"cpp/include/mmgrasp/{module}/**/*.hpp", f"cpp/src/{module}/**/*.[ch]pp"):
+    for path in files_of(module):
         for _, name in includes(path):
-            parts = name.removeprefix("mmgrasp/").split("/")
-            if len(parts) > 1 and parts[0] in LAYERS["modules"] and parts[0] not in allowed:
-                wrong.append(f"{path.relative_to(REPOSITORY)} includes {name}")
+            to = target(name)
+            if to and module_of(to) not in allowed:
+                wrong.append(f"{relative(path)} includes {name}")
+            if to and module_of(to) != module and is_private(to):
+                wrong.append(f"{relative(path)} includes {name}, a private header of another module")
+            if not to and name.split("/")[0] in {"mmgrasp", *MODULES}:
+                wrong.append(f"{relative(path)} includes {name}, which is not there")
+    assert not wrong
+
+
+@pytest.mark.parametrize("module", sorted(ROOMS))
+def test_room_includes_only_what_it_may(module):
+    assert {room_of(path) for path in files_of(module)} == set(ROOMS[module])
+    wrong = [
+        f"{room or module} -> {other or module}: {include}"
+        for (room, other), behind in edges_between_rooms(module).items()
+        if other not in ROOMS[module][room]
+        for include in behind
+    ]
     assert not wrong
 
 
@@ -47,27 +83,37 @@ def test_narrow_rules(module):
     rules = LAYERS["only"][module]
     limited = {rule.split("/")[0] for rule in rules}
     wrong = []
-    for path in files(f"cpp/include/mmgrasp/{module}/**/*.hpp", f"cpp/src/{module}/**/*.[ch]pp"):
+    for path in files_of(module):
         for _, name in includes(path):
             short = name.removeprefix("mmgrasp/")
             if short.split("/")[0] in limited and "/" in short and short not in rules:
-                wrong.append(f"{path.relative_to(REPOSITORY)} includes {name}")
+                wrong.append(f"{relative(path)} includes {name}")
     assert not wrong
 
 
 def test_public_headers_need_std_and_eigen_only():
     wrong = []
-    for path in files("cpp/include/**/*.hpp"):
+    for path in sorted(PUBLIC.rglob("*.hpp")):
         for bracket, name in includes(path):
             if not name.startswith("mmgrasp/") and (bracket == '"' or not STANDARD.fullmatch(name)):
-                wrong.append(f"{path.relative_to(REPOSITORY)} includes {name}")
+                wrong.append(f"{relative(path)} includes {name}")
+            if "/detail/" in name and not is_detail(path):
+                wrong.append(f"{relative(path)} includes {name}, which is not installed")
     assert not wrong
 
 
 def test_ompl_stays_in_its_plugin():
     wrong = [
-        str(path.relative_to(REPOSITORY))
-        for path in files("cpp/**/*.[ch]pp", "python/bindings/*.[ch]pp")
-        if "ompl_plugin" not in path.parts and any(name.startswith("ompl/") for _, name in includes(path))
+        relative(path)
+        for root in ("cpp", "python/bindings")
+        for path in sorted((REPOSITORY / root).rglob("*"))
+        if path.suffix in INCLUDED
+        and "ompl_plugin" not in path.parts
+        and any(name.startswith("ompl/") for _, name in includes(path))
     ]
     assert not wrong
+
+
+def test_architecture_page_is_what_the_includes_say():
+    page = (REPOSITORY / "docs" / "architecture.md").read_text()
+    assert page == architecture_page(), "out of date: ./dev architecture"

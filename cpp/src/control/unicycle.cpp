@@ -9,7 +9,6 @@
 namespace mmgrasp {
 namespace {
 
-
 /// sin(x) / x
 double sinc(double x) {
   return std::abs(x) < 1e-4 ? 1 - x * x / 6 : std::sin(x) / x;

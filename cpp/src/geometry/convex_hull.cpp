@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mmgrasp/geometry/detail/mesh_topology.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/geometry/detail/mesh_topology.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
 
 namespace mmgrasp {

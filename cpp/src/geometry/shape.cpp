@@ -73,34 +73,31 @@ void check_shape(const Shape& shape, const std::string& field) {
 Eigen::AlignedBox3d shape_bounds(const Shape& shape, const Pose& T) {
   const Eigen::Matrix3d R = T.linear();
   const Eigen::Vector3d t = T.translation();
-  return std::visit(Overloaded{
-                        [&](const Box& s) { return around(t, R.cwiseAbs() * (0.5 * s.size)); },
-                        [&](const Sphere& s) { return around(t, Eigen::Vector3d::Constant(s.radius)); },
-                        [&](const Cylinder& s) {
-                          return around(t, disc_half(R.col(2), s.radius) + 0.5 * s.length * R.col(2).cwiseAbs());
-                        },
-                        [&](const Capsule& s) {
-                          return around(t, Eigen::Vector3d::Constant(s.radius) + 0.5 * s.length * R.col(2).cwiseAbs());
-                        },
-                        [&](const Plane&) {
-                          return around(Eigen::Vector3d::Zero(),
-                                        Eigen::Vector3d::Constant(detail::kInfinity));
-                        },
-                        [&](const MeshShape& s) {
-                          Eigen::AlignedBox3d box;
-                          for (const Eigen::Vector3d& v : s.mesh->vertices) box.extend(T * v);
-                          return box;
-                        },
-                        [&](const Voxels& s) {
-                          Eigen::AlignedBox3d box;
-                          for (const Eigen::Vector3d& c : *s.centres) box.extend(T * c);
-                          const Eigen::Vector3d half = R.cwiseAbs() * Eigen::Vector3d::Constant(0.5 * s.resolution);
-                          if (!box.isEmpty())
-                            box = {Eigen::Vector3d(box.min() - half), Eigen::Vector3d(box.max() + half)};
-                          return box;
-                        },
-                    },
-                    shape);
+  return std::visit(
+      Overloaded{
+          [&](const Box& s) { return around(t, R.cwiseAbs() * (0.5 * s.size)); },
+          [&](const Sphere& s) { return around(t, Eigen::Vector3d::Constant(s.radius)); },
+          [&](const Cylinder& s) {
+            return around(t, disc_half(R.col(2), s.radius) + 0.5 * s.length * R.col(2).cwiseAbs());
+          },
+          [&](const Capsule& s) {
+            return around(t, Eigen::Vector3d::Constant(s.radius) + 0.5 * s.length * R.col(2).cwiseAbs());
+          },
+          [&](const Plane&) { return around(Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(detail::kInfinity)); },
+          [&](const MeshShape& s) {
+            Eigen::AlignedBox3d box;
+            for (const Eigen::Vector3d& v : s.mesh->vertices) box.extend(T * v);
+            return box;
+          },
+          [&](const Voxels& s) {
+            Eigen::AlignedBox3d box;
+            for (const Eigen::Vector3d& c : *s.centres) box.extend(T * c);
+            const Eigen::Vector3d half = R.cwiseAbs() * Eigen::Vector3d::Constant(0.5 * s.resolution);
+            if (!box.isEmpty()) box = {Eigen::Vector3d(box.min() - half), Eigen::Vector3d(box.max() + half)};
+            return box;
+          },
+      },
+      shape);
 }
 
 const char* shape_kind(const Shape& shape) {

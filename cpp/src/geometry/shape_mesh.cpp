@@ -9,7 +9,6 @@ namespace mmgrasp {
 
 namespace {
 
-
 using Vertices = std::vector<Eigen::Vector3d>;
 using Triangles = std::vector<std::array<int, 3>>;
 

@@ -21,7 +21,7 @@ Voxels voxelize(const std::vector<Eigen::Vector3d>& points, double resolution) {
       // Doubles number cells one by one up to 2^53.
       require(std::abs(at) < 9e15, "points[" + std::to_string(i) + "][" + std::to_string(k) + "]", points[i][k],
               "must be finite and within 9e15 cells of the origin");
-      cell[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(at);
+      cell[k] = static_cast<std::int64_t>(at);
     }
     cells.push_back(cell);
   }

@@ -140,8 +140,8 @@ HeightMap make_height_map(const DepthImage& image, const Pose& T_world_map, cons
   for (int i = 0; i < options.hole_radius; ++i) clean.depth = nearest_around(clean.depth, width, height, true);
   const Pose T_map_camera = map.T_world_map.inverse(Eigen::Isometry) * image.T_world_camera;
   paint_surface(image, clean.depth, options.jump, T_map_camera, map, map.height);
-  paint_surface(image, nearest_around(clean.depth, width, height, false), detail::kInfinity,
-                T_map_camera, map, map.upper);
+  paint_surface(image, nearest_around(clean.depth, width, height, false), detail::kInfinity, T_map_camera, map,
+                map.upper);
   for (std::size_t i = 0; i < map.upper.size(); ++i) {
     if (map.height[i] > map.upper[i]) map.upper[i] = map.height[i];
   }

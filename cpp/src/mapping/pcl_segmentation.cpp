@@ -75,13 +75,13 @@ std::vector<std::vector<int>> euclidean_clusters(const std::vector<Eigen::Vector
 
   std::vector<int> group_of(thinned->size(), -1);
   for (std::size_t g = 0; g < found.size(); ++g) {
-    for (const int i : found[g].indices) group_of[static_cast<std::size_t>(i)] = static_cast<int>(g);
+    for (const int i : found[g].indices) group_of[i] = static_cast<int>(g);
   }
   groups.resize(found.size());
   for (std::size_t i = 0; i < cloud->size(); ++i) {
     const int cell = grid.getCentroidIndex((*cloud)[i]);
-    if (cell < 0 || group_of[static_cast<std::size_t>(cell)] < 0) continue;
-    groups[static_cast<std::size_t>(group_of[static_cast<std::size_t>(cell)])].push_back(static_cast<int>(i));
+    if (cell < 0 || group_of[cell] < 0) continue;
+    groups[group_of[cell]].push_back(static_cast<int>(i));
   }
   groups.erase(std::remove_if(groups.begin(), groups.end(),
                               [&](const auto& group) { return static_cast<int>(group.size()) < least; }),

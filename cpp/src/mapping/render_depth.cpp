@@ -2,8 +2,8 @@
 #include <cmath>
 #include <memory>
 
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "mapping/shape_rays.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/core/random.hpp"

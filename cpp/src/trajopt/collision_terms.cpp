@@ -29,7 +29,7 @@ std::shared_ptr<const ToolChain> chain_to(const CollisionChecker& checker, const
   const JointGroup& group = checker.group();
   const int link = group.robot().link_index(held == attached.end() ? body : held->second.link);
   Pose T_link_point = Pose::Identity();
-  T_link_point.translation() = T_world_link[static_cast<std::size_t>(link)].inverse() * p_world;
+  T_link_point.translation() = T_world_link[link].inverse() * p_world;
   return std::make_shared<const ToolChain>(group, link, T_link_point);
 }
 
@@ -100,7 +100,7 @@ CollisionTerm::CollisionTerm(const IntervalPoint& point, std::vector<SeparatingP
   kind = "collision";
   const Eigen::Index rows = static_cast<Eigen::Index>(planes_.size());
   lower.resize(rows);
-  for (Eigen::Index i = 0; i < rows; ++i) lower[i] = planes_[static_cast<std::size_t>(i)].margin;
+  for (Eigen::Index i = 0; i < rows; ++i) lower[i] = planes_[i].margin;
   upper = VectorXd::Constant(rows, kInfinity);
 }
 
@@ -138,7 +138,7 @@ void CollisionTerm::hessian(const double* x, const double* multipliers, double* 
 bool CollisionRows::look_along(const WholeBodyTrajectory& trajectory) {
   bool collides = false;
   for (int i = 0; i < static_cast<int>(checkers_.size()); ++i) {
-    CollisionChecker* checker = checkers_[static_cast<std::size_t>(i)];
+    CollisionChecker* checker = checkers_[i];
     if (!checker) continue;
     for (int k = 0; k <= kFiner; ++k) {
       const double s = static_cast<double>(k) / kFiner;
@@ -156,9 +156,9 @@ bool CollisionRows::look_along(const WholeBodyTrajectory& trajectory) {
 void CollisionRows::keep_clear(const std::vector<VectorXd>& positions, bool parts_bodies) {
   reference_ = positions;
   for (int i = 0; i < static_cast<int>(checkers_.size()); ++i) {
-    CollisionChecker* checker = checkers_[static_cast<std::size_t>(i)];
+    CollisionChecker* checker = checkers_[i];
     if (!checker) continue;
-    for (const DistanceResult& d : checker->distances(positions[static_cast<std::size_t>(i)], look_out_))
+    for (const DistanceResult& d : checker->distances(positions[i], look_out_))
       if (d.with_scene && d.gradient.cwiseAbs().maxCoeff() > 0) watched_.insert({true, d.a, d.b});
   }
   const std::map<Pair, double> rooms = rooms_along(positions);
@@ -171,9 +171,9 @@ std::map<CollisionRows::Pair, double> CollisionRows::rooms_along(const std::vect
   for (const Pair& pair : watched_) rooms[pair] = margin_;
   for (int waypoint : pinned_) {
     const int interval = std::min(waypoint, static_cast<int>(checkers_.size()) - 1);
-    CollisionChecker* checker = checkers_[static_cast<std::size_t>(interval)];
+    CollisionChecker* checker = checkers_[interval];
     if (!checker) continue;
-    const VectorXd& q = positions[static_cast<std::size_t>(waypoint)];
+    const VectorXd& q = positions[waypoint];
     for (const DistanceResult& d : checker->distances(q, 2 * margin_ + 1e-6)) {
       const auto room = rooms.find({d.with_scene, d.a, d.b});
       if (room != rooms.end() && d.value > 0) room->second = std::min(room->second, 0.5 * d.value);
@@ -205,7 +205,7 @@ void CollisionRows::take_planes(const WholeBodyTrajectory& trajectory) {
 }
 
 void CollisionRows::take_planes_at(const Sample& sample, const VectorXd& q, const std::map<Pair, double>& rooms) {
-  CollisionChecker* checker = checkers_[static_cast<std::size_t>(sample.first)];
+  CollisionChecker* checker = checkers_[sample.first];
   if (!checker || sample == Sample{0, 0.0}) return;
   PlaneMaker here(*checker, q);
   std::optional<PlaneMaker> apart;  // where they are known to be

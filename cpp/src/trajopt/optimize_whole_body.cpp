@@ -1,9 +1,9 @@
 #include "mmgrasp/trajopt/optimize_whole_body.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "trajopt/collision_terms.hpp"
 #include "trajopt/whole_body_nlp.hpp"
@@ -18,8 +18,7 @@ std::shared_ptr<const WholeBodyTrajectory> trajectory_of(const WholeBodyProblem&
                                                          const detail::WholeBodyNlp& nlp, const Eigen::VectorXd& x) {
   WholeBodyGuess g = nlp.unpack(x);
   std::vector<double> times{0};
-  for (int i = 0; i < nlp.layout().intervals(); ++i)
-    times.push_back(times.back() + g.steps[static_cast<std::size_t>(nlp.layout().segment(i))]);
+  for (int i = 0; i < nlp.layout().intervals(); ++i) times.push_back(times.back() + g.steps[nlp.layout().segment(i)]);
   return std::make_shared<const WholeBodyTrajectory>(problem.group, times, g.positions, g.drive);
 }
 
@@ -40,8 +39,7 @@ void WholeBodyOptions::check() const {
 WholeBodyResult optimize_whole_body(const WholeBodyProblem& problem, const WholeBodyGuess& guess,
                                     const WholeBodyOptions& options, const std::vector<CollisionChecker*>& checkers,
                                     const Monitor& monitor) {
-  const auto begin = std::chrono::steady_clock::now();
-  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
+  const detail::Stopwatch stopwatch;
   options.check();
   problem.check();
   require(checkers.empty() || static_cast<int>(checkers.size()) == problem.intervals(), "checkers",
@@ -68,7 +66,7 @@ WholeBodyResult optimize_whole_body(const WholeBodyProblem& problem, const Whole
   for (int round = 0;; ++round) {
     detail::WholeBodyNlp nlp(problem, options.smoothing);
     rows.add_to(nlp, diff_drive);
-    nlp_options.time_limit = std::max(1e-3, options.time_limit - seconds());
+    nlp_options.time_limit = std::max(1e-3, options.time_limit - stopwatch.seconds());
     const NlpResult answer = solver->solve(nlp, x, nlp_options, monitor);
     result.iterations += answer.iterations;
     result.message = answer.message;
@@ -83,7 +81,7 @@ WholeBodyResult optimize_whole_body(const WholeBodyProblem& problem, const Whole
   const bool kept =
       std::all_of(result.violations.begin(), result.violations.end(), [](const Violation& v) { return v.kept(); });
   if (result.usable() && !kept) result.outcome = Outcome::infeasible;
-  result.seconds = seconds();
+  result.seconds = stopwatch.seconds();
   return result;
 }
 

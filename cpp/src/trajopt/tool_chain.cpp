@@ -14,12 +14,11 @@ ToolChain::ToolChain(const JointGroup& group, int to_link, const Pose& T_link_po
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(group.size());
   Poses T_world_link;
   group.link_poses(zero, T_world_link);
-  const auto pose = [&](int link) -> const Pose& { return T_world_link[static_cast<std::size_t>(link)]; };
+  const auto pose = [&](int link) -> const Pose& { return T_world_link[link]; };
 
   std::vector<const Joint*> moving;
   for (int link = to_link; link > 0;) {
-    const Joint& joint =
-        robot.joints()[static_cast<std::size_t>(robot.links()[static_cast<std::size_t>(link)].parent_joint)];
+    const Joint& joint = robot.joints()[robot.links()[link].parent_joint];
     const int index = static_cast<int>(&joint - robot.joints().data());
     const auto& columns = group.joints();
     if (joint.mimic_joint >= 0) {

@@ -112,7 +112,7 @@ ToolVelocityTerm::Motion ToolVelocityTerm::motion(const double* x) const {
   } else {
     for (Eigen::Index i = 0; i < n; ++i) m.rate[i] = drive[i];
   }
-  for (Eigen::Index i = 0; i < n; ++i) m.velocity += m.s.v[static_cast<std::size_t>(i)] * m.rate[i];
+  for (Eigen::Index i = 0; i < n; ++i) m.velocity += m.s.v[i] * m.rate[i];
   return m;
 }
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/collision/edge.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
 #include "mmgrasp/trajopt/optimize_whole_body.hpp"
 
@@ -57,9 +57,9 @@ std::vector<Sample> samples_of(const WholeBodyTrajectory& trajectory, int finer)
   std::vector<Sample> samples;
   const auto& times = trajectory.times();
   for (int i = 0; i + 1 < static_cast<int>(times.size()); ++i) {
-    const double h = times[static_cast<std::size_t>(i) + 1] - times[static_cast<std::size_t>(i)];
+    const double h = times[static_cast<std::size_t>(i) + 1] - times[i];
     for (int k = 0; k < finer; ++k) {
-      const double time = times[static_cast<std::size_t>(i)] + h * k / finer;
+      const double time = times[i] + h * k / finer;
       samples.push_back({time, i, trajectory.at(time), trajectory.drive_at(time)});
     }
   }
@@ -80,8 +80,7 @@ void check_motion(Ledger& ledger, const WholeBodyTrajectory& t) {
   }
   ledger.open("dynamics", "rad or m", 1e-8);
   for (std::size_t i = 0; i < ends.size(); ++i) {
-    for (int c = 0; c < group.size(); ++c)
-      ledger.note(std::abs(ends[i][c]), t.times()[i], group.names()[static_cast<std::size_t>(c)]);
+    for (int c = 0; c < group.size(); ++c) ledger.note(std::abs(ends[i][c]), t.times()[i], group.names()[c]);
   }
   if (!group.has_base()) return;
   if (diff_drive) {
@@ -107,16 +106,14 @@ void check_limits(Ledger& ledger, const WholeBodyProblem& problem, const WholeBo
   ledger.open("position", "rad or m", 1e-6);
   for (const Sample& s : samples) {
     for (int c = 0; c < group.size(); ++c) {
-      if (group.wraps()[static_cast<std::size_t>(c)]) continue;
-      ledger.note(outside(s.q[c], group.lower()[c], group.upper()[c]), s.time,
-                  group.names()[static_cast<std::size_t>(c)]);
+      if (group.wraps()[c]) continue;
+      ledger.note(outside(s.q[c], group.lower()[c], group.upper()[c]), s.time, group.names()[c]);
     }
   }
   const VectorXd v = drive_velocity_limits(group), a = drive_acceleration_limits(group);
   ledger.open("velocity", "rad/s or m/s", 1e-6);
   for (const Sample& s : samples) {
-    for (Eigen::Index d = 0; d < v.size(); ++d)
-      ledger.note(outside(s.drive[d], -v[d], v[d]), s.time, drives[static_cast<std::size_t>(d)]);
+    for (Eigen::Index d = 0; d < v.size(); ++d) ledger.note(outside(s.drive[d], -v[d], v[d]), s.time, drives[d]);
     if (base == BaseKind::omni) ledger.note(s.drive.head<2>().norm() - limits.linear_velocity, s.time, "base");
   }
   if (base == BaseKind::diff_drive) {
@@ -131,8 +128,7 @@ void check_limits(Ledger& ledger, const WholeBodyProblem& problem, const WholeBo
   VectorXd before;
   for (std::size_t i = 0; i + 1 < t.size(); ++i) {
     const VectorXd slope = (t.drive()[i + 1] - t.drive()[i]) / (t.times()[i + 1] - t.times()[i]);
-    for (Eigen::Index d = 0; d < a.size(); ++d)
-      ledger.note(outside(slope[d], -a[d], a[d]), t.times()[i], drives[static_cast<std::size_t>(d)]);
+    for (Eigen::Index d = 0; d < a.size(); ++d) ledger.note(outside(slope[d], -a[d], a[d]), t.times()[i], drives[d]);
     if (base == BaseKind::omni) ledger.note(slope.head<2>().norm() - limits.linear_acceleration, t.times()[i], "base");
   }
   if (problem.jerk_time <= 0) return;
@@ -141,14 +137,14 @@ void check_limits(Ledger& ledger, const WholeBodyProblem& problem, const WholeBo
     const double h0 = t.times()[i] - t.times()[i - 1], h1 = t.times()[i + 1] - t.times()[i];
     const VectorXd jump = (t.drive()[i + 1] - t.drive()[i]) / h1 - (t.drive()[i] - t.drive()[i - 1]) / h0;
     for (Eigen::Index d = 0; d < a.size(); ++d) {
-      ledger.note(std::abs(jump[d]) / h1 - a[d] / problem.jerk_time, t.times()[i], drives[static_cast<std::size_t>(d)]);
+      ledger.note(std::abs(jump[d]) / h1 - a[d] / problem.jerk_time, t.times()[i], drives[d]);
     }
   }
 }
 
 void check_ends(Ledger& ledger, const WholeBodyProblem& problem, const WholeBodyTrajectory& t) {
   const JointGroup& group = problem.group;
-  const auto name = [&](int c) { return group.names()[static_cast<std::size_t>(c)]; };
+  const auto name = [&](int c) { return group.names()[c]; };
   const auto velocity = [&](const VectorXd& given, const VectorXd& is) {
     return (given.size() > 0 ? VectorXd(is - given) : is).cwiseAbs().maxCoeff();
   };
@@ -162,11 +158,10 @@ void check_ends(Ledger& ledger, const WholeBodyProblem& problem, const WholeBody
   ledger.note(velocity(problem.end_velocity, t.drive().back()), t.duration(), "velocity");
   ledger.open("segment duration", "s", 1e-6);
   for (int s = 0; s < static_cast<int>(problem.segments.size()); ++s) {
-    const double from = s == 0 ? 0 : t.times()[static_cast<std::size_t>(problem.segment_end(s - 1))];
-    const WholeBodySegment& segment = problem.segments[static_cast<std::size_t>(s)];
-    ledger.note(outside(t.times()[static_cast<std::size_t>(problem.segment_end(s))] - from, segment.min_duration,
-                        segment.max_duration),
-                from, "segment " + std::to_string(s));
+    const double from = s == 0 ? 0 : t.times()[problem.segment_end(s - 1)];
+    const WholeBodySegment& segment = problem.segments[s];
+    ledger.note(outside(t.times()[problem.segment_end(s)] - from, segment.min_duration, segment.max_duration), from,
+                "segment " + std::to_string(s));
   }
 }
 
@@ -189,7 +184,7 @@ void check_tool(Ledger& ledger, const WholeBodyProblem& problem, const WholeBody
   const auto over = [&](const char* kind, const char* unit, double tolerance, auto&& each) {
     ledger.open(kind, unit, tolerance);
     for (std::size_t i = 0; i < problem.tool.size(); ++i) {
-      const double time = t.times()[static_cast<std::size_t>(problem.tool[i].waypoint)];
+      const double time = t.times()[problem.tool[i].waypoint];
       each(i, time, "tool constraint " + std::to_string(i) + ", ");
     }
   };
@@ -221,7 +216,7 @@ void check_collisions(Ledger& ledger, const std::vector<CollisionChecker*>& chec
   EdgeOptions edge;
   edge.continuous = true;
   for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
-    CollisionChecker* checker = checkers[static_cast<std::size_t>(samples[i].interval)];
+    CollisionChecker* checker = checkers[samples[i].interval];
     if (!checker) continue;
     const EdgeResult r = check_edge(*checker, samples[i].q, samples[i + 1].q, edge);
     if (r.free || !r.contact) continue;  // limits are looked at elsewhere

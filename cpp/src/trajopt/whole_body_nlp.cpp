@@ -34,13 +34,12 @@ std::string WholeBodyLayout::name(int index, const JointGroup& group) const {
     if (step_[s] == index) return "time step of segment " + std::to_string(s);
   const auto after = std::upper_bound(first_.begin(), first_.end(), index);
   const int waypoint = static_cast<int>(after - first_.begin()) - 1;
-  const int at = index - first_[static_cast<std::size_t>(waypoint)];
+  const int at = index - first_[waypoint];
   const std::string where = " at waypoint " + std::to_string(waypoint);
-  if (at < columns_) return group.names()[static_cast<std::size_t>(at)] + where;
+  if (at < columns_) return group.names()[at] + where;
   const std::vector<std::string> drives = drive_names(group);
   const bool velocity = at < columns_ + drives_;
-  return (velocity ? "velocity of " : "acceleration of ") +
-         drives[static_cast<std::size_t>(at - columns_ - (velocity ? 0 : drives_))] + where;
+  return (velocity ? "velocity of " : "acceleration of ") + drives[at - columns_ - (velocity ? 0 : drives_)] + where;
 }
 
 WholeBodyNlp::WholeBodyNlp(const WholeBodyProblem& problem, double smoothing) : problem_(problem), layout_(problem) {
@@ -67,7 +66,7 @@ void WholeBodyNlp::bound_variables() {
   const int last = layout_.intervals();
   for (int i = 0; i <= last; ++i) {
     for (int c = 0; c < layout_.columns(); ++c) {
-      const bool turns = group.wraps()[static_cast<std::size_t>(c)];
+      const bool turns = group.wraps()[c];
       box(layout_.q(i, c), turns ? -kInfinity : group.lower()[c], turns ? kInfinity : group.upper()[c]);
     }
     for (int d = 0; d < layout_.drives(); ++d) box(layout_.v(i, d), -v[d], v[d]);
@@ -98,10 +97,9 @@ void WholeBodyNlp::add(std::unique_ptr<Term> term) {
   row_at_.push_back(rows_);
   jacobian_at_.push_back(jacobian_.size());
   hessian_at_.push_back(hessian_.size());
-  for (const auto& [row, column] : term->jacobian_pattern())
-    jacobian_.add(rows_ + row, term->variables[static_cast<std::size_t>(column)]);
+  for (const auto& [row, column] : term->jacobian_pattern()) jacobian_.add(rows_ + row, term->variables[column]);
   for (const auto& [row, column] : term->hessian_pattern()) {
-    const int i = term->variables[static_cast<std::size_t>(row)], j = term->variables[static_cast<std::size_t>(column)];
+    const int i = term->variables[row], j = term->variables[column];
     hessian_.add(std::max(i, j), std::min(i, j));
   }
   rows_ += term->rows();
@@ -126,7 +124,7 @@ void WholeBodyNlp::add_motion() {
       return term;
     };
     for (int d = 0; d < layout_.drives(); ++d) {
-      const std::string& what = drives[static_cast<std::size_t>(d)];
+      const std::string& what = drives[d];
       make(zero(std::make_unique<VelocityStep>(), 1), i, {layout_.v(i, d), layout_.v(i + 1, d), layout_.a(i, d), h},
            what);
       if (diff_drive && d == 0) continue;
@@ -189,8 +187,7 @@ void WholeBodyNlp::add_limits() {
       for (int d = 0; d < layout_.drives(); ++d) {
         for (const double sign : {-1.0, 1.0}) {
           make(std::make_unique<LinearTerm>(std::vector<double>{sign, -sign, -a[d] / problem_.jerk_time}), i,
-               {layout_.a(i, d), layout_.a(i - 1, d), h}, -kInfinity, 0, "jerk",
-               drive_names(group)[static_cast<std::size_t>(d)]);
+               {layout_.a(i, d), layout_.a(i - 1, d), h}, -kInfinity, 0, "jerk", drive_names(group)[d]);
         }
       }
     }
@@ -247,14 +244,14 @@ VectorXd WholeBodyNlp::pack(const WholeBodyGuess& guess) const {
 
   VectorXd x = VectorXd::Zero(layout_.size());
   for (std::size_t s = 0; s < guess.steps.size(); ++s) x[layout_.h(static_cast<int>(s))] = guess.steps[s];
-  const auto step = [&](int i) { return guess.steps[static_cast<std::size_t>(layout_.segment(i))]; };
-  const auto at = [&](int i) -> const VectorXd& { return guess.positions[static_cast<std::size_t>(i)]; };
+  const auto step = [&](int i) { return guess.steps[layout_.segment(i)]; };
+  const auto at = [&](int i) -> const VectorXd& { return guess.positions[i]; };
   const bool diff_drive = moving_base(problem_.group) == BaseKind::diff_drive;
   for (int i = 0; i <= last; ++i) {
     x.segment(layout_.q(i, 0), n) = at(i);
     VectorXd drive;
     if (!guess.drive.empty()) {
-      drive = guess.drive[static_cast<std::size_t>(i)];
+      drive = guess.drive[i];
       require(drive.size() == layout_.drives() && drive.allFinite(), "guess.drive", static_cast<double>(i),
               "must be finite and of the length of drive_names");
     } else if (i > 0 && i < last) {

@@ -16,12 +16,12 @@ class MMGRASP_EXPORT WholeBodyLayout {
  public:
   explicit WholeBodyLayout(const WholeBodyProblem& problem);
   int size() const { return size_; }
-  int q(int waypoint, int column) const { return first_[static_cast<std::size_t>(waypoint)] + column; }
+  int q(int waypoint, int column) const { return first_[waypoint] + column; }
   int v(int waypoint, int drive) const { return q(waypoint, columns_) + drive; }
   int a(int waypoint, int drive) const { return v(waypoint, drives_) + drive; }
-  int h(int segment) const { return step_[static_cast<std::size_t>(segment)]; }
+  int h(int segment) const { return step_[segment]; }
   /// Segment that the interval after a waypoint belongs to.
-  int segment(int interval) const { return segment_[static_cast<std::size_t>(interval)]; }
+  int segment(int interval) const { return segment_[interval]; }
   int columns() const { return columns_; }
   int drives() const { return drives_; }
   int intervals() const { return static_cast<int>(segment_.size()); }

@@ -27,7 +27,7 @@ void check_box(const VectorXd& lower, const VectorXd& upper, const std::string& 
 void check_within(const JointGroup& group, const VectorXd& lower, const VectorXd& upper, const std::string& field) {
   for (Eigen::Index i = 0; i < lower.size(); ++i) {
     require(lower[i] <= group.upper()[i] + kSlack && upper[i] >= group.lower()[i] - kSlack, at(field, i), lower[i],
-            "must lie within the limits of " + group.names()[static_cast<std::size_t>(i)]);
+            "must lie within the limits of " + group.names()[i]);
   }
 }
 
@@ -94,7 +94,7 @@ int WholeBodyProblem::intervals() const {
 
 int WholeBodyProblem::segment_end(int segment) const {
   int sum = 0;
-  for (int i = 0; i <= segment; ++i) sum += segments[static_cast<std::size_t>(i)].intervals;
+  for (int i = 0; i <= segment; ++i) sum += segments[i].intervals;
   return sum;
 }
 
@@ -124,7 +124,7 @@ void WholeBodyProblem::check() const {
   const VectorXd v = drive_velocity_limits(group), a = drive_acceleration_limits(group);
   const std::vector<std::string> names = drive_names(group);
   for (Eigen::Index i = 0; i < v.size(); ++i) {
-    const std::string& name = names[static_cast<std::size_t>(i)];
+    const std::string& name = names[i];
     require(v[i] > 0 && std::isfinite(v[i]), "velocity limit of " + name, v[i], "must be positive and finite");
     require(a[i] > 0 && std::isfinite(a[i]), "acceleration limit of " + name, a[i], "must be positive and finite");
   }

@@ -41,14 +41,14 @@ class DriveByCheck {
         faults_(faults) {}
 
   void run() {
-    const CheckedPick& pick = plan_.picks[static_cast<std::size_t>(drive_by_.pick)];
+    const CheckedPick& pick = plan_.picks[drive_by_.pick];
     where_ = context_.pick_name(static_cast<std::size_t>(drive_by_.pick)) + ", drive-by";
     if (!check_motion_shape(motion_, 3 + judge_.kinematics().arm_size(), where_, faults_)) return;
     for (const VectorXd& row : motion_.accelerations)
       if (row.size() != motion_.positions.front().size()) return fault("motion-shape", "accelerations are too few");
-    part_ = &plan_.parts[static_cast<std::size_t>(context_.pick_part[static_cast<std::size_t>(drive_by_.pick)])];
-    width_ = part_->grasps[static_cast<std::size_t>(pick.grasp)].width;
-    T_world_grasp_ = part_->body.T_world_body * part_->grasps[static_cast<std::size_t>(pick.grasp)].T_object_tcp;
+    part_ = &plan_.parts[context_.pick_part[drive_by_.pick]];
+    width_ = part_->grasps[pick.grasp].width;
+    T_world_grasp_ = part_->body.T_world_body * part_->grasps[pick.grasp].T_object_tcp;
     check_motion_limits(context_, judge_.kinematics(), arm_of(motion_), where_, faults_);
     check_base_course(plan_, motion_, where_, faults_);
     check_ends(pick);
@@ -189,10 +189,10 @@ std::vector<std::size_t> known_picks(const Context& context, Faults& faults) {
     if (pick < 0 || pick >= static_cast<int>(plan.picks.size())) {
       wrong = "there is no pick " + std::to_string(pick);
     } else {
-      const CheckedPick& p = plan.picks[static_cast<std::size_t>(pick)];
-      const int part = context.pick_part[static_cast<std::size_t>(pick)];
+      const CheckedPick& p = plan.picks[pick];
+      const int part = context.pick_part[pick];
       const bool resolved = part >= 0 && p.stop >= 0 && p.stop < static_cast<int>(plan.stops.size()) && p.grasp >= 0 &&
-                            p.grasp < static_cast<int>(plan.parts[static_cast<std::size_t>(part)].grasps.size());
+                            p.grasp < static_cast<int>(plan.parts[part].grasps.size());
       if (!resolved) continue;  // said at the pick
       if (!seen.insert(pick).second) wrong = "pick " + std::to_string(pick) + " is done in passing twice";
       if (pick > 0 && plan.picks[static_cast<std::size_t>(pick) - 1].stop == p.stop)
@@ -214,9 +214,7 @@ void check_drive_by(const Context& context, Faults& faults, std::size_t& configu
   std::vector<Faults> found(known.size());
   parallel_for(
       known.size(), context.options.threads,
-      [&](std::size_t i, int worker) {
-        DriveByCheck(context, known[i], judges[static_cast<std::size_t>(worker)], found[i]).run();
-      },
+      [&](std::size_t i, int worker) { DriveByCheck(context, known[i], judges[worker], found[i]).run(); },
       context.monitor, "drive-by");
   for (const Faults& some : found) faults.insert(faults.end(), some.begin(), some.end());
   for (const Judge& judge : judges) configurations += judge.queries();

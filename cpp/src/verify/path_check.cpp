@@ -23,7 +23,7 @@ ArmSetup setup_of(const PathToCheck& path) {
   for (const std::string& name : path.joints) setup.arm.push_back(known_joint(path.robot, name));
   require(!setup.arm.empty(), "joints", "[]", "must name at least one joint");
   for (const auto& [name, value] : path.other_joints) setup.others[known_joint(path.robot, name)] = value;
-  setup.tip_link = path.robot.joints()[static_cast<std::size_t>(setup.arm.back())].child_link;
+  setup.tip_link = path.robot.joints()[setup.arm.back()].child_link;
   return setup;
 }
 
@@ -56,9 +56,9 @@ class PathWalk {
     const Kinematics& kinematics = judge_.kinematics();
     const std::string place = "edge " + std::to_string(edge) + " at " + text(at) + ": ";
     for (Eigen::Index i = 0; i < q.size(); ++i) {
-      if (kinematics.continuous()[static_cast<std::size_t>(i)]) continue;
+      if (kinematics.continuous()[i]) continue;
       if (q[i] >= kinematics.lower()[i] - kLimitSlack && q[i] <= kinematics.upper()[i] + kLimitSlack) continue;
-      result_.where = place + "joint '" + path_.joints[static_cast<std::size_t>(i)] + "' beyond its limits";
+      result_.where = place + "joint '" + path_.joints[i] + "' beyond its limits";
       return false;
     }
     const Touch touch = judge_.touch(q, 0);

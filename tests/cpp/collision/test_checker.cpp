@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "support/fcl_reference.hpp"
-#include "support/free_body.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "support/fcl_reference.hpp"
+#include "support/free_body.hpp"
 
 using namespace mmgrasp;
 

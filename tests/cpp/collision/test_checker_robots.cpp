@@ -5,10 +5,10 @@
 #include <cmath>
 #include <thread>
 
-#include "support/fcl_reference.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/collision/disabled_pairs.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "support/fcl_reference.hpp"
 #include "support/robot_support.hpp"
 
 using namespace mmgrasp;

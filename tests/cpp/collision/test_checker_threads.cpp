@@ -154,7 +154,7 @@ void expect_all_answer_like_one(const JointGroup& group, const World& world, Rng
       const std::size_t strides[kThreads] = {1, 7, 11, 13, 17, 19, 23, 29};
       for (std::size_t i = 0; i < samples.size(); ++i) {
         const std::size_t k = (i * strides[t] + 17 * static_cast<std::size_t>(t)) % samples.size();
-        answers[static_cast<std::size_t>(t)][k] = ask(own, samples[k], ends[k]);
+        answers[t][k] = ask(own, samples[k], ends[k]);
       }
     });
   }
@@ -166,8 +166,7 @@ void expect_all_answer_like_one(const JointGroup& group, const World& world, Rng
     const Answer expected = ask(one, samples[i], ends[i]);
     colliding += !expected.contacts.empty();
     edges += expected.edge;
-    for (int t = 0; t < kThreads; ++t)
-      ASSERT_TRUE(answers[static_cast<std::size_t>(t)][i] == expected) << "thread " << t << ", sample " << i;
+    for (int t = 0; t < kThreads; ++t) ASSERT_TRUE(answers[t][i] == expected) << "thread " << t << ", sample " << i;
   }
   EXPECT_GT(colliding, 10);
   EXPECT_LT(colliding, 110);

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "support/fcl_reference.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "support/fcl_reference.hpp"
 #include "support/robot_support.hpp"
 
 using namespace mmgrasp;

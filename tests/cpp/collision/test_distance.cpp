@@ -5,11 +5,11 @@
 
 #include <cmath>
 
-#include "support/fcl_reference.hpp"
-#include "support/free_body.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "support/fcl_reference.hpp"
+#include "support/free_body.hpp"
 
 using namespace mmgrasp;
 

@@ -1,4 +1,4 @@
-#include "collision/broad/distance_field.hpp"
+#include "collision/narrow/distance_field.hpp"
 
 #include <gtest/gtest.h>
 

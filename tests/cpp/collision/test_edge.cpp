@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "support/free_body.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "support/free_body.hpp"
 #include "support/robot_support.hpp"
 
 using namespace mmgrasp;
@@ -169,8 +169,8 @@ TEST(Edge, BatchesAnswerAlikeOnAnyNumberOfThreads) {
   EXPECT_EQ(are_free(checker, Q, 8), one);
   int free = 0;
   for (Eigen::Index i = 0; i < Q.cols(); ++i) {
-    ASSERT_EQ(one[static_cast<std::size_t>(i)] != 0, checker.is_free(Q.col(i)));
-    free += one[static_cast<std::size_t>(i)];
+    ASSERT_EQ(one[i] != 0, checker.is_free(Q.col(i)));
+    free += one[i];
   }
   EXPECT_GT(free, 100);
   EXPECT_LT(free, 1400);

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "support/free_body.hpp"
 #include "mmgrasp/collision/edge.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "support/free_body.hpp"
 #include "support/mesh_robots.hpp"
 
 using namespace mmgrasp;

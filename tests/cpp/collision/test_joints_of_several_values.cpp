@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "support/fcl_reference.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/collision/edge.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "support/fcl_reference.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -1,4 +1,4 @@
-#include "collision/broad/kernels.hpp"
+#include "collision/kernels/kernels.hpp"
 
 #include <gtest/gtest.h>
 
@@ -120,7 +120,7 @@ TEST_P(CollisionKernels, FramesEqualProductsOfTransforms) {
       for (int c = 0; c < 4; ++c)
         for (int r = 0; r < 3; ++r) EXPECT_NEAR(frames[16 * f + 4 * c + r], expected[f].matrix()(r, c), 1e-13) << f;
 
-    const FrameBall ball{{0.1, -0.2, 0.3}, 0.07, 5};
+    const FrameSphere ball{{0.1, -0.2, 0.3}, 0.07, 5};
     float placed[4];
     kernels().place_balls(&ball, 1, frames, placed, 1);
     const Vector3d centre = expected[5] * Vector3d(0.1, -0.2, 0.3);

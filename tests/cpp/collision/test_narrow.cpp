@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "collision/broad/distance_field.hpp"
+#include "collision/narrow/distance_field.hpp"
 #include "mmgrasp/core/random.hpp"
 
 // Whether two bodies are farther apart than a given gap, against their distance.

@@ -104,9 +104,9 @@ double by_branching(const SetCoverProblem& problem) {
     for (std::size_t s = 0; s < problem.sets.size(); ++s) {
       const auto& set = problem.sets[s];
       if (std::find(set.begin(), set.end(), element) == set.end()) continue;
-      for (int e : set) ++times[static_cast<std::size_t>(e)];
+      for (int e : set) ++times[e];
       descend(cost + cost_of(problem, static_cast<int>(s)));
-      for (int e : set) --times[static_cast<std::size_t>(e)];
+      for (int e : set) --times[e];
     }
   };
   descend(0);

@@ -38,7 +38,7 @@ double duration(const Case& c, int robot, const std::vector<int>& order) {
   double sum = 0;
   int at = n + robot;
   for (int stop : order) {
-    sum += c.drive(at, stop) + c.stop[static_cast<std::size_t>(stop)];
+    sum += c.drive(at, stop) + c.stop[stop];
     at = stop;
   }
   return sum + c.drive(at, n + c.robots + robot);
@@ -73,9 +73,9 @@ void expect_shared(const Case& c, const SharedTours& shared) {
   ASSERT_EQ(shared.orders.size(), static_cast<std::size_t>(c.robots));
   double longest = 0;
   for (int robot = 0; robot < c.robots; ++robot) {
-    const auto& order = shared.orders[static_cast<std::size_t>(robot)];
-    for (int stop : order) ++served[static_cast<std::size_t>(stop)];
-    EXPECT_NEAR(shared.durations[static_cast<std::size_t>(robot)], duration(c, robot, order), 1e-9);
+    const auto& order = shared.orders[robot];
+    for (int stop : order) ++served[stop];
+    EXPECT_NEAR(shared.durations[robot], duration(c, robot, order), 1e-9);
     longest = std::max(longest, duration(c, robot, order));
   }
   EXPECT_NEAR(shared.makespan, longest, 1e-9);

@@ -169,7 +169,7 @@ TEST(Tour, HundredsOfStopsComeWithASmallGap) {
     const TourResult result = shortest_visiting_tour(lengths);
     std::vector<int> sorted = result.order;
     std::sort(sorted.begin(), sorted.end());
-    for (int i = 0; i < n; ++i) EXPECT_EQ(sorted[static_cast<std::size_t>(i)], i);
+    for (int i = 0; i < n; ++i) EXPECT_EQ(sorted[i], i);
     EXPECT_NEAR(length_of(lengths, result.order), result.length, 1e-9);
     EXPECT_GT(result.lower_bound, 0.95 * result.length) << n;
     EXPECT_LE(result.lower_bound, result.length);
@@ -188,7 +188,7 @@ TEST(Tour, OneWayStreets) {
   const TourResult result = shortest_visiting_tour(lengths);
   EXPECT_TRUE(result.proven);
   EXPECT_NEAR(result.length, n + 1, 1e-9);
-  for (int k = 0; k < n; ++k) EXPECT_EQ(result.order[static_cast<std::size_t>(k)], place(k));
+  for (int k = 0; k < n; ++k) EXPECT_EQ(result.order[k], place(k));
 }
 
 TEST(Tour, NoStops) {

@@ -30,15 +30,14 @@ void expect_lines(const JointGroup& group, const CartesianResult& result, const 
   EXPECT_EQ(result.fraction, 1);
   for (std::size_t line = 0; line + 1 < poses.size(); ++line) {
     for (int i = result.corners[line]; i < result.corners[line + 1]; ++i) {
-      const VectorXd &a = result.path->waypoints[static_cast<std::size_t>(i)],
-                     &b = result.path->waypoints[static_cast<std::size_t>(i) + 1];
+      const VectorXd &a = result.path->waypoints[i], &b = result.path->waypoints[static_cast<std::size_t>(i) + 1];
       EXPECT_LE((b - a).cwiseAbs().maxCoeff(), max_joint_step);
       for (int k = 0; k <= 5; ++k) {
         const Pose tool = group.fk(a + k / 5.0 * (b - a));
         EXPECT_LE(off_segment(tool.translation(), poses[line].translation(), poses[line + 1].translation()), 1e-4);
       }
     }
-    const Pose corner = group.fk(result.path->waypoints[static_cast<std::size_t>(result.corners[line + 1])]);
+    const Pose corner = group.fk(result.path->waypoints[result.corners[line + 1]]);
     EXPECT_LT((corner.translation() - poses[line + 1].translation()).norm(), 1e-5);
     EXPECT_LT(rotation_distance(corner, poses[line + 1]), 1e-4);
   }

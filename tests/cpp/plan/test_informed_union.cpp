@@ -11,8 +11,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-CarryCandidate candidate(std::vector<VectorXd> starts, std::vector<VectorXd> goals, double cost = 0) {
-  CarryCandidate out;
+GraspCandidate candidate(std::vector<VectorXd> starts, std::vector<VectorXd> goals, double cost = 0) {
+  GraspCandidate out;
   out.starts = std::move(starts);
   out.goals = std::move(goals);
   out.cost = cost;
@@ -51,7 +51,7 @@ struct Cells {
       for (int j = 0; j < kSide * kFine; ++j) {
         const Vector2d q(lower[0] + (upper[0] - lower[0]) * (i + 0.5) / (kSide * kFine),
                          lower[1] + (upper[1] - lower[1]) * (j + 0.5) / (kSide * kFine));
-        if (inside(q)) out[static_cast<std::size_t>(cell(q.data()))] += 1;
+        if (inside(q)) out[cell(q.data())] += 1;
       }
     return out;
   }
@@ -113,7 +113,7 @@ TEST_P(UnionOf, EllipsesIsDrawnUniformly) {
     ASSERT_GE(grasp, 0);
     ASSERT_TRUE((q.array() >= cells.lower.array()).all() && (q.array() <= cells.upper.array()).all());
     ASSERT_TRUE(drawn.contains(grasp, q.data()));
-    ++counts[static_cast<std::size_t>(cells.cell(q.data()))];
+    ++counts[cells.cell(q.data())];
   }
   const auto shares = cells.shares([&](const Vector2d& q) {
     for (int g = 0; g < 6; ++g)

@@ -10,9 +10,9 @@
 #include <queue>
 
 #include "mmgrasp/core/error.hpp"
-#include "support/bar_carry.hpp"
-#include "support/planar_arm.hpp"
 #include "plan/roadmap/roadmap_data.hpp"
+#include "support/bar_transfer.hpp"
+#include "support/planar_arm.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -31,7 +31,7 @@ ManipulationOptions bar_options() {
 /// in hand.
 double exhaustive_cost(const ManipulationProblem& problem, const ManipulationOptions& options, const Roadmap& roadmap,
                        int index) {
-  const CandidateGrasp& grasp = problem.grasps[static_cast<std::size_t>(index)];
+  const CandidateGrasp& grasp = problem.grasps[index];
   CollisionChecker checker(problem.group, test::carrying(problem, grasp));
   IkOptions ik = options.ik;
   ik.seed = options.ik.seed + static_cast<unsigned>(index);
@@ -113,7 +113,7 @@ TEST(Roadmap, SixJointsAskForMoreThanTheGammaOfThePaper) {
   RoadmapOptions options;
   options.vertices = 5000;
   options.gamma = 4;
-  const RoadmapFigures figures = Roadmap::build(arm.group(), options).figures();
+  const RoadmapStatistics figures = Roadmap::build(arm.group(), options).figures();
   // The unit ball in six dimensions holds pi^3 / 6.
   EXPECT_NEAR(figures.gamma_star, 2 * std::pow(7.0 / 6, 1.0 / 6) * 2 * M_PI / std::pow(M_PI * M_PI * M_PI / 6, 1.0 / 6),
               1e-4);  // limits are written with six digits
@@ -185,7 +185,7 @@ TEST(Roadmap, FileHoldsAllOfItAndNothingElseIsTaken) {
 }
 
 TEST(PrmStarMg, EveryVariantFindsTheExhaustiveOptimum) {
-  const ManipulationProblem problem = test::bar_carry();
+  const ManipulationProblem problem = test::bar_transfer();
   ManipulationOptions options = bar_options();
   const Roadmap roadmap = Roadmap::build(problem.group, options.prm.roadmap);
   double best = std::numeric_limits<double>::infinity();
@@ -217,7 +217,7 @@ TEST(PrmStarMg, EveryVariantFindsTheExhaustiveOptimum) {
 }
 
 TEST(PrmStarMg, WithoutStraightEdgesTheRoadmapIsAllThereIs) {
-  const ManipulationProblem problem = test::bar_carry();
+  const ManipulationProblem problem = test::bar_transfer();
   ManipulationOptions options = bar_options();
   options.straight = false;
   const Roadmap roadmap = Roadmap::build(problem.group, options.prm.roadmap);
@@ -234,7 +234,7 @@ TEST(PrmStarMg, WithoutStraightEdgesTheRoadmapIsAllThereIs) {
 }
 
 TEST(PrmStarMg, DensifyingEndsWithTheBestOfAllRoadmaps) {
-  const ManipulationProblem problem = test::bar_carry();
+  const ManipulationProblem problem = test::bar_transfer();
   ManipulationOptions options = bar_options();
   options.straight = false;
   double best = std::numeric_limits<double>::infinity();
@@ -263,13 +263,13 @@ TEST(PrmStarMg, DensifyingHeedsTheClock) {
   ManipulationOptions options = bar_options();
   options.prm.max_vertices = 10'000'000;  // Would take minutes.
   options.time_limit = 0.5;
-  const ManipulationResult result = plan_manipulation(test::bar_carry(), options);
+  const ManipulationResult result = plan_manipulation(test::bar_transfer(), options);
   EXPECT_EQ(result.outcome, Outcome::solved);
   EXPECT_LE(result.lower_bound, result.cost);
 }
 
 TEST(PrmStarMg, PathCarriesTheObjectAndIsFree) {
-  const ManipulationProblem problem = test::bar_carry();
+  const ManipulationProblem problem = test::bar_transfer();
   ManipulationOptions options = bar_options();
   options.straight = false;
   const ManipulationResult over_roadmap = plan_manipulation(problem, options);
@@ -281,7 +281,7 @@ TEST(PrmStarMg, PathCarriesTheObjectAndIsFree) {
   EXPECT_NEAR(result.cost, result.path->length(), 1e-9);
   EXPECT_EQ(result.stats.roadmap_cost, over_roadmap.cost);
   EXPECT_EQ(result.improvements.size(), over_roadmap.improvements.size() + 1);
-  const CandidateGrasp& grasp = problem.grasps[static_cast<std::size_t>(result.grasp_index)];
+  const CandidateGrasp& grasp = problem.grasps[result.grasp_index];
   CollisionChecker checker(problem.group, test::carrying(problem, grasp));
   const auto& waypoints = result.path->waypoints;
   for (std::size_t i = 0; i + 1 < waypoints.size(); ++i)
@@ -292,11 +292,11 @@ TEST(PrmStarMg, PathCarriesTheObjectAndIsFree) {
 }
 
 TEST(PrmStarMg, CostsOfGraspsCount) {
-  ManipulationProblem problem = test::bar_carry();
+  ManipulationProblem problem = test::bar_transfer();
   const ManipulationOptions options = bar_options();
   const ManipulationResult cheap = plan_manipulation(problem, options);
   ASSERT_EQ(cheap.outcome, Outcome::solved);
-  problem.grasps[static_cast<std::size_t>(cheap.grasp_index)].cost = 100;
+  problem.grasps[cheap.grasp_index].cost = 100;
   const ManipulationResult other = plan_manipulation(problem, options);
   ASSERT_EQ(other.outcome, Outcome::solved);
   EXPECT_NE(other.grasp_index, cheap.grasp_index);
@@ -305,14 +305,14 @@ TEST(PrmStarMg, CostsOfGraspsCount) {
 }
 
 TEST(PrmStarMg, SaysWhyThereIsNoPlan) {
-  ManipulationProblem problem = test::bar_carry();
+  ManipulationProblem problem = test::bar_transfer();
   ManipulationOptions options = bar_options();
   options.ik.restarts = 5;
   problem.T_world_start = test::flat_pose(5, 0, 0);
   ManipulationResult result = plan_manipulation(problem, options);
   EXPECT_EQ(result.outcome, Outcome::invalid_start);
   EXPECT_EQ(result.rejections.reach, 20u);
-  problem = test::bar_carry();
+  problem = test::bar_transfer();
   problem.T_world_goal = test::flat_pose(0.85, 0, 0);  // within the post
   result = plan_manipulation(problem, options);
   EXPECT_EQ(result.outcome, Outcome::invalid_goal);
@@ -320,7 +320,7 @@ TEST(PrmStarMg, SaysWhyThereIsNoPlan) {
   ASSERT_EQ(result.grasps.size(), 20u);
   for (const GraspReport& report : result.grasps) EXPECT_EQ(report.goal_solutions, 0);
   // Walls all around the start: reachable, but no way out.
-  problem = test::bar_carry();
+  problem = test::bar_transfer();
   options.prm.roadmap.vertices = 20;
   options.prm.roadmap.gamma = 0.01;
   problem.world.add("wall", Shape(Box{{1.6, 0.02, 0.2}}), test::flat_pose(1.0, 0.05, 0));
@@ -330,7 +330,7 @@ TEST(PrmStarMg, SaysWhyThereIsNoPlan) {
 }
 
 TEST(PrmStarMg, RefusesNonsense) {
-  const ManipulationProblem good = test::bar_carry();
+  const ManipulationProblem good = test::bar_transfer();
   const auto refused = [](const ManipulationProblem& problem, const char* what) {
     try {
       plan_manipulation(problem, bar_options());
@@ -365,7 +365,7 @@ TEST(PrmStarMg, RefusesNonsense) {
 TEST(PrmStarMg, StopsWhenTold) {
   Monitor monitor;
   monitor.stop.stop();
-  EXPECT_EQ(plan_manipulation(test::bar_carry(), bar_options(), nullptr, monitor).outcome, Outcome::stopped);
+  EXPECT_EQ(plan_manipulation(test::bar_transfer(), bar_options(), nullptr, monitor).outcome, Outcome::stopped);
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "mmgrasp/core/parallel.hpp"
-#include "support/planar_arm.hpp"
 #include "plan/roadmap/roadmap_data.hpp"
+#include "support/planar_arm.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "support/bar_carry.hpp"
+#include "support/bar_transfer.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -32,7 +32,7 @@ class SharedBounds : public ::testing::Test {
     RoadmapOptions options;
     options.vertices = 300;
     options.gamma = 5;
-    return Roadmap::build(test::bar_carry().group, options);
+    return Roadmap::build(test::bar_transfer().group, options);
   }
 
   /// One grasp alone, with the arm configurations that it has among the others.
@@ -44,7 +44,7 @@ class SharedBounds : public ::testing::Test {
     return plan_manipulation(problem, options, &roadmap_);
   }
 
-  ManipulationProblem problem_ = test::bar_carry();
+  ManipulationProblem problem_ = test::bar_transfer();
   const Roadmap roadmap_ = roadmap();
 };
 

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "mmgrasp/core/error.hpp"
-#include "support/bar_carry.hpp"
+#include "support/bar_transfer.hpp"
 
 namespace mmgrasp {
 namespace {
 
-using test::bar_carry;
+using test::bar_transfer;
 using test::flat_pose;
 
 ManipulationOptions tree_options(int samples = 1000) {
@@ -28,7 +28,7 @@ ManipulationOptions tree_options(int samples = 1000) {
 
 void expect_sound(const ManipulationProblem& problem, const ManipulationResult& result) {
   ASSERT_EQ(result.outcome, Outcome::solved);
-  const CandidateGrasp& grasp = problem.grasps[static_cast<std::size_t>(result.grasp_index)];
+  const CandidateGrasp& grasp = problem.grasps[result.grasp_index];
   CollisionChecker checker(problem.group, test::carrying(problem, grasp));
   const auto& waypoints = result.path->waypoints;
   for (std::size_t i = 0; i + 1 < waypoints.size(); ++i)
@@ -41,7 +41,7 @@ void expect_sound(const ManipulationProblem& problem, const ManipulationResult& 
 }
 
 TEST(RrtStarMg, CarriesTheObjectOnFreePaths) {
-  const ManipulationProblem problem = bar_carry();
+  const ManipulationProblem problem = bar_transfer();
   for (unsigned seed = 1; seed <= 10; ++seed) {
     ManipulationOptions options = tree_options(500);
     options.seed = seed;
@@ -60,7 +60,7 @@ TEST(RrtStarMg, CarriesTheObjectOnFreePaths) {
 }
 
 TEST(RrtStarMg, EverySwitchLeavesPathsSound) {
-  const ManipulationProblem problem = bar_carry();
+  const ManipulationProblem problem = bar_transfer();
   for (const bool bidirectional : {true, false})
     for (const bool informed : {true, false})
       for (const double exploration : {0.0, 0.5, 1.0}) {
@@ -90,7 +90,7 @@ double nearest_root(const std::vector<SearchTree>& trees, int grasp, bool from_g
 }
 
 Growth growth_with(const std::function<void(RrtStarMgOptions&)>& change) {
-  const ManipulationProblem problem = bar_carry();
+  const ManipulationProblem problem = bar_transfer();
   Growth out;
   for (unsigned seed = 1; seed <= 3; ++seed) {
     ManipulationOptions options = tree_options(1500);
@@ -134,11 +134,11 @@ TEST(RrtStarMg, InformedTreesGrowWhereABetterPathCanPass) {
 /// Each grasp stands in the list once more, only dearer. By (5.1) alone the dearer trees look worse wherever the others
 /// have grown; exploring hands them the samples of their own ellipsoids.
 TEST(RrtStarMg, ExplorationGrowsTreesThatLookDearer) {
-  ManipulationProblem problem = bar_carry();
+  ManipulationProblem problem = bar_transfer();
   problem.world.add("wall", Shape(Box{{0.04, 0.3, 0.2}}), flat_pose(0.62, 0.02, 0.3));
   const int count = static_cast<int>(problem.grasps.size());
   for (int g = 0; g < count; ++g) {
-    problem.grasps.push_back(problem.grasps[static_cast<std::size_t>(g)]);
+    problem.grasps.push_back(problem.grasps[g]);
     problem.grasps.back().cost += 0.2;
   }
   const auto share_of_dearer = [&](double exploration) {
@@ -163,7 +163,7 @@ TEST(RrtStarMg, ExplorationGrowsTreesThatLookDearer) {
 
 /// P2 Algorithm 5.13, line 13.
 TEST(RrtStarMg, ExplorationBeginsWithAPath) {
-  ManipulationProblem problem = bar_carry();
+  ManipulationProblem problem = bar_transfer();
   problem.world.add("wall", Shape(Box{{1.3, 0.02, 0.2}}), flat_pose(0.75, 0, 0));
   std::vector<ManipulationStats> stats;
   for (const double exploration : {0.0, 1.0}) {
@@ -184,7 +184,7 @@ TEST(RrtStarMg, SamplesThatServeNoTreeDoNotEndTheSearch) {
   ManipulationOptions options = tree_options(3000);
   options.rrt.exploration = 0;
   options.rrt.informed = false;  // Most of the box is of no use once there is a path.
-  const ManipulationResult result = plan_manipulation(bar_carry(), options);
+  const ManipulationResult result = plan_manipulation(bar_transfer(), options);
   ASSERT_EQ(result.outcome, Outcome::solved);
   EXPECT_EQ(result.stats.samples, 3000u);
   // One that serves a tree adds a vertex or more: a third of them did not.
@@ -199,8 +199,8 @@ TEST(RrtStarMg, ExploringAloneJoinsTheTreesOfOtherGrasps) {
     ManipulationOptions options = tree_options(1500);
     options.seed = seed;
     options.rrt.exploration = 1;
-    const ManipulationResult result = plan_manipulation(bar_carry(), options);
-    expect_sound(bar_carry(), result);
+    const ManipulationResult result = plan_manipulation(bar_transfer(), options);
+    expect_sound(bar_transfer(), result);
     costs.push_back(result.cost);
   }
   const auto [least, most] = std::minmax_element(costs.begin(), costs.end());
@@ -209,7 +209,7 @@ TEST(RrtStarMg, ExploringAloneJoinsTheTreesOfOtherGrasps) {
 
 /// What is handed over must be trees: whole, of free edges, rooted in the grasp's own arm configurations.
 TEST(RrtStarMg, TreesAreWholeAndFree) {
-  const ManipulationProblem problem = bar_carry();
+  const ManipulationProblem problem = bar_transfer();
   for (const int samples : {60, 1500}) {
     ManipulationOptions options = tree_options(samples);
     options.rrt.keep_trees = true;
@@ -217,7 +217,7 @@ TEST(RrtStarMg, TreesAreWholeAndFree) {
     ASSERT_FALSE(result.trees.empty());
     std::size_t edges = 0;
     for (const SearchTree& tree : result.trees) {
-      const CandidateGrasp& grasp = problem.grasps[static_cast<std::size_t>(tree.grasp)];
+      const CandidateGrasp& grasp = problem.grasps[tree.grasp];
       CollisionChecker checker(problem.group, test::carrying(problem, grasp));
       const Pose T_world_tip = (tree.from_goal ? problem.T_world_goal : problem.T_world_start) * grasp.T_object_tool;
       ASSERT_EQ(tree.vertices.cols(), static_cast<Eigen::Index>(tree.parents.size()));
@@ -238,8 +238,7 @@ TEST(RrtStarMg, TreesAreWholeAndFree) {
         // At the steps the trees' edges are looked at.
         EXPECT_TRUE(checker.edge_is_free(p, q, 0.16));
         std::size_t steps = 0;
-        for (int v = static_cast<int>(i); v >= 0; v = tree.parents[static_cast<std::size_t>(v)])
-          ASSERT_LE(++steps, tree.parents.size());
+        for (int v = static_cast<int>(i); v >= 0; v = tree.parents[v]) ASSERT_LE(++steps, tree.parents.size());
       }
       EXPECT_GE(roots, 1);
       EXPECT_LE(roots, options.ik_solutions);
@@ -249,7 +248,7 @@ TEST(RrtStarMg, TreesAreWholeAndFree) {
 }
 
 TEST(RrtStarMg, SamplesAloneDecideAtAnyNumberOfThreads) {
-  const ManipulationProblem problem = bar_carry();
+  const ManipulationProblem problem = bar_transfer();
   for (unsigned seed = 1; seed <= 3; ++seed) {
     std::vector<ManipulationResult> results;
     for (const int threads : {1, 2, 5}) {
@@ -270,10 +269,10 @@ TEST(RrtStarMg, SamplesAloneDecideAtAnyNumberOfThreads) {
 }
 
 TEST(RrtStarMg, CostsOfGraspsCount) {
-  ManipulationProblem problem = bar_carry();
+  ManipulationProblem problem = bar_transfer();
   const ManipulationResult cheap = plan_manipulation(problem, tree_options());
   expect_sound(problem, cheap);
-  problem.grasps[static_cast<std::size_t>(cheap.grasp_index)].cost = 100;
+  problem.grasps[cheap.grasp_index].cost = 100;
   const ManipulationResult other = plan_manipulation(problem, tree_options());
   expect_sound(problem, other);
   EXPECT_NE(other.grasp_index, cheap.grasp_index);
@@ -281,7 +280,7 @@ TEST(RrtStarMg, CostsOfGraspsCount) {
 }
 
 TEST(RrtStarMg, OneReachableGraspOfManyIsFound) {
-  const ManipulationProblem all = bar_carry();
+  const ManipulationProblem all = bar_transfer();
   const ManipulationResult any = plan_manipulation(all, tree_options());
   ASSERT_EQ(any.outcome, Outcome::solved);
   ManipulationProblem problem = all;
@@ -289,7 +288,7 @@ TEST(RrtStarMg, OneReachableGraspOfManyIsFound) {
   problem.grasps.assign(500, {flat_pose(2.5, 0, 0), 0, 0});
   for (std::size_t i = 0; i < 500; ++i)
     problem.grasps[i].T_object_tool.translation().x() += 0.001 * static_cast<double>(i);
-  problem.grasps[317] = all.grasps[static_cast<std::size_t>(any.grasp_index)];
+  problem.grasps[317] = all.grasps[any.grasp_index];
   for (unsigned seed = 1; seed <= 20; ++seed) {
     ManipulationOptions options = tree_options();
     options.seed = seed;
@@ -307,7 +306,7 @@ TEST(RrtStarMg, RefusesNonsense) {
     ManipulationOptions options = tree_options();
     change(options.rrt);
     try {
-      plan_manipulation(bar_carry(), options);
+      plan_manipulation(bar_transfer(), options);
       ADD_FAILURE() << field;
     } catch (const InvalidInput& error) {
       EXPECT_NE(std::string(error.what()).find(field), std::string::npos) << error.what();

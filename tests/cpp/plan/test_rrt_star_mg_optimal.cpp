@@ -9,7 +9,7 @@
 
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/robot/ik.hpp"
-#include "support/bar_carry.hpp"
+#include "support/bar_transfer.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -146,7 +146,7 @@ ManipulationOptions options_of(int samples, unsigned seed = 1) {
 
 TEST(RrtStarMgOptimal, ConvergesToTheBestOfAllGrasps) {
   // The narrower the way, the longer the detours; and one where the cheapest-looking grasp is not the best.
-  ManipulationProblem problem = test::bar_carry();
+  ManipulationProblem problem = test::bar_transfer();
   for (const bool wall : {false, true}) {
     if (wall) problem.world.add("wall", Shape(Box{{0.04, 0.3, 0.2}}), test::flat_pose(0.62, 0.02, 0.3));
     const std::vector<double> lengths = exhaustive(problem, 9);
@@ -198,7 +198,7 @@ TEST(RrtStarMgOptimal, ConvergesToTheBestOfAllGrasps) {
 }
 
 TEST(RrtStarMgOptimal, SingleGraspsComeNearTheirOwnOptima) {
-  const ManipulationProblem all = test::bar_carry();
+  const ManipulationProblem all = test::bar_transfer();
   const std::vector<double> lengths = exhaustive(all, 9);
   int compared = 0;
   for (std::size_t g = 0; g < all.grasps.size(); g += 3) {

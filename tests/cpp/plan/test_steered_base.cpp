@@ -7,7 +7,7 @@
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/plan/cartesian.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
-#include "support/bar_carry.hpp"
+#include "support/bar_transfer.hpp"
 #include "support/vec.hpp"
 
 namespace mmgrasp {

@@ -241,8 +241,7 @@ TEST(CapabilityMap, AWallHidesWhatIsBehindIt) {
   std::int64_t hidden = 0, before = 0;
   for (std::int64_t voxel = 0; voxel < free.voxel_count(); ++voxel) {
     const double x = free.centre(voxel).x();
-    const float was = free.index()[static_cast<std::size_t>(voxel)],
-                is = walled.index()[static_cast<std::size_t>(voxel)];
+    const float was = free.index()[voxel], is = walled.index()[voxel];
     if (x > 0.6) {  // the wall is 4 m wide and high: no way around it
       EXPECT_EQ(is, 0);
       hidden += was > 0;
@@ -326,8 +325,7 @@ TEST(CapabilityMap, VoxelsAndIndicesAnswerForPoints) {
   EXPECT_EQ(map.voxel_at({-1, -1, 0}), 0) << "lower faces belong to a voxel";
   EXPECT_EQ(map.voxel_at({1, 0, 0.1}), -1);
   EXPECT_EQ(map.voxel(1, 2, 3), 1 * 80 + 2 * 8 + 3);
-  EXPECT_EQ(map.index_at({0.5, 0.1, 0.9}),
-            static_cast<double>(map.index()[static_cast<std::size_t>(map.voxel_at({0.5, 0.1, 0.9}))]));
+  EXPECT_EQ(map.index_at({0.5, 0.1, 0.9}), static_cast<double>(map.index()[map.voxel_at({0.5, 0.1, 0.9})]));
   EXPECT_EQ(map.index_at({9, 0, 0}), 0);
   EXPECT_EQ(map.maximum(), map.index_at(map.centre(map.best_voxel())));
   EXPECT_THROW(map.voxel(10, 0, 0), InvalidInput);

@@ -318,7 +318,7 @@ TEST_F(ReachFile, ManyThreadsMayUseAFreshDatabase) {
       for (std::int64_t i = 0; i < built.size(); i += 499) {
         const Pose T = built.tool_pose(i);
         const int found = loaded.nearest(T, 5, a);
-        wrong[static_cast<std::size_t>(t)] += found != built.nearest(T, 5, b) || a != b;
+        wrong[t] += found != built.nearest(T, 5, b) || a != b;
       }
     });
   }

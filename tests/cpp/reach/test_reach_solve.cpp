@@ -75,9 +75,7 @@ TEST(ReachSolve, StoredConfigurationsLieWithinLimitsInTheirVoxelAndAreFree) {
       for (std::uint32_t i = arrays.cell_first[cell]; i < arrays.cell_first[cell + 1]; ++i) {
         Eigen::VectorXd q(7);
         for (int k = 0; k < 7; ++k)
-          q[k] =
-              arrays.joint_lower[static_cast<std::size_t>(k)] +
-              arrays.joint_step[static_cast<std::size_t>(k)] * arrays.configurations[7 * i + static_cast<unsigned>(k)];
+          q[k] = arrays.joint_lower[k] + arrays.joint_step[k] * arrays.configurations[7 * i + static_cast<unsigned>(k)];
         EXPECT_EQ(q, database.configuration(i));
         EXPECT_TRUE(arm.within_limits(q, 0));
         const Pose T = kdl_fk(q);

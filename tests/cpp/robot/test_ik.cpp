@@ -17,7 +17,7 @@ namespace {
 /// Distance of a solution from the target by the robot's plain kinematics, not the group's fast path.
 Vector6d plain_error(const JointGroup& group, const Eigen::VectorXd& q, const Pose& target) {
   const Poses poses = group.robot().link_poses(group.full_values(q), group.root_pose(q));
-  return pose_difference(poses[static_cast<std::size_t>(group.tip_link())], target);
+  return pose_difference(poses[group.tip_link()], target);
 }
 
 int count_solved(const JointGroup& group, int poses) {
@@ -283,7 +283,7 @@ TEST(Ik, MoveItsCasesOfPanda) {
   // zero configuration (singular, joint 4 outside its limits here), the pose 0.1 m below the one there.
   MMGRASP_NEEDS_SHARED_DATA();
   const JointGroup group = panda().group("panda_arm");
-  ASSERT_EQ(group.robot().links()[static_cast<std::size_t>(group.tip_link())].name, "panda_link8");
+  ASSERT_EQ(group.robot().links()[group.tip_link()].name, "panda_link8");
   Eigen::VectorXd seed(7);
   seed << -0.5, -0.5, 0.3, -2, 0.8, 1.8, 1.9;
   IkOptions options;

@@ -342,7 +342,7 @@ TEST(IkObjective, WeightsDecideWhichBranchIsNearest) {
       for (int j = 0; j < 6; ++j) {
         const bool once = group.upper()[j] < 4;  // the elbow cannot take whole turns
         const double way = once ? q[j] - seed[j] : std::remainder(q[j] - seed[j], 2 * M_PI);
-        sum += options.joint_weights[static_cast<std::size_t>(j)] * way * way;
+        sum += options.joint_weights[j] * way * way;
       }
       return sum;
     };

@@ -43,9 +43,8 @@ TEST(JointGroup, MatchesPinocchioReference) {
     for (const Json& test : entry["cases"].array) {
       Eigen::VectorXd q(group.size());
       for (int i = 0; i < group.size(); ++i) {
-        EXPECT_EQ(group.names()[static_cast<std::size_t>(i)],
-                  entry["joints"].array[static_cast<std::size_t>(i)].string);
-        q[i] = test["q"][group.names()[static_cast<std::size_t>(i)]].number;
+        EXPECT_EQ(group.names()[i], entry["joints"].array[i].string);
+        q[i] = test["q"][group.names()[i]].number;
       }
       Pose T;
       Matrix6Xd J(6, group.size());
@@ -54,10 +53,7 @@ TEST(JointGroup, MatchesPinocchioReference) {
       const Pose expected = pose_from_xyz_quat({0, 0, 0}, test["quat"].vector());
       EXPECT_LT(rotation_distance(expected, T), 1e-8) << name;
       for (int row = 0; row < 6; ++row)
-        EXPECT_LT(
-            (J.row(row).transpose() - test["J"].array[static_cast<std::size_t>(row)].vector()).cwiseAbs().maxCoeff(),
-            1e-8)
-            << name;
+        EXPECT_LT((J.row(row).transpose() - test["J"].array[row].vector()).cwiseAbs().maxCoeff(), 1e-8) << name;
       ++cases;
     }
   }
@@ -208,10 +204,9 @@ TEST(JointGroup, EveryWayThroughThePr2MatchesKdlOnEveryInstructionSet) {
   for (const Link& link : robot.links()) {
     // KDL chains know no mimic joints: ends below one are left to the comparison with Robot::link_poses.
     bool plain = true, moves = false;
-    for (int at = robot.link_index(link.name); at > 0;
-         at = robot.joints()[static_cast<std::size_t>(at - 1)].parent_link) {
-      plain = plain && robot.joints()[static_cast<std::size_t>(at - 1)].mimic_joint < 0;
-      moves = moves || robot.joints()[static_cast<std::size_t>(at - 1)].value_index >= 0;
+    for (int at = robot.link_index(link.name); at > 0; at = robot.joints()[at - 1].parent_link) {
+      plain = plain && robot.joints()[at - 1].mimic_joint < 0;
+      moves = moves || robot.joints()[at - 1].value_index >= 0;
     }
     if (plain && moves) chains.push_back(robot.chain(robot.links()[0].name, link.name));
   }
@@ -270,7 +265,7 @@ TEST(JointGroup, PointJacobianMatchesFiniteDifferencesOnTreesWithBaseAndMimic) {
   for (const JointGroup& group : groups) {
     const int links = static_cast<int>(group.robot().links().size());
     for (int link = 0; link < links; ++link) {
-      SCOPED_TRACE(group.robot().links()[static_cast<std::size_t>(link)].name);
+      SCOPED_TRACE(group.robot().links()[link].name);
       Eigen::VectorXd q = random_configuration(group, rng);
       if (group.has_base()) q.head<2>() /= 50;
       const Eigen::Vector3d point(0.3, -0.2, 0.5);

@@ -63,7 +63,7 @@ TEST(SpatialJoints, ColumnsNamesLimitsAndWraps) {
   EXPECT_EQ(group.joints()[2], deck);
   EXPECT_EQ(group.joints()[3], robot.joint_index("arm_joint"));
   EXPECT_EQ(group.joints()[9], buoy);
-  for (int i = 0; i < 16; ++i) EXPECT_EQ(group.wraps()[static_cast<std::size_t>(i)], i == 2) << i;
+  for (int i = 0; i < 16; ++i) EXPECT_EQ(group.wraps()[i], i == 2) << i;
   EXPECT_TRUE(group.sample_lower().allFinite());
   EXPECT_TRUE(group.sample_upper().allFinite());
   EXPECT_EQ(group.upper()[0], robot.base_limits().workspace);
@@ -80,17 +80,14 @@ TEST(SpatialJoints, ValuesReachTheRobotInTheirOwnPlaces) {
   for (int i = 0; i < 16; ++i) q[i] = 0.1 * i - 0.7;
   const Eigen::VectorXd values = group.full_values(q);
   for (int i = 0; i < 16;) {
-    const Joint& each = robot.joints()[static_cast<std::size_t>(group.joints()[static_cast<std::size_t>(i)])];
+    const Joint& each = robot.joints()[group.joints()[i]];
     for (int k = 0; k < each.value_count(); ++k, ++i) EXPECT_EQ(values[each.value_index + k], q[i]);
   }
   // A part of the robot: what it leaves out stays where the reference holds it.
   const JointGroup part = robot.chain("deck", "buoy").with_reference(values);
   EXPECT_EQ(part.size(), 7);
   EXPECT_EQ(part.full_values(q.segment(3, 7)), values);
-  EXPECT_LT(
-      (part.fk(q.segment(3, 7)).matrix() - robot.link_poses(values)[static_cast<std::size_t>(part.tip_link())].matrix())
-          .norm(),
-      1e-12);
+  EXPECT_LT((part.fk(q.segment(3, 7)).matrix() - robot.link_poses(values)[part.tip_link()].matrix()).norm(), 1e-12);
 }
 
 TEST(SpatialJoints, ClosedForms) {
@@ -158,7 +155,7 @@ TEST(SpatialJoints, MovedOnlyAndBatchesGiveTheSame) {
   Matrix6Xd J;
   fk_jacobian_batch(group, Q, tips, J);
   for (Eigen::Index i = 0; i < Q.cols(); ++i) {
-    EXPECT_EQ((tips[static_cast<std::size_t>(i)].matrix() - group.fk(Q.col(i)).matrix()).norm(), 0.0);
+    EXPECT_EQ((tips[i].matrix() - group.fk(Q.col(i)).matrix()).norm(), 0.0);
     EXPECT_EQ((J.middleCols(i * group.size(), group.size()) - group.jacobian(Q.col(i))).norm(), 0.0);
     group.link_poses(Q.col(i), reused, i > 0);
     fresh.clear();

@@ -65,8 +65,7 @@ TEST(KinematicsBatch, BaseMimicStillColumnsAndAnyRootMatchTheSingleCall) {
         fk_jacobian_batch(group, Q, T, J);
         ASSERT_EQ(T.size(), static_cast<std::size_t>(count));
         for (int i = 0; i < count; ++i) {
-          EXPECT_LT((T[static_cast<std::size_t>(i)].matrix() - group.fk(Q.col(i)).matrix()).cwiseAbs().maxCoeff(),
-                    1e-12);
+          EXPECT_LT((T[i].matrix() - group.fk(Q.col(i)).matrix()).cwiseAbs().maxCoeff(), 1e-12);
           EXPECT_LT((J.middleCols(i * group.size(), group.size()) - group.jacobian(Q.col(i))).cwiseAbs().maxCoeff(),
                     1e-12);
         }
@@ -107,10 +106,7 @@ TEST(KinematicsBatch, OneFarAngleSpoilsNoNeighbour) {
         continue;
       }
       const Poses expected = group.robot().link_poses(group.full_values(Q.col(i)));
-      EXPECT_LT(
-          (T[static_cast<std::size_t>(i)].matrix() - expected[static_cast<std::size_t>(group.tip_link())].matrix())
-              .norm(),
-          1e-12);
+      EXPECT_LT((T[i].matrix() - expected[group.tip_link()].matrix()).norm(), 1e-12);
       EXPECT_TRUE(J.middleCols(7 * i, 7).allFinite());
     }
   });

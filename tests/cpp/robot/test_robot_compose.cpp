@@ -112,29 +112,23 @@ TEST(RobotCompose, GripperOnTiagoStandsWhereItWasPut) {
     const auto pick = [&](const Robot& part, const std::string& prefix, Eigen::VectorXd& out) {
       for (const Joint& joint : part.joints())
         if (joint.value_index >= 0)
-          out[joint.value_index] =
-              values[robot.joints()[static_cast<std::size_t>(robot.joint_index(prefix + joint.name))].value_index];
+          out[joint.value_index] = values[robot.joints()[robot.joint_index(prefix + joint.name)].value_index];
     };
     pick(base, "", base_values);
     pick(gripper, "g_", gripper_values);
     const Poses whole = robot.link_poses(values), below = base.link_poses(base_values);
-    const Pose T_world_gripper = below[static_cast<std::size_t>(base.link_index("arm_tool_link"))] * T_tool_gripper;
+    const Pose T_world_gripper = below[base.link_index("arm_tool_link")] * T_tool_gripper;
     const Poses above = gripper.link_poses(gripper_values, T_world_gripper);
     for (std::size_t l = 0; l < base.links().size(); ++l)
-      EXPECT_LT(
-          (whole[static_cast<std::size_t>(robot.link_index(base.links()[l].name))].matrix() - below[l].matrix()).norm(),
-          1e-12);
+      EXPECT_LT((whole[robot.link_index(base.links()[l].name)].matrix() - below[l].matrix()).norm(), 1e-12);
     for (std::size_t l = 0; l < gripper.links().size(); ++l)
-      EXPECT_LT((whole[static_cast<std::size_t>(robot.link_index("g_" + gripper.links()[l].name))].matrix() -
-                 above[l].matrix())
-                    .norm(),
-                1e-12);
+      EXPECT_LT((whole[robot.link_index("g_" + gripper.links()[l].name)].matrix() - above[l].matrix()).norm(), 1e-12);
   }
 
   // Disabled pairs of the base are kept, the mounting pair is adjacent, the rest between the two is checked.
   for (const auto& [pair, reason] : base.disabled_pairs())
-    EXPECT_TRUE(robot.pair_disabled(robot.link_index(base.links()[static_cast<std::size_t>(pair.first)].name),
-                                    robot.link_index(base.links()[static_cast<std::size_t>(pair.second)].name)));
+    EXPECT_TRUE(robot.pair_disabled(robot.link_index(base.links()[pair.first].name),
+                                    robot.link_index(base.links()[pair.second].name)));
   const int root = robot.link_index("g_" + gripper.links()[0].name);
   EXPECT_TRUE(robot.pair_disabled(robot.link_index("arm_tool_link"), root));
   EXPECT_FALSE(robot.pair_disabled(robot.link_index("base_link"), root));

@@ -164,7 +164,7 @@ TEST(Srdf, JointsWithSeveralValuesStayInGroupsInOrder) {
   floating.linear() = Eigen::Quaterniond(0.8, 0, 0.6, 0).toRotationMatrix();
   const Pose expected =
       pose_from_xyz_rpy({1, 2, 0}, {0, 0, 0.5}) * Pose(Eigen::AngleAxisd(0.25, Eigen::Vector3d::UnitX())) * floating;
-  EXPECT_LT((poses[static_cast<std::size_t>(robot.link_index("d"))].matrix() - expected.matrix()).norm(), 1e-14);
+  EXPECT_LT((poses[robot.link_index("d")].matrix() - expected.matrix()).norm(), 1e-14);
 
   const Robot again = Robot::from_strings(kMixedUrdf, robot.to_srdf());
   expect_same_srdf(robot, again);

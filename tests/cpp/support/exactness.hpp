@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "support/fcl_reference.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "support/fcl_reference.hpp"
 #include "support/mesh_robots.hpp"
 
 namespace exactness {

@@ -26,8 +26,8 @@ class FormulaProblem : public NonlinearProblem {
     c_bounds_.lower.resize(m);
     c_bounds_.upper.resize(m);
     for (int i = 0; i < m; ++i) {
-      c_bounds_.lower[i] = rows_[static_cast<std::size_t>(i)].lower;
-      c_bounds_.upper[i] = rows_[static_cast<std::size_t>(i)].upper;
+      c_bounds_.lower[i] = rows_[i].lower;
+      c_bounds_.upper[i] = rows_[i].upper;
       for (int j = 0; j < n; ++j) jacobian_.add(i, j);
     }
     for (int i = 0; i < n; ++i)

@@ -58,7 +58,7 @@ inline Matrix6Xd numeric_jacobian(const JointGroup& group, const Eigen::VectorXd
                                   const Eigen::Vector3d& p_link_point) {
   const double h = 1e-6;
   const auto pose = [&](const Eigen::VectorXd& at) -> Pose {
-    return group.robot().link_poses(group.full_values(at), group.root_pose(at))[static_cast<std::size_t>(link)] *
+    return group.robot().link_poses(group.full_values(at), group.root_pose(at))[link] *
            Eigen::Translation3d(p_link_point);
   };
   Matrix6Xd J(6, group.size());
@@ -83,7 +83,7 @@ inline void expect_link_poses_agree(const JointGroup& group, const Eigen::Vector
   ASSERT_EQ(actual.size(), expected.size());
   for (std::size_t i = 0; i < actual.size(); ++i)
     EXPECT_LT((actual[i].matrix() - expected[i].matrix()).norm(), 1e-12) << group.robot().links()[i].name;
-  EXPECT_LT((group.fk(q).matrix() - expected[static_cast<std::size_t>(group.tip_link())].matrix()).norm(), 1e-12);
+  EXPECT_LT((group.fk(q).matrix() - expected[group.tip_link()].matrix()).norm(), 1e-12);
 }
 
 /// Pose and Jacobian of a point on the tip by KDL, for groups that hold every joint between the root and their tip.

@@ -13,8 +13,8 @@ inline SetCoverProblem read_orlib(std::istream& in) {
   SetCoverProblem problem;
   int sets = 0;
   in >> problem.elements >> sets;
-  problem.sets.resize(static_cast<std::size_t>(sets));
-  problem.costs.resize(static_cast<std::size_t>(sets));
+  problem.sets.resize(sets);
+  problem.costs.resize(sets);
   for (double& cost : problem.costs) in >> cost;
   for (int e = 0; e < problem.elements; ++e) {
     int count = 0;

@@ -72,7 +72,7 @@ inline Layout make_layout(const std::string& name, const std::vector<LaidTray>& 
       const bool inside = r >= shape.inner && r <= outer && d.dot(front) >= r * std::cos(shape.half_angle);
       if (!inside || blocked[cell]) return;
       for (int h = 0; h < shape.headings; ++h) {
-        const double heading = grid.headings[static_cast<std::size_t>(h)];
+        const double heading = grid.headings[h];
         const bool ahead = -d.dot(Eigen::Vector2d(std::cos(heading), std::sin(heading))) >= r * std::cos(shape.front);
         if (shape.headings == 1 || ahead) region.cells[cell + static_cast<std::size_t>(h) * blocked.size()] = 1;
       }

@@ -34,8 +34,7 @@ class RegionTruth {
           opening_ = opening;
           Eigen::VectorXd values = problem.arm.reference();
           for (const auto& [name, value] : problem.gripper.joint_values(opening))
-            values[problem.robot.joints()[static_cast<std::size_t>(problem.robot.joint_index(name))].value_index] =
-                value;
+            values[problem.robot.joints()[problem.robot.joint_index(name)].value_index] = value;
           checkers_.emplace_back(problem.arm.with_reference(values), home_.world());
         }
       }
@@ -74,11 +73,11 @@ class RegionTruth {
   bool confirmed(const Eigen::Vector3d& base_pose, int tray, int index) {
     const PartAtPose seen = evaluator_.part(base_pose, tray, index);
     if (!seen.feasible) return false;
-    const Part& part = problem_.trays[static_cast<std::size_t>(tray)].parts[static_cast<std::size_t>(index)];
+    const Part& part = problem_.trays[tray].parts[index];
     CollisionChecker& checker = checkers_.front();
     checker.set_root(pose_from_planar(base_pose));
     const Pose tool = checker.group().fk(seen.q);
-    const Pose wanted = part.T_world_part * part.grasps[static_cast<std::size_t>(seen.grasp)].T_object_tcp;
+    const Pose wanted = part.T_world_part * part.grasps[seen.grasp].T_object_tcp;
     return (tool.translation() - wanted.translation()).norm() < 2e-5 && rotation_distance(tool, wanted) < 2e-4 &&
            checker.rejection(seen.q) == Rejection::none;
   }
@@ -99,8 +98,8 @@ inline TruthCounts compare_with_truth(const PartSupplyProblem& problem, const Re
   RegionTruth truth(problem, database, restarts);
   Rng rng(seed);
   TruthCounts counts;
-  const Tray& where = problem.trays[static_cast<std::size_t>(tray)];
-  const BaseRegion& region = regions[static_cast<std::size_t>(tray)];
+  const Tray& where = problem.trays[tray];
+  const BaseRegion& region = regions[tray];
   while (counts.compared < samples) {
     const int ix = static_cast<int>(rng.index(static_cast<std::size_t>(grid.nx)));
     const int iy = static_cast<int>(rng.index(static_cast<std::size_t>(grid.ny)));

@@ -52,8 +52,7 @@ inline KDL::Frame to_kdl(const Pose& T) {
 inline KDL::Chain kdl_chain(const Robot& robot, int tip) {
   std::vector<const Joint*> path;
   for (int link = tip; link > 0; link = path.back()->parent_link)
-    path.push_back(
-        &robot.joints()[static_cast<std::size_t>(robot.links()[static_cast<std::size_t>(link)].parent_joint)]);
+    path.push_back(&robot.joints()[robot.links()[link].parent_joint]);
   KDL::Chain chain;
   for (auto it = path.rbegin(); it != path.rend(); ++it) {
     const Joint& joint = **it;

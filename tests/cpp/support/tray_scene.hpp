@@ -3,11 +3,11 @@
 #include <cmath>
 #include <vector>
 
-#include "support/free_body.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/grasp/graspability.hpp"
 #include "mmgrasp/grasp/random_placement.hpp"
 #include "mmgrasp/mapping/height_map.hpp"
+#include "support/free_body.hpp"
 
 /// Trays seen by a camera above, and the hand's own body beside the true shapes.
 namespace tray_scene {

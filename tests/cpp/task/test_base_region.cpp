@@ -29,7 +29,7 @@ TEST_F(BaseRegions, CountersEqualABruteForceRecount) {
   const double radius = database_->reach() + 0.5 * problem_->trays[0].size.head<2>().norm();
   const double h = grid_->resolution;
   for (int tray = 0; tray < 2; ++tray) {
-    const Eigen::Vector2d middle = problem_->trays[static_cast<std::size_t>(tray)].T_world_tray.translation().head<2>();
+    const Eigen::Vector2d middle = problem_->trays[tray].T_world_tray.translation().head<2>();
     for (int part = 0; part < 2; ++part) {
       PartExplanation recount;
       std::size_t at_home = 0;
@@ -60,11 +60,11 @@ TEST_F(BaseRegions, CountersEqualABruteForceRecount) {
             continue;
           Eigen::Vector3d pose = grid_->centre(0, ix, iy);
           pose.head<2>().array() -= 0.5 * h;
-          corners[static_cast<std::size_t>(iy * (grid_->nx + 1) + ix)] = look(pose);
+          corners[iy * (grid_->nx + 1) + ix] = look(pose);
         }
       }
-      const BaseRegion& region = (*regions_)[static_cast<std::size_t>(tray)];
-      const PartExplanation& told = region.explanations[static_cast<std::size_t>(part)];
+      const BaseRegion& region = (*regions_)[tray];
+      const PartExplanation& told = region.explanations[part];
       EXPECT_EQ(told.grasps, 12);
       EXPECT_EQ(told.base_poses_tried, recount.base_poses_tried);
       EXPECT_EQ(told.base_poses_feasible, recount.base_poses_feasible);
@@ -75,10 +75,10 @@ TEST_F(BaseRegions, CountersEqualABruteForceRecount) {
       for (int iy = 0; iy < grid_->ny; ++iy) {
         for (int ix = 0; ix < grid_->nx; ++ix) {
           const int row = iy * (grid_->nx + 1) + ix;
-          const auto corner = [&](int i) { return corners[static_cast<std::size_t>(i)] != 0; };
+          const auto corner = [&](int i) { return corners[i] != 0; };
           const bool good = centre_at(ix, iy) && corner(row) && corner(row + 1) && corner(row + grid_->nx + 1) &&
                             corner(row + grid_->nx + 2);
-          EXPECT_EQ(region.part_cells[static_cast<std::size_t>(part)][grid_->index(0, ix, iy)] != 0, good);
+          EXPECT_EQ(region.part_cells[part][grid_->index(0, ix, iy)] != 0, good);
         }
       }
     }
@@ -95,7 +95,7 @@ TEST_F(BaseRegions, CellsAreFeasibleForAnotherIk) {
   }
   Eigen::VectorXd values = problem_->arm.reference();
   for (const auto& [name, value] : problem_->gripper.joint_values(0.05)) {
-    values[problem_->robot.joints()[static_cast<std::size_t>(problem_->robot.joint_index(name))].value_index] = value;
+    values[problem_->robot.joints()[problem_->robot.joint_index(name)].value_index] = value;
   }
   const BaseRegion& region = (*regions_)[0];
   int looked_at = 0, solved = 0;
@@ -134,10 +134,9 @@ TEST_F(BaseRegions, ConfigurationsReachTheirGrasps) {
       if (!seen.feasible) continue;
       ++seen_feasible;
       const Part& part = problem_->trays[0].parts[0];
-      const Pose wanted = part.T_world_part * part.grasps[static_cast<std::size_t>(seen.grasp)].T_object_tcp;
-      const Pose tool = problem_->robot.link_poses(
-          problem_->arm.full_values(seen.q),
-          pose_from_planar(pose))[static_cast<std::size_t>(problem_->robot.link_index("tcp"))];
+      const Pose wanted = part.T_world_part * part.grasps[seen.grasp].T_object_tcp;
+      const Pose tool = problem_->robot.link_poses(problem_->arm.full_values(seen.q),
+                                                   pose_from_planar(pose))[problem_->robot.link_index("tcp")];
       EXPECT_LT((tool.translation() - wanted.translation()).norm(), 1e-4);
       EXPECT_LT(rotation_distance(tool, wanted), 1e-3);
     }

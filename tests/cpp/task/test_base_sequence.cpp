@@ -27,8 +27,7 @@ CellMask from_picture(const BaseGrid& grid, const std::vector<std::string>& rows
   CellMask cells(grid.size(), 0);
   for (int iy = 0; iy < grid.ny; ++iy) {
     for (int ix = 0; ix < grid.nx; ++ix) {
-      cells[grid.index(0, ix, iy)] =
-          rows[static_cast<std::size_t>(grid.ny - 1 - iy)][static_cast<std::size_t>(ix)] == '#';
+      cells[grid.index(0, ix, iy)] = rows[grid.ny - 1 - iy][ix] == '#';
     }
   }
   return cells;
@@ -75,7 +74,7 @@ TEST(InscribedCircle, LongCorridor) {
 TEST(InscribedCircle, LShapeTouchesTwoEdgesAndTheInnerCorner) {
   // Arms of width w: the disc in the outer corner touches both outer edges and the inner corner, r + r / sqrt(2) = w.
   std::vector<std::string> rows(10, "###.......");
-  for (int i = 7; i < 10; ++i) rows[static_cast<std::size_t>(i)] = "##########";
+  for (int i = 7; i < 10; ++i) rows[i] = "##########";
   const InscribedCircle circle = circle_of(rows);
   EXPECT_NEAR(circle.radius, 3.0 / (1 + std::sqrt(0.5)), 1e-6);
   EXPECT_NEAR((circle.centre - Eigen::Vector2d(circle.radius, circle.radius)).norm(), 0, 1e-5);
@@ -83,7 +82,7 @@ TEST(InscribedCircle, LShapeTouchesTwoEdgesAndTheInnerCorner) {
 
 TEST(InscribedCircle, CrossTouchesItsFourInnerCorners) {
   std::vector<std::string> rows(9, "...###...");
-  for (int i = 3; i < 6; ++i) rows[static_cast<std::size_t>(i)] = "#########";
+  for (int i = 3; i < 6; ++i) rows[i] = "#########";
   const InscribedCircle circle = circle_of(rows);
   EXPECT_NEAR(circle.radius, 1.5 * std::sqrt(2.0), 1e-6);
   EXPECT_NEAR((circle.centre - Eigen::Vector2d(4.5, 4.5)).norm(), 0, 1e-5);
@@ -211,8 +210,7 @@ TEST(RobustIntersections, RandomRegionsAgainstAllSubsets) {
       for (int i = 0; i < 5; ++i) {
         if (!(subset >> i & 1u)) continue;
         trays.push_back(i);
-        for (std::size_t c = 0; c < shared.size(); ++c)
-          shared[c] = shared[c] && regions[static_cast<std::size_t>(i)].cells[c];
+        for (std::size_t c = 0; c < shared.size(); ++c) shared[c] = shared[c] && regions[i].cells[c];
       }
       if (inscribed_circle(grid, shared, 0).radius >= 0.12) expected.push_back(trays);
     }
@@ -275,8 +273,8 @@ TEST(MinimalStops, TwoHundredRandomInstancesAgainstEnumeration) {
       double radii = 0;
       for (int i = 0; i < count; ++i) {
         if (!(subset >> i & 1u)) continue;
-        for (int tray : places[static_cast<std::size_t>(i)].trays) covered |= 1u << tray;
-        radii += places[static_cast<std::size_t>(i)].radius;
+        for (int tray : places[i].trays) covered |= 1u << tray;
+        radii += places[i].radius;
       }
       if (covered + 1 != 1u << trays) continue;
       const int size = __builtin_popcount(subset);
@@ -296,11 +294,11 @@ TEST(MinimalStops, TwoHundredRandomInstancesAgainstEnumeration) {
     std::vector<int> served(static_cast<std::size_t>(trays), 0);
     double radii = 0;
     for (const Stop& stop : stops.stops) {
-      const Intersection& place = places[static_cast<std::size_t>(stop.intersection)];
+      const Intersection& place = places[stop.intersection];
       EXPECT_EQ(stop.radius, place.radius);
       radii += stop.radius;
       for (int tray : stop.trays) {
-        ++served[static_cast<std::size_t>(tray)];
+        ++served[tray];
         EXPECT_TRUE(std::binary_search(place.trays.begin(), place.trays.end(), tray));
       }
     }

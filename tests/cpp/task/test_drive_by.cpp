@@ -33,8 +33,8 @@ void expect_sound(const DriveByResult& r, const std::vector<DriveByTask>& tasks)
   for (const Violation& v : r.violations) EXPECT_TRUE(v.kept()) << v.kind << " " << v.value;
   const WholeBodyTrajectory& t = *r.trajectory;
   for (std::size_t i = 0; i < tasks.size(); ++i) {
-    const Pose T = t.group().fk(t.positions()[static_cast<std::size_t>(r.events[i].waypoint)]);
-    const Pose& target = tasks[i].candidates[static_cast<std::size_t>(r.events[i].candidate)];
+    const Pose T = t.group().fk(t.positions()[r.events[i].waypoint]);
+    const Pose& target = tasks[i].candidates[r.events[i].candidate];
     EXPECT_LT((T.translation() - target.translation()).norm(), 1e-6);
     EXPECT_LT(rotation_distance(T, target), 1e-6);
     if (i > 0) {
@@ -128,7 +128,7 @@ TEST(DriveBy, LeavesFreeAxesFree) {
   const DriveByResult r = plan_drive_by(group, World(), kStart, {task}, {kGoal, kGoal});
   ASSERT_EQ(fixed.outcome, Outcome::solved) << fixed.report;
   ASSERT_EQ(r.outcome, Outcome::solved) << r.report;
-  const Pose T = group.fk(r.trajectory->positions()[static_cast<std::size_t>(r.events[0].waypoint)]);
+  const Pose T = group.fk(r.trajectory->positions()[r.events[0].waypoint]);
   EXPECT_LT((T.translation() - task.candidates[0].translation()).norm(), 1e-6);
   EXPECT_NEAR(T.linear().col(0).dot(task.candidates[0].linear().col(0)), 1, 1e-6);
 }
@@ -227,8 +227,7 @@ TEST(DriveBy, ReturnsTheFastestOfThePlansOfEachCandidate) {
   double best = kInf;
   int fastest = -1, solved = 0;
   for (int c = 0; c < 3; ++c) {
-    const DriveByResult alone =
-        plan_drive_by(group, World(), kStart, {grasp_at(poses[static_cast<std::size_t>(c)])}, {kGoal, kGoal});
+    const DriveByResult alone = plan_drive_by(group, World(), kStart, {grasp_at(poses[c])}, {kGoal, kGoal});
     if (!alone.usable()) continue;
     ++solved;
     if (alone.duration() >= best) continue;

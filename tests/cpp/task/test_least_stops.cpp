@@ -20,8 +20,7 @@ double radius_of(const BaseGrid& grid, const std::vector<BaseRegion>& regions, c
   for (int heading = 0; heading < static_cast<int>(grid.headings.size()); ++heading) {
     CellMask shared(grid.size(), 1);
     for (int tray : trays) {
-      for (std::size_t c = 0; c < shared.size(); ++c)
-        shared[c] = shared[c] && regions[static_cast<std::size_t>(tray)].cells[c];
+      for (std::size_t c = 0; c < shared.size(); ++c) shared[c] = shared[c] && regions[tray].cells[c];
     }
     best = std::max(best, inscribed_circle(grid, shared, heading).radius);
   }
@@ -72,7 +71,7 @@ void expect_sound(const BaseGrid& grid, const std::vector<BaseRegion>& regions, 
   for (const Stop& stop : set.stops) {
     EXPECT_GE(stop.radius, min_radius - 1e-8);
     EXPECT_NEAR(stop.radius, radius_of(grid, regions, stop.trays), 1e-6);  // the widest for exactly its trays
-    for (int tray : stop.trays) ++served[static_cast<std::size_t>(tray)];
+    for (int tray : stop.trays) ++served[tray];
   }
   for (int times : served) EXPECT_EQ(times, 1);
 }
@@ -141,10 +140,9 @@ TEST(LeastStops, EquallyGoodSequencesAreToldApartByTheRoute) {
   grid.headings = {0};
   std::vector<BaseRegion> regions(5);
   for (int i = 0; i < 5; ++i) {
-    regions[static_cast<std::size_t>(i)].cells.assign(grid.size(), 0);
+    regions[i].cells.assign(grid.size(), 0);
     for (int iy = 2; iy < 14; ++iy) {
-      for (int ix = 2 + 8 * i; ix < 14 + 8 * i; ++ix)
-        regions[static_cast<std::size_t>(i)].cells[grid.index(0, ix, iy)] = 1;
+      for (int ix = 2 + 8 * i; ix < 14 + 8 * i; ++ix) regions[i].cells[grid.index(0, ix, iy)] = 1;
     }
   }
   // Neighbours share 4 cells (0.2 m): a disc of exactly 0.1 m. Radii do not tell {01}{23}{4}, {01}{2}{34}, {0}{12}{34}

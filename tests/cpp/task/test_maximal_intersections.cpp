@@ -131,7 +131,7 @@ TEST(MaximalIntersections, HeadingsAreSearchedApart) {
   const BaseGrid grid = make_grid(30, 24, 0.05, {0, 1.5});
   std::vector<BaseRegion> regions = {region_at(grid, {0.6, 0.6}, {0.4, 0.4}, true),
                                      region_at(grid, {0.7, 0.6}, {0.4, 0.4}, true)};
-  for (int i = 0; i < grid.cells_per_layer(); ++i) regions[1].cells[static_cast<std::size_t>(i)] = 0;
+  for (int i = 0; i < grid.cells_per_layer(); ++i) regions[1].cells[i] = 0;
   const Intersections found = maximal_intersections(grid, regions, 0.1);
   ASSERT_EQ(found.robust.size(), 2u);
   EXPECT_EQ(found.robust[0].trays, (std::vector<int>{0}));

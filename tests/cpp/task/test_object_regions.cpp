@@ -70,21 +70,21 @@ TEST_F(KeptRegions, LeavingPartsGiveWhatScratchGives) {
        {std::vector<std::pair<int, int>>{{0, 1}}, {{1, 2}}, {{0, 3}, {1, 0}}, {{0, 0}}}) {
     std::vector<std::vector<CellMask>> before(2);
     for (int tray = 0; tray < 2; ++tray) {
-      for (int part : kept.parts(tray)) before[static_cast<std::size_t>(tray)].push_back(kept.region(tray, {part}));
+      for (int part : kept.parts(tray)) before[tray].push_back(kept.region(tray, {part}));
     }
     const std::vector<std::vector<int>> parts_before = {kept.parts(0), kept.parts(1)};
     ASSERT_TRUE(kept.remove(leaving));
     for (const auto& [tray, part] : leaving) {
-      std::vector<int>& known = left[static_cast<std::size_t>(tray)];
+      std::vector<int>& known = left[tray];
       const auto place = std::find(known.begin(), known.end(), part) - known.begin();
       known.erase(known.begin() + place);
-      std::vector<Part>& parts = rest.trays[static_cast<std::size_t>(tray)].parts;
+      std::vector<Part>& parts = rest.trays[tray].parts;
       parts.erase(parts.begin() + place);
     }
     const std::vector<BaseRegion> scratch = compute_base_regions(rest, *database_, *grid_);
     for (int tray = 0; tray < 2; ++tray) {
       const std::vector<int> parts = kept.parts(tray);
-      const BaseRegion& region = scratch[static_cast<std::size_t>(tray)];
+      const BaseRegion& region = scratch[tray];
       ASSERT_EQ(parts.size(), region.part_cells.size());
       EXPECT_EQ(kept.base_region(tray).cells, region.cells);
       EXPECT_EQ(kept.base_region(tray).base_poses_in_collision, region.base_poses_in_collision);
@@ -98,9 +98,9 @@ TEST_F(KeptRegions, LeavingPartsGiveWhatScratchGives) {
         EXPECT_EQ(told.base_poses_feasible, recount.base_poses_feasible);
         EXPECT_EQ(told.rejections, recount.rejections)
             << told.rejections.summary() << " against " << recount.rejections.summary();
-        const std::vector<int>& known = parts_before[static_cast<std::size_t>(tray)];
+        const std::vector<int>& known = parts_before[tray];
         const auto place = static_cast<std::size_t>(std::find(known.begin(), known.end(), parts[p]) - known.begin());
-        const CellMask& then = before[static_cast<std::size_t>(tray)][place];
+        const CellMask& then = before[tray][place];
         for (std::size_t i = 0; i < now.size(); ++i) {
           EXPECT_LE(then[i], now[i]);
           grown += now[i] > then[i];

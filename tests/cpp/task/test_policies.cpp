@@ -48,7 +48,7 @@ struct Storeroom {
 double radius_of(const Storeroom& room, const std::vector<std::pair<int, int>>& tray_and_part) {
   CellMask shared(room.parts.grid.size(), 1);
   for (const auto& [tray, part] : tray_and_part) {
-    const CellMask& mask = room.parts.cells[static_cast<std::size_t>(tray)][static_cast<std::size_t>(part)];
+    const CellMask& mask = room.parts.cells[tray][part];
     for (std::size_t i = 0; i < shared.size(); ++i) shared[i] = shared[i] && mask[i];
   }
   return inscribed_circle(room.parts.grid, shared, 0).radius;
@@ -59,7 +59,7 @@ TEST(PairedOrder, EqualTraysArePairedPartByPart) {
   const PickingOrder order = paired_order(room.places);
   for (const auto& tray : order) {
     ASSERT_EQ(tray.size(), 12u);
-    for (int i = 0; i < 12; ++i) EXPECT_EQ(tray[static_cast<std::size_t>(i)], i);
+    for (int i = 0; i < 12; ++i) EXPECT_EQ(tray[i], i);
   }
 }
 
@@ -81,7 +81,7 @@ TEST(PairedOrder, PartsOfUnequalTraysStayWithTheirPartners) {
   std::sort(seen.begin(), seen.end());
   EXPECT_EQ(seen, (std::vector<int>{0, 1}));
   ASSERT_GT(static_cast<int>(order[2].size()), round);
-  EXPECT_GE(order[2][static_cast<std::size_t>(round)], 0) << "picked together with the single part";
+  EXPECT_GE(order[2][round], 0) << "picked together with the single part";
 }
 
 TEST(OptimisedOrder, TraysWithoutParts) {
@@ -104,7 +104,7 @@ TEST(PairedOrder, LeastSpreadOfDistances) {
     const auto spread = [&](const std::vector<int>& second) {
       double sum = 0, squares = 0;
       for (std::size_t i = 0; i < 6; ++i) {
-        const double d = (room.places[0][i] - room.places[1][static_cast<std::size_t>(second[i])]).norm();
+        const double d = (room.places[0][i] - room.places[1][second[i]]).norm();
         sum += d;
         squares += d * d;
       }
@@ -142,7 +142,7 @@ TEST(OptimisedOrder, TwoTraysAgainstEveryOrder) {
       do {
         double sum = 0, smallest = 1e9;
         for (int i = 0; i < 6; ++i) {
-          const double r = radii(i, trial[static_cast<std::size_t>(i)]);
+          const double r = radii(i, trial[i]);
           sum += r;
           smallest = std::min(smallest, r);
         }
@@ -206,7 +206,7 @@ TEST(Policies, UpdatingWidensTheDiscs) {
       double mean = 0;
       for (const Stop& stop : round.stops) {
         mean += stop.radius / static_cast<double>(round.stops.size());
-        for (int tray : stop.trays) ++served[static_cast<std::size_t>(tray)];
+        for (int tray : stop.trays) ++served[tray];
       }
       EXPECT_NEAR(round.mean_radius, mean, 1e-12);
       sum += mean;

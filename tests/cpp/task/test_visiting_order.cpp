@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "mmgrasp/task/part_supply.hpp"
+#include "mmgrasp/task/visiting_order.hpp"
 #include "support/small_storeroom.hpp"
 
 namespace mmgrasp {
@@ -35,7 +36,7 @@ TEST(RouteLengths, LengthsLeadAroundTheWall) {
       EXPECT_EQ(lengths(i, i), 0);
       for (int j = i + 1; j < 4; ++j) {
         EXPECT_NEAR(lengths(i, j), lengths(j, i), 1e-9);
-        const Eigen::Vector3d &a = places[static_cast<std::size_t>(i)], &b = places[static_cast<std::size_t>(j)];
+        const Eigen::Vector3d &a = places[i], &b = places[j];
         BaseRouteOptions options;
         options.base = base;
         const BasePath drive = plan_base_route(own, problem.home, a, b, options);
@@ -66,10 +67,9 @@ TEST(VisitingOrder, SevenStopsAroundAWall) {
   std::vector<Stop> stops(7);
   for (int i = 0; i < 7; ++i) {
     const double side = i % 2 == 0 ? -1 : 1;
-    stops[static_cast<std::size_t>(i)].pose = {0.9 * side, -2.0 + 1.2 * (i / 2), 0};
+    stops[i].pose = {0.9 * side, -2.0 + 1.2 * (i / 2), 0};
   }
-  int missing = -1;
-  const std::vector<int> order = order_stops(problem, stops, missing);
+  const std::vector<int> order = order_stops(problem, stops).stops;
   ASSERT_EQ(order.size(), 7u);
   std::vector<Eigen::Vector3d> places;
   for (const Stop& stop : stops) places.push_back(stop.pose);
@@ -110,11 +110,11 @@ TEST(VisitingOrder, SevenStopsAroundAWall) {
 TEST(VisitingOrder, AStopThatCannotBeReachedIsNamed) {
   PartSupplyProblem problem = walled();
   std::vector<Stop> stops(7);
-  for (int i = 0; i < 7; ++i) stops[static_cast<std::size_t>(i)].pose = {-1.2, -1.5 + 0.5 * i, 0};
+  for (int i = 0; i < 7; ++i) stops[i].pose = {-1.2, -1.5 + 0.5 * i, 0};
   stops[3].pose = {0, 0, 0};  // in the wall
-  int missing = -1;
-  EXPECT_TRUE(order_stops(problem, stops, missing).empty());
-  EXPECT_EQ(missing, 3);
+  const VisitingOrder order = order_stops(problem, stops);
+  EXPECT_TRUE(order.stops.empty());
+  EXPECT_EQ(order.unreachable, 3);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ struct MMGRASP_EXPORT CandidateGrasp {
   double cost = 0;                        ///< Added to the path's length; >= 0.
 };
 
-/// Carry an object from one pose to another with any of many grasps (P2 4.2): the planner chooses the grasp.
+/// TransferPath an object from one pose to another with any of many grasps (P2 4.2): the planner chooses the grasp.
 struct MMGRASP_EXPORT ManipulationProblem {
   /// Arm, or arm and omni base; its tip is the tool. A diff-drive base could not drive the paths: it is refused.
   JointGroup group;

@@ -22,7 +22,7 @@ struct MMGRASP_EXPORT RoadmapOptions {
 };
 
 /// Size and shape of a roadmap, for reports: whether gamma promises anything can be read from it.
-struct MMGRASP_EXPORT RoadmapFigures {
+struct MMGRASP_EXPORT RoadmapStatistics {
   double mean_degree = 0;
   int components = 0;         ///< Connected parts.
   int largest_component = 0;  ///< Vertices in the largest one.
@@ -64,7 +64,7 @@ class MMGRASP_EXPORT Roadmap {
   void near(const Eigen::VectorXd& q, std::vector<int>& out) const;
   /// Longest edge a new configuration would get; 0 with `neighbours`, which know no such bound.
   double radius() const;
-  RoadmapFigures figures() const;
+  RoadmapStatistics figures() const;
 
   struct Data;
   explicit Roadmap(std::shared_ptr<const Data> data);

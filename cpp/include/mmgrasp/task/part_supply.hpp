@@ -67,11 +67,4 @@ struct MMGRASP_EXPORT PartSupplyPlan {
 MMGRASP_EXPORT PartSupplyPlan plan_part_supply(const PartSupplyProblem& problem, const ReachDatabase& database,
                                                const Monitor& monitor = {});
 
-/// Order in which the stops are visited from the problem's start to its goal, all parts in place. Up to 6 stops by the
-/// lengths of planned drives; more by route_lengths(), the drives of the order found planned and put in their place
-/// until the order stays. Exact for these lengths up to 15 stops. Empty when some stop cannot be driven to: then
-/// `missing` names its index, -1 for the goal.
-MMGRASP_EXPORT std::vector<int> order_stops(const PartSupplyProblem& problem, const std::vector<Stop>& stops,
-                                            int& missing, const Monitor& monitor = {});
-
 }  // namespace mmgrasp

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "collision/broad/kernels.hpp"
+#include "collision/kernels/kernels.hpp"
 #include "collision/narrow/box_tree.hpp"
 #include "collision/narrow/convex.hpp"
 
@@ -26,7 +26,7 @@ class ScenePacks {
   /// Few enough to sweep over all of them.
   bool flat() const { return count() <= kFlat; }
   /// Number of the item in a lane of a pack.
-  int item(int pack, int lane) const { return items_[static_cast<std::size_t>(pack * kLanes + lane)]; }
+  int item(int pack, int lane) const { return items_[pack * kLanes + lane]; }
   /// Calls visit(pack) for packs whose bounds meet the ball (x, y, z, radius) until it returns true; true then.
   template <class Visit>
   bool packs_near(const float* ball, const Visit& visit) const {

@@ -4,22 +4,16 @@
 #include <string>
 #include <vector>
 
-#include "collision/broad/ball_cover.hpp"
 #include "collision/broad/scene_packs.hpp"
-#include "collision/checker/gap_table.hpp"
+#include "collision/broad/solid_cache.hpp"
+#include "collision/broad/sphere_cover.hpp"
+#include "collision/checker/clearance_table.hpp"
 #include "collision/checker/moving_frames.hpp"
 #include "collision/narrow/solid.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/robot/robot.hpp"
 
 namespace mmgrasp::detail {
-
-/// make_solid, kept as long as the mesh or cloud it was made from lives: a new checker for a changed world is then
-/// cheap.
-std::shared_ptr<const Solid> shared_solid(const Shape& shape, double padding);
-
-/// BodyBounds, kept likewise; those of primitives for some time.
-std::shared_ptr<const BodyBounds> shared_bounds(const Solid& solid, const Shape& shape);
 
 /// One shape that moves with a robot link, whether of the link itself or of a held object.
 struct BodyShape {
@@ -28,7 +22,7 @@ struct BodyShape {
   Rigid in_link;
   std::shared_ptr<const Solid> solid;              ///< Against the robot itself.
   std::shared_ptr<const Solid> padded;             ///< Against the scene.
-  std::shared_ptr<const BodyBounds> bounds;        ///< Of the solid without padding, in its frame.
+  std::shared_ptr<const BoundingVolumes> bounds;   ///< Of the solid without padding, in its frame.
   Eigen::Vector3d ball = Eigen::Vector3d::Zero();  ///< Centre of the bounding sphere in the link.
 };
 
@@ -76,7 +70,7 @@ struct ShapePair {
   int ball_a = 0, ball_b = 0;  ///< Their places among the plan's balls.
   double reach = 0;            ///< Sum of the bounding spheres' radii.
   /// Of two links with meshes that two turning joints part, and the columns of these joints.
-  std::shared_ptr<const GapTable> gaps;
+  std::shared_ptr<const ClearanceTable> gaps;
   std::array<int, 2> columns{};
 };
 
@@ -99,7 +93,7 @@ struct MMGRASP_EXPORT PairPlan {
 
   MovingFrames frames;
   std::vector<PlacedShape> placed;  ///< Per shape.
-  std::vector<FrameBall> balls;     ///< Of `moving`, then of `fixed`, in their order; padding included.
+  std::vector<FrameSphere> balls;   ///< Of `moving`, then of `fixed`, in their order; padding included.
   std::vector<int> ball_of;         ///< Per shape: its place in `balls`, or -1.
   std::vector<int> moving, fixed;   ///< Shapes the group moves, and the others; those checked against the scene first.
   int moving_in_scene = 0, fixed_in_scene = 0;  ///< How many of them are checked against the scene.

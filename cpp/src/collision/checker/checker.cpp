@@ -4,7 +4,6 @@
 
 #include "collision/checker/checker_impl.hpp"
 #include "collision/checker/edge_walk.hpp"
-#include "collision/edge/edge_continuous.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {

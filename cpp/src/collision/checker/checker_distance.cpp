@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <map>
 
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "collision/checker/checker_impl.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
 
 using detail::Candidate;
 using detail::NearestPair;
-using detail::SolidGap;
+using detail::SolidClearance;
 
 namespace {
 
@@ -34,7 +34,7 @@ void CollisionChecker::Impl::each_pair(bool still, const Visit& visit) const {
   const int count = static_cast<int>(snapshot->scene.size());
   const std::vector<int>& shapes = still ? plan->fixed : plan->moving;
   for (int k = 0; k < (still ? plan->fixed_in_scene : plan->moving_in_scene); ++k) {
-    const int s = shapes[static_cast<std::size_t>(k)];
+    const int s = shapes[k];
     const double radius = snapshot->shapes[s].solid->ball_radius;
     for (int i = 0; i < count; ++i) {
       const detail::SceneShape& other = snapshot->scene[i];
@@ -43,7 +43,7 @@ void CollisionChecker::Impl::each_pair(bool still, const Visit& visit) const {
   }
 }
 
-SolidGap CollisionChecker::Impl::gap_of(const Candidate& pair, double bound, bool still) {
+SolidClearance CollisionChecker::Impl::gap_of(const Candidate& pair, double bound, bool still) {
   const detail::Solid& a = *snapshot->shapes[pair.shape].solid;
   if (pair.with_scene) {
     const detail::SceneShape& other = snapshot->scene[pair.other];
@@ -67,7 +67,7 @@ double CollisionChecker::Impl::box_bound(const Candidate& pair, bool still) {
 }
 
 void CollisionChecker::Impl::to_world(NearestPair& nearest) const {
-  SolidGap& gap = nearest.gap;
+  SolidClearance& gap = nearest.gap;
   if (nearest.pair.with_scene || gap.distance == detail::kInfinity) return;
   const int frame = plan->placed[nearest.pair.shape].frame;
   const detail::Rigid T = detail::MovingFrames::get(frames.data() + 16 * frame);
@@ -79,7 +79,7 @@ void CollisionChecker::Impl::to_world(NearestPair& nearest) const {
 NearestPair CollisionChecker::Impl::nearest() {
   NearestPair best;
   const auto look_at = [&](const Candidate& pair, bool still) {
-    const SolidGap gap = gap_of(pair, best.gap.distance, still);
+    const SolidClearance gap = gap_of(pair, best.gap.distance, still);
     if (gap.distance < best.gap.distance) best = {pair, gap};
   };
   const auto search = [&](bool still) {
@@ -182,7 +182,7 @@ std::vector<DistanceResult> CollisionChecker::distances(const Eigen::VectorXd& q
     const std::tuple<bool, int, int> key{pair.with_scene, snapshot.shapes[pair.shape].body, other};
     const auto known = by_bodies.find(key);
     const double bound = known == by_bodies.end() ? within : known->second.gap.distance;
-    const SolidGap gap = impl_->gap_of(pair, bound);
+    const SolidClearance gap = impl_->gap_of(pair, bound);
     if (gap.distance < bound) by_bodies[key] = {pair, gap};
   }
   std::vector<DistanceResult> out;

@@ -27,7 +27,7 @@ struct Candidate {
 
 struct NearestPair {
   Candidate pair;
-  SolidGap gap;  ///< Infinite: there is none.
+  SolidClearance gap;  ///< Infinite: there is none.
 };
 
 }  // namespace detail
@@ -97,7 +97,7 @@ struct CollisionChecker::Impl {
   detail::NearestPair nearest();
   /// `still`: two of the robot's own shapes in the frame they share, so that the answer is the same digit for digit
   /// wherever they are.
-  detail::SolidGap gap_of(const detail::Candidate& pair, double bound, bool still = false);
+  detail::SolidClearance gap_of(const detail::Candidate& pair, double bound, bool still = false);
   double box_bound(const detail::Candidate& pair, bool still = false);
   /// A gap of two still shapes, as the last place() puts it into the world.
   void to_world(detail::NearestPair& nearest) const;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "collision/checker/checker_impl.hpp"
-#include "collision/narrow/convex_gap.hpp"
+#include "collision/narrow/convex_clearance.hpp"
 
 namespace mmgrasp {
 
@@ -47,7 +47,7 @@ struct SeenBox {
     T = to_float(box);
     for (int k = 0; k < 3; ++k) half[k] = static_cast<float>(solid.box_half[k]);
   }
-  float slack(const detail::BallCover& cover) const {
+  float slack(const detail::SphereCover& cover) const {
     return slack_of(T, cover.extent(), std::max({half[0], half[1], half[2]}));
   }
   FloatRigid T;
@@ -55,14 +55,14 @@ struct SeenBox {
 };
 
 // Of all levels.
-std::array<detail::CoverView, detail::BodyBounds::kLevels> views(const detail::CoverLevels& covers) {
-  std::array<detail::CoverView, detail::BodyBounds::kLevels> out;
+std::array<detail::CoverView, detail::BoundingVolumes::kLevels> views(const detail::CoverLevels& covers) {
+  std::array<detail::CoverView, detail::BoundingVolumes::kLevels> out;
   for (std::size_t i = 0; i < covers.size(); ++i) out[i] = covers[i].view();
   return out;
 }
 
 // A body's cover, placed at T_a, against the bounding box of the other one.
-CoverAnswer cover_against_box(const detail::BallCover& cover, const Rigid& T_a, const detail::Solid& other,
+CoverAnswer cover_against_box(const detail::SphereCover& cover, const Rigid& T_a, const detail::Solid& other,
                               const Rigid& T_b, double grow, bool seek_overlap) {
   const SeenBox box(T_a, other, T_b);
   return detail::kernels().cover_box(cover.view(), box.T, box.half, static_cast<float>(grow), box.slack(cover),

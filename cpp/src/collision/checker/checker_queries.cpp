@@ -81,10 +81,10 @@ void CollisionChecker::Impl::gather_near(int first, int last) {
   };
   if (packs.flat()) {
     const int count = packs.count();
-    masks.resize(static_cast<std::size_t>(count * (last - first)));
+    masks.resize(count * (last - first));
     detail::kernels().balls_meet(packs.data(), count, placed_balls().from(first), last - first, masks.data(), nullptr);
     for (int b = first; b < last; ++b) {
-      for (int k = 0; k < count; ++k) add(b, k, masks[static_cast<std::size_t>((b - first) * count + k)]);
+      for (int k = 0; k < count; ++k) add(b, k, masks[(b - first) * count + k]);
     }
     return;
   }
@@ -103,7 +103,7 @@ void CollisionChecker::Impl::gather_near(int first, int last) {
 bool CollisionChecker::Impl::body_is_free(int body, double motion, bool& proven) {
   const detail::ScenePacks& packs = snapshot->packs;
   const detail::BallRows ball = placed_balls().from(body);
-  const int s = plan->moving[static_cast<std::size_t>(body)];
+  const int s = plan->moving[body];
   // A body that moves far is only looked at where it is: what its ball, grown by the motion, meets would hardly ever
   // turn out to stay clear.
   const bool far = motion > kGapReach;
@@ -158,7 +158,7 @@ bool CollisionChecker::Impl::find_scene_hit(const std::vector<int>& shapes, int 
   gather_near(first_ball, first_ball + count);
   unsure.clear();
   for (const Near& pair : near) {
-    const int s = shapes[static_cast<std::size_t>(pair.shape - first_ball)];
+    const int s = shapes[pair.shape - first_ball];
     const CoverAnswer answer = scene_balls(s, pair.other);
     if (answer == detail::kOverlap) return found(s, pair.other);
     if (answer == detail::kMaybe) unsure.push_back({s, pair.other});
@@ -168,7 +168,7 @@ bool CollisionChecker::Impl::find_scene_hit(const std::vector<int>& shapes, int 
   }
   for (int i = snapshot->packed; i < static_cast<int>(snapshot->scene.size()); ++i) {
     for (int k = 0; k < count; ++k) {
-      const int s = shapes[static_cast<std::size_t>(k)];
+      const int s = shapes[k];
       if (hits_scene(s, i)) return found(s, i);
     }
   }

@@ -23,7 +23,7 @@ std::vector<Contact> CollisionChecker::contacts(const Eigen::VectorXd& q) {
     for (const auto& [shapes, count] :
          {std::pair(&plan.fixed, plan.fixed_in_scene), {&plan.moving, plan.moving_in_scene}}) {
       for (int k = 0; k < count; ++k) {
-        const int s = (*shapes)[static_cast<std::size_t>(k)];
+        const int s = (*shapes)[k];
         for (int i = 0; i < static_cast<int>(snapshot.scene.size()); ++i) {
           if (impl_->hits_scene(s, i)) found.insert({true, snapshot.shapes[s].body, snapshot.scene[i].object});
         }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "collision/checker/bodies.hpp"
 #include "collision/narrow/narrow.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/core/random.hpp"
@@ -45,7 +45,8 @@ Eigen::VectorXd random_values(const Robot& robot, Rng& rng) {
     if (joint.value_index < 0) continue;
     for (int k = 0; k < joint.value_count(); ++k) {
       const bool bounded = std::isfinite(joint.lower) && std::isfinite(joint.upper) && joint.value_count() == 1;
-      values[joint.value_index + k] = bounded ? rng.uniform(joint.lower, joint.upper) : rng.uniform(-detail::kPi, detail::kPi);
+      values[joint.value_index + k] =
+          bounded ? rng.uniform(joint.lower, joint.upper) : rng.uniform(-detail::kPi, detail::kPi);
     }
   }
   return values;

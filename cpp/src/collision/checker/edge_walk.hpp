@@ -6,6 +6,13 @@
 
 namespace mmgrasp {
 
+namespace detail {
+
+/// No edge is cut into more pieces.
+constexpr double kMaxPieces = 1e9;
+
+}  // namespace detail
+
 /// The inner checks of a straight edge cut into equal pieces; both ends are known to be within limits. The answer is
 /// that of looking at every check. Intervals are halved, far checks first; in the middle of an interval every body
 /// whose balls stay farther from all others than it can move up to the interval's ends is proven free in all of it and

@@ -53,7 +53,7 @@ double rate_about(const FrameStep& step, const Region& region) {
 
 // rates[i]: how fast the body in `ball` moves about joint path[i]; the path leads from its frame up to joint `top` - 1
 // and down from joint `top` on.
-std::vector<double> rates_on_path(const std::vector<const FrameStep*>& path, std::size_t top, const FrameBall& ball,
+std::vector<double> rates_on_path(const std::vector<const FrameStep*>& path, std::size_t top, const FrameSphere& ball,
                                   const Eigen::VectorXd& largest) {
   std::vector<double> rates;
   Region region{Eigen::Vector3d(ball.p), ball.radius};
@@ -208,7 +208,7 @@ void MovingFrames::add_rates(int frame, double radius, int against, const Eigen:
   rates[2] += radius;
 }
 
-void MovingFrames::add_closing_rates(const FrameBall& a, const FrameBall& b, const Eigen::VectorXd& largest,
+void MovingFrames::add_closing_rates(const FrameSphere& a, const FrameSphere& b, const Eigen::VectorXd& largest,
                                      Eigen::VectorXd& rates) const {
   const int common = common_frame(a.frame, b.frame);
   std::vector<const FrameStep*> path, down;

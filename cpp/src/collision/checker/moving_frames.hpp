@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "collision/broad/kernels.hpp"
+#include "collision/kernels/kernels.hpp"
 #include "collision/narrow/convex.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
 
@@ -35,7 +35,7 @@ class MMGRASP_EXPORT MovingFrames {
   void add_rates(int frame, double radius, int against, const Eigen::VectorXd& largest, Eigen::VectorXd& rates) const;
   /// Bound on how fast the bodies within two balls can close a gap between them, likewise. Turning about a joint
   /// between them closes it no faster than the nearer of the two can move: either may be taken for the one that turns.
-  void add_closing_rates(const FrameBall& a, const FrameBall& b, const Eigen::VectorXd& largest,
+  void add_closing_rates(const FrameSphere& a, const FrameSphere& b, const Eigen::VectorXd& largest,
                          Eigen::VectorXd& rates) const;
 
  private:

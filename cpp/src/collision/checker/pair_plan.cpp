@@ -139,12 +139,12 @@ void PairPlan::block_pairs() {
     const auto [ball, other] = std::minmax(varying[i].ball_a, varying[i].ball_b);
     const auto [block, fresh] = lanes.try_emplace({ball, other / kLanes * kLanes});
     if (fresh) block->second.fill(-1);
-    block->second[static_cast<std::size_t>(other % kLanes)] = static_cast<int>(i);
+    block->second[other % kLanes] = static_cast<int>(i);
   }
   for (const auto& [at, pairs] : lanes) {
     PairBlock block{at.first, at.second, 0};
     for (int lane = 0; lane < kLanes; ++lane) {
-      const int pair = pairs[static_cast<std::size_t>(lane)];
+      const int pair = pairs[lane];
       if (pair >= 0) block.lanes = static_cast<std::uint8_t>(block.lanes | 1u << lane);
       pair_of.push_back(pair);
     }

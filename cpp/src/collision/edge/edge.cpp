@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "collision/checker/bodies.hpp"
+#include "collision/checker/edge_walk.hpp"
 #include "collision/checker/moving_frames.hpp"
 #include "collision/edge/edge_continuous.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -122,7 +123,7 @@ std::vector<char> are_free(const CollisionChecker& checker, const Eigen::MatrixX
     Eigen::VectorXd q(Q.rows());
     for (Eigen::Index i = first; i < std::min(first + kBlock, Q.cols()); ++i) {
       q = Q.col(i);
-      free[static_cast<std::size_t>(i)] = checkers[static_cast<std::size_t>(worker)].is_free(q);
+      free[i] = checkers[worker].is_free(q);
     }
   });
   return free;

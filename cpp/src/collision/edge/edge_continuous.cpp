@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "collision/checker/checker_access.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp {
 

@@ -4,9 +4,6 @@
 
 namespace mmgrasp::detail {
 
-/// No edge is cut into more pieces.
-constexpr double kMaxPieces = 1e9;
-
 /// check_edge by conservative advancement (options.continuous); lengths and numbers have been checked.
 EdgeResult advance_edge(CollisionChecker& checker, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
                         const EdgeOptions& options);

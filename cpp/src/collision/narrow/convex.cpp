@@ -1,12 +1,11 @@
 #include "collision/narrow/convex.hpp"
 
-
 #if defined(__SSE2__)
 #include <emmintrin.h>
 #endif
 
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "collision/narrow/difference.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 

@@ -1,8 +1,7 @@
 #pragma once
 
-
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "collision/narrow/solid.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 
@@ -17,9 +16,9 @@ MMGRASP_EXPORT bool meshes_collide(const Solid& a, const Rigid& T_a, const Dista
                                    const Rigid& T_b, double more = 0, bool hulls_meet = false);
 
 /// distance = normal . (on_a - on_b).
-struct SolidGap {
-  double distance = kInfinity;  ///< [m]; negative when they overlap.
-  Eigen::Vector3d on_a = Eigen::Vector3d::Zero();             ///< World frame.
+struct SolidClearance {
+  double distance = kInfinity;                     ///< [m]; negative when they overlap.
+  Eigen::Vector3d on_a = Eigen::Vector3d::Zero();  ///< World frame.
   Eigen::Vector3d on_b = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< Unit, world frame, the way a goes to get away from b.
 };
@@ -27,8 +26,8 @@ struct SolidGap {
 /// Gap between the two, margins not counted. Exact below `bound`; otherwise the distance is infinite. Overlap: the
 /// exact depth for convex bodies; for meshes that of their hulls (bounding boxes where there is no hull), which no
 /// shift needs to exceed; for voxels that of the deepest cell.
-MMGRASP_EXPORT SolidGap solids_distance(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b,
-                                        double bound = kInfinity);
+MMGRASP_EXPORT SolidClearance solids_distance(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b,
+                                              double bound = kInfinity);
 
 /// A number the distance is not below, from bounding boxes; cheap. Minus infinity for planes and where boxes overlap.
 double boxes_gap(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b);

@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "mmgrasp/core/detail/numbers.hpp"
-#include "collision/broad/distance_field.hpp"
+#include "collision/narrow/distance_field.hpp"
 #include "collision/narrow/narrow.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 

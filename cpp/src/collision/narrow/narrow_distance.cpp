@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "collision/narrow/narrow.hpp"
-#include "collision/narrow/tree_gap.hpp"
+#include "collision/narrow/tree_clearance.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 
@@ -87,7 +87,7 @@ ConvexGap deepest_cell(const Solid& cloud, const Convex& b, const Rigid& b_in_cl
       const Convex cell = cloud.piece(i);
       ConvexGap gap;
       Eigen::Vector3d axis = Eigen::Vector3d::Zero();
-      switch (convex_gap(cell, b, b_in_cloud, deepest.distance, axis, gap)) {
+      switch (convex_clearance(cell, b, b_in_cloud, deepest.distance, axis, gap)) {
         case GapKind::beyond:
           break;
         case GapKind::apart:
@@ -119,7 +119,7 @@ bool find_gap(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
   ConvexGap outer;  // of the bodies, or of their hulls: then it comes from below
   GapKind kind = GapKind::overlapping;
-  if (bounded) kind = convex_gap(a.core, b.core, b_in_a, bound, axis, outer);
+  if (bounded) kind = convex_clearance(a.core, b.core, b_in_a, bound, axis, outer);
   if (kind == GapKind::beyond) return false;
   if (!trees) {
     gap = kind == GapKind::apart ? outer : convex_penetration(a.core, b.core, b_in_a);
@@ -136,7 +136,7 @@ bool find_gap(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b
   // The surfaces lie at most their dents behind their hulls, so no search beyond that.
   const bool dents_known = bounded && (!is_tree(a) || a.has_inner) && (!is_tree(b) || b.has_inner);
   if (dents_known) bound = std::min(bound, outer.distance + a.dent + b.dent + 1e-9);
-  return bound > 0 && tree_gap(a, b, b_in_a, bound, axis, gap);
+  return bound > 0 && tree_clearance(a, b, b_in_a, bound, axis, gap);
 }
 
 }  // namespace
@@ -149,11 +149,11 @@ double boxes_gap(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& 
   return gap > 0 ? gap : -kInfinity;
 }
 
-SolidGap solids_distance(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double bound) {
-  SolidGap out;
+SolidClearance solids_distance(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double bound) {
+  SolidClearance out;
   if (a.never_collides() || b.never_collides()) return out;
   if (a.kind != SolidKind::plane && b.kind == SolidKind::plane) {
-    const SolidGap gap = solids_distance(b, T_b, a, T_a, bound);
+    const SolidClearance gap = solids_distance(b, T_b, a, T_a, bound);
     return {gap.distance, gap.on_b, gap.on_a, -gap.normal};
   }
   ConvexGap gap;

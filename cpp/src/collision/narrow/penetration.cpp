@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
-#include "mmgrasp/core/detail/numbers.hpp"
-#include "collision/narrow/convex_gap.hpp"
+#include "collision/narrow/convex_clearance.hpp"
 #include "collision/narrow/simplex.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 

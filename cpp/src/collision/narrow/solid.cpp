@@ -4,8 +4,8 @@
 #include <numeric>
 
 #include "mmgrasp/core/detail/numbers.hpp"
-#include "mmgrasp/geometry/detail/mesh_topology.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/geometry/detail/mesh_topology.hpp"
 
 namespace mmgrasp::detail {
 

@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "collision/broad/distance_field.hpp"
 #include "collision/narrow/box_tree.hpp"
 #include "collision/narrow/convex.hpp"
+#include "collision/narrow/distance_field.hpp"
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/geometry/shape.hpp"
 

@@ -9,8 +9,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/detail/crc32.hpp"
+#include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp::detail {
 

@@ -7,16 +7,11 @@
 #include <string_view>
 #include <vector>
 
+#include "geometry/mesh_cleaning.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
 
 namespace mmgrasp::detail {
-
-/// What a file says, before any cleaning.
-struct RawMesh {
-  std::vector<Eigen::Vector3d> vertices;
-  std::vector<std::array<int, 3>> triangles;
-};
 
 [[noreturn]] inline void mesh_error(const std::string& path, const std::string& reason) {
   throw IoError("mesh file '" + path + "': " + reason);

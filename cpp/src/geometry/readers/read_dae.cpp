@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 #include <assimp/Importer.hpp>
 
-#include "mmgrasp/core/detail/xml_markup.hpp"
 #include "geometry/readers/mesh_readers.hpp"
+#include "mmgrasp/core/detail/xml_markup.hpp"
 
 namespace mmgrasp::detail {
 

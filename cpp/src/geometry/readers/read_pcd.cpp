@@ -3,9 +3,9 @@
 #include <cstring>
 #include <limits>
 
-#include "mmgrasp/core/detail/file_content.hpp"
 #include "geometry/readers/mesh_readers.hpp"
 #include "geometry/readers/pcd_reader.hpp"
+#include "mmgrasp/core/detail/file_content.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
@@ -214,7 +214,7 @@ class PcdReader {
       double value[4] = {};
       for (int k = 0; k < 4; ++k) {
         if (wanted_[k] == nullptr) continue;
-        const std::string_view word = words[static_cast<std::size_t>(wanted_[k]->column)];
+        const std::string_view word = words[wanted_[k]->column];
         if (!detail::parse_number(word, value[k])) {
           fail("line " + std::to_string(line_) + ": '" + std::string(word.substr(0, 40)) + "' is no number");
         }

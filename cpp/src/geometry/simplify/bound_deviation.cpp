@@ -2,8 +2,8 @@
 #include <cmath>
 #include <queue>
 
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "geometry/triangle_tree.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/simplify_mesh.hpp"
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "geometry/simplify/decimate_outwards.hpp"
 #include "geometry/triangle_tree.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {

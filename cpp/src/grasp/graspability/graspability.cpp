@@ -4,14 +4,13 @@
 #include <cmath>
 #include <memory>
 
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "grasp/graspability/graspability_layers.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 
 namespace mmgrasp {
 namespace {
-
 
 /// One closing direction, opening and fingertip height.
 struct Item {

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "grasp/graspability/graspability_layers.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 namespace {

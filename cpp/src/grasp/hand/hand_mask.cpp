@@ -4,13 +4,12 @@
 #include <cmath>
 #include <string>
 
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "grasp/hand/row_spans.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
 namespace {
-
 
 /// A rectangle in the hand's frame: closing axis u, across it v.
 struct HandRectangle {

@@ -1,12 +1,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "grasp/sampling/contact_pairs.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 namespace {
-
 
 /// Pad positions along a free direction of half length `half`, the middle first. The outermost ones put a pad flush
 /// with the edge, or half a pad's way out when the part is shorter than the pad: fingertips must not always reach

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
 
@@ -70,8 +70,8 @@ class Placer {
   bool fits_anywhere() {
     for (const RestingPose& rest : rests_) {
       for (int i = 0; i < 36; ++i) {
-        const Pose T = Eigen::Translation3d(Vector3d::Zero()) * Eigen::AngleAxisd(i * detail::kPi / 36, Vector3d::UnitZ()) *
-                       rest.T_floor_part;
+        const Pose T = Eigen::Translation3d(Vector3d::Zero()) *
+                       Eigen::AngleAxisd(i * detail::kPi / 36, Vector3d::UnitZ()) * rest.T_floor_part;
         if (room(bounds_of(part_, T)).minCoeff() >= 0) return true;
       }
     }
@@ -114,8 +114,8 @@ class Placer {
   std::optional<PlacedPart> drop(bool on_others) {
     PlacedPart out;
     out.resting_pose = draw_rest();
-    Pose T =
-        Pose(Eigen::AngleAxisd(rng_.uniform(-detail::kPi, detail::kPi), Vector3d::UnitZ())) * rests_[out.resting_pose].T_floor_part;
+    Pose T = Pose(Eigen::AngleAxisd(rng_.uniform(-detail::kPi, detail::kPi), Vector3d::UnitZ())) *
+             rests_[out.resting_pose].T_floor_part;
     const double rx = rng_.uniform(), ry = rng_.uniform();
     const Eigen::AlignedBox3d box = bounds_of(part_, T);
     const Vector2d free = room(box);

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <map>
 
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "grasp/sampling/contact_pairs.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/grasp/grasp.hpp"
 
@@ -12,7 +12,6 @@ namespace {
 
 using detail::ContactPair;
 using detail::ContactPairs;
-
 
 struct Candidate {
   Grasp grasp;

@@ -1,13 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "grasp/sampling/contact_pairs.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/random.hpp"
 
 namespace mmgrasp::detail {
 namespace {
-
 
 struct Triangle {
   Eigen::Vector3d a, ab, ac, normal;  ///< normal: unit, by the winding.

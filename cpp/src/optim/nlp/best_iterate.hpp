@@ -1,10 +1,10 @@
 #pragma once
 
-#include <chrono>
 #include <cmath>
 #include <exception>
 
 #include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/optim/nlp_solver.hpp"
 
 namespace mmgrasp::detail {
@@ -32,9 +32,8 @@ class BestIterate {
 /// When a solve has to end, and whether a callback wanted it to.
 class SolveClock {
  public:
-  SolveClock(double time_limit, const Monitor& monitor)
-      : monitor_(monitor), start_(std::chrono::steady_clock::now()), limit_(time_limit) {}
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  SolveClock(double time_limit, const Monitor& monitor) : monitor_(monitor), limit_(time_limit) {}
+  double seconds() const { return stopwatch_.seconds(); }
   bool stopped() const { return monitor_.stopped(); }
   bool late() const { return seconds() > limit_; }
   bool over() const { return stopped() || late() || error; }
@@ -42,7 +41,7 @@ class SolveClock {
 
  private:
   const Monitor& monitor_;
-  std::chrono::steady_clock::time_point start_;
+  Stopwatch stopwatch_;
   double limit_;
 };
 

@@ -11,8 +11,8 @@ namespace {
 Eigen::VectorXd outside(const Eigen::VectorXd& x, const Bounds& bounds) {
   Eigen::VectorXd result(x.size());
   for (Eigen::Index i = 0; i < x.size(); ++i) {
-    result[i] = std::isfinite(x[i]) ? std::max({0.0, bounds.lower[i] - x[i], x[i] - bounds.upper[i]})
-                                    : detail::kInfinity;
+    result[i] =
+        std::isfinite(x[i]) ? std::max({0.0, bounds.lower[i] - x[i], x[i] - bounds.upper[i]}) : detail::kInfinity;
   }
   return result;
 }

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "optim/nlp/handoff.hpp"
+#include "optim/nlp/nearest_kept.hpp"
 #include "optim/nlp/nlp_backends.hpp"
-#include "optim/set_cover/nearest_kept.hpp"
 
 namespace mmgrasp::detail {
 namespace {

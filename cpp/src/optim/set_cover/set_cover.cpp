@@ -1,11 +1,11 @@
 #include "mmgrasp/optim/set_cover.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <string>
 
+#include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "optim/set_cover/set_cover_branching.hpp"
 #include "optim/set_cover/set_cover_prices.hpp"
@@ -20,7 +20,7 @@ constexpr double kShrunk = 0.8;         // Prices are sought again when no more 
 constexpr double kLeastSeconds = 1e-3;  // For CBC, however late it is.
 
 double cost_of(const SetCoverProblem& problem, int set) {
-  return problem.costs.empty() ? 1.0 : problem.costs[static_cast<std::size_t>(set)];
+  return problem.costs.empty() ? 1.0 : problem.costs[set];
 }
 
 double cost_of(const SetCoverProblem& problem, const std::vector<int>& sets) {
@@ -38,11 +38,11 @@ double size_of(const SetCoverProblem& problem) {
 std::vector<int> elements_left_out(const SetCoverProblem& problem, const std::vector<int>& sets) {
   std::vector<bool> covered(static_cast<std::size_t>(problem.elements), false);
   for (int s : sets) {
-    for (int e : problem.sets[static_cast<std::size_t>(s)]) covered[static_cast<std::size_t>(e)] = true;
+    for (int e : problem.sets[s]) covered[e] = true;
   }
   std::vector<int> missing;
   for (int e = 0; e < problem.elements; ++e) {
-    if (!covered[static_cast<std::size_t>(e)]) missing.push_back(e);
+    if (!covered[e]) missing.push_back(e);
   }
   return missing;
 }
@@ -64,12 +64,11 @@ Part part_of(const SetCoverProblem& problem, const std::vector<int>& sets, const
   Part part;
   part.problem.elements = static_cast<int>(elements.size());
   std::vector<int> new_index(static_cast<std::size_t>(problem.elements), -1);
-  for (std::size_t i = 0; i < elements.size(); ++i)
-    new_index[static_cast<std::size_t>(elements[i])] = static_cast<int>(i);
+  for (std::size_t i = 0; i < elements.size(); ++i) new_index[elements[i]] = static_cast<int>(i);
   for (int s : sets) {
     std::vector<int> kept;
-    for (int e : problem.sets[static_cast<std::size_t>(s)]) {
-      if (new_index[static_cast<std::size_t>(e)] >= 0) kept.push_back(new_index[static_cast<std::size_t>(e)]);
+    for (int e : problem.sets[s]) {
+      if (new_index[e] >= 0) kept.push_back(new_index[e]);
     }
     std::sort(kept.begin(), kept.end());
     kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
@@ -86,27 +85,25 @@ std::vector<std::vector<int>> components(const SetCoverProblem& problem) {
   std::vector<int> root(static_cast<std::size_t>(problem.elements));
   std::iota(root.begin(), root.end(), 0);
   const auto find = [&root](int e) {
-    while (root[static_cast<std::size_t>(e)] != e) {
-      int& up = root[static_cast<std::size_t>(e)];
-      up = root[static_cast<std::size_t>(up)];
+    while (root[e] != e) {
+      int& up = root[e];
+      up = root[up];
       e = up;
     }
     return e;
   };
   for (const auto& set : problem.sets) {
-    for (int e : set) root[static_cast<std::size_t>(find(e))] = find(set.front());
+    for (int e : set) root[find(e)] = find(set.front());
   }
   std::vector<std::vector<int>> lists(static_cast<std::size_t>(problem.elements));
-  for (int e = 0; e < problem.elements; ++e) lists[static_cast<std::size_t>(find(e))].push_back(e);
+  for (int e = 0; e < problem.elements; ++e) lists[find(e)].push_back(e);
   lists.erase(std::remove_if(lists.begin(), lists.end(), [](const auto& list) { return list.empty(); }), lists.end());
   return lists;
 }
 
 class Solver {
  public:
-  explicit Solver(double time_limit)
-      : end_(Clock::now() +
-             std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(time_limit, 1e6)))) {}
+  explicit Solver(double time_limit) : time_limit_(std::min(time_limit, 1e6)) {}
 
   struct Answer {
     std::vector<int> chosen;
@@ -126,7 +123,7 @@ class Solver {
       const Part part = part_of(rest.problem, all, elements);
       const Answer one = solve_connected(part.problem);
       for (int s : one.chosen) {
-        answer.chosen.push_back(rest.sets[static_cast<std::size_t>(part.sets[static_cast<std::size_t>(s)])]);
+        answer.chosen.push_back(rest.sets[part.sets[s]]);
       }
       answer.bound += one.bound;
     }
@@ -134,11 +131,7 @@ class Solver {
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
-  double seconds_left() const {
-    return std::max(kLeastSeconds, std::chrono::duration<double>(end_ - Clock::now()).count());
-  }
+  double seconds_left() const { return std::max(kLeastSeconds, time_limit_.seconds_left()); }
 
   Answer solve_connected(const SetCoverProblem& problem) {
     const int rounds = static_cast<int>(kSearchWork / (1000.0 + size_of(problem)));
@@ -153,8 +146,7 @@ class Solver {
     std::vector<int> useful, elements(static_cast<std::size_t>(problem.elements));
     std::iota(elements.begin(), elements.end(), 0);
     for (int s = 0; s < static_cast<int>(problem.sets.size()); ++s) {
-      if (bound + std::max(0.0, reduced[static_cast<std::size_t>(s)]) <= wanted + 1e-9 * priced.cost)
-        useful.push_back(s);
+      if (bound + std::max(0.0, reduced[s]) <= wanted + 1e-9 * priced.cost) useful.push_back(s);
     }
     if (!elements_left_out(problem, useful).empty()) return proven(answer, priced.cost);
     const Part part = part_of(problem, useful, elements);
@@ -176,7 +168,7 @@ class Solver {
 
   static Answer lifted(const Answer& inner, const std::vector<int>& sets) {
     Answer answer{{}, inner.bound};
-    for (int s : inner.chosen) answer.chosen.push_back(sets[static_cast<std::size_t>(s)]);
+    for (int s : inner.chosen) answer.chosen.push_back(sets[s]);
     return answer;
   }
 
@@ -188,7 +180,7 @@ class Solver {
     return best;
   }
 
-  Clock::time_point end_;
+  detail::TimeLimit time_limit_;
 };
 
 }  // namespace

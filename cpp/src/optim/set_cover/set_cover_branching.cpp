@@ -3,11 +3,11 @@
 #include <coin/Cbc_C_Interface.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <mutex>
 
+#include "mmgrasp/core/detail/stopwatch.hpp"
 #include "optim/set_cover/set_cover_prices.hpp"
 
 namespace mmgrasp::detail {
@@ -24,7 +24,7 @@ std::mutex& cbc_mutex() {
 bool covers(const SetCoverProblem& problem, const std::vector<int>& sets) {
   std::vector<bool> covered(static_cast<std::size_t>(problem.elements), false);
   for (int s : sets) {
-    for (int e : problem.sets[static_cast<std::size_t>(s)]) covered[static_cast<std::size_t>(e)] = true;
+    for (int e : problem.sets[s]) covered[e] = true;
   }
   return std::all_of(covered.begin(), covered.end(), [](bool c) { return c; });
 }
@@ -87,11 +87,11 @@ BranchAndBoundAnswer run_cbc(const SetCoverProblem& problem, double known_cost, 
 
 BranchAndBoundAnswer branch_and_bound(const SetCoverProblem& problem, double known_cost, double time_limit) {
   const std::lock_guard<std::mutex> lock(cbc_mutex());
-  const auto start = std::chrono::steady_clock::now();
+  const TimeLimit limit(time_limit);
   // Cutting planes decide sparse problems such as floors full of trays and only cost time on dense ones: nodes are
   // cheap without them, so some are tried first.
   BranchAndBoundAnswer answer = run_cbc(problem, known_cost, false, kNodesWithoutCuts, time_limit);
-  const double left = time_limit - std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double left = limit.seconds_left();
   if (answer.proven || answer.none_cheaper || left <= 0) return answer;
   BranchAndBoundAnswer second = run_cbc(problem, known_cost, true, -1, left);
   second.lower_bound = std::max(second.lower_bound, answer.lower_bound);

@@ -22,7 +22,7 @@ using Lists = std::vector<std::vector<int>>;
 Lists sets_by_element(const SetCoverProblem& problem) {
   Lists sets_of(static_cast<std::size_t>(problem.elements));
   for (std::size_t s = 0; s < problem.sets.size(); ++s) {
-    for (int e : problem.sets[s]) sets_of[static_cast<std::size_t>(e)].push_back(static_cast<int>(s));
+    for (int e : problem.sets[s]) sets_of[e].push_back(static_cast<int>(s));
   }
   return sets_of;
 }
@@ -74,26 +74,24 @@ class Greedy {
 
   void take(int set, const std::vector<double>& prices, std::vector<int>& chosen) {
     chosen.push_back(set);
-    for (int e : problem_.sets[static_cast<std::size_t>(set)]) {
+    for (int e : problem_.sets[set]) {
       const auto i = static_cast<std::size_t>(e);
       if (times_[i]++ > 0) continue;
       --open_;
       for (int other : sets_of_[i]) {
-        --missing_[static_cast<std::size_t>(other)];
-        above_[static_cast<std::size_t>(other)] += prices[i];
+        --missing_[other];
+        above_[other] += prices[i];
       }
     }
   }
 
   void drop_superfluous(std::vector<int>& chosen) {
-    std::stable_sort(chosen.begin(), chosen.end(), [&](int a, int b) {
-      return problem_.costs[static_cast<std::size_t>(a)] > problem_.costs[static_cast<std::size_t>(b)];
-    });
+    std::stable_sort(chosen.begin(), chosen.end(), [&](int a, int b) { return problem_.costs[a] > problem_.costs[b]; });
     std::vector<int> kept;
     for (int s : chosen) {
-      const auto& set = problem_.sets[static_cast<std::size_t>(s)];
-      if (std::all_of(set.begin(), set.end(), [&](int e) { return times_[static_cast<std::size_t>(e)] > 1; })) {
-        for (int e : set) --times_[static_cast<std::size_t>(e)];
+      const auto& set = problem_.sets[s];
+      if (std::all_of(set.begin(), set.end(), [&](int e) { return times_[e] > 1; })) {
+        for (int e : set) --times_[e];
       } else {
         kept.push_back(s);
       }
@@ -111,7 +109,7 @@ class Greedy {
 
 double cost_of(const SetCoverProblem& problem, const std::vector<int>& chosen) {
   double sum = 0;
-  for (int s : chosen) sum += problem.costs[static_cast<std::size_t>(s)];
+  for (int s : chosen) sum += problem.costs[s];
   return sum;
 }
 
@@ -124,7 +122,7 @@ bool all_integral(const std::vector<double>& costs) {
 std::vector<double> reduced_costs(const SetCoverProblem& problem, const std::vector<double>& prices) {
   std::vector<double> reduced = problem.costs;
   for (std::size_t s = 0; s < problem.sets.size(); ++s) {
-    for (int e : problem.sets[s]) reduced[s] -= prices[static_cast<std::size_t>(e)];
+    for (int e : problem.sets[s]) reduced[s] -= prices[e];
   }
   return reduced;
 }
@@ -136,8 +134,8 @@ double bound_by_prices(const SetCoverProblem& problem, const std::vector<double>
   for (std::size_t s = 0; s < problem.sets.size(); ++s) {
     double above = problem.costs[s], size = problem.costs[s];
     for (int e : problem.sets[s]) {
-      above -= prices[static_cast<std::size_t>(e)];
-      size += prices[static_cast<std::size_t>(e)];
+      above -= prices[e];
+      size += prices[e];
     }
     if (above < 0) sum += above;
     terms += size;
@@ -184,7 +182,7 @@ PricedCover price_set_cover(const SetCoverProblem& problem, int max_steps) {
   std::vector<double> prices(elements, kInfinity);
   for (std::size_t s = 0; s < problem.sets.size(); ++s) {
     for (int e : problem.sets[s]) {
-      double& price = prices[static_cast<std::size_t>(e)];
+      double& price = prices[e];
       price = std::min(price, problem.costs[s] / static_cast<double>(problem.sets[s].size()));
     }
   }
@@ -200,7 +198,7 @@ PricedCover price_set_cover(const SetCoverProblem& problem, int max_steps) {
     for (std::size_t s = 0; s < problem.sets.size(); ++s) {
       if (!(reduced[s] < 0)) continue;
       bound += reduced[s];
-      for (int e : problem.sets[s]) open[static_cast<std::size_t>(e)] -= 1;
+      for (int e : problem.sets[s]) open[e] -= 1;
     }
     if (bound > best.bound + 1e-6 * std::max(1.0, std::abs(best.bound))) since = 0;
     if (bound > best.bound) {

@@ -25,8 +25,7 @@ class Sharing {
   SharedTours run() {
     SharedTours result;
     result.orders = n_ <= kExactStops ? exact() : good();
-    for (int robot = 0; robot < robots_; ++robot)
-      result.durations.push_back(duration(robot, result.orders[static_cast<std::size_t>(robot)]));
+    for (int robot = 0; robot < robots_; ++robot) result.durations.push_back(duration(robot, result.orders[robot]));
     result.makespan = *std::max_element(result.durations.begin(), result.durations.end());
     result.lower_bound = n_ <= kExactStops ? result.makespan : std::min(bound(), result.makespan);
     if (!std::isfinite(result.makespan)) {
@@ -43,7 +42,7 @@ class Sharing {
  private:
   int start(int robot) const { return n_ + robot; }
   int goal(int robot) const { return n_ + robots_ + robot; }
-  double service(int stop) const { return stop_[static_cast<std::size_t>(stop)]; }
+  double service(int stop) const { return stop_[stop]; }
 
   double duration(int robot, const std::vector<int>& order) const {
     if (order.empty()) return 0;
@@ -70,7 +69,7 @@ class Sharing {
           const double longest = std::max(so_far[mask ^ own], alone[own]);
           if (longest < with[mask]) {
             with[mask] = longest;
-            share[static_cast<std::size_t>(robot)][mask] = own;
+            share[robot][mask] = own;
           }
           if (own == 0) break;
         }
@@ -80,12 +79,12 @@ class Sharing {
     Orders orders(static_cast<std::size_t>(robots_));
     std::size_t mask = masks - 1;
     for (int robot = robots_ - 1; robot >= 0; --robot) {
-      const std::size_t own = std::isfinite(so_far.back()) ? share[static_cast<std::size_t>(robot)][mask] : mask;
+      const std::size_t own = std::isfinite(so_far.back()) ? share[robot][mask] : mask;
       std::vector<int> stops;
       for (int stop = 0; stop < n_; ++stop) {
         if (own >> stop & 1) stops.push_back(stop);
       }
-      orders[static_cast<std::size_t>(robot)] = ordered(robot, stops);
+      orders[robot] = ordered(robot, stops);
       mask ^= own;
     }
     return orders;
@@ -119,13 +118,12 @@ class Sharing {
     std::vector<int> nodes = stops;
     nodes.push_back(start(robot));
     nodes.push_back(goal(robot));
-    const Eigen::MatrixXd lengths = Eigen::MatrixXd::NullaryExpr(m + 2, m + 2, [&](Eigen::Index i, Eigen::Index j) {
-      return i == j ? 0.0 : drive_(nodes[static_cast<std::size_t>(i)], nodes[static_cast<std::size_t>(j)]);
-    });
+    const Eigen::MatrixXd lengths = Eigen::MatrixXd::NullaryExpr(
+        m + 2, m + 2, [&](Eigen::Index i, Eigen::Index j) { return i == j ? 0.0 : drive_(nodes[i], nodes[j]); });
     const TourResult tour = shortest_visiting_tour(lengths);
     if (tour.order.size() != stops.size()) return stops;
     std::vector<int> order;
-    for (int i : tour.order) order.push_back(stops[static_cast<std::size_t>(i)]);
+    for (int i : tour.order) order.push_back(stops[i]);
     return duration(robot, order) <= duration(robot, stops) ? order : stops;
   }
 
@@ -143,10 +141,10 @@ class Sharing {
       for (int end = 0; end <= n_; ++end) {
         for (int begin = 0; begin <= end; ++begin) {
           const std::vector<int> piece(tour.begin() + begin, tour.begin() + end);
-          const double longest = std::max(best[static_cast<std::size_t>(begin)], duration(robot, piece));
-          if (longest >= with[static_cast<std::size_t>(end)]) continue;
-          with[static_cast<std::size_t>(end)] = longest;
-          cut[static_cast<std::size_t>(robot)][static_cast<std::size_t>(end)] = begin;
+          const double longest = std::max(best[begin], duration(robot, piece));
+          if (longest >= with[end]) continue;
+          with[end] = longest;
+          cut[robot][end] = begin;
         }
       }
       best = std::move(with);
@@ -154,8 +152,8 @@ class Sharing {
     Orders orders(static_cast<std::size_t>(robots_));
     int end = n_;
     for (int robot = robots_ - 1; robot >= 0; --robot) {
-      const int begin = robot == 0 ? 0 : cut[static_cast<std::size_t>(robot)][static_cast<std::size_t>(end)];
-      orders[static_cast<std::size_t>(robot)] = ordered(robot, {tour.begin() + begin, tour.begin() + end});
+      const int begin = robot == 0 ? 0 : cut[robot][end];
+      orders[robot] = ordered(robot, {tour.begin() + begin, tour.begin() + end});
       end = begin;
     }
     while (hand_over(orders)) {
@@ -166,8 +164,7 @@ class Sharing {
   /// The longest robot gives a stop away, or exchanges one, when both are then done before it was.
   bool hand_over(Orders& orders) const {
     std::vector<double> durations;
-    for (int robot = 0; robot < robots_; ++robot)
-      durations.push_back(duration(robot, orders[static_cast<std::size_t>(robot)]));
+    for (int robot = 0; robot < robots_; ++robot) durations.push_back(duration(robot, orders[robot]));
     const auto longest =
         static_cast<std::size_t>(std::max_element(durations.begin(), durations.end()) - durations.begin());
     for (std::size_t i = 0; i < orders[longest].size(); ++i) {
@@ -180,7 +177,7 @@ class Sharing {
             theirs = inserted(static_cast<int>(other), theirs, orders[longest][i]);
           } else {
             mine.erase(mine.begin() + static_cast<std::ptrdiff_t>(i));
-            mine = inserted(static_cast<int>(longest), mine, theirs[static_cast<std::size_t>(k)]);
+            mine = inserted(static_cast<int>(longest), mine, theirs[k]);
             theirs.erase(theirs.begin() + k);
             theirs = inserted(static_cast<int>(other), theirs, orders[longest][i]);
           }

@@ -24,7 +24,7 @@ double spanning_tree(const Eigen::MatrixXd& lengths, const Eigen::VectorXd& pric
   double total = 0;
   Eigen::Index at = 0;
   for (Eigen::Index joined = 1; joined < n; ++joined) {
-    in[static_cast<std::size_t>(at)] = 1;
+    in[at] = 1;
     Eigen::Index next = -1;
     for (Eigen::Index j = 0; j < n; ++j) {
       const auto i = static_cast<std::size_t>(j);
@@ -34,11 +34,11 @@ double spanning_tree(const Eigen::MatrixXd& lengths, const Eigen::VectorXd& pric
         nearest[i] = length;
         from[i] = at;
       }
-      if (next < 0 || nearest[i] < nearest[static_cast<std::size_t>(next)]) next = j;
+      if (next < 0 || nearest[i] < nearest[next]) next = j;
     }
-    total += nearest[static_cast<std::size_t>(next)];
+    total += nearest[next];
     ++degrees(next);
-    ++degrees(from[static_cast<std::size_t>(next)]);
+    ++degrees(from[next]);
     at = next;
   }
   return total;
@@ -91,7 +91,7 @@ double assignment_bound(const Eigen::MatrixXd& lengths, double reached) {
   costs(n - 2, n - 2) = far;
   double total = 0;
   const std::vector<int> column = cheapest_assignment(costs);
-  for (Eigen::Index i = 0; i < n - 1; ++i) total += costs(i, column[static_cast<std::size_t>(i)]);
+  for (Eigen::Index i = 0; i < n - 1; ++i) total += costs(i, column[i]);
   return total;
 }
 

@@ -21,32 +21,31 @@ std::vector<int> cheapest_insertion(const Eigen::MatrixXd& lengths, int n) {
     int before = -1;
   };
   std::vector<int> next(static_cast<std::size_t>(n) + 2, -1);
-  next[static_cast<std::size_t>(n)] = n + 1;
+  next[n] = n + 1;
   std::vector<Gap> best(static_cast<std::size_t>(n));
   std::vector<char> placed(static_cast<std::size_t>(n), 0);
   const auto look = [&](int stop, int before) {
-    const int after = next[static_cast<std::size_t>(before)];
+    const int after = next[before];
     const double extra = lengths(before, stop) + lengths(stop, after) - lengths(before, after);
-    Gap& gap = best[static_cast<std::size_t>(stop)];
+    Gap& gap = best[stop];
     if (extra < gap.extra) gap = {extra, before};
   };
   for (int stop = 0; stop < n; ++stop) look(stop, n);
   for (int round = 0; round < n; ++round) {
     int chosen = -1;
     for (int stop = 0; stop < n; ++stop) {
-      if (placed[static_cast<std::size_t>(stop)]) continue;
-      if (chosen < 0 || best[static_cast<std::size_t>(stop)].extra < best[static_cast<std::size_t>(chosen)].extra)
-        chosen = stop;
+      if (placed[stop]) continue;
+      if (chosen < 0 || best[stop].extra < best[chosen].extra) chosen = stop;
     }
-    const int before = best[static_cast<std::size_t>(chosen)].before;
-    next[static_cast<std::size_t>(chosen)] = next[static_cast<std::size_t>(before)];
-    next[static_cast<std::size_t>(before)] = chosen;
-    placed[static_cast<std::size_t>(chosen)] = 1;
+    const int before = best[chosen].before;
+    next[chosen] = next[before];
+    next[before] = chosen;
+    placed[chosen] = 1;
     for (int stop = 0; stop < n; ++stop) {
-      if (placed[static_cast<std::size_t>(stop)]) continue;
-      if (best[static_cast<std::size_t>(stop)].before == before) {  // that gap is no more
-        best[static_cast<std::size_t>(stop)] = {};
-        for (int at = n; at != n + 1; at = next[static_cast<std::size_t>(at)]) look(stop, at);
+      if (placed[stop]) continue;
+      if (best[stop].before == before) {  // that gap is no more
+        best[stop] = {};
+        for (int at = n; at != n + 1; at = next[at]) look(stop, at);
       } else {
         look(stop, before);
         look(stop, chosen);
@@ -54,8 +53,7 @@ std::vector<int> cheapest_insertion(const Eigen::MatrixXd& lengths, int n) {
     }
   }
   std::vector<int> order;
-  for (int at = next[static_cast<std::size_t>(n)]; at != n + 1; at = next[static_cast<std::size_t>(at)])
-    order.push_back(at);
+  for (int at = next[n]; at != n + 1; at = next[at]) order.push_back(at);
   return order;
 }
 
@@ -86,27 +84,21 @@ class Way {
   }
 
  private:
-  double d(int i, int j) const {
-    return (*lengths_)(at_[static_cast<std::size_t>(i)], at_[static_cast<std::size_t>(j)]);
-  }
+  double d(int i, int j) const { return (*lengths_)(at_[i], at_[j]); }
   int last() const { return static_cast<int>(at_.size()) - 1; }
 
   void sum_up() {
     ahead_.assign(at_.size(), 0);
     back_.assign(at_.size(), 0);
     for (int i = 1; i <= last(); ++i) {
-      ahead_[static_cast<std::size_t>(i)] = ahead_[static_cast<std::size_t>(i - 1)] + d(i - 1, i);
-      back_[static_cast<std::size_t>(i)] = back_[static_cast<std::size_t>(i - 1)] + d(i, i - 1);
+      ahead_[i] = ahead_[i - 1] + d(i - 1, i);
+      back_[i] = back_[i - 1] + d(i, i - 1);
     }
   }
 
   /// Lengths inside positions i..j, driven as they are or the other way round.
-  double inside(int i, int j) const {
-    return ahead_[static_cast<std::size_t>(j)] - ahead_[static_cast<std::size_t>(i)];
-  }
-  double inside_reversed(int i, int j) const {
-    return back_[static_cast<std::size_t>(j)] - back_[static_cast<std::size_t>(i)];
-  }
+  double inside(int i, int j) const { return ahead_[j] - ahead_[i]; }
+  double inside_reversed(int i, int j) const { return back_[j] - back_[i]; }
 
   bool reverse_best() {
     double best = -kGain * (1 + length());

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <string>
 
+#include "mmgrasp/core/detail/near_name.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
-#include "plan/manipulation/common/carry_planner.hpp"
+#include "plan/manipulation/common/manipulation_planner.hpp"
 #include "plan/motion/steered_base.hpp"
 #include "plan/roadmap/roadmap_data.hpp"
-#include "mmgrasp/core/detail/near_name.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -36,7 +36,7 @@ void check_roadmap(const JointGroup& own, const JointGroup& group) {
                                       : "for " + given + ", not for " + wanted));
 }
 
-Outcome outcome_of(const detail::CarryInput& input, bool exhausted, const ManipulationResult& result) {
+Outcome outcome_of(const detail::ManipulationInput& input, bool exhausted, const ManipulationResult& result) {
   if (input.candidates.complete() && input.candidates.found().empty()) {
     const bool any_start = std::any_of(result.grasps.begin(), result.grasps.end(),
                                        [](const GraspReport& report) { return report.start_solutions > 0; });
@@ -81,7 +81,7 @@ void PrmStarMgOptions::check() const {
 }
 
 void ManipulationOptions::check() const {
-  detail::carry_planner(planner);
+  detail::manipulation_planner(planner);
   require(ik_solutions > 0, "ik_solutions", ik_solutions, "must be > 0");
   require(first_grasps >= 0, "first_grasps", first_grasps, "must be >= 0");
   require(time_limit > 0, "time_limit", time_limit, "must be > 0 [s]");
@@ -97,12 +97,12 @@ ManipulationResult plan_manipulation(const ManipulationProblem& problem, const M
   problem.check();
   options.check();
   if (roadmap) check_roadmap(roadmap->group(), problem.group);
-  const detail::CarryPlanner& planner = detail::carry_planner(options.planner);
+  const detail::ManipulationPlanner& planner = detail::manipulation_planner(options.planner);
   ManipulationResult result;
-  detail::CarryClock clock;
-  detail::CarryChecks checks(problem, options.edge, planner.edge_steps, resolve_threads(options.threads));
-  detail::CarryCandidates candidates(problem, options, checks, clock, monitor, result);
-  detail::CarryInput input{problem, options, roadmap, checks, candidates, improved, monitor, clock};
+  detail::Stopwatch clock;
+  detail::TransferChecks checks(problem, options.edge, planner.edge_steps, resolve_threads(options.threads));
+  detail::GraspCandidates candidates(problem, options, checks, clock, monitor, result);
+  detail::ManipulationInput input{problem, options, roadmap, checks, candidates, improved, monitor, clock};
   const bool exhausted = planner.run(input, result);
   result.stats.search_seconds = clock.seconds() - result.stats.ik_seconds;
   for (const GraspReport& report : result.grasps) {

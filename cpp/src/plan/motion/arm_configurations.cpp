@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "mmgrasp/robot/ik_branches.hpp"
 #include "mmgrasp/robot/detail/ik_candidates.hpp"
 #include "mmgrasp/robot/detail/ik_failure.hpp"
+#include "mmgrasp/robot/ik_branches.hpp"
 
 namespace mmgrasp::detail {
 namespace {

@@ -10,8 +10,8 @@ std::string beyond_limits(const JointGroup& group, const Eigen::VectorXd& q) {
   const double beyond = (q - group.upper()).cwiseMax(group.lower() - q).maxCoeff(&worst);
   if (!(beyond > 0)) return "";
   std::ostringstream out;
-  out << group.names()[static_cast<std::size_t>(worst)] << " = " << q[worst] << " is outside of its limits ["
-      << group.lower()[worst] << ", " << group.upper()[worst] << "]";
+  out << group.names()[worst] << " = " << q[worst] << " is outside of its limits [" << group.lower()[worst] << ", "
+      << group.upper()[worst] << "]";
   return out.str();
 }
 

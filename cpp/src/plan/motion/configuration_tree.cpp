@@ -41,7 +41,7 @@ int ConfigurationTree::nearest(const Eigen::VectorXd& q) const {
     for (Eigen::Index i = 0; i < size_; ++i) {
       const float value = static_cast<float>(q[i]);
       const float* entry = row + i * kRow;
-      if (wraps_[static_cast<std::size_t>(i)]) {
+      if (wraps_[i]) {
         for (int k = 0; k < kRow; ++k) {
           const float apart = std::abs(entry[k] - value);
           const float round = std::abs(kTurn - apart);

@@ -17,7 +17,7 @@ class ConfigurationTree {
   int add(const Eigen::VectorXd& q, int parent);
   /// Squared distance only tells which is nearest, in single precision; of equals the first.
   int nearest(const Eigen::VectorXd& q) const;
-  int parent(int node) const { return parents_[static_cast<std::size_t>(node)]; }
+  int parent(int node) const { return parents_[node]; }
   /// Copied into the caller's storage of the right length.
   void get(int node, Eigen::VectorXd& q) const {
     q = Eigen::Map<const Eigen::VectorXd>(values_.data() + static_cast<std::ptrdiff_t>(node) * size_, size_);

@@ -1,10 +1,10 @@
 #include "mmgrasp/plan/motion.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "plan/motion/beyond_limits.hpp"
@@ -18,17 +18,12 @@
 namespace mmgrasp {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using detail::nearest_turn;
 
 constexpr const char* kOwnPlanner = "rrt_connect";
-constexpr int kAttempts = 4;            // Searches, when paths fail the finer check.
+constexpr int kAttempts = 4;                   // Searches, when paths fail the finer check.
 constexpr double kNearEnds = detail::kPi / 2;  // How far from start and goal joints are mostly drawn [rad or m].
-constexpr double kFiner = 8;            // How many times finer paths are looked at before they are returned.
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+constexpr double kFiner = 8;                   // How many times finer paths are looked at before they are returned.
 
 void check_planner_name(const std::string& name) {
   if (name == kOwnPlanner) return;
@@ -65,7 +60,7 @@ class MotionSearch {
 
   MotionResult run() {
     find_path();
-    result_.stats.seconds = seconds_since(begin_);
+    result_.stats.seconds = stopwatch_.seconds();
     result_.stats.collision_queries = checker_.queries() - queries_before_;
     return std::move(result_);
   }
@@ -107,7 +102,7 @@ class MotionSearch {
   }
 
   double distance(const Eigen::VectorXd& q) const { return (nearest_turn(wraps_, start_, q) - start_).norm(); }
-  double time_left() const { return options_.time_limit - seconds_since(begin_); }
+  double time_left() const { return options_.time_limit - stopwatch_.seconds(); }
 
   bool try_straight_edges() {
     for (const auto& goal : ends_) {
@@ -258,7 +253,7 @@ class MotionSearch {
   const MotionOptions& options_;
   const Monitor& monitor_;
   const bool keeps_improving_;
-  const Clock::time_point begin_ = Clock::now();
+  const detail::Stopwatch stopwatch_;
   const std::size_t queries_before_;
   std::vector<detail::GoalConfiguration> ends_;
   double best_reported_ = detail::kInfinity;

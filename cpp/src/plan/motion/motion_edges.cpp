@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/collision/edge.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "plan/motion/steered_base.hpp"
 #include "plan/motion/turn_drive_turn.hpp"
 
@@ -82,7 +82,7 @@ void MotionEdges::connect(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Wa
 bool MotionEdges::edge_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double finer) {
   target_ = b;
   for (Eigen::Index i = 0; i < target_.size(); ++i) {
-    if (wraps_[static_cast<std::size_t>(i)]) target_[i] = a[i] + shortest_turn(b[i] - a[i]);
+    if (wraps_[i]) target_[i] = a[i] + shortest_turn(b[i] - a[i]);
   }
   if (!steered_) return straight_is_free(a, target_, finer);
   way_.clear();

@@ -1,18 +1,16 @@
 #include "plan/motion/rrt_connect.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "plan/motion/configuration_tree.hpp"
 #include "plan/motion/joint_angles.hpp"
 
 namespace mmgrasp::detail {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 // Of the sampling box's diagonal, when the caller names no range: measured on the problems of docs/methods/plan.md.
 constexpr double kRangeShare = 0.05;
@@ -28,8 +26,7 @@ class Connect {
       : query_(query),
         rng_(query.seed, 2),
         range_(query.range > 0 ? query.range : kRangeShare * (query.upper - query.lower).norm()),
-        deadline_(Clock::now() +
-                  std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(query.time_limit))),
+        time_limit_(query.time_limit),
         trees_{ConfigurationTree(query.wraps), ConfigurationTree(query.wraps)},
         sample_(query.start.size()),
         from_(query.start.size()),
@@ -57,14 +54,14 @@ class Connect {
   }
 
  private:
-  bool over() const { return query_.stopped() || Clock::now() >= deadline_; }
+  bool over() const { return query_.stopped() || time_limit_.expired(); }
 
   void draw() {
     const bool anywhere = query_.near_lower.size() == 0 || rng_.uniform(0.0, 1.0) < kAnywhere;
     const Eigen::VectorXd& lower = anywhere ? query_.lower : query_.near_lower;
     const Eigen::VectorXd& upper = anywhere ? query_.upper : query_.near_upper;
     for (Eigen::Index i = 0; i < sample_.size(); ++i) {
-      const bool wraps = query_.wraps[static_cast<std::size_t>(i)];
+      const bool wraps = query_.wraps[i];
       sample_[i] = wraps ? rng_.uniform(-kPi, kPi) : rng_.uniform(lower[i], upper[i]);
     }
   }
@@ -101,7 +98,7 @@ class Connect {
 
   void wrap(Eigen::VectorXd& q) const {
     for (Eigen::Index i = 0; i < q.size(); ++i) {
-      if (query_.wraps[static_cast<std::size_t>(i)]) q[i] = shortest_turn(q[i]);
+      if (query_.wraps[i]) q[i] = shortest_turn(q[i]);
     }
   }
 
@@ -124,7 +121,7 @@ class Connect {
   const PlannerQuery& query_;
   Rng rng_;
   const double range_;
-  const Clock::time_point deadline_;
+  const TimeLimit time_limit_;
   ConfigurationTree trees_[2];
   Eigen::VectorXd sample_, from_, next_, meet_, way_;
 };

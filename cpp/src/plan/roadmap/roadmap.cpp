@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "mmgrasp/core/detail/ball_volume.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/core/random.hpp"
-#include "plan/manipulation/common/informed_union.hpp"
 #include "plan/roadmap/roadmap_data.hpp"
 
 namespace mmgrasp {
@@ -26,8 +26,8 @@ void RoadmapOptions::check() const {
 bool Roadmap::Data::draw(detail::Until& until) {
   const Eigen::VectorXd lower = group.sample_lower(), upper = group.sample_upper();
   for (Eigen::Index i = 0; i < lower.size(); ++i) {
-    require(std::isfinite(upper[i] - lower[i]), "group: width of '" + group.names()[static_cast<std::size_t>(i)] + "'",
-            upper[i] - lower[i], "must be finite to draw a roadmap from");
+    require(std::isfinite(upper[i] - lower[i]), "group: width of '" + group.names()[i] + "'", upper[i] - lower[i],
+            "must be finite to draw a roadmap from");
   }
   vertices.resize(lower.size(), options.vertices);
   constexpr Eigen::Index kBlock = 1024;
@@ -92,7 +92,7 @@ bool Roadmap::Data::join(detail::Until& until, int threads) {
   for (std::size_t v = 0; v < count; ++v) {
     if (until.breathe()) return false;
     for (const int u : joined[v])
-      if (static_cast<std::size_t>(u) < v) joined[static_cast<std::size_t>(u)].push_back(static_cast<int>(v));
+      if (static_cast<std::size_t>(u) < v) joined[u].push_back(static_cast<int>(v));
   }
   ends.clear();
   for (std::size_t v = 0; v < count; ++v) {
@@ -120,8 +120,8 @@ bool Roadmap::Data::make_arcs(detail::Until& until) {
     if (e % 256 == 0 && until.breathe()) return false;
     const auto [a, b] = ends[e];
     const double length = (vertices.col(a) - vertices.col(b)).norm();
-    arcs[static_cast<std::size_t>(next[static_cast<std::size_t>(a)]++)] = {b, static_cast<int>(e), length};
-    arcs[static_cast<std::size_t>(next[static_cast<std::size_t>(b)]++)] = {a, static_cast<int>(e), length};
+    arcs[next[a]++] = {b, static_cast<int>(e), length};
+    arcs[next[b]++] = {a, static_cast<int>(e), length};
   }
   return true;
 }
@@ -173,13 +173,13 @@ const Eigen::MatrixXd& Roadmap::vertices() const {
   return data_->vertices;
 }
 const Roadmap::Arc* Roadmap::begin(int vertex) const {
-  return data_->arcs.data() + data_->first[static_cast<std::size_t>(vertex)];
+  return data_->arcs.data() + data_->first[vertex];
 }
 const Roadmap::Arc* Roadmap::end(int vertex) const {
   return data_->arcs.data() + data_->first[static_cast<std::size_t>(vertex) + 1];
 }
 std::pair<int, int> Roadmap::ends(int edge) const {
-  return data_->ends[static_cast<std::size_t>(edge)];
+  return data_->ends[edge];
 }
 
 void Roadmap::near(const Eigen::VectorXd& q, std::vector<int>& out) const {
@@ -192,8 +192,8 @@ double Roadmap::radius() const {
   return options().neighbours > 0 || size() == 0 ? 0 : data_->radius();
 }
 
-RoadmapFigures Roadmap::figures() const {
-  RoadmapFigures out;
+RoadmapStatistics Roadmap::figures() const {
+  RoadmapStatistics out;
   const auto d = static_cast<double>(data_->group.size());
   out.volume = (data_->group.sample_upper() - data_->group.sample_lower()).prod();
   out.gamma_star =
@@ -208,18 +208,18 @@ RoadmapFigures Roadmap::figures() const {
   std::vector<char> seen(static_cast<std::size_t>(size()), 0);
   std::vector<int> stack;
   for (int start = 0; start < size(); ++start) {
-    if (seen[static_cast<std::size_t>(start)]) continue;
+    if (seen[start]) continue;
     ++out.components;
     int members = 0;
     stack.assign(1, start);
-    seen[static_cast<std::size_t>(start)] = 1;
+    seen[start] = 1;
     while (!stack.empty()) {
       const int v = stack.back();
       stack.pop_back();
       ++members;
       for (const Arc* arc = begin(v); arc != end(v); ++arc) {
-        if (seen[static_cast<std::size_t>(arc->to)]) continue;
-        seen[static_cast<std::size_t>(arc->to)] = 1;
+        if (seen[arc->to]) continue;
+        seen[arc->to] = 1;
         stack.push_back(arc->to);
       }
     }

@@ -108,7 +108,7 @@ Roadmap Roadmap::load(const std::string& path, const JointGroup& group) {
   data->vertices.resize(header.joints, header.vertices);
   std::memcpy(data->vertices.data(), at, vertex_bytes);
   at += vertex_bytes;
-  data->ends.reserve(static_cast<std::size_t>(header.edges));
+  data->ends.reserve(header.edges);
   for (std::int64_t e = 0; e < header.edges; ++e, at += 2 * sizeof(std::int32_t)) {
     std::int32_t pair[2];
     std::memcpy(pair, at, sizeof pair);

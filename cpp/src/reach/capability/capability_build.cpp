@@ -214,7 +214,7 @@ class Builder {
     std::vector<float> q(border.size() * n);
     const std::size_t blocks = (border.size() + kBorderBlock - 1) / kBorderBlock;
     const auto work = [&](std::size_t block, int worker) {
-      detail::PoseSearch& search = searches_[static_cast<std::size_t>(worker)];
+      detail::PoseSearch& search = searches_[worker];
       for (std::size_t i = block * kBorderBlock; i < std::min(border.size(), (block + 1) * kBorderBlock); ++i) {
         search.start(target(border[i]), border[i]);
         if (search_border(border[i], sweep, search)) {

@@ -4,12 +4,12 @@
 #include <fstream>
 #include <iterator>
 
-#include "mmgrasp/core/error.hpp"
-#include "reach/capability/capability_data.hpp"
 #include "mmgrasp/core/detail/crc32.hpp"
-#include "reach/database/reach_data.hpp"
 #include "mmgrasp/core/detail/json_value.hpp"
 #include "mmgrasp/core/detail/npy_file.hpp"
+#include "mmgrasp/core/error.hpp"
+#include "reach/capability/capability_data.hpp"
+#include "reach/database/reach_data.hpp"
 
 namespace mmgrasp {
 namespace {

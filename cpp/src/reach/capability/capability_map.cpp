@@ -69,7 +69,7 @@ std::string capability_arm_key(const JointGroup& arm) {
   Hasher hasher;
   hasher.add(kCapabilityFormat).add(arm.robot().hash()).add(arm.size());
   for (const std::string& name : arm.names()) hasher.add(name);
-  hasher.add(arm.robot().links()[static_cast<std::size_t>(arm.tip_link())].name);
+  hasher.add(arm.robot().links()[arm.tip_link()].name);
   hasher.add(Eigen::MatrixXd(arm.full_values(Eigen::VectorXd::Zero(arm.size()))));
   return hasher.hex();
 }
@@ -77,8 +77,7 @@ std::string capability_arm_key(const JointGroup& arm) {
 }  // namespace detail
 
 void CapabilityMap::Data::lay_out() {
-  for (int axis = 0; axis < 3; ++axis)
-    shape[static_cast<std::size_t>(axis)] = static_cast<int>(std::lround(steps_along(options, axis)));
+  for (int axis = 0; axis < 3; ++axis) shape[axis] = static_cast<int>(std::lround(steps_along(options, axis)));
   tool_poses = detail::sphere_poses(options);
 }
 
@@ -160,8 +159,8 @@ std::int64_t CapabilityMap::voxel_at(const Eigen::Vector3d& p_root_point) const 
   std::array<int, 3> at{};
   for (int axis = 0; axis < 3; ++axis) {
     const double cell = std::floor((p_root_point[axis] - data_->options.lower[axis]) / data_->options.voxel);
-    if (!(cell >= 0 && cell < data_->shape[static_cast<std::size_t>(axis)])) return -1;
-    at[static_cast<std::size_t>(axis)] = static_cast<int>(cell);
+    if (!(cell >= 0 && cell < data_->shape[axis])) return -1;
+    at[axis] = static_cast<int>(cell);
   }
   return voxel(at[0], at[1], at[2]);
 }
@@ -196,14 +195,14 @@ Rejection CapabilityMap::classified(std::int64_t voxel, int pose) const {
 Eigen::VectorXd CapabilityMap::configuration(std::int64_t voxel, int pose) const {
   if (classified(voxel, pose) != Rejection::none) return {};
   const auto start = data_->classes.begin() + voxel * static_cast<std::int64_t>(data_->poses());
-  const std::int64_t row = data_->first[static_cast<std::size_t>(voxel)] + std::count(start, start + pose, 0);
+  const std::int64_t row = data_->first[voxel] + std::count(start, start + pose, 0);
   return Eigen::Map<const Eigen::VectorXf>(data_->configurations.data() + row * data_->joints, data_->joints)
       .cast<double>();
 }
 
 double CapabilityMap::index_at(const Eigen::Vector3d& p_root_point) const {
   const std::int64_t at = voxel_at(p_root_point);
-  return at < 0 ? 0.0 : static_cast<double>(data_->index[static_cast<std::size_t>(at)]);
+  return at < 0 ? 0.0 : static_cast<double>(data_->index[at]);
 }
 
 std::int64_t CapabilityMap::best_voxel() const {
@@ -213,7 +212,7 @@ std::int64_t CapabilityMap::best_voxel() const {
 
 double CapabilityMap::maximum() const {
   const std::int64_t best = best_voxel();
-  return best < 0 ? 0.0 : static_cast<double>(data_->index[static_cast<std::size_t>(best)]);
+  return best < 0 ? 0.0 : static_cast<double>(data_->index[best]);
 }
 
 double CapabilityMap::score(const Poses& T_world_tip, const Pose& T_world_root, double cone) const {
@@ -227,7 +226,7 @@ double CapabilityMap::score(const Poses& T_world_tip, const Pose& T_world_root, 
     const std::int64_t at = voxel_at(T.translation());
     if (at < 0) continue;
     if (cone >= detail::kPi) {
-      sum += static_cast<double>(data_->index[static_cast<std::size_t>(at)]);
+      sum += static_cast<double>(data_->index[at]);
       continue;
     }
     const Eigen::Vector3d direction = T.linear() * approach;

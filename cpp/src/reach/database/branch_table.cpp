@@ -103,9 +103,7 @@ BranchTable::BranchTable(const JointGroup& arm, int samples) : arm_(arm) {
   for (int s = 0; s < samples; ++s) {
     std::vector<int> order(static_cast<std::size_t>(samples));
     std::iota(order.begin(), order.end(), 0);
-    const auto distance = [&](int other) {
-      return (shares[static_cast<std::size_t>(other)] - shares[static_cast<std::size_t>(s)]).squaredNorm();
-    };
+    const auto distance = [&](int other) { return (shares[other] - shares[s]).squaredNorm(); };
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return distance(a) < distance(b); });
     orders_.push_back(std::move(order));
   }

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "mmgrasp/robot/joint_group.hpp"
 #include "mmgrasp/robot/detail/ik_closed_form.hpp"
+#include "mmgrasp/robot/joint_group.hpp"
 
 namespace mmgrasp::detail {
 
@@ -27,9 +27,9 @@ class BranchTable {
   bool known() const { return !arms_.empty(); }  ///< False: no closed form fits.
   int size() const { return static_cast<int>(arms_.size()); }
   int free_joints() const { return static_cast<int>(locked_.size()); }
-  const LockedArm& operator[](int sample) const { return arms_[static_cast<std::size_t>(sample)]; }
+  const LockedArm& operator[](int sample) const { return arms_[sample]; }
   /// Samples below `count`, nearest to `sample` first (itself included).
-  const std::vector<int>& order(int sample) const { return orders_[static_cast<std::size_t>(sample)]; }
+  const std::vector<int>& order(int sample) const { return orders_[sample]; }
   /// With the locked joints where they are in q.
   LockedArm lock(const Eigen::VectorXd& q) const;
 
@@ -41,7 +41,7 @@ class BranchTable {
     Branches branches;
     solve_closed_form(arm.form, arm.six, target * arm.tip_inverse, branches);
     for (int b = 0; b < branches.count; ++b) {
-      const double outside = fill(branches.value[static_cast<std::size_t>(b)], arm, q);
+      const double outside = fill(branches.value[b], arm, q);
       if (use(q, outside)) return true;
     }
     return false;

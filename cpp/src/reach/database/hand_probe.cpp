@@ -13,7 +13,7 @@ std::vector<int> still_links(const JointGroup& arm, int frame) {
   std::vector<Poses> tries(kTries);
   for (Poses& poses : tries) arm.link_poses(rng.uniform(arm.sample_lower(), arm.sample_upper()), poses);
   const auto seen = [&](const Poses& poses, std::size_t link) {
-    return frame < 0 ? poses[link] : poses[static_cast<std::size_t>(frame)].inverse() * poses[link];
+    return frame < 0 ? poses[link] : poses[frame].inverse() * poses[link];
   };
   std::vector<int> still;
   for (std::size_t link = 0; link < tries[0].size(); ++link) {
@@ -54,27 +54,25 @@ HandProbe::HandProbe(const JointGroup& arm, const World& world) : still_(Eigen::
   const std::vector<int> hand_links = still_links(arm, arm.tip_link()), fixed_links = still_links(arm, -1);
   Poses poses;
   arm.link_poses(0.5 * (arm.sample_lower() + arm.sample_upper()), poses);
-  const Pose T_tip_world = poses[static_cast<std::size_t>(arm.tip_link())].inverse();
+  const Pose T_tip_world = poses[arm.tip_link()].inverse();
   std::vector<LinkShape> links, all;
-  for (const int link : hand_links)
-    append(links, robot.links()[static_cast<std::size_t>(link)].collisions,
-           T_tip_world * poses[static_cast<std::size_t>(link)]);
+  for (const int link : hand_links) append(links, robot.links()[link].collisions, T_tip_world * poses[link]);
   all = links;
   for (const auto& [name, held] : world.attached()) {
     if (!robot.has_link(held.link)) continue;
     const int link = robot.link_index(held.link);
     if (std::find(hand_links.begin(), hand_links.end(), link) != hand_links.end())
-      append(all, held.shapes, T_tip_world * poses[static_cast<std::size_t>(link)] * held.T_link_object);
+      append(all, held.shapes, T_tip_world * poses[link] * held.T_link_object);
   }
   World scene, fixed;
   for (const auto& [name, object] : world.objects()) scene.add(name, object);
   for (const int link : fixed_links) {
     bool looked_at = true;
     for (const int hand : hand_links) looked_at = looked_at && hand != link && !robot.pair_disabled(hand, link);
-    const Link& body = robot.links()[static_cast<std::size_t>(link)];
+    const Link& body = robot.links()[link];
     std::vector<LinkShape> shapes;
     append(shapes, body.collisions, Pose::Identity());
-    if (looked_at && !shapes.empty()) fixed.add(body.name, WorldObject{shapes, poses[static_cast<std::size_t>(link)]});
+    if (looked_at && !shapes.empty()) fixed.add(body.name, WorldObject{shapes, poses[link]});
   }
   robot_ = probe(links, std::move(fixed));
   scene_ = probe(all, std::move(scene));

@@ -88,7 +88,7 @@ bool PoseSearch::accept(Eigen::VectorXd& q) {
       return false;
     }
     for (Eigen::Index i = 0; i < q.size(); ++i) {
-      if (arm_.wraps()[static_cast<std::size_t>(i)]) trial_[i] = wrap_angle(trial_[i]);
+      if (arm_.wraps()[i]) trial_[i] = wrap_angle(trial_[i]);
       found_[i] = round_inwards(trial_[i], arm_.lower()[i], arm_.upper()[i]);
       rounded_[i] = static_cast<double>(found_[i]);
     }
@@ -156,7 +156,7 @@ bool PoseSearch::try_descent(const Eigen::VectorXd& q, int iterations) {
   ik_.max_iterations = iterations;
   if (!descend(arm_, target_, q_, ik_, workspace_, true).converged) return false;
   for (Eigen::Index i = 0; i < q_.size(); ++i)
-    if (arm_.wraps()[static_cast<std::size_t>(i)]) q_[i] = wrap_angle(q_[i]);
+    if (arm_.wraps()[i]) q_[i] = wrap_angle(q_[i]);
   return accept(q_);
 }
 

@@ -45,7 +45,7 @@ class Builder {
     CheckerOptions checking;
     checking.check_scene = false;
     const CollisionChecker checker(arm_, World{}, checking);
-    samplers_.reserve(static_cast<std::size_t>(threads_));
+    samplers_.reserve(threads_);
     for (int i = 0; i < threads_; ++i) samplers_.emplace_back(arm_, stored_, options_, rotations_, checker.clone());
     if (options.samples / options.max_per_cell > kWorthCountingFull) full_.emplace(options.max_per_cell);
   }
@@ -76,8 +76,7 @@ class Builder {
     if (options_.min_manipulability <= 0 && options_.thinning <= 0) return !monitor_.stopped();
     std::vector<double> largest(static_cast<std::size_t>(std::min(kManipulabilityBlocks, blocks_)), 0);
     const auto work = [&](std::size_t block, int worker) {
-      largest[block] =
-          samplers_[static_cast<std::size_t>(worker)].largest_manipulability(static_cast<std::int64_t>(block));
+      largest[block] = samplers_[worker].largest_manipulability(static_cast<std::int64_t>(block));
     };
     if (!parallel_for(largest.size(), threads_, work, silent())) return false;
     for (detail::ShardSampler& sampler : samplers_)
@@ -114,8 +113,7 @@ class Builder {
       };
       detail::ShardRecords records;
       const detail::FillTable* full = full_ ? &*full_ : nullptr;
-      if (!samplers_[static_cast<std::size_t>(worker)].sample(shard * shard_blocks_, blocks_of(shard), full, step,
-                                                              records)) {
+      if (!samplers_[worker].sample(shard * shard_blocks_, blocks_of(shard), full, step, records)) {
         stopped = true;
         return;
       }

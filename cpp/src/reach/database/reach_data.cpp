@@ -9,9 +9,9 @@
 #include <numeric>
 #include <thread>
 
+#include "mmgrasp/core/detail/crc32.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "mmgrasp/core/detail/crc32.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "mmgrasp/core/detail/npy_file.hpp"
 #include "mmgrasp/reach/reach_database.hpp"
 #include "reach/database/rotation_cells.hpp"
 #include "reach/database/stored_arm.hpp"
-#include "mmgrasp/core/detail/npy_file.hpp"
 
 namespace mmgrasp::detail {
 

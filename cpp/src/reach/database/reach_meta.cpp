@@ -5,9 +5,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/detail/crc32.hpp"
 #include "mmgrasp/core/detail/json_value.hpp"
+#include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp::detail {
 namespace {

@@ -41,7 +41,7 @@ std::vector<Eigen::VectorXd> solve(detail::SeededIk& ik, const Pose& T_base_tip,
     found.push_back(q);
   }
   spread(found, (ik.arm().sample_upper() - ik.arm().sample_lower()).cwiseMax(1e-9).cwiseInverse());
-  if (static_cast<int>(found.size()) > options.count) found.resize(static_cast<std::size_t>(options.count));
+  if (static_cast<int>(found.size()) > options.count) found.resize(options.count);
   return found;
 }
 

@@ -9,7 +9,6 @@
 namespace mmgrasp::detail {
 namespace {
 
-
 /// Turns v by the smallest rotation that takes unit `from` to unit `to`; undefined for opposite vectors.
 Eigen::Vector3d carry(const Eigen::Vector3d& v, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const Eigen::Vector3d w = from.cross(to), wv = w.cross(v);

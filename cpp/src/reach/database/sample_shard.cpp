@@ -63,7 +63,7 @@ void ShardSampler::draw(Rng& rng, int count) {
       if (k % 4 == 0) bits = rng.next();
       *number++ = static_cast<std::uint16_t>(bits);
     }
-    if (options_.thinning > 0) chances_[static_cast<std::size_t>(i)] = rng.uniform();
+    if (options_.thinning > 0) chances_[i] = rng.uniform();
   }
   stored_.decode(numbers_.data(), static_cast<std::size_t>(count), q_.data());
   if (weighs_)
@@ -88,7 +88,7 @@ bool ShardSampler::passes_manipulability(int i) const {
   if (!weighs_) return true;
   const double value = manipulability(J_.data() + 6 * arm_.size() * i, arm_.size());
   return value >= options_.min_manipulability * largest_ &&
-         (options_.thinning <= 0 || value >= chances_[static_cast<std::size_t>(i)] * options_.thinning * largest_);
+         (options_.thinning <= 0 || value >= chances_[i] * options_.thinning * largest_);
 }
 
 void ShardSampler::sample_block(std::int64_t block, const FillTable* full) {
@@ -101,7 +101,7 @@ void ShardSampler::sample_block(std::int64_t block, const FillTable* full) {
     draw(rng, count);
     for (int i = 0; i < count; ++i) {
       if (!passes_manipulability(i)) continue;
-      const Pose& T = poses_[static_cast<std::size_t>(i)];
+      const Pose& T = poses_[i];
       const auto cell = position_cell(T.translation(), options_.position_cell);
       if (!cell)
         require(false, "position_cell", options_.position_cell,

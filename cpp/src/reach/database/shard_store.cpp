@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/detail/crc32.hpp"
+#include "mmgrasp/core/error.hpp"
 #include "reach/database/reach_data.hpp"
 
 namespace mmgrasp::detail {
@@ -83,7 +83,7 @@ ShardStore::ShardStore(const std::string& folder, const std::string& key, std::i
       records_(static_cast<std::size_t>(shards), 0),
       present_(static_cast<std::size_t>(shards), 0) {
   if (folder_.empty()) return;
-  for (std::int64_t shard = 0; shard < shards; ++shard) present_[static_cast<std::size_t>(shard)] = load(shard);
+  for (std::int64_t shard = 0; shard < shards; ++shard) present_[shard] = load(shard);
 }
 
 std::string ShardStore::path_of(std::int64_t shard) const {
@@ -105,7 +105,7 @@ bool ShardStore::load(std::int64_t shard) {
       header.shard != shard || header.joints != expected.joints || header.header_sum != header_sum(header))
     return false;
   if (size != sizeof(header) + 12 * header.positions + header.records * (4 + 2 * joints_)) return false;
-  ShardRecords& records = shards_[static_cast<std::size_t>(shard)];
+  ShardRecords& records = shards_[shard];
   records.position_keys.resize(header.positions);
   records.counts.resize(header.positions);
   records.rotation_ids.resize(header.records);
@@ -114,7 +114,7 @@ bool ShardStore::load(std::int64_t shard) {
     file.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(values[0])));
   });
   const bool sound = file && sum_of(records) == header.sum;
-  records_[static_cast<std::size_t>(shard)] = records.size();
+  records_[shard] = records.size();
   release(records);
   return sound;
 }
@@ -146,7 +146,7 @@ void ShardStore::put(std::int64_t shard, ShardRecords&& records) {
 
 std::vector<std::uint64_t> ShardStore::cell_keys(std::int64_t shard) const {
   const ShardRecords& records = directory(shard);
-  const std::size_t count = records_[static_cast<std::size_t>(shard)];
+  const std::size_t count = records_[shard];
   std::vector<std::uint32_t> rotations(count);
   read(shard, 0, count, rotations.data(), nullptr);
   std::vector<std::uint64_t> keys;
@@ -172,7 +172,7 @@ void ShardStore::read(std::int64_t shard, std::size_t first, std::size_t count, 
   if (file < 0) throw IoError(path + ": cannot be opened (" + std::strerror(errno) + ")");
   try {
     const std::uint64_t rotations_at = sizeof(ShardHeader) + 12 * records.position_keys.size();
-    const std::uint64_t configurations_at = rotations_at + 4 * records_[static_cast<std::size_t>(shard)];
+    const std::uint64_t configurations_at = rotations_at + 4 * records_[shard];
     read_at(file, rotation_ids, 4 * count, rotations_at + 4 * first, path);
     if (configurations != nullptr)
       read_at(file, configurations, 2 * joints_ * count, configurations_at + 2 * joints_ * first, path);

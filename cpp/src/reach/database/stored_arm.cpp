@@ -19,8 +19,8 @@ std::vector<double> rows_of(const double* R, const double* p) {
 
 void columns_of(const std::vector<double>& rows, double* R, double* p) {
   for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) R[row + 3 * column] = rows[static_cast<std::size_t>(4 * row + column)];
-    p[row] = rows[static_cast<std::size_t>(4 * row + 3)];
+    for (int column = 0; column < 3; ++column) R[row + 3 * column] = rows[4 * row + column];
+    p[row] = rows[4 * row + 3];
   }
 }
 
@@ -46,7 +46,7 @@ StoredArm::StoredArm(const JointGroup& arm) {
   robot = arm.robot().name();
   robot_hash = Hasher().add(arm.robot().hash()).hex();
   group = arm.name();
-  tip = arm.robot().links()[static_cast<std::size_t>(arm.tip_link())].name;
+  tip = arm.robot().links()[arm.tip_link()].name;
   joints = arm.names();
   const Eigen::VectorXd reference = arm.full_values(Eigen::VectorXd::Zero(arm.size()));
   const Eigen::VectorXd moved = arm.full_values(Eigen::VectorXd::Ones(arm.size()));

@@ -36,9 +36,7 @@ class StoredArm {
   /// Builds the tables that tool_poses() works from. To be called once the members above are set.
   void complete();
 
-  double value(int joint, std::uint16_t stored) const {
-    return lower[static_cast<std::size_t>(joint)] + step[static_cast<std::size_t>(joint)] * stored;
-  }
+  double value(int joint, std::uint16_t stored) const { return lower[joint] + step[joint] * stored; }
   /// Values of stored configurations, one column each.
   void decode(const std::uint16_t* stored, std::size_t count, double* q) const;
   /// T_root_tip of `count` stored configurations.

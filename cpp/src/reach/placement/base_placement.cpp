@@ -15,7 +15,6 @@
 namespace mmgrasp {
 namespace {
 
-
 /// How many configurations the database holds for a tool at the height and in the rotation of a pose, turned by a
 /// heading, over the position cells of that height: what base positions are looked up in.
 class Layer {
@@ -29,7 +28,7 @@ class Layer {
       low_[axis] = index_of(data.bounds.min()[axis]);
       count_[axis] = index_of(data.bounds.max()[axis]) - low_[axis] + 1;
     }
-    counts_.resize(static_cast<std::size_t>(count_[0] * count_[1]));
+    counts_.resize(count_[0] * count_[1]);
   }
 
   void set(const Pose& T_world_tip, double heading) {
@@ -49,7 +48,7 @@ class Layer {
         const auto* found = std::lower_bound(data_.rotation_ids.begin() + data_.position_first[p], end, id);
         if (found == end || *found != id) continue;
         const auto cell = static_cast<std::size_t>(found - data_.rotation_ids.begin());
-        counts_[static_cast<std::size_t>(x * count_[1] + y)] = data_.cell_first[cell + 1] - data_.cell_first[cell];
+        counts_[x * count_[1] + y] = data_.cell_first[cell + 1] - data_.cell_first[cell];
       }
     }
   }
@@ -59,7 +58,7 @@ class Layer {
     const auto i = static_cast<std::int64_t>(std::floor(x / data_.options.position_cell)) - low_[0];
     const auto j = static_cast<std::int64_t>(std::floor(y / data_.options.position_cell)) - low_[1];
     if (i < 0 || j < 0 || i >= count_[0] || j >= count_[1]) return 0;
-    return counts_[static_cast<std::size_t>(i * count_[1] + j)];
+    return counts_[i * count_[1] + j];
   }
 
  private:
@@ -237,8 +236,7 @@ class PlacementSearch {
     std::vector<BasePlacement> placed(bases.size());
     std::vector<std::vector<std::size_t>> missed(bases.size());
     const auto work = [&](std::size_t i, int worker) {
-      placed[i] =
-          examiners_[static_cast<std::size_t>(worker)].place(bases[i], targets_, order_, most_missed, missed[i]);
+      placed[i] = examiners_[worker].place(bases[i], targets_, order_, most_missed, missed[i]);
     };
     if (!parallel_for(bases.size(), options_.threads, work, Monitor{monitor_.stop, {}})) return false;
     // Those missed most come first: a base pose that cannot be better shows it sooner.
@@ -294,7 +292,7 @@ class PlacementSearch {
       std::vector<BaseReach> some(std::min(batch, reaching.size() - first));
       const auto work = [&](std::size_t i, int worker) {
         some[i].base_pose = cells.pose(reaching[first + i].second);
-        examiners_[static_cast<std::size_t>(worker)].reaches(some[i].base_pose, target, some[i].q);
+        examiners_[worker].reaches(some[i].base_pose, target, some[i].q);
       };
       if (!parallel_for(some.size(), options_.threads, work, Monitor{monitor_.stop, {}})) return {};
       for (BaseReach& reach : some)

@@ -4,13 +4,14 @@
 #include <cmath>
 
 #include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "mmgrasp/robot/ik_objective.hpp"
 #include "mmgrasp/robot/detail/ik_candidates.hpp"
 #include "mmgrasp/robot/detail/ik_descent.hpp"
 #include "mmgrasp/robot/detail/ik_failure.hpp"
-#include "robot/ik/ik_null_space.hpp"
 #include "mmgrasp/robot/detail/ik_starts.hpp"
+#include "mmgrasp/robot/ik_objective.hpp"
+#include "robot/ik/ik_null_space.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -196,10 +197,10 @@ IkResult solve_ik(const JointGroup& group, const Pose& T_world_tip, const Eigen:
   const bool there = detail::confirm(group, T_world_tip, seed, options, position_error, rotation_error);
   // A seed that solves is kept unless objectives want to know of other branches, or the filter refuses it.
   const int descents_before_closed_form = !six ? 2 : there && options.objectives.empty() ? 1 : 0;
-  const detail::Clock clock(options.time_limit);
+  const detail::TimeLimit time_limit(options.time_limit);
   detail::IkStarts starts(group, T_world_tip, options.seed);
   for (int attempt = 0; attempt <= std::max(options.restarts, six ? descents_before_closed_form : 0); ++attempt) {
-    if (monitor.stopped() || (attempt > 0 && clock.over())) {
+    if (monitor.stopped() || (attempt > 0 && time_limit.expired())) {
       result.outcome = monitor.stopped() ? Outcome::stopped : Outcome::timeout;
       return result;
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/robot/detail/ik_candidates.hpp"
 #include "mmgrasp/robot/detail/ik_failure.hpp"
@@ -18,14 +19,14 @@ constexpr double kDistinct = 0.1;  // [rad] Between solutions that random descen
 void search(const JointGroup& group, const Pose& T_world_tip, int count, const IkOptions& options,
             const ConfigurationFilter& valid, const Monitor& monitor, IkBranches& branches) {
   detail::IkStarts starts(group, T_world_tip, options.seed);
-  const detail::Clock clock(options.time_limit);
+  const detail::TimeLimit time_limit(options.time_limit);
   IkWorkspace workspace;
   detail::FailureCause cause;
   const Eigen::VectorXd middle = Eigen::VectorXd::Zero(group.size());
   std::vector<Eigen::VectorXd> seen;
   const long budget = static_cast<long>(options.restarts + 1) * count;
   for (long i = 0; i < budget && static_cast<int>(branches.solutions.size()) < count; ++i) {
-    if (clock.over() || monitor.stopped()) return;
+    if (time_limit.expired() || monitor.stopped()) return;
     Eigen::VectorXd q = starts.next();
     if (!detail::descend(group, T_world_tip, q, options, workspace, true).converged) {
       branches.rejections.add(cause.of(group, T_world_tip, q, options, workspace));
@@ -103,7 +104,7 @@ std::vector<Eigen::VectorXd> solve_ik_all(const JointGroup& group, const Pose& T
   require(count >= 0, "count", count, "must not be negative");
   const int values = std::clamp(count, 8, 48);
   std::vector<Eigen::VectorXd> solutions = branches_of(group, T_world_tip, count, values, options, valid, {}).solutions;
-  if (static_cast<int>(solutions.size()) > count) solutions.resize(static_cast<std::size_t>(count));
+  if (static_cast<int>(solutions.size()) > count) solutions.resize(count);
   return solutions;
 }
 

@@ -80,9 +80,9 @@ Candidates closed_form_candidates(const JointGroup& group, const Pose& T_world_t
     candidates.free = candidates.free || branches.free;
     const std::size_t first = candidates.q.size();
     for (int b = 0; b < branches.count; ++b) {
-      const auto& value = branches.value[static_cast<std::size_t>(b)];
+      const auto& value = branches.value[b];
       for (int j = 0; j < screws.size; ++j)
-        q[j] = j == locked ? locked_value : value[static_cast<std::size_t>(locked >= 0 && j > locked ? j - 1 : j)];
+        q[j] = j == locked ? locked_value : value[locked >= 0 && j > locked ? j - 1 : j];
       if (!polish(group, T_world_tip, q, workspace)) continue;
       turn_inside(group, q);
       if (!known(candidates.q, first, q)) candidates.q.push_back(q);
@@ -95,7 +95,7 @@ Candidates closed_form_candidates(const JointGroup& group, const Pose& T_world_t
 double joint_distance(const JointGroup& group, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   double sum = 0;
   for (Eigen::Index i = 0; i < a.size(); ++i) {
-    const double d = group.wraps()[static_cast<std::size_t>(i)] ? wrap_angle(a[i] - b[i]) : a[i] - b[i];
+    const double d = group.wraps()[i] ? wrap_angle(a[i] - b[i]) : a[i] - b[i];
     sum += d * d;
   }
   return std::sqrt(sum);

@@ -53,7 +53,7 @@ struct Positions {
   int count = 0;
   bool free = false;
   void add(double a, double b, double c) {
-    if (count < 4) value[static_cast<std::size_t>(count++)] = {a, b, c};
+    if (count < 4) value[count++] = {a, b, c};
   }
 };
 
@@ -111,7 +111,7 @@ Vector3d across(const Vector3d& h) {
 
 void add(Branches& branches, const std::array<double, 6>& values, bool reversed) {
   if (branches.count == Branches::kMost) return;
-  auto& slot = branches.value[static_cast<std::size_t>(branches.count++)];
+  auto& slot = branches.value[branches.count++];
   for (std::size_t i = 0; i < 6; ++i) slot[i] = reversed ? -values[5 - i] : values[i];
 }
 
@@ -121,7 +121,7 @@ void solve_spherical(const Screws& s, const Motion& G, bool reversed, Branches& 
   branches.free = branches.free || positions.free;
   const Vector3d y = across(s.h[5]);
   for (int i = 0; i < positions.count; ++i) {
-    const auto& found = positions.value[static_cast<std::size_t>(i)];
+    const auto& found = positions.value[i];
     const double a = found[0], b = found[1], c = found[2];
     const auto back = [&](const Vector3d& x) { return turned(s.h[2], -c, turned(s.h[1], -b, turned(s.h[0], -a, x))); };
     const Vector3d Rh = back(G.R * s.h[5]), Ry = back(G.R * y);
@@ -180,10 +180,9 @@ bool one_joint_a_column(const JointGroup& group) {
     return std::find(group.names().begin(), group.names().end(), joint.name) != group.names().end();
   };
   for (int link = group.tip_link(); link > 0;) {
-    const Joint& joint =
-        robot.joints()[static_cast<std::size_t>(robot.links()[static_cast<std::size_t>(link)].parent_joint)];
+    const Joint& joint = robot.joints()[robot.links()[link].parent_joint];
     if (joint.type == JointType::planar || joint.type == JointType::floating) return false;
-    if (joint.mimic_joint >= 0 && in_group(robot.joints()[static_cast<std::size_t>(joint.mimic_joint)])) return false;
+    if (joint.mimic_joint >= 0 && in_group(robot.joints()[joint.mimic_joint])) return false;
     link = joint.parent_link;
   }
   return true;
@@ -200,8 +199,8 @@ Screws screws_of(const JointGroup& group) {
   for (int i = 0; i < n; ++i) {
     const Vector3d v = J.col(i).head<3>(), w = J.col(i).tail<3>();
     if (std::abs(w.norm() - 1) > 1e-9) return screws;  // slides, or is not on the way to the tip
-    screws.h[static_cast<std::size_t>(i)] = w;
-    screws.p[static_cast<std::size_t>(i)] = T_world_tip.translation() - v.cross(w);
+    screws.h[i] = w;
+    screws.p[i] = T_world_tip.translation() - v.cross(w);
   }
   screws.tip = Motion{T_world_tip.linear(), T_world_tip.translation()};
   screws.size = n;
@@ -240,14 +239,13 @@ int redundant_joint(const Screws& seven) {
 
 Screws lock_joint(const Screws& seven, int locked, double angle, Motion& G) {
   // E_k moves to the other side of the joints behind it: E_k E_j = (E_k E_j E_k^-1) E_k.
-  const Motion E =
-      turn_about(seven.h[static_cast<std::size_t>(locked)], seven.p[static_cast<std::size_t>(locked)], angle);
+  const Motion E = turn_about(seven.h[locked], seven.p[locked], angle);
   Screws six;
   six.size = 6;
   for (int i = 0; i < 6; ++i) {
     const auto from = static_cast<std::size_t>(i < locked ? i : i + 1);
-    six.h[static_cast<std::size_t>(i)] = i < locked ? seven.h[from] : Vector3d(E.R * seven.h[from]);
-    six.p[static_cast<std::size_t>(i)] = i < locked ? seven.p[from] : E * seven.p[from];
+    six.h[i] = i < locked ? seven.h[from] : Vector3d(E.R * seven.h[from]);
+    six.p[i] = i < locked ? seven.p[from] : E * seven.p[from];
   }
   G = G * E.inverse();
   return six;

@@ -30,9 +30,7 @@ void clamp(const JointGroup& group, Eigen::VectorXd& q) {
 void limited_step(const JointGroup& group, const Eigen::VectorXd& q, const Vector6d& error, double damping,
                   const std::vector<double>& weights, bool keep_limits, IkWorkspace& workspace) {
   const Matrix6Xd& J = workspace.J;
-  const auto ease = [&weights](Eigen::Index i) {
-    return weights.empty() ? 1.0 : 1.0 / weights[static_cast<std::size_t>(i)];
-  };
+  const auto ease = [&weights](Eigen::Index i) { return weights.empty() ? 1.0 : 1.0 / weights[i]; };
   Eigen::VectorXd& step = workspace.step;
   const Eigen::Index n = q.size();
   std::array<bool, kMaxGroupSize> fixed{};
@@ -50,21 +48,21 @@ void limited_step(const JointGroup& group, const Eigen::VectorXd& q, const Vecto
     const Vector6d y = damped.llt().solve(rest);
     double longest = 0;
     for (Eigen::Index i = 0; i < n; ++i) {
-      if (fixed[static_cast<std::size_t>(i)]) continue;
+      if (fixed[i]) continue;
       step[i] = ease(i) * J.col(i).dot(y);
       longest = std::max(longest, std::abs(step[i]));
     }
     const double scale = longest > kLongestStep ? kLongestStep / longest : 1.0;
     bool again = false;
     for (Eigen::Index i = 0; i < n; ++i) {
-      if (fixed[static_cast<std::size_t>(i)]) continue;
+      if (fixed[i]) continue;
       step[i] *= scale;
       if (!keep_limits) continue;
       const double target = q[i] + step[i];
       const double inside = std::min(std::max(target, group.lower()[i]), group.upper()[i]);
       if (inside == target) continue;
       step[i] = inside - q[i];
-      fixed[static_cast<std::size_t>(i)] = true;
+      fixed[i] = true;
       rest.noalias() -= J.col(i) * step[i];
       A.noalias() -= ease(i) * J.col(i) * J.col(i).transpose();
       again = true;

@@ -5,8 +5,8 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "mmgrasp/robot/ik_objective.hpp"
 #include "mmgrasp/robot/detail/ik_descent.hpp"
+#include "mmgrasp/robot/ik_objective.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -33,8 +33,8 @@ Eigen::VectorXd downhill(const JointGroup& group, const Eigen::VectorXd& q, cons
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       const bool outward =
           (step[i] < 0 && q[i] <= group.lower()[i] + kOnLimit) || (step[i] > 0 && q[i] >= group.upper()[i] - kOnLimit);
-      if (!outward || fixed[static_cast<std::size_t>(i)]) continue;
-      fixed[static_cast<std::size_t>(i)] = true;
+      if (!outward || fixed[i]) continue;
+      fixed[i] = true;
       again = true;
     }
     if (!again) return step;
@@ -60,8 +60,8 @@ Eigen::VectorXd null_space_part(const Matrix6Xd& J, const Eigen::VectorXd& xi, c
   Eigen::MatrixXd scaled = J;
   Eigen::VectorXd x = xi, scale = Eigen::VectorXd::Ones(xi.size());
   for (Eigen::Index i = 0; i < xi.size(); ++i) {
-    if (!weights.empty()) scale[i] = 1 / std::sqrt(weights[static_cast<std::size_t>(i)]);
-    if (fixed[static_cast<std::size_t>(i)]) scale[i] = 0;
+    if (!weights.empty()) scale[i] = 1 / std::sqrt(weights[i]);
+    if (fixed[i]) scale[i] = 0;
     scaled.col(i) *= scale[i];
     x[i] *= scale[i];
   }

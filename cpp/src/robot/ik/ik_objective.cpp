@@ -7,7 +7,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/robot/detail/ik_closed_form.hpp"
-#include "mmgrasp/robot/detail/manipulability.hpp"
+#include "mmgrasp/robot/detail/manipulability_measure.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -125,7 +125,7 @@ class CameraView final : public IkObjective {
   double evaluate(const Eigen::VectorXd& q, Eigen::VectorXd& gradient) const override {
     Poses T_world_link;
     group_.link_poses(q, T_world_link);
-    const Pose T_world_camera = T_world_link[static_cast<std::size_t>(link_)] * T_link_camera_;
+    const Pose T_world_camera = T_world_link[link_] * T_link_camera_;
     const Eigen::Vector3d p = T_world_camera.inverse() * point_;
     const double behind = std::min(0.0, p[2]);
     // The point stands still while the camera moves: it is seen to move against what is fixed to the link there.

@@ -40,7 +40,7 @@ Eigen::VectorXd IkStarts::next() {
 
 void unwind(const JointGroup& group, const Eigen::VectorXd& seed, Eigen::VectorXd& q) {
   for (Eigen::Index i = 0; i < q.size(); ++i)
-    if (group.wraps()[static_cast<std::size_t>(i)]) q[i] = seed[i] + wrap_angle(q[i] - seed[i]);
+    if (group.wraps()[i]) q[i] = seed[i] + wrap_angle(q[i] - seed[i]);
 }
 
 }  // namespace mmgrasp::detail

@@ -18,7 +18,7 @@ struct Angles {
   int count = 0;
   bool free = false;
 
-  void add(double angle) { value[static_cast<std::size_t>(count++)] = angle; }
+  void add(double angle) { value[count++] = angle; }
   const double* begin() const { return value.data(); }
   const double* end() const { return value.data() + count; }
 };

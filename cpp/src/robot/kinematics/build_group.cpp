@@ -1,18 +1,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/near_name.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/robot/detail/joint_group_data.hpp"
 #include "robot/model/joint_motion.hpp"
-#include "mmgrasp/core/detail/near_name.hpp"
 
 namespace mmgrasp {
 namespace detail {
 namespace {
 
 const Joint& joint_of(const GroupModel& model, int index) {
-  return model.robot.joints()[static_cast<std::size_t>(index)];
+  return model.robot.joints()[index];
 }
 
 constexpr double kAccelerationPerVelocity = 4.0;  // [1/s]: URDF knows no acceleration limits
@@ -55,7 +55,7 @@ void set_columns(const std::vector<Column>& columns, GroupModel& model) {
   const Eigen::Index size = static_cast<Eigen::Index>(columns.size());
   for (Eigen::VectorXd* v : {&model.lower, &model.upper, &model.velocity, &model.acceleration}) v->resize(size);
   for (Eigen::Index i = 0; i < size; ++i) {
-    const Column& column = columns[static_cast<std::size_t>(i)];
+    const Column& column = columns[i];
     model.names.push_back(column.name);
     model.joints.push_back(column.joint);
     model.wraps.push_back(column.wraps);
@@ -129,7 +129,7 @@ namespace {
 
 /// True when `link` is `ancestor` or hangs from it.
 bool hangs_from(const Robot& robot, int link, int ancestor) {
-  while (link > ancestor) link = robot.joints()[static_cast<std::size_t>(link - 1)].parent_link;
+  while (link > ancestor) link = robot.joints()[link - 1].parent_link;
   return link == ancestor;
 }
 
@@ -172,8 +172,8 @@ JointGroup Robot::chain(const std::string& base_link, const std::string& tip_lin
   if (!hangs_from(*this, tip, base))
     throw InvalidInput("tip_link = \"" + tip_link + "\": must hang from base_link = \"" + base_link + "\"");
   std::vector<int> chain_joints;
-  for (int link = tip; link != base; link = joints()[static_cast<std::size_t>(link - 1)].parent_link) {
-    const Joint& joint = joints()[static_cast<std::size_t>(link - 1)];
+  for (int link = tip; link != base; link = joints()[link - 1].parent_link) {
+    const Joint& joint = joints()[link - 1];
     // A mimic joint moves with the one it follows, which must be in the chain itself to count.
     if (joint.value_index >= 0) chain_joints.push_back(link - 1);
   }

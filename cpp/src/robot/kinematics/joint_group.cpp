@@ -118,10 +118,10 @@ Eigen::VectorXd JointGroup::full_values(const Eigen::VectorXd& q) const {
   Eigen::VectorXd values = model.reference;
   int place = 0;  // within the values of a joint
   for (int i = model.base_columns(); i < size(); ++i) {
-    const int joint = model.joints[static_cast<std::size_t>(i)];
-    const bool same = i > 0 && model.joints[static_cast<std::size_t>(i - 1)] == joint;
+    const int joint = model.joints[i];
+    const bool same = i > 0 && model.joints[i - 1] == joint;
     place = same ? place + 1 : 0;
-    values[model.robot.joints()[static_cast<std::size_t>(joint)].value_index + place] = q[i];
+    values[model.robot.joints()[joint].value_index + place] = q[i];
   }
   return values;
 }
@@ -135,7 +135,7 @@ void JointGroup::check_configuration(const Eigen::VectorXd& q, const std::string
           "must be " + std::to_string(size()) + " (group \"" + name() + "\")");
   for (Eigen::Index i = 0; i < q.size(); ++i)
     require(std::isfinite(q[i]), field + "[" + std::to_string(i) + "]", q[i],
-            "must be finite (joint \"" + names()[static_cast<std::size_t>(i)] + "\")");
+            "must be finite (joint \"" + names()[i] + "\")");
 }
 
 }  // namespace mmgrasp

@@ -77,11 +77,10 @@ void add_joint(const Joint& joint, const Drive& drive, Path& path) {
 Path path_to_tip(const GroupModel& model) {
   const std::vector<Joint>& joints = model.robot.joints();
   std::vector<int> way;
-  for (int link = model.tip_link; link > 0; link = joints[static_cast<std::size_t>(link - 1)].parent_link)
-    way.push_back(link - 1);
+  for (int link = model.tip_link; link > 0; link = joints[link - 1].parent_link) way.push_back(link - 1);
   Path path;
   for (auto index = way.rbegin(); index != way.rend(); ++index) {
-    const Joint& joint = joints[static_cast<std::size_t>(*index)];
+    const Joint& joint = joints[*index];
     const Drive drive = drive_of(model, *index);
     if (drive.column < 0)
       path.fixed = path.fixed * standing_pose(model, joint);
@@ -162,11 +161,11 @@ void flatten_chain(GroupModel& model, GroupKinematics& kinematics) {
   for (const Elementary& motion : path.motions) angles.push_back(zxz(motion.R));
   kinematics.first_turn = count > 0 ? angles.front().before : 0.0;
   std::vector<bool> seen(model.names.size(), false);
-  for (int i = 0; i < model.base_columns(); ++i) seen[static_cast<std::size_t>(i)] = true;
+  for (int i = 0; i < model.base_columns(); ++i) seen[i] = true;
   for (int i = 0; i < count; ++i) {
-    const Elementary& motion = path.motions[static_cast<std::size_t>(i)];
-    const ZxzAngles& own = angles[static_cast<std::size_t>(i)];
-    const double next = i + 1 < count ? angles[static_cast<std::size_t>(i + 1)].before : 0.0;
+    const Elementary& motion = path.motions[i];
+    const ZxzAngles& own = angles[i];
+    const double next = i + 1 < count ? angles[i + 1].before : 0.0;
     Segment segment;
     const Eigen::Vector3d p = turn_about(Eigen::Vector3d::UnitZ(), -own.before) * motion.p;
     std::copy(p.data(), p.data() + 3, segment.p);
@@ -176,8 +175,8 @@ void flatten_chain(GroupModel& model, GroupKinematics& kinematics) {
     segment.offset = motion.drive.offset;
     segment.column = motion.drive.column;
     segment.motion = motion.motion;
-    segment.adds = seen[static_cast<std::size_t>(segment.column)];
-    seen[static_cast<std::size_t>(segment.column)] = true;
+    segment.adds = seen[segment.column];
+    seen[segment.column] = true;
     const double between = wrapped(own.after + next);
     if (motion.motion == Motion::turn) {
       kinematics.chain_turn_storage.add(segment.column, segment.multiplier, wrapped(own.after + next + segment.offset));
@@ -188,7 +187,7 @@ void flatten_chain(GroupModel& model, GroupKinematics& kinematics) {
       segment.ball = static_cast<int>(kinematics.balls.size());
       kinematics.balls.push_back({segment.column, turn_about(Eigen::Vector3d::UnitZ(), own.after),
                                   turn_about(Eigen::Vector3d::UnitZ(), next)});
-      for (int k = 0; k < 3; ++k) seen[static_cast<std::size_t>(segment.column + k)] = true;
+      for (int k = 0; k < 3; ++k) seen[segment.column + k] = true;
     }
     kinematics.segment_storage.push_back(segment);
   }

@@ -63,7 +63,7 @@ void JointGroup::link_poses(const Eigen::Ref<const Eigen::VectorXd>& q, Poses& T
   if (all || has_base()) T_world_link[0] = has_base() ? pose_from_planar(q.head<3>()) : data_->T_world_root;
   alignas(32) double given[16 * (detail::kMaxColumns / 3 + 1)];
   for (std::size_t i = 0; i < kinematics.given.size(); ++i) {
-    const Joint& joint = robot().joints()[static_cast<std::size_t>(kinematics.given[i].joint)];
+    const Joint& joint = robot().joints()[kinematics.given[i].joint];
     Eigen::Map<Eigen::Matrix4d>(given + 16 * i) =
         (joint.T_parent_joint * detail::joint_motion(joint, q.data() + kinematics.given[i].column)).matrix();
     given[16 * i + 15] = 0;
@@ -80,7 +80,7 @@ Matrix6Xd JointGroup::jacobian(const Eigen::Ref<const Eigen::VectorXd>& q, int l
   Poses T_world_link;
   link_poses(q, T_world_link);
   Matrix6Xd J(6, size());
-  point_jacobian(T_world_link, q, link, T_world_link[static_cast<std::size_t>(link)] * p_link_point, J);
+  point_jacobian(T_world_link, q, link, T_world_link[link] * p_link_point, J);
   return J;
 }
 
@@ -89,14 +89,13 @@ void JointGroup::point_jacobian(const Poses& T_world_link, const Eigen::Ref<cons
   const GroupKinematics& kinematics = *data_->kinematics;
   const std::vector<Joint>& joints = robot().joints();
   J.setZero();
-  for (int i = kinematics.mover_of_link[static_cast<std::size_t>(link)]; i >= 0;) {
-    const Mover& mover = kinematics.movers[static_cast<std::size_t>(i)];
+  for (int i = kinematics.mover_of_link[link]; i >= 0;) {
+    const Mover& mover = kinematics.movers[i];
     i = mover.next;
-    const Joint& joint = joints[static_cast<std::size_t>(mover.joint)];
-    const auto R_parent = T_world_link[static_cast<std::size_t>(joint.parent_link)].linear();
+    const Joint& joint = joints[mover.joint];
+    const auto R_parent = T_world_link[joint.parent_link].linear();
     // Whatever turns, turns about the child's origin.
-    const Eigen::Vector3d lever =
-        p_world_point - T_world_link[static_cast<std::size_t>(joint.child_link)].translation();
+    const Eigen::Vector3d lever = p_world_point - T_world_link[joint.child_link].translation();
     const auto turn = [&](int column, const Eigen::Vector3d& w) {
       J.col(column).head<3>() += w.cross(lever);
       J.col(column).tail<3>() += w;

@@ -21,7 +21,7 @@ void copy_vector(const Eigen::Vector3d& v, double* to) {
 }
 
 LinkStep link_step(const GroupModel& model, int index, GroupKinematics& kinematics) {
-  const Joint& joint = model.robot.joints()[static_cast<std::size_t>(index)];
+  const Joint& joint = model.robot.joints()[index];
   const Drive drive = drive_of(model, index);
   LinkStep step{};
   step.link = joint.child_link;

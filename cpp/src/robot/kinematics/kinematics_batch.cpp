@@ -5,7 +5,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/robot/detail/joint_group_data.hpp"
-#include "mmgrasp/robot/detail/manipulability.hpp"
+#include "mmgrasp/robot/detail/manipulability_measure.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -55,13 +55,13 @@ void run(const JointGroup& group, const Columns& Q, Pose* T, double* J) {
 
 void fk_batch(const JointGroup& group, const Columns& Q, Poses& T_world_tip) {
   check_rows(group, Q);
-  T_world_tip.resize(static_cast<std::size_t>(Q.cols()));
+  T_world_tip.resize(Q.cols());
   if (Q.cols() > 0) run(group, Q, T_world_tip.data(), nullptr);
 }
 
 void fk_jacobian_batch(const JointGroup& group, const Columns& Q, Poses& T_world_tip, Matrix6Xd& J) {
   check_rows(group, Q);
-  T_world_tip.resize(static_cast<std::size_t>(Q.cols()));
+  T_world_tip.resize(Q.cols());
   J.resize(6, Q.cols() * group.size());
   if (Q.cols() > 0) run(group, Q, T_world_tip.data(), J.data());
 }

@@ -1,8 +1,8 @@
 #include <atomic>
 
 #include "mmgrasp/core/error.hpp"
-#include "mmgrasp/robot/kinematics_batch.hpp"
 #include "mmgrasp/robot/detail/chain_kernel.hpp"
+#include "mmgrasp/robot/kinematics_batch.hpp"
 
 namespace mmgrasp {
 namespace detail {

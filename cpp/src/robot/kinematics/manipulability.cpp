@@ -6,7 +6,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/robot/detail/joint_group_data.hpp"
-#include "mmgrasp/robot/detail/manipulability.hpp"
+#include "mmgrasp/robot/detail/manipulability_measure.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -3,9 +3,9 @@
 #include <deque>
 #include <set>
 
+#include "mmgrasp/core/detail/near_name.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "robot/model/robot_data.hpp"
-#include "mmgrasp/core/detail/near_name.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -83,14 +83,14 @@ Tree build_tree(const RobotParts& parts, const NameIndex& links) {
     const int child = link_of(links, parts, named, "child", named.child);
     if (parent == child)
       throw InvalidInput(named.place + ": parent and child = \"" + named.child + "\": must differ (cycle)");
-    int& known = tree.parent_joint[static_cast<std::size_t>(child)];
+    int& known = tree.parent_joint[child];
     if (known >= 0)
       throw InvalidInput(named.place + ": child link = \"" + named.child + "\": already carried by joint \"" +
-                         parts.joints[static_cast<std::size_t>(known)].joint.name + "\", must have one parent joint");
+                         parts.joints[known].joint.name + "\", must have one parent joint");
     known = static_cast<int>(j);
     tree.joint_parent.push_back(parent);
     tree.joint_child.push_back(child);
-    tree.child_joints[static_cast<std::size_t>(parent)].push_back(static_cast<int>(j));
+    tree.child_joints[parent].push_back(static_cast<int>(j));
   }
   tree.root = find_root(parts, tree);
   return tree;
@@ -100,15 +100,14 @@ Tree build_tree(const RobotParts& parts, const NameIndex& links) {
 std::vector<int> breadth_first(const RobotParts& parts, const Tree& tree) {
   std::vector<int> order{tree.root};
   for (std::size_t head = 0; head < order.size(); ++head)
-    for (const int joint : tree.child_joints[static_cast<std::size_t>(order[head])])
-      order.push_back(tree.joint_child[static_cast<std::size_t>(joint)]);
+    for (const int joint : tree.child_joints[order[head]]) order.push_back(tree.joint_child[joint]);
   if (order.size() < parts.links.size()) {
     std::vector<bool> reached(parts.links.size(), false);
-    for (const int link : order) reached[static_cast<std::size_t>(link)] = true;
+    for (const int link : order) reached[link] = true;
     const auto first = std::find(reached.begin(), reached.end(), false) - reached.begin();
-    throw InvalidInput(parts.origin + ": link \"" + parts.links[static_cast<std::size_t>(first)].name +
+    throw InvalidInput(parts.origin + ": link \"" + parts.links[first].name +
                        "\" hangs on a cycle of joints: every link must hang from the root \"" +
-                       parts.links[static_cast<std::size_t>(tree.root)].name + "\"");
+                       parts.links[tree.root].name + "\"");
   }
   return order;
 }
@@ -118,7 +117,7 @@ void resolve_mimics(const RobotParts& parts, const NameIndex& part_joints, Robot
   std::vector<std::string> names;
   for (const NamedJoint& named : parts.joints) names.push_back(named.joint.name);
   for (Joint& joint : data.joints) {
-    const NamedJoint* step = &parts.joints[static_cast<std::size_t>(part_joints.at(joint.name))];
+    const NamedJoint* step = &parts.joints[part_joints.at(joint.name)];
     if (step->mimic.empty()) continue;
     const std::string& place = step->place;
     double multiplier = 1, offset = 0;
@@ -132,7 +131,7 @@ void resolve_mimics(const RobotParts& parts, const NameIndex& part_joints, Robot
                            near_miss(step->mimic, names));
       offset += multiplier * step->joint.mimic_offset;
       multiplier *= step->joint.mimic_multiplier;
-      step = &parts.joints[static_cast<std::size_t>(found->second)];
+      step = &parts.joints[found->second];
     }
     if (step->joint.value_count() != 1)
       throw InvalidInput(place + ": mimic joint = \"" + step->joint.name + "\": is " + to_string(step->joint.type) +
@@ -161,8 +160,7 @@ void number_values(Robot::Data& data) {
 std::vector<int> rigid_bodies(const Robot::Data& data) {
   std::vector<int> body(data.links.size(), 0);
   for (const Joint& joint : data.joints)
-    body[static_cast<std::size_t>(joint.child_link)] =
-        joint.type == JointType::fixed ? body[static_cast<std::size_t>(joint.parent_link)] : joint.child_link;
+    body[joint.child_link] = joint.type == JointType::fixed ? body[joint.parent_link] : joint.child_link;
   return body;
 }
 
@@ -171,7 +169,7 @@ std::vector<int> rigid_bodies(const Robot::Data& data) {
 std::set<std::pair<int, int>> adjacent_pairs(const Robot::Data& data) {
   std::set<std::pair<int, int>> pairs;
   const auto is_bare = [&data](int link) {
-    const Link& l = data.links[static_cast<std::size_t>(link)];
+    const Link& l = data.links[link];
     return l.collisions.empty() && data.shapes_left_out.count(l.name) == 0;
   };
   const auto disable = [&pairs](int a, int b) {
@@ -181,7 +179,7 @@ std::set<std::pair<int, int>> adjacent_pairs(const Robot::Data& data) {
     disable(joint.parent_link, joint.child_link);
     // Links without shapes (flanges, frames) join their neighbours as if these touched directly.
     int above = joint.parent_link;
-    while (above > 0 && is_bare(above)) above = data.joints[static_cast<std::size_t>(above - 1)].parent_link;
+    while (above > 0 && is_bare(above)) above = data.joints[above - 1].parent_link;
     disable(above, joint.child_link);
   }
   // Two links of one rigid body never move against each other: whether they touch is no matter of configuration.
@@ -217,19 +215,19 @@ std::shared_ptr<Robot::Data> build_robot(const RobotParts& parts) {
   data->inertials = parts.inertials;
   data->shapes_left_out = parts.shapes_left_out;
   for (const int old_link : order) {
-    Link link = parts.links[static_cast<std::size_t>(old_link)];
+    Link link = parts.links[old_link];
     const int index = static_cast<int>(data->links.size());
     link.child_joints.clear();
     link.parent_joint = index - 1;
     data->link_by_name.emplace(link.name, index);
     data->links.push_back(std::move(link));
-    const int old_joint = tree.parent_joint[static_cast<std::size_t>(old_link)];
+    const int old_joint = tree.parent_joint[old_link];
     if (old_joint < 0) continue;
-    const NamedJoint& named = parts.joints[static_cast<std::size_t>(old_joint)];
+    const NamedJoint& named = parts.joints[old_joint];
     Joint joint = named.joint;
     joint.parent_link = data->link_by_name.at(named.parent);
     joint.child_link = index;
-    data->links[static_cast<std::size_t>(joint.parent_link)].child_joints.push_back(index - 1);
+    data->links[joint.parent_link].child_joints.push_back(index - 1);
     data->joint_by_name.emplace(joint.name, index - 1);
     data->joints.push_back(std::move(joint));
   }
@@ -254,9 +252,9 @@ RobotParts to_parts(const Robot::Data& data) {
   for (const Joint& joint : data.joints) {
     NamedJoint named;
     named.joint = joint;
-    named.parent = data.links[static_cast<std::size_t>(joint.parent_link)].name;
-    named.child = data.links[static_cast<std::size_t>(joint.child_link)].name;
-    if (joint.mimic_joint >= 0) named.mimic = data.joints[static_cast<std::size_t>(joint.mimic_joint)].name;
+    named.parent = data.links[joint.parent_link].name;
+    named.child = data.links[joint.child_link].name;
+    if (joint.mimic_joint >= 0) named.mimic = data.joints[joint.mimic_joint].name;
     named.place = parts.origin + ": joint \"" + joint.name + "\"";
     parts.joints.push_back(std::move(named));
   }
@@ -270,8 +268,8 @@ RobotParts to_parts(const Robot::Data& data) {
   parts.inertials = data.inertials;
   parts.shapes_left_out = data.shapes_left_out;
   for (const auto& [pair, reason] : data.disabled_pairs) {
-    const std::string& a = data.links[static_cast<std::size_t>(pair.first)].name;
-    const std::string& b = data.links[static_cast<std::size_t>(pair.second)].name;
+    const std::string& a = data.links[pair.first].name;
+    const std::string& b = data.links[pair.second].name;
     parts.disabled_pairs.emplace(std::minmax(a, b), reason);
   }
   return parts;

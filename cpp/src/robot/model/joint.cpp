@@ -41,7 +41,7 @@ std::vector<std::string> detail::value_names(const Joint& joint) {
   const std::vector<const char*> parts = joint.type == JointType::planar
                                              ? std::vector<const char*>{"x", "y", "theta"}
                                              : std::vector<const char*>{"x", "y", "z", "rx", "ry", "rz"};
-  for (int i = 0; i < joint.value_count(); ++i) names.push_back(joint.name + "/" + parts[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < joint.value_count(); ++i) names.push_back(joint.name + "/" + parts[i]);
   return names;
 }
 

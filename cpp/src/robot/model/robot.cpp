@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/near_name.hpp"
+#include "mmgrasp/core/detail/xml_document.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "robot/model/joint_motion.hpp"
 #include "robot/model/robot_data.hpp"
-#include "mmgrasp/core/detail/near_name.hpp"
-#include "mmgrasp/core/detail/xml_document.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -25,7 +25,7 @@ std::pair<std::string, int> split_value_name(const Robot::Data& data, const std:
   if (data.joint_by_name.count(name) || slash == std::string::npos) return {name, 0};
   const auto found = data.joint_by_name.find(name.substr(0, slash));
   if (found == data.joint_by_name.end()) return {name, 0};
-  const std::vector<std::string> parts = detail::value_names(data.joints[static_cast<std::size_t>(found->second)]);
+  const std::vector<std::string> parts = detail::value_names(data.joints[found->second]);
   const auto part = std::find(parts.begin(), parts.end(), name);
   if (part == parts.end()) return {name, 0};
   return {found->first, static_cast<int>(part - parts.begin())};
@@ -86,11 +86,10 @@ Eigen::VectorXd Robot::values(const std::map<std::string, double>& by_name) cons
   Eigen::VectorXd result = data_->default_values;
   for (const auto& [name, value] : by_name) {
     const auto [joint_name, part] = split_value_name(*data_, name);
-    const Joint& joint = data_->joints[static_cast<std::size_t>(joint_index(joint_name))];
+    const Joint& joint = data_->joints[joint_index(joint_name)];
     const std::string field = "joint \"" + name + "\"";
     if (joint.mimic_joint >= 0)
-      throw InvalidInput(field + ": follows joint \"" +
-                         data_->joints[static_cast<std::size_t>(joint.mimic_joint)].name + "\", set that one");
+      throw InvalidInput(field + ": follows joint \"" + data_->joints[joint.mimic_joint].name + "\", set that one");
     if (joint.value_count() == 0) throw InvalidInput(field + ": is fixed, must be a movable joint");
     if (joint.value_count() > 1 && name == joint_name)
       throw InvalidInput(field + ": is " + to_string(joint.type) +
@@ -111,14 +110,13 @@ Poses Robot::link_poses(const Eigen::VectorXd& values, const Pose& T_world_root)
     double mimicked = 0;
     const double* motion = &mimicked;
     if (joint.mimic_joint >= 0) {
-      const Joint& followed = data_->joints[static_cast<std::size_t>(joint.mimic_joint)];
+      const Joint& followed = data_->joints[joint.mimic_joint];
       mimicked = joint.mimic_multiplier * values[followed.value_index] + joint.mimic_offset;
     } else if (joint.value_index >= 0) {
       motion = values.data() + joint.value_index;
     }
-    T_world_link[static_cast<std::size_t>(joint.child_link)] =
-        T_world_link[static_cast<std::size_t>(joint.parent_link)] * joint.T_parent_joint *
-        detail::joint_motion(joint, motion);
+    T_world_link[joint.child_link] =
+        T_world_link[joint.parent_link] * joint.T_parent_joint * detail::joint_motion(joint, motion);
   }
   return T_world_link;
 }

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "mmgrasp/core/detail/xml_document.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/shape.hpp"
 #include "mmgrasp/geometry/simplify_mesh.hpp"
@@ -10,7 +11,6 @@
 #include "robot/model/robot_data.hpp"
 #include "robot/model/srdf_reader.hpp"
 #include "robot/model/urdf_reader.hpp"
-#include "mmgrasp/core/detail/xml_document.hpp"
 
 namespace mmgrasp {
 namespace {

@@ -3,9 +3,9 @@
 #include <set>
 #include <sstream>
 
+#include "mmgrasp/core/detail/xml_document.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "robot/model/robot_data.hpp"
-#include "mmgrasp/core/detail/xml_document.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -70,7 +70,7 @@ void write_limit(std::ostream& out, const Joint& joint) {
 }
 
 void write_joint(std::ostream& out, const Joint& joint, const Robot::Data& data) {
-  const auto link_name = [&data](int link) { return data.links[static_cast<std::size_t>(link)].name; };
+  const auto link_name = [&data](int link) { return data.links[link].name; };
   out << "  <joint" << attribute("name", joint.name) << attribute("type", to_string(joint.type)) << ">\n    "
       << origin_text(joint.T_parent_joint) << "\n    <parent" << attribute("link", link_name(joint.parent_link))
       << "/>\n    <child" << attribute("link", link_name(joint.child_link)) << "/>\n";
@@ -78,7 +78,7 @@ void write_joint(std::ostream& out, const Joint& joint, const Robot::Data& data)
     out << "    <axis" << attribute("xyz", vector_text(joint.axis)) << "/>\n";
   if (joint.type != JointType::fixed) write_limit(out, joint);
   if (joint.mimic_joint >= 0)
-    out << "    <mimic" << attribute("joint", data.joints[static_cast<std::size_t>(joint.mimic_joint)].name)
+    out << "    <mimic" << attribute("joint", data.joints[joint.mimic_joint].name)
         << attribute("multiplier", number_text(joint.mimic_multiplier))
         << attribute("offset", number_text(joint.mimic_offset)) << "/>\n";
   out << "  </joint>\n";
@@ -89,7 +89,7 @@ std::vector<const Joint*> path_of(const GroupDescription& group, const Robot::Da
   std::vector<const Joint*> path;
   const int base = data.link_by_name.at(group.base_link);
   for (int link = data.link_by_name.at(group.tip_link); link != base; link = path.back()->parent_link)
-    path.push_back(&data.joints[static_cast<std::size_t>(link - 1)]);
+    path.push_back(&data.joints[link - 1]);
   std::reverse(path.begin(), path.end());
   return path;
 }
@@ -166,8 +166,7 @@ const char* reason_text(DisabledReason reason) {
 
 void write_pairs(std::ostream& out, const Robot::Data& data) {
   const auto links = [&data](const std::pair<int, int>& pair) {
-    return attribute("link1", data.links[static_cast<std::size_t>(pair.first)].name) +
-           attribute("link2", data.links[static_cast<std::size_t>(pair.second)].name);
+    return attribute("link1", data.links[pair.first].name) + attribute("link2", data.links[pair.second].name);
   };
   // Neighbours count as disabled unless the file says otherwise.
   for (const auto& pair : detail::adjacent_pairs(data))

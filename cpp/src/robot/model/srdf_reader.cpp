@@ -64,7 +64,7 @@ class SrdfReader {
     return -1;
   }
 
-  const Joint& joint(int index) const { return data_.joints[static_cast<std::size_t>(index)]; }
+  const Joint& joint(int index) const { return data_.joints[index]; }
   /// Joint that carries a link; -1 for the root.
   static int carrier(int link) { return link - 1; }
 
@@ -212,8 +212,8 @@ class SrdfReader {
     // joint.
     for (const std::vector<int>& set : {std::vector<int>(members.joints.begin(), members.joints.end()), movable}) {
       if (set.empty() || !on_one_path(set)) continue;
-      group.base_link = data_.links[static_cast<std::size_t>(joint(set.front()).parent_link)].name;
-      group.tip_link = data_.links[static_cast<std::size_t>(joint(set.back()).child_link)].name;
+      group.base_link = data_.links[joint(set.front()).parent_link].name;
+      group.tip_link = data_.links[joint(set.back()).child_link].name;
       break;
     }
     return group;

@@ -20,7 +20,7 @@ std::string key_of(const JointGroup& group) {
   Hasher hasher;
   hasher.add(group.robot().hash());
   for (const std::string& name : group.names()) hasher.add(name);
-  hasher.add(group.robot().links()[static_cast<std::size_t>(group.tip_link())].name);
+  hasher.add(group.robot().links()[group.tip_link()].name);
   return hasher.hex();
 }
 

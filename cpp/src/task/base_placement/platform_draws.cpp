@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "mmgrasp/core/random.hpp"
-#include "mmgrasp/robot/ik_objective.hpp"
 #include "mmgrasp/robot/detail/ik_starts.hpp"
-#include "mmgrasp/robot/detail/manipulability.hpp"
+#include "mmgrasp/robot/detail/manipulability_measure.hpp"
+#include "mmgrasp/robot/ik_objective.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -71,7 +71,7 @@ PlatformEnd::Fault PlatformEnd::fault_of(const Eigen::VectorXd& q, Rejection& ca
   if (camera_) {
     Poses poses;
     group_.link_poses(q, poses);
-    if (!in_view(poses[static_cast<std::size_t>(camera_->link)])) return Fault::view;
+    if (!in_view(poses[camera_->link])) return Fault::view;
   }
   cause = checker_.rejection(q);
   return cause == Rejection::none ? Fault::none : Fault::other;
@@ -155,12 +155,12 @@ Eigen::VectorXd PlatformEnd::drawn_towards(const Eigen::VectorXd& q, const Eigen
 bool PlatformEnd::confirmed(const Eigen::VectorXd& q) const {
   if (!group_.within_limits(q)) return false;
   const Poses poses = group_.robot().link_poses(group_.full_values(q), group_.root_pose(q));
-  const Vector6d error = pose_difference(poses[static_cast<std::size_t>(group_.tip_link())], T_world_tip_);
+  const Vector6d error = pose_difference(poses[group_.tip_link()], T_world_tip_);
   constexpr double kRounding = 1 + 1e-6;
   if (error.head<3>().norm() > kRounding * descent_.position_tolerance ||
       error.tail<3>().norm() > kRounding * descent_.rotation_tolerance)
     return false;
-  if (camera_ && !in_view(poses[static_cast<std::size_t>(camera_->link)])) return false;
+  if (camera_ && !in_view(poses[camera_->link])) return false;
   const Eigen::MatrixXd J = arm_jacobian(group_, q);
   if (J.jacobiSvd().singularValues().prod() < least_manipulability_ * (1 - 1e-9)) return false;
   return checker_.clone().contacts(q).empty();

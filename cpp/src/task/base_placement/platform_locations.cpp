@@ -1,10 +1,10 @@
 #include "mmgrasp/task/platform_locations.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "task/base_placement/platform_draws.hpp"
 
@@ -52,7 +52,7 @@ class Search {
   };
 
   bool over(Outcome& ended) {
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    const double seconds = stopwatch_.seconds();
     if (monitor_.stopped())
       ended = Outcome::stopped;
     else if (seconds > options_.time_limit)
@@ -149,7 +149,7 @@ class Search {
   std::vector<Pair> pairs_;  // each cheaper than the one before
   double best_cost_ = detail::kInfinity;
   std::size_t seen_pick_ = 0, seen_place_ = 0;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  detail::Stopwatch stopwatch_;
 };
 
 void check_point(const Eigen::Vector3d& point, const std::string& field) {

@@ -5,8 +5,7 @@
 namespace mmgrasp {
 
 Eigen::Vector3d BaseGrid::centre(int heading, int ix, int iy) const {
-  return Eigen::Vector3d(origin.x() + (ix + 0.5) * resolution, origin.y() + (iy + 0.5) * resolution,
-                         headings[static_cast<std::size_t>(heading)]);
+  return Eigen::Vector3d(origin.x() + (ix + 0.5) * resolution, origin.y() + (iy + 0.5) * resolution, headings[heading]);
 }
 
 void PartCells::add_window(int heading, int x0, int y0, int nx, int ny, const std::vector<std::uint8_t>& flags) {

@@ -4,15 +4,15 @@
 #include <map>
 #include <set>
 
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/core/detail/no_time_limit.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/robot/ik.hpp"
 #include "mmgrasp/task/base_region.hpp"
-#include "task/base_region/ik_lattice.hpp"
-#include "task/base_region/warm_descent.hpp"
-#include "mmgrasp/core/detail/no_time_limit.hpp"
+#include "task/base_region/ik_seed_grid.hpp"
+#include "task/base_region/warm_started_ik.hpp"
 #include "task/problem/scene.hpp"
 
 namespace mmgrasp {
@@ -25,12 +25,12 @@ constexpr int kCheckRestarts = 12;
 std::set<std::string> hand_links(const JointGroup& arm) {
   const Robot& robot = arm.robot();
   std::set<std::string> names;
-  std::vector<int> open = {robot.joints()[static_cast<std::size_t>(arm.joints().back())].child_link};
+  std::vector<int> open = {robot.joints()[arm.joints().back()].child_link};
   while (!open.empty()) {
-    const Link& link = robot.links()[static_cast<std::size_t>(open.back())];
+    const Link& link = robot.links()[open.back()];
     open.pop_back();
     names.insert(link.name);
-    for (int joint : link.child_joints) open.push_back(robot.joints()[static_cast<std::size_t>(joint)].child_link);
+    for (int joint : link.child_joints) open.push_back(robot.joints()[joint].child_link);
   }
   return names;
 }
@@ -56,7 +56,7 @@ struct EvaluatorTables {
   JointGroup arm;  // root at the origin
   Eigen::AlignedBox3d bounds;
   double reach;
-  std::shared_ptr<const IkLattice> lattice;
+  std::shared_ptr<const IkSeedGrid> lattice;
   std::vector<std::pair<int, int>> parts;  // in place
   std::vector<double> openings;
   std::vector<std::vector<int>> first;  // [tray][part]: where its grasps begin in the lists below
@@ -66,7 +66,7 @@ struct EvaluatorTables {
 
 /// A grasp as it is for one heading of the base, with the base in the origin.
 struct PlacedGrasp {
-  IkLattice::Sheet* sheet = nullptr;
+  IkSeedGrid::IkSeedSlice* sheet = nullptr;
   Pose T_root_tcp;
 };
 
@@ -75,7 +75,7 @@ struct BasePoseEvaluator::Impl {
   CollisionChecker at_rest;
   std::vector<CollisionChecker> opened;
   std::vector<Eigen::Vector3d> opened_at;  // where each checker's root stands now
-  WarmDescent descent;
+  WarmStartedIk descent;
   double heading = std::nan("");    // of `placed`
   std::vector<PlacedGrasp> placed;  // one a grasp
   Eigen::VectorXd q;
@@ -98,10 +98,10 @@ struct BasePoseEvaluator::Impl {
   }
 
   CollisionChecker& checker_at(int index, const Eigen::Vector3d& base_pose) {
-    CollisionChecker& checker = opened[static_cast<std::size_t>(index)];
-    if (opened_at[static_cast<std::size_t>(index)] != base_pose) {
+    CollisionChecker& checker = opened[index];
+    if (opened_at[index] != base_pose) {
       checker.set_root(pose_from_planar(base_pose));
-      opened_at[static_cast<std::size_t>(index)] = base_pose;
+      opened_at[index] = base_pose;
     }
     return checker;
   }
@@ -111,10 +111,10 @@ struct BasePoseEvaluator::Impl {
       for (PlacedGrasp& old : placed) old.sheet = nullptr;
       heading = theta;
     }
-    PlacedGrasp& placed_grasp = placed[static_cast<std::size_t>(place_of_grasp)];
+    PlacedGrasp& placed_grasp = placed[place_of_grasp];
     if (placed_grasp.sheet == nullptr) {
       placed_grasp.T_root_tcp = pose_from_planar(Eigen::Vector3d(0, 0, theta)).inverse() *
-                                (part.T_world_part * part.grasps[static_cast<std::size_t>(grasp)].T_object_tcp);
+                                (part.T_world_part * part.grasps[grasp].T_object_tcp);
       placed_grasp.sheet =
           &tables->lattice->sheet(placed_grasp.T_root_tcp.linear(), placed_grasp.T_root_tcp.translation().z());
     }
@@ -137,11 +137,11 @@ struct BasePoseEvaluator::Impl {
     T_base_tcp.translation().x() -= c * base_pose.x() + s * base_pose.y();
     T_base_tcp.translation().y() -= c * base_pose.y() - s * base_pose.x();
     const double x = T_base_tcp.translation().x(), y = T_base_tcp.translation().y();
-    const IkLattice& lattice = *tables->lattice;
+    const IkSeedGrid& lattice = *tables->lattice;
     std::array<int, 2> cell;
-    IkLattice::Node* node = grasp.sheet->find(x, y, cell);
+    IkSeedGrid::Node* node = grasp.sheet->find(x, y, cell);
     if (node == nullptr && !lattice.closed_form()) return Rejection::reach;
-    CollisionChecker& checker = checker_at(tables->opening[static_cast<std::size_t>(place_of_grasp)], base_pose);
+    CollisionChecker& checker = checker_at(tables->opening[place_of_grasp], base_pose);
     Rejection worst = Rejection::reach;
     bool arrived = false;
     seen_count = 0;
@@ -208,7 +208,8 @@ struct BasePoseEvaluator::Impl {
 
   /// Near the edge of the reach a node may lie outside where the pose lies inside.
   template <class Try>
-  bool from_neighbours(IkLattice::Sheet& sheet, const std::array<int, 2>& cell, double x, double y, const Try& tried) {
+  bool from_neighbours(IkSeedGrid::IkSeedSlice& sheet, const std::array<int, 2>& cell, double x, double y,
+                       const Try& tried) {
     struct Near {
       double distance;
       const double* start;
@@ -219,7 +220,7 @@ struct BasePoseEvaluator::Impl {
       for (int dx = -1; dx <= 1; ++dx) {
         if (dx == 0 && dy == 0) continue;
         const int ix = cell[0] + dx, iy = cell[1] + dy;
-        IkLattice::Node* node = sheet.at(ix, iy);
+        IkSeedGrid::Node* node = sheet.at(ix, iy);
         if (node == nullptr) continue;
         const double* start = node->solution(0, *tables->lattice, sheet.pose(ix, iy));
         if (start != nullptr) near[count++] = {sheet.squared_distance(ix, iy, x, y), start};
@@ -237,15 +238,14 @@ struct BasePoseEvaluator::Impl {
   int find(const Eigen::Vector3d& base_pose, int tray, int index, int first_grasp, bool any_order,
            std::vector<Rejection>& causes) {
     const Part& part = part_of(*tables->problem, tray, index);
-    const int begin = tables->first[static_cast<std::size_t>(tray)][static_cast<std::size_t>(index)];
+    const int begin = tables->first[tray][index];
     const int count = static_cast<int>(part.grasps.size());
     causes.resize(part.grasps.size());
     for (int turn = first_grasp >= 0 ? -1 : 0; turn < count; ++turn) {
       const int g = turn < 0 ? first_grasp : turn;
       if (turn >= 0 && g == first_grasp) continue;
-      Rejection& cause = causes[static_cast<std::size_t>(g)];
-      cause = tables->blocked[static_cast<std::size_t>(begin + g)] ? Rejection::grasp_filter
-                                                                   : grasp(base_pose, part, g, begin + g, any_order);
+      Rejection& cause = causes[g];
+      cause = tables->blocked[begin + g] ? Rejection::grasp_filter : grasp(base_pose, part, g, begin + g, any_order);
       if (cause == Rejection::none) return g;
     }
     return -1;
@@ -262,7 +262,7 @@ std::shared_ptr<EvaluatorTables> make_tables(const PartSupplyProblem& problem, c
                       arm,
                       database.bounds(),
                       database.reach(),
-                      std::make_shared<const IkLattice>(arm, database, problem.options.grid.ik_seeds),
+                      std::make_shared<const IkSeedGrid>(arm, database, problem.options.grid.ik_seeds),
                       {},
                       {},
                       {},
@@ -290,7 +290,7 @@ std::shared_ptr<EvaluatorTables> make_tables(const PartSupplyProblem& problem, c
 CollisionChecker hand_checker(const PartSupplyProblem& problem, double opening, World world) {
   const JointGroup arm = arm_with_opening(problem, opening);
   const std::vector<Pose> T_root_link = arm.robot().link_poses(arm.full_values(problem.home));
-  const Pose T_tcp_root = T_root_link[static_cast<std::size_t>(arm.tip_link())].inverse();
+  const Pose T_tcp_root = T_root_link[arm.tip_link()].inverse();
   WorldObject hand;
   const std::set<std::string> links = hand_links(arm);
   for (std::size_t i = 0; i < arm.robot().links().size(); ++i) {
@@ -328,15 +328,14 @@ void find_blocked_grasps(const PartSupplyProblem& problem, const std::vector<std
     const auto [tray, index] = parts[item];
     const Part& part = part_of(problem, tray, index);
     if (!part.target) return;
-    std::vector<CollisionChecker>& own = checkers[static_cast<std::size_t>(worker)];
+    std::vector<CollisionChecker>& own = checkers[worker];
     if (own.empty()) {
       for (const CollisionChecker& checker : originals) own.push_back(checker.clone());
     }
-    const std::size_t begin =
-        static_cast<std::size_t>(tables.first[static_cast<std::size_t>(tray)][static_cast<std::size_t>(index)]);
+    const std::size_t begin = static_cast<std::size_t>(tables.first[tray][index]);
     for (std::size_t g = 0; g < part.grasps.size(); ++g) {
       if (!tables.blocked[begin + g]) continue;
-      CollisionChecker& checker = own[static_cast<std::size_t>(tables.opening[begin + g])];
+      CollisionChecker& checker = own[tables.opening[begin + g]];
       checker.set_root(part.T_world_part * part.grasps[g].T_object_tcp);
       tables.blocked[begin + g] = !checker.is_free(still);
     }
@@ -409,26 +408,25 @@ bool BasePoseEvaluator::part_with_restarts(const Eigen::Vector3d& base_pose, int
   if (part(base_pose, tray, index, first_grasp).feasible) return true;
   const EvaluatorTables& tables = *impl_->tables;
   const Part& part = part_of(*tables.problem, tray, index);
-  const int begin = tables.first[static_cast<std::size_t>(tray)][static_cast<std::size_t>(index)];
+  const int begin = tables.first[tray][index];
   const Pose T_base_part = pose_from_planar(base_pose).inverse() * part.T_world_part;
   for (int g = 0; g < static_cast<int>(part.grasps.size()); ++g) {
     if (hand_blocked(tray, index, g)) continue;
-    CollisionChecker& checker = impl_->checker_at(tables.opening[static_cast<std::size_t>(begin + g)], base_pose);
+    CollisionChecker& checker = impl_->checker_at(tables.opening[begin + g], base_pose);
     IkOptions options;
     options.restarts = kCheckRestarts;
     options.time_limit = detail::kNoTimeLimit;
     options.seed = static_cast<unsigned>(g) + 1;
-    const IkResult found =
-        solve_ik(tables.arm, T_base_part * part.grasps[static_cast<std::size_t>(g)].T_object_tcp, tables.problem->home,
-                 options, [&](const Eigen::VectorXd& q) { return checker.rejection(q); });
+    const IkResult found = solve_ik(tables.arm, T_base_part * part.grasps[g].T_object_tcp, tables.problem->home,
+                                    options, [&](const Eigen::VectorXd& q) { return checker.rejection(q); });
     if (found.outcome == Outcome::solved) return true;
   }
   return false;
 }
 
 bool BasePoseEvaluator::hand_blocked(int tray, int part, int grasp) const {
-  const int begin = impl_->tables->first[static_cast<std::size_t>(tray)][static_cast<std::size_t>(part)];
-  return impl_->tables->blocked[static_cast<std::size_t>(begin + grasp)] != 0;
+  const int begin = impl_->tables->first[tray][part];
+  return impl_->tables->blocked[begin + grasp] != 0;
 }
 
 double BasePoseEvaluator::missing_reach(const Eigen::Vector3d& base_pose, int tray, int index) const {
@@ -438,7 +436,7 @@ double BasePoseEvaluator::missing_reach(const Eigen::Vector3d& base_pose, int tr
   double nearest = detail::kInfinity;
   for (int g = 0; g < static_cast<int>(part.grasps.size()); ++g) {
     if (hand_blocked(tray, index, g)) continue;
-    const Eigen::Vector3d p = (T_base_part * part.grasps[static_cast<std::size_t>(g)].T_object_tcp).translation();
+    const Eigen::Vector3d p = (T_base_part * part.grasps[g].T_object_tcp).translation();
     const double outside = std::sqrt(tables.bounds.squaredExteriorDistance(p));
     nearest = std::min(nearest, std::max(outside, p.norm() - tables.reach));
   }

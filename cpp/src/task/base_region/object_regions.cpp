@@ -61,8 +61,7 @@ CellMask ObjectRegions::region(int tray, const std::vector<int>& parts) const {
   if (parts.empty()) throw InvalidInput("parts: must not be empty");
   for (int part : parts) {
     impl_->check_part(tray, part);
-    require(impl_->problem.trays[static_cast<std::size_t>(tray)].parts[static_cast<std::size_t>(part)].target, "part",
-            part, "must be a target");
+    require(impl_->problem.trays[tray].parts[part].target, "part", part, "must be a target");
   }
   CellMask cells(impl_->grid.size(), 0);
   impl_->search->common_cells(tray, parts, cells);

@@ -51,7 +51,7 @@ RegionSearch::RegionSearch(const RegionSearch& other)
 }
 
 void RegionSearch::add_tasks(int index, const ReachDatabase& database) {
-  const Tray& tray = problem_->trays[static_cast<std::size_t>(index)];
+  const Tray& tray = problem_->trays[index];
   const double radius = base_search_radius(*problem_, tray, database);
   const Eigen::Vector2d middle = tray.T_world_tray.translation().head<2>();
   const auto window = [&](double from, double cells, int& begin, int& count) {
@@ -65,11 +65,11 @@ void RegionSearch::add_tasks(int index, const ReachDatabase& database) {
     Task task;
     task.tray = index;
     for (int p = 0; p < static_cast<int>(tray.parts.size()); ++p) {
-      if (tray.parts[static_cast<std::size_t>(p)].target) task.parts.push_back(p);
+      if (tray.parts[p].target) task.parts.push_back(p);
     }
     if (task.parts.empty()) return;
     for (task.heading = 0; task.heading < static_cast<int>(grid_.headings.size()); ++task.heading) {
-      if (std::abs(wrap_angle(grid_.headings[static_cast<std::size_t>(task.heading)] - wanted)) < 1e-9) break;
+      if (std::abs(wrap_angle(grid_.headings[task.heading] - wanted)) < 1e-9) break;
     }
     if (task.heading == static_cast<int>(grid_.headings.size())) continue;  // a grid made by hand may leave it out
     window(middle.x() - grid_.origin.x(), grid_.nx, task.x0, task.nx);
@@ -94,7 +94,7 @@ Eigen::Vector3d RegionSearch::pose(const Task& task, bool corner, int ix, int iy
 }
 
 std::uint8_t& RegionSearch::home(const Task& task, bool corner, int ix, int iy) {
-  Home& layer = home_[static_cast<std::size_t>(task.heading)];
+  Home& layer = home_[task.heading];
   const std::size_t row = static_cast<std::size_t>(grid_.nx + (corner ? 1 : 0));
   return (corner
               ? layer.corners
@@ -155,7 +155,7 @@ bool RegionSearch::check_home(const std::vector<Task*>& tasks, bool corner, cons
   const bool done =
       parallel_for((places.size() + kHomeBlock - 1) / kHomeBlock, threads_,
                    [&](std::size_t item, int worker) {
-                     BasePoseEvaluator& evaluator = evaluators_[static_cast<std::size_t>(worker)];
+                     BasePoseEvaluator& evaluator = evaluators_[worker];
                      for (std::size_t i = item * kHomeBlock; i < std::min(places.size(), (item + 1) * kHomeBlock); ++i)
                        *places[i].state = evaluator.home(places[i].pose) == Rejection::none ? kFree : kInCollision;
                    },
@@ -176,8 +176,7 @@ bool RegionSearch::check_parts(const std::vector<Task*>& tasks, bool corner, con
   const bool done = parallel_for(
       rows.size(), threads_,
       [&](std::size_t item, int worker) {
-        check_row(*rows[item].first, rows[item].second, corner, results[item],
-                  evaluators_[static_cast<std::size_t>(worker)], monitor);
+        check_row(*rows[item].first, rows[item].second, corner, results[item], evaluators_[worker], monitor);
       },
       monitor, corner ? "base regions, corners" : "base regions, centres");
   for (std::size_t item = 0; item < rows.size(); ++item) {
@@ -233,7 +232,7 @@ void RegionSearch::check_row(Task& task, int iy, bool corner, RowResult& result,
 }
 
 BaseRegion RegionSearch::region(int index) const {
-  const Tray& tray = problem_->trays[static_cast<std::size_t>(index)];
+  const Tray& tray = problem_->trays[index];
   const std::vector<int> left = parts(index);
   BaseRegion region;
   region.tray = tray.name;
@@ -241,15 +240,15 @@ BaseRegion RegionSearch::region(int index) const {
   region.part_cells.assign(left.size(), PartCells(grid_));
   for (int part : left) {
     PartExplanation explanation;
-    explanation.part = tray.parts[static_cast<std::size_t>(part)].name;
-    explanation.grasps = static_cast<int>(tray.parts[static_cast<std::size_t>(part)].grasps.size());
+    explanation.part = tray.parts[part].name;
+    explanation.grasps = static_cast<int>(tray.parts[part].grasps.size());
     region.explanations.push_back(explanation);
   }
   for (const Task& task : tasks_) {
     if (task.tray != index || left.empty() || task.good_anywhere.empty()) continue;
     std::vector<std::uint8_t> all(static_cast<std::size_t>(task.nx) * static_cast<std::size_t>(task.ny), 1), own(all);
     for (std::size_t slot = 0, place = 0; slot < task.parts.size(); ++slot) {
-      if (gone_[static_cast<std::size_t>(index)][static_cast<std::size_t>(task.parts[slot])]) continue;
+      if (gone_[index][task.parts[slot]]) continue;
       for (int iy = 0; iy < task.ny; ++iy) {
         for (int ix = 0; ix < task.nx; ++ix) {
           const std::size_t i =
@@ -264,7 +263,7 @@ BaseRegion RegionSearch::region(int index) const {
       explanation.base_poses_feasible += task.totals[slot].base_poses_feasible;
       explanation.rejections += task.totals[slot].rejections;
     }
-    const Home& layer = home_[static_cast<std::size_t>(task.heading)];
+    const Home& layer = home_[task.heading];
     for (int iy = 0; iy < task.ny; ++iy) {
       for (int ix = 0; ix < task.nx; ++ix) {
         const std::size_t i =
@@ -292,16 +291,16 @@ void RegionSearch::forget(int tray) {
 
 std::vector<int> RegionSearch::parts(int tray) const {
   std::vector<int> found;
-  const std::vector<Part>& all = problem_->trays[static_cast<std::size_t>(tray)].parts;
+  const std::vector<Part>& all = problem_->trays[tray].parts;
   for (int p = 0; p < static_cast<int>(all.size()); ++p) {
-    if (all[static_cast<std::size_t>(p)].target && present(tray, p)) found.push_back(p);
+    if (all[p].target && present(tray, p)) found.push_back(p);
   }
   return found;
 }
 
 bool RegionSearch::present(int tray, int part) const {
-  const std::vector<std::uint8_t>& gone = gone_[static_cast<std::size_t>(tray)];
-  return part >= 0 && part < static_cast<int>(gone.size()) && !gone[static_cast<std::size_t>(part)];
+  const std::vector<std::uint8_t>& gone = gone_[tray];
+  return part >= 0 && part < static_cast<int>(gone.size()) && !gone[part];
 }
 
 void RegionSearch::common_cells(int tray, const std::vector<int>& parts, CellMask& cells) const {
@@ -322,8 +321,7 @@ void RegionSearch::common_cells(int tray, const std::vector<int>& parts, CellMas
 }
 
 void RegionSearch::resume_without(const std::vector<std::pair<int, int>>& tray_and_part) {
-  for (const auto& [tray, part] : tray_and_part)
-    gone_[static_cast<std::size_t>(tray)][static_cast<std::size_t>(part)] = 1;
+  for (const auto& [tray, part] : tray_and_part) gone_[tray][part] = 1;
   BasePoseEvaluator first = evaluators_.front().without(tray_and_part);
   evaluators_.clear();
   for (int i = 1; i < threads_; ++i) evaluators_.push_back(first.clone());
@@ -345,9 +343,9 @@ void RegionSearch::resume_without(const std::vector<std::pair<int, int>>& tray_a
       total.rejections.grasp_filter -= blocked.causes[4];
     }
     task.blocked.clear();
-    const std::vector<std::uint8_t>& gone = gone_[static_cast<std::size_t>(task.tray)];
+    const std::vector<std::uint8_t>& gone = gone_[task.tray];
     for (std::size_t slot = task.parts.size(); slot-- > 0;) {
-      if (!gone[static_cast<std::size_t>(task.parts[slot])]) continue;
+      if (!gone[task.parts[slot]]) continue;
       const auto at = static_cast<std::ptrdiff_t>(slot);
       task.parts.erase(task.parts.begin() + at);
       task.centres.erase(task.centres.begin() + at);

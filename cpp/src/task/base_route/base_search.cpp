@@ -110,7 +110,7 @@ class BaseSearch {
   }
 
   Eigen::Vector3d lattice_pose(int ix, int iy, int ih) const {
-    const auto& d = kDrives[static_cast<std::size_t>(ih)];
+    const auto& d = kDrives[ih];
     return {from_.x() + ix * settings_.resolution, from_.y() + iy * settings_.resolution,
             std::atan2(static_cast<double>(d[1]), static_cast<double>(d[0]))};
   }
@@ -185,7 +185,7 @@ class BaseSearch {
   void expand_lattice(const Key& key, const Node& node, std::uint64_t id) {
     for (int turn : {1, kHeadings - 1}) to_lattice(key.ix, key.iy, (key.ih + turn) % kHeadings, node, id);
     if (settings_.base == BaseKind::diff_drive) {
-      const auto& d = kDrives[static_cast<std::size_t>(key.ih)];
+      const auto& d = kDrives[key.ih];
       for (int sign : {1, -1}) to_lattice(key.ix + sign * d[0], key.iy + sign * d[1], key.ih, node, id);
       return;
     }

@@ -122,7 +122,7 @@ std::vector<double> FloorField::search(const Eigen::Vector2d& from) const {
               iy = static_cast<int>(at / static_cast<std::size_t>(nx_));
     for (int axis = 0; axis < static_cast<int>(kAxes.size()); ++axis) {
       if (!passable(ix, iy, axis)) continue;
-      const auto& step = kAxes[static_cast<std::size_t>(axis)];
+      const auto& step = kAxes[axis];
       for (const int sign : {1, -1}) {
         const int jx = ix + sign * step[0], jy = iy + sign * step[1];
         if (!passable(jx, jy, axis)) continue;

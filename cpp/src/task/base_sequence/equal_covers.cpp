@@ -22,7 +22,7 @@ class Enumeration {
       largest_ = std::max(largest_, problem.sets[s].size());
       const double cost_here = cost_of(s);
       cheapest_ = s == 0 ? cost_here : std::min(cheapest_, cost_here);
-      for (int e : problem.sets[s]) sets_of_[static_cast<std::size_t>(e)].push_back(static_cast<int>(s));
+      for (int e : problem.sets[s]) sets_of_[e].push_back(static_cast<int>(s));
     }
   }
 
@@ -48,8 +48,8 @@ class Enumeration {
     std::size_t fewest = 0;
     for (std::size_t e = 0; e < times_.size(); ++e) {
       if (times_[e] > 0) continue;
-      const auto choices = static_cast<std::size_t>(std::count_if(
-          sets_of_[e].begin(), sets_of_[e].end(), [&](int s) { return barred_[static_cast<std::size_t>(s)] == 0; }));
+      const auto choices = static_cast<std::size_t>(
+          std::count_if(sets_of_[e].begin(), sets_of_[e].end(), [&](int s) { return barred_[s] == 0; }));
       if (element < 0 || choices < fewest) {
         element = static_cast<int>(e);
         fewest = choices;
@@ -57,28 +57,28 @@ class Enumeration {
       if (fewest == 0) return;
     }
     std::vector<int> tried;
-    for (int s : sets_of_[static_cast<std::size_t>(element)]) {
-      if (barred_[static_cast<std::size_t>(s)]) continue;
+    for (int s : sets_of_[element]) {
+      if (barred_[s]) continue;
       const double with = cost + cost_of(static_cast<std::size_t>(s));
       if (with <= allowed_) {
         take(s);
         descend(with);
         leave(s);
       }
-      barred_[static_cast<std::size_t>(s)] = 1;
+      barred_[s] = 1;
       tried.push_back(s);
     }
-    for (int s : tried) barred_[static_cast<std::size_t>(s)] = 0;
+    for (int s : tried) barred_[s] = 0;
   }
 
   void take(int set) {
     chosen_.push_back(set);
-    for (int e : problem_.sets[static_cast<std::size_t>(set)]) open_ -= times_[static_cast<std::size_t>(e)]++ == 0;
+    for (int e : problem_.sets[set]) open_ -= times_[e]++ == 0;
   }
 
   void leave(int set) {
     chosen_.pop_back();
-    for (int e : problem_.sets[static_cast<std::size_t>(set)]) open_ += --times_[static_cast<std::size_t>(e)] == 0;
+    for (int e : problem_.sets[set]) open_ += --times_[e] == 0;
   }
 
   const SetCoverProblem& problem_;

@@ -227,7 +227,7 @@ class DiscSearch {
       best_ = std::max(best_, radius_in(room, Point(room.cell.ix, room.cell.iy)));
     }
     const auto push = [&](int index, Box2 box) {
-      const Room& room = rooms_[static_cast<std::size_t>(index)];
+      const Room& room = rooms_[index];
       const double wanted = best_ + tolerance_;
       box = cut(room, box, wanted);
       if (box.empty() || hopeless(room, box, wanted)) return;
@@ -237,7 +237,7 @@ class DiscSearch {
       const double bound = r + 0.5 * std::hypot(box.x1 - box.x0, box.y1 - box.y0);
       if (bound > best_ + tolerance_) queue.push({bound, order++, index, box});
     };
-    for (int i = 0; i < static_cast<int>(rooms_.size()); ++i) push(i, whole(rooms_[static_cast<std::size_t>(i)]));
+    for (int i = 0; i < static_cast<int>(rooms_.size()); ++i) push(i, whole(rooms_[i]));
     while (!queue.empty()) {
       const Node node = queue.top();
       queue.pop();
@@ -256,18 +256,18 @@ class DiscSearch {
     std::priority_queue<Node> queue;
     std::size_t order = 0;
     const auto push = [&](int index, Box2 box) {
-      const Room& room = rooms_[static_cast<std::size_t>(index)];
+      const Room& room = rooms_[index];
       box = cut(room, box, wanted);
       if (box.empty() || hopeless(room, box, wanted)) return;
       const Point m = box.middle();
       if (radius_in(room, m) + 0.5 * std::hypot(box.x1 - box.x0, box.y1 - box.y0) < wanted) return;
       queue.push({-(box.closest(centroid_) - centroid_).norm(), order++, index, box});
     };
-    for (int i = 0; i < static_cast<int>(rooms_.size()); ++i) push(i, whole(rooms_[static_cast<std::size_t>(i)]));
+    for (int i = 0; i < static_cast<int>(rooms_.size()); ++i) push(i, whole(rooms_[i]));
     while (!queue.empty()) {
       const Node node = queue.top();
       queue.pop();
-      const Room& room = rooms_[static_cast<std::size_t>(node.room)];
+      const Room& room = rooms_[node.room];
       for (const Point& p : {node.box.closest(centroid_), node.box.middle()}) {
         if (radius_in(room, p) < enough) continue;
         // The middle is not the nearest point of the box; a box this small makes no difference.

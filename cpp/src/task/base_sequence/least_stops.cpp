@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 
+#include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/optim/set_cover.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
@@ -18,8 +18,6 @@ constexpr double kSumStep = 1e-3;       // [m]: radii are added up in whole step
 constexpr int kLevels = 16;             // Radii at which the other discs' candidates are sought.
 constexpr std::size_t kRoutes = 200;    // Equally good sequences whose routes are compared; a tenth of it beyond
 constexpr std::size_t kManyStops = 12;  // so many stops, where routes take longer to find.
-
-using Clock = std::chrono::steady_clock;
 
 class LeastStops {
  public:
@@ -42,8 +40,7 @@ class LeastStops {
     const int one = patches_.trays() > 0 ? 1 : 0;
     result.lower_bound = result.candidates.complete ? static_cast<int>(std::lround(cover.lower_bound)) : one;
     best_ = stops_of(result.candidates.robust, cover.chosen);
-    ends_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                               std::chrono::duration<double>(std::min(options_.tie_time_limit, 1e6)));
+    time_limit_ = detail::TimeLimit(std::min(options_.tie_time_limit, 1e6));
     if (!best_.empty() && result.candidates.complete) {
       raise_smallest();
       raise_others();
@@ -61,7 +58,7 @@ class LeastStops {
     return result;
   }
 
-  double seconds_left() const { return std::chrono::duration<double>(ends_ - Clock::now()).count(); }
+  double seconds_left() const { return time_limit_.seconds_left(); }
   bool over() const { return monitor_.stopped() || seconds_left() <= 0; }
 
   SetCoverProblem cover_problem(const std::vector<Intersection>& places) const {
@@ -94,32 +91,31 @@ class LeastStops {
   std::vector<Stop> stops_of(const std::vector<Intersection>& places, const std::vector<int>& chosen) {
     std::vector<std::vector<int>> holding(static_cast<std::size_t>(patches_.trays()));
     for (std::size_t c = 0; c < chosen.size(); ++c) {
-      for (int tray : places[static_cast<std::size_t>(chosen[c])].trays)
-        holding[static_cast<std::size_t>(tray)].push_back(static_cast<int>(c));
+      for (int tray : places[chosen[c]].trays) holding[tray].push_back(static_cast<int>(c));
     }
     std::vector<std::vector<int>> served(chosen.size());
     for (int tray = 0; tray < patches_.trays(); ++tray) {
-      const auto& where = holding[static_cast<std::size_t>(tray)];
-      if (where.size() == 1) served[static_cast<std::size_t>(where[0])].push_back(tray);
+      const auto& where = holding[tray];
+      if (where.size() == 1) served[where[0]].push_back(tray);
     }
     for (int tray = 0; tray < patches_.trays(); ++tray) {
-      const auto& where = holding[static_cast<std::size_t>(tray)];
+      const auto& where = holding[tray];
       if (where.size() < 2) continue;
       int best = -1;
       double best_loss = 0;
       for (int c : where) {
-        const double loss = loss_with(served[static_cast<std::size_t>(c)], tray);
+        const double loss = loss_with(served[c], tray);
         if (best < 0 || loss < best_loss) {
           best = c;
           best_loss = loss;
         }
       }
-      std::vector<int>& list = served[static_cast<std::size_t>(best)];
+      std::vector<int>& list = served[best];
       list.insert(std::lower_bound(list.begin(), list.end(), tray), tray);
     }
     std::vector<Stop> stops;
     for (std::size_t c = 0; c < served.size(); ++c) {
-      if (!served[c].empty()) stops.push_back(stop_for(served[c], places[static_cast<std::size_t>(chosen[c])]));
+      if (!served[c].empty()) stops.push_back(stop_for(served[c], places[chosen[c]]));
     }
     return stops;
   }
@@ -139,8 +135,7 @@ class LeastStops {
     Stop stop;
     stop.trays = trays;
     stop.radius = place.radius;
-    stop.pose = Eigen::Vector3d(place.centre.x(), place.centre.y(),
-                                patches_.grid().headings[static_cast<std::size_t>(place.heading)]);
+    stop.pose = Eigen::Vector3d(place.centre.x(), place.centre.y(), patches_.grid().headings[place.heading]);
     return stop;
   }
 
@@ -235,7 +230,7 @@ class LeastStops {
   const Monitor& monitor_;
   std::map<std::vector<int>, Intersection> widest_;
   std::vector<Stop> best_;
-  Clock::time_point ends_;
+  detail::TimeLimit time_limit_{0};
 };
 
 }  // namespace

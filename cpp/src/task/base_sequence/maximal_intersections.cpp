@@ -52,9 +52,9 @@ class MaximalSets {
 
   bool covers(const std::vector<int>& set) const {
     if (set.empty()) return true;
-    const std::vector<int>* fewest = &holding_[static_cast<std::size_t>(set[0])];
+    const std::vector<int>* fewest = &holding_[set[0]];
     for (const int tray : set) {
-      const std::vector<int>& candidates = holding_[static_cast<std::size_t>(tray)];
+      const std::vector<int>& candidates = holding_[tray];
       if (candidates.size() < fewest->size()) fewest = &candidates;
     }
     return std::any_of(fewest->begin(), fewest->end(), [&](int known) { return subset(set, sets_[known].trays); });
@@ -64,14 +64,14 @@ class MaximalSets {
     if (covers(set)) return;
     std::vector<int> beaten;
     for (const int tray : set) {
-      for (const int known : holding_[static_cast<std::size_t>(tray)]) {
+      for (const int known : holding_[tray]) {
         if (subset(sets_[known].trays, set)) beaten.push_back(known);
       }
     }
     std::sort(beaten.begin(), beaten.end());
     beaten.erase(std::unique(beaten.begin(), beaten.end()), beaten.end());
     for (const int known : beaten) remove(known);
-    for (const int tray : set) holding_[static_cast<std::size_t>(tray)].push_back(static_cast<int>(sets_.size()));
+    for (const int tray : set) holding_[tray].push_back(static_cast<int>(sets_.size()));
     sets_.push_back({set, spot});
   }
 
@@ -87,7 +87,7 @@ class MaximalSets {
  private:
   void remove(int known) {
     for (const int tray : sets_[known].trays) {
-      std::vector<int>& list = holding_[static_cast<std::size_t>(tray)];
+      std::vector<int>& list = holding_[tray];
       list.erase(std::find(list.begin(), list.end(), known));
     }
     sets_[known].trays.clear();

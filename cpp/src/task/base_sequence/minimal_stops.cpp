@@ -24,8 +24,8 @@ std::vector<double> stop_costs(const std::vector<Intersection>& intersections) {
 int widest_for(const std::vector<Intersection>& intersections, const std::vector<int>& trays, int chosen) {
   int best = chosen;
   for (int i = 0; i < static_cast<int>(intersections.size()); ++i) {
-    const Intersection& some = intersections[static_cast<std::size_t>(i)];
-    if (some.radius <= intersections[static_cast<std::size_t>(best)].radius) continue;
+    const Intersection& some = intersections[i];
+    if (some.radius <= intersections[best].radius) continue;
     if (std::includes(some.trays.begin(), some.trays.end(), trays.begin(), trays.end())) best = i;
   }
   return best;
@@ -52,23 +52,20 @@ StopSet minimal_stops(const BaseGrid& grid, const std::vector<Intersection>& int
   for (int tray = 0; tray < trays; ++tray) {
     int best = -1;
     for (std::size_t c = 0; c < cover.chosen.size(); ++c) {
-      const Intersection& some = intersections[static_cast<std::size_t>(cover.chosen[c])];
+      const Intersection& some = intersections[cover.chosen[c]];
       if (!std::binary_search(some.trays.begin(), some.trays.end(), tray)) continue;
-      if (best < 0 ||
-          some.radius > intersections[static_cast<std::size_t>(cover.chosen[static_cast<std::size_t>(best)])].radius)
-        best = static_cast<int>(c);
+      if (best < 0 || some.radius > intersections[cover.chosen[best]].radius) best = static_cast<int>(c);
     }
-    served[static_cast<std::size_t>(best)].push_back(tray);
+    served[best].push_back(tray);
   }
   for (std::size_t c = 0; c < cover.chosen.size(); ++c) {
     if (served[c].empty()) continue;  // only without a proof: a least cover has no idle set
     Stop stop;
     stop.trays = served[c];
     stop.intersection = widest_for(intersections, stop.trays, cover.chosen[c]);
-    const Intersection& place = intersections[static_cast<std::size_t>(stop.intersection)];
+    const Intersection& place = intersections[stop.intersection];
     stop.radius = place.radius;
-    stop.pose =
-        Eigen::Vector3d(place.centre.x(), place.centre.y(), grid.headings[static_cast<std::size_t>(place.heading)]);
+    stop.pose = Eigen::Vector3d(place.centre.x(), place.centre.y(), grid.headings[place.heading]);
     result.stops.push_back(stop);
   }
   return result;

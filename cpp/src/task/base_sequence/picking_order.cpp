@@ -22,9 +22,7 @@ std::vector<int> matched(const std::vector<Eigen::Vector2d>& tray, const std::ve
   const auto both = [&](Eigen::Index i, Eigen::Index j) {
     return i < static_cast<Eigen::Index>(tray.size()) && j < static_cast<Eigen::Index>(other.size());
   };
-  const auto distance = [&](Eigen::Index i, Eigen::Index j) {
-    return (tray[static_cast<std::size_t>(i)] - other[static_cast<std::size_t>(j)]).norm();
-  };
+  const auto distance = [&](Eigen::Index i, Eigen::Index j) { return (tray[i] - other[j]).norm(); };
   std::vector<int> best;
   double best_spread = 0;
   Eigen::Vector2d offset = Eigen::Vector2d::Zero();
@@ -38,7 +36,7 @@ std::vector<int> matched(const std::vector<Eigen::Vector2d>& tray, const std::ve
     const std::vector<int> match = cheapest_assignment(costs);
     double sum = 0, squares = 0, count = 0;
     for (Eigen::Index i = 0; i < n; ++i) {
-      const int j = match[static_cast<std::size_t>(i)];
+      const int j = match[i];
       if (!both(i, j)) continue;
       sum += distance(i, j);
       squares += distance(i, j) * distance(i, j);
@@ -61,7 +59,7 @@ class GroupOrder {
     offsets_.push_back(0);
     std::vector<BaseRegion> regions;
     for (const int tray : trays) {
-      for (const CellMask& mask : parts.cells[static_cast<std::size_t>(tray)]) {
+      for (const CellMask& mask : parts.cells[tray]) {
         regions.emplace_back();
         regions.back().cells = mask;
       }
@@ -129,7 +127,7 @@ class GroupOrder {
 
   std::vector<int> picks_in(const Order& order, int round) const {
     std::vector<int> picks;
-    for (const auto& tray : order) picks.push_back(tray[static_cast<std::size_t>(round)]);
+    for (const auto& tray : order) picks.push_back(tray[round]);
     return picks;
   }
 
@@ -150,15 +148,13 @@ class GroupOrder {
     for (int round = 0; round < rounds_; ++round) {
       std::vector<int> picks = picks_in(order, round);
       for (int p = 0; p < rounds_; ++p) {
-        picks[tray] = parts[static_cast<std::size_t>(p)];
+        picks[tray] = parts[p];
         radii(round, p) = radius(picks);
       }
     }
     std::vector<int> best = cheapest_assignment(-radii);
     if (options_.smallest_first) best = with_largest_smallest(radii);
-    for (int round = 0; round < rounds_; ++round)
-      order[tray][static_cast<std::size_t>(round)] =
-          parts[static_cast<std::size_t>(best[static_cast<std::size_t>(round)])];
+    for (int round = 0; round < rounds_; ++round) order[tray][round] = parts[best[round]];
   }
 
   /// Bisection over the radii: those below the bound cost more than all others together.
@@ -173,8 +169,7 @@ class GroupOrder {
       const Eigen::MatrixXd costs = radii.unaryExpr([&](double r) { return r < values[middle] ? barred : -r; });
       const std::vector<int> match = cheapest_assignment(costs);
       bool reached = true;
-      for (Eigen::Index i = 0; i < radii.rows(); ++i)
-        reached = reached && radii(i, match[static_cast<std::size_t>(i)]) >= values[middle];
+      for (Eigen::Index i = 0; i < radii.rows(); ++i) reached = reached && radii(i, match[i]) >= values[middle];
       if (reached) {
         best = match;
         low = middle;
@@ -245,7 +240,7 @@ PickingOrder paired_order(const std::vector<std::vector<Eigen::Vector2d>>& place
     for (std::size_t round = 0; round < order.back().size(); ++round) {
       const int part = order.back()[round];
       if (part < 0) continue;
-      before.push_back(places[tray - 1][static_cast<std::size_t>(part)]);
+      before.push_back(places[tray - 1][part]);
       rounds.push_back(round);
     }
     for (std::size_t round = 0; rounds.size() < before.size() + own.size(); ++round) {
@@ -277,10 +272,10 @@ OptimisedOrder optimised_order(const PartRegions& parts, const std::vector<std::
     require(!trays.empty(), "groups", 0, "must not hold an empty group");
     std::vector<std::vector<int>> order;
     for (const int tray : trays) {
-      require(tray >= 0 && tray < static_cast<int>(start.size()) && ++times[static_cast<std::size_t>(tray)] == 1,
-              "groups", tray, "must hold each tray at most once");
-      order.push_back(start[static_cast<std::size_t>(tray)]);
-      std::vector<int> sorted = order.back(), all(parts.cells[static_cast<std::size_t>(tray)].size());
+      require(tray >= 0 && tray < static_cast<int>(start.size()) && ++times[tray] == 1, "groups", tray,
+              "must hold each tray at most once");
+      order.push_back(start[tray]);
+      std::vector<int> sorted = order.back(), all(parts.cells[tray].size());
       std::sort(sorted.begin(), sorted.end());
       std::iota(all.begin(), all.end(), 0);
       require(sorted == all && order.back().size() == order.front().size(), "start[" + std::to_string(tray) + "]",
@@ -291,7 +286,7 @@ OptimisedOrder optimised_order(const PartRegions& parts, const std::vector<std::
     GroupOrder group(parts, trays, rounds, options);
     GroupOrder::Value value;
     result.proven = group.improve(order, value) && result.proven;
-    for (std::size_t t = 0; t < trays.size(); ++t) result.order[static_cast<std::size_t>(trays[t])] = order[t];
+    for (std::size_t t = 0; t < trays.size(); ++t) result.order[trays[t]] = order[t];
     if (rounds == 0) continue;
     result.smallest_radius = count == 0 ? value.smallest : std::min(result.smallest_radius, value.smallest);
     sum += value.sum;

@@ -1,11 +1,11 @@
 #include "mmgrasp/task/policies.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <set>
 
+#include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
@@ -18,8 +18,8 @@ int rounds_of(const PickingOrder& order) {
 }
 
 int pick_of(const PickingOrder& order, int tray, int round) {
-  const auto& picks = order[static_cast<std::size_t>(tray)];
-  return round < static_cast<int>(picks.size()) ? picks[static_cast<std::size_t>(round)] : -1;
+  const auto& picks = order[tray];
+  return round < static_cast<int>(picks.size()) ? picks[round] : -1;
 }
 
 void check_order(const PickingOrder& order, const PartRegions& parts) {
@@ -90,7 +90,7 @@ class PolicyRun {
 
  private:
   PolicyRound one(int round) {
-    const auto start = std::chrono::steady_clock::now();
+    const detail::Stopwatch stopwatch;
     std::vector<BaseRegion> all = planned_(round);
     require(all.size() == order_.size(), "planned regions", static_cast<double>(all.size()),
             "must be one a tray (" + std::to_string(order_.size()) + ")");
@@ -99,7 +99,7 @@ class PolicyRun {
     for (int tray = 0; tray < static_cast<int>(all.size()); ++tray) {
       if (pick_of(order_, tray, round) < 0) continue;
       trays.push_back(tray);
-      regions.push_back(std::move(all[static_cast<std::size_t>(tray)]));
+      regions.push_back(std::move(all[tray]));
     }
     if (!same_as_last(trays, regions)) {
       last_ = least_stops(actual_.grid, regions, options_.stops, monitor_);
@@ -110,10 +110,10 @@ class PolicyRun {
     result.outcome = last_.outcome;
     result.stops = last_.stops;
     for (Stop& stop : result.stops) {
-      for (int& tray : stop.trays) tray = trays[static_cast<std::size_t>(tray)];
+      for (int& tray : stop.trays) tray = trays[tray];
       result.mean_radius += stop.radius / static_cast<double>(result.stops.size());
     }
-    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    result.seconds = stopwatch.seconds();
     result.reliable = !result.stops.empty() && holds(result.stops, round);
     return result;
   }
@@ -129,7 +129,7 @@ class PolicyRun {
       const int heading = heading_of(actual_.grid, stop.pose.z());
       for (int tray : stop.trays) {
         const auto part = static_cast<std::size_t>(pick_of(order_, tray, round));
-        const CellMask& cells = actual_.cells[static_cast<std::size_t>(tray)][part];
+        const CellMask& cells = actual_.cells[tray][part];
         if (heading < 0 || !disc_inside(actual_.grid, cells, heading, stop.pose.head<2>(), options_.stops.min_radius))
           return false;
       }
@@ -180,9 +180,9 @@ CellMask PartRegions::region(int tray, const std::vector<int>& parts) const {
   require(tray >= 0 && tray < static_cast<int>(cells.size()), "tray", tray, "must be one of the trays");
   CellMask shared(grid.size(), 1);
   for (const int part : parts) {
-    const auto& all = cells[static_cast<std::size_t>(tray)];
+    const auto& all = cells[tray];
     require(part >= 0 && part < static_cast<int>(all.size()), "part", part, "must be one of the tray's parts");
-    const CellMask& mask = all[static_cast<std::size_t>(part)];
+    const CellMask& mask = all[part];
     for (std::size_t i = 0; i < shared.size(); ++i) shared[i] = shared[i] && mask[i];
   }
   return shared;
@@ -199,14 +199,14 @@ RoundRegions regions_for(UpdatePolicy policy, const PartRegions& parts, const Pi
   return [policy, &parts, &order](int round) {
     std::vector<BaseRegion> regions(order.size());
     for (int tray = 0; tray < static_cast<int>(order.size()); ++tray) {
-      std::vector<int> wanted(parts.cells[static_cast<std::size_t>(tray)].size());
+      std::vector<int> wanted(parts.cells[tray].size());
       std::iota(wanted.begin(), wanted.end(), 0);
       if (policy == UpdatePolicy::remaining) {
         for (int before = 0; before < round; ++before)
           wanted.erase(std::remove(wanted.begin(), wanted.end(), pick_of(order, tray, before)), wanted.end());
       }
       if (policy == UpdatePolicy::targets) wanted = {pick_of(order, tray, round)};
-      BaseRegion& region = regions[static_cast<std::size_t>(tray)];
+      BaseRegion& region = regions[tray];
       region.tray = std::to_string(tray);
       region.cells = pick_of(order, tray, round) < 0 ? CellMask(parts.grid.size(), 0) : parts.region(tray, wanted);
     }

@@ -55,8 +55,8 @@ RegionPatches::RegionPatches(const BaseGrid& grid, const std::vector<BaseRegion>
   }
   for (int heading = 0; heading < headings(); ++heading) {
     for (int tray = 0; tray < trays_; ++tray) {
-      Patch patch = make_patch(grid, regions[static_cast<std::size_t>(tray)].cells, heading, tray);
-      if (!patch.cells.empty()) layers_[static_cast<std::size_t>(heading)].push_back(std::move(patch));
+      Patch patch = make_patch(grid, regions[tray].cells, heading, tray);
+      if (!patch.cells.empty()) layers_[heading].push_back(std::move(patch));
     }
   }
 }

@@ -34,7 +34,7 @@ class RegionPatches {
   int trays() const { return trays_; }
   int headings() const { return static_cast<int>(layers_.size()); }
   /// Those that have cells, by tray.
-  const std::vector<Patch>& layer(int heading) const { return layers_[static_cast<std::size_t>(heading)]; }
+  const std::vector<Patch>& layer(int heading) const { return layers_[heading]; }
 
   /// What these trays (ascending) share in a layer, with the widest disc in it; radius 0 when that is nothing.
   Intersection shared(const std::vector<int>& trays, int heading) const;

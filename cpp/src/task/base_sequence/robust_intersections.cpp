@@ -35,7 +35,7 @@ class LayerGrowth {
   void run(const std::vector<BaseRegion>& regions) {
     std::vector<Candidate> level;
     for (int tray = 0; tray < static_cast<int>(regions.size()); ++tray) {
-      Candidate one{{tray}, pack(regions[static_cast<std::size_t>(tray)].cells)};
+      Candidate one{{tray}, pack(regions[tray].cells)};
       if (judge(one)) level.push_back(std::move(one));
     }
     while (level.size() > 1 && out_.sets_tried < max_sets_) level = next(level);

@@ -7,7 +7,6 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/optim/tour.hpp"
-#include "mmgrasp/task/part_supply.hpp"
 #include "task/problem/scene.hpp"
 
 namespace mmgrasp {
@@ -87,16 +86,16 @@ Eigen::MatrixXd BaseRoutes::estimates(const std::vector<Eigen::Vector3d>& places
 
 namespace {
 
-class VisitingOrder {
+class StopOrdering {
  public:
-  VisitingOrder(const PartSupplyProblem& problem, const std::vector<Stop>& stops, BaseRoutes& routes)
+  StopOrdering(const PartSupplyProblem& problem, const std::vector<Stop>& stops, BaseRoutes& routes)
       : routes_(routes), n_(static_cast<int>(stops.size())) {
     for (const Stop& stop : stops) places_.push_back(stop.pose);
     places_.push_back(problem.start);
     places_.push_back(problem.goal);
   }
 
-  std::vector<int> run(int& missing) {
+  VisitingOrder run() {
     std::vector<int> order;
     if (n_ <= static_cast<int>(kPlannedStops)) {
       std::vector<std::pair<int, int>> all;
@@ -109,12 +108,12 @@ class VisitingOrder {
     } else {
       order = by_estimates();
     }
-    if (!order.empty() || n_ == 0) return order;
-    missing = -1;
+    if (!order.empty() || n_ == 0) return {order};
+    VisitingOrder none;
     for (int i = 0; i < n_; ++i) {
-      if (lengths_.rows() == n_ + 2 && !std::isfinite(lengths_(n_, i))) missing = i;
+      if (lengths_.rows() == n_ + 2 && !std::isfinite(lengths_(n_, i))) none.unreachable = i;
     }
-    return {};
+    return none;
   }
 
  private:
@@ -162,7 +161,7 @@ class VisitingOrder {
     return pairs;
   }
 
-  const Eigen::Vector3d& place(int i) const { return places_[static_cast<std::size_t>(i)]; }
+  const Eigen::Vector3d& place(int i) const { return places_[i]; }
 
   BaseRoutes& routes_;
   int n_;
@@ -173,15 +172,13 @@ class VisitingOrder {
 
 }  // namespace
 
-std::vector<int> visiting_order(const PartSupplyProblem& problem, const std::vector<Stop>& stops, BaseRoutes& routes,
-                                int& missing) {
-  return VisitingOrder(problem, stops, routes).run(missing);
+VisitingOrder order_stops(const PartSupplyProblem& problem, const std::vector<Stop>& stops, BaseRoutes& routes) {
+  return StopOrdering(problem, stops, routes).run();
 }
 
-std::vector<int> order_stops(const PartSupplyProblem& problem, const std::vector<Stop>& stops, int& missing,
-                             const Monitor& monitor) {
+VisitingOrder order_stops(const PartSupplyProblem& problem, const std::vector<Stop>& stops, const Monitor& monitor) {
   BaseRoutes routes(problem, monitor);
-  return visiting_order(problem, stops, routes, missing);
+  return order_stops(problem, stops, routes);
 }
 
 }  // namespace mmgrasp

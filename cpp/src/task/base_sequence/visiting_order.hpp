@@ -9,6 +9,7 @@
 #include "mmgrasp/task/base_route.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
 #include "mmgrasp/task/problem.hpp"
+#include "mmgrasp/task/visiting_order.hpp"
 
 namespace mmgrasp {
 
@@ -35,8 +36,7 @@ class BaseRoutes {
   std::map<Key, BasePath> known_;
 };
 
-/// See order_stops().
-std::vector<int> visiting_order(const PartSupplyProblem& problem, const std::vector<Stop>& stops, BaseRoutes& routes,
-                                int& missing);
+/// order_stops() with the caller's drives.
+VisitingOrder order_stops(const PartSupplyProblem& problem, const std::vector<Stop>& stops, BaseRoutes& routes);
 
 }  // namespace mmgrasp

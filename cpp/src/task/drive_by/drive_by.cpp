@@ -4,9 +4,9 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "task/drive_by/drive_by_attempt.hpp"
-#include "task/drive_by/drive_by_choices.hpp"
+#include "task/drive_by/drive_by_assignments.hpp"
 #include "task/drive_by/drive_by_events.hpp"
+#include "task/drive_by/drive_by_solve.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -33,7 +33,7 @@ class DriveBy {
         options_(options),
         monitor_(monitor) {
     for (int i = 0; i < group.size(); ++i) {
-      if (!group.wraps()[static_cast<std::size_t>(i)]) continue;
+      if (!group.wraps()[i]) continue;
       if (goal_.lower[i] != goal_.upper[i]) continue;
       goal_.lower[i] = goal_.upper[i] = start[i] + wrap_angle(goal_.lower[i] - start[i]);
     }
@@ -107,7 +107,7 @@ class DriveBy {
       return {};
     }
     const auto collisions = [&](const std::vector<Stand>& chain) { return attempts_->collisions(chain); };
-    return detail::drive_by_choices(group_, steps_, stands, start_, goal_, options_, collisions);
+    return detail::drive_by_assignments(group_, steps_, stands, start_, goal_, options_, collisions);
   }
 
   /// Where the robot is about at a step, before anything is known: the base below the tool.
@@ -115,7 +115,7 @@ class DriveBy {
     if (step < 0) return start_;
     if (step >= static_cast<int>(steps_.size())) return goal;
     VectorXd q = 0.5 * (start_ + goal);
-    if (group_.has_base()) q.head<2>() = steps_[static_cast<std::size_t>(step)].candidates[0].translation().head<2>();
+    if (group_.has_base()) q.head<2>() = steps_[step].candidates[0].translation().head<2>();
     return q;
   }
 

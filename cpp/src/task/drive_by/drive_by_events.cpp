@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "task/drive_by/drive_by_attempt.hpp"
+#include "task/drive_by/drive_by_solve.hpp"
 
 namespace mmgrasp::detail {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "task/drive_by/drive_by_stands.hpp"
+#include "task/drive_by/drive_by_goals.hpp"
 #include "task/drive_by/drive_by_steps.hpp"
 
 namespace mmgrasp::detail {

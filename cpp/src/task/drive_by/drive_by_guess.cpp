@@ -6,7 +6,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
-#include "task/drive_by/drive_by_stands.hpp"
+#include "task/drive_by/drive_by_goals.hpp"
 
 namespace mmgrasp::detail {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/core/detail/no_time_limit.hpp"
 #include "mmgrasp/plan/motion.hpp"
 #include "mmgrasp/task/base_route.hpp"
-#include "task/drive_by/drive_by_stands.hpp"
-#include "mmgrasp/core/detail/no_time_limit.hpp"
+#include "task/drive_by/drive_by_goals.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -36,11 +36,11 @@ void append(std::vector<VectorXd>& way, const std::vector<VectorXd>& points) {
 JointGroup standing_arm(const JointGroup& group, const VectorXd& q, VectorXd& home) {
   const Robot& robot = group.robot();
   const VectorXd values = group.full_values(q);
-  const auto link = [&](int index) { return robot.links()[static_cast<std::size_t>(index)].name; };
+  const auto link = [&](int index) { return robot.links()[index].name; };
   const JointGroup arm = robot.chain(link(robot.root_link()), link(group.tip_link())).with_reference(values);
   home.resize(arm.size());
   for (int i = 0; i < arm.size(); ++i) {
-    const Joint& joint = robot.joints()[static_cast<std::size_t>(arm.joints()[static_cast<std::size_t>(i)])];
+    const Joint& joint = robot.joints()[arm.joints()[i]];
     home[i] = values[joint.value_index];
   }
   return arm;

@@ -117,9 +117,9 @@ Pose held_pose(const DriveByStep& step, const Pose& T_world_tip, const Pose& T_w
 ToolConstraint constraint_at(const DriveByStep& step, int candidate, int waypoint) {
   ToolConstraint tool;
   tool.waypoint = waypoint;
-  tool.T_world_tip = step.candidates[static_cast<std::size_t>(candidate)];
+  tool.T_world_tip = step.candidates[candidate];
   for (int k = 0; k < 6; ++k) {
-    const double slack = step.free[static_cast<std::size_t>(k)] ? kInfinity : step.tolerance[k];
+    const double slack = step.free[k] ? kInfinity : step.tolerance[k];
     tool.lower[k] = -slack;
     tool.upper[k] = slack;
   }

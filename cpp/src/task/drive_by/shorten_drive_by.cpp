@@ -4,8 +4,8 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/task/drive_by.hpp"
-#include "task/drive_by/drive_by_attempt.hpp"
 #include "task/drive_by/drive_by_events.hpp"
+#include "task/drive_by/drive_by_solve.hpp"
 
 namespace mmgrasp {
 namespace {

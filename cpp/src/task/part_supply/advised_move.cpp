@@ -109,7 +109,7 @@ class MoveSearch {
     const PartSupplyProblem alone = group_alone(problem, group_);
     const std::vector<BaseRegion> regions = compute_base_regions(alone, database, grid);
     for (int member : group_.trays) {
-      std::vector<Centre> centres = disc_centres(regions[static_cast<std::size_t>(member)].cells);
+      std::vector<Centre> centres = disc_centres(regions[member].cells);
       // Another tray that has no base poses wherever it stands does not hinder the move.
       if (!centres.empty() || member == tray) centres_[member] = std::move(centres);
     }
@@ -201,9 +201,9 @@ class MoveSearch {
       Eigen::Vector3d pose = grid_.centre(centre.heading, 0, 0);
       pose.x() += 0.5 * x * grid_.resolution;
       pose.y() += 0.5 * y * grid_.resolution;
-      const std::vector<Part>& parts = moved.trays[static_cast<std::size_t>(tray)].parts;
+      const std::vector<Part>& parts = moved.trays[tray].parts;
       for (int p = 0; p < static_cast<int>(parts.size()) && it->second; ++p) {
-        if (parts[static_cast<std::size_t>(p)].target) it->second = evaluator.part(pose, tray, p).feasible;
+        if (parts[p].target) it->second = evaluator.part(pose, tray, p).feasible;
       }
       return it->second;
     };
@@ -233,9 +233,9 @@ std::optional<TrayMove> advise_move(const PartSupplyProblem& problem, const Reac
   if (!by) return std::nullopt;
   TrayMove move;
   move.by = *by;
-  move.trays.push_back(problem.trays[static_cast<std::size_t>(tray)].name);
+  move.trays.push_back(problem.trays[tray].name);
   for (int other : search.group().trays) {
-    if (other != tray) move.trays.push_back(problem.trays[static_cast<std::size_t>(other)].name);
+    if (other != tray) move.trays.push_back(problem.trays[other].name);
   }
   move.objects.assign(search.group().objects.begin(), search.group().objects.end());
   return move;

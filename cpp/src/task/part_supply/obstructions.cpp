@@ -25,8 +25,8 @@ int blocking_part(const BaseRegion& region) {
   int worst = 0;
   std::size_t least = std::numeric_limits<std::size_t>::max();
   for (int p = 0; p < static_cast<int>(region.part_cells.size()); ++p) {
-    const std::size_t feasible = region.explanations[static_cast<std::size_t>(p)].base_poses_feasible;
-    const std::size_t size = feasible == 0 ? 0 : 1 + region.part_cells[static_cast<std::size_t>(p)].count();
+    const std::size_t feasible = region.explanations[p].base_poses_feasible;
+    const std::size_t size = feasible == 0 ? 0 : 1 + region.part_cells[p].count();
     if (size < least) {
       least = size;
       worst = p;
@@ -48,12 +48,12 @@ const char* main_cause(const Rejections& r) {
 /// Shortfall of reach from the best cell centre at which the robot may stand.
 double missing_reach(const PartSupplyProblem& problem, const ReachDatabase& database, BasePoseEvaluator& evaluator,
                      const BaseGrid& grid, int tray, int part) {
-  const Tray& where = problem.trays[static_cast<std::size_t>(tray)];
+  const Tray& where = problem.trays[tray];
   const double radius = base_search_radius(problem, where, database);
   std::vector<std::pair<double, Eigen::Vector3d>> poses;
   for (double wanted : tray_headings(where)) {
     for (int h = 0; h < static_cast<int>(grid.headings.size()); ++h) {
-      if (std::abs(wrap_angle(grid.headings[static_cast<std::size_t>(h)] - wanted)) > 1e-9) continue;
+      if (std::abs(wrap_angle(grid.headings[h] - wanted)) > 1e-9) continue;
       for (int iy = 0; iy < grid.ny; ++iy) {
         for (int ix = 0; ix < grid.nx; ++ix) {
           const Eigen::Vector3d pose = grid.centre(h, ix, iy);
@@ -178,7 +178,7 @@ Obstruction explain_region(const PartSupplyProblem& problem, const ReachDatabase
   if (radius > 0) {
     obstruction.stage = "robustness";
     obstruction.largest_uncertainty = radius;
-    obstruction.part = region.explanations[static_cast<std::size_t>(blocking_part(region))].part;
+    obstruction.part = region.explanations[blocking_part(region)].part;
     obstruction.message =
         "tray '" + region.tray +
         "': the largest disc of base poses from which every part can be grasped has a radius of " + metres(radius) +
@@ -188,12 +188,12 @@ Obstruction explain_region(const PartSupplyProblem& problem, const ReachDatabase
     return obstruction;
   }
   const int blocking = blocking_part(region);
-  const PartExplanation& explanation = region.explanations[static_cast<std::size_t>(blocking)];
+  const PartExplanation& explanation = region.explanations[blocking];
   obstruction.part = explanation.part;
   int index = 0;
-  const std::vector<Part>& parts = problem.trays[static_cast<std::size_t>(tray)].parts;
-  while (parts[static_cast<std::size_t>(index)].name != explanation.part) ++index;
-  const Part& part = parts[static_cast<std::size_t>(index)];
+  const std::vector<Part>& parts = problem.trays[tray].parts;
+  while (parts[index].name != explanation.part) ++index;
+  const Part& part = parts[index];
   if (part.grasps.empty()) return without_grasps(std::move(obstruction), part, problem.gripper);
   bool all_blocked = true;
   for (int g = 0; g < explanation.grasps; ++g) all_blocked = all_blocked && evaluator.hand_blocked(tray, index, g);

@@ -28,14 +28,13 @@ std::vector<Stop> other_places(const BaseGrid& grid, const std::vector<BaseRegio
                                double min_radius, double apart, std::size_t count) {
   int heading = 0;
   while (heading < static_cast<int>(grid.headings.size()) &&
-         std::abs(wrap_angle(grid.headings[static_cast<std::size_t>(heading)] - stop.pose.z())) > 1e-9) {
+         std::abs(wrap_angle(grid.headings[heading] - stop.pose.z())) > 1e-9) {
     ++heading;
   }
   if (heading == static_cast<int>(grid.headings.size())) return {};
   CellMask shared(grid.size(), 1);
   for (int tray : stop.trays) {
-    for (std::size_t i = 0; i < shared.size(); ++i)
-      shared[i] = shared[i] && regions[static_cast<std::size_t>(tray)].cells[i];
+    for (std::size_t i = 0; i < shared.size(); ++i) shared[i] = shared[i] && regions[tray].cells[i];
   }
   std::vector<Stop> candidates;
   for (int iy = 0; iy < grid.ny; ++iy) {

@@ -1,11 +1,11 @@
 #include "mmgrasp/task/part_supply.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <set>
 #include <sstream>
 
+#include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/optim/tour.hpp"
 #include "task/base_sequence/visiting_order.hpp"
@@ -28,10 +28,9 @@ constexpr std::size_t kListedSets = 2000;
 /// Adds up the wall time of a stage.
 class StageClock {
  public:
-  StageClock(PartSupplyPlan& plan, const char* stage)
-      : plan_(plan), stage_(stage), start_(std::chrono::steady_clock::now()) {}
+  StageClock(PartSupplyPlan& plan, const char* stage) : plan_(plan), stage_(stage) {}
   ~StageClock() {
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    const double seconds = stopwatch_.seconds();
     for (StageTime& time : plan_.timings) {
       if (time.stage == stage_) {
         time.seconds += seconds;
@@ -46,7 +45,7 @@ class StageClock {
  private:
   PartSupplyPlan& plan_;
   const char* stage_;
-  std::chrono::steady_clock::time_point start_;
+  detail::Stopwatch stopwatch_;
 };
 
 std::string text(const Eigen::Vector3d& pose) {
@@ -102,8 +101,8 @@ class PartSupply {
     std::vector<BaseRegion> regions = compute_base_regions(problem_, database_, plan_.grid, monitor_);
     if (monitor_.stopped()) return false;
     for (int tray = 0; tray < static_cast<int>(regions.size()); ++tray) {
-      if (regions[static_cast<std::size_t>(tray)].explanations.empty()) continue;  // nothing to pick
-      plan_.regions.push_back(std::move(regions[static_cast<std::size_t>(tray)]));
+      if (regions[tray].explanations.empty()) continue;  // nothing to pick
+      plan_.regions.push_back(std::move(regions[tray]));
       plan_.region_trays.push_back(tray);
     }
     return true;
@@ -156,9 +155,7 @@ class PartSupply {
     }
   }
 
-  double heading_of(const Intersection& some) const {
-    return plan_.grid.headings[static_cast<std::size_t>(some.heading)];
-  }
+  double heading_of(const Intersection& some) const { return plan_.grid.headings[some.heading]; }
 
   Intersection intersection_of(const Stop& stop) const {
     Intersection own;
@@ -168,8 +165,8 @@ class PartSupply {
     while (heading_of(own) != stop.pose.z()) ++own.heading;
     for (std::size_t cell = 0; cell < static_cast<std::size_t>(plan_.grid.cells_per_layer()); ++cell) {
       const std::size_t at = plan_.grid.index(own.heading, 0, 0) + cell;
-      own.cells += std::all_of(own.trays.begin(), own.trays.end(),
-                               [&](int tray) { return plan_.regions[static_cast<std::size_t>(tray)].cells[at] != 0; });
+      own.cells +=
+          std::all_of(own.trays.begin(), own.trays.end(), [&](int tray) { return plan_.regions[tray].cells[at] != 0; });
     }
     return own;
   }
@@ -181,17 +178,16 @@ class PartSupply {
     places.emplace_back(problem_.start.head<2>());
     places.emplace_back(problem_.goal.head<2>());
     const auto n = static_cast<Eigen::Index>(places.size());
-    const Eigen::MatrixXd lengths = Eigen::MatrixXd::NullaryExpr(n, n, [&](Eigen::Index i, Eigen::Index j) {
-      return (places[static_cast<std::size_t>(i)] - places[static_cast<std::size_t>(j)]).norm();
-    });
+    const Eigen::MatrixXd lengths = Eigen::MatrixXd::NullaryExpr(
+        n, n, [&](Eigen::Index i, Eigen::Index j) { return (places[i] - places[j]).norm(); });
     return shortest_visiting_tour(lengths).length;
   }
 
   void explain_unreachable(BasePoseEvaluator& evaluator) {
     for (int region : unreachable_) {
       plan_.obstructions.push_back(explain_region(problem_, database_, evaluator, plan_.grid,
-                                                  plan_.region_trays[static_cast<std::size_t>(region)],
-                                                  plan_.regions[static_cast<std::size_t>(region)], plan_.obstructions));
+                                                  plan_.region_trays[region], plan_.regions[region],
+                                                  plan_.obstructions));
     }
   }
 
@@ -221,12 +217,13 @@ class PartSupply {
 
   bool order_stops(BaseRoutes& routes) {
     const StageClock clock(plan_, "route");
-    int missing = -1;
-    const std::vector<int> order = visiting_order(problem_, plan_.stops, routes, missing);
+    const VisitingOrder visiting = mmgrasp::order_stops(problem_, plan_.stops, routes);
+    const std::vector<int>& order = visiting.stops;
     if (monitor_.stopped()) return false;
-    if (order.size() != plan_.stops.size() || (order.empty() && !no_stops_route(routes))) return no_route(missing);
+    if (order.size() != plan_.stops.size() || (order.empty() && !no_stops_route(routes)))
+      return no_route(visiting.unreachable);
     std::vector<Stop> ordered;
-    for (int stop : order) ordered.push_back(plan_.stops[static_cast<std::size_t>(stop)]);
+    for (int stop : order) ordered.push_back(plan_.stops[stop]);
     plan_.stops = std::move(ordered);
     return true;
   }
@@ -238,10 +235,8 @@ class PartSupply {
   bool no_route(int stop) {
     Obstruction obstruction;
     obstruction.stage = "route";
-    const Eigen::Vector3d pose = stop >= 0 ? plan_.stops[static_cast<std::size_t>(stop)].pose : problem_.goal;
-    if (stop >= 0)
-      obstruction.tray =
-          plan_.regions[static_cast<std::size_t>(plan_.stops[static_cast<std::size_t>(stop)].trays.front())].tray;
+    const Eigen::Vector3d pose = stop >= 0 ? plan_.stops[stop].pose : problem_.goal;
+    if (stop >= 0) obstruction.tray = plan_.regions[plan_.stops[stop].trays.front()].tray;
     obstruction.message = std::string("no drive from the start leads to ") +
                           (stop >= 0 ? "the stop at " : "the goal at ") + text(pose) +
                           " with the arm at home: widen the way, choose a narrower home, or a finer route_resolution";
@@ -260,9 +255,9 @@ class PartSupply {
   /// Picks at one stop; when some motion fails there, at other places of the same region.
   bool picks_at(int index, BaseRoutes& routes, std::set<std::pair<int, int>>& gone) {
     const StageClock clock(plan_, "picks");
-    Stop& stop = plan_.stops[static_cast<std::size_t>(index)];
+    Stop& stop = plan_.stops[index];
     std::vector<int> trays;
-    for (int region : stop.trays) trays.push_back(plan_.region_trays[static_cast<std::size_t>(region)]);
+    for (int region : stop.trays) trays.push_back(plan_.region_trays[region]);
     StopPicks found = plan_stop_picks(problem_, database_, stop.pose, trays, remaining(gone), monitor_);
     if (found.outcome == Outcome::infeasible) {
       const StopPicks first = found;
@@ -305,7 +300,7 @@ class PartSupply {
     for (const Pick& pick : failed.picks) {
       Obstruction obstruction;
       const Part& part = part_of(problem_, pick.tray, pick.part);
-      obstruction.tray = problem_.trays[static_cast<std::size_t>(pick.tray)].name;
+      obstruction.tray = problem_.trays[pick.tray].name;
       obstruction.part = part.name;
       obstruction.stage = "motion";
       obstruction.message = "part '" + part.name + "' can be grasped from the stop at " + text(stop.pose) +

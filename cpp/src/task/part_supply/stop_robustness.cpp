@@ -44,16 +44,16 @@ struct BlockCheck {
   bool all_graspable(const Eigen::Vector3d& pose, std::map<std::pair<int, int>, int>& last) {
     bool all = true;
     for (int region : stop.trays) {
-      const int tray = region_trays[static_cast<std::size_t>(region)];
-      const std::vector<Part>& parts = problem.trays[static_cast<std::size_t>(tray)].parts;
+      const int tray = region_trays[region];
+      const std::vector<Part>& parts = problem.trays[tray].parts;
       for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
-        if (!parts[static_cast<std::size_t>(p)].target) continue;
+        if (!parts[p].target) continue;
         int& first = last.emplace(std::pair{tray, p}, -1).first->second;
         const PartAtPose seen = evaluator.part(pose, tray, p, first);
         if (seen.feasible) {
           first = seen.grasp;
         } else if (!evaluator.part_with_restarts(pose, tray, p)) {
-          block.misses.push_back({region, parts[static_cast<std::size_t>(p)].name, pose});
+          block.misses.push_back({region, parts[p].name, pose});
           all = false;
           break;  // the cell is lost to this tray
         }
@@ -68,7 +68,7 @@ bool remove_cell(const BaseGrid& grid, const Eigen::Vector3d& pose, BaseRegion& 
   const int iy = static_cast<int>(std::floor((pose.y() - grid.origin.y()) / grid.resolution));
   if (ix < 0 || iy < 0 || ix >= grid.nx || iy >= grid.ny) return false;
   for (int h = 0; h < static_cast<int>(grid.headings.size()); ++h) {
-    if (std::abs(wrap_angle(grid.headings[static_cast<std::size_t>(h)] - pose.z())) > 1e-9) continue;
+    if (std::abs(wrap_angle(grid.headings[h] - pose.z())) > 1e-9) continue;
     std::uint8_t& cell = region.cells[grid.index(h, ix, iy)];
     const bool was = cell != 0;
     cell = 0;
@@ -95,8 +95,7 @@ RobustnessResult check_robustness(const PartSupplyProblem& problem, const BasePo
       [&](std::size_t item, int worker) {
         Rng rng(problem.options.seed + 77, item);
         const std::size_t first = item % per_stop * kBlock;
-        BlockCheck check{problem, stops[item / per_stop], region_trays, evaluators[static_cast<std::size_t>(worker)],
-                         blocks[item]};
+        BlockCheck check{problem, stops[item / per_stop], region_trays, evaluators[worker], blocks[item]};
         check.run(rng, std::min(kBlock, wanted - first), monitor);
       },
       monitor, "robustness");
@@ -107,7 +106,7 @@ RobustnessResult check_robustness(const PartSupplyProblem& problem, const BasePo
     result.good += block.good;
     for (const Miss& miss : block.misses) {
       if (++missed[miss.part] > missed[result.worst_part]) result.worst_part = miss.part;
-      result.cells_removed += remove_cell(grid, miss.pose, regions[static_cast<std::size_t>(miss.region)]);
+      result.cells_removed += remove_cell(grid, miss.pose, regions[miss.region]);
     }
   }
   return result;

@@ -12,7 +12,7 @@ constexpr double kRounding = 1e-7;  // [rad or m]: what planning and timing may 
 Eigen::VectorXd whole_turns(const std::vector<bool>& wraps, const Eigen::VectorXd& from, const Eigen::VectorXd& start) {
   Eigen::VectorXd shift = Eigen::VectorXd::Zero(start.size());
   for (Eigen::Index i = 0; i < start.size(); ++i) {
-    if (wraps[static_cast<std::size_t>(i)]) shift[i] = detail::whole_turns(from[i] - start[i]);
+    if (wraps[i]) shift[i] = detail::whole_turns(from[i] - start[i]);
   }
   return shift;
 }

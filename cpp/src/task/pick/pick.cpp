@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include "mmgrasp/core/detail/no_time_limit.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/plan/motion.hpp"
 #include "mmgrasp/plan/straight_line.hpp"
 #include "mmgrasp/plan/time_parameterization.hpp"
 #include "mmgrasp/robot/ik.hpp"
-#include "mmgrasp/core/detail/no_time_limit.hpp"
 #include "task/pick/joined_motions.hpp"
 #include "task/pick/pick_scene.hpp"
 #include "task/pick/release.hpp"
@@ -68,7 +68,7 @@ class PickPlanner {
       }
     }
     const auto worst = std::max_element(fallen_.begin(), fallen_.end());
-    pick_.failed_at = *worst > 0 ? kStageNames[static_cast<std::size_t>(worst - fallen_.begin())] : "grasp";
+    pick_.failed_at = *worst > 0 ? kStageNames[worst - fallen_.begin()] : "grasp";
     return pick_;
   }
 
@@ -78,9 +78,7 @@ class PickPlanner {
     return false;
   }
 
-  Pose T_world_tcp(int grasp) const {
-    return part_.T_world_part * part_.grasps[static_cast<std::size_t>(grasp)].T_object_tcp;
-  }
+  Pose T_world_tcp(int grasp) const { return part_.T_world_part * part_.grasps[grasp].T_object_tcp; }
 
   /// Free configurations at the grasp, nearest to home first. Second round: from random starts instead of the database.
   std::vector<Eigen::VectorXd> grasp_configurations(int grasp, int round, CollisionChecker& checker) {
@@ -122,7 +120,7 @@ class PickPlanner {
   }
 
   bool try_grasp(int grasp, int round) {
-    const double width = part_.grasps[static_cast<std::size_t>(grasp)].width;
+    const double width = part_.grasps[grasp].width;
     const double opening = problem_.gripper.pregrasp_opening(width);
     CollisionChecker& before = scene_.before(opening);
     const std::vector<Eigen::VectorXd> configurations = grasp_configurations(grasp, round, before);
@@ -257,7 +255,7 @@ void check_part(const PartSupplyProblem& problem, int tray, int part, const std:
             "must be in [0, " + std::to_string(count) + ")");
   };
   check(tray, problem.trays.size(), tray_name);
-  check(part, problem.trays[static_cast<std::size_t>(tray)].parts.size(), part_name);
+  check(part, problem.trays[tray].parts.size(), part_name);
 }
 
 }  // namespace

@@ -32,8 +32,9 @@ std::vector<Pose> release_poses(const PartSupplyProblem& problem, const Pose& T_
   for (const auto& [x, y] : {std::pair{0, 0}, {0, 1}, {0, -1}, {1, 0}, {-1, 0}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}) {
     for (int k = 0; k < kYaws; ++k) {
       Pose T_world_part = Pose::Identity();
-      T_world_part.linear() = Eigen::AngleAxisd(detail::kTwoPi * k / kYaws, Eigen::Vector3d::UnitZ()).toRotationMatrix() *
-                              part.T_world_part.linear();
+      T_world_part.linear() =
+          Eigen::AngleAxisd(detail::kTwoPi * k / kYaws, Eigen::Vector3d::UnitZ()).toRotationMatrix() *
+          part.T_world_part.linear();
       Pose T_bin_part = T_world_bin.inverse() * T_world_part;
       T_bin_part.translation() = Eigen::Vector3d(kInside * x * carry.size.x(), kInside * y * carry.size.y(), 0);
       T_bin_part.translation().z() = carry.drop_gap - lowest(part, T_bin_part);

@@ -17,10 +17,10 @@ std::vector<PartId> first_order(const PartSupplyProblem& problem, const Eigen::V
                                 const std::vector<int>& trays) {
   std::vector<PartId> order;
   for (int tray : trays) {
-    const std::vector<Part>& parts = problem.trays[static_cast<std::size_t>(tray)].parts;
+    const std::vector<Part>& parts = problem.trays[tray].parts;
     std::vector<PartId> here;
     for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
-      if (parts[static_cast<std::size_t>(p)].target) here.emplace_back(tray, p);
+      if (parts[p].target) here.emplace_back(tray, p);
     }
     const auto distance = [&](const PartId& id) {
       return (part_of(problem, id.first, id.second).T_world_part.translation().head<2>() - base_pose.head<2>()).norm();

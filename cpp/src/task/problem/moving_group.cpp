@@ -74,7 +74,7 @@ MovingGroup moving_group(const PartSupplyProblem& problem, int tray) {
   std::vector<Bounds> open;
   const auto take_tray = [&](int index) {
     if (!group.trays.insert(index).second) return;
-    open.push_back(bounds_of(problem.trays[static_cast<std::size_t>(index)]));
+    open.push_back(bounds_of(problem.trays[index]));
     for (const auto& [name, object] : problem.scene.objects()) {
       if (!belongs_to(bounds_of(object), open.back().front())) continue;
       if (group.objects.insert(name).second) open.push_back(bounds_of(object));
@@ -92,8 +92,7 @@ MovingGroup moving_group(const PartSupplyProblem& problem, int tray) {
       }
     }
     for (int other = 0; other < static_cast<int>(problem.trays.size()); ++other) {
-      if (!group.trays.count(other) && stacked(now, bounds_of(problem.trays[static_cast<std::size_t>(other)])))
-        take_tray(other);
+      if (!group.trays.count(other) && stacked(now, bounds_of(problem.trays[other]))) take_tray(other);
     }
   }
   return group;
@@ -105,7 +104,7 @@ PartSupplyProblem group_alone(const PartSupplyProblem& problem, const MovingGrou
     if (!group.objects.count(entry.first)) alone.scene.remove(entry.first);
   }
   for (int tray = 0; tray < static_cast<int>(alone.trays.size()); ++tray) {
-    if (!group.trays.count(tray)) alone.trays[static_cast<std::size_t>(tray)].parts.clear();
+    if (!group.trays.count(tray)) alone.trays[tray].parts.clear();
   }
   return alone;
 }
@@ -131,7 +130,7 @@ PartSupplyProblem with_group_moved(const PartSupplyProblem& problem, const Movin
   for (const std::string& name : group.objects)
     moved.scene.move(name, shift(problem.scene.objects().at(name).T_world_object));
   for (int index : group.trays) {
-    Tray& tray = moved.trays[static_cast<std::size_t>(index)];
+    Tray& tray = moved.trays[index];
     tray.T_world_tray = shift(tray.T_world_tray);
     for (Part& part : tray.parts) part.T_world_part = shift(part.T_world_part);
   }
@@ -147,7 +146,7 @@ GroupBounds::GroupBounds(const PartSupplyProblem& problem, const MovingGroup& gr
   };
   for (const auto& [name, object] : problem.scene.objects()) add(bounds_of(object), group.objects.count(name) > 0);
   for (int tray = 0; tray < static_cast<int>(problem.trays.size()); ++tray) {
-    add(bounds_of(problem.trays[static_cast<std::size_t>(tray)]), group.trays.count(tray) > 0);
+    add(bounds_of(problem.trays[tray]), group.trays.count(tray) > 0);
   }
 }
 

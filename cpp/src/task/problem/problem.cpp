@@ -76,9 +76,8 @@ void PartSupplyProblem::check() const {
   require(!arm.has_base(), "arm", "'" + arm.name() + "'", "must be a group without base joints");
   arm.check_configuration(home, "home");
   for (int i = 0; i < arm.size(); ++i) {
-    require(home[i] >= arm.lower()[i] - 1e-9 && home[i] <= arm.upper()[i] + 1e-9,
-            "home '" + arm.names()[static_cast<std::size_t>(i)] + "'", home[i],
-            "must lie in [" + std::to_string(arm.lower()[i]) + ", " + std::to_string(arm.upper()[i]) + "]");
+    require(home[i] >= arm.lower()[i] - 1e-9 && home[i] <= arm.upper()[i] + 1e-9, "home '" + arm.names()[i] + "'",
+            home[i], "must lie in [" + std::to_string(arm.lower()[i]) + ", " + std::to_string(arm.upper()[i]) + "]");
   }
   require(robot.link_index(gripper.tcp_link) == arm.tip_link(), "gripper.tcp_link", "'" + gripper.tcp_link + "'",
           "must be the arm's tip");

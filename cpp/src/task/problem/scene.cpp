@@ -5,7 +5,7 @@ namespace mmgrasp {
 std::vector<std::pair<int, int>> all_parts(const PartSupplyProblem& problem) {
   std::vector<std::pair<int, int>> parts;
   for (int tray = 0; tray < static_cast<int>(problem.trays.size()); ++tray) {
-    const int count = static_cast<int>(problem.trays[static_cast<std::size_t>(tray)].parts.size());
+    const int count = static_cast<int>(problem.trays[tray].parts.size());
     for (int part = 0; part < count; ++part) parts.emplace_back(tray, part);
   }
   return parts;
@@ -26,7 +26,7 @@ World world_with_parts(const PartSupplyProblem& problem, const std::vector<std::
 JointGroup arm_with_opening(const PartSupplyProblem& problem, double opening) {
   Eigen::VectorXd values = problem.arm.reference();
   for (const auto& [name, value] : problem.gripper.joint_values(opening)) {
-    const Joint& joint = problem.robot.joints()[static_cast<std::size_t>(problem.robot.joint_index(name))];
+    const Joint& joint = problem.robot.joints()[problem.robot.joint_index(name)];
     values[joint.value_index] = value;
   }
   return problem.arm.with_reference(values);

@@ -17,7 +17,7 @@ World world_with_parts(const PartSupplyProblem& problem, const std::vector<std::
 JointGroup arm_with_opening(const PartSupplyProblem& problem, double opening);
 
 inline const Part& part_of(const PartSupplyProblem& problem, int tray, int part) {
-  return problem.trays[static_cast<std::size_t>(tray)].parts[static_cast<std::size_t>(part)];
+  return problem.trays[tray].parts[part];
 }
 
 }  // namespace mmgrasp

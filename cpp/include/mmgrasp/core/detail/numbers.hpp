@@ -16,7 +16,7 @@ inline double shortest_turn(double turn) {
 
 /// The whole turns [rad] nearest to `turn`; subtracted from it, the shortest turn is left.
 inline double whole_turns(double turn) {
-  return kTwoPi * std::round(difference / kTwoPi);
+  return kTwoPi * std::round(turn / kTwoPi);
 }
 
 }  // namespace mmgrasp::detail

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "mmgrasp/robot/ik.hpp"
 #include "mmgrasp/robot/detail/ik_closed_form.hpp"
+#include "mmgrasp/robot/ik.hpp"
 
 namespace mmgrasp::detail {
 

@@ -1,25 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <chrono>
 #include <cmath>
 
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/robot/ik.hpp"
 
 namespace mmgrasp::detail {
-
-class Clock {
- public:
-  explicit Clock(double limit) : limit_(limit), start_(std::chrono::steady_clock::now()) {}
-  bool over() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count() > limit_;
-  }
-
- private:
-  double limit_;
-  std::chrono::steady_clock::time_point start_;
-};
 
 /// Narrows the box [lower, upper] of a group with base: x and y no farther from the pose than the tip gets with every
 /// link stretched and every slide out.

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "mmgrasp/robot/joint_group.hpp"
 #include "mmgrasp/robot/detail/chain_kernel.hpp"
+#include "mmgrasp/robot/joint_group.hpp"
 
 namespace mmgrasp {
 namespace detail {

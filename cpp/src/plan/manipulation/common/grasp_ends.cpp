@@ -8,10 +8,10 @@
 
 namespace mmgrasp::detail {
 
-GraspEnds::GraspEnds(std::vector<CarryCandidate> candidates)
+GraspEnds::GraspEnds(std::vector<GraspCandidate> candidates)
     : dimension_(static_cast<int>(candidates.front().starts.front().size())) {
   std::vector<double> straight;
-  for (const CarryCandidate& candidate : candidates) straight.push_back(candidate.straight_cost());
+  for (const GraspCandidate& candidate : candidates) straight.push_back(candidate.straight_cost());
   std::vector<std::size_t> order(candidates.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return straight[a] < straight[b]; });

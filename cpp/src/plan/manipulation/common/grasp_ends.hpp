@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "mmgrasp/core/export.hpp"
-#include "plan/manipulation/common/carry_candidates.hpp"
+#include "plan/manipulation/common/grasp_candidates.hpp"
 
 namespace mmgrasp::detail {
 
@@ -14,18 +14,18 @@ class MMGRASP_EXPORT GraspEnds {
  public:
   static constexpr int kStart = 0, kGoal = 1;
 
-  explicit GraspEnds(std::vector<CarryCandidate> candidates);
+  explicit GraspEnds(std::vector<GraspCandidate> candidates);
 
   int size() const { return static_cast<int>(candidates_.size()); }
   int dimension() const { return dimension_; }
   /// How many of the first grasps have a straight cost below this.
   int below(double cost) const;
 
-  int grasp(int index) const { return candidates_[static_cast<std::size_t>(index)].grasp; }
-  int opening(int index) const { return candidates_[static_cast<std::size_t>(index)].opening; }
-  double cost(int index) const { return candidates_[static_cast<std::size_t>(index)].cost; }
+  int grasp(int index) const { return candidates_[index].grasp; }
+  int opening(int index) const { return candidates_[index].opening; }
+  double cost(int index) const { return candidates_[index].cost; }
   /// Least cost any path with this grasp can have.
-  double straight_cost(int index) const { return straight_[static_cast<std::size_t>(index)]; }
+  double straight_cost(int index) const { return straight_[index]; }
   int count(int index, int side) const { return spans_[span(index, side)].count; }
   const double* end(int index, int side, int k) const {
     return values_.data() + (spans_[span(index, side)].first + k) * dimension_;
@@ -43,7 +43,7 @@ class MMGRASP_EXPORT GraspEnds {
   static std::size_t span(int index, int side) { return static_cast<std::size_t>(2 * index + side); }
 
   int dimension_;
-  std::vector<CarryCandidate> candidates_;
+  std::vector<GraspCandidate> candidates_;
   std::vector<double> straight_;
   std::vector<Span> spans_;
   std::vector<double> values_;

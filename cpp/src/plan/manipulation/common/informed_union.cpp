@@ -63,7 +63,7 @@ void InformedUnion::prepare() {
     while (static_cast<int>(first_pair_.size()) <= pair.grasp) first_pair_.push_back(pairs_.size());
     const double own = ellipsoid_volume(pair);
     if (!(own > 0)) continue;
-    volumes_[static_cast<std::size_t>(pair.grasp)] += own;
+    volumes_[pair.grasp] += own;
     pairs_.push_back(pair);
     pairs_.back().volume = sum += own;
   }
@@ -72,7 +72,7 @@ void InformedUnion::prepare() {
 double InformedUnion::volume(int grasp) {
   if (std::isinf(cost_)) return box_volume_;
   if (!prepared_) prepare();
-  return grasp < grasps_ ? std::min(volumes_[static_cast<std::size_t>(grasp)], box_volume_) : 0;
+  return grasp < grasps_ ? std::min(volumes_[grasp], box_volume_) : 0;
 }
 
 double InformedUnion::volume() {
@@ -132,7 +132,7 @@ bool InformedUnion::first_to_contain(std::size_t pair, const double* q) const {
   const int grasp = pairs_[pair].grasp;
   for (int g = 0; g < grasp; ++g)
     if (contains(g, q)) return false;
-  for (std::size_t p = first_pair_[static_cast<std::size_t>(grasp)]; p < pair; ++p)
+  for (std::size_t p = first_pair_[grasp]; p < pair; ++p)
     if (in_pair(pairs_[p], q)) return false;
   return true;
 }
@@ -155,7 +155,7 @@ int InformedUnion::draw_box(Rng& rng, double* q) {
 }
 
 void InformedUnion::draw_around(Rng& rng, int grasp, double factor, double* q) {
-  const std::size_t first = first_of_[static_cast<std::size_t>(grasp)];
+  const std::size_t first = first_of_[grasp];
   const Pair& pair = all_[first + rng.index(first_of_[static_cast<std::size_t>(grasp) + 1] - first)];
   draw_ellipsoid(rng, pair, pair.c_min * factor + kAround, q);
   for (Eigen::Index i = 0; i < lower_.size(); ++i) q[i] = std::clamp(q[i], lower_[i], upper_[i]);

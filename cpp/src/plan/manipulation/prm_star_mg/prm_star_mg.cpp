@@ -3,19 +3,19 @@
 #include <algorithm>
 #include <optional>
 
-#include "plan/manipulation/common/carry_shortening.hpp"
-#include "plan/manipulation/common/first_carry.hpp"
-#include "plan/manipulation/prm_star_mg/carry_refinement.hpp"
+#include "plan/manipulation/common/first_transfer.hpp"
+#include "plan/manipulation/common/transfer_shortening.hpp"
 #include "plan/manipulation/prm_star_mg/roadmap_search.hpp"
+#include "plan/manipulation/prm_star_mg/transfer_refinement.hpp"
 #include "plan/roadmap/roadmap_data.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
 /// The roadmap to begin with, built unless given; nothing when stopped.
-std::optional<Roadmap> first_roadmap(CarryInput& input, ManipulationResult& result) {
+std::optional<Roadmap> first_roadmap(ManipulationInput& input, ManipulationResult& result) {
   if (input.roadmap) return *input.roadmap;
-  const CarryClock clock;
+  const Stopwatch clock;
   const Roadmap own = Roadmap::build(input.problem.group, input.options.prm.roadmap, input.monitor);
   result.stats.roadmap_seconds = clock.seconds();
   input.clock.leave_out(result.stats.roadmap_seconds);
@@ -25,12 +25,12 @@ std::optional<Roadmap> first_roadmap(CarryInput& input, ManipulationResult& resu
 
 }  // namespace
 
-bool run_prm_star_mg(CarryInput& input, ManipulationResult& result) {
+bool run_prm_star_mg(ManipulationInput& input, ManipulationResult& result) {
   const PrmStarMgOptions& options = input.options.prm;
   // A first path leaves the roadmap, as shortened ones and straight edges do.
-  Carry best;
-  if (input.options.straight && options.shorten) best = find_first_carry(input, result);
-  if (best.grasp >= 0) shorten_carry(input, best, result);
+  TransferPath best;
+  if (input.options.straight && options.shorten) best = find_first_transfer(input, result);
+  if (best.grasp >= 0) shorten_transfer(input, best, result);
   // Paths over the roadmap have to beat the first one as it was found: they will be shortened too.
   const double first = best.cost;
   input.candidates.find_rest();
@@ -40,7 +40,7 @@ bool run_prm_star_mg(CarryInput& input, ManipulationResult& result) {
   while (roadmap) {
     const double before = best.cost;
     whole = RoadmapSearch(input, *roadmap, input.options.straight, input.options.threads, best, result).run();
-    if (options.shorten && best.cost < before) shorten_carry(input, best, result);
+    if (options.shorten && best.cost < before) shorten_transfer(input, best, result);
     if (!whole || 2.0 * roadmap->size() > options.max_vertices) break;
     // The same seed gives the same vertices, and more of them.
     RoadmapOptions denser = roadmap->options();
@@ -51,7 +51,7 @@ bool run_prm_star_mg(CarryInput& input, ManipulationResult& result) {
   if (best.cost < first) result.stats.roadmap_cost = best.cost;
   if (result.path) {
     result.lower_bound = std::min(result.lower_bound, result.cost);
-    if (whole && options.shorten) refine_carry(input, result);
+    if (whole && options.shorten) refine_transfer(input, result);
   }
   return whole;
 }

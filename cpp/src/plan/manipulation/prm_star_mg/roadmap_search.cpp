@@ -15,14 +15,14 @@ constexpr std::size_t kSearches = 4;       // Graph searches that are worth a th
 constexpr int kSharingOpenings = 8;
 
 /// No path between ends farther apart than this can win, shortened or not.
-double farthest_ends(const Carry& best, const ManipulationResult& result) {
+double farthest_ends(const TransferPath& best, const ManipulationResult& result) {
   return result.path ? std::min(best.cost, result.cost) : best.cost;
 }
 
 }  // namespace
 
-RoadmapSearch::RoadmapSearch(const CarryInput& input, const Roadmap& roadmap, bool straight, int threads, Carry& best,
-                             ManipulationResult& result)
+RoadmapSearch::RoadmapSearch(const ManipulationInput& input, const Roadmap& roadmap, bool straight, int threads,
+                             TransferPath& best, ManipulationResult& result)
     : input_(input),
       roadmap_(roadmap),
       straight_(straight),
@@ -30,7 +30,7 @@ RoadmapSearch::RoadmapSearch(const CarryInput& input, const Roadmap& roadmap, bo
       result_(result),
       threads_(resolve_threads(threads)),
       checks_(roadmap, input.checks, knowledge_, threads_, input.monitor, result.stats) {
-  for (const CarryCandidate& candidate : input.candidates.found()) overlays_.emplace_back(roadmap_, candidate);
+  for (const GraspCandidate& candidate : input.candidates.found()) graphs_.emplace_back(roadmap_, candidate);
   for (int i = 0; i < input.checks.opening_count(); ++i) knowledge_.emplace_back(roadmap);
   for (int worker = 0; worker < threads_; ++worker) {
     searches_.emplace_back(roadmap);
@@ -45,13 +45,13 @@ bool RoadmapSearch::run() {
     result_.lower_bound = std::min(result_.lower_bound, input_.candidates.least_cost_left());
     for (const Entry& open : heap_) result_.lower_bound = std::min(result_.lower_bound, open.key);
     // Grasps that were not begun are bounded by their straight lines.
-    for (const GraspOverlay& overlay : overlays_)
-      if (!overlay.connected) result_.lower_bound = std::min(result_.lower_bound, overlay.candidate.straight_cost());
+    for (const GraspGraph& graph : graphs_)
+      if (!graph.connected) result_.lower_bound = std::min(result_.lower_bound, graph.candidate.straight_cost());
   }
-  for (const GraspOverlay& overlay : overlays_) {
-    bool& searched = result_.grasps[static_cast<std::size_t>(overlay.candidate.grasp)].searched;
-    result_.stats.grasps_searched += overlay.connected && !searched ? 1 : 0;
-    searched |= overlay.connected;
+  for (const GraspGraph& graph : graphs_) {
+    bool& searched = result_.grasps[graph.candidate.grasp].searched;
+    result_.stats.grasps_searched += graph.connected && !searched ? 1 : 0;
+    searched |= graph.connected;
   }
   return whole;
 }
@@ -62,14 +62,14 @@ void RoadmapSearch::push(const Entry& entry) {
 }
 
 void RoadmapSearch::push_straight(int index) {
-  const double straight = overlay(index).candidate.straight_cost();
+  const double straight = graph(index).candidate.straight_cost();
   if (straight < farthest_ends(best_, result_)) push({straight, index, false});
 }
 
 std::optional<RoadmapSearch::Entry> RoadmapSearch::find_path(int worker, int index, double bound) {
-  GraspOverlay& o = overlay(index);
+  GraspGraph& o = graph(index);
   o.connect(roadmap_, straight_, farthest_ends(best_, result_));
-  OverlaySearch& search = searches_[static_cast<std::size_t>(worker)];
+  GraspGraphSearch& search = searches_[worker];
   const int opening = o.candidate.opening;
   search.robot_is_free = {};
   if (input_.checks.opening_count() <= kSharingOpenings) {
@@ -77,10 +77,10 @@ std::optional<RoadmapSearch::Entry> RoadmapSearch::find_path(int worker, int ind
       return input_.checks.robot_is_free(worker, opening, roadmap_.vertices().col(v));
     };
   }
-  const RoadmapKnowledge& robot = knowledge_[static_cast<std::size_t>(opening)];
-  const OverlaySearch::End end = search.search(o, robot, bound);
-  if (end == OverlaySearch::End::none) return std::nullopt;
-  if (end == OverlaySearch::End::found) return Entry{o.path_cost, index, true};
+  const EdgeValidityCache& robot = knowledge_[opening];
+  const GraspGraphSearch::End end = search.search(o, robot, bound);
+  if (end == GraspGraphSearch::End::none) return std::nullopt;
+  if (end == GraspGraphSearch::End::found) return Entry{o.path_cost, index, true};
   return Entry{search.reached(), index, false};  // Out of time.
 }
 
@@ -95,7 +95,7 @@ bool RoadmapSearch::search_heap() {
 }
 
 bool RoadmapSearch::search_batches() {
-  const std::size_t count = overlays_.size();
+  const std::size_t count = graphs_.size();
   const std::size_t size = input_.options.prm.batch > 0 ? static_cast<std::size_t>(input_.options.prm.batch) : count;
   for (std::size_t first = 0; first < count; first += size) {
     input_.monitor.report("search", static_cast<double>(first) / static_cast<double>(count));
@@ -117,12 +117,12 @@ bool RoadmapSearch::search_batch(int first, int last) {
 bool RoadmapSearch::search_all(int first, int last) {
   std::vector<int> found;
   for (int index = first; index < last; ++index) {
-    if (overlay(index).candidate.straight_cost() >= farthest_ends(best_, result_)) continue;
+    if (graph(index).candidate.straight_cost() >= farthest_ends(best_, result_)) continue;
     if (input_.out_of_time()) return false;
-    overlay(index).connect(roadmap_, straight_, farthest_ends(best_, result_));
+    graph(index).connect(roadmap_, straight_, farthest_ends(best_, result_));
     double bound = best_.cost;
     for (std::size_t i = found.size() > kSplices ? found.size() - kSplices : 0; i < found.size(); ++i)
-      bound = std::min(bound, spliced_cost(roadmap_, overlay(index), overlay(found[i]).nodes));
+      bound = std::min(bound, spliced_cost(roadmap_, graph(index), graph(found[i]).nodes));
     ++result_.stats.graph_searches;
     const std::optional<Entry> left = find_path(0, index, bound);
     result_.stats.ways_opened += searches_.front().opened();
@@ -136,14 +136,14 @@ bool RoadmapSearch::search_all(int first, int last) {
 void RoadmapSearch::round(std::size_t size) {
   std::vector<Entry> taken;
   std::vector<int> to_search, checked;
-  std::vector<GraspOverlay*> to_check;
+  std::vector<GraspGraph*> to_check;
   while (promising() && taken.size() < size) {
     std::pop_heap(heap_.begin(), heap_.end(), later);
     taken.push_back(heap_.back());
     heap_.pop_back();
     const Entry& top = taken.back();
-    (top.searched ? checked : to_search).push_back(top.overlay);
-    if (top.searched) to_check.push_back(&overlay(top.overlay));
+    (top.searched ? checked : to_search).push_back(top.graph);
+    if (top.searched) to_check.push_back(&graph(top.graph));
   }
   const std::vector<char> free = checks_.check(to_check);
   if (input_.monitor.stopped()) {
@@ -162,13 +162,13 @@ void RoadmapSearch::round(std::size_t size) {
 }
 
 bool RoadmapSearch::accept(int index) {
-  GraspOverlay& o = overlay(index);
+  GraspGraph& o = graph(index);
   if (o.path_cost >= best_.cost) return true;
   JointPath path;
   for (const int node : o.nodes) path.waypoints.push_back(o.configuration(roadmap_, node));
   const int blocked = input_.checks.blocked_edge(o.candidate.grasp, path);
   if (blocked >= 0) {
-    o.set_step(o.steps[static_cast<std::size_t>(blocked)], false);
+    o.set_step(o.steps[blocked], false);
     return false;
   }
   best_ = {o.candidate.grasp, o.path_cost, std::move(path)};

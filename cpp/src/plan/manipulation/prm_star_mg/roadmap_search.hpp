@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "plan/manipulation/common/carry_planner.hpp"
-#include "plan/manipulation/prm_star_mg/overlay_checks.hpp"
-#include "plan/manipulation/prm_star_mg/overlay_search.hpp"
+#include "plan/manipulation/common/manipulation_planner.hpp"
+#include "plan/manipulation/prm_star_mg/grasp_graph_checks.hpp"
+#include "plan/manipulation/prm_star_mg/grasp_graph_search.hpp"
 
 namespace mmgrasp::detail {
 
@@ -15,7 +15,7 @@ class RoadmapSearch {
  public:
   /// Looks for paths over the roadmap, or `straight` from start to goal, that cost less than `best`, which they
   /// replace.
-  RoadmapSearch(const CarryInput& input, const Roadmap& roadmap, bool straight, int threads, Carry& best,
+  RoadmapSearch(const ManipulationInput& input, const Roadmap& roadmap, bool straight, int threads, TransferPath& best,
                 ManipulationResult& result);
 
   /// False when time ran out before all grasps were searched.
@@ -24,12 +24,12 @@ class RoadmapSearch {
  private:
   struct Entry {
     double key;
-    int overlay;
+    int graph;
     bool searched;  ///< The key is a path's cost, not only a bound.
   };
-  static bool later(const Entry& a, const Entry& b) { return a.key != b.key ? a.key > b.key : a.overlay > b.overlay; }
+  static bool later(const Entry& a, const Entry& b) { return a.key != b.key ? a.key > b.key : a.graph > b.graph; }
 
-  GraspOverlay& overlay(int index) { return overlays_[static_cast<std::size_t>(index)]; }
+  GraspGraph& graph(int index) { return graphs_[index]; }
   void push(const Entry& entry);
   void push_straight(int index);
   bool promising() const { return !heap_.empty() && heap_.front().key < best_.cost; }
@@ -49,16 +49,16 @@ class RoadmapSearch {
   /// step at fault is blocked) when it fails: a thin obstacle was stepped over.
   bool accept(int index);
 
-  const CarryInput& input_;
+  const ManipulationInput& input_;
   const Roadmap& roadmap_;
   const bool straight_;
-  Carry& best_;
+  TransferPath& best_;
   ManipulationResult& result_;
   int threads_;
-  std::vector<RoadmapKnowledge> knowledge_;
-  OverlayChecks checks_;
-  std::vector<OverlaySearch> searches_;  ///< One per worker.
-  std::vector<GraspOverlay> overlays_;
+  std::vector<EdgeValidityCache> knowledge_;
+  GraspGraphChecks checks_;
+  std::vector<GraspGraphSearch> searches_;  ///< One per worker.
+  std::vector<GraspGraph> graphs_;
   std::vector<Entry> heap_;
 };
 

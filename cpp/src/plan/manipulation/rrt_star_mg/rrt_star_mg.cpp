@@ -1,15 +1,15 @@
 // Sampling.
 
-#include "mmgrasp/core/detail/numbers.hpp"
 #include "plan/manipulation/rrt_star_mg/rrt_star_mg.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "mmgrasp/core/error.hpp"
-#include "plan/manipulation/common/carry_shortening.hpp"
-#include "plan/manipulation/common/first_carry.hpp"
+#include "plan/manipulation/common/first_transfer.hpp"
+#include "plan/manipulation/common/transfer_shortening.hpp"
 
 namespace mmgrasp {
 
@@ -34,13 +34,13 @@ constexpr int kGuesses = 32;        // Random grasps asked before all of them ar
 
 }  // namespace
 
-RrtStarMg::RrtStarMg(CarryInput& input, const RrtStarMgOptions& options, ManipulationResult& result)
+RrtStarMg::RrtStarMg(ManipulationInput& input, const RrtStarMgOptions& options, ManipulationResult& result)
     : input_(input),
       result_(result),
       options_(options),
       ends_(input.candidates.found()),
       informed_(ends_, input.problem.group.sample_lower(), input.problem.group.sample_upper()),
-      forest_(ends_),
+      trees_(ends_),
       rng_(input.options.seed, 0x727274),
       best_(result.path ? result.cost : kInfinity),
       own_(static_cast<std::size_t>(ends_.size())),
@@ -67,7 +67,7 @@ void RrtStarMg::run() {
     sample(options_.bidirectional ? i % 2 : GraspEnds::kStart);
   }
   result_.stats.samples += static_cast<std::size_t>(i);
-  result_.stats.vertices += static_cast<std::size_t>(forest_.vertex_count());
+  result_.stats.vertices += static_cast<std::size_t>(trees_.vertex_count());
   result_.lower_bound = std::min({best_, ends_.straight_cost(0), input_.candidates.least_cost_left()});
   if (options_.keep_trees) keep_trees();
 }
@@ -78,10 +78,10 @@ void RrtStarMg::plant() {
   best_grasp_ = grasp;
   if (grasp >= informed_.grasps()) return;  // It is the straight line.
   const std::vector<Eigen::VectorXd>& path = result_.path->waypoints;
-  int at = forest_.nearest_in_tree(Forest::tree(grasp, GraspEnds::kStart), path.front().data());
+  int at = trees_.nearest_in_tree(GraspTrees::tree(grasp, GraspEnds::kStart), path.front().data());
   for (std::size_t i = 1; i + 1 < path.size(); ++i)
-    at = forest_.add(at, forest_.add_configuration(path[i].data()), (path[i] - path[i - 1]).norm());
-  add_bridge(at, forest_.nearest_in_tree(Forest::tree(grasp, GraspEnds::kGoal), path.back().data()));
+    at = trees_.add(at, trees_.add_configuration(path[i].data()), (path[i] - path[i - 1]).norm());
+  add_bridge(at, trees_.nearest_in_tree(GraspTrees::tree(grasp, GraspEnds::kGoal), path.back().data()));
   contenders_.push_back(grasp);
   refresh(grasp);
   straighten(grasp);
@@ -91,9 +91,9 @@ void RrtStarMg::plant() {
 void RrtStarMg::keep_trees() {
   for (int grasp = 0; grasp < ends_.size(); ++grasp)
     for (const int side : {GraspEnds::kStart, GraspEnds::kGoal}) {
-      std::vector<int> place(static_cast<std::size_t>(forest_.vertex_count()), -1), members;
-      forest_.each_in_tree(Forest::tree(grasp, side), [&](int v) {
-        place[static_cast<std::size_t>(v)] = static_cast<int>(members.size());
+      std::vector<int> place(static_cast<std::size_t>(trees_.vertex_count()), -1), members;
+      trees_.each_in_tree(GraspTrees::tree(grasp, side), [&](int v) {
+        place[v] = static_cast<int>(members.size());
         members.push_back(v);
       });
       if (members.empty()) continue;
@@ -103,11 +103,11 @@ void RrtStarMg::keep_trees() {
       tree.vertices.resize(ends_.dimension(), static_cast<Eigen::Index>(members.size()));
       tree.costs.resize(tree.vertices.cols());
       for (std::size_t i = 0; i < members.size(); ++i) {
-        const Forest::Vertex& vertex = forest_.vertex(members[i]);
+        const GraspTrees::Vertex& vertex = trees_.vertex(members[i]);
         tree.vertices.col(static_cast<Eigen::Index>(i)) =
-            Eigen::Map<const Eigen::VectorXd>(forest_.at(members[i]), ends_.dimension());
+            Eigen::Map<const Eigen::VectorXd>(trees_.at(members[i]), ends_.dimension());
         tree.costs[static_cast<Eigen::Index>(i)] = vertex.cost;
-        tree.parents.push_back(vertex.parent < 0 ? -1 : place[static_cast<std::size_t>(vertex.parent)]);
+        tree.parents.push_back(vertex.parent < 0 ? -1 : place[vertex.parent]);
       }
       result_.trees.push_back(std::move(tree));
     }
@@ -119,7 +119,7 @@ void RrtStarMg::try_straight_lines() {
   std::vector<int> roots;
   for (int grasp = 0; grasp < tried && ends_.straight_cost(grasp) < best_ && !input_.out_of_time(); ++grasp) {
     roots.clear();
-    forest_.each_in_tree(Forest::tree(grasp, GraspEnds::kStart), [&](int v) { roots.push_back(v); });
+    trees_.each_in_tree(GraspTrees::tree(grasp, GraspEnds::kStart), [&](int v) { roots.push_back(v); });
     for (const int v : roots) connect(v);
   }
 }
@@ -142,12 +142,12 @@ void RrtStarMg::sample(int side) {
 int RrtStarMg::sample_informed(int side) {
   const int grasp = options_.informed ? informed_.draw(rng_, q_.data()) : informed_.draw_box(rng_, q_.data());
   if (grasp < 0) return -1;
-  const int configuration = forest_.add_configuration(q_.data());
-  if (rng_.uniform() < options_.exploration) return extend_tree(Forest::tree(grasp, side), configuration);
+  const int configuration = trees_.add_configuration(q_.data());
+  if (rng_.uniform() < options_.exploration) return extend_tree(GraspTrees::tree(grasp, side), configuration);
   return extend_forest(side, configuration);
 }
 
-// Beyond the paper, until there is a path. One configuration is offered to the forest, as in the paper, and to the
+// Beyond the paper, until there is a path. One configuration is offered to the trees, as in the paper, and to the
 // trees of some grasps: what is found out about the robot there serves them all. Most configurations are drawn near the
 // straight line of one of these, for few joint boxes are much larger than the ways through them.
 void RrtStarMg::sample_early(int side) {
@@ -158,11 +158,11 @@ void RrtStarMg::sample_early(int side) {
   } else {
     informed_.draw_box(rng_, q_.data());
   }
-  const int configuration = forest_.add_configuration(q_.data());
+  const int configuration = trees_.add_configuration(q_.data());
   const int made = extend_forest(side, configuration);
   if (made >= 0) connect(made);
   for (int i = 0; i < kRounds && !solved(); ++i, grasp = pick_early()) {
-    const int grown = extend_tree(Forest::tree(grasp, side), configuration);
+    const int grown = extend_tree(GraspTrees::tree(grasp, side), configuration);
     if (grown >= 0) connect(grown);
   }
 }
@@ -180,9 +180,9 @@ int RrtStarMg::take_reassigned(int side, int& tree) {
     const int configuration = reassign_[at];
     reassign_[at] = reassign_.back();
     reassign_.pop_back();
-    const double* q = forest_.configuration(configuration);
+    const double* q = trees_.configuration(configuration);
     const auto serves = [&](int grasp) {
-      return informed_.contains(grasp, q) && forest_.find(Forest::tree(grasp, side), configuration) < 0;
+      return informed_.contains(grasp, q) && trees_.find(GraspTrees::tree(grasp, side), configuration) < 0;
     };
     const auto count = static_cast<std::size_t>(informed_.grasps());
     int grasp = -1;
@@ -194,17 +194,17 @@ int RrtStarMg::take_reassigned(int side, int& tree) {
     for (int g = 0; g < informed_.grasps() && (grasp < 0 || found > 0); ++g)
       if (serves(g) && rng_.index(++found) == 0) grasp = g;
     if (grasp < 0) continue;
-    tree = Forest::tree(grasp, side);
+    tree = GraspTrees::tree(grasp, side);
     return configuration;
   }
   return -1;
 }
 
-bool run_rrt_star_mg(CarryInput& input, ManipulationResult& result) {
-  CarryCandidates& candidates = input.candidates;
-  const Carry first = find_first_carry(input, result);
+bool run_rrt_star_mg(ManipulationInput& input, ManipulationResult& result) {
+  GraspCandidates& candidates = input.candidates;
+  const TransferPath first = find_first_transfer(input, result);
   const auto good_enough = [&] { return result.path && result.cost <= input.options.rrt.goal_cost; };
-  if (first.grasp >= 0 && !good_enough()) shorten_carry(input, first, result);
+  if (first.grasp >= 0 && !good_enough()) shorten_transfer(input, first, result);
   if (good_enough()) {
     result.lower_bound = std::min(result.cost, candidates.least_cost());
     return false;

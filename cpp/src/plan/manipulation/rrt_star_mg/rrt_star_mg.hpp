@@ -5,10 +5,10 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
-#include "plan/manipulation/common/carry_planner.hpp"
 #include "plan/manipulation/common/informed_union.hpp"
-#include "plan/manipulation/rrt_star_mg/forest.hpp"
-#include "plan/motion/check_memory.hpp"
+#include "plan/manipulation/common/manipulation_planner.hpp"
+#include "plan/manipulation/rrt_star_mg/grasp_trees.hpp"
+#include "plan/motion/collision_cache.hpp"
 
 namespace mmgrasp::detail {
 
@@ -16,7 +16,7 @@ constexpr double kSame = 1e-9;    ///< Configurations nearer than this are the s
 constexpr double kBetter = 1e-6;  ///< Paths shorter by less than this share are not news.
 
 /// Puts the cheapest on top of a heap.
-inline bool costlier(const Forest::Near& a, const Forest::Near& b) {
+inline bool costlier(const GraspTrees::Near& a, const GraspTrees::Near& b) {
   return a.key != b.key ? a.key > b.key : a.vertex > b.vertex;
 }
 
@@ -25,12 +25,12 @@ inline bool costlier(const Forest::Near& a, const Forest::Near& b) {
 class RrtStarMg {
  public:
   /// Over the grasps known now; goes on from the result's path when it has one.
-  RrtStarMg(CarryInput& input, const RrtStarMgOptions& options, ManipulationResult& result);
+  RrtStarMg(ManipulationInput& input, const RrtStarMgOptions& options, ManipulationResult& result);
 
   void run();
 
  private:
-  using Near = Forest::Near;
+  using Near = GraspTrees::Near;
 
   /// A free edge between the two trees of a grasp; with the ways to their roots it is a path.
   struct Bridge {
@@ -98,7 +98,7 @@ class RrtStarMg {
   void prune();
   void leaving(int v);
 
-  // Pulling paths taut (rrt_star_mg_taut.cpp).
+  // Pulling paths taut (rrt_star_mg_shortcut.cpp).
   /// A corner of a path and its neighbours there; the bridge may be between it and the one after it.
   struct Corner {
     int before, corner, after;  ///< Vertices.
@@ -116,15 +116,15 @@ class RrtStarMg {
   /// Fills chain_ with the grasp's own path; false when there is none.
   bool follow(int grasp);
 
-  CarryInput& input_;
+  ManipulationInput& input_;
   ManipulationResult& result_;
   const RrtStarMgOptions options_;
   GraspEnds ends_;
   InformedUnion informed_;
-  Forest forest_;
-  CheckMemory robot_;     ///< By opening.
-  CheckMemory verified_;  ///< By grasp: edges that were on a path and looked at finely.
-  CheckMemory blocked_;   ///< By grasp: edges that would have straightened a path.
+  GraspTrees trees_;
+  CollisionCache robot_;     ///< By opening.
+  CollisionCache verified_;  ///< By grasp: edges that were on a path and looked at finely.
+  CollisionCache blocked_;   ///< By grasp: edges that would have straightened a path.
   Rng rng_;
   double best_;
   int best_grasp_ = -1;
@@ -142,6 +142,6 @@ class RrtStarMg {
   Eigen::VectorXd q_, q_a_, q_b_;   ///< Scratch.
 };
 
-bool run_rrt_star_mg(CarryInput& input, ManipulationResult& result);
+bool run_rrt_star_mg(ManipulationInput& input, ManipulationResult& result);
 
 }  // namespace mmgrasp::detail

@@ -22,13 +22,13 @@ double RrtStarMg::radius(int vertices) const {
 }
 
 void RrtStarMg::look_near_in_tree(int tree, const double* q) {
-  forest_.near_in_tree(tree, q, radius(forest_.tree_size(tree)), near_);
-  keep_near(forest_.tree_size(tree), informed_.volume(Forest::grasp_of(tree)));
+  trees_.near_in_tree(tree, q, radius(trees_.tree_size(tree)), near_);
+  keep_near(trees_.tree_size(tree), informed_.volume(GraspTrees::grasp_of(tree)));
 }
 
 void RrtStarMg::look_near_on_side(int side, const double* q) {
-  forest_.near_on_side(side, q, radius(forest_.side_size(side)), near_);
-  keep_near(forest_.side_size(side), informed_.volume());
+  trees_.near_on_side(side, q, radius(trees_.side_size(side)), near_);
+  keep_near(trees_.side_size(side), informed_.volume());
 }
 
 // RRT*'s radius for vertices that are uniform in a set of this volume (Karaman and Frazzoli; of the informed set as in
@@ -54,21 +54,21 @@ void RrtStarMg::keep_near(int vertices, double volume) {
 
 int RrtStarMg::steer(int from, int target) {
   const int d = ends_.dimension();
-  const double* a = forest_.at(from);
-  const double* b = forest_.configuration(target);
+  const double* a = trees_.at(from);
+  const double* b = trees_.configuration(target);
   const double distance = std::sqrt(squared_distance(a, b, d));
   if (distance < kSame) return -1;
   if (distance <= options_.step) return target;
   for (int i = 0; i < d; ++i) q_[i] = a[i] + (b[i] - a[i]) * (options_.step / distance);
-  return forest_.add_configuration(q_.data());
+  return trees_.add_configuration(q_.data());
 }
 
 // ExtendAndRewire (Algorithm 5.2) on the tree of one grasp.
 int RrtStarMg::extend_tree(int tree, int configuration) {
-  const int nearest = forest_.nearest_in_tree(tree, forest_.configuration(configuration));
+  const int nearest = trees_.nearest_in_tree(tree, trees_.configuration(configuration));
   const int target = steer(nearest, configuration);
-  if (target < 0 || forest_.find(tree, target) >= 0) return -1;
-  look_near_in_tree(tree, forest_.configuration(target));
+  if (target < 0 || trees_.find(tree, target) >= 0) return -1;
+  look_near_in_tree(tree, trees_.configuration(target));
   include_nearest(nearest, target);
   // Where no cheaper path can pass, trees grow only while they are offered the whole box.
   const int made = add_best(target, options_.informed ? best_ : kInfinity);
@@ -80,10 +80,10 @@ int RrtStarMg::extend_tree(int tree, int configuration) {
 
 // ExtendAndRewire-MG: the tree that looks cheapest by equation (5.1) among those near.
 int RrtStarMg::extend_forest(int side, int configuration) {
-  const int nearest = forest_.nearest_on_side(side, forest_.configuration(configuration));
+  const int nearest = trees_.nearest_on_side(side, trees_.configuration(configuration));
   const int target = steer(nearest, configuration);
   if (target < 0) return -1;
-  look_near_on_side(side, forest_.configuration(target));
+  look_near_on_side(side, trees_.configuration(target));
   include_nearest(nearest, target);
   const int made = add_best(target, best_);
   // No tree nearby can be improved from here; another grasp's may (P2 5.3.4).
@@ -99,31 +99,31 @@ int RrtStarMg::extend_forest(int side, int configuration) {
 
 // Beyond the paper, until there is a path.
 int RrtStarMg::advance(int from, int target) {
-  const Forest::Vertex start = forest_.vertex(from);
-  const int grasp = Forest::grasp_of(start.tree), d = ends_.dimension();
-  const double *a = forest_.at(from), *b = forest_.configuration(target);
+  const GraspTrees::Vertex start = trees_.vertex(from);
+  const int grasp = GraspTrees::grasp_of(start.tree), d = ends_.dimension();
+  const double *a = trees_.at(from), *b = trees_.configuration(target);
   for (int k = 0; k < d; ++k) q_[k] = 0.5 * (a[k] + b[k]);
-  const int half = forest_.add_configuration(q_.data());
+  const int half = trees_.add_configuration(q_.data());
   if (!configuration_is_free(grasp, half) || !edge_is_free(grasp, start.configuration, half)) return -1;
-  return forest_.add(from, half, std::sqrt(squared_distance(forest_.at(from), forest_.configuration(half), d)));
+  return trees_.add(from, half, std::sqrt(squared_distance(trees_.at(from), trees_.configuration(half), d)));
 }
 
 void RrtStarMg::include_nearest(int nearest, int target) {
   for (const Near& entry : near_)
     if (entry.vertex == nearest) return;
-  near_.push_back({nearest, length(forest_.vertex(nearest).configuration, target)});
+  near_.push_back({nearest, length(trees_.vertex(nearest).configuration, target)});
 }
 
 int RrtStarMg::add_best(int configuration, double bound) {
-  const double* q = forest_.configuration(configuration);
+  const double* q = trees_.configuration(configuration);
   bool any = false;
   for (Near& entry : near_) {
-    const Forest::Vertex& vertex = forest_.vertex(entry.vertex);
-    const int grasp = Forest::grasp_of(vertex.tree);
+    const GraspTrees::Vertex& vertex = trees_.vertex(entry.vertex);
+    const int grasp = GraspTrees::grasp_of(vertex.tree);
     const auto own = static_cast<std::size_t>(grasp);
     if (to_go_stamp_[own] != configuration) {
       to_go_stamp_[own] = configuration;
-      to_go_[own] = ends_.cost(grasp) + ends_.distance(grasp, 1 - Forest::side_of(vertex.tree), q);
+      to_go_[own] = ends_.cost(grasp) + ends_.distance(grasp, 1 - GraspTrees::side_of(vertex.tree), q);
     }
     entry.key = vertex.cost + entry.distance + to_go_[own];
     any |= entry.key < bound;
@@ -134,9 +134,9 @@ int RrtStarMg::add_best(int configuration, double bound) {
     std::pop_heap(near_.begin(), last, costlier);
     const Near& entry = *(last - 1);
     if (entry.key >= bound) return -1;
-    const Forest::Vertex& vertex = forest_.vertex(entry.vertex);
-    const int grasp = Forest::grasp_of(vertex.tree);
-    int& blocked = blocked_stamp_[static_cast<std::size_t>(grasp)];
+    const GraspTrees::Vertex& vertex = trees_.vertex(entry.vertex);
+    const int grasp = GraspTrees::grasp_of(vertex.tree);
+    int& blocked = blocked_stamp_[grasp];
     if (blocked == configuration) continue;
     if (!configuration_is_free(grasp, configuration)) {
       blocked = configuration;
@@ -144,48 +144,48 @@ int RrtStarMg::add_best(int configuration, double bound) {
       continue;
     }
     if (edge_is_free(grasp, vertex.configuration, configuration))
-      return forest_.add(entry.vertex, configuration, entry.distance);
+      return trees_.add(entry.vertex, configuration, entry.distance);
   }
   return -1;
 }
 
 // Only within the tree (P2 5.3.2), and only what could make the best path better.
 void RrtStarMg::rewire(int made) {
-  const Forest::Vertex own = forest_.vertex(made);
-  const int grasp = Forest::grasp_of(own.tree);
+  const GraspTrees::Vertex own = trees_.vertex(made);
+  const int grasp = GraspTrees::grasp_of(own.tree);
   bool changed = false;
   for (const Near& entry : near_) {
-    const Forest::Vertex& other = forest_.vertex(entry.vertex);
+    const GraspTrees::Vertex& other = trees_.vertex(entry.vertex);
     if (other.tree != own.tree || entry.vertex == own.parent || other.parent < 0) continue;
     const double cost = own.cost + entry.distance;
     if (!(cost < other.cost - kSame)) continue;
-    if (cost + ends_.cost(grasp) + ends_.distance(grasp, 1 - Forest::side_of(own.tree), forest_.at(entry.vertex)) >=
+    if (cost + ends_.cost(grasp) + ends_.distance(grasp, 1 - GraspTrees::side_of(own.tree), trees_.at(entry.vertex)) >=
         best_)
       continue;
     if (!edge_is_free(grasp, own.configuration, other.configuration)) continue;
-    forest_.reparent(entry.vertex, made, entry.distance);
+    trees_.reparent(entry.vertex, made, entry.distance);
     changed = true;
   }
-  if (changed && bridge_of_[static_cast<std::size_t>(grasp)] >= 0) refresh(grasp);
+  if (changed && bridge_of_[grasp] >= 0) refresh(grasp);
 }
 
 // What stands in other trees nearby and could serve this one (P2 5.3.2).
 void RrtStarMg::duplicate_into(int made) {
-  const Forest::Vertex own = forest_.vertex(made);
-  const int grasp = Forest::grasp_of(own.tree), side = Forest::side_of(own.tree);
+  const GraspTrees::Vertex own = trees_.vertex(made);
+  const int grasp = GraspTrees::grasp_of(own.tree), side = GraspTrees::side_of(own.tree);
   if (!own.alive) return;
   int taken = 0;
   for (std::size_t i = 0; i < near_.size() && taken < kDuplicates; ++i) {
     const Near entry = near_[i];
-    const Forest::Vertex other = forest_.vertex(entry.vertex);
+    const GraspTrees::Vertex other = trees_.vertex(entry.vertex);
     if (!other.alive || other.tree == own.tree || other.parent < 0 || entry.distance < kSame) continue;
     const double cost = own.cost + entry.distance;
-    const double whole = cost + ends_.cost(grasp) + ends_.distance(grasp, 1 - side, forest_.at(entry.vertex));
-    if (whole >= best_ || forest_.find(own.tree, other.configuration) >= 0) continue;
+    const double whole = cost + ends_.cost(grasp) + ends_.distance(grasp, 1 - side, trees_.at(entry.vertex));
+    if (whole >= best_ || trees_.find(own.tree, other.configuration) >= 0) continue;
     if (!configuration_is_free(grasp, other.configuration) ||
         !edge_is_free(grasp, own.configuration, other.configuration))
       continue;
-    forest_.add(made, other.configuration, entry.distance);
+    trees_.add(made, other.configuration, entry.distance);
     ++taken;
   }
 }

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "collision/kernels/kernels.hpp"
+#include "collision/narrow/distance_field.hpp"
+#include "mmgrasp/geometry/shape.hpp"
+
+namespace mmgrasp::detail {
+
+struct Solid;
+
+/// Balls that cover a body, and balls within it: what misses the former is apart, what meets the latter overlaps.
+class SphereCover {
+ public:
+  /// `inner` is the radius of a ball about the same centre that lies within the body, negative when there is none.
+  void add(const Eigen::Vector3d& centre, double outer, double inner);
+  /// A place that stays empty: infinitely far away.
+  void add_far();
+  /// Empty places up to the next whole vector.
+  void pad();
+
+  bool empty() const { return filled_ == 0; }
+  CoverView view() const;
+  /// Largest coordinate or radius: what single precision rounds against [m].
+  float extent() const { return extent_; }
+
+ private:
+  std::vector<float> data_[5];
+  int filled_ = 0;  ///< Up to the last real ball.
+  float extent_ = 0;
+};
+
+/// Covers of the same body, each finer than the one before: the balls kLanes * i ... of a level cover what ball i of
+/// the level above covers.
+using CoverLevels = std::vector<SphereCover>;
+
+/// What stands in for a body before its exact shape is looked at (padding not included).
+class MMGRASP_EXPORT BoundingVolumes {
+ public:
+  static constexpr int kLevels = 3;
+
+  BoundingVolumes(const Solid& solid, const Shape& shape);
+
+  /// The bounding box cut into cells, a ball for each cell's part of the body. Empty for planes and voxels.
+  const SphereCover& balls() const { return balls_; }
+
+  /// Made when first asked for: most bodies never come that close to others.
+  struct Detail {
+    CoverLevels covers;                          ///< kLevels of them.
+    std::unique_ptr<const DistanceField> field;  ///< Distances to a mesh; null for other shapes.
+  };
+  /// `solid` is the one it was made with. Safe from several threads.
+  const Detail& detail(const Solid& solid) const;
+
+ private:
+  SphereCover balls_;
+  Shape shape_;                             // primitives
+  std::weak_ptr<const TriangleMesh> mesh_;  // lives in the robot as long as somebody asks
+  mutable std::once_flag once_;
+  mutable Detail detail_;
+};
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,139 @@
+#include "collision/checker/clearance_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "collision/narrow/convex_clearance.hpp"
+#include "collision/narrow/narrow.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
+
+namespace mmgrasp::detail {
+
+namespace {
+
+constexpr int kFinest = 512;              // Cells around.
+constexpr int kCoarser = 4;               // Cells of one level in one of the level above, each way.
+constexpr double kQuantum = 2.5e-4;       // Of the gaps kept [m].
+constexpr double kMost = 254 * kQuantum;  // Wider gaps are kept as this one.
+constexpr double kExactReach = 0.01;      // Triangles are only asked for gaps up to this [m].
+constexpr double kSlack = 1e-6;           // Poses here and in the checker are rounded differently.
+constexpr std::size_t kMaxTables = 256;
+
+constexpr int cells_around(int level) {
+  int n = kFinest;
+  for (; level < 2; ++level) n /= kCoarser;
+  return n;
+}
+
+double middle(int level, long i) {
+  return (static_cast<double>(i) + 0.5) * (kTwoPi / cells_around(level));
+}
+
+Rigid turned(const Rigid& T, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  Rigid out = T;
+  out.R.col(0) = c * T.R.col(0) + s * T.R.col(1);
+  out.R.col(1) = c * T.R.col(1) - s * T.R.col(0);
+  return out;
+}
+
+long wrapped(long i, long n) {
+  const long rest = i % n;
+  return rest < 0 ? rest + n : rest;
+}
+
+}  // namespace
+
+ClearanceTable::ClearanceTable(const TableBody& a, const TableBody& b, const TwoTurns& turns)
+    : a_(*a.solid), b_(*b.solid), bounds_a_(*a.bounds), bounds_b_(*b.bounds), turns_(turns) {
+  for (int level = 0; level < kLevels; ++level)
+    within_cell_[level] = (turns.rates[0] + turns.rates[1]) * kPi / cells_around(level) + kSlack;
+}
+ClearanceTable::~ClearanceTable() = default;
+
+double ClearanceTable::at_least(double first, double second, double wanted) const {
+  constexpr double kPerRadian = kFinest / kTwoPi;
+  const long i = std::lround(std::floor(first * kPerRadian)), j = std::lround(std::floor(second * kPerRadian));
+  const long in_i = wrapped(i, kFinest), in_j = wrapped(j, kFinest);
+  first -= static_cast<double>(i - in_i) / kPerRadian;
+  second -= static_cast<double>(j - in_j) / kPerRadian;
+  double best = 0;
+  for (int level = 0, shift = kFinest / cells_around(0); level < kLevels; ++level, shift /= kCoarser) {
+    // Cells that cannot say enough are not asked.
+    if (best > 0 && widest(level) < wanted) break;
+    const long ci = in_i / shift, cj = in_j / shift;
+    const double off = turns_.rates[0] * std::abs(first - middle(level, ci)) +
+                       turns_.rates[1] * std::abs(second - middle(level, cj)) + kSlack;
+    best = std::max(best, gap_in_middle(level, static_cast<int>(ci), static_cast<int>(cj)) - off);
+    if (best > wanted) break;
+  }
+  return best;
+}
+
+double ClearanceTable::widest(int level) const {
+  return std::min(4 * within_cell_[level], kMost);
+}
+
+double ClearanceTable::gap_in_middle(int level, int i, int j) const {
+  const int n = cells_around(level);
+  std::call_once(made_[level], [&] { cells_[level] = std::make_unique<Code[]>(static_cast<std::size_t>(n) * n); });
+  Code& cell = cells_[level][static_cast<std::size_t>(i) * n + j];
+  int known = cell.load(std::memory_order_relaxed);
+  if (known == 0) {
+    known = 1 + static_cast<int>(std::clamp(std::floor(measured(level, i, j) / kQuantum), 0.0, 254.0));
+    cell.store(static_cast<std::uint8_t>(known), std::memory_order_relaxed);
+  }
+  return (known - 1) * kQuantum;
+}
+
+double ClearanceTable::measured(int level, int i, int j) const {
+  const Rigid T = turned(turned(turns_.before, middle(level, i)) * turns_.between, middle(level, j)) * turns_.after;
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  ConvexGap hulls;
+  GapKind kind = GapKind::overlapping;
+  if (a_.has_hull && b_.has_hull) kind = convex_clearance(a_.core, b_.core, T, widest(level), axis, hulls);
+  if (kind == GapKind::beyond) return widest(level);
+  if (kind == GapKind::apart && hulls.distance > 2 * within_cell_[level]) return hulls.distance;
+  for (const double gap : {2 * within_cell_[level], within_cell_[level]}) {
+    if (gap <= kExactReach && !collide(T, gap)) return gap;
+  }
+  return kind == GapKind::apart ? hulls.distance : 0;
+}
+
+bool ClearanceTable::collide(const Rigid& b_in_a, double more) const {
+  const Rigid T_a;
+  if (a_.ball_radius < b_.ball_radius) return meshes_collide(a_, T_a, *bounds_a_.detail(a_).field, b_, b_in_a, more);
+  return meshes_collide(b_, b_in_a, *bounds_b_.detail(b_).field, a_, T_a, more);
+}
+
+std::shared_ptr<const ClearanceTable> shared_gap_table(const TableBody& a, const TableBody& b, const TwoTurns& turns) {
+  struct Entry {
+    std::weak_ptr<const Solid> a, b;
+    std::shared_ptr<const ClearanceTable> table;
+  };
+  using Key = std::pair<std::pair<const Solid*, const Solid*>, std::vector<double>>;
+  static std::mutex mutex;
+  static std::map<Key, Entry> known;
+  std::vector<double> numbers(turns.rates.begin(), turns.rates.end());
+  for (const Rigid* T : {&turns.before, &turns.between, &turns.after}) {
+    numbers.insert(numbers.end(), T->R.data(), T->R.data() + 9);
+    numbers.insert(numbers.end(), T->t.data(), T->t.data() + 3);
+  }
+  const Key key{{a.solid.get(), b.solid.get()}, std::move(numbers)};
+  const std::lock_guard<std::mutex> lock(mutex);
+  for (auto it = known.begin(); it != known.end();) {
+    it = it->second.a.expired() || it->second.b.expired() ? known.erase(it) : std::next(it);
+  }
+  const auto it = known.find(key);
+  if (it != known.end()) return it->second.table;
+  if (known.size() >= kMaxTables) known.erase(known.begin());
+  // Whoever uses the table holds the solids, but perhaps bounds that another thread made of them.
+  std::shared_ptr<const ClearanceTable> table(
+      new ClearanceTable(a, b, turns),
+      [kept = std::pair(a.bounds, b.bounds)](const ClearanceTable* old) { delete old; });
+  known[key] = {a.solid, b.solid, table};
+  return table;
+}
+
+}  // namespace mmgrasp::detail

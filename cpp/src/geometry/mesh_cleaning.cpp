@@ -1,0 +1,108 @@
+#include "geometry/mesh_cleaning.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cstring>
+#include <unordered_map>
+
+#include "mmgrasp/geometry/detail/mesh_topology.hpp"
+
+namespace mmgrasp::detail {
+
+namespace {
+
+using Triangles = std::vector<std::array<int, 3>>;
+
+struct VectorHash {
+  std::size_t operator()(const Eigen::Vector3d& v) const {
+    std::uint64_t hash = 0x9e3779b97f4a7c15ull;
+    for (int k = 0; k < 3; ++k) {
+      std::uint64_t bits;
+      std::memcpy(&bits, &v[k], sizeof bits);
+      hash = (hash ^ bits) * 0xff51afd7ed558ccdull;
+      hash ^= hash >> 32;
+    }
+    return hash;
+  }
+};
+
+// Lets equal vertices share an index; returns how many were removed.
+int merge_vertices(std::vector<Eigen::Vector3d>& vertices, Triangles& triangles) {
+  std::unordered_map<Eigen::Vector3d, int, VectorHash> index_of;
+  std::vector<Eigen::Vector3d> kept;
+  std::vector<int> new_index(vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const Eigen::Vector3d v = vertices[i].array() + 0.0;  // -0 becomes 0, which hashes alike
+    const auto [it, is_new] = index_of.emplace(v, static_cast<int>(kept.size()));
+    if (is_new) kept.push_back(v);
+    new_index[i] = it->second;
+  }
+  const int removed = static_cast<int>(vertices.size() - kept.size());
+  for (auto& triangle : triangles) {
+    for (int& corner : triangle) corner = new_index[corner];
+  }
+  vertices = std::move(kept);
+  return removed;
+}
+
+void drop_unused_vertices(std::vector<Eigen::Vector3d>& vertices, Triangles& triangles) {
+  std::vector<int> new_index(vertices.size(), -1);
+  std::vector<Eigen::Vector3d> kept;
+  for (auto& triangle : triangles) {
+    for (int& corner : triangle) {
+      if (new_index[corner] < 0) {
+        new_index[corner] = static_cast<int>(kept.size());
+        kept.push_back(vertices[corner]);
+      }
+      corner = new_index[corner];
+    }
+  }
+  vertices = std::move(kept);
+}
+
+bool has_equal_corners(const std::array<int, 3>& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+bool has_no_area(const std::vector<Eigen::Vector3d>& v, const std::array<int, 3>& t) {
+  const Eigen::Vector3d a = v[t[1]] - v[t[0]], b = v[t[2]] - v[t[0]], c = v[t[2]] - v[t[1]];
+  const double longest = std::max({a.squaredNorm(), b.squaredNorm(), c.squaredNorm()});
+  return a.cross(b).norm() <= 1e-14 * longest;
+}
+
+}  // namespace
+
+std::shared_ptr<const TriangleMesh> clean_mesh(RawMesh raw, const std::string& source, MeshReport* report) {
+  MeshReport found;
+  found.path = source;
+  found.vertices_read = static_cast<int>(raw.vertices.size());
+  const std::size_t triangles_read = raw.triangles.size();
+
+  auto mesh = std::make_shared<TriangleMesh>();
+  mesh->source = source;
+  mesh->vertices = std::move(raw.vertices);
+  mesh->triangles = std::move(raw.triangles);
+  found.vertices_merged = merge_vertices(mesh->vertices, mesh->triangles);
+  Triangles& triangles = mesh->triangles;
+  triangles.erase(std::remove_if(triangles.begin(), triangles.end(), has_equal_corners), triangles.end());
+  // Slivers without area may be what closes the mesh over a T-shaped seam, so they go only after the question is
+  // answered.
+  mesh->closed = orient_closed(mesh->vertices, triangles);
+  triangles.erase(
+      std::remove_if(triangles.begin(), triangles.end(), [&](const auto& t) { return has_no_area(mesh->vertices, t); }),
+      triangles.end());
+  if (!mesh->closed) mesh->closed = orient_closed(mesh->vertices, triangles);
+  drop_unused_vertices(mesh->vertices, triangles);
+  // Two coincident sheets are closed edge by edge but bound nothing.
+  if (mesh->closed && !(mesh_volume(*mesh) > 0)) mesh->closed = false;
+  if (mesh->closed && !triangles.empty()) mesh->convex = is_convex(*mesh);
+
+  found.degenerate_triangles = static_cast<int>(triangles_read - triangles.size());
+  found.triangles = static_cast<int>(triangles.size());
+  found.closed = mesh->closed;
+  found.convex = mesh->convex;
+  if (report != nullptr) *report = found;
+  return mesh;
+}
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,158 @@
+#include "mmgrasp/geometry/octree.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <map>
+
+#include "geometry/readers/mesh_readers.hpp"
+#include "geometry/readers/octree_reader.hpp"
+#include "mmgrasp/core/detail/file_content.hpp"
+#include "mmgrasp/core/error.hpp"
+
+namespace mmgrasp {
+namespace {
+
+constexpr int kDepth = 16;  // OctoMap's trees end here
+constexpr std::string_view kBinaryTree = "# Octomap OcTree binary file";
+constexpr std::string_view kFullTree = "# Octomap OcTree file";
+
+struct Cell {
+  int depth = 0;
+  int x = 0, y = 0, z = 0;  // in cells of this depth from the tree's corner
+
+  Cell child(int i) const { return {depth + 1, 2 * x + (i & 1), 2 * y + (i >> 1 & 1), 2 * z + (i >> 2 & 1)}; }
+};
+
+class OctreeReader {
+ public:
+  OctreeReader(const std::string& path, std::string_view content) : path_(path), content_(content) {}
+
+  std::vector<Voxels> read() {
+    read_header();
+    if (announced_ == 0) fail("holds no occupied leaf");
+    nodes_ = 1;
+    binary_ ? read_binary({}) : read_full({});
+    if (nodes_ != announced_) {
+      fail("its header announces " + std::to_string(announced_) + " nodes, it holds " + std::to_string(nodes_));
+    }
+    if (leaves_.empty()) fail("holds no occupied leaf");
+    std::vector<Voxels> result;
+    for (auto it = leaves_.rbegin(); it != leaves_.rend(); ++it) {
+      result.push_back({std::make_shared<const std::vector<Eigen::Vector3d>>(std::move(it->second)), edge(it->first)});
+    }
+    return result;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& reason) const { throw IoError("octree file '" + path_ + "': " + reason); }
+
+  double edge(int depth) const { return resolution_ * (1 << (kDepth - depth)); }
+
+  void read_header() {
+    const std::string_view first = content_.substr(0, content_.find('\n'));
+    binary_ = first.substr(0, kBinaryTree.size()) == kBinaryTree;
+    if (!binary_ && first.substr(0, kFullTree.size()) != kFullTree) {
+      fail("its first line is neither '" + std::string(kBinaryTree) + "' nor '" + std::string(kFullTree) + "'");
+    }
+    std::string_view id;
+    for (std::size_t begin = first.size() + 1;;) {
+      const std::size_t end = content_.find('\n', begin);
+      if (end == std::string_view::npos) fail("has no line 'data' after its header (truncated)");
+      std::string_view line = content_.substr(begin, end - begin);
+      if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+      begin = end + 1;
+      const std::size_t blank = line.find(' ');
+      const std::string_view key = line.substr(0, blank);
+      const std::string_view value = blank == std::string_view::npos ? std::string_view() : line.substr(blank + 1);
+      if (key == "data") {
+        position_ = begin;
+        break;
+      }
+      if (key == "id") id = value;
+      if (key == "res" && !detail::parse_number(value, resolution_)) bad_field(key, value, "must be a number");
+      if (key == "size" && !detail::parse_integer(value, announced_)) bad_field(key, value, "must be a whole number");
+    }
+    if (id != "OcTree") bad_field("id", id, "must be OcTree");
+    if (!(resolution_ > 1e-9 && resolution_ < 1e6)) {
+      bad_field("res", std::to_string(resolution_), "must be above 1e-9 and below 1e6 m");
+    }
+  }
+
+  [[noreturn]] void bad_field(std::string_view key, std::string_view value, const char* rule) const {
+    fail("header field " + std::string(key) + " = \"" + std::string(value.substr(0, 40)) + "\": " + rule);
+  }
+
+  template <typename Value>
+  Value next() {
+    if (content_.size() - position_ < sizeof(Value)) {
+      fail("ends inside the tree, after " + std::to_string(nodes_) + " of " + std::to_string(announced_) +
+           " nodes (truncated)");
+    }
+    Value value;
+    std::memcpy(&value, content_.data() + position_, sizeof value);
+    position_ += sizeof value;
+    return value;
+  }
+
+  void enter(const Cell& cell) {
+    if (cell.depth == kDepth) fail("has more than 16 levels (damaged)");
+  }
+
+  void keep(const Cell& cell) {
+    const int half = cell.depth > 0 ? 1 << (cell.depth - 1) : 0;
+    const double offset = cell.depth > 0 ? 0.5 : 0.0;
+    const Eigen::Vector3d index(cell.x - half + offset, cell.y - half + offset, cell.z - half + offset);
+    leaves_[cell.depth].push_back(index * edge(cell.depth));
+  }
+
+  /// Two bits a child: 0 unknown, 1 free, 2 occupied, 3 an inner node that follows.
+  void read_binary(const Cell& cell) {
+    enter(cell);
+    const auto codes = next<std::uint16_t>();
+    for (int i = 0; i < 8; ++i) nodes_ += (codes >> 2 * i & 3) != 0;
+    for (int i = 0; i < 8; ++i) {
+      const int code = codes >> 2 * i & 3;
+      if (code == 2) keep(cell.child(i));
+      if (code == 3) read_binary(cell.child(i));
+    }
+  }
+
+  /// Log odds and one bit a child, the children follow.
+  void read_full(const Cell& cell) {
+    const auto log_odds = next<float>();
+    const auto children = next<std::uint8_t>();
+    if (!std::isfinite(log_odds)) fail("node " + std::to_string(nodes_) + " holds log odds that are not finite");
+    if (children == 0) {
+      if (log_odds >= 0) keep(cell);
+      return;
+    }
+    enter(cell);
+    for (int i = 0; i < 8; ++i) {
+      if ((children >> i & 1) == 0) continue;
+      ++nodes_;
+      read_full(cell.child(i));
+    }
+  }
+
+  const std::string& path_;
+  std::string_view content_;
+  std::size_t position_ = 0;
+  bool binary_ = true;
+  double resolution_ = 0;
+  long announced_ = -1;
+  long nodes_ = 0;
+  std::map<int, std::vector<Eigen::Vector3d>> leaves_;  // by depth
+};
+
+}  // namespace
+
+std::vector<Voxels> detail::parse_octree(const std::string& path, std::string_view content) {
+  return OctreeReader(path, content).read();
+}
+
+std::vector<Voxels> load_octree(const std::string& path) {
+  return detail::parse_octree(path, detail::file_content(path, "octree file"));
+}
+
+}  // namespace mmgrasp

@@ -1,0 +1,142 @@
+#include "plan/manipulation/common/grasp_candidates.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+
+#include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/core/parallel.hpp"
+#include "mmgrasp/core/random.hpp"
+#include "plan/motion/arm_configurations.hpp"
+
+namespace mmgrasp::detail {
+
+namespace {
+
+constexpr std::size_t kSideBySide = 16;  // Grasps that are worth a thread.
+
+Pose pose_of_tool(const ManipulationProblem& problem, int grasp, bool at_goal) {
+  const Pose& T_world_object = at_goal ? problem.T_world_goal : problem.T_world_start;
+  return T_world_object * problem.grasps[grasp].T_object_tool;
+}
+
+IkOptions ik_of(const ManipulationOptions& options, int grasp) {
+  IkOptions ik = options.ik;
+  ik.seed = options.ik.seed + static_cast<unsigned>(grasp);
+  return ik;
+}
+
+// Neighbours in the caller's list tend to fail together.
+std::vector<int> shuffled(std::size_t count, unsigned seed) {
+  std::vector<int> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  Rng rng(seed, 0x6d67);
+  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[rng.index(i)]);
+  return order;
+}
+
+}  // namespace
+
+double GraspCandidate::straight_cost() const {
+  double least = kInfinity;
+  for (const Eigen::VectorXd& s : starts)
+    for (const Eigen::VectorXd& g : goals) least = std::min(least, (g - s).norm());
+  return least + cost;
+}
+
+GraspCandidates::GraspCandidates(const ManipulationProblem& problem, const ManipulationOptions& options,
+                                 TransferChecks& checks, const Stopwatch& clock, const Monitor& monitor,
+                                 ManipulationResult& result)
+    : problem_(problem),
+      options_(options),
+      checks_(checks),
+      clock_(clock),
+      monitor_(monitor),
+      result_(result),
+      order_(shuffled(problem.grasps.size(), options.seed)) {
+  result_.grasps.assign(order_.size(), {});
+}
+
+bool GraspCandidates::find_more(std::size_t count) {
+  if (complete()) return false;
+  const double begin = clock_.seconds();
+  count = std::min(count, order_.size() - seen_);
+  std::vector<GraspCandidate> looked_at(count);
+  std::atomic<bool> late{false};
+  const auto work = [&](std::size_t i, int worker) {
+    if (clock_.seconds() > options_.time_limit) {
+      late = true;
+      return;
+    }
+    const int grasp = order_[seen_ + i];
+    looked_at[i] = look_at(grasp, worker, result_.grasps[grasp]);
+  };
+  const bool whole =
+      parallel_for(count, count >= kSideBySide ? options_.threads : 1, work, monitor_, "grasps") && !late;
+  for (GraspCandidate& candidate : looked_at)
+    if (!candidate.goals.empty()) found_.push_back(std::move(candidate));
+  if (whole) seen_ += count;
+  result_.stats.ik_seconds += clock_.seconds() - begin;
+  return whole;
+}
+
+GraspCandidate GraspCandidates::look_at(int grasp, int worker, GraspReport& report) {
+  GraspCandidate out;
+  out.grasp = grasp;
+  out.opening = checks_.opening_of(grasp);
+  out.cost = problem_.grasps[grasp].cost;
+  const auto valid = [&](const Eigen::VectorXd& q) {
+    // What is held first: there is less of it, and it hits the scene in any configuration or in none.
+    ReachVerdict verdict{checks_.held_rejection(worker, grasp, q), false};
+    if (verdict.cause == Rejection::scene) {
+      verdict.final = true;
+    } else if (verdict.cause == Rejection::none) {
+      verdict.cause = checks_.robot_rejection(worker, out.opening, q);
+      verdict.final = verdict.cause == Rejection::scene && checks_.tool_hits_scene(worker, out.opening, q);
+    }
+    return verdict;
+  };
+  const auto one_end = [&](bool at_goal, Rejections& rejections, int& left) {
+    std::vector<Eigen::VectorXd> solutions =
+        arm_configurations(checks_.group(out.opening), pose_of_tool(problem_, grasp, at_goal), options_.ik_solutions,
+                           ik_of(options_, grasp), valid, rejections);
+    left = static_cast<int>(solutions.size());
+    return solutions;
+  };
+  out.starts = one_end(false, report.start, report.start_solutions);
+  if (!out.starts.empty()) out.goals = one_end(true, report.goal, report.goal_solutions);
+  return out;
+}
+
+double GraspCandidates::least_cost_left() const {
+  double least = kInfinity;
+  for (std::size_t i = seen_; i < order_.size(); ++i) least = std::min(least, problem_.grasps[order_[i]].cost);
+  return least;
+}
+
+double GraspCandidates::least_cost() const {
+  double least = least_cost_left();
+  for (const GraspCandidate& candidate : found_) least = std::min(least, candidate.straight_cost());
+  return least;
+}
+
+std::vector<Contact> GraspCandidates::first_contacts(bool at_goal) {
+  for (std::size_t i = 0; i < result_.grasps.size(); ++i) {
+    const Rejections& seen = at_goal ? result_.grasps[i].goal : result_.grasps[i].start;
+    if (seen.scene + seen.self_collision == 0) continue;
+    const int grasp = static_cast<int>(i);
+    std::vector<Contact> contacts;
+    CollisionChecker checker = checks_.whole(grasp);
+    Rejections unused;
+    const auto look = [&](const Eigen::VectorXd& q) {
+      if (contacts.empty()) contacts = checker.contacts(q);
+      return ReachVerdict{Rejection::none, true};
+    };
+    arm_configurations(checks_.group(checks_.opening_of(grasp)), pose_of_tool(problem_, grasp, at_goal),
+                       options_.ik_solutions, ik_of(options_, grasp), look, unused);
+    if (!contacts.empty()) return contacts;
+  }
+  return {};
+}
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,152 @@
+#include "plan/manipulation/common/transfer_checks.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "mmgrasp/core/detail/numbers.hpp"
+
+namespace mmgrasp::detail {
+namespace {
+
+constexpr double kFineStep = 0.005;  // Of the check of finished paths [rad or m].
+
+JointGroup with_fingers(const JointGroup& group, const Gripper& gripper, double opening) {
+  Eigen::VectorXd values = group.reference();
+  const Robot& robot = group.robot();
+  for (const auto& [name, value] : gripper.joint_values(opening))
+    values[robot.joints()[robot.joint_index(name)].value_index] = value;
+  return group.with_reference(values);
+}
+
+/// The nearest joint above a link that the group moves; -1: none.
+int moved_by(const JointGroup& group, int link) {
+  const Robot& robot = group.robot();
+  const std::vector<int>& driven = group.joints();
+  for (int joint = robot.links()[link].parent_joint; joint >= 0;) {
+    const Joint& j = robot.joints()[joint];
+    const int leader = j.mimic_joint >= 0 ? j.mimic_joint : joint;
+    if (std::find(driven.begin(), driven.end(), leader) != driven.end()) return joint;
+    joint = robot.links()[j.parent_link].parent_joint;
+  }
+  return -1;
+}
+
+}  // namespace
+
+TransferChecks::TransferChecks(const ManipulationProblem& problem, const EdgeOptions& edge, double search_steps,
+                               int workers)
+    : problem_(problem),
+      edge_(edge),
+      search_edge_(edge),
+      path_edge_(edge),
+      robot_(static_cast<std::size_t>(workers)),
+      held_(robot_.size()) {
+  search_edge_.joint_step *= search_steps;
+  search_edge_.workspace_step *= search_steps;
+  path_edge_.joint_step = std::min(path_edge_.joint_step, kFineStep);
+  std::map<double, int> openings;
+  for (const CandidateGrasp& grasp : problem.grasps) {
+    const double opening = problem.gripper ? grasp.opening : 0;
+    const auto [at, added] = openings.emplace(opening, static_cast<int>(groups_.size()));
+    if (added) {
+      groups_.push_back(problem.gripper ? with_fingers(problem.group, *problem.gripper, opening) : problem.group);
+    }
+    opening_of_.push_back(at->second);
+  }
+  tip_ = problem.group.robot().links()[problem.group.tip_link()].name;
+  const std::vector<Link>& links = problem.group.robot().links();
+  const int mover = moved_by(problem.group, problem.group.tip_link());
+  for (std::size_t i = 0; i < links.size(); ++i)
+    if (moved_by(problem.group, static_cast<int>(i)) == mover) tool_.insert(links[i].name);
+  for (auto& own : robot_) own.resize(groups_.size());
+  for (auto& own : held_) own.resize(groups_.size());
+  whole_.resize(groups_.size());
+}
+
+TransferChecks::Bare& TransferChecks::robot(int worker, int opening) {
+  auto& slot = robot_[worker][opening];
+  if (!slot) {
+    CollisionChecker checker(group(opening), problem_.world);
+    Eigen::VectorXd motion = motion_bounds(checker);
+    slot.emplace(Bare{std::move(checker), std::move(motion)});
+  }
+  return *slot;
+}
+
+Pose TransferChecks::T_tool_object(int grasp) const {
+  return problem_.grasps[grasp].T_object_tool.inverse();
+}
+
+World TransferChecks::world_with(int grasp) const {
+  World world = problem_.world;
+  world.add(problem_.object_name, WorldObject{problem_.object, problem_.T_world_start});
+  world.attach(problem_.object_name, tip_, T_tool_object(grasp), problem_.touch_links);
+  return world;
+}
+
+CollisionChecker TransferChecks::whole(int grasp) const {
+  return CollisionChecker(group(opening_of(grasp)), world_with(grasp));
+}
+
+AttachedChecker& TransferChecks::holding(std::optional<Held>& slot, int grasp, bool held_only) {
+  if (!slot) {
+    CheckerOptions options;
+    options.held_only = held_only;
+    const CollisionChecker checker(group(opening_of(grasp)), world_with(grasp), options);
+    slot.emplace(Held{AttachedChecker(checker), grasp});
+  } else if (slot->grasp != grasp) {
+    slot->checker.hold(T_tool_object(grasp));
+    slot->grasp = grasp;
+  }
+  return slot->checker;
+}
+
+AttachedChecker& TransferChecks::held(int worker, int grasp) {
+  return holding(held_[worker][opening_of(grasp)], grasp, true);
+}
+
+bool TransferChecks::edge_is_free(int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return holding(whole_[opening_of(grasp)], grasp, false).edge_is_free(a, b, edge_);
+}
+
+bool TransferChecks::path_edge_is_free(int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  AttachedChecker& checker = holding(whole_[opening_of(grasp)], grasp, false);
+  // Optimal paths graze, and who looks again by joint steps alone looks at other configurations.
+  EdgeOptions by_joints = path_edge_;
+  by_joints.workspace_step = kInfinity;
+  return checker.edge_is_free(a, b, path_edge_) && checker.edge_is_free(a, b, by_joints);
+}
+
+int TransferChecks::blocked_edge(int grasp, const JointPath& path) {
+  for (std::size_t i = 0; i + 1 < path.waypoints.size(); ++i)
+    if (!path_edge_is_free(grasp, path.waypoints[i], path.waypoints[i + 1])) return static_cast<int>(i);
+  return -1;
+}
+
+bool TransferChecks::robot_is_free(int worker, int opening, const Eigen::VectorXd& q) {
+  return robot(worker, opening).checker.is_free(q);
+}
+bool TransferChecks::robot_edge_is_free(int worker, int opening, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  Bare& own = robot(worker, opening);
+  if (search_edge_.continuous) return check_edge(own.checker, a, b, search_edge_).free;
+  return stepped_edge_is_free(own.checker, own.motion, a, b, search_edge_);
+}
+Rejection TransferChecks::robot_rejection(int worker, int opening, const Eigen::VectorXd& q) {
+  return robot(worker, opening).checker.rejection(q);
+}
+bool TransferChecks::tool_hits_scene(int worker, int opening, const Eigen::VectorXd& q) {
+  const std::vector<Contact> contacts = robot(worker, opening).checker.contacts(q);
+  return std::any_of(contacts.begin(), contacts.end(),
+                     [&](const Contact& c) { return c.with_scene && tool_.count(c.a) > 0; });
+}
+bool TransferChecks::held_is_free(int worker, int grasp, const Eigen::VectorXd& q) {
+  return held(worker, grasp).is_free(q);
+}
+bool TransferChecks::held_edge_is_free(int worker, int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return held(worker, grasp).edge_is_free(a, b, search_edge_);
+}
+Rejection TransferChecks::held_rejection(int worker, int grasp, const Eigen::VectorXd& q) {
+  return held(worker, grasp).rejection(q);
+}
+
+}  // namespace mmgrasp::detail

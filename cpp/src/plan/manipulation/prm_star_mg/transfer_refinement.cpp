@@ -1,0 +1,69 @@
+#include "plan/manipulation/prm_star_mg/transfer_refinement.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "plan/manipulation/common/informed_union.hpp"
+#include "plan/manipulation/common/transfer_shortening.hpp"
+#include "plan/manipulation/prm_star_mg/roadmap_search.hpp"
+#include "plan/roadmap/roadmap_data.hpp"
+
+namespace mmgrasp::detail {
+namespace {
+
+constexpr int kVertices = 100;   // Of the first roadmap.
+constexpr int kGrowth = 4;       // Rounds after which there is one more.
+constexpr int kNeighbours = 16;  // Of each vertex.
+constexpr double kDetour = 1.3;
+constexpr double kBetter = 1e-6;  // Paths shorter by less than this share are not news.
+
+class Refinement {
+ public:
+  Refinement(const ManipulationInput& input, ManipulationResult& result)
+      : input_(input),
+        result_(result),
+        ends_(input.candidates.found()),
+        informed_(ends_, input.problem.group.sample_lower(), input.problem.group.sample_upper()) {}
+
+  void run() {
+    for (int round = 0; round < input_.options.prm.refinements && !input_.out_of_time(); ++round) {
+      informed_.set_cost(result_.cost * (1 - kBetter));
+      const std::optional<Roadmap> roadmap = draw(round);
+      if (!roadmap) return;
+      // Paths of the other rounds may be that much longer before they are shortened.
+      const double slack = round % 2 == 0 ? kDetour : 1;
+      TransferPath best{result_.grasp_index, slack * result_.cost, *result_.path};
+      // Straight lines were looked at before; a small roadmap is not worth a second thread.
+      RoadmapSearch(input_, *roadmap, false, 1, best, result_).run();
+      shorten_transfer(input_, best, result_, static_cast<unsigned>(round) + 1);
+    }
+  }
+
+ private:
+  /// Nothing when no grasp can win.
+  std::optional<Roadmap> draw(int round) {
+    if (informed_.grasps() == 0) return std::nullopt;
+    Rng rng(input_.options.seed, 0x72660000u + static_cast<std::uint64_t>(round));
+    Eigen::MatrixXd vertices(input_.problem.group.size(), kVertices + round / kGrowth);
+    for (Eigen::Index v = 0; v < vertices.cols(); ++v)
+      if (informed_.draw(rng, vertices.col(v).data()) < 0) return std::nullopt;
+    return roadmap_over(input_.problem.group, kNeighbours, std::move(vertices));
+  }
+
+  const ManipulationInput& input_;
+  ManipulationResult& result_;
+  GraspEnds ends_;
+  InformedUnion informed_;
+};
+
+}  // namespace
+
+void refine_transfer(const ManipulationInput& input, ManipulationResult& result) {
+  // That of the roadmaps before: these leave them.
+  const double lower_bound = result.lower_bound;
+  Refinement(input, result).run();
+  result.lower_bound = std::min(lower_bound, result.cost);
+}
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "mmgrasp/collision/checker.hpp"
+#include "task/drive_by/drive_by_goals.hpp"
+#include "task/drive_by/drive_by_steps.hpp"
+
+namespace mmgrasp::detail {
+
+/// The world as it changes while parts are taken.
+class DriveByWorlds {
+ public:
+  DriveByWorlds(const JointGroup& group, const World& world, const std::vector<DriveByStep>& tasks);
+
+  CollisionChecker& before(std::size_t task);  ///< On the way to a task; earlier parts are gone.
+  CollisionChecker& at(std::size_t task);      ///< While its part is taken: neither there nor held.
+  /// One checker per interval. Parts are held as the stands take them; valid until the next call.
+  std::vector<CollisionChecker*> along(const std::vector<int>& intervals, const std::vector<Stand>& chain);
+
+ private:
+  const JointGroup& group_;
+  const World& world_;
+  const std::vector<DriveByStep>& tasks_;
+  World left(std::size_t task) const;  ///< Without the parts of tasks before this one.
+  std::map<std::size_t, CollisionChecker> before_, at_, held_;
+};
+
+}  // namespace mmgrasp::detail

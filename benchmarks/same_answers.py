@@ -4,7 +4,7 @@
     python benchmarks/same_answers.py --against before.json     # with the new one
     python benchmarks/same_answers.py --compare before.json after.json
 
-The calls are those of same_answers_calls.py: seeds are fixed, budgets are iterations, and time limits are so generous that no
+The calls are those of the folder answers: seeds are fixed, budgets are iterations, and time limits are so generous that no
 clock decides. What is hashed is every number of an answer; names of fields and texts are not, so that renaming one changes
 nothing. Processor kind and compiler do change last bits: compare builds of one machine.
 """
@@ -74,20 +74,24 @@ def run(only: list[str], threads: int) -> dict[str, Any]:
     """Makes the calls; returns the content of the file."""
     with tempfile.TemporaryDirectory() as cache:
         os.environ["XDG_CACHE_HOME"] = cache  # nothing from an earlier build is read
-        import same_answers_calls as calls
+        import answers as calls
 
-        calls.THREADS = threads
+        import mmgrasp
+
+        print(f"calls of {Path(mmgrasp.__file__).parent}", file=sys.stderr)
+
+        calls.SETTINGS["threads"] = threads
         unknown = sorted(set(only) - calls.CALLS.keys())
         if unknown:
             raise SystemExit(f"--only {' '.join(unknown)}: no such call; there are {' '.join(calls.CALLS)}")
-        answers = {}
+        made = {}
         for name, call in calls.CALLS.items():
             if only and name not in only:
                 continue
             begun = time.perf_counter()
-            answers[name] = answer_of(call, calls.Skipped)
-            print(f"{name:28} {time.perf_counter() - begun:6.1f} s  {describe(answers[name])}", file=sys.stderr)
-        return {"format": "mmgrasp-answers", "version": 1, "machine": platform.platform(), "calls": answers}
+            made[name] = answer_of(call, calls.Skipped)
+            print(f"{name:28} {time.perf_counter() - begun:6.1f} s  {describe(made[name])}", file=sys.stderr)
+        return {"format": "mmgrasp-answers", "version": 1, "machine": platform.platform(), "calls": made}
 
 
 def answer_of(call: Any, skipped: type[Exception]) -> dict[str, Any]:

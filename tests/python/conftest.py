@@ -65,7 +65,7 @@ def small_path(small, write) -> Path:
 
 
 @pytest.fixture(scope="session")
-def small_plan(small_path) -> mg.PartSupplyPlan:
+def small_plan(small_path) -> mg.part_supply.ScenarioPlan:
     plan = mg.plan_part_supply(small_path)
     assert plan.outcome == mg.Outcome.solved, plan
     return plan

@@ -231,12 +231,12 @@ def test_numbers_that_are_none(number):
         lambda: world.add_cylinder("a", 0.1, number),
         lambda: world.add_points("a", [[1.0, 2, 3]], number),
         lambda: mg.Sphere(number),
-        lambda: mg.Capsule(number, 1.0),
-        lambda: mg.Plane([0, 0, 1], number),
-        lambda: mg.Voxels([[1.0, 2, 3]], number),
-        lambda: mg.BaseGrid([0, 0], number, 4, 3),
-        lambda: mg.BaseGrid([0, 0], 0.1, 4, 3, [number]),
-        lambda: mg.CarryPlace(np.eye(4), [0.3, 0.3], number),
+        lambda: mg.collision.Capsule(number, 1.0),
+        lambda: mg.collision.Plane([0, 0, 1], number),
+        lambda: mg.collision.Voxels([[1.0, 2, 3]], number),
+        lambda: mg.base.BaseGrid([0, 0], number, 4, 3),
+        lambda: mg.base.BaseGrid([0, 0], 0.1, 4, 3, [number]),
+        lambda: mg.base.CarryPlace(np.eye(4), [0.3, 0.3], number),
         lambda: mg.Grasp(np.eye(4), number),
         lambda: mg.CollisionChecker(ROBOT, world, ARM, padding=number),
         lambda: OBJECTS["CollisionChecker"]().edge_is_free(Q, Q, number),
@@ -244,7 +244,7 @@ def test_numbers_that_are_none(number):
         lambda: ROBOT.link_poses({"i": number}),
         lambda: ROBOT.values({"i": number}),
         lambda: ARM.within_limits(Q, number),
-        lambda: mg.solve_set_cover(1, [[0]], [number]),
+        lambda: mg.optim.solve_set_cover(1, [[0]], [number]),
     ]
     for k, bad in enumerate(calls):
         with pytest.raises((mg.Error, ValueError, TypeError)):
@@ -284,7 +284,7 @@ def test_indices_out_of_range_are_refused():
     problem, database = OBJECTS["PartSupplyProblem"](), OBJECTS["ReachDatabase"]()
     for tray, part, remaining in [(1, 0, [(0, 0)]), (-1, 0, [(0, 0)]), (0, 1, [(0, 0)]), (0, 0, [(0, 7)])]:
         with pytest.raises(mg.InvalidInput, match=r"(tray|part) = .*must be in \[0, 1\)"):
-            mg.plan_pick(problem, database, X_Y_THETA, tray, part, remaining)
+            mg.base.plan_pick(problem, database, X_Y_THETA, tray, part, remaining)
     for index in [(1, 0, 0), (0, 4, 0), (0, 0, -1)]:
         with pytest.raises(mg.InvalidInput, match="must be in"):
             GRID.centre(*index)

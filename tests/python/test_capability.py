@@ -1,4 +1,4 @@
-"""mg.CapabilityMap: arrays, their meaning, and pictures."""
+"""mg.base.CapabilityMap: arrays, their meaning, and pictures."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def arm(robot):
 
 @pytest.fixture(scope="module")
 def made(arm):
-    return mg.CapabilityMap.build(arm, **OPTIONS)
+    return mg.base.CapabilityMap.build(arm, **OPTIONS)
 
 
 def test_arrays_agree(made, arm):
@@ -68,7 +68,7 @@ def test_slices_and_points(made):
 def test_a_table_takes_away_what_it_covers(made, arm):
     world = mg.World()
     world.add_box("table", size=(0.8, 1.6, 0.05), pose=mg.pose([0.9, 0, 0.7]))
-    with_table = mg.CapabilityMap.build(arm, world, **OPTIONS)
+    with_table = mg.base.CapabilityMap.build(arm, world, **OPTIONS)
     restricted = made.restricted(arm, world)
     assert with_table.rejections.scene > 0
     assert not ((restricted.classes == 0) & (made.classes != 0)).any()
@@ -90,7 +90,7 @@ def test_the_best_distance_is_the_best_of_the_scores(made):
 
 def test_unknown_options_are_named(arm):
     with pytest.raises(mg.InvalidInput, match="voxel"):
-        mg.CapabilityMap.build(arm, voxels=0.1)
+        mg.base.CapabilityMap.build(arm, voxels=0.1)
 
 
 def test_pictures_show_the_map(made, robot):
@@ -109,7 +109,7 @@ def test_numpy_reads_what_save_writes(made, tmp_path):
         np.testing.assert_array_equal(np.load(tmp_path / "map" / f"{name}.npy"), getattr(made, name))
     # Tool poses are computed when asked for: another order of sums rounds otherwise.
     np.testing.assert_allclose(np.load(tmp_path / "map" / "tool_poses.npy"), made.tool_poses, rtol=0, atol=1e-15)
-    again = mg.CapabilityMap.load(tmp_path / "map")
+    again = mg.base.CapabilityMap.load(tmp_path / "map")
     np.testing.assert_array_equal(again.classes, made.classes)
     with pytest.raises(mg.IoError, match="nowhere"):
-        mg.CapabilityMap.load(tmp_path / "nowhere")
+        mg.base.CapabilityMap.load(tmp_path / "nowhere")

@@ -15,7 +15,7 @@ import pytest
 import mmgrasp as mg
 from conftest import ASSETS
 from mmgrasp.cli import main
-from mmgrasp.plan_file import plan_schema, read_plan
+from mmgrasp.part_supply.plan_file import plan_schema, read_plan
 
 FETCH = ASSETS / "robots" / "fetchlike"
 
@@ -139,7 +139,7 @@ def test_check_of_a_robot_with_missing_mesh(tmp_path, capfd):
 )
 def test_exit_codes(arguments, code, piece, tmp_path):
     done = subprocess.run(
-        [sys.executable, "-m", "mmgrasp.cli", *arguments],
+        [sys.executable, "-m", "mmgrasp", *arguments],
         capture_output=True,
         text=True,
         cwd=tmp_path,

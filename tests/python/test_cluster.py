@@ -27,7 +27,7 @@ ROW = Row(trays=6, objects=(2, 2), spacing=0.4, threads=1)
 SAMPLES = {"samples": 200_000, "seed": 1}
 
 
-def state(region: mg.BaseRegion) -> tuple:
+def state(region: mg.base.BaseRegion) -> tuple:
     """Everything that a region holds."""
     return region.__getstate__()
 
@@ -40,7 +40,7 @@ def alike(function_seed: int, length: int, pause: float) -> dict:
 @pytest.fixture(scope="module")
 def expected():
     problem, reach = ROW.problem(), database(ROW, SAMPLES["samples"])
-    return [state(r) for r in mg.compute_base_regions(problem, reach, mg.make_base_grid(problem, reach))]
+    return [state(r) for r in mg.base.compute_base_regions(problem, reach, mg.base.make_base_grid(problem, reach))]
 
 
 @pytest.fixture
@@ -129,7 +129,7 @@ def test_only_missing_shards_are_computed(expected, tmp_path):
         # Something else went in: nothing stored is taken for it.
         other = ROW.with_(shift=0.03)
         problem, reach = other.problem(), database(other, SAMPLES["samples"])
-        alone = mg.compute_base_regions(problem, reach, mg.make_base_grid(problem, reach))
+        alone = mg.base.compute_base_regions(problem, reach, mg.base.make_base_grid(problem, reach))
         _, regions = cluster.compute_base_regions(other, engine=engine, database=SAMPLES)
         assert [state(r) for r in regions] == [state(r) for r in alone]
         items = [{"function_seed": s, "length": 100, "pause": 0.0} for s in range(5)]
@@ -155,8 +155,8 @@ def test_a_database_drawn_in_parts_is_the_same_file_for_file(tmp_path):
 def test_a_scenario_gives_what_one_process_gives(small_path, tmp_path):
     scenario = mg.load_scenario(small_path)
     problem, reach = scenario.problem(), scenario.reach_database()
-    grid = mg.make_base_grid(problem, reach)
-    alone = mg.compute_base_regions(problem, reach, grid)
+    grid = mg.base.make_base_grid(problem, reach)
+    alone = mg.base.compute_base_regions(problem, reach, grid)
     with cluster.connect(workers=1, folder=tmp_path) as engine:
         same, regions = cluster.compute_base_regions(small_path, engine=engine)
     assert same.__getstate__()[1:] == grid.__getstate__()[1:]

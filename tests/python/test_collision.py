@@ -16,7 +16,7 @@ def robot() -> mg.Robot:
 
 
 @pytest.fixture(scope="module")
-def arm(robot) -> mg.JointGroup:
+def arm(robot) -> mg.robot.JointGroup:
     return robot.group("arm_with_torso", tip="gripper_tcp")
 
 
@@ -50,7 +50,9 @@ def test_answers_fit_together(checker, draws):
             free += 1
             continue
         assert (first.a, first.b) in [(c.a, c.b) for c in contacts]
-        assert checker.rejection(q) == (mg.Rejection.self_collision if not first.with_scene else mg.Rejection.scene)
+        assert checker.rejection(q) == (
+            mg.planning.Rejection.self_collision if not first.with_scene else mg.planning.Rejection.scene
+        )
         assert (first.b in checker_world_names(checker)) == first.with_scene
         assert first.a in repr(first) and first.b in repr(first)
         scene += first.with_scene

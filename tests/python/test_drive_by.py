@@ -21,12 +21,12 @@ def robot() -> mg.Robot:
 
 
 @pytest.fixture(scope="module")
-def group() -> mg.JointGroup:
+def group() -> mg.robot.JointGroup:
     return whole_body()[1]
 
 
 @pytest.fixture(scope="module")
-def plan(robot, group) -> mg.DriveByResult:
+def plan(robot, group) -> mg.planning.DriveByResult:
     return mg.plan_drive_by(robot, group, mg.World(), start=START, tasks=[mg.DriveByTask(TASK)], goal=GOAL, **PATIENT)
 
 
@@ -201,7 +201,7 @@ def test_bad_tasks():
 def test_push_grasp_as_data():
     push = {"opening": 0.08, "tool_speed": 0.3, "along_error": 0.01, "approach": [1, 0, 0], "free_length": 0.08}
     task = mg.DriveByTask(TASK, push=push)
-    expected = mg.push_grasp(opening=0.08, tool_speed=0.3, along_error=0.01)
+    expected = mg.grasping.push_grasp(opening=0.08, tool_speed=0.3, along_error=0.01)
     assert task.push.to_dict() == expected.to_dict()
     assert mg.DriveByTask(TASK).push is None
     with pytest.raises(mg.InvalidInput, match="tool_speed"):
@@ -236,7 +236,7 @@ def test_arm_alone(robot):
 
 
 def test_threads_run_side_by_side(robot, group, plan):
-    found: list[mg.DriveByResult] = []
+    found: list[mg.planning.DriveByResult] = []
 
     def work():
         found.append(

@@ -13,7 +13,7 @@ import pytest
 import mmgrasp as mg
 from conftest import ASSETS
 from mmgrasp import sim
-from mmgrasp.plan_file import plan_schema
+from mmgrasp.part_supply.plan_file import plan_schema
 from mmgrasp.viz.report import report_html
 from mmgrasp.viz.timeline import Timeline
 
@@ -21,7 +21,7 @@ from mmgrasp.viz.timeline import Timeline
 @pytest.fixture(scope="module")
 def passing(small_plan):
     stages: list[str] = []
-    found = mg.plan_drive_by_picks(small_plan, progress=lambda stage, _: stages.append(stage))
+    found = mg.part_supply.plan_drive_by_picks(small_plan, progress=lambda stage, _: stages.append(stage))
     assert stages
     assert set(stages) <= {f"drive-by 1 of 1: {found.picks[0].part}"}
     return found
@@ -61,7 +61,7 @@ def test_the_first_pick_is_done_in_passing(passing, small_plan):
 
 def test_the_storeroom_is_shortened_from_its_own_plan():
     """Its three stops need no motion guessed from nothing, and the base drives on at each."""
-    found = mg.plan_drive_by_picks(mg.plan_part_supply(ASSETS / "scenarios" / "storeroom.yaml"))
+    found = mg.part_supply.plan_drive_by_picks(mg.plan_part_supply(ASSETS / "scenarios" / "storeroom.yaml"))
     assert len(found.picks) == 3
     for done in found.picks:
         assert done.used, done.report
@@ -189,4 +189,4 @@ def test_it_can_be_stopped(small_plan):
         raise StopError
 
     with pytest.raises(StopError):
-        mg.plan_drive_by_picks(small_plan, progress=progress)
+        mg.part_supply.plan_drive_by_picks(small_plan, progress=progress)

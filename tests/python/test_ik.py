@@ -25,11 +25,14 @@ TARGET = mg.pose([0.7, 0.2, 0.9], rpy=[0, 0, 0])
 
 
 def test_objectives_lower_the_cost(arm):
-    objective = mg.joint_limit_objective(arm, soft_fraction=0.4)
+    objective = mg.robot.joint_limit_objective(arm, soft_fraction=0.4)
     plain = arm.ik(TARGET, rng_seed=1)
-    better = arm.ik(TARGET, rng_seed=1, objectives=[objective, mg.singularity_objective(arm, 0.05)])
+    better = arm.ik(TARGET, rng_seed=1, objectives=[objective, mg.robot.singularity_objective(arm, 0.05)])
     assert better.outcome == mg.Outcome.solved
-    assert better.objective <= objective.evaluate(plain.q)[0] + mg.singularity_objective(arm, 0.05).evaluate(plain.q)[0]
+    assert (
+        better.objective
+        <= objective.evaluate(plain.q)[0] + mg.robot.singularity_objective(arm, 0.05).evaluate(plain.q)[0]
+    )
     assert np.abs(arm.fk(better.q) - TARGET).max() < 2e-4
     cost, gradient = objective.evaluate(better.q)
     step = 1e-6 * np.eye(arm.size)
@@ -66,10 +69,10 @@ def test_ik_all_is_diverse_and_free(robot, arm):
 def test_platform_locations(robot, tmp_path):
     whole = robot.group("arm_with_torso", tip="gripper_tcp", with_base=True)
     checker = mg.CollisionChecker(robot, mg.World(), group=whole)
-    database = mg.IkSeedDatabase(whole)
+    database = mg.base.IkSeedDatabase(whole)
     down = [0, np.pi / 2, 0]
     pick, place = mg.pose([0.8, -0.2, 0.9], rpy=down), mg.pose([0.8, 0.2, 0.9], rpy=down)
-    found = mg.plan_platform_locations(checker, pick, place, database=database, samples=10)
+    found = mg.base.plan_platform_locations(checker, pick, place, database=database, samples=10)
     assert found.outcome == mg.Outcome.solved
     assert np.abs(whole.fk(found.q_pick) - pick).max() < 2e-4
     assert np.abs(whole.fk(found.q_place) - place).max() < 2e-4
@@ -77,10 +80,10 @@ def test_platform_locations(robot, tmp_path):
     assert found.to_dict()["pick"]["draws"] > 0
     assert len(database) > 0
     database.save(tmp_path / "seeds.txt")
-    back = mg.IkSeedDatabase.load(tmp_path / "seeds.txt", whole)
+    back = mg.base.IkSeedDatabase.load(tmp_path / "seeds.txt", whole)
     assert np.array_equal(back.seeds(pick, 3), database.seeds(pick, 3))
     (tmp_path / "seeds.txt").write_text("nonsense")
     with pytest.raises(mg.IoError, match="seeds"):
-        mg.IkSeedDatabase.load(tmp_path / "seeds.txt", whole)
+        mg.base.IkSeedDatabase.load(tmp_path / "seeds.txt", whole)
     with pytest.raises(mg.InvalidInput, match="samples"):
-        mg.plan_platform_locations(checker, pick, place, sample=3)
+        mg.base.plan_platform_locations(checker, pick, place, sample=3)

@@ -46,10 +46,10 @@ CHECKER = OBJECTS["CollisionChecker"]()
 AHEAD = ARM.fk(Q + [0, 0, 0.2])
 LONG_PATH = np.cumsum(np.random.default_rng(1).normal(size=(20_000, 3)) / 10, axis=0)
 ENDLESS = {
-    "plan_straight_line": lambda **k: mg.plan_straight_line(CHECKER, Q, AHEAD, position_step=1e-12, **k),
+    "plan_straight_line": lambda **k: mg.planning.plan_straight_line(CHECKER, Q, AHEAD, position_step=1e-12, **k),
     "plan_cartesian": lambda **k: mg.plan_cartesian(CHECKER, [POSE, AHEAD], near=Q, position_step=1e-12, **k),
     "time_parameterize": lambda **k: mg.time_parameterize(LONG_PATH, [1] * 3, [1] * 3, jerk_limits=[1] * 3, **k),
-    "time_parameterize_free": lambda **k: mg.time_parameterize_free(CHECKER, [Q, Q / 2], edge_step=1e-12, **k),
+    "time_parameterize_free": lambda **k: mg.planning.time_parameterize_free(CHECKER, [Q, Q / 2], edge_step=1e-12, **k),
 }
 
 
@@ -64,10 +64,10 @@ def test_lines_and_timing_can_be_interrupted(name):
 
 def test_lines_and_timing_tell_their_progress():
     calls = {
-        "straight line": lambda **k: mg.plan_straight_line(CHECKER, Q, AHEAD, **k),
+        "straight line": lambda **k: mg.planning.plan_straight_line(CHECKER, Q, AHEAD, **k),
         "cartesian path": lambda **k: mg.plan_cartesian(CHECKER, [POSE, AHEAD], near=Q, **k),
         "limit jerk": lambda **k: mg.time_parameterize([Q, Q / 2], [1] * 3, [1] * 3, jerk_limits=[1] * 3, **k),
-        "check timed path": lambda **k: mg.time_parameterize_free(CHECKER, [Q, Q / 2], **k),
+        "check timed path": lambda **k: mg.planning.time_parameterize_free(CHECKER, [Q, Q / 2], **k),
     }
     for stage, call in calls.items():
         told = []
@@ -88,7 +88,7 @@ def test_an_error_in_the_progress_callback_ends_the_call(small_path):
 
 def test_the_command_ends_on_ctrl_c(small, write, tmp_path):
     scenario = {**small, "reach": {"samples": 2_000_000_000}}
-    command = [sys.executable, "-m", "mmgrasp.cli", "plan", str(write(scenario)), "-o", str(tmp_path / "out")]
+    command = [sys.executable, "-m", "mmgrasp", "plan", str(write(scenario)), "-o", str(tmp_path / "out")]
     environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path / "cache")}
     process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment)
     assert process.stderr is not None
@@ -105,7 +105,7 @@ def test_the_command_ends_on_ctrl_c(small, write, tmp_path):
 
 def test_a_plan_survives_when_motions_in_passing_are_interrupted(small_path, tmp_path):
     """What is found first is a plan of its own: Ctrl-C later ends the command at once and leaves that whole."""
-    command = [sys.executable, "-m", "mmgrasp.cli", "plan", str(small_path), "-o", str(tmp_path), "--drive-by"]
+    command = [sys.executable, "-m", "mmgrasp", "plan", str(small_path), "-o", str(tmp_path), "--drive-by"]
     process = subprocess.Popen([*command, "--no-pictures"], stderr=subprocess.PIPE, text=True)
     assert process.stderr is not None
     for line in process.stderr:

@@ -10,7 +10,7 @@ from conftest import ASSETS
 
 
 @pytest.fixture(scope="module")
-def arm() -> mg.JointGroup:
+def arm() -> mg.robot.JointGroup:
     folder = ASSETS / "robots" / "fetchlike"
     robot = mg.Robot.load(folder / "fetchlike.urdf", folder / "fetchlike.srdf", base="diff_drive")
     return robot.group("arm_with_torso", tip="gripper_tcp")

@@ -15,7 +15,7 @@ import mmgrasp as mg
 LENGTH = 0.4
 
 
-def planar_arm(joints: int = 3, length: float = LENGTH) -> mg.JointGroup:
+def planar_arm(joints: int = 3, length: float = LENGTH) -> mg.robot.JointGroup:
     links, rows = ['<link name="l0"/>'], []
     for i in range(1, joints + 1):
         links.append(
@@ -49,7 +49,11 @@ def scene() -> mg.World:
     return world
 
 
-GRASPS = [mg.CandidateGrasp(flat(-0.18 + 0.04 * i, 0, side)) for i in range(10) for side in (0.5 * np.pi, -0.5 * np.pi)]
+GRASPS = [
+    mg.grasping.CandidateGrasp(flat(-0.18 + 0.04 * i, 0, side))
+    for i in range(10)
+    for side in (0.5 * np.pi, -0.5 * np.pi)
+]
 
 
 def problem(**changes) -> mg.ManipulationProblem:
@@ -68,7 +72,7 @@ def problem(**changes) -> mg.ManipulationProblem:
 OPTIONS = {"vertices": 300, "gamma": 5, "ik_solutions": 2, "time_limit": 100, "shorten": False}
 
 
-def plan(**changes) -> mg.ManipulationResult:
+def plan(**changes) -> mg.planning.ManipulationResult:
     return mg.plan_manipulation(problem(**changes), **OPTIONS)
 
 
@@ -103,9 +107,9 @@ def test_poses_in_an_array_are_grasps():
 
 @pytest.mark.parametrize("batch", [0, 1, 5])
 def test_variants_threads_and_a_loaded_roadmap_agree(tmp_path, batch):
-    roadmap = mg.Roadmap.build(ARM, vertices=300, gamma=5)
+    roadmap = mg.planning.Roadmap.build(ARM, vertices=300, gamma=5)
     roadmap.save(tmp_path / "arm.roadmap")
-    loaded = mg.Roadmap.load(tmp_path / "arm.roadmap", ARM)
+    loaded = mg.planning.Roadmap.load(tmp_path / "arm.roadmap", ARM)
     expected = plan()
     for threads in (1, 2):
         found = mg.plan_manipulation(
@@ -116,7 +120,7 @@ def test_variants_threads_and_a_loaded_roadmap_agree(tmp_path, batch):
 
 
 def test_a_roadmap_tells_of_itself():
-    roadmap = mg.Roadmap.build(ARM, vertices=200, neighbours=5, seed=3)
+    roadmap = mg.planning.Roadmap.build(ARM, vertices=200, neighbours=5, seed=3)
     assert len(roadmap) == 200 and roadmap.vertices.shape == (200, 3)
     degree = np.bincount(roadmap.edges.ravel(), minlength=200)
     assert degree.min() >= 5 and roadmap.figures["mean_degree"] == pytest.approx(degree.mean())
@@ -159,7 +163,7 @@ def test_goal_in_collision_with_every_grasp():
 
 
 def test_only_one_of_many_grasps_leads_there():
-    far = [mg.CandidateGrasp(flat(3 + 0.01 * i, 0, 0)) for i in range(300)]
+    far = [mg.grasping.CandidateGrasp(flat(3 + 0.01 * i, 0, 0)) for i in range(300)]
     good = plan()
     result = plan(grasps=[*far, GRASPS[good.grasp_index], *far])
     assert result.outcome == mg.Outcome.solved and result.grasp_index == 300
@@ -171,7 +175,7 @@ def test_only_one_of_many_grasps_leads_there():
     ("changes", "words"),
     [
         ({"grasps": []}, ["grasps", "at least one"]),
-        ({"grasps": [mg.CandidateGrasp(np.eye(4), cost=-1)]}, ["grasps[0].cost"]),
+        ({"grasps": [mg.grasping.CandidateGrasp(np.eye(4), cost=-1)]}, ["grasps[0].cost"]),
         ({"grasps": np.eye(4)}, ["grasps", "(4, 4)", "(m, 4, 4)"]),
         ({"grasps": [np.eye(4), 2 * np.eye(4)]}, ["grasps[1]"]),
         ({"grasps": "all"}, ["grasps"]),
@@ -200,17 +204,17 @@ def test_bad_problems_are_refused(changes, words):
 
 def test_poses_of_grasps_must_be_rigid():
     with pytest.raises(mg.InvalidInput, match="T_object_tool"):
-        mg.CandidateGrasp(2 * np.eye(4))
+        mg.grasping.CandidateGrasp(2 * np.eye(4))
     with pytest.raises(mg.InvalidInput, match="opening"):
-        mg.CandidateGrasp(np.eye(4), opening=float("nan"))
+        mg.grasping.CandidateGrasp(np.eye(4), opening=float("nan"))
     with pytest.raises(mg.InvalidInput, match="cost = 'a'"):
-        mg.CandidateGrasp(np.eye(4), cost="a")
+        mg.grasping.CandidateGrasp(np.eye(4), cost="a")
 
 
 def test_what_is_no_problem_and_no_roadmap_is_refused_by_name():
     with pytest.raises(mg.InvalidInput, match="problem = 3: must be a ManipulationProblem"):
         mg.plan_manipulation(3)
-    for call in (lambda: mg.Roadmap.build(group=3), lambda: mg.Roadmap.load("some.roadmap", group=3)):
+    for call in (lambda: mg.planning.Roadmap.build(group=3), lambda: mg.planning.Roadmap.load("some.roadmap", group=3)):
         with pytest.raises(mg.InvalidInput, match="group = 3: must be a JointGroup"):
             call()
     with pytest.raises(mg.InvalidInput, match="improved = 3: must be a function, or None"):
@@ -237,7 +241,7 @@ def test_options_of_rrt_star_mg_are_not_prm_star_mgs(name, value):
 
 
 def test_a_roadmap_is_of_no_use_to_rrt_star_mg():
-    roadmap = mg.Roadmap.build(ARM, vertices=20)
+    roadmap = mg.planning.Roadmap.build(ARM, vertices=20)
     with pytest.raises(mg.InvalidInput, match="roadmap: is an option of prm_star_mg"):
         mg.plan_manipulation(problem(), planner="rrt_star_mg", roadmap=roadmap)
 
@@ -294,19 +298,19 @@ def test_bad_options_are_refused(options, words):
 
 
 def test_a_roadmap_of_another_robot_is_refused(tmp_path):
-    other = mg.Roadmap.build(planar_arm(length=0.5), vertices=50)
+    other = mg.planning.Roadmap.build(planar_arm(length=0.5), vertices=50)
     with pytest.raises(mg.InvalidInput, match=r"another robot.*origins, axes or limits"):
         mg.plan_manipulation(problem(), roadmap=other)
     with pytest.raises(mg.InvalidInput, match="for j1, j2, not for j1, j2, j3"):
-        mg.plan_manipulation(problem(), roadmap=mg.Roadmap.build(planar_arm(joints=2), vertices=50))
+        mg.plan_manipulation(problem(), roadmap=mg.planning.Roadmap.build(planar_arm(joints=2), vertices=50))
     other.save(tmp_path / "other.roadmap")
     with pytest.raises(mg.IoError, match="another robot"):
-        mg.Roadmap.load(tmp_path / "other.roadmap", ARM)
+        mg.planning.Roadmap.load(tmp_path / "other.roadmap", ARM)
     with pytest.raises(mg.IoError, match="cannot be opened"):
-        mg.Roadmap.load(tmp_path / "none.roadmap", ARM)
+        mg.planning.Roadmap.load(tmp_path / "none.roadmap", ARM)
     (tmp_path / "text").write_text("no roadmap")
     with pytest.raises(mg.IoError, match="no roadmap"):
-        mg.Roadmap.load(tmp_path / "text", ARM)
+        mg.planning.Roadmap.load(tmp_path / "text", ARM)
 
 
 def test_what_improved_raises_ends_the_call():

@@ -35,16 +35,16 @@ def write_box(path, size) -> None:
 
 
 def test_base_motion():
-    np.testing.assert_allclose(mg.platform_velocity(math.pi / 2, [0.0, 0.5, 0.2]), [0.5, 0, 0.2], atol=1e-15)
-    np.testing.assert_allclose(mg.joint_velocity(math.pi / 2, [0.5, 0, 0.2]), [0, 0.5, 0.2], atol=1e-15)
-    left, right = mg.wheel_speeds(0.5, 0.6, wheel_separation=0.4)
+    np.testing.assert_allclose(mg.base.platform_velocity(math.pi / 2, [0.0, 0.5, 0.2]), [0.5, 0, 0.2], atol=1e-15)
+    np.testing.assert_allclose(mg.base.joint_velocity(math.pi / 2, [0.5, 0, 0.2]), [0, 0.5, 0.2], atol=1e-15)
+    left, right = mg.base.wheel_speeds(0.5, 0.6, wheel_separation=0.4)
     assert (left, right) == pytest.approx((0.38, 0.62))
-    np.testing.assert_allclose(mg.platform_velocity(left=left, right=right, wheel_separation=0.4), [0.5, 0, 0.6])
+    np.testing.assert_allclose(mg.base.platform_velocity(left=left, right=right, wheel_separation=0.4), [0.5, 0, 0.6])
     for bad in ([0.1, 0.2], [0, math.nan, 0], "xyz"):
         with pytest.raises(mg.InvalidInput, match="joint_velocity"):
-            mg.platform_velocity(0.0, bad)
+            mg.base.platform_velocity(0.0, bad)
     with pytest.raises(mg.InvalidInput, match="wheel_separation"):
-        mg.wheel_speeds(0.1, 0.1, wheel_separation=0)
+        mg.base.wheel_speeds(0.1, 0.1, wheel_separation=0)
 
 
 def test_wheel_limits_reach_the_robot():
@@ -66,7 +66,7 @@ def test_wheel_limits_slow_a_drive():
         robot = fetch(base_limits={"wheel_velocity": velocity, "linear_acceleration": 0.5, "linear_velocity": 0.6})
         arm = robot.group("arm_with_torso")
         home = np.clip(np.zeros(len(arm.names)), arm.lower, arm.upper)
-        route = mg.plan_base_route(arm, mg.World(), home=home, start=[0, 0, 0], goal=[3, 0, 0])
+        route = mg.base.plan_base_route(arm, mg.World(), home=home, start=[0, 0, 0], goal=[3, 0, 0])
         path[velocity] = route.duration(robot)
     assert path[None] == pytest.approx(3 / 0.6 + 0.6 / 0.5)
     assert path[0.3] == pytest.approx(3 / 0.3 + 0.3 / 0.5)
@@ -77,7 +77,7 @@ def test_check_writes_an_srdf_with_the_computed_pairs(tmp_path, capfd):
     assert main(["check", str(FETCH / "fetchlike.urdf"), "--write-srdf", str(target)]) == 0
     capfd.readouterr()
     plain = mg.Robot.load(FETCH / "fetchlike.urdf")
-    sampled = mg.with_sampled_pairs(plain)
+    sampled = mg.robot.with_sampled_pairs(plain)
     again = mg.Robot.load(FETCH / "fetchlike.urdf", target)
     assert again.disabled_pairs == sampled.disabled_pairs
     assert {"adjacent", "never"} <= {reason for *_, reason in again.disabled_pairs}
@@ -131,12 +131,12 @@ def test_check_tells_what_stands_in_for_a_mesh(tmp_path, capfd):
 
 def test_simplify_mesh_of_arrays():
     shape = mg.LinkShape(mg.Cylinder(0.05, 0.3)).surface(segments=48)
-    assert mg.simplify_mesh(shape)["chosen"] == "hull"
-    found = mg.simplify_mesh(shape, 0.001)
+    assert mg.collision.simplify_mesh(shape)["chosen"] == "hull"
+    found = mg.collision.simplify_mesh(shape, 0.001)
     assert found["chosen"] == "cylinder" and 0 < found["deviation"] <= 0.001
     assert found["triangles_saved"] == len(shape.triangles)
     with pytest.raises(mg.InvalidInput, match="mesh_tolerance"):
-        mg.simplify_mesh(shape, -1.0)
+        mg.collision.simplify_mesh(shape, -1.0)
 
 
 @pytest.mark.skipif(not DATA.is_dir(), reason="the shared test data is not there")
@@ -155,6 +155,6 @@ def test_tolerance_at_the_door_and_in_the_command(capfd):
 def test_find_package(tmp_path):
     (tmp_path / "ws/pkg_folder/urdf").mkdir(parents=True)
     (tmp_path / "ws/pkg_folder/package.xml").write_text("<package><name>pkg</name></package>")
-    assert mg.find_package("pkg", tmp_path / "ws/pkg_folder/urdf") == str(tmp_path / "ws/pkg_folder")
-    assert mg.find_package("other", tmp_path) == ""
-    assert mg.find_package("other", tmp_path, {"other": str(tmp_path)}) == str(tmp_path)
+    assert mg.robot.find_package("pkg", tmp_path / "ws/pkg_folder/urdf") == str(tmp_path / "ws/pkg_folder")
+    assert mg.robot.find_package("other", tmp_path) == ""
+    assert mg.robot.find_package("other", tmp_path, {"other": str(tmp_path)}) == str(tmp_path)

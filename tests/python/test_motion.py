@@ -11,8 +11,8 @@ import pytest
 import mmgrasp as mg
 from conftest import ASSETS
 from mmgrasp.cli import main
-from mmgrasp.motion_bench import read_motion_problem
-from mmgrasp.motion_bench_run import verify_motion
+from mmgrasp.problems.motion_bench import read_motion_problem
+from mmgrasp.problems.motion_bench_run import verify_motion
 
 LINK = 0.4
 URDF = "<robot name='planar'><link name='l0'/>" + "".join(
@@ -35,7 +35,7 @@ def robot() -> mg.Robot:
 
 
 @pytest.fixture(scope="module")
-def arm(robot) -> mg.JointGroup:
+def arm(robot) -> mg.robot.JointGroup:
     return robot.group(base_link="l0", tip="tip")
 
 
@@ -60,7 +60,7 @@ def test_goals_may_be_poses_and_regions(robot, arm, world):
     found = mg.plan_motion(robot, arm, world, start=START, tool_poses=wanted)
     assert found.outcome == mg.Outcome.solved
     np.testing.assert_allclose(tip(found.path[-1])[:2], [0.6, 0.8], atol=1e-4)
-    region = mg.ToolRegion(wanted, position=[0.1, 0.1, 0], rotation=[0, 0, 0.3])
+    region = mg.planning.ToolRegion(wanted, position=[0.1, 0.1, 0], rotation=[0, 0, 0.3])
     found = mg.plan_motion(robot, arm, world, start=START, goal=[[2.8, 2.8, 2.8, 9]], regions=[region])
     assert found.goal_index == 1
     assert np.hypot(*(tip(found.path[-1])[:2] - [0.6, 0.8])) <= 0.1 * 2**0.5 + 1e-4
@@ -69,7 +69,7 @@ def test_goals_may_be_poses_and_regions(robot, arm, world):
 
 
 def test_a_cone_holds_and_better_paths_are_reported(robot, arm, world):
-    cone = mg.ToolCone(tool_axis=[1, 0, 0], world_axis=[1, 0, 0], half_angle=0.3)
+    cone = mg.planning.ToolCone(tool_axis=[1, 0, 0], world_axis=[1, 0, 0], half_angle=0.3)
     found = mg.plan_motion(robot, arm, world, start=START, goal=GOAL, tool_cone=cone)
     for a, b in zip(found.path[:-1], found.path[1:], strict=True):
         for s in np.linspace(0, 1, 20):
@@ -206,9 +206,9 @@ def test_bad_arguments_are_refused_by_name(robot, arm, world, changes, words):
 )
 def test_a_wrong_checker_is_refused_by_name(changes, words):
     calls = [
-        lambda checker: mg.plan_straight_line(checker, START, np.eye(4)),
+        lambda checker: mg.planning.plan_straight_line(checker, START, np.eye(4)),
         lambda checker: mg.plan_cartesian(checker, [np.eye(4)] * 2),
-        lambda checker: mg.time_parameterize_free(checker, [START, GOAL]),
+        lambda checker: mg.planning.time_parameterize_free(checker, [START, GOAL]),
     ]
     for call in calls:
         with pytest.raises(mg.InvalidInput) as refused:
@@ -220,8 +220,11 @@ def test_a_wrong_checker_is_refused_by_name(changes, words):
 def test_wrong_timing_arguments_are_refused_by_name(robot, arm, world):
     checker = mg.CollisionChecker(robot, world, arm)
     for call, words in [
-        (lambda: mg.time_parameterize_free(checker, [START, GOAL], edge_step="fine"), ["edge_step = 'fine'", "number"]),
-        (lambda: mg.time_parameterize_free(checker, [START, GOAL], edge_step=0), ["edge_step = 0", "> 0"]),
+        (
+            lambda: mg.planning.time_parameterize_free(checker, [START, GOAL], edge_step="fine"),
+            ["edge_step = 'fine'", "number"],
+        ),
+        (lambda: mg.planning.time_parameterize_free(checker, [START, GOAL], edge_step=0), ["edge_step = 0", "> 0"]),
         (lambda: mg.time_parameterize([START, GOAL], [1] * 4, [1] * 4, names=5), ["names = 5", "names of joints"]),
         (lambda: mg.time_parameterize([START, GOAL], [1] * 4, [1] * 4, sample_period=1e-13), ["sample_period", "1e7"]),
         (lambda: mg.time_parameterize([[0], [2]], [1], [1], sample_period=1e-7), ["sample_period = 1e-07", "takes 3"]),
@@ -238,14 +241,17 @@ def test_a_tool_line_from_a_start_that_is_not_allowed_says_why(robot, arm):
     scene.add_box("crate", [0.05, 0.05, 0.05], first)
     checker = mg.CollisionChecker(robot, scene, arm)
     second = mg.pose([0.1, 0.1, 0]) @ first
-    for found in (mg.plan_cartesian(checker, [first, second], near=q), mg.plan_straight_line(checker, q, second)):
+    for found in (
+        mg.plan_cartesian(checker, [first, second], near=q),
+        mg.planning.plan_straight_line(checker, q, second),
+    ):
         assert found.outcome == mg.Outcome.invalid_start
-        assert found.cause == mg.Rejection.scene
+        assert found.cause == mg.planning.Rejection.scene
         assert found.contact is not None and found.contact.b == "crate"
         assert "touches 'crate'" in repr(found)
         assert found.to_dict()["contact"]["b"] == "crate"
     checker = mg.CollisionChecker(robot, mg.World(), arm)
-    found = mg.plan_straight_line(checker, [0, 0, 3.25, 0], second)
+    found = mg.planning.plan_straight_line(checker, [0, 0, 3.25, 0], second)
     assert found.outcome == mg.Outcome.invalid_start
     for word in ("j3", "3.25", "[-2.8, 2.8]"):
         assert word in found.beyond_limits and word in repr(found)
@@ -281,10 +287,10 @@ def test_a_diff_drive_base_is_not_moved_sideways():
     aside = mg.pose([0, 0.2, 0]) @ group.fk(q)
     box = mg.LinkShape(mg.Box([0.02, 0.02, 0.02]))
     calls = {
-        "plan_straight_line": lambda: mg.plan_straight_line(checker, q, aside),
+        "plan_straight_line": lambda: mg.planning.plan_straight_line(checker, q, aside),
         "plan_cartesian": lambda: mg.plan_cartesian(checker, [group.fk(q), aside], near=q),
         "plan_manipulation": lambda: mg.ManipulationProblem(
-            group, mg.World(), box, group.fk(q), aside, [mg.CandidateGrasp(np.eye(4))]
+            group, mg.World(), box, group.fk(q), aside, [mg.grasping.CandidateGrasp(np.eye(4))]
         ),
     }
     for name, call in calls.items():

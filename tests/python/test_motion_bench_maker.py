@@ -7,7 +7,7 @@ import shutil
 import pytest
 
 import mmgrasp as mg
-from mmgrasp.motion_bench import read_motion_problem, read_motion_problems
+from mmgrasp.problems.motion_bench import read_motion_problem, read_motion_problems
 
 SETS = ["bookshelf_small", "bookshelf_tall", "bookshelf_thin", "box", "cage", "table_pick", "table_under_pick"]
 

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
-from mmgrasp._core.verify import CheckedBody, check_path
-from mmgrasp._pipe_cell import FINGERS
-from mmgrasp.pipe_cells import ROBOTS, PipeCell, pipe_cell, pipe_robot, pipe_structures
+from mmgrasp.problems.pipe_cells import FINGERS, ROBOTS, PipeCell, pipe_cell, pipe_robot, pipe_structures
+from mmgrasp.verify import CheckedBody, check_path
 from mmgrasp.viz.carry import along, carry_scene, write_carry
 
 
@@ -149,7 +148,7 @@ def test_both_arms_carry_every_structure(number, robot):
     assert fault_by_fcl(cell, carrier, found.path) == ""
 
 
-def within_reach(cell: PipeCell, count: int) -> list[mg.PipeGrasp]:
+def within_reach(cell: PipeCell, count: int) -> list[mg.grasping.PipeGrasp]:
     return list(itertools.islice((g for g in cell.grasps(200) if all(map(len, cell.ends(g, 1)))), count))
 
 
@@ -242,7 +241,7 @@ def test_open_cells_are_solved_over_roadmaps_as_sparse_as_in_p2():
     assert cell.style == "open"
     problem, solved = cell.problem(cell.grasps(500)), 0
     for seed in range(1, 6):
-        roadmap = mg.Roadmap.build(cell.arm, vertices=5000, gamma=4.0, seed=seed)
+        roadmap = mg.planning.Roadmap.build(cell.arm, vertices=5000, gamma=4.0, seed=seed)
         assert roadmap.figures["mean_degree"] < 3
         found = mg.plan_manipulation(problem, roadmap=roadmap, straight=False, shorten=False)
         if found.outcome == mg.Outcome.solved:

@@ -21,7 +21,7 @@ def fetch() -> mg.Robot:
 
 
 @pytest.fixture(scope="module")
-def arm(fetch) -> mg.JointGroup:
+def arm(fetch) -> mg.robot.JointGroup:
     return fetch.group("arm_with_torso", tip="gripper_tcp")
 
 

@@ -178,8 +178,8 @@ import sys, mmgrasp as mg, numpy as np
 from mmgrasp.reproduce.setup import Row, database
 row = Row(trays=2, objects=(2, 2), spacing=0.4, shift=float(sys.argv[1]))
 problem, reach = row.problem(), database(row, 200_000)
-grid = mg.make_base_grid(problem, reach)
-np.save(sys.argv[2], [r.cells(grid) for r in mg.compute_base_regions(problem, reach, grid)])
+grid = mg.base.make_base_grid(problem, reach)
+np.save(sys.argv[2], [r.cells(grid) for r in mg.base.compute_base_regions(problem, reach, grid)])
 """
 
 
@@ -190,10 +190,10 @@ def test_trays_moved_by_3_cm_give_what_empty_caches_give(tmp_path):
     found = {}
     for shift in (0.0, 0.03):
         problem = row.with_(shift=shift).problem()
-        grid = mg.make_base_grid(problem, reach)
-        regions = mg.compute_base_regions(problem, reach, grid)
+        grid = mg.base.make_base_grid(problem, reach)
+        regions = mg.base.compute_base_regions(problem, reach, grid)
         found[shift] = [region.cells(grid) for region in regions]
-        kept = mg.ObjectRegions.compute(problem, reach, grid)
+        kept = mg.base.ObjectRegions.compute(problem, reach, grid)
         for t, cells in enumerate(found[shift]):
             np.testing.assert_array_equal(kept.region(t, kept.parts(t)), cells)
     assert np.sum(found[0.03]) > 0
@@ -207,8 +207,8 @@ def test_regions_and_grids_survive_pickling():
 
     row = Row(objects=(1, 2))
     problem, reach = row.problem(), database(row, 200_000)
-    grid = mg.make_base_grid(problem, reach)
-    region = mg.compute_base_regions(problem, reach, grid)[0]
+    grid = mg.base.make_base_grid(problem, reach)
+    region = mg.base.compute_base_regions(problem, reach, grid)[0]
     again, same = pickle.loads(pickle.dumps((grid, region)))
     assert (again.nx, again.ny, again.resolution, again.headings) == (grid.nx, grid.ny, grid.resolution, grid.headings)
     np.testing.assert_array_equal(again.origin, grid.origin)

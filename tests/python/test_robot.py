@@ -21,7 +21,7 @@ def fetch() -> mg.Robot:
 
 
 @pytest.fixture(scope="module")
-def arm(fetch) -> mg.JointGroup:
+def arm(fetch) -> mg.robot.JointGroup:
     return fetch.group("arm_with_torso", tip="gripper_tcp")
 
 
@@ -36,7 +36,7 @@ def test_kinematics_equal_pinocchio(name):
     columns = [entry["joints"].index(joint) for joint in group.names]
     for q, T, case in zip(configurations, poses, entry["cases"], strict=True):
         np.testing.assert_allclose(T[:3, 3], case["p"], atol=2e-9)
-        _, quat = mg.pose_to_xyz_quat(T)
+        _, quat = mg.robot.pose_to_xyz_quat(T)
         assert abs(abs(np.dot(quat, case["quat"])) - 1) < 1e-8
         np.testing.assert_array_equal(T, group.fk(q))
         np.testing.assert_allclose(group.jacobian(q), np.array(case["J"])[:, columns], atol=2e-9)
@@ -110,7 +110,7 @@ def test_checker_and_held_objects(fetch, arm):
     assert mg.CollisionChecker(fetch, world, group=arm).is_free(q)
     world.add_box("wall", size=(0.1, 1, 1), pose=mg.pose([0.7, 0, 1]))
     checker = mg.CollisionChecker(fetch, world, group=arm)
-    assert checker.rejection(q) == mg.Rejection.scene
+    assert checker.rejection(q) == mg.planning.Rejection.scene
     assert any("wall" in (c.a, c.b) for c in checker.contacts(q))
     assert checker.distance(q).value <= 0
     world.move("wall", mg.pose([3, 0, 1]))
@@ -210,15 +210,15 @@ def test_mounting_writes_one_robot(fetch, arm):
 
 
 def test_exact_small_programmes():
-    cover = mg.solve_set_cover(4, [[0, 1], [1, 2], [2, 3], [0, 3], [1, 2, 3]])
+    cover = mg.optim.solve_set_cover(4, [[0, 1], [1, 2], [2, 3], [0, 3], [1, 2, 3]])
     assert cover.outcome == mg.Outcome.solved
     assert cover.cost == 2
     lengths = np.abs(np.subtract.outer([1.0, 3, 2, 0, 4], [1.0, 3, 2, 0, 4]))
-    tour = mg.shortest_visiting_tour(lengths)
+    tour = mg.optim.shortest_visiting_tour(lengths)
     assert tour.order == [0, 2, 1]
     assert tour.length == pytest.approx(4)
-    grid = mg.BaseGrid([0, 0], 0.1, 8, 6)
-    _, radius = mg.inscribed_circle(grid, np.ones((1, 6, 8), dtype=np.uint8))
+    grid = mg.base.BaseGrid([0, 0], 0.1, 8, 6)
+    _, radius = mg.base.inscribed_circle(grid, np.ones((1, 6, 8), dtype=np.uint8))
     assert radius == pytest.approx(0.3, abs=1e-5)
 
 

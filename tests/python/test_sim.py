@@ -61,7 +61,7 @@ def test_links_stand_where_forward_kinematics_puts_them():
     world.reset(np.array([0.3, -0.2, 0.7]), joints)
     T = mg.pose([0.3, -0.2, 0], rpy=[0, 0, 0.7])
     for link, expected in robot().link_poses(joints, T).items():
-        assert world._pose(f"link/{link}") == pytest.approx(expected, abs=1e-9), link
+        assert world.body_pose(f"link/{link}") == pytest.approx(expected, abs=1e-9), link
 
 
 @physics
@@ -145,11 +145,11 @@ def test_the_grip_carries_what_its_friction_cones_do(share, holds):
 
 
 # --- the base ----------------------------------------------------------------------------------------------------------
-def drive(v: float = 0.4, duration: float = 3.0) -> mg.JointTrajectory:
+def drive(v: float = 0.4, duration: float = 3.0) -> mg.planning.JointTrajectory:
     times = np.arange(0.0, duration + 0.01, 0.02)
     share = times / duration
     way = v * duration * share**3 * (10 - 15 * share + 6 * share**2)
-    return mg.JointTrajectory(["x", "y", "theta"], times, np.outer(way, [1, 0, 0]))
+    return mg.planning.JointTrajectory(["x", "y", "theta"], times, np.outer(way, [1, 0, 0]))
 
 
 @physics
@@ -176,7 +176,7 @@ def test_speed_stretches_the_plan():
 def test_same_seed_same_run():
     world = sim.Simulation(robot(), table(), [box()], gripper=gripper())
     noisy = {"position_noise": 0.003, "heading_noise": 0.003, "travel_noise": 0.01, "hold": 0.2}
-    plan = mg.JointTrajectory(["x", "y", "theta"], [0, 1], [[-1, 0, 0], [-0.8, 0, 0]])
+    plan = mg.planning.JointTrajectory(["x", "y", "theta"], [0, 1], [[-1, 0, 0], [-0.8, 0, 0]])
     first, again, other = (world.run(plan, seed=s, **noisy) for s in (4, 4, 5))
     assert first.to_dict() == again.to_dict()
     assert first.states[-1]["base"] == again.states[-1]["base"] != other.states[-1]["base"]
@@ -195,7 +195,7 @@ def test_wrong_input_is_refused_by_name():
     with pytest.raises(mg.InvalidInput, match="spede"):
         world.run(approach(), spede=1)
     with pytest.raises(mg.InvalidInput, match="elbow"):
-        world.run(mg.JointTrajectory(["elbow"], [0, 1], [[0], [1]]))
+        world.run(mg.planning.JointTrajectory(["elbow"], [0, 1], [[0], [1]]))
     with pytest.raises(mg.InvalidInput, match="without the base"):
         world.run(approach(), arm=robot().group("arm_with_torso", tip="gripper_tcp", with_base=True))
     with pytest.raises(mg.InvalidInput, match="lift"):

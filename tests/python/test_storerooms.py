@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
-from mmgrasp import storerooms
+from mmgrasp.problems import storerooms
 
 
 def distances(points: np.ndarray) -> np.ndarray:

@@ -129,7 +129,7 @@ def test_pairs_left_out_never_touch(name):
 
 
 def test_pipe_and_grasps_in_python():
-    pipe = mg.Pipe([[0, 0, 0], [0.3, 0, 0], [0.3, 0.2, 0]], [(0, 1), (1, 2)], 0.02)
+    pipe = mg.grasping.Pipe([[0, 0, 0], [0.3, 0, 0], [0.3, 0.2, 0]], [(0, 1), (1, 2)], 0.02)
     assert pipe.lengths == pytest.approx([0.3, 0.2])
     assert pipe.sections == [(0, 1), (1, 2)]
     np.testing.assert_allclose(pipe.centre_of_mass, [(0.3 * 0.15 + 0.2 * 0.3) / 0.5, 0.2 * 0.1 / 0.5, 0])
@@ -143,7 +143,7 @@ def test_pipe_and_grasps_in_python():
     same = pipe.grasp(one.section, one.length, one.angle, one.flipped)
     np.testing.assert_array_equal(one.T_object_tool, same.T_object_tool)
     assert set(one.to_dict()) == {"section", "length", "angle", "flipped", "T_object_tool", "opening", "cost"}
-    hand = mg.Gripper(
+    hand = mg.grasping.Gripper(
         "tool", approach=[0, 0, 1], closing=[1, 0, 0], max_opening=0.015, finger_depth=0.03, finger_width=0.02
     )
     assert pipe.sample_grasps(10, gripper=hand) == []
@@ -167,11 +167,11 @@ def test_pipe_and_grasps_in_python():
 )
 def test_bad_pipes_are_refused(nodes, sections, diameters, message):
     with pytest.raises(mg.InvalidInput, match=message):
-        mg.Pipe(nodes, sections, diameters)
+        mg.grasping.Pipe(nodes, sections, diameters)
 
 
 def test_bad_grasp_arguments_are_refused():
-    pipe = mg.Pipe([[0, 0, 0], [0.3, 0, 0]], [(0, 1)], 0.02)
+    pipe = mg.grasping.Pipe([[0, 0, 0], [0.3, 0, 0]], [(0, 1)], 0.02)
     with pytest.raises(mg.InvalidInput, match="count = -1"):
         pipe.sample_grasps(-1)
     with pytest.raises(mg.InvalidInput, match=r"count = 2\.5: must be a whole number"):

@@ -12,7 +12,7 @@ from argument_values import ARM, OBJECTS, Q
 from conftest import ASSETS
 
 
-def without_times(plan: mg.PartSupplyPlan) -> str:
+def without_times(plan: mg.part_supply.ScenarioPlan) -> str:
     content = plan.to_dict()
     del content["timings"]
     content["scenario"]["options"].pop("threads")
@@ -42,7 +42,7 @@ def test_lines_of_several_threads_share_one_checker():
     lines = [ARM.fk(Q + [0, 0, along]) for along in (0.1, 0.2, 0.4, 0.6)]  # the last one beyond a limit
 
     def follow(to: np.ndarray) -> tuple:
-        found = mg.plan_straight_line(checker, Q, to, position_step=1e-4)
+        found = mg.planning.plan_straight_line(checker, Q, to, position_step=1e-4)
         return found.outcome, found.fraction, None if found.path is None else found.path.tobytes()
 
     alone = [follow(to) for to in lines]
@@ -65,7 +65,7 @@ def test_threads_share_one_seed_database():
     robot = mg.Robot.load(folder / "fetchlike.urdf", folder / "fetchlike.srdf", base="diff_drive")
     whole = robot.group("arm_with_torso", tip="gripper_tcp", with_base=True)
     checker = mg.CollisionChecker(robot, mg.World(), group=whole)
-    database = mg.IkSeedDatabase(whole, capacity=50)
+    database = mg.base.IkSeedDatabase(whole, capacity=50)
     down = [0, np.pi / 2, 0]
     failures: list[str] = []
 
@@ -74,7 +74,7 @@ def test_threads_share_one_seed_database():
         for i in range(3):
             pick = mg.pose([0.8 + 0.05 * i, -0.2, 0.9], rpy=down)
             place = mg.pose([0.8, 0.2 + 0.05 * number, 0.9], rpy=down)
-            found = mg.plan_platform_locations(own, pick, place, database=database, samples=5, seed=number + 1)
+            found = mg.base.plan_platform_locations(own, pick, place, database=database, samples=5, seed=number + 1)
             if found.outcome != mg.Outcome.solved:
                 failures.append(f"{number}/{i}: {found.outcome}")
             elif max(np.abs(whole.fk(found.q_pick) - pick).max(), np.abs(whole.fk(found.q_place) - place).max()) > 2e-4:

@@ -9,7 +9,7 @@ import json
 import pytest
 
 import mmgrasp as mg
-from mmgrasp.plan_file import runs_of
+from mmgrasp.part_supply.plan_file import runs_of
 
 
 def motion(plan, kind, pick=0):

@@ -13,8 +13,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from .._progress import Progress
 from .database import build_database
-from .engine import Engine, Progress, ShardEvent, connect, shard_key
+from .engine import Engine, ShardEvent, connect, shard_key
 from .regions import ProblemSource, compute_base_regions
 
 __all__ = [

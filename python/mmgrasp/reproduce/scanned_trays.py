@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import _core
 from .._core import Box, LinkShape, Part, ScoredGrasp
-from ..random_trays import TrayScan, parts_of_grasps, scan_random_tray, scan_tray
+from ..problems.random_trays import TrayScan, parts_of_grasps, scan_random_tray, scan_tray
 from .setup import Row, robot_setup
 
 BODY = [LinkShape(Box([0.03, 0.03, 0.05]), np.eye(4))]

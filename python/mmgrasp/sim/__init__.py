@@ -8,8 +8,9 @@
 Needs the extra `sim` (docs/methods/sim.md). Pictures of a run need nothing more: see `frames`.
 """
 
+from .execution import Execution
 from .model import Physics, SimPart, build
 from .result import ContactEvent, PartMotion, SimResult
-from .simulation import Execution, Simulation
+from .simulation import Simulation
 
 __all__ = ["ContactEvent", "Execution", "PartMotion", "Physics", "SimPart", "SimResult", "Simulation", "build"]

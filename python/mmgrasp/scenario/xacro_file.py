@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from . import _core
-from ._core import InvalidInput, IoError
+from .. import _core
+from .._core import InvalidInput, IoError
 
 _LOCK = threading.Lock()  # the package keeps what it works on in module variables
 

@@ -16,7 +16,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from ._core import (
+from .._core import (
     CollisionChecker,
     InvalidInput,
     ManipulationResult,
@@ -29,8 +29,8 @@ from ._core import (
     plan_motion,
     pose,
 )
+from ..scenario.reading import check_name
 from ._pipe_cell import FINGERS, ROBOTS, PipeCell, Pose, pipe_robot, pipe_structures
-from ._reading import check_name
 
 __all__ = ["FINGERS", "ROBOTS", "PipeCell", "pipe_cell", "pipe_robot", "pipe_structures"]
 

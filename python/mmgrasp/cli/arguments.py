@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from . import _core
+from .. import _core
 
 _LARGEST = 2**31 - 1
 

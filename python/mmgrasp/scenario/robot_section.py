@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import importlib.util
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from . import _core
-from ._core import Box, CarryPlace, FingerJoint, Gripper, InvalidInput, JointGroup, LinkShape, Robot
-from ._files import ASSETS, shipped
-from ._reading import Node, near_miss, read_yaml
-from ._shapes import read_shapes
-
-Progress = Callable[[str, float], None] | None
+from .. import _core
+from .._core import Box, CarryPlace, FingerJoint, Gripper, InvalidInput, JointGroup, LinkShape, Robot
+from .._files import ASSETS, shipped
+from .._progress import Progress
+from .reading import Node, near_miss, read_yaml
+from .shapes import read_shapes
 
 BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation"
 ROBOT_KEYS = "urdf srdf packages xacro_args base base_limits mount frames group tcp joints home"

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _core
-from ._core import (
+from .. import _core
+from .._core import (
     DepthImage,
     Grasp,
     Graspability,

@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from . import _core
-from ._core import Box, Grasp, Gripper, LinkShape, Part, Tray
-from ._reading import Node, near_miss
-from ._robot_section import find_file
-from ._shapes import read_shapes
+from .. import _core
+from .._core import Box, Grasp, Gripper, LinkShape, Part, Tray
+from .reading import Node, near_miss
+from .robot_section import find_file
+from .shapes import read_shapes
 
 WALL = 0.005  # thickness of a tray's floor and walls [m]
 GAP = 0.001  # parts rest this far above the floor, so that nothing touches at rest [m]

@@ -1,8 +1,8 @@
-"""Writes docs/options.md from the defaults of the C++ structs: python -m mmgrasp._options_page."""
+"""Writes docs/options.md from the defaults of the C++ structs: python -m mmgrasp.cli.options_page."""
 
 from __future__ import annotations
 
-from . import _core
+from .. import _core
 
 SECTIONS = (
     ("options", "How to plan (`PartSupplyOptions`)", _core._supply_option_table, {"positioning_uncertainty"}),

@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ._core import Error, InvalidInput
+from .._core import Error, InvalidInput
 
 Poses = NDArray[np.float64]
 

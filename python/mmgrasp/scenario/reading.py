@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 import numpy as np
 import yaml
 
-from ._core import InvalidInput, IoError, pose
+from .._core import InvalidInput, IoError, pose
 
 LARGEST = 1e6  # no length, angle or time in a file is larger [SI]
 LARGEST_INTEGER = 2**31 - 1

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from ._core import (
+from .._core import (
     Box,
     CollisionChecker,
     Cylinder,
@@ -27,7 +27,7 @@ from ._core import (
     World,
     pose,
 )
-from ._reading import bad_yaml
+from ..scenario.reading import bad_yaml
 
 MBM_SETS = ("bookshelf_small", "bookshelf_tall", "bookshelf_thin", "box", "cage", "table_pick", "table_under_pick")
 """The sets of problems that MotionBenchMaker makes for an arm."""

@@ -71,5 +71,5 @@ if not _typing.TYPE_CHECKING:  # type checkers know what is there; this is for w
         from ._moved import place_of
 
         place = place_of(name)
-        moved = f"{name} moved: {place}" if place else f"{name}: no such name"
-        raise AttributeError(f"mmgrasp.{moved}", name=name)
+        message = f"mmgrasp.{name} moved: {place}" if place else f"module 'mmgrasp' has no attribute '{name}'"
+        raise AttributeError(message, name=name)

@@ -70,7 +70,7 @@ def draw_overlays(file: str) -> None:
     for axis, grasp, found in zip(axes, (result.grasp_index, worst), (result, other), strict=True):
         by_hand, by_bar = blocked(grasps[grasp], roadmap.vertices)
         ends = roadmap.vertices[roadmap.edges]
-        axis.add_collection(LineCollection(ends, colors="0.85", linewidths=0.5))
+        axis.add_collection(LineCollection(list(ends), colors="0.85", linewidths=0.5))
         open_ = ~by_hand & ~by_bar
         for mask, colour, label in ((open_, "0.6", "free"), (by_hand, "k", "hand"), (by_bar, "C1", "bar in hand")):
             axis.plot(*roadmap.vertices[mask].T, ".", color=colour, ms=4, label=label)
@@ -96,7 +96,7 @@ def draw_forest(file: str) -> None:
         colour, grown = f"C{tree.grasp}", np.array(tree.parents) >= 0
         ways = np.stack([tree.vertices[grown], tree.vertices[np.array(tree.parents)[grown]]], axis=1)
         axis.add_collection(
-            LineCollection(ways, colors=colour, linewidths=1, linestyles="--" if tree.from_goal else "-")
+            LineCollection(list(ways), colors=colour, linewidths=1, linestyles="--" if tree.from_goal else "-")
         )
         place = f"held {places[five[tree.grasp]]:+.2f} m from the middle"
         roots = tree.vertices[~grown].T

@@ -145,3 +145,9 @@ def test_no_package_imports_in_a_circle():
             graph[package].discard(package)
     assert "scenario" in graph["part_supply"]
     list(TopologicalSorter(graph).static_order())
+
+
+def test_the_package_itself_uses_no_room():
+    known = modules()
+    users = {name for name, path in known.items() if imports_of(name, path, known) & {*FACADES, "verify"}}
+    assert users <= {"", "_moved"}

@@ -11,5 +11,5 @@ def test_the_ten_lines_of_python_run(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     exec(compile(code, "README.md", "exec"), {})
     printed = capsys.readouterr().out
-    assert "PartSupplyPlan(solved" in printed and printed.strip().endswith("the plan holds")
+    assert "ScenarioPlan(solved" in printed and printed.strip().endswith("the plan holds")
     assert (tmp_path / "plan.json").exists()

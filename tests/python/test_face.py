@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import importlib
+import re
 import types
 from graphlib import TopologicalSorter
 from pathlib import Path
@@ -11,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import mmgrasp as mg
+from conftest import REPOSITORY
 from mmgrasp import _core, _moved
 
 PACKAGE = Path(mg.__file__).parent
@@ -98,6 +100,24 @@ def test_the_new_place_is_named_in_full():
         mg.PartSupplyPlan  # noqa: B018
     with pytest.raises(AttributeError, match=r"^module 'mmgrasp' has no attribute 'plan_holiday'$"):
         mg.plan_holiday  # noqa: B018
+
+
+PYTHON_ONLY = {"pose", "pose_to_xyz_quat", "pose_to_xyz_rpy", "cache_folder", "with_sampled_pairs"}
+SHORTER = {"Mesh": "MeshShape"}
+
+
+def test_a_bound_name_is_the_cpp_name():
+    headers = "\n".join(path.read_text() for path in sorted((REPOSITORY / "cpp" / "include").rglob("*.hpp")))
+    classes = set(re.findall(r"^(?:struct|class|enum class) (?:MMGRASP_EXPORT )?(\w+)", headers, re.MULTILINE))
+    classes |= set(re.findall(r"^using (\w+) =", headers, re.MULTILINE))
+    functions = set(re.findall(r"\b([a-z]\w+)\(", headers))
+    for name, value in (public(_core) | public(_core.verify)).items():
+        if name in PYTHON_ONLY:
+            assert name not in functions
+        elif isinstance(value, type):
+            assert SHORTER.get(name, name) in classes, name
+        else:
+            assert name in functions or f"make_{name}" in functions, name
 
 
 # --- imports ----------------------------------------------------------------------------------------------------------

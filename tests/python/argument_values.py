@@ -127,7 +127,7 @@ def capability_map() -> mg.base.CapabilityMap:
     return mg.base.CapabilityMap.build(ARM, upper=(1, 1, 2), voxel=1, poses=2, threads=1)
 
 
-OBJECTS = {
+OBJECTS: dict[str, Any] = {
     "Robot": lambda: ROBOT,
     "JointGroup": lambda: ARM,
     "World": world,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from typing import Any
 
 import numpy as np
 
@@ -45,7 +46,7 @@ def table() -> mg.World:
     return world
 
 
-def box(x: float = 0.8, y: float = 0.0, **keywords) -> sim.SimPart:
+def box(x: float = 0.8, y: float = 0.0, **keywords: Any) -> sim.SimPart:
     return sim.SimPart("box", [mg.LinkShape(mg.Box([0.05, 0.05, 0.12]))], mg.pose([x, y, TABLE + 0.0601]), **keywords)
 
 

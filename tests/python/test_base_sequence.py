@@ -21,7 +21,7 @@ def squares(count: int, width: int = 12, step: int = 8) -> tuple[mg.base.BaseGri
     return grid, masks
 
 
-def test_least_stops_of_a_row():
+def test_least_stops_of_a_row() -> None:
     grid, masks = squares(7)
     found = mg.base.least_stops(grid, masks, 0.1, start=[0, 0], goal=[3, 0])
     assert found.outcome == mg.Outcome.solved
@@ -39,7 +39,7 @@ def test_least_stops_of_a_row():
         mg.base.least_stops(grid, [masks[0][:, 1:]], 0.1)
 
 
-def test_share_stops_among_robots():
+def test_share_stops_among_robots() -> None:
     rng = np.random.default_rng(3)
     points = rng.uniform(0, 10, (4 + 4, 2))
     drive = np.linalg.norm(points[:, None] - points[None], axis=2)
@@ -49,7 +49,7 @@ def test_share_stops_among_robots():
         if not order:
             return 0.0
         way = [4 + robot, *order, 6 + robot]
-        return sum(drive[a, b] for a, b in itertools.pairwise(way)) + sum(work[i] for i in order)
+        return float(sum(drive[a, b] for a, b in itertools.pairwise(way)) + sum(work[i] for i in order))
 
     best = min(
         max(duration(0, order[:k]), duration(1, order[k:]))
@@ -63,7 +63,7 @@ def test_share_stops_among_robots():
     assert shared.to_dict()["lower_bound"] == pytest.approx(best)
 
 
-def test_assignment_and_bound():
+def test_assignment_and_bound() -> None:
     costs = np.array([[4.0, 1, 3], [2, 0, 5], [3, 2, 2]])
     best = min(sum(costs[i, p[i]] for i in range(3)) for p in itertools.permutations(range(3)))
     assert sum(costs[i, c] for i, c in enumerate(mg.optim.cheapest_assignment(costs))) == best
@@ -84,7 +84,7 @@ def parts_in_front(trays: int, parts: int) -> tuple[mg.base.BaseGrid, list[list[
     return grid, cells, places
 
 
-def test_policies():
+def test_policies() -> None:
     grid, cells, places = parts_in_front(4, 3)
     order = mg.base.paired_order(places)
     assert order == [[0, 1, 2]] * 4

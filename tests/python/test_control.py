@@ -22,13 +22,13 @@ def straight(v: float = 0.5, duration: float = 4.0) -> mg.planning.JointTrajecto
     )
 
 
-def test_arcs_are_exact():
+def test_arcs_are_exact() -> None:
     assert mg.base.drive_arc([0, 0, 0], [1.0, 0, np.pi], 0.5) == pytest.approx(
         [1 / np.pi, 1 / np.pi, np.pi / 2], abs=1e-15
     )
 
 
-def test_slip_open_and_closed_loop():
+def test_slip_open_and_closed_loop() -> None:
     run = mg.base.track_base(ROBOT, straight(), feedback=False, slip_left=0.1, slip_right=0.1)
     assert run.position_errors == pytest.approx(0.1 * 0.5 * run.times, abs=1e-12)
     closed = mg.base.track_base(ROBOT, straight(), slip_left=0.1, slip_right=0.1)
@@ -38,7 +38,7 @@ def test_slip_open_and_closed_loop():
     assert len(closed.commands) + 1 == len(closed.actual) == len(closed.times)
 
 
-def test_the_tracker_alone_gives_the_same_commands():
+def test_the_tracker_alone_gives_the_same_commands() -> None:
     run = mg.base.track_base(ROBOT, straight(), start_error=[0.1, -0.05, 0.2])
     tracker = mg.base.BaseTracker(ROBOT)
     assert tracker.period == 0.02
@@ -47,7 +47,7 @@ def test_the_tracker_alone_gives_the_same_commands():
         assert given == pytest.approx(expected, abs=1e-12)
 
 
-def test_trajectories_made_by_hand():
+def test_trajectories_made_by_hand() -> None:
     made = straight()
     assert made.at(1.0) == pytest.approx([0.5, 0, 0])
     assert made.duration == pytest.approx(4.0)
@@ -60,7 +60,7 @@ def test_trajectories_made_by_hand():
         mg.planning.JointTrajectory(["a", "b"], [0, 1], [[1, 2], [3, 4]], [[0, 0]])
 
 
-def test_wrong_input_is_refused():
+def test_wrong_input_is_refused() -> None:
     with pytest.raises(mg.InvalidInput, match=r"did you mean slip_left"):
         mg.base.track_base(ROBOT, straight(), slip_lef=0.1)
     for bad in ({"slip_left": 1.0}, {"kp": -1}, {"offset": 0}, {"drift": [0, 0]}, {"start_error": [0, np.nan, 0]}):

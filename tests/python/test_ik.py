@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -12,19 +14,19 @@ FOLDER = ASSETS / "robots" / "fetchlike"
 
 
 @pytest.fixture(scope="module")
-def robot():
+def robot() -> mg.Robot:
     return mg.Robot.load(FOLDER / "fetchlike.urdf", FOLDER / "fetchlike.srdf", base="diff_drive")
 
 
 @pytest.fixture(scope="module")
-def arm(robot):
+def arm(robot: mg.Robot) -> mg.robot.JointGroup:
     return robot.group("arm_with_torso", tip="gripper_tcp")
 
 
 TARGET = mg.pose([0.7, 0.2, 0.9], rpy=[0, 0, 0])
 
 
-def test_objectives_lower_the_cost(arm):
+def test_objectives_lower_the_cost(arm: mg.robot.JointGroup) -> None:
     objective = mg.robot.joint_limit_objective(arm, soft_fraction=0.4)
     plain = arm.ik(TARGET, rng_seed=1)
     better = arm.ik(TARGET, rng_seed=1, objectives=[objective, mg.robot.singularity_objective(arm, 0.05)])
@@ -41,7 +43,7 @@ def test_objectives_lower_the_cost(arm):
     assert np.allclose(gradient, numeric, atol=1e-6)
 
 
-def test_objectives_and_weights_are_checked(arm):
+def test_objectives_and_weights_are_checked(arm: mg.robot.JointGroup) -> None:
     with pytest.raises(mg.InvalidInput, match="objectives"):
         arm.ik(TARGET, objectives=[1])
     with pytest.raises(mg.InvalidInput, match="joint_weights length"):
@@ -50,7 +52,7 @@ def test_objectives_and_weights_are_checked(arm):
         arm.ik(TARGET, joint_weights=[0.0] * arm.size)
 
 
-def test_ik_all_is_diverse_and_free(robot, arm):
+def test_ik_all_is_diverse_and_free(robot: mg.Robot, arm: mg.robot.JointGroup) -> None:
     world = mg.World()
     world.add_box("table", size=(0.6, 1.2, 0.04), pose=mg.pose([0.9, 0, 0.7]))
     found = arm.ik_all(TARGET, count=6, world=world)
@@ -66,7 +68,7 @@ def test_ik_all_is_diverse_and_free(robot, arm):
         arm.ik_all(TARGET, count=0)
 
 
-def test_platform_locations(robot, tmp_path):
+def test_platform_locations(robot: mg.Robot, tmp_path: Path) -> None:
     whole = robot.group("arm_with_torso", tip="gripper_tcp", with_base=True)
     checker = mg.CollisionChecker(robot, mg.World(), group=whole)
     database = mg.base.IkSeedDatabase(whole)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections.abc import Iterator
 from graphlib import TopologicalSorter
+from pathlib import Path
 
 import pytest
 
@@ -15,23 +17,23 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 STANDARD = re.compile(r"[a-z_0-9]+|Eigen/\w+|unistd\.h")
 
 
-def files(*patterns: str):
+def files(*patterns: str) -> Iterator[Path]:
     for pattern in patterns:
         yield from sorted(REPOSITORY.glob(pattern))
 
 
-def includes(path) -> list[tuple[str, str]]:
+def includes(path: Path) -> list[tuple[str, str]]:
     return INCLUDE.findall(path.read_text())
 
 
-def test_layers_are_a_hierarchy():
+def test_layers_are_a_hierarchy() -> None:
     order = list(TopologicalSorter(LAYERS["modules"]).static_order())
     assert order[0] == "core"
     assert set(order) == set(LAYERS["modules"])
 
 
 @pytest.mark.parametrize("module", sorted(LAYERS["modules"]))
-def test_module_includes_only_what_it_may(module):
+def test_module_includes_only_what_it_may(module: str) -> None:
     allowed = {module, *LAYERS["modules"][module]}
     wrong = []
     for path in files(f"cpp/include/mmgrasp/{module}/**/*.hpp", f"cpp/src/{module}/**/*.[ch]pp"):
@@ -43,7 +45,7 @@ def test_module_includes_only_what_it_may(module):
 
 
 @pytest.mark.parametrize("module", sorted(LAYERS["only"]))
-def test_narrow_rules(module):
+def test_narrow_rules(module: str) -> None:
     rules = LAYERS["only"][module]
     limited = {rule.split("/")[0] for rule in rules}
     wrong = []
@@ -55,7 +57,7 @@ def test_narrow_rules(module):
     assert not wrong
 
 
-def test_public_headers_need_std_and_eigen_only():
+def test_public_headers_need_std_and_eigen_only() -> None:
     wrong = []
     for path in files("cpp/include/**/*.hpp"):
         for bracket, name in includes(path):
@@ -64,7 +66,7 @@ def test_public_headers_need_std_and_eigen_only():
     assert not wrong
 
 
-def test_ompl_stays_in_its_plugin():
+def test_ompl_stays_in_its_plugin() -> None:
     wrong = [
         str(path.relative_to(REPOSITORY))
         for path in files("cpp/**/*.[ch]pp", "python/bindings/*.[ch]pp")

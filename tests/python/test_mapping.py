@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -24,7 +26,7 @@ def small_camera() -> mg.mapping.PinholeCamera:
     return mg.mapping.PinholeCamera(width=40, height=30, fx=30.0, fy=30.0, cx=19.5, cy=14.5)
 
 
-def test_rendered_plane_has_its_points_on_it():
+def test_rendered_plane_has_its_points_on_it() -> None:
     image = mg.mapping.render_depth(
         [mg.LinkShape(mg.collision.Plane([0, 0, 1], 0.2))], small_camera(), mg.mapping.look_down([0.1, 0.2, 1.0])
     )
@@ -40,29 +42,29 @@ def test_rendered_plane_has_its_points_on_it():
 @pytest.mark.parametrize(
     "depth", ["x", [["a"]], np.zeros((2, 3)), np.zeros(1200), np.zeros((30, 40), complex), [[1, 2], [3]], None]
 )
-def test_bad_images_are_refused_by_name(depth):
+def test_bad_images_are_refused_by_name(depth: Any) -> None:
     with pytest.raises(mg.InvalidInput, match="depth"):
         mg.mapping.DepthImage(depth, small_camera())
 
 
 @pytest.mark.parametrize("points", ["x", [1.0, 2, 3], np.zeros((4, 2)), np.zeros((4, 3), complex), [["a"] * 3]])
-def test_bad_points_are_refused_by_name(points):
+def test_bad_points_are_refused_by_name(points: Any) -> None:
     with pytest.raises(mg.InvalidInput, match="points"):
         mg.mapping.fit_cuboids(points)
 
 
-def test_unknown_keyword_names_the_near_miss():
+def test_unknown_keyword_names_the_near_miss() -> None:
     with pytest.raises(mg.InvalidInput, match="cluster_tolerance"):
         mg.mapping.fit_cuboids(np.zeros((4, 3)), cluster_tolerence=0.1)
 
 
-def test_not_measured_is_no_error():
+def test_not_measured_is_no_error() -> None:
     image = mg.mapping.DepthImage(np.full((30, 40), np.nan), small_camera())
     assert len(image.points()) == 0
     assert not mg.mapping.fit_cuboids(np.full((10, 3), np.nan)).cuboids
 
 
-def test_scans_of_random_trays():
+def test_scans_of_random_trays() -> None:
     scans = [random_trays.scan_random_tray(PART, TRAY, gripper(), count=8, fill=fill, seed=3) for fill in (1.0, 0.5)]
     assert [len(scan.placement.parts) + scan.placement.not_placed for scan in scans] == [8, 4]
     assert all(scan.grasps for scan in scans)
@@ -86,7 +88,7 @@ def test_scans_of_random_trays():
         assert np.allclose(bead[:3, 3], [0, 0, -0.0025])  # inside the tray's floor
 
 
-def test_cuboids_of_a_random_tray_are_its_parts():
+def test_cuboids_of_a_random_tray_are_its_parts() -> None:
     scan = random_trays.scan_random_tray(PART, TRAY, gripper(), count=4, seed=2, noise=0.0, stack=False)
     fit = mg.mapping.fit_cuboids(
         scan.image.points(), T_world_tray=np.eye(4), tray_size=TRAY, eye=scan.image.T_world_camera[:3, 3]
@@ -99,7 +101,7 @@ def test_cuboids_of_a_random_tray_are_its_parts():
         assert np.min(np.linalg.norm(true - cuboid.T_world_box[:3, 3], axis=1)) < 0.004
 
 
-def test_real_depth_frames_give_points_where_their_poses_say():
+def test_real_depth_frames_give_points_where_their_poses_say() -> None:
     """Two frames of one sequence: their clouds meet once each is put at its camera's pose."""
     if not CLOUDS.exists():
         pytest.skip("no reference data")
@@ -118,7 +120,7 @@ def test_real_depth_frames_give_points_where_their_poses_say():
     assert np.mean([tuple(cell) in grown for cell in some]) > 0.9
 
 
-def test_real_cloud_files():
+def test_real_cloud_files() -> None:
     if not CLOUDS.exists():
         pytest.skip("no reference data")
     cloud = mg.mapping.read_pcd(CLOUDS / "haf" / "pcd4.pcd")
@@ -128,7 +130,7 @@ def test_real_cloud_files():
         mg.mapping.read_pcd(CLOUDS / "haf" / "README.txt")
 
 
-def test_graspability_on_a_real_depth_frame_keeps_the_hand_clear():
+def test_graspability_on_a_real_depth_frame_keeps_the_hand_clear() -> None:
     """What stands on the largest level surface of a room: no measured point in a finger, some between the fingers."""
     if not CLOUDS.exists():
         pytest.skip("no reference data")
@@ -159,13 +161,13 @@ def test_graspability_on_a_real_depth_frame_keeps_the_hand_clear():
         assert not np.any(reached & (side > grasp.opening / 2) & (side < grasp.opening / 2 + 0.012))
 
 
-def test_a_part_with_grasps_is_no_body():
-    part = mg.base.Part("part", PART, np.eye(4), [])
+def test_a_part_with_grasps_is_no_body() -> None:
+    part: Any = mg.base.Part("part", PART, np.eye(4), [])
     with pytest.raises(mg.InvalidInput, match="list of LinkShape"):
         random_trays.scan_random_tray(part, TRAY, gripper())
 
 
-def test_parts_at_given_poses_are_grasped_where_they_lie():
+def test_parts_at_given_poses_are_grasped_where_they_lie() -> None:
     poses = [mg.pose([x, 0.1, 0.015], rpy=[0, 0, np.pi / 2]) for x in (-0.06, 0.06)]
     scan = random_trays.scan_tray(PART, poses, TRAY, gripper(), noise=0.0)
     assert not isinstance(scan, random_trays.RandomTrayScan)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from pathlib import Path
 
 import pytest
 
@@ -10,11 +11,11 @@ import mmgrasp as mg
 
 
 @pytest.fixture(scope="module")
-def scenario(small_path) -> mg.scenario.Scenario:
+def scenario(small_path: Path) -> mg.scenario.Scenario:
     return mg.load_scenario(small_path)
 
 
-def test_planning_does_not_change_the_callers_scenario(scenario):
+def test_planning_does_not_change_the_callers_scenario(scenario: mg.scenario.Scenario) -> None:
     before = copy.deepcopy(scenario.options)
     plan = mg.plan_part_supply(scenario, seed=7, threads=1)
     assert scenario.options == before
@@ -23,7 +24,7 @@ def test_planning_does_not_change_the_callers_scenario(scenario):
     assert again.to_dict()["scenario"]["options"]["seed"] == scenario.problem().options["seed"] != 7
 
 
-def test_later_changes_of_the_scenario_do_not_reach_the_plan(scenario):
+def test_later_changes_of_the_scenario_do_not_reach_the_plan(scenario: mg.scenario.Scenario) -> None:
     mine = mg.scenario.Scenario(**vars(scenario))
     plan = mg.plan_part_supply(mine)
     before = plan.to_dict()["scenario"]["options"]
@@ -34,7 +35,9 @@ def test_later_changes_of_the_scenario_do_not_reach_the_plan(scenario):
         del mine.options["seed"]
 
 
-def test_a_problem_as_objects_gives_the_plan_that_its_scenario_gives(scenario, small_plan):
+def test_a_problem_as_objects_gives_the_plan_that_its_scenario_gives(
+    scenario: mg.scenario.Scenario, small_plan: mg.part_supply.ScenarioPlan
+) -> None:
     plan = mg.plan_part_supply(scenario.problem(), scenario.reach_database())
     assert isinstance(plan, mg.base.PartSupplyPlan) and isinstance(small_plan.plan, mg.base.PartSupplyPlan)
     assert plan.outcome == mg.Outcome.solved
@@ -45,11 +48,11 @@ def test_a_problem_as_objects_gives_the_plan_that_its_scenario_gives(scenario, s
             assert a.trajectory.positions.tolist() == b.trajectory.positions.tolist()
 
 
-def test_a_problem_needs_its_database_and_has_its_own_seed(scenario):
+def test_a_problem_needs_its_database_and_has_its_own_seed(scenario: mg.scenario.Scenario) -> None:
     problem, database = scenario.problem(), scenario.reach_database()
     with pytest.raises(mg.InvalidInput, match="database = None"):
-        mg.plan_part_supply(problem)
+        mg.plan_part_supply(problem)  # type: ignore[call-overload]
     with pytest.raises(mg.InvalidInput, match="own options"):
-        mg.plan_part_supply(problem, database, seed=1)
+        mg.plan_part_supply(problem, database, seed=1)  # type: ignore[call-overload]
     with pytest.raises(mg.InvalidInput, match="section `reach`"):
-        mg.plan_part_supply(scenario, database)
+        mg.plan_part_supply(scenario, database)  # type: ignore[call-overload]

@@ -44,7 +44,7 @@ def with_exceptions(stub: str) -> str:
     return "".join([*lines[:first], *classes, *lines[first:]])
 
 
-def test_stubs_are_up_to_date(tmp_path):
+def test_stubs_are_up_to_date(tmp_path: Path) -> None:
     made = generate(tmp_path)
     committed = {path.name: path.read_text() for path in sorted(STUBS.glob("*.pyi"))}
     assert made.keys() == committed.keys()

@@ -11,6 +11,7 @@ import json
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 
@@ -23,6 +24,9 @@ from .arguments import build_parser
 from .check import check_robot, describe
 from .console import Reporter
 from .tables import bench_table, drive_by_summary, print_verdict, summary
+
+if TYPE_CHECKING:
+    from ..reproduce.entry import Sweep
 
 DONE, FAULTY, BAD_INPUT, NO_PLAN, INTERRUPTED = 0, 1, 2, 3, 130
 
@@ -181,10 +185,10 @@ def run_reproduce(arguments: argparse.Namespace, console: Console) -> int:
 
 
 @contextlib.contextmanager
-def _sweep(arguments: argparse.Namespace) -> Iterator[Callable]:
+def _sweep(arguments: argparse.Namespace) -> Iterator[Sweep]:
     """Calls here, or on the cluster that the arguments ask for."""
     if arguments.workers is None and arguments.scheduler is None:
-        from ..reproduce import sweep_here
+        from ..reproduce.entry import sweep_here
 
         yield sweep_here
         return

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 from .. import _core
 
-SECTIONS = (
+Table = Callable[[], dict[str, tuple[Any, str]]]
+
+SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
     ("options", "How to plan (`PartSupplyOptions`)", _core._supply_option_table, {"positioning_uncertainty"}),
     ("reach", "The reachability database (`ReachOptions`)", _core._reach_option_table, set()),
     (

@@ -200,7 +200,8 @@ def read_plan(path: str | os.PathLike[str]) -> dict[str, Any]:
     """The content of a plan.json; raises IoError or InvalidInput when it is not one."""
     root = read_json(Path(path)).root
     check_header(root)
-    return root.raw
+    content: dict[str, Any] = root.raw
+    return content
 
 
 def check_header(root: Node) -> None:
@@ -213,7 +214,8 @@ def check_header(root: Node) -> None:
 
 def plan_schema() -> dict[str, Any]:
     """The JSON Schema of plan.json."""
-    return json.loads((SCHEMAS / "plan.schema.json").read_text())
+    schema: dict[str, Any] = json.loads((SCHEMAS / "plan.schema.json").read_text())
+    return schema
 
 
 def plan_to_check(root: Node) -> checks.PlanToCheck:

@@ -208,7 +208,10 @@ def _post_tops(pipe: Pipe, T: Pose, rng: np.random.Generator) -> list[NDArray[np
         if np.all(beside | above):
             tops.append(along[i] - [0, 0, radius[i] + _POST_GAP])
     pairs = [(a, b) for i, a in enumerate(tops) for b in tops[:i]]
-    return list(max(pairs, key=lambda pair: float(np.linalg.norm(pair[0] - pair[1])), default=tuple(tops)))
+    if not pairs:
+        return tops
+    widest = max(pairs, key=lambda pair: float(np.linalg.norm(pair[0] - pair[1])))
+    return list(widest)
 
 
 def _add_bay(world: World, name: str, pipe: Pipe, T: Pose) -> None:

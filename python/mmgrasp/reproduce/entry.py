@@ -11,7 +11,7 @@ from .._progress import Progress
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Sweep = Callable[..., list]
+Sweep = Callable[..., list[Any]]
 
 
 def sweep_here(

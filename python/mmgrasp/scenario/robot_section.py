@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -166,6 +167,7 @@ def _joint_value(robot: Robot, name: str, node: Node) -> float:
 
 
 def _read_group(robot: Robot, node: Node, tcp: str) -> JointGroup:
+    make: dict[str, Any]
     if isinstance(node.raw, str):
         if node.raw not in robot.groups:
             node.fail(f"the SRDF has no such group{near_miss(node.raw, list(robot.groups) or ['(none)'])}")

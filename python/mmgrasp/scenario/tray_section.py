@@ -139,7 +139,7 @@ def _grid(node: Node, types: dict[str, PartType]) -> list[Placed]:
         node["grid"].fail("must not place more than 1000 parts in one tray")
     spacing = node["spacing"].numbers(2, above=0)
     yaw = node["yaw"].number() if "yaw" in node else 0.0
-    placed = []
+    placed: list[Placed] = []
     for i in range(counts[0]):
         for j in range(counts[1]):
             x, y = (i - (counts[0] - 1) / 2) * spacing[0], (j - (counts[1] - 1) / 2) * spacing[1]

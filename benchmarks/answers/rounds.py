@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from .lookup import PATIENT, Answer, call, find, threads
+from .lookup import PATIENT, Answer, call, find, get, threads
 from .results import rejections, shared_cells, stop, timed
 from .setups import asset, group, pose, tucked
 

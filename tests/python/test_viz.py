@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import mmgrasp as mg
 from plan_by_hand import plan_by_hand
 
 pytest.importorskip("mmgrasp")

@@ -9,6 +9,7 @@
 
 #include "collision/edge/attached_checker.hpp"
 #include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/core/export.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
 #include "mmgrasp/robot/trajectory.hpp"
 
@@ -17,7 +18,7 @@ namespace mmgrasp::detail {
 /// Collision questions of a carry, told apart: the robot alone with its fingers at an opening (shared by all grasps
 /// with that opening), and the object in hand with one grasp. One set of checkers per worker and opening, made when
 /// first needed; from grasp to grasp only the object's pose in the hand changes.
-class TransferChecks {
+class MMGRASP_EXPORT TransferChecks {
  public:
   /// Edges asked for the robot alone and for the held object are cut into steps `search_steps` times as long as `edge`
   /// says.

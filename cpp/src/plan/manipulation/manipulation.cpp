@@ -93,16 +93,16 @@ void ManipulationOptions::check() const {
 
 ManipulationResult plan_manipulation(const ManipulationProblem& problem, const ManipulationOptions& options,
                                      const Roadmap* roadmap, const Monitor& monitor,
-                                     const std::function<void(const Improvement&)>& improved) {
+                                     const ImprovementCallback& on_improvement) {
   problem.check();
   options.check();
   if (roadmap) check_roadmap(roadmap->group(), problem.group);
   const detail::ManipulationPlanner& planner = detail::manipulation_planner(options.planner);
   ManipulationResult result;
   detail::Stopwatch clock;
-  detail::TransferChecks checks(problem, options.edge, planner.edge_steps, resolve_threads(options.threads));
+  detail::TransferChecks checks(problem, options.edge, planner.search_steps, resolve_threads(options.threads));
   detail::GraspCandidates candidates(problem, options, checks, clock, monitor, result);
-  detail::ManipulationInput input{problem, options, roadmap, checks, candidates, improved, monitor, clock};
+  detail::ManipulationInput input{problem, options, roadmap, checks, candidates, on_improvement, monitor, clock};
   const bool exhausted = planner.run(input, result);
   result.stats.search_seconds = clock.seconds() - result.stats.ik_seconds;
   for (const GraspReport& report : result.grasps) {

@@ -8,7 +8,7 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kFineStep = 0.005;  // Of the check of finished paths [rad or m].
+constexpr double kFinalStep = 0.005;  // Largest joint step of the final check of paths [rad or m].
 
 JointGroup with_fingers(const JointGroup& group, const Gripper& gripper, double opening) {
   Eigen::VectorXd values = group.reference();
@@ -43,7 +43,7 @@ TransferChecks::TransferChecks(const ManipulationProblem& problem, const EdgeOpt
       held_(robot_.size()) {
   search_edge_.joint_step *= search_steps;
   search_edge_.workspace_step *= search_steps;
-  path_edge_.joint_step = std::min(path_edge_.joint_step, kFineStep);
+  path_edge_.joint_step = std::min(path_edge_.joint_step, kFinalStep);
   std::map<double, int> openings;
   for (const CandidateGrasp& grasp : problem.grasps) {
     const double opening = problem.gripper ? grasp.opening : 0;
@@ -111,7 +111,7 @@ bool TransferChecks::edge_is_free(int grasp, const Eigen::VectorXd& a, const Eig
 
 bool TransferChecks::path_edge_is_free(int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   AttachedChecker& checker = holding(whole_[opening_of(grasp)], grasp, false);
-  // Optimal paths graze, and who looks again by joint steps alone looks at other configurations.
+  // Optimal paths graze obstacles, and a caller who checks by joint steps alone checks other configurations.
   EdgeOptions by_joints = path_edge_;
   by_joints.workspace_step = kInfinity;
   return checker.edge_is_free(a, b, path_edge_) && checker.edge_is_free(a, b, by_joints);

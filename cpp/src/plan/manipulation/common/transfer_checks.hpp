@@ -15,12 +15,12 @@
 
 namespace mmgrasp::detail {
 
-/// Collision questions of a carry, told apart: the robot alone with its fingers at an opening (shared by all grasps
-/// with that opening), and the object in hand with one grasp. One set of checkers per worker and opening, made when
-/// first needed; from grasp to grasp only the object's pose in the hand changes.
+/// Collision checks of a manipulation problem, in two parts: the robot alone with its fingers at an opening (shared by
+/// all grasps with that opening), and the object in hand with one grasp. There is one set of checkers per worker and
+/// opening, made when first needed; from grasp to grasp only the object's pose in the hand changes.
 class MMGRASP_EXPORT TransferChecks {
  public:
-  /// Edges asked for the robot alone and for the held object are cut into steps `search_steps` times as long as `edge`
+  /// Edges are checked for the robot alone, and for the held object, in steps `search_steps` times as long as `edge`
   /// says.
   TransferChecks(const ManipulationProblem& problem, const EdgeOptions& edge, double search_steps, int workers);
 
@@ -35,7 +35,7 @@ class MMGRASP_EXPORT TransferChecks {
   /// Whether a link that stands still relative to the tip (hand and fingers) hits the scene: it then does so in every
   /// configuration that puts the tip there.
   bool tool_hits_scene(int worker, int opening, const Eigen::VectorXd& q);
-  /// The held object against the robot and the scene; the robot alone is not looked at.
+  /// The held object against the robot and the scene; the robot alone is not checked.
   bool held_is_free(int worker, int grasp, const Eigen::VectorXd& q);
   bool held_edge_is_free(int worker, int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
   Rejection held_rejection(int worker, int grasp, const Eigen::VectorXd& q);
@@ -52,7 +52,7 @@ class MMGRASP_EXPORT TransferChecks {
  private:
   struct Bare {
     CollisionChecker checker;
-    Eigen::VectorXd motion;  ///< Its motion_bounds().
+    Eigen::VectorXd motion;  ///< The checker's motion_bounds().
   };
   struct Held {
     AttachedChecker checker;
@@ -68,7 +68,7 @@ class MMGRASP_EXPORT TransferChecks {
 
   const ManipulationProblem& problem_;
   EdgeOptions edge_, search_edge_, path_edge_;
-  std::vector<JointGroup> groups_;  ///< One an opening.
+  std::vector<JointGroup> groups_;  ///< One per opening.
   std::vector<int> opening_of_;     ///< Per grasp.
   std::string tip_;
   std::set<std::string> tool_;                           ///< Links that stand still relative to the tip.

@@ -15,7 +15,7 @@ constexpr std::size_t kMinParallelVertices = 64;     // Fewer vertices are check
 constexpr std::size_t kMinParallelEdgeSamples = 16;  // ... fewer edges by their samples,
 constexpr std::size_t kMinParallelEdges = 2;         // ... and fewer edges as a whole.
 
-/// A vertex or edge of the roadmap to be checked for the robot at an opening, and the path that asks for it.
+/// A vertex or edge of the roadmap to be checked for the robot at an opening, and the path that needs it.
 struct RobotQuery {
   int opening, number, path, index;
 };

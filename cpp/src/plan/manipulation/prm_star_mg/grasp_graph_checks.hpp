@@ -21,7 +21,7 @@ class GraspGraphChecks {
   GraspGraphChecks(const Roadmap& roadmap, TransferChecks& checks, std::vector<EdgeValidityCache>& robot_caches,
                    int threads, const Monitor& monitor, ManipulationStats& stats);
 
-  /// Whether each path is free. What was found goes to the graphs and to the robot's caches. When stopped on the way,
+  /// Whether each path is free. What was found goes to the graphs and to the robot's caches. When stopped meanwhile,
   /// answers, graphs and caches are void.
   std::vector<char> check(const std::vector<GraspGraph*>& paths);
 

@@ -125,7 +125,7 @@ bool RoadmapSearch::search_all(int first, int last) {
       bound = std::min(bound, spliced_cost(roadmap_, graph(index), graph(found[i]).nodes));
     ++result_.stats.graph_searches;
     const std::optional<Entry> left = find_path(0, index, bound);
-    result_.stats.ways_opened += searches_.front().nodes_opened();
+    result_.stats.nodes_opened += searches_.front().nodes_opened();
     if (!left) continue;
     push(*left);
     if (left->searched) found.push_back(index);

@@ -13,7 +13,7 @@ namespace mmgrasp::detail {
 /// Searches one roadmap for the cheapest free path with any of the grasps (P2 Algorithm 4.3).
 class RoadmapSearch {
  public:
-  /// Looks for paths over the roadmap, or `straight` from start to goal, that cost less than `best`, which they
+  /// Searches for paths over the roadmap, or `straight` from start to goal, that cost less than `best`, which they
   /// replace.
   RoadmapSearch(const ManipulationInput& input, const Roadmap& roadmap, bool straight, int threads, TransferPath& best,
                 ManipulationResult& result);

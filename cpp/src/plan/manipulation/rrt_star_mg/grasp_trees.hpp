@@ -11,7 +11,7 @@ namespace mmgrasp::detail {
 
 /// The trees of RRT*-MG (P2 5.3): for each grasp one that grows from its starts and one that grows from its goals, each
 /// with as many roots as there are arm configurations at that end. Vertices of all trees of a side share one
-/// nearest-neighbour structure and carry the number of their tree. Configurations are kept apart from vertices, so that
+/// nearest-neighbour structure and know the number of their tree. Configurations are kept apart from vertices, so that
 /// a vertex can be duplicated into another tree (P2 5.3.2) and what is known of a configuration is known to all.
 /// Numbers of vertices and configurations are never used again.
 class MMGRASP_EXPORT GraspTrees {

@@ -24,7 +24,7 @@ class MMGRASP_EXPORT TreeChecks {
   bool configuration_is_free(int grasp, int configuration);
   /// Robot and object in hand, in the coarse steps of the search. Both configurations are known to be free.
   bool edge_is_free(int grasp, int a, int b);
-  /// As edge_is_free(), for shortcuts: these are asked for again and again, and those found blocked are remembered.
+  /// As edge_is_free(), for shortcuts: the same ones are tried again and again, and those found blocked are cached.
   bool shortcut_is_free(int grasp, int a, int b);
   /// The first edge of a path through these vertices that does not pass the final check; -1: all do.
   int blocked_edge(int grasp, const std::vector<int>& vertices);

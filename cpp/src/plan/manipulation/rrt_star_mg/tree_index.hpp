@@ -66,7 +66,7 @@ class MMGRASP_EXPORT TreeIndex {
   void put(int block, int id, const double* q);
   void split(int node);
 
-  /// Cells in the order of the descent, nearer child first; `bound` may shrink on the way.
+  /// Visits cells from the root down, nearer child first; `bound` may decrease meanwhile.
   template <class Visit>
   void search(const double* q, const double& bound, const Visit& visit) const {
     visit_node(0, q, 0, bound, visit);

@@ -5,6 +5,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/detail/stopwatch.hpp"
+#include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/plan/improvement.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
@@ -49,5 +50,12 @@ struct ManipulationPlanner {
 
 /// Throws InvalidInput listing the known names.
 const ManipulationPlanner& manipulation_planner(const std::string& name);
+
+/// plan_manipulation() with this planner, whatever the options name.
+MMGRASP_EXPORT ManipulationResult plan_manipulation_with(const ManipulationPlanner& planner,
+                                                         const ManipulationProblem& problem,
+                                                         const ManipulationOptions& options, const Roadmap* roadmap,
+                                                         const Monitor& monitor,
+                                                         const ImprovementCallback& on_improvement);
 
 }  // namespace mmgrasp::detail

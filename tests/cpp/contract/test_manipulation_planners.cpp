@@ -95,7 +95,7 @@ TEST_P(ManipulationPlanner, SameSeedSamePathAtAnyNumberOfThreads) {
     EXPECT_EQ(result.improvements.size(), expected.improvements.size());
     EXPECT_EQ(result.stats.graph_searches, expected.stats.graph_searches);
     EXPECT_EQ(result.stats.edges_checked_robot, expected.stats.edges_checked_robot);
-    EXPECT_EQ(result.stats.edges_checked_held, expected.stats.edges_checked_held);
+    EXPECT_EQ(result.stats.edges_checked_attached, expected.stats.edges_checked_attached);
     EXPECT_EQ(result.stats.samples, expected.stats.samples);
   }
 }

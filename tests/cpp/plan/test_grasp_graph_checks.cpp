@@ -1,4 +1,5 @@
-// What is shared between grasps, and what is not: the robot's contacts are all grasps', the held object's one grasp's.
+// What is shared between grasps, and what is not: the robot's contacts are all grasps', the attached object's one
+// grasp's.
 #include "plan/manipulation/prm_star_mg/grasp_graph_checks.hpp"
 
 #include <gtest/gtest.h>
@@ -114,7 +115,7 @@ TEST_F(OneVertex, IsClosedToAllGraspsByTheRobotItself) {
     const ManipulationResult result = plan_manipulation(problem_, options, &roadmap);
     EXPECT_EQ(result.outcome, Outcome::infeasible);
     EXPECT_EQ(result.stats.grasps_searched, static_cast<std::size_t>(count));
-    EXPECT_EQ(result.stats.edges_checked_robot + result.stats.edges_checked_held, 0u);
+    EXPECT_EQ(result.stats.edges_checked_robot + result.stats.edges_checked_attached, 0u);
   }
 }
 

@@ -176,7 +176,7 @@ TEST(RrtStarMg, ExplorationBeginsWithAPath) {
   EXPECT_GT(stats[0].vertices, 600u);
   EXPECT_EQ(stats[0].vertices, stats[1].vertices);
   EXPECT_EQ(stats[0].edges_checked_robot, stats[1].edges_checked_robot);
-  EXPECT_EQ(stats[0].edges_checked_held, stats[1].edges_checked_held);
+  EXPECT_EQ(stats[0].edges_checked_attached, stats[1].edges_checked_attached);
 }
 
 /// Errata on Algorithm 5.13, line 17: the print would end with the first sample that no tree can use.

@@ -16,7 +16,7 @@ TEST(TreeChecks, AnswersAreKeptForAllGraspsOfAnOpening) {
   EXPECT_TRUE(setting.checks.edge_is_free(0, a, b));
   EXPECT_TRUE(setting.checks.edge_is_free(1, b, a));
   EXPECT_EQ(setting.stats.edges_checked_robot, 1u);
-  EXPECT_EQ(setting.stats.edges_checked_held, 2u);
+  EXPECT_EQ(setting.stats.edges_checked_attached, 2u);
 }
 
 TEST(TreeChecks, BlockedShortcutsAreNotCheckedAgain) {
@@ -26,7 +26,7 @@ TEST(TreeChecks, BlockedShortcutsAreNotCheckedAgain) {
   const int a = setting.trees.vertex(setting.root(0, GraspEnds::kStart)).configuration;
   const int b = setting.trees.vertex(setting.root(0, GraspEnds::kGoal)).configuration;
   for (int i = 0; i < 3; ++i) EXPECT_FALSE(setting.checks.shortcut_is_free(0, a, b));
-  EXPECT_EQ(setting.stats.edges_checked_held, 1u);
+  EXPECT_EQ(setting.stats.edges_checked_attached, 1u);
   EXPECT_EQ(setting.checks.blocked_edge(0, {setting.root(0, GraspEnds::kStart), setting.root(0, GraspEnds::kGoal)}), 0);
 }
 

@@ -102,11 +102,11 @@ struct MMGRASP_EXPORT ManipulationStats {
   /// Nodes pushed to the open lists of graph searches that ran before any path was checked (prm_star_mg, `lazy_grasps`
   /// off). Bounds spliced from the paths of other grasps keep it small (P2 4.3.2.5).
   std::size_t nodes_opened = 0;
-  std::size_t grasps_searched = 0;      ///< Grasps for which prm_star_mg searched a roadmap; each counts once.
-  std::size_t edges_checked_robot = 0;  ///< Edges checked for the robot alone, shared by all grasps of an opening.
-  std::size_t edges_checked_held = 0;   ///< Edges checked for the object in hand.
-  std::size_t samples = 0;              ///< Samples that rrt_star_mg drew or reassigned.
-  std::size_t vertices = 0;             ///< Vertices of rrt_star_mg's trees, removed ones included.
+  std::size_t grasps_searched = 0;         ///< Grasps for which prm_star_mg searched a roadmap; each counts once.
+  std::size_t edges_checked_robot = 0;     ///< Edges checked for the robot alone, shared by all grasps of an opening.
+  std::size_t edges_checked_attached = 0;  ///< Edges checked for the object in hand.
+  std::size_t samples = 0;                 ///< Samples that rrt_star_mg drew or reassigned.
+  std::size_t vertices = 0;                ///< Vertices of rrt_star_mg's trees, removed ones included.
 };
 
 struct MMGRASP_EXPORT ManipulationResult {

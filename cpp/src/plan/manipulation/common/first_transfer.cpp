@@ -71,7 +71,7 @@ class FirstTransfer {
 
   bool edge_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
     ++result_.stats.edges_checked_robot;
-    ++result_.stats.edges_checked_held;
+    ++result_.stats.edges_checked_attached;
     return input_.checks.edge_is_free(grasp_, a, b);
   }
 

@@ -87,7 +87,7 @@ GraspCandidate GraspCandidates::check(int grasp, int worker, GraspReport& report
   out.cost = problem_.grasps[grasp].cost;
   const auto valid = [&](const Eigen::VectorXd& q) {
     // The object first: it has fewer shapes, and hits the scene in every configuration with this tool pose or in none.
-    ReachVerdict verdict{checks_.held_rejection(worker, grasp, q), false};
+    ReachVerdict verdict{checks_.attached_rejection(worker, grasp, q), false};
     if (verdict.cause == Rejection::scene) {
       verdict.final = true;
     } else if (verdict.cause == Rejection::none) {

@@ -44,10 +44,10 @@ std::vector<char> GraspGraphChecks::check(const std::vector<GraspGraph*>& paths)
   paths_ = &paths;
   free_.assign(paths.size(), 1);
   check_vertices_for_robot();
-  check_vertices_for_held();
+  check_vertices_for_attached();
   check_edge_samples();
   check_edges_for_robot();
-  check_edges_for_held();
+  check_edges_for_attached();
   return free_;
 }
 
@@ -77,7 +77,7 @@ void GraspGraphChecks::check_vertices_for_robot() {
   }
 }
 
-void GraspGraphChecks::check_vertices_for_held() {
+void GraspGraphChecks::check_vertices_for_attached() {
   std::vector<Item> items;
   for (std::size_t p = 0; p < paths_->size(); ++p) {
     if (!free_[p]) continue;
@@ -89,7 +89,7 @@ void GraspGraphChecks::check_vertices_for_held() {
   std::vector<char> answers(items.size());
   run(items.size(), kMinParallelVertices, [&](std::size_t i, int worker) {
     const Item& item = items[i];
-    answers[i] = checks_.held_is_free(worker, graph_of(item).candidate.grasp, roadmap_.vertices().col(item.index));
+    answers[i] = checks_.attached_is_free(worker, graph_of(item).candidate.grasp, roadmap_.vertices().col(item.index));
   });
   for (std::size_t i = 0; i < items.size(); ++i) {
     GraspGraph& graph = graph_of(items[i]);
@@ -112,7 +112,7 @@ void GraspGraphChecks::check_edge_samples() {
     const auto [a, b] = ends_of(items[i]);
     const auto is_free = [&, &a = a, &b = b](double t) {
       const Eigen::VectorXd q = a + t * (b - a);
-      return checks_.held_is_free(worker, candidate.grasp, q) &&
+      return checks_.attached_is_free(worker, candidate.grasp, q) &&
              (!is_link || checks_.robot_is_free(worker, candidate.opening, q));
     };
     // The middles first: 1/2, 1/4, 3/4, 1/8, ...
@@ -138,14 +138,14 @@ void GraspGraphChecks::check_edges_for_robot() {
     if (robot_blocks(*(*paths_)[p])) free_[p] = 0;
 }
 
-void GraspGraphChecks::check_edges_for_held() {
+void GraspGraphChecks::check_edges_for_attached() {
   const std::vector<Item> items = unknown_steps();
   std::vector<char> answers(items.size());
   run(items.size(), kMinParallelEdges, [&](std::size_t i, int worker) {
     const auto [a, b] = ends_of(items[i]);
-    answers[i] = checks_.held_edge_is_free(worker, graph_of(items[i]).candidate.grasp, a, b);
+    answers[i] = checks_.attached_edge_is_free(worker, graph_of(items[i]).candidate.grasp, a, b);
   });
-  stats_.edges_checked_held += items.size();
+  stats_.edges_checked_attached += items.size();
   record_steps(items, answers, true);
 }
 

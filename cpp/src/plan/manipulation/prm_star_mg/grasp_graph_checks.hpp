@@ -34,10 +34,10 @@ class GraspGraphChecks {
 
   // The stages.
   void check_vertices_for_robot();
-  void check_vertices_for_held();
+  void check_vertices_for_attached();
   void check_edge_samples();
   void check_edges_for_robot();
-  void check_edges_for_held();
+  void check_edges_for_attached();
 
   /// Steps not known to be free for the object in hand, of paths not yet found blocked.
   std::vector<Item> unknown_steps() const;

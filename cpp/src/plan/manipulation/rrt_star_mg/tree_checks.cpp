@@ -19,7 +19,7 @@ bool TreeChecks::robot_is_free(int grasp, int configuration) {
 
 bool TreeChecks::configuration_is_free(int grasp, int configuration) {
   return robot_is_free(grasp, configuration) &&
-         checks_.held_is_free(0, trees_.ends().grasp(grasp), values(configuration));
+         checks_.attached_is_free(0, trees_.ends().grasp(grasp), values(configuration));
 }
 
 // The object first: it is larger than a link as a rule, and hits first.
@@ -28,8 +28,8 @@ bool TreeChecks::edge_is_free(int grasp, int a, int b) {
   const auto known = robot_.find(opening, a, b);
   if (known && !*known) return false;
   const Eigen::VectorXd from = values(a), to = values(b);
-  ++stats_.edges_checked_held;
-  if (!checks_.held_edge_is_free(0, trees_.ends().grasp(grasp), from, to)) return false;
+  ++stats_.edges_checked_attached;
+  if (!checks_.attached_edge_is_free(0, trees_.ends().grasp(grasp), from, to)) return false;
   if (known) return true;
   ++stats_.edges_checked_robot;
   const bool free = checks_.robot_edge_is_free(0, opening, from, to);

@@ -4,65 +4,26 @@
 //     bench_many_grasps [threads, 0: all] [planner]
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
 #include "core/collision_case.hpp"
 #include "core/report.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
+#include "planners/bar_past_post.hpp"
 
 namespace {
 
 using namespace mmgrasp;
 
-constexpr int kGrasps = 500, kRuns = 20;
-
-Pose at(double x, double y, double z) {
-  Pose T = Pose::Identity();
-  T.translation() << x, y, z;
-  return T;
-}
-
-/// The hand closes across the bar (along x) at `place`, `angle` away from straight down.
-CandidateGrasp grasp(double place, double angle) {
-  const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
-  const Eigen::Vector3d z = Eigen::AngleAxisd(angle, x) * Eigen::Vector3d(0, 0, -1);
-  Pose T = Pose::Identity();
-  T.linear() << x, z.cross(x), z;
-  T.translation() = place * x - 0.12 * z;
-  T.linear() = T.linear() * Eigen::AngleAxisd(M_PI / 4, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  return {T, 0, 0};
-}
-
-ManipulationProblem problem_of(const JointGroup& group, const std::string& kind, unsigned run) {
-  Rng rng(run);
-  LinkShape bar;
-  bar.shape = Box{{0.3, 0.03, 0.03}};
-  ManipulationProblem problem{group, {}, {bar}, at(0.45, 0.3, 0.05), at(0.45, -0.3, 0.3)};
-  problem.T_world_start.linear() =
-      Eigen::AngleAxisd(rng.uniform(-0.5, 0.5), Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  problem.world.add("table", Box{{1.2, 1.6, 0.04}}, at(0.7, 0, -0.03));
-  problem.world.add("post", Box{{0.06, 0.06, 0.5}}, at(0.5, 0.0, 0.25));
-  for (int i = 0; i < kGrasps; ++i) {
-    const double place = rng.uniform(-0.14, 0.14);
-    if (kind == "499 in the table") {
-      problem.grasps.push_back(grasp(place, M_PI + rng.uniform(-0.8, 0.8)));
-    } else {
-      problem.grasps.push_back(grasp(place, rng.uniform(-0.5, 0.5)));
-      if (kind == "499 out of reach") problem.grasps.back().T_object_tool.translation().x() += rng.uniform(0.6, 1.5);
-    }
-  }
-  problem.grasps[rng.index(kGrasps)] = grasp(0.02, 0.1);
-  return problem;
-}
+constexpr int kRuns = 20;
 
 void measure(const Roadmap& roadmap, const std::string& kind, const ManipulationOptions& options) {
   std::vector<double> firsts, seconds, processor;
   int solved = 0;
   double cost = 0;
   for (unsigned run = 0; run <= kRuns; ++run) {  // the first one warms up
-    const ManipulationProblem problem = problem_of(roadmap.group(), kind, std::max(run, 1u));
+    const ManipulationProblem problem = bench::bar_past_post(roadmap.group(), kind, std::max(run, 1u));
     const double begin = bench::now(), begin_processor = bench::processor_seconds();
     const ManipulationResult result = plan_manipulation(problem, options, &roadmap);
     if (run == 0) continue;

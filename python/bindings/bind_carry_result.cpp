@@ -8,11 +8,11 @@ namespace {
 using namespace py::literals;
 
 py::dict stats_dict(const ManipulationStats& s) {
-  return py::dict("ik_seconds"_a = s.ik_seconds, "roadmap_seconds"_a = s.roadmap_seconds,
-                  "search_seconds"_a = s.search_seconds, "graph_searches"_a = s.graph_searches,
-                  "ways_opened"_a = s.ways_opened, "grasps_searched"_a = s.grasps_searched,
-                  "roadmap_cost"_a = s.roadmap_cost, "edges_checked_robot"_a = s.edges_checked_robot,
-                  "edges_checked_held"_a = s.edges_checked_held, "samples"_a = s.samples, "vertices"_a = s.vertices);
+  return py::dict(
+      "ik_seconds"_a = s.ik_seconds, "roadmap_seconds"_a = s.roadmap_seconds, "search_seconds"_a = s.search_seconds,
+      "graph_searches"_a = s.graph_searches, "ways_opened"_a = s.nodes_opened, "grasps_searched"_a = s.grasps_searched,
+      "roadmap_cost"_a = s.roadmap_cost, "edges_checked_robot"_a = s.edges_checked_robot,
+      "edges_checked_held"_a = s.edges_checked_attached, "samples"_a = s.samples, "vertices"_a = s.vertices);
 }
 
 py::dict report_dict(const GraspReport& r) {

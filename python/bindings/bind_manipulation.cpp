@@ -112,7 +112,7 @@ void refuse_options_of_others(const py::kwargs& given, bool with_roadmap, const 
 class Improved {
  public:
   explicit Improved(py::object callback) : callback_(std::move(callback)) {}
-  std::function<void(const Improvement&)> function(const Monitor& monitor) {
+  ImprovementCallback function(const Monitor& monitor) {
     if (callback_.is_none()) return {};
     return [this, stop = monitor.stop](const Improvement& improvement) mutable {
       const py::gil_scoped_acquire gil;

@@ -44,9 +44,9 @@ MotionResult plan(const Given<Robot>& given_robot, const Given<JointGroup>& give
   MotionOptions read = read_options(motion_fields(), options, "plan_motion");
   if (tool_cone) read.tool_cone = taken(*tool_cone, "tool_cone");
   if (!function_argument(on_solution, "on_solution").is_none()) {
-    read.improved = [&](const JointPath& path, double cost) {
+    read.on_improvement = [&](const Improvement& better) {
       const py::gil_scoped_acquire gil;
-      on_solution(rows_to_array(path.waypoints), cost);
+      on_solution(rows_to_array(better.path.waypoints), better.cost);
     };
   }
   const Eigen::VectorXd from = vector_argument(start, "start", group.size());

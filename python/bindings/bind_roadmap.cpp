@@ -18,7 +18,7 @@ const std::vector<OptionField<RoadmapOptions>>& roadmap_fields() {
 }
 
 py::dict figures_dict(const Roadmap& roadmap) {
-  const RoadmapStatistics f = roadmap.figures();
+  const RoadmapStatistics f = roadmap.statistics();
   return py::dict("mean_degree"_a = f.mean_degree, "components"_a = f.components,
                   "largest_component"_a = f.largest_component, "radius"_a = f.radius, "volume"_a = f.volume,
                   "gamma_star"_a = f.gamma_star);

@@ -17,7 +17,7 @@ namespace {
 
 using test::flat_pose;
 
-/// A bar carried by an arm of three links past two posts, with twenty grasps.
+/// A bar moved by an arm of three links past two posts, with twenty grasps.
 class ManipulationPlanner : public ::testing::TestWithParam<std::string> {
  protected:
   ManipulationOptions options() const {
@@ -32,7 +32,7 @@ class ManipulationPlanner : public ::testing::TestWithParam<std::string> {
     return options;
   }
 
-  /// A wall from the first joint on that no link can swing through; its limits forbid the way round the back.
+  /// A wall from the first joint on that no link can swing through; its limits forbid a path round the back.
   static ManipulationProblem walled() {
     ManipulationProblem problem = test::bar_transfer();
     problem.world.add("wall", Shape(Box{{1.3, 0.02, 0.2}}), flat_pose(0.75, 0, 0));
@@ -66,15 +66,15 @@ TEST_P(ManipulationPlanner, SolvesAndThePathIsFreeByFcl) {
   ManipulationOptions options = this->options();
   options.straight = false;
   double last = std::numeric_limits<double>::infinity();
-  std::size_t told = 0;
+  std::size_t reported = 0;
   const ManipulationResult result = plan_manipulation(problem, options, nullptr, {}, [&](const Improvement& better) {
     EXPECT_LT(better.cost, last);
     last = better.cost;
-    ++told;
+    ++reported;
   });
   expect_sound(problem, result);
   EXPECT_EQ(result.cost, last);
-  EXPECT_EQ(result.improvements.size(), told);
+  EXPECT_EQ(result.improvements.size(), reported);
   EXPECT_EQ(result.grasps.size(), problem.grasps.size());
 }
 
@@ -95,7 +95,7 @@ TEST_P(ManipulationPlanner, SameSeedSamePathAtAnyNumberOfThreads) {
     EXPECT_EQ(result.improvements.size(), expected.improvements.size());
     EXPECT_EQ(result.stats.graph_searches, expected.stats.graph_searches);
     EXPECT_EQ(result.stats.edges_checked_robot, expected.stats.edges_checked_robot);
-    EXPECT_EQ(result.stats.edges_checked_held, expected.stats.edges_checked_held);
+    EXPECT_EQ(result.stats.edges_checked_attached, expected.stats.edges_checked_attached);
     EXPECT_EQ(result.stats.samples, expected.stats.samples);
   }
 }
@@ -229,7 +229,7 @@ TEST_P(ManipulationPlanner, ClockAndStopTokenEndASearchThatHasBegun) {
     options.time_limit = by_clock ? 1.0 : 100.0;
     Monitor monitor;
     monitor = within_search([&] {
-      // The clock runs out here, wherever it stood.
+      // The time limit passes here, wherever the call is.
       if (by_clock) std::this_thread::sleep_for(std::chrono::duration<double>(options.time_limit));
       if (!by_clock) monitor.stop.stop();
     });
@@ -331,7 +331,7 @@ TEST_P(ManipulationPlanner, TheFirstPathDoesNotEndTheSearch) {
   }
 }
 
-TEST_P(ManipulationPlanner, EveryGraspIsLookedAtInWhateverOrder) {
+TEST_P(ManipulationPlanner, EveryGraspIsCheckedInAnyOrder) {
   ManipulationOptions options = this->options();
   const ManipulationProblem problem = with_many_grasps();
   options.first_grasps = 0;
@@ -378,7 +378,7 @@ TEST_P(ManipulationPlanner, AnInvalidStartSaysWhy) {
 INSTANTIATE_TEST_SUITE_P(All, ManipulationPlanner, ::testing::ValuesIn(manipulation_planner_names()),
                          [](const auto& info) { return info.param; });
 
-TEST(CarryPlanners, AWrongNameListsTheKnownOnes) {
+TEST(ManipulationPlannerTable, AWrongNameListsTheKnownOnes) {
   ManipulationOptions options;
   options.planner = "prm";
   try {

@@ -70,7 +70,8 @@ class Planner : public ::testing::TestWithParam<std::string> {
     expect_free(arm, *result.path, scene);
   }
 
-  /// At the promised fineness nothing touches; far finer, nothing enters by more than a corner can between two looks.
+  /// At the promised resolution nothing touches; at a far higher one nothing enters by more than a corner can between
+  /// two checks.
   void expect_free(const test::PlanarArm& arm, const JointPath& path, const std::vector<SceneBox>& scene) const {
     EXPECT_GT(test::fcl_path_clearance(arm, kLength, path, scene, MotionOptions{}.edge_step / 8), 0);
     std::vector<SceneBox> core = scene;
@@ -134,7 +135,7 @@ TEST_P(Planner, ReportsBetterAndBetterPaths) {
   CollisionChecker checker = this->checker(wall);
   MotionOptions options = this->options();
   std::vector<std::pair<JointPath, double>> reported;
-  options.improved = [&](const JointPath& path, double cost) { reported.emplace_back(path, cost); };
+  options.on_improvement = [&](const Improvement& better) { reported.emplace_back(better.path, better.cost); };
   const MotionResult result = plan_motion(checker, start, {goal}, options);
   ASSERT_EQ(result.outcome, Outcome::solved);
   ASSERT_FALSE(reported.empty());
@@ -149,16 +150,16 @@ TEST_P(Planner, ReportsBetterAndBetterPaths) {
   }
   EXPECT_LE(best, result.cost + 1e-12);
   // Listening changes nothing.
-  options.improved = {};
+  options.on_improvement = {};
   CollisionChecker fresh = this->checker(wall);
   EXPECT_EQ(plan_motion(fresh, start, {goal}, options).path->waypoints, result.path->waypoints);
 }
 
-TEST_P(Planner, PathsOfPlannersThatKeepImprovingStandTheLastLook) {
+TEST_P(Planner, PathsOfPlannersThatKeepImprovingPassTheFinalCheck) {
   const std::set<std::string> improving{"prm_star", "lazy_prm_star", "rrt_star", "informed_rrt_star",
                                         "bit_star", "abit_star",     "ait_star"};
-  // The shortest way leads past the end of a plate that is thinner than what the tip moves within a step. Between two
-  // of the last looks it moves 8 mm and may enter by half of that.
+  // The shortest path leads past the end of a plate that is thinner than what the tip moves within a step. Between two
+  // of the final checks it moves 8 mm and may enter by half of that.
   const test::PlanarArm thin(2, kLength, 0.01);
   const std::vector<SceneBox> plate{{{0.65, 0, 0}, {0.2, 0.02, 0.2}}}, core{{{0.65, 0, 0}, {0.192, 0.012, 0.2}}};
   VectorXd from(2), to(2);
@@ -169,10 +170,10 @@ TEST_P(Planner, PathsOfPlannersThatKeepImprovingStandTheLastLook) {
     MotionOptions options = this->options();
     options.edge_step = 0.08;
     options.seed = seed;
-    options.improved = [&](const JointPath& path, double) {
-      EXPECT_GT(test::fcl_path_clearance(thin, kLength, path, core, options.edge_step / 80), 0);
+    options.on_improvement = [&](const Improvement& better) {
+      EXPECT_GT(test::fcl_path_clearance(thin, kLength, better.path, core, options.edge_step / 80), 0);
     };
-    // One search is all there is time for when the clock ends it.
+    // There is time for one search only when the time limit ends it.
     int searches = 0;
     Monitor monitor;
     monitor.progress = [&](const std::string&, double share) { searches += share > 0 && share < 1; };
@@ -244,7 +245,7 @@ TEST_P(Planner, TakesTheGoalItCanReach) {
   const VectorXd blocked = vec(0.785, 0, 0), inside = vec(0, 0, 0), outside = vec(-2.0, 0.4, 0);
   ASSERT_FALSE(checker.is_free(blocked));
   const VectorXd from = vec(2.0, 0, 0);
-  // The posts leave no way across the front, so a way round does not exist either: only `near` is on the same side.
+  // The posts leave no path across the front, nor one around: only `near` is on the same side.
   const VectorXd near = vec(1.6, 1.2, -1.5);
   const MotionResult result = plan_motion(checker, from, {blocked, inside, near, outside}, options());
   ASSERT_EQ(result.outcome, Outcome::solved);
@@ -255,7 +256,7 @@ TEST_P(Planner, TakesTheGoalItCanReach) {
 }
 
 TEST_P(Planner, ContinuousJointsRunOnPastHalfATurn) {
-  // A plate at half a turn is in the way of the straight edge.
+  // A plate at half a turn blocks the straight edge.
   const test::PlanarArm round(2, kLength, 0.02, true);
   const std::vector<SceneBox> scene{{{-0.75, 0, 0}, {0.2, 0.02, 0.2}}};
   CollisionChecker checker(round.group(), test::make_world(scene));

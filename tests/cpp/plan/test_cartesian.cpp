@@ -94,7 +94,7 @@ TEST(Cartesian, BeginsAtTheNearestBranchThatCompletes) {
   ASSERT_EQ(result.outcome, Outcome::solved);
   EXPECT_EQ(result.path->waypoints.front(), near);
   EXPECT_GT(result.branches, 1);
-  // The others stand farther away than the whole of this one's way: none had to be followed.
+  // The others are farther away than this one's whole path is long: none had to be tried.
   EXPECT_LT(result.tried, result.branches);
   const CartesianResult again = plan_cartesian(checker, poses);
   ASSERT_TRUE(again.path);
@@ -146,7 +146,7 @@ TEST(Cartesian, AStartInCollisionNamesThePair) {
   }
 }
 
-TEST(Cartesian, AStartBeyondLimitsIsToldByJointValueAndLimits) {
+TEST(Cartesian, AStartBeyondLimitsIsReportedByJointValueAndLimits) {
   // Bent either way, the elbow is bent further than it may be.
   const test::PumaArm arm(0.3);
   CollisionChecker checker(arm.group(), World{});

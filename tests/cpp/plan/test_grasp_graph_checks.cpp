@@ -1,4 +1,5 @@
-// What is shared between grasps, and what is not: the robot's contacts are all grasps', the held object's one grasp's.
+// What is shared between grasps, and what is not: the robot's contacts are all grasps', the attached object's one
+// grasp's.
 #include "plan/manipulation/prm_star_mg/grasp_graph_checks.hpp"
 
 #include <gtest/gtest.h>
@@ -14,8 +15,7 @@
 namespace mmgrasp {
 namespace {
 
-/// A configuration through which one grasp carries the bar, while with another one the bar, and it alone, is in the
-/// way.
+/// A configuration that is free with one grasp, while with another one the bar, and it alone, collides.
 struct Gate {
   Eigen::VectorXd q;
   CandidateGrasp passing, blocked;
@@ -80,7 +80,7 @@ TEST_F(OneVertex, IsNotClosedToAllGraspsByWhatOneOfThemHolds) {
   options.time_limit = 100;
   problem_.grasps = {gate.blocked};
   EXPECT_EQ(plan_manipulation(problem_, options, &roadmap).outcome, Outcome::infeasible);
-  // The other one is dearer than any path, so that it is looked at last.
+  // The other grasp costs more than any path, so that it is searched last.
   CandidateGrasp passing = gate.passing;
   passing.cost = 100;
   for (const int batch : {0, 1})
@@ -98,7 +98,7 @@ TEST_F(OneVertex, IsNotClosedToAllGraspsByWhatOneOfThemHolds) {
       }
 }
 
-/// The other way round: no edge through it is looked at for any of them.
+/// Conversely: no edge through it is checked for any of them.
 TEST_F(OneVertex, IsClosedToAllGraspsByTheRobotItself) {
   const Gate gate = find_gate();
   ManipulationOptions options;
@@ -115,7 +115,7 @@ TEST_F(OneVertex, IsClosedToAllGraspsByTheRobotItself) {
     const ManipulationResult result = plan_manipulation(problem_, options, &roadmap);
     EXPECT_EQ(result.outcome, Outcome::infeasible);
     EXPECT_EQ(result.stats.grasps_searched, static_cast<std::size_t>(count));
-    EXPECT_EQ(result.stats.edges_checked_robot + result.stats.edges_checked_held, 0u);
+    EXPECT_EQ(result.stats.edges_checked_robot + result.stats.edges_checked_attached, 0u);
   }
 }
 

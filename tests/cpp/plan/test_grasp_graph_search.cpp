@@ -14,14 +14,14 @@ namespace {
 
 constexpr int kVertices = 100'000;
 
-/// One grasp over a large roadmap; no link leads into its goal, so that a search must look at all there is.
-class WithoutAWay : public ::testing::Test {
+/// One grasp over a large roadmap; no link leads into its goal, so that a search must expand all vertices.
+class WithoutAPath : public ::testing::Test {
  protected:
-  WithoutAWay() : graph_(roadmap_, candidate()), robot_(roadmap_), search_(roadmap_) {
+  WithoutAPath() : graph_(roadmap_, candidate()), robot_(roadmap_), search_(roadmap_) {
     graph_.connect(roadmap_, false, 1e9);
     for (const int link : graph_.into_goals) graph_.links[link].blocked = true;
     search_.robot_is_free = [this](int) {
-      if (++asked_ == stop_at_) stop_ = true;
+      if (++checked_ == stop_at_) stop_ = true;
       return true;
     };
     search_.stopped = [this] { return stop_; };
@@ -44,43 +44,43 @@ class WithoutAWay : public ::testing::Test {
   GraspGraph graph_;
   EdgeValidityCache robot_;
   GraspGraphSearch search_;
-  int asked_ = 0, stop_at_ = -1;
+  int checked_ = 0, stop_at_ = -1;
   bool stop_ = false;
 };
 
-TEST_F(WithoutAWay, StopsSoonAndSaysHowFarItCame) {
+TEST_F(WithoutAPath, StopsSoonAndReportsALowerBound) {
   stop_at_ = 2000;
   const double straight = (graph_.goal(0) - graph_.start(0)).norm();
-  EXPECT_EQ(search_.search(graph_, robot_, 1e9), GraspGraphSearch::End::gave_up);
-  EXPECT_GE(asked_, stop_at_);
-  EXPECT_LE(asked_, stop_at_ + 256);
-  EXPECT_GE(search_.reached(), straight - 1e-9);
-  const double before = search_.reached();
+  EXPECT_EQ(search_.search(graph_, robot_, 1e9), GraspGraphSearch::End::cancelled);
+  EXPECT_GE(checked_, stop_at_);
+  EXPECT_LE(checked_, stop_at_ + 256);
+  EXPECT_GE(search_.lower_bound(), straight - 1e-9);
+  const double before = search_.lower_bound();
   // Stopped already.
-  EXPECT_EQ(search_.search(graph_, EdgeValidityCache(roadmap_), 1e9), GraspGraphSearch::End::gave_up);
-  EXPECT_GE(search_.reached(), straight - 1e-9);
+  EXPECT_EQ(search_.search(graph_, EdgeValidityCache(roadmap_), 1e9), GraspGraphSearch::End::cancelled);
+  EXPECT_GE(search_.lower_bound(), straight - 1e-9);
   stop_ = false;
-  asked_ = 0;
+  checked_ = 0;
   stop_at_ = 5000;
-  EXPECT_EQ(search_.search(graph_, EdgeValidityCache(roadmap_), 1e9), GraspGraphSearch::End::gave_up);
-  EXPECT_GT(search_.reached(), before);
+  EXPECT_EQ(search_.search(graph_, EdgeValidityCache(roadmap_), 1e9), GraspGraphSearch::End::cancelled);
+  EXPECT_GT(search_.lower_bound(), before);
 }
 
-TEST_F(WithoutAWay, WhatIsKnownIsNotAskedAgain) {
+TEST_F(WithoutAPath, KnownVerticesAreNotCheckedAgain) {
   stop_at_ = 500;
-  EXPECT_EQ(search_.search(graph_, robot_, 1e9), GraspGraphSearch::End::gave_up);
-  const int asked = asked_;
-  EXPECT_EQ(search_.search(graph_, robot_, 1e9), GraspGraphSearch::End::gave_up);
-  EXPECT_EQ(asked_, asked);
+  EXPECT_EQ(search_.search(graph_, robot_, 1e9), GraspGraphSearch::End::cancelled);
+  const int checked = checked_;
+  EXPECT_EQ(search_.search(graph_, robot_, 1e9), GraspGraphSearch::End::cancelled);
+  EXPECT_EQ(checked_, checked);
   stop_ = false;
   EXPECT_EQ(search_.search(graph_, robot_, 1e9), GraspGraphSearch::End::none);
-  EXPECT_GT(asked_, kVertices / 2);
-  const int all = asked_;
+  EXPECT_GT(checked_, kVertices / 2);
+  const int all = checked_;
   EXPECT_EQ(search_.search(graph_, robot_, 1e9), GraspGraphSearch::End::none);
-  EXPECT_EQ(asked_, all);
+  EXPECT_EQ(checked_, all);
 }
 
-/// Overlays of grasps with ends close to each other, as those of neighbouring grasps are, over one roadmap.
+/// Graphs of grasps with ends close to each other, as those of neighbouring grasps are, over one roadmap.
 class Splicing : public ::testing::Test {
  protected:
   Splicing() : robot_(roadmap_), search_(roadmap_) {
@@ -102,8 +102,8 @@ class Splicing : public ::testing::Test {
     return Roadmap::build(test::PlanarArm(3).group(), options);
   }
 
-  /// Every way onto the path and off it again, added up one by one.
-  double by_hand(const GraspGraph& graph, const std::vector<int>& nodes) const {
+  /// Every pair of links onto the path and off it again, summed one by one.
+  double by_enumeration(const GraspGraph& graph, const std::vector<int>& nodes) const {
     double best = std::numeric_limits<double>::infinity();
     for (std::size_t in = 1; in + 1 < nodes.size(); ++in)
       for (std::size_t out = in; out + 1 < nodes.size(); ++out) {
@@ -125,21 +125,21 @@ class Splicing : public ::testing::Test {
   GraspGraphSearch search_;
 };
 
-TEST_F(Splicing, IsTheCheapestWayOntoAnEarlierPathAndOffIt) {
+TEST_F(Splicing, IsTheCheapestPathByPartOfAnEarlierOne) {
   ASSERT_EQ(search_.search(graphs_[0], robot_, 1e9), GraspGraphSearch::End::found);
   const std::vector<int> path = graphs_[0].nodes;
   int finite = 0;
   for (GraspGraph& graph : graphs_) {
-    const double expected = by_hand(graph, path);
+    const double expected = by_enumeration(graph, path);
     if (!std::isfinite(expected)) {
       EXPECT_EQ(spliced_cost(roadmap_, graph, path), expected);
       continue;
     }
     ++finite;
     EXPECT_NEAR(spliced_cost(roadmap_, graph, path), expected, 1e-12);
-    // What is known to be blocked is no way on.
+    // Links known to be blocked do not count.
     for (GraspGraph::Link& link : graph.links) link.blocked = link.to == path[1] || link.from == path[1];
-    const double other = by_hand(graph, path);
+    const double other = by_enumeration(graph, path);
     EXPECT_GE(other, expected);
     if (std::isfinite(other)) {
       EXPECT_NEAR(spliced_cost(roadmap_, graph, path), other, 1e-12);
@@ -160,12 +160,12 @@ TEST_F(Splicing, BoundsTheSearchAndLeavesTheOptimum) {
     GraspGraph& graph = graphs_[i];
     const double bound = spliced_cost(roadmap_, graph, path);
     ASSERT_EQ(search_.search(graph, robot_, 1e9), GraspGraphSearch::End::found);
-    open += search_.open();
+    open += search_.nodes_left_open();
     const double optimum = graph.path_cost;
     const std::vector<int> nodes = graph.nodes;
     EXPECT_GE(bound, optimum * (1 - 1e-12));
     ASSERT_EQ(search_.search(graph, robot_, bound), GraspGraphSearch::End::found);
-    open_bounded += search_.open();
+    open_bounded += search_.nodes_left_open();
     EXPECT_EQ(graph.path_cost, optimum);
     EXPECT_EQ(graph.nodes, nodes);
     // Below the optimum there is nothing; at it, however it was summed, the path itself.

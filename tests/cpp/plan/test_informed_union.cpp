@@ -123,7 +123,7 @@ TEST_P(UnionOf, EllipsesIsDrawnUniformly) {
   const auto [statistic, bound] = chi_squared(shares, counts);
   EXPECT_LT(statistic, bound);
   if (c > 10) return;  // Every ellipse covers the box.
-  // The test can tell: draws that are not thinned where ellipses overlap are far off.
+  // The test is sharp enough: draws that are not thinned where ellipses overlap fail it by far.
   std::vector<int> thick(counts.size(), 0);
   const auto overlaps = [&](const Vector2d& q) {
     int count = 0;

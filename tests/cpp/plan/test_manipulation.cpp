@@ -85,7 +85,7 @@ TEST(Roadmap, JoinsExactlyTheNearOnes) {
   options.gamma = 5;
   const Roadmap roadmap = Roadmap::build(arm.group(), options);
   const double radius = 5 * std::pow(std::log(400.0) / 400, 1.0 / 3);
-  EXPECT_NEAR(roadmap.figures().radius, radius, 1e-12);
+  EXPECT_NEAR(roadmap.statistics().radius, radius, 1e-12);
   int edges = 0;
   for (int a = 0; a < 400; ++a) {
     EXPECT_TRUE(arm.group().within_limits(roadmap.vertices().col(a)));
@@ -102,26 +102,27 @@ TEST(Roadmap, JoinsExactlyTheNearOnes) {
     edges += static_cast<int>(expected.size());
   }
   EXPECT_EQ(2 * roadmap.edge_count(), edges);
-  EXPECT_NEAR(roadmap.figures().mean_degree, edges / 400.0, 1e-12);
+  EXPECT_NEAR(roadmap.statistics().mean_degree, edges / 400.0, 1e-12);
   // gamma* = 2 (1 + 1/3)^(1/3) (5.6^3 / (4/3 pi))^(1/3)
-  EXPECT_NEAR(roadmap.figures().gamma_star, 2 * std::cbrt(4.0 / 3) * 5.6 / std::cbrt(4.0 / 3 * M_PI), 1e-9);
+  EXPECT_NEAR(roadmap.statistics().gamma_star, 2 * std::cbrt(4.0 / 3) * 5.6 / std::cbrt(4.0 / 3 * M_PI), 1e-9);
 }
 
-/// The setting of P2's experiments: sparse, in many parts, and far below the gamma that PRM* asks for.
-TEST(Roadmap, SixJointsAskForMoreThanTheGammaOfThePaper) {
+/// The setting of P2's experiments: sparse, of many components, and far below the gamma that PRM* needs.
+TEST(Roadmap, SixJointsNeedMoreThanTheGammaOfThePaper) {
   const test::PlanarArm arm(6, 0.2, 0.02, false, M_PI);
   RoadmapOptions options;
   options.vertices = 5000;
   options.gamma = 4;
-  const RoadmapStatistics figures = Roadmap::build(arm.group(), options).figures();
+  const RoadmapStatistics statistics = Roadmap::build(arm.group(), options).statistics();
   // The unit ball in six dimensions holds pi^3 / 6.
-  EXPECT_NEAR(figures.gamma_star, 2 * std::pow(7.0 / 6, 1.0 / 6) * 2 * M_PI / std::pow(M_PI * M_PI * M_PI / 6, 1.0 / 6),
+  EXPECT_NEAR(statistics.gamma_star,
+              2 * std::pow(7.0 / 6, 1.0 / 6) * 2 * M_PI / std::pow(M_PI * M_PI * M_PI / 6, 1.0 / 6),
               1e-4);  // limits are written with six digits
-  EXPECT_GT(figures.gamma_star, 2 * options.gamma);
-  EXPECT_GT(figures.mean_degree, 1.5);
-  EXPECT_LT(figures.mean_degree, 3);
-  EXPECT_GT(figures.components, 500);
-  EXPECT_LT(figures.largest_component, 4500);
+  EXPECT_GT(statistics.gamma_star, 2 * options.gamma);
+  EXPECT_GT(statistics.mean_degree, 1.5);
+  EXPECT_LT(statistics.mean_degree, 3);
+  EXPECT_GT(statistics.components, 500);
+  EXPECT_LT(statistics.largest_component, 4500);
 }
 
 TEST(Roadmap, LargerOneHoldsTheSmallerOnesVertices) {
@@ -141,11 +142,11 @@ TEST(Roadmap, BuildingEndsWhenItIsOver) {
   options.neighbours = 8;
   // While vertices are drawn; while they are joined.
   for (const int last : {3, 400}) {
-    std::atomic<int> asked{0};
-    const Roadmap roadmap = detail::build_roadmap(arm.group(), options, {}, [&] { return ++asked >= last; });
+    std::atomic<int> checks{0};
+    const Roadmap roadmap = detail::build_roadmap(arm.group(), options, {}, [&] { return ++checks >= last; });
     EXPECT_EQ(roadmap.size(), 0);
     EXPECT_EQ(roadmap.edge_count(), 0);
-    EXPECT_LT(asked, last + 100);
+    EXPECT_LT(checks, last + 100);
   }
   Monitor monitor;
   monitor.stop.stop();
@@ -248,13 +249,13 @@ TEST(PrmStarMg, DensifyingEndsWithTheBestOfAllRoadmaps) {
   ASSERT_LT(best, costs.front());  // more vertices help
   options.prm.roadmap.vertices = 300;
   options.prm.max_vertices = 2399;
-  std::vector<double> told;
-  const ManipulationResult result =
-      plan_manipulation(problem, options, nullptr, {}, [&](const Improvement& better) { told.push_back(better.cost); });
+  std::vector<double> reported;
+  const ManipulationResult result = plan_manipulation(
+      problem, options, nullptr, {}, [&](const Improvement& better) { reported.push_back(better.cost); });
   ASSERT_EQ(result.outcome, Outcome::solved);
   EXPECT_NEAR(result.cost, best, 1e-9);
-  EXPECT_EQ(told.back(), result.cost);
-  EXPECT_TRUE(std::is_sorted(told.rbegin(), told.rend()));
+  EXPECT_EQ(reported.back(), result.cost);
+  EXPECT_TRUE(std::is_sorted(reported.rbegin(), reported.rend()));
   options.prm.max_vertices = 0;
   EXPECT_NEAR(plan_manipulation(problem, options).cost, costs.front(), 1e-9);
 }
@@ -268,7 +269,7 @@ TEST(PrmStarMg, DensifyingHeedsTheClock) {
   EXPECT_LE(result.lower_bound, result.cost);
 }
 
-TEST(PrmStarMg, PathCarriesTheObjectAndIsFree) {
+TEST(PrmStarMg, PathMovesTheObjectAndIsFree) {
   const ManipulationProblem problem = test::bar_transfer();
   ManipulationOptions options = bar_options();
   options.straight = false;
@@ -362,7 +363,7 @@ TEST(PrmStarMg, RefusesNonsense) {
   EXPECT_THROW(plan_manipulation(good, bar_options(), &foreign), InvalidInput);
 }
 
-TEST(PrmStarMg, StopsWhenTold) {
+TEST(PrmStarMg, StopsOnRequest) {
   Monitor monitor;
   monitor.stop.stop();
   EXPECT_EQ(plan_manipulation(test::bar_transfer(), bar_options(), nullptr, monitor).outcome, Outcome::stopped);

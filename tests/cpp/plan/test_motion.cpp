@@ -133,7 +133,7 @@ TEST(PlanMotion, RoadmapsLeaveNarrowEnds) {
 }
 
 TEST(PlanMotion, ThinObstaclesAreNotCut) {
-  // A plate far thinner than what the links move within a coarse edge_step: the finer check must catch what slips
+  // A plate far thinner than what the links move within a coarse edge_step: the final check must catch what slips
   // through.
   const test::PlanarArm arm(2, kLength, 0.01);
   const std::vector<SceneBox> scene{{{0.65, 0, 0}, {0.2, 0.001, 0.2}}};
@@ -147,14 +147,14 @@ TEST(PlanMotion, ThinObstaclesAreNotCut) {
     EXPECT_EQ(result.outcome == Outcome::solved, result.path.has_value());
     if (!result.path) continue;
     ++solved;
-    // Ten times finer than the planner's own last look: the tip then moves less than the plate is thick.
+    // At ten times the resolution of the planner's final check the tip then moves less than the plate is thick.
     EXPECT_GT(test::fcl_path_clearance(arm, kLength, *result.path, scene, options.edge_step / 80), 0) << seed;
   }
   EXPECT_GE(solved, 15);
 }
 
 TEST(PlanMotion, ContinuousJointsCrossHalfATurn) {
-  // The front is barred to the first link, so the only way from 2.4 to -2.4 leads over pi, past a plate that asks for
+  // The front is barred to the first link, so the only path from 2.4 to -2.4 leads over pi, past a plate that needs
   // folding.
   const test::PlanarArm arm(2, kLength, 0.02, true);
   const std::vector<SceneBox> scene{{{0.25, 0, 0}, {0.1, 0.1, 0.2}}, {{-0.7, 0, 0}, {0.3, 0.02, 0.2}}};
@@ -204,7 +204,7 @@ TEST(PlanMotion, WaitingForAnotherPlannerEndsByClockAndStop) {
     options.planner = "rrt_star";
     options.max_iterations = 2000;
     options.time_limit = 100;
-    options.improved = [&, first = true](const JointPath&, double) mutable {
+    options.on_improvement = [&, first = true](const Improvement&) mutable {
       if (!first) return;
       first = false;
       stands = true;

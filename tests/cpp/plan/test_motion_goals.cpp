@@ -188,11 +188,11 @@ TEST_P(BaseMotion, ADiffDriveTurnsAndDrivesStraight) {
   int drives = 0;
   for (std::size_t i = 0; i + 1 < result.path->waypoints.size(); ++i) {
     const VectorXd &a = result.path->waypoints[i], &b = result.path->waypoints[i + 1];
-    const Eigen::Vector2d way = (b - a).head<2>();
-    if (way.norm() > 1e-9) {
+    const Eigen::Vector2d drive = (b - a).head<2>();
+    if (drive.norm() > 1e-9) {
       ++drives;
       EXPECT_NEAR(b[2], a[2], 1e-9) << "turns while it drives";
-      EXPECT_NEAR(way[0] * std::sin(a[2]) - way[1] * std::cos(a[2]), 0, 1e-6) << "slips sideways";
+      EXPECT_NEAR(drive[0] * std::sin(a[2]) - drive[1] * std::cos(a[2]), 0, 1e-6) << "slips sideways";
     }
     for (int k = 0; k <= 200; ++k) {
       EXPECT_GE(nearest_box(wall_, (a + k / 200.0 * (b - a)).head<2>()), Platform::kRadius - 2e-3);
@@ -205,7 +205,7 @@ TEST_P(BaseMotion, AnOmniBaseMovesAsItLikes) {
   const Platform platform(BaseKind::omni);
   const MotionResult result = plan(platform);
   ASSERT_EQ(result.outcome, Outcome::solved);
-  // Round the wall's lower end: the shortest way there is by rulers, without turns.
+  // Round the wall's lower end: the shortest path by geometry, without turns.
   EXPECT_GE(result.cost, 2 * std::hypot(1.5, 1.0));
   for (std::size_t i = 0; i + 1 < result.path->waypoints.size(); ++i) {
     const VectorXd &a = result.path->waypoints[i], &b = result.path->waypoints[i + 1];

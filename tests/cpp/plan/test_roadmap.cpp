@@ -23,7 +23,7 @@ RoadmapOptions with(int vertices, int neighbours) {
   return options;
 }
 
-/// Pairs by looking at all of them.
+/// Pairs by enumeration.
 std::set<std::pair<int, int>> all_pairs(const Roadmap& roadmap, int neighbours, double radius) {
   std::set<std::pair<int, int>> pairs;
   for (int a = 0; a < roadmap.size(); ++a) {
@@ -49,33 +49,33 @@ TEST(Roadmap, JoinsEachPairOnceAndInOrder) {
   }
 }
 
-/// Work is counted in questions whether to go on.
+/// Work is counted in all_checks whether to go on.
 TEST(Roadmap, EveryPartOfTheWorkCanBeStopped) {
   const JointGroup group = test::PlanarArm(3).group();
   const RoadmapOptions options = with(20'000, 8);
-  std::atomic<int> asked{0};
-  const Roadmap whole = detail::build_roadmap(group, options, {}, [&] { return ++asked < 0; });
+  std::atomic<int> checks{0};
+  const Roadmap whole = detail::build_roadmap(group, options, {}, [&] { return ++checks < 0; });
   ASSERT_EQ(whole.size(), options.vertices);
-  const int questions = asked;
-  ASSERT_GT(questions, 500);
-  for (int stop_at = 1; stop_at < questions; stop_at += questions / 97) {
-    asked = 0;
-    const Roadmap none = detail::build_roadmap(group, options, {}, [&] { return ++asked >= stop_at; });
-    EXPECT_EQ(none.size(), 0) << stop_at << " of " << questions;
-    EXPECT_LE(asked, stop_at + resolve_threads(0)) << "it went on";
+  const int all_checks = checks;
+  ASSERT_GT(all_checks, 500);
+  for (int stop_at = 1; stop_at < all_checks; stop_at += all_checks / 97) {
+    checks = 0;
+    const Roadmap none = detail::build_roadmap(group, options, {}, [&] { return ++checks >= stop_at; });
+    EXPECT_EQ(none.size(), 0) << stop_at << " of " << all_checks;
+    EXPECT_LE(checks, stop_at + resolve_threads(0)) << "it went on";
   }
 }
 
 /// By nanoflann, which knows nothing of it.
-TEST(Roadmap, TheSearchTreeAsks) {
+TEST(Roadmap, BuildingTheSearchTreeCanBeStopped) {
   const JointGroup group = test::PlanarArm(3).group();
   Roadmap::Data data(group, with(20'000, 8));
-  int asked = 0;
-  const std::function<bool()> over = [&] { return ++asked == 3; };
-  detail::Until never, until({}, over);
+  int checks = 0;
+  const std::function<bool()> over = [&] { return ++checks == 3; };
+  detail::CancelCheck never, cancel({}, over);
   ASSERT_TRUE(data.draw(never));
-  EXPECT_FALSE(data.index(until));
-  EXPECT_EQ(asked, 3);
+  EXPECT_FALSE(data.index(cancel));
+  EXPECT_EQ(checks, 3);
 }
 
 }  // namespace

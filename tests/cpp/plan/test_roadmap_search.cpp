@@ -23,7 +23,7 @@ ManipulationOptions as_in_the_paper() {
   return options;
 }
 
-/// Twenty grasps in an empty world: nothing is learned about the robot on the way, and grasps share bounds alone.
+/// Twenty grasps in an empty world: nothing blocks the robot, and grasps share bounds alone.
 class SharedBounds : public ::testing::Test {
  protected:
   SharedBounds() { problem_.world = World{}; }
@@ -54,7 +54,7 @@ TEST_F(SharedBounds, PathsOfEarlierGraspsKeepSearchesSmall) {
   for (std::size_t grasp = 0; grasp < problem_.grasps.size(); ++grasp) {
     const ManipulationResult result = alone(grasp);
     searches += result.stats.graph_searches;
-    opened += result.stats.ways_opened;
+    opened += result.stats.nodes_opened;
     if (result.path) cheapest = std::min(cheapest, result.cost);
   }
   ASSERT_GE(searches, 8u);
@@ -63,8 +63,8 @@ TEST_F(SharedBounds, PathsOfEarlierGraspsKeepSearchesSmall) {
   EXPECT_NEAR(together.cost, cheapest, 1e-12);
   EXPECT_EQ(together.stats.graph_searches, searches);
   // Without any bound it would be as many: each of these searches is done before there is a best path.
-  EXPECT_LT(static_cast<double>(together.stats.ways_opened), 0.6 * static_cast<double>(opened));
-  EXPECT_GT(together.stats.ways_opened, 0u);
+  EXPECT_LT(static_cast<double>(together.stats.nodes_opened), 0.6 * static_cast<double>(opened));
+  EXPECT_GT(together.stats.nodes_opened, 0u);
 }
 
 TEST_F(SharedBounds, NothingIsOpenedBeforeChecksWhenGraspsAreSearchedLazily) {
@@ -72,7 +72,7 @@ TEST_F(SharedBounds, NothingIsOpenedBeforeChecksWhenGraspsAreSearchedLazily) {
   options.prm.lazy_grasps = true;
   const ManipulationResult lazy = plan_manipulation(problem_, options, &roadmap_);
   EXPECT_EQ(lazy.outcome, Outcome::solved);
-  EXPECT_EQ(lazy.stats.ways_opened, 0u);
+  EXPECT_EQ(lazy.stats.nodes_opened, 0u);
 }
 
 }  // namespace

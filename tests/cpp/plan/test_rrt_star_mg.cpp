@@ -40,21 +40,21 @@ void expect_sound(const ManipulationProblem& problem, const ManipulationResult& 
   EXPECT_GE(result.cost, result.lower_bound - 1e-9);
 }
 
-TEST(RrtStarMg, CarriesTheObjectOnFreePaths) {
+TEST(RrtStarMg, MovesTheObjectOnFreePaths) {
   const ManipulationProblem problem = bar_transfer();
   for (unsigned seed = 1; seed <= 10; ++seed) {
     ManipulationOptions options = tree_options(500);
     options.seed = seed;
     double last = std::numeric_limits<double>::infinity();
-    int told = 0;
+    int reported = 0;
     const ManipulationResult result = plan_manipulation(problem, options, nullptr, {}, [&](const Improvement& better) {
       EXPECT_LT(better.cost, last);
       last = better.cost;
-      ++told;
+      ++reported;
     });
     expect_sound(problem, result);
     EXPECT_EQ(result.cost, last);
-    EXPECT_EQ(result.improvements.size(), static_cast<std::size_t>(told));
+    EXPECT_EQ(result.improvements.size(), static_cast<std::size_t>(reported));
     EXPECT_LE(result.stats.samples, 500u);
   }
 }
@@ -131,9 +131,9 @@ TEST(RrtStarMg, InformedTreesGrowWhereABetterPathCanPass) {
   EXPECT_LT(informed.cost, anywhere.cost);
 }
 
-/// Each grasp stands in the list once more, only dearer. By (5.1) alone the dearer trees look worse wherever the others
-/// have grown; exploring hands them the samples of their own ellipsoids.
-TEST(RrtStarMg, ExplorationGrowsTreesThatLookDearer) {
+/// Each grasp is in the list once more at a higher cost. By (5.1) alone the costlier trees look worse wherever the
+/// others have grown; exploring hands them the samples of their own ellipsoids.
+TEST(RrtStarMg, ExplorationGrowsTreesThatLookCostlier) {
   ManipulationProblem problem = bar_transfer();
   problem.world.add("wall", Shape(Box{{0.04, 0.3, 0.2}}), flat_pose(0.62, 0.02, 0.3));
   const int count = static_cast<int>(problem.grasps.size());
@@ -145,17 +145,17 @@ TEST(RrtStarMg, ExplorationGrowsTreesThatLookDearer) {
     ManipulationOptions options = tree_options(1500);
     options.rrt.keep_trees = true;
     options.rrt.exploration = exploration;
-    double dearer = 0, all = 0;
+    double costlier = 0, all = 0;
     for (unsigned seed = 1; seed <= 3; ++seed) {
       options.seed = seed;
       for (const SearchTree& tree : plan_manipulation(problem, options).trees)
         for (const int parent : tree.parents) {
           all += parent >= 0;
-          dearer += parent >= 0 && tree.grasp >= count;
+          costlier += parent >= 0 && tree.grasp >= count;
         }
     }
     EXPECT_GT(all, 1000);
-    return dearer / all;
+    return costlier / all;
   };
   const double exploiting = share_of_dearer(0), exploring = share_of_dearer(1);
   EXPECT_GT(exploring, 4 * exploiting + 0.03);
@@ -176,7 +176,7 @@ TEST(RrtStarMg, ExplorationBeginsWithAPath) {
   EXPECT_GT(stats[0].vertices, 600u);
   EXPECT_EQ(stats[0].vertices, stats[1].vertices);
   EXPECT_EQ(stats[0].edges_checked_robot, stats[1].edges_checked_robot);
-  EXPECT_EQ(stats[0].edges_checked_held, stats[1].edges_checked_held);
+  EXPECT_EQ(stats[0].edges_checked_attached, stats[1].edges_checked_attached);
 }
 
 /// Errata on Algorithm 5.13, line 17: the print would end with the first sample that no tree can use.
@@ -235,7 +235,7 @@ TEST(RrtStarMg, TreesAreWholeAndFree) {
         ++edges;
         const Eigen::VectorXd p = tree.vertices.col(tree.parents[i]);
         EXPECT_NEAR(tree.costs[col], tree.costs[tree.parents[i]] + (q - p).norm(), 1e-9);
-        // At the steps the trees' edges are looked at.
+        // At the steps in which the trees' edges are checked.
         EXPECT_TRUE(checker.edge_is_free(p, q, 0.16));
         std::size_t steps = 0;
         for (int v = static_cast<int>(i); v >= 0; v = tree.parents[v]) ASSERT_LE(++steps, tree.parents.size());

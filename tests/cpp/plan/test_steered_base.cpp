@@ -49,7 +49,7 @@ Pose beside(const JointGroup& group) {
   return T;
 }
 
-Outcome carry(const JointGroup& group, const std::string& planner) {
+Outcome plan_transfer(const JointGroup& group, const std::string& planner) {
   LinkShape ball;
   ball.shape = Sphere{0.02};
   const ManipulationProblem problem{
@@ -72,8 +72,8 @@ const Case kCases[] = {
        CollisionChecker checker(group, World{});
        return plan_cartesian(checker, {group.fk(bent(group)), beside(group)}, bent(group)).outcome;
      }},
-    {"plan_manipulation", [](const JointGroup& group) { return carry(group, "prm_star_mg"); }},
-    {"plan_manipulation", [](const JointGroup& group) { return carry(group, "rrt_star_mg"); }},
+    {"plan_manipulation", [](const JointGroup& group) { return plan_transfer(group, "prm_star_mg"); }},
+    {"plan_manipulation", [](const JointGroup& group) { return plan_transfer(group, "rrt_star_mg"); }},
 };
 
 TEST(SteeredBase, PathsThatItCouldNotDriveAreRefusedByName) {
@@ -97,7 +97,7 @@ TEST(SteeredBase, AnOmniBaseIsTaken) {
   for (const Case& c : kCases) EXPECT_EQ(c.plan(robot.chain("l0", "tip", true)), Outcome::solved) << c.function;
 }
 
-/// The base stands still: nothing is asked of its wheels.
+/// The base stands still: its wheels have nothing to do.
 TEST(SteeredBase, TheArmAloneIsTaken) {
   const Robot robot = on_a_platform(BaseKind::diff_drive);
   const JointGroup arm = robot.chain("l0", "tip");

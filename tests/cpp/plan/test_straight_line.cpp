@@ -149,7 +149,7 @@ TEST(StraightLine, AStartInCollisionIsRefused) {
   EXPECT_EQ(result.contact->b, "ball");
 }
 
-TEST(StraightLine, AStartBeyondLimitsIsToldByJointValueAndLimits) {
+TEST(StraightLine, AStartBeyondLimitsIsReportedByJointValueAndLimits) {
   const test::PumaArm arm(1.6);
   CollisionChecker checker(arm.group(), World{});
   VectorXd q(6);

@@ -1,3 +1,5 @@
+#include "plan/manipulation/prm_star_mg/transfer_refinement.hpp"
+
 #include <gtest/gtest.h>
 
 #include "mmgrasp/core/error.hpp"
@@ -18,7 +20,7 @@ ManipulationOptions with_refinements(int count, unsigned seed = 1) {
   return options;
 }
 
-TEST(CarryRefinement, RoundsOnlyMakeItCheaperAndFclFindsItFree) {
+TEST(TransferRefinement, RoundsOnlyMakeItCheaperAndFclFindsItFree) {
   const ManipulationProblem problem = test::bar_transfer();
   int gained = 0;
   for (unsigned seed = 1; seed <= 4; ++seed) {
@@ -44,7 +46,7 @@ TEST(CarryRefinement, RoundsOnlyMakeItCheaperAndFclFindsItFree) {
   EXPECT_GT(gained, 0);
 }
 
-TEST(CarryRefinement, SameAnswerAtAnyNumberOfThreads) {
+TEST(TransferRefinement, SameAnswerAtAnyNumberOfThreads) {
   const ManipulationProblem problem = test::bar_transfer();
   ManipulationOptions options = with_refinements(40);
   options.threads = 1;
@@ -60,7 +62,7 @@ TEST(CarryRefinement, SameAnswerAtAnyNumberOfThreads) {
   }
 }
 
-TEST(CarryRefinement, EndsWhereNoGraspCanWin) {
+TEST(TransferRefinement, EndsWhereNoGraspCanWin) {
   ManipulationProblem problem = test::bar_transfer();
   problem.world = World{};
   problem.T_world_goal = test::flat_pose(0.6, 0.3, 0.9);
@@ -70,7 +72,7 @@ TEST(CarryRefinement, EndsWhereNoGraspCanWin) {
   EXPECT_EQ(result.cost, result.lower_bound);
 }
 
-TEST(CarryRefinement, StopsWithWhatItHas) {
+TEST(TransferRefinement, StopsWithWhatItHas) {
   const ManipulationProblem problem = test::bar_transfer();
   const double before = plan_manipulation(problem, with_refinements(0)).cost;
   Monitor monitor;
@@ -82,7 +84,7 @@ TEST(CarryRefinement, StopsWithWhatItHas) {
   EXPECT_LT(result.cost, before);
 }
 
-TEST(CarryRefinement, RefusesFewerThanNone) {
+TEST(TransferRefinement, RefusesFewerThanNone) {
   EXPECT_THROW(plan_manipulation(test::bar_transfer(), with_refinements(-1)), InvalidInput);
 }
 

@@ -14,7 +14,7 @@ inline Pose flat_pose(double x, double y, double yaw) {
   return T;
 }
 
-/// A bar carried by an arm of three links in the plane past two posts: twenty grasps, ten along the bar, from both
+/// A bar moved by an arm of three links in the plane past two posts: twenty grasps, ten along the bar, from both
 /// sides.
 inline ManipulationProblem bar_transfer() {
   const PlanarArm arm(3, 0.4);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -13,6 +12,7 @@
 #include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/core/outcome.hpp"
 #include "mmgrasp/grasp/gripper.hpp"
+#include "mmgrasp/plan/improvement.hpp"
 #include "mmgrasp/plan/roadmap.hpp"
 #include "mmgrasp/plan/rrt_star_mg.hpp"
 #include "mmgrasp/robot/ik.hpp"
@@ -21,19 +21,19 @@
 
 namespace mmgrasp {
 
-/// One way to hold the object while it is carried.
+/// One way to hold the object while it is moved.
 struct MMGRASP_EXPORT CandidateGrasp {
-  Pose T_object_tool = Pose::Identity();  ///< Of the group's tip in the object's frame.
-  double opening = 0;                     ///< Of the fingers while holding [m]; used when the problem has a gripper.
+  Pose T_object_tool = Pose::Identity();  ///< Pose of the group's tip in the object's frame.
+  double opening = 0;                     ///< Opening of the fingers [m]; used when the problem has a gripper.
   double cost = 0;                        ///< Added to the path's length; >= 0.
 };
 
-/// TransferPath an object from one pose to another with any of many grasps (P2 4.2): the planner chooses the grasp.
+/// An object to be moved from one pose to another with any of many grasps (P2 4.2): the planner chooses the grasp.
 struct MMGRASP_EXPORT ManipulationProblem {
   /// Arm, or arm and omni base; its tip is the tool. A diff-drive base could not drive the paths: it is refused.
   JointGroup group;
-  World world;                    ///< Without the object.
-  std::vector<LinkShape> object;  ///< In the object's frame.
+  World world;                    ///< Does not hold the object.
+  std::vector<LinkShape> object;  ///< Shapes in the object's frame.
   Pose T_world_start = Pose::Identity(), T_world_goal = Pose::Identity();
   std::vector<CandidateGrasp> grasps{};
   std::optional<Gripper> gripper{};     ///< Sets the fingers to each grasp's opening.
@@ -47,37 +47,37 @@ struct MMGRASP_EXPORT ManipulationProblem {
 /// Options of "prm_star_mg" alone.
 struct MMGRASP_EXPORT PrmStarMgOptions {
   /// Grasps searched together before paths are checked (P2 4.3.4): 1 is the naive variant, 0 (all at once) the batch
-  /// variant, anything between the standard one. The answer is the same, the way there is not.
+  /// variant, anything between the standard one. The answer is the same, its cost in time is not.
   int batch = 0;
   /// Search a grasp only when its straight-line cost could still win (beyond P2); off: as in the paper.
   bool lazy_grasps = true;
-  RoadmapOptions roadmap;  ///< Used when no roadmap is given.
-  /// Once the best path over the roadmap is found, double its vertices and go on, as long as there are no more than
-  /// this; 0: never. Building denser roadmaps counts as search.
+  RoadmapOptions roadmap;  ///< Of the roadmap that is built when none is given.
+  /// Once the best path over the roadmap is found, the roadmap's vertices are doubled and the search goes on, up to
+  /// this many vertices; 0: never. Building denser roadmaps counts as search.
   int max_vertices = 0;
   /// Shorten the best path over the roadmap at the end, as plan_motion does; off: as in the paper.
   bool shorten = true;
-  /// Once that is done: rounds with small roadmaps drawn where a cheaper path can pass (informed sets of all grasps),
-  /// each of which is searched for a better one; as many as the clock allows at most; none with `shorten` off; >= 0.
+  /// After that: rounds with small roadmaps drawn where a cheaper path can pass (informed sets of all grasps), each
+  /// searched for a better path, within the time limit; none with `shorten` off; >= 0.
   int refinements = 4;
   void check() const;
 };
 
 struct MMGRASP_EXPORT ManipulationOptions {
   std::string planner = "prm_star_mg";  ///< A name of manipulation_planner_names().
-  int ik_solutions = 4;                 ///< Arm configurations tried for each grasp at each end; > 0.
-  /// A first path is looked for while arm configurations are found, grasp by grasp: after so many those before them are
-  /// searched again, then twice as many follow, and so on. 0: all arm configurations before any search, as in the paper
-  /// (also for "prm_star_mg" with `straight` or `shorten` off). >= 0.
+  int ik_solutions = 4;                 ///< Arm configurations of each grasp at each end at most; > 0.
+  /// A first path is searched for while arm configurations are found, grasp by grasp: after this many grasps the
+  /// earlier ones are searched again, then twice as many follow, and so on. 0: all arm configurations before any
+  /// search, as in the paper (also for "prm_star_mg" with `straight` or `shorten` off). >= 0.
   int first_grasps = 4;
   /// Try straight joint lines from start to goal (beyond P2): "prm_star_mg" joins all start and goal configurations,
-  /// "rrt_star_mg" asks those of the cheapest-looking grasps before the first sample. Off: start and goal are joined
+  /// "rrt_star_mg" checks those of the cheapest grasps before the first sample. Off: start and goal are joined
   /// when the roadmap would join them, and by trees.
   bool straight = true;
-  EdgeOptions edge{0.02, 0.005, false, 1e-4};  ///< How finely edges are checked.
+  EdgeOptions edge{0.02, 0.005, false, 1e-4};  ///< Steps of edge checks.
   IkOptions ik;
   double time_limit = 15;  ///< Wall-clock cap on IK and search together, without the roadmap's building [s]; > 0.
-  unsigned seed = 1;       ///< Same seed, same path, as long as the clock does not end the run.
+  unsigned seed = 1;       ///< Same seed, same path, as long as the time limit does not end the run.
   int threads = 0;         ///< 0: all; does not change the answer.
   PrmStarMgOptions prm;
   RrtStarMgOptions rrt;
@@ -89,32 +89,24 @@ MMGRASP_EXPORT std::vector<std::string> manipulation_planner_names();
 
 /// What became of one grasp.
 struct MMGRASP_EXPORT GraspReport {
-  Rejections start, goal;                       ///< Arm configurations turned down at either end.
-  int start_solutions = 0, goal_solutions = 0;  ///< Those left.
-  bool searched = false;                        ///< By prm_star_mg, over a roadmap.
-};
-
-/// A better solution on the way.
-struct MMGRASP_EXPORT Improvement {
-  double seconds = 0;  ///< Since the call began, the first roadmap's building left out.
-  double cost = 0;
-  int grasp = -1;
-  JointPath path;  ///< Looked at as the result's is.
+  Rejections start, goal;                       ///< Arm configurations rejected at either end.
+  int start_solutions = 0, goal_solutions = 0;  ///< Arm configurations left.
+  bool searched = false;                        ///< Whether prm_star_mg searched a roadmap for it.
 };
 
 struct MMGRASP_EXPORT ManipulationStats {
   double ik_seconds = 0, roadmap_seconds = 0, search_seconds = 0;
-  /// Of prm_star_mg's best path over the roadmap, before it was shortened; 0: none costs less than the first path.
+  /// Cost of prm_star_mg's best path over the roadmap before shortening; 0: none costs less than the first path.
   double roadmap_cost = 0;
   std::size_t graph_searches = 0;
-  /// Ways put into the queues of graph searches that ran before any path was checked (prm_star_mg, `lazy_grasps` off):
-  /// what bounds spliced from the paths of other grasps keep small (P2 4.3.2.5).
-  std::size_t ways_opened = 0;
-  std::size_t grasps_searched = 0;      ///< By prm_star_mg over a roadmap or more: each grasp counts once.
-  std::size_t edges_checked_robot = 0;  ///< For the robot alone, shared by all grasps of an opening.
-  std::size_t edges_checked_held = 0;   ///< For what it holds.
-  std::size_t samples = 0;              ///< Drawn by rrt_star_mg, or used again.
-  std::size_t vertices = 0;             ///< Of rrt_star_mg's trees, those removed on the way included.
+  /// Nodes pushed to the open lists of graph searches that ran before any path was checked (prm_star_mg, `lazy_grasps`
+  /// off). Bounds spliced from the paths of other grasps keep it small (P2 4.3.2.5).
+  std::size_t nodes_opened = 0;
+  std::size_t grasps_searched = 0;         ///< Grasps for which prm_star_mg searched a roadmap; each counts once.
+  std::size_t edges_checked_robot = 0;     ///< Edges checked for the robot alone, shared by all grasps of an opening.
+  std::size_t edges_checked_attached = 0;  ///< Edges checked for the object in hand.
+  std::size_t samples = 0;                 ///< Samples that rrt_star_mg drew or reassigned.
+  std::size_t vertices = 0;                ///< Vertices of rrt_star_mg's trees, removed ones included.
 };
 
 struct MMGRASP_EXPORT ManipulationResult {
@@ -126,20 +118,26 @@ struct MMGRASP_EXPORT ManipulationResult {
   /// straight line of any grasp. At most `cost`: a path that was shortened has left the roadmap.
   double lower_bound = 0;
   std::vector<Improvement> improvements;
-  std::vector<GraspReport> grasps;  ///< One a grasp; empty for those not looked at when the run ended early.
+  std::vector<GraspReport> grasps;  ///< One per grasp; empty for those not checked when the run ended early.
   std::vector<Contact> contacts;    ///< With invalid_start or invalid_goal: what touches there with the first grasp.
-  Rejections rejections;            ///< Sum over all grasps and both ends.
-  std::vector<SearchTree> trees;  ///< Of rrt_star_mg when it was asked to keep them; those of grasps still in the race.
+  Rejections rejections;            ///< Of arm configurations, summed over all grasps and both ends.
+  std::vector<SearchTree> trees;    ///< With RrtStarMgOptions::keep_trees: those of grasps that are still candidates.
   ManipulationStats stats;
 };
 
-/// Collision-free path of the group that carries the object from start to goal with the best of the grasps. Every grasp
-/// is looked at, none sampled away, unless the clock, the stop token or `goal_cost` ends the run. No grasp reachable at
-/// the start: invalid_start; at the goal: invalid_goal; `rejections` and `grasps` say why. With `roadmap` the graph is
-/// not built again; it must be of the same robot and joints. `improved` is called with every better solution.
+/// A manipulation (transfer) path: a collision-free path of the group that moves the object from start to goal with the
+/// best of the grasps:
+///
+///     ManipulationProblem problem{arm, world, shapes, T_world_start, T_world_goal, grasps};
+///     const ManipulationResult result = plan_manipulation(problem);
+///     if (result.path) execute(problem.grasps[result.grasp_index], result.path->waypoints);
+///
+/// Every grasp is checked, unless the time limit, the stop token or `goal_cost` ends the run. No grasp reachable at the
+/// start: invalid_start; at the goal: invalid_goal; `rejections` and `grasps` say why. With `roadmap` no other is
+/// built; it must be of the same robot and joints. `on_improvement` is called with every better solution.
 MMGRASP_EXPORT ManipulationResult plan_manipulation(const ManipulationProblem& problem,
                                                     const ManipulationOptions& options = {},
                                                     const Roadmap* roadmap = nullptr, const Monitor& monitor = {},
-                                                    const std::function<void(const Improvement&)>& improved = {});
+                                                    const ImprovementCallback& on_improvement = {});
 
 }  // namespace mmgrasp

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -11,6 +10,7 @@
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/core/outcome.hpp"
+#include "mmgrasp/plan/improvement.hpp"
 #include "mmgrasp/robot/trajectory.hpp"
 
 namespace mmgrasp {
@@ -26,25 +26,25 @@ struct MMGRASP_EXPORT ToolCone {
 struct MMGRASP_EXPORT MotionOptions {
   std::string planner = "rrt_connect";  ///< A name of planner_names().
   double time_limit = 5.0;              ///< Wall-clock cap [s]; > 0.
-  int max_iterations =
-      20000;  ///< Budget in states drawn (rounds, where a planner draws none); > 0. Ends a run reproducibly.
-  double range =
-      0.0;  ///< Longest tree edge [rad]; 0: a share of the joint box's diagonal (RRT-Connect 1/20, others 1/5).
+  /// Budget in states drawn (rounds, where a planner draws none); > 0. Ends a run reproducibly.
+  int max_iterations = 20000;
+  /// Longest tree edge [rad]; 0: a share of the diagonal of the sampling bounds (RRT-Connect 1/20, others 1/5).
+  double range = 0.0;
   double base_margin = 2.0;  ///< With base joints: x and y are drawn this far around start and goals [m]; > 0.
   double edge_step = 0.02;   ///< Largest joint motion between two checks of an edge [rad or m]; > 0.
-  /// Largest motion of any point of the robot (and of what it holds) between two checks of an edge [m]; > 0, infinite:
-  /// no such bound.
+  /// Largest motion of any point of the robot (and of what is attached) between two checks of an edge [m]; > 0,
+  /// infinite: no such bound.
   double workspace_step = std::numeric_limits<double>::infinity();
-  std::optional<ToolCone> tool_cone;  ///< Held along the whole path, start and goal included.
+  std::optional<ToolCone> tool_cone;  ///< Kept along the whole path, start and goal included.
   bool shorten = true;                ///< Shortcut the path (never leaves free space).
-  int shorten_iterations = 200;
-  /// IK solutions looked for at each tool pose (and at each pose drawn in a region); > 0.
+  int shorten_iterations = 200;       ///< Shortcuts tried at most; >= 0.
+  /// IK solutions wanted at each tool pose (and at each pose drawn in a region); > 0.
   int ik_solutions = 8;
   int region_samples = 16;  ///< Tool poses drawn in each region; > 0.
-  /// Called with each better path while a planner that keeps improving is at work, and with the final one; from the
-  /// calling thread. All of them are free at an eighth of the edge steps.
-  std::function<void(const JointPath& path, double cost)> improved;
-  unsigned seed = 1;
+  /// Called with each better path while a planner that keeps improving runs, and with the final one. All of them are
+  /// free at an eighth of the edge steps.
+  ImprovementCallback on_improvement;
+  unsigned seed = 1;  ///< Same seed, same path, as long as the time limit does not end the run.
   void check() const;
 };
 
@@ -59,10 +59,10 @@ struct MMGRASP_EXPORT MotionResult {
   /// Set if and only if solved; re-checked at an eighth of the edge steps. Has at least two waypoints, the first is the
   /// start. Values that wrap run on continuously, so that the last waypoint equals its goal up to full turns of these.
   std::optional<JointPath> path;
-  double cost = 0;                ///< Its length.
-  int goal_index = -1;            ///< Which of the goals it reaches.
+  double cost = 0;                ///< The path's length.
+  int goal_index = -1;            ///< Which of the goals the path reaches.
   std::vector<Contact> contacts;  ///< With invalid_start or invalid_goal: what touches.
-  /// Of the start, or of goals, turned down; grasp_filter counts those outside the tool cone.
+  /// Why the start, or goals, were rejected; grasp_filter counts those outside the tool cone.
   Rejections rejections;
   /// With invalid_start or invalid_goal: which joint is outside of its limits, its value and these; empty: none is.
   std::string beyond_limits;
@@ -89,10 +89,16 @@ struct MMGRASP_EXPORT MotionGoals {
 /// "abit_star" and "ait_star" spend the whole budget on shorter ones.
 MMGRASP_EXPORT std::vector<std::string> planner_names();
 
-/// A collision-free path of the checker's group from `start` to any of `goals`. Throws InvalidInput on wrong lengths,
+/// A collision-free path of the checker's group from `start` to any of `goals`:
+///
+///     CollisionChecker checker(arm, world);
+///     const MotionResult result = plan_motion(checker, start, {goal});
+///     if (result.path) drive(result.path->waypoints);
+///
+/// Throws InvalidInput on wrong lengths,
 /// non-finite numbers, an empty goal list or an unknown planner (the known ones are listed); IoError when the planner
 /// plugin cannot be opened. A straight edge to one of the goals, the nearest first, is taken at once when it is free.
-/// The same seed gives the same path, from any thread, as long as the clock does not end the run. Calls with
+/// The same seed gives the same path, from any thread, as long as the time limit does not end the run. Calls with
 /// rrt_connect run side by side; OMPL's planners draw from OMPL's process-wide seeds and wait for each other.
 ///
 /// Groups with base joints: an omni base moves in x, y and theta at once; a diff-drive base turns on the spot, drives
@@ -100,7 +106,8 @@ MMGRASP_EXPORT std::vector<std::string> planner_names();
 MMGRASP_EXPORT MotionResult plan_motion(CollisionChecker& checker, const Eigen::VectorXd& start,
                                         const std::vector<Eigen::VectorXd>& goals, const MotionOptions& options = {},
                                         const Monitor& monitor = {});
-/// The same with tool poses and regions. A pose without any allowed configuration counts as one rejection.
+/// plan_motion() with tool poses and regions as goals. A pose without any allowed configuration counts as one
+/// rejection.
 MMGRASP_EXPORT MotionResult plan_motion_to(CollisionChecker& checker, const Eigen::VectorXd& start,
                                            const MotionGoals& goals, const MotionOptions& options = {},
                                            const Monitor& monitor = {});

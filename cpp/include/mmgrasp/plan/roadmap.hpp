@@ -15,26 +15,32 @@ struct MMGRASP_EXPORT RoadmapOptions {
   int vertices = 5000;  ///< Configurations drawn; in [2, 10 million].
   /// Vertices nearer than gamma (log n / n)^(1/d) are joined (P2 4.3.2.1) [rad or m]; > 0.
   double gamma = 4;
-  /// > 0: each vertex is joined with that many nearest ones instead, whatever gamma says.
+  /// > 0: each vertex is joined with that many nearest ones instead, and gamma does not count.
   int neighbours = 0;
-  unsigned seed = 1;
+  unsigned seed = 1;  ///< Same seed, same roadmap.
   void check() const;
 };
 
-/// Size and shape of a roadmap, for reports: whether gamma promises anything can be read from it.
+/// Size and connectivity of a roadmap; shows whether gamma is large enough for PRM*'s optimality.
 struct MMGRASP_EXPORT RoadmapStatistics {
   double mean_degree = 0;
-  int components = 0;         ///< Connected parts.
+  int components = 0;         ///< Connected components.
   int largest_component = 0;  ///< Vertices in the largest one.
-  double radius = 0;          ///< Connection radius; that of the farthest neighbour with `neighbours`.
-  double volume = 0;          ///< Of the box the vertices are drawn from.
+  double radius = 0;          ///< Connection radius; the longest edge with `neighbours`.
+  double volume = 0;          ///< Volume of the sampling bounds.
   double gamma_star = 0;      ///< PRM* asks for gamma > 2 (1 + 1/d)^(1/d) (volume / unit ball)^(1/d).
 };
 
-/// Configurations of a group drawn from its joint box and joined when near, without any collision check: what is
-/// blocked is found out lazily and kept elsewhere, so one roadmap serves every grasp, object and scene (P2 4.3.2.1,
-/// Algorithm 4.1). Angles are not wrapped. Immutable; cheap to copy, safe to share between threads. Vertex i is the
-/// same for every number of vertices: a larger roadmap contains a smaller one's vertices.
+/// A probabilistic roadmap without collision checks (P2 4.3.2.1, Algorithm 4.1): configurations of a group drawn within
+/// its sampling bounds and joined when near. Planners find out lazily what is blocked and keep that elsewhere, so one
+/// roadmap serves every grasp, object and scene:
+///
+///     const Roadmap roadmap = Roadmap::build(arm, options);
+///     roadmap.save("arm.roadmap");  // later: Roadmap::load("arm.roadmap", arm)
+///     const ManipulationResult result = plan_manipulation(problem, {}, &roadmap);
+///
+/// Angles are not wrapped. Immutable; cheap to copy, safe to share between threads. Vertex i is the same for every
+/// number of vertices: a larger roadmap contains a smaller one's vertices.
 class MMGRASP_EXPORT Roadmap {
  public:
   /// One end of an edge as seen from the other.
@@ -62,9 +68,9 @@ class MMGRASP_EXPORT Roadmap {
   std::pair<int, int> ends(int edge) const;
   /// Vertices a new configuration would be joined with, ascending; `out` is overwritten.
   void near(const Eigen::VectorXd& q, std::vector<int>& out) const;
-  /// Longest edge a new configuration would get; 0 with `neighbours`, which know no such bound.
+  /// Longest edge a new configuration would get; 0 with `neighbours`, where there is no such bound.
   double radius() const;
-  RoadmapStatistics figures() const;
+  RoadmapStatistics statistics() const;
 
   struct Data;
   explicit Roadmap(std::shared_ptr<const Data> data);

@@ -9,7 +9,7 @@ namespace mmgrasp {
 
 /// Options of "rrt_star_mg" alone (P2 chapter 5).
 struct MMGRASP_EXPORT RrtStarMgOptions {
-  /// Budget in samples, drawn or used again by another grasp; in [1, 10 million]. The clock is only a cap.
+  /// Budget in samples, drawn or reassigned to another grasp; in [1, 10 million].
   int max_samples = 1000;
   /// Longest edge grown towards a sample (P2's eta), and longest connection radius [rad or m]; > 0.
   double step = 1.5;
@@ -21,19 +21,20 @@ struct MMGRASP_EXPORT RrtStarMgOptions {
   /// the cheapest-looking one nearby (exploitation): P2's p_blt, in [0, 1]. Above 0 every grasp's tree keeps growing.
   double exploration = 0.5;
   bool bidirectional = true;  ///< Trees from both ends; off: from the start only.
-  bool informed = true;  ///< Once a path is known: draw only where a better one can pass; off: in the whole joint box.
-  double goal_cost = 0;  ///< Ends with the first path that costs no more; >= 0, infinite: with the first at all.
-  bool keep_trees = false;  ///< Hand over the trees with the result, for pictures and tests.
+  bool informed =
+      true;  ///< Once a path is known: draw only where a better one can pass; off: within all sampling bounds.
+  double goal_cost = 0;     ///< The first path that costs no more ends the run; >= 0, infinite: the first one at all.
+  bool keep_trees = false;  ///< Return the trees with the result, for pictures and tests.
   void check() const;
 };
 
-/// One tree of RRT*-MG as it stood at the end: of one grasp, from its starts or from its goals.
+/// One tree of RRT*-MG at the end of the run: of one grasp, from its starts or from its goals.
 struct MMGRASP_EXPORT SearchTree {
   int grasp = -1;
   bool from_goal = false;
   Eigen::MatrixXd vertices;  ///< One column each.
-  std::vector<int> parents;  ///< Of each vertex: another one, or -1 for the grasp's arm configurations.
-  Eigen::VectorXd costs;     ///< Length of the way from the root.
+  std::vector<int> parents;  ///< Parent of each vertex, or -1 for the grasp's arm configurations.
+  Eigen::VectorXd costs;     ///< Length of the branch from the root to each vertex.
 };
 
 }  // namespace mmgrasp

@@ -15,18 +15,19 @@ struct MMGRASP_EXPORT StraightLineOptions {
   double position_step = 0.005;  ///< Largest tool translation between two waypoints [m]; > 0.
   double rotation_step = 0.02;   ///< Largest tool rotation between two waypoints [rad]; > 0.
   double max_joint_step = 0.2;   ///< A larger joint motion between two waypoints is a jump [rad or m]; > 0.
-  double edge_step = 0.02;       ///< As in MotionOptions.
+  double edge_step = 0.02;       ///< Largest joint motion between two checks of an edge [rad or m]; > 0.
   IkOptions ik;
   void check() const;
 };
 
 struct MMGRASP_EXPORT StraightLineResult {
   Outcome outcome = Outcome::infeasible;
-  std::optional<JointPath> path;      ///< From q_start to T_world_to; set if and only if solved.
-  double fraction = 0;                ///< How far along the line the last good waypoint lies, in [0, 1].
-  Rejection cause = Rejection::none;  ///< Why it ended there: reach (also: a jump), limits, self_collision, scene.
-  std::optional<Contact> contact;     ///< What touches there, when something does.
-  std::string beyond_limits;          ///< With invalid_start: as in MotionResult. Empty: none is.
+  std::optional<JointPath> path;  ///< From q_start to T_world_to; set if and only if solved.
+  double fraction = 0;            ///< How far along the line the last good waypoint lies, in [0, 1].
+  Rejection cause =
+      Rejection::none;             ///< Why the line ended there: reach (also: a jump), limits, self_collision, scene.
+  std::optional<Contact> contact;  ///< What touches there, when something does.
+  std::string beyond_limits;       ///< With invalid_start: as in MotionResult. Empty: none is.
 };
 
 /// The tool moves on a straight line (rotation by slerp) from the pose of q_start to T_world_to, by dense IK in small

@@ -12,20 +12,25 @@
 namespace mmgrasp {
 
 struct MMGRASP_EXPORT TimingOptions {
-  double max_deviation =
-      0.01;  ///< Corners are blended within this joint distance [rad]; >= 0; 0 stops at every corner.
-  double sample_period = 0.02;  ///< Largest spacing of the samples [s]; > 0. More stand where accelerations jump.
-  /// Of each joint [rad/s^3]; > 0; empty: none. The motion is then the moving average of a faster one: it stays on
-  /// straight edges, rounds blended corners a little more, and takes the window's time longer.
+  /// Corners are blended within this joint distance [rad]; >= 0; 0 stops at every corner.
+  double max_deviation = 0.01;
+  double sample_period = 0.02;  ///< Largest time between samples [s]; > 0. They are denser where accelerations jump.
+  /// Jerk limit of each joint [rad/s^3]; > 0; empty: none. The motion is then the moving average of a faster one: it
+  /// stays on straight edges, rounds blended corners a little more, and takes the window's time longer.
   Eigen::VectorXd jerk_limits;
   void check() const;
 };
 
-/// Near time-optimal timing of a path under velocity and acceleration limits, at rest at both ends: corners are blended
-/// by circular arcs, then path velocity is maximised by forward and backward integration on a fine grid. Every sample
-/// keeps both limits (checked before return, slack 1e-6 relative), and so does the cubic Hermite interpolation between
-/// them. A path that goes nowhere gives one sample at time 0. Names default to joint_1, joint_2, ... Returns an empty
-/// trajectory (no times) when stopped. Throws InvalidInput on wrong lengths or limits that are not finite and > 0.
+/// Near time-optimal timing of a path under velocity and acceleration limits, at rest at both ends:
+///
+///     const JointTrajectory motion = time_parameterize(*result.path, velocity_limits, acceleration_limits);
+///     // motion.times[i] [s], motion.positions[i], motion.velocities[i], motion.accelerations[i]
+///
+/// Corners are blended by circular arcs, then path velocity is maximised by forward and backward integration on a fine
+/// grid. Every sample keeps both limits (checked before return, slack 1e-6 relative), and so does the cubic Hermite
+/// interpolation between them. A path that goes nowhere gives one sample at time 0. Names default to joint_1, joint_2,
+/// ... Returns an empty trajectory (no times) when stopped. Throws InvalidInput on wrong lengths or limits that are not
+/// finite and > 0.
 MMGRASP_EXPORT JointTrajectory time_parameterize(const JointPath& path, const Eigen::VectorXd& velocity_limits,
                                                  const Eigen::VectorXd& acceleration_limits,
                                                  const TimingOptions& options = {},

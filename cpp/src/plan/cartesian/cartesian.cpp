@@ -12,7 +12,7 @@
 namespace mmgrasp {
 namespace {
 
-/// Begins with what is nearest to `near`, or as inverse kinematics orders them.
+/// Tries the branches of the first pose, the nearest to `near` first, or in the order of inverse kinematics.
 class BranchSearch {
  public:
   BranchSearch(CollisionChecker& checker, const Poses& poses, const std::optional<Eigen::VectorXd>& near,
@@ -23,8 +23,8 @@ class BranchSearch {
     find_branches();
     result_.branches = static_cast<int>(branches_.size());
     for (const auto& q : branches_) {
-      if (result_.tried == options_.max_branches || way_to(q) >= best_cost_ || monitor_.stopped()) break;
-      follow(q);
+      if (result_.tried == options_.max_branches || distance_to(q) >= best_cost_ || monitor_.stopped()) break;
+      try_branch(q);
       monitor_.report("cartesian path", static_cast<double>(++result_.tried) / result_.branches);
     }
     result_.outcome = result_.path ? Outcome::solved : Outcome::infeasible;
@@ -52,27 +52,27 @@ class BranchSearch {
     if (!near_) return;
     for (auto& q : branches_) q = turned_to_near(q);
     std::stable_sort(branches_.begin(), branches_.end(),
-                     [&](const auto& a, const auto& b) { return way_to(a) < way_to(b); });
-    if (near_is_there() && checker_.is_free(*near_)) branches_.insert(branches_.begin(), *near_);
+                     [&](const auto& a, const auto& b) { return distance_to(a) < distance_to(b); });
+    if (near_reaches_first_pose() && checker_.is_free(*near_)) branches_.insert(branches_.begin(), *near_);
   }
 
-  bool near_is_there() const {
+  bool near_reaches_first_pose() const {
     const IkOptions& ik = options_.line.ik;
     const Pose at = checker_.group().fk(*near_);
     return (at.translation() - poses_.front().translation()).norm() <= ik.position_tolerance &&
            rotation_distance(at, poses_.front()) <= ik.rotation_tolerance;
   }
 
-  /// Says what keeps the arm from the first pose.
+  /// Reports what keeps the arm from the first pose.
   void refuse_start() {
-    if (near_ && near_is_there()) return refuse_near();
+    if (near_ && near_reaches_first_pose()) return refuse_near();
     result_.cause = most(result_.rejections);
     if (result_.cause != Rejection::reach) result_.outcome = Outcome::invalid_start;
     if (result_.cause == Rejection::scene) result_.contact = scene_contact_;
     if (result_.cause == Rejection::self_collision) result_.contact = self_contact_;
   }
 
-  /// `near` reaches the first pose, whatever inverse kinematics found.
+  /// For a `near` that reaches the first pose and is not allowed.
   void refuse_near() {
     result_.outcome = Outcome::invalid_start;
     result_.cause = checker_.rejection(*near_);
@@ -81,18 +81,18 @@ class BranchSearch {
     result_.beyond_limits = detail::beyond_limits(checker_.group(), *near_);
   }
 
-  /// In the turn of continuous joints that is nearest.
+  /// The same configuration, its continuous joints turned as near to `near` as whole turns allow.
   Eigen::VectorXd turned_to_near(const Eigen::VectorXd& q) const {
     return detail::nearest_turn(checker_.group().wraps(), *near_, q);
   }
 
-  double way_to(const Eigen::VectorXd& q) const { return near_ ? (q - *near_).norm() : 0; }
+  double distance_to(const Eigen::VectorXd& q) const { return near_ ? (q - *near_).norm() : 0; }
 
-  void follow(const Eigen::VectorXd& first) {
+  void try_branch(const Eigen::VectorXd& first) {
     JointPath path{{first}};
     std::vector<int> corners{0};
     const double lines = static_cast<double>(poses_.size() - 1);
-    Monitor stop;  // Silent: progress is told by branches.
+    Monitor stop;  // Without progress, which is reported by branches.
     stop.stop = monitor_.stop;
     for (std::size_t i = 1; i < poses_.size(); ++i) {
       StraightLineResult line = plan_straight_line(checker_, path.waypoints.back(), poses_[i], options_.line, stop);
@@ -107,7 +107,7 @@ class BranchSearch {
       path.waypoints.insert(path.waypoints.end(), line.path->waypoints.begin() + 1, line.path->waypoints.end());
       corners.push_back(static_cast<int>(path.waypoints.size()) - 1);
     }
-    const double cost = way_to(first) + path.length();
+    const double cost = distance_to(first) + path.length();
     if (cost >= best_cost_) return;
     best_cost_ = cost;
     result_.path = std::move(path);

@@ -11,14 +11,14 @@
 namespace mmgrasp {
 namespace {
 
-constexpr double kAtLimit = 1e-6;        // A joint value this close to its limit [rad or m] counts as held back by it.
+constexpr double kAtLimit = 1e-6;        // A joint value this close to its limit counts as stopped by it [rad or m].
 constexpr double kLineTolerance = 5e-5;  // Tool's distance from the line halfway between two waypoints [m].
-constexpr int kHalvings = 6;             // Of a step, to keep the tool on the line between waypoints.
+constexpr int kMaxHalvings = 6;          // Halvings of a step that keep the tool on the line between waypoints.
 
 /// Positions on a line, rotations by slerp.
-class ToolLine {
+class CartesianLine {
  public:
-  ToolLine(const Pose& from, const Pose& to)
+  CartesianLine(const Pose& from, const Pose& to)
       : from_(from), to_(to), rotation_from_(from.linear()), rotation_to_(to.linear()) {}
 
   double translation() const { return (to_.translation() - from_.translation()).norm(); }
@@ -37,7 +37,7 @@ class ToolLine {
   Eigen::Quaterniond rotation_from_, rotation_to_;
 };
 
-/// At least one; what is finer than anybody can wait for goes on until it is stopped.
+/// At least one, and few enough to count in 64 bits.
 std::int64_t step_count(double steps) {
   return static_cast<std::int64_t>(std::clamp(std::ceil(steps), 1.0, 1e15));
 }
@@ -66,7 +66,7 @@ class LineFollower {
     const double steps =
         std::max(line_.translation() / options_.position_step, line_.rotation() / options_.rotation_step);
     const std::int64_t count = step_count(steps - 1e-9);
-    smallest_step_ = 1.0 / static_cast<double>(count) / (1 << kHalvings);
+    smallest_step_ = 1.0 / static_cast<double>(count) / (1 << kMaxHalvings);
     for (std::int64_t i = 1; i <= count; ++i) {
       if (!advance(static_cast<double>(i) / static_cast<double>(count))) {
         if (monitor_.stopped()) result_.outcome = Outcome::stopped;
@@ -80,7 +80,7 @@ class LineFollower {
   }
 
  private:
-  /// Goes on from the last waypoint to `fraction`, halving the step where the tool would leave the line on the way.
+  /// Moves from the last waypoint to `fraction`, halving the step where the tool would leave the line in between.
   bool advance(double fraction) {
     if (monitor_.stopped()) return false;
     Eigen::VectorXd next = first_guess(fraction);
@@ -102,7 +102,7 @@ class LineFollower {
     return true;
   }
 
-  /// The previous motion carried on, inside limits.
+  /// The previous motion continued, within limits.
   Eigen::VectorXd first_guess(double fraction) const {
     const Eigen::VectorXd& previous = path_.waypoints.back();
     if (velocity_.size() == 0) return previous;
@@ -121,7 +121,7 @@ class LineFollower {
     return Rejection::reach;
   }
 
-  /// False, with the cause noted, when it is not, and when stopped.
+  /// Records the cause when the edge is not free. False when stopped, too.
   bool edge_is_free(const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
     const double step = options_.edge_step / 8;
     const std::int64_t count = step_count((to - from).cwiseAbs().maxCoeff() / step);
@@ -148,7 +148,7 @@ class LineFollower {
   const JointGroup group_;
   const StraightLineOptions& options_;
   const Monitor& monitor_;
-  const ToolLine line_;
+  const CartesianLine line_;
   JointPath path_;
   double smallest_step_ = 0;
   Eigen::VectorXd velocity_;  // Joint motion per fraction of the line; empty before the first step.

@@ -91,18 +91,18 @@ void ManipulationOptions::check() const {
   rrt.check();
 }
 
-ManipulationResult plan_manipulation(const ManipulationProblem& problem, const ManipulationOptions& options,
-                                     const Roadmap* roadmap, const Monitor& monitor,
-                                     const std::function<void(const Improvement&)>& improved) {
+ManipulationResult detail::plan_manipulation_with(const ManipulationPlanner& planner,
+                                                  const ManipulationProblem& problem,
+                                                  const ManipulationOptions& options, const Roadmap* roadmap,
+                                                  const Monitor& monitor, const ImprovementCallback& on_improvement) {
   problem.check();
   options.check();
   if (roadmap) check_roadmap(roadmap->group(), problem.group);
-  const detail::ManipulationPlanner& planner = detail::manipulation_planner(options.planner);
   ManipulationResult result;
-  detail::Stopwatch clock;
-  detail::TransferChecks checks(problem, options.edge, planner.edge_steps, resolve_threads(options.threads));
-  detail::GraspCandidates candidates(problem, options, checks, clock, monitor, result);
-  detail::ManipulationInput input{problem, options, roadmap, checks, candidates, improved, monitor, clock};
+  Stopwatch clock;
+  TransferChecks checks(problem, options.edge, planner.search_steps, resolve_threads(options.threads));
+  GraspCandidates candidates(problem, options, checks, clock, monitor, result);
+  ManipulationInput input{problem, options, roadmap, checks, candidates, on_improvement, monitor, clock};
   const bool exhausted = planner.run(input, result);
   result.stats.search_seconds = clock.seconds() - result.stats.ik_seconds;
   for (const GraspReport& report : result.grasps) {
@@ -113,6 +113,13 @@ ManipulationResult plan_manipulation(const ManipulationProblem& problem, const M
   if (result.outcome == Outcome::invalid_start) result.contacts = candidates.first_contacts(false);
   if (result.outcome == Outcome::invalid_goal) result.contacts = candidates.first_contacts(true);
   return result;
+}
+
+ManipulationResult plan_manipulation(const ManipulationProblem& problem, const ManipulationOptions& options,
+                                     const Roadmap* roadmap, const Monitor& monitor,
+                                     const ImprovementCallback& on_improvement) {
+  return detail::plan_manipulation_with(detail::manipulation_planner(options.planner), problem, options, roadmap,
+                                        monitor, on_improvement);
 }
 
 }  // namespace mmgrasp

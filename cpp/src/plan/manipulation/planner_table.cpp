@@ -2,15 +2,19 @@
 #include "mmgrasp/core/error.hpp"
 #include "plan/manipulation/common/manipulation_planner.hpp"
 #include "plan/manipulation/prm_star_mg/prm_star_mg.hpp"
-#include "plan/manipulation/rrt_star_mg/rrt_star_mg.hpp"
+#include "plan/manipulation/rrt_star_mg/rrt_star_mg_planner.hpp"
 
 namespace mmgrasp {
 namespace detail {
 namespace {
 
+bool run_tuned_rrt_star_mg(ManipulationInput& input, ManipulationResult& result) {
+  return run_rrt_star_mg(input, result, {});
+}
+
 constexpr ManipulationPlanner kPlanners[] = {
     {"prm_star_mg", run_prm_star_mg, 1},
-    {"rrt_star_mg", run_rrt_star_mg, 8},  // Most edges of trees are never part of a path.
+    {"rrt_star_mg", run_tuned_rrt_star_mg, 8},  // Most edges of its trees are never part of a path.
 };
 
 }  // namespace

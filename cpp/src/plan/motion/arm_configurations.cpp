@@ -9,8 +9,8 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr int kCoarse = 8, kFine = 32;  // Values of a redundant joint.
-constexpr int kLastDescents = 8;        // Of arms with a closed form.
+constexpr int kFewRedundantValues = 8, kManyRedundantValues = 32;  // Values of a redundant joint that are tried.
+constexpr int kMaxNumericalSolutions = 8;                          // Tried for arms with a closed form.
 
 }  // namespace
 
@@ -23,8 +23,8 @@ std::vector<Eigen::VectorXd> arm_configurations(const JointGroup& group, const P
     rejections.add(Rejection::reach);
     return solutions;
   }
-  IkOptions descents = options;
-  for (const int values : {kCoarse, kFine}) {
+  IkOptions numerical = options;
+  for (const int values : {kFewRedundantValues, kManyRedundantValues}) {
     const Candidates candidates = closed_form_candidates(group, T_world_tip, values);
     if (!candidates.known_form) break;
     seen = {};
@@ -53,10 +53,10 @@ std::vector<Eigen::VectorXd> arm_configurations(const JointGroup& group, const P
       rejections += seen;
       return solutions;
     }
-    descents.restarts = std::min(options.restarts, (kLastDescents + count - 1) / count - 1);
+    numerical.restarts = std::min(options.restarts, (kMaxNumericalSolutions + count - 1) / count - 1);
   }
   bool any = seen.total() > 0, final = false;
-  solutions = solve_ik_all(group, T_world_tip, count, descents, [&](const Eigen::VectorXd& q) {
+  solutions = solve_ik_all(group, T_world_tip, count, numerical, [&](const Eigen::VectorXd& q) {
     any = true;
     if (final) return Rejection::scene;
     const ReachVerdict verdict = valid(q);

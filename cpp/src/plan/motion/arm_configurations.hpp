@@ -10,16 +10,16 @@
 
 namespace mmgrasp::detail {
 
-/// What is said of a configuration that reaches a pose.
+/// Answer of a filter about a configuration that reaches a pose.
 struct ReachVerdict {
   Rejection cause = Rejection::none;
-  bool final = false;  ///< Every other configuration that reaches the pose is turned down likewise.
+  bool final = false;  ///< Every other configuration that reaches the pose would be rejected, too.
 };
 using ReachFilter = std::function<ReachVerdict(const Eigen::VectorXd& q)>;
 
-/// Up to `count` configurations that put the tip at a pose, as different as can be; those turned down are counted by
-/// cause, a pose that nothing reaches as one `reach`. Closed forms first: most poses of many are turned down, and
-/// they say so quickly. A redundant joint is sampled coarsely, then finely, before a few descents have the last word.
+/// Up to `count` configurations that put the tip at a pose, as different as can be; rejected ones are counted by cause,
+/// a pose that is unreachable as one `reach`. Closed forms come first: most poses of many are rejected, which they find
+/// out fast. A redundant joint is sampled at few values, then at many, before a few numerical solutions are tried.
 std::vector<Eigen::VectorXd> arm_configurations(const JointGroup& group, const Pose& T_world_tip, int count,
                                                 const IkOptions& options, const ReachFilter& valid,
                                                 Rejections& rejections);

@@ -3,45 +3,51 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace mmgrasp::detail {
 
-/// Answers of collision checks by configurations (a, a) and edges (a, b), whichever way round, and whom they are about:
-/// the robot with its fingers at an opening, shared by all its grasps, or one grasp.
+/// Answers of collision checks of numbered configurations (a, a) and of edges (a, b), the same in both directions, each
+/// for a `subject`: an opening (the robot with its fingers there, shared by all grasps with it) or a grasp. A hash
+/// table with open addressing, for it is queried millions of times.
 class CollisionCache {
  public:
-  CollisionCache() : entries_(kFirst) {}
+  CollisionCache() : entries_(kInitialCapacity) {}
 
-  /// 1: free, 0: blocked, -1: never looked at.
-  int recall(int whom, int a, int b) const {
-    const Entry& entry = entries_[slot({whom, std::min(a, b), std::max(a, b)})];
-    return entry.whom < 0 ? -1 : entry.free;
+  /// True: free, false: blocked; nothing: not in the cache.
+  std::optional<bool> find(int subject, int a, int b) const {
+    const Entry& entry = entries_[slot({subject, std::min(a, b), std::max(a, b)})];
+    if (entry.subject < 0) return std::nullopt;
+    return entry.free;
   }
 
-  void keep(int whom, int a, int b, bool free) {
+  /// Overwrites what was there.
+  void insert(int subject, int a, int b, bool free) {
     if (2 * (count_ + 1) > entries_.size()) grow();
-    const Entry own{whom, std::min(a, b), std::max(a, b), free ? 1 : 0};
+    const Entry own{subject, std::min(a, b), std::max(a, b), free};
     Entry& entry = entries_[slot(own)];
-    if (entry.whom < 0) ++count_;
+    if (entry.subject < 0) ++count_;
     entry = own;
   }
 
  private:
   struct Entry {
-    int whom = -1;
+    int subject = -1;  ///< -1: an empty slot.
     int low = 0, high = 0;
-    int free = 0;
+    bool free = false;
   };
-  static constexpr std::size_t kFirst = 1024;
+  static constexpr std::size_t kInitialCapacity = 1024;  ///< A power of two, as all capacities.
 
+  /// The slot that holds the entry, or the empty one where it belongs.
   std::size_t slot(const Entry& wanted) const {
     std::uint64_t hash = static_cast<std::uint64_t>(wanted.low) << 32 | static_cast<std::uint32_t>(wanted.high);
-    hash = (hash ^ static_cast<std::uint64_t>(wanted.whom) * 0xbf58476d1ce4e5b9ull) * 0x9e3779b97f4a7c15ull;
+    hash = (hash ^ static_cast<std::uint64_t>(wanted.subject) * 0xbf58476d1ce4e5b9ull) * 0x9e3779b97f4a7c15ull;
     std::size_t at = static_cast<std::size_t>(hash >> 32) & (entries_.size() - 1);
     for (;;) {
       const Entry& entry = entries_[at];
-      if (entry.whom < 0 || (entry.whom == wanted.whom && entry.low == wanted.low && entry.high == wanted.high))
+      if (entry.subject < 0 ||
+          (entry.subject == wanted.subject && entry.low == wanted.low && entry.high == wanted.high))
         return at;
       at = (at + 1) & (entries_.size() - 1);
     }
@@ -51,7 +57,7 @@ class CollisionCache {
     std::vector<Entry> entries(2 * entries_.size());
     entries.swap(entries_);
     for (const Entry& entry : entries)
-      if (entry.whom >= 0) entries_[slot(entry)] = entry;
+      if (entry.subject >= 0) entries_[slot(entry)] = entry;
   }
 
   std::vector<Entry> entries_;

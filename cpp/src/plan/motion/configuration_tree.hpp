@@ -5,9 +5,9 @@
 
 namespace mmgrasp::detail {
 
-/// Configurations with parents and a nearest-neighbour search. Every value stands in a row of eights in single
-/// precision, so that one pass over all configurations is a stream of vector instructions: up to some ten thousand of
-/// them that beats trees of cells.
+/// Configurations with parents and a nearest-neighbour search by scanning all of them: values are also stored in single
+/// precision, eight configurations interleaved, so that a scan is a stream of vector instructions. Up to some ten
+/// thousand configurations that is faster than a k-d tree.
 class ConfigurationTree {
  public:
   /// `wraps`: values in [-pi, pi] that are compared the short way round.
@@ -15,7 +15,7 @@ class ConfigurationTree {
 
   int size() const { return static_cast<int>(parents_.size()); }
   int add(const Eigen::VectorXd& q, int parent);
-  /// Squared distance only tells which is nearest, in single precision; of equals the first.
+  /// The nearest by distances in single precision; the first of equals.
   int nearest(const Eigen::VectorXd& q) const;
   int parent(int node) const { return parents_[node]; }
   /// Copied into the caller's storage of the right length.

@@ -21,9 +21,10 @@ namespace {
 using detail::nearest_turn;
 
 constexpr const char* kOwnPlanner = "rrt_connect";
-constexpr int kAttempts = 4;                   // Searches, when paths fail the finer check.
-constexpr double kNearEnds = detail::kPi / 2;  // How far from start and goal joints are mostly drawn [rad or m].
-constexpr double kFiner = 8;                   // How many times finer paths are looked at before they are returned.
+constexpr int kMaxSearches = 4;  // Searches at most, when paths fail the final check.
+constexpr double kNearEnds =
+    detail::kPi / 2;                    // Distance from start and goal within which joints are mostly drawn [rad or m].
+constexpr double kFinalResolution = 8;  // Resolution factor of the check of paths before they are returned.
 
 void check_planner_name(const std::string& name) {
   if (name == kOwnPlanner) return;
@@ -34,8 +35,8 @@ void check_planner_name(const std::string& name) {
   require(false, "planner", "\"" + name + "\"", "must be one of " + known);
 }
 
-/// Such a planner has no budget left for a second search when its path fails the finer check, and the shortest of many
-/// paths is the one that grazes obstacles.
+/// Such a planner searches at the final resolution from the start: it has no budget left for a second search when its
+/// path fails the final check, and the shortest of many paths is the one that grazes obstacles.
 bool keeps_improving(const std::string& name) {
   if (name == kOwnPlanner) return false;
   const std::vector<detail::OmplPlanner> planners = detail::ompl_planners();
@@ -86,7 +87,7 @@ class MotionSearch {
     return false;
   }
 
-  /// Keeps the allowed goals, nearest first (as they come among equals).
+  /// Keeps the allowed goals, nearest first; equally near ones in the caller's order.
   bool find_goals() {
     ends_ = detail::allowed_goals(edges_, goals_, options_, monitor_, result_.rejections, result_.contacts);
     if (ends_.empty()) {
@@ -118,26 +119,26 @@ class MotionSearch {
   }
 
   void search() {
-    for (int attempt = 0; attempt < kAttempts; ++attempt) {
-      // A path that fails the finer check has cut an obstacle: look more closely from then on.
-      const double finer = attempt == 0 && !keeps_improving_ ? 1 : kFiner;
-      const detail::PlannerAnswer answer = ask_planner(finer, attempt);
+    for (int round = 0; round < kMaxSearches; ++round) {
+      // A path that fails the final check has cut an obstacle: later searches check at its resolution.
+      const double resolution = round == 0 && !keeps_improving_ ? 1 : kFinalResolution;
+      const detail::PlannerAnswer answer = run_planner(resolution, round);
       if (monitor_.stopped()) return end(Outcome::stopped);
       if (!answer.solved) return end(answer.exhausted ? Outcome::infeasible : Outcome::timeout);
       monitor_.report("plan motion", 0.6);
       const JointPath found = continuous(answer.waypoints);
       result_.stats.length_before_shortening = found.length();
-      if (options_.shorten && finish_shortened(found, finer)) return;
+      if (options_.shorten && finish_shortened(found, resolution)) return;
       if (monitor_.stopped()) return end(Outcome::stopped);
       if (is_free(found)) {
-        if (options_.shorten && finish_shortened(found, kFiner)) return;
+        if (options_.shorten && finish_shortened(found, kFinalResolution)) return;
         return finish(found);
       }
     }
     end(Outcome::timeout);
   }
 
-  detail::PlannerAnswer ask_planner(double finer, int attempt) {
+  detail::PlannerAnswer run_planner(double resolution, int round) {
     detail::PlannerQuery query;
     query.planner = options_.planner;
     query.lower = checker_.group().sample_lower();
@@ -145,30 +146,30 @@ class MotionSearch {
     if (checker_.group().has_base()) bound_base(query);
     query.wraps = wraps_;
     query.start = detail::wrapped(wraps_, start_);
-    look_first_near_ends(query);
+    prefer_samples_near_ends(query);
     for (const auto& goal : ends_) query.goals.push_back(detail::wrapped(wraps_, goal.q));
     query.range = options_.range;
-    query.seed = options_.seed + 7919u * static_cast<unsigned>(attempt);
+    query.seed = options_.seed + 7919u * static_cast<unsigned>(round);
     query.max_iterations = options_.max_iterations;
     query.time_limit = std::clamp(time_left(), 1e-3, 1e7);
     query.stopped = [&] { return monitor_.stopped(); };
     query.is_free = [&](const Eigen::VectorXd& q) { return edges_.is_free(q); };
-    query.edge_is_free = [&, finer](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-      return edges_.edge_is_free(a, b, finer);
+    query.edge_is_free = [&, resolution](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+      return edges_.edge_is_free(a, b, resolution);
     };
     if (edges_.constrained()) query.project = [&](Eigen::VectorXd& q) { return edges_.project(q); };
     if (options_.planner == kOwnPlanner) return detail::rrt_connect(query);
-    if (options_.improved && keeps_improving_) {
-      query.improved = [&](const std::vector<Eigen::VectorXd>& waypoints) { report(continuous(waypoints)); };
+    if (options_.on_improvement && keeps_improving_) {
+      query.on_improvement = [&](const std::vector<Eigen::VectorXd>& waypoints) { report(continuous(waypoints)); };
     }
     return detail::solve_with_ompl(query);
   }
 
   void report(const JointPath& path) {
     const double cost = path.length();
-    if (!options_.improved || cost >= best_reported_) return;
+    if (!options_.on_improvement || cost >= best_reported_) return;
     best_reported_ = cost;
-    options_.improved(path, cost);
+    options_.on_improvement({stopwatch_.seconds(), cost, -1, path});
   }
 
   /// Base positions are drawn around start and goals only, not in the whole workspace.
@@ -184,8 +185,8 @@ class MotionSearch {
     }
   }
 
-  /// Most ways lead through the joint angles between the ends: a joint that may turn twice has many others.
-  void look_first_near_ends(detail::PlannerQuery& query) const {
+  /// Most paths lead through the joint angles between the ends: a joint that may turn twice has many others.
+  void prefer_samples_near_ends(detail::PlannerQuery& query) const {
     const Eigen::VectorXd &a = start_, &b = ends_.front().q;
     query.near_lower = query.lower;
     query.near_upper = query.upper;
@@ -215,12 +216,12 @@ class MotionSearch {
     return static_cast<std::size_t>(nearest - ends_.begin());
   }
 
-  bool finish_shortened(const JointPath& found, double finer) {
+  bool finish_shortened(const JointPath& found, double resolution) {
     JointPath path = found;
     Rng rng(options_.seed, 1);
     detail::ShorteningOptions shortening;
     shortening.iterations = options_.shorten_iterations;
-    shortening.finer = finer;
+    shortening.resolution = resolution;
     shortening.stopped = [&] { return monitor_.stopped() || time_left() < 0; };
     detail::shorten_path(edges_, path, rng, shortening);
     if (monitor_.stopped() || !is_free(path)) return false;
@@ -231,7 +232,7 @@ class MotionSearch {
   bool is_free(const JointPath& path) {
     for (std::size_t i = 0; i + 1 < path.waypoints.size(); ++i) {
       if (monitor_.stopped()) return false;
-      if (!edges_.straight_is_free(path.waypoints[i], path.waypoints[i + 1], kFiner)) return false;
+      if (!edges_.straight_is_free(path.waypoints[i], path.waypoints[i + 1], kFinalResolution)) return false;
     }
     return true;
   }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kProjections = 20;      // Newton steps towards the cone.
 constexpr double kInsideCone = 0.9;   // Share of the half angle that a projection aims at.
-constexpr double kLargestTurn = 0.3;  // Of the tool in one step [rad].
+constexpr double kLargestTurn = 0.3;  // Turn of the tool in one step [rad].
 constexpr double kProjectionDamping = 1e-4;
 
 }  // namespace
@@ -34,11 +34,11 @@ MotionEdges::MotionEdges(CollisionChecker& checker, const MotionOptions& options
   }
 }
 
-double MotionEdges::step(const Eigen::VectorXd& delta, double finer) const {
+double MotionEdges::step(const Eigen::VectorXd& delta, double resolution) const {
   const double largest = delta.lpNorm<Eigen::Infinity>();
-  if (largest == 0 || bounds_.size() == 0) return joint_step_ / finer;
+  if (largest == 0 || bounds_.size() == 0) return joint_step_ / resolution;
   const double motion = bounds_.dot(delta.cwiseAbs());
-  return std::min(joint_step_, largest * workspace_step_ / motion) / finer;
+  return std::min(joint_step_, largest * workspace_step_ / motion) / resolution;
 }
 
 double MotionEdges::tilt(const Eigen::VectorXd& q) const {
@@ -46,9 +46,10 @@ double MotionEdges::tilt(const Eigen::VectorXd& q) const {
   return std::atan2(axis.cross(cone_->world_axis).norm(), axis.dot(cone_->world_axis));
 }
 
-bool MotionEdges::edge_keeps_cone(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double finer) const {
+bool MotionEdges::edge_keeps_cone(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double resolution) const {
   const Eigen::VectorXd delta = b - a;
-  const int pieces = std::max(1, static_cast<int>(std::ceil(delta.lpNorm<Eigen::Infinity>() / step(delta, finer))));
+  const int pieces =
+      std::max(1, static_cast<int>(std::ceil(delta.lpNorm<Eigen::Infinity>() / step(delta, resolution))));
   for (int i = 0; i <= pieces; ++i) {
     if (tilt(a + (static_cast<double>(i) / pieces) * delta) > cone_->half_angle) return false;
   }
@@ -65,30 +66,30 @@ bool MotionEdges::is_free(const Eigen::VectorXd& q) {
   return checker_.is_free(q) && (!cone_ || tilt(q) <= cone_->half_angle);
 }
 
-bool MotionEdges::straight_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double finer) {
-  if (cone_ && !edge_keeps_cone(a, b, finer)) return false;
+bool MotionEdges::straight_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double resolution) {
+  if (cone_ && !edge_keeps_cone(a, b, resolution)) return false;
   delta_ = b - a;
-  return checker_.edge_is_free(a, b, step(delta_, finer));
+  return checker_.edge_is_free(a, b, step(delta_, resolution));
 }
 
-void MotionEdges::connect(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Waypoints& way) const {
+void MotionEdges::connect(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Waypoints& path) const {
   if (!steered_) {
-    way.push_back(b);
+    path.push_back(b);
     return;
   }
-  append_turn_drive_turn(a, b, way);
+  append_turn_drive_turn(a, b, path);
 }
 
-bool MotionEdges::edge_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double finer) {
+bool MotionEdges::edge_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double resolution) {
   target_ = b;
   for (Eigen::Index i = 0; i < target_.size(); ++i) {
     if (wraps_[i]) target_[i] = a[i] + shortest_turn(b[i] - a[i]);
   }
-  if (!steered_) return straight_is_free(a, target_, finer);
-  way_.clear();
-  connect(a, target_, way_);
-  for (std::size_t i = 0; i < way_.size(); ++i) {
-    if (!straight_is_free(i == 0 ? a : way_[i - 1], way_[i], finer)) return false;
+  if (!steered_) return straight_is_free(a, target_, resolution);
+  path_.clear();
+  connect(a, target_, path_);
+  for (std::size_t i = 0; i < path_.size(); ++i) {
+    if (!straight_is_free(i == 0 ? a : path_[i - 1], path_[i], resolution)) return false;
   }
   return true;
 }
@@ -107,7 +108,7 @@ bool MotionEdges::project(Eigen::VectorXd& q) {
     // Upside down, any axis across the tool's will do.
     turn = sine > 1e-9 ? Eigen::Vector3d(turn / sine) : axis.unitOrthogonal();
     turn *= std::min(kLargestTurn, angle - kInsideCone * cone_->half_angle);
-    // Turning about the tool's own axis is free: only what is across it is asked for.
+    // Turning about the tool's own axis is free: only turns across it count.
     const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - axis * axis.transpose();
     const Eigen::Matrix<double, 3, Eigen::Dynamic> turning = across * J.bottomRows<3>();
     Eigen::Matrix3d gram = turning * turning.transpose();

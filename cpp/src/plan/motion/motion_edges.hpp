@@ -8,8 +8,8 @@
 
 namespace mmgrasp::detail {
 
-/// What plan_motion holds a path to: which configurations are allowed, how two of them are joined, and how closely a
-/// joint-space edge is looked at. Works on the checker it was made with.
+/// The rules for paths of plan_motion: which configurations are allowed, how two of them are joined, and in which steps
+/// a joint-space edge is checked. Works on the checker it was made with.
 class MotionEdges {
  public:
   using Waypoints = std::vector<Eigen::VectorXd>;
@@ -26,30 +26,29 @@ class MotionEdges {
   /// The cause, with Rejection::grasp_filter for a tool outside its cone.
   Rejection rejection(const Eigen::VectorXd& q);
 
-  /// Straight edge between two configurations as they are written, looked at `finer` times as closely as the options
-  /// say.
-  bool straight_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double finer = 1);
-  /// Appends the way from `a` to `b` without `a`; its end may differ from `b` by full turns.
-  void connect(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Waypoints& way) const;
-  /// The way that connect() gives, angles that wrap the short way round.
-  bool edge_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double finer = 1);
+  /// Straight edge between two configurations without wrapping. `resolution` divides the steps of the options.
+  bool straight_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double resolution = 1);
+  /// Appends the waypoints from `a` to `b` without `a`; the last may differ from `b` by full turns.
+  void connect(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Waypoints& path) const;
+  /// The path that connect() gives, angles that wrap the short way round.
+  bool edge_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double resolution = 1);
 
   /// Turns the tool back towards its cone; false when that does not succeed within limits.
   bool project(Eigen::VectorXd& q);
 
  private:
-  double step(const Eigen::VectorXd& delta, double finer) const;
+  double step(const Eigen::VectorXd& delta, double resolution) const;
   double tilt(const Eigen::VectorXd& q) const;
-  bool edge_keeps_cone(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double finer) const;
+  bool edge_keeps_cone(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double resolution) const;
 
   CollisionChecker& checker_;
   const JointGroup group_;
   const std::vector<bool> wraps_;
   const double joint_step_, workspace_step_;
-  Eigen::VectorXd bounds_;  ///< Workspace motion per joint motion; empty when it is not looked at.
+  Eigen::VectorXd bounds_;  ///< Workspace motion per joint motion; empty without `workspace_step`.
   const bool steered_;
   std::optional<ToolCone> cone_;
-  Waypoints way_;
+  Waypoints path_;
   Eigen::VectorXd delta_, target_;
 };
 

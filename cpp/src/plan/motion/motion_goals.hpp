@@ -13,8 +13,8 @@ struct GoalConfiguration {
   int goal = -1;
 };
 
-/// The allowed configurations among the goals and those that inverse kinematics finds for their poses. What is turned
-/// down is counted by cause, a pose once; `contacts` says what touches in the first configuration turned down.
+/// The allowed configurations among the goals and those that inverse kinematics finds for their poses. What is rejected
+/// is counted by cause, a pose once; `contacts` says what touches in the first rejected configuration.
 std::vector<GoalConfiguration> allowed_goals(MotionEdges& edges, const MotionGoals& goals, const MotionOptions& options,
                                              const Monitor& monitor, Rejections& rejections,
                                              std::vector<Contact>& contacts);

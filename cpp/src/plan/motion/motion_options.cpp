@@ -1,3 +1,4 @@
+// Rules for the options of plan_motion.
 #include <cmath>
 
 #include "mmgrasp/core/detail/numbers.hpp"

@@ -15,14 +15,14 @@ namespace {
 
 constexpr const char* kPluginFile = "libmmgrasp_ompl.so";
 
-/// An address inside the library this is linked into, to ask the loader where that lies.
-const char kSomewhereInHere = 0;
+/// An address inside this library, with which the loader tells the library's folder.
+const char kAddressInLibrary = 0;
 
 std::vector<std::filesystem::path> plugin_folders() {
   std::vector<std::filesystem::path> folders;
   if (const char* folder = std::getenv("MMGRASP_PLUGIN_DIR")) folders.emplace_back(folder);
   Dl_info info{};
-  if (dladdr(&kSomewhereInHere, &info) != 0 && info.dli_fname) {
+  if (dladdr(&kAddressInLibrary, &info) != 0 && info.dli_fname) {
     std::error_code error;
     const auto library = std::filesystem::weakly_canonical(info.dli_fname, error);
     if (!error) {
@@ -65,7 +65,8 @@ const MmgraspOmplApi& plugin() {
   return *api;
 }
 
-/// What the plugin's callbacks work on. Exceptions must not cross the boundary: the first one is kept and ends the run.
+/// The plugin's callbacks get this as `user`. Exceptions must not cross the boundary: the first one is kept and ends
+/// the run.
 struct Session {
   const PlannerQuery& query;
   PlannerAnswer answer;
@@ -116,7 +117,7 @@ void waypoint(void* user, const double* q) {
   s.answer.waypoints.push_back(s.a);
 }
 
-void improved(void* user, int count, const double* path) {
+void on_improvement(void* user, int count, const double* path) {
   Session& s = session(user);
   s.guarded([&] {
     std::vector<Eigen::VectorXd> waypoints;
@@ -124,7 +125,7 @@ void improved(void* user, int count, const double* path) {
       s.load(path + i * s.a.size(), s.a);
       waypoints.push_back(s.a);
     }
-    s.query.improved(waypoints);
+    s.query.on_improvement(waypoints);
     return true;
   });
 }
@@ -170,7 +171,7 @@ PlannerAnswer solve_with_ompl(const PlannerQuery& query) {
   problem.edge_is_free = edge_is_free;
   problem.stopped = stopped;
   problem.waypoint = waypoint;
-  problem.improved = query.improved ? improved : nullptr;
+  problem.on_improvement = query.on_improvement ? on_improvement : nullptr;
   problem.fail = fail;
   const int status = plugin().solve(&problem);
   if (session.thrown) std::rethrow_exception(session.thrown);

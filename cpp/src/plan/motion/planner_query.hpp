@@ -7,25 +7,25 @@
 
 namespace mmgrasp::detail {
 
-/// What a planner is asked. Start and goals are valid; values that wrap lie in [-pi, pi].
+/// A planning problem for the planners of plan_motion. Start and goals are valid; values that wrap lie in [-pi, pi].
 struct PlannerQuery {
   std::string planner;
-  Eigen::VectorXd lower, upper;
-  Eigen::VectorXd near_lower, near_upper;  ///< Where samples are mostly drawn, within the limits; empty: anywhere.
+  Eigen::VectorXd lower, upper;            ///< Sampling bounds.
+  Eigen::VectorXd near_lower, near_upper;  ///< Where samples are mostly drawn, within these bounds; empty: anywhere.
   std::vector<bool> wraps;
   Eigen::VectorXd start;
   std::vector<Eigen::VectorXd> goals;
-  double range = 0;
+  double range = 0;  ///< Longest tree edge; 0: the planner's choice.
   unsigned seed = 1;
   int max_iterations = 1;
-  double time_limit = 1;
+  double time_limit = 1;  ///< [s]
   std::function<bool(const Eigen::VectorXd&)> is_free;
   std::function<bool(const Eigen::VectorXd&, const Eigen::VectorXd&)> edge_is_free;
-  /// Brings a configuration back to where paths may run; false when that fails. Empty: they may run anywhere.
+  /// Projects a configuration onto the path constraint; false when that fails. Empty: there is none.
   std::function<bool(Eigen::VectorXd&)> project;
   std::function<bool()> stopped;
   /// Called with each path that is shorter than those before, by planners that go on after their first.
-  std::function<void(const std::vector<Eigen::VectorXd>& waypoints)> improved;
+  std::function<void(const std::vector<Eigen::VectorXd>& waypoints)> on_improvement;
 };
 
 struct PlannerAnswer {

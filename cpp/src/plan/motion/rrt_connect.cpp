@@ -12,11 +12,11 @@
 namespace mmgrasp::detail {
 namespace {
 
-// Of the sampling box's diagonal, when the caller names no range: measured on the problems of docs/methods/plan.md.
+// Longest edge by the diagonal of the sampling bounds, when the caller names none (docs/methods/plan.md has figures).
 constexpr double kRangeShare = 0.05;
-constexpr double kAnywhere = 0.1;  // Share of samples from all that the limits allow.
-constexpr double kSame = 1e-9;
-constexpr double kProgress = 0.05;  // Of a step's length, once the constraint has taken its share.
+constexpr double kAnywhereProbability = 0.1;  // Chance to sample from the whole bounds, not near the ends.
+constexpr double kSameConfiguration = 1e-9;   // Nearer configurations are the same [rad or m].
+constexpr double kLeastProgress = 0.05;       // Of a projected step towards its target, by the step's length.
 
 enum class Growth { trapped, advanced, reached };
 
@@ -32,7 +32,7 @@ class Connect {
         from_(query.start.size()),
         next_(query.start.size()),
         meet_(query.start.size()),
-        way_(query.start.size()) {
+        motion_(query.start.size()) {
     trees_[0].add(query.start, -1);
     for (const auto& goal : query.goals) trees_[1].add(goal, -1);
   }
@@ -57,7 +57,7 @@ class Connect {
   bool over() const { return query_.stopped() || time_limit_.expired(); }
 
   void draw() {
-    const bool anywhere = query_.near_lower.size() == 0 || rng_.uniform(0.0, 1.0) < kAnywhere;
+    const bool anywhere = query_.near_lower.size() == 0 || rng_.uniform(0.0, 1.0) < kAnywhereProbability;
     const Eigen::VectorXd& lower = anywhere ? query_.lower : query_.near_lower;
     const Eigen::VectorXd& upper = anywhere ? query_.upper : query_.near_upper;
     for (Eigen::Index i = 0; i < sample_.size(); ++i) {
@@ -66,8 +66,8 @@ class Connect {
     }
   }
 
-  /// The way from one configuration to another, the short way round; returns its length.
-  double way(const Eigen::VectorXd& from, const Eigen::VectorXd& to, Eigen::VectorXd& out) const {
+  /// The motion from one configuration to another, the short way round; returns its length.
+  double motion(const Eigen::VectorXd& from, const Eigen::VectorXd& to, Eigen::VectorXd& out) const {
     out = to - from;
     wrap(out);
     return out.norm();
@@ -76,8 +76,8 @@ class Connect {
   /// One step from `node`, which becomes the new node.
   Growth extend(ConfigurationTree& tree, int& node, const Eigen::VectorXd& target) {
     tree.get(node, from_);
-    const double distance = way(from_, target, next_);
-    if (distance < kSame) return Growth::reached;
+    const double distance = motion(from_, target, next_);
+    if (distance < kSameConfiguration) return Growth::reached;
     const bool reached = distance <= range_ * (1 + 1e-9);
     if (reached) {
       next_ = target;
@@ -87,8 +87,8 @@ class Connect {
       if (query_.project) {
         if (!query_.project(next_)) return Growth::trapped;
         wrap(next_);
-        // What the projection takes back is no step towards the target.
-        if (way(next_, target, way_) > distance - kProgress * range_) return Growth::trapped;
+        // The projection may have taken back the step.
+        if (motion(next_, target, motion_) > distance - kLeastProgress * range_) return Growth::trapped;
       }
     }
     if (!query_.edge_is_free(from_, next_)) return Growth::trapped;
@@ -113,7 +113,7 @@ class Connect {
     std::reverse(answer.waypoints.begin(), answer.waypoints.end());
     for (int node = from_goal; node >= 0; node = trees_[1].parent(node)) {
       trees_[1].get(node, q);
-      if ((q - answer.waypoints.back()).norm() > kSame) answer.waypoints.push_back(q);
+      if ((q - answer.waypoints.back()).norm() > kSameConfiguration) answer.waypoints.push_back(q);
     }
     return answer;
   }
@@ -123,7 +123,7 @@ class Connect {
   const double range_;
   const TimeLimit time_limit_;
   ConfigurationTree trees_[2];
-  Eigen::VectorXd sample_, from_, next_, meet_, way_;
+  Eigen::VectorXd sample_, from_, next_, meet_, motion_;
 };
 
 }  // namespace

@@ -9,13 +9,13 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr int kPatience = 30;           // Attempts without a gain after which a path counts as short.
-constexpr double kSmallestGain = 2e-3;  // Relative to the path's length; less is not worth looking at.
+constexpr int kMaxFailures = 30;        // Shortcuts in a row without a gain after which a path counts as short.
+constexpr double kSmallestGain = 2e-3;  // Relative to the path's length; shortcuts that gain less are not checked.
 
 using Waypoints = std::vector<Eigen::VectorXd>;
 
 struct PathPoint {
-  std::size_t edge = 0;  // Between waypoints edge and edge + 1.
+  std::size_t edge = 0;  // Lies between waypoints `edge` and `edge + 1`.
   Eigen::VectorXd q;
 };
 
@@ -28,9 +28,9 @@ class Shortener {
     remove_repeats();
     skip_waypoints();
     int without_gain = 0;
-    for (int i = 0; i < options_.iterations && without_gain < kPatience && waypoints_.size() > 2; ++i) {
+    for (int i = 0; i < options_.iterations && without_gain < kMaxFailures && waypoints_.size() > 2; ++i) {
       if (options_.stopped()) return;
-      // A platform that turns and drives cannot move one value alone.
+      // A steered base cannot move one value alone.
       const bool gained = i % 3 == 2 && !edges_.steered() ? shortcut_one_joint() : shortcut();
       without_gain = gained ? 0 : without_gain + 1;
     }
@@ -39,7 +39,7 @@ class Shortener {
 
  private:
   bool free(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-    return edges_.straight_is_free(a, b, options_.finer);
+    return edges_.straight_is_free(a, b, options_.resolution);
   }
 
   static double length(const Waypoints& points) {
@@ -63,7 +63,7 @@ class Shortener {
     waypoints_ = std::move(kept);
   }
 
-  /// From each waypoint straight to the farthest later one in sight.
+  /// From each waypoint straight to the farthest later one with a free edge.
   void skip_waypoints() {
     for (std::size_t i = 0; i + 2 < waypoints_.size(); ++i) {
       for (std::size_t j = waypoints_.size() - 1; j > i + 1; --j) {

@@ -10,13 +10,13 @@ namespace mmgrasp::detail {
 
 struct ShorteningOptions {
   int iterations = 200;
-  double finer = 1;  ///< See MotionEdges.
+  double resolution = 1;  ///< Resolution factor of edge checks, as in MotionEdges.
   std::function<bool()> stopped = [] { return false; };
 };
 
-/// Shortens a free path and keeps it free at the edges' steps. First waypoints are skipped where a straight edge allows
-/// it; then pairs of random points are joined, in all joints or in one joint alone (the others go on as before). Ends
-/// early when nothing was gained for long.
+/// Shortcuts a free path and keeps it free at the edges' steps. First waypoints are skipped where a straight edge is
+/// free; then pairs of random points are joined, in all joints or in one joint alone (the others move as before). Ends
+/// early when many shortcuts in a row gained nothing.
 void shorten_path(MotionEdges& edges, JointPath& path, Rng& rng, const ShorteningOptions& options);
 
 }  // namespace mmgrasp::detail

@@ -7,7 +7,7 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kNoDrive = 1e-9;  // A shorter way is none [m].
+constexpr double kNoDrive = 1e-9;  // Shorter drives are left out [m].
 
 double turn(double from, double to) {
   return shortest_turn(to - from);
@@ -22,15 +22,15 @@ double in_turn_of(double angle, double near) {
 
 void append_turn_drive_turn(const Eigen::VectorXd& from, const Eigen::VectorXd& to,
                             std::vector<Eigen::VectorXd>& corners) {
-  const Eigen::Vector2d way = to.head<2>() - from.head<2>();
-  const double drive = way.norm();
+  const Eigen::Vector2d motion = to.head<2>() - from.head<2>();
+  const double drive = motion.norm();
   if (drive < kNoDrive) {
     corners.push_back(to);
     corners.back()[2] = in_turn_of(to[2], from[2] + turn(from[2], to[2]));
     return;
   }
   // In [0, pi), so that both directions of travel see the same two headings in the same order.
-  double heading = std::atan2(way[1], way[0]);
+  double heading = std::atan2(motion[1], motion[0]);
   if (heading < 0) heading += kPi;
   if (heading >= kPi) heading -= kPi;
   const auto turning = [&](double h) { return std::abs(turn(from[2], h)) + std::abs(turn(h, to[2])); };

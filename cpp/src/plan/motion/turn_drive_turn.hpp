@@ -6,8 +6,8 @@
 namespace mmgrasp::detail {
 
 /// How a platform that cannot move sideways goes from one configuration (x, y, theta, arm joints ...) to another: turn
-/// on the spot towards the goal or away from it, drive straight (then backwards), turn on the spot; the arm's joints
-/// move along evenly. Of the two headings the one with less turning is taken, so that the way back is the same way.
+/// on the spot towards the goal, drive straight, turn on the spot; or turn away from the goal and drive backwards. The
+/// arm's joints move along evenly. The heading with less turning is taken, so that the path back is the same one.
 /// Appends the corners after `from`, the goal included, whose theta (and other values that wrap) may come out whole
 /// turns away from `to`.
 void append_turn_drive_turn(const Eigen::VectorXd& from, const Eigen::VectorXd& to,

@@ -12,8 +12,8 @@ namespace ob = ompl::base;
 namespace {
 
 constexpr double kTwoPi = 2 * M_PI;
-constexpr double kAroundEnds = 0.2;  // Share of a roadmap's draws.
-constexpr double kNearest = 1e-3;    // Least size of a box around an end, as a share of the bounds.
+constexpr double kNearEndProbability = 0.2;  // Chance that a roadmap's sample is drawn around the start or a goal.
+constexpr double kLeastBoxShare = 1e-3;      // Smallest box for that, as a share of the bounds.
 
 /// Draws from a generator of its own: OMPL's are seeded from one per process, and would differ from run to run.
 class SeededSampler : public ob::StateSampler {
@@ -23,7 +23,7 @@ class SeededSampler : public ob::StateSampler {
 
   void sampleUniform(ob::State* state) override {
     context_->count_draw();
-    if (context_->roadmap() && uniform() < kAroundEnds) return sample_around_end(state);
+    if (context_->roadmap() && uniform() < kNearEndProbability) return sample_around_end(state);
     const auto& bounds = space_->getBounds();
     for (unsigned int i = 0; i < space_->getDimension(); ++i) {
       values(state)[i] = between(bounds.low[i], bounds.high[i]);
@@ -47,12 +47,12 @@ class SeededSampler : public ob::StateSampler {
   }
 
  private:
-  /// In a box around the start or a goal, of any size down to kNearest: all orders of magnitude alike.
+  /// In a box around the start or a goal, of any size down to kLeastBoxShare: all orders of magnitude equally likely.
   void sample_around_end(ob::State* state) {
     const MmgraspOmplProblem& problem = context_->problem();
     const int goal = static_cast<int>(uniform() * 2 * problem.goal_count) - problem.goal_count;
     const double* end = goal < 0 ? problem.start : problem.goals + goal * problem.size;
-    const double share = std::pow(kNearest, uniform());
+    const double share = std::pow(kLeastBoxShare, uniform());
     const auto& bounds = space_->getBounds();
     for (unsigned int i = 0; i < space_->getDimension(); ++i) {
       const double reach = share * (bounds.high[i] - bounds.low[i]);
@@ -150,7 +150,7 @@ double JointSpace::getMaximumExtent() const {
   return std::sqrt(sum);
 }
 
-double JointSpace::box_diagonal() const {
+double JointSpace::bounds_diagonal() const {
   double sum = 0;
   for (unsigned int i = 0; i < dimension_; ++i) sum += std::pow(bounds_.high[i] - bounds_.low[i], 2);
   return std::sqrt(sum);

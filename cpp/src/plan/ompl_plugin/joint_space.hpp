@@ -13,8 +13,8 @@
 
 namespace mmgrasp_ompl {
 
-/// A box of joint values in which some are angles that wrap at +-pi. Distance is Euclidean over shortest differences,
-/// so that it equals the length of the joint-space edge that is checked and driven.
+/// Joint values within sampling bounds, of which some are angles that wrap at +-pi. Distance is Euclidean over shortest
+/// differences, so that it equals the length of the joint-space edge that is checked and driven.
 class JointSpace : public ompl::base::RealVectorStateSpace {
  public:
   explicit JointSpace(std::shared_ptr<RunContext> context);
@@ -27,7 +27,7 @@ class JointSpace : public ompl::base::RealVectorStateSpace {
   void enforceBounds(ompl::base::State* state) const override;
   bool equalStates(const ompl::base::State* a, const ompl::base::State* b) const override;
   double getMaximumExtent() const override;
-  double box_diagonal() const;  ///< Counting a value that wraps with its full turn.
+  double bounds_diagonal() const;  ///< A value that wraps counts with its full turn.
   ompl::base::StateSamplerPtr allocDefaultStateSampler() const override;
   void registerProjections() override;
 

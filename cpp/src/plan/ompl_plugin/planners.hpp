@@ -18,9 +18,10 @@ struct PlannerEntry {
   bool keeps_improving;
   /// Draws a roadmap in which the ends are two vertices, instead of growing trees from them.
   bool roadmap;
-  /// Longest tree edge when the caller names none, as a share of the joint box's diagonal; 0: OMPL's choice (a fifth).
+  /// Longest tree edge when the caller names none, as a share of the diagonal of the sampling bounds; 0: OMPL's choice
+  /// (a fifth).
   double range_share;
-  /// One round may take seconds (edges blocked one by one, each followed by a search), with no look at the budget.
+  /// One round may take seconds (edges blocked one by one, each followed by a search), with no check of the budget.
   bool long_rounds = false;
 };
 

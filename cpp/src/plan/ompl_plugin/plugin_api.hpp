@@ -8,7 +8,7 @@ extern "C" {
 
 enum MmgraspOmplStatus {
   MMGRASP_OMPL_SOLVED = 0,
-  MMGRASP_OMPL_BUDGET_SPENT = 1,  ///< Iterations, clock or `stopped` ended it without a path.
+  MMGRASP_OMPL_BUDGET_SPENT = 1,  ///< Iterations, the time limit or `stopped` ended the run without a path.
   MMGRASP_OMPL_EXHAUSTED = 2,     ///< The planner gave up by itself.
   MMGRASP_OMPL_FAILED = 3         ///< `fail` was called with a message.
 };
@@ -28,13 +28,13 @@ struct MmgraspOmplProblem {
   int max_iterations;  ///< States drawn (or planner rounds, where rounds draw none).
   double time_limit;   ///< [s]
 
-  void* user;  ///< Handed to every function below.
+  void* user;  ///< First argument of every function below.
   int (*is_free)(void* user, const double* q);
   int (*edge_is_free)(void* user, const double* q0,
                       const double* q1);  ///< The shortest way round for values that wrap.
   int (*stopped)(void* user);
-  void (*waypoint)(void* user, const double* q);                ///< Called for each waypoint of the path, in order.
-  void (*improved)(void* user, int count, const double* path);  ///< Rows of a shorter path, while improving; or null.
+  void (*waypoint)(void* user, const double* q);  ///< Called for each waypoint of the path, in order.
+  void (*on_improvement)(void* user, int count, const double* path);  ///< Rows of a shorter path; or null.
   void (*fail)(void* user, const char* message);
 };
 

@@ -4,7 +4,7 @@
 
 namespace mmgrasp_ompl {
 
-/// OMPL's PRM searches its roadmap for a path in a second thread, so what it returns depends on the clock. This one
+/// OMPL's PRM searches its roadmap for a path in a second thread, so what it returns depends on timing. This one
 /// grows and searches in turns, in one thread: the same seed gives the same roadmap and path.
 class RepeatablePrm : public ompl::geometric::PRM {
  public:

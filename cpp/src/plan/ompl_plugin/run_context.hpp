@@ -10,7 +10,7 @@
 namespace mmgrasp_ompl {
 
 /// Thrown out of a planner whose rounds take any time: when the caller's stop token is set, for nobody wants its path
-/// then, or when the clock has run out and it has no path to lose.
+/// then, or when the time limit has passed and it has no path to lose.
 struct RunStopped {};
 
 /// What one run has spent of its budget, shared by sampler, validity checker and termination condition.
@@ -28,9 +28,9 @@ class RunContext {
   /// Ends are joined through vertices drawn near them alone; trees grow from them.
   bool roadmap() const { return roadmap_; }
 
-  /// Called at every look at the budget.
-  void watch(std::function<void()> look) { look_ = std::move(look); }
-  /// For planners whose rounds may take seconds without a look at the budget; they tell whether they have a path.
+  /// `check` is called at every check of the budget.
+  void watch(std::function<void()> check) { on_budget_check_ = std::move(check); }
+  /// For planners whose rounds may take seconds without a check of the budget. `has_path`: whether they have one.
   void throw_when_stopped(std::function<bool()> has_path) { has_path_ = std::move(has_path); }
   void restart() { draws_ = checks_ = rounds_ = 0; }
   void count_draw() { ++draws_; }
@@ -47,13 +47,13 @@ class RunContext {
     return !stopped() && problem_.edge_is_free(problem_.user, q0, q1) != 0;
   }
 
-  /// By its caller or its clock.
+  /// By the caller or the time limit.
   bool stopped() const { return problem_.stopped(problem_.user) != 0 || std::chrono::steady_clock::now() >= deadline_; }
 
   /// The termination condition: called by planners once per round or more often.
   bool finished() {
     ++rounds_;
-    if (look_) look_();
+    if (on_budget_check_) on_budget_check_();
     const long budget = problem_.max_iterations;
     return draws_ >= budget || checks_ >= budget || (count_rounds_ && rounds_ > budget) || stopped();
   }
@@ -64,7 +64,7 @@ class RunContext {
   std::chrono::steady_clock::time_point deadline_;
   long draws_ = 0, checks_ = 0, rounds_ = 0;
   std::uint64_t samplers_ = 0;
-  std::function<void()> look_;
+  std::function<void()> on_budget_check_;
   std::function<bool()> has_path_;
 };
 

@@ -1,3 +1,4 @@
+// The plugin's entry point: one planning problem, solved by one of OMPL's planners.
 #include <ompl/base/ProblemDefinition.h>
 #include <ompl/base/goals/GoalStates.h>
 #include <ompl/geometric/PathGeometric.h>
@@ -45,8 +46,8 @@ class RunLock {
   RunLock(bool alone, const RunContext& context) : alone_(alone) {
     while (!held_ && !context.stopped()) {
       // Not try_lock_for, whose lock on the steady clock ThreadSanitizer does not see.
-      const auto look = std::chrono::system_clock::now() + kLook;
-      held_ = alone_ ? seed_mutex().try_lock_until(look) : seed_mutex().try_lock_shared_until(look);
+      const auto next_check = std::chrono::system_clock::now() + kBudgetCheckInterval;
+      held_ = alone_ ? seed_mutex().try_lock_until(next_check) : seed_mutex().try_lock_shared_until(next_check);
     }
     // OMPL complains that seeds were drawn before (its log is off) and restarts its generator all the same; 0 it
     // ignores.
@@ -62,7 +63,7 @@ class RunLock {
   bool held() const { return held_; }
 
  private:
-  static constexpr std::chrono::milliseconds kLook{10};  // Between looks at the budget.
+  static constexpr std::chrono::milliseconds kBudgetCheckInterval{10};
   bool alone_, held_ = false;
 };
 
@@ -100,7 +101,7 @@ class Improvements {
     const ob::State* start = definition_->getStartState(0);
     if (states.empty() || !same(states.front(), start)) std::reverse(states.begin(), states.end());
     if (states.empty() || !same(states.front(), start)) states.insert(states.begin(), start);
-    // Some leave the goal out as well; the cost tells which it is.
+    // Some leave the goal out as well; the cost shows which it is.
     const auto* goals = definition_->getGoal()->as<ob::GoalStates>();
     const ob::State* end = nullptr;
     double least = std::numeric_limits<double>::infinity();
@@ -115,7 +116,7 @@ class Improvements {
     report(states);
   }
 
-  void look_into_definition() {
+  void check_definition() {
     const ob::PathPtr path = definition_->hasExactSolution() ? definition_->getSolutionPath() : nullptr;
     if (!path || path == last_) return;
     last_ = path;
@@ -138,7 +139,7 @@ class Improvements {
     best_ = cost;
     std::vector<double> rows;
     for (const ob::State* state : states) rows.insert(rows.end(), values(state), values(state) + problem_.size);
-    problem_.improved(problem_.user, static_cast<int>(states.size()), rows.data());
+    problem_.on_improvement(problem_.user, static_cast<int>(states.size()), rows.data());
   }
 
   const MmgraspOmplProblem& problem_;
@@ -164,15 +165,15 @@ int run(const MmgraspOmplProblem& problem) {
   si->setup();
   const ob::ProblemDefinitionPtr definition = make_definition(si, problem, space->any_wraps());
   const ob::PlannerPtr planner = entry->make(si);
-  const double range = problem.range > 0 ? problem.range : entry->range_share * space->box_diagonal();
+  const double range = problem.range > 0 ? problem.range : entry->range_share * space->bounds_diagonal();
   if (range > 0 && planner->params().hasParam("range")) planner->params().setParam("range", std::to_string(range));
   planner->setProblemDefinition(definition);
   planner->setup();
   Improvements improvements(problem, si, definition);
-  if (problem.improved) {
+  if (problem.on_improvement) {
     definition->setIntermediateSolutionCallback([&](const ob::Planner*, const std::vector<const ob::State*>& states,
                                                     const ob::Cost cost) { improvements.add(states, cost.value()); });
-    context->watch([&] { improvements.look_into_definition(); });
+    context->watch([&] { improvements.check_definition(); });
   }
   if (entry->long_rounds) {
     const auto best_cost = planner->getPlannerProgressProperties().at("best cost REAL");

@@ -23,7 +23,7 @@ void RoadmapOptions::check() const {
   require(neighbours >= 0, "neighbours", neighbours, "must be >= 0");
 }
 
-bool Roadmap::Data::draw(detail::Until& until) {
+bool Roadmap::Data::draw(detail::CancelCheck& cancel) {
   const Eigen::VectorXd lower = group.sample_lower(), upper = group.sample_upper();
   for (Eigen::Index i = 0; i < lower.size(); ++i) {
     require(std::isfinite(upper[i] - lower[i]), "group: width of '" + group.names()[i] + "'", upper[i] - lower[i],
@@ -33,25 +33,25 @@ bool Roadmap::Data::draw(detail::Until& until) {
   constexpr Eigen::Index kBlock = 1024;
   const Eigen::Index count = vertices.cols();
   const auto draw_block = [&](std::size_t block, int) {
-    until.breathe();
+    cancel.stopped();
     const Eigen::Index first = static_cast<Eigen::Index>(block) * kBlock;
-    // A stream each, so that vertex i does not depend on how many there are.
+    // Each vertex has its own random stream, so that vertex i does not depend on their number.
     for (Eigen::Index i = first; i < std::min(first + kBlock, count); ++i)
       vertices.col(i) = Rng(options.seed, static_cast<std::uint64_t>(i)).uniform(lower, upper);
   };
-  return parallel_for(static_cast<std::size_t>((count + kBlock - 1) / kBlock), 0, draw_block, until.monitor(),
+  return parallel_for(static_cast<std::size_t>((count + kBlock - 1) / kBlock), 0, draw_block, cancel.monitor(),
                       "roadmap");
 }
 
-bool Roadmap::Data::index(detail::Until& until) {
-  cloud = std::make_unique<detail::ColumnCloud>(detail::ColumnCloud{vertices, &until});
+bool Roadmap::Data::index(detail::CancelCheck& cancel) {
+  cloud = std::make_unique<detail::ColumnCloud>(detail::ColumnCloud{vertices, &cancel});
   try {
     tree = std::make_unique<detail::ColumnTree>(static_cast<int>(vertices.rows()), *cloud,
                                                 nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
   } catch (const detail::ColumnCloud::Stopped&) {
     return false;
   }
-  cloud->until = nullptr;
+  cloud->cancel = nullptr;
   return true;
 }
 
@@ -78,35 +78,35 @@ void Roadmap::Data::near(const double* q, int neighbours, std::vector<int>& out)
   std::sort(out.begin(), out.end());
 }
 
-bool Roadmap::Data::join(detail::Until& until, int threads) {
+bool Roadmap::Data::join(detail::CancelCheck& cancel, int threads) {
   const auto count = static_cast<std::size_t>(vertices.cols());
   // With a fixed number of neighbours the vertex itself is its nearest one.
   std::vector<std::vector<int>> joined(count);
   const int wanted = options.neighbours > 0 ? options.neighbours + 1 : 0;
   const auto join_one = [&](std::size_t v, int) {
-    until.breathe();
+    cancel.stopped();
     near(vertices.col(static_cast<Eigen::Index>(v)).data(), wanted, joined[v]);
   };
-  if (!parallel_for(count, threads, join_one, until.monitor(), "roadmap")) return false;
-  // Who was found from the far end only is added to the near end's list, which then holds every edge once.
+  if (!parallel_for(count, threads, join_one, cancel.monitor(), "roadmap")) return false;
+  // An edge found from its end with the larger number only is added to the other end's list, which then holds all.
   for (std::size_t v = 0; v < count; ++v) {
-    if (until.breathe()) return false;
+    if (cancel.stopped()) return false;
     for (const int u : joined[v])
       if (static_cast<std::size_t>(u) < v) joined[u].push_back(static_cast<int>(v));
   }
   ends.clear();
   for (std::size_t v = 0; v < count; ++v) {
-    if (until.breathe()) return false;
+    if (cancel.stopped()) return false;
     std::vector<int>& others = joined[v];
     std::sort(others.begin(), others.end());
     others.erase(std::unique(others.begin(), others.end()), others.end());
     for (const int u : others)
       if (static_cast<std::size_t>(u) > v) ends.emplace_back(static_cast<int>(v), u);
   }
-  return make_arcs(until);
+  return make_arcs(cancel);
 }
 
-bool Roadmap::Data::make_arcs(detail::Until& until) {
+bool Roadmap::Data::make_arcs(detail::CancelCheck& cancel) {
   const auto count = static_cast<std::size_t>(vertices.cols());
   first.assign(count + 1, 0);
   for (const auto& [a, b] : ends) {
@@ -117,7 +117,7 @@ bool Roadmap::Data::make_arcs(detail::Until& until) {
   arcs.resize(2 * ends.size());
   std::vector<int> next(first.begin(), first.end() - 1);
   for (std::size_t e = 0; e < ends.size(); ++e) {
-    if (e % 256 == 0 && until.breathe()) return false;
+    if (e % 256 == 0 && cancel.stopped()) return false;
     const auto [a, b] = ends[e];
     const double length = (vertices.col(a) - vertices.col(b)).norm();
     arcs[next[a]++] = {b, static_cast<int>(e), length};
@@ -131,12 +131,12 @@ Roadmap::Roadmap(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
 Roadmap detail::build_roadmap(const JointGroup& group, const RoadmapOptions& options, const Monitor& monitor,
                               const std::function<bool()>& over) {
   options.check();
-  Until until(monitor, over);
+  CancelCheck cancel(monitor, over);
   auto data = std::make_shared<Roadmap::Data>(group, options);
-  if (data->draw(until) && data->index(until) && data->join(until, 0)) return Roadmap(data);
+  if (data->draw(cancel) && data->index(cancel) && data->join(cancel, 0)) return Roadmap(data);
   data = std::make_shared<Roadmap::Data>(group, options);
   data->vertices.resize(group.size(), 0);
-  Until never;
+  CancelCheck never;
   data->make_arcs(never);
   return Roadmap(data);
 }
@@ -147,7 +147,7 @@ Roadmap detail::roadmap_over(const JointGroup& group, int neighbours, Eigen::Mat
   options.neighbours = neighbours;
   auto data = std::make_shared<Roadmap::Data>(group, options);
   data->vertices = std::move(vertices);
-  Until never;
+  CancelCheck never;
   data->index(never);
   data->join(never, 1);
   return Roadmap(data);
@@ -192,7 +192,7 @@ double Roadmap::radius() const {
   return options().neighbours > 0 || size() == 0 ? 0 : data_->radius();
 }
 
-RoadmapStatistics Roadmap::figures() const {
+RoadmapStatistics Roadmap::statistics() const {
   RoadmapStatistics out;
   const auto d = static_cast<double>(data_->group.size());
   out.volume = (data_->group.sample_upper() - data_->group.sample_lower()).prod();

@@ -15,37 +15,39 @@ namespace mmgrasp {
 
 namespace detail {
 
-/// A monitor that is stopped as soon as `over` says so, which is asked now and then.
-class Until {
+/// Makes a long call end when `over` is true, which is checked now and then. The caller's progress is passed on.
+class CancelCheck {
  public:
-  Until() : over_(kNever) {}  ///< Never stopped.
-  Until(const Monitor& monitor, const std::function<bool()>& over) : over_(over) { own_.progress = monitor.progress; }
+  CancelCheck() : over_(kNever) {}  ///< Never stopped.
+  CancelCheck(const Monitor& monitor, const std::function<bool()>& over) : over_(over) {
+    own_.progress = monitor.progress;
+  }
   const Monitor& monitor() const { return own_; }
-  /// To be called with every step, by any thread. Whether it is stopped.
-  bool breathe() {
-    if (steps_++ % kSteps == 0 && over_()) own_.stop.stop();
+  /// To be called with every step, from any thread. True once the call shall end.
+  bool stopped() {
+    if (steps_++ % kCheckInterval == 0 && over_()) own_.stop.stop();
     return own_.stopped();
   }
 
  private:
-  static constexpr std::size_t kSteps = 64;
+  static constexpr std::size_t kCheckInterval = 64;
   inline static const std::function<bool()> kNever = [] { return false; };
   const std::function<bool()>& over_;
   Monitor own_;
   std::atomic<std::size_t> steps_{0};
 };
 
-/// Columns of a matrix as nanoflann wants them. Coordinates are read one by one only while the search tree is made,
-/// which has no other place where it could be stopped.
+/// Columns of a matrix as nanoflann wants them. Coordinates are read one by one only while the search tree is
+/// built, which can be stopped nowhere else.
 struct ColumnCloud {
   struct Stopped {};
   const Eigen::MatrixXd& columns;
-  Until* until = nullptr;  ///< While the tree is made: throws Stopped.
+  CancelCheck* cancel = nullptr;  ///< While the tree is built: reading throws Stopped when it is stopped.
   mutable std::size_t reads = 0;
 
   std::size_t kdtree_get_point_count() const { return static_cast<std::size_t>(columns.cols()); }
   double kdtree_get_pt(std::size_t i, std::size_t k) const {
-    if (until && ++reads % 1024 == 0 && until->breathe()) throw Stopped{};
+    if (cancel && ++reads % 1024 == 0 && cancel->stopped()) throw Stopped{};
     return columns(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i));
   }
   template <class Box>
@@ -67,15 +69,15 @@ struct ColumnMetric : nanoflann::L2_Simple_Adaptor<double, ColumnCloud> {
 
 using ColumnTree = nanoflann::KDTreeSingleIndexAdaptor<ColumnMetric, ColumnCloud, -1, int>;
 
-/// Roadmap::build that is empty when `over` ended it. `over` is asked by several threads.
+/// Roadmap::build that gives an empty roadmap when `over` ended it. `over` is called from several threads.
 MMGRASP_EXPORT Roadmap build_roadmap(const JointGroup& group, const RoadmapOptions& options, const Monitor& monitor,
                                      const std::function<bool()>& over);
 
-/// A small roadmap over given configurations, one column each, made by the calling thread.
+/// A small roadmap over given configurations, one column each, built in the calling thread.
 MMGRASP_EXPORT Roadmap roadmap_over(const JointGroup& group, int neighbours, Eigen::MatrixXd vertices);
 
-/// What a group must agree on to use a roadmap: the robot's joints, and which of them it moves where. Shapes, disabled
-/// pairs and where the root stands do not matter.
+/// Hash of what must be the same for a roadmap to fit a group: the robot's joints, and which of them the group moves
+/// within which bounds. Shapes, disabled pairs and the pose of the root do not matter.
 std::uint64_t kinematics_key(const JointGroup& group);
 
 }  // namespace detail
@@ -84,21 +86,21 @@ struct Roadmap::Data {
   Data(const JointGroup& group_in, const RoadmapOptions& options_in) : group(group_in), options(options_in) {}
 
   /// Draws the vertices; false when stopped.
-  bool draw(detail::Until& until);
-  /// Makes the search tree over the vertices; false when stopped.
-  bool index(detail::Until& until);
+  bool draw(detail::CancelCheck& cancel);
+  /// Builds the search tree over the vertices; false when stopped.
+  bool index(detail::CancelCheck& cancel);
   double radius() const;
-  /// The nearest so many vertices, or with 0 those nearer than radius(); ascending.
+  /// The `neighbours` nearest vertices, or with 0 those nearer than radius(); ascending.
   void near(const double* q, int neighbours, std::vector<int>& out) const;
   /// Joins near vertices; false when stopped.
-  bool join(detail::Until& until, int threads);
+  bool join(detail::CancelCheck& cancel, int threads);
   /// Makes the arcs of `ends`; false when stopped.
-  bool make_arcs(detail::Until& until);
+  bool make_arcs(detail::CancelCheck& cancel);
 
   JointGroup group;
   RoadmapOptions options;
   Eigen::MatrixXd vertices;
-  std::vector<std::pair<int, int>> ends;  ///< Of each edge, ascending.
+  std::vector<std::pair<int, int>> ends;  ///< The two vertices of each edge, the smaller number first.
   std::vector<int> first;                 ///< Arcs of vertex v: first[v] .. first[v + 1].
   std::vector<Arc> arcs;
   std::unique_ptr<detail::ColumnCloud> cloud;

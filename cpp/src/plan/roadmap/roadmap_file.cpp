@@ -1,3 +1,5 @@
+// Roadmap::save and Roadmap::load. A file holds vertices and edges as they are in memory: magic, key, sizes, numbers,
+// checksum.
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -7,7 +9,6 @@
 #include "mmgrasp/core/hash.hpp"
 #include "plan/roadmap/roadmap_data.hpp"
 
-// A roadmap's file holds its vertices and edges as they are in memory: magic, key, sizes, numbers, checksum.
 namespace mmgrasp {
 namespace {
 
@@ -115,7 +116,7 @@ Roadmap Roadmap::load(const std::string& path, const JointGroup& group) {
     if (pair[0] < 0 || pair[0] >= pair[1] || pair[1] >= header.vertices) throw IoError(path + ": is damaged: bad edge");
     data->ends.emplace_back(pair[0], pair[1]);
   }
-  detail::Until never;
+  detail::CancelCheck never;
   if (data->vertices.cols() > 0) data->index(never);
   data->make_arcs(never);
   return Roadmap(data);

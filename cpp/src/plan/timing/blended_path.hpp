@@ -13,13 +13,13 @@ class BlendedPath {
   struct Segment {
     double start = 0, length = 0;  // Arc length.
     double radius = 0;             // 0: straight.
-    Eigen::VectorXd origin;        // At its start.
+    Eigen::VectorXd origin;        // Configuration at its start.
     Eigen::VectorXd tangent,
         normal;                // Unit, at its start; the normal points to the arc's centre (empty when straight).
     bool stop_before = false;  // The path has a sharp corner at its start.
 
     Eigen::VectorXd position(double s) const;    ///< `s` counts from the segment's start.
-    Eigen::VectorXd derivative(double s) const;  ///< By arc length; of unit length.
+    Eigen::VectorXd derivative(double s) const;  ///< With respect to arc length: a unit vector.
     Eigen::VectorXd second_derivative(double s) const;
   };
 

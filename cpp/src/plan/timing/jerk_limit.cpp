@@ -13,8 +13,8 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr int kBisections = 24;
-constexpr double kStopped = 1e-9;   // Slower than this counts as a stop [rad/s].
-constexpr int kSamplesAWindow = 8;  // The average changes over a window's time.
+constexpr double kStopped = 1e-9;     // Slower than this counts as a stop [rad/s].
+constexpr int kSamplesPerWindow = 8;  // The average changes over a window's time.
 // A shorter ramp of the acceleration counts as a jump: third differences of samples so close are rounding [s].
 constexpr double kShortestWindow = 1e-4;
 
@@ -93,9 +93,9 @@ class Cubics {
         std::clamp<std::ptrdiff_t>(next - times_.begin() - 1, 0, static_cast<std::ptrdiff_t>(times_.size()) - 2));
     p.h = times_[p.i + 1] - times_[p.i];
     p.s = (t - times_[p.i]) / p.h;
-    const Eigen::VectorXd way = positions_[p.i + 1] - positions_[p.i];
-    p.c2 = 3 * way - p.h * (2 * velocities_[p.i] + velocities_[p.i + 1]);
-    p.c3 = p.h * (velocities_[p.i] + velocities_[p.i + 1]) - 2 * way;
+    const Eigen::VectorXd delta = positions_[p.i + 1] - positions_[p.i];
+    p.c2 = 3 * delta - p.h * (2 * velocities_[p.i] + velocities_[p.i + 1]);
+    p.c3 = p.h * (velocities_[p.i] + velocities_[p.i + 1]) - 2 * delta;
     return p;
   }
 
@@ -124,7 +124,7 @@ JointTrajectory with_waits(const JointTrajectory& motion, double wait, const Sto
 }
 
 /// Whether the average over `window` keeps the jerk limits: its jerk is linear between the times at which either end
-/// of the window meets a sample, so that looking on both sides of these is enough.
+/// of the window meets a sample, so that checking both sides of these is enough.
 bool keeps_jerk(const Cubics& motion, double window, const Eigen::VectorXd& jerk_limits, const StopToken& stop) {
   const double side = std::min(1e-9 * (motion.duration() + window), 1e-3 * window);
   const Eigen::ArrayXd bound = window * jerk_limits.array() * (1 + 1e-9);
@@ -140,7 +140,7 @@ bool keeps_jerk(const Cubics& motion, double window, const Eigen::VectorXd& jerk
   return true;
 }
 
-/// Under such a window samples a window's part apart everywhere would be far more than asked for.
+/// Under such a window, samples that are a fixed part of it apart would be far too many.
 bool is_short(double window, double period) {
   return 2 * window < period;
 }
@@ -156,9 +156,9 @@ std::vector<double> sample_times(const Cubics& motion, double window, double per
   }
   std::vector<double> times{0};
   for (const double event : events) {
-    const double begin = times.back(), gap = event - begin, step = window / kSamplesAWindow;
+    const double begin = times.back(), gap = event - begin, step = window / kSamplesPerWindow;
     if (gap < 0.5 * step) continue;
-    const double parts = is_short(window, period) ? std::min<double>(gap / step, kSamplesAWindow) : gap / step;
+    const double parts = is_short(window, period) ? std::min<double>(gap / step, kSamplesPerWindow) : gap / step;
     const int count = static_cast<int>(std::ceil(std::max(gap / period, parts)));
     for (int i = 1; i <= count; ++i) times.push_back(i == count ? event : begin + gap * i / count);
   }
@@ -223,8 +223,8 @@ JointTrajectory limit_jerk(const JointTrajectory& motion, const Eigen::VectorXd&
     (keeps(middle) ? enough : least) = middle;
   }
   const Cubics slow = cubics(enough);
-  const double most = (slow.duration() + enough) / std::min(period, enough / kSamplesAWindow);
-  require(is_short(enough, period) || most <= kMostSamples, "jerk_limits", jerk_limits.minCoeff(),
+  const double most = (slow.duration() + enough) / std::min(period, enough / kSamplesPerWindow);
+  require(is_short(enough, period) || most <= kMaxSamples, "jerk_limits", jerk_limits.minCoeff(),
           "must be so high that the motion takes at most 1e7 samples");
   JointTrajectory out = averaged(slow, motion.positions.front(), enough, period, stop);
   out.names = motion.names;

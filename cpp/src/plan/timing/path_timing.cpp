@@ -9,10 +9,10 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr int kGrid = 600;  // Intervals along the whole path, about.
+constexpr int kGridIntervals = 600;  // Along the whole path, about.
 constexpr int kIntervalsPerLine = 24;
 constexpr int kIntervalsPerArc = 16;
-constexpr double kTiny = 1e-12;  // Path derivatives below are taken for zero.
+constexpr double kZeroDerivative = 1e-12;  // Smaller path derivatives count as zero.
 
 }  // namespace
 
@@ -28,8 +28,8 @@ struct PathTiming::Bounds {
 
   /// |a u + b x| <= limit.
   void add(double a, double b, double limit) {
-    if (std::abs(a) < kTiny) {
-      if (std::abs(b) > kTiny) largest = std::min(largest, limit / std::abs(b));
+    if (std::abs(a) < kZeroDerivative) {
+      if (std::abs(b) > kZeroDerivative) largest = std::min(largest, limit / std::abs(b));
       return;
     }
     lower.push_back({-limit / std::abs(a), -b / a});
@@ -68,7 +68,7 @@ PathTiming::PathTiming(const BlendedPath& path, const Eigen::VectorXd& velocity_
 }
 
 void PathTiming::make_grid() {
-  const double spacing = path_.length() / kGrid;
+  const double spacing = path_.length() / kGridIntervals;
   const auto& segments = path_.segments();
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const int least = segments[i].radius == 0 ? kIntervalsPerLine : kIntervalsPerArc;
@@ -86,7 +86,7 @@ void PathTiming::make_grid() {
       const Eigen::VectorXd slope = segment.derivative(end ? interval.s1 : interval.s0);
       double& limit = speed_limits_[k + end];
       for (Eigen::Index i = 0; i < slope.size(); ++i) {
-        const double speed = velocity_limits_[i] / std::max(std::abs(slope[i]), kTiny);
+        const double speed = velocity_limits_[i] / std::max(std::abs(slope[i]), kZeroDerivative);
         limit = std::min(limit, speed * speed);
       }
     }

@@ -33,9 +33,9 @@ class PathTiming {
  private:
   struct Interval {
     std::size_t segment = 0;
-    double s0 = 0, s1 = 0;  // From the segment's start.
+    double s0 = 0, s1 = 0;  // Arc lengths from the segment's start.
   };
-  struct Bounds;  // What one interval allows.
+  struct Bounds;  // The allowed (x, u) of one interval.
 
   void make_grid();
   Bounds bounds(std::size_t interval, double next_limit) const;
@@ -47,8 +47,8 @@ class PathTiming {
   const StopToken stop_;
   std::vector<Interval> intervals_;
   std::vector<double> speed_limits_;  // Largest x by joint velocities alone, per grid point; 0 where the path rests.
-  std::vector<double> x_;             // Per grid point.
-  std::vector<double> times_;         // Per grid point.
+  std::vector<double> x_;             // One per grid point.
+  std::vector<double> times_;         // One per grid point.
 };
 
 }  // namespace mmgrasp::detail

@@ -16,12 +16,12 @@ namespace {
 
 using Waypoints = std::vector<Eigen::VectorXd>;
 
-constexpr double kAim = 0.999;               // Part of the limits planned for: room for what cubics do between samples.
+constexpr double kPlannedShare = 0.999;      // Share of the limits planned for: cubics between samples need the rest.
 constexpr double kSmallestDeviation = 1e-5;  // Corners that must be passed closer than this [rad] are stopped at.
-constexpr double kLeastShare = 0.05;         // Of the acceleration limits, tried under jerk limits.
-constexpr double kShareStep = 0.7;
-constexpr double kRounding = 1e-9;  // Limit overshoot that is nothing but rounding [rad or m].
-constexpr double kSlack = 1e-6;     // Relative, of the final check.
+constexpr double kLeastAccelerationShare = 0.05;  // Under jerk limits, shares of the acceleration limits from 1 down to
+constexpr double kShareStep = 0.7;                // this one are tried, each this many times the one before.
+constexpr double kRounding = 1e-9;                // Limit overshoot that is nothing but rounding [rad or m].
+constexpr double kSlack = 1e-6;                   // Relative slack of the final check.
 
 void check_limits(const Eigen::VectorXd& limits, Eigen::Index size, const std::string& field) {
   require(limits.size() == size, field, static_cast<double>(limits.size()),
@@ -73,7 +73,7 @@ void check_samples(const JointTrajectory& trajectory, const Eigen::VectorXd& vel
   }
 }
 
-/// A path on a clock, with the geometry it came from. What times it throws TimingStopped.
+/// A path with its limits, to be timed for any deviations at its corners. Timing throws TimingStopped.
 class TimedPath {
  public:
   TimedPath(Waypoints waypoints, Eigen::VectorXd velocity_limits, Eigen::VectorXd acceleration_limits,
@@ -101,15 +101,16 @@ class TimedPath {
 
   JointTrajectory fastest(const detail::BlendedPath& path, double acceleration_share) const {
     const Eigen::VectorXd accelerations = acceleration_share * acceleration_limits_;
-    const detail::PathTiming timing(path, kAim * velocity_limits_, kAim * accelerations, monitor_.stop);
+    const detail::PathTiming timing(path, kPlannedShare * velocity_limits_, kPlannedShare * accelerations,
+                                    monitor_.stop);
     return detail::sample_trajectory(timing, velocity_limits_, accelerations, period_);
   }
 
-  /// Where jerk is scarce, accelerating less at first takes less time in the end.
+  /// Under tight jerk limits a motion with lower accelerations may take less time.
   JointTrajectory smoothest(const detail::BlendedPath& path) const {
     JointTrajectory best;
-    for (double share = 1; share > kLeastShare; share *= kShareStep) {
-      monitor_.report("limit jerk", std::log(share) / std::log(kLeastShare));
+    for (double share = 1; share > kLeastAccelerationShare; share *= kShareStep) {
+      monitor_.report("limit jerk", std::log(share) / std::log(kLeastAccelerationShare));
       JointTrajectory trial = detail::limit_jerk(fastest(path, share), velocity_limits_, acceleration_limits_,
                                                  jerk_limits_, period_, monitor_.stop);
       if (best.times.empty() || trial.duration() < best.duration()) best = std::move(trial);
@@ -135,8 +136,8 @@ class TimedPath {
   const Monitor& monitor_;
 };
 
-/// Configurations at which the interpolated trajectory is not free, looked at in steps in which no joint moves more
-/// than `step`; within one interval the first is enough. Throws TimingStopped.
+/// Configurations at which the interpolated trajectory is not free, checked in steps in which no joint moves more
+/// than `step`; at most one per interval between samples. Throws TimingStopped.
 Waypoints blocked_configurations(CollisionChecker& checker, const JointTrajectory& trajectory, double step,
                                  const Monitor& monitor) {
   const Eigen::VectorXd& lower = checker.group().lower();

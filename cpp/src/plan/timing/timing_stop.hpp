@@ -4,7 +4,7 @@
 
 namespace mmgrasp::detail {
 
-/// Carries a set stop token out of the inner loops of timing; never leaves time_parameterize() and its kin.
+/// Thrown out of the inner loops of timing when the stop token is set; never leaves the public functions.
 struct TimingStopped {};
 
 inline void end_if_stopped(const StopToken& stop) {

@@ -12,7 +12,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr double kJump = 0.004;          // Acceleration jumps above this part of a limit get a sample of their own.
-constexpr double kSmallestGap = 1e-5;    // Between samples at jumps [s].
+constexpr double kSmallestGap = 1e-5;    // Least time between samples at jumps [s].
 constexpr double kSmallestSplit = 2e-4;  // Shorter intervals are not halved [s].
 
 using State = PathTiming::State;
@@ -37,7 +37,7 @@ class Sampler {
       : timing_(timing), velocity_limits_(velocity_limits), acceleration_limits_(acceleration_limits) {}
 
   JointTrajectory run(double period) {
-    require(timing_.duration() / period <= kMostSamples, "sample_period", period,
+    require(timing_.duration() / period <= kMaxSamples, "sample_period", period,
             "must leave at most 1e7 samples: the motion takes " + std::to_string(timing_.duration()) + " s");
     samples_.push_back({0, timing_.at(0)});
     for (double end : break_times()) {

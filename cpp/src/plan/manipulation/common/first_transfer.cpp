@@ -8,37 +8,37 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr int kIterations = 64;       // Of RRT-Connect for one grasp in the first round; doubled from round to round.
-constexpr int kAllIterations = 4096;  // Spent on all grasps before the planner takes over.
-constexpr double kNoLimit = 1e7;      // Of RRT-Connect's own clock [s]: that of the call ends it.
+constexpr int kFirstIterations = 64;    // RRT-Connect's budget per grasp in the first round; doubled every round.
+constexpr int kTotalIterations = 4096;  // Budget for all grasps before the planner takes over.
+constexpr double kNoTimeLimit = 1e7;    // For RRT-Connect [s]: the time limit of the call ends it.
 
-class FirstCarry {
+class FirstTransfer {
  public:
-  FirstCarry(const ManipulationInput& input, ManipulationResult& result) : input_(input), result_(result) {
+  FirstTransfer(const ManipulationInput& input, ManipulationResult& result) : input_(input), result_(result) {
     const JointGroup& group = input.problem.group;
     query_.lower = group.sample_lower();
     query_.upper = group.sample_upper();
-    query_.wraps.assign(static_cast<std::size_t>(group.size()), false);  // Carries go the way the numbers say.
-    query_.time_limit = kNoLimit;
+    query_.wraps.assign(static_cast<std::size_t>(group.size()), false);  // Angles are not wrapped.
+    query_.time_limit = kNoTimeLimit;
     query_.stopped = [this] { return input_.out_of_time(); };
     query_.edge_is_free = [this](const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return edge_is_free(a, b); };
   }
 
   TransferPath run() {
     GraspCandidates& candidates = input_.candidates;
-    auto coming = static_cast<std::size_t>(input_.options.first_grasps);
-    for (int budget = kIterations; goes_on(); budget *= 2, coming *= 2, ++round_) {
+    auto next_grasps = static_cast<std::size_t>(input_.options.first_grasps);
+    for (int budget = kFirstIterations; unfinished(); budget *= 2, next_grasps *= 2, ++round_) {
       const std::size_t earlier = candidates.found().size();
-      for (std::size_t i = 0; i < coming && goes_on() && candidates.find_more(1); ++i)
+      for (std::size_t i = 0; i < next_grasps && unfinished() && candidates.find_more(1); ++i)
         if (candidates.found().size() > tried_) search(candidates.found()[tried_++], budget);
-      for (std::size_t i = 0; i < earlier && goes_on(); ++i) search(candidates.found()[i], budget);
+      for (std::size_t i = 0; i < earlier && unfinished(); ++i) search(candidates.found()[i], budget);
       if (candidates.complete() && candidates.found().empty()) break;
     }
     return std::move(found_);
   }
 
  private:
-  bool goes_on() const { return found_.grasp < 0 && left_ > 0 && !input_.out_of_time(); }
+  bool unfinished() const { return found_.grasp < 0 && left_ > 0 && !input_.out_of_time(); }
 
   /// From another start each round, to any of the goals.
   void search(const GraspCandidate& candidate, int budget) {
@@ -59,7 +59,7 @@ class FirstCarry {
     return false;
   }
 
-  /// False when the path does not pass a finer check.
+  /// False when the path does not pass the final check.
   bool take(const GraspCandidate& candidate, std::vector<Eigen::VectorXd> waypoints) {
     JointPath path{std::move(waypoints)};
     if (input_.checks.blocked_edge(grasp_, path) >= 0) return false;
@@ -71,7 +71,7 @@ class FirstCarry {
 
   bool edge_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
     ++result_.stats.edges_checked_robot;
-    ++result_.stats.edges_checked_held;
+    ++result_.stats.edges_checked_attached;
     return input_.checks.edge_is_free(grasp_, a, b);
   }
 
@@ -79,14 +79,14 @@ class FirstCarry {
   ManipulationResult& result_;
   PlannerQuery query_;
   TransferPath found_;
-  int grasp_ = -1, round_ = 0, left_ = kAllIterations;
-  std::size_t tried_ = 0;  ///< Of the candidates found.
+  int grasp_ = -1, round_ = 0, left_ = kTotalIterations;
+  std::size_t tried_ = 0;  ///< How many of the candidates found were tried.
 };
 
 }  // namespace
 
 TransferPath find_first_transfer(const ManipulationInput& input, ManipulationResult& result) {
-  return input.options.first_grasps > 0 ? FirstCarry(input, result).run() : TransferPath{};
+  return input.options.first_grasps > 0 ? FirstTransfer(input, result).run() : TransferPath{};
 }
 
 }  // namespace mmgrasp::detail

@@ -13,7 +13,7 @@ namespace mmgrasp::detail {
 
 namespace {
 
-constexpr std::size_t kSideBySide = 16;  // Grasps that are worth a thread.
+constexpr std::size_t kMinParallelGrasps = 16;  // Fewer are checked in one thread.
 
 Pose pose_of_tool(const ManipulationProblem& problem, int grasp, bool at_goal) {
   const Pose& T_world_object = at_goal ? problem.T_world_goal : problem.T_world_start;
@@ -60,34 +60,34 @@ GraspCandidates::GraspCandidates(const ManipulationProblem& problem, const Manip
 bool GraspCandidates::find_more(std::size_t count) {
   if (complete()) return false;
   const double begin = clock_.seconds();
-  count = std::min(count, order_.size() - seen_);
-  std::vector<GraspCandidate> looked_at(count);
+  count = std::min(count, order_.size() - checked_);
+  std::vector<GraspCandidate> checked(count);
   std::atomic<bool> late{false};
   const auto work = [&](std::size_t i, int worker) {
     if (clock_.seconds() > options_.time_limit) {
       late = true;
       return;
     }
-    const int grasp = order_[seen_ + i];
-    looked_at[i] = look_at(grasp, worker, result_.grasps[grasp]);
+    const int grasp = order_[checked_ + i];
+    checked[i] = check(grasp, worker, result_.grasps[grasp]);
   };
   const bool whole =
-      parallel_for(count, count >= kSideBySide ? options_.threads : 1, work, monitor_, "grasps") && !late;
-  for (GraspCandidate& candidate : looked_at)
+      parallel_for(count, count >= kMinParallelGrasps ? options_.threads : 1, work, monitor_, "grasps") && !late;
+  for (GraspCandidate& candidate : checked)
     if (!candidate.goals.empty()) found_.push_back(std::move(candidate));
-  if (whole) seen_ += count;
+  if (whole) checked_ += count;
   result_.stats.ik_seconds += clock_.seconds() - begin;
   return whole;
 }
 
-GraspCandidate GraspCandidates::look_at(int grasp, int worker, GraspReport& report) {
+GraspCandidate GraspCandidates::check(int grasp, int worker, GraspReport& report) {
   GraspCandidate out;
   out.grasp = grasp;
   out.opening = checks_.opening_of(grasp);
   out.cost = problem_.grasps[grasp].cost;
   const auto valid = [&](const Eigen::VectorXd& q) {
-    // What is held first: there is less of it, and it hits the scene in any configuration or in none.
-    ReachVerdict verdict{checks_.held_rejection(worker, grasp, q), false};
+    // The object first: it has fewer shapes, and hits the scene in every configuration with this tool pose or in none.
+    ReachVerdict verdict{checks_.attached_rejection(worker, grasp, q), false};
     if (verdict.cause == Rejection::scene) {
       verdict.final = true;
     } else if (verdict.cause == Rejection::none) {
@@ -110,7 +110,7 @@ GraspCandidate GraspCandidates::look_at(int grasp, int worker, GraspReport& repo
 
 double GraspCandidates::least_cost_left() const {
   double least = kInfinity;
-  for (std::size_t i = seen_; i < order_.size(); ++i) least = std::min(least, problem_.grasps[order_[i]].cost);
+  for (std::size_t i = checked_; i < order_.size(); ++i) least = std::min(least, problem_.grasps[order_[i]].cost);
   return least;
 }
 
@@ -128,12 +128,12 @@ std::vector<Contact> GraspCandidates::first_contacts(bool at_goal) {
     std::vector<Contact> contacts;
     CollisionChecker checker = checks_.whole(grasp);
     Rejections unused;
-    const auto look = [&](const Eigen::VectorXd& q) {
+    const auto keep_contacts = [&](const Eigen::VectorXd& q) {
       if (contacts.empty()) contacts = checker.contacts(q);
       return ReachVerdict{Rejection::none, true};
     };
     arm_configurations(checks_.group(checks_.opening_of(grasp)), pose_of_tool(problem_, grasp, at_goal),
-                       options_.ik_solutions, ik_of(options_, grasp), look, unused);
+                       options_.ik_solutions, ik_of(options_, grasp), keep_contacts, unused);
     if (!contacts.empty()) return contacts;
   }
   return {};

@@ -8,8 +8,8 @@
 
 namespace mmgrasp::detail {
 
-/// Arm configurations of many grasps at both ends of a carry, packed for the inner loops of RRT*-MG. Grasps are kept by
-/// ascending straight cost, so that those that can still win are always the first ones.
+/// Arm configurations of many grasps at start and goal, packed for inner loops. Grasps are sorted by straight cost, so
+/// that those that can still win are always the first ones.
 class MMGRASP_EXPORT GraspEnds {
  public:
   static constexpr int kStart = 0, kGoal = 1;
@@ -32,8 +32,8 @@ class MMGRASP_EXPORT GraspEnds {
   }
   /// Distance to the nearest end on a side.
   double distance(int index, int side, const double* q) const;
-  /// Least cost of a path with this grasp through `q`: its informed set (P2 5.2.3.1) is where this is below the cost to
-  /// beat. The union over its pairs of ends when there are several.
+  /// Least cost of a path with this grasp through `q`, over all its starts and goals. Its informed set (P2 5.2.3.1) is
+  /// where this is below the cost to beat.
   double estimate(int index, const double* q) const;
 
  private:

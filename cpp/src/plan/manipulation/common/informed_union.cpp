@@ -9,11 +9,11 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr int kTries = 10000;       // Draws before a union is called too thin.
-constexpr double kAround = 0.1;     // [rad or m]
-constexpr double kThin = 1e-9;      // Ellipsoids longer than their axis by less than this share have no inside.
-constexpr int kGuesses = 64;        // Random ellipsoids asked before all of them are.
-constexpr double kScanShare = 0.1;  // Time to ask one grasp, by that of one draw.
+constexpr int kMaxTries = 10000;           // Draws before the union counts as too thin.
+constexpr double kLeastDetour = 0.1;       // Of draw_around(), in addition to the factor [rad or m].
+constexpr double kThin = 1e-9;             // Ellipsoids whose c exceeds c_min by less than this share have no inside.
+constexpr int kRandomGuesses = 64;         // Random ellipsoids tested before all of them are.
+constexpr double kRelativeScanCost = 0.1;  // Time to test one grasp, by that of one draw.
 
 }  // namespace
 
@@ -21,11 +21,11 @@ InformedUnion::InformedUnion(const GraspEnds& ends, const Eigen::VectorXd& lower
     : ends_(ends),
       lower_(lower),
       upper_(upper),
-      ball_volume_(unit_ball_volume(ends.dimension())),
+      unit_ball_volume_(unit_ball_volume(ends.dimension())),
       box_volume_((upper - lower).prod()),
       cost_(kInfinity),
       grasps_(ends.size()),
-      ball_(ends.dimension() + 1) {
+      direction_(ends.dimension() + 1) {
   for (int g = 0; g < ends.size(); ++g) {
     first_of_.push_back(all_.size());
     for (int s = 0; s < ends.count(g, GraspEnds::kStart); ++s)
@@ -50,7 +50,7 @@ double InformedUnion::ellipsoid_volume(const Pair& pair) const {
   const double c = cost_ - ends_.cost(pair.grasp);
   if (!(c > pair.c_min * (1 + kThin))) return 0;
   const double across = 0.25 * (c * c - pair.c_min * pair.c_min);
-  return ball_volume_ * 0.5 * c * std::pow(across, 0.5 * (ends_.dimension() - 1));
+  return unit_ball_volume_ * 0.5 * c * std::pow(across, 0.5 * (ends_.dimension() - 1));
 }
 
 void InformedUnion::prepare() {
@@ -88,15 +88,15 @@ void InformedUnion::draw_ellipsoid(Rng& rng, const Pair& pair, double c, double*
   double squared = 0;
   for (int i = 0; i < d; i += 2) {
     const double radius = std::sqrt(-2 * std::log(1 - rng.uniform())), angle = kTwoPi * rng.uniform();
-    ball_[i] = radius * std::cos(angle);
-    ball_[i + 1 < d ? i + 1 : d] = radius * std::sin(angle);
+    direction_[i] = radius * std::cos(angle);
+    direction_[i + 1 < d ? i + 1 : d] = radius * std::sin(angle);
   }
-  for (int i = 0; i < d; ++i) squared += ball_[i] * ball_[i];
+  for (int i = 0; i < d; ++i) squared += direction_[i] * direction_[i];
   const double length = std::pow(rng.uniform(), 1.0 / d) / std::sqrt(squared);
   const double along = 0.5 * c * length, across = 0.5 * std::sqrt(c * c - pair.c_min * pair.c_min) * length;
   const double* start = ends_.end(pair.grasp, GraspEnds::kStart, pair.start);
   const double* goal = ends_.end(pair.grasp, GraspEnds::kGoal, pair.goal);
-  for (int i = 0; i < d; ++i) q[i] = (i == 0 ? along : across) * ball_[i];
+  for (int i = 0; i < d; ++i) q[i] = (i == 0 ? along : across) * direction_[i];
   if (pair.c_min > 0) {
     // Any orthogonal map of the first axis onto the long one serves; the reflection is the cheapest. It takes u, the
     // long axis minus the first one, to -u.
@@ -139,7 +139,7 @@ bool InformedUnion::first_to_contain(std::size_t pair, const double* q) const {
 }
 
 int InformedUnion::any_containing(Rng& rng, const double* q) const {
-  for (int i = 0; i < kGuesses; ++i) {
+  for (int i = 0; i < kRandomGuesses; ++i) {
     const Pair& pair = pairs_[rng.index(pairs_.size())];
     if (in_pair(pair, q)) return pair.grasp;
   }
@@ -158,7 +158,7 @@ int InformedUnion::draw_box(Rng& rng, double* q) {
 void InformedUnion::draw_around(Rng& rng, int grasp, double factor, double* q) {
   const std::size_t first = first_of_[grasp];
   const Pair& pair = all_[first + rng.index(first_of_[static_cast<std::size_t>(grasp) + 1] - first)];
-  draw_ellipsoid(rng, pair, pair.c_min * factor + kAround, q);
+  draw_ellipsoid(rng, pair, pair.c_min * factor + kLeastDetour, q);
   for (Eigen::Index i = 0; i < lower_.size(); ++i) q[i] = std::clamp(q[i], lower_[i], upper_[i]);
 }
 
@@ -167,9 +167,9 @@ int InformedUnion::draw(Rng& rng, double* q) {
   if (!prepared_) prepare();
   if (pairs_.empty()) return -1;
   const double sum = pairs_.back().volume;
-  // Both ways draw uniformly; the ellipsoids pay for their overlaps, the box for asking every grasp.
-  const bool whole_box = sum > box_volume_ * (1 + kScanShare * grasps_);
-  for (int i = 0; i < kTries; ++i) {
+  // Both draw uniformly; drawing from the ellipsoids loses time by their overlaps, from the bounds by testing grasps.
+  const bool whole_box = sum > box_volume_ * (1 + kRelativeScanCost * grasps_);
+  for (int i = 0; i < kMaxTries; ++i) {
     if (whole_box) {
       for (Eigen::Index k = 0; k < lower_.size(); ++k) q[k] = rng.uniform(lower_[k], upper_[k]);
       const int grasp = any_containing(rng, q);

@@ -1,28 +1,29 @@
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/detail/stopwatch.hpp"
+#include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/monitor.hpp"
+#include "mmgrasp/plan/improvement.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
 #include "plan/manipulation/common/grasp_candidates.hpp"
 #include "plan/manipulation/common/transfer_checks.hpp"
 
 namespace mmgrasp::detail {
 
-/// What a planner of carries is given: everything but the way to search.
+/// Input of a planner over many grasps.
 struct ManipulationInput {
   const ManipulationProblem& problem;
   const ManipulationOptions& options;
   const Roadmap* roadmap;  ///< The caller's; null when none was given.
   TransferChecks& checks;
   GraspCandidates& candidates;  ///< None found yet.
-  const std::function<void(const Improvement&)>& improved;
+  const ImprovementCallback& on_improvement;
   const Monitor& monitor;
-  Stopwatch& clock;  ///< Of the whole call; a planner leaves out preparation that is not to count.
+  Stopwatch& clock;  ///< Runs since the call began; a planner leaves out preparation that does not count.
 
   bool out_of_time() const { return monitor.stopped() || clock.seconds() > options.time_limit; }
 };
@@ -30,24 +31,31 @@ struct ManipulationInput {
 /// A path with one of the grasps.
 struct TransferPath {
   int grasp = -1;
-  double cost = kInfinity;  ///< Without a path: infinite.
+  double cost = kInfinity;  ///< Infinite without a path.
   JointPath path;
 };
 
-/// Takes a path (checked already) when it is the cheapest so far: fills the result's path, grasp and cost, and tells
-/// `improved`.
-void take_path(const ManipulationInput& input, TransferPath carry, ManipulationResult& result);
+/// Takes a path (checked already) when it is the cheapest so far: fills the result's path, grasp and cost, and calls
+/// `on_improvement`.
+void take_path(const ManipulationInput& input, TransferPath path, ManipulationResult& result);
 
-/// One way to plan a carry. `run` sets the lower bound, and the path through take_path(); it returns whether all that
-/// it can find was looked at, so that without a path there is none. When there is no candidate at all, what it sets and
-/// returns does not matter.
+/// A planner over many grasps. `run` sets the lower bound, and the path by take_path(); it returns true when its search
+/// was exhaustive, so that without a path there is none. When there is no candidate at all, what it sets and returns
+/// does not matter.
 struct ManipulationPlanner {
   const char* name;
   bool (*run)(ManipulationInput& input, ManipulationResult& result);
-  double edge_steps;  ///< Along edges not yet part of a path, by those asked for.
+  double search_steps;  ///< Steps of edge checks during the search, by those of the options.
 };
 
 /// Throws InvalidInput listing the known names.
 const ManipulationPlanner& manipulation_planner(const std::string& name);
+
+/// plan_manipulation() with this planner, whatever the options name.
+MMGRASP_EXPORT ManipulationResult plan_manipulation_with(const ManipulationPlanner& planner,
+                                                         const ManipulationProblem& problem,
+                                                         const ManipulationOptions& options, const Roadmap* roadmap,
+                                                         const Monitor& monitor,
+                                                         const ImprovementCallback& on_improvement);
 
 }  // namespace mmgrasp::detail

@@ -8,7 +8,7 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kFineStep = 0.005;  // Of the check of finished paths [rad or m].
+constexpr double kFinalStep = 0.005;  // Largest joint step of the final check of paths [rad or m].
 
 JointGroup with_fingers(const JointGroup& group, const Gripper& gripper, double opening) {
   Eigen::VectorXd values = group.reference();
@@ -40,10 +40,10 @@ TransferChecks::TransferChecks(const ManipulationProblem& problem, const EdgeOpt
       search_edge_(edge),
       path_edge_(edge),
       robot_(static_cast<std::size_t>(workers)),
-      held_(robot_.size()) {
+      attached_(robot_.size()) {
   search_edge_.joint_step *= search_steps;
   search_edge_.workspace_step *= search_steps;
-  path_edge_.joint_step = std::min(path_edge_.joint_step, kFineStep);
+  path_edge_.joint_step = std::min(path_edge_.joint_step, kFinalStep);
   std::map<double, int> openings;
   for (const CandidateGrasp& grasp : problem.grasps) {
     const double opening = problem.gripper ? grasp.opening : 0;
@@ -59,16 +59,16 @@ TransferChecks::TransferChecks(const ManipulationProblem& problem, const EdgeOpt
   for (std::size_t i = 0; i < links.size(); ++i)
     if (moved_by(problem.group, static_cast<int>(i)) == mover) tool_.insert(links[i].name);
   for (auto& own : robot_) own.resize(groups_.size());
-  for (auto& own : held_) own.resize(groups_.size());
+  for (auto& own : attached_) own.resize(groups_.size());
   whole_.resize(groups_.size());
 }
 
-TransferChecks::Bare& TransferChecks::robot(int worker, int opening) {
+TransferChecks::RobotAlone& TransferChecks::robot(int worker, int opening) {
   auto& slot = robot_[worker][opening];
   if (!slot) {
     CollisionChecker checker(group(opening), problem_.world);
     Eigen::VectorXd motion = motion_bounds(checker);
-    slot.emplace(Bare{std::move(checker), std::move(motion)});
+    slot.emplace(RobotAlone{std::move(checker), std::move(motion)});
   }
   return *slot;
 }
@@ -88,12 +88,12 @@ CollisionChecker TransferChecks::whole(int grasp) const {
   return CollisionChecker(group(opening_of(grasp)), world_with(grasp));
 }
 
-AttachedChecker& TransferChecks::holding(std::optional<Held>& slot, int grasp, bool held_only) {
+AttachedChecker& TransferChecks::holding(std::optional<WithObject>& slot, int grasp, bool held_only) {
   if (!slot) {
     CheckerOptions options;
     options.held_only = held_only;
     const CollisionChecker checker(group(opening_of(grasp)), world_with(grasp), options);
-    slot.emplace(Held{AttachedChecker(checker), grasp});
+    slot.emplace(WithObject{AttachedChecker(checker), grasp});
   } else if (slot->grasp != grasp) {
     slot->checker.hold(T_tool_object(grasp));
     slot->grasp = grasp;
@@ -101,8 +101,8 @@ AttachedChecker& TransferChecks::holding(std::optional<Held>& slot, int grasp, b
   return slot->checker;
 }
 
-AttachedChecker& TransferChecks::held(int worker, int grasp) {
-  return holding(held_[worker][opening_of(grasp)], grasp, true);
+AttachedChecker& TransferChecks::attached(int worker, int grasp) {
+  return holding(attached_[worker][opening_of(grasp)], grasp, true);
 }
 
 bool TransferChecks::edge_is_free(int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
@@ -111,7 +111,7 @@ bool TransferChecks::edge_is_free(int grasp, const Eigen::VectorXd& a, const Eig
 
 bool TransferChecks::path_edge_is_free(int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   AttachedChecker& checker = holding(whole_[opening_of(grasp)], grasp, false);
-  // Optimal paths graze, and who looks again by joint steps alone looks at other configurations.
+  // Optimal paths graze obstacles, and a caller who checks by joint steps alone checks other configurations.
   EdgeOptions by_joints = path_edge_;
   by_joints.workspace_step = kInfinity;
   return checker.edge_is_free(a, b, path_edge_) && checker.edge_is_free(a, b, by_joints);
@@ -127,7 +127,7 @@ bool TransferChecks::robot_is_free(int worker, int opening, const Eigen::VectorX
   return robot(worker, opening).checker.is_free(q);
 }
 bool TransferChecks::robot_edge_is_free(int worker, int opening, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  Bare& own = robot(worker, opening);
+  RobotAlone& own = robot(worker, opening);
   if (search_edge_.continuous) return check_edge(own.checker, a, b, search_edge_).free;
   return stepped_edge_is_free(own.checker, own.motion, a, b, search_edge_);
 }
@@ -139,14 +139,14 @@ bool TransferChecks::tool_hits_scene(int worker, int opening, const Eigen::Vecto
   return std::any_of(contacts.begin(), contacts.end(),
                      [&](const Contact& c) { return c.with_scene && tool_.count(c.a) > 0; });
 }
-bool TransferChecks::held_is_free(int worker, int grasp, const Eigen::VectorXd& q) {
-  return held(worker, grasp).is_free(q);
+bool TransferChecks::attached_is_free(int worker, int grasp, const Eigen::VectorXd& q) {
+  return attached(worker, grasp).is_free(q);
 }
-bool TransferChecks::held_edge_is_free(int worker, int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  return held(worker, grasp).edge_is_free(a, b, search_edge_);
+bool TransferChecks::attached_edge_is_free(int worker, int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return attached(worker, grasp).edge_is_free(a, b, search_edge_);
 }
-Rejection TransferChecks::held_rejection(int worker, int grasp, const Eigen::VectorXd& q) {
-  return held(worker, grasp).rejection(q);
+Rejection TransferChecks::attached_rejection(int worker, int grasp, const Eigen::VectorXd& q) {
+  return attached(worker, grasp).rejection(q);
 }
 
 }  // namespace mmgrasp::detail

@@ -9,18 +9,19 @@
 
 #include "collision/edge/attached_checker.hpp"
 #include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/core/export.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
 #include "mmgrasp/robot/trajectory.hpp"
 
 namespace mmgrasp::detail {
 
-/// Collision questions of a carry, told apart: the robot alone with its fingers at an opening (shared by all grasps
-/// with that opening), and the object in hand with one grasp. One set of checkers per worker and opening, made when
-/// first needed; from grasp to grasp only the object's pose in the hand changes.
-class TransferChecks {
+/// Collision checks of a manipulation problem, in two parts: the robot alone with its fingers at an opening (shared by
+/// all grasps with that opening), and the object in hand with one grasp. There is one set of checkers per worker and
+/// opening, made when first needed; from grasp to grasp only the object's pose in the hand changes.
+class MMGRASP_EXPORT TransferChecks {
  public:
-  /// Edges asked for the robot alone and for the held object are cut into steps `search_steps` times as long as `edge`
-  /// says.
+  /// Edges are checked for the robot alone, and for the attached object, in steps `search_steps` times as long as
+  /// `edge` says.
   TransferChecks(const ManipulationProblem& problem, const EdgeOptions& edge, double search_steps, int workers);
 
   int opening_count() const { return static_cast<int>(groups_.size()); }
@@ -34,10 +35,10 @@ class TransferChecks {
   /// Whether a link that stands still relative to the tip (hand and fingers) hits the scene: it then does so in every
   /// configuration that puts the tip there.
   bool tool_hits_scene(int worker, int opening, const Eigen::VectorXd& q);
-  /// The held object against the robot and the scene; the robot alone is not looked at.
-  bool held_is_free(int worker, int grasp, const Eigen::VectorXd& q);
-  bool held_edge_is_free(int worker, int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
-  Rejection held_rejection(int worker, int grasp, const Eigen::VectorXd& q);
+  /// The attached object against the robot and the scene; the robot alone is not checked.
+  bool attached_is_free(int worker, int grasp, const Eigen::VectorXd& q);
+  bool attached_edge_is_free(int worker, int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
+  Rejection attached_rejection(int worker, int grasp, const Eigen::VectorXd& q);
   /// Robot and object together, at the options' steps. For one thread.
   bool edge_is_free(int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
   /// Robot and object together, at 0.005 rad or m, and no coarser than the options say: for finished paths.
@@ -49,31 +50,31 @@ class TransferChecks {
   const ManipulationProblem& problem() const { return problem_; }
 
  private:
-  struct Bare {
+  struct RobotAlone {
     CollisionChecker checker;
-    Eigen::VectorXd motion;  ///< Its motion_bounds().
+    Eigen::VectorXd motion;  ///< The checker's motion_bounds().
   };
-  struct Held {
+  struct WithObject {
     AttachedChecker checker;
     int grasp;
   };
 
-  Bare& robot(int worker, int opening);
-  AttachedChecker& held(int worker, int grasp);
+  RobotAlone& robot(int worker, int opening);
+  AttachedChecker& attached(int worker, int grasp);
   /// The checker of `slot` with the object in this grasp.
-  AttachedChecker& holding(std::optional<Held>& slot, int grasp, bool held_only);
+  AttachedChecker& holding(std::optional<WithObject>& slot, int grasp, bool held_only);
   Pose T_tool_object(int grasp) const;
   World world_with(int grasp) const;
 
   const ManipulationProblem& problem_;
   EdgeOptions edge_, search_edge_, path_edge_;
-  std::vector<JointGroup> groups_;  ///< One an opening.
+  std::vector<JointGroup> groups_;  ///< One per opening.
   std::vector<int> opening_of_;     ///< Per grasp.
   std::string tip_;
-  std::set<std::string> tool_;                           ///< Links that stand still relative to the tip.
-  std::vector<std::vector<std::optional<Bare>>> robot_;  ///< Without a held object, [worker][opening].
-  std::vector<std::vector<std::optional<Held>>> held_;   ///< [worker][opening].
-  std::vector<std::optional<Held>> whole_;               ///< Everything, [opening].
+  std::set<std::string> tool_;                                    ///< Links that stand still relative to the tip.
+  std::vector<std::vector<std::optional<RobotAlone>>> robot_;     ///< Without the object, [worker][opening].
+  std::vector<std::vector<std::optional<WithObject>>> attached_;  ///< The object alone, [worker][opening].
+  std::vector<std::optional<WithObject>> whole_;                  ///< Everything, [opening].
 };
 
 }  // namespace mmgrasp::detail

@@ -9,14 +9,14 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kFiner = 8;       // Of a second try, when the first has cut a thin obstacle.
-constexpr double kNothing = 1e-9;  // Gain that is none.
+constexpr double kSecondResolution = 8;  // Resolution factor of a second try, when the first has cut a thin obstacle.
+constexpr double kLeastGain = 1e-9;      // Smaller gains are rounding.
 
 }  // namespace
 
-void shorten_transfer(const ManipulationInput& input, const TransferPath& carry, ManipulationResult& result,
+void shorten_transfer(const ManipulationInput& input, const TransferPath& path, ManipulationResult& result,
                       unsigned round) {
-  CollisionChecker checker = input.checks.whole(carry.grasp);
+  CollisionChecker checker = input.checks.whole(path.grasp);
   MotionOptions options;
   options.edge_step = input.options.edge.joint_step;
   options.workspace_step = input.options.edge.workspace_step;
@@ -25,14 +25,14 @@ void shorten_transfer(const ManipulationInput& input, const TransferPath& carry,
   Rng rng(input.options.seed, 0x736f + 0x10000u * round);
   ShorteningOptions shortening;
   shortening.stopped = [&] { return input.out_of_time(); };
-  const double fixed = input.problem.grasps[carry.grasp].cost;
-  for (const double finer : {1.0, kFiner}) {
-    TransferPath shorter = carry;
-    shortening.finer = finer;
+  const double fixed = input.problem.grasps[path.grasp].cost;
+  for (const double resolution : {1.0, kSecondResolution}) {
+    TransferPath shorter = path;
+    shortening.resolution = resolution;
     shorten_path(edges, shorter.path, rng, shortening);
     shorter.cost = shorter.path.length() + fixed;
-    if (shorter.cost > std::min(carry.cost, result.cost) - kNothing || input.out_of_time()) return;
-    if (input.checks.blocked_edge(carry.grasp, shorter.path) < 0) return take_path(input, std::move(shorter), result);
+    if (shorter.cost > std::min(path.cost, result.cost) - kLeastGain || input.out_of_time()) return;
+    if (input.checks.blocked_edge(path.grasp, shorter.path) < 0) return take_path(input, std::move(shorter), result);
   }
 }
 

@@ -4,9 +4,9 @@
 
 namespace mmgrasp::detail {
 
-/// Shortens a free path as plan_motion does, its grasp in hand; the result takes what comes of it when that is free and
-/// its cheapest. Not for platforms that turn and drive. Another `round`, other random corners.
-void shorten_transfer(const ManipulationInput& input, const TransferPath& carry, ManipulationResult& result,
+/// Shortcuts a free path as plan_motion does, with the object in its grasp; the result takes the shorter path when that
+/// is free and the cheapest so far. Not for steered bases. Another `round` tries other random shortcuts.
+void shorten_transfer(const ManipulationInput& input, const TransferPath& path, ManipulationResult& result,
                       unsigned round = 0);
 
 }  // namespace mmgrasp::detail

@@ -15,12 +15,12 @@ Eigen::VectorXd GraspGraph::configuration(const Roadmap& roadmap, int node) cons
 void GraspGraph::set_step(Step step, bool is_free) {
   const int number = step.number();
   if (step.is_link()) {
-    link(number).passed = is_free;
+    link(number).free = is_free;
     link(number).blocked = !is_free;
   } else if (is_free) {
-    passed_edges.insert(number);
+    free_edges.insert(number);
   } else {
-    passed_edges.erase(number);
+    free_edges.erase(number);
     blocked_edges.push_back(number);
   }
 }

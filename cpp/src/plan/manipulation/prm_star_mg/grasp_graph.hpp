@@ -12,11 +12,12 @@
 
 namespace mmgrasp::detail {
 
-constexpr double kSlack =
-    1e-9;  ///< Relative, of bounds that may be a path's own cost summed in another order (errata).
+/// Relative slack of bounds that may be a path's own cost, summed in another order (errata).
+constexpr double kSlack = 1e-9;
 
-/// What is known of vertices and edges for the robot alone with its fingers at one opening; shared by all its grasps.
-/// Each answer depends on the vertex or edge alone, so threads may write the same one at the same time.
+/// Which vertices and edges of the roadmap are free for the robot alone with its fingers at one opening; shared by all
+/// grasps with that opening. Each answer depends on the vertex or edge alone, so threads may write the same one at the
+/// same time.
 class EdgeValidityCache {
  public:
   enum State : std::uint8_t { unknown, free, blocked };
@@ -38,7 +39,7 @@ class EdgeValidityCache {
   Array vertices_, edges_;
 };
 
-/// What leads from one node of a path to the next: an edge of the roadmap or a link of the graph, by its number.
+/// What joins two successive nodes of a path: an edge of the roadmap or a link of the grasp's graph, by its number.
 class Step {
  public:
   Step() = default;
@@ -52,15 +53,18 @@ class Step {
   int code_ = 0;
 };
 
-/// The least that is kept for one grasp in place of a copy of the roadmap (P2's privateGraph, 4.3.2.2): its ends, how
-/// they join the roadmap, and what the object in hand was found to block or to pass. Nodes are numbered: roadmap
-/// vertices, then starts, then goals.
+/// The lazy graph of one grasp over the shared roadmap (P2's privateGraph, 4.3.2.2): the grasp's ends, their links to
+/// the roadmap, and which vertices and edges are known to be free or blocked for the object in hand. Everything else is
+/// read from the roadmap, so that a grasp costs kilobytes and no copy. Nodes are numbered: roadmap vertices, then
+/// starts, then goals.
 struct MMGRASP_EXPORT GraspGraph {
+  /// An edge between an end of the grasp and the roadmap, or between two ends.
   struct Link {
-    int from, to;  ///< Nodes; one end at least is a start or a goal.
+    int from, to;  ///< Nodes.
     double length;
-    bool blocked = false, passed = false;
-    bool robot_passed = false;  ///< The robot alone passes.
+    bool blocked = false;        ///< Known to be blocked, for the robot or the object in hand.
+    bool robot_is_free = false;  ///< Known to be free for the robot alone.
+    bool free = false;           ///< Known to be free for both.
   };
 
   GraspGraph(const Roadmap& roadmap, GraspCandidate candidate_in);
@@ -69,31 +73,32 @@ struct MMGRASP_EXPORT GraspGraph {
   int starts() const { return static_cast<int>(candidate.starts.size()); }
   int goals() const { return static_cast<int>(candidate.goals.size()); }
   int first_goal() const { return vertex_count + starts(); }
-  /// Joins the ends with the roadmap, and with each other: when `straight` whatever their distance, otherwise when the
-  /// roadmap would. Ends that no path of at most `bound` can have stay alone: later bounds are no larger.
+  /// Makes the links, once: of the ends with the roadmap, and with each other, whatever their distance when `straight`,
+  /// otherwise within the roadmap's radius. Skips starts and goals that cannot lie on a path cheaper than `bound`; safe
+  /// because the bound only decreases.
   void connect(const Roadmap& roadmap, bool straight, double bound);
   Eigen::VectorXd configuration(const Roadmap& roadmap, int node) const;
   Link& link(int number) { return links[number]; }
   const Link& link(int number) const { return links[number]; }
-  bool passed(Step step) const {
-    return step.is_link() ? link(step.number()).passed : passed_edges.count(step.number()) > 0;
+  bool is_free(Step step) const {
+    return step.is_link() ? link(step.number()).free : free_edges.count(step.number()) > 0;
   }
-  /// What the object in hand says of a step.
+  /// Records whether a step is free for the object in hand (a link: for the robot, too).
   void set_step(Step step, bool is_free);
 
   GraspCandidate candidate;
   int vertex_count;
   bool connected = false;
   std::vector<Link> links;
-  std::vector<std::vector<int>> from_start;  ///< Links of each start.
-  std::vector<int> into_goals;               ///< Links from roadmap vertices to goals, ascending by vertex.
-  std::vector<int> blocked_vertices, blocked_edges;
-  std::unordered_set<int> passed_vertices, passed_edges;
+  std::vector<std::vector<int>> from_start;          ///< Links of each start.
+  std::vector<int> into_goals;                       ///< Links from roadmap vertices to goals, ascending by vertex.
+  std::vector<int> blocked_vertices, blocked_edges;  ///< Of the roadmap, for the object in hand.
+  std::unordered_set<int> free_vertices, free_edges;
 
-  /// The path found last: nodes, and the steps between them.
+  /// The path found last: its nodes, and the steps between them.
   std::vector<int> nodes;
   std::vector<Step> steps;
-  double path_cost = 0;  ///< With the grasp's cost.
+  double path_cost = 0;  ///< Includes the grasp's cost.
 };
 
 }  // namespace mmgrasp::detail

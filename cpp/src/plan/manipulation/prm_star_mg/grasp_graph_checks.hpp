@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -9,53 +10,61 @@
 
 namespace mmgrasp::detail {
 
-/// Checks the paths found last of several grasps at once, cheap questions first, side by side. What is asked depends on
-/// the paths alone and every answer on its question alone, so that what is known afterwards is the same at any number
-/// of threads.
+/// Checks the paths found last of several grasps together, in stages from cheap to costly, each in parallel: vertices
+/// for the robot alone, vertices for the object in hand, a few configurations of each edge, edges for the robot alone,
+/// edges for the object. A path found blocked leaves the later stages; a vertex or edge that several paths share is
+/// checked once for the robot. What is checked depends on the paths alone, and each answer on its query alone, so
+/// results and counts are the same at any number of threads.
 class GraspGraphChecks {
  public:
-  GraspGraphChecks(const Roadmap& roadmap, TransferChecks& checks, std::vector<EdgeValidityCache>& knowledge,
+  /// `robot_caches`: one per opening.
+  GraspGraphChecks(const Roadmap& roadmap, TransferChecks& checks, std::vector<EdgeValidityCache>& robot_caches,
                    int threads, const Monitor& monitor, ManipulationStats& stats);
 
-  /// Whether each path is free; what was learned goes to the graphs and to the robot's knowledge. When stopped on the
-  /// way, answers and knowledge are worth nothing.
+  /// Whether each path is free. What was found goes to the graphs and to the robot's caches. When stopped meanwhile,
+  /// answers, graphs and caches are void.
   std::vector<char> check(const std::vector<GraspGraph*>& paths);
 
  private:
+  /// A place in one of the paths.
   struct Item {
     int path;
-    int what;  ///< A node, or the place of a step in the path.
+    int index;  ///< A roadmap vertex, or a step's index in the path.
   };
-  void vertices_for_robot();
-  void vertices_for_held();
-  void samples();
-  void edges_for_robot();
-  void edges_for_held();
 
-  /// One thread unless there are at least `worth` items.
-  void run(std::size_t count, std::size_t worth, const std::function<void(std::size_t, int)>& work);
-  /// Steps that the object in hand is not known to pass, of paths not yet found blocked.
-  std::vector<Item> open_steps() const;
-  /// Of these, edges of the roadmap that nobody asked about yet for the robot alone, each once, and links.
-  std::vector<Item> open_steps_of_robot() const;
-  GraspGraph& overlay_of(const Item& item) const;
-  Step step_of(const Item& item) const;
-  std::pair<Eigen::VectorXd, Eigen::VectorXd> ends(const Item& step) const;
-  void take_step_of_robot(const Item& item, bool is_free);
-  /// Whether the robot alone is known not to pass one of the path's steps.
+  // The stages.
+  void check_vertices_for_robot();
+  void check_vertices_for_attached();
+  void check_edge_samples();
+  void check_edges_for_robot();
+  void check_edges_for_attached();
+
+  /// Steps not known to be free for the object in hand, of paths not yet found blocked.
+  std::vector<Item> unknown_steps() const;
+  /// Of these, links and edges of the roadmap not known to be free for the robot alone, each once.
+  std::vector<Item> unknown_steps_for_robot() const;
+  /// Whether a step of the path is known to be blocked for the robot alone.
   bool robot_blocks(const GraspGraph& graph) const;
-  /// What the object in hand says of steps; unless `final`, free steps stay open.
-  void take_steps(const std::vector<Item>& items, const std::vector<char>& answers, bool final);
-  EdgeValidityCache& robot_of(const GraspGraph& graph) const { return knowledge_[graph.candidate.opening]; }
+  void record_step_for_robot(const Item& item, bool is_free);
+  /// Steps found blocked block their paths; those found free are recorded only if `complete`, that is, if nothing about
+  /// them is left to check.
+  void record_steps(const std::vector<Item>& items, const std::vector<char>& answers, bool complete);
+  /// In one thread when there are fewer than `min_parallel` items.
+  void run(std::size_t count, std::size_t min_parallel, const std::function<void(std::size_t, int)>& work);
+
+  GraspGraph& graph_of(const Item& item) const { return *(*paths_)[item.path]; }
+  EdgeValidityCache& robot_of(const GraspGraph& graph) const { return robot_caches_[graph.candidate.opening]; }
+  Step step_of(const Item& item) const { return graph_of(item).steps[item.index]; }
+  std::pair<Eigen::VectorXd, Eigen::VectorXd> ends_of(const Item& step) const;
 
   const Roadmap& roadmap_;
   TransferChecks& checks_;
-  std::vector<EdgeValidityCache>& knowledge_;
+  std::vector<EdgeValidityCache>& robot_caches_;
   int threads_;
-  Monitor stop_;  ///< Silent.
+  Monitor cancel_;  ///< The caller's token without its progress reports.
   ManipulationStats& stats_;
-  const std::vector<GraspGraph*>* paths_ = nullptr;
-  std::vector<char> live_;
+  const std::vector<GraspGraph*>* paths_ = nullptr;  ///< Argument of check().
+  std::vector<char> free_;                           ///< Per path: not found blocked so far.
 };
 
 }  // namespace mmgrasp::detail

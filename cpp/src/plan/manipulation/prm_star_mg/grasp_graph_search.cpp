@@ -9,7 +9,7 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr std::size_t kBreath = 256;  // Nodes between two questions whether to give up.
+constexpr std::size_t kCancelCheckInterval = 256;  // Nodes expanded between two calls of stopped().
 
 }  // namespace
 
@@ -18,7 +18,7 @@ GraspGraphSearch::GraspGraphSearch(const Roadmap& roadmap)
       edge_blocked_(static_cast<std::size_t>(roadmap.edge_count()), 0),
       first_goal_link_(static_cast<std::size_t>(roadmap.size()), -1) {}
 
-double GraspGraphSearch::to_goal(int node) const {
+double GraspGraphSearch::heuristic(int node) const {
   double least = kInfinity;
   const auto nearest = [&](const auto& q) {
     for (const Eigen::VectorXd& goal : graph_->candidate.goals) least = std::min(least, (goal - q).squaredNorm());
@@ -33,7 +33,7 @@ double GraspGraphSearch::to_goal(int node) const {
 void GraspGraphSearch::begin(const GraspGraph& graph) {
   graph_ = &graph;
   ++round_;
-  opened_ = 0;
+  nodes_opened_ = 0;
   heap_.clear();
   const auto count = static_cast<std::size_t>(graph.first_goal() + graph.goals());
   if (nodes_.size() < count) nodes_.resize(count);
@@ -49,19 +49,19 @@ void GraspGraphSearch::relax(int node, double cost, int parent, Step step) {
   if (at.stamp != round_) {
     at.stamp = round_;
     at.cost = kInfinity;
-    at.to_goal = to_goal(node);
+    at.heuristic = heuristic(node);
   }
-  const double key = cost + at.to_goal;
+  const double key = cost + at.heuristic;
   if (cost >= at.cost || key > limit_) return;
   at.cost = cost;
   at.parent = parent;
   at.step = step;
-  ++opened_;
+  ++nodes_opened_;
   heap_.push_back({key, cost, node});
   std::push_heap(heap_.begin(), heap_.end(), later);
 }
 
-void GraspGraphSearch::follow(int from, double cost, int link) {
+void GraspGraphSearch::relax_link(int from, double cost, int link) {
   const GraspGraph::Link& l = graph_->link(link);
   if (!l.blocked) relax(l.to, cost + l.length, from, Step::link(link));
 }
@@ -77,7 +77,7 @@ void GraspGraphSearch::expand_vertex(const Entry& at, const EdgeValidityCache& r
   for (int i = first; i >= 0 && i < static_cast<int>(graph_->into_goals.size()); ++i) {
     const int link = graph_->into_goals[i];
     if (graph_->link(link).from != at.node) break;
-    follow(at.node, at.cost, link);
+    relax_link(at.node, at.cost, link);
   }
 }
 
@@ -86,22 +86,22 @@ GraspGraphSearch::End GraspGraphSearch::search(GraspGraph& graph, const EdgeVali
   limit_ = (bound - graph.candidate.cost) * (1 + kSlack);
   for (int s = 0; s < graph.starts(); ++s) relax(graph.vertex_count + s, 0, -1, {});
   int reached = -1;
-  bool gave_up = false;
-  std::size_t looked_at = 0;
+  bool cancelled = false;
+  std::size_t expanded = 0;
   while (!heap_.empty()) {
     const Entry top = heap_.front();
     std::pop_heap(heap_.begin(), heap_.end(), later);
     heap_.pop_back();
-    if (top.cost > nodes_[top.node].cost) continue;  // An older, longer way.
+    if (top.cost > nodes_[top.node].cost) continue;  // Reached on a shorter path since.
     if (top.node >= graph.first_goal()) {
       reached = top.node;
       break;
     }
-    reached_ = top.key + graph.candidate.cost;
-    gave_up = ++looked_at % kBreath == 0 && stopped && stopped();
-    if (gave_up) break;
+    lower_bound_ = top.key + graph.candidate.cost;
+    cancelled = ++expanded % kCancelCheckInterval == 0 && stopped && stopped();
+    if (cancelled) break;
     if (top.node >= graph.vertex_count) {
-      for (const int link : graph.from_start[top.node - graph.vertex_count]) follow(top.node, top.cost, link);
+      for (const int link : graph.from_start[top.node - graph.vertex_count]) relax_link(top.node, top.cost, link);
       continue;
     }
     EdgeValidityCache::State state = robot.vertex(top.node);
@@ -114,7 +114,7 @@ GraspGraphSearch::End GraspGraphSearch::search(GraspGraph& graph, const EdgeVali
     expand_vertex(top, robot);
   }
   for (const int link : graph.into_goals) first_goal_link_[graph.link(link).from] = -1;
-  if (gave_up) return End::gave_up;
+  if (cancelled) return End::cancelled;
   if (reached < 0) return End::none;
   take_path(graph, reached);
   return End::found;
@@ -134,13 +134,13 @@ void GraspGraphSearch::take_path(GraspGraph& graph, int goal) const {
 }
 
 double spliced_cost(const Roadmap& roadmap, const GraspGraph& graph, const std::vector<int>& nodes) {
-  std::unordered_map<int, double> along;  // Cost so far at each roadmap vertex of the path.
+  std::unordered_map<int, double> along;  // Cost from the first roadmap vertex of the path.
   double sum = 0;
   for (std::size_t i = 1; i + 1 < nodes.size(); ++i) {
     if (i > 1) sum += (roadmap.vertices().col(nodes[i]) - roadmap.vertices().col(nodes[i - 1])).norm();
     along.emplace(nodes[i], sum);
   }
-  // Leaving the path later saves nothing but the way between: keep the best entry before each exit.
+  // For each exit the best entry before it counts.
   std::vector<std::pair<double, double>> entries, exits;  // Position along the path, cost of the link.
   for (const GraspGraph::Link& link : graph.links) {
     if (link.blocked) continue;

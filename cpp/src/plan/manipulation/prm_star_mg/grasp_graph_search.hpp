@@ -10,35 +10,36 @@
 
 namespace mmgrasp::detail {
 
-/// Shortest paths over the roadmap and one graph: A* with the straight line to the nearest goal as heuristic and an
-/// upper bound (P2 Algorithm 4.2). Scratch is reused: one object per thread.
+/// Shortest paths over the roadmap and the lazy graph of one grasp: A* with the straight line to the nearest goal as
+/// heuristic and an upper bound (P2 Algorithm 4.2). Scratch is reused: one object per thread.
 class MMGRASP_EXPORT GraspGraphSearch {
  public:
-  enum class End { found, none, gave_up };
+  enum class End { found, none, cancelled };
 
   explicit GraspGraphSearch(const Roadmap& roadmap);
 
-  /// Asked of a vertex the robot is not yet known to pass or not, when the search would go on from it; empty: such
-  /// vertices count as free. Must answer the same whenever it is asked.
+  /// Checks a vertex for the robot alone when the search expands it and the answer is not known; empty: such vertices
+  /// count as free. Must always give the same answer for a vertex.
   std::function<bool(int vertex)> robot_is_free;
-  /// Asked now and then whether to give up; empty: never.
+  /// Called now and then: true ends the search; empty: nothing does.
   std::function<bool()> stopped;
 
   /// Finds the cheapest path not known to be blocked that costs at most `bound` (with a relative slack of 1e-9, since
   /// the bound may be this very path, summed in another order).
   End search(GraspGraph& graph, const EdgeValidityCache& robot, double bound);
-  /// After giving up: no path costs less.
-  double reached() const { return reached_; }
-  /// Ways to nodes put into the queue by the last search, and those left there: what an upper bound keeps small.
-  std::size_t opened() const { return opened_; }
-  std::size_t open() const { return heap_.size(); }
+  /// After a cancelled search: no path costs less.
+  double lower_bound() const { return lower_bound_; }
+  /// How often the last search pushed a node to the open list, and how many are left there: an upper bound keeps both
+  /// small.
+  std::size_t nodes_opened() const { return nodes_opened_; }
+  std::size_t nodes_left_open() const { return heap_.size(); }
 
  private:
   struct Node {
-    double cost, to_goal;
+    double cost, heuristic;
     int parent;
     Step step;                             ///< From the parent.
-    std::uint32_t stamp = 0, blocked = 0;  ///< Rounds in which it was reached, and in which it is blocked.
+    std::uint32_t stamp = 0, blocked = 0;  ///< The searches in which it was reached, and in which it is blocked.
   };
   struct Entry {
     double key, cost;
@@ -48,20 +49,20 @@ class MMGRASP_EXPORT GraspGraphSearch {
 
   void begin(const GraspGraph& graph);
   void expand_vertex(const Entry& at, const EdgeValidityCache& robot);
-  void follow(int from, double cost, int link);
+  void relax_link(int from, double cost, int link);
   void relax(int node, double cost, int parent, Step step);
-  double to_goal(int node) const;
+  double heuristic(int node) const;
   void take_path(GraspGraph& graph, int goal) const;
 
   const Roadmap& roadmap_;
   std::vector<Node> nodes_;
-  std::vector<std::uint32_t> edge_blocked_;
-  std::vector<int> first_goal_link_;
-  std::vector<Entry> heap_;
-  std::uint32_t round_ = 0;
-  std::size_t opened_ = 0;
+  std::vector<std::uint32_t> edge_blocked_;  ///< Per edge: the last search in which it is blocked.
+  std::vector<int> first_goal_link_;         ///< Per vertex: its first link in GraspGraph::into_goals, or -1.
+  std::vector<Entry> heap_;                  ///< The open list.
+  std::uint32_t round_ = 0;                  ///< Number of the search: what has another stamp is not of this one.
+  std::size_t nodes_opened_ = 0;
   const GraspGraph* graph_ = nullptr;
-  double limit_ = 0, reached_ = 0;
+  double limit_ = 0, lower_bound_ = 0;
 };
 
 /// Cost of the best path that leaves one of the graph's starts for a node of an earlier path and a later node of that

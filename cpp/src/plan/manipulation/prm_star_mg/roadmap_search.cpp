@@ -8,14 +8,14 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr std::size_t kSplices = 16;       // Earlier paths from which bounds are spliced.
-constexpr std::size_t kLargestRound = 32;  // Grasps looked at side by side; whatever the number of threads.
-constexpr std::size_t kSearches = 4;       // Graph searches that are worth a thread.
-// With more openings than these, vertices are checked for the robot on paths only.
-constexpr int kSharingOpenings = 8;
+constexpr std::size_t kMaxSplicedPaths = 16;     // Earlier paths from which upper bounds are spliced.
+constexpr std::size_t kMaxRoundSize = 32;        // Grasps handled together, whatever the number of threads.
+constexpr std::size_t kMinParallelSearches = 4;  // Fewer graph searches run in one thread.
+// With more openings, vertices are checked for the robot on paths only.
+constexpr int kMaxSharingOpenings = 8;
 
 /// No path between ends farther apart than this can win, shortened or not.
-double farthest_ends(const TransferPath& best, const ManipulationResult& result) {
+double max_end_distance(const TransferPath& best, const ManipulationResult& result) {
   return result.path ? std::min(best.cost, result.cost) : best.cost;
 }
 
@@ -29,9 +29,9 @@ RoadmapSearch::RoadmapSearch(const ManipulationInput& input, const Roadmap& road
       best_(best),
       result_(result),
       threads_(resolve_threads(threads)),
-      checks_(roadmap, input.checks, knowledge_, threads_, input.monitor, result.stats) {
+      checks_(roadmap, input.checks, robot_caches_, threads_, input.monitor, result.stats) {
   for (const GraspCandidate& candidate : input.candidates.found()) graphs_.emplace_back(roadmap_, candidate);
-  for (int i = 0; i < input.checks.opening_count(); ++i) knowledge_.emplace_back(roadmap);
+  for (int i = 0; i < input.checks.opening_count(); ++i) robot_caches_.emplace_back(roadmap);
   for (int worker = 0; worker < threads_; ++worker) {
     searches_.emplace_back(roadmap);
     searches_.back().stopped = [this] { return input_.out_of_time(); };
@@ -44,7 +44,7 @@ bool RoadmapSearch::run() {
   if (!whole) {
     result_.lower_bound = std::min(result_.lower_bound, input_.candidates.least_cost_left());
     for (const Entry& open : heap_) result_.lower_bound = std::min(result_.lower_bound, open.key);
-    // Grasps that were not begun are bounded by their straight lines.
+    // Grasps whose search has not begun are bounded by their straight lines.
     for (const GraspGraph& graph : graphs_)
       if (!graph.connected) result_.lower_bound = std::min(result_.lower_bound, graph.candidate.straight_cost());
   }
@@ -63,33 +63,33 @@ void RoadmapSearch::push(const Entry& entry) {
 
 void RoadmapSearch::push_straight(int index) {
   const double straight = graph(index).candidate.straight_cost();
-  if (straight < farthest_ends(best_, result_)) push({straight, index, false});
+  if (straight < max_end_distance(best_, result_)) push({straight, index, false});
 }
 
 std::optional<RoadmapSearch::Entry> RoadmapSearch::find_path(int worker, int index, double bound) {
-  GraspGraph& o = graph(index);
-  o.connect(roadmap_, straight_, farthest_ends(best_, result_));
+  GraspGraph& own = graph(index);
+  own.connect(roadmap_, straight_, max_end_distance(best_, result_));
   GraspGraphSearch& search = searches_[worker];
-  const int opening = o.candidate.opening;
+  const int opening = own.candidate.opening;
   search.robot_is_free = {};
-  if (input_.checks.opening_count() <= kSharingOpenings) {
+  if (input_.checks.opening_count() <= kMaxSharingOpenings) {
     search.robot_is_free = [this, worker, opening](int v) {
       return input_.checks.robot_is_free(worker, opening, roadmap_.vertices().col(v));
     };
   }
-  const EdgeValidityCache& robot = knowledge_[opening];
-  const GraspGraphSearch::End end = search.search(o, robot, bound);
+  const EdgeValidityCache& robot = robot_caches_[opening];
+  const GraspGraphSearch::End end = search.search(own, robot, bound);
   if (end == GraspGraphSearch::End::none) return std::nullopt;
-  if (end == GraspGraphSearch::End::found) return Entry{o.path_cost, index, true};
-  return Entry{search.reached(), index, false};  // Out of time.
+  if (end == GraspGraphSearch::End::found) return Entry{own.path_cost, index, true};
+  return Entry{search.lower_bound(), index, false};  // Out of time.
 }
 
 bool RoadmapSearch::search_heap() {
   std::size_t size = 1;
-  while (promising()) {
+  while (any_promising()) {
     if (input_.out_of_time()) return false;
     round(size);
-    size = std::min(2 * size, kLargestRound);
+    size = std::min(2 * size, kMaxRoundSize);
   }
   return true;
 }
@@ -117,15 +117,15 @@ bool RoadmapSearch::search_batch(int first, int last) {
 bool RoadmapSearch::search_all(int first, int last) {
   std::vector<int> found;
   for (int index = first; index < last; ++index) {
-    if (graph(index).candidate.straight_cost() >= farthest_ends(best_, result_)) continue;
+    if (graph(index).candidate.straight_cost() >= max_end_distance(best_, result_)) continue;
     if (input_.out_of_time()) return false;
-    graph(index).connect(roadmap_, straight_, farthest_ends(best_, result_));
+    graph(index).connect(roadmap_, straight_, max_end_distance(best_, result_));
     double bound = best_.cost;
-    for (std::size_t i = found.size() > kSplices ? found.size() - kSplices : 0; i < found.size(); ++i)
+    for (std::size_t i = found.size() > kMaxSplicedPaths ? found.size() - kMaxSplicedPaths : 0; i < found.size(); ++i)
       bound = std::min(bound, spliced_cost(roadmap_, graph(index), graph(found[i]).nodes));
     ++result_.stats.graph_searches;
     const std::optional<Entry> left = find_path(0, index, bound);
-    result_.stats.ways_opened += searches_.front().opened();
+    result_.stats.nodes_opened += searches_.front().nodes_opened();
     if (!left) continue;
     push(*left);
     if (left->searched) found.push_back(index);
@@ -137,7 +137,7 @@ void RoadmapSearch::round(std::size_t size) {
   std::vector<Entry> taken;
   std::vector<int> to_search, checked;
   std::vector<GraspGraph*> to_check;
-  while (promising() && taken.size() < size) {
+  while (any_promising() && taken.size() < size) {
     std::pop_heap(heap_.begin(), heap_.end(), later);
     taken.push_back(heap_.back());
     heap_.pop_back();
@@ -153,8 +153,8 @@ void RoadmapSearch::round(std::size_t size) {
   for (std::size_t i = 0; i < checked.size(); ++i)
     if (!free[i] || !accept(checked[i])) to_search.push_back(checked[i]);
   std::vector<std::optional<Entry>> left(to_search.size());
-  // Not min(bound, spliced): a spliced path may be blocked (errata on Algorithm 4.3).
-  parallel_for(to_search.size(), to_search.size() >= kSearches ? threads_ : 1,
+  // Not bounded by spliced paths: these may be blocked (errata on Algorithm 4.3).
+  parallel_for(to_search.size(), to_search.size() >= kMinParallelSearches ? threads_ : 1,
                [&](std::size_t i, int worker) { left[i] = find_path(worker, to_search[i], best_.cost); });
   result_.stats.graph_searches += to_search.size();
   for (const std::optional<Entry>& entry : left)
@@ -162,16 +162,16 @@ void RoadmapSearch::round(std::size_t size) {
 }
 
 bool RoadmapSearch::accept(int index) {
-  GraspGraph& o = graph(index);
-  if (o.path_cost >= best_.cost) return true;
+  GraspGraph& own = graph(index);
+  if (own.path_cost >= best_.cost) return true;
   JointPath path;
-  for (const int node : o.nodes) path.waypoints.push_back(o.configuration(roadmap_, node));
-  const int blocked = input_.checks.blocked_edge(o.candidate.grasp, path);
+  for (const int node : own.nodes) path.waypoints.push_back(own.configuration(roadmap_, node));
+  const int blocked = input_.checks.blocked_edge(own.candidate.grasp, path);
   if (blocked >= 0) {
-    o.set_step(o.steps[blocked], false);
+    own.set_step(own.steps[blocked], false);
     return false;
   }
-  best_ = {o.candidate.grasp, o.path_cost, std::move(path)};
+  best_ = {own.candidate.grasp, own.path_cost, std::move(path)};
   take_path(input_, best_, result_);
   return true;
 }

@@ -10,10 +10,10 @@
 
 namespace mmgrasp::detail {
 
-/// One search of one roadmap for all grasps (P2 Algorithm 4.3).
+/// Searches one roadmap for the cheapest free path with any of the grasps (P2 Algorithm 4.3).
 class RoadmapSearch {
  public:
-  /// Looks for paths over the roadmap, or `straight` from start to goal, that cost less than `best`, which they
+  /// Searches for paths over the roadmap, or `straight` from start to goal, that cost less than `best`, which they
   /// replace.
   RoadmapSearch(const ManipulationInput& input, const Roadmap& roadmap, bool straight, int threads, TransferPath& best,
                 ManipulationResult& result);
@@ -25,28 +25,28 @@ class RoadmapSearch {
   struct Entry {
     double key;
     int graph;
-    bool searched;  ///< The key is a path's cost, not only a bound.
+    bool searched;  ///< The key is the cost of the grasp's path; otherwise a lower bound.
   };
   static bool later(const Entry& a, const Entry& b) { return a.key != b.key ? a.key > b.key : a.graph > b.graph; }
 
   GraspGraph& graph(int index) { return graphs_[index]; }
   void push(const Entry& entry);
   void push_straight(int index);
-  bool promising() const { return !heap_.empty() && heap_.front().key < best_.cost; }
-  /// What is left to do with a grasp that was searched, if anything.
+  bool any_promising() const { return !heap_.empty() && heap_.front().key < best_.cost; }
+  /// Searches the graph of a grasp. Returns what is left to do with the grasp, if anything.
   std::optional<Entry> find_path(int worker, int index, double bound);
   bool search_batches();
   bool search_batch(int first, int last);
   /// Searches every grasp of the batch before anything is checked, each bounded by the best path and by what can be
   /// spliced from those found before it (P2 lines 6-15).
   bool search_all(int first, int last);
-  /// False when time ran out; what is open is then left in the heap.
+  /// False when time ran out; what is left to do then stays in the heap.
   bool search_heap();
   /// Takes the most promising grasps, checks the paths of those that have one, and searches the others and those whose
   /// path is blocked. A free path becomes the best even while others could still be better.
   void round(std::size_t size);
-  /// Checks a free path once more, finely and with everything at once, and takes it when it is the best. False (and the
-  /// step at fault is blocked) when it fails: a thin obstacle was stepped over.
+  /// The final check of a free path, robot and object together in small steps; takes it when it is the best. False when
+  /// it fails, since the search stepped over a thin obstacle; the step at fault is then blocked.
   bool accept(int index);
 
   const ManipulationInput& input_;
@@ -55,10 +55,10 @@ class RoadmapSearch {
   TransferPath& best_;
   ManipulationResult& result_;
   int threads_;
-  std::vector<EdgeValidityCache> knowledge_;
+  std::vector<EdgeValidityCache> robot_caches_;  ///< One per opening.
   GraspGraphChecks checks_;
   std::vector<GraspGraphSearch> searches_;  ///< One per worker.
-  std::vector<GraspGraph> graphs_;
+  std::vector<GraspGraph> graphs_;          ///< One per grasp found.
   std::vector<Entry> heap_;
 };
 

@@ -12,11 +12,11 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr int kVertices = 100;   // Of the first roadmap.
-constexpr int kGrowth = 4;       // Rounds after which there is one more.
-constexpr int kNeighbours = 16;  // Of each vertex.
-constexpr double kDetour = 1.3;
-constexpr double kBetter = 1e-6;  // Paths shorter by less than this share are not news.
+constexpr int kFirstVertexCount = 100;      // Vertices of the first roadmap.
+constexpr int kRoundsPerVertex = 4;         // Rounds after which a roadmap has one vertex more.
+constexpr int kNeighbours = 16;             // Neighbours of each vertex.
+constexpr double kDetourFactor = 1.3;       // Every other round takes paths up to this many times as long as the best.
+constexpr double kLeastImprovement = 1e-6;  // Paths shorter by less than this share do not count as better.
 
 class Refinement {
  public:
@@ -28,13 +28,13 @@ class Refinement {
 
   void run() {
     for (int round = 0; round < input_.options.prm.refinements && !input_.out_of_time(); ++round) {
-      informed_.set_cost(result_.cost * (1 - kBetter));
+      informed_.set_cost(result_.cost * (1 - kLeastImprovement));
       const std::optional<Roadmap> roadmap = draw(round);
       if (!roadmap) return;
-      // Paths of the other rounds may be that much longer before they are shortened.
-      const double slack = round % 2 == 0 ? kDetour : 1;
+      // Paths may be longer before they are shortened.
+      const double slack = round % 2 == 0 ? kDetourFactor : 1;
       TransferPath best{result_.grasp_index, slack * result_.cost, *result_.path};
-      // Straight lines were looked at before; a small roadmap is not worth a second thread.
+      // Straight lines were checked before; a small roadmap is not worth a second thread.
       RoadmapSearch(input_, *roadmap, false, 1, best, result_).run();
       shorten_transfer(input_, best, result_, static_cast<unsigned>(round) + 1);
     }
@@ -45,7 +45,7 @@ class Refinement {
   std::optional<Roadmap> draw(int round) {
     if (informed_.grasps() == 0) return std::nullopt;
     Rng rng(input_.options.seed, 0x72660000u + static_cast<std::uint64_t>(round));
-    Eigen::MatrixXd vertices(input_.problem.group.size(), kVertices + round / kGrowth);
+    Eigen::MatrixXd vertices(input_.problem.group.size(), kFirstVertexCount + round / kRoundsPerVertex);
     for (Eigen::Index v = 0; v < vertices.cols(); ++v)
       if (informed_.draw(rng, vertices.col(v).data()) < 0) return std::nullopt;
     return roadmap_over(input_.problem.group, kNeighbours, std::move(vertices));
@@ -60,7 +60,7 @@ class Refinement {
 }  // namespace
 
 void refine_transfer(const ManipulationInput& input, ManipulationResult& result) {
-  // That of the roadmaps before: these leave them.
+  // The bound holds for the roadmaps before; these paths leave them.
   const double lower_bound = result.lower_bound;
   Refinement(input, result).run();
   result.lower_bound = std::min(lower_bound, result.cost);

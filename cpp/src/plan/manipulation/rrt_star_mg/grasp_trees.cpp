@@ -9,8 +9,8 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr int kWalked = 64;          // Trees of up to so many vertices are walked.
-constexpr double kShare = 1.0 / 64;  // And larger ones that hold less than this share of their side.
+constexpr int kMaxScannedVertices = 64;     // Trees of up to so many vertices are scanned ...
+constexpr double kScannedShare = 1.0 / 64;  // ... and larger ones that hold less than this share of their side.
 
 }  // namespace
 
@@ -28,7 +28,7 @@ GraspTrees::GraspTrees(const GraspEnds& ends)
 int GraspTrees::add_configuration(const double* q) {
   // `q` may not be one of our own: the vector moves.
   values_.insert(values_.end(), q, q + dimension_);
-  alike_.push_back(-1);
+  duplicates_.push_back(-1);
   return configuration_count() - 1;
 }
 
@@ -37,11 +37,11 @@ int GraspTrees::create(int tree, int parent, int configuration, double cost) {
   Vertex made{configuration, tree, parent, cost, ends_.estimate(grasp_of(tree), this->configuration(configuration))};
   Tree& own = trees_[tree];
   made.next_in_tree = own.first;
-  made.next_alike = alike_[configuration];
+  made.next_duplicate = duplicates_[configuration];
   if (own.first >= 0) vertices_[own.first].previous_in_tree = v;
   own.first = v;
   ++own.size;
-  alike_[configuration] = v;
+  duplicates_[configuration] = v;
   vertices_.push_back(made);
   ++side_size_[side_of(tree)];
   return v;
@@ -99,9 +99,9 @@ void GraspTrees::remove_leaf(int v) {
   }
   if (own.next_in_tree >= 0) vertices_[own.next_in_tree].previous_in_tree = own.previous_in_tree;
   --tree.size;
-  int* link = &alike_[own.configuration];
-  while (*link != v) link = &vertices_[*link].next_alike;
-  *link = own.next_alike;
+  int* link = &duplicates_[own.configuration];
+  while (*link != v) link = &vertices_[*link].next_duplicate;
+  *link = own.next_duplicate;
   --side_size_[side_of(own.tree)];
   if (v < indexed_) index_[side_of(own.tree)].remove(v);
 }
@@ -113,23 +113,27 @@ const TreeIndex& GraspTrees::index(int side) const {
 }
 
 int GraspTrees::find(int tree, int configuration) const {
-  int v = alike_[configuration];
-  while (v >= 0 && vertex(v).tree != tree) v = vertex(v).next_alike;
+  int v = duplicates_[configuration];
+  while (v >= 0 && vertex(v).tree != tree) v = vertex(v).next_duplicate;
   return v;
 }
 
-bool GraspTrees::only_one(int v) const {
-  return alike_[vertex(v).configuration] == v && vertex(v).next_alike < 0;
+bool GraspTrees::has_duplicate(int v) const {
+  return duplicates_[vertex(v).configuration] != v || vertex(v).next_duplicate >= 0;
 }
 
-bool GraspTrees::walk(int tree) const {
+double GraspTrees::distance(int a, int b) const {
+  return std::sqrt(squared_distance(configuration(a), configuration(b), static_cast<int>(dimension_)));
+}
+
+bool GraspTrees::is_scanned(int tree) const {
   const int size = tree_size(tree);
-  return size <= kWalked || size < kShare * side_size(side_of(tree));
+  return size <= kMaxScannedVertices || size < kScannedShare * side_size(side_of(tree));
 }
 
 int GraspTrees::nearest_in_tree(int tree, const double* q) const {
   double squared = kInfinity;
-  if (!walk(tree))
+  if (!is_scanned(tree))
     return index(side_of(tree))
         .nearest(
             q, [&](int v) { return vertex(v).tree == tree; }, squared);
@@ -151,7 +155,7 @@ int GraspTrees::nearest_on_side(int side, const double* q) const {
 
 void GraspTrees::near_in_tree(int tree, const double* q, double radius, std::vector<Near>& out) const {
   out.clear();
-  if (!walk(tree)) {
+  if (!is_scanned(tree)) {
     index(side_of(tree)).within(q, radius, [&](int v, double squared) {
       if (vertex(v).tree == tree) out.push_back({v, std::sqrt(squared)});
     });
@@ -168,7 +172,7 @@ void GraspTrees::near_on_side(int side, const double* q, double radius, std::vec
   index(side).within(q, radius, [&](int v, double squared) { out.push_back({v, std::sqrt(squared)}); });
 }
 
-void GraspTrees::check_books() const {
+void GraspTrees::check_invariants() const {
   const auto demand = [](bool holds, const char* what) {
     if (!holds) throw std::logic_error(what);
   };

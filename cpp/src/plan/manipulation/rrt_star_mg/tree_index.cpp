@@ -55,7 +55,7 @@ void TreeIndex::split(int index) {
     }
   }
   if (!(widest > 0)) {
-    // All alike (only then can a leaf have had several blocks): another block behind the first.
+    // All the same point (only then can a leaf have had several blocks): another block behind the first.
     const int added = new_block();
     blocks_[added].next = blocks_[first].next;
     blocks_[first].next = added;

@@ -10,7 +10,7 @@
 namespace mmgrasp::detail {
 
 /// Nearest-neighbour search over the vertices of any number of trees: one k-d tree with small buckets that grows and
-/// shrinks as vertices come and go. Whose vertices count is said with each question.
+/// shrinks with them. Each query says which vertices count.
 class MMGRASP_EXPORT TreeIndex {
  public:
   explicit TreeIndex(int dimension);
@@ -54,14 +54,10 @@ class MMGRASP_EXPORT TreeIndex {
   struct Block {
     std::array<int, kBlock> ids;
     int count = 0;
-    int next = -1;  ///< Of the same leaf, when its vertices are all alike.
+    int next = -1;  ///< Another block of the same leaf, which then holds one point many times.
   };
   struct Place {
     int block = -1, slot = 0;
-  };
-  struct Waiting {
-    int node;
-    double bound;  ///< Squared distance to its cell.
   };
 
   double* coordinates(int block) { return values_.data() + static_cast<std::size_t>(block) * block_size_; }
@@ -70,7 +66,7 @@ class MMGRASP_EXPORT TreeIndex {
   void put(int block, int id, const double* q);
   void split(int node);
 
-  /// Cells in the order of the descent, nearer child first; `bound` may shrink on the way.
+  /// Visits cells from the root down, nearer child first; `bound` may decrease meanwhile.
   template <class Visit>
   void search(const double* q, const double& bound, const Visit& visit) const {
     visit_node(0, q, 0, bound, visit);
@@ -86,7 +82,7 @@ class MMGRASP_EXPORT TreeIndex {
     const double across = q[node.axis] - node.split;
     const int near = across < 0 ? node.low : node.high, far = across < 0 ? node.high : node.low;
     visit_node(near, q, cell, bound, visit);
-    // Of the far cell's distance, the part along this axis grows.
+    // Only this axis' part of the far cell's distance grows.
     double& offset = offsets_[node.axis];
     const double before = offset, farther = cell - before * before + across * across;
     if (farther >= bound) return;
@@ -110,7 +106,7 @@ class MMGRASP_EXPORT TreeIndex {
   std::size_t size_ = 0;
   std::vector<Node> nodes_;
   std::vector<Block> blocks_;
-  std::vector<double> values_;           ///< Of each block, one axis after the other.
+  std::vector<double> values_;           ///< Coordinates per block, one axis after the other.
   std::vector<Place> places_;            ///< Per id.
   mutable std::vector<double> offsets_;  ///< Scratch: zero between searches.
 };

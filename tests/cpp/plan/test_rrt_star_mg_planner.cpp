@@ -1,4 +1,4 @@
-// RRT*-MG against exhaustive search: every grasp's shortest path on a grid of all configurations, pulled taut.
+// RRT*-MG against exhaustive search: every grasp's shortest path on a grid of all configurations, shortcut.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,8 +26,8 @@ class GridSearch {
   GridSearch(const ManipulationProblem& problem, const CandidateGrasp& grasp)
       : checker_(problem.group, test::carrying(problem, grasp)) {}
 
-  /// Length of the shortest path from any start to any goal, first along the grid, then taut; infinite when there is
-  /// none, or none below `bound` on the grid.
+  /// Length of the shortest path from any start to any goal, first along the grid, then shortcut; infinite when there
+  /// is none, or none below `bound` on the grid.
   double length(const std::vector<VectorXd>& starts, const std::vector<VectorXd>& goals, double bound) {
     std::vector<VectorXd> nodes;
     for (int i = 0; i < kSide * kSide * kSide; ++i)
@@ -145,7 +145,8 @@ ManipulationOptions options_of(int samples, unsigned seed = 1) {
 }
 
 TEST(RrtStarMgOptimal, ConvergesToTheBestOfAllGrasps) {
-  // The narrower the way, the longer the detours; and one where the cheapest-looking grasp is not the best.
+  // The narrower the passage, the longer the detours; and one where the grasp with the least straight cost is not the
+  // best.
   ManipulationProblem problem = test::bar_transfer();
   for (const bool wall : {false, true}) {
     if (wall) problem.world.add("wall", Shape(Box{{0.04, 0.3, 0.2}}), test::flat_pose(0.62, 0.02, 0.3));
@@ -163,7 +164,7 @@ TEST(RrtStarMgOptimal, ConvergesToTheBestOfAllGrasps) {
           options.first_grasps = first_grasps;
           const ManipulationResult result = plan_manipulation(problem, options);
           ASSERT_EQ(result.outcome, Outcome::solved) << wall << samples;
-          // The grid's path is a real one, taut only as far as corners were cut: ours may be shorter, by little.
+          // The grid's path is a real one, and shortcutting ended at some point: ours may be a little shorter.
           EXPECT_GT(result.cost, 0.97 * best);
           if (samples == 5000) {
             EXPECT_LT(result.cost, 1.06 * best) << wall << " seed " << seed;

@@ -77,9 +77,9 @@ TEST(JerkLimits, CornersAreBlendedAndLimitsKept) {
   for (double t = 0; t < motion.duration(); t += 0.003) {
     double off = 1e9;
     for (std::size_t i = 0; i + 1 < path.waypoints.size(); ++i) {
-      const VectorXd from = path.waypoints[i], way = path.waypoints[i + 1] - from, q = motion.at(t) - from;
-      const double s = std::clamp(q.dot(way) / way.squaredNorm(), 0.0, 1.0);
-      off = std::min(off, (q - s * way).norm());
+      const VectorXd from = path.waypoints[i], edge = path.waypoints[i + 1] - from, q = motion.at(t) - from;
+      const double s = std::clamp(q.dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+      off = std::min(off, (q - s * edge).norm());
     }
     EXPECT_LE(off, 0.03);
   }

@@ -1,0 +1,233 @@
+#include "plan/manipulation/rrt_star_mg/rrt_star_mg_planner.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "mmgrasp/core/random.hpp"
+#include "plan/manipulation/common/first_transfer.hpp"
+#include "plan/manipulation/common/informed_union.hpp"
+#include "plan/manipulation/common/transfer_shortening.hpp"
+#include "plan/manipulation/rrt_star_mg/connect_trees.hpp"
+#include "plan/manipulation/rrt_star_mg/grasp_trees.hpp"
+#include "plan/manipulation/rrt_star_mg/incumbent.hpp"
+#include "plan/manipulation/rrt_star_mg/near_vertices.hpp"
+#include "plan/manipulation/rrt_star_mg/path_shortcutting.hpp"
+#include "plan/manipulation/rrt_star_mg/search_trees.hpp"
+#include "plan/manipulation/rrt_star_mg/tree_checks.hpp"
+#include "plan/manipulation/rrt_star_mg/tree_connections.hpp"
+#include "plan/manipulation/rrt_star_mg/tree_growth.hpp"
+#include "plan/manipulation/rrt_star_mg/tree_pruning.hpp"
+#include "plan/manipulation/rrt_star_mg/tree_sampler.hpp"
+
+namespace mmgrasp::detail {
+namespace {
+
+constexpr int kReportInterval = 64;  // Samples.
+
+/// Algorithm 5.13. Trees, informed sets and the incumbent are shared by those who sample, grow, connect and improve;
+/// everything else is theirs.
+class RrtStarMg {
+ public:
+  /// Over the grasps known now; goes on from the result's path when it has one.
+  RrtStarMg(ManipulationInput& input, ManipulationResult& result, const RrtStarMgTuning& tuning)
+      : input_(input),
+        result_(result),
+        options_(input.options.rrt),
+        tuning_(tuning),
+        ends_(input.candidates.found()),
+        informed_(ends_, input.problem.group.sample_lower(), input.problem.group.sample_upper()),
+        trees_(ends_),  // Lines 1-5.
+        checks_(trees_, input.checks, result.stats),
+        near_vertices_(trees_, informed_, options_, tuning),
+        connections_(trees_),
+        sampler_(trees_, informed_, options_, tuning),
+        growth_(trees_, checks_, near_vertices_, incumbent_, options_, tuning),
+        connect_trees_(trees_, checks_, near_vertices_, incumbent_, connections_, options_, tuning),
+        shortcutting_(trees_, checks_, connections_, incumbent_, tuning),
+        rng_(input.options.seed, 0x727274) {
+    growth_.on_rewired = [this](int grasp) {
+      if (connections_.any(grasp)) update_incumbent(grasp);
+    };
+    if (!result.path) return;
+    incumbent_.cost = result.cost;
+    prune_and_reassign(incumbent_, trees_, informed_, sampler_);
+  }
+
+  void run() {
+    input_.monitor.report("search", 0);
+    if (input_.options.straight) try_straight_lines();
+    const double goal_cost = std::min(options_.goal_cost, std::numeric_limits<double>::max());
+    int i = 0;
+    for (; i < options_.max_samples && informed_.grasps() > 0 && incumbent_.cost > goal_cost; ++i) {  // Line 6.
+      if (input_.out_of_time()) break;
+      // Not before another grasp has a path: the first one may be poor, and trees that have one grow less evenly.
+      if (!incumbent_.in_trees() && result_.path && connections_.any_listed()) seed_tree();
+      if (i % kReportInterval == 0) input_.monitor.report("search", static_cast<double>(i) / options_.max_samples);
+      sample(options_.bidirectional ? i % 2 : GraspEnds::kStart);  // Line 26: SwapTrees.
+    }
+    result_.stats.samples += static_cast<std::size_t>(i);
+    result_.stats.vertices += static_cast<std::size_t>(trees_.vertex_count());
+    result_.lower_bound = std::min({incumbent_.cost, ends_.straight_cost(0), input_.candidates.least_cost_left()});
+    if (options_.keep_trees) append_search_trees(trees_, result_.trees);
+  }
+
+ private:
+  /// Lines 11-26 for one sample.
+  void sample(int side) {
+    const TreeSampler::Sample again = sampler_.draw_reassigned(rng_, side);
+    if (again.configuration >= 0) {  // Lines 19, 20.
+      connect(growth_.extend_tree(GraspTrees::tree(again.grasp, side), again.configuration));
+    } else if (incumbent_.in_trees()) {
+      const int made = grow_informed(side);
+      if (rng_.uniform() < tuning_.shortcut_probability) shortcut();
+      connect(made);
+    } else {
+      grow_before_first_path(side);
+    }
+  }
+
+  /// Lines 12-17: exploration with probability p_blt, exploitation otherwise. Returns the new vertex, or -1.
+  int grow_informed(int side) {
+    const TreeSampler::Sample drawn = sampler_.draw(rng_);
+    if (drawn.grasp < 0) return -1;
+    if (rng_.uniform() < options_.exploration)
+      return growth_.extend_tree(GraspTrees::tree(drawn.grasp, side), drawn.configuration);
+    return extend_cheapest_tree(side, drawn.configuration);
+  }
+
+  /// Lines 16, 17 (errata: go on with the next sample).
+  int extend_cheapest_tree(int side, int configuration) {
+    const TreeGrowth::Extension extension = growth_.extend_cheapest_tree(side, configuration);
+    if (extension.pruned) sampler_.reassign(configuration);  // Another grasp's tree may be improved (P2 5.3.4).
+    return extension.vertex;
+  }
+
+  /// Beyond the paper, until there is a path: one configuration is offered to the trees, as in the paper, and then to
+  /// the trees of some single grasps. What is found out about the robot there serves them all.
+  void grow_before_first_path(int side) {
+    int grasp = sampler_.pick_grasp(rng_);
+    const int configuration = sampler_.draw_near_straight_line(rng_, grasp);
+    connect(extend_cheapest_tree(side, configuration));
+    for (int i = 0; i < tuning_.trees_per_sample && !incumbent_.in_trees(); ++i, grasp = sampler_.pick_grasp(rng_))
+      connect(growth_.extend_tree(GraspTrees::tree(grasp, side), configuration));
+  }
+
+  /// Beyond the paper: nothing is cheaper than a straight line, and many problems have a free one.
+  void try_straight_lines() {
+    const int tried = std::min(tuning_.straight_line_grasps, ends_.size());
+    std::vector<int> roots;
+    for (int grasp = 0; grasp < tried && ends_.straight_cost(grasp) < incumbent_.cost && !input_.out_of_time();
+         ++grasp) {
+      roots.clear();
+      trees_.each_in_tree(GraspTrees::tree(grasp, GraspEnds::kStart), [&](int v) { roots.push_back(v); });
+      for (const int v : roots) connect(v);
+    }
+  }
+
+  /// Lines 22-25.
+  void connect(int vertex) {
+    if (vertex < 0) return;
+    const ConnectTrees::Attempt attempt = connect_trees_.connect(vertex);
+    if (attempt.connected) {
+      update_incumbent(GraspTrees::grasp_of(trees_.vertex(vertex).tree));
+    } else if (attempt.blocked_vertex >= 0 && !incumbent_.in_trees() && options_.bidirectional) {
+      growth_.extend_half(attempt.blocked_vertex, trees_.vertex(vertex).configuration);
+    }
+  }
+
+  void shortcut() {
+    const int grasp = shortcutting_.cut_random_corner(rng_, informed_.grasps());
+    if (grasp >= 0) update_incumbent(grasp);
+  }
+
+  /// Puts the path that the result had beforehand into the trees of its grasp.
+  void seed_tree() {
+    int grasp = 0;
+    while (ends_.grasp(grasp) != result_.grasp_index) ++grasp;
+    incumbent_.grasp = grasp;
+    if (grasp >= informed_.grasps()) return;  // The path is the straight line.
+    const std::vector<Eigen::VectorXd>& path = result_.path->waypoints;
+    int at = trees_.nearest_in_tree(GraspTrees::tree(grasp, GraspEnds::kStart), path.front().data());
+    for (std::size_t i = 1; i + 1 < path.size(); ++i)
+      at = trees_.add(at, trees_.add_configuration(path[i].data()), (path[i] - path[i - 1]).norm());
+    connections_.add(at, trees_.nearest_in_tree(GraspTrees::tree(grasp, GraspEnds::kGoal), path.back().data()));
+    connections_.list_grasp(grasp);
+    update_incumbent(grasp);
+    shortcutting_.skip_vertices(grasp);
+    update_incumbent(grasp);
+  }
+
+  /// Lines 7-10 after the connections or costs of a grasp's trees changed: while its cheapest path beats the incumbent,
+  /// checks it, takes it, prunes by it and shortcuts it.
+  void update_incumbent(int grasp) {
+    for (;;) {
+      const TreeConnections::BestPath path = connections_.update(grasp);
+      if (!(path.cost < incumbent_.cost_to_beat())) return;
+      if (!accept(grasp, path.connection)) continue;
+      incumbent_.grasp = grasp;
+      prune_and_reassign(incumbent_, trees_, informed_, sampler_);
+      if (incumbent_.cost <= options_.goal_cost) return;
+      shortcutting_.skip_vertices(grasp);
+    }
+  }
+
+  /// The final check of a path, which becomes the incumbent when it passes. A blocked edge is cut off otherwise, with
+  /// all that hangs on it: the search stepped over a thin obstacle.
+  bool accept(int grasp, int connection) {
+    std::size_t crossing = 0;
+    const std::vector<int> vertices = connections_.vertices(connection, crossing);
+    const int blocked = checks_.blocked_edge(grasp, vertices);
+    if (blocked < 0) {
+      incumbent_.cost = connections_.cost(connection);
+      JointPath path;
+      for (const int v : vertices)
+        path.waypoints.push_back(Eigen::Map<const Eigen::VectorXd>(trees_.at(v), ends_.dimension()));
+      take_path(input_, {ends_.grasp(grasp), incumbent_.cost, std::move(path)}, result_);
+      return true;
+    }
+    const auto edge = static_cast<std::size_t>(blocked);
+    if (edge + 1 == crossing) {
+      connections_.remove(grasp, connection);
+    } else {
+      trees_.remove_below(edge + 1 < crossing ? vertices[edge + 1] : vertices[edge], [](int) {});
+    }
+    return false;
+  }
+
+  ManipulationInput& input_;
+  ManipulationResult& result_;
+  const RrtStarMgOptions options_;
+  const RrtStarMgTuning& tuning_;
+  GraspEnds ends_;
+  InformedUnion informed_;
+  GraspTrees trees_;
+  Incumbent incumbent_;
+  TreeChecks checks_;
+  NearVertices near_vertices_;
+  TreeConnections connections_;
+  TreeSampler sampler_;
+  TreeGrowth growth_;
+  ConnectTrees connect_trees_;
+  PathShortcutting shortcutting_;
+  Rng rng_;
+};
+
+}  // namespace
+
+bool run_rrt_star_mg(ManipulationInput& input, ManipulationResult& result, const RrtStarMgTuning& tuning) {
+  GraspCandidates& candidates = input.candidates;
+  const TransferPath first = find_first_transfer(input, result);
+  const auto good_enough = [&] { return result.path && result.cost <= input.options.rrt.goal_cost; };
+  if (first.grasp >= 0 && !good_enough()) shorten_transfer(input, first, result);
+  if (good_enough()) {
+    result.lower_bound = std::min(result.cost, candidates.least_cost());
+    return false;
+  }
+  candidates.find_rest();
+  if (!candidates.found().empty()) RrtStarMg(input, result, tuning).run();
+  return false;
+}
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,70 @@
+#include "plan/manipulation/rrt_star_mg/tree_index.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <vector>
+
+#include "mmgrasp/core/random.hpp"
+
+namespace mmgrasp::detail {
+namespace {
+
+using Eigen::VectorXd;
+
+TEST(TreeIndex, AnswersAsAScanOfAllPointsDoes) {
+  for (const int d : {1, 2, 6, 9}) {
+    Rng rng(static_cast<unsigned>(d));
+    TreeIndex index(d);
+    std::vector<VectorXd> points;
+    std::vector<char> there;
+    const VectorXd lower = VectorXd::Constant(d, -1), upper = VectorXd::Constant(d, 1);
+    for (int round = 0; round < 1500; ++round) {
+      // Now and then the same point many times over, and points on a coarse grid.
+      VectorXd q = rng.uniform(lower, upper);
+      if (round % 3 == 0) q = (q * 2).array().round() / 2;
+      if (round > 600 && round < 660) q = points[7];
+      index.insert(static_cast<int>(points.size()), q.data());
+      points.push_back(q);
+      there.push_back(1);
+      if (round % 4 == 0) {
+        const std::size_t gone = rng.index(points.size());
+        if (there[gone]) index.remove(static_cast<int>(gone));
+        there[gone] = 0;
+      }
+      if (round % 10 != 0) continue;
+      const VectorXd at = rng.uniform(lower, upper);
+      const auto take = [](int id) { return id % 3 != 1; };
+      double least = std::numeric_limits<double>::infinity();
+      std::set<int> expected, found;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        if (!there[i]) continue;
+        const double distance = (points[i] - at).norm();
+        if (take(static_cast<int>(i))) least = std::min(least, distance);
+        if (distance < 0.5) expected.insert(static_cast<int>(i));
+      }
+      double squared;
+      const int nearest = index.nearest(at.data(), take, squared);
+      if (std::isinf(least)) {
+        EXPECT_EQ(nearest, -1);
+      } else {
+        ASSERT_GE(nearest, 0);
+        EXPECT_TRUE(there[nearest] && take(nearest));
+        EXPECT_NEAR(std::sqrt(squared), least, 1e-12);
+        EXPECT_NEAR((points[nearest] - at).norm(), least, 1e-12);
+      }
+      index.within(at.data(), 0.5, [&](int id, double found_squared) {
+        EXPECT_NEAR((points[id] - at).squaredNorm(), found_squared, 1e-12);
+        EXPECT_TRUE(found.insert(id).second);
+      });
+      EXPECT_EQ(found, expected);
+    }
+    EXPECT_EQ(index.size(), static_cast<std::size_t>(std::count(there.begin(), there.end(), 1)));
+  }
+}
+
+}  // namespace
+}  // namespace mmgrasp::detail

@@ -134,9 +134,9 @@ struct MMGRASP_EXPORT ManipulationResult {
 };
 
 /// Collision-free path of the group that carries the object from start to goal with the best of the grasps. Every grasp
-/// is looked at, none sampled away, unless the clock, the stop token or `goal_cost` ends the run. No grasp reachable at
-/// the start: invalid_start; at the goal: invalid_goal; `rejections` and `grasps` say why. With `roadmap` the graph is
-/// not built again; it must be of the same robot and joints. `improved` is called with every better solution.
+/// is looked at, none sampled away, unless the clock, the cancel token or `goal_cost` ends the run. No grasp reachable
+/// at the start: invalid_start; at the goal: invalid_goal; `rejections` and `grasps` say why. With `roadmap` the graph
+/// is not built again; it must be of the same robot and joints. `improved` is called with every better solution.
 MMGRASP_EXPORT ManipulationResult plan_manipulation(const ManipulationProblem& problem,
                                                     const ManipulationOptions& options = {},
                                                     const Roadmap* roadmap = nullptr, const Monitor& monitor = {},

@@ -4,10 +4,10 @@
 
 namespace mmgrasp::detail {
 
-/// Carries a set stop token out of the inner loops of timing; never leaves time_parameterize() and its kin.
+/// Carries a set cancel token out of the inner loops of timing; never leaves time_parameterize() and its kin.
 struct TimingStopped {};
 
-inline void end_if_stopped(const StopToken& stop) {
+inline void end_if_stopped(const CancelToken& stop) {
   if (stop.stopped()) throw TimingStopped{};
 }
 

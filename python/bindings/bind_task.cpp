@@ -1,4 +1,5 @@
 #include "bindings.hpp"
+#include "ids.hpp"
 #include "mmgrasp/task/base_route.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
 #include "mmgrasp/task/part_supply.hpp"
@@ -134,30 +135,58 @@ void bind_picks(py::module_& m) {
   py::class_<Pick>(m, "Pick", "Home, pre-grasp, grasp, lift, carry, home.")
       .def_readonly("outcome", &Pick::outcome)
       .def_readonly("stop", &Pick::stop)
-      .def_readonly("tray", &Pick::tray)
-      .def_readonly("part", &Pick::part)
+      .def_property_readonly("tray", [](const Pick& p) { return p.part.tray; })
+      .def_property_readonly("part", [](const Pick& p) { return p.part.part; })
       .def_readonly("grasp", &Pick::grasp)
       .def_readonly("motions", &Pick::motions)
       .def_readonly("rejections", &Pick::rejections)
       .def_readonly("failed_at", &Pick::failed_at)
       .def_property_readonly("duration", &Pick::duration)
       .def("__repr__", [](const Pick& p) {
-        return std::string("Pick(") + to_string(p.outcome) + ", tray " + std::to_string(p.tray) + ", part " +
-               std::to_string(p.part) + ")";
+        return std::string("Pick(") + to_string(p.outcome) + ", tray " + std::to_string(p.part.tray) + ", part " +
+               std::to_string(p.part.part) + ")";
       });
   m.def(
       "plan_pick",
       [](const PartSupplyProblem& problem, const ReachDatabase& database, const ArrayLike& base_pose, int tray,
          int part, const std::vector<std::pair<int, int>>& remaining) {
         const Eigen::Vector3d base = vector3_argument(base_pose, "base_pose");
+        const std::vector<PartRef> left = parts_argument(remaining);
         return LongCall(py::none()).run([&](const Monitor& monitor) {
-          return plan_pick(problem, database, base, tray, part, remaining, monitor);
+          return plan_pick(problem, database, base, {TrayId(tray), part}, left, monitor);
         });
       },
       py::arg("problem"), py::arg("database"), py::arg("base_pose"), py::arg("tray"), py::arg("part"),
       py::arg("remaining"),
       "One pick from a base pose; `remaining` are the (tray, part) still in place, the picked one among them.");
 }
+
+/// Python counts the trays of a plan by the regions it lists, which are those of trays with targets.
+class ListedRegions {
+ public:
+  explicit ListedRegions(const PartSupplyPlan& plan) : place_(plan.regions.size(), -1) {
+    for (std::size_t tray = 0; tray < plan.regions.size(); ++tray) {
+      if (!plan.regions[tray].has_targets) continue;
+      place_[tray] = static_cast<int>(trays_.size());
+      trays_.push_back(static_cast<int>(tray));
+    }
+  }
+  const std::vector<int>& trays() const { return trays_; }
+  /// A stop or an intersection with its trays counted so.
+  template <class T>
+  T counted(T served) const {
+    for (TrayId& tray : served.trays) tray = TrayId(place_[tray]);
+    return served;
+  }
+  template <class T>
+  std::vector<T> counted(std::vector<T> all) const {
+    for (T& one : all) one = counted(std::move(one));
+    return all;
+  }
+
+ private:
+  std::vector<int> place_, trays_;
+};
 
 void bind_plan_result(py::module_& m) {
   py::class_<Obstruction>(m, "Obstruction", "Why there is no plan, and what would help.")
@@ -183,10 +212,24 @@ void bind_plan_result(py::module_& m) {
   py::class_<PartSupplyPlan>(m, "PartSupplyResult", "The planner's answer; PartSupplyPlan joins it with its scenario.")
       .def_readonly("outcome", &PartSupplyPlan::outcome)
       .def_readonly("grid", &PartSupplyPlan::grid)
-      .def_readonly("regions", &PartSupplyPlan::regions)
-      .def_readonly("region_trays", &PartSupplyPlan::region_trays, "Tray index of each region.")
-      .def_readonly("intersections", &PartSupplyPlan::intersections)
-      .def_readonly("stops", &PartSupplyPlan::stops)
+      .def_property_readonly("regions",
+                             [](const PartSupplyPlan& p) {
+                               std::vector<BaseRegion> regions;
+                               for (int tray : ListedRegions(p).trays()) regions.push_back(p.regions[tray]);
+                               return regions;
+                             })
+      .def_property_readonly(
+          "region_trays", [](const PartSupplyPlan& p) { return ListedRegions(p).trays(); },
+          "Tray index of each region.")
+      .def_property_readonly("intersections",
+                             [](const PartSupplyPlan& p) {
+                               const ListedRegions listed(p);
+                               Intersections found = p.intersections;
+                               found.robust = listed.counted(std::move(found.robust));
+                               found.lost = listed.counted(std::move(found.lost));
+                               return found;
+                             })
+      .def_property_readonly("stops", [](const PartSupplyPlan& p) { return ListedRegions(p).counted(p.stops); })
       .def_readonly("lower_bound", &PartSupplyPlan::lower_bound)
       .def_readonly("proven_minimal", &PartSupplyPlan::proven_minimal, "No fewer stops can serve the regions.")
       .def_readonly("route", &PartSupplyPlan::route)

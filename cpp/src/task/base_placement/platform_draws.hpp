@@ -6,7 +6,7 @@
 
 #include "mmgrasp/task/platform_locations.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
 /// One of the two ends of a platform locations problem: tells valid configurations and draws them.
 class PlatformEnd {
@@ -52,4 +52,4 @@ class PlatformEnd {
   std::uint64_t seed_, stream_;
 };
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

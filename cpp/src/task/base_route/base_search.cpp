@@ -7,7 +7,7 @@
 
 #include "mmgrasp/core/pose.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 namespace {
 
 constexpr int kHeadings = 16;
@@ -245,4 +245,4 @@ std::optional<std::vector<Eigen::Vector3d>> search_base_path(BaseClearance& clea
   return BaseSearch(clearance, from, to, settings, monitor).run();
 }
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

@@ -7,7 +7,7 @@
 #include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/robot/planar_base.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
 /// Floor plan of everything with an end in the scene and of some base poses, grown by 2 m.
 Eigen::AlignedBox2d floor_bounds(const World& world, const std::vector<Eigen::Vector3d>& poses);
@@ -48,4 +48,4 @@ class FloorField {
   bool complete_ = false;
 };
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

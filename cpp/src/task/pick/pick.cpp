@@ -14,21 +14,26 @@
 #include "task/pick/pick_scene.hpp"
 #include "task/pick/release.hpp"
 #include "task/problem/full_turns.hpp"
+#include "task/problem/scene.hpp"
 
 namespace mmgrasp {
 namespace {
 
+using detail::PickScene;
+
 constexpr double kSame = 1e-2;           // Configurations nearer than this are one [rad or m].
 constexpr int kConfigurations = 6;       // Tried for one grasp.
 constexpr int kMotionTries = 12;         // Grasp configurations that may reach the costly stage.
-constexpr std::size_t kReleases = 6;     // Goals of a carry.
+constexpr std::size_t kReleases = 6;     // Goals of a transfer.
 constexpr double kLineDeviation = 2e-4;  // Blending of straight tool motions [rad]: the tool stays on its line.
 constexpr double kEdgeStep = 0.02;
-constexpr double kStatesPerSecond = 2000;  // Of motion_time_limit: slow enough that this budget ends before the clock.
-constexpr double kMostStates = 1e8;
+// States per second of motion_time_limit: so few that this budget ends a search before the clock does.
+constexpr double kStatesPerSecond = 2000;
+constexpr double kMaxStates = 1e8;
 constexpr double kTimedStep = 0.01;
 
-enum Stage { kAtGrasp, kApproaching, kClosing, kLifting, kReleasing, kReaching, kCarrying, kRetreating, kStages };
+/// Stages at which candidates fall, in the order in which they are planned.
+enum Stage { kGrasp, kApproach, kClose, kLift, kRelease, kTransit, kTransfer, kRetreat, kStages };
 constexpr std::array<const char*, kStages> kStageNames = {"grasp",   "approach", "close", "lift",
                                                           "release", "reach",    "carry", "retreat"};
 
@@ -40,26 +45,22 @@ JointPath reversed(const JointPath& path) {
 
 /// The paths of one pick before timing.
 struct Paths {
-  JointPath reach, approach, lift, carry, retreat;
+  JointPath transit, approach, lift, transfer, retreat;
 };
 
 class PickPlanner {
  public:
-  PickPlanner(const PartSupplyProblem& problem, const ReachDatabase& database, const Eigen::Vector3d& base_pose,
-              int tray, int part, const std::vector<std::pair<int, int>>& remaining, const Monitor& monitor)
+  PickPlanner(const PickProblem& problem, const ReachDatabase& database, const Monitor& monitor)
       : problem_(problem),
         database_(database),
-        part_(part_of(problem, tray, part)),
-        scene_(problem, base_pose, tray, part, remaining),
-        monitor_(monitor) {
-    pick_.tray = tray;
-    pick_.part = part;
-    seed_ = problem.options.seed * 1000003u + static_cast<unsigned>(tray) * 1009u + static_cast<unsigned>(part);
-  }
+        scene_(problem),
+        T_world_object_(problem.world.objects().at(problem.object).T_world_object),
+        monitor_(monitor),
+        seed_(problem.options.seed) {}
 
   Pick run() {
     for (int round = 0; round < 2; ++round) {
-      for (int g = 0; g < static_cast<int>(part_.grasps.size()); ++g) {
+      for (int g = 0; g < static_cast<int>(problem_.grasps.size()); ++g) {
         if (monitor_.stopped()) {
           pick_.outcome = Outcome::stopped;
           return pick_;
@@ -78,14 +79,14 @@ class PickPlanner {
     return false;
   }
 
-  Pose T_world_tcp(int grasp) const { return part_.T_world_part * part_.grasps[grasp].T_object_tcp; }
+  Pose T_world_tcp(int grasp) const { return T_world_object_ * problem_.grasps[grasp].T_object_tcp; }
 
   /// Free configurations at the grasp, nearest to home first. Second round: from random starts instead of the database.
   std::vector<Eigen::VectorXd> grasp_configurations(int grasp, int round, CollisionChecker& checker) {
     const Pose T = T_world_tcp(grasp);
     std::vector<Eigen::VectorXd> found;
     const auto judge = [&](Eigen::VectorXd q) {
-      turn_towards(checker.group(), problem_.home, q);
+      detail::turn_towards(checker.group(), problem_.home, q);
       for (const Eigen::VectorXd& other : found) {
         if ((q - other).cwiseAbs().maxCoeff() < kSame) return;
       }
@@ -93,10 +94,9 @@ class PickPlanner {
       pick_.rejections.add(cause);
       if (cause == Rejection::none) found.push_back(q);
     };
-    const Pose T_base_tcp = scene_.T_world_root().inverse() * T;
+    const Pose T_base_tcp = problem_.arm.T_world_root().inverse() * T;
     if (round == 0) {
-      const int count =
-          database_.nearest(T_base_tcp, std::max(kConfigurations, problem_.options.grid.ik_seeds), seeds_);
+      const int count = database_.nearest(T_base_tcp, std::max(kConfigurations, problem_.options.ik_seeds), seeds_);
       if (count == 0) pick_.rejections.add(Rejection::reach);
       for (int i = 0; i < count; ++i) {
         Eigen::VectorXd q = seeds_.col(i).head(problem_.arm.size());
@@ -120,11 +120,11 @@ class PickPlanner {
   }
 
   bool try_grasp(int grasp, int round) {
-    const double width = part_.grasps[grasp].width;
+    const double width = problem_.grasps[grasp].width;
     const double opening = problem_.gripper.pregrasp_opening(width);
     CollisionChecker& before = scene_.before(opening);
     const std::vector<Eigen::VectorXd> configurations = grasp_configurations(grasp, round, before);
-    if (configurations.empty()) return fell(kAtGrasp);
+    if (configurations.empty()) return fell(kGrasp);
     for (const Eigen::VectorXd& q : configurations) {
       if (monitor_.stopped() || motion_tries_ >= kMotionTries) return false;
       if (try_configuration(grasp, q, before, width, opening)) return true;
@@ -137,30 +137,30 @@ class PickPlanner {
     Pose T_pre = T_world_tcp(grasp);
     T_pre.translation() -= problem_.options.approach_distance * (T_pre.linear() * problem_.gripper.approach);
     const StraightLineResult back = plan_straight_line(before, q, T_pre, line_options());
-    if (back.outcome != Outcome::solved) return fell(kApproaching);
+    if (back.outcome != Outcome::solved) return fell(kApproach);
     paths.approach = reversed(*back.path);
 
     const Pose T_grasp = before.group().fk(q);
-    const Pose T_tcp_part = T_grasp.inverse() * part_.T_world_part;
-    CollisionChecker holding = scene_.holding(width, T_tcp_part);
-    if (!PickScene::fingers_free(problem_, scene_.T_world_root(), holding, q, opening, width)) return fell(kClosing);
+    const Pose T_tcp_object = T_grasp.inverse() * T_world_object_;
+    CollisionChecker holding = scene_.holding(width, T_tcp_object);
+    if (!scene_.fingers_free(holding, q, opening, width)) return fell(kClose);
     Pose T_lifted = T_grasp;
     T_lifted.translation().z() += problem_.options.lift_height;
     const StraightLineResult lift = plan_straight_line(holding, q, T_lifted, line_options());
-    if (lift.outcome != Outcome::solved) return fell(kLifting);
+    if (lift.outcome != Outcome::solved) return fell(kLift);
     paths.lift = *lift.path;
 
     CollisionChecker& after = scene_.after(opening);
     std::vector<Eigen::VectorXd> releases;
-    for (const Eigen::VectorXd& some :
-         release_configurations(database_, holding, release_poses(problem_, scene_.T_world_root(), part_, T_tcp_part),
-                                paths.lift.waypoints.back(), kReleases, pick_.rejections)) {
-      if (PickScene::fingers_free(problem_, scene_.T_world_root(), after, some, width, opening))
-        releases.push_back(some);
+    if (!problem_.places.empty()) {
+      for (const Eigen::VectorXd& some :
+           detail::release_configurations(database_, holding, problem_.places, T_tcp_object,
+                                          paths.lift.waypoints.back(), kReleases, pick_.rejections)) {
+        if (scene_.fingers_free(after, some, width, opening)) releases.push_back(some);
+      }
+      if (releases.empty()) return fell(kRelease);
     }
-    if (releases.empty()) return fell(kReleasing);
-    if (!PickScene::fingers_free(problem_, scene_.T_world_root(), before, problem_.home, 0, opening))
-      return fell(kReaching);
+    if (!scene_.fingers_free(before, problem_.home, 0, opening)) return fell(kTransit);
     ++motion_tries_;
     if (!plan_motions(before, holding, after, releases, paths)) return false;
     return finish(grasp, width, opening, before, holding, after, paths);
@@ -177,7 +177,7 @@ class PickPlanner {
     MotionOptions options;
     options.time_limit = problem_.options.motion_time_limit;
     options.max_iterations =
-        static_cast<int>(std::clamp(std::ceil(kStatesPerSecond * options.time_limit), 1.0, kMostStates));
+        static_cast<int>(std::clamp(std::ceil(kStatesPerSecond * options.time_limit), 1.0, kMaxStates));
     options.seed = seed_ * 31u + static_cast<unsigned>(stage) + 7u * static_cast<unsigned>(motion_tries_);
     options.edge_step = kEdgeStep;
     MotionResult result = plan_motion(checker, from, to, options, monitor_);
@@ -188,9 +188,10 @@ class PickPlanner {
 
   bool plan_motions(CollisionChecker& before, CollisionChecker& holding, CollisionChecker& after,
                     const std::vector<Eigen::VectorXd>& releases, Paths& paths) {
-    return motion(before, problem_.home, {paths.approach.waypoints.front()}, kReaching, paths.reach) &&
-           motion(holding, paths.lift.waypoints.back(), releases, kCarrying, paths.carry) &&
-           motion(after, paths.carry.waypoints.back(), {problem_.home}, kRetreating, paths.retreat);
+    if (!motion(before, problem_.home, {paths.approach.waypoints.front()}, kTransit, paths.transit)) return false;
+    if (releases.empty()) return true;
+    return motion(holding, paths.lift.waypoints.back(), releases, kTransfer, paths.transfer) &&
+           motion(after, paths.transfer.waypoints.back(), {problem_.home}, kRetreat, paths.retreat);
   }
 
   bool finish(int grasp, double width, double opening, CollisionChecker& before, CollisionChecker& holding,
@@ -200,15 +201,17 @@ class PickPlanner {
     const auto timed = [](CollisionChecker& checker, const JointPath& path, const TimingOptions& options) {
       return time_parameterize_free(checker, path, options, kTimedStep);
     };
-    pick_.motions = {{MotionKind::reach, opening, false, timed(before, paths.reach, {})},
+    pick_.motions = {{MotionKind::transit, opening, false, timed(before, paths.transit, {})},
                      {MotionKind::approach, opening, false, timed(before, paths.approach, line)},
-                     {MotionKind::lift, width, true, timed(holding, paths.lift, line)},
-                     {MotionKind::carry, width, true, timed(holding, paths.carry, {})},
-                     {MotionKind::retreat, opening, false, timed(after, paths.retreat, {})}};
-    join_motions(problem_.arm.wraps(), problem_.home, pick_.motions);
+                     {MotionKind::lift, width, true, timed(holding, paths.lift, line)}};
+    if (!problem_.places.empty()) {
+      pick_.motions.push_back({MotionKind::transfer, width, true, timed(holding, paths.transfer, {})});
+      pick_.motions.push_back({MotionKind::retreat, opening, false, timed(after, paths.retreat, {})});
+    }
+    detail::join_motions(problem_.arm.wraps(), problem_.home, pick_.motions);
     const std::array<CollisionChecker*, 5> checkers = {&before, &before, &holding, &holding, &after};
-    const std::array<Stage, 5> stages = {kReaching, kApproaching, kLifting, kCarrying, kRetreating};
-    for (std::size_t i = 0; i < checkers.size(); ++i) {
+    const std::array<Stage, 5> stages = {kTransit, kApproach, kLift, kTransfer, kRetreat};
+    for (std::size_t i = 0; i < pick_.motions.size(); ++i) {
       if (trajectory_free(*checkers[i], pick_.motions[i].trajectory)) continue;
       pick_.motions.clear();
       return fell(stages[i]);
@@ -234,10 +237,10 @@ class PickPlanner {
     return true;
   }
 
-  const PartSupplyProblem& problem_;
+  const PickProblem& problem_;
   const ReachDatabase& database_;
-  const Part& part_;
   PickScene scene_;
+  Pose T_world_object_;
   const Monitor& monitor_;
   Pick pick_;
   unsigned seed_;
@@ -248,27 +251,56 @@ class PickPlanner {
   Eigen::MatrixXd seeds_;
 };
 
-void check_part(const PartSupplyProblem& problem, int tray, int part, const std::string& tray_name,
+void check_part(const PartSupplyProblem& problem, PartRef part, const std::string& tray_name,
                 const std::string& part_name) {
   const auto check = [](int index, std::size_t count, const std::string& name) {
     require(index >= 0 && index < static_cast<int>(count), name, std::to_string(index),
             "must be in [0, " + std::to_string(count) + ")");
   };
-  check(tray, problem.trays.size(), tray_name);
-  check(part, problem.trays[tray].parts.size(), part_name);
+  check(part.tray, problem.trays.size(), tray_name);
+  check(part.part, detail::tray_of(problem, part.tray).parts.size(), part_name);
+}
+
+/// The part as an object of the scene, to be released over the bin.
+PickProblem pick_of(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose, PartRef ref,
+                    const std::vector<PartRef>& remaining) {
+  const Pose T_world_root = pose_from_planar(base_pose);
+  const Part& part = detail::part_of(problem, ref);
+  const PartSupplyOptions& options = problem.options;
+  const unsigned seed =
+      options.seed * 1000003u + static_cast<unsigned>(ref.tray) * 1009u + static_cast<unsigned>(ref.part);
+  return {problem.arm.at(T_world_root),
+          problem.gripper,
+          detail::world_with_parts(problem, remaining),
+          part.name,
+          part.grasps,
+          problem.home,
+          detail::places_over_bin(problem.carry, T_world_root, part),
+          {options.approach_distance, options.lift_height, options.motion_time_limit, options.grid.ik_seeds, seed}};
+}
+
+/// Only the calling thread may report progress; a pick only listens for the end.
+Pick planned(const PickProblem& problem, const ReachDatabase& database, const Monitor& monitor) {
+  Monitor quiet;
+  quiet.stop = monitor.stop;
+  return PickPlanner(problem, database, quiet).run();
+}
+
+void require_positive(double value, const char* field) {
+  require(std::isfinite(value) && value > 0, field, value, "must be positive and finite");
 }
 
 }  // namespace
 
 const char* to_string(MotionKind kind) {
   switch (kind) {
-    case MotionKind::reach:
+    case MotionKind::transit:
       return "reach";
     case MotionKind::approach:
       return "approach";
     case MotionKind::lift:
       return "lift";
-    case MotionKind::carry:
+    case MotionKind::transfer:
       return "carry";
     case MotionKind::retreat:
       return "retreat";
@@ -282,17 +314,48 @@ double Pick::duration() const {
   return sum;
 }
 
+void PickOptions::check() const {
+  require_positive(approach_distance, "approach_distance");
+  require_positive(lift_height, "lift_height");
+  require_positive(motion_time_limit, "motion_time_limit");
+  require(ik_seeds > 0, "ik_seeds", ik_seeds, "must be positive");
+}
+
+void PickProblem::check() const {
+  options.check();
+  gripper.check();
+  require(!arm.has_base(), "arm", "'" + arm.name() + "'", "must be a group without base joints");
+  arm.check_configuration(home, "home");
+  require(arm.robot().link_index(gripper.tcp_link) == arm.tip_link(), "gripper.tcp_link", "'" + gripper.tcp_link + "'",
+          "must be the arm's tip");
+  require(world.has(object), "object", "'" + object + "'", "must be an object of the world");
+  require(world.attached().count(object) == 0, "object", "'" + object + "'", "must not be attached");
+  for (std::size_t i = 0; i < grasps.size(); ++i) {
+    const std::string field = "grasps[" + std::to_string(i) + "]";
+    checked_pose(grasps[i].T_object_tcp.matrix(), field + " pose");
+    require(grasps[i].width >= 0 && grasps[i].width <= gripper.max_opening + 1e-9, field + " width", grasps[i].width,
+            "must lie in [0, gripper.max_opening = " + std::to_string(gripper.max_opening) + "]");
+  }
+  for (std::size_t i = 0; i < places.size(); ++i) checked_pose(places[i].matrix(), "places[" + std::to_string(i) + "]");
+}
+
+Pick plan_pick(const PickProblem& problem, const ReachDatabase& database, const Monitor& monitor) {
+  problem.check();
+  const std::string difference = database.difference(problem.arm);
+  if (!difference.empty()) throw InvalidInput("database: was built for another arm than the problem's: " + difference);
+  return planned(problem, database, monitor);
+}
+
 Pick plan_pick(const PartSupplyProblem& problem, const ReachDatabase& database, const Eigen::Vector3d& base_pose,
-               int tray, int part, const std::vector<std::pair<int, int>>& remaining, const Monitor& monitor) {
-  check_part(problem, tray, part, "tray", "part");
+               PartRef part, const std::vector<PartRef>& remaining, const Monitor& monitor) {
+  check_part(problem, part, "tray", "part");
   for (std::size_t i = 0; i < remaining.size(); ++i) {
     const std::string name = "remaining[" + std::to_string(i) + "]";
-    check_part(problem, remaining[i].first, remaining[i].second, name + ".tray", name + ".part");
+    check_part(problem, remaining[i], name + ".tray", name + ".part");
   }
-  // Only the calling thread may report progress; here it only listens for the end.
-  Monitor quiet;
-  quiet.stop = monitor.stop;
-  return PickPlanner(problem, database, base_pose, tray, part, remaining, quiet).run();
+  Pick pick = planned(pick_of(problem, base_pose, part, remaining), database, monitor);
+  pick.part = part;
+  return pick;
 }
 
 }  // namespace mmgrasp

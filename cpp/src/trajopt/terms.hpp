@@ -15,9 +15,9 @@ namespace mmgrasp::detail {
 class MMGRASP_EXPORT Term {
  public:
   virtual ~Term() = default;
-  std::vector<int> variables;  ///< Their numbers in the problem.
+  std::vector<int> variables;  ///< Indices of the variables in the problem.
   Eigen::VectorXd lower, upper;
-  std::string kind;  ///< Of constraint, for reports.
+  std::string kind;  ///< Kind of constraint, for reports.
   int waypoint = 0;
   std::string what;
 

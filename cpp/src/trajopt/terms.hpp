@@ -23,7 +23,7 @@ class MMGRASP_EXPORT Term {
 
   int rows() const { return static_cast<int>(lower.size()); }
   virtual void value(const double* x, double* out) const = 0;
-  virtual std::vector<std::pair<int, int>> jacobian_pattern() const;  ///< Every row and variable unless told otherwise.
+  virtual std::vector<std::pair<int, int>> jacobian_pattern() const;  ///< Every row and variable unless overridden.
   virtual void jacobian(const double* x, double* out) const = 0;
   virtual std::vector<std::pair<int, int>> hessian_pattern() const { return {}; }  ///< Row >= column.
   virtual void hessian(const double*, const double*, double*) const {}

@@ -53,7 +53,7 @@ PlatformEnd::PlatformEnd(CollisionChecker& checker, const Pose& T_world_tip, con
   descent_.restarts = 0;
   slide_ = descent_;
   slide_.objective_iterations = 20;
-  // Half as much again as is asked for, so that the slide does not end right at the bound.
+  // Half as much again as required, so that the search does not end right at the bound.
   if (least_manipulability_ > 0)
     slide_.objectives.push_back(make_singularity_objective(group_, 1.5 * least_manipulability_));
   if (camera_)

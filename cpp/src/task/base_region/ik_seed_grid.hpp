@@ -18,17 +18,17 @@
 
 namespace mmgrasp::detail {
 
-/// Arm configurations at the nodes of a grid of tool poses, found when first asked for: seeds for WarmStartedIk, which
+/// Arm configurations at the nodes of a grid of tool poses, found on first use: seeds for WarmStartedIk, which
 /// needs a step or two from a node to any pose in the node's cell. What a node holds depends on the node alone, never
-/// on who asked first, so that answers made from it depend on the pose alone. Arms of six joints with a closed form get
-/// all branches, others what the database leads to. Thread-safe.
+/// on the query that came first, so that answers made from it depend on the pose alone. Arms of six joints with a
+/// closed form get all branches, others what the database leads to. Thread-safe.
 class IkSeedGrid {
  public:
   static constexpr double kEdge = 0.05;  ///< Edge of a cell [m].
 
   class Node {
    public:
-    /// Configuration `k`, or nullptr when there are fewer. They are searched one by one, as far as they are asked for.
+    /// Configuration `k`, or nullptr when there are fewer. They are searched one by one, as far as they are needed.
     const double* solution(int k, const IkSeedGrid& grid, const Pose& T_base_node);
     /// Why a node has no configurations.
     Rejection cause() const { return cause_; }

@@ -9,7 +9,7 @@
 
 namespace mmgrasp::detail {
 
-/// Whether the whole robot, arm at home, may stand at a base pose; remembers what was asked at lattice poses.
+/// Whether the whole robot, arm at home, is free of collisions at a base pose; caches the answers at grid poses.
 class BaseClearance {
  public:
   BaseClearance(CollisionChecker& checker, const Eigen::VectorXd& home, double check_step);

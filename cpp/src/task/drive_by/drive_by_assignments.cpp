@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-constexpr int kSpare = 3;           // sequences looked at for each that is tried
+constexpr int kSpare = 3;           // sequences generated for each that is tried
 constexpr double kCollision = 0.3;  // what a colliding waypoint of a guess counts as [s]
 
 /// From rest to rest.

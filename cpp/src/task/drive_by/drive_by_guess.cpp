@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 constexpr int kLeastIntervals = 3;
 constexpr double kRamp = 0.25;  // share of a segment in which it speeds up from rest
 
-/// Share of the way after share u of the time, resting at the ends asked for.
+/// Share of the way after share u of the time, resting at the given ends.
 double eased(double u, bool rest_first, bool rest_last) {
   const double first = rest_first ? kRamp : 0, last = rest_last ? kRamp : 0;
   const double cruise = 1 / (1 - 0.5 * first - 0.5 * last);

@@ -10,7 +10,7 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr int kCoarse = 35;       // waypoints of a first solution
-constexpr int kMany = 150;        // when more than these are asked for
+constexpr int kMany = 150;        // when more than these are required
 constexpr double kRefine = 1e-3;  // barrier with which it is refined
 
 }  // namespace

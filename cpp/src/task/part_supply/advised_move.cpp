@@ -111,7 +111,7 @@ class MoveSearch {
     const std::vector<BaseRegion> regions = compute_base_regions(alone, database, grid);
     for (TrayId member : group_.trays) {
       std::vector<Centre> centres = disc_centres(regions[member].cells);
-      // Another tray that has no base poses wherever it stands does not hinder the move.
+      // Another tray that has no base poses wherever it is does not hinder the move.
       if (!centres.empty() || member == tray) centres_[member] = std::move(centres);
     }
   }

@@ -50,8 +50,8 @@ void PickProblem::check() const {
   arm.check_configuration(home, "home");
   require(arm.robot().link_index(gripper.tcp_link) == arm.tip_link(), "gripper.tcp_link", "'" + gripper.tcp_link + "'",
           "must be the arm's tip");
-  require(world.has(object), "object", "'" + object + "'", "must be an object of the world");
-  require(world.attached().count(object) == 0, "object", "'" + object + "'", "must not be attached");
+  require(world.objects().count(object) > 0, "object", "'" + object + "'",
+          "must be an object of the world that nothing holds");
   for (std::size_t i = 0; i < grasps.size(); ++i) {
     const std::string field = "grasps[" + std::to_string(i) + "]";
     checked_pose(grasps[i].T_object_tcp.matrix(), field + " pose");

@@ -5,6 +5,7 @@
 #include "mmgrasp/task/part_supply.hpp"
 #include "mmgrasp/task/pick.hpp"
 #include "mmgrasp/task/problem.hpp"
+#include "plan_arguments.hpp"
 
 namespace mmgrasp::python {
 namespace {
@@ -31,6 +32,17 @@ const std::vector<OptionField<Options>>& supply_fields() {
                       "base poses drawn at each stop for the check before returning"),
       option<Options>("seed", &Options::seed, "same seed, same plan"),
       option<Options>("threads", &Options::threads, "0: all; does not change the answer")};
+  return fields;
+}
+
+const std::vector<OptionField<PickOptions>>& pick_fields() {
+  static const std::vector<OptionField<PickOptions>> fields{
+      option<PickOptions>("approach_distance", &PickOptions::approach_distance,
+                          "straight move from pre-grasp to grasp [m]"),
+      option<PickOptions>("lift_height", &PickOptions::lift_height, "straight upward move after closing [m]"),
+      option<PickOptions>("motion_time_limit", &PickOptions::motion_time_limit, "for each planned motion [s]"),
+      option<PickOptions>("ik_seeds", &PickOptions::ik_seeds, "database configurations refined for each grasp"),
+      option<PickOptions>("seed", &PickOptions::seed, "same seed, same pick")};
   return fields;
 }
 
@@ -159,6 +171,34 @@ void bind_picks(py::module_& m) {
       py::arg("problem"), py::arg("database"), py::arg("base_pose"), py::arg("tray"), py::arg("part"),
       py::arg("remaining"),
       "One pick from a base pose; `remaining` are the (tray, part) still in place, the picked one among them.");
+  m.def(
+      "plan_object_pick",
+      [](const JointGroup& arm, const Gripper& gripper, const World& world, const std::string& object,
+         std::vector<Grasp> grasps, const ReachDatabase& database, const ArrayLike& home, const ArrayLike& base_pose,
+         const py::object& places, const py::kwargs& options) {
+        const Pose T_world_root = pose_from_planar(vector3_argument(base_pose, "base_pose"));
+        PickProblem problem{arm.at(T_world_root),
+                            gripper,
+                            world,
+                            object,
+                            std::move(grasps),
+                            vector_argument(home, "home", arm.size()),
+                            {},
+                            read_options(pick_fields(), options, "plan_object_pick")};
+        if (!places.is_none()) problem.places = poses_argument(py::reinterpret_borrow<ArrayLike>(places), "places");
+        problem.check();
+        return LongCall(py::none()).run([&](const Monitor& monitor) { return plan_pick(problem, database, monitor); });
+      },
+      py::arg("arm"), py::arg("gripper"), py::arg("world"), py::arg("object"), py::arg("grasps"), py::kw_only(),
+      py::arg("database"), py::arg("home"), py::arg("base_pose"),
+      py::arg("places") = py::none(),
+      ("Picks any object of a world: the first of the grasps with a collision-free configuration, straight approach "
+       "and\n"
+       "lift, and motions from `home` (m,) and to one of `places`, (k, 4, 4) world poses of the object; without "
+       "places\n"
+       "the object stays in the hand. The robot stands at `base_pose` (x, y, theta).\n\n" +
+       option_help(pick_fields()))
+          .c_str());
 }
 
 /// Python counts the trays of a plan by the regions it lists, which are those of trays with targets.

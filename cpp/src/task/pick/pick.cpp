@@ -63,7 +63,7 @@ void PickProblem::check() const {
 
 Pick plan_pick(const PickProblem& problem, const ReachDatabase& database, const Monitor& monitor) {
   problem.check();
-  const std::string difference = database.difference(problem.arm);
+  const std::string difference = database.difference(problem.arm.at(Pose::Identity()));
   if (!difference.empty()) throw InvalidInput("database: was built for another arm than the problem's: " + difference);
   return detail::search_pick(problem, database, monitor);
 }

@@ -70,7 +70,7 @@ class CollisionRows {
   std::vector<int> pinned_;
   double margin_, look_out_;
   std::set<Pair> watched_;
-  std::set<Sample> samples_;  // beside the regular ones
+  std::set<Sample> samples_;  // samples beside the regular ones
   std::vector<Eigen::VectorXd> reference_;
   std::map<Sample, std::map<Pair, std::vector<SeparatingPlane>>> planes_;
 };

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr int kSteps = 128;  // of Runge-Kutta per interval: good to 1e-9 m at intervals of 2 s
+constexpr int kSteps = 128;  // Runge-Kutta steps per interval: good to 1e-9 m at intervals of 2 s
 
 /// The largest violation of each kind, in the order in which kinds are first named.
 class Ledger {

@@ -21,7 +21,7 @@ struct MMGRASP_EXPORT PartAtPose {
 
 /// Can this part be grasped from here? Answers for single base poses what compute_base_regions() answers for all cells.
 ///
-/// The same base pose gives the same answer, whatever was asked before. Parts are all in place. Costly to build (all
+/// The same base pose gives the same answer, whatever was queried before. Parts are all in place. Costly to build (all
 /// grasps are filtered with the hand alone), cheap to clone. Not thread-safe: use `clone()`, one a thread. The problem
 /// and the database must outlive it.
 /// @code

@@ -30,7 +30,7 @@ struct MMGRASP_EXPORT Intersection {
   std::size_t cells = 0;                             ///< Number of shared cells.
 };
 
-/// Sets of trays whose shared cells hold a disc of at least the radius asked for, and how many sets were tried.
+/// Sets of trays whose shared cells hold a disc of at least some radius, and how many sets were tried.
 struct MMGRASP_EXPORT Intersections {
   std::vector<Intersection> robust;
   std::size_t sets_tried = 0;

@@ -20,7 +20,7 @@ class MMGRASP_EXPORT PartCells {
   };
   PartCells() = default;
   explicit PartCells(const BaseGrid& grid) : nx_(grid.nx), ny_(grid.ny), size_(grid.size()) {}
-  /// The same again from what nx(), ny(), size() and windows() told.
+  /// The same again from what nx(), ny(), size() and windows() returned.
   PartCells(int nx, int ny, std::size_t size, std::vector<Window> windows)
       : nx_(nx), ny_(ny), size_(size), windows_(std::move(windows)) {}
   int nx() const { return nx_; }              ///< Columns of the grid.

@@ -49,13 +49,13 @@ struct MMGRASP_EXPORT PartSupplyPlan {
   BaseGrid grid;
   std::vector<BaseRegion> regions;  ///< One a tray, in the problem's order.
   Intersections intersections;      ///< Robust sets of trays: all when there are not too many, else the maximal ones.
-  std::vector<Stop> stops;          ///< In visiting order.
+  std::vector<Stop> stops;          ///< Stops in visiting order.
   int lower_bound = 0;              ///< Proven: fewer stops cannot serve these regions.
   /// The stops are as few as the regions allow. False when that is not proven: the search for shared regions or for the
   /// least cover ended early, or no stops were found.
   bool proven_minimal = false;
   std::vector<BasePath> route;  ///< stops.size() + 1 legs, from start to goal.
-  std::vector<Pick> picks;      ///< In the order in which they are carried out.
+  std::vector<Pick> picks;      ///< Picks in the order in which they are carried out.
   double robustness_rate = 0;   ///< Share of sampled base poses at the stops from which all parts stay graspable.
   std::vector<Obstruction> obstructions;  ///< Empty if and only if solved.
   std::vector<StageTime> timings;

@@ -59,7 +59,7 @@ struct MMGRASP_EXPORT PlatformLocationsProblem {
   Pose T_world_place = Pose::Identity();                  ///< p_2: tool pose that places or inserts it.
   Eigen::Vector3d pick_point = Eigen::Vector3d::Zero();   ///< p_3: must be in view at the pick [m].
   Eigen::Vector3d place_point = Eigen::Vector3d::Zero();  ///< p_4: must be in view at the placing [m].
-  std::optional<MountedCamera> camera;                    ///< None (or one in the hand): the view is not asked for.
+  std::optional<MountedCamera> camera;                    ///< None (or one in the hand): the view is not checked.
 };
 
 struct MMGRASP_EXPORT PlatformLocationsOptions {

@@ -58,7 +58,7 @@ class GraspSearch {
   std::vector<CollisionChecker> checkers_;
   std::vector<Eigen::Vector3d> root_at_;  // where each checker's root is now
   WarmStartedIk ik_;
-  double heading_ = std::nan("");    // of `placed_`
+  double heading_ = std::nan("");    // the heading that `placed_` is for
   std::vector<PlacedGrasp> placed_;  // one a grasp
   Eigen::VectorXd q_;
   Eigen::MatrixXd rejected_;  // configurations of the grasp at hand that the checker rejected

@@ -10,7 +10,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr int kFruitless = 2;    // Seeds without a solution after which a node counts as out of reach.
-constexpr int kIterations = 20;  // Of one IK search: from a stored configuration near by a success takes 4 to 10.
+constexpr int kIterations = 20;  // Most of one IK search: from a stored configuration near by a success takes 4 to 10.
 constexpr double kFar =
     1.2;  // In cells of the database: a node without a stored configuration so near is out of reach.
 constexpr double kSame = 1e-3;  // Configurations nearer than this are one [rad or m].

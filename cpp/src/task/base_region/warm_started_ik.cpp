@@ -12,7 +12,8 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr int kIterations = 8;
-constexpr double kShrink = 0.25;           // Of the squared error in one iteration, else it is a strike; two end it.
+constexpr double kShrink =
+    0.25;  // An iteration that shrinks the squared error less is a failure; the second ends the search.
 constexpr double kDampingPerError = 0.03;  // As in refine_ik(): none near the goal, where the step is Newton's.
 constexpr double kLeastDamping = 1e-10;
 constexpr double kLongestStep = 0.7;  // [rad or m]; longer ones lead away from the configuration one came from.

@@ -14,7 +14,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr double kMargin = 2.0;      // [m] around what is in the scene
-constexpr double kMaxCells = 40000;  // Of a floor.
+constexpr double kMaxCells = 40000;  // Largest number of cells of a floor.
 constexpr double kJoin = 2.0;        // Cells around a place that it joins.
 constexpr double kCheckStep = 0.02;  // [m]; nothing is swept here, BaseClearance wants one
 

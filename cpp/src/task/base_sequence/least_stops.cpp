@@ -237,7 +237,7 @@ class LeastStops {
   RegionPatches patches_;
   const StopOptions& options_;
   const Monitor& monitor_;
-  std::vector<int> element_;  // of the cover problem, by tray; -1: not to be served
+  std::vector<int> element_;  // element of the cover problem, by tray; -1: not to be served
   int elements_ = 0;
   std::map<std::vector<TrayId>, Intersection> widest_;
   std::vector<Stop> best_;

@@ -16,9 +16,9 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double kNear = 0.35, kFar = 1.1;  // distance of base and tool on the floor [m]
-constexpr double kHeadingSpread = 0.6;      // about the direction of travel [rad]
+constexpr double kHeadingSpread = 0.6;      // deviation from the direction of travel [rad]
 constexpr double kTwin = 0.3;               // configurations closer than this in every value are one
-constexpr int kRounds = 8;                  // of tries while nothing is found
+constexpr int kRounds = 8;                  // rounds of tries while nothing is found
 
 double direction(const VectorXd& from, const VectorXd& to, double otherwise) {
   const Eigen::Vector2d way = to.head<2>() - from.head<2>();

@@ -14,9 +14,9 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr int kWays = 3;      // sampled, of which the quickest is taken
-constexpr int kDraws = 2000;  // of the planner
+constexpr int kDraws = 2000;  // the planner's samples
 constexpr int kShortenings = 100;
-constexpr double kSpacing = 0.25;  // of places on the reference path [m]
+constexpr double kSpacing = 0.25;  // distance between places on the reference path [m]
 constexpr int kExits = 3;          // tried of it
 constexpr std::size_t kApart = 3;  // places between exits tried
 

@@ -7,8 +7,8 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double kStill = 0.02;  // of a tool whose pose is kept, along each axis at the waypoints [m/s]
-constexpr double kLonger = 1.1;  // than the fingers need to close
+constexpr double kStill = 0.02;  // speed of a tool whose pose is kept, along each axis at the waypoints [m/s]
+constexpr double kLonger = 1.1;  // factor on the time that the fingers need to close
 
 /// What a push-grasp asks of the way to a step.
 void keep_straight(SeededProblem& a, std::size_t segment, const DriveByStep& step, int candidate) {

@@ -15,7 +15,7 @@ constexpr int kDwellIntervals = 4;  // intervals of a task that takes time
 struct SeededProblem {
   WholeBodyProblem problem;
   std::vector<Eigen::VectorXd> via_points;
-  std::vector<int> intervals;  ///< Of each segment.
+  std::vector<int> intervals;  ///< Number of intervals of each segment.
   std::vector<int> waypoints;  ///< Waypoint of each step.
   std::vector<double> times;   ///< Duration of each segment in the guess [s].
   std::vector<CollisionChecker*> checkers;

@@ -51,7 +51,7 @@ class DriveBySolver {
   SceneStates* scene_states_;
   DriveBySeeds seeds_;
   std::optional<PathGuide> guide_;
-  int iterations_ = 0;  // of one solve
+  int iterations_ = 0;  // budget of one solve
   const Monitor& monitor_;
   Stopwatch stopwatch_;
 };

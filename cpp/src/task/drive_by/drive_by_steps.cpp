@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kAside = 0.003, kTilt = 0.03;  // off the straight way of a push-grasp [m], [rad]
 constexpr double kFaster = 1.2;                 // tool before the object, over its speed at the grasp
-constexpr double kSlack = 1.05;                 // of speed and duration while the fingers close
+constexpr double kSlack = 1.05;                 // factor on speed and duration while the fingers close
 
 /// The axis of the frame that a direction is, or -1.
 int axis_of(const Eigen::Vector3d& direction) {

@@ -80,7 +80,7 @@ class FreeFloor {
     return free;
   }
 
-  /// In half cells, so that centres and corners both have whole numbers.
+  /// Free at a point, counted in half cells so that centres and corners both have whole numbers?
   bool point(int h, int x, int y) {
     const auto [it, is_new] = points_.emplace(key(h, x, y), false);
     if (!is_new) return it->second;
@@ -167,7 +167,8 @@ class MoveSearch {
     });
   }
 
-  /// In the moved scene: start and goal stay free, and each tray has a disc of base poses that serves all its parts.
+  /// Does the move help? In the moved scene start and goal stay free, and each tray has a disc of base poses that
+  /// serves all its parts.
   bool works(const Offset& move, const Eigen::Vector2d& by) {
     const PartSupplyProblem moved = with_group_moved(problem_, group_, by);
     BasePoseEvaluator evaluator(moved, database_);

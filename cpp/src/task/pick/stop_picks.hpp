@@ -10,7 +10,7 @@ namespace mmgrasp::detail {
 /// later.
 struct StopPicks {
   Outcome outcome = Outcome::infeasible;
-  std::vector<Pick> picks;  ///< In order; with no solution: those that failed.
+  std::vector<Pick> picks;  ///< The picks in order; with no solution, those that failed.
 };
 
 /// `remaining` are the parts in place when the base arrives. Planned in parallel; the same answer at any thread count.

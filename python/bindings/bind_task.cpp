@@ -1,3 +1,5 @@
+#include <pybind11/typing.h>
+
 #include "bindings.hpp"
 #include "ids.hpp"
 #include "mmgrasp/task/base_route.hpp"
@@ -190,8 +192,7 @@ void bind_picks(py::module_& m) {
         return LongCall(py::none()).run([&](const Monitor& monitor) { return plan_pick(problem, database, monitor); });
       },
       py::arg("arm"), py::arg("gripper"), py::arg("world"), py::arg("object"), py::arg("grasps"), py::kw_only(),
-      py::arg("database"), py::arg("home"), py::arg("base_pose"),
-      py::arg("places") = py::none(),
+      py::arg("database"), py::arg("home"), py::arg("base_pose"), py::arg("places") = py::none(),
       ("Picks any object of a world: the first of the grasps with a collision-free configuration, straight approach "
        "and\n"
        "lift, and motions from `home` (m,) and to one of `places`, (k, 4, 4) world poses of the object; without "
@@ -252,12 +253,15 @@ void bind_plan_result(py::module_& m) {
   py::class_<PartSupplyPlan>(m, "PartSupplyPlan", "The planner's answer; a ScenarioPlan joins it with its scenario.")
       .def_readonly("outcome", &PartSupplyPlan::outcome)
       .def_readonly("grid", &PartSupplyPlan::grid)
-      .def_property_readonly("regions",
-                             [](const PartSupplyPlan& p) {
-                               std::vector<BaseRegion> regions;
-                               for (int tray : ListedRegions(p).trays()) regions.push_back(p.regions[tray]);
-                               return regions;
-                             })
+      .def_property_readonly(
+          "regions",
+          [](const py::object& self) {
+            const auto& plan = self.cast<const PartSupplyPlan&>();
+            py::typing::List<BaseRegion> regions;
+            for (int tray : ListedRegions(plan).trays())
+              regions.append(py::cast(&plan.regions[tray], py::return_value_policy::reference_internal, self));
+            return regions;
+          })
       .def_property_readonly(
           "region_trays", [](const PartSupplyPlan& p) { return ListedRegions(p).trays(); },
           "Tray index of each region.")

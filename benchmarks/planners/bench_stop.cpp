@@ -1,4 +1,4 @@
-// How long calls run on after their stop token was set: a Panda whose goal lies behind walls that it cannot pass, every
+// How long calls run on after their cancel token was set: a Panda whose goal lies behind walls that it cannot pass, every
 // planner by name, stopped at times drawn from 20 ms on. Prints one JSON line per call, value: the slowest.
 //
 //     bench_stop [runs of each, default 20] [latest stop in seconds, default 1] [name of the only one]
@@ -31,7 +31,7 @@ constexpr int kEndless = 2'000'000'000;
 constexpr int kGrasps = 500;
 constexpr double kTurn = 1.3;  // To either side of the wall [rad].
 
-/// Runs a call with a monitor; says whether the stop token ended it.
+/// Runs a call with a monitor; says whether the cancel token ended it.
 using Call = std::function<bool(const Monitor&)>;
 
 Pose at(double x, double y, double z) {
@@ -152,7 +152,7 @@ void measure(const std::string& name, const Call& call, const Settings& given) {
   std::snprintf(settings, sizeof settings, "stopped after %.2g to %.2g s", kEarliest, given.latest);
   std::snprintf(more, sizeof more, "\"median\": %.3g, \"stopped\": %d, \"runs\": %d, \"goal\": %.0f",
                 late[late.size() / 2], stopped, given.runs, kGoal);
-  bench::print({"stop token", "Panda between walls", name, "ms", late.back(), more, settings});
+  bench::print({"cancel token", "Panda between walls", name, "ms", late.back(), more, settings});
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-"""How long every planner runs on after its stop token was set, on problems that cannot be solved.
+"""How long every planner runs on after its cancel token was set, on problems that cannot be solved.
 
     python benchmarks/planners/run_stop.py [--runs N] [--latest SECONDS] [--write]
 

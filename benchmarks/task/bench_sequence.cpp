@@ -27,7 +27,8 @@ void run(const mmgrasp::test::Layout& layout) {
   const double searched = bench::now();
   mmgrasp::SetCoverProblem problem;
   problem.elements = trays;
-  for (const mmgrasp::Intersection& place : found.robust) problem.sets.push_back(place.trays);
+  for (const mmgrasp::Intersection& place : found.robust)
+    problem.sets.emplace_back(place.trays.begin(), place.trays.end());
   const mmgrasp::SetCoverResult cover = mmgrasp::solve_set_cover(problem, kProof);
   const double solved = bench::now(), processor = processor_time() - used;
   // Whole stops: what the bound cannot rule out is the next whole number.

@@ -1,4 +1,5 @@
 #include "bindings.hpp"
+#include "ids.hpp"
 #include "mmgrasp/task/base_region.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
 #include "mmgrasp/task/object_regions.hpp"
@@ -127,21 +128,24 @@ void bind_object_regions(py::module_& m) {
           "The same as compute_base_regions, kept part by part.")
       .def_property_readonly("grid", &ObjectRegions::grid)
       .def_property_readonly("trays", &ObjectRegions::trays, "How many.")
-      .def("parts", &ObjectRegions::parts, py::arg("tray"),
-           "Indices of a tray's target parts that are in place, ascending.")
+      .def(
+          "parts", [](const ObjectRegions& r, int tray) { return r.parts(TrayId(tray)); }, py::arg("tray"),
+          "Indices of a tray's target parts that are in place, ascending.")
       .def(
           "region",
           [](const ObjectRegions& r, int tray, const std::vector<int>& parts) {
-            return mask_array(r.grid(), r.region(tray, parts));
+            return mask_array(r.grid(), r.region(TrayId(tray), parts));
           },
           py::arg("tray"), py::arg("parts"),
           "(headings, ny, nx) array of 0 and 1: cells from which every one of these parts can be grasped.")
-      .def("base_region", &ObjectRegions::base_region, py::arg("tray"),
-           "The region of all target parts in place, with what became of the candidates.")
+      .def(
+          "base_region", [](const ObjectRegions& r, int tray) { return r.base_region(TrayId(tray)); }, py::arg("tray"),
+          "The region of all target parts in place, with what became of the candidates.")
       .def(
           "remove",
           [](ObjectRegions& r, const std::vector<std::pair<int, int>>& tray_and_part, const py::object& progress) {
-            return LongCall(progress).run([&](const Monitor& monitor) { return r.remove(tray_and_part, monitor); });
+            const std::vector<PartRef> removed = parts_argument(tray_and_part);
+            return LongCall(progress).run([&](const Monitor& monitor) { return r.remove(removed, monitor); });
           },
           py::arg("tray_and_part"), py::kw_only(), py::arg("progress") = py::none(),
           "Parts (tray, part) leave: they stand in nobody's way any more. False when stopped: nothing has changed.")

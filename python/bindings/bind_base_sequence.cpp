@@ -1,5 +1,5 @@
 #include "bindings.hpp"
-#include "mmgrasp/optim/tour.hpp"
+#include "ids.hpp"
 #include "mmgrasp/task/base_route.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
 #include "mmgrasp/task/part_supply.hpp"
@@ -22,6 +22,7 @@ std::vector<BaseRegion> regions_argument(const BaseGrid& grid, const py::sequenc
   for (const py::handle& item : given) {
     if (py::isinstance<BaseRegion>(item)) {
       regions.push_back(item.cast<BaseRegion>());
+      regions.back().has_targets = true;  // what is given is to be served
       continue;
     }
     regions.emplace_back();
@@ -39,18 +40,6 @@ PartRegions part_regions_argument(const BaseGrid& grid, const py::sequence& cell
     for (const py::handle& mask : tray) parts.cells.back().push_back(mask_of(grid, mask));
   }
   return parts;
-}
-
-double straight_route(const std::vector<Stop>& stops, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
-  std::vector<Eigen::Vector2d> places;
-  for (const Stop& stop : stops) places.emplace_back(stop.pose.head<2>());
-  places.push_back(from);
-  places.push_back(to);
-  const auto n = static_cast<Eigen::Index>(places.size());
-  return shortest_visiting_tour(
-             Eigen::MatrixXd::NullaryExpr(
-                 n, n, [&](Eigen::Index i, Eigen::Index j) { return (places[i] - places[j]).norm(); }))
-      .length;
 }
 
 py::dict intersection_dict(const Intersection& i) {
@@ -132,7 +121,7 @@ void bind_stops(py::module_& m) {
         if (!start.is_none()) {
           options.route_length = [from = Eigen::Vector2d(vector2_argument(start, "start")),
                                   to = Eigen::Vector2d(vector2_argument(goal, "goal"))](
-                                     const std::vector<Stop>& stops) { return straight_route(stops, from, to); };
+                                     const std::vector<Stop>& stops) { return straight_route_length(stops, from, to); };
         }
         return LongCall(progress).run(
             [&](const Monitor& monitor) { return least_stops(grid, regions, options, monitor); });

@@ -1,9 +1,13 @@
+#include <pybind11/typing.h>
+
 #include "bindings.hpp"
+#include "ids.hpp"
 #include "mmgrasp/task/base_route.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
 #include "mmgrasp/task/part_supply.hpp"
 #include "mmgrasp/task/pick.hpp"
 #include "mmgrasp/task/problem.hpp"
+#include "plan_arguments.hpp"
 
 namespace mmgrasp::python {
 namespace {
@@ -30,6 +34,17 @@ const std::vector<OptionField<Options>>& supply_fields() {
                       "base poses drawn at each stop for the check before returning"),
       option<Options>("seed", &Options::seed, "same seed, same plan"),
       option<Options>("threads", &Options::threads, "0: all; does not change the answer")};
+  return fields;
+}
+
+const std::vector<OptionField<PickOptions>>& pick_fields() {
+  static const std::vector<OptionField<PickOptions>> fields{
+      option<PickOptions>("approach_distance", &PickOptions::approach_distance,
+                          "straight move from pre-grasp to grasp [m]"),
+      option<PickOptions>("lift_height", &PickOptions::lift_height, "straight upward move after closing [m]"),
+      option<PickOptions>("motion_time_limit", &PickOptions::motion_time_limit, "for each planned motion [s]"),
+      option<PickOptions>("ik_seeds", &PickOptions::ik_seeds, "database configurations refined for each grasp"),
+      option<PickOptions>("seed", &PickOptions::seed, "same seed, same pick")};
   return fields;
 }
 
@@ -134,30 +149,85 @@ void bind_picks(py::module_& m) {
   py::class_<Pick>(m, "Pick", "Home, pre-grasp, grasp, lift, carry, home.")
       .def_readonly("outcome", &Pick::outcome)
       .def_readonly("stop", &Pick::stop)
-      .def_readonly("tray", &Pick::tray)
-      .def_readonly("part", &Pick::part)
+      .def_property_readonly("tray", [](const Pick& p) { return p.part.tray; })
+      .def_property_readonly("part", [](const Pick& p) { return p.part.part; })
       .def_readonly("grasp", &Pick::grasp)
       .def_readonly("motions", &Pick::motions)
       .def_readonly("rejections", &Pick::rejections)
       .def_readonly("failed_at", &Pick::failed_at)
       .def_property_readonly("duration", &Pick::duration)
       .def("__repr__", [](const Pick& p) {
-        return std::string("Pick(") + to_string(p.outcome) + ", tray " + std::to_string(p.tray) + ", part " +
-               std::to_string(p.part) + ")";
+        return std::string("Pick(") + to_string(p.outcome) + ", tray " + std::to_string(p.part.tray) + ", part " +
+               std::to_string(p.part.part) + ")";
       });
   m.def(
       "plan_pick",
       [](const PartSupplyProblem& problem, const ReachDatabase& database, const ArrayLike& base_pose, int tray,
          int part, const std::vector<std::pair<int, int>>& remaining) {
         const Eigen::Vector3d base = vector3_argument(base_pose, "base_pose");
+        const std::vector<PartRef> left = parts_argument(remaining);
         return LongCall(py::none()).run([&](const Monitor& monitor) {
-          return plan_pick(problem, database, base, tray, part, remaining, monitor);
+          return plan_pick(problem, database, base, {TrayId(tray), part}, left, monitor);
         });
       },
       py::arg("problem"), py::arg("database"), py::arg("base_pose"), py::arg("tray"), py::arg("part"),
       py::arg("remaining"),
       "One pick from a base pose; `remaining` are the (tray, part) still in place, the picked one among them.");
+  m.def(
+      "plan_object_pick",
+      [](const JointGroup& arm, const Gripper& gripper, const World& world, const std::string& object,
+         std::vector<Grasp> grasps, const ReachDatabase& database, const ArrayLike& home, const ArrayLike& base_pose,
+         const py::object& places, const py::kwargs& options) {
+        const Pose T_world_root = pose_from_planar(vector3_argument(base_pose, "base_pose"));
+        PickProblem problem{arm.at(T_world_root),
+                            gripper,
+                            world,
+                            object,
+                            std::move(grasps),
+                            vector_argument(home, "home", arm.size()),
+                            {},
+                            read_options(pick_fields(), options, "plan_object_pick")};
+        if (!places.is_none()) problem.places = poses_argument(py::reinterpret_borrow<ArrayLike>(places), "places");
+        problem.check();
+        return LongCall(py::none()).run([&](const Monitor& monitor) { return plan_pick(problem, database, monitor); });
+      },
+      py::arg("arm"), py::arg("gripper"), py::arg("world"), py::arg("object"), py::arg("grasps"), py::kw_only(),
+      py::arg("database"), py::arg("home"), py::arg("base_pose"), py::arg("places") = py::none(),
+      ("Picks any object of a world: the first of the grasps with a collision-free configuration, straight approach "
+       "and\n"
+       "lift, and motions from `home` (m,) and to one of `places`, (k, 4, 4) world poses of the object; without "
+       "places\n"
+       "the object stays in the hand. The robot stands at `base_pose` (x, y, theta).\n\n" +
+       option_help(pick_fields()))
+          .c_str());
 }
+
+/// Python counts the trays of a plan by the regions it lists, which are those of trays with targets.
+class ListedRegions {
+ public:
+  explicit ListedRegions(const PartSupplyPlan& plan) : place_(plan.regions.size(), -1) {
+    for (std::size_t tray = 0; tray < plan.regions.size(); ++tray) {
+      if (!plan.regions[tray].has_targets) continue;
+      place_[tray] = static_cast<int>(trays_.size());
+      trays_.push_back(static_cast<int>(tray));
+    }
+  }
+  const std::vector<int>& trays() const { return trays_; }
+  /// A stop or an intersection with its trays counted so.
+  template <class T>
+  T counted(T served) const {
+    for (TrayId& tray : served.trays) tray = TrayId(place_[tray]);
+    return served;
+  }
+  template <class T>
+  std::vector<T> counted(std::vector<T> all) const {
+    for (T& one : all) one = counted(std::move(one));
+    return all;
+  }
+
+ private:
+  std::vector<int> place_, trays_;
+};
 
 void bind_plan_result(py::module_& m) {
   py::class_<Obstruction>(m, "Obstruction", "Why there is no plan, and what would help.")
@@ -183,10 +253,27 @@ void bind_plan_result(py::module_& m) {
   py::class_<PartSupplyPlan>(m, "PartSupplyPlan", "The planner's answer; a ScenarioPlan joins it with its scenario.")
       .def_readonly("outcome", &PartSupplyPlan::outcome)
       .def_readonly("grid", &PartSupplyPlan::grid)
-      .def_readonly("regions", &PartSupplyPlan::regions)
-      .def_readonly("region_trays", &PartSupplyPlan::region_trays, "Tray index of each region.")
-      .def_readonly("intersections", &PartSupplyPlan::intersections)
-      .def_readonly("stops", &PartSupplyPlan::stops)
+      .def_property_readonly(
+          "regions",
+          [](const py::object& self) {
+            const auto& plan = self.cast<const PartSupplyPlan&>();
+            py::typing::List<BaseRegion> regions;
+            for (int tray : ListedRegions(plan).trays())
+              regions.append(py::cast(&plan.regions[tray], py::return_value_policy::reference_internal, self));
+            return regions;
+          })
+      .def_property_readonly(
+          "region_trays", [](const PartSupplyPlan& p) { return ListedRegions(p).trays(); },
+          "Tray index of each region.")
+      .def_property_readonly("intersections",
+                             [](const PartSupplyPlan& p) {
+                               const ListedRegions listed(p);
+                               Intersections found = p.intersections;
+                               found.robust = listed.counted(std::move(found.robust));
+                               found.lost = listed.counted(std::move(found.lost));
+                               return found;
+                             })
+      .def_property_readonly("stops", [](const PartSupplyPlan& p) { return ListedRegions(p).counted(p.stops); })
       .def_readonly("lower_bound", &PartSupplyPlan::lower_bound)
       .def_readonly("proven_minimal", &PartSupplyPlan::proven_minimal, "No fewer stops can serve the regions.")
       .def_readonly("route", &PartSupplyPlan::route)

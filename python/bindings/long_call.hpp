@@ -19,7 +19,7 @@ namespace mmgrasp::python {
 namespace py = pybind11;
 
 /// Runs a long call on a thread of its own, without the GIL. The calling thread waits, hands progress to Python and
-/// looks for signals every 30 ms: Ctrl-C sets the stop token, waits for the call to end, and then raises
+/// looks for signals every 30 ms: Ctrl-C sets the cancel token, waits for the call to end, and then raises
 /// KeyboardInterrupt.
 class LongCall {
  public:

@@ -213,6 +213,8 @@ OTHERS: dict[str, Any] = {
     "World.detach.name": lambda: "box",
     "ManipulationProblem.object": lambda: BOX,
     "ManipulationProblem.grasps": lambda: [mg.grasping.CandidateGrasp(np.eye(4))],
+    "plan_object_pick.object": lambda: "box",
+    "plan_object_pick.grasps": lambda: [],
     "verify.check_path.joints": lambda: ["i", "j", "k"],
     "verify.check_path.bodies": lambda: [],
     "verify.CheckedStop.trays": lambda: ["tray"],

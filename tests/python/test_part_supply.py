@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import mmgrasp as mg
@@ -56,3 +57,47 @@ def test_a_problem_needs_its_database_and_has_its_own_seed(scenario: mg.scenario
         mg.plan_part_supply(problem, database, seed=1)  # type: ignore[call-overload]
     with pytest.raises(mg.InvalidInput, match="section `reach`"):
         mg.plan_part_supply(scenario, database)  # type: ignore[call-overload]
+
+
+def test_any_object_is_picked_like_a_part(
+    scenario: mg.scenario.Scenario, small_plan: mg.part_supply.ScenarioPlan
+) -> None:
+    problem, database = scenario.problem(), scenario.reach_database()
+    picked = small_plan.picks[-1]  # the last one: no other target is in its way
+    part = problem.trays[picked.tray].parts[picked.part]
+    world = problem.scene.copy()
+    world.add("thing", part.shapes, part.T_world_part)
+    stop = small_plan.stops[picked.stop].pose
+    place = part.T_world_part.copy()
+    place[2, 3] += 0.01
+    for places, kinds in (
+        (None, ["reach", "approach", "lift"]),
+        ([place], ["reach", "approach", "lift", "carry", "retreat"]),
+    ):
+        pick = mg.base.plan_object_pick(
+            problem.arm,
+            problem.gripper,
+            world,
+            "thing",
+            part.grasps,
+            database=database,
+            home=problem.home,
+            base_pose=stop,
+            places=places,
+            lift_height=0.1,
+        )
+        assert pick.outcome == mg.Outcome.solved, pick.failed_at
+        assert [motion.kind for motion in pick.motions] == kinds
+        assert (pick.tray, pick.part, pick.stop) == (-1, -1, -1)
+        arm = problem.arm.at(mg.pose(xyz=(stop[0], stop[1], 0), rpy=(0, 0, stop[2])))
+        tool = part.T_world_part @ part.grasps[pick.grasp].T_object_tcp
+        lift = pick.motions[2].trajectory.positions
+        assert np.allclose(arm.fk(lift[0]), tool, atol=1e-3)
+        assert np.allclose(arm.fk(lift[-1])[:3, 3], tool[:3, 3] + (0, 0, 0.1), atol=2e-3)
+        if places:
+            end = arm.fk(pick.motions[3].trajectory.positions[-1])
+            assert np.allclose(end @ np.linalg.inv(arm.fk(lift[0])) @ part.T_world_part, place, atol=2e-3)
+    with pytest.raises(mg.InvalidInput, match="object = 'stone'"):
+        mg.base.plan_object_pick(
+            problem.arm, problem.gripper, world, "stone", [], database=database, home=problem.home, base_pose=stop
+        )

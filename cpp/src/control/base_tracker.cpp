@@ -1,3 +1,4 @@
+// BaseTracker: the feedback law that follows a planned base motion.
 #include <Eigen/Geometry>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// track_base(): a simulated base that follows a plan.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -11,7 +12,7 @@
 namespace mmgrasp {
 namespace {
 
-/// What a platform really does when told a velocity for one period.
+/// The motion of a platform that slips and drifts, commanded a velocity for one period.
 class SlippingBase {
  public:
   SlippingBase(BaseKind kind, const BaseLimits& limits, const BaseDisturbance& disturbance)

@@ -13,7 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kRegular = 3;          // samples of each interval
-constexpr double kFar = 2.0;         // up to where bodies that have to be parted are looked at [m]
+constexpr double kFar = 2.0;         // distance up to which bodies that have to be separated are checked [m]
 constexpr int kFiner = 10;           // when looking for collisions
 constexpr double kLeastRoom = 2e-4;  // the check takes gaps below 1e-4 m for contact
 
@@ -213,7 +213,7 @@ void CollisionRows::take_planes_at(const Sample& sample, const VectorXd& q, cons
   for (const DistanceResult& d : here.distances(look_out_)) {
     const Pair pair{d.with_scene, d.a, d.b};
     if (watched_.count(pair) == 0 || std::abs(d.value) < 1e-9) continue;
-    if (d.gradient.cwiseAbs().maxCoeff() < 1e-12) continue;  // nothing can be done about it
+    if (d.gradient.cwiseAbs().maxCoeff() < 1e-12) continue;  // no joint can separate them
     std::vector<SeparatingPlane>& planes = planes_[sample][pair];
     const double room = rooms.at(pair);
     if (reference_.empty()) {
@@ -235,7 +235,8 @@ void CollisionRows::take_planes_at(const Sample& sample, const VectorXd& q, cons
       planes.push_back(parted);
       continue;
     }
-    // Points fixed to the bodies stand for whole bodies: what they missed is asked for on top, as far as there is room.
+    // Points fixed to the bodies represent whole bodies: the distance they missed is added to what is to be kept, as
+    // far as there is room.
     for (SeparatingPlane& plane : planes)
       plane.margin = std::max(plane.margin, std::min(plane.margin - d.value, 0.8 * gap(plane, apart->q())));
     // Whichever of the points in question is further beyond.

@@ -20,7 +20,7 @@ namespace mmgrasp::detail {
 /// a normal that is kept. Smooth in the configuration, and at the place where it was taken equal to their signed
 /// distance (P1 4.10) up to second order.
 struct SeparatingPlane {
-  std::shared_ptr<const ToolChain> a, b;  ///< To the nearest points; `b` null: it stands at p_b.
+  std::shared_ptr<const ToolChain> a, b;  ///< Chains to the nearest points; `b` null: its point is fixed at p_b.
   Eigen::Vector3d p_b = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< From b to a.
   double margin = 0;
@@ -63,14 +63,14 @@ class CollisionRows {
   void take_planes_at(const Sample& sample, const Eigen::VectorXd& q, const std::map<Pair, double>& rooms);
   Eigen::VectorXd reference(const Sample& sample) const;
   std::set<Sample> regular_samples() const;
-  /// The distance that each pair is asked to keep.
+  /// The distance that each pair has to keep.
   std::map<Pair, double> rooms_along(const std::vector<Eigen::VectorXd>& positions);
 
   std::vector<CollisionChecker*> checkers_;
   std::vector<int> pinned_;
   double margin_, look_out_;
   std::set<Pair> watched_;
-  std::set<Sample> samples_;  // beside the regular ones
+  std::set<Sample> samples_;  // samples beside the regular ones
   std::vector<Eigen::VectorXd> reference_;
   std::map<Sample, std::map<Pair, std::vector<SeparatingPlane>>> planes_;
 };

@@ -15,15 +15,15 @@ namespace mmgrasp::detail {
 class MMGRASP_EXPORT Term {
  public:
   virtual ~Term() = default;
-  std::vector<int> variables;  ///< Their numbers in the problem.
+  std::vector<int> variables;  ///< Indices of the variables in the problem.
   Eigen::VectorXd lower, upper;
-  std::string kind;  ///< Of constraint, for reports.
+  std::string kind;  ///< Kind of constraint, for reports.
   int waypoint = 0;
   std::string what;
 
   int rows() const { return static_cast<int>(lower.size()); }
   virtual void value(const double* x, double* out) const = 0;
-  virtual std::vector<std::pair<int, int>> jacobian_pattern() const;  ///< Every row and variable unless told otherwise.
+  virtual std::vector<std::pair<int, int>> jacobian_pattern() const;  ///< Every row and variable unless overridden.
   virtual void jacobian(const double* x, double* out) const = 0;
   virtual std::vector<std::pair<int, int>> hessian_pattern() const { return {}; }  ///< Row >= column.
   virtual void hessian(const double*, const double*, double*) const {}

@@ -1,3 +1,4 @@
+// check_whole_body(): judges a trajectory by other means than the optimiser's.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +12,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr int kSteps = 128;  // of Runge-Kutta per interval: good to 1e-9 m at intervals of 2 s
+constexpr int kSteps = 128;  // Runge-Kutta steps per interval: good to 1e-9 m at intervals of 2 s
 
 /// The largest violation of each kind, in the order in which kinds are first named.
 class Ledger {
@@ -219,7 +220,7 @@ void check_collisions(Ledger& ledger, const std::vector<CollisionChecker*>& chec
     CollisionChecker* checker = checkers[samples[i].interval];
     if (!checker) continue;
     const EdgeResult r = check_edge(*checker, samples[i].q, samples[i + 1].q, edge);
-    if (r.free || !r.contact) continue;  // limits are looked at elsewhere
+    if (r.free || !r.contact) continue;  // limits are checked elsewhere
     const VectorXd q = samples[i].q + r.fraction * (samples[i + 1].q - samples[i].q);
     const double time = samples[i].time + r.fraction * (samples[i + 1].time - samples[i].time);
     ledger.note(std::max(-checker->distance(q).value, 1e-9), time, r.contact->a + " and " + r.contact->b);

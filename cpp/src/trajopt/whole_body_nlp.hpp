@@ -10,7 +10,7 @@
 
 namespace mmgrasp::detail {
 
-/// Where the numbers of a whole-body problem stand in one vector: per waypoint q, drive velocity, and (but for the
+/// The order of a whole-body problem's numbers in one vector: per waypoint q, drive velocity, and (but for the
 /// last) drive acceleration of the interval after it; the time step of a segment before its first waypoint.
 class MMGRASP_EXPORT WholeBodyLayout {
  public:
@@ -25,7 +25,7 @@ class MMGRASP_EXPORT WholeBodyLayout {
   int columns() const { return columns_; }
   int drives() const { return drives_; }
   int intervals() const { return static_cast<int>(segment_.size()); }
-  /// What stands at an index, for messages.
+  /// Name of the number at an index, for messages.
   std::string name(int index, const JointGroup& group) const;
 
  private:

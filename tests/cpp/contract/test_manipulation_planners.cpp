@@ -180,7 +180,7 @@ TEST_P(ManipulationPlanner, AnImpossibleProblemEndsByItsBudget) {
   EXPECT_EQ(again.stats.edges_checked_robot, result.stats.edges_checked_robot);
 }
 
-TEST_P(ManipulationPlanner, TheStopTokenEndsIt) {
+TEST_P(ManipulationPlanner, TheCancelTokenEndsIt) {
   ManipulationOptions options = this->options();
   options.rrt.max_samples = 10000000;
   options.prm.roadmap.vertices = 300000;
@@ -220,7 +220,7 @@ Monitor within_search(std::function<void()> act) {
   return monitor;
 }
 
-TEST_P(ManipulationPlanner, ClockAndStopTokenEndASearchThatHasBegun) {
+TEST_P(ManipulationPlanner, ClockAndCancelTokenEndASearchThatHasBegun) {
   ManipulationOptions options = this->options();
   options.first_grasps = 0;
   options.prm.batch = 3;

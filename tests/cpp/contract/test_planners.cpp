@@ -215,7 +215,7 @@ TEST_P(Planner, AnImpossibleGoalEndsByTheBudget) {
   EXPECT_EQ(again.stats.collision_queries, result.stats.collision_queries);
 }
 
-TEST_P(Planner, TheStopTokenEndsIt) {
+TEST_P(Planner, TheCancelTokenEndsIt) {
   CollisionChecker checker = this->checker(posts);
   MotionOptions options = this->options();
   options.max_iterations = 2000000000;

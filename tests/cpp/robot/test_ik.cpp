@@ -262,7 +262,7 @@ TEST(Ik, AllFindsTheEightBranchesOfASixJointArm) {
   for (std::size_t i = 0; i < again.size(); ++i) EXPECT_EQ(again[i], solutions[i]);
 }
 
-TEST(Ik, StopTokenAndBadInput) {
+TEST(Ik, CancelTokenAndBadInput) {
   MMGRASP_NEEDS_SHARED_DATA();
   const JointGroup group = panda().group("panda_arm");
   const Eigen::VectorXd seed = (group.lower() + group.upper()) / 2;

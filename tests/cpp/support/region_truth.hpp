@@ -4,6 +4,7 @@
 
 #include "mmgrasp/collision/collision_ik.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "mmgrasp/task/base_pose_evaluator.hpp"
 #include "mmgrasp/task/base_region.hpp"
 
 /// Region maps against the core: collision-aware IK with random restarts, without a database and without anything of
@@ -71,7 +72,7 @@ class RegionTruth {
 
   /// The region's own configuration reaches the grasp and is free in a checker of ours.
   bool confirmed(const Eigen::Vector3d& base_pose, int tray, int index) {
-    const PartAtPose seen = evaluator_.part(base_pose, tray, index);
+    const PartAtPose seen = evaluator_.part(base_pose, {TrayId(tray), index});
     if (!seen.feasible) return false;
     const Part& part = problem_.trays[tray].parts[index];
     CollisionChecker& checker = checkers_.front();

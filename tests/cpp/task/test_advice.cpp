@@ -5,6 +5,7 @@
 #include <set>
 
 #include "mmgrasp/core/random.hpp"
+#include "mmgrasp/task/base_pose_evaluator.hpp"
 #include "mmgrasp/task/part_supply.hpp"
 #include "support/small_storeroom.hpp"
 
@@ -196,7 +197,7 @@ TEST(Advice, CountersOfAFailedPlanAreWhatTheEvaluatorRecounts) {
   const auto look = [&](const Eigen::Vector3d& pose) {
     if (evaluator.home(pose) != Rejection::none) return false;
     ++recount.base_poses_tried;
-    const PartAtPose seen = evaluator.part(pose, 0, 0);
+    const PartAtPose seen = evaluator.part(pose, {TrayId(0), 0});
     for (Rejection cause : seen.causes) recount.rejections.add(cause);
     recount.base_poses_feasible += seen.feasible;
     return seen.feasible;

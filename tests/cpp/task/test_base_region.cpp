@@ -4,6 +4,7 @@
 
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/robot/ik.hpp"
+#include "mmgrasp/task/base_pose_evaluator.hpp"
 #include "support/small_storeroom.hpp"
 
 namespace mmgrasp {
@@ -37,7 +38,7 @@ TEST_F(BaseRegions, CountersEqualABruteForceRecount) {
       const auto look = [&](const Eigen::Vector3d& pose) {
         if (evaluator.home(pose) != Rejection::none) return false;
         ++recount.base_poses_tried;
-        const PartAtPose seen = evaluator.part(pose, tray, part);
+        const PartAtPose seen = evaluator.part(pose, {TrayId(tray), part});
         for (Rejection cause : seen.causes) recount.rejections.add(cause);
         recount.base_poses_feasible += seen.feasible;
         return seen.feasible;
@@ -130,7 +131,7 @@ TEST_F(BaseRegions, ConfigurationsReachTheirGrasps) {
   for (int iy = 0; iy < grid_->ny; ++iy) {
     for (int ix = 0; ix < grid_->nx; ix += 3) {
       const Eigen::Vector3d pose = grid_->centre(0, ix, iy);
-      const PartAtPose seen = evaluator.part(pose, 0, 0);
+      const PartAtPose seen = evaluator.part(pose, {TrayId(0), 0});
       if (!seen.feasible) continue;
       ++seen_feasible;
       const Part& part = problem_->trays[0].parts[0];
@@ -188,9 +189,9 @@ TEST_F(BaseRegions, BlockedHandsAreFilteredBeforeTheArm) {
   below.T_object_tcp.linear() = Eigen::Matrix3d::Identity();
   other.trays[0].parts[0].grasps = {below};
   BasePoseEvaluator evaluator(other, *database_);
-  EXPECT_TRUE(evaluator.hand_blocked(0, 0, 0));
-  EXPECT_FALSE(evaluator.hand_blocked(0, 1, 0));
-  const PartAtPose seen = evaluator.part(Eigen::Vector3d(0.3, -0.2, 0), 0, 0);
+  EXPECT_TRUE(evaluator.hand_blocked({TrayId(0), 0}, 0));
+  EXPECT_FALSE(evaluator.hand_blocked({TrayId(0), 1}, 0));
+  const PartAtPose seen = evaluator.part(Eigen::Vector3d(0.3, -0.2, 0), {TrayId(0), 0});
   ASSERT_EQ(seen.causes.size(), 1u);
   EXPECT_EQ(seen.causes[0], Rejection::grasp_filter);
 }

@@ -9,9 +9,12 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "support/tray_numbers.hpp"
 
 namespace mmgrasp {
 namespace {
+
+using testing_support::numbers;
 
 BaseGrid make_grid(int nx, int ny, double resolution = 1, std::vector<double> headings = {0}) {
   BaseGrid grid;
@@ -155,12 +158,12 @@ TEST(RobustIntersections, ChainOfFiveTrays) {
   // Lens half-widths: (1.2 - d) / 2 for centres d apart.
   const Intersections found = robust_intersections(grid, regions, 0.10);
   std::vector<std::vector<int>> sets;
-  for (const Intersection& some : found.robust) sets.push_back(some.trays);
+  for (const Intersection& some : found.robust) sets.push_back(numbers(some.trays));
   const std::vector<std::vector<int>> expected = {{0}, {1}, {2}, {3}, {4}, {0, 1}, {1, 2}, {2, 3}};
   EXPECT_EQ(sets, expected);
   EXPECT_EQ(found.sets_too_small, 1u);
   ASSERT_EQ(found.lost.size(), 1u);
-  EXPECT_EQ(found.lost[0].trays, (std::vector<int>{0, 2}));
+  EXPECT_EQ(numbers(found.lost[0].trays), (std::vector<int>{0, 2}));
   EXPECT_NEAR(found.lost[0].radius, 0.075, 0.05);
   EXPECT_TRUE(found.complete);
 
@@ -169,7 +172,7 @@ TEST(RobustIntersections, ChainOfFiveTrays) {
   EXPECT_EQ(stops.lower_bound, 3);
   ASSERT_EQ(stops.stops.size(), 3u);
   std::vector<std::vector<int>> served;
-  for (const Stop& stop : stops.stops) served.push_back(stop.trays);
+  for (const Stop& stop : stops.stops) served.push_back(numbers(stop.trays));
   std::sort(served.begin(), served.end());
   EXPECT_EQ(served, (std::vector<std::vector<int>>{{0, 1}, {2, 3}, {4}}));
 }
@@ -215,7 +218,8 @@ TEST(RobustIntersections, RandomRegionsAgainstAllSubsets) {
       if (inscribed_circle(grid, shared, 0).radius >= 0.12) expected.push_back(trays);
     }
     std::vector<std::vector<int>> found;
-    for (const Intersection& some : robust_intersections(grid, regions, 0.12).robust) found.push_back(some.trays);
+    for (const Intersection& some : robust_intersections(grid, regions, 0.12).robust)
+      found.push_back(numbers(some.trays));
     std::sort(expected.begin(), expected.end());
     std::sort(found.begin(), found.end());
     EXPECT_EQ(found, expected) << "instance " << instance;
@@ -225,11 +229,11 @@ TEST(RobustIntersections, RandomRegionsAgainstAllSubsets) {
 TEST(MinimalStops, TraysWithoutAPlaceAreNamed) {
   const BaseGrid grid = make_grid(4, 4);
   Intersection only;
-  only.trays = {0, 2};
+  only.trays = {TrayId(0), TrayId(2)};
   only.radius = 1;
   const StopSet stops = minimal_stops(grid, {only}, 4);
   EXPECT_EQ(stops.outcome, Outcome::infeasible);
-  EXPECT_EQ(stops.unreachable_trays, (std::vector<int>{1, 3}));
+  EXPECT_EQ(numbers(stops.unreachable_trays), (std::vector<int>{1, 3}));
 }
 
 /// Two trays that share all their cells, but the search ends before their pair is looked at.
@@ -260,9 +264,9 @@ TEST(MinimalStops, TwoHundredRandomInstancesAgainstEnumeration) {
     for (int i = 0; i < count; ++i) {
       Intersection place;
       for (int tray = 0; tray < trays; ++tray) {
-        if (rng.uniform() < 0.4) place.trays.push_back(tray);
+        if (rng.uniform() < 0.4) place.trays.emplace_back(tray);
       }
-      if (place.trays.empty()) place.trays.push_back(static_cast<int>(rng.index(static_cast<std::size_t>(trays))));
+      if (place.trays.empty()) place.trays.emplace_back(static_cast<int>(rng.index(static_cast<std::size_t>(trays))));
       place.radius = rng.uniform(0.1, 1.0);
       places.push_back(place);
     }
@@ -299,7 +303,7 @@ TEST(MinimalStops, TwoHundredRandomInstancesAgainstEnumeration) {
       radii += stop.radius;
       for (int tray : stop.trays) {
         ++served[tray];
-        EXPECT_TRUE(std::binary_search(place.trays.begin(), place.trays.end(), tray));
+        EXPECT_TRUE(std::binary_search(place.trays.begin(), place.trays.end(), TrayId(tray)));
       }
     }
     for (int times : served) EXPECT_EQ(times, 1);

@@ -10,9 +10,12 @@
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
 #include "support/region_layouts.hpp"
+#include "support/tray_numbers.hpp"
 
 namespace mmgrasp {
 namespace {
+
+using testing_support::numbers;
 
 /// The widest disc for a set of trays, straight from the cells.
 double radius_of(const BaseGrid& grid, const std::vector<BaseRegion>& regions, const std::vector<int>& trays) {
@@ -70,7 +73,7 @@ void expect_sound(const BaseGrid& grid, const std::vector<BaseRegion>& regions, 
   std::vector<int> served(regions.size(), 0);
   for (const Stop& stop : set.stops) {
     EXPECT_GE(stop.radius, min_radius - 1e-8);
-    EXPECT_NEAR(stop.radius, radius_of(grid, regions, stop.trays), 1e-6);  // the widest for exactly its trays
+    EXPECT_NEAR(stop.radius, radius_of(grid, regions, numbers(stop.trays)), 1e-6);  // the widest for exactly its trays
     for (int tray : stop.trays) ++served[tray];
   }
   for (int times : served) EXPECT_EQ(times, 1);
@@ -161,7 +164,7 @@ TEST(LeastStops, EquallyGoodSequencesAreToldApartByTheRoute) {
     ASSERT_EQ(set.stops.size(), 3u);
     const int lone = wanted == 0.0 ? 0 : 4;
     EXPECT_TRUE(std::any_of(set.stops.begin(), set.stops.end(), [&](const Stop& stop) {
-      return stop.trays == std::vector<int>{lone} && std::abs(stop.radius - 0.3) < 1e-6;
+      return numbers(stop.trays) == std::vector<int>{lone} && std::abs(stop.radius - 0.3) < 1e-6;
     }));
     expect_sound(grid, regions, set, 0.10);
   }
@@ -186,7 +189,7 @@ TEST(LeastStops, TraysWithoutRoomAreNamedAndStopsAreEnded) {
   std::fill(layout.regions[2].cells.begin(), layout.regions[2].cells.end(), std::uint8_t{0});
   const StopSet set = least_stops(layout.grid, layout.regions);
   EXPECT_EQ(set.outcome, Outcome::infeasible);
-  EXPECT_EQ(set.unreachable_trays, (std::vector<int>{2}));
+  EXPECT_EQ(numbers(set.unreachable_trays), (std::vector<int>{2}));
   Monitor stopped;
   stopped.stop.stop();
   EXPECT_EQ(least_stops(layout.grid, layout.regions, {}, stopped).outcome, Outcome::stopped);

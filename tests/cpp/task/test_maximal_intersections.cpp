@@ -6,9 +6,12 @@
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
+#include "support/tray_numbers.hpp"
 
 namespace mmgrasp {
 namespace {
+
+using testing_support::numbers;
 
 BaseGrid make_grid(int nx, int ny, double resolution, std::vector<double> headings = {0}) {
   BaseGrid grid;
@@ -38,7 +41,7 @@ using Sets = std::vector<std::vector<int>>;
 
 Sets sets_of(const Intersections& found) {
   Sets sets;
-  for (const Intersection& some : found.robust) sets.push_back(some.trays);
+  for (const Intersection& some : found.robust) sets.push_back(numbers(some.trays));
   std::sort(sets.begin(), sets.end());
   return sets;
 }
@@ -134,9 +137,9 @@ TEST(MaximalIntersections, HeadingsAreSearchedApart) {
   for (int i = 0; i < grid.cells_per_layer(); ++i) regions[1].cells[i] = 0;
   const Intersections found = maximal_intersections(grid, regions, 0.1);
   ASSERT_EQ(found.robust.size(), 2u);
-  EXPECT_EQ(found.robust[0].trays, (std::vector<int>{0}));
+  EXPECT_EQ(numbers(found.robust[0].trays), (std::vector<int>{0}));
   EXPECT_EQ(found.robust[0].heading, 0);
-  EXPECT_EQ(found.robust[1].trays, (std::vector<int>{0, 1}));
+  EXPECT_EQ(numbers(found.robust[1].trays), (std::vector<int>{0, 1}));
   EXPECT_EQ(found.robust[1].heading, 1);
 }
 

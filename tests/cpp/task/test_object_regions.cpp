@@ -48,16 +48,16 @@ TEST_F(KeptRegions, AnyChoiceOfPartsIsAnIntersection) {
   const std::vector<BaseRegion> regions = compute_base_regions(*problem_, *database_, *grid_);
   ASSERT_TRUE(kept.complete());
   EXPECT_EQ(kept.trays(), 2);
-  EXPECT_EQ(kept.parts(0), (std::vector<int>{0, 1, 2, 3}));
-  EXPECT_EQ(kept.parts(1), (std::vector<int>{0, 1, 3}));
-  EXPECT_EQ(kept.region(0, {0, 1, 2, 3}), regions[0].cells);
-  EXPECT_EQ(kept.region(1, {3}), regions[1].part_cells[2].mask());
+  EXPECT_EQ(kept.parts(TrayId(0)), (std::vector<int>{0, 1, 2, 3}));
+  EXPECT_EQ(kept.parts(TrayId(1)), (std::vector<int>{0, 1, 3}));
+  EXPECT_EQ(kept.region(TrayId(0), {0, 1, 2, 3}), regions[0].cells);
+  EXPECT_EQ(kept.region(TrayId(1), {3}), regions[1].part_cells[2].mask());
   CellMask both = regions[0].part_cells[1].mask();
   for (std::size_t i = 0; i < both.size(); ++i) both[i] &= regions[0].part_cells[2][i];
-  EXPECT_EQ(kept.region(0, {2, 1}), both);
-  EXPECT_THROW(kept.region(0, {}), InvalidInput);
-  EXPECT_THROW(kept.region(1, {2}), InvalidInput);
-  EXPECT_THROW(kept.region(2, {0}), InvalidInput);
+  EXPECT_EQ(kept.region(TrayId(0), {2, 1}), both);
+  EXPECT_THROW(kept.region(TrayId(0), {}), InvalidInput);
+  EXPECT_THROW(kept.region(TrayId(1), {2}), InvalidInput);
+  EXPECT_THROW(kept.region(TrayId(2), {0}), InvalidInput);
 }
 
 /// After every removal: what a computation from scratch gives, and nothing has shrunk.
@@ -66,13 +66,14 @@ TEST_F(KeptRegions, LeavingPartsGiveWhatScratchGives) {
   PartSupplyProblem rest = *problem_;
   std::vector<std::vector<int>> left = {{0, 1, 2, 3}, {0, 1, 2, 3}};
   std::size_t grown = 0;
-  for (const std::vector<std::pair<int, int>>& leaving :
-       {std::vector<std::pair<int, int>>{{0, 1}}, {{1, 2}}, {{0, 3}, {1, 0}}, {{0, 0}}}) {
+  const TrayId first(0), second(1);
+  for (const std::vector<PartRef>& leaving :
+       {std::vector<PartRef>{{first, 1}}, {{second, 2}}, {{first, 3}, {second, 0}}, {{first, 0}}}) {
     std::vector<std::vector<CellMask>> before(2);
     for (int tray = 0; tray < 2; ++tray) {
-      for (int part : kept.parts(tray)) before[tray].push_back(kept.region(tray, {part}));
+      for (int part : kept.parts(TrayId(tray))) before[tray].push_back(kept.region(TrayId(tray), {part}));
     }
-    const std::vector<std::vector<int>> parts_before = {kept.parts(0), kept.parts(1)};
+    const std::vector<std::vector<int>> parts_before = {kept.parts(TrayId(0)), kept.parts(TrayId(1))};
     ASSERT_TRUE(kept.remove(leaving));
     for (const auto& [tray, part] : leaving) {
       std::vector<int>& known = left[tray];
@@ -83,15 +84,15 @@ TEST_F(KeptRegions, LeavingPartsGiveWhatScratchGives) {
     }
     const std::vector<BaseRegion> scratch = compute_base_regions(rest, *database_, *grid_);
     for (int tray = 0; tray < 2; ++tray) {
-      const std::vector<int> parts = kept.parts(tray);
+      const std::vector<int> parts = kept.parts(TrayId(tray));
       const BaseRegion& region = scratch[tray];
       ASSERT_EQ(parts.size(), region.part_cells.size());
-      EXPECT_EQ(kept.base_region(tray).cells, region.cells);
-      EXPECT_EQ(kept.base_region(tray).base_poses_in_collision, region.base_poses_in_collision);
+      EXPECT_EQ(kept.base_region(TrayId(tray)).cells, region.cells);
+      EXPECT_EQ(kept.base_region(TrayId(tray)).base_poses_in_collision, region.base_poses_in_collision);
       for (std::size_t p = 0; p < parts.size(); ++p) {
-        const CellMask now = kept.region(tray, {parts[p]});
+        const CellMask now = kept.region(TrayId(tray), {parts[p]});
         EXPECT_EQ(now, region.part_cells[p].mask());
-        const PartExplanation told = kept.base_region(tray).explanations[p];
+        const PartExplanation told = kept.base_region(TrayId(tray)).explanations[p];
         const PartExplanation& recount = region.explanations[p];
         EXPECT_EQ(told.part, recount.part);
         EXPECT_EQ(told.base_poses_tried, recount.base_poses_tried);
@@ -109,18 +110,18 @@ TEST_F(KeptRegions, LeavingPartsGiveWhatScratchGives) {
     }
   }
   EXPECT_GT(grown, 0u);
-  EXPECT_THROW(kept.remove({{0, 1}}), InvalidInput);
-  EXPECT_EQ(kept.parts(0), (std::vector<int>{2}));
+  EXPECT_THROW(kept.remove({{TrayId(0), 1}}), InvalidInput);
+  EXPECT_EQ(kept.parts(TrayId(0)), (std::vector<int>{2}));
 }
 
 TEST_F(KeptRegions, StoppedTheyAreWhatTheyWere) {
   ObjectRegions kept = ObjectRegions::compute(*problem_, *database_, *grid_);
-  const CellMask before = kept.region(0, {0});
+  const CellMask before = kept.region(TrayId(0), {0});
   Monitor monitor;
   monitor.stop.stop();
-  EXPECT_FALSE(kept.remove({{0, 1}}, monitor));
-  EXPECT_EQ(kept.parts(0), (std::vector<int>{0, 1, 2, 3}));
-  EXPECT_EQ(kept.region(0, {0}), before);
+  EXPECT_FALSE(kept.remove({{TrayId(0), 1}}, monitor));
+  EXPECT_EQ(kept.parts(TrayId(0)), (std::vector<int>{0, 1, 2, 3}));
+  EXPECT_EQ(kept.region(TrayId(0), {0}), before);
   EXPECT_FALSE(ObjectRegions::compute(*problem_, *database_, *grid_, monitor).complete());
 }
 

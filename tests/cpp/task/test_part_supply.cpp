@@ -53,13 +53,13 @@ verify::PlanToCheck to_check(const PartSupplyProblem& problem, const PartSupplyP
   for (const BaseRegion& region : plan.regions) check.regions.push_back({region.tray, region.cells});
   for (const Stop& stop : plan.stops) {
     verify::CheckedStop checked{stop.pose, stop.radius, {}};
-    for (int region : stop.trays) checked.trays.push_back(plan.regions[region].tray);
+    for (TrayId tray : stop.trays) checked.trays.push_back(problem.trays[tray].name);
     check.stops.push_back(checked);
   }
   for (const BasePath& leg : plan.route) check.route.push_back(leg.poses);
   for (const Pick& pick : plan.picks) {
-    const Tray& tray = problem.trays[pick.tray];
-    verify::CheckedPick checked{pick.stop, tray.name, tray.parts[pick.part].name, pick.grasp, {}};
+    const Tray& tray = problem.trays[pick.part.tray];
+    verify::CheckedPick checked{pick.stop, tray.name, tray.parts[pick.part.part].name, pick.grasp, {}};
     for (const PickMotion& motion : pick.motions) {
       checked.motions.push_back({to_string(motion.kind), motion.opening, motion.holding, motion.trajectory.times,
                                  motion.trajectory.positions, motion.trajectory.velocities});

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "mmgrasp/core/random.hpp"
+#include "mmgrasp/task/base_pose_evaluator.hpp"
 #include "mmgrasp/task/base_region.hpp"
 #include "support/small_storeroom.hpp"
 
@@ -138,9 +139,9 @@ TEST_F(RegionRelations, AnyRigidMotionMovesTheAnswerOfABasePose) {
     base_there.head<2>() += Eigen::Rotation2Dd(motion.z()) * base.head<2>();
     base_there.z() = wrap_angle(base.z() + motion.z());
     const int tray = i % 2, part = i / 2 % 2;
-    const bool works = here.part(base, tray, part).feasible;
+    const bool works = here.part(base, {TrayId(tray), part}).feasible;
     feasible += works;
-    differences += works != there.part(base_there, tray, part).feasible;
+    differences += works != there.part(base_there, {TrayId(tray), part}).feasible;
   }
   EXPECT_EQ(differences, 0);
   EXPECT_GT(feasible, 300);

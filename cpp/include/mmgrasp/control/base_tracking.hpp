@@ -19,17 +19,22 @@ struct MMGRASP_EXPORT BaseTrackingOptions {
   double period = 0.02;      ///< A command is held this long [s]; > 0.
   bool feed_forward = true;  ///< Adds the planned velocity of P; (4.14) as printed has none and so always lags.
   bool feedback = true;      ///< false: open loop, the planned velocities only (figure 4.9 a).
-  double settle = 0.0;       ///< Goes on this long after the plan's end [s]; >= 0.
+  double settle = 0.0;       ///< Tracking goes on this long after the plan's end [s]; >= 0.
   void check() const;        ///< Throws InvalidInput naming field, value and rule.
 };
 
-/// The feedback law: from planned and measured base pose to the velocity that the platform is to hold for a period.
+/// The feedback law (P1 4.4.2): from planned and measured base pose to the velocity that the platform is to hold for a
+/// period.
 ///
 /// Diff-drive: the point P at `offset` ahead of the wheel axis can move any way, [v, omega] = diag(1, 1/offset)
 /// R(-theta) P'. P' is the plan's velocity of P plus the PID terms of (4.14) on the error of P (4.15). Where the plan
 /// drives backwards P lies behind the axis, since a point ahead of a reversing base turns it round. Omni: the three
 /// errors themselves, in the world. Commands beyond the limits of speed, turning rate and wheels are scaled down as a
 /// whole, which keeps their curvature; the integral then rests.
+/// @code
+///   BaseTracker tracker(BaseKind::diff_drive, robot.base_limits());
+///   drive(tracker.command(plan_at(t), plan_at(t + tracker.options().period), localised_pose));
+/// @endcode
 class MMGRASP_EXPORT BaseTracker {
  public:
   /// Throws InvalidInput for a fixed base, limits or options out of range.
@@ -58,17 +63,16 @@ class MMGRASP_EXPORT BaseTracker {
 
 /// What comes between a command and the motion, and between the pose and its measurement.
 struct MMGRASP_EXPORT BaseDisturbance {
-  double slip_left = 0;                             ///< Share of the left wheel's travel that is lost; in [0, 1).
-  double slip_right = 0;                            ///< The same of the right wheel.
-  Eigen::Vector3d drift = Eigen::Vector3d::Zero();  ///< Platform velocity added [m/s, rad/s].
-  double travel_noise = 0;                          ///< Deviation of a wheel's travel after 1 m [m]; grows with
-                                                    ///< the root of the travel; >= 0.
-  double position_noise = 0;                        ///< Deviation of a measured x or y [m]; >= 0.
-  double heading_noise = 0;                         ///< Deviation of a measured heading [rad]; >= 0.
-  Eigen::Vector3d start_error =
-      Eigen::Vector3d::Zero();  ///< Where the base stands at first, less the plan (x, y, theta).
-  unsigned seed = 1;            ///< Same seed, same run.
-  void check() const;           ///< Throws InvalidInput naming field, value and rule.
+  double slip_left = 0;                                   ///< Share of the left wheel's travel that is lost; in [0, 1).
+  double slip_right = 0;                                  ///< The same of the right wheel.
+  Eigen::Vector3d drift = Eigen::Vector3d::Zero();        ///< Platform velocity added [m/s, rad/s].
+  double travel_noise = 0;                                ///< Deviation of a wheel's travel after 1 m [m]; grows with
+                                                          ///< the root of the travel; >= 0.
+  double position_noise = 0;                              ///< Deviation of a measured x or y [m]; >= 0.
+  double heading_noise = 0;                               ///< Deviation of a measured heading [rad]; >= 0.
+  Eigen::Vector3d start_error = Eigen::Vector3d::Zero();  ///< Pose at the beginning less the planned one (x, y, theta).
+  unsigned seed = 1;                                      ///< Same seed, same run.
+  void check() const;                                     ///< Throws InvalidInput naming field, value and rule.
 };
 
 /// A run, one entry per period; commands have one entry less than poses.
@@ -84,9 +88,16 @@ struct MMGRASP_EXPORT BaseTrackingResult {
   double final_error() const;                    ///< [m]
 };
 
-/// Drives a base along a trajectory's columns x, y, theta: commands from the tracker, motion by exact arcs. Slip of the
-/// two wheels must be equal for an omni base, whose every component then loses that share. Throws InvalidInput when the
-/// trajectory has no such columns or samples, for a fixed base, and for options out of range.
+/// Simulates a base that tracks a plan, a trajectory with the columns x, y, theta: commands from BaseTracker, motion by
+/// exact arcs, disturbances between them. Slip of the two wheels must be equal for an omni base, whose every component
+/// then loses that share. Throws InvalidInput when the trajectory has no such columns or samples, for a fixed base, and
+/// for options out of range.
+/// @code
+///   BaseDisturbance slip;
+///   slip.slip_left = 0.02;
+///   const BaseTrackingResult run = track_base(plan, BaseKind::diff_drive, robot.base_limits(), {}, slip);
+///   std::cout << "largest error " << run.max_error() << " m\n";
+/// @endcode
 MMGRASP_EXPORT BaseTrackingResult track_base(const JointTrajectory& plan, BaseKind kind, const BaseLimits& limits,
                                              const BaseTrackingOptions& options = {},
                                              const BaseDisturbance& disturbance = {});

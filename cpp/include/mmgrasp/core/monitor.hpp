@@ -10,9 +10,9 @@
 namespace mmgrasp {
 
 /// Shared flag that ends long calls early; copies refer to the same flag. Safe to set from any thread.
-class MMGRASP_EXPORT StopToken {
+class MMGRASP_EXPORT CancelToken {
  public:
-  StopToken() : flag_(std::make_shared<std::atomic<bool>>(false)) {}
+  CancelToken() : flag_(std::make_shared<std::atomic<bool>>(false)) {}
   void stop() { flag_->store(true, std::memory_order_relaxed); }
   bool stopped() const { return flag_->load(std::memory_order_relaxed); }
 
@@ -22,7 +22,7 @@ class MMGRASP_EXPORT StopToken {
 
 /// What a long call is handed to report and to be ended: passed by const reference, defaulted to "silent, never ends".
 struct MMGRASP_EXPORT Monitor {
-  StopToken stop;
+  CancelToken stop;
   /// Called from the calling thread only, with the stage's name and a fraction in [0, 1]. Must not throw.
   std::function<void(const std::string& stage, double fraction)> progress;
 

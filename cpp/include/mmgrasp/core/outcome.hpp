@@ -13,7 +13,7 @@ enum class Outcome {
   approximate,    ///< The best that was found; misses its tolerance or bound. Never used for a path in collision.
   infeasible,     ///< Proven or exhausted: there is no answer.
   timeout,        ///< The budget (samples, iterations or clock) ended first.
-  stopped,        ///< The caller's stop token ended it.
+  stopped,        ///< The caller's cancel token ended it.
   invalid_start,  ///< The start violates limits or is in collision.
   invalid_goal,   ///< No goal is inside limits and collision-free.
 };

@@ -36,7 +36,7 @@ struct MMGRASP_EXPORT NlpResult {
 };
 
 /// Local solver of smooth problems. Callbacks that throw end the solve, and the exception reaches the caller; numbers
-/// that are not finite never do harm. The stop token ends it at the next evaluation.
+/// that are not finite never do harm. The cancel token ends it at the next evaluation.
 class MMGRASP_EXPORT NlpSolver {
  public:
   virtual ~NlpSolver();

@@ -13,9 +13,10 @@ namespace mmgrasp {
 
 struct MMGRASP_EXPORT BaseRouteOptions {
   BaseKind base = BaseKind::diff_drive;
-  double resolution = 0.10;    ///< Cell edge of the search [m]; > 0.
-  double check_step = 0.02;    ///< Largest motion of the base between two collision checks [m]; > 0.
-  Eigen::AlignedBox2d bounds;  ///< Search stays in here; empty: the scene's bounds plus start and goal, grown by 2 m.
+  double resolution = 0.10;  ///< Cell edge of the search [m]; > 0.
+  double check_step = 0.02;  ///< Largest motion of the base between two collision checks [m]; > 0.
+  Eigen::AlignedBox2d
+      bounds;  ///< The search stays in here [m]; empty: the scene's bounds plus start and goal, grown by 2 m.
   void check() const;
 };
 
@@ -28,14 +29,20 @@ struct MMGRASP_EXPORT BasePath {
   double turning = 0;                  ///< Sum of absolute heading changes [rad].
 };
 
-/// A driveable path for the whole robot with its arm at `home`, collision-checked in 3-D. The checker's group is the
-/// arm.
+/// Plans a drive of the whole robot with its arm at `home`, collision-checked in 3-D: A* over a grid of base poses,
+/// then shortened and checked again at half the step. The checker's group is the arm, without base joints. No way is a
+/// value: invalid_start, invalid_goal or infeasible. Throws InvalidInput for options out of range.
+/// @code
+///   CollisionChecker checker(arm, world);
+///   const BasePath path = plan_base_route(checker, home, {0, 0, 0}, {4, 2, 1.57}, {});
+///   for (const Eigen::Vector3d& pose : path.poses) std::cout << pose.transpose() << "\n";
+/// @endcode
 MMGRASP_EXPORT BasePath plan_base_route(CollisionChecker& checker, const Eigen::VectorXd& home,
                                         const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                                         const BaseRouteOptions& options, const Monitor& monitor = {});
 
-/// How far it is to drive between all pairs of some base poses, the arm at `home`, around what stands in the way: one
-/// search of the whole floor for each pose instead of one for each pair. Symmetric; infinite where no way was found
+/// Lengths of the drives between all pairs of some base poses, the arm at `home`, around obstacles [m]: one search of
+/// the whole floor for each pose instead of one for each pair. Symmetric; infinite where no way was found
 /// (plan_base_route() may still find a narrow one). Estimates, good to some per cent: cells of `resolution` (coarser
 /// when the floor would have more than 40,000) that the robot may pass in one of 16 directions; turns cost nothing.
 /// Empty when the monitor ended it. `bounds` and `check_step` of the options are not used.

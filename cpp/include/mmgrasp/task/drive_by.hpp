@@ -21,17 +21,19 @@ namespace mmgrasp {
 /// long as the fingers need.
 struct MMGRASP_EXPORT DriveByPush {
   PushGraspProblem closing;
-  Eigen::Vector3d approach = Eigen::Vector3d::UnitX();  ///< In the tip's frame: one of its axes, of either sign.
-  double free_length = 0.10;  ///< Straight way before the finger tips reach the object [m]; > 0.
+  Eigen::Vector3d approach =
+      Eigen::Vector3d::UnitX();  ///< Direction in the tip's frame: one of its axes, of either sign.
+  double free_length = 0.10;     ///< Straight way before the finger tips reach the object [m]; > 0.
 };
 
-/// Something the tool does on the way.
+/// Something the tool does on the way: it passes one of several poses, perhaps slowly or for a while.
 struct MMGRASP_EXPORT DriveByTask {
   std::vector<Pose> candidates;           ///< Poses of the group's tip, any of which will do; at least one.
   Vector6d tolerance = Vector6d::Zero();  ///< Per axis of the pose's frame, x y z [m], then turns [rad]; >= 0, < inf.
-  std::vector<bool> free = std::vector<bool>(6, false);             ///< Axes that do not matter at all.
-  double max_tool_speed = std::numeric_limits<double>::infinity();  ///< At the task [m/s]; > 0 (P1 4.3).
-  double dwell = 0;  ///< [s], >= 0: the tool's pose is kept that long, e.g. while a gripper closes.
+  std::vector<bool> free = std::vector<bool>(6, false);  ///< Axes of the pose whose error does not matter at all.
+  double max_tool_speed =
+      std::numeric_limits<double>::infinity();  ///< Speed limit of the tip at the task [m/s]; > 0 (P1 4.3).
+  double dwell = 0;  ///< The tool's pose is kept that long [s], e.g. while a gripper closes; >= 0.
   /// Object of the world that is held afterwards, in place of what was held before; empty: none. The hand may touch it
   /// from `touching` intervals before the task on, and it may touch what it stands on until as many after. 0: the open
   /// hand keeps clear of it up to the task, and what is held keeps clear of everything from the task on.
@@ -42,18 +44,18 @@ struct MMGRASP_EXPORT DriveByTask {
 
 /// Where the motion ends.
 struct MMGRASP_EXPORT DriveByGoal {
-  Eigen::VectorXd lower, upper;  ///< Box of configurations; equal: prescribed, infinite: free.
+  Eigen::VectorXd lower, upper;  ///< Box of end configurations; equal: prescribed, infinite: free.
 };
 
 struct MMGRASP_EXPORT DriveByOptions {
   int waypoints = 35;  ///< >= 2 + 2 per task, 2 + 6 per push-grasp.
   int attempts = 8;    ///< Guesses tried until one leads to a solution; > 0.
-  int solutions = 1;   ///< Solutions compared of one choice of candidates; > 0.
-  /// Choices of candidates planned, the fastest motion is returned; those that a lower bound shows to be slower are
-  /// left out. 1: the choice that looks quickest and leads to a solution. > 0.
+  int solutions = 1;   ///< Solutions compared for one grasp assignment; > 0.
+  /// Grasp assignments (one candidate for each task) planned, the fastest motion is returned; those that a lower bound
+  /// shows to be slower are left out. 1: the one that looks quickest and leads to a solution. > 0.
   int choices = 8;
-  int stands = 64;            ///< Configurations sought per candidate; > 0.
-  int iterations = 1500;      ///< Of all attempts; after so many no other begins; > 0.
+  int stands = 64;            ///< Goal configurations sought per candidate; > 0.
+  int iterations = 1500;      ///< Iteration budget of all solves; none begins when it is spent; > 0.
   double time_limit = 600.0;  ///< Wall-clock cap [s], for plans that are not to end by their iterations; > 0.
   double jerk_time = 0;       ///< See WholeBodyProblem [s], >= 0; 0: no limit on jerk.
   bool collisions = true;     ///< The robot keeps clear of the world and of itself.
@@ -65,27 +67,27 @@ struct MMGRASP_EXPORT DriveByOptions {
 
 /// What happens at one task.
 struct MMGRASP_EXPORT DriveByEvent {
-  int waypoint = 0;                      ///< Of a push-grasp: where both fingers touch.
+  int waypoint = 0;                      ///< Waypoint of the task; of a push-grasp, where both fingers touch.
   double time = 0;                       ///< [s]
   double close_time = 0;                 ///< When a gripper begins to close [s].
   std::string object;                    ///< What is held from then on; empty: nothing new.
-  Pose T_tip_object = Pose::Identity();  ///< As it is held.
-  double held_time = 0;                  ///< From when it is held [s]: the end of the dwell.
-  int candidate = 0;
-  double base_speed = 0;  ///< [m/s]
-  double tool_speed = 0;  ///< [m/s]
+  Pose T_tip_object = Pose::Identity();  ///< How the object is held.
+  double held_time = 0;                  ///< When the object begins to move with the tip [s]: the end of the dwell.
+  int candidate = 0;                     ///< Index of the candidate that was taken.
+  double base_speed = 0;                 ///< Speed of the base at the waypoint [m/s].
+  double tool_speed = 0;                 ///< Speed of the tip at the waypoint [m/s].
 };
 
 struct MMGRASP_EXPORT DriveByResult {
   Outcome outcome = Outcome::infeasible;
   std::shared_ptr<const WholeBodyTrajectory> trajectory;  ///< Null when there was not even a guess.
   std::vector<DriveByEvent> events;                       ///< One per task.
-  std::vector<Violation> violations;                      ///< Of the trajectory.
-  int choices = 0;                                        ///< Choices of candidates planned.
-  int attempts = 0;
-  int iterations = 0;  ///< Of all attempts.
-  double seconds = 0;
-  std::string report;  ///< What was tried, and what is broken where, by how much.
+  std::vector<Violation> violations;                      ///< The trajectory's, one per kind.
+  int choices = 0;                                        ///< Grasp assignments planned.
+  int attempts = 0;                                       ///< Solves, each from a seed of its own.
+  int iterations = 0;                                     ///< Iterations of all solves.
+  double seconds = 0;                                     ///< Wall-clock time [s].
+  std::string report;                                     ///< What was tried, and what is broken where, by how much.
 
   bool usable() const { return outcome == Outcome::solved || outcome == Outcome::approximate; }
   double duration() const { return trajectory ? trajectory->duration() : 0; }
@@ -95,10 +97,25 @@ struct MMGRASP_EXPORT DriveByResult {
 /// object in the hand. Throws InvalidInput without a trajectory.
 MMGRASP_EXPORT std::string drive_by_csv(const DriveByResult& result, int between = 0);
 
-/// The fastest motion of base and arm from `start` (at rest) through the tasks, in order, to the goal (at rest),
-/// without stopping for them (P1 chapter 4). What P1 leaves to trials is done here: configurations at the tasks, the
-/// way between them, time steps, which waypoint belongs to which task, other starts when one fails. Values that wrap
-/// reach the goal up to full turns. Throws InvalidInput for what makes no sense; no solution is a value with a report.
+/// Grasping while driving (P1 chapter 4): the fastest motion of base and arm from `start` (at rest) through the tasks,
+/// in order, to the goal (at rest), without stopping for them.
+///
+/// The optimiser (optimize_whole_body()) needs a guess; what P1 leaves to trials is done here:
+/// - goal configurations of base and arm at the tasks, by IK;
+/// - grasp assignments (a candidate for each task), bounded from below, and configuration sequences for them;
+/// - ways between the configurations, led around obstacles where the straight ones collide;
+/// - time steps, which waypoint belongs to which task, and other seeds when one fails.
+///
+/// Values that wrap reach the goal up to full turns. Throws InvalidInput for what makes no sense; no solution is a
+/// value with a report.
+/// @code
+///   DriveByTask pick;
+///   pick.candidates = {T_world_part * grasp.T_object_tcp};
+///   pick.object = "part";
+///   pick.dwell = 0.5;  // until the gripper has closed
+///   const DriveByResult result = plan_drive_by(robot.group("base_arm"), world, start, {pick}, {goal, goal});
+///   if (result.usable()) std::cout << result.duration() << " s\n";
+/// @endcode
 MMGRASP_EXPORT DriveByResult plan_drive_by(const JointGroup& group, const World& world, const Eigen::VectorXd& start,
                                            const std::vector<DriveByTask>& tasks, const DriveByGoal& goal,
                                            const DriveByOptions& options = {}, const Monitor& monitor = {});
@@ -107,19 +124,19 @@ MMGRASP_EXPORT DriveByResult plan_drive_by(const JointGroup& group, const World&
 /// after the other.
 struct MMGRASP_EXPORT KnownMotion {
   std::vector<double> times;               ///< [s], increasing; at least two.
-  std::vector<Eigen::VectorXd> positions;  ///< One a time; straight between them.
+  std::vector<Eigen::VectorXd> positions;  ///< Configuration at each time; straight between them.
   std::vector<double> task_times;          ///< When each task is reached [s]; the dwell follows.
 };
 
 /// The same as plan_drive_by, from a motion that is known instead of guesses: from its first position to its last, in
 /// the numbers as they stand. The answer is near that motion, need not be the fastest, and takes the way round
-/// obstacles that is known; two attempts at most. Each task has one candidate and no push. Of the options those for
-/// guesses are not used.
+/// obstacles that is known; two solves at most. Each task has one candidate and no push. Options for guesses are not
+/// used.
 MMGRASP_EXPORT DriveByResult shorten_drive_by(const JointGroup& group, const World& world,
                                               const std::vector<DriveByTask>& tasks, const KnownMotion& known,
                                               const DriveByOptions& options = {}, const Monitor& monitor = {});
 
-/// What plan_drive_by's first attempt hands to the optimiser, without collisions; empty when a task is out of reach.
+/// What plan_drive_by's first solve hands to the optimiser, without collisions; empty when a task is out of reach.
 struct MMGRASP_EXPORT DriveByStart {
   WholeBodyProblem problem;
   WholeBodyGuess guess;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -44,26 +43,39 @@ struct MMGRASP_EXPORT Obstruction {
   double needed_opening = 0;
 };
 
+/// A whole plan: where the base stops, how it drives there, and every pick.
 struct MMGRASP_EXPORT PartSupplyPlan {
   Outcome outcome = Outcome::infeasible;
   BaseGrid grid;
-  std::vector<BaseRegion> regions;  ///< One a tray with target parts (see region_trays).
-  std::vector<int> region_trays;    ///< Tray index of each region.
-  Intersections intersections;      ///< Tray indices in it refer to regions.
-  std::vector<Stop> stops;          ///< In visiting order; tray indices refer to regions.
+  std::vector<BaseRegion> regions;  ///< One a tray, in the problem's order.
+  Intersections intersections;      ///< Robust sets of trays: all when there are not too many, else the maximal ones.
+  std::vector<Stop> stops;          ///< Stops in visiting order.
   int lower_bound = 0;              ///< Proven: fewer stops cannot serve these regions.
   /// The stops are as few as the regions allow. False when that is not proven: the search for shared regions or for the
   /// least cover ended early, or no stops were found.
   bool proven_minimal = false;
   std::vector<BasePath> route;  ///< stops.size() + 1 legs, from start to goal.
-  std::vector<Pick> picks;      ///< In the order carried out.
+  std::vector<Pick> picks;      ///< Picks in the order in which they are carried out.
   double robustness_rate = 0;   ///< Share of sampled base poses at the stops from which all parts stay graspable.
   std::vector<Obstruction> obstructions;  ///< Empty if and only if solved.
   std::vector<StageTime> timings;
 };
 
-/// The whole of P1's Algorithm 1 and the motions around it. Every part of the answer is checked before it is returned.
-/// Regions whose cells fail the sampled check between cell centres lose those cells, and the stops are solved again.
+/// Plans a part supply (P1 Algorithm 1 and the motions around it): with as few stops of the base as possible, pick
+/// every target part of every tray into the bin on the robot, robustly against errors in the base's position.
+///
+/// 1. Base regions: from where can all parts of a tray be grasped (compute_base_regions())?
+/// 2. Stops: the fewest whose discs of `positioning_uncertainty` lie in shared regions (least_stops()). Base poses are
+///    drawn in the discs and checked; regions lose the cells that fail, and the stops are solved again.
+/// 3. Picks at every stop (plan_pick()), and the drives between the stops (plan_base_route()).
+///
+/// Every part of the answer is checked before it is returned. No plan is a value: `obstructions` say what is in the way
+/// and what would help. Throws InvalidInput for a problem that makes no sense.
+/// @code
+///   const ReachDatabase database = ReachDatabase::build(problem.arm, {});
+///   const PartSupplyPlan plan = plan_part_supply(problem, database);
+///   for (const Obstruction& what : plan.obstructions) std::cout << what.message << "\n";
+/// @endcode
 MMGRASP_EXPORT PartSupplyPlan plan_part_supply(const PartSupplyProblem& problem, const ReachDatabase& database,
                                                const Monitor& monitor = {});
 

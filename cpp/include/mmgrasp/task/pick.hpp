@@ -1,43 +1,82 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
+#include "mmgrasp/collision/world.hpp"
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/core/outcome.hpp"
 #include "mmgrasp/robot/trajectory.hpp"
+#include "mmgrasp/task/ids.hpp"
 #include "mmgrasp/task/problem.hpp"
 
 namespace mmgrasp {
 
-enum class MotionKind { reach, approach, lift, carry, retreat };
+/// What the arm does in one motion of a pick; to_string() gives "reach" for transit and "carry" for transfer.
+enum class MotionKind { transit, approach, lift, transfer, retreat };
 MMGRASP_EXPORT const char* to_string(MotionKind kind);
 
-/// One timed arm motion at a stop.
+/// One timed arm motion of a pick.
 struct MMGRASP_EXPORT PickMotion {
-  MotionKind kind = MotionKind::reach;
-  double opening = 0;    ///< Of the fingers during the motion [m].
-  bool holding = false;  ///< The part is attached during the motion.
+  MotionKind kind = MotionKind::transit;
+  double opening = 0;    ///< Opening of the fingers during the motion [m].
+  bool holding = false;  ///< The object is attached during the motion.
   JointTrajectory trajectory;
 };
 
-/// Home - reach the pre-grasp - approach straight - (close) - lift straight - carry to the bin - (open) - retreat to
-/// home.
+/// Home - transit to the pre-grasp - approach straight - (close) - lift straight - transfer to where the object goes -
+/// (open) - retreat to home.
 struct MMGRASP_EXPORT Pick {
   Outcome outcome = Outcome::infeasible;
-  int stop = -1;
-  int tray = -1, part = -1;         ///< Indices into the problem.
-  int grasp = -1;                   ///< Index into the part's grasps.
-  std::vector<PickMotion> motions;  ///< reach, approach, lift, carry, retreat.
-  Rejections rejections;            ///< Grasps (and their configurations) turned down on the way.
+  int stop = -1;                    ///< Index of the plan's stop; -1: of no plan.
+  PartRef part;                     ///< The part of a part-supply problem; no tray for other objects.
+  int grasp = -1;                   ///< Index into the object's grasps.
+  std::vector<PickMotion> motions;  ///< transit, approach, lift, transfer, retreat; without a place the first three.
+  Rejections rejections;            ///< Grasps (and their configurations) rejected on the way.
   std::string failed_at;            ///< With no solution: the stage at which most candidates fell.
-  double duration() const;
+  double duration() const;          ///< [s]
 };
 
-/// Plans one pick from a base pose. `remaining` are the parts still in place (tray, part); the picked one among them.
+struct MMGRASP_EXPORT PickOptions {
+  double approach_distance = 0.08;  ///< Straight move from pre-grasp to grasp, along the approach axis [m]; > 0.
+  double lift_height = 0.12;        ///< Straight upward move after closing [m]; > 0.
+  double motion_time_limit = 5.0;   ///< As PartSupplyOptions::motion_time_limit [s]; > 0.
+  int ik_seeds = 8;                 ///< Database configurations refined for each grasp; > 0.
+  unsigned seed = 1;                ///< Same seed, same pick.
+  void check() const;               ///< Throws InvalidInput naming field, value and rule.
+};
+
+/// An object of a world that an arm is to pick, whatever it is and wherever it lies.
+struct MMGRASP_EXPORT PickProblem {
+  /// Without base joints, its root where the robot stands (JointGroup::at); its reference holds the other joints (head,
+  /// ...) and the fingers at rest.
+  JointGroup arm;
+  Gripper gripper;
+  World world;                ///< Everything in its place, the object among it.
+  std::string object;         ///< Name of the world's object that is picked.
+  std::vector<Grasp> grasps;  ///< Candidates in the object's frame, best first.
+  Eigen::VectorXd home;       ///< Arm configuration at the beginning and at the end, fingers closed.
+  std::vector<Pose> places;   ///< World poses of the object at which it may be released; empty: it stays in the hand.
+  PickOptions options;
+  void check() const;  ///< Throws InvalidInput naming field, value and rule.
+};
+
+/// Picks an object: the first grasp with a collision-free configuration, straight approach and lift, and motions from
+/// home and to a place. The database must be of the arm. No solution is a value that says at which stage most
+/// candidates fell.
+/// @code
+///   PickProblem mug{arm.at(T_world_robot), gripper, world, "mug", grasps, home, {T_world_shelf}, {}};
+///   const Pick pick = plan_pick(mug, database);
+///   for (const PickMotion& motion : pick.motions) run(motion.trajectory);
+/// @endcode
+MMGRASP_EXPORT Pick plan_pick(const PickProblem& problem, const ReachDatabase& database, const Monitor& monitor = {});
+
+/// Picks a part of a part-supply problem from a base pose and puts it into the bin on the robot. `remaining` are the
+/// parts still in place, the picked one among them.
 MMGRASP_EXPORT Pick plan_pick(const PartSupplyProblem& problem, const ReachDatabase& database,
-                              const Eigen::Vector3d& base_pose, int tray, int part,
-                              const std::vector<std::pair<int, int>>& remaining, const Monitor& monitor = {});
+                              const Eigen::Vector3d& base_pose, PartRef part, const std::vector<PartRef>& remaining,
+                              const Monitor& monitor = {});
 
 }  // namespace mmgrasp

@@ -17,8 +17,8 @@
 
 namespace mmgrasp {
 
-/// Past solutions that start the next searches (P3 3.6): grows with use, can be saved. Knows the group it is for. When
-/// full, the oldest are forgotten. Threads may share one; what it answers then depends on who came first.
+/// Past solutions that seed the next IK searches (P3 3.6): grows with use, can be saved, belongs to one group. When
+/// full, the oldest are removed. Threads may share one; what it answers then depends on who came first.
 class MMGRASP_EXPORT IkSeedDatabase {
  public:
   /// The group must have base joints; capacity > 0. Throws InvalidInput.
@@ -26,7 +26,7 @@ class MMGRASP_EXPORT IkSeedDatabase {
   /// Configurations are kept with the base taken out: where the tool stood relative to the root, and the arm's joints.
   void add(const Eigen::VectorXd& q);
   /// Up to `count` whole configurations whose tool stands at T_world_tip, best match first: the base is put where the
-  /// remembered arm posture reaches the pose (height and tilt may remain wrong: IK mends that).
+  /// remembered arm posture reaches the pose (height and tilt may remain wrong: IK corrects that).
   std::vector<Eigen::VectorXd> seeds(const Pose& T_world_tip, int count) const;
   std::size_t size() const;
   const JointGroup& group() const { return group_; }
@@ -59,7 +59,7 @@ struct MMGRASP_EXPORT PlatformLocationsProblem {
   Pose T_world_place = Pose::Identity();                  ///< p_2: tool pose that places or inserts it.
   Eigen::Vector3d pick_point = Eigen::Vector3d::Zero();   ///< p_3: must be in view at the pick [m].
   Eigen::Vector3d place_point = Eigen::Vector3d::Zero();  ///< p_4: must be in view at the placing [m].
-  std::optional<MountedCamera> camera;                    ///< None (or one in the hand): the view is not asked for.
+  std::optional<MountedCamera> camera;                    ///< None (or one in the hand): the view is not checked.
 };
 
 struct MMGRASP_EXPORT PlatformLocationsOptions {
@@ -78,7 +78,7 @@ struct MMGRASP_EXPORT PlatformLocationsCounts {
   Rejections rejections;       ///< Reach, limits, self-collision, scene.
   std::size_t view = 0;        ///< Point outside the image.
   std::size_t singular = 0;    ///< Manipulability below the bound.
-  std::size_t iterations = 0;  ///< Of IK, all draws together.
+  std::size_t iterations = 0;  ///< IK iterations of all draws.
 };
 
 struct MMGRASP_EXPORT PlatformLocations {

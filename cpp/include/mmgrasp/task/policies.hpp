@@ -63,9 +63,9 @@ MMGRASP_EXPORT OptimisedOrder optimised_order(const PartRegions& parts, const st
 
 /// One round of pick and place.
 struct MMGRASP_EXPORT PolicyRound {
-  Outcome outcome = Outcome::infeasible;  ///< Of least_stops().
-  std::vector<Stop> stops;                ///< Trays are indices into the picking order.
-  double mean_radius = 0;                 ///< Over the stops: P1's robustness_i [m].
+  Outcome outcome = Outcome::infeasible;  ///< The outcome of least_stops().
+  std::vector<Stop> stops;                ///< Their trays are indices into the picking order.
+  double mean_radius = 0;                 ///< Mean over the stops: P1's robustness_i [m].
   double seconds = 0;                     ///< Spent between the rounds: regions and stops.
   /// The parts picked in this round can be grasped from everywhere in the discs of their stops, as `actual` tells.
   bool reliable = false;

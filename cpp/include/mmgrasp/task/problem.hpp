@@ -17,10 +17,10 @@ namespace mmgrasp {
 /// One part in a tray.
 struct MMGRASP_EXPORT Part {
   std::string name;               ///< Unique over the problem.
-  std::vector<LinkShape> shapes;  ///< In the part's frame.
+  std::vector<LinkShape> shapes;  ///< Its body, in the part's frame.
   Pose T_world_part = Pose::Identity();
   bool target = true;         ///< False: it stays, and is an obstacle.
-  std::vector<Grasp> grasps;  ///< Candidates, best first. The opening is Grasp::width.
+  std::vector<Grasp> grasps;  ///< Candidate grasps, best first. The opening is Grasp::width.
   int grasps_too_wide = 0;    ///< Candidates dropped before planning because the gripper does not open so far.
 };
 
@@ -64,7 +64,8 @@ struct MMGRASP_EXPORT PartSupplyOptions {
 };
 
 /// Everything the part-supply planner needs. The scene holds obstacles, tables, trays; parts are kept apart because
-/// they leave. `arm` has no base joints; its reference holds the other joints (head, ...) and the fingers at rest.
+/// they are removed one by one. `arm` has no base joints; its reference holds the other joints (head, ...) and the
+/// fingers at rest.
 struct MMGRASP_EXPORT PartSupplyProblem {
   Robot robot;
   JointGroup arm;

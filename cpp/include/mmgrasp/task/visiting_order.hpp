@@ -9,14 +9,15 @@
 
 namespace mmgrasp {
 
+/// An order of stops, or which stop cannot be driven to.
 struct MMGRASP_EXPORT VisitingOrder {
   std::vector<int> stops;  ///< Indices of the stops as they are visited; empty when one cannot be driven to.
   int unreachable = -1;    ///< Then: that stop's index, -1 for the goal.
 };
 
-/// Order in which the stops are visited from the problem's start to its goal, all parts in place. Up to 6 stops by the
-/// lengths of planned drives; more by route_lengths(), the drives of the order found planned and put in their place
-/// until the order stays. Exact for these lengths up to 15 stops.
+/// The order in which the stops are visited from the problem's start to its goal, all parts in place. Up to 6 stops are
+/// ordered by the lengths of planned drives. More are ordered by route_lengths(): the drives of the order found are
+/// planned and replace the estimates until the order stays. Exact for these lengths up to 15 stops.
 MMGRASP_EXPORT VisitingOrder order_stops(const PartSupplyProblem& problem, const std::vector<Stop>& stops,
                                          const Monitor& monitor = {});
 

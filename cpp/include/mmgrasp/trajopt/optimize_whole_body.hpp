@@ -16,26 +16,27 @@
 
 namespace mmgrasp {
 
-/// Where the search begins: a configuration per waypoint and a time step per segment.
+/// The initial guess: a configuration per waypoint and a time step per segment.
 struct MMGRASP_EXPORT WholeBodyGuess {
-  std::vector<Eigen::VectorXd> positions;
-  std::vector<Eigen::VectorXd> drive;  ///< Empty: from differences of the positions.
-  std::vector<double> steps;           ///< [s], > 0.
+  std::vector<Eigen::VectorXd> positions;  ///< Configuration at each waypoint.
+  std::vector<Eigen::VectorXd> drive;      ///< Drive velocity at each; empty: from differences of the positions.
+  std::vector<double> steps;               ///< Time step of each segment [s]; > 0.
   bool free = false;  ///< It is known to be free of collisions: the search starts with constraints along it.
-  /// With `free`: bodies that collide later are parted the way they lie here. Off for motions that will move far.
+  /// With `free`: bodies that collide later are separated the way they lie here. Off for motions that will move far.
   bool parts_bodies = true;
 };
 
+/// Options of optimize_whole_body().
 struct MMGRASP_EXPORT WholeBodyOptions {
   std::string solver = "ipopt";  ///< A name of nlp_solver_names().
   double tolerance = 1e-4;       ///< Relative optimality, in (0, 1).
-  int max_iterations = 150;      ///< Of one solve, of which there are at most 1 + refinements; > 0.
+  int max_iterations = 150;      ///< Iterations of one solve, of which there are at most 1 + refinements; > 0.
   double time_limit = 600.0;     ///< Wall-clock cap [s], for runs that are not to end by their iterations; > 0.
-  double smoothing = 1e-2;       ///< [s], >= 0: weight of the mean square of accelerations over their limits.
+  double smoothing = 1e-2;       ///< Weight of the mean square of accelerations over their limits [s]; >= 0.
   double warm_start = 0;         ///< See NlpOptions.
-  double margin = 0.005;         ///< Collisions: distance to keep [m]; >= 0.
-  double look_out = 0.15;        ///< Collisions: pairs of bodies nearer than this are constrained [m]; > margin.
-  int refinements = 6;           ///< Collisions: times that constraints may be added and the search repeated; >= 0.
+  double margin = 0.005;         ///< Distance to keep from obstacles and from oneself [m]; >= 0.
+  double look_out = 0.15;        ///< Pairs of bodies nearer than this are constrained [m]; > margin.
+  int refinements = 6;           ///< Times that collision constraints may be added and the solve repeated; >= 0.
   void check() const;
 };
 
@@ -51,11 +52,12 @@ struct MMGRASP_EXPORT Violation {
   bool kept() const { return value <= tolerance; }
 };
 
+/// A trajectory, how sure it is, and which constraints it breaks by how much.
 struct MMGRASP_EXPORT WholeBodyResult {
   /// solved only after check_whole_body found every constraint kept; approximate: kept, optimality not shown.
   Outcome outcome = Outcome::infeasible;
   std::shared_ptr<const WholeBodyTrajectory> trajectory;  ///< The answer or, not solved, the best iterate.
-  std::vector<Violation> violations;                      ///< Of the trajectory, one per kind.
+  std::vector<Violation> violations;                      ///< The trajectory's, one per kind.
   int iterations = 0;
   double seconds = 0;
   std::string message;
@@ -72,8 +74,20 @@ MMGRASP_EXPORT std::vector<Violation> check_whole_body(const WholeBodyProblem& p
                                                        const std::vector<CollisionChecker*>& checkers = {},
                                                        int finer = 10);
 
-/// A locally time-optimal trajectory near the guess. Throws InvalidInput for what problem.check() refuses and for
-/// guesses of wrong length or not finite; no solution is a value, with the violations of the best iterate.
+/// Finds a locally time-optimal trajectory of base and arm near the guess (P1 4.4): the problem as a sparse nonlinear
+/// program, solved again with separating planes wherever the answer collides, and checked by check_whole_body() before
+/// it is returned. `checkers`: see there. Throws InvalidInput for what problem.check() refuses and for guesses of wrong
+/// length or not finite; no solution is a value, with the violations of the best iterate.
+/// @code
+///   WholeBodyProblem problem(group);
+///   problem.start = start;
+///   problem.goal_lower = problem.goal_upper = goal;
+///   problem.segments = {{17}};
+///   WholeBodyGuess guess;
+///   for (int i = 0; i <= 17; ++i) guess.positions.push_back(start + (goal - start) * i / 17.0);
+///   guess.steps = {0.2};
+///   const WholeBodyResult result = optimize_whole_body(problem, guess);
+/// @endcode
 MMGRASP_EXPORT WholeBodyResult optimize_whole_body(const WholeBodyProblem& problem, const WholeBodyGuess& guess,
                                                    const WholeBodyOptions& options = {},
                                                    const std::vector<CollisionChecker*>& checkers = {},

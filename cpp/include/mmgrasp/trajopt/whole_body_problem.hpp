@@ -19,7 +19,7 @@ struct MMGRASP_EXPORT ToolConstraint {
   Pose T_world_tip = Pose::Identity();
   Vector6d lower = Vector6d::Zero();  ///< Bounds of the errors; equal: prescribed, infinite: free.
   Vector6d upper = Vector6d::Zero();
-  double max_speed = std::numeric_limits<double>::infinity();  ///< Of the tip [m/s]; > 0.
+  double max_speed = std::numeric_limits<double>::infinity();  ///< Speed limit of the tip [m/s]; > 0.
   /// Bounds of the tip's velocity in the target's frame [m/s].
   Eigen::Vector3d velocity_lower = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity());
   Eigen::Vector3d velocity_upper = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
@@ -28,14 +28,15 @@ struct MMGRASP_EXPORT ToolConstraint {
 /// Waypoints that share one time step (P1's Delta T_j), from one task to the next.
 struct MMGRASP_EXPORT WholeBodySegment {
   int intervals = 17;       ///< > 0
-  double min_duration = 0;  ///< [s], >= 0; e.g. what a gripper needs to close.
-  double max_duration = std::numeric_limits<double>::infinity();
+  double min_duration = 0;  ///< Shortest duration [s], e.g. what a gripper needs to close; >= 0.
+  double max_duration = std::numeric_limits<double>::infinity();  ///< Longest duration [s].
 };
 
 /// P1's problem (4.1)-(4.9): the fastest motion of base and arm through `tool` constraints, under the limits of the
-/// group and of the robot's base. At waypoints stand configuration and velocity; accelerations are constant between
-/// them, so that joints follow (4.6) exactly. A diff-drive base is described by driving speed v and turning rate omega:
-/// it never slips sideways (4.5), and x and y follow from integrating v and omega, linear between waypoints.
+/// group and of the robot's base. The variables are configuration and velocity at the waypoints; accelerations are
+/// constant between them, so that joints follow (4.6) exactly. A diff-drive base is described by driving speed v and
+/// turning rate omega: it never slips sideways (4.5), and x and y follow from integrating v and omega, linear between
+/// waypoints.
 struct MMGRASP_EXPORT WholeBodyProblem {
   explicit WholeBodyProblem(JointGroup g) : group(std::move(g)) {}
 
@@ -44,8 +45,9 @@ struct MMGRASP_EXPORT WholeBodyProblem {
   Eigen::VectorXd goal_lower, goal_upper;        ///< Box of the last one; equal: prescribed, infinite: free.
   Eigen::VectorXd start_velocity, end_velocity;  ///< Drive velocities (see drive_names); empty: at rest.
   std::vector<WholeBodySegment> segments;        ///< One more than there are tasks in the plain case.
-  std::vector<ToolConstraint> tool;
-  double jerk_time = 0;  ///< [s], >= 0: accelerations may go from 0 to their limit in no less; 0: no limit on jerk.
+  std::vector<ToolConstraint> tool;              ///< What the tool keeps at which waypoint.
+  /// Shortest time in which an acceleration may go from 0 to its limit [s], >= 0; 0: no limit on jerk.
+  double jerk_time = 0;
 
   int intervals() const;
   int waypoints() const { return intervals() + 1; }

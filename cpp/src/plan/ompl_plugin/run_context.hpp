@@ -9,7 +9,7 @@
 
 namespace mmgrasp_ompl {
 
-/// Thrown out of a planner whose rounds take any time: when the caller's stop token is set, for nobody wants its path
+/// Thrown out of a planner whose rounds take any time: when the caller's cancel token is set, for nobody wants its path
 /// then, or when the time limit has passed and it has no path to lose.
 struct RunStopped {};
 

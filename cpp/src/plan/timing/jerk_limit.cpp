@@ -22,7 +22,7 @@ constexpr double kShortestWindow = 1e-4;
 class Cubics {
  public:
   /// Throws TimingStopped.
-  Cubics(JointTrajectory motion, const StopToken& stop)
+  Cubics(JointTrajectory motion, const CancelToken& stop)
       : times_(std::move(motion.times)),
         positions_(std::move(motion.positions)),
         velocities_(std::move(motion.velocities)) {
@@ -104,7 +104,7 @@ class Cubics {
 };
 
 /// The motion with a wait of `wait` seconds at each inner stop.
-JointTrajectory with_waits(const JointTrajectory& motion, double wait, const StopToken& stop) {
+JointTrajectory with_waits(const JointTrajectory& motion, double wait, const CancelToken& stop) {
   JointTrajectory out;
   double late = 0;
   for (std::size_t i = 0; i < motion.times.size(); ++i) {
@@ -125,7 +125,7 @@ JointTrajectory with_waits(const JointTrajectory& motion, double wait, const Sto
 
 /// Whether the average over `window` keeps the jerk limits: its jerk is linear between the times at which either end
 /// of the window meets a sample, so that checking both sides of these is enough.
-bool keeps_jerk(const Cubics& motion, double window, const Eigen::VectorXd& jerk_limits, const StopToken& stop) {
+bool keeps_jerk(const Cubics& motion, double window, const Eigen::VectorXd& jerk_limits, const CancelToken& stop) {
   const double side = std::min(1e-9 * (motion.duration() + window), 1e-3 * window);
   const Eigen::ArrayXd bound = window * jerk_limits.array() * (1 + 1e-9);
   for (const double t : motion.times()) {
@@ -167,7 +167,7 @@ std::vector<double> sample_times(const Cubics& motion, double window, double per
 }
 
 JointTrajectory averaged(const Cubics& motion, const Eigen::VectorXd& origin, double window, double period,
-                         const StopToken& stop) {
+                         const CancelToken& stop) {
   JointTrajectory out;
   const bool precise = is_short(window, period);
   for (const double t : sample_times(motion, window, period)) {
@@ -209,7 +209,7 @@ void slow_down(JointTrajectory& motion, const Eigen::VectorXd& velocity_limits,
 
 JointTrajectory limit_jerk(const JointTrajectory& motion, const Eigen::VectorXd& velocity_limits,
                            const Eigen::VectorXd& acceleration_limits, const Eigen::VectorXd& jerk_limits,
-                           double period, const StopToken& stop) {
+                           double period, const CancelToken& stop) {
   if (motion.times.size() < 2) return motion;
   double least = kShortestWindow, enough = 2 * kShortestWindow;
   for (const auto& a : motion.accelerations)

@@ -15,6 +15,6 @@ namespace mmgrasp::detail {
 /// InvalidInput on limits so low that the motion would take more samples than memory holds.
 JointTrajectory limit_jerk(const JointTrajectory& motion, const Eigen::VectorXd& velocity_limits,
                            const Eigen::VectorXd& acceleration_limits, const Eigen::VectorXd& jerk_limits,
-                           double period, const StopToken& stop);
+                           double period, const CancelToken& stop);
 
 }  // namespace mmgrasp::detail

@@ -61,7 +61,7 @@ struct PathTiming::Bounds {
 };
 
 PathTiming::PathTiming(const BlendedPath& path, const Eigen::VectorXd& velocity_limits,
-                       const Eigen::VectorXd& acceleration_limits, const StopToken& stop)
+                       const Eigen::VectorXd& acceleration_limits, const CancelToken& stop)
     : path_(path), velocity_limits_(velocity_limits), acceleration_limits_(acceleration_limits), stop_(stop) {
   make_grid();
   integrate();

@@ -22,10 +22,10 @@ class PathTiming {
 
   /// Throws TimingStopped, as jumps() does.
   PathTiming(const BlendedPath& path, const Eigen::VectorXd& velocity_limits,
-             const Eigen::VectorXd& acceleration_limits, const StopToken& stop);
+             const Eigen::VectorXd& acceleration_limits, const CancelToken& stop);
 
   double duration() const { return times_.back(); }
-  const StopToken& stop() const { return stop_; }
+  const CancelToken& stop() const { return stop_; }
   State at(double time) const;
   /// Times of grid points at which some joint's acceleration jumps by more than `relative` of its limit.
   std::vector<double> jumps(double relative) const;
@@ -44,7 +44,7 @@ class PathTiming {
 
   const BlendedPath& path_;
   Eigen::VectorXd velocity_limits_, acceleration_limits_;
-  const StopToken stop_;
+  const CancelToken stop_;
   std::vector<Interval> intervals_;
   std::vector<double> speed_limits_;  // Largest x by joint velocities alone, per grid point; 0 where the path rests.
   std::vector<double> x_;             // One per grid point.

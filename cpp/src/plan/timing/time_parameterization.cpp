@@ -173,7 +173,8 @@ Waypoints blocked_configurations(CollisionChecker& checker, const JointTrajector
 
 /// Halves the deviation of each corner next to a blocked configuration. False when none of them can come closer. Throws
 /// TimingStopped.
-bool tighten(const TimedPath& timed, const Waypoints& blocked, std::vector<double>& deviations, const StopToken& stop) {
+bool tighten(const TimedPath& timed, const Waypoints& blocked, std::vector<double>& deviations,
+             const CancelToken& stop) {
   std::vector<bool> touched(deviations.size(), false);
   bool changed = false;
   for (const auto& q : blocked) {

@@ -1,3 +1,4 @@
+// IkSeedDatabase: past solutions that seed the next searches.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

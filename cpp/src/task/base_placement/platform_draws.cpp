@@ -8,7 +8,7 @@
 #include "mmgrasp/robot/detail/manipulability_measure.hpp"
 #include "mmgrasp/robot/ik_objective.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 namespace {
 
 /// Half the squared distance of the base from a pose: what draws two ends together.
@@ -53,12 +53,12 @@ PlatformEnd::PlatformEnd(CollisionChecker& checker, const Pose& T_world_tip, con
   descent_.restarts = 0;
   slide_ = descent_;
   slide_.objective_iterations = 20;
-  // Half as much again as is asked for, so that the slide does not end right at the bound.
+  // Half as much again as required, so that the search does not end right at the bound.
   if (least_manipulability_ > 0)
     slide_.objectives.push_back(make_singularity_objective(group_, 1.5 * least_manipulability_));
   if (camera_)
     slide_.objectives.push_back(make_camera_view_objective(group_, camera_->link, camera_->T_link_camera, point));
-  detail::keep_base_near(group_, T_world_tip, lower_, upper_);
+  keep_base_near(group_, T_world_tip, lower_, upper_);
 }
 
 bool PlatformEnd::in_view(const Pose& T_world_link) const {
@@ -67,7 +67,7 @@ bool PlatformEnd::in_view(const Pose& T_world_link) const {
 }
 
 PlatformEnd::Fault PlatformEnd::fault_of(const Eigen::VectorXd& q, Rejection& cause) {
-  if (detail::volume(arm_jacobian(group_, q)) < least_manipulability_) return Fault::singular;
+  if (volume(arm_jacobian(group_, q)) < least_manipulability_) return Fault::singular;
   if (camera_) {
     Poses poses;
     group_.link_poses(q, poses);
@@ -166,4 +166,4 @@ bool PlatformEnd::confirmed(const Eigen::VectorXd& q) const {
   return checker_.clone().contacts(q).empty();
 }
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

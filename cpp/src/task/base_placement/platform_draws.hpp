@@ -6,7 +6,7 @@
 
 #include "mmgrasp/task/platform_locations.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
 /// One of the two ends of a platform locations problem: tells valid configurations and draws them.
 class PlatformEnd {
@@ -16,7 +16,7 @@ class PlatformEnd {
               const std::optional<MountedCamera>& camera, const PlatformLocationsOptions& options,
               std::uint64_t stream);
 
-  /// Draws once: a descent from a remembered posture or from anywhere near, then along the solutions when view or
+  /// Draws once: an IK search from a remembered posture or from anywhere near, then along the solutions when view or
   /// singularity asks for it. True when it gave a valid configuration, which joins `found`.
   bool draw(const IkSeedDatabase* database);
   /// From one start; `fixed_base` keeps the start's base pose exactly. Counts as a draw.
@@ -52,4 +52,4 @@ class PlatformEnd {
   std::uint64_t seed_, stream_;
 };
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

@@ -11,6 +11,8 @@
 namespace mmgrasp {
 namespace {
 
+using detail::PlatformEnd;
+
 double travel_of(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return (a.head<2>() - b.head<2>()).norm();
 }

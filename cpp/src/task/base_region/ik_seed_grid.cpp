@@ -6,14 +6,16 @@
 #include "mmgrasp/robot/detail/ik_closed_form.hpp"
 #include "task/base_region/warm_started_ik.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 namespace {
 
-constexpr int kFruitless = 2;    // Descents without an arrival after which a node counts as out of reach.
-constexpr int kIterations = 20;  // Of one descent: from a stored configuration near by, one that arrives takes 4 to 10.
-constexpr double kFar = 1.2;    // Cells of the database: a node without a stored configuration so near is out of reach.
+constexpr int kFruitless = 2;    // Seeds without a solution after which a node counts as out of reach.
+constexpr int kIterations = 20;  // Most of one IK search: from a stored configuration near by a success takes 4 to 10.
+constexpr double kFar =
+    1.2;  // In cells of the database: a node without a stored configuration so near is out of reach.
 constexpr double kSame = 1e-3;  // Configurations nearer than this are one [rad or m].
-constexpr double kPerUnit = 8;  // Cells of a rotation matrix's entries; centred on 0 and 1, so that upright tools are.
+constexpr double kPerUnit =
+    8;  // Cells per unit of a rotation matrix's entries, centred on 0 and 1, so that upright tools are.
 // Cells begin at no round number: base grids and trays have those, and roundings would decide between two cells.
 constexpr double kOffset = 0.0137;  // [m]
 
@@ -25,7 +27,7 @@ double middle(int cell) {
   return (cell + 0.5) * IkSeedGrid::kEdge + kOffset;
 }
 
-/// The rotation in the middle of the cell of R: from its first two columns, made orthonormal.
+/// The rotation in the middle of a cell: from its first two columns, made orthonormal.
 Eigen::Matrix3d rotation_of(const std::array<int, 7>& key) {
   Eigen::Vector3d a(key[0], key[1], key[2]), b(key[3], key[4], key[5]);
   a.normalize();
@@ -39,8 +41,8 @@ Eigen::Matrix3d rotation_of(const std::array<int, 7>& key) {
 }
 
 bool six_joints_in_closed_form(const JointGroup& arm) {
-  const detail::Screws screws = detail::screws_of(arm);
-  return screws.size == 6 && detail::closed_form_of(screws).family != detail::ClosedForm::Family::none;
+  const Screws screws = screws_of(arm);
+  return screws.size == 6 && closed_form_of(screws).family != ClosedForm::Family::none;
 }
 
 }  // namespace
@@ -48,29 +50,29 @@ bool six_joints_in_closed_form(const JointGroup& arm) {
 IkSeedGrid::IkSeedGrid(const JointGroup& arm, const ReachDatabase& database, int seeds)
     : arm_(arm), database_(database), seeds_(seeds), closed_form_(six_joints_in_closed_form(arm)) {
   ik_.max_iterations = kIterations;
-  ik_.time_limit = detail::kNoTimeLimit;
+  ik_.time_limit = kNoTimeLimit;
 }
 
 IkBranches IkSeedGrid::branches(const Pose& T_base_tcp) const {
-  // Where a singularity makes the closed form fall back on random descents, their number and seed end them.
+  // Where a singularity makes the closed form fall back on random starts, their number ends the search.
   IkOptions options;
   options.restarts = 0;
-  options.time_limit = detail::kNoTimeLimit;
+  options.time_limit = kNoTimeLimit;
   return solve_ik_branches(arm_, T_base_tcp, options);
 }
 
-IkSeedGrid::IkSeedSlice& IkSeedGrid::sheet(const Eigen::Matrix3d& R, double z) const {
+IkSeedGrid::Slice& IkSeedGrid::slice(const Eigen::Matrix3d& R, double z) const {
   Key key;
   for (int i = 0; i < 6; ++i) key[i] = static_cast<int>(std::lround(kPerUnit * R(i % 3, i / 3)));
   key[6] = floor_cell(z);
   const std::lock_guard<std::mutex> lock(mutex_);
-  std::unique_ptr<IkSeedSlice>& sheet = sheets_[key];
-  if (!sheet) sheet = std::make_unique<IkSeedSlice>(*this, rotation_of(key), middle(key[6]));
-  return *sheet;
+  std::unique_ptr<Slice>& slice = slices_[key];
+  if (!slice) slice = std::make_unique<Slice>(*this, rotation_of(key), middle(key[6]));
+  return *slice;
 }
 
-IkSeedGrid::IkSeedSlice::IkSeedSlice(const IkSeedGrid& lattice, const Eigen::Matrix3d& R, double z) : R_(R), z_(z) {
-  const Eigen::AlignedBox3d bounds = lattice.database_.bounds();
+IkSeedGrid::Slice::Slice(const IkSeedGrid& grid, const Eigen::Matrix3d& R, double z) : R_(R), z_(z) {
+  const Eigen::AlignedBox3d bounds = grid.database_.bounds();
   if (bounds.isEmpty() || z < bounds.min().z() - kEdge || z > bounds.max().z() + kEdge) return;
   x0_ = floor_cell(bounds.min().x()) - 1;
   y0_ = floor_cell(bounds.min().y()) - 1;
@@ -81,16 +83,16 @@ IkSeedGrid::IkSeedSlice::IkSeedSlice(const IkSeedGrid& lattice, const Eigen::Mat
   for (std::size_t i = 0; i < count; ++i) nodes_[i].store(nullptr, std::memory_order_relaxed);
 }
 
-IkSeedGrid::IkSeedSlice::~IkSeedSlice() {
+IkSeedGrid::Slice::~Slice() {
   for (int i = 0; i < nx_ * ny_; ++i) delete nodes_[i].load();
 }
 
-IkSeedGrid::Node* IkSeedGrid::IkSeedSlice::find(double x, double y, std::array<int, 2>& cell) {
+IkSeedGrid::Node* IkSeedGrid::Slice::find(double x, double y, std::array<int, 2>& cell) {
   cell = {floor_cell(x) - x0_, floor_cell(y) - y0_};
   return at(cell[0], cell[1]);
 }
 
-IkSeedGrid::Node* IkSeedGrid::IkSeedSlice::at(int ix, int iy) {
+IkSeedGrid::Node* IkSeedGrid::Slice::at(int ix, int iy) {
   if (ix < 0 || iy < 0 || ix >= nx_ || iy >= ny_) return nullptr;
   std::atomic<Node*>& slot =
       nodes_[static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx_) + static_cast<std::size_t>(ix)];
@@ -101,59 +103,59 @@ IkSeedGrid::Node* IkSeedGrid::IkSeedSlice::at(int ix, int iy) {
   return node;
 }
 
-Pose IkSeedGrid::IkSeedSlice::pose(int ix, int iy) const {
+Pose IkSeedGrid::Slice::pose(int ix, int iy) const {
   Pose T = Pose::Identity();
   T.linear() = R_;
   T.translation() = Eigen::Vector3d(middle(ix + x0_), middle(iy + y0_), z_);
   return T;
 }
 
-double IkSeedGrid::IkSeedSlice::squared_distance(int ix, int iy, double x, double y) const {
+double IkSeedGrid::Slice::squared_distance(int ix, int iy, double x, double y) const {
   const double dx = middle(ix + x0_) - x, dy = middle(iy + y0_) - y;
   return dx * dx + dy * dy;
 }
 
-const double* IkSeedGrid::Node::solution(int k, const IkSeedGrid& lattice, const Pose& T_base_node) {
+const double* IkSeedGrid::Node::solution(int k, const IkSeedGrid& grid, const Pose& T_base_node) {
   if (k >= found_.load(std::memory_order_acquire)) {
     // In this order: the last one may have been found in between.
     if (exhausted_.load(std::memory_order_acquire) && k >= found_.load(std::memory_order_acquire)) return nullptr;
     const std::lock_guard<std::mutex> lock(mutex_);
     while (k >= found_.load(std::memory_order_relaxed)) {
-      if (!search(lattice, T_base_node)) return nullptr;
+      if (!search(grid, T_base_node)) return nullptr;
     }
   }
   return configurations_.data() + static_cast<std::ptrdiff_t>(k) * configurations_.rows();
 }
 
 /// All branches, or the seeds to follow.
-void IkSeedGrid::Node::start(const IkSeedGrid& lattice, const Pose& T_base_node) {
+void IkSeedGrid::Node::start(const IkSeedGrid& grid, const Pose& T_base_node) {
   started_ = true;
-  if (lattice.closed_form_) {
-    const IkBranches branches = lattice.branches(T_base_node);
+  if (grid.closed_form_) {
+    const IkBranches branches = grid.branches(T_base_node);
     const auto count = static_cast<Eigen::Index>(branches.solutions.size());
-    configurations_.resize(lattice.arm_.size(), count);
+    configurations_.resize(grid.arm_.size(), count);
     for (Eigen::Index i = 0; i < count; ++i) configurations_.col(i) = branches.solutions[i];
     found_.store(static_cast<int>(count), std::memory_order_release);
     return;
   }
   thread_local Eigen::MatrixXd seeds;
-  seeds_count_ = lattice.database_.nearest(T_base_node, lattice.seeds_, seeds);
+  seeds_count_ = grid.database_.nearest(T_base_node, grid.seeds_, seeds);
   fruitless_ = kFruitless;
   if (seeds_count_ == 0) return;
   configurations_ = seeds.leftCols(seeds_count_);
-  const ReachOptions& cells = lattice.database_.options();
-  const Pose T = lattice.arm_.fk(configurations_.col(0));
+  const ReachOptions& cells = grid.database_.options();
+  const Pose T = grid.arm_.fk(configurations_.col(0));
   const double away = (T.translation() - T_base_node.translation()).norm() / cells.position_cell +
                       rotation_distance(T, T_base_node) / cells.rotation_cell;
   if (away > kFar) fruitless_ = 0;
 }
 
 /// Looks for one more configuration; false when there is none left to look for.
-bool IkSeedGrid::Node::search(const IkSeedGrid& lattice, const Pose& T_base_node) {
+bool IkSeedGrid::Node::search(const IkSeedGrid& grid, const Pose& T_base_node) {
   thread_local Eigen::VectorXd q;
-  const JointGroup& arm = lattice.arm_;
+  const JointGroup& arm = grid.arm_;
   if (!started_) {
-    start(lattice, T_base_node);
+    start(grid, T_base_node);
     if (found_.load(std::memory_order_relaxed) > 0) return true;
   }
   const int found = found_.load(std::memory_order_relaxed);
@@ -165,8 +167,8 @@ bool IkSeedGrid::Node::search(const IkSeedGrid& lattice, const Pose& T_base_node
   const bool last = found == 0 && next_ + 1 == std::min(fruitless_, seeds_count_);
   ++next_;
   if (last) {
-    // A descent that, failing, also tells whether the pose is reached outside the limits only.
-    IkOptions one = lattice.ik_;
+    // This search, when it fails, also tells whether the pose is reached outside the limits only.
+    IkOptions one = grid.ik_;
     one.restarts = 0;
     const IkResult end = solve_ik(arm, T_base_node, q, one);
     if (end.outcome != Outcome::solved) {
@@ -174,7 +176,7 @@ bool IkSeedGrid::Node::search(const IkSeedGrid& lattice, const Pose& T_base_node
       return true;
     }
     q = end.q;
-  } else if (!WarmStartedIk(arm).run(T_base_node, q)) {
+  } else if (!WarmStartedIk(arm).solve(T_base_node, q)) {
     return true;
   }
   for (int i = 0; i < found; ++i) {
@@ -185,4 +187,4 @@ bool IkSeedGrid::Node::search(const IkSeedGrid& lattice, const Pose& T_base_node
   return true;
 }
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

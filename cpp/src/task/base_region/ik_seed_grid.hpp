@@ -16,27 +16,27 @@
 #include "mmgrasp/robot/ik_branches.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
-/// Arm configurations at the nodes of a lattice of tool poses, found when first asked for: from a node's configuration
-/// a pose in the node's cell is a step or two away. What a node holds depends on the node alone, never on who asked
-/// first, so that answers made from it depend on the pose alone. Arms of six joints with a closed form get all
-/// branches, others what the database leads to. Thread-safe.
+/// Arm configurations at the nodes of a grid of tool poses, found on first use: seeds for WarmStartedIk, which
+/// needs a step or two from a node to any pose in the node's cell. What a node holds depends on the node alone, never
+/// on the query that came first, so that answers made from it depend on the pose alone. Arms of six joints with a
+/// closed form get all branches, others what the database leads to. Thread-safe.
 class IkSeedGrid {
  public:
-  static constexpr double kEdge = 0.05;  ///< Of a cell [m].
+  static constexpr double kEdge = 0.05;  ///< Edge of a cell [m].
 
   class Node {
    public:
-    /// Configuration `k`, or nullptr when there are fewer. They are searched one by one, as far as they are asked for.
-    const double* solution(int k, const IkSeedGrid& lattice, const Pose& T_base_node);
-    /// Of a node without configurations.
+    /// Configuration `k`, or nullptr when there are fewer. They are searched one by one, as far as they are needed.
+    const double* solution(int k, const IkSeedGrid& grid, const Pose& T_base_node);
+    /// Why a node has no configurations.
     Rejection cause() const { return cause_; }
-    std::atomic<int> last_good{0};  ///< Which was of use last: saves time, decides nothing.
+    std::atomic<int> last_good{0};  ///< The configuration that was of use last: saves time, decides nothing.
 
    private:
-    void start(const IkSeedGrid& lattice, const Pose& T_base_node);
-    bool search(const IkSeedGrid& lattice, const Pose& T_base_node);
+    void start(const IkSeedGrid& grid, const Pose& T_base_node);
+    bool search(const IkSeedGrid& grid, const Pose& T_base_node);
 
     std::mutex mutex_;
     std::atomic<int> found_{0};
@@ -48,12 +48,12 @@ class IkSeedGrid {
   };
 
   /// The nodes of one orientation of the tool and one height above the root.
-  class IkSeedSlice {
+  class Slice {
    public:
-    IkSeedSlice(const IkSeedGrid& lattice, const Eigen::Matrix3d& R, double z);
-    ~IkSeedSlice();
-    IkSeedSlice(const IkSeedSlice&) = delete;
-    IkSeedSlice& operator=(const IkSeedSlice&) = delete;
+    Slice(const IkSeedGrid& grid, const Eigen::Matrix3d& R, double z);
+    ~Slice();
+    Slice(const Slice&) = delete;
+    Slice& operator=(const Slice&) = delete;
     /// The node of the cell that holds a position, nullptr where the tool never gets. `cell`: its column and row.
     Node* find(double x, double y, std::array<int, 2>& cell);
     Node* at(int ix, int iy);
@@ -71,12 +71,12 @@ class IkSeedGrid {
   /// `arm` with its root in the origin; without a closed form up to `seeds` stored configurations are followed for each
   /// node. Keeps copies.
   IkSeedGrid(const JointGroup& arm, const ReachDatabase& database, int seeds);
-  /// branches() are all there are.
+  /// True when branches() gives every configuration of a pose.
   bool closed_form() const { return closed_form_; }
-  /// Of a pose itself, with closed_form() only.
+  /// All configurations of a pose itself, with closed_form() only.
   IkBranches branches(const Pose& T_base_tcp) const;
-  /// For a tool orientation and height in the root frame. It lives as long as the lattice.
-  IkSeedSlice& sheet(const Eigen::Matrix3d& R, double z) const;
+  /// The slice for a tool orientation and height in the root frame. It lives as long as the grid.
+  Slice& slice(const Eigen::Matrix3d& R, double z) const;
 
  private:
   friend class Node;
@@ -88,7 +88,7 @@ class IkSeedGrid {
   bool closed_form_;
   IkOptions ik_;
   mutable std::mutex mutex_;
-  mutable std::map<Key, std::unique_ptr<IkSeedSlice>> sheets_;
+  mutable std::map<Key, std::unique_ptr<Slice>> slices_;
 };
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

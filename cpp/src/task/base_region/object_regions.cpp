@@ -3,27 +3,32 @@
 #include <algorithm>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/task/base_pose_evaluator.hpp"
 #include "task/base_region/region_search.hpp"
+#include "task/problem/scene.hpp"
 
 namespace mmgrasp {
 
 struct ObjectRegions::Impl {
   PartSupplyProblem problem;
   BaseGrid grid;
-  std::unique_ptr<RegionSearch> search;
+  std::unique_ptr<detail::RegionSearch> search;
   bool complete = false;
 
   Impl(const PartSupplyProblem& wanted, const ReachDatabase& database, const BaseGrid& cells)
-      : problem(wanted), grid(cells), search(std::make_unique<RegionSearch>(problem, database, cells, true)) {}
+      : problem(wanted),
+        grid(cells),
+        search(std::make_unique<detail::RegionSearch>(problem, database, cells, BasePoseEvaluator(problem, database),
+                                                      true)) {}
 
-  void check_tray(int tray) const {
+  void check_tray(TrayId tray) const {
     require(complete, "regions", "stopped", "must be complete");
     require(tray >= 0 && tray < search->trays(), "tray", tray, "must be one of the problem's trays");
   }
 
-  void check_part(int tray, int part) const {
-    check_tray(tray);
-    require(search->present(tray, part), "part", part, "must be a part of the tray that is in place");
+  void check_part(PartRef part) const {
+    check_tray(part.tray);
+    require(search->present(part), "part", part.part, "must be a part of the tray that is in place");
   }
 };
 
@@ -51,36 +56,34 @@ int ObjectRegions::trays() const {
   return impl_->search->trays();
 }
 
-std::vector<int> ObjectRegions::parts(int tray) const {
+std::vector<int> ObjectRegions::parts(TrayId tray) const {
   impl_->check_tray(tray);
   return impl_->search->parts(tray);
 }
 
-CellMask ObjectRegions::region(int tray, const std::vector<int>& parts) const {
+CellMask ObjectRegions::region(TrayId tray, const std::vector<int>& parts) const {
   impl_->check_tray(tray);
   if (parts.empty()) throw InvalidInput("parts: must not be empty");
   for (int part : parts) {
-    impl_->check_part(tray, part);
-    require(impl_->problem.trays[tray].parts[part].target, "part", part, "must be a target");
+    impl_->check_part({tray, part});
+    require(detail::part_of(impl_->problem, {tray, part}).target, "part", part, "must be a target");
   }
   CellMask cells(impl_->grid.size(), 0);
   impl_->search->common_cells(tray, parts, cells);
   return cells;
 }
 
-BaseRegion ObjectRegions::base_region(int tray) const {
+BaseRegion ObjectRegions::base_region(TrayId tray) const {
   impl_->check_tray(tray);
   return impl_->search->region(tray);
 }
 
-bool ObjectRegions::remove(const std::vector<std::pair<int, int>>& tray_and_part, const Monitor& monitor) {
-  for (const auto& [tray, part] : tray_and_part) impl_->check_part(tray, part);
-  for (auto it = tray_and_part.begin(); it != tray_and_part.end(); ++it) {
-    require(std::find(it + 1, tray_and_part.end(), *it) == tray_and_part.end(), "part", it->second,
-            "must not be named twice");
-  }
-  auto rest = std::make_unique<RegionSearch>(*impl_->search);
-  rest->resume_without(tray_and_part);
+bool ObjectRegions::remove(const std::vector<PartRef>& removed, const Monitor& monitor) {
+  for (const PartRef& part : removed) impl_->check_part(part);
+  for (auto it = removed.begin(); it != removed.end(); ++it)
+    require(std::find(it + 1, removed.end(), *it) == removed.end(), "part", it->part, "must not be named twice");
+  auto rest = std::make_unique<detail::RegionSearch>(*impl_->search);
+  rest->resume_without(removed);
   if (!rest->run(0, rest->trays(), monitor)) return false;
   impl_->search = std::move(rest);
   return true;

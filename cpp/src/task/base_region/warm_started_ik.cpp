@@ -8,17 +8,18 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/robot/ik.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 namespace {
 
 constexpr int kIterations = 8;
-constexpr double kShrink = 0.25;           // Of the squared error in one iteration, else it is a strike; two end it.
+constexpr double kShrink =
+    0.25;  // An iteration that shrinks the squared error less is a failure; the second ends the search.
 constexpr double kDampingPerError = 0.03;  // As in refine_ik(): none near the goal, where the step is Newton's.
 constexpr double kLeastDamping = 1e-10;
 constexpr double kLongestStep = 0.7;  // [rad or m]; longer ones lead away from the configuration one came from.
 
 /// Lower triangle of a symmetric 6 x 6 matrix, solved in place of `b`. False when it is not positive definite.
-bool solve(std::array<double, 36>& A, Vector6d& b) {
+bool solve_symmetric(std::array<double, 36>& A, Vector6d& b) {
   std::array<double, 6> inverse;
   for (std::size_t k = 0; k < 6; ++k) {
     double d = A[6 * k + k];
@@ -63,9 +64,9 @@ WarmStartedIk::WarmStartedIk(const JointGroup& arm) : arm_(arm), J_(6, arm.size(
   rotation_tolerance_ = defaults.rotation_tolerance;
 }
 
-bool WarmStartedIk::run(const Pose& T_base_tip, Eigen::VectorXd& q) {
+bool WarmStartedIk::solve(const Pose& T_base_tip, Eigen::VectorXd& q) {
   Pose T_base_now;
-  double before = detail::kInfinity;
+  double before = kInfinity;
   for (int iteration = 0, strikes = 0;; ++iteration) {
     arm_.fk_jacobian(q, T_base_now, J_);
     const Vector6d error = difference(T_base_now, T_base_tip);
@@ -100,7 +101,7 @@ bool WarmStartedIk::step(Eigen::VectorXd& q, const Vector6d& error, double dampi
     }
     for (std::size_t i = 0; i < 6; ++i) A[7 * i] += damping;
     Vector6d y = rest;
-    if (!solve(A, y)) return false;
+    if (!solve_symmetric(A, y)) return false;
     bool again = false;
     for (Eigen::Index c = 0; c < n; ++c) {
       if (fixed >> c & 1) continue;
@@ -126,4 +127,4 @@ bool WarmStartedIk::step(Eigen::VectorXd& q, const Vector6d& error, double dampi
   return true;
 }
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

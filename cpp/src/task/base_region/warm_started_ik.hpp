@@ -5,7 +5,7 @@
 #include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
 /// Newton's method from a configuration whose tool is near by (a few centimetres, a tenth of a radian): gives up where
 /// refine_ik() would search on. The hot loop of base regions. Keeps limits. One per thread.
@@ -13,7 +13,7 @@ class WarmStartedIk {
  public:
   explicit WarmStartedIk(const JointGroup& arm);
   /// From q, in place. True when the tool is at the pose within the tolerances of IkOptions' defaults.
-  bool run(const Pose& T_base_tip, Eigen::VectorXd& q);
+  bool solve(const Pose& T_base_tip, Eigen::VectorXd& q);
 
  private:
   bool step(Eigen::VectorXd& q, const Vector6d& error, double damping);
@@ -24,4 +24,4 @@ class WarmStartedIk {
   double position_tolerance_, rotation_tolerance_;
 };
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

@@ -6,7 +6,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/pose.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 namespace {
 
 constexpr double kTurnStep = 0.05;  // [rad]
@@ -100,7 +100,7 @@ std::vector<std::vector<Eigen::Vector3d>> direct_ways(BaseKind base, const Eigen
   using Way = std::vector<Eigen::Vector3d>;
   std::vector<Way> ways;
   const Eigen::Vector2d d = b.head<2>() - a.head<2>();
-  const double whole = detail::kTwoPi;
+  const double whole = kTwoPi;
   const auto turns = [&](double from, double to) {
     const double shortest = wrap_angle(to - from);
     if (std::abs(shortest) < 1e-12) return std::vector<double>{from};
@@ -110,7 +110,7 @@ std::vector<std::vector<Eigen::Vector3d>> direct_ways(BaseKind base, const Eigen
     for (double theta : turns(a.z(), b.z())) ways.push_back({Eigen::Vector3d(b.x(), b.y(), theta)});
   } else {
     const double forwards = std::atan2(d.y(), d.x());
-    for (double direction : {forwards, forwards + detail::kPi}) {
+    for (double direction : {forwards, forwards + kPi}) {
       for (double first : turns(a.z(), direction)) {
         for (double second : turns(first, b.z())) {
           Way way;
@@ -128,4 +128,4 @@ std::vector<std::vector<Eigen::Vector3d>> direct_ways(BaseKind base, const Eigen
   return ways;
 }
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

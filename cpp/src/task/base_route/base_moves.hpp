@@ -7,9 +7,9 @@
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/robot/planar_base.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
-/// Whether the whole robot, arm at home, may stand at a base pose; remembers what was asked at lattice poses.
+/// Whether the whole robot, arm at home, is free of collisions at a base pose; caches the answers at grid poses.
 class BaseClearance {
  public:
   BaseClearance(CollisionChecker& checker, const Eigen::VectorXd& home, double check_step);
@@ -39,4 +39,4 @@ std::vector<std::vector<Eigen::Vector3d>> direct_ways(BaseKind base, const Eigen
 /// Driven length plus turn_weight x turned angle.
 double way_cost(const Eigen::Vector3d& from, const std::vector<Eigen::Vector3d>& way, double turn_weight);
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

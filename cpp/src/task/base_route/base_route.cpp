@@ -12,6 +12,11 @@
 namespace mmgrasp {
 namespace {
 
+using detail::BaseClearance;
+using detail::BaseSearchSettings;
+using detail::direct_ways;
+using detail::way_cost;
+
 constexpr int kShorteningChecks = 400;  // Direct ways tried for shortening.
 
 using Poses3 = std::vector<Eigen::Vector3d>;
@@ -105,12 +110,12 @@ BasePath plan_base_route(CollisionChecker& checker, const Eigen::VectorXd& home,
   if (options.base == BaseKind::fixed && !same) return path;
   const BaseLimits limits = driving_limits(options.base, checker.group().robot().base_limits());
   const Eigen::AlignedBox2d bounds =
-      options.bounds.isEmpty() ? floor_bounds(checker.world(), {from, to}) : options.bounds;
+      options.bounds.isEmpty() ? detail::floor_bounds(checker.world(), {from, to}) : options.bounds;
   const BaseSearchSettings settings{options.base, options.resolution, limits.linear_velocity / limits.angular_velocity,
                                     bounds};
   Poses3 poses = {from};
   if (!same) {
-    auto found = search_base_path(clearance, from, to, settings, monitor);
+    auto found = detail::search_base_path(clearance, from, to, settings, monitor);
     if (!found) {
       path.outcome = monitor.stopped() ? Outcome::stopped : Outcome::infeasible;
       return path;
@@ -128,6 +133,18 @@ BasePath plan_base_route(CollisionChecker& checker, const Eigen::VectorXd& home,
     path.turning += std::abs(path.poses[i].z() - path.poses[i - 1].z());
   }
   return path;
+}
+
+Eigen::MatrixXd route_lengths(const CollisionChecker& checker, const Eigen::VectorXd& home,
+                              const std::vector<Eigen::Vector3d>& poses, const BaseRouteOptions& options, int threads,
+                              const Monitor& monitor) {
+  options.check();
+  checker.group().check_configuration(home, "home");
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    require(poses[i].allFinite(), "poses[" + std::to_string(i) + "]", poses[i].sum(), "must be finite");
+  if (poses.empty()) return Eigen::MatrixXd(0, 0);
+  const detail::FloorField field(checker, home, options.base, poses, options.resolution, threads, monitor);
+  return field.complete() ? field.lengths() : Eigen::MatrixXd();
 }
 
 double base_path_duration(const BasePath& path, BaseKind base, const BaseLimits& base_limits) {

@@ -7,7 +7,7 @@
 
 #include "mmgrasp/core/pose.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 namespace {
 
 constexpr int kHeadings = 16;
@@ -79,7 +79,7 @@ class BaseSearch {
       open_.pop();
       const std::uint64_t id = entry.key.packed();
       if (closed_.count(id)) continue;
-      // Edges are looked at only when they would be used.
+      // Edges are checked only when they would be used.
       if (!entry.checked && !way_free(closed_.at(entry.parent).pose, entry.way)) continue;
       closed_[id] = Node{entry.way.back(), entry.parent, entry.way, entry.cost};
       if (entry.key.kind == Key::goal && entry.key.ix == 0) return trace(id, start.packed());
@@ -245,4 +245,4 @@ std::optional<std::vector<Eigen::Vector3d>> search_base_path(BaseClearance& clea
   return BaseSearch(clearance, from, to, settings, monitor).run();
 }
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

@@ -6,7 +6,7 @@
 #include "mmgrasp/core/monitor.hpp"
 #include "task/base_route/base_moves.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
 struct BaseSearchSettings {
   BaseKind base = BaseKind::diff_drive;
@@ -22,4 +22,4 @@ std::optional<std::vector<Eigen::Vector3d>> search_base_path(BaseClearance& clea
                                                              const BaseSearchSettings& settings,
                                                              const Monitor& monitor);
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

@@ -8,14 +8,13 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
-#include "mmgrasp/task/base_route.hpp"
 #include "task/base_route/base_moves.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 namespace {
 
 constexpr double kMargin = 2.0;      // [m] around what is in the scene
-constexpr double kMaxCells = 40000;  // Of a floor.
+constexpr double kMaxCells = 40000;  // Largest number of cells of a floor.
 constexpr double kJoin = 2.0;        // Cells around a place that it joins.
 constexpr double kCheckStep = 0.02;  // [m]; nothing is swept here, BaseClearance wants one
 
@@ -59,7 +58,7 @@ FloorField::FloorField(const CollisionChecker& checker, const Eigen::VectorXd& h
         for (std::size_t j = 0; j < places.size(); ++j) {
           if (j == i) continue;
           const Eigen::Vector2d to = places[j].head<2>();
-          double best = (from - to).norm() <= kJoin * resolution_ ? (from - to).norm() : detail::kInfinity;
+          double best = (from - to).norm() <= kJoin * resolution_ ? (from - to).norm() : kInfinity;
           around(to, [&](std::size_t cell, double distance) { best = std::min(best, field[cell] + distance); });
           lengths_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = best;
         }
@@ -80,7 +79,7 @@ void FloorField::look_at_rows(const CollisionChecker& checker, const Eigen::Vect
           for (unsigned axis = 0; axis < kAxes.size(); ++axis) {
             const double angle = std::atan2(static_cast<double>(kAxes[axis][1]), static_cast<double>(kAxes[axis][0]));
             const Eigen::Vector2d p = middle(ix, iy);
-            if (clearance.free({p.x(), p.y(), angle}) || clearance.free({p.x(), p.y(), angle + detail::kPi}))
+            if (clearance.free({p.x(), p.y(), angle}) || clearance.free({p.x(), p.y(), angle + kPi}))
               free |= 1u << axis;
           }
           if (base == BaseKind::omni && free != 0) free = 0xff;
@@ -107,7 +106,7 @@ void FloorField::around(const Eigen::Vector2d& place, const Visit& visit) const 
 }
 
 std::vector<double> FloorField::search(const Eigen::Vector2d& from) const {
-  std::vector<double> field(free_.size(), detail::kInfinity);
+  std::vector<double> field(free_.size(), kInfinity);
   using Entry = std::pair<double, std::size_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
   around(from, [&](std::size_t cell, double distance) {
@@ -137,16 +136,4 @@ std::vector<double> FloorField::search(const Eigen::Vector2d& from) const {
   return field;
 }
 
-Eigen::MatrixXd route_lengths(const CollisionChecker& checker, const Eigen::VectorXd& home,
-                              const std::vector<Eigen::Vector3d>& poses, const BaseRouteOptions& options, int threads,
-                              const Monitor& monitor) {
-  options.check();
-  checker.group().check_configuration(home, "home");
-  for (std::size_t i = 0; i < poses.size(); ++i)
-    require(poses[i].allFinite(), "poses[" + std::to_string(i) + "]", poses[i].sum(), "must be finite");
-  if (poses.empty()) return Eigen::MatrixXd(0, 0);
-  const FloorField field(checker, home, options.base, poses, options.resolution, threads, monitor);
-  return field.complete() ? field.lengths() : Eigen::MatrixXd();
-}
-
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

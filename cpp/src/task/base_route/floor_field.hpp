@@ -7,13 +7,13 @@
 #include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/robot/planar_base.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
 /// Floor plan of everything with an end in the scene and of some base poses, grown by 2 m.
 Eigen::AlignedBox2d floor_bounds(const World& world, const std::vector<Eigen::Vector3d>& poses);
 
-/// How far it is to drive from one base pose to any other, around what stands in the way: one search of the whole floor
-/// for each place instead of one for each pair. A cell can be driven through in a direction when the robot at home is
+/// Lengths of the drives from one base pose to any other, around obstacles: one search of the whole floor for each pose
+/// instead of one for each pair. A cell can be driven through in a direction when the robot at home is
 /// free in its middle heading that way or backwards (omni: in any heading). Turns cost nothing. Good to some per cent:
 /// 16 directions, and places join the cells around them unchecked.
 class FloorField {
@@ -48,4 +48,4 @@ class FloorField {
   bool complete_ = false;
 };
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

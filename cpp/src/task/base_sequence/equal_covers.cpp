@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 namespace {
 
 constexpr std::size_t kMaxSteps = 300'000;
@@ -99,4 +99,4 @@ std::vector<std::vector<int>> equal_covers(const SetCoverProblem& problem, doubl
   return Enumeration(problem, cost, size, count).run();
 }
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

@@ -189,7 +189,7 @@ class DiscSearch {
     return box;
   }
 
-  static bool hopeless(const Room& room, const Box2& box, double r) {
+  static bool ruled_out(const Room& room, const Box2& box, double r) {
     for (const Cell& b : room.blocked) {
       if (farthest(b, box) < r) return true;
     }
@@ -230,7 +230,7 @@ class DiscSearch {
       const Room& room = rooms_[index];
       const double wanted = best_ + tolerance_;
       box = cut(room, box, wanted);
-      if (box.empty() || hopeless(room, box, wanted)) return;
+      if (box.empty() || ruled_out(room, box, wanted)) return;
       const Point m = box.middle();
       const double r = radius_in(room, m);
       best_ = std::max(best_, r);
@@ -258,7 +258,7 @@ class DiscSearch {
     const auto push = [&](int index, Box2 box) {
       const Room& room = rooms_[index];
       box = cut(room, box, wanted);
-      if (box.empty() || hopeless(room, box, wanted)) return;
+      if (box.empty() || ruled_out(room, box, wanted)) return;
       const Point m = box.middle();
       if (radius_in(room, m) + 0.5 * std::hypot(box.x1 - box.x0, box.y1 - box.y0) < wanted) return;
       queue.push({-(box.closest(centroid_) - centroid_).norm(), order++, index, box});
@@ -290,10 +290,14 @@ class DiscSearch {
 
 }  // namespace
 
+namespace detail {
+
 InscribedCircle inscribed_circle_in_cells(int nx, int ny, const std::vector<std::uint8_t>& cells, double tolerance) {
   if (nx <= 0 || ny <= 0) return {};
   return DiscSearch(nx, ny, cells).run(tolerance);
 }
+
+}  // namespace detail
 
 InscribedCircle inscribed_circle(const BaseGrid& grid, const CellMask& cells, int heading) {
   // The search needs only the rows and columns that hold cells.
@@ -315,7 +319,7 @@ InscribedCircle inscribed_circle(const BaseGrid& grid, const CellMask& cells, in
       part[static_cast<std::size_t>(iy) * nx + ix] = cells[grid.index(heading, x0 + ix, y0 + iy)] ? 1 : 0;
     }
   }
-  InscribedCircle circle = inscribed_circle_in_cells(nx, ny, part, std::min(2e-7 / grid.resolution, 1e-3));
+  InscribedCircle circle = detail::inscribed_circle_in_cells(nx, ny, part, std::min(2e-7 / grid.resolution, 1e-3));
   circle.radius *= grid.resolution;
   circle.centre = grid.origin + (circle.centre + Eigen::Vector2d(x0, y0)) * grid.resolution;
   return circle;

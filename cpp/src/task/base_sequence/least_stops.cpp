@@ -1,3 +1,4 @@
+// least_stops(): the least number of stops, and the best among equally few.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -12,32 +13,36 @@
 namespace mmgrasp {
 namespace {
 
+using detail::RegionPatches;
+
 constexpr std::size_t kMaxBoxes = 50'000'000;
 constexpr double kRadiusStep = 1e-4;    // [m]: the smallest disc is the largest possible to this.
 constexpr double kSumStep = 1e-3;       // [m]: radii are added up in whole steps.
 constexpr int kLevels = 16;             // Radii at which the other discs' candidates are sought.
-constexpr std::size_t kRoutes = 200;    // Equally good sequences whose routes are compared; a tenth of it beyond
-constexpr std::size_t kManyStops = 12;  // so many stops, where routes take longer to find.
+constexpr std::size_t kRoutes = 200;    // Equally good sequences whose routes are compared;
+constexpr std::size_t kManyStops = 12;  // a tenth of them beyond so many stops, where routes take longer to find.
 
 class LeastStops {
  public:
   LeastStops(const BaseGrid& grid, const std::vector<BaseRegion>& regions, const StopOptions& options,
              const Monitor& monitor)
-      : patches_(grid, regions), options_(options), monitor_(monitor) {}
+      : patches_(grid, regions), options_(options), monitor_(monitor), element_(regions.size(), -1) {
+    for (TrayId tray : patches_.trays()) element_[tray] = elements_++;
+  }
 
   StopSet run() {
     StopSet result;
-    result.candidates = maximal_intersections(patches_, options_.min_radius, kMaxBoxes, monitor_);
+    result.candidates = detail::maximal_intersections(patches_, options_.min_radius, kMaxBoxes, monitor_);
     if (monitor_.stopped()) return stopped(std::move(result));
     const SetCoverResult cover = solve_set_cover(cover_problem(result.candidates.robust), options_.time_limit);
     result.outcome = cover.outcome;
-    result.unreachable_trays = cover.uncoverable;
+    for (int element : cover.uncoverable) result.unreachable_trays.push_back(patches_.trays()[element]);
     if (cover.outcome == Outcome::infeasible) {
       if (!result.candidates.complete) result.outcome = Outcome::timeout;
       return result;
     }
     // A search that ended early may have missed places that serve more trays.
-    const int one = patches_.trays() > 0 ? 1 : 0;
+    const int one = patches_.trays().empty() ? 0 : 1;
     result.lower_bound = result.candidates.complete ? static_cast<int>(std::lround(cover.lower_bound)) : one;
     best_ = stops_of(result.candidates.robust, cover.chosen);
     time_limit_ = detail::TimeLimit(std::min(options_.tie_time_limit, 1e6));
@@ -63,12 +68,15 @@ class LeastStops {
 
   SetCoverProblem cover_problem(const std::vector<Intersection>& places) const {
     SetCoverProblem problem;
-    problem.elements = patches_.trays();
-    for (const Intersection& place : places) problem.sets.push_back(place.trays);
+    problem.elements = elements_;
+    for (const Intersection& place : places) {
+      problem.sets.emplace_back();
+      for (TrayId tray : place.trays) problem.sets.back().push_back(element_[tray]);
+    }
     return problem;
   }
 
-  const Intersection& widest(const std::vector<int>& trays) {
+  const Intersection& widest(const std::vector<TrayId>& trays) {
     const auto [it, is_new] = widest_.try_emplace(trays);
     if (is_new) it->second = patches_.widest(trays);
     return it->second;
@@ -86,19 +94,19 @@ class LeastStops {
     return total;
   }
 
-  /// Each tray at one of the chosen places that serve it: those with a choice where the discs stay widest. A stop never
-  /// has less room than its place.
+  /// Each tray at one of the chosen places that serve it; where several do, at the one where the discs stay widest. A
+  /// stop never has less room than its place.
   std::vector<Stop> stops_of(const std::vector<Intersection>& places, const std::vector<int>& chosen) {
-    std::vector<std::vector<int>> holding(static_cast<std::size_t>(patches_.trays()));
+    std::vector<std::vector<int>> holding(element_.size());
     for (std::size_t c = 0; c < chosen.size(); ++c) {
-      for (int tray : places[chosen[c]].trays) holding[tray].push_back(static_cast<int>(c));
+      for (TrayId tray : places[chosen[c]].trays) holding[tray].push_back(static_cast<int>(c));
     }
-    std::vector<std::vector<int>> served(chosen.size());
-    for (int tray = 0; tray < patches_.trays(); ++tray) {
+    std::vector<std::vector<TrayId>> served(chosen.size());
+    for (TrayId tray : patches_.trays()) {
       const auto& where = holding[tray];
       if (where.size() == 1) served[where[0]].push_back(tray);
     }
-    for (int tray = 0; tray < patches_.trays(); ++tray) {
+    for (TrayId tray : patches_.trays()) {
       const auto& where = holding[tray];
       if (where.size() < 2) continue;
       int best = -1;
@@ -110,7 +118,7 @@ class LeastStops {
           best_loss = loss;
         }
       }
-      std::vector<int>& list = served[best];
+      std::vector<TrayId>& list = served[best];
       list.insert(std::lower_bound(list.begin(), list.end(), tray), tray);
     }
     std::vector<Stop> stops;
@@ -121,7 +129,7 @@ class LeastStops {
   }
 
   /// A disc of half the radius weighs as much as can be: small discs are what limits.
-  double loss_with(std::vector<int> trays, int tray) {
+  double loss_with(std::vector<TrayId> trays, TrayId tray) {
     const double before = trays.empty() ? 1e3 : widest(trays).radius;
     trays.insert(std::lower_bound(trays.begin(), trays.end(), tray), tray);
     const double after = widest(trays).radius;
@@ -129,7 +137,7 @@ class LeastStops {
   }
 
   /// `known` serves these trays as well: it is as wide but for a rounding at most.
-  Stop stop_for(const std::vector<int>& trays, const Intersection& known) {
+  Stop stop_for(const std::vector<TrayId>& trays, const Intersection& known) {
     const Intersection& own = widest(trays);
     const Intersection& place = own.radius >= known.radius ? own : known;
     Stop stop;
@@ -144,7 +152,7 @@ class LeastStops {
     double low = smallest(best_), high = limit_of_smallest();
     while (high - low > kRadiusStep && !over()) {
       const double radius = 0.5 * (low + high);
-      const Intersections found = maximal_intersections(patches_, radius, kMaxBoxes, monitor_);
+      const Intersections found = detail::maximal_intersections(patches_, radius, kMaxBoxes, monitor_);
       if (!found.complete) return;
       const SetCoverResult cover = solve_set_cover(cover_problem(found.robust), std::max(1e-3, seconds_left()));
       const bool as_few = cover.outcome != Outcome::infeasible && cover.chosen.size() <= best_.size();
@@ -159,8 +167,8 @@ class LeastStops {
 
   /// No tray has more room than alone.
   double limit_of_smallest() {
-    double least = widest({0}).radius;
-    for (int tray = 1; tray < patches_.trays(); ++tray) least = std::min(least, widest({tray}).radius);
+    double least = widest({patches_.trays().front()}).radius;
+    for (TrayId tray : patches_.trays()) least = std::min(least, widest({tray}).radius);
     return least;
   }
 
@@ -176,7 +184,7 @@ class LeastStops {
     if (!options_.route_length || cover.outcome != Outcome::solved) return;
     const std::size_t routes = best_.size() > kManyStops ? kRoutes / 10 : kRoutes;
     double length = options_.route_length(best_);
-    for (const std::vector<int>& chosen : equal_covers(problem, cover.cost, best_.size(), routes)) {
+    for (const std::vector<int>& chosen : detail::equal_covers(problem, cover.cost, best_.size(), routes)) {
       if (over()) return;
       std::vector<Stop> stops = stops_of(places, chosen);
       if (smallest(stops) < smallest(best_) - kRadiusStep ||
@@ -198,14 +206,15 @@ class LeastStops {
   std::vector<Intersection> places_at_levels() {
     const double low = smallest(best_) - 1e-9;
     double high = low;
-    for (int tray = 0; tray < patches_.trays(); ++tray) high = std::max(high, widest({tray}).radius);
+    for (TrayId tray : patches_.trays()) high = std::max(high, widest({tray}).radius);
     const double step = std::max(0.25 * patches_.grid().resolution, (high - low) / kLevels);
-    std::map<std::pair<std::vector<int>, int>, Intersection> found;
+    std::map<std::pair<std::vector<TrayId>, int>, Intersection> found;
     for (int level = 0; low + level * step <= high; ++level) {
-      Intersections here = maximal_intersections(patches_, std::max(0.0, low + level * step), kMaxBoxes, monitor_);
+      Intersections here =
+          detail::maximal_intersections(patches_, std::max(0.0, low + level * step), kMaxBoxes, monitor_);
       if (!here.complete || over()) return {};
       for (Intersection& place : here.robust) {
-        std::pair<std::vector<int>, int> key{place.trays, place.heading};
+        std::pair<std::vector<TrayId>, int> key{place.trays, place.heading};
         found.emplace(std::move(key), std::move(place));
       }
     }
@@ -228,7 +237,9 @@ class LeastStops {
   RegionPatches patches_;
   const StopOptions& options_;
   const Monitor& monitor_;
-  std::map<std::vector<int>, Intersection> widest_;
+  std::vector<int> element_;  // element of the cover problem, by tray; -1: not to be served
+  int elements_ = 0;
+  std::map<std::vector<TrayId>, Intersection> widest_;
   std::vector<Stop> best_;
   detail::TimeLimit time_limit_{0};
 };

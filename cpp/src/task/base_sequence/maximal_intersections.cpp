@@ -1,3 +1,4 @@
+// maximal_intersections(): the sets of trays that are part of no other robust set.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,10 +9,11 @@
 
 // Lengths in here are in cells: cell (ix, iy) is the square [ix, ix + 1] x [iy, iy + 1].
 namespace mmgrasp {
+namespace detail {
 namespace {
 
 constexpr double kRadiusSlack = 1e-9;  // [m]: a disc of exactly the least radius counts.
-constexpr double kSmallestBox = 1e-6;  // [m]: finer than this, centres are told apart by the points tried only.
+constexpr double kSmallestBox = 1e-6;  // [m]: smaller boxes are not split; only the points tried in them count.
 
 struct Window {
   double x0, x1, y0, y1;
@@ -21,9 +23,9 @@ struct Spot {
   double x, y;
 };
 
-/// Trays that a disc of the least radius serves, and where it stands.
+/// Trays that a disc of the least radius serves, and where its centre is.
 struct Found {
-  std::vector<int> trays;  ///< Ascending.
+  std::vector<TrayId> trays;  ///< Ascending.
   Spot spot;
 };
 
@@ -41,7 +43,7 @@ double squared_farthest(const Square& s, const Window& w) {
   return dx * dx + dy * dy;
 }
 
-bool subset(const std::vector<int>& a, const std::vector<int>& b) {
+bool subset(const std::vector<TrayId>& a, const std::vector<TrayId>& b) {
   return std::includes(b.begin(), b.end(), a.begin(), a.end());
 }
 
@@ -50,20 +52,20 @@ class MaximalSets {
  public:
   explicit MaximalSets(std::size_t trays) : holding_(trays) {}
 
-  bool covers(const std::vector<int>& set) const {
+  bool covers(const std::vector<TrayId>& set) const {
     if (set.empty()) return true;
     const std::vector<int>* fewest = &holding_[set[0]];
-    for (const int tray : set) {
+    for (const TrayId tray : set) {
       const std::vector<int>& candidates = holding_[tray];
       if (candidates.size() < fewest->size()) fewest = &candidates;
     }
     return std::any_of(fewest->begin(), fewest->end(), [&](int known) { return subset(set, sets_[known].trays); });
   }
 
-  void add(const std::vector<int>& set, const Spot& spot) {
+  void add(const std::vector<TrayId>& set, const Spot& spot) {
     if (covers(set)) return;
     std::vector<int> beaten;
-    for (const int tray : set) {
+    for (const TrayId tray : set) {
       for (const int known : holding_[tray]) {
         if (subset(sets_[known].trays, set)) beaten.push_back(known);
       }
@@ -71,7 +73,7 @@ class MaximalSets {
     std::sort(beaten.begin(), beaten.end());
     beaten.erase(std::unique(beaten.begin(), beaten.end()), beaten.end());
     for (const int known : beaten) remove(known);
-    for (const int tray : set) holding_[tray].push_back(static_cast<int>(sets_.size()));
+    for (const TrayId tray : set) holding_[tray].push_back(static_cast<int>(sets_.size()));
     sets_.push_back({set, spot});
   }
 
@@ -86,7 +88,7 @@ class MaximalSets {
 
  private:
   void remove(int known) {
-    for (const int tray : sets_[known].trays) {
+    for (const TrayId tray : sets_[known].trays) {
       std::vector<int>& list = holding_[tray];
       list.erase(std::find(list.begin(), list.end(), known));
     }
@@ -97,15 +99,15 @@ class MaximalSets {
   std::vector<std::vector<int>> holding_;  // by tray
 };
 
-/// Where a disc of the least radius may stand, and which trays it serves there. A place serves a tray when no square of
-/// the complement of the tray's region comes nearer than the radius: the places are split until every box is known to
-/// hold no set of trays that is not part of one already found.
+/// Where a disc of the least radius may stand, and which trays it serves there. A position serves a tray when no square
+/// of the complement of the tray's region comes nearer than the radius: boxes of positions are split until each is
+/// known to hold no set of trays that is not part of one already found.
 class LayerSearch {
  public:
   LayerSearch(const std::vector<Patch>& patches, double radius, double resolution, std::size_t max_boxes,
               const Monitor& monitor)
       : patches_(patches),
-        enough_(squared(std::max(0.0, radius - kRadiusSlack / resolution))),
+        least_squared_(squared(std::max(0.0, radius - kRadiusSlack / resolution))),
         radius_(radius),
         smallest_(kSmallestBox / resolution),
         max_boxes_(max_boxes),
@@ -117,7 +119,7 @@ class LayerSearch {
     std::vector<Start> starts = cells();
     std::stable_sort(starts.begin(), starts.end(),
                      [](const Start& a, const Start& b) { return a.locals.size() > b.locals.size(); });
-    // Large sets first: they spare looking at most boxes.
+    // Large sets first: with them most boxes need no search.
     for (const Start& start : starts) add_at({start.window.x0 + 0.5, start.window.y0 + 0.5}, start.locals, {});
     for (std::size_t i = 0; i < starts.size(); ++i) {
       if (i % 256 == 0 && monitor_.stopped()) return false;
@@ -132,7 +134,7 @@ class LayerSearch {
  private:
   /// A tray that may be served somewhere in a box, and what limits it there.
   struct Local {
-    int tray;
+    TrayId tray;
     std::vector<Square> squares;
   };
   struct Start {
@@ -141,7 +143,7 @@ class LayerSearch {
   };
   static std::size_t trays_of(const std::vector<Patch>& patches) {
     int last = -1;
-    for (const Patch& patch : patches) last = std::max(last, patch.tray);
+    for (const Patch& patch : patches) last = std::max<int>(last, patch.tray);
     return static_cast<std::size_t>(last + 1);
   }
 
@@ -171,8 +173,8 @@ class LayerSearch {
   /// Squares that limit the tray somewhere in the window; false when one of them rules out all of it.
   bool limit(const std::vector<Square>& squares, const Window& window, std::vector<Square>& out) const {
     for (const Square& s : squares) {
-      if (squared_gap(s, window) >= enough_) continue;
-      if (squared_farthest(s, window) < enough_) return false;
+      if (squared_gap(s, window) >= least_squared_) continue;
+      if (squared_farthest(s, window) < least_squared_) return false;
       out.push_back(s);
     }
     return true;
@@ -181,11 +183,11 @@ class LayerSearch {
   bool free_at(const Local& local, const Spot& p) const {
     const Window point{p.x, p.x, p.y, p.y};
     return std::all_of(local.squares.begin(), local.squares.end(),
-                       [&](const Square& s) { return squared_gap(s, point) >= enough_; });
+                       [&](const Square& s) { return squared_gap(s, point) >= least_squared_; });
   }
 
-  void add_at(const Spot& p, const std::vector<Local>& locals, const std::vector<int>& sure) {
-    std::vector<int> set = sure;
+  void add_at(const Spot& p, const std::vector<Local>& locals, const std::vector<TrayId>& proven) {
+    std::vector<TrayId> set = proven;
     for (const Local& local : locals) {
       if (free_at(local, p)) set.push_back(local.tray);
     }
@@ -193,7 +195,7 @@ class LayerSearch {
     found_.add(set, p);
   }
 
-  void search(const Window& window, std::vector<Local> locals, std::vector<int> sure) {
+  void search(const Window& window, std::vector<Local> locals, std::vector<TrayId> proven) {
     if (++boxes_ > max_boxes_) return;
     for (std::size_t i = 0; i < locals.size();) {
       std::vector<Square> squares;
@@ -203,28 +205,28 @@ class LayerSearch {
         ++i;
         continue;
       }
-      if (possible) sure.push_back(locals[i].tray);
+      if (possible) proven.push_back(locals[i].tray);
       locals.erase(locals.begin() + static_cast<std::ptrdiff_t>(i));
     }
-    std::vector<int> at_most = sure;
+    std::vector<TrayId> at_most = proven;
     for (const Local& local : locals) at_most.push_back(local.tray);
     std::sort(at_most.begin(), at_most.end());
     if (found_.covers(at_most)) return;
     const Spot middle{0.5 * (window.x0 + window.x1), 0.5 * (window.y0 + window.y1)};
     for (const Spot& p : {middle, Spot{window.x0, window.y0}, Spot{window.x1, window.y0}, Spot{window.x0, window.y1},
                           Spot{window.x1, window.y1}}) {
-      add_at(p, locals, sure);
+      add_at(p, locals, proven);
     }
     if (found_.covers(at_most)) return;
     if (std::max(window.x1 - window.x0, window.y1 - window.y0) < smallest_) return;
     Window first = window, second = window;
     split(window, locals, first, second);
-    search(first, locals, sure);
-    search(second, std::move(locals), std::move(sure));
+    search(first, locals, proven);
+    search(second, std::move(locals), std::move(proven));
   }
 
-  /// Where a straight edge of what limits a tray crosses the window, else in the middle of its longer side: regions
-  /// are made of squares, and two edges a hair apart would otherwise be told apart only by boxes as small.
+  /// Splits where a straight edge of what limits a tray crosses the window, else in the middle of its longer side:
+  /// regions are made of squares, and two edges a hair apart would otherwise be separated only by boxes as small.
   void split(const Window& window, const std::vector<Local>& locals, Window& first, Window& second) const {
     const double margin = 1e-9;
     for (const Local& local : locals) {
@@ -253,7 +255,7 @@ class LayerSearch {
   }
 
   const std::vector<Patch>& patches_;
-  double enough_, radius_, smallest_;  // least squared distance; least distance and smallest box
+  double least_squared_, radius_, smallest_;  // least squared distance; least distance and smallest box
 
   std::size_t max_boxes_, boxes_ = 0;
   const Monitor& monitor_;
@@ -282,10 +284,12 @@ Intersections maximal_intersections(const RegionPatches& patches, double min_rad
   return result;
 }
 
+}  // namespace detail
+
 Intersections maximal_intersections(const BaseGrid& grid, const std::vector<BaseRegion>& regions, double min_radius,
                                     std::size_t max_boxes, const Monitor& monitor) {
   require(std::isfinite(min_radius) && min_radius >= 0, "min_radius", min_radius, "must be finite and not negative");
-  return maximal_intersections(RegionPatches(grid, regions), min_radius, max_boxes, monitor);
+  return detail::maximal_intersections(detail::RegionPatches(grid, regions), min_radius, max_boxes, monitor);
 }
 
 }  // namespace mmgrasp

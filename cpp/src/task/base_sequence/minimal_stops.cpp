@@ -1,3 +1,4 @@
+// minimal_stops(): the least number of robust intersections that cover all trays.
 #include <algorithm>
 #include <cmath>
 
@@ -21,7 +22,7 @@ std::vector<double> stop_costs(const std::vector<Intersection>& intersections) {
 }
 
 /// Serving fewer trays than the intersection allows, a stop may find a larger disc.
-int widest_for(const std::vector<Intersection>& intersections, const std::vector<int>& trays, int chosen) {
+int widest_for(const std::vector<Intersection>& intersections, const std::vector<TrayId>& trays, int chosen) {
   int best = chosen;
   for (int i = 0; i < static_cast<int>(intersections.size()); ++i) {
     const Intersection& some = intersections[i];
@@ -38,18 +39,18 @@ StopSet minimal_stops(const BaseGrid& grid, const std::vector<Intersection>& int
   StopSet result;
   SetCoverProblem problem;
   problem.elements = trays;
-  for (const Intersection& some : intersections) problem.sets.push_back(some.trays);
+  for (const Intersection& some : intersections) problem.sets.emplace_back(some.trays.begin(), some.trays.end());
   problem.costs = stop_costs(intersections);
   const SetCoverResult cover = solve_set_cover(problem);
   result.outcome = cover.outcome;
-  result.unreachable_trays = cover.uncoverable;
+  for (int tray : cover.uncoverable) result.unreachable_trays.emplace_back(tray);
   // All penalties together stay below 1/2.
   result.lower_bound = std::max(0, static_cast<int>(std::ceil(cover.lower_bound - 0.5 - 1e-6)));
   if (cover.outcome != Outcome::solved && cover.outcome != Outcome::approximate) return result;
   if (cover.outcome == Outcome::solved) result.lower_bound = static_cast<int>(cover.chosen.size());
 
-  std::vector<std::vector<int>> served(cover.chosen.size());
-  for (int tray = 0; tray < trays; ++tray) {
+  std::vector<std::vector<TrayId>> served(cover.chosen.size());
+  for (TrayId tray(0); tray < trays; tray = TrayId(tray + 1)) {
     int best = -1;
     for (std::size_t c = 0; c < cover.chosen.size(); ++c) {
       const Intersection& some = intersections[cover.chosen[c]];

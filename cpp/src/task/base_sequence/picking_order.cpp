@@ -1,3 +1,4 @@
+// paired_order() and optimised_order(): which part of each tray is picked in which round.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -57,7 +58,7 @@ class GroupOrder {
   GroupOrder(const PartRegions& parts, const std::vector<int>& trays, int rounds, const OrderOptions& options)
       : trays_(trays), rounds_(rounds), options_(options) {
     offsets_.push_back(0);
-    std::vector<BaseRegion> regions;
+    std::vector<BaseRegion> regions;  // Each part's, as if it lay in a tray of its own.
     for (const int tray : trays) {
       for (const CellMask& mask : parts.cells[tray]) {
         regions.emplace_back();
@@ -65,7 +66,7 @@ class GroupOrder {
       }
       offsets_.push_back(static_cast<int>(regions.size()));
     }
-    patches_ = std::make_unique<RegionPatches>(parts.grid, regions);
+    patches_ = std::make_unique<detail::RegionPatches>(parts.grid, regions);
   }
 
   using Order = std::vector<std::vector<int>>;  // [tray of the group][round]
@@ -118,8 +119,8 @@ class GroupOrder {
   }
 
   double radius(const std::vector<int>& picks) {
-    std::vector<int> ids;
-    for (std::size_t t = 0; t < picks.size(); ++t) ids.push_back(offsets_[t] + picks[t]);
+    std::vector<TrayId> ids;
+    for (std::size_t t = 0; t < picks.size(); ++t) ids.emplace_back(offsets_[t] + picks[t]);
     const auto [it, is_new] = known_.try_emplace(ids, 0.0);
     if (is_new) it->second = patches_->widest(ids).radius;
     return it->second;
@@ -214,8 +215,8 @@ class GroupOrder {
   int rounds_;
   const OrderOptions& options_;
   std::vector<int> offsets_;
-  std::unique_ptr<RegionPatches> patches_;
-  std::map<std::vector<int>, double> known_;
+  std::unique_ptr<detail::RegionPatches> patches_;
+  std::map<std::vector<TrayId>, double> known_;
 };
 
 }  // namespace

@@ -91,43 +91,35 @@ class PolicyRun {
  private:
   PolicyRound one(int round) {
     const detail::Stopwatch stopwatch;
-    std::vector<BaseRegion> all = planned_(round);
-    require(all.size() == order_.size(), "planned regions", static_cast<double>(all.size()),
+    std::vector<BaseRegion> regions = planned_(round);
+    require(regions.size() == order_.size(), "planned regions", static_cast<double>(regions.size()),
             "must be one a tray (" + std::to_string(order_.size()) + ")");
-    std::vector<int> trays;
-    std::vector<BaseRegion> regions;
-    for (int tray = 0; tray < static_cast<int>(all.size()); ++tray) {
-      if (pick_of(order_, tray, round) < 0) continue;
-      trays.push_back(tray);
-      regions.push_back(std::move(all[tray]));
-    }
-    if (!same_as_last(trays, regions)) {
+    for (int tray = 0; tray < static_cast<int>(regions.size()); ++tray)
+      regions[tray].has_targets = pick_of(order_, tray, round) >= 0;
+    if (!same_as_last(regions)) {
       last_ = least_stops(actual_.grid, regions, options_.stops, monitor_);
-      last_trays_ = trays;
       last_regions_ = std::move(regions);
     }
     PolicyRound result;
     result.outcome = last_.outcome;
     result.stops = last_.stops;
-    for (Stop& stop : result.stops) {
-      for (int& tray : stop.trays) tray = trays[tray];
-      result.mean_radius += stop.radius / static_cast<double>(result.stops.size());
-    }
+    for (const Stop& stop : result.stops) result.mean_radius += stop.radius / static_cast<double>(result.stops.size());
     result.seconds = stopwatch.seconds();
     result.reliable = !result.stops.empty() && holds(result.stops, round);
     return result;
   }
 
-  bool same_as_last(const std::vector<int>& trays, const std::vector<BaseRegion>& regions) const {
-    return !last_regions_.empty() && trays == last_trays_ &&
-           std::equal(regions.begin(), regions.end(), last_regions_.begin(),
-                      [](const BaseRegion& a, const BaseRegion& b) { return a.cells == b.cells; });
+  bool same_as_last(const std::vector<BaseRegion>& regions) const {
+    const auto same = [](const BaseRegion& a, const BaseRegion& b) {
+      return a.has_targets == b.has_targets && (!a.has_targets || a.cells == b.cells);
+    };
+    return std::equal(regions.begin(), regions.end(), last_regions_.begin(), last_regions_.end(), same);
   }
 
   bool holds(const std::vector<Stop>& stops, int round) const {
     for (const Stop& stop : stops) {
       const int heading = heading_of(actual_.grid, stop.pose.z());
-      for (int tray : stop.trays) {
+      for (TrayId tray : stop.trays) {
         const auto part = static_cast<std::size_t>(pick_of(order_, tray, round));
         const CellMask& cells = actual_.cells[tray][part];
         if (heading < 0 || !disc_inside(actual_.grid, cells, heading, stop.pose.head<2>(), options_.stops.min_radius))
@@ -143,7 +135,6 @@ class PolicyRun {
   const PolicyOptions& options_;
   const Monitor& monitor_;
   StopSet last_;
-  std::vector<int> last_trays_;
   std::vector<BaseRegion> last_regions_;
 };
 

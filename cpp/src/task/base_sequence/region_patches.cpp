@@ -5,12 +5,12 @@
 #include "mmgrasp/core/error.hpp"
 #include "task/base_sequence/inscribed_circle.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 namespace {
 
 constexpr double kCircleError = 2e-7;  // [m]
 
-Patch make_patch(const BaseGrid& grid, const CellMask& mask, int heading, int tray) {
+Patch make_patch(const BaseGrid& grid, const CellMask& mask, int heading, TrayId tray) {
   Patch patch;
   patch.tray = tray;
   int x1 = -1, y1 = -1;
@@ -47,30 +47,33 @@ Patch make_patch(const BaseGrid& grid, const CellMask& mask, int heading, int tr
 }  // namespace
 
 RegionPatches::RegionPatches(const BaseGrid& grid, const std::vector<BaseRegion>& regions)
-    : grid_(grid), trays_(static_cast<int>(regions.size())), layers_(grid.headings.size()) {
-  for (const BaseRegion& region : regions) {
+    : grid_(grid), layers_(grid.headings.size()) {
+  for (int tray = 0; tray < static_cast<int>(regions.size()); ++tray) {
+    const BaseRegion& region = regions[tray];
+    if (!region.has_targets) continue;
+    trays_.emplace_back(tray);
     require(region.cells.size() == grid.size(), "region '" + region.tray + "' cells",
             static_cast<double>(region.cells.size()),
             "must be one flag a cell of the grid (" + std::to_string(grid.size()) + ")");
   }
   for (int heading = 0; heading < headings(); ++heading) {
-    for (int tray = 0; tray < trays_; ++tray) {
+    for (TrayId tray : trays_) {
       Patch patch = make_patch(grid, regions[tray].cells, heading, tray);
       if (!patch.cells.empty()) layers_[heading].push_back(std::move(patch));
     }
   }
 }
 
-Intersection RegionPatches::shared(const std::vector<int>& trays, int heading) const {
+Intersection RegionPatches::shared(const std::vector<TrayId>& trays, int heading) const {
   Intersection place;
   place.trays = trays;
   place.heading = heading;
   const std::vector<Patch>& patches = layer(heading);
   std::vector<const Patch*> some;
   int x0 = 0, y0 = 0, x1 = grid_.nx, y1 = grid_.ny;
-  for (const int tray : trays) {
+  for (const TrayId tray : trays) {
     const auto found = std::lower_bound(patches.begin(), patches.end(), tray,
-                                        [](const Patch& patch, int wanted) { return patch.tray < wanted; });
+                                        [](const Patch& patch, TrayId wanted) { return patch.tray < wanted; });
     if (found == patches.end() || found->tray != tray) return place;
     some.push_back(&*found);
     x0 = std::max(x0, found->x0);
@@ -94,7 +97,7 @@ Intersection RegionPatches::shared(const std::vector<int>& trays, int heading) c
   return place;
 }
 
-Intersection RegionPatches::widest(const std::vector<int>& trays) const {
+Intersection RegionPatches::widest(const std::vector<TrayId>& trays) const {
   Intersection best;
   for (int heading = 0; heading < headings(); ++heading) {
     Intersection place = shared(trays, heading);
@@ -103,4 +106,4 @@ Intersection RegionPatches::widest(const std::vector<int>& trays) const {
   return best;
 }
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

@@ -5,7 +5,7 @@
 
 #include "mmgrasp/task/base_sequence.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
 /// A grid's cell, as the square [ix, ix + 1] x [iy, iy + 1].
 struct Square {
@@ -14,7 +14,8 @@ struct Square {
 
 /// One tray's region in one layer, cut to its bounds.
 struct Patch {
-  int tray = 0, x0 = 0, y0 = 0, nx = 0, ny = 0;
+  TrayId tray;
+  int x0 = 0, y0 = 0, nx = 0, ny = 0;
   std::vector<std::uint8_t> cells;
   std::vector<Square> border;  ///< Cells outside that touch the region: all that limits a disc.
 
@@ -24,26 +25,27 @@ struct Patch {
   }
 };
 
-/// All regions, each cut to its bounds, layer by layer: made once, asked often.
+/// All regions, each cut to its bounds, layer by layer: made once, queried often.
 class RegionPatches {
  public:
   /// Throws InvalidInput when a region does not fit the grid.
   RegionPatches(const BaseGrid& grid, const std::vector<BaseRegion>& regions);
 
   const BaseGrid& grid() const { return grid_; }
-  int trays() const { return trays_; }
+  /// Trays that have targets, ascending.
+  const std::vector<TrayId>& trays() const { return trays_; }
   int headings() const { return static_cast<int>(layers_.size()); }
-  /// Those that have cells, by tray.
+  /// Patches of the regions that have cells in a layer, by tray.
   const std::vector<Patch>& layer(int heading) const { return layers_[heading]; }
 
   /// What these trays (ascending) share in a layer, with the widest disc in it; radius 0 when that is nothing.
-  Intersection shared(const std::vector<int>& trays, int heading) const;
+  Intersection shared(const std::vector<TrayId>& trays, int heading) const;
   /// The same in the layer where the disc is widest.
-  Intersection widest(const std::vector<int>& trays) const;
+  Intersection widest(const std::vector<TrayId>& trays) const;
 
  private:
   BaseGrid grid_;
-  int trays_;
+  std::vector<TrayId> trays_;
   std::vector<std::vector<Patch>> layers_;
 };
 
@@ -51,4 +53,4 @@ class RegionPatches {
 Intersections maximal_intersections(const RegionPatches& patches, double min_radius, std::size_t max_boxes,
                                     const Monitor& monitor);
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

@@ -1,3 +1,4 @@
+// robust_intersections(): every set of trays whose shared cells hold a disc.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -5,7 +6,6 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/task/base_sequence.hpp"
-#include "task/base_sequence/inscribed_circle.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -22,7 +22,7 @@ std::size_t count_bits(const Words& words) {
 }
 
 struct Candidate {
-  std::vector<int> trays;
+  std::vector<TrayId> trays;
   Words cells;
 };
 
@@ -35,7 +35,8 @@ class LayerGrowth {
   void run(const std::vector<BaseRegion>& regions) {
     std::vector<Candidate> level;
     for (int tray = 0; tray < static_cast<int>(regions.size()); ++tray) {
-      Candidate one{{tray}, pack(regions[tray].cells)};
+      if (!regions[tray].has_targets) continue;
+      Candidate one{{TrayId(tray)}, pack(regions[tray].cells)};
       if (judge(one)) level.push_back(std::move(one));
     }
     while (level.size() > 1 && out_.sets_tried < max_sets_) level = next(level);
@@ -54,13 +55,13 @@ class LayerGrowth {
 
   /// Sets of one more tray: two that differ in the last tray only, joined, when every subset is robust.
   std::vector<Candidate> next(const std::vector<Candidate>& level) {
-    std::set<std::vector<int>> known;
+    std::set<std::vector<TrayId>> known;
     for (const Candidate& some : level) known.insert(some.trays);
     std::vector<Candidate> grown;
     for (std::size_t a = 0; a < level.size(); ++a) {
       for (std::size_t b = a + 1; b < level.size(); ++b) {
-        const std::vector<int>& first = level[a].trays;
-        const std::vector<int>& second = level[b].trays;
+        const std::vector<TrayId>& first = level[a].trays;
+        const std::vector<TrayId>& second = level[b].trays;
         if (!std::equal(first.begin(), first.end() - 1, second.begin()))
           break;  // sorted: no later one shares it either
         if (out_.sets_tried >= max_sets_) return {};
@@ -76,9 +77,9 @@ class LayerGrowth {
     return grown;
   }
 
-  static bool subsets_known(const std::vector<int>& trays, const std::set<std::vector<int>>& known) {
+  static bool subsets_known(const std::vector<TrayId>& trays, const std::set<std::vector<TrayId>>& known) {
     for (std::size_t left_out = 0; left_out < trays.size(); ++left_out) {
-      std::vector<int> subset = trays;
+      std::vector<TrayId> subset = trays;
       subset.erase(subset.begin() + static_cast<std::ptrdiff_t>(left_out));
       if (!known.count(subset)) return false;
     }
@@ -130,6 +131,7 @@ Intersections robust_intersections(const BaseGrid& grid, const std::vector<BaseR
                                    std::size_t max_sets) {
   require(std::isfinite(min_radius) && min_radius >= 0, "min_radius", min_radius, "must be finite and not negative");
   for (const BaseRegion& region : regions) {
+    if (!region.has_targets) continue;
     require(region.cells.size() == grid.size(), "region '" + region.tray + "' cells",
             static_cast<double>(region.cells.size()),
             "must be one flag a cell of the grid (" + std::to_string(grid.size()) + ")");

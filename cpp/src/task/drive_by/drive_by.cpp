@@ -11,16 +11,18 @@
 namespace mmgrasp {
 namespace {
 
-using detail::DriveByChoice;
-using detail::DriveByPatience;
+using detail::ConfigurationSequence;
 using detail::DriveByStep;
-using detail::Stand;
+using detail::GoalConfiguration;
+using detail::GoalConfigurations;
+using detail::GraspAssignment;
+using detail::SolveSettings;
 using Eigen::VectorXd;
 
-constexpr int kShort = 40;                // iterations of a solve in the first attempts
-constexpr std::size_t kMoreAttempts = 2;  // of each choice of candidates once there is a motion to beat
+constexpr int kShortBudget = 40;       // iterations of a solve in the first round
+constexpr std::size_t kMoreSeeds = 2;  // sequences tried of each assignment once there is a motion to beat
 
-/// One plan: keeps what the attempts share.
+/// One plan: keeps what all seeds share.
 class DriveBy {
  public:
   DriveBy(const JointGroup& group, const World& world, const VectorXd& start, const std::vector<DriveByTask>& tasks,
@@ -37,34 +39,34 @@ class DriveBy {
       if (goal_.lower[i] != goal_.upper[i]) continue;
       goal_.lower[i] = goal_.upper[i] = start[i] + wrap_angle(goal_.lower[i] - start[i]);
     }
-    if (options.collisions) worlds_.emplace(group_, world, steps_);
-    attempts_.emplace(group_, start_, steps_, goal_, options_, worlds_ ? &*worlds_ : nullptr, monitor_);
+    if (options.collisions) scene_states_.emplace(group_, world, steps_);
+    solver_.emplace(group_, start_, steps_, goal_, options_, scene_states_ ? &*scene_states_ : nullptr, monitor_);
   }
 
   DriveByResult run() {
     DriveByResult result;
-    if (const auto touching = worlds_ ? worlds_->before(0).first_contact(start_) : std::nullopt) {
+    if (const auto touching = scene_states_ ? scene_states_->before(0).first_contact(start_) : std::nullopt) {
       const Contact c = *touching;
       result.outcome = Outcome::invalid_start;
       result.report = "start: '" + c.a + "' touches '" + c.b + "'";
       return result;
     }
     std::string missing;
-    const std::vector<DriveByChoice> choices = find_choices(missing);
-    if (choices.empty()) {
+    const std::vector<GraspAssignment> assignments = find_assignments(missing);
+    if (assignments.empty()) {
       result.outcome = monitor_.stopped() ? Outcome::stopped : Outcome::infeasible;
       result.report = missing;
       return result;
     }
-    for (const DriveByChoice& choice : choices) {
+    for (const GraspAssignment& assignment : assignments) {
       if (result.choices > 0 && over(result)) break;
-      if (result.usable() && choice.bound >= result.duration()) {
+      if (result.usable() && assignment.bound >= result.duration()) {
         result.report +=
-            "candidates " + name(choice) + ": left out, not below " + detail::number(choice.bound) + " s\n";
+            "candidates " + name(assignment) + ": left out, not below " + detail::number(assignment.bound) + " s\n";
         continue;
       }
-      monitor_.report("choices", static_cast<double>(result.choices) / static_cast<double>(choices.size()));
-      attempt_all(choice, result);
+      monitor_.report("choices", static_cast<double>(result.choices) / static_cast<double>(assignments.size()));
+      solve_all(assignment, result);
       if (++result.choices == options_.choices) break;
     }
     if (!result.usable()) {
@@ -78,40 +80,42 @@ class DriveBy {
 
   std::optional<DriveByStart> first_guess() {
     std::string missing;
-    const std::vector<DriveByChoice> choices = find_choices(missing);
-    if (choices.empty()) return {};
-    detail::DriveByAttempt a = attempts_->prepared(choices.front().chains.front(), options_.waypoints);
+    const std::vector<GraspAssignment> assignments = find_assignments(missing);
+    if (assignments.empty()) return {};
+    detail::SeededProblem a = solver_->seeds().make(assignments.front().sequences.front(), options_.waypoints);
     return DriveByStart{std::move(a.problem), std::move(a.guess)};
   }
 
-  double seconds() const { return attempts_->seconds(); }
+  double seconds() const { return solver_->seconds(); }
 
  private:
   bool over(const DriveByResult& result) const {
     return monitor_.stopped() || result.iterations >= options_.iterations || seconds() > options_.time_limit;
   }
 
-  std::vector<DriveByChoice> find_choices(std::string& missing) {
+  std::vector<GraspAssignment> find_assignments(std::string& missing) {
     const VectorXd goal = detail::goal_near(goal_, start_);
-    std::vector<std::vector<Stand>> stands;
+    std::vector<GoalConfigurations> goals;
     for (std::size_t i = 0; i < steps_.size(); ++i) {
-      const VectorXd before = rough(static_cast<int>(i) - 1, goal), after = rough(static_cast<int>(i) + 1, goal);
-      CollisionChecker* checker = worlds_ ? &worlds_->at(i) : nullptr;
-      stands.push_back(steps_[i].way > 0 ? detail::follow_stands(group_, checker, steps_[i], stands.back(), monitor_)
-                                         : detail::find_stands(group_, checker, steps_[i], before, after, options_,
-                                                               static_cast<unsigned>(i), monitor_));
-      if (!stands.back().empty()) continue;
+      const VectorXd before = rough_configuration(static_cast<int>(i) - 1, goal),
+                     after = rough_configuration(static_cast<int>(i) + 1, goal);
+      CollisionChecker* checker = scene_states_ ? &scene_states_->at(i) : nullptr;
+      goals.push_back(steps_[i].way > 0
+                          ? detail::follow_goal_configurations(group_, checker, steps_[i], goals.back(), monitor_)
+                          : detail::find_goal_configurations(group_, checker, steps_[i], before, after, options_,
+                                                             static_cast<unsigned>(i), monitor_));
+      if (!goals.back().empty()) continue;
       missing = "task " + std::to_string(steps_[i].task) + ": no configuration within the limits" +
-                (worlds_ ? " and free of collisions" : "") + " brings the tool there (" +
+                (scene_states_ ? " and free of collisions" : "") + " brings the tool there (" +
                 std::to_string(options_.stands) + " tries at a time)";
       return {};
     }
-    const auto collisions = [&](const std::vector<Stand>& chain) { return attempts_->collisions(chain); };
-    return detail::drive_by_assignments(group_, steps_, stands, start_, goal_, options_, collisions);
+    const auto collisions = [&](const ConfigurationSequence& sequence) { return solver_->collisions(sequence); };
+    return detail::drive_by_assignments(group_, steps_, goals, start_, goal_, options_, collisions);
   }
 
-  /// Where the robot is about at a step, before anything is known: the base below the tool.
-  VectorXd rough(int step, const VectorXd& goal) const {
+  /// Roughly where the robot is at a step, before anything is known: the base below the tool.
+  VectorXd rough_configuration(int step, const VectorXd& goal) const {
     if (step < 0) return start_;
     if (step >= static_cast<int>(steps_.size())) return goal;
     VectorXd q = 0.5 * (start_ + goal);
@@ -119,36 +123,38 @@ class DriveBy {
     return q;
   }
 
-  static std::string name(const DriveByChoice& choice) {
+  static std::string name(const GraspAssignment& assignment) {
     std::string text;
-    for (const Stand& stand : choice.chains.front())
-      text += (text.empty() ? "" : ", ") + std::to_string(stand.candidate);
+    for (const GoalConfiguration& configuration : assignment.sequences.front())
+      text += (text.empty() ? "" : ", ") + std::to_string(configuration.candidate);
     return "[" + text + "]";
   }
 
-  /// Every chain with a short patience first: what can be solved mostly is within few iterations. Ways around obstacles
-  /// are sampled and along the road by turns, the second time the other way round.
-  void attempt_all(const DriveByChoice& choice, DriveByResult& result) {
+  /// Every sequence with a short iteration budget first: what can be solved mostly is within few iterations. Ways
+  /// around obstacles are sampled and along the reference path by turns, the second time the other way round.
+  void solve_all(const GraspAssignment& assignment, DriveByResult& result) {
     int solutions = 0;
-    const std::size_t most = std::min(result.usable() ? kMoreAttempts : choice.chains.size(), choice.chains.size());
-    const int patient = options_.trajectory.max_iterations;
-    const std::size_t rounds = patient > kShort && !result.usable() ? 2 : 1;
+    const std::size_t most =
+        std::min(result.usable() ? kMoreSeeds : assignment.sequences.size(), assignment.sequences.size());
+    const int budget = options_.trajectory.max_iterations;
+    const std::size_t rounds = budget > kShortBudget && !result.usable() ? 2 : 1;
     for (std::size_t round = 0; round < rounds && solutions == 0; ++round) {
       for (std::size_t i = 0; i < most && !over(result); ++i) {
-        const DriveByPatience patience{round == 0 ? std::min(kShort, patient) : patient, round > 0,
-                                       (i + round) % 2 == 1};
-        if (attempt(choice, i, patience, result) && ++solutions >= options_.solutions) return;
+        const SolveSettings settings{round == 0 ? std::min(kShortBudget, budget) : budget, round > 0,
+                                     (i + round) % 2 == 1};
+        if (solve_sequence(assignment, i, settings, result) && ++solutions >= options_.solutions) return;
       }
     }
   }
 
-  bool attempt(const DriveByChoice& choice, std::size_t index, const DriveByPatience& patience, DriveByResult& result) {
-    const std::vector<Stand>& chain = choice.chains[index];
+  bool solve_sequence(const GraspAssignment& assignment, std::size_t index, const SolveSettings& settings,
+                      DriveByResult& result) {
+    const ConfigurationSequence& sequence = assignment.sequences[index];
     std::vector<int> waypoints;
-    const WholeBodyResult r = attempts_->solve(chain, patience, waypoints);
+    const WholeBodyResult r = solver_->solve(sequence, settings, waypoints);
     ++result.attempts;
     result.iterations += r.iterations;
-    result.report += "attempt " + std::to_string(result.attempts) + ", candidates " + name(choice) + ": " +
+    result.report += "attempt " + std::to_string(result.attempts) + ", candidates " + name(assignment) + ": " +
                      detail::describe(r) + (r.usable() ? ", " + detail::number(r.trajectory->duration()) + " s" : "") +
                      "\n";
     const bool better = r.usable() ? !result.usable() || r.trajectory->duration() < result.duration()
@@ -158,7 +164,7 @@ class DriveBy {
       result.outcome = r.outcome;
       result.trajectory = r.trajectory;
       result.violations = r.violations;
-      result.events = detail::events_of(*r.trajectory, world_, steps_, waypoints, chain);
+      result.events = detail::events_of(*r.trajectory, world_, steps_, waypoints, sequence);
     }
     return r.usable();
   }
@@ -170,8 +176,8 @@ class DriveBy {
   DriveByGoal goal_;
   const DriveByOptions& options_;
   const Monitor& monitor_;
-  std::optional<detail::DriveByWorlds> worlds_;
-  std::optional<detail::DriveByAttempts> attempts_;
+  std::optional<detail::SceneStates> scene_states_;
+  std::optional<detail::DriveBySolver> solver_;
   double least_broken_ = detail::kInfinity;
 };
 

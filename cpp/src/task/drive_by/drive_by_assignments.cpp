@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-constexpr int kSpare = 3;           // chains looked at for each that is tried
+constexpr int kSpare = 3;           // sequences generated for each that is tried
 constexpr double kCollision = 0.3;  // what a colliding waypoint of a guess counts as [s]
 
 /// From rest to rest.
@@ -41,27 +41,28 @@ double slack_of(const DriveByStep& step) {
   return std::sqrt(square);
 }
 
-double chain_time(const JointGroup& group, const std::vector<Stand>& chain, const VectorXd& start,
-                  const VectorXd& goal) {
+double sequence_time(const JointGroup& group, const ConfigurationSequence& sequence, const VectorXd& start,
+                     const VectorXd& goal) {
   double time = 0;
   VectorXd here = start;
-  for (const Stand& stand : chain) {
-    time += travel_time(group, here, stand.q);
-    here = stand.q;
+  for (const GoalConfiguration& configuration : sequence) {
+    time += travel_time(group, here, configuration.q);
+    here = configuration.q;
   }
   return time + travel_time(group, here, goal);
 }
 
-/// The stands of one candidate of one task; those of other tasks stay.
-std::vector<std::vector<Stand>> only(const std::vector<DriveByStep>& steps, std::vector<std::vector<Stand>> stands,
+/// Keeps the configurations of one candidate of one task; those of other tasks stay.
+std::vector<GoalConfigurations> only(const std::vector<DriveByStep>& steps, std::vector<GoalConfigurations> goals,
                                      std::size_t task, int candidate) {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (steps[i].task != task) continue;
-    auto& list = stands[i];
-    list.erase(std::remove_if(list.begin(), list.end(), [&](const Stand& s) { return s.candidate != candidate; }),
-               list.end());
+    auto& list = goals[i];
+    list.erase(
+        std::remove_if(list.begin(), list.end(), [&](const GoalConfiguration& s) { return s.candidate != candidate; }),
+        list.end());
   }
-  return stands;
+  return goals;
 }
 
 }  // namespace
@@ -87,49 +88,51 @@ double least_duration(const JointGroup& group, const VectorXd& start, const Driv
   return std::max(least, rest_to_rest(way, limits.linear_velocity, limits.linear_acceleration));
 }
 
-std::vector<DriveByChoice> drive_by_assignments(const JointGroup& group, const std::vector<DriveByStep>& steps,
-                                                const std::vector<std::vector<Stand>>& stands, const VectorXd& start,
-                                                const DriveByGoal& goal, const DriveByOptions& options,
-                                                const std::function<int(const std::vector<Stand>&)>& collisions) {
+std::vector<GraspAssignment> drive_by_assignments(const JointGroup& group, const std::vector<DriveByStep>& steps,
+                                                  const std::vector<GoalConfigurations>& goals, const VectorXd& start,
+                                                  const DriveByGoal& goal, const DriveByOptions& options,
+                                                  const std::function<int(const ConfigurationSequence&)>& collisions) {
   const VectorXd end = start.cwiseMax(goal.lower).cwiseMin(goal.upper);
-  std::vector<DriveByChoice> choices;
+  std::vector<GraspAssignment> assignments;
   std::set<std::vector<int>> seen;
-  const auto add = [&](const std::vector<std::vector<Stand>>& among) {
-    DriveByChoice choice{choose_stands(group, steps, among, start, end, kSpare * options.attempts)};
-    if (choice.chains.empty()) return;
+  const auto add = [&](const std::vector<GoalConfigurations>& among) {
+    GraspAssignment assignment{choose_sequences(group, steps, among, start, end, kSpare * options.attempts)};
+    if (assignment.sequences.empty()) return;
     std::vector<std::pair<double, std::size_t>> order;
-    for (std::size_t i = 0; i < choice.chains.size(); ++i)
-      order.push_back({chain_time(group, choice.chains[i], start, end) + kCollision * collisions(choice.chains[i]), i});
+    for (std::size_t i = 0; i < assignment.sequences.size(); ++i)
+      order.push_back(
+          {sequence_time(group, assignment.sequences[i], start, end) + kCollision * collisions(assignment.sequences[i]),
+           i});
     std::sort(order.begin(), order.end());
     order.resize(std::min(order.size(), static_cast<std::size_t>(options.attempts)));
-    std::vector<std::vector<Stand>> chains;
-    for (const auto& [cost, i] : order) chains.push_back(std::move(choice.chains[i]));
-    choice.chains = std::move(chains);
-    const std::vector<Stand>& chain = choice.chains.front();
+    std::vector<ConfigurationSequence> sequences;
+    for (const auto& [cost, i] : order) sequences.push_back(std::move(assignment.sequences[i]));
+    assignment.sequences = std::move(sequences);
+    const ConfigurationSequence& sequence = assignment.sequences.front();
     std::vector<int> candidates;
     for (std::size_t i = 0; i < steps.size(); ++i) {
-      candidates.push_back(chain[i].candidate);
-      const Pose& T = steps[i].candidates[chain[i].candidate];
-      choice.bound = std::max(choice.bound, least_duration(group, start, goal, T, slack_of(steps[i])));
+      candidates.push_back(sequence[i].candidate);
+      const Pose& T = steps[i].candidates[sequence[i].candidate];
+      assignment.bound = std::max(assignment.bound, least_duration(group, start, goal, T, slack_of(steps[i])));
     }
     if (!seen.insert(candidates).second) return;
-    choice.about = chain_time(group, chain, start, end);
-    choices.push_back(std::move(choice));
+    assignment.estimated_duration = sequence_time(group, sequence, start, end);
+    assignments.push_back(std::move(assignment));
   };
   const bool several = std::any_of(steps.begin(), steps.end(), [](const auto& s) { return s.candidates.size() > 1; });
   if (steps.empty()) return {{{{}}}};
   if (!several || options.choices == 1) {
-    add(stands);
-    return choices;
+    add(goals);
+    return assignments;
   }
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (!steps[i].begins) continue;
-    for (int c = 0; c < static_cast<int>(steps[i].candidates.size()); ++c) add(only(steps, stands, steps[i].task, c));
+    for (int c = 0; c < static_cast<int>(steps[i].candidates.size()); ++c) add(only(steps, goals, steps[i].task, c));
   }
-  std::stable_sort(choices.begin(), choices.end(), [](const DriveByChoice& a, const DriveByChoice& b) {
-    return a.bound != b.bound ? a.bound < b.bound : a.about < b.about;
+  std::stable_sort(assignments.begin(), assignments.end(), [](const GraspAssignment& a, const GraspAssignment& b) {
+    return a.bound != b.bound ? a.bound < b.bound : a.estimated_duration < b.estimated_duration;
   });
-  return choices;
+  return assignments;
 }
 
 }  // namespace mmgrasp::detail

@@ -1,3 +1,4 @@
+// drive_by_csv(): the trajectory as text, with the tasks and what is held.
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"

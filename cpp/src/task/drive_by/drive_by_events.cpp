@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "task/drive_by/drive_by_solve.hpp"
+#include "task/drive_by/drive_by_seed.hpp"
 
 namespace mmgrasp::detail {
 
@@ -28,7 +28,7 @@ std::string describe(const WholeBodyResult& r) {
 
 std::vector<DriveByEvent> events_of(const WholeBodyTrajectory& t, const World& world,
                                     const std::vector<DriveByStep>& steps, const std::vector<int>& waypoints,
-                                    const std::vector<Stand>& chain) {
+                                    const ConfigurationSequence& sequence) {
   std::vector<DriveByEvent> events;
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
     const std::size_t at = static_cast<std::size_t>(waypoints[i]);
@@ -44,7 +44,7 @@ std::vector<DriveByEvent> events_of(const WholeBodyTrajectory& t, const World& w
       e.T_tip_object = held_pose(steps[i], t.group().fk(t.positions()[at]), T_world_object);
       e.held_time = t.times()[at + (steps[i].dwell > 0 ? kDwellIntervals : 0)];
     }
-    e.candidate = chain[i].candidate;
+    e.candidate = sequence[i].candidate;
     e.base_speed = t.group().has_base() ? rate.head<2>().norm() : 0;
     e.tool_speed = (t.group().jacobian(t.positions()[at]) * rate).head<3>().norm();
   }

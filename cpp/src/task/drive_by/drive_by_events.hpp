@@ -8,10 +8,10 @@
 
 namespace mmgrasp::detail {
 
-/// What happens at the tasks of a motion whose steps stand at these waypoints.
+/// What happens at the tasks of a motion whose steps configuration at these waypoints.
 std::vector<DriveByEvent> events_of(const WholeBodyTrajectory& t, const World& world,
                                     const std::vector<DriveByStep>& steps, const std::vector<int>& waypoints,
-                                    const std::vector<Stand>& chain);
+                                    const ConfigurationSequence& sequence);
 
 /// Outcome of a solve, and what is broken where, by how much.
 std::string describe(const WholeBodyResult& r);

@@ -15,10 +15,10 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double kNear = 0.35, kFar = 1.1;  // of base and tool on the floor [m]
-constexpr double kHeadingSpread = 0.6;      // about the direction of travel [rad]
-constexpr double kTwin = 0.3;               // stands closer than this in every value are one
-constexpr int kRounds = 8;                  // of tries while nothing is found
+constexpr double kNear = 0.35, kFar = 1.1;  // distance of base and tool on the floor [m]
+constexpr double kHeadingSpread = 0.6;      // deviation from the direction of travel [rad]
+constexpr double kTwin = 0.3;               // configurations closer than this in every value are one
+constexpr int kRounds = 8;                  // rounds of tries while nothing is found
 
 double direction(const VectorXd& from, const VectorXd& to, double otherwise) {
   const Eigen::Vector2d way = to.head<2>() - from.head<2>();
@@ -33,7 +33,7 @@ Pose drawn_pose(const DriveByTask& task, int candidate, Rng& rng) {
   return T;
 }
 
-IkOptions stand_ik() {
+IkOptions goal_ik() {
   IkOptions ik;
   ik.restarts = 0;
   ik.position_tolerance = 1e-5;
@@ -71,15 +71,15 @@ VectorXd unwound(const JointGroup& group, const VectorXd& from, VectorXd to) {
   return to;
 }
 
-std::vector<Stand> find_stands(const JointGroup& group, CollisionChecker* checker, const DriveByTask& task,
-                               const VectorXd& before, const VectorXd& after, const DriveByOptions& options,
-                               unsigned stream, const Monitor& monitor) {
+GoalConfigurations find_goal_configurations(const JointGroup& group, CollisionChecker* checker, const DriveByTask& task,
+                                            const VectorXd& before, const VectorXd& after,
+                                            const DriveByOptions& options, unsigned stream, const Monitor& monitor) {
   const std::size_t each = static_cast<std::size_t>(options.stands), count = each * task.candidates.size();
-  std::vector<Stand> found;
+  GoalConfigurations found;
   const int threads = resolve_threads(options.threads);
   std::vector<CollisionChecker> checkers;
   for (int i = 0; checker && i < threads; ++i) checkers.push_back(checker->clone());
-  const IkOptions ik = stand_ik();
+  const IkOptions ik = goal_ik();
   const double along = group.has_base() ? direction(before, after, before[2]) : 0;
   std::size_t first = 0;
   const auto try_one = [&](std::size_t index, int worker) {
@@ -113,7 +113,7 @@ std::vector<Stand> find_stands(const JointGroup& group, CollisionChecker* checke
     found[index].candidate = candidate;
   };
   const auto any = [&] {
-    return std::any_of(found.begin(), found.end(), [](const Stand& s) { return s.q.size() > 0; });
+    return std::any_of(found.begin(), found.end(), [](const GoalConfiguration& s) { return s.q.size() > 0; });
   };
   for (int round = 0; round < kRounds && !any() && !monitor.stopped(); ++round, first += each) {
     found.assign(count, {});
@@ -125,9 +125,9 @@ std::vector<Stand> find_stands(const JointGroup& group, CollisionChecker* checke
     order.push_back({travel_time(group, before, found[i].q) + travel_time(group, found[i].q, after), i});
   }
   std::sort(order.begin(), order.end());
-  std::vector<Stand> result;
+  GoalConfigurations result;
   for (const auto& [time, i] : order) {
-    const bool twin = std::any_of(result.begin(), result.end(), [&](const Stand& s) {
+    const bool twin = std::any_of(result.begin(), result.end(), [&](const GoalConfiguration& s) {
       return s.candidate == found[i].candidate && (s.q - found[i].q).cwiseAbs().maxCoeff() < kTwin;
     });
     if (!twin) result.push_back(found[i]);
@@ -135,40 +135,41 @@ std::vector<Stand> find_stands(const JointGroup& group, CollisionChecker* checke
   return result;
 }
 
-std::vector<Stand> follow_stands(const JointGroup& group, CollisionChecker* checker, const DriveByStep& step,
-                                 const std::vector<Stand>& before, const Monitor& monitor) {
+GoalConfigurations follow_goal_configurations(const JointGroup& group, CollisionChecker* checker,
+                                              const DriveByStep& step, const GoalConfigurations& before,
+                                              const Monitor& monitor) {
   const ConfigurationFilter valid = [&](const VectorXd& q) {
     return checker ? checker->rejection(q) : Rejection::none;
   };
-  std::vector<Stand> result;
-  for (const Stand& stand : before) {
-    const Pose& T = step.candidates[stand.candidate];
-    const IkResult r = solve_ik(group, T, stand.q, stand_ik(), valid, {monitor.stop, {}});
-    if (r.outcome == Outcome::solved) result.push_back({unwound(group, stand.q, r.q), stand.candidate});
+  GoalConfigurations result;
+  for (const GoalConfiguration& configuration : before) {
+    const Pose& T = step.candidates[configuration.candidate];
+    const IkResult r = solve_ik(group, T, configuration.q, goal_ik(), valid, {monitor.stop, {}});
+    if (r.outcome == Outcome::solved) result.push_back({unwound(group, configuration.q, r.q), configuration.candidate});
   }
   return result;
 }
 
-std::vector<std::vector<Stand>> choose_stands(const JointGroup& group, const std::vector<DriveByStep>& steps,
-                                              const std::vector<std::vector<Stand>>& stands, const VectorXd& start,
-                                              const VectorXd& goal, int count) {
-  // Each round takes the quickest chain; stands it used become dearer for the next ones.
+std::vector<ConfigurationSequence> choose_sequences(const JointGroup& group, const std::vector<DriveByStep>& steps,
+                                                    const std::vector<GoalConfigurations>& goals, const VectorXd& start,
+                                                    const VectorXd& goal, int count) {
+  // Each round takes the quickest sequence; the configurations it used become costlier for the next ones.
   constexpr double kUsed = 1.5;  // [s] per use
   std::vector<std::vector<double>> penalty;
-  for (const auto& list : stands) penalty.push_back(std::vector<double>(list.size(), 0));
-  std::vector<std::vector<Stand>> chains;
+  for (const auto& list : goals) penalty.push_back(std::vector<double>(list.size(), 0));
+  std::vector<ConfigurationSequence> sequences;
   std::vector<std::vector<std::size_t>> seen;
-  for (int round = 0; round < 4 * count && static_cast<int>(chains.size()) < count; ++round) {
+  for (int round = 0; round < 4 * count && static_cast<int>(sequences.size()) < count; ++round) {
     std::vector<std::vector<double>> cost;
     std::vector<std::vector<std::size_t>> from;
-    for (std::size_t t = 0; t < stands.size(); ++t) {
-      cost.push_back(std::vector<double>(stands[t].size(), kInfinity));
-      from.push_back(std::vector<std::size_t>(stands[t].size(), 0));
-      for (std::size_t i = 0; i < stands[t].size(); ++i) {
-        if (t == 0) cost[t][i] = travel_time(group, start, stands[t][i].q);
-        for (std::size_t j = 0; t > 0 && j < stands[t - 1].size(); ++j) {
-          if (steps[t].way > 0 && stands[t - 1][j].candidate != stands[t][i].candidate) continue;
-          const double c = cost[t - 1][j] + travel_time(group, stands[t - 1][j].q, stands[t][i].q);
+    for (std::size_t t = 0; t < goals.size(); ++t) {
+      cost.push_back(std::vector<double>(goals[t].size(), kInfinity));
+      from.push_back(std::vector<std::size_t>(goals[t].size(), 0));
+      for (std::size_t i = 0; i < goals[t].size(); ++i) {
+        if (t == 0) cost[t][i] = travel_time(group, start, goals[t][i].q);
+        for (std::size_t j = 0; t > 0 && j < goals[t - 1].size(); ++j) {
+          if (steps[t].way > 0 && goals[t - 1][j].candidate != goals[t][i].candidate) continue;
+          const double c = cost[t - 1][j] + travel_time(group, goals[t - 1][j].q, goals[t][i].q);
           if (c < cost[t][i]) {
             cost[t][i] = c;
             from[t][i] = j;
@@ -179,26 +180,26 @@ std::vector<std::vector<Stand>> choose_stands(const JointGroup& group, const std
     }
     std::size_t best = 0;
     double least = kInfinity;
-    for (std::size_t i = 0; i < stands.back().size(); ++i) {
-      const double c = cost.back()[i] + travel_time(group, stands.back()[i].q, goal);
+    for (std::size_t i = 0; i < goals.back().size(); ++i) {
+      const double c = cost.back()[i] + travel_time(group, goals.back()[i].q, goal);
       if (c < least) {
         least = c;
         best = i;
       }
     }
     if (least == kInfinity) break;
-    std::vector<std::size_t> chain(stands.size());
-    for (std::size_t t = stands.size(); t-- > 0;) {
-      chain[t] = best;
+    std::vector<std::size_t> sequence(goals.size());
+    for (std::size_t t = goals.size(); t-- > 0;) {
+      sequence[t] = best;
       penalty[t][best] += kUsed;
       best = from[t][best];
     }
-    if (std::find(seen.begin(), seen.end(), chain) != seen.end()) continue;
-    seen.push_back(chain);
-    chains.emplace_back();
-    for (std::size_t t = 0; t < stands.size(); ++t) chains.back().push_back(stands[t][chain[t]]);
+    if (std::find(seen.begin(), seen.end(), sequence) != seen.end()) continue;
+    seen.push_back(sequence);
+    sequences.emplace_back();
+    for (std::size_t t = 0; t < goals.size(); ++t) sequences.back().push_back(goals[t][sequence[t]]);
   }
-  return chains;
+  return sequences;
 }
 
 }  // namespace mmgrasp::detail

@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 constexpr int kLeastIntervals = 3;
 constexpr double kRamp = 0.25;  // share of a segment in which it speeds up from rest
 
-/// Share of the way after share u of the time, resting at the ends asked for.
+/// Share of the way after share u of the time, resting at the given ends.
 double eased(double u, bool rest_first, bool rest_last) {
   const double first = rest_first ? kRamp : 0, last = rest_last ? kRamp : 0;
   const double cruise = 1 / (1 - 0.5 * first - 0.5 * last);
@@ -84,11 +84,11 @@ VectorXd GuidedWay::at(double time) const {
   return points[i - 1] + share * (points[i] - points[i - 1]);
 }
 
-std::vector<double> segment_times(const JointGroup& group, const std::vector<VectorXd>& knots) {
+std::vector<double> segment_times(const JointGroup& group, const std::vector<VectorXd>& via_points) {
   std::vector<double> times;
-  for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
-    double time = travel_time(group, knots[i], knots[i + 1]);
-    const bool rests = i == 0 || i + 2 == knots.size();
+  for (std::size_t i = 0; i + 1 < via_points.size(); ++i) {
+    double time = travel_time(group, via_points[i], via_points[i + 1]);
+    const bool rests = i == 0 || i + 2 == via_points.size();
     if (rests && group.has_base()) {
       const BaseLimits& limits = group.robot().base_limits();
       time += 0.5 * limits.linear_velocity / limits.linear_acceleration;
@@ -114,15 +114,15 @@ std::vector<int> share_intervals(int intervals, const std::vector<double>& times
   return shares;
 }
 
-WholeBodyGuess guess_through(const JointGroup& group, const std::vector<VectorXd>& knots,
+WholeBodyGuess guess_through(const JointGroup& group, const std::vector<VectorXd>& via_points,
                              const std::vector<int>& intervals, const std::vector<double>& times,
                              const std::vector<GuidedWay>& ways) {
   WholeBodyGuess guess;
-  for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
-    const VectorXd &from = knots[k], &to = knots[k + 1];
+  for (std::size_t k = 0; k + 1 < via_points.size(); ++k) {
+    const VectorXd &from = via_points[k], &to = via_points[k + 1];
     const int n = intervals[k];
     for (int i = 0; i < n; ++i) {
-      const double s = eased(static_cast<double>(i) / n, k == 0, k + 2 == knots.size());
+      const double s = eased(static_cast<double>(i) / n, k == 0, k + 2 == via_points.size());
       VectorXd q = from + s * (to - from);
       if (!ways.empty() && !ways[k].points.empty()) {
         guess.positions.push_back(ways[k].at(s * ways[k].times.back()));
@@ -133,7 +133,7 @@ WholeBodyGuess guess_through(const JointGroup& group, const std::vector<VectorXd
     }
     guess.steps.push_back(times[k] / n);
   }
-  guess.positions.push_back(knots.back());
+  guess.positions.push_back(via_points.back());
   return guess;
 }
 

@@ -6,8 +6,8 @@
 
 namespace mmgrasp::detail {
 
-/// Seconds that each way between successive configurations takes, resting at the first and the last.
-std::vector<double> segment_times(const JointGroup& group, const std::vector<Eigen::VectorXd>& knots);
+/// Time of each way between successive via points [s], resting at the first and the last.
+std::vector<double> segment_times(const JointGroup& group, const std::vector<Eigen::VectorXd>& via_points);
 
 /// `intervals` shared out in proportion to times, at least three each.
 std::vector<int> share_intervals(int intervals, const std::vector<double>& times);
@@ -19,9 +19,9 @@ struct GuidedWay {
   Eigen::VectorXd at(double time) const;
 };
 
-/// Through the knots: the arm straight, the base along a smooth curve that looks where it drives, or turning, driving
-/// and turning where it would have to turn back; or along `ways`, empty or one between each two knots.
-WholeBodyGuess guess_through(const JointGroup& group, const std::vector<Eigen::VectorXd>& knots,
+/// A guess through the via points: the arm straight, the base along a smooth curve that looks where it drives, or
+/// turning, driving and turning where it would have to turn back; or along `ways`, empty or one between each two.
+WholeBodyGuess guess_through(const JointGroup& group, const std::vector<Eigen::VectorXd>& via_points,
                              const std::vector<int>& intervals, const std::vector<double>& times,
                              const std::vector<GuidedWay>& ways = {});
 

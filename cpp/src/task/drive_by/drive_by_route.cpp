@@ -14,9 +14,9 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr int kWays = 3;      // sampled, of which the quickest is taken
-constexpr int kDraws = 2000;  // of the planner
+constexpr int kDraws = 2000;  // the planner's samples
 constexpr int kShortenings = 100;
-constexpr double kSpacing = 0.25;  // of places on the road [m]
+constexpr double kSpacing = 0.25;  // distance between places on the reference path [m]
 constexpr int kExits = 3;          // tried of it
 constexpr std::size_t kApart = 3;  // places between exits tried
 
@@ -32,7 +32,7 @@ void append(std::vector<VectorXd>& way, const std::vector<VectorXd>& points) {
   for (std::size_t i = 1; i < points.size(); ++i) way.push_back(points[i] + turns);
 }
 
-/// The chain from the root to the tip, everything as in the configuration.
+/// The sequence from the root to the tip, everything as in the configuration.
 JointGroup standing_arm(const JointGroup& group, const VectorXd& q, VectorXd& home) {
   const Robot& robot = group.robot();
   const VectorXd values = group.full_values(q);
@@ -48,8 +48,8 @@ JointGroup standing_arm(const JointGroup& group, const VectorXd& q, VectorXd& ho
 
 }  // namespace
 
-std::optional<DriveByRoads::Points> DriveByRoads::sampled(CollisionChecker& checker, const VectorXd& from,
-                                                          const VectorXd& to, int tries) {
+std::optional<PathGuide::Points> PathGuide::sampled(CollisionChecker& checker, const VectorXd& from, const VectorXd& to,
+                                                    int tries) {
   MotionOptions options;
   options.time_limit = detail::kNoTimeLimit;
   options.max_iterations = kDraws;
@@ -65,10 +65,10 @@ std::optional<DriveByRoads::Points> DriveByRoads::sampled(CollisionChecker& chec
   return best;
 }
 
-const DriveByRoads::Points& DriveByRoads::road() {
-  if (road_) return *road_;
-  road_.emplace();
-  if (!group_.has_base()) return *road_;
+const PathGuide::Points& PathGuide::reference_path() {
+  if (reference_path_) return *reference_path_;
+  reference_path_.emplace();
+  if (!group_.has_base()) return *reference_path_;
   BaseRouteOptions options;
   options.base = group_.robot().base();
   VectorXd home;
@@ -76,24 +76,25 @@ const DriveByRoads::Points& DriveByRoads::road() {
   CollisionChecker standing = checker_.with_group(arm);
   const BasePath path =
       plan_base_route(standing, home, start_.head<3>(), goal_.head<3>(), options, {monitor_.stop, {}});
-  if (path.outcome != Outcome::solved) return *road_;
+  if (path.outcome != Outcome::solved) return *reference_path_;
   VectorXd q = start_;
-  road_->push_back(q);
+  reference_path_->push_back(q);
   for (std::size_t i = 1; i < path.poses.size(); ++i) {
     const Eigen::Vector3d from = path.poses[i - 1], step = path.poses[i] - from;
     const int pieces = std::max(1, static_cast<int>(std::ceil(step.head<2>().norm() / kSpacing)));
     for (int k = 1; k <= pieces; ++k) {
       q.head<3>() = from + step * (static_cast<double>(k) / pieces);
-      road_->push_back(q);
+      reference_path_->push_back(q);
     }
   }
-  return *road_;
+  return *reference_path_;
 }
 
-std::vector<std::size_t> DriveByRoads::exits(const VectorXd& q) const {
+std::vector<std::size_t> PathGuide::exits(const VectorXd& q) const {
   if (q == start_) return {0};
   std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t i = 0; i < road_->size(); ++i) order.push_back({((*road_)[i] - q).head<2>().norm(), i});
+  for (std::size_t i = 0; i < reference_path_->size(); ++i)
+    order.push_back({((*reference_path_)[i] - q).head<2>().norm(), i});
   std::sort(order.begin(), order.end());
   std::vector<std::size_t> result;
   for (const auto& [distance, i] : order) {
@@ -106,12 +107,13 @@ std::vector<std::size_t> DriveByRoads::exits(const VectorXd& q) const {
   return result;
 }
 
-std::optional<DriveByRoads::Points> DriveByRoads::along_road(CollisionChecker& checker, const VectorXd& from,
-                                                             const VectorXd& to) {
-  if (road().empty()) return {};
+std::optional<PathGuide::Points> PathGuide::along_reference_path(CollisionChecker& checker, const VectorXd& from,
+                                                                 const VectorXd& to) {
+  if (reference_path().empty()) return {};
   const auto reach = [&](const VectorXd& q, bool leaves) -> std::pair<std::optional<Points>, std::size_t> {
     for (std::size_t i : exits(q)) {
-      auto part = leaves ? sampled(checker, q, (*road_)[i], 1) : sampled(checker, (*road_)[i], q, 1);
+      auto part =
+          leaves ? sampled(checker, q, (*reference_path_)[i], 1) : sampled(checker, (*reference_path_)[i], q, 1);
       if (part) return {std::move(part), i};
     }
     return {};
@@ -121,7 +123,7 @@ std::optional<DriveByRoads::Points> DriveByRoads::along_road(CollisionChecker& c
   const auto [last, leave] = reach(to, false);
   if (!last) return {};
   Points way = *first;
-  const auto at = [&](std::size_t i) { return road_->begin() + static_cast<std::ptrdiff_t>(i); };
+  const auto at = [&](std::size_t i) { return reference_path_->begin() + static_cast<std::ptrdiff_t>(i); };
   Points middle = enter <= leave ? Points(at(enter), at(leave) + 1) : Points(at(leave), at(enter) + 1);
   if (enter > leave) std::reverse(middle.begin(), middle.end());
   append(way, middle);
@@ -129,12 +131,12 @@ std::optional<DriveByRoads::Points> DriveByRoads::along_road(CollisionChecker& c
   return way;
 }
 
-std::optional<GuidedWay> DriveByRoads::way(CollisionChecker& checker, const VectorXd& from, const VectorXd& to,
-                                           bool by_road) {
+std::optional<GuidedWay> PathGuide::way(CollisionChecker& checker, const VectorXd& from, const VectorXd& to,
+                                        bool by_reference_path) {
   std::optional<Points> points;
-  if (by_road) points = along_road(checker, from, to);
+  if (by_reference_path) points = along_reference_path(checker, from, to);
   if (!points) points = sampled(checker, from, to, kWays);
-  if (!points && !by_road) points = along_road(checker, from, to);
+  if (!points && !by_reference_path) points = along_reference_path(checker, from, to);
   if (!points) return {};
   GuidedWay way{std::move(*points), {0}};
   for (std::size_t k = 1; k < way.points.size(); ++k)

@@ -3,27 +3,27 @@
 #include <algorithm>
 
 namespace mmgrasp::detail {
-DriveByWorlds::DriveByWorlds(const JointGroup& group, const World& world, const std::vector<DriveByStep>& tasks)
+SceneStates::SceneStates(const JointGroup& group, const World& world, const std::vector<DriveByStep>& tasks)
     : group_(group), world_(world), tasks_(tasks) {}
 
-World DriveByWorlds::left(std::size_t task) const {
+World SceneStates::left(std::size_t task) const {
   World world = world_;
   for (std::size_t i = 0; i < std::min(task, tasks_.size()); ++i)
     if (!tasks_[i].object.empty() && world.has(tasks_[i].object)) world.remove(tasks_[i].object);
   return world;
 }
 
-CollisionChecker& DriveByWorlds::before(std::size_t task) {
+CollisionChecker& SceneStates::before(std::size_t task) {
   return before_.try_emplace(task, group_, left(task)).first->second;
 }
 
-CollisionChecker& DriveByWorlds::at(std::size_t task) {
+CollisionChecker& SceneStates::at(std::size_t task) {
   if (task >= tasks_.size() || tasks_[task].object.empty()) return before(task);
   return at_.try_emplace(task, group_, left(task + 1)).first->second;
 }
 
-std::vector<CollisionChecker*> DriveByWorlds::along(const std::vector<int>& intervals,
-                                                    const std::vector<Stand>& chain) {
+std::vector<CollisionChecker*> SceneStates::along(const std::vector<int>& intervals,
+                                                  const ConfigurationSequence& sequence) {
   held_.clear();
   std::vector<CollisionChecker*> result;
   const std::string& tip = group_.robot().links()[group_.tip_link()].name;
@@ -39,7 +39,7 @@ std::vector<CollisionChecker*> DriveByWorlds::along(const std::vector<int>& inte
       World world = left(by - 1);
       const std::string& object = tasks_[by - 1].object;
       const Pose T_world_object = world.objects().at(object).T_world_object;
-      world.attach(object, tip, held_pose(tasks_[by - 1], group_.fk(chain[by - 1].q), T_world_object));
+      world.attach(object, tip, held_pose(tasks_[by - 1], group_.fk(sequence[by - 1].q), T_world_object));
       here = &held_.try_emplace(s, group_, world).first->second;
       if (by == s) taken = &at(s - 1);
     }

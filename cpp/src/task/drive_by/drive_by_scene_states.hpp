@@ -10,14 +10,14 @@
 namespace mmgrasp::detail {
 
 /// The world as it changes while parts are taken.
-class DriveByWorlds {
+class SceneStates {
  public:
-  DriveByWorlds(const JointGroup& group, const World& world, const std::vector<DriveByStep>& tasks);
+  SceneStates(const JointGroup& group, const World& world, const std::vector<DriveByStep>& tasks);
 
   CollisionChecker& before(std::size_t task);  ///< On the way to a task; earlier parts are gone.
   CollisionChecker& at(std::size_t task);      ///< While its part is taken: neither there nor held.
-  /// One checker per interval. Parts are held as the stands take them; valid until the next call.
-  std::vector<CollisionChecker*> along(const std::vector<int>& intervals, const std::vector<Stand>& chain);
+  /// One checker per interval. Parts are held as the sequence takes them; valid until the next call.
+  std::vector<CollisionChecker*> along(const std::vector<int>& intervals, const ConfigurationSequence& sequence);
 
  private:
   const JointGroup& group_;

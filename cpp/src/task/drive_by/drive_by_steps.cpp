@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kAside = 0.003, kTilt = 0.03;  // off the straight way of a push-grasp [m], [rad]
 constexpr double kFaster = 1.2;                 // tool before the object, over its speed at the grasp
-constexpr double kSlack = 1.05;                 // of speed and duration while the fingers close
+constexpr double kSlack = 1.05;                 // factor on speed and duration while the fingers close
 
 /// The axis of the frame that a direction is, or -1.
 int axis_of(const Eigen::Vector3d& direction) {
@@ -70,7 +70,7 @@ void add_push(const DriveByTask& task, std::size_t index, std::vector<DriveBySte
     if (slides == (back == 2)) step.object = task.object;
   }
   // It stands still until the palm has it.
-  if (slides) steps[steps.size() - 2].slides_in = grasp.push.both_touch - grasp.push.start - grasp.push.pushed;
+  if (slides) steps[steps.size() - 2].insertion_distance = grasp.push.both_touch - grasp.push.start - grasp.push.pushed;
 }
 
 }  // namespace
@@ -110,7 +110,7 @@ void check_tasks(const std::vector<DriveByTask>& tasks, const World& world) {
 }
 
 Pose held_pose(const DriveByStep& step, const Pose& T_world_tip, const Pose& T_world_object) {
-  const Eigen::Vector3d nearer = -step.slides_in * step.sign * Eigen::Vector3d::Unit(step.axis);
+  const Eigen::Vector3d nearer = -step.insertion_distance * step.sign * Eigen::Vector3d::Unit(step.axis);
   return Eigen::Translation3d(nearer) * (T_world_tip.inverse() * T_world_object);
 }
 
@@ -131,7 +131,7 @@ ToolConstraint constraint_before(const DriveByStep& step, int candidate, int way
   ToolConstraint tool = constraint_at(step, candidate, waypoint);
   tool.upper << kAside, kAside, kAside, kTilt, kTilt, kTilt;
   tool.lower = -tool.upper;
-  // Of the way only what lies before the step.
+  // Only the part of the way that lies before the step.
   (step.sign > 0 ? tool.lower : tool.upper)[step.axis] = -step.sign * step.way;
   (step.sign > 0 ? tool.upper : tool.lower)[step.axis] = 0;
   (step.sign > 0 ? tool.velocity_lower : tool.velocity_upper)[step.axis] = 0;

@@ -9,14 +9,14 @@ namespace mmgrasp::detail {
 /// What the tool does at one waypoint. A task is one step, a push-grasp three: before the object, closing begins, both
 /// fingers touch.
 struct DriveByStep : DriveByTask {
-  std::size_t task = 0;  ///< Which one it is a step of.
-  bool begins = true;    ///< First step of its task.
-  bool closes = true;    ///< The gripper begins to close here.
-  double duration = 0;   ///< Of the way from the step before [s]; 0: free.
-  double way = 0;        ///< > 0: from the step before straight along the approach, so far [m].
-  int axis = 0;          ///< Of the tip's frame: the approach.
-  double sign = 1;       ///< Of the approach along it.
-  double slides_in = 0;  ///< The object comes this much nearer to the hand before it moves with it [m].
+  std::size_t task = 0;           ///< Index of the task that it is a step of.
+  bool begins = true;             ///< It is the first step of its task.
+  bool closes = true;             ///< The gripper begins to close here.
+  double duration = 0;            ///< Time from the step before to this one [s]; 0: free.
+  double way = 0;                 ///< > 0: length of the straight way from the step before, along the approach [m].
+  int axis = 0;                   ///< Axis of the tip's frame that the approach follows.
+  double sign = 1;                ///< Sign of the approach along the axis.
+  double insertion_distance = 0;  ///< The object comes this much nearer to the hand before it moves with it [m].
 };
 
 std::vector<DriveByStep> steps_of(const std::vector<DriveByTask>& tasks);
@@ -29,7 +29,7 @@ Pose held_pose(const DriveByStep& step, const Pose& T_world_tip, const Pose& T_w
 
 /// Bounds on the tool at the step's own waypoint.
 ToolConstraint constraint_at(const DriveByStep& step, int candidate, int waypoint);
-/// On a straight way to the step, at a waypoint before it.
+/// Bounds on a straight way to the step, at a waypoint before it.
 ToolConstraint constraint_before(const DriveByStep& step, int candidate, int waypoint);
 
 }  // namespace mmgrasp::detail

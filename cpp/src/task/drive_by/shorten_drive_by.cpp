@@ -1,16 +1,17 @@
+// shorten_drive_by(): a motion that is known instead of guesses.
 #include <algorithm>
 #include <cmath>
 
 #include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/task/drive_by.hpp"
 #include "task/drive_by/drive_by_events.hpp"
-#include "task/drive_by/drive_by_solve.hpp"
+#include "task/drive_by/drive_by_seed.hpp"
 
 namespace mmgrasp {
 namespace {
 
-using detail::Stand;
 using Eigen::VectorXd;
 
 VectorXd at(const KnownMotion& known, double time) {
@@ -85,20 +86,21 @@ DriveByResult shorten_drive_by(const JointGroup& group, const World& world, cons
   require(options.waypoints >= least, "waypoints", options.waypoints, "must be at least " + std::to_string(least));
   const VectorXd& start = known.positions.front();
   const DriveByGoal goal{known.positions.back(), known.positions.back()};
-  std::optional<detail::DriveByWorlds> worlds;
-  if (options.collisions) worlds.emplace(group, world, steps);
-  detail::DriveByAttempts attempts(group, start, steps, goal, options, worlds ? &*worlds : nullptr, monitor);
-  std::vector<Stand> chain;
-  for (const double time : known.task_times) chain.push_back({at(known, time), 0});
-  detail::DriveByAttempt a = attempts.prepared(chain, options.waypoints);
+  std::optional<detail::SceneStates> scene_states;
+  if (options.collisions) scene_states.emplace(group, world, steps);
+  detail::DriveBySeeds seeds(group, start, steps, goal, options, scene_states ? &*scene_states : nullptr);
+  const detail::Stopwatch stopwatch;
+  detail::ConfigurationSequence sequence;
+  for (const double time : known.task_times) sequence.push_back({at(known, time), 0});
+  detail::SeededProblem a = seeds.make(sequence, options.waypoints);
   a.problem.check();
   a.guess = guess_along(known, tasks, a.intervals);
   monitor.report("shortening", 0);
   DriveByResult result;
   result.choices = 1;
   WholeBodyResult r;
-  // Bodies parted as they lie in the known motion leave that motion feasible, but hold the new one back where it is
-  // elsewhere at the same waypoint.
+  // Separating bodies as they lie in the known motion keeps that motion feasible, but holds the new one back where it
+  // is elsewhere at the same waypoint.
   for (const bool parts_bodies : {false, true}) {
     a.guess.parts_bodies = parts_bodies;
     r = optimize_whole_body(a.problem, a.guess, options.trajectory, a.checkers, monitor);
@@ -111,8 +113,8 @@ DriveByResult shorten_drive_by(const JointGroup& group, const World& world, cons
   result.outcome = monitor.stopped() && !r.usable() ? Outcome::stopped : r.outcome;
   result.trajectory = r.trajectory;
   result.violations = r.violations;
-  result.events = detail::events_of(*r.trajectory, world, steps, a.waypoints, chain);
-  result.seconds = attempts.seconds();
+  result.events = detail::events_of(*r.trajectory, world, steps, a.waypoints, sequence);
+  result.seconds = stopwatch.seconds();
   return result;
 }
 

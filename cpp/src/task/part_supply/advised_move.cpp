@@ -7,13 +7,14 @@
 #include <unordered_map>
 
 #include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/task/base_pose_evaluator.hpp"
 #include "task/problem/moving_group.hpp"
 #include "task/problem/scene.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 namespace {
 
-constexpr double kFarthest = 3.0;           // Longest move looked at [m].
+constexpr double kFarthest = 3.0;           // Longest move tried [m].
 constexpr int kMovesChecked = 24;           // Moves checked pose by pose in the moved scene.
 constexpr std::size_t kCentresChecked = 4;  // Disc centres checked for each of them.
 
@@ -51,7 +52,7 @@ struct Centre {
   int heading, ix, iy;
 };
 
-/// Whether the robot at home is free of all that stays; the floor is looked at where it is asked for only.
+/// Whether the robot at home is free of all that stays; checked lazily, where it is queried.
 class FreeFloor {
  public:
   FreeFloor(const PartSupplyProblem& problem, const MovingGroup& group, const BaseGrid& grid)
@@ -79,7 +80,7 @@ class FreeFloor {
     return free;
   }
 
-  /// In half cells, so that centres and corners both have whole numbers.
+  /// Free at a point, counted in half cells so that centres and corners both have whole numbers?
   bool point(int h, int x, int y) {
     const auto [it, is_new] = points_.emplace(key(h, x, y), false);
     if (!is_new) return it->second;
@@ -98,7 +99,7 @@ class FreeFloor {
 
 class MoveSearch {
  public:
-  MoveSearch(const PartSupplyProblem& problem, const ReachDatabase& database, const BaseGrid& grid, int tray)
+  MoveSearch(const PartSupplyProblem& problem, const ReachDatabase& database, const BaseGrid& grid, TrayId tray)
       : problem_(problem),
         database_(database),
         grid_(grid),
@@ -108,14 +109,14 @@ class MoveSearch {
         disc_(disc_cells(problem.options.positioning_uncertainty / grid.resolution + 1)) {
     const PartSupplyProblem alone = group_alone(problem, group_);
     const std::vector<BaseRegion> regions = compute_base_regions(alone, database, grid);
-    for (int member : group_.trays) {
+    for (TrayId member : group_.trays) {
       std::vector<Centre> centres = disc_centres(regions[member].cells);
-      // Another tray that has no base poses wherever it stands does not hinder the move.
+      // Another tray that has no base poses wherever it is does not hinder the move.
       if (!centres.empty() || member == tray) centres_[member] = std::move(centres);
     }
   }
 
-  std::optional<Eigen::Vector2d> run(int tray) {
+  std::optional<Eigen::Vector2d> run(TrayId tray) {
     if (centres_.at(tray).empty()) return std::nullopt;
     std::vector<Offset> failed;
     for (const Offset& move : moves_by_length(grid_.resolution)) {
@@ -166,7 +167,8 @@ class MoveSearch {
     });
   }
 
-  /// In the moved scene: start and goal stay free, and each tray has a disc of base poses that serves all its parts.
+  /// Does the move help? In the moved scene start and goal stay free, and each tray has a disc of base poses that
+  /// serves all its parts.
   bool works(const Offset& move, const Eigen::Vector2d& by) {
     const PartSupplyProblem moved = with_group_moved(problem_, group_, by);
     BasePoseEvaluator evaluator(moved, database_);
@@ -193,7 +195,8 @@ class MoveSearch {
     return chosen;
   }
 
-  bool disc_serves(const PartSupplyProblem& moved, BasePoseEvaluator& evaluator, int tray, const Centre& centre) const {
+  bool disc_serves(const PartSupplyProblem& moved, BasePoseEvaluator& evaluator, TrayId tray,
+                   const Centre& centre) const {
     std::map<std::tuple<int, int>, bool> known;  // in half cells
     const auto serves = [&](int x, int y) {
       const auto [it, is_new] = known.emplace(std::tuple{x, y}, true);
@@ -201,11 +204,9 @@ class MoveSearch {
       Eigen::Vector3d pose = grid_.centre(centre.heading, 0, 0);
       pose.x() += 0.5 * x * grid_.resolution;
       pose.y() += 0.5 * y * grid_.resolution;
-      const std::vector<Part>& parts = moved.trays[tray].parts;
-      for (int p = 0; p < static_cast<int>(parts.size()) && it->second; ++p) {
-        if (parts[p].target) it->second = evaluator.part(pose, tray, p).feasible;
-      }
-      return it->second;
+      const std::vector<PartRef> targets = target_parts(moved, tray);
+      return it->second = std::all_of(targets.begin(), targets.end(),
+                                      [&](const PartRef& part) { return evaluator.part(pose, part).feasible; });
     };
     return std::all_of(disc_.begin(), disc_.end(), [&](const Offset& o) {
       const int x = 2 * (centre.ix + o.first), y = 2 * (centre.iy + o.second);
@@ -221,24 +222,24 @@ class MoveSearch {
   GroupBounds bounds_;
   FreeFloor floor_;
   std::vector<Offset> disc_;
-  std::map<int, std::vector<Centre>> centres_;  // before the move, by tray
+  std::map<TrayId, std::vector<Centre>> centres_;  // before the move, by tray
 };
 
 }  // namespace
 
 std::optional<TrayMove> advise_move(const PartSupplyProblem& problem, const ReachDatabase& database,
-                                    const BaseGrid& grid, int tray) {
+                                    const BaseGrid& grid, TrayId tray) {
   MoveSearch search(problem, database, grid, tray);
   const std::optional<Eigen::Vector2d> by = search.run(tray);
   if (!by) return std::nullopt;
   TrayMove move;
   move.by = *by;
   move.trays.push_back(problem.trays[tray].name);
-  for (int other : search.group().trays) {
+  for (TrayId other : search.group().trays) {
     if (other != tray) move.trays.push_back(problem.trays[other].name);
   }
   move.objects.assign(search.group().objects.begin(), search.group().objects.end());
   return move;
 }
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

@@ -1,16 +1,29 @@
 #pragma once
 
+#include <vector>
+
+#include "mmgrasp/task/base_pose_evaluator.hpp"
 #include "mmgrasp/task/part_supply.hpp"
+#include "task/part_supply/stop_robustness.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
-/// What to say about a tray whose region is empty or too small for the uncertainty. A move that `earlier` obstructions
-/// advise for this tray is repeated.
+/// Explains why a tray's region is empty or too small for the uncertainty. A move that `earlier` obstructions advise
+/// for this tray is repeated.
 Obstruction explain_region(const PartSupplyProblem& problem, const ReachDatabase& database,
-                           BasePoseEvaluator& evaluator, const BaseGrid& grid, int tray, const BaseRegion& region,
+                           BasePoseEvaluator& evaluator, const BaseGrid& grid, TrayId tray, const BaseRegion& region,
                            const std::vector<Obstruction>& earlier = {});
 
-/// Largest disc in any layer of the region [m]; 0 when it is empty.
-double largest_radius(const BaseGrid& grid, const BaseRegion& region);
+/// Explains that too few of the base poses drawn at the stops serve all parts.
+Obstruction explain_robustness(const RobustnessResult& check);
 
-}  // namespace mmgrasp
+/// Explains that no drive leads to a base pose; `tray` is the one to be served there, empty for the goal.
+Obstruction explain_route(const Eigen::Vector3d& pose, const std::string& tray);
+
+/// Explains that no arm motion was found for this pick from a base pose.
+Obstruction explain_motion(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose, const Pick& failed);
+
+/// "(x, y, theta)" for messages.
+std::string pose_text(const Eigen::Vector3d& pose);
+
+}  // namespace mmgrasp::detail

@@ -8,13 +8,13 @@
 #include "mmgrasp/core/random.hpp"
 #include "task/problem/scene.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 namespace {
 
 constexpr std::size_t kBlock = 20;  // Samples of one work item; the grasp that worked last is tried first within it.
 
 struct Miss {
-  int region;
+  TrayId tray;
   std::string part;
   Eigen::Vector3d pose;
 };
@@ -27,12 +27,11 @@ struct Block {
 struct BlockCheck {
   const PartSupplyProblem& problem;
   const Stop& stop;
-  const std::vector<int>& region_trays;
   BasePoseEvaluator& evaluator;
   Block& block;
 
   void run(Rng& rng, std::size_t count, const Monitor& monitor) {
-    std::map<std::pair<int, int>, int> last;
+    std::map<PartRef, int> last;
     for (std::size_t i = 0; i < count && !monitor.stopped(); ++i) {
       Eigen::Vector3d pose = stop.pose;
       pose.head<2>() += rng.in_disc(problem.options.positioning_uncertainty);
@@ -41,19 +40,16 @@ struct BlockCheck {
     }
   }
 
-  bool all_graspable(const Eigen::Vector3d& pose, std::map<std::pair<int, int>, int>& last) {
+  bool all_graspable(const Eigen::Vector3d& pose, std::map<PartRef, int>& last) {
     bool all = true;
-    for (int region : stop.trays) {
-      const int tray = region_trays[region];
-      const std::vector<Part>& parts = problem.trays[tray].parts;
-      for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
-        if (!parts[p].target) continue;
-        int& first = last.emplace(std::pair{tray, p}, -1).first->second;
-        const PartAtPose seen = evaluator.part(pose, tray, p, first);
+    for (TrayId tray : stop.trays) {
+      for (const PartRef& part : target_parts(problem, tray)) {
+        int& first = last.emplace(part, -1).first->second;
+        const PartAtPose seen = evaluator.part(pose, part, first);
         if (seen.feasible) {
           first = seen.grasp;
-        } else if (!evaluator.part_with_restarts(pose, tray, p)) {
-          block.misses.push_back({region, parts[p].name, pose});
+        } else if (!evaluator.part_with_restarts(pose, part)) {
+          block.misses.push_back({tray, part_of(problem, part).name, pose});
           all = false;
           break;  // the cell is lost to this tray
         }
@@ -81,8 +77,7 @@ bool remove_cell(const BaseGrid& grid, const Eigen::Vector3d& pose, BaseRegion& 
 
 RobustnessResult check_robustness(const PartSupplyProblem& problem, const BasePoseEvaluator& evaluator,
                                   const BaseGrid& grid, const std::vector<Stop>& stops,
-                                  const std::vector<int>& region_trays, std::vector<BaseRegion>& regions,
-                                  const Monitor& monitor) {
+                                  std::vector<BaseRegion>& regions, const Monitor& monitor) {
   RobustnessResult result;
   const std::size_t wanted = static_cast<std::size_t>(problem.options.robustness_samples);
   const std::size_t per_stop = (wanted + kBlock - 1) / kBlock;
@@ -95,7 +90,7 @@ RobustnessResult check_robustness(const PartSupplyProblem& problem, const BasePo
       [&](std::size_t item, int worker) {
         Rng rng(problem.options.seed + 77, item);
         const std::size_t first = item % per_stop * kBlock;
-        BlockCheck check{problem, stops[item / per_stop], region_trays, evaluators[worker], blocks[item]};
+        BlockCheck check{problem, stops[item / per_stop], evaluators[worker], blocks[item]};
         check.run(rng, std::min(kBlock, wanted - first), monitor);
       },
       monitor, "robustness");
@@ -106,10 +101,10 @@ RobustnessResult check_robustness(const PartSupplyProblem& problem, const BasePo
     result.good += block.good;
     for (const Miss& miss : block.misses) {
       if (++missed[miss.part] > missed[result.worst_part]) result.worst_part = miss.part;
-      result.cells_removed += remove_cell(grid, miss.pose, regions[miss.region]);
+      result.cells_removed += remove_cell(grid, miss.pose, regions[miss.tray]);
     }
   }
   return result;
 }
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

@@ -4,15 +4,16 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 namespace {
 
 constexpr double kRounding = 1e-7;  // [rad or m]: what planning and timing may add to an end; more is a gap to be seen.
 
-Eigen::VectorXd whole_turns(const std::vector<bool>& wraps, const Eigen::VectorXd& from, const Eigen::VectorXd& start) {
+Eigen::VectorXd whole_turn_shift(const std::vector<bool>& wraps, const Eigen::VectorXd& from,
+                                 const Eigen::VectorXd& start) {
   Eigen::VectorXd shift = Eigen::VectorXd::Zero(start.size());
   for (Eigen::Index i = 0; i < start.size(); ++i) {
-    if (wraps[i]) shift[i] = detail::whole_turns(from[i] - start[i]);
+    if (wraps[i]) shift[i] = whole_turns(from[i] - start[i]);
   }
   return shift;
 }
@@ -25,7 +26,7 @@ Eigen::VectorXd join_motions(const std::vector<bool>& wraps, const Eigen::Vector
   for (PickMotion& motion : motions) {
     std::vector<Eigen::VectorXd>& positions = motion.trajectory.positions;
     if (positions.empty()) continue;
-    const Eigen::VectorXd shift = whole_turns(wraps, at, positions.front());
+    const Eigen::VectorXd shift = whole_turn_shift(wraps, at, positions.front());
     if (!shift.isZero(0)) {
       for (Eigen::VectorXd& q : positions) q += shift;
     }
@@ -35,4 +36,4 @@ Eigen::VectorXd join_motions(const std::vector<bool>& wraps, const Eigen::Vector
   return at;
 }
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

@@ -4,7 +4,7 @@
 
 #include "mmgrasp/task/pick.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
 /// Shifts every motion, in the joints that `wraps` marks, by whole turns so that the first starts at `from` and each
 /// other where the one before it ended; other joints are never shifted. First samples off by rounding only become equal
@@ -12,4 +12,4 @@ namespace mmgrasp {
 Eigen::VectorXd join_motions(const std::vector<bool>& wraps, const Eigen::VectorXd& from,
                              std::vector<PickMotion>& motions);
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

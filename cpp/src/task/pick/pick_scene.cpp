@@ -1,22 +1,23 @@
 #include "task/pick/pick_scene.hpp"
 
 #include <cmath>
+#include <set>
 
-namespace mmgrasp {
+#include "task/problem/scene.hpp"
+
+namespace mmgrasp::detail {
 namespace {
 
-constexpr double kOpeningStep = 0.004;  // [m] between two looks at moving fingers
+constexpr double kOpeningStep = 0.004;  // [m] between two checks of moving fingers
 
 }  // namespace
 
-PickScene::PickScene(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose, int tray, int part,
-                     const std::vector<std::pair<int, int>>& remaining)
-    : problem_(problem),
-      T_world_root_(pose_from_planar(base_pose)),
-      part_name_(part_of(problem, tray, part).name),
-      in_place_(world_with_parts(problem, remaining)),
-      gone_(in_place_) {
-  gone_.remove(part_name_);
+PickScene::PickScene(const PickProblem& problem) : problem_(problem), gone_(problem.world) {
+  gone_.remove(problem.object);
+}
+
+JointGroup PickScene::arm(double opening) const {
+  return arm_with_opening(problem_.arm, problem_.gripper, opening);
 }
 
 CollisionChecker& PickScene::kept(Checkers& checkers, const World& world, double opening) {
@@ -35,28 +36,26 @@ CollisionChecker& PickScene::kept(Checkers& checkers, const World& world, double
 }
 
 CollisionChecker& PickScene::before(double opening) {
-  return kept(before_, in_place_, opening);
+  return kept(before_, problem_.world, opening);
 }
 CollisionChecker& PickScene::after(double opening) {
   return kept(after_, gone_, opening);
 }
 
-CollisionChecker PickScene::holding(double opening, const Pose& T_tcp_part) const {
-  World world = in_place_;
+CollisionChecker PickScene::holding(double opening, const Pose& T_tcp_object) const {
+  World world = problem_.world;
   const std::vector<std::string>& fingers = problem_.gripper.finger_links;
-  world.attach(part_name_, problem_.gripper.tcp_link, T_tcp_part,
+  world.attach(problem_.object, problem_.gripper.tcp_link, T_tcp_object,
                std::set<std::string>(fingers.begin(), fingers.end()));
   return CollisionChecker(arm(opening), world);
 }
 
-bool PickScene::fingers_free(const PartSupplyProblem& problem, const Pose& T_world_root,
-                             const CollisionChecker& checker, const Eigen::VectorXd& q, double from, double to) {
+bool PickScene::fingers_free(const CollisionChecker& checker, const Eigen::VectorXd& q, double from, double to) const {
   const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(to - from) / kOpeningStep)));
   for (int i = 0; i <= steps; ++i) {
-    const JointGroup arm = arm_with_opening(problem, from + (to - from) * i / steps).at(T_world_root);
-    if (!checker.with_group(arm).is_free(q)) return false;
+    if (!checker.with_group(arm(from + (to - from) * i / steps)).is_free(q)) return false;
   }
   return true;
 }
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

@@ -2,44 +2,36 @@
 
 #include <map>
 #include <memory>
-#include <set>
-#include <utility>
-#include <vector>
 
 #include "mmgrasp/collision/checker.hpp"
-#include "task/problem/scene.hpp"
+#include "mmgrasp/task/pick.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
-/// Collision checkers for one pick from one base pose: part in place, part held, part gone; any opening of the fingers.
+/// Collision checkers for one pick: object in place, object held, object gone; any opening of the fingers. The problem
+/// must outlive it.
 class PickScene {
  public:
-  PickScene(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose, int tray, int part,
-            const std::vector<std::pair<int, int>>& remaining);
+  explicit PickScene(const PickProblem& problem);
 
-  /// Part in place.
+  /// Object in place.
   CollisionChecker& before(double opening);
-  /// Part gone.
+  /// Object gone.
   CollisionChecker& after(double opening);
-  /// Part held; `T_tcp_part` changes from grasp to grasp, so this one is not kept.
-  CollisionChecker holding(double opening, const Pose& T_tcp_part) const;
+  /// Object held; `T_tcp_object` changes from grasp to grasp, so this one is not kept.
+  CollisionChecker holding(double opening, const Pose& T_tcp_object) const;
 
-  /// Every opening between two can be taken with the arm at q, the part held or not there.
-  static bool fingers_free(const PartSupplyProblem& problem, const Pose& T_world_root, const CollisionChecker& checker,
-                           const Eigen::VectorXd& q, double from, double to);
-
-  const Pose& T_world_root() const { return T_world_root_; }
+  /// The fingers can take every opening between two with the arm at q, among what the checker knows.
+  bool fingers_free(const CollisionChecker& checker, const Eigen::VectorXd& q, double from, double to) const;
 
  private:
   using Checkers = std::map<long, std::unique_ptr<CollisionChecker>>;
   CollisionChecker& kept(Checkers& checkers, const World& world, double opening);
-  JointGroup arm(double opening) const { return arm_with_opening(problem_, opening).at(T_world_root_); }
+  JointGroup arm(double opening) const;
 
-  const PartSupplyProblem& problem_;
-  Pose T_world_root_;
-  std::string part_name_;
-  World in_place_, gone_;
+  const PickProblem& problem_;
+  World gone_;
   Checkers before_, after_;
 };
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

@@ -7,7 +7,7 @@
 #include "mmgrasp/robot/ik.hpp"
 #include "task/problem/full_turns.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 namespace {
 
 constexpr int kYaws = 12;
@@ -15,7 +15,7 @@ constexpr int kSeeds = 3;
 constexpr double kInside = 0.4;  // Places lie within this part of the bin's size from its middle: clear of its edge.
 
 double lowest(const Part& part, const Pose& T) {
-  double z = detail::kInfinity;
+  double z = kInfinity;
   for (const LinkShape& shape : part.shapes)
     z = std::min(z, shape_bounds(shape.shape, T * shape.T_link_shape).min().z());
   return z;
@@ -23,38 +23,37 @@ double lowest(const Part& part, const Pose& T) {
 
 }  // namespace
 
-std::vector<Pose> release_poses(const PartSupplyProblem& problem, const Pose& T_world_root, const Part& part,
-                                const Pose& T_tcp_part) {
-  const CarryPlace& carry = problem.carry;
-  const Pose T_world_bin = T_world_root * carry.T_base_bin;
-  const Pose T_part_tcp = T_tcp_part.inverse();
-  std::vector<Pose> poses;
+std::vector<Pose> places_over_bin(const CarryPlace& bin, const Pose& T_world_root, const Part& part) {
+  const Pose T_world_bin = T_world_root * bin.T_base_bin;
+  std::vector<Pose> places;
   for (const auto& [x, y] : {std::pair{0, 0}, {0, 1}, {0, -1}, {1, 0}, {-1, 0}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}) {
     for (int k = 0; k < kYaws; ++k) {
       Pose T_world_part = Pose::Identity();
-      T_world_part.linear() =
-          Eigen::AngleAxisd(detail::kTwoPi * k / kYaws, Eigen::Vector3d::UnitZ()).toRotationMatrix() *
-          part.T_world_part.linear();
+      T_world_part.linear() = Eigen::AngleAxisd(kTwoPi * k / kYaws, Eigen::Vector3d::UnitZ()).toRotationMatrix() *
+                              part.T_world_part.linear();
       Pose T_bin_part = T_world_bin.inverse() * T_world_part;
-      T_bin_part.translation() = Eigen::Vector3d(kInside * x * carry.size.x(), kInside * y * carry.size.y(), 0);
-      T_bin_part.translation().z() = carry.drop_gap - lowest(part, T_bin_part);
-      poses.push_back(T_world_bin * T_bin_part * T_part_tcp);
+      T_bin_part.translation() = Eigen::Vector3d(kInside * x * bin.size.x(), kInside * y * bin.size.y(), 0);
+      T_bin_part.translation().z() = bin.drop_gap - lowest(part, T_bin_part);
+      places.push_back(T_world_bin * T_bin_part);
     }
   }
-  return poses;
+  return places;
 }
 
 std::vector<Eigen::VectorXd> release_configurations(const ReachDatabase& database, CollisionChecker& holding,
-                                                    const std::vector<Pose>& poses, const Eigen::VectorXd& from,
-                                                    std::size_t count, Rejections& rejections) {
+                                                    const std::vector<Pose>& places, const Pose& T_tcp_object,
+                                                    const Eigen::VectorXd& from, std::size_t count,
+                                                    Rejections& rejections) {
+  const Pose T_object_tcp = T_tcp_object.inverse();
   const JointGroup& arm = holding.group();
   const Pose T_root_world = arm.T_world_root().inverse();
   IkOptions ik;
   IkWorkspace workspace;
   Eigen::MatrixXd seeds;
   std::vector<Eigen::VectorXd> found;
-  for (const Pose& T_world_tcp : poses) {
+  for (const Pose& T_world_object : places) {
     if (found.size() >= count) break;
+    const Pose T_world_tcp = T_world_object * T_object_tcp;
     const int near = database.nearest(T_root_world * T_world_tcp, kSeeds, seeds);
     if (near == 0) rejections.add(Rejection::reach);
     for (int i = 0; i < near; ++i) {
@@ -74,4 +73,4 @@ std::vector<Eigen::VectorXd> release_configurations(const ReachDatabase& databas
   return found;
 }
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

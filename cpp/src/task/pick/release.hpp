@@ -3,20 +3,21 @@
 #include <vector>
 
 #include "mmgrasp/collision/checker.hpp"
-#include "task/problem/scene.hpp"
+#include "mmgrasp/reach/reach_database.hpp"
+#include "mmgrasp/task/problem.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
-/// Tool poses at which the part hangs level over the bin: turned about the vertical by any of several yaws, its origin
-/// at several places inside the bin's rectangle, its lowest point `drop_gap` over the bin's top. The bin's middle comes
-/// first.
-std::vector<Pose> release_poses(const PartSupplyProblem& problem, const Pose& T_world_root, const Part& part,
-                                const Pose& T_tcp_part);
+/// World poses of a part at which it hangs level over the bin: turned about the vertical by any of several yaws, its
+/// origin at several places inside the bin's rectangle, its lowest point `drop_gap` over the bin's top. The bin's
+/// middle comes first.
+std::vector<Pose> places_over_bin(const CarryPlace& bin, const Pose& T_world_root, const Part& part);
 
-/// Collision-free configurations for some of these poses, those nearest to `from` first; `stages` counts what fell
-/// where.
+/// Collision-free configurations that hold an object at some of these world poses, up to `count`, those nearest to
+/// `from` first; `rejections` counts why others fell.
 std::vector<Eigen::VectorXd> release_configurations(const ReachDatabase& database, CollisionChecker& holding,
-                                                    const std::vector<Pose>& poses, const Eigen::VectorXd& from,
-                                                    std::size_t count, Rejections& rejections);
+                                                    const std::vector<Pose>& places, const Pose& T_tcp_object,
+                                                    const Eigen::VectorXd& from, std::size_t count,
+                                                    Rejections& rejections);
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

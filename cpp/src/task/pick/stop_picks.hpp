@@ -1,22 +1,21 @@
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "mmgrasp/task/pick.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
 /// All picks at one stop, in the order in which they work: nearest part first; a part that its neighbours block comes
 /// later.
 struct StopPicks {
   Outcome outcome = Outcome::infeasible;
-  std::vector<Pick> picks;  ///< In order; with no solution: those that failed.
+  std::vector<Pick> picks;  ///< The picks in order; with no solution, those that failed.
 };
 
 /// `remaining` are the parts in place when the base arrives. Planned in parallel; the same answer at any thread count.
 StopPicks plan_stop_picks(const PartSupplyProblem& problem, const ReachDatabase& database,
-                          const Eigen::Vector3d& base_pose, const std::vector<int>& trays,
-                          const std::vector<std::pair<int, int>>& remaining, const Monitor& monitor);
+                          const Eigen::Vector3d& base_pose, const std::vector<TrayId>& trays,
+                          const std::vector<PartRef>& remaining, const Monitor& monitor);
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

@@ -4,10 +4,10 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
 void turn_towards(const JointGroup& group, const Eigen::VectorXd& reference, Eigen::VectorXd& q) {
-  constexpr double kTurn = detail::kTwoPi;
+  constexpr double kTurn = kTwoPi;
   const Robot& robot = group.robot();
   for (int j = 0; j < group.size(); ++j) {
     const int joint = group.joints()[j];
@@ -22,4 +22,4 @@ void turn_towards(const JointGroup& group, const Eigen::VectorXd& reference, Eig
   }
 }
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

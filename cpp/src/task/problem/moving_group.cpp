@@ -2,7 +2,7 @@
 
 #include "task/problem/scene.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 namespace {
 
 constexpr double kTouch = 0.005;       // Bodies nearer than this stand on one another [m].
@@ -69,10 +69,10 @@ bool overlap(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) {
 
 }  // namespace
 
-MovingGroup moving_group(const PartSupplyProblem& problem, int tray) {
+MovingGroup moving_group(const PartSupplyProblem& problem, TrayId tray) {
   MovingGroup group;
   std::vector<Bounds> open;
-  const auto take_tray = [&](int index) {
+  const auto take_tray = [&](TrayId index) {
     if (!group.trays.insert(index).second) return;
     open.push_back(bounds_of(problem.trays[index]));
     for (const auto& [name, object] : problem.scene.objects()) {
@@ -91,7 +91,7 @@ MovingGroup moving_group(const PartSupplyProblem& problem, int tray) {
         open.push_back(bounds);
       }
     }
-    for (int other = 0; other < static_cast<int>(problem.trays.size()); ++other) {
+    for (TrayId other : all_trays(problem)) {
       if (!group.trays.count(other) && stacked(now, bounds_of(problem.trays[other]))) take_tray(other);
     }
   }
@@ -103,16 +103,16 @@ PartSupplyProblem group_alone(const PartSupplyProblem& problem, const MovingGrou
   for (const auto& entry : problem.scene.objects()) {
     if (!group.objects.count(entry.first)) alone.scene.remove(entry.first);
   }
-  for (int tray = 0; tray < static_cast<int>(alone.trays.size()); ++tray) {
+  for (TrayId tray : all_trays(alone)) {
     if (!group.trays.count(tray)) alone.trays[tray].parts.clear();
   }
   return alone;
 }
 
 World scene_without(const PartSupplyProblem& problem, const MovingGroup& group) {
-  std::vector<std::pair<int, int>> parts;
-  for (const auto& id : all_parts(problem)) {
-    if (!group.trays.count(id.first)) parts.push_back(id);
+  std::vector<PartRef> parts;
+  for (const PartRef& part : all_parts(problem)) {
+    if (!group.trays.count(part.tray)) parts.push_back(part);
   }
   World world = world_with_parts(problem, parts);
   for (const std::string& name : group.objects) world.remove(name);
@@ -129,7 +129,7 @@ PartSupplyProblem with_group_moved(const PartSupplyProblem& problem, const Movin
   };
   for (const std::string& name : group.objects)
     moved.scene.move(name, shift(problem.scene.objects().at(name).T_world_object));
-  for (int index : group.trays) {
+  for (TrayId index : group.trays) {
     Tray& tray = moved.trays[index];
     tray.T_world_tray = shift(tray.T_world_tray);
     for (Part& part : tray.parts) part.T_world_part = shift(part.T_world_part);
@@ -145,7 +145,7 @@ GroupBounds::GroupBounds(const PartSupplyProblem& problem, const MovingGroup& gr
     }
   };
   for (const auto& [name, object] : problem.scene.objects()) add(bounds_of(object), group.objects.count(name) > 0);
-  for (int tray = 0; tray < static_cast<int>(problem.trays.size()); ++tray) {
+  for (TrayId tray : all_trays(problem)) {
     add(bounds_of(problem.trays[tray]), group.trays.count(tray) > 0);
   }
 }
@@ -161,4 +161,4 @@ bool GroupBounds::pushes_into_something(const Eigen::Vector2d& by) const {
   return false;
 }
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

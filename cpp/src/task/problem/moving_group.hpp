@@ -5,18 +5,19 @@
 #include <string>
 #include <vector>
 
+#include "mmgrasp/task/ids.hpp"
 #include "mmgrasp/task/problem.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
 /// What moves when a tray is moved: its parts, what carries it, and whatever else stands on that. The floor never
 /// moves.
 struct MovingGroup {
-  std::set<int> trays;
+  std::set<TrayId> trays;
   std::set<std::string> objects;
 };
 
-MovingGroup moving_group(const PartSupplyProblem& problem, int tray);
+MovingGroup moving_group(const PartSupplyProblem& problem, TrayId tray);
 
 /// Scene and parts of the group only, or all but the group. Trays keep their indices; those left out have no parts.
 PartSupplyProblem group_alone(const PartSupplyProblem& problem, const MovingGroup& group);
@@ -37,4 +38,4 @@ class GroupBounds {
   std::vector<Eigen::AlignedBox3d> moving_, standing_;
 };
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

@@ -1,20 +1,35 @@
 #include "task/problem/scene.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
-std::vector<std::pair<int, int>> all_parts(const PartSupplyProblem& problem) {
-  std::vector<std::pair<int, int>> parts;
-  for (int tray = 0; tray < static_cast<int>(problem.trays.size()); ++tray) {
-    const int count = static_cast<int>(problem.trays[tray].parts.size());
-    for (int part = 0; part < count; ++part) parts.emplace_back(tray, part);
+std::vector<TrayId> all_trays(const PartSupplyProblem& problem) {
+  std::vector<TrayId> trays;
+  for (int tray = 0; tray < static_cast<int>(problem.trays.size()); ++tray) trays.emplace_back(tray);
+  return trays;
+}
+
+std::vector<PartRef> all_parts(const PartSupplyProblem& problem) {
+  std::vector<PartRef> parts;
+  for (TrayId tray : all_trays(problem)) {
+    const int count = static_cast<int>(tray_of(problem, tray).parts.size());
+    for (int part = 0; part < count; ++part) parts.push_back({tray, part});
   }
   return parts;
 }
 
-World world_with_parts(const PartSupplyProblem& problem, const std::vector<std::pair<int, int>>& parts) {
+std::vector<PartRef> target_parts(const PartSupplyProblem& problem, TrayId tray) {
+  std::vector<PartRef> targets;
+  const std::vector<Part>& parts = tray_of(problem, tray).parts;
+  for (int part = 0; part < static_cast<int>(parts.size()); ++part) {
+    if (parts[part].target) targets.push_back({tray, part});
+  }
+  return targets;
+}
+
+World world_with_parts(const PartSupplyProblem& problem, const std::vector<PartRef>& parts) {
   World world = problem.scene;
-  for (const auto& [tray, index] : parts) {
-    const Part& part = part_of(problem, tray, index);
+  for (const PartRef& ref : parts) {
+    const Part& part = part_of(problem, ref);
     WorldObject object;
     object.shapes = part.shapes;
     object.T_world_object = part.T_world_part;
@@ -23,13 +38,13 @@ World world_with_parts(const PartSupplyProblem& problem, const std::vector<std::
   return world;
 }
 
-JointGroup arm_with_opening(const PartSupplyProblem& problem, double opening) {
-  Eigen::VectorXd values = problem.arm.reference();
-  for (const auto& [name, value] : problem.gripper.joint_values(opening)) {
-    const Joint& joint = problem.robot.joints()[problem.robot.joint_index(name)];
+JointGroup arm_with_opening(const JointGroup& arm, const Gripper& gripper, double opening) {
+  Eigen::VectorXd values = arm.reference();
+  for (const auto& [name, value] : gripper.joint_values(opening)) {
+    const Joint& joint = arm.robot().joints()[arm.robot().joint_index(name)];
     values[joint.value_index] = value;
   }
-  return problem.arm.with_reference(values);
+  return arm.with_reference(values);
 }
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

@@ -1,23 +1,30 @@
 #pragma once
 
-#include <utility>
 #include <vector>
 
+#include "mmgrasp/task/ids.hpp"
 #include "mmgrasp/task/problem.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
-/// (tray, part) indices of every part.
-std::vector<std::pair<int, int>> all_parts(const PartSupplyProblem& problem);
-
-/// The scene with these parts in place.
-World world_with_parts(const PartSupplyProblem& problem, const std::vector<std::pair<int, int>>& parts);
-
-/// The arm with its fingers opened so far [m]; everything else as in the problem's reference.
-JointGroup arm_with_opening(const PartSupplyProblem& problem, double opening);
-
-inline const Part& part_of(const PartSupplyProblem& problem, int tray, int part) {
-  return problem.trays[tray].parts[part];
+inline const Tray& tray_of(const PartSupplyProblem& problem, TrayId tray) {
+  return problem.trays[tray];
+}
+inline const Part& part_of(const PartSupplyProblem& problem, PartRef part) {
+  return tray_of(problem, part.tray).parts[part.part];
 }
 
-}  // namespace mmgrasp
+/// Every tray, in order.
+std::vector<TrayId> all_trays(const PartSupplyProblem& problem);
+/// Every part of every tray, in order.
+std::vector<PartRef> all_parts(const PartSupplyProblem& problem);
+/// The target parts of one tray, in order.
+std::vector<PartRef> target_parts(const PartSupplyProblem& problem, TrayId tray);
+
+/// The scene with these parts in place.
+World world_with_parts(const PartSupplyProblem& problem, const std::vector<PartRef>& parts);
+
+/// The arm with the gripper's fingers opened so far [m]; everything else as in the arm's reference.
+JointGroup arm_with_opening(const JointGroup& arm, const Gripper& gripper, double opening);
+
+}  // namespace mmgrasp::detail

@@ -4,12 +4,15 @@
 
 #include "mmgrasp/task/problem.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
 /// The tray's headings without repetitions; the facing one when it lists none.
 std::vector<double> tray_headings(const Tray& tray);
 
+/// Adds a heading unless the list has it, up to full turns and rounding.
+void add_heading(std::vector<double>& headings, double heading);
+
 /// Base poses farther than this from the tray's middle are not tried [m].
 double base_search_radius(const PartSupplyProblem& problem, const Tray& tray, const ReachDatabase& database);
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

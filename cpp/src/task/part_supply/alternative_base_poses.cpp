@@ -1,9 +1,9 @@
-#include "task/part_supply/other_places.hpp"
+#include "task/part_supply/alternative_base_poses.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 namespace {
 
 /// Distance from a point to the cells that are not marked, and to the grid's end.
@@ -24,8 +24,8 @@ double clearance(const BaseGrid& grid, const CellMask& shared, int heading, cons
 
 }  // namespace
 
-std::vector<Stop> other_places(const BaseGrid& grid, const std::vector<BaseRegion>& regions, const Stop& stop,
-                               double min_radius, double apart, std::size_t count) {
+std::vector<Stop> alternative_base_poses(const BaseGrid& grid, const std::vector<BaseRegion>& regions, const Stop& stop,
+                                         double min_radius, double apart, std::size_t count) {
   int heading = 0;
   while (heading < static_cast<int>(grid.headings.size()) &&
          std::abs(wrap_angle(grid.headings[heading] - stop.pose.z())) > 1e-9) {
@@ -33,17 +33,17 @@ std::vector<Stop> other_places(const BaseGrid& grid, const std::vector<BaseRegio
   }
   if (heading == static_cast<int>(grid.headings.size())) return {};
   CellMask shared(grid.size(), 1);
-  for (int tray : stop.trays) {
+  for (TrayId tray : stop.trays) {
     for (std::size_t i = 0; i < shared.size(); ++i) shared[i] = shared[i] && regions[tray].cells[i];
   }
   std::vector<Stop> candidates;
   for (int iy = 0; iy < grid.ny; ++iy) {
     for (int ix = 0; ix < grid.nx; ++ix) {
       if (!shared[grid.index(heading, ix, iy)]) continue;
-      Stop place = stop;
-      place.pose = grid.centre(heading, ix, iy);
-      place.radius = clearance(grid, shared, heading, place.pose.head<2>());
-      if (place.radius >= min_radius) candidates.push_back(place);
+      Stop other = stop;
+      other.pose = grid.centre(heading, ix, iy);
+      other.radius = clearance(grid, shared, heading, other.pose.head<2>());
+      if (other.radius >= min_radius) candidates.push_back(other);
     }
   }
   std::stable_sort(candidates.begin(), candidates.end(),
@@ -58,4 +58,4 @@ std::vector<Stop> other_places(const BaseGrid& grid, const std::vector<BaseRegio
   return chosen;
 }
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

@@ -1,12 +1,8 @@
+#include "mmgrasp/task/part_cells.hpp"
+
 #include <algorithm>
 
-#include "mmgrasp/task/base_region.hpp"
-
 namespace mmgrasp {
-
-Eigen::Vector3d BaseGrid::centre(int heading, int ix, int iy) const {
-  return Eigen::Vector3d(origin.x() + (ix + 0.5) * resolution, origin.y() + (iy + 0.5) * resolution, headings[heading]);
-}
 
 void PartCells::add_window(int heading, int x0, int y0, int nx, int ny, const std::vector<std::uint8_t>& flags) {
   int left = nx, right = -1, low = ny, high = -1;
@@ -67,10 +63,6 @@ CellMask PartCells::mask() const {
 
 bool PartCells::operator==(const PartCells& other) const {
   return nx_ == other.nx_ && ny_ == other.ny_ && mask() == other.mask();
-}
-
-std::size_t BaseRegion::count() const {
-  return static_cast<std::size_t>(std::count(cells.begin(), cells.end(), std::uint8_t{1}));
 }
 
 }  // namespace mmgrasp

@@ -11,18 +11,18 @@
 #include "mmgrasp/task/problem.hpp"
 #include "mmgrasp/task/visiting_order.hpp"
 
-namespace mmgrasp {
+namespace mmgrasp::detail {
 
-/// Plans drives between places and remembers them; keeps a little away from the scene where it can.
+/// Plans drives between base poses and remembers them; keeps a little away from the scene where it can.
 class BaseRoutes {
  public:
   BaseRoutes(const PartSupplyProblem& problem, const Monitor& monitor);
 
   /// A drive with all parts in place: it stays free when parts leave.
   BasePath between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
-  /// Lengths between many places without planning each drive (see route_lengths()); empty when stopped.
-  Eigen::MatrixXd estimates(const std::vector<Eigen::Vector3d>& places) const;
-  /// The same for many pairs at once, in parallel.
+  /// Lengths between many base poses without planning each drive (see route_lengths()); empty when stopped.
+  Eigen::MatrixXd estimates(const std::vector<Eigen::Vector3d>& poses) const;
+  /// Plans between() of many pairs at once, in parallel.
   void prepare(const std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& pairs);
 
  private:
@@ -36,7 +36,7 @@ class BaseRoutes {
   std::map<Key, BasePath> known_;
 };
 
-/// order_stops() with the caller's drives.
+/// order_stops() with drives that the caller keeps.
 VisitingOrder order_stops(const PartSupplyProblem& problem, const std::vector<Stop>& stops, BaseRoutes& routes);
 
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

@@ -1,0 +1,35 @@
+#include "task/base_region/search_area.hpp"
+
+#include <cmath>
+
+namespace mmgrasp::detail {
+namespace {
+
+constexpr double kSameHeading = 1e-9;  // [rad]
+
+}  // namespace
+
+void add_heading(std::vector<double>& headings, double heading) {
+  for (double known : headings) {
+    if (std::abs(wrap_angle(known - heading)) < kSameHeading) return;
+  }
+  headings.push_back(wrap_angle(heading));
+}
+
+std::vector<double> tray_headings(const Tray& tray) {
+  std::vector<double> headings;
+  for (double heading : tray.headings) add_heading(headings, heading);
+  if (headings.empty()) {
+    const Eigen::Vector3d front = tray.T_world_tray.linear().col(0);
+    headings.push_back(wrap_angle(std::atan2(front.y(), front.x())));
+  }
+  return headings;
+}
+
+double base_search_radius(const PartSupplyProblem& problem, const Tray& tray, const ReachDatabase& database) {
+  if (problem.options.grid.max_distance > 0) return problem.options.grid.max_distance;
+  // Half the tray's diagonal, so that a part in its far corner still counts.
+  return database.reach() + 0.5 * tray.size.head<2>().norm();
+}
+
+}  // namespace mmgrasp::detail

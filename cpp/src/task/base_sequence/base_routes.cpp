@@ -1,0 +1,82 @@
+#include "task/base_sequence/base_routes.hpp"
+
+#include <algorithm>
+
+#include "mmgrasp/core/parallel.hpp"
+#include "task/problem/scene.hpp"
+
+namespace mmgrasp::detail {
+namespace {
+
+constexpr double kPadding = 0.01;  // [m]
+
+std::array<double, 6> key_of(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  return {from.x(), from.y(), from.z(), to.x(), to.y(), to.z()};
+}
+
+CheckerOptions with_padding(double padding) {
+  CheckerOptions options;
+  options.padding = padding;
+  return options;
+}
+
+}  // namespace
+
+BaseRoutes::BaseRoutes(const PartSupplyProblem& problem, const Monitor& monitor)
+    : problem_(problem),
+      monitor_(monitor),
+      padded_(problem.arm, world_with_parts(problem, all_parts(problem)), with_padding(kPadding)),
+      bare_(problem.arm, world_with_parts(problem, all_parts(problem))) {}
+
+BasePath BaseRoutes::plan(CollisionChecker& padded, CollisionChecker& bare, const Eigen::Vector3d& from,
+                          const Eigen::Vector3d& to) const {
+  Monitor quiet;
+  quiet.stop = monitor_.stop;
+  BaseRouteOptions options;
+  options.base = problem_.robot.base();
+  options.resolution = problem_.options.route_resolution;
+  BasePath path = plan_base_route(padded, problem_.home, from, to, options, quiet);
+  if (path.outcome == Outcome::solved || monitor_.stopped()) return path;
+  path = plan_base_route(bare, problem_.home, from, to, options, quiet);
+  if (path.outcome == Outcome::solved || monitor_.stopped()) return path;
+  options.resolution *= 0.5;  // a narrow place may need a finer grid
+  return plan_base_route(bare, problem_.home, from, to, options, quiet);
+}
+
+BasePath BaseRoutes::between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  prepare({{from, to}});
+  const auto found = known_.find(key_of(from, to));
+  return found == known_.end() ? BasePath{} : found->second;
+}
+
+void BaseRoutes::prepare(const std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& pairs) {
+  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> open;
+  for (const auto& [from, to] : pairs) {
+    if (!known_.count(key_of(from, to))) open.emplace_back(from, to);
+  }
+  std::vector<BasePath> paths(open.size());
+  const bool done = parallel_for(
+      open.size(), problem_.options.threads,
+      [&](std::size_t item, int) {
+        CollisionChecker padded = padded_.clone(), bare = bare_.clone();
+        paths[item] = plan(padded, bare, open[item].first, open[item].second);
+      },
+      monitor_, "route");
+  if (!done) return;
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    const auto& [from, to] = open[i];
+    BasePath back = paths[i];  // every primitive can be driven the other way
+    std::reverse(back.poses.begin(), back.poses.end());
+    known_[key_of(from, to)] = std::move(paths[i]);
+    known_.emplace(key_of(to, from), std::move(back));
+  }
+}
+
+Eigen::MatrixXd BaseRoutes::estimates(const std::vector<Eigen::Vector3d>& poses) const {
+  BaseRouteOptions options;
+  options.base = problem_.robot.base();
+  options.resolution = problem_.options.route_resolution;
+  return route_lengths(bare_, problem_.home, poses, options, problem_.options.threads, monitor_);
+}
+
+}  // namespace mmgrasp::detail

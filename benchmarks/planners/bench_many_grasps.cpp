@@ -25,7 +25,7 @@ Pose at(double x, double y, double z) {
 }
 
 /// The hand closes across the bar (along x) at `place`, `angle` away from straight down.
-CandidateGrasp grasp(double place, double angle) {
+Grasp grasp(double place, double angle) {
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
   const Eigen::Vector3d z = Eigen::AngleAxisd(angle, x) * Eigen::Vector3d(0, 0, -1);
   Pose T = Pose::Identity();
@@ -50,7 +50,7 @@ ManipulationProblem problem_of(const JointGroup& group, const std::string& kind,
       problem.grasps.push_back(grasp(place, M_PI + rng.uniform(-0.8, 0.8)));
     } else {
       problem.grasps.push_back(grasp(place, rng.uniform(-0.5, 0.5)));
-      if (kind == "499 out of reach") problem.grasps.back().T_object_tool.translation().x() += rng.uniform(0.6, 1.5);
+      if (kind == "499 out of reach") problem.grasps.back().T_object_hand.translation().x() += rng.uniform(0.6, 1.5);
     }
   }
   problem.grasps[rng.index(kGrasps)] = grasp(0.02, 0.1);

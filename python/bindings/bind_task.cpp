@@ -87,7 +87,7 @@ void bind_problem(py::module_& m) {
       .def_readonly("size", &CarryPlace::size)
       .def_readonly("drop_gap", &CarryPlace::drop_gap);
   py::class_<PartSupplyProblem>(m, "PartSupplyProblem", "Everything the part-supply planner needs.")
-      .def(py::init([](const Robot& robot, const JointGroup& arm, const Gripper& gripper, const World& scene,
+      .def(py::init([](const Robot& robot, const JointGroup& arm, const Hand& gripper, const World& scene,
                        std::vector<Tray> trays, const ArrayLike& home, const ArrayLike& start, const ArrayLike& goal,
                        const CarryPlace& carry, const py::kwargs& options) {
              PartSupplyProblem problem{robot,

@@ -114,13 +114,13 @@ double Pieces::centring(const Eigen::Vector2d& point) const {
   return std::max(0.0, 1 - (point - piece.middle).norm() / (piece.radius + map_.resolution));
 }
 
-TipLayer::TipLayer(const HeightMap& map, double tip, const GraspabilityOptions& options, int border)
+TipLayer::TipLayer(const HeightMap& map, double tip, const Hand& hand, const GraspabilityOptions& options, int border)
     : tip_height(tip), pieces(map, tip + options.insertion, options.insertion) {
   const std::size_t cells = map.height.size();
   std::vector<std::uint8_t> between(cells), low(cells), high(cells);
   const auto held = static_cast<float>(tip + options.insertion),
-             fingers_free = static_cast<float>(tip - options.hand.margin);
-  const auto palm_free = static_cast<float>(tip + options.hand.finger_length - options.hand.margin);
+             fingers_free = static_cast<float>(tip - options.margin);
+  const auto palm_free = static_cast<float>(tip + hand.body.finger_length - options.margin);
   for (std::size_t i = 0; i < cells; ++i) {
     between[i] = map.height[i] > held;
     low[i] = !(map.upper[i] <= fingers_free);  // unknown cells too

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "mmgrasp/grasp/grasp.hpp"
+#include "mmgrasp/grasp/sample_grasps.hpp"
 
 namespace mmgrasp::detail {
 
@@ -32,7 +32,7 @@ struct ContactPairs {
 };
 
 /// Analytic pairs of one box, sphere, cylinder or capsule; nothing for other shapes.
-std::optional<ContactPairs> primitive_pairs(const LinkShape& shape, const Gripper& gripper,
+std::optional<ContactPairs> primitive_pairs(const LinkShape& shape, const Hand& hand,
                                             const GraspSamplerOptions& options);
 
 /// Pairs by rays through the union of all shapes' surfaces.

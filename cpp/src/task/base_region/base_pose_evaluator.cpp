@@ -114,7 +114,7 @@ struct BasePoseEvaluator::Impl {
     PlacedGrasp& placed_grasp = placed[place_of_grasp];
     if (placed_grasp.sheet == nullptr) {
       placed_grasp.T_root_tcp = pose_from_planar(Eigen::Vector3d(0, 0, theta)).inverse() *
-                                (part.T_world_part * part.grasps[grasp].T_object_tcp);
+                                (part.T_world_part * part.grasps[grasp].T_object_hand);
       placed_grasp.sheet =
           &tables->lattice->sheet(placed_grasp.T_root_tcp.linear(), placed_grasp.T_root_tcp.translation().z());
     }
@@ -274,7 +274,7 @@ std::shared_ptr<EvaluatorTables> make_tables(const PartSupplyProblem& problem, c
     for (const Part& part : tray.parts) {
       tables->first.back().push_back(static_cast<int>(tables->opening.size()));
       for (const Grasp& grasp : part.grasps) {
-        const double opening = problem.gripper.pregrasp_opening(grasp.width);
+        const double opening = problem.gripper.pregrasp_opening(grasp.opening);
         const auto [it, is_new] = known.emplace(std::lround(opening * 1e9), static_cast<int>(tables->openings.size()));
         if (is_new) tables->openings.push_back(opening);
         tables->opening.push_back(it->second);
@@ -336,7 +336,7 @@ void find_blocked_grasps(const PartSupplyProblem& problem, const std::vector<std
     for (std::size_t g = 0; g < part.grasps.size(); ++g) {
       if (!tables.blocked[begin + g]) continue;
       CollisionChecker& checker = own[tables.opening[begin + g]];
-      checker.set_root(part.T_world_part * part.grasps[g].T_object_tcp);
+      checker.set_root(part.T_world_part * part.grasps[g].T_object_hand);
       tables.blocked[begin + g] = !checker.is_free(still);
     }
   });
@@ -417,7 +417,7 @@ bool BasePoseEvaluator::part_with_restarts(const Eigen::Vector3d& base_pose, int
     options.restarts = kCheckRestarts;
     options.time_limit = detail::kNoTimeLimit;
     options.seed = static_cast<unsigned>(g) + 1;
-    const IkResult found = solve_ik(tables.arm, T_base_part * part.grasps[g].T_object_tcp, tables.problem->home,
+    const IkResult found = solve_ik(tables.arm, T_base_part * part.grasps[g].T_object_hand, tables.problem->home,
                                     options, [&](const Eigen::VectorXd& q) { return checker.rejection(q); });
     if (found.outcome == Outcome::solved) return true;
   }
@@ -436,7 +436,7 @@ double BasePoseEvaluator::missing_reach(const Eigen::Vector3d& base_pose, int tr
   double nearest = detail::kInfinity;
   for (int g = 0; g < static_cast<int>(part.grasps.size()); ++g) {
     if (hand_blocked(tray, index, g)) continue;
-    const Eigen::Vector3d p = (T_base_part * part.grasps[g].T_object_tcp).translation();
+    const Eigen::Vector3d p = (T_base_part * part.grasps[g].T_object_hand).translation();
     const double outside = std::sqrt(tables.bounds.squaredExteriorDistance(p));
     nearest = std::min(nearest, std::max(outside, p.norm() - tables.reach));
   }

@@ -44,7 +44,7 @@ CollisionChecker& PickScene::after(double opening) {
 CollisionChecker PickScene::holding(double opening, const Pose& T_tcp_part) const {
   World world = in_place_;
   const std::vector<std::string>& fingers = problem_.gripper.finger_links;
-  world.attach(part_name_, problem_.gripper.tcp_link, T_tcp_part,
+  world.attach(part_name_, problem_.gripper.tool_link, T_tcp_part,
                std::set<std::string>(fingers.begin(), fingers.end()));
   return CollisionChecker(arm(opening), world);
 }

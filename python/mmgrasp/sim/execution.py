@@ -156,9 +156,11 @@ class Run:
                 reference[name] = np.where(times >= self.lift_at, rising, reference[name])
         if self.sim.gripper:
             opening = np.clip(self.opening - self.how.closing_speed * np.maximum(times - self.close_at, 0), 0, None)
-            for joint in self.sim.gripper.joints:
-                share = opening / self.sim.gripper.max_opening
-                reference[joint.name] = joint.closed + share * (joint.open - joint.closed)
+            hand = self.sim.gripper
+            share = np.array([hand.share_open(value) for value in opening])
+            for joint in hand.joints:
+                own = np.full(count, hand.preshape[joint.group]) if joint.group in hand.preshape else share
+                reference[joint.name] = joint.closed + own * (joint.open - joint.closed)
         self.times, self.reference = times, reference
         w = self.sim.physics.stiffness
         names = list(reference)
@@ -202,7 +204,7 @@ class Run:
         sim.reset(self.stand, {name: float(values[0]) for name, values in self.reference.items()})
         fingers = set(sim.gripper.finger_links) if sim.gripper else set()
         hand = fingers | {j["parent"] for j in sim.robot.joint_table if j["name"] in sim.built.fingers}
-        tool = f"link/{sim.gripper.tcp_link}" if sim.gripper else None
+        tool = f"link/{sim.gripper.tool_link}" if sim.gripper else None
         self.watches = [PartWatch(n, sim.part_pose(n), fingers, hand) for n in sim.parts]
         period = self.tracker.period if self.tracker else 0.02
         every = max(1, round(period / self.h))

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import Gripper, InvalidInput, JointTrajectory, Robot, World
+from .._core import Hand, InvalidInput, JointTrajectory, Robot, World
 from .._files import write_file
 from ..viz.png import write_png
 from ..viz.raster import Camera, Scene, render
@@ -30,7 +30,7 @@ FLOOR_TILE = 0.5
 class Painter:
     """Draws recorded states of a robot, a scene and parts with the software renderer. Needs no MuJoCo."""
 
-    def __init__(self, robot: Robot, gripper: Gripper | None, scene: World, parts: Iterable[SimPart]):
+    def __init__(self, robot: Robot, gripper: Hand | None, scene: World, parts: Iterable[SimPart]):
         self.robot = robot
         fingers = set(gripper.finger_links) if gripper else set()
         self.limits = {j["name"]: (j["lower"], j["upper"]) for j in robot.joint_table}

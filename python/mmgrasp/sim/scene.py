@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .._core import Gripper, InvalidInput, Robot, World
+from .._core import Hand, InvalidInput, Robot, World
 from .model import BASE_JOINTS, Physics, SimPart, build
 
 GIVE = 0.005  # a finger this far from where it should be presses with all its force [m]
@@ -31,7 +31,7 @@ class SimScene:
         scene: World,
         parts: Iterable[SimPart] = (),
         *,
-        gripper: Gripper | None = None,
+        gripper: Hand | None = None,
         physics: Physics | None = None,
         joints: dict[str, float] | None = None,
     ):

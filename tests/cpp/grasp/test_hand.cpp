@@ -227,6 +227,7 @@ TEST(HandFromRobot, Wsg50IsParallelAndLinear) {
   EXPECT_TRUE(hand.approach.isApprox(Eigen::Vector3d::UnitZ()));
   EXPECT_TRUE(hand.closing.isApprox(Eigen::Vector3d::UnitX()));
   EXPECT_TRUE(hand.openings.empty()) << "prismatic joints";
+  EXPECT_NEAR(hand.max_opening, 0.103, 0.002) << "as tests/scenarios/tiago_wsg50.yaml has it, read off the meshes";
   EXPECT_EQ(hand.groups(), std::vector<std::string>{"fingers"});
   ASSERT_EQ(hand.joints.size(), 2u);
   EXPECT_DOUBLE_EQ(hand.joints[0].open, -0.055);
@@ -261,9 +262,10 @@ TEST(HandFromRobot, Robotiq2F85IsParallelButNotLinear) {
   const Hand hand = Hand::from_robot(robot, "tool");
   EXPECT_EQ(hand.kind, ClosingKind::parallel);
   ASSERT_EQ(hand.joints.size(), 1u) << "five joints follow the one that is driven";
-  EXPECT_NEAR(hand.max_opening, 0.085, 0.002) << "data sheet";
+  EXPECT_NEAR(hand.max_opening, 0.078, 0.001) << "as tests/scenarios/tiago_2f85.yaml has it, read off the meshes";
+  EXPECT_NEAR(hand.finger_depth, 0.05, 0.002) << "the same";
   EXPECT_FALSE(hand.openings.empty());
-  expect_opening_follows_tips(robot, hand, "left_inner_finger", "right_inner_finger", 2e-4);
+  expect_opening_follows_tips(robot, hand, "left_inner_finger", "right_inner_finger", 1e-5);
 }
 
 TEST(HandFromRobot, Robotiq3FHasAGroupAFingerAndASpread) {

@@ -178,10 +178,11 @@ class Reader {
   /// meet from there, or come no nearer.
   void set_range() {
     const int n = reading_.postures;
-    set_share(1);
-    double reach = shapes_->reach(values_);
-    set_share(0);
-    reach = std::min(reach, shapes_->reach(values_));
+    double reach = -detail::kInfinity;
+    for (int i = 0; i <= n; ++i) {
+      set_share(static_cast<double>(i) / n);
+      reach = std::max(reach, shapes_->reach(values_));
+    }
     require(reach > 0, "tool_link", hand_.tool_link, "lies beyond the finger tips along the approach");
     hand_.finger_depth = 2 * reach;
     std::vector<double> gaps;

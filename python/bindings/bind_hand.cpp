@@ -1,3 +1,5 @@
+#include <optional>
+
 #include "bindings.hpp"
 #include "given.hpp"
 #include "mmgrasp/grasp/hand.hpp"
@@ -79,7 +81,7 @@ void bind_hand(py::module_& m) {
       .def(py::init([](const std::string& tool_link, const ArrayLike& approach, const ArrayLike& closing,
                        double max_opening, double finger_depth, double finger_width, double clearance,
                        std::vector<HandJoint> joints, Names finger_links, const std::string& kind, double min_opening,
-                       std::vector<double> openings, Shares preshape, const HandBody& body) {
+                       std::vector<double> openings, Shares preshape, const std::optional<HandBody>& body) {
              Hand hand;
              hand.tool_link = tool_link;
              hand.approach = vector3_argument(approach, "approach");
@@ -94,7 +96,7 @@ void bind_hand(py::module_& m) {
              hand.openings = std::move(openings);
              hand.preshape = std::move(preshape);
              hand.finger_links = std::move(finger_links);
-             hand.body = body;
+             if (body) hand.body = *body;
              hand.check();
              return hand;
            }),
@@ -102,7 +104,7 @@ void bind_hand(py::module_& m) {
            py::arg("finger_depth"), py::arg("finger_width"), py::arg("clearance") = own.clearance,
            py::arg("joints") = std::vector<HandJoint>{}, py::arg("finger_links") = Names{},
            py::arg("kind") = to_string(own.kind), py::arg("min_opening") = own.min_opening,
-           py::arg("openings") = std::vector<double>{}, py::arg("preshape") = Shares{}, py::arg("body") = own.body)
+           py::arg("openings") = std::vector<double>{}, py::arg("preshape") = Shares{}, py::arg("body") = py::none())
       .def_static(
           "from_robot", &read_hand, py::arg("robot"), py::arg("tool_link"), py::kw_only(), py::arg("group") = "",
           py::arg("approach") = py::none(), py::arg("closing") = py::none(), py::arg("clearance") = reading.clearance,

@@ -13,8 +13,8 @@ namespace mmgrasp {
 /// One factor of a grasp's quality, 1 - weight + weight * value: a part of weight 0.5 halves the quality at worst.
 struct MMGRASP_EXPORT QualityPart {
   std::string name;
-  double value = 1;   ///< In [0, 1], 1 is best.
-  double weight = 1;  ///< In [0, 1].
+  double value = 1;   ///< From 0 to 1, the best.
+  double weight = 1;  ///< From 0 (counts nothing) to 1.
 
   double factor() const { return 1 - weight + weight * value; }
 };

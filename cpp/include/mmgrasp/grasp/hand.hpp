@@ -30,12 +30,12 @@ struct MMGRASP_EXPORT HandJoint {
   std::string group = "fingers";  ///< Joints of one group move together.
 };
 
-/// Boxes around the fingers and the palm; what lies between the fingers is told by Hand's opening and pads.
+/// Boxes around the fingers and the palm; what lies between the fingers follows from Hand's opening and pads.
 struct MMGRASP_EXPORT HandBody {
-  double finger_thickness = 0.012;  ///< Of a finger along the closing axis [m]; > 0.
+  double finger_thickness = 0.012;  ///< Size of a finger along the closing axis [m]; > 0.
   double finger_length = 0.12;      ///< From the finger tips back to the palm [m]; > 0.
-  double palm_length = 0.13;        ///< Of the palm along the closing axis [m]; > 0.
-  double palm_width = 0.065;        ///< Of the palm across it [m]; > 0.
+  double palm_length = 0.13;        ///< Size of the palm along the closing axis [m]; > 0.
+  double palm_width = 0.065;        ///< Size of the palm across it [m]; > 0.
   void check() const;
 };
 
@@ -85,7 +85,7 @@ struct MMGRASP_EXPORT Hand {
   HandBody body;
 
   /// Reads a hand from a robot loaded with its meshes. Which joints spread the fingers and which end of a closing joint
-  /// is open is told by forward kinematics; SRDF states of the group named open and closed (or close) take precedence
+  /// is open comes from forward kinematics; SRDF states of the group named open and closed (or close) take precedence
   /// over joint limits. The opening is the free space between the collision shapes of the finger tips in the band of
   /// the pads; closed is where they first meet. Throws InvalidInput when the group has no joint with limits, no two
   /// finger tips stand opposite each other, a tip has no shape, or the tool link lies beyond the tips.

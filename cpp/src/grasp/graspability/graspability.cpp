@@ -127,10 +127,12 @@ class Evaluation {
   double angle(int orientation) const { return detail::kPi * orientation / options_.orientations; }
 
   bool near_better(const Grasp& grasp, const std::vector<Grasp>& better) const {
-    constexpr double kAlike = 0.55;  // [rad]: half the way to a direction that is another grasp of the same part
+    constexpr double kSameDirection =
+        0.55;  // [rad]: half the way to a direction that is another grasp of the same part
     return std::any_of(better.begin(), better.end(), [&](const Grasp& b) {
-      const Eigen::Vector2d gap = (b.T_object_hand.translation() - grasp.T_object_hand.translation()).head<2>();
-      return gap.norm() < options_.min_distance && line_angle(closing_angle(b), closing_angle(grasp)) < kAlike;
+      const Eigen::Vector2d apart = (b.T_object_hand.translation() - grasp.T_object_hand.translation()).head<2>();
+      return apart.norm() < options_.min_distance &&
+             line_angle(closing_angle(b), closing_angle(grasp)) < kSameDirection;
     });
   }
 

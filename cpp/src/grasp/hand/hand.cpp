@@ -101,9 +101,9 @@ double Hand::share_open(double opening) const {
   require(opening >= -kOpeningSlack && opening <= max_opening + kOpeningSlack, "opening", opening,
           "must lie between 0 and the hand's max_opening " + std::to_string(max_opening) + " [m]");
   if (openings.empty()) return std::clamp((opening - min_opening) / (max_opening - min_opening), 0.0, 1.0);
-  const double asked = std::clamp(opening, min_opening, max_opening);
-  const auto above = std::upper_bound(openings.begin() + 1, openings.end() - 1, asked);
-  const double low = *(above - 1), rest = (asked - low) / (*above - low);
+  const double within = std::clamp(opening, min_opening, max_opening);
+  const auto above = std::upper_bound(openings.begin() + 1, openings.end() - 1, within);
+  const double low = *(above - 1), rest = (within - low) / (*above - low);
   return (static_cast<double>(above - 1 - openings.begin()) + rest) / static_cast<double>(openings.size() - 1);
 }
 

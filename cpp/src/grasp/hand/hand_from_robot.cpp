@@ -185,16 +185,16 @@ class Reader {
     }
     require(reach > 0, "tool_link", hand_.tool_link, "lies beyond the finger tips along the approach");
     hand_.finger_depth = 2 * reach;
-    std::vector<double> gaps;
-    for (int i = 0; i <= n; ++i) gaps.push_back(clearance_at(static_cast<double>(i) / n));
+    std::vector<double> clearances;
+    for (int i = 0; i <= n; ++i) clearances.push_back(clearance_at(static_cast<double>(i) / n));
     int open = n;
-    while (open > 0 && !(gaps[open] < detail::kInfinity)) --open;
-    while (open > 0 && gaps[open - 1] > gaps[open] && gaps[open - 1] < detail::kInfinity) --open;
+    while (open > 0 && !(clearances[open] < detail::kInfinity)) --open;
+    while (open > 0 && clearances[open - 1] > clearances[open] && clearances[open - 1] < detail::kInfinity) --open;
     int closed = open;
-    while (closed > 0 && gaps[closed] > 0 && gaps[closed - 1] < gaps[closed]) --closed;
-    require(open > closed && gaps[open] > 0, "group", reading_.group, "its joints do not close the fingers");
+    while (closed > 0 && clearances[closed] > 0 && clearances[closed - 1] < clearances[closed]) --closed;
+    require(open > closed && clearances[open] > 0, "group", reading_.group, "its joints do not close the fingers");
     double meet = static_cast<double>(closed) / n;
-    if (gaps[closed] < 0) {
+    if (clearances[closed] < 0) {
       double low = meet, high = static_cast<double>(closed + 1) / n;
       for (int i = 0; i < kBisections; ++i) {
         const double middle = (low + high) / 2;

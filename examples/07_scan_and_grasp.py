@@ -46,7 +46,8 @@ if len(sys.argv) > 1:
         axis.imshow(one.height_map.height, origin="lower", extent=extent, cmap="Greens")
         for grasp in one.grasps:
             middle, along = grasp.T_object_hand[:2, 3], grasp.T_object_hand[:2, 1]
-            ends = np.array([middle - along * grasp.opening / 2, middle + along * grasp.opening / 2])
+            half = along * gripper.pregrasp_opening(grasp.opening) / 2
+            ends = np.array([middle - half, middle + half])
             axis.plot(*ends.T, "r-", lw=0.5 + 2 * grasp.quality)
         axis.set_title(f"{len(one.grasps)} grasps")
     figure.savefig(sys.argv[1], dpi=80, bbox_inches="tight")

@@ -68,6 +68,36 @@ def test_postures_open_groups() -> None:
         )
 
 
+CRANE = """<robot name="crane"><link name="base"/><link name="boom"/><link name="tip"/>
+<link name="finger"><collision><origin xyz="0.05 0 0"/><geometry><box size="0.1 0.01 0.01"/></geometry></collision></link>
+<joint name="turn" type="revolute"><parent link="base"/><child link="boom"/><axis xyz="0 0 1"/>
+<limit lower="-2" upper="2" velocity="1" effort="1"/></joint>
+<joint name="end" type="fixed"><parent link="boom"/><child link="tip"/><origin xyz="0.5 0 0"/></joint>
+<joint name="fold" type="revolute"><parent link="tip"/><child link="finger"/><axis xyz="0 0 1"/>
+<limit lower="0" upper="1.5" velocity="1" effort="1"/></joint></robot>"""
+
+
+def test_planners_set_the_posture_of_a_grasp() -> None:
+    """A finger that points ahead meets the wall, folded aside it does not; both grasps have one opening."""
+    robot = mg.Robot.from_strings(CRANE)
+    arm = robot.group(base_link="base", tip="tip")
+    world = mg.World()
+    world.add_box("wall", [0.04, 0.3, 0.3], mg.pose([0.6, 0, 0]))
+    hand = mg.Hand(
+        "tip", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.02, finger_width=0.01,
+        joints=[mg.grasping.HandJoint("fold", 0.0, 1.5)], finger_links=["finger"],
+    )  # fmt: skip
+    grasps = [mg.Grasp(np.eye(4), 0.05, posture=[share]) for share in (0.0, 1.0)]
+    bead = mg.LinkShape(mg.Box([0.002, 0.002, 0.002]))
+    ends = arm.fk([0.0]), arm.fk([0.4])
+    problem = mg.ManipulationProblem(arm, world, bead, *ends, grasps, gripper=hand, touch_links=["finger"])
+    found = mg.plan_manipulation(problem, seed=1)
+    assert found.outcome == mg.Outcome.solved
+    assert found.grasp_index == 1
+    with pytest.raises(mg.InvalidInput, match="posture = 2 numbers"):
+        mg.ManipulationProblem(arm, world, bead, *ends, [mg.Grasp(np.eye(4), posture=[0, 1])], gripper=hand)
+
+
 def test_quality_is_the_product_of_its_parts() -> None:
     _, _, gripper = pipe_robot("tm14like")
     grasps = mg.grasping.sample_grasps([mg.LinkShape(mg.Box([0.04, 0.05, 0.08]))], gripper)

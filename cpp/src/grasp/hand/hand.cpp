@@ -157,7 +157,7 @@ std::vector<LinkShape> Hand::shapes(double opening) const {
   const double tips = finger_depth / 2;
   const auto box = [&](double near, double far, double left, double right, double side) {
     LinkShape shape;
-    shape.shape = Box{{far - near, right - left, 2 * side}};
+    shape.shape.emplace<Box>().size << far - near, right - left, 2 * side;
     shape.T_link_shape = T_hand_axes * Eigen::Translation3d((near + far) / 2, (left + right) / 2, 0);
     return shape;
   };

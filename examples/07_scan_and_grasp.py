@@ -13,9 +13,7 @@ from mmgrasp.problems import random_trays
 
 TRAY = [0.3, 0.4, 0.1]
 part = [mg.LinkShape(mg.Box([0.07, 0.035, 0.03]))]
-gripper = mg.grasping.Gripper(
-    "tcp", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.04, finger_width=0.022
-)
+gripper = mg.Hand("tcp", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.04, finger_width=0.022)
 
 # Grasps of four random fillings together stand for all places a part may lie in.
 scans = [random_trays.scan_random_tray(part, TRAY, gripper, count=12, fill=0.5, seed=seed) for seed in (1, 2, 3, 4)]
@@ -47,8 +45,9 @@ if len(sys.argv) > 1:
         extent = (-half[0], half[0], -half[1], half[1])
         axis.imshow(one.height_map.height, origin="lower", extent=extent, cmap="Greens")
         for grasp in one.grasps:
-            middle, along = grasp.T_world_tcp[:2, 3], grasp.T_world_tcp[:2, 1]
-            ends = np.array([middle - along * grasp.opening / 2, middle + along * grasp.opening / 2])
-            axis.plot(*ends.T, "r-", lw=0.5 + 2 * grasp.score)
+            middle, along = grasp.T_object_hand[:2, 3], grasp.T_object_hand[:2, 1]
+            half = along * gripper.pregrasp_opening(grasp.opening) / 2
+            ends = np.array([middle - half, middle + half])
+            axis.plot(*ends.T, "r-", lw=0.5 + 2 * grasp.quality)
         axis.set_title(f"{len(one.grasps)} grasps")
     figure.savefig(sys.argv[1], dpi=80, bbox_inches="tight")

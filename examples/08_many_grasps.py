@@ -26,7 +26,7 @@ for i, (x, y, height) in enumerate([(0.7, 0.4, 0.8), (1.3, 0.85, 0.7), (1.3, 0.0
 bar = mg.LinkShape(mg.Box([LENGTH, 0.02, 0.02]))
 places = np.linspace(-LENGTH / 2 + 0.02, LENGTH / 2 - 0.02, 25)
 # The farther from the middle, the more the bar's weight bends the hand: a cost beside the path's length.
-grasps = [mg.grasping.CandidateGrasp(mg.pose([place, 0, 0]), cost=0.5 * abs(place)) for place in places]
+grasps = [mg.Grasp(mg.pose([place, 0, 0]), cost=0.5 * abs(place)) for place in places]
 problem = mg.ManipulationProblem(gantry, world, bar, mg.pose([0.33, 0.3, 0]), mg.pose([1.65, 0.9, 0]), grasps)
 
 roadmap = mg.planning.Roadmap.build(gantry, vertices=1500, gamma=1.5)
@@ -37,7 +37,7 @@ print(f"held {places[result.grasp_index]:+.2f} m from the bar's middle; nothing 
 worst = max(range(len(grasps)), key=lambda i: abs(places[i] - places[result.grasp_index]))
 
 
-def with_grasps(chosen: list[mg.grasping.CandidateGrasp]) -> mg.ManipulationProblem:
+def with_grasps(chosen: list[mg.Grasp]) -> mg.ManipulationProblem:
     return mg.ManipulationProblem(gantry, world, bar, problem.T_world_start, problem.T_world_goal, chosen)
 
 
@@ -51,11 +51,11 @@ forest = mg.plan_manipulation(
 print(f"by trees, with {len(five)} of the grasps: {forest}, {len(forest.trees)} trees in the race")
 
 
-def blocked(grasp: mg.grasping.CandidateGrasp, configurations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def blocked(grasp: mg.Grasp, configurations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Which configurations the hand alone blocks, and which of the others the bar in the hand."""
     held = world.copy()
     held.add("bar", [bar])
-    held.attach("bar", "hand", np.linalg.inv(grasp.T_object_tool))
+    held.attach("bar", "hand", np.linalg.inv(grasp.T_object_hand))
     alone = mg.CollisionChecker(gantry.robot, world, gantry)
     bar_only = mg.CollisionChecker(gantry.robot, held, gantry, held_only=True)
     by_hand = np.array([not alone.is_free(q) for q in configurations])

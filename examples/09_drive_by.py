@@ -26,9 +26,9 @@ real = mg.Robot.load(
     base_limits={**limits, "linear_velocity": 0.6},
 )
 fingers = ["left_gripper_finger", "right_gripper_finger"]
-gripper = mg.grasping.Gripper(
+gripper = mg.Hand(
     "gripper_tcp", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.10, finger_depth=0.04, finger_width=0.022,
-    joints=[mg.grasping.FingerJoint(f"{name}_joint", 0.0, 0.05) for name in fingers],
+    joints=[mg.grasping.HandJoint(f"{name}_joint", 0.0, 0.05) for name in fingers],
     finger_links=[f"{name}_link" for name in fingers],
 )  # fmt: skip
 

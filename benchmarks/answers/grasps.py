@@ -37,7 +37,9 @@ def pipe_grasps() -> Answer:
     parts = {}
     for number, pipe in enumerate(find("pipe_structures")(), 1):
         found = ask(pipe.sample_grasps, 100, gripper=find("pipe_robot")("tm14like")[2], seed=1)
-        parts[str(number)] = [[get(g, "T_object_tool", "T_object_tcp"), g.opening, g.cost] for g in found]
+        parts[str(number)] = [
+            [get(g, "T_object_tool", "T_object_tcp", "T_object_hand"), g.opening, g.cost] for g in found
+        ]
     return parts, {"grasps": sum(map(len, parts.values()))}
 
 
@@ -67,11 +69,17 @@ def depth_and_height_map() -> Answer:
     }
 
 
+def moving_in(grasp: Any) -> float:
+    """The opening while the hand moves in; a ScoredGrasp held it beside the part's width, a Grasp holds the width."""
+    return grasp.opening if hasattr(grasp, "width") else hand().pregrasp_opening(grasp.opening)
+
+
 @call
 def graspability() -> Answer:
     found = scan().found
-    fields = [["T_world_tcp", "T_world_tool", "T_object_tool"], ["score"], ["opening"]]
-    parts = {"grasps": [[get(g, *names) for names in fields] for g in found.grasps], "counts": found.counts}
+    fields = [["T_world_tcp", "T_world_tool", "T_object_tool", "T_object_hand"], ["score", "quality"]]
+    grasps = [[*(get(g, *names) for names in fields), moving_in(g)] for g in found.grasps]
+    parts = {"grasps": grasps, "counts": found.counts}
     return parts, {"grasps": len(found.grasps)}
 
 

@@ -20,7 +20,9 @@ def pipe_problem(structure: int, count: int) -> Any:
     scene.add_box("table", [2, 2, 0.05], pose(0, 0, -0.05))
     found = ask(pipe.sample_grasps, count, gripper=gripper, seed=1)
     candidates = [
-        find("CandidateGrasp", "Grasp")(get(g, "T_object_tool", "T_object_tcp"), opening=g.opening, cost=g.cost)
+        find("CandidateGrasp", "Grasp")(
+            get(g, "T_object_tool", "T_object_tcp", "T_object_hand"), opening=g.opening, cost=g.cost
+        )
         for g in found
     ]
     fingers = sorted(link for link in robot_.links if "finger_link" in link)

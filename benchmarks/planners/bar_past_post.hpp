@@ -16,7 +16,7 @@ inline mmgrasp::Pose translated(double x, double y, double z) {
 }
 
 /// The hand closes across the bar (along x) at `place`, `angle` away from straight down.
-inline mmgrasp::CandidateGrasp bar_grasp(double place, double angle) {
+inline mmgrasp::Grasp bar_grasp(double place, double angle) {
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
   const Eigen::Vector3d z = Eigen::AngleAxisd(angle, x) * Eigen::Vector3d(0, 0, -1);
   mmgrasp::Pose T = mmgrasp::Pose::Identity();
@@ -46,7 +46,7 @@ inline mmgrasp::ManipulationProblem bar_past_post(const mmgrasp::JointGroup& gro
       problem.grasps.push_back(bar_grasp(place, M_PI + rng.uniform(-0.8, 0.8)));
     } else {
       problem.grasps.push_back(bar_grasp(place, rng.uniform(-0.5, 0.5)));
-      if (kind == "499 out of reach") problem.grasps.back().T_object_tool.translation().x() += rng.uniform(0.6, 1.5);
+      if (kind == "499 out of reach") problem.grasps.back().T_object_hand.translation().x() += rng.uniform(0.6, 1.5);
     }
   }
   problem.grasps[rng.index(static_cast<std::size_t>(grasps))] = bar_grasp(0.02, 0.1);

@@ -11,9 +11,9 @@ import mmgrasp as mg
 from mmgrasp.problems.pipe_cells import FINGERS, PipeCell
 
 
-def _robot_line(cell: PipeCell, grasp: mg.grasping.PipeGrasp, folder: Path, number: int) -> str:
+def _robot_line(cell: PipeCell, grasp: mg.Grasp, folder: Path, number: int) -> str:
     """Writes the robot with the pipe in its hand."""
-    robot = cell.robot.with_link("pipe", "gripper_tcp", np.linalg.inv(grasp.T_object_tool), cell.pipe.shapes())
+    robot = cell.robot.with_link("pipe", "gripper_tcp", np.linalg.inv(grasp.T_object_hand), cell.pipe.shapes())
     touching = [("pipe", finger, "user") for finger in sorted(FINGERS)]
     robot = robot.with_disabled_pairs([*cell.robot.disabled_pairs, *touching])
     urdf, srdf = folder / f"{number}.urdf", folder / f"{number}.srdf"
@@ -32,9 +32,7 @@ def _scene_lines(world: mg.World) -> list[str]:
     return lines
 
 
-def write_carries(
-    cell: PipeCell, carries: list[tuple[mg.grasping.PipeGrasp, np.ndarray, np.ndarray]], file: Path
-) -> None:
+def write_carries(cell: PipeCell, carries: list[tuple[mg.Grasp, np.ndarray, np.ndarray]], file: Path) -> None:
     """`carries`: a grasp, a start (6) and goals (k, 6) each."""
     lines, scene, names = [], _scene_lines(cell.world), cell.arm.names
     for number, (grasp, start, goals) in enumerate(carries):

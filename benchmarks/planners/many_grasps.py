@@ -48,9 +48,7 @@ class Enough(Exception):  # noqa: N818 - it is no error
 
 
 def ours(planner: str):
-    def run(
-        cell: PipeCell, grasps: list[mg.grasping.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool
-    ) -> dict:
+    def run(cell: PipeCell, grasps: list[mg.Grasp], seed: int, given: argparse.Namespace, only_first: bool) -> dict:
         options: dict = {"planner": planner, "seed": seed, "threads": 1, "time_limit": given.seconds}
         options["ik_solutions"] = CONFIGURATIONS
         if planner == "prm_star_mg":
@@ -80,7 +78,7 @@ def ours(planner: str):
 class Ends:
     """Arm configurations of each grasp, computed when first asked for."""
 
-    def __init__(self, cell: PipeCell, grasps: list[mg.grasping.PipeGrasp]) -> None:
+    def __init__(self, cell: PipeCell, grasps: list[mg.Grasp]) -> None:
         self.cell, self.grasps, self.kept = cell, grasps, {}
 
     def __getitem__(self, i: int):
@@ -93,16 +91,14 @@ class Ends:
         return (i for i in range(len(self.grasps)) if all(map(len, self[i])))
 
 
-def plan(cell: PipeCell, grasp: mg.grasping.PipeGrasp, start, goals, **options):
+def plan(cell: PipeCell, grasp: mg.Grasp, start, goals, **options):
     group, world = cell.arm_holding(grasp), cell.world_holding(grasp)
     return mg.plan_motion(
         cell.robot, group, world, start=start, goal=goals, edge_step=0.02, workspace_step=0.005, **options
     )
 
 
-def first_of(
-    cell: PipeCell, grasp: mg.grasping.PipeGrasp, begin: float, only_first: bool, *ends, **options
-) -> dict | None:
+def first_of(cell: PipeCell, grasp: mg.Grasp, begin: float, only_first: bool, *ends, **options) -> dict | None:
     """Time until a path is found, and its length once shortened; None without one."""
     if plan(cell, grasp, *ends, shorten=False, **options).outcome != mg.Outcome.solved:
         return None
@@ -114,9 +110,7 @@ def first_of(
 
 
 def one_by_one(planner: str):
-    def run(
-        cell: PipeCell, grasps: list[mg.grasping.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool
-    ) -> dict:
+    def run(cell: PipeCell, grasps: list[mg.Grasp], seed: int, given: argparse.Namespace, only_first: bool) -> dict:
         begin, ends = time.process_time(), Ends(cell, grasps)
         for i in ends.usable():
             starts, goals = ends[i]
@@ -137,9 +131,7 @@ def one_by_one(planner: str):
     return run
 
 
-def today(
-    cell: PipeCell, grasps: list[mg.grasping.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool
-) -> dict:
+def today(cell: PipeCell, grasps: list[mg.Grasp], seed: int, given: argparse.Namespace, only_first: bool) -> dict:
     begin, ends = time.process_time(), Ends(cell, grasps)
     planning, apart = 0.0, 0.0  # [s] in the other program; on what it is told
     for i in ends.usable():
@@ -160,9 +152,7 @@ def today(
     return NONE
 
 
-def all_goals(
-    cell: PipeCell, grasps: list[mg.grasping.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool
-) -> dict:
+def all_goals(cell: PipeCell, grasps: list[mg.Grasp], seed: int, given: argparse.Namespace, only_first: bool) -> dict:
     begin, ends, budget = time.process_time(), Ends(cell, grasps), 100
     while time.process_time() - begin < given.cap:
         for i in ends.usable():
@@ -177,9 +167,7 @@ def all_goals(
     return NONE
 
 
-def informed(
-    cell: PipeCell, grasps: list[mg.grasping.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool
-) -> dict:
+def informed(cell: PipeCell, grasps: list[mg.Grasp], seed: int, given: argparse.Namespace, only_first: bool) -> dict:
     begin, ends, told = time.process_time(), Ends(cell, grasps), []
     usable = list(ends.usable())
     best = math.inf

@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from tables import markdown, show
 
 
-def carries(cell: PipeCell, grasp: mg.grasping.PipeGrasp, seconds: float) -> str:
+def carries(cell: PipeCell, grasp: mg.Grasp, seconds: float) -> str:
     """ "out of reach", "solved" or "failed"."""
     starts, goals = cell.ends(grasp, 8)
     if len(starts) == 0 or len(goals) == 0:

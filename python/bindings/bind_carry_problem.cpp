@@ -10,15 +10,15 @@ namespace {
 
 using namespace py::literals;
 
-/// A list of CandidateGrasp, or poses as (m, 4, 4).
-std::vector<CandidateGrasp> grasps_argument(const py::object& value) {
+/// A list of Grasp, or poses as (m, 4, 4).
+std::vector<Grasp> grasps_argument(const py::object& value) {
   if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
     const auto items = py::reinterpret_borrow<py::sequence>(value);
-    std::vector<CandidateGrasp> out;
+    std::vector<Grasp> out;
     bool all = true;
     for (const py::handle& item : items) {
-      all = all && py::isinstance<CandidateGrasp>(item);
-      if (all) out.push_back(py::cast<CandidateGrasp>(item));
+      all = all && py::isinstance<Grasp>(item);
+      if (all) out.push_back(py::cast<Grasp>(item));
     }
     if (all) return out;
   }
@@ -26,16 +26,16 @@ std::vector<CandidateGrasp> grasps_argument(const py::object& value) {
   try {
     array = py::module_::import("numpy").attr("asarray")(value, "dtype"_a = "float64");
   } catch (const py::error_already_set&) {
-    refuse_value("grasps", value, "a list of CandidateGrasp or an array (m, 4, 4)");
+    refuse_value("grasps", value, "a list of Grasp or an array (m, 4, 4)");
   }
   if (array.ndim() != 3 || array.shape(1) != 4 || array.shape(2) != 4) {
     throw InvalidInput("grasps has shape " + std::string(py::str(array.attr("shape"))) +
-                       ": must be a list of CandidateGrasp or an array (m, 4, 4)");
+                       ": must be a list of Grasp or an array (m, 4, 4)");
   }
-  std::vector<CandidateGrasp> out;
+  std::vector<Grasp> out;
   for (py::ssize_t i = 0; i < array.shape(0); ++i) {
     const py::object pose = array[py::int_(i)];
-    out.push_back({pose_argument(pose, "grasps[" + std::to_string(i) + "]"), 0, 0});
+    out.emplace_back().T_object_hand = pose_argument(pose, "grasps[" + std::to_string(i) + "]");
   }
   return out;
 }
@@ -58,36 +58,14 @@ void refuse_unknown(const py::kwargs& unknown, const Strings& known) {
   }
 }
 
-void bind_grasp_candidate(py::module_& m) {
-  py::class_<CandidateGrasp>(m, "CandidateGrasp", "One way to hold the object while it is carried.")
-      .def(py::init([](const ArrayLike& T_object_tool, const Given<double>& opening, const Given<double>& cost) {
-             return CandidateGrasp{pose_argument(T_object_tool, "T_object_tool"), taken(opening, "opening"),
-                                   taken(cost, "cost")};
-           }),
-           "T_object_tool"_a, "opening"_a = 0.0, "cost"_a = 0.0,
-           "Pose of the group's tip in the object's frame (4, 4); opening of the fingers while holding [m], used when "
-           "the problem has a gripper; cost added to the path's length.")
-      .def_property_readonly("T_object_tool", [](const CandidateGrasp& g) { return to_array(g.T_object_tool); })
-      .def_readonly("opening", &CandidateGrasp::opening)
-      .def_readonly("cost", &CandidateGrasp::cost)
-      .def("to_dict",
-           [](const CandidateGrasp& g) {
-             return py::dict("T_object_tool"_a = to_array(g.T_object_tool).attr("tolist")(), "opening"_a = g.opening,
-                             "cost"_a = g.cost);
-           })
-      .def("__repr__",
-           [](const CandidateGrasp& g) { return "CandidateGrasp(at " + text(g.T_object_tool.translation()) + ")"; });
-}
-
 }  // namespace
 
 void bind_carry_problem(py::module_& m) {
-  bind_grasp_candidate(m);
   py::class_<ManipulationProblem>(m, "ManipulationProblem",
                                   "TransferPath an object from one pose to another with any of many grasps (P2 4.2).")
       .def(py::init([](const Given<JointGroup>& group, const Given<World>& world, const py::object& object,
                        const ArrayLike& T_world_start, const ArrayLike& T_world_goal, const py::object& grasps,
-                       const std::optional<Given<Gripper>>& gripper, const Given<Strings>& touch_links,
+                       const std::optional<Given<Hand>>& gripper, const Given<Strings>& touch_links,
                        const Given<std::string>& object_name, const py::kwargs& unknown) {
              refuse_unknown(unknown, {"group", "world", "object", "T_world_start", "T_world_goal", "grasps", "gripper",
                                       "touch_links", "object_name"});
@@ -107,7 +85,7 @@ void bind_carry_problem(py::module_& m) {
            "group"_a, "world"_a, "object"_a, "T_world_start"_a, "T_world_goal"_a, "grasps"_a, py::kw_only(),
            "gripper"_a = py::none(), "touch_links"_a = Strings{}, "object_name"_a = "object",
            "`object` is a LinkShape or a list of them, in its own frame; `world` is without it. `grasps` are "
-           "CandidateGrasp, or poses of the tool in the object's frame as (m, 4, 4). With `gripper` the fingers are "
+           "Grasp, or poses of the hand in the object's frame as (m, 4, 4). With `gripper` the fingers are "
            "set to each grasp's opening. Links in `touch_links` may touch the object; none given: those of the end "
            "effector. The group may be an arm or an arm on an omni base; a diff_drive base is refused, since it could "
            "not drive the paths.")

@@ -1,6 +1,7 @@
 #include "bindings.hpp"
+#include "given.hpp"
 #include "mmgrasp/grasp/grasp.hpp"
-#include "mmgrasp/grasp/gripper.hpp"
+#include "mmgrasp/grasp/sample_grasps.hpp"
 
 namespace mmgrasp::python {
 namespace {
@@ -15,96 +16,138 @@ const std::vector<OptionField<GraspSamplerOptions>>& sampler_fields() {
       option<O>("mesh_samples", &O::mesh_samples, "surface points tried on a mesh"),
       option<O>("max_grasps", &O::max_grasps, "best kept, spread over approach directions"),
       option<O>("friction", &O::friction, "Coulomb coefficient"),
-      option<O>("standoff", &O::standoff, "how far the tool centre point stays outside the object's middle [m]"),
+      option<O>("standoff", &O::standoff, "how far the tool frame stays outside the object's middle [m]"),
       option<O>("seed", &O::seed, "same seed, same grasps")};
   return fields;
+}
+
+/// The provenance as a dict that names its sampler; None: the grasp was given.
+py::object provenance_dict(const GraspProvenance& provenance) {
+  if (const auto* p = std::get_if<ContactPairProvenance>(&provenance)) {
+    return py::dict("sampler"_a = "contact_pairs", "pair"_a = p->pair, "approach"_a = p->approach,
+                    "flipped"_a = p->flipped);
+  }
+  if (const auto* p = std::get_if<PipeProvenance>(&provenance)) {
+    return py::dict("sampler"_a = "pipe", "section"_a = p->section, "length"_a = p->length, "angle"_a = p->angle,
+                    "flipped"_a = p->flipped);
+  }
+  if (const auto* p = std::get_if<HeightMapProvenance>(&provenance)) {
+    return py::dict("sampler"_a = "height_map", "angle"_a = p->angle, "height"_a = p->height,
+                    "cell"_a = py::make_tuple(p->ix, p->iy), "pixel"_a = py::make_tuple(p->pixel.x(), p->pixel.y()));
+  }
+  return py::none();
+}
+
+void bind_provenance(py::module_& m) {
+  using C = ContactPairProvenance;
+  using P = PipeProvenance;
+  using H = HeightMapProvenance;
+  py::class_<C>(m, "ContactPairProvenance", "Of sample_grasps: two opposed contacts and a direction of approach.")
+      .def_readonly("pair", &C::pair, "Index among the object's contact pairs, those that are too wide included.")
+      .def_readonly("approach", &C::approach, "Index among the approach directions around the closing axis.")
+      .def_readonly("flipped", &C::flipped, "The hand is turned by half a turn about the approach.")
+      .def("__repr__", [](const C& p) { return "ContactPairProvenance(pair=" + std::to_string(p.pair) + ")"; });
+  py::class_<P>(m, "PipeProvenance", "Of Pipe.grasp and Pipe.sample_grasps: P2's four variables (P2 3.2.3.1).")
+      .def_readonly("section", &P::section)
+      .def_readonly("length", &P::length, "From the section's first node to the tool frame [m].")
+      .def_readonly("angle", &P::angle, "From the section's y axis to the approach about its x axis [rad].")
+      .def_readonly("flipped", &P::flipped, "The hand is turned by half a turn about the approach.")
+      .def("__repr__", [](const P& p) {
+        return "PipeProvenance(section=" + std::to_string(p.section) +
+               ", length=" + std::string(py::repr(py::float_(p.length))) +
+               ", angle=" + std::string(py::repr(py::float_(p.angle))) + ", flipped=" + (p.flipped ? "True" : "False") +
+               ")";
+      });
+  py::class_<H>(m, "HeightMapProvenance", "Of evaluate_graspability: a place of a height map and of a depth image.")
+      .def_readonly("angle", &H::angle, "Direction of the closing axis in the map's frame, in [0, pi) [rad].")
+      .def_readonly("height", &H::height, "Height of the finger tips above the map's frame [m].")
+      .def_property_readonly("cell", [](const H& p) { return py::make_tuple(p.ix, p.iy); })
+      .def_readonly("pixel", &H::pixel, "(u, v) in the depth image; (-1, -1) without one.")
+      .def("__repr__", [](const H& p) {
+        return "HeightMapProvenance(cell=(" + std::to_string(p.ix) + ", " + std::to_string(p.iy) + "))";
+      });
+}
+
+void bind_record(py::module_& m) {
+  py::class_<Grasp>(
+      m, "Grasp",
+      "One way to hold an object: where the hand stands, how far it is open, what it costs and how good it "
+      "is.")
+      .def(
+          py::init([](const ArrayLike& T_object_hand, const Given<double>& opening, const Given<double>& cost,
+                      const Given<double>& quality, std::vector<double> posture) {
+            Grasp grasp;
+            grasp.T_object_hand = pose_argument(T_object_hand, "T_object_hand");
+            grasp.opening = taken(opening, "opening");
+            grasp.cost = taken(cost, "cost");
+            grasp.quality = taken(quality, "quality");
+            grasp.posture = finite_argument(std::move(posture), "posture");
+            return grasp;
+          }),
+          "T_object_hand"_a, "opening"_a = 0.0, py::kw_only(), "cost"_a = 0.0, "quality"_a = 1.0,
+          "posture"_a = std::vector<double>{},
+          "Pose of the hand's tool frame in the object's frame (4, 4); distance between the fingers while holding [m]; "
+          "cost that\nplanners add to their path's length; quality in [0, 1]; for a hand with several joint groups how "
+          "far each is open, in [0, 1].")
+      .def_property_readonly(
+          "T_object_hand", [](const Grasp& g) { return to_array(g.T_object_hand); },
+          "Pose of the hand's tool frame in the object's frame; in the world where no object is known.")
+      .def_readonly("opening", &Grasp::opening, "Distance between the fingers while holding [m].")
+      .def_readonly("cost", &Grasp::cost, "Added by planners to their path's length.")
+      .def_readonly("quality", &Grasp::quality, "Larger is better, in [0, 1].")
+      .def_property_readonly(
+          "parts",
+          [](const Grasp& g) {
+            std::map<std::string, std::pair<double, double>> parts;
+            for (const QualityPart& part : g.parts) parts[part.name] = {part.value, part.weight};
+            return parts;
+          },
+          "Parts of the quality by name: (value, weight); each is a factor 1 - weight + weight * value.")
+      .def_readonly("posture", &Grasp::posture, "How far each joint group of the hand is open; []: as `opening` says.")
+      .def_property_readonly(
+          "provenance", [](const Grasp& g) { return g.provenance; },
+          "Which sampler it came from, with which numbers; None: it was given.")
+      .def("to_dict",
+           [](const Grasp& g) {
+             py::dict parts;
+             for (const QualityPart& part : g.parts) parts[py::str(part.name)] = part.value;
+             return py::dict("T_object_hand"_a = to_array(g.T_object_hand).attr("tolist")(), "opening"_a = g.opening,
+                             "cost"_a = g.cost, "quality"_a = g.quality, "parts"_a = parts, "posture"_a = g.posture,
+                             "provenance"_a = provenance_dict(g.provenance));
+           })
+      .def("__repr__", [](const Grasp& g) {
+        return "Grasp(at " + text(g.T_object_hand.translation()) +
+               ", opening=" + std::string(py::repr(py::float_(g.opening))) +
+               ", quality=" + std::string(py::repr(py::float_(g.quality))) + ")";
+      });
 }
 
 }  // namespace
 
 void bind_grasp(py::module_& m) {
   m.def("_grasp_option_table", [] { return option_table(sampler_fields()); });
-  py::class_<FingerJoint>(m, "FingerJoint", "A finger joint, linear in the opening.")
-      .def(py::init([](std::string name, double closed, double open) {
-             return FingerJoint{std::move(name), closed, open};
-           }),
-           py::arg("name"), py::arg("closed"), py::arg("open"))
-      .def_readonly("name", &FingerJoint::name)
-      .def_readonly("closed", &FingerJoint::closed)
-      .def_readonly("open", &FingerJoint::open)
-      .def("__repr__", [](const FingerJoint& j) { return "FingerJoint('" + j.name + "')"; });
-  py::class_<Gripper>(m, "Gripper",
-                      "A parallel-jaw gripper; the tool centre point lies midway between the pads' centres.")
-      .def(py::init([](const std::string& tcp_link, const ArrayLike& approach, const ArrayLike& closing,
-                       double max_opening, double finger_depth, double finger_width, double clearance,
-                       std::vector<FingerJoint> joints, std::vector<std::string> finger_links) {
-             Gripper gripper{tcp_link,
-                             vector3_argument(approach, "approach"),
-                             vector3_argument(closing, "closing"),
-                             max_opening,
-                             finger_depth,
-                             finger_width,
-                             clearance,
-                             std::move(joints),
-                             std::move(finger_links)};
-             gripper.check();
-             return gripper;
-           }),
-           py::arg("tcp_link"), py::kw_only(), py::arg("approach"), py::arg("closing"), py::arg("max_opening"),
-           py::arg("finger_depth"), py::arg("finger_width"), py::arg("clearance") = Gripper{}.clearance,
-           py::arg("joints") = std::vector<FingerJoint>{}, py::arg("finger_links") = std::vector<std::string>{})
-      .def_readonly("tcp_link", &Gripper::tcp_link)
-      .def_readonly("approach", &Gripper::approach)
-      .def_readonly("closing", &Gripper::closing)
-      .def_readonly("max_opening", &Gripper::max_opening)
-      .def_readonly("finger_depth", &Gripper::finger_depth)
-      .def_readonly("finger_width", &Gripper::finger_width)
-      .def_readonly("clearance", &Gripper::clearance)
-      .def_readonly("joints", &Gripper::joints)
-      .def_readonly("finger_links", &Gripper::finger_links)
-      .def("joint_values", &Gripper::joint_values, py::arg("opening"), "Finger joint values at an opening [m].")
-      .def("pregrasp_opening", &Gripper::pregrasp_opening, py::arg("width"))
-      .def("__repr__", [](const Gripper& g) {
-        return "Gripper('" + g.tcp_link + "', opens " + std::string(py::repr(py::float_(g.max_opening))) + " m)";
-      });
-  py::class_<Grasp>(m, "Grasp", "One way to hold an object.")
-      .def(py::init([](const ArrayLike& T_object_tcp, double width, double quality) {
-             return Grasp{pose_argument(T_object_tcp, "T_object_tcp"), finite_argument(width, "width"),
-                          finite_argument(quality, "quality")};
-           }),
-           py::arg("T_object_tcp"), py::arg("width"), py::arg("quality") = 1.0)
-      .def_property_readonly("T_object_tcp", [](const Grasp& g) { return to_array(g.T_object_tcp); })
-      .def_readonly("width", &Grasp::width, "Opening of the fingers while holding [m].")
-      .def_readonly("quality", &Grasp::quality)
-      .def("to_dict",
-           [](const Grasp& g) {
-             return py::dict("T_object_tcp"_a = to_array(g.T_object_tcp).attr("tolist")(), "width"_a = g.width,
-                             "quality"_a = g.quality);
-           })
-      .def("__repr__", [](const Grasp& g) {
-        return "Grasp(at " + text(g.T_object_tcp.translation()) +
-               ", width=" + std::string(py::repr(py::float_(g.width))) + ")";
-      });
+  bind_provenance(m);
+  bind_record(m);
+  bind_hand(m);
   m.def(
       "_sample_grasps",
-      [](const std::vector<LinkShape>& object, const Gripper& gripper, const py::kwargs& options) {
+      [](const std::vector<LinkShape>& object, const Hand& gripper, const py::kwargs& options) {
         const GraspSamplerOptions read = read_options(sampler_fields(), options, "sample_grasps");
-        int too_wide = 0;
-        std::vector<Grasp> grasps;
+        SampledGrasps sampled;
         {
           py::gil_scoped_release release;
-          grasps = sample_grasps(object, gripper, read, &too_wide);
+          sampled = sample_grasps(object, gripper, read);
         }
-        return py::make_tuple(std::move(grasps), too_wide);
+        return py::make_tuple(std::move(sampled.grasps), sampled.too_wide);
       },
       py::arg("object"), py::arg("gripper"),
       "(grasps, too_wide): as sample_grasps, with the number dropped as too wide.");
   m.def(
       "sample_grasps",
-      [](const std::vector<LinkShape>& object, const Gripper& gripper, const py::kwargs& options) {
+      [](const std::vector<LinkShape>& object, const Hand& gripper, const py::kwargs& options) {
         const GraspSamplerOptions read = read_options(sampler_fields(), options, "sample_grasps");
         py::gil_scoped_release release;
-        return sample_grasps(object, gripper, read);
+        return sample_grasps(object, gripper, read).grasps;
       },
       py::arg("object"), py::arg("gripper"),
       ("Antipodal grasps of a body given as a list of LinkShape (P1 3.4.1), best first." +

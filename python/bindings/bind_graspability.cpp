@@ -9,13 +9,8 @@ using namespace py::literals;
 
 const std::vector<OptionField<GraspabilityOptions>>& graspability_fields() {
   using O = GraspabilityOptions;
-  using H = HandShape;
   static const std::vector<OptionField<O>> fields{
-      option<O>("finger_thickness", &O::hand, &H::finger_thickness, "of a finger along the closing axis [m]"),
-      option<O>("finger_length", &O::hand, &H::finger_length, "from the fingertip back to the palm [m]"),
-      option<O>("palm_length", &O::hand, &H::palm_length, "of the palm along the closing axis [m]"),
-      option<O>("palm_width", &O::hand, &H::palm_width, "of the palm across it [m]"),
-      option<O>("margin", &O::hand, &H::margin, "air kept around the hand [m]"),
+      option<O>("margin", &O::margin, "kept free around the hand [m]"),
       option<O>("orientations", &O::orientations, "closing directions over half a turn"),
       option<O>("openings", &O::openings, "openings tried: max_opening and equal parts of it"),
       option<O>("layer_step", &O::layer_step, "between the heights at which fingertips are tried [m]"),
@@ -38,21 +33,7 @@ const std::vector<OptionField<PlacementOptions>>& placement_fields() {
   return fields;
 }
 
-void bind_scored_grasps(py::module_& m) {
-  py::class_<ScoredGrasp>(m, "ScoredGrasp", "A way to grasp something that a depth image shows.")
-      .def_property_readonly("T_world_tcp", [](const ScoredGrasp& g) { return to_array(g.T_world_tcp); })
-      .def_readonly("opening", &ScoredGrasp::opening, "Of the fingers while moving in [m].")
-      .def_readonly("width", &ScoredGrasp::width, "Of the part between the fingers [m].")
-      .def_readonly("score", &ScoredGrasp::score, "In (0, 1].")
-      .def_readonly("angle", &ScoredGrasp::angle, "Of the closing axis in the map's frame, in [0, pi) [rad].")
-      .def_readonly("height", &ScoredGrasp::height, "Of the fingertips above the map's frame [m].")
-      .def_property_readonly("cell", [](const ScoredGrasp& g) { return py::make_tuple(g.ix, g.iy); })
-      .def_readonly("pixel", &ScoredGrasp::pixel, "(u, v) in the depth image; (-1, -1) without one.")
-      .def("__repr__", [](const ScoredGrasp& g) {
-        return "ScoredGrasp(at " + text(g.T_world_tcp.translation()) +
-               ", width=" + std::string(py::repr(py::float_(g.width))) +
-               ", score=" + std::string(py::repr(py::float_(g.score))) + ")";
-      });
+void bind_evaluation(py::module_& m) {
   py::class_<Graspability>(m, "Graspability", "Grasps, best first, and what became of the other places looked at.")
       .def_readonly("grasps", &Graspability::grasps)
       .def_property_readonly("counts",
@@ -65,8 +46,7 @@ void bind_scored_grasps(py::module_& m) {
            [](const Graspability& g) { return "Graspability(" + std::to_string(g.grasps.size()) + " grasps)"; });
   m.def(
       "evaluate_graspability",
-      [](const HeightMap& map, const Gripper& gripper, const std::optional<DepthImage>& image,
-         const py::kwargs& options) {
+      [](const HeightMap& map, const Hand& gripper, const std::optional<DepthImage>& image, const py::kwargs& options) {
         const GraspabilityOptions read = read_options(graspability_fields(), options, "evaluate_graspability");
         return LongCall(py::none()).run([&](const Monitor& monitor) {
           Graspability found = evaluate_graspability(map, gripper, read, monitor);
@@ -82,7 +62,7 @@ void bind_scored_grasps(py::module_& m) {
           .c_str());
   m.def(
       "graspability_map",
-      [](const HeightMap& map, const Gripper& gripper, double angle, double opening, double tip_height,
+      [](const HeightMap& map, const Hand& gripper, double angle, double opening, double tip_height,
          const py::kwargs& options) {
         const GraspabilityOptions read = read_options(graspability_fields(), options, "graspability_map");
         const auto values = graspability_map(map, gripper, angle, opening, tip_height, read);
@@ -94,9 +74,9 @@ void bind_scored_grasps(py::module_& m) {
       "(ny, nx) smoothed graspability in [0, 1] of one closing direction, opening and height of the fingertips.");
   m.def(
       "hand_masks",
-      [](const Gripper& gripper, double opening, double angle, double resolution, const py::kwargs& options) {
+      [](const Hand& gripper, double opening, double angle, double resolution, const py::kwargs& options) {
         const GraspabilityOptions read = read_options(graspability_fields(), options, "hand_masks");
-        const HandMasks masks = make_hand_masks(gripper, read.hand, opening, angle, resolution);
+        const HandMasks masks = make_hand_masks(gripper, opening, angle, resolution, read.margin);
         py::dict out;
         for (const auto& [name, mask] :
              {std::pair{"contact", &masks.contact}, {"fingers", &masks.fingers}, {"palm", &masks.palm}}) {
@@ -158,7 +138,7 @@ void bind_placement(py::module_& m) {
 
 void bind_graspability(py::module_& m) {
   m.def("_graspability_option_table", [] { return option_table(graspability_fields()); });
-  bind_scored_grasps(m);
+  bind_evaluation(m);
   bind_placement(m);
 }
 

@@ -1,4 +1,7 @@
+#include <optional>
+
 #include "bindings.hpp"
+#include "given.hpp"
 #include "mmgrasp/grasp/push_grasp.hpp"
 #include "push_fields.hpp"
 
@@ -79,9 +82,21 @@ void bind_push_grasp(py::module_& m) {
       });
   m.def(
       "push_grasp",
-      [](const py::kwargs& problem) { return push_grasp(read_options(push_fields(), problem, "push_grasp")); },
-      ("When a gripper that moves on may begin to close, and what error of the object's position it forgives (P1 "
-       "4.3)." +
+      [](const std::optional<Given<Hand>>& hand, const py::kwargs& keywords) {
+        PushGraspProblem problem = read_options(push_fields(), keywords, "push_grasp");
+        if (hand) {
+          const PushGraspProblem own = push_grasp_problem(taken(*hand, "hand"), problem.object_width);
+          if (!keywords.contains("opening")) problem.opening = own.opening;
+          if (!keywords.contains("finger_length")) problem.finger_length = own.finger_length;
+          if (!keywords.contains("grip_depth")) problem.grip_depth = own.grip_depth;
+          if (!keywords.contains("planned_depth")) problem.planned_depth = own.planned_depth;
+          if (!keywords.contains("clearance")) problem.clearance = own.clearance;
+        }
+        return push_grasp(problem);
+      },
+      py::kw_only(), py::arg("hand") = py::none(),
+      ("When a hand that moves on may begin to close, and what error of the object's position it forgives (P1 4.3).\n"
+       "Lengths are those of `hand` where no keyword gives them." +
        option_help(push_fields()))
           .c_str());
   m.def(

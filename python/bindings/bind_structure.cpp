@@ -9,8 +9,6 @@
 namespace mmgrasp::python {
 namespace {
 
-using namespace py::literals;
-
 const std::vector<OptionField<PipeGraspOptions>>& pipe_grasp_fields() {
   using O = PipeGraspOptions;
   static const std::vector<OptionField<O>> fields{
@@ -24,8 +22,8 @@ const std::vector<OptionField<PipeGraspOptions>>& pipe_grasp_fields() {
   return fields;
 }
 
-/// Axes from the gripper; its opening and margin where no keyword gives them.
-PipeGraspOptions grasp_options(const std::optional<Given<Gripper>>& gripper, const py::kwargs& keywords,
+/// Axes from the hand; its opening and margin where no keyword gives them.
+PipeGraspOptions grasp_options(const std::optional<Given<Hand>>& gripper, const py::kwargs& keywords,
                                const char* function) {
   PipeGraspOptions read = read_options(pipe_grasp_fields(), keywords, function);
   if (!gripper) return read;
@@ -62,34 +60,10 @@ Pipe make_pipe(const ArrayLike& nodes, const Given<Sections>& sections, const Gi
   return pipe;
 }
 
-void bind_pipe_grasp(py::module_& m) {
-  py::class_<PipeGrasp>(m, "PipeGrasp", "A parallel-jaw grasp of a pipe by P2's four variables (P2 3.2.3.1).")
-      .def_readonly("section", &PipeGrasp::section)
-      .def_readonly("length", &PipeGrasp::length, "Of the tool from the section's first node [m].")
-      .def_readonly("angle", &PipeGrasp::angle, "Of the approach about the section, from its y axis [rad].")
-      .def_readonly("flipped", &PipeGrasp::flipped, "By half a turn about the approach.")
-      .def_property_readonly("T_object_tool", [](const PipeGrasp& g) { return to_array(g.T_object_tool); })
-      .def_readonly("opening", &PipeGrasp::opening, "Of the fingers while holding [m].")
-      .def_readonly("cost", &PipeGrasp::cost, "What a planner adds to its path's length.")
-      .def("to_dict",
-           [](const PipeGrasp& g) {
-             return py::dict("section"_a = g.section, "length"_a = g.length, "angle"_a = g.angle,
-                             "flipped"_a = g.flipped, "T_object_tool"_a = to_array(g.T_object_tool).attr("tolist")(),
-                             "opening"_a = g.opening, "cost"_a = g.cost);
-           })
-      .def("__repr__", [](const PipeGrasp& g) {
-        return "PipeGrasp(section=" + std::to_string(g.section) +
-               ", length=" + std::string(py::repr(py::float_(g.length))) +
-               ", angle=" + std::string(py::repr(py::float_(g.angle))) + ", flipped=" + (g.flipped ? "True" : "False") +
-               ")";
-      });
-}
-
 }  // namespace
 
 void bind_structure(py::module_& m) {
   m.def("_pipe_grasp_option_table", [] { return option_table(pipe_grasp_fields()); });
-  bind_pipe_grasp(m);
   py::class_<Pipe>(m, "Pipe",
                    "A pipe structure: straight round sections between nodes in the object's frame (P2 3.2.2).")
       .def(py::init(&make_pipe), py::arg("nodes"), py::arg("sections"), py::arg("diameters"),
@@ -121,19 +95,19 @@ void bind_structure(py::module_& m) {
       .def(
           "grasp",
           [](const Pipe& p, int section, double length, double angle, bool flipped,
-             const std::optional<Given<Gripper>>& gripper, const py::kwargs& options) {
+             const std::optional<Given<Hand>>& gripper, const py::kwargs& options) {
             return place_pipe_grasp(p, section, length, angle, flipped, grasp_options(gripper, options, "grasp"));
           },
           py::arg("section"), py::arg("length"), py::arg("angle"), py::arg("flipped") = false, py::kw_only(),
           py::arg("gripper") = py::none(), "The grasp with these four variables (P2 3.2.3.1).")
       .def(
           "sample_grasps",
-          [](const Pipe& p, const Given<int>& given_count, const std::optional<Given<Gripper>>& gripper,
+          [](const Pipe& p, const Given<int>& given_count, const std::optional<Given<Hand>>& gripper,
              const py::kwargs& options) {
             const int count = taken(given_count, "count");
             const PipeGraspOptions read = grasp_options(gripper, options, "sample_grasps");
             py::gil_scoped_release release;
-            return sample_pipe_grasps(p, count, read);
+            return sample_pipe_grasps(p, count, read).grasps;
           },
           py::arg("count"), py::kw_only(), py::arg("gripper") = py::none(),
           ("Grasps drawn over the whole pipe, at most `count`, none nearer to another than the spacings. Axes are the"

@@ -102,7 +102,7 @@ void bind_problem(py::module_& m) {
       .def_readonly("size", &CarryPlace::size)
       .def_readonly("drop_gap", &CarryPlace::drop_gap);
   py::class_<PartSupplyProblem>(m, "PartSupplyProblem", "Everything the part-supply planner needs.")
-      .def(py::init([](const Robot& robot, const JointGroup& arm, const Gripper& gripper, const World& scene,
+      .def(py::init([](const Robot& robot, const JointGroup& arm, const Hand& gripper, const World& scene,
                        std::vector<Tray> trays, const ArrayLike& home, const ArrayLike& start, const ArrayLike& goal,
                        const CarryPlace& carry, const py::kwargs& options) {
              PartSupplyProblem problem{robot,
@@ -175,7 +175,7 @@ void bind_picks(py::module_& m) {
       "One pick from a base pose; `remaining` are the (tray, part) still in place, the picked one among them.");
   m.def(
       "plan_object_pick",
-      [](const JointGroup& arm, const Gripper& gripper, const World& world, const std::string& object,
+      [](const JointGroup& arm, const Hand& gripper, const World& world, const std::string& object,
          std::vector<Grasp> grasps, const ReachDatabase& database, const ArrayLike& home, const ArrayLike& base_pose,
          const py::object& places, const py::kwargs& options) {
         const Pose T_world_root = pose_from_planar(vector3_argument(base_pose, "base_pose"));

@@ -34,6 +34,7 @@ void bind_world(py::module_& m);
 void bind_disabled_pairs(py::module_& m);
 void bind_reach(py::module_& m);
 void bind_grasp(py::module_& m);
+void bind_hand(py::module_& m);
 void bind_plan(py::module_& m);
 void bind_base_regions(py::module_& m);
 void bind_base_sequence(py::module_& m);

@@ -54,6 +54,7 @@ from ._core import (
 # Grasps: an object carried, or taken while the base drives
 from ._core import (
     Grasp as Grasp,
+    Hand as Hand,
     ManipulationProblem as ManipulationProblem,
     plan_manipulation as plan_manipulation,
     DriveByTask as DriveByTask,

@@ -7,6 +7,11 @@ from . import base, collision, grasping, mapping, optim, part_supply, planning, 
 ROOMS = (robot, collision, planning, grasping, base, mapping, optim, part_supply, scenario)
 
 RENAMED = {
+    "CandidateGrasp": "mmgrasp.Grasp",
+    "FingerJoint": "mmgrasp.grasping.HandJoint",
+    "Gripper": "mmgrasp.Hand",
+    "PipeGrasp": "mmgrasp.Grasp",
+    "ScoredGrasp": "mmgrasp.Grasp",
     "PartSupplyPlan": "mmgrasp.part_supply.ScenarioPlan",
     "PartSupplyResult": "mmgrasp.base.PartSupplyPlan",
     "solve_part_supply": "mmgrasp.plan_part_supply",

@@ -2,20 +2,24 @@
 
 # The hand
 from ._core import (
-    Gripper as Gripper,
-    FingerJoint as FingerJoint,
+    Hand as Hand,
+    HandJoint as HandJoint,
+    HandBody as HandBody,
+)
+
+# Grasps, and where they come from
+from ._core import (
+    Grasp as Grasp,
+    ContactPairProvenance as ContactPairProvenance,
+    HeightMapProvenance as HeightMapProvenance,
+    PipeProvenance as PipeProvenance,
 )
 
 # Grasps of known bodies
-from ._core import (
-    Grasp as Grasp,
-    CandidateGrasp as CandidateGrasp,
-    sample_grasps as sample_grasps,
-)
+from ._core import sample_grasps as sample_grasps
 
 # Grasps seen in a height map (P1 3.7.2)
 from ._core import (
-    ScoredGrasp as ScoredGrasp,
     Graspability as Graspability,
     evaluate_graspability as evaluate_graspability,
     graspability_map as graspability_map,
@@ -32,7 +36,4 @@ from ._core import (
 )
 
 # Pipes (P2 3.2)
-from ._core import (
-    Pipe as Pipe,
-    PipeGrasp as PipeGrasp,
-)
+from ._core import Pipe as Pipe

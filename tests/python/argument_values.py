@@ -38,10 +38,8 @@ def held() -> mg.World:
     return held
 
 
-def gripper() -> mg.grasping.Gripper:
-    return mg.grasping.Gripper(
-        "tip", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.05, finger_width=0.02
-    )
+def gripper() -> mg.Hand:
+    return mg.Hand("tip", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.05, finger_width=0.02)
 
 
 BOX = mg.LinkShape(mg.Box([0.05, 0.05, 0.05]))
@@ -190,7 +188,8 @@ OTHERS: dict[str, Any] = {
     "remaining": lambda: [(0, 0)],
     "other": lambda: mg.Robot.from_strings('<robot name="s"><link name="a"/></robot>'),
     "parent_link": lambda: "tip",
-    "tcp_link": lambda: "tip",
+    "tool_link": lambda: "tip",
+    "Hand.kind": lambda: "parallel",
     "link": lambda: "tip",
     "headings": lambda: [0.0],
     "distances": lambda: [0.5, 1.0],
@@ -212,7 +211,7 @@ OTHERS: dict[str, Any] = {
     "World.attach.name": lambda: "box",
     "World.detach.name": lambda: "box",
     "ManipulationProblem.object": lambda: BOX,
-    "ManipulationProblem.grasps": lambda: [mg.grasping.CandidateGrasp(np.eye(4))],
+    "ManipulationProblem.grasps": lambda: [mg.Grasp(np.eye(4))],
     "plan_object_pick.object": lambda: "box",
     "plan_object_pick.grasps": lambda: [],
     "verify.check_path.joints": lambda: ["i", "j", "k"],

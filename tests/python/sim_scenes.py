@@ -22,15 +22,15 @@ def robot() -> mg.Robot:
     return mg.Robot.load(path, path.with_suffix(".srdf"), base="diff_drive", base_limits={"wheel_separation": 0.37476})
 
 
-def gripper() -> mg.grasping.Gripper:
-    return mg.grasping.Gripper(
+def gripper() -> mg.Hand:
+    return mg.Hand(
         "gripper_tcp",
         approach=[1, 0, 0],
         closing=[0, 1, 0],
         max_opening=0.10,
         finger_depth=0.04,
         finger_width=0.022,
-        joints=[mg.grasping.FingerJoint(f"{f}_joint", 0.0, 0.05) for f in FINGERS],
+        joints=[mg.grasping.HandJoint(f"{f}_joint", 0.0, 0.05) for f in FINGERS],
         finger_links=[f"{f}_link" for f in FINGERS],
     )
 

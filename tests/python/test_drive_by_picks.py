@@ -51,7 +51,7 @@ def test_the_first_pick_is_done_in_passing(
     assert done.drive_by == done.result.duration < done.stop_and_pick
     motions = {m.kind: m for m in pick.motions}
     arm = sum(motions[kind].trajectory.duration for kind in ("reach", "approach", "lift"))
-    width = problem.trays[pick.tray].parts[pick.part].grasps[pick.grasp].width
+    width = problem.trays[pick.tray].parts[pick.part].grasps[pick.grasp].opening
     closing = (motions["reach"].opening - width) / 0.1
     drive = small_plan.route[0].duration(small_plan.scenario.setup.robot)
     assert done.stop_and_pick == pytest.approx(drive + arm + closing)

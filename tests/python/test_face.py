@@ -94,8 +94,13 @@ def test_a_name_that_left_the_root_says_where_it_is(name: str) -> None:
 
 
 def test_the_new_place_is_named_in_full() -> None:
-    with pytest.raises(AttributeError, match=r"^mmgrasp\.ScoredGrasp moved: mmgrasp\.grasping\.ScoredGrasp$"):
-        getattr(mg, "ScoredGrasp")  # noqa: B009
+    with pytest.raises(AttributeError, match=r"^mmgrasp\.Graspability moved: mmgrasp\.grasping\.Graspability$"):
+        getattr(mg, "Graspability")  # noqa: B009
+    for old in ("CandidateGrasp", "PipeGrasp", "ScoredGrasp"):
+        with pytest.raises(AttributeError, match=rf"^mmgrasp\.{old} moved: mmgrasp\.Grasp$"):
+            getattr(mg, old)
+    with pytest.raises(AttributeError, match=r"^mmgrasp\.Gripper moved: mmgrasp\.Hand$"):
+        getattr(mg, "Gripper")  # noqa: B009
     with pytest.raises(AttributeError, match=r"moved: mmgrasp\.part_supply\.ScenarioPlan$"):
         getattr(mg, "PartSupplyPlan")  # noqa: B009
     with pytest.raises(AttributeError, match=r"^module 'mmgrasp' has no attribute 'plan_holiday'$"):

@@ -51,11 +51,7 @@ def scene() -> mg.World:
     return world
 
 
-GRASPS = [
-    mg.grasping.CandidateGrasp(flat(-0.18 + 0.04 * i, 0, side))
-    for i in range(10)
-    for side in (0.5 * np.pi, -0.5 * np.pi)
-]
+GRASPS = [mg.Grasp(flat(-0.18 + 0.04 * i, 0, side)) for i in range(10) for side in (0.5 * np.pi, -0.5 * np.pi)]
 
 
 def problem(**changes: Any) -> mg.ManipulationProblem:
@@ -89,7 +85,7 @@ def test_the_bar_is_carried_from_start_to_goal() -> None:
     assert np.array_equal(improvements[-1].path, result.path)
     for better in improvements:
         assert better.cost == pytest.approx(np.linalg.norm(np.diff(better.path, axis=0), axis=1).sum(), abs=1e-12)
-    tool_object = np.linalg.inv(grasp.T_object_tool)
+    tool_object = np.linalg.inv(grasp.T_object_hand)
     assert np.allclose(ARM.fk(result.path[0]) @ tool_object, flat(0.55, 0.45, 1.2), atol=3e-4)
     assert np.allclose(ARM.fk(result.path[-1]) @ tool_object, flat(0.6, -0.45, 0.9), atol=3e-4)
     world = scene()
@@ -101,7 +97,7 @@ def test_the_bar_is_carried_from_start_to_goal() -> None:
 
 
 def test_poses_in_an_array_are_grasps() -> None:
-    poses = np.array([grasp.T_object_tool for grasp in GRASPS])
+    poses = np.array([grasp.T_object_hand for grasp in GRASPS])
     by_array, by_list = plan(grasps=poses), plan()
     assert by_array.cost == by_list.cost and by_array.grasp_index == by_list.grasp_index
     assert np.array_equal(by_array.path, by_list.path)
@@ -165,7 +161,7 @@ def test_goal_in_collision_with_every_grasp() -> None:
 
 
 def test_only_one_of_many_grasps_leads_there() -> None:
-    far = [mg.grasping.CandidateGrasp(flat(3 + 0.01 * i, 0, 0)) for i in range(300)]
+    far = [mg.Grasp(flat(3 + 0.01 * i, 0, 0)) for i in range(300)]
     good = plan()
     result = plan(grasps=[*far, GRASPS[good.grasp_index], *far])
     assert result.outcome == mg.Outcome.solved and result.grasp_index == 300
@@ -177,7 +173,7 @@ def test_only_one_of_many_grasps_leads_there() -> None:
     ("changes", "words"),
     [
         ({"grasps": []}, ["grasps", "at least one"]),
-        ({"grasps": [mg.grasping.CandidateGrasp(np.eye(4), cost=-1)]}, ["grasps[0].cost"]),
+        ({"grasps": [mg.Grasp(np.eye(4), cost=-1)]}, ["grasps[0].cost"]),
         ({"grasps": np.eye(4)}, ["grasps", "(4, 4)", "(m, 4, 4)"]),
         ({"grasps": [np.eye(4), 2 * np.eye(4)]}, ["grasps[1]"]),
         ({"grasps": "all"}, ["grasps"]),
@@ -192,7 +188,7 @@ def test_only_one_of_many_grasps_leads_there() -> None:
         ({"touch_links": "l3"}, ["touch_links = 'l3'", "a list"]),
         ({"world": None}, ["world = None", "a World"]),
         ({"group": "arm"}, ["group = 'arm'", "a JointGroup"]),
-        ({"gripper": "wide"}, ["gripper = 'wide'", "a Gripper"]),
+        ({"gripper": "wide"}, ["gripper = 'wide'", "a Hand"]),
         ({"object_name": 3}, ["object_name = 3"]),
         ({"touch_link": ["l3"]}, ["touch_link=", "did you mean touch_links"]),
     ],
@@ -205,13 +201,13 @@ def test_bad_problems_are_refused(changes: dict[str, Any], words: list[str]) -> 
 
 
 def test_poses_of_grasps_must_be_rigid() -> None:
-    with pytest.raises(mg.InvalidInput, match="T_object_tool"):
-        mg.grasping.CandidateGrasp(2 * np.eye(4))
+    with pytest.raises(mg.InvalidInput, match="T_object_hand"):
+        mg.Grasp(2 * np.eye(4))
     with pytest.raises(mg.InvalidInput, match="opening"):
-        mg.grasping.CandidateGrasp(np.eye(4), opening=float("nan"))
+        mg.Grasp(np.eye(4), opening=float("nan"))
     wrong: Any = "a"
     with pytest.raises(mg.InvalidInput, match="cost = 'a'"):
-        mg.grasping.CandidateGrasp(np.eye(4), cost=wrong)
+        mg.Grasp(np.eye(4), cost=wrong)
 
 
 def test_what_is_no_problem_and_no_roadmap_is_refused_by_name() -> None:
@@ -263,7 +259,7 @@ def test_trees_are_handed_over_when_asked_for() -> None:
         for q, parent, cost in zip(tree.vertices, tree.parents, tree.costs, strict=True):
             if parent < 0:
                 assert cost == 0
-                assert np.allclose(ARM.fk(q), T_end @ GRASPS[tree.grasp].T_object_tool, atol=3e-4)
+                assert np.allclose(ARM.fk(q), T_end @ GRASPS[tree.grasp].T_object_hand, atol=3e-4)
             else:
                 way = np.linalg.norm(q - tree.vertices[parent])
                 assert cost == pytest.approx(tree.costs[parent] + way, abs=1e-9)

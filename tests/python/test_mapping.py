@@ -16,10 +16,8 @@ TRAY = [0.3, 0.4, 0.1]
 PART = [mg.LinkShape(mg.Box([0.07, 0.035, 0.03]))]
 
 
-def gripper() -> mg.grasping.Gripper:
-    return mg.grasping.Gripper(
-        "tcp", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.04, finger_width=0.022
-    )
+def gripper() -> mg.Hand:
+    return mg.Hand("tcp", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.04, finger_width=0.022)
 
 
 def small_camera() -> mg.mapping.PinholeCamera:
@@ -70,18 +68,18 @@ def test_scans_of_random_trays() -> None:
     assert all(scan.grasps for scan in scans)
     union = random_trays.union_of_grasps(scans)
     assert len(union) == sum(len(scan.grasps) for scan in scans)
-    scores = [grasp.score for grasp in union]
+    scores = [grasp.quality for grasp in union]
     assert scores == sorted(scores, reverse=True)
     again = random_trays.scan_random_tray(PART, TRAY, gripper(), count=8, fill=0.5, seed=3)
-    assert [g.T_world_tcp.tolist() for g in again.grasps] == [g.T_world_tcp.tolist() for g in scans[1].grasps]
+    assert [g.T_object_hand.tolist() for g in again.grasps] == [g.T_object_hand.tolist() for g in scans[1].grasps]
 
     T_world_tray = mg.pose([1, 2, 0.7], rpy=[0, 0, 0.3])
     parts = random_trays.parts_of_grasps("tray", union, gripper(), T_world_tray)
     assert len({part.name for part in parts}) == len(union)
     for part, grasp in zip(parts, union, strict=True):
-        tcp = part.T_world_part @ part.grasps[0].T_object_tcp
-        assert np.allclose(tcp, T_world_tray @ grasp.T_world_tcp)
-        other = part.T_world_part @ part.grasps[1].T_object_tcp
+        tcp = part.T_world_part @ part.grasps[0].T_object_hand
+        assert np.allclose(tcp, T_world_tray @ grasp.T_object_hand)
+        other = part.T_world_part @ part.grasps[1].T_object_hand
         assert np.allclose(other[:3, 0], tcp[:3, 0])  # the same approach,
         assert np.allclose(other[:3, 1], -tcp[:3, 1])  # the fingers change places
         bead = np.linalg.inv(T_world_tray) @ part.T_world_part @ part.shapes[0].pose
@@ -154,11 +152,11 @@ def test_graspability_on_a_real_depth_frame_keeps_the_hand_clear() -> None:
     )
     assert len(found.grasps) >= 3
     for grasp in found.grasps:
-        q = (points - grasp.T_world_tcp[:3, 3]) @ grasp.T_world_tcp[:3, :3]  # approach x, closing y
-        side = np.abs(q[:, 1])
+        q = (points - grasp.T_object_hand[:3, 3]) @ grasp.T_object_hand[:3, :3]  # approach x, closing y
+        side, opened = np.abs(q[:, 1]), gripper().pregrasp_opening(grasp.opening)
         reached = (q[:, 0] < 0.02) & (q[:, 0] > 0.02 - 0.12) & (np.abs(q[:, 2]) < 0.011)
-        assert np.sum(reached & (side < grasp.opening / 2)) > 20
-        assert not np.any(reached & (side > grasp.opening / 2) & (side < grasp.opening / 2 + 0.012))
+        assert np.sum(reached & (side < opened / 2)) > 20
+        assert not np.any(reached & (side > opened / 2) & (side < opened / 2 + 0.012))
 
 
 def test_a_part_with_grasps_is_no_body() -> None:
@@ -172,7 +170,7 @@ def test_parts_at_given_poses_are_grasped_where_they_lie() -> None:
     scan = random_trays.scan_tray(PART, poses, TRAY, gripper(), noise=0.0)
     assert not isinstance(scan, random_trays.RandomTrayScan)
     for pose in poses:
-        near = [g for g in scan.grasps if np.linalg.norm(g.T_world_tcp[:2, 3] - pose[:2, 3]) < 0.02]
+        near = [g for g in scan.grasps if np.linalg.norm(g.T_object_hand[:2, 3] - pose[:2, 3]) < 0.02]
         assert near
-        assert max(near, key=lambda g: g.score).width == pytest.approx(0.035, abs=0.006)
-    assert all(min(np.linalg.norm(g.T_world_tcp[:2, 3] - p[:2, 3]) for p in poses) < 0.06 for g in scan.grasps)
+        assert max(near, key=lambda g: g.quality).opening == pytest.approx(0.035, abs=0.006)
+    assert all(min(np.linalg.norm(g.T_object_hand[:2, 3] - p[:2, 3]) for p in poses) < 0.06 for g in scan.grasps)

@@ -302,7 +302,7 @@ def test_a_diff_drive_base_is_not_moved_sideways() -> None:
         "plan_straight_line": lambda: mg.planning.plan_straight_line(checker, q, aside),
         "plan_cartesian": lambda: mg.plan_cartesian(checker, [group.fk(q), aside], near=q),
         "plan_manipulation": lambda: mg.ManipulationProblem(
-            group, mg.World(), box, group.fk(q), aside, [mg.grasping.CandidateGrasp(np.eye(4))]
+            group, mg.World(), box, group.fk(q), aside, [mg.Grasp(np.eye(4))]
         ),
     }
     for name, call in calls.items():

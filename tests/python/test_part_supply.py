@@ -90,7 +90,7 @@ def test_any_object_is_picked_like_a_part(
         assert [motion.kind for motion in pick.motions] == kinds
         assert (pick.tray, pick.part, pick.stop) == (-1, -1, -1)
         arm = problem.arm.at(mg.pose(xyz=(stop[0], stop[1], 0), rpy=(0, 0, stop[2])))
-        tool = part.T_world_part @ part.grasps[pick.grasp].T_object_tcp
+        tool = part.T_world_part @ part.grasps[pick.grasp].T_object_hand
         lift = pick.motions[2].trajectory.positions
         assert np.allclose(arm.fk(lift[0]), tool, atol=1e-3)
         assert np.allclose(arm.fk(lift[-1])[:3, 3], tool[:3, 3] + (0, 0, 0.1), atol=2e-3)

@@ -57,7 +57,7 @@ def test_a_cell_is_what_it_says(number: int, robot: str) -> None:
             continue
         reachable += 1
         arm, checker = cell.arm_holding(grasp), mg.CollisionChecker(cell.robot, cell.world_holding(grasp), cell.arm)
-        T_tool_object = np.linalg.inv(grasp.T_object_tool)
+        T_tool_object = np.linalg.inv(grasp.T_object_hand)
         for q, T in ((starts[0], cell.T_world_start), (goals[-1], cell.T_world_goal)):
             np.testing.assert_allclose(arm.fk(q) @ T_tool_object, T, atol=1e-4)
             assert checker.is_free(q)
@@ -74,6 +74,11 @@ def test_cells_repeat_by_seed_and_differ_between_seeds() -> None:
     assert not np.allclose(one.T_world_start, other.T_world_start)
 
 
+def place_of(grasp: mg.Grasp) -> mg.grasping.PipeProvenance:
+    assert isinstance(grasp.provenance, mg.grasping.PipeProvenance)
+    return grasp.provenance
+
+
 @pytest.mark.parametrize("number", range(1, 9))
 def test_grasps_keep_their_distance(number: int) -> None:
     """1 cm along the section or 5 degrees about it."""
@@ -81,8 +86,9 @@ def test_grasps_keep_their_distance(number: int) -> None:
     grasps = pipe.sample_grasps(500, gripper=pipe_robot("tm14like")[2], seed=1)
     assert len(grasps) == 500
     alike = 0
-    for i, a in enumerate(grasps):
-        for b in grasps[:i]:
+    places = [place_of(grasp) for grasp in grasps]
+    for i, a in enumerate(places):
+        for b in places[:i]:
             if (a.section, a.flipped) == (b.section, b.flipped):
                 turn = abs(math.remainder(a.angle - b.angle, 2 * math.pi))
                 assert abs(a.length - b.length) >= 0.01 or turn >= math.radians(5)
@@ -110,11 +116,11 @@ def test_grasps_leave_the_hand_free() -> None:
     hand = np.concatenate(points)
     refused = 0
     for grasp in cell.pipe.sample_grasps(300, gripper=cell.gripper, seed=1):
-        kept = any(np.array_equal(grasp.T_object_tool, g.T_object_tool) for g in grasps)
-        placed = hand @ grasp.T_object_tool[:3, :3].T + grasp.T_object_tool[:3, 3]
+        kept = any(np.array_equal(grasp.T_object_hand, g.T_object_hand) for g in grasps)
+        placed = hand @ grasp.T_object_hand[:3, :3].T + grasp.T_object_hand[:3, 3]
         inside = False
         for i, (a, b) in enumerate(cell.pipe.sections):
-            if i != grasp.section:
+            if i != place_of(grasp).section:
                 p, d = cell.pipe.nodes[a], cell.pipe.nodes[b] - cell.pipe.nodes[a]
                 t = np.clip((placed - p) @ d / (d @ d), 0, 1)
                 inside |= bool((np.linalg.norm(placed - p - t[:, None] * d, axis=1) < cell.pipe.diameters[i] / 2).any())
@@ -123,9 +129,9 @@ def test_grasps_leave_the_hand_free() -> None:
     assert refused > 0, "some hands do meet the pipe"
 
 
-def fault_by_fcl(cell: PipeCell, grasp: mg.grasping.PipeGrasp, path: np.ndarray) -> str:
+def fault_by_fcl(cell: PipeCell, grasp: mg.Grasp, path: np.ndarray) -> str:
     """What is wrong with a path by KDL and FCL called directly, the pipe being a link of the hand; empty: nothing."""
-    held = cell.robot.with_link("pipe", "gripper_tcp", np.linalg.inv(grasp.T_object_tool), cell.pipe.shapes())
+    held = cell.robot.with_link("pipe", "gripper_tcp", np.linalg.inv(grasp.T_object_hand), cell.pipe.shapes())
     may_touch = [(finger, "pipe", "user") for finger in sorted(FINGERS)]
     held = held.with_disabled_pairs([*held.disabled_pairs, *may_touch])
     world = cell.world
@@ -145,13 +151,13 @@ def test_both_arms_carry_every_structure(number: int, robot: str) -> None:
     )
     assert found.outcome == mg.Outcome.solved
     carrier = grasps[found.grasp_index]
-    arm, T_tool_object = cell.arm_holding(carrier), np.linalg.inv(carrier.T_object_tool)
+    arm, T_tool_object = cell.arm_holding(carrier), np.linalg.inv(carrier.T_object_hand)
     np.testing.assert_allclose(arm.fk(found.path[0]) @ T_tool_object, cell.T_world_start, atol=1e-4)
     np.testing.assert_allclose(arm.fk(found.path[-1]) @ T_tool_object, cell.T_world_goal, atol=1e-4)
     assert fault_by_fcl(cell, carrier, found.path) == ""
 
 
-def within_reach(cell: PipeCell, count: int) -> list[mg.grasping.PipeGrasp]:
+def within_reach(cell: PipeCell, count: int) -> list[mg.Grasp]:
     return list(itertools.islice((g for g in cell.grasps(200) if all(map(len, cell.ends(g, 1)))), count))
 
 
@@ -262,7 +268,7 @@ def test_cells_with_too_many_grasps_within_reach_are_turned_down() -> None:
 def test_what_are_no_grasps_is_refused() -> None:
     grasps: Any
     for grasps in (5, [5], [np.eye(4)]):
-        with pytest.raises(mg.InvalidInput, match=r"(?s)grasps = .*: must be a list of PipeGrasp"):
+        with pytest.raises(mg.InvalidInput, match=r"(?s)grasps = .*: must be a list of Grasp"):
             pipe_cell(1).problem(grasps)
 
 

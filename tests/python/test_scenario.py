@@ -220,7 +220,7 @@ def test_listed_parts_and_own_grasps(small: dict[str, Any], write: Callable[...,
     parts = mg.load_scenario(write(scenario)).trays[0].tray.parts
     assert [p.name for p in parts] == ["A/left", "A/bracket_01"]
     assert [p.target for p in parts] == [True, False]
-    assert [g.width for g in parts[0].grasps] == [0.03]
+    assert [g.opening for g in parts[0].grasps] == [0.03]
 
 
 @pytest.mark.parametrize("name", sorted(p.name for p in (ASSETS / "scenarios").glob("*.yaml")))

@@ -276,7 +276,7 @@ def test_the_plan_knows_where_the_bottle_lies_in_the_hand() -> None:
     assert run.grasped, run.parts["bottle"].cause
     hand_of = bottle.simulation().gripper
     assert hand_of is not None
-    hand = hand_of.tcp_link
+    hand = hand_of.tool_link
     offsets = []
     for state in run.states:
         if state["time"] < event["held_time"] + 0.2:

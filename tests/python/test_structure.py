@@ -139,18 +139,20 @@ def test_pipe_and_grasps_in_python() -> None:
     grasps = pipe.sample_grasps(100, seed=7)
     assert len(grasps) == 100
     again = pipe.sample_grasps(100, seed=7)
-    assert all(np.array_equal(a.T_object_tool, b.T_object_tool) for a, b in zip(grasps, again, strict=True))
+    assert all(np.array_equal(a.T_object_hand, b.T_object_hand) for a, b in zip(grasps, again, strict=True))
     one = grasps[0]
-    same = pipe.grasp(one.section, one.length, one.angle, one.flipped)
-    np.testing.assert_array_equal(one.T_object_tool, same.T_object_tool)
-    assert set(one.to_dict()) == {"section", "length", "angle", "flipped", "T_object_tool", "opening", "cost"}
-    hand = mg.grasping.Gripper(
+    at = one.provenance
+    assert isinstance(at, mg.grasping.PipeProvenance)
+    same = pipe.grasp(at.section, at.length, at.angle, at.flipped)
+    np.testing.assert_array_equal(one.T_object_hand, same.T_object_hand)
+    assert set(one.to_dict()["provenance"]) == {"sampler", "section", "length", "angle", "flipped"}
+    hand = mg.Hand(
         "tool", approach=[0, 0, 1], closing=[1, 0, 0], max_opening=0.015, finger_depth=0.03, finger_width=0.02
     )
     assert pipe.sample_grasps(10, gripper=hand) == []
     assert len(pipe.sample_grasps(10, gripper=hand, max_opening=0.03)) == 10
     down = pipe.grasp(0, 0.1, math.pi, gripper=hand)
-    np.testing.assert_allclose(down.T_object_tool[:3, 2], [0, 0, -1], atol=1e-12)
+    np.testing.assert_allclose(down.T_object_hand[:3, 2], [0, 0, -1], atol=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -178,9 +180,9 @@ def test_bad_grasp_arguments_are_refused() -> None:
     with pytest.raises(mg.InvalidInput, match=r"count = 2\.5: must be a whole number"):
         pipe.sample_grasps(2.5)
     hand: Any = "hand"
-    with pytest.raises(mg.InvalidInput, match="gripper = 'hand': must be a Gripper"):
+    with pytest.raises(mg.InvalidInput, match="gripper = 'hand': must be a Hand"):
         pipe.sample_grasps(1, gripper=hand)
-    with pytest.raises(mg.InvalidInput, match="gripper = 'hand': must be a Gripper"):
+    with pytest.raises(mg.InvalidInput, match="gripper = 'hand': must be a Hand"):
         pipe.grasp(0, 0.1, 0.0, gripper=hand)
     with pytest.raises(mg.InvalidInput, match=r"lenght_spacing.*length_spacing"):
         pipe.sample_grasps(1, lenght_spacing=0.02)

@@ -70,18 +70,18 @@ void PipeGraspOptions::check() const {
   require(draws > 0, "draws", draws, "must be positive");
 }
 
-PipeGraspOptions pipe_grasp_options(const Gripper& gripper) {
-  gripper.check();
+PipeGraspOptions pipe_grasp_options(const Hand& hand) {
+  hand.check();
   PipeGraspOptions options;
-  options.approach = gripper.approach;
-  options.closing = gripper.closing;
-  options.max_opening = gripper.max_opening;
-  options.end_margin = gripper.finger_width / 2;
+  options.approach = hand.approach;
+  options.closing = hand.closing;
+  options.max_opening = hand.max_opening;
+  options.end_margin = hand.finger_width / 2;
   return options;
 }
 
-PipeGrasp place_pipe_grasp(const Pipe& pipe, int section, double length, double angle, bool flipped,
-                           const PipeGraspOptions& options) {
+Grasp place_pipe_grasp(const Pipe& pipe, int section, double length, double angle, bool flipped,
+                       const PipeGraspOptions& options) {
   const int count = static_cast<int>(pipe.sections.size());
   require(section >= 0 && section < count, "section", section, "must be one of the " + std::to_string(count));
   require(length >= 0 && length <= pipe.length(section), "length", length,
@@ -90,21 +90,17 @@ PipeGrasp place_pipe_grasp(const Pipe& pipe, int section, double length, double 
   const Pose T_object_section = pipe.T_object_section(section);
   const Vector3d approach(0, std::cos(angle), std::sin(angle));
   const Vector3d closing = Vector3d::UnitX().cross(approach) * (flipped ? -1 : 1);
-  PipeGrasp grasp;
-  grasp.section = section;
-  grasp.length = length;
-  grasp.angle = angle;
-  grasp.flipped = flipped;
-  grasp.T_object_tool.linear() = T_object_section.linear() * hand_axes(approach, closing) *
+  Grasp grasp;
+  grasp.provenance = PipeProvenance{section, length, angle, flipped};
+  grasp.T_object_hand.linear() = T_object_section.linear() * hand_axes(approach, closing) *
                                  hand_axes(options.approach, options.closing).transpose();
-  grasp.T_object_tool.translation() = T_object_section * Vector3d(length, 0, 0);
+  grasp.T_object_hand.translation() = T_object_section * Vector3d(length, 0, 0);
   grasp.opening = pipe.diameters[section];
-  grasp.cost = options.cost_per_metre * (grasp.T_object_tool.translation() - pipe.centre_of_mass()).norm();
+  grasp.cost = options.cost_per_metre * (grasp.T_object_hand.translation() - pipe.centre_of_mass()).norm();
   return grasp;
 }
 
-std::vector<PipeGrasp> sample_pipe_grasps(const Pipe& pipe, int count, const PipeGraspOptions& options,
-                                          int* too_thick) {
+SampledGrasps sample_pipe_grasps(const Pipe& pipe, int count, const PipeGraspOptions& options) {
   pipe.check();
   options.check();
   require(count >= 0, "count", count, "must be zero or positive");
@@ -112,17 +108,16 @@ std::vector<PipeGrasp> sample_pipe_grasps(const Pipe& pipe, int count, const Pip
   std::vector<double> up_to(sections);  // room on the sections up to each, that one included [m]
   std::vector<Spacing> taken;
   double room = 0;
-  int left_out = 0;
+  SampledGrasps sampled;
   for (int i = 0; i < sections; ++i) {
     const bool fits = pipe.diameters[i] <= options.max_opening;
-    left_out += fits ? 0 : 1;
+    sampled.too_wide += fits ? 0 : 1;
     room += fits ? std::max(0.0, pipe.length(i) - 2 * options.end_margin) : 0.0;
     up_to[i] = room;
     taken.insert(taken.end(), 2, Spacing(pipe.length(i), options));
   }
-  if (too_thick != nullptr) *too_thick = left_out;
-  std::vector<PipeGrasp> grasps;
-  if (room <= 0) return grasps;
+  if (room <= 0) return sampled;
+  std::vector<Grasp>& grasps = sampled.grasps;
   Rng rng(options.seed);
   int fruitless = 0;
   while (static_cast<int>(grasps.size()) < count && fruitless < options.draws) {
@@ -138,7 +133,7 @@ std::vector<PipeGrasp> sample_pipe_grasps(const Pipe& pipe, int count, const Pip
       ++fruitless;
     }
   }
-  return grasps;
+  return sampled;
 }
 
 }  // namespace mmgrasp

@@ -79,9 +79,10 @@ def problem_digest(problem: PartSupplyProblem, database: ReachDatabase) -> str:
     arm, gripper = problem.arm, problem.gripper
     hasher = Hasher().add(arm_key(arm)).add(database.key)
     hasher.add([np.array(problem.home), arm.T_world_root])
-    hasher.add([gripper.tcp_link, np.array(gripper.approach), np.array(gripper.closing), list(gripper.finger_links)])
+    hasher.add([gripper.tool_link, np.array(gripper.approach), np.array(gripper.closing), list(gripper.finger_links)])
     hasher.add([gripper.max_opening, gripper.finger_depth, gripper.finger_width, gripper.clearance])
-    hasher.add([[j.name, j.closed, j.open] for j in gripper.joints])
+    hasher.add([[j.name, j.closed, j.open, j.group] for j in gripper.joints])
+    hasher.add([gripper.min_opening, list(gripper.openings)]).add(dict(gripper.preshape))
     hasher.add({key: value for key, value in problem.options.items() if key != "threads"})
     for name in sorted(problem.scene.objects):
         hasher.add(name).add(problem.scene.pose_of(name))
@@ -92,7 +93,7 @@ def problem_digest(problem: PartSupplyProblem, database: ReachDatabase) -> str:
             hasher.add([part.name, part.T_world_part, part.target, part.grasps_too_wide])
             _add_shapes(hasher, part.shapes)
             for grasp in part.grasps:
-                hasher.add([grasp.T_object_tcp, grasp.width])
+                hasher.add([grasp.T_object_hand, grasp.opening])
     return hasher.hex()
 
 

@@ -192,7 +192,7 @@ def _in_passing(
     merged = [m for m in pick.motions if m.kind in MERGED]
     closing = (opening - width) / CLOSING_SPEED
     before = plan.route[leg].duration(problem.robot) + sum(m.trajectory.duration for m in merged) + closing
-    T_grasp = part.T_world_part @ part.grasps[pick.grasp].T_object_tcp
+    T_grasp = part.T_world_part @ part.grasps[pick.grasp].T_object_hand
     T_before = T_grasp.copy()
     T_before[:3, 3] -= problem.options["approach_distance"] * T_grasp[:3, :3] @ np.asarray(problem.gripper.approach)
     dwell = closing + SETTLING
@@ -277,7 +277,7 @@ def _exactly(start: np.ndarray, goal: list[float]) -> np.ndarray:
 
 def _openings(problem: _core.PartSupplyProblem, pick: Pick) -> tuple[float, float]:
     """Of the open hand and of the hand around the part [m]."""
-    width = problem.trays[pick.tray].parts[pick.part].grasps[pick.grasp].width
+    width = problem.trays[pick.tray].parts[pick.part].grasps[pick.grasp].opening
     return pick.motions[0].opening, width
 
 
@@ -292,7 +292,7 @@ def _slower(robot: _core.Robot) -> _core.Robot:
 
 def _moving_group(plan: ScenarioPlan, problem: _core.PartSupplyProblem, opening: float) -> JointGroup:
     joints = {**plan.scenario.setup.other_joints, **problem.gripper.joint_values(opening)}
-    group = _slower(problem.robot).group(problem.arm.name, tip=problem.gripper.tcp_link, with_base=True)
+    group = _slower(problem.robot).group(problem.arm.name, tip=problem.gripper.tool_link, with_base=True)
     return group.with_reference(joints)
 
 

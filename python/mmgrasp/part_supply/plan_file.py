@@ -83,7 +83,7 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
             "acceleration_limits": arm.acceleration_limits.tolist(),
         },
         "gripper": {
-            "tcp_link": gripper.tcp_link,
+            "tcp_link": gripper.tool_link,
             "approach": gripper.approach.tolist(),
             "closing": gripper.closing.tolist(),
             "max_opening": gripper.max_opening,
@@ -124,7 +124,9 @@ def _part(part: _core.Part, tray: str) -> dict[str, Any]:
         "target": part.target,
         "pose": pose_to_dict(part.T_world_part),
         "shapes": [shape_to_dict(s) for s in part.shapes],
-        "grasps": [{"pose": pose_to_dict(g.T_object_tcp), "width": g.width, "quality": g.quality} for g in part.grasps]
+        "grasps": [
+            {"pose": pose_to_dict(g.T_object_hand), "width": g.opening, "quality": g.quality} for g in part.grasps
+        ]
         if part.target
         else [],
     }

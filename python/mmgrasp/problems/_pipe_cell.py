@@ -11,16 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import (
-    CandidateGrasp,
     CollisionChecker,
-    FingerJoint,
-    Gripper,
+    Grasp,
+    Hand,
+    HandJoint,
     InvalidInput,
     JointGroup,
     LinkShape,
     ManipulationProblem,
     Pipe,
-    PipeGrasp,
+    PipeProvenance,
     Robot,
     World,
 )
@@ -84,8 +84,15 @@ def pipe_structures() -> list[Pipe]:
     return pipes
 
 
+def _section_of(grasp: Grasp) -> int:
+    """The section that a grasp drawn on a pipe is on."""
+    if not isinstance(grasp.provenance, PipeProvenance):
+        raise InvalidInput(f"grasp = {grasp!r}: must come from a pipe")
+    return grasp.provenance.section
+
+
 @cache
-def pipe_robot(name: str) -> tuple[Robot, JointGroup, Gripper]:
+def pipe_robot(name: str) -> tuple[Robot, JointGroup, Hand]:
     """One of ROBOTS with its arm (the tip is the tool) and its gripper.
 
     Joints that could turn further are kept to half a turn either way. P2's gamma* of about 10 belongs to that box; in the
@@ -95,7 +102,7 @@ def pipe_robot(name: str) -> tuple[Robot, JointGroup, Gripper]:
     urdf, srdf = (shipped(f"asset:robots/{name}/{name}.{kind}").read_text() for kind in ("urdf", "srdf"))
     urdf = re.sub(r'(lower|upper)="(-?)([0-9.]+)"', lambda m: f'{m[1]}="{m[2]}{min(float(m[3]), _HALF_TURN):g}"', urdf)
     robot = Robot.from_strings(urdf, srdf)
-    gripper = Gripper(
+    gripper = Hand(
         "gripper_tcp",
         approach=[1, 0, 0],
         closing=[0, 1, 0],
@@ -103,7 +110,7 @@ def pipe_robot(name: str) -> tuple[Robot, JointGroup, Gripper]:
         finger_depth=0.03,
         finger_width=0.02,
         clearance=0.008,
-        joints=[FingerJoint(f"{side}_finger_joint", 0.0, 0.03) for side in ("left", "right")],
+        joints=[HandJoint(f"{side}_finger_joint", 0.0, 0.03) for side in ("left", "right")],
         finger_links=sorted(FINGERS),
     )
     return robot, robot.group("arm"), gripper
@@ -137,12 +144,12 @@ class PipeCell:
         return pipe_robot(self.robot_name)[1]
 
     @property
-    def gripper(self) -> Gripper:
+    def gripper(self) -> Hand:
         return pipe_robot(self.robot_name)[2]
 
-    def grasps(self, count: int, seed: int = 1) -> list[PipeGrasp]:
+    def grasps(self, count: int, seed: int = 1) -> list[Grasp]:
         """Grasps whose hand meets no other section of the pipe; fewer than `count` when no more fit on it."""
-        found: list[PipeGrasp] = []
+        found: list[Grasp] = []
         wanted = count
         while True:
             drawn = self.pipe.sample_grasps(wanted, gripper=self.gripper, seed=seed)
@@ -151,50 +158,49 @@ class PipeCell:
                 return found[:count]
             wanted = 2 * wanted
 
-    def _hand_is_free(self, grasps: list[PipeGrasp]) -> NDArray[np.bool_]:
+    def _hand_is_free(self, grasps: list[Grasp]) -> NDArray[np.bool_]:
         free = np.zeros(len(grasps), dtype=bool)
-        for section in {g.section for g in grasps}:
-            chosen = [i for i, g in enumerate(grasps) if g.section == section]
+        sections = [_section_of(grasp) for grasp in grasps]
+        for section in set(sections):
+            chosen = [i for i, own in enumerate(sections) if own == section]
             checker = _hand_checker(self.robot_name, self.pipe, section)
-            free[chosen] = checker.are_free([_flying(grasps[i].T_object_tool) for i in chosen], threads=1)
+            free[chosen] = checker.are_free([_flying(grasps[i].T_object_hand) for i in chosen], threads=1)
         return free
 
-    def problem(self, grasps: list[PipeGrasp]) -> ManipulationProblem:
+    def problem(self, grasps: list[Grasp]) -> ManipulationProblem:
         """For plan_manipulation: only the fingers may touch the pipe."""
-        try:
-            candidates = [CandidateGrasp(g.T_object_tool, g.opening, g.cost) for g in grasps]
-        except (TypeError, AttributeError):
-            raise InvalidInput(f"grasps = {grasps!r}: must be a list of PipeGrasp") from None
+        if not isinstance(grasps, list | tuple) or not all(isinstance(grasp, Grasp) for grasp in grasps):
+            raise InvalidInput(f"grasps = {grasps!r}: must be a list of Grasp")
         return ManipulationProblem(
             self.arm,
             self.world,
             self.pipe.shapes(),
             self.T_world_start,
             self.T_world_goal,
-            candidates,
+            grasps,
             gripper=self.gripper,
             touch_links=sorted(FINGERS),
             object_name="pipe",
         )
 
-    def arm_holding(self, grasp: PipeGrasp) -> JointGroup:
+    def arm_holding(self, grasp: Grasp) -> JointGroup:
         """The arm with its fingers as far open as the grasp holds."""
         return self.arm.with_reference(self.gripper.joint_values(grasp.opening))
 
-    def world_holding(self, grasp: PipeGrasp) -> World:
+    def world_holding(self, grasp: Grasp) -> World:
         """The cell with the pipe in the hand, which only the fingers may touch."""
         world = self.world.copy()
         world.add("pipe", self.pipe.shapes(), self.T_world_start)
-        world.attach("pipe", "gripper_tcp", np.linalg.inv(grasp.T_object_tool), set(FINGERS))
+        world.attach("pipe", "gripper_tcp", np.linalg.inv(grasp.T_object_hand), set(FINGERS))
         return world
 
-    def ends(self, grasp: PipeGrasp, count: int = 8) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def ends(self, grasp: Grasp, count: int = 8) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Collision-free configurations (k, 6) that hold the pipe by this grasp at its start and at its goal."""
         arm, world = self.arm_holding(grasp), self.world_holding(grasp)
-        starts = arm.ik_all(self.T_world_start @ grasp.T_object_tool, count, world=world)
+        starts = arm.ik_all(self.T_world_start @ grasp.T_object_hand, count, world=world)
         if len(starts) == 0:
             return starts, starts
-        return starts, arm.ik_all(self.T_world_goal @ grasp.T_object_tool, count, world=world)
+        return starts, arm.ik_all(self.T_world_goal @ grasp.T_object_hand, count, world=world)
 
 
 def _flying(T: Pose) -> NDArray[np.float64]:

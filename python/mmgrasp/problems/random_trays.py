@@ -18,13 +18,12 @@ from .._core import (
     DepthImage,
     Grasp,
     Graspability,
-    Gripper,
+    Hand,
     HeightMap,
     LinkShape,
     Part,
     PinholeCamera,
     RandomPlacement,
-    ScoredGrasp,
     Sphere,
 )
 
@@ -41,7 +40,7 @@ class TrayScan:
     found: Graspability
 
     @property
-    def grasps(self) -> list[ScoredGrasp]:
+    def grasps(self) -> list[Grasp]:
         return self.found.grasps
 
 
@@ -55,7 +54,7 @@ class RandomTrayScan(TrayScan):
 def scan_random_tray(
     part: Sequence[LinkShape],
     tray_size: ArrayLike,
-    gripper: Gripper,
+    gripper: Hand,
     *,
     count: int = 12,
     fill: float = 1.0,
@@ -98,7 +97,7 @@ def scan_tray(
     part: Sequence[LinkShape],
     poses: Iterable[ArrayLike],
     tray_size: ArrayLike,
-    gripper: Gripper,
+    gripper: Hand,
     *,
     wall: float = 0.005,
     seed: int = 1,
@@ -131,13 +130,13 @@ def _body(part: Sequence[LinkShape]) -> list[LinkShape]:
     return list(part)
 
 
-def union_of_grasps(scans: Iterable[TrayScan]) -> list[ScoredGrasp]:
+def union_of_grasps(scans: Iterable[TrayScan]) -> list[Grasp]:
     """All grasps of several scans in the tray's frame, best first (P1 3.7.2: G = G1 + G2 + G3 + G4)."""
-    return sorted((grasp for scan in scans for grasp in scan.grasps), key=lambda grasp: -grasp.score)
+    return sorted((grasp for scan in scans for grasp in scan.grasps), key=lambda grasp: -grasp.quality)
 
 
 def parts_of_grasps(
-    name: str, grasps: Iterable[ScoredGrasp], gripper: Gripper, T_world_tray: ArrayLike, *, wall: float = 0.005
+    name: str, grasps: Iterable[Grasp], gripper: Hand, T_world_tray: ArrayLike, *, wall: float = 0.005
 ) -> list[Part]:
     """One part for each grasp, so that a tray's base region holds the base poses that reach every one of them.
 
@@ -151,8 +150,8 @@ def parts_of_grasps(
     below = _core.pose([0, 0, -wall / 2])
     parts = []
     for i, grasp in enumerate(grasps):
-        pose = tray @ grasp.T_world_tcp
-        bead = LinkShape(Sphere(min(MARKER, wall / 4)), np.linalg.inv(grasp.T_world_tcp) @ below)
-        both = [Grasp(turn, grasp.width, grasp.score) for turn in (np.eye(4), half_turn)]
+        pose = tray @ grasp.T_object_hand
+        bead = LinkShape(Sphere(min(MARKER, wall / 4)), np.linalg.inv(grasp.T_object_hand) @ below)
+        both = [Grasp(turn, grasp.opening, quality=grasp.quality) for turn in (np.eye(4), half_turn)]
         parts.append(Part(f"{name}/grasp {i + 1}", [bead], pose, both))
     return parts

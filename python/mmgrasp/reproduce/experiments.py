@@ -79,7 +79,7 @@ def drive(seed: int, stops: list[list[float]], run: int) -> dict[str, Any]:
 
 def _missed(rng: np.random.Generator, problem: _core.PartSupplyProblem, target: np.ndarray) -> np.ndarray:
     """Where the base comes to stand: off by 0.10 m on average, evenly in all directions, and where it has room."""
-    moving = problem.robot.group("arm", tip=problem.gripper.tcp_link, with_base=True)
+    moving = problem.robot.group("arm", tip=problem.gripper.tool_link, with_base=True)
     checker = _core.CollisionChecker(problem.robot, problem.scene, group=moving)
     while True:
         pose = target + [*rng.normal(0.0, UNCERTAINTY / np.sqrt(np.pi / 2), 2), 0.0]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from .. import _core
-from .._core import Box, LinkShape, Part, ScoredGrasp
+from .._core import Box, Grasp, LinkShape, Part
 from ..problems.random_trays import RandomTrayScan, parts_of_grasps, scan_random_tray, scan_tray
 from .setup import Row, robot_setup
 
@@ -40,26 +40,26 @@ def random_scan(row: Row, tray: int, scan: int, seed: int, fill: int = 100) -> R
     return scan_random_tray(BODY, row.tray_size, gripper, count=COUNT, fill=fill / 100, seed=chosen)
 
 
-def parts_from(row: Row, tray: int, grasps: Sequence[ScoredGrasp]) -> list[Part]:
+def parts_from(row: Row, tray: int, grasps: Sequence[Grasp]) -> list[Part]:
     """One part a grasp, for the row's planning problem."""
     pose = row.tray_pose(row.tray_middles()[tray])
     return parts_of_grasps(str(tray), grasps, robot_setup(row.torso).gripper, pose)
 
 
-def emptied_best_first(row: Row, tray: int, seed: int) -> list[ScoredGrasp | None]:
+def emptied_best_first(row: Row, tray: int, seed: int) -> list[Grasp | None]:
     """The grasps by which a full tray is emptied: in each round the best one that a new image of what is left shows.
 
     None in a round whose image shows no grasp; the parts then stay.
     """
     gripper = robot_setup(row.torso).gripper
     left = [np.array(p.T_tray_part) for p in random_scan(row, tray, SCANS, seed).placement.parts]
-    taken: list[ScoredGrasp | None] = []
+    taken: list[Grasp | None] = []
     for turn in range(COUNT):
         chosen = scan_seed(seed, tray, SCANS) + 100_000 * (turn + 1)
         found = scan_tray(BODY, left, row.tray_size, gripper, seed=chosen).grasps if left else []
         taken.append(found[0] if found else None)
         if found:
-            held = found[0].T_world_tcp[:3, 3]
+            held = found[0].T_object_hand[:3, 3]
             left.pop(int(np.argmin([np.linalg.norm(pose[:3, 3] - held) for pose in left])))
     return taken
 

@@ -122,7 +122,7 @@ class Row:
         chosen = None if self.targets is None else set(self.targets[tray])
         parts = []
         for i, (x, y) in enumerate(self.object_places()):
-            grasps = [Grasp(_core.pose([0, 0, self.tool], rpy=rpy), 0.02, 1.0) for rpy in rolls]
+            grasps = [Grasp(_core.pose([0, 0, self.tool], rpy=rpy), 0.02) for rpy in rolls]
             T_world_part = T_world_tray @ _core.pose([x, y, 0.0])
             parts.append(Part(f"{tray}/{i}", [MARKER], T_world_part, grasps, target=chosen is None or i in chosen))
         return parts

@@ -26,7 +26,7 @@ def by_solver(row: Row, tray: int, samples: int, restarts: int) -> dict[str, Any
     grid = _core.make_base_grid(problem, reach)
     solver = _Solver(problem, row.torso, restarts)
     parts = [part for part in problem.trays[tray].parts if part.target]
-    targets = [part.T_world_part @ part.grasps[0].T_object_tcp for part in parts]
+    targets = [part.T_world_part @ part.grasps[0].T_object_hand for part in parts]
     middle = problem.trays[tray].T_world_tray[:2, 3]
     cells = np.zeros((grid.ny, grid.nx), dtype=bool)
     known: dict[tuple[int, int], bool] = {}
@@ -51,7 +51,7 @@ class _Solver:
 
     def __init__(self, problem: _core.PartSupplyProblem, torso: float, restarts: int) -> None:
         self.home, self.arm, self.restarts = problem.home, problem.arm, restarts
-        moving = problem.robot.group("arm", tip=problem.gripper.tcp_link, with_base=True)
+        moving = problem.robot.group("arm", tip=problem.gripper.tool_link, with_base=True)
         reference = {"torso_lift_joint": torso}
         world = problem.scene.copy()
         for tray in problem.trays:

@@ -48,7 +48,7 @@ def stopping(samples: int, minimal: bool) -> dict[str, Any]:
                 return {"solved": False}
             remaining.discard((tray, 0))
             times = {m.kind: m.trajectory.duration for m in pick.motions}
-            width = problem.trays[tray].parts[0].grasps[pick.grasp].width
+            width = problem.trays[tray].parts[0].grasps[pick.grasp].opening
             closing = (pick.motions[0].opening - width) / CLOSING_SPEED + SETTLING
             # From home into the grasp, and back home; the way to the bin is left out in every row.
             picking += times["reach"] + times["approach"] + closing + times["lift"] + times["reach"]
@@ -60,14 +60,14 @@ def passing(samples: int, seed: int) -> dict[str, Any]:
     """All three in one motion: the hand stands still over each tray while it closes, the base does not."""
     row = the_row()
     problem, setup = row.problem(), robot_setup(row.torso)
-    opening = problem.gripper.pregrasp_opening(problem.trays[0].parts[0].grasps[0].width)
+    opening = problem.gripper.pregrasp_opening(problem.trays[0].parts[0].grasps[0].opening)
     joints = {**setup.other_joints, **problem.gripper.joint_values(opening)}
-    group = problem.robot.group(problem.arm.name, tip=problem.gripper.tcp_link, with_base=True).with_reference(joints)
+    group = problem.robot.group(problem.arm.name, tip=problem.gripper.tool_link, with_base=True).with_reference(joints)
     tasks = []
     for tray in problem.trays:
         (part,) = tray.parts
-        dwell = (opening - part.grasps[0].width) / CLOSING_SPEED + SETTLING
-        tasks.append(_core.DriveByTask(part.T_world_part @ part.grasps[0].T_object_tcp, dwell=dwell))
+        dwell = (opening - part.grasps[0].opening) / CLOSING_SPEED + SETTLING
+        tasks.append(_core.DriveByTask(part.T_world_part @ part.grasps[0].T_object_hand, dwell=dwell))
     found = _core.plan_drive_by(
         problem.robot,
         group,

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import Box, CarryPlace, FingerJoint, Gripper, InvalidInput, JointGroup, LinkShape, Robot
+from .._core import Box, CarryPlace, Hand, HandJoint, InvalidInput, JointGroup, LinkShape, Robot
 from .._files import ASSETS, shipped
 from .._progress import Progress
 from .reading import Node, near_miss, read_yaml
@@ -27,7 +27,7 @@ class RobotSetup:
 
     robot: Robot
     arm: JointGroup
-    gripper: Gripper
+    gripper: Hand
     carry: CarryPlace
     home: np.ndarray
     other_joints: dict[str, float]
@@ -199,14 +199,14 @@ def _read_home(node: Node, arm: JointGroup) -> np.ndarray:
     return home
 
 
-def _read_gripper(node: Node, robot: Robot, tcp: str) -> Gripper:
+def _read_gripper(node: Node, robot: Robot, tcp: str) -> Hand:
     node.mapping("approach closing max_opening finger_depth finger_width joints finger_links", "clearance")
     joints = []
     for joint in node["joints"].elements():
         joint.mapping("name closed open")
         name = joint["name"].string()
         joints.append(
-            FingerJoint(name, _joint_value(robot, name, joint["closed"]), _joint_value(robot, name, joint["open"]))
+            HandJoint(name, _joint_value(robot, name, joint["closed"]), _joint_value(robot, name, joint["open"]))
         )
     for link in node["finger_links"].elements():
         _link(robot, link)
@@ -221,7 +221,7 @@ def _read_gripper(node: Node, robot: Robot, tcp: str) -> Gripper:
         axes[key] = axis
     if abs(axes["approach"] @ axes["closing"]) > 1e-6:
         node["closing"].fail("must be orthogonal to approach")
-    return Gripper(
+    return Hand(
         tcp, joints=joints, finger_links=[link.raw for link in node["finger_links"].elements()], **axes, **sizes
     )
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .. import _core
-from .._core import Box, Grasp, Gripper, LinkShape, Part, Tray
+from .._core import Box, Grasp, Hand, LinkShape, Part, Tray
 from .reading import Node, near_miss
 from .robot_section import find_file
 from .shapes import read_shapes
@@ -31,7 +31,7 @@ class TraySetup:
     targets: list[str] = field(default_factory=list)
 
 
-def read_part_types(node: Node, gripper: Gripper) -> dict[str, PartType]:
+def read_part_types(node: Node, gripper: Hand) -> dict[str, PartType]:
     types = {}
     for name, entry in node.items():
         entry.mapping("", "box cylinder sphere mesh shapes scale grasps grasp_options")
@@ -60,11 +60,11 @@ def _grasp_options(entry: Node) -> dict[str, float | int]:
     return options
 
 
-def _any_gripper() -> Gripper:
-    return Gripper("tcp", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.03, finger_width=0.02)
+def _any_gripper() -> Hand:
+    return Hand("tcp", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.03, finger_width=0.02)
 
 
-def _listed_grasps(node: Node, gripper: Gripper) -> tuple[list[Grasp], int]:
+def _listed_grasps(node: Node, gripper: Hand) -> tuple[list[Grasp], int]:
     grasps, too_wide = [], 0
     for entry in node.elements():
         entry.mapping("pose width", "quality")
@@ -73,11 +73,11 @@ def _listed_grasps(node: Node, gripper: Gripper) -> tuple[list[Grasp], int]:
             too_wide += 1
             continue
         quality = entry["quality"].number(least=0) if "quality" in entry else 1.0
-        grasps.append(Grasp(entry["pose"].pose(), width, quality))
+        grasps.append(Grasp(entry["pose"].pose(), width, quality=quality))
     return grasps, too_wide
 
 
-def read_tray(node: Node, types: dict[str, PartType], gripper: Gripper) -> TraySetup:
+def read_tray(node: Node, types: dict[str, PartType], gripper: Hand) -> TraySetup:
     node.mapping("name pose size parts", "headings targets")
     name, T_world_tray, size = node["name"].string(), node["pose"].pose(), node["size"].numbers(3, above=0)
     if T_world_tray[2, 2] < 1 - 1e-9:
@@ -192,7 +192,7 @@ def _check_inside(node: Node, name: str, kind: PartType, T: np.ndarray, size: li
         node["parts"].fail(f"part {name} reaches {-low[2]:.4g} m through the tray's floor")
 
 
-def _check_graspable(name: str, kind: PartType, gripper: Gripper) -> None:
+def _check_graspable(name: str, kind: PartType, gripper: Hand) -> None:
     if kind.grasps:
         return
     if kind.too_wide:

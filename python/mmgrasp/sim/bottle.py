@@ -72,7 +72,7 @@ class Bottle:
         world = self.scene()
         part = self.part()
         world.add(part.name, part.shapes, _core.pose([0, 0, GAP]) @ part.pose)
-        group = robot.group("arm_with_torso", tip=setup.gripper.tcp_link, with_base=True)
+        group = robot.group("arm_with_torso", tip=setup.gripper.tool_link, with_base=True)
         group = group.with_reference({**setup.other_joints, **setup.gripper.joint_values(OPENING)})
         ends = {"start": [0.0, 0.0, 0.0, *setup.home], "goal": [WAY, 0.0, 0.0, *setup.home]}
         found = None

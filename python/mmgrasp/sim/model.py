@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .. import _core
-from .._core import Gripper, InvalidInput, LinkShape, Robot, World
+from .._core import Hand, HandJoint, InvalidInput, LinkShape, Robot, World
 from ..bodies import SceneBodies
 
 ROBOT, SCENE, PART, FLOOR = 1, 2, 4, 8
@@ -98,7 +98,7 @@ def build(
     robot: Robot,
     scene: World,
     parts: Iterable[SimPart] = (),
-    gripper: Gripper | None = None,
+    gripper: Hand | None = None,
     physics: Physics | None = None,
 ) -> Built:
     """The model. The root stands where base/x, base/y and base/theta say; a fixed base does not move from there.
@@ -112,7 +112,7 @@ def build(
 
 
 class _Builder:
-    def __init__(self, bodies: SceneBodies, loose: dict[str, SimPart], gripper: Gripper | None, physics: Physics):
+    def __init__(self, bodies: SceneBodies, loose: dict[str, SimPart], gripper: Hand | None, physics: Physics):
         self.bodies, self.robot, self.physics = bodies, bodies.robot, physics
         self.built = Built("")
         self.meshes = 0
@@ -175,8 +175,8 @@ class _Builder:
             for name in BASE_JOINTS:
                 limit = self.physics.base_torque if name.endswith("theta") else self.physics.base_force
                 ET.SubElement(actuators, "velocity", name=name, joint=name, kv="1", forcerange=_text((-limit, limit)))
-        for name, line in self.coupled.items():
-            ET.SubElement(equality, "joint", joint1=name, joint2=self.fingers[0], polycoef=line, solref="0.004 1")
+        for name, (first, line) in self.coupled.items():
+            ET.SubElement(equality, "joint", joint1=name, joint2=first, polycoef=line, solref="0.004 1")
         if len(equality):
             self.root.append(equality)
         self.root.append(actuators)
@@ -260,13 +260,15 @@ class _Builder:
         )  # fmt: skip
 
 
-def _coupling(gripper: Gripper) -> dict[str, str]:
-    """Fingers open together, as one drive moves them: each as a linear function of the first."""
-    first, *others = gripper.joints or [None]
+def _coupling(hand: Hand) -> dict[str, tuple[str, str]]:
+    """Joints of a group open together, as one drive moves them: each as a linear function of the group's first."""
     lines = {}
-    for joint in others:
-        ratio = (joint.open - joint.closed) / (first.open - first.closed)
-        lines[joint.name] = _text((joint.closed - ratio * first.closed, ratio, 0, 0, 0))
+    firsts: dict[str, HandJoint] = {}
+    for joint in hand.joints:
+        first = firsts.setdefault(joint.group, joint)
+        if joint is not first:
+            ratio = (joint.open - joint.closed) / (first.open - first.closed)
+            lines[joint.name] = (first.name, _text((joint.closed - ratio * first.closed, ratio, 0, 0, 0)))
     return lines
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import Gripper, InvalidInput, JointTrajectory, Robot, World
+from .._core import Hand, InvalidInput, JointTrajectory, Robot, World
 from .._files import write_file
 from ..bodies import SceneBodies, floor_tiles
 from ..viz.png import write_png
@@ -30,7 +30,7 @@ FLOOR_REACH = 4.0  # of the floor drawn round what the camera looks at [m]
 class Painter:
     """Draws recorded states of a robot, a scene and parts with the software renderer. Needs no MuJoCo."""
 
-    def __init__(self, robot: Robot, gripper: Gripper | None, scene: World, parts: Iterable[SimPart]):
+    def __init__(self, robot: Robot, gripper: Hand | None, scene: World, parts: Iterable[SimPart]):
         self.bodies = SceneBodies.of_world(robot, scene, parts)
         self.fingers = set(gripper.finger_links) if gripper else set()
         self.limits = {j["name"]: (j["lower"], j["upper"]) for j in robot.joint_table}

@@ -134,9 +134,11 @@ class PlanController:
                 reference[name] = np.where(times >= self.lift_at, rising, reference[name])
         if self.sim.gripper:
             opening = np.clip(self.opening - self.how.closing_speed * np.maximum(times - self.close_at, 0), 0, None)
-            for joint in self.sim.gripper.joints:
-                share = opening / self.sim.gripper.max_opening
-                reference[joint.name] = joint.closed + share * (joint.open - joint.closed)
+            hand = self.sim.gripper
+            share = np.array([hand.share_open(value) for value in opening])
+            for joint in hand.joints:
+                own = np.full(count, hand.preshape[joint.group]) if joint.group in hand.preshape else share
+                reference[joint.name] = joint.closed + own * (joint.open - joint.closed)
         self.times, self.reference = times, reference
         w = self.sim.physics.stiffness
         names = list(reference)

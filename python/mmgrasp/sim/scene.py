@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .._core import Gripper, InvalidInput, Robot, World
+from .._core import Hand, InvalidInput, Robot, World
 from .control import Command, Controller, Observer, body_to_world
 from .model import BASE_JOINTS, Physics, SimPart, build
 
@@ -32,7 +32,7 @@ class SimScene:
         scene: World,
         parts: Iterable[SimPart] = (),
         *,
-        gripper: Gripper | None = None,
+        gripper: Hand | None = None,
         physics: Physics | None = None,
         joints: dict[str, float] | None = None,
     ):

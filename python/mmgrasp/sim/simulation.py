@@ -53,7 +53,7 @@ class RunWatch:
         gripper = scene.gripper
         fingers = set(gripper.finger_links) if gripper else set()
         hand = fingers | {j["parent"] for j in scene.robot.joint_table if j["name"] in scene.built.fingers}
-        self.tool = f"link/{gripper.tcp_link}" if gripper else None
+        self.tool = f"link/{gripper.tool_link}" if gripper else None
         self.parts = [PartWatch(name, scene.part_pose(name), fingers, hand) for name in scene.parts]
         self.log = ContactLog()
         self.base_error = self.arm_error = 0.0

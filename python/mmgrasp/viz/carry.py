@@ -13,7 +13,7 @@ from . import png
 from .raster import Camera, Scene, render
 
 if TYPE_CHECKING:
-    from .._core import PipeGrasp
+    from .._core import Grasp
     from ..problems.pipe_cells import PipeCell
 
 ARM, HAND, TABLE, FIXTURE, OBSTACLE = "#D9DBDE", "#55585C", "#EDE8DF", "#9AA0A8", "#B9C4CF"
@@ -29,7 +29,7 @@ def along(path: ArrayLike, count: int) -> NDArray[np.float64]:
     return np.stack([np.interp(np.linspace(0, at[-1], count), at, column) for column in waypoints.T], axis=1)
 
 
-def carry_scene(cell: PipeCell, grasp: PipeGrasp, path: ArrayLike, *, pipes: int = 9, arm_at: float = 0.5) -> Scene:
+def carry_scene(cell: PipeCell, grasp: Grasp, path: ArrayLike, *, pipes: int = 9, arm_at: float = 0.5) -> Scene:
     """The cell with the pipe at `pipes` moments from green to red; `arm_at` says where on the way the arm is, in [0, 1]."""
     scene = Scene()
     bodies = SceneBodies.of_world(cell.robot, cell.world)
@@ -38,7 +38,7 @@ def carry_scene(cell: PipeCell, grasp: PipeGrasp, path: ArrayLike, *, pipes: int
             colour = TABLE if body.name == "table" else FIXTURE if "post" in body.name else OBSTACLE
             scene.add(body.vertices_at(), body.faces, colour)
     pipe = Body("pipe", tuple(cell.pipe.shapes()), np.eye(4))
-    arm, T_tool_object = cell.arm_holding(grasp), np.linalg.inv(grasp.T_object_tool)
+    arm, T_tool_object = cell.arm_holding(grasp), np.linalg.inv(grasp.T_object_hand)
     moments = along(path, pipes)
     for i, q in enumerate(moments):
         share = i / max(pipes - 1, 1)
@@ -52,7 +52,7 @@ def carry_scene(cell: PipeCell, grasp: PipeGrasp, path: ArrayLike, *, pipes: int
 
 
 def write_carry(
-    cell: PipeCell, grasp: PipeGrasp, path: ArrayLike, file: str | Path, *, width: int = 1100, height: int = 800
+    cell: PipeCell, grasp: Grasp, path: ArrayLike, file: str | Path, *, width: int = 1100, height: int = 800
 ) -> Path:
     """Renders carry_scene from in front of the arm, a little above it."""
     start, goal = cell.T_world_start[:3, 3], cell.T_world_goal[:3, 3]

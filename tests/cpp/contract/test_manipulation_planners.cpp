@@ -43,12 +43,12 @@ class ManipulationPlanner : public ::testing::TestWithParam<std::string> {
     ASSERT_EQ(result.outcome, Outcome::solved);
     ASSERT_TRUE(result.path);
     ASSERT_GE(result.grasp_index, 0);
-    const CandidateGrasp& grasp = problem.grasps[result.grasp_index];
+    const Grasp& grasp = problem.grasps[result.grasp_index];
     EXPECT_TRUE(test::FclCarry(problem, result.grasp_index, 0.4, 0.02).is_free(*result.path, 0.005));
     const auto object_at = [&](const Eigen::VectorXd& q) {
       Pose T = Pose::Identity();
       for (Eigen::Index i = 0; i < q.size(); ++i) T = T * flat_pose(0, 0, q[i]) * flat_pose(0.4, 0, 0);
-      return Pose(T * grasp.T_object_tool.inverse());
+      return Pose(T * grasp.T_object_hand.inverse());
     };
     EXPECT_LT((object_at(result.path->waypoints.front()).matrix() - problem.T_world_start.matrix()).norm(), 3e-4);
     EXPECT_LT((object_at(result.path->waypoints.back()).matrix() - problem.T_world_goal.matrix()).norm(), 3e-4);
@@ -255,7 +255,7 @@ TEST_P(ManipulationPlanner, StopsWithWhatItHas) {
 /// The bar's grasps many times over.
 ManipulationProblem with_many_grasps() {
   ManipulationProblem problem = test::bar_transfer();
-  const std::vector<CandidateGrasp> once = problem.grasps;
+  const std::vector<Grasp> once = problem.grasps;
   for (int i = 1; i < 15; ++i) problem.grasps.insert(problem.grasps.end(), once.begin(), once.end());
   return problem;
 }

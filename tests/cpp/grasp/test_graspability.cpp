@@ -28,6 +28,10 @@ PlacedShape box(const Vector3d& size, double x, double y, double yaw) {
   return {Box{size}, flat(x, y, size.z() / 2, yaw)};
 }
 
+const HeightMapProvenance& place_of(const Grasp& grasp) {
+  return std::get<HeightMapProvenance>(grasp.provenance);
+}
+
 }  // namespace
 
 TEST(Graspability, BoxIsTakenAcrossItsNarrowSideAtItsMiddle) {
@@ -39,19 +43,18 @@ TEST(Graspability, BoxIsTakenAcrossItsNarrowSideAtItsMiddle) {
     options.orientations = 36;
     const Graspability found = evaluate_graspability(map, gripper(), options);
     ASSERT_FALSE(found.grasps.empty());
-    const ScoredGrasp& best = found.grasps[0];
-    EXPECT_LT(line_angle(best.angle, yaw + kPi / 2), kPi / 36 + 1e-6);
-    EXPECT_NEAR(best.width, 0.04, 0.004);
-    EXPECT_NEAR(best.opening, best.width + 0.02, 1e-12);
-    const Vector3d p = flat(x, y, 0, yaw).inverse() * best.T_world_tcp.translation();
+    const Grasp& best = found.grasps[0];
+    EXPECT_LT(line_angle(place_of(best).angle, yaw + kPi / 2), kPi / 36 + 1e-6);
+    EXPECT_NEAR(best.opening, 0.04, 0.004);
+    const Vector3d p = flat(x, y, 0, yaw).inverse() * best.T_object_hand.translation();
     EXPECT_NEAR(p.y(), 0, 0.003);
     EXPECT_NEAR(p.x(), 0, 0.015);
-    // The tcp's axes: approach down, closing across the box.
-    EXPECT_LT((best.T_world_tcp.linear().col(0) + Vector3d::UnitZ()).norm(), 1e-12);
-    EXPECT_NEAR(best.T_world_tcp.linear().col(1).x(), std::cos(best.angle), 1e-12);
-    EXPECT_NEAR(best.T_world_tcp.translation().z(), best.height + 0.02, 1e-12);
+    // The tool frame's axes: approach down, closing across the box.
+    EXPECT_LT((best.T_object_hand.linear().col(0) + Vector3d::UnitZ()).norm(), 1e-12);
+    EXPECT_NEAR(best.T_object_hand.linear().col(1).x(), std::cos(place_of(best).angle), 1e-12);
+    EXPECT_NEAR(best.T_object_hand.translation().z(), place_of(best).height + 0.02, 1e-12);
     // The box is longer than the gripper opens: none of the grasps is along it.
-    for (const ScoredGrasp& grasp : found.grasps) EXPECT_LT(line_angle(grasp.angle, yaw + kPi / 2), 1.0);
+    for (const Grasp& grasp : found.grasps) EXPECT_LT(line_angle(place_of(grasp).angle, yaw + kPi / 2), 1.0);
   }
 }
 
@@ -69,8 +72,8 @@ TEST(Graspability, NeighbourNearerThanAFingerBlocksThatSide) {
                                   box({0.12, 0.04, 0.05}, 0, -0.04 - gap, 0)},
                                  {0.4, 0.4});
     int across = 0;
-    for (const ScoredGrasp& g : evaluate_graspability(map, gripper()).grasps)
-      across += std::abs(g.T_world_tcp.translation().y()) < 0.02 && line_angle(g.angle, kPi / 2) < 0.3;
+    for (const Grasp& g : evaluate_graspability(map, gripper()).grasps)
+      across += std::abs(g.T_object_hand.translation().y()) < 0.02 && line_angle(place_of(g).angle, kPi / 2) < 0.3;
     return across;
   };
   EXPECT_GT(grasps_across(0.05), 0);
@@ -85,8 +88,8 @@ TEST(Graspability, TrayWallsCollide) {
     add(scene, tray, Pose::Identity());
     scene.push_back(box({0.04, 0.12, 0.05}, at_wall ? 0.124 : 0.0, 0, 0));
     int across = 0;
-    for (const ScoredGrasp& g : evaluate_graspability(map_of(scene, {0.4, 0.5}), gripper()).grasps)
-      across += line_angle(g.angle, 0) < 0.3;
+    for (const Grasp& g : evaluate_graspability(map_of(scene, {0.4, 0.5}), gripper()).grasps)
+      across += line_angle(place_of(g).angle, 0) < 0.3;
     EXPECT_EQ(across > 0, !at_wall);
   }
 }
@@ -134,8 +137,8 @@ TEST(Graspability, ShiftOfTheMapShiftsTheAnswer) {
   ASSERT_FALSE(a.empty());
   ASSERT_EQ(a.size(), b.size());
   const Vector3d shift(sx * map.resolution, sy * map.resolution, 0);
-  EXPECT_LT((b[0].T_world_tcp.translation() - a[0].T_world_tcp.translation() - shift).norm(), 1e-9);
-  EXPECT_NEAR(a[0].score, b[0].score, 1e-6);
+  EXPECT_LT((b[0].T_object_hand.translation() - a[0].T_object_hand.translation() - shift).norm(), 1e-9);
+  EXPECT_NEAR(a[0].quality, b[0].quality, 1e-6);
 }
 
 TEST(Graspability, MapIsContactWhereNothingIsTouched) {
@@ -146,7 +149,7 @@ TEST(Graspability, MapIsContactWhereNothingIsTouched) {
   options.smoothing = 0;
   const double angle = 1.9, opening = 0.07, tip = 0.012;
   const auto found = graspability_map(map, gripper(), angle, opening, tip, options);
-  const HandMasks masks = make_hand_masks(gripper(), options.hand, opening, angle, map.resolution);
+  const HandMasks masks = make_hand_masks(gripper(), opening, angle, map.resolution);
   int graspable = 0;
   for (int y = 0; y < map.ny; ++y) {
     for (int x = 0; x < map.nx; ++x) {
@@ -161,7 +164,7 @@ TEST(Graspability, MapIsContactWhereNothingIsTouched) {
           const bool inside = u >= 0 && v >= 0 && u < map.nx && v < map.ny;
           const float h = inside ? map.height[map.index(u, v)] : NAN, upper = inside ? map.upper[map.index(u, v)] : NAN;
           contact += in(masks.contact) && h > static_cast<float>(tip + options.insertion);
-          touched = touched || (in(masks.fingers) && !(upper <= static_cast<float>(tip - options.hand.margin)));
+          touched = touched || (in(masks.fingers) && !(upper <= static_cast<float>(tip - options.margin)));
         }
       }
       const float expected = touched ? 0 : static_cast<float>(contact) / masks.contact.count();
@@ -180,7 +183,7 @@ TEST(Graspability, SameAnswerAtAnyThreadCount) {
   options.threads = 3;
   const auto b = evaluate_graspability(map, gripper(), options).grasps;
   ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].T_world_tcp.matrix(), b[i].T_world_tcp.matrix());
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].T_object_hand.matrix(), b[i].T_object_hand.matrix());
 }
 
 /// Random trays: the open hand at every grasp beside the true bodies, not beside what the camera saw of them.
@@ -190,7 +193,6 @@ TEST(Graspability, HandsAreFreeInRandomTrays) {
       {at(Cylinder{0.015, 0.07})},
       {at(Box{{0.08, 0.02, 0.02}}), at(Box{{0.02, 0.05, 0.02}}, flat(0.03, 0.035, 0))}};
   const Vector3d size(0.3, 0.4, 0.1);
-  const HandShape hand;
   int grasps = 0, free = 0;
   for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
     for (unsigned seed = 1; seed <= 4; ++seed) {
@@ -210,11 +212,11 @@ TEST(Graspability, HandsAreFreeInRandomTrays) {
       EXPECT_GT(found.grasps.size(), 2u) << kind << " " << seed;
       find_pixels(image, found.grasps);
       const World world = world_of(scene);
-      for (const ScoredGrasp& grasp : found.grasps) {
+      for (const Grasp& grasp : found.grasps) {
         ++grasps;
-        free += hand_is_free(grasp, gripper(), hand, world);
+        free += hand_is_free(grasp, gripper(), world);
         // Something stands between the pads: the pixel sees it above the fingertips.
-        EXPECT_GE(grasp.pixel.x(), 0);
+        EXPECT_GE(place_of(grasp).pixel.x(), 0);
       }
     }
   }
@@ -286,23 +288,25 @@ TEST(Graspability, RealCloudKeepsTheHandClear) {
   options.orientations = 24;
   const auto found = evaluate_graspability(scene.map, gripper(), options);
   EXPECT_GE(found.grasps.size(), 1u);
-  for (const ScoredGrasp& grasp : found.grasps) {
-    const Pose T_tcp_world = grasp.T_world_tcp.inverse();
+  for (const Grasp& grasp : found.grasps) {
+    const Pose T_hand_world = grasp.T_object_hand.inverse();
+    const double opened = gripper().pregrasp_opening(grasp.opening);
     int between = 0, inside = 0;
     for (const Vector3d& p : scene.cloud.points) {
       if (!p.allFinite()) continue;
-      const Vector3d q = T_tcp_world * p;  // approach x, closing y
+      const Vector3d q = T_hand_world * p;  // approach x, closing y
       const double side = std::abs(q.y());
-      if (q.x() < 0.02 && q.x() > 0.02 - options.hand.finger_length && std::abs(q.z()) < 0.011) {
-        between += side < grasp.opening / 2;
-        inside += side > grasp.opening / 2 && side < grasp.opening / 2 + options.hand.finger_thickness;
+      if (q.x() < 0.02 && q.x() > 0.02 - gripper().body.finger_length && std::abs(q.z()) < 0.011) {
+        between += side < opened / 2;
+        inside += side > opened / 2 && side < opened / 2 + gripper().body.finger_thickness;
       }
-      inside += q.x() <= 0.02 - options.hand.finger_length && q.x() > -0.15 && side < 0.065 && std::abs(q.z()) < 0.0325;
+      inside +=
+          q.x() <= 0.02 - gripper().body.finger_length && q.x() > -0.15 && side < 0.065 && std::abs(q.z()) < 0.0325;
     }
     EXPECT_EQ(inside, 0);
     EXPECT_GT(between, 20);
     // At the mug or its handle.
-    const Vector3d from_mug = scene.cuboids[0].T_world_box.inverse() * grasp.T_world_tcp.translation();
+    const Vector3d from_mug = scene.cuboids[0].T_world_box.inverse() * grasp.T_object_hand.translation();
     EXPECT_LT(from_mug.head<2>().norm(), 0.1);
     EXPECT_LT(std::abs(from_mug.z()), 0.1);
   }

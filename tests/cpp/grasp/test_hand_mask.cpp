@@ -39,7 +39,7 @@ TEST(HandMask, ConvolutionEqualsBruteForce) {
     odd.radius = 6;
     odd.cells.resize(169);
     for (auto& cell : odd.cells) cell = rng.uniform() < 0.5;
-    const HandMasks masks = make_hand_masks(tray_scene::gripper(), {}, 0.06, 0.7, 0.01);
+    const HandMasks masks = make_hand_masks(tray_scene::gripper(), 0.06, 0.7, 0.01);
     for (const MaskImage* mask : {static_cast<const MaskImage*>(&odd), &masks.contact, &masks.fingers, &masks.palm}) {
       for (const bool outside : {false, true}) {
         const auto counts = convolve_mask(image, nx, ny, *mask, outside);
@@ -52,12 +52,10 @@ TEST(HandMask, ConvolutionEqualsBruteForce) {
 }
 
 TEST(HandMask, AreasAreThoseOfTheHand) {
-  const Gripper gripper = tray_scene::gripper();
-  HandShape hand;
-  hand.margin = 0;
+  const Hand gripper = tray_scene::gripper();
   const double cell = 0.0005;
   for (const double angle : {0.0, 0.3, 1.1, 2.5}) {
-    const HandMasks masks = make_hand_masks(gripper, hand, 0.08, angle, cell);
+    const HandMasks masks = make_hand_masks(gripper, 0.08, angle, cell, 0);
     EXPECT_NEAR(masks.contact.count() * cell * cell, 0.08 * 0.022, 0.03 * 0.08 * 0.022);
     const double grow = 2 * cell * std::sqrt(0.5);  // fingers cover every cell they touch
     const double finger = (0.012 + grow) * (0.022 + grow);
@@ -66,15 +64,14 @@ TEST(HandMask, AreasAreThoseOfTheHand) {
 }
 
 TEST(HandMask, CoversEveryPointOfTheFingers) {
-  const Gripper gripper = tray_scene::gripper();
-  const HandShape hand;
+  const Hand gripper = tray_scene::gripper();
   Rng rng(4);
   const double cell = 0.004;
   for (int i = 0; i < 3000; ++i) {
     const double angle = rng.uniform(0, kPi), opening = rng.uniform(0.0, 0.1);
-    const HandMasks masks = make_hand_masks(gripper, hand, opening, angle, cell);
+    const HandMasks masks = make_hand_masks(gripper, opening, angle, cell);
     const double side = rng.uniform() < 0.5 ? -1 : 1;
-    const double u = side * (opening / 2 + rng.uniform(0, hand.finger_thickness));
+    const double u = side * (opening / 2 + rng.uniform(0, gripper.body.finger_thickness));
     const double v = rng.uniform(-0.5, 0.5) * gripper.finger_width;
     const int dx = static_cast<int>(std::lround((u * std::cos(angle) - v * std::sin(angle)) / cell));
     const int dy = static_cast<int>(std::lround((u * std::sin(angle) + v * std::cos(angle)) / cell));
@@ -84,10 +81,10 @@ TEST(HandMask, CoversEveryPointOfTheFingers) {
 }
 
 TEST(HandMask, QuarterAndHalfTurnsAreExact) {
-  const Gripper gripper = tray_scene::gripper();
+  const Hand gripper = tray_scene::gripper();
   for (const double angle : {0.0, kPi / 8, kPi / 16 * 5, 0.4}) {
-    const HandMasks a = make_hand_masks(gripper, {}, 0.07, angle, 0.002);
-    const HandMasks b = make_hand_masks(gripper, {}, 0.07, angle + kPi / 2, 0.002);
+    const HandMasks a = make_hand_masks(gripper, 0.07, angle, 0.002);
+    const HandMasks b = make_hand_masks(gripper, 0.07, angle + kPi / 2, 0.002);
     ASSERT_EQ(a.fingers.radius, b.fingers.radius);
     for (int y = -a.fingers.radius; y <= a.fingers.radius; ++y) {
       for (int x = -a.fingers.radius; x <= a.fingers.radius; ++x) {
@@ -99,8 +96,8 @@ TEST(HandMask, QuarterAndHalfTurnsAreExact) {
 }
 
 TEST(HandMask, MisuseIsRefused) {
-  EXPECT_THROW(make_hand_masks(tray_scene::gripper(), {}, 0.2, 0, 0.002), InvalidInput);
-  EXPECT_THROW(make_hand_masks(tray_scene::gripper(), {}, 0.1, 0, 0), InvalidInput);
+  EXPECT_THROW(make_hand_masks(tray_scene::gripper(), 0.2, 0, 0.002), InvalidInput);
+  EXPECT_THROW(make_hand_masks(tray_scene::gripper(), 0.1, 0, 0), InvalidInput);
   EXPECT_THROW(convolve_mask({1, 0}, 3, 1, MaskImage{0, {1}}, false), InvalidInput);
   EXPECT_THROW(convolve_mask({1, 0}, 2, 1, MaskImage{1, {1}}, false), InvalidInput);
 }

@@ -9,6 +9,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "mmgrasp/grasp/hand.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -185,6 +186,25 @@ TEST(PushGrasp, AHitObjectLeapsAsFarAsItsFriction) {
   }
   EXPECT_NEAR(most, length, 1e-5);
   EXPECT_TRUE(std::isinf(push_speed_limit(length, mu, 0)));
+}
+
+TEST(PushGrasp, TakesItsLengthsFromTheHand) {
+  Hand hand;
+  hand.max_opening = 0.09;
+  hand.clearance = 0.004;
+  hand.finger_depth = 0.05;
+  hand.body.finger_length = 0.08;
+  const PushGraspProblem p = push_grasp_problem(hand, 0.06);
+  EXPECT_DOUBLE_EQ(p.opening, 0.09);
+  EXPECT_DOUBLE_EQ(p.object_width, 0.06);
+  EXPECT_DOUBLE_EQ(p.finger_length, 0.08);
+  EXPECT_DOUBLE_EQ(p.grip_depth, 0.025);
+  EXPECT_DOUBLE_EQ(p.planned_depth, 0.04);
+  EXPECT_DOUBLE_EQ(p.clearance, 0.004);
+  EXPECT_DOUBLE_EQ(push_grasp(p).closing_time, 0.03 / p.closing_speed);
+  hand.body.finger_length = 0.03;  // shorter than its pads
+  EXPECT_NO_THROW(push_grasp_problem(hand, 0.06).check());
+  EXPECT_THROW(push_grasp_problem(hand, 0.09), InvalidInput);
 }
 
 TEST(PushGrasp, BadInputIsRefusedByName) {

@@ -7,7 +7,7 @@
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
 #include "mmgrasp/geometry/shape.hpp"
-#include "mmgrasp/grasp/grasp.hpp"
+#include "mmgrasp/grasp/sample_grasps.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -46,13 +46,13 @@ std::vector<Crossing> line_crossings(const TriangleMesh& mesh, const Eigen::Vect
 }
 
 /// Both contacts are crossings of the contact line, normals outward, within the friction cone.
-void expect_antipodal(const TriangleMesh& mesh, const Grasp& grasp, const Gripper& gripper, double friction) {
-  const Eigen::Vector3d closing = grasp.T_object_tcp.linear() * gripper.closing;
-  const auto crossings = line_crossings(mesh, grasp.T_object_tcp.translation(), closing);
+void expect_antipodal(const TriangleMesh& mesh, const Grasp& grasp, const Hand& gripper, double friction) {
+  const Eigen::Vector3d closing = grasp.T_object_hand.linear() * gripper.closing;
+  const auto crossings = line_crossings(mesh, grasp.T_object_hand.translation(), closing);
   for (const double side : {-1.0, 1.0}) {
     const bool found = std::any_of(crossings.begin(), crossings.end(), [&](const Crossing& crossing) {
       const double cosine = side * crossing.normal.dot(closing);
-      return std::abs(crossing.t - side * grasp.width / 2) < 1e-7 && cosine > 0 &&
+      return std::abs(crossing.t - side * grasp.opening / 2) < 1e-7 && cosine > 0 &&
              std::acos(std::min(1.0, cosine)) <= std::atan(friction) + 1e-9;
     });
     EXPECT_TRUE(found) << "no contact at side " << side;
@@ -62,7 +62,7 @@ void expect_antipodal(const TriangleMesh& mesh, const Grasp& grasp, const Grippe
 TEST(SurfaceGrasps, PairsOnRealMeshesAreAntipodalByBruteForce) {
   const std::filesystem::path folder = std::filesystem::path(MMGRASP_SHARED_DATA) / "meshes";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no meshes in " << folder;
-  Gripper gripper;
+  Hand gripper;
   gripper.max_opening = 0.12;
   GraspSamplerOptions options;
   options.friction = 0.4;
@@ -73,11 +73,11 @@ TEST(SurfaceGrasps, PairsOnRealMeshesAreAntipodalByBruteForce) {
         "ariac/battery/meshes/battery_collision.stl"}) {
     const auto mesh = load_mesh((folder / name).string());
     ASSERT_TRUE(mesh->closed) << name;
-    const auto grasps = sample_grasps({shape_at(MeshShape{mesh})}, gripper, options);
+    const auto grasps = sample_grasps({shape_at(MeshShape{mesh})}, gripper, options).grasps;
     EXPECT_GT(grasps.size(), 100u) << name;
     for (const Grasp& grasp : grasps) {
       expect_antipodal(*mesh, grasp, gripper, options.friction);
-      EXPECT_LE(grasp.width, gripper.max_opening);
+      EXPECT_LE(grasp.opening, gripper.max_opening);
     }
   }
 }
@@ -85,19 +85,19 @@ TEST(SurfaceGrasps, PairsOnRealMeshesAreAntipodalByBruteForce) {
 TEST(SurfaceGrasps, MeshOfABoxGivesTheBoxesWidths) {
   const Eigen::Vector3d size(0.03, 0.05, 0.08);
   const Pose T = pose_from_xyz_rpy({0.2, 0.1, 0}, {0.3, 0.2, 0.1});
-  Gripper gripper;
+  Hand gripper;
   GraspSamplerOptions options;
   options.max_grasps = 1000000;
   options.friction = 0.3;
-  const auto grasps = sample_grasps({shape_at(MeshShape{shape_mesh(Box{size})}, T)}, gripper, options);
+  const auto grasps = sample_grasps({shape_at(MeshShape{shape_mesh(Box{size})}, T)}, gripper, options).grasps;
   ASSERT_GT(grasps.size(), 1000u);
   int straight = 0;
   for (const Grasp& grasp : grasps) {
-    const Eigen::Vector3d closing = T.linear().transpose() * (grasp.T_object_tcp.linear() * gripper.closing);
+    const Eigen::Vector3d closing = T.linear().transpose() * (grasp.T_object_hand.linear() * gripper.closing);
     Eigen::Index axis;
     const double cosine = closing.cwiseAbs().maxCoeff(&axis);
     // A tilted line between the two faces is longer by 1 / cos, and tilted by no more than the cone.
-    EXPECT_NEAR(grasp.width, size[axis] / cosine, 1e-9);
+    EXPECT_NEAR(grasp.opening, size[axis] / cosine, 1e-9);
     EXPECT_GE(cosine, std::cos(std::atan(options.friction)) - 1e-12);
     straight += cosine > 1 - 1e-12;
   }
@@ -113,15 +113,15 @@ TEST(SurfaceGrasps, AWedgeNeedsFrictionForHalfItsAngleOnEachSide) {
     for (const auto& [x, z] : {std::pair{-half, 0.0}, std::pair{half, 0.0}, std::pair{0.0, h}})
       points.emplace_back(x, y, z);
   const auto wedge = convex_hull(points);
-  Gripper gripper;
+  Hand gripper;
   const auto across = [&](double friction) {
     GraspSamplerOptions options;
     options.friction = friction;
     options.mesh_samples = 4000;
     options.max_grasps = 1000000;
     int count = 0;
-    for (const Grasp& grasp : sample_grasps({shape_at(MeshShape{wedge})}, gripper, options))
-      count += std::abs((grasp.T_object_tcp.linear() * gripper.closing).x()) > 0.8;
+    for (const Grasp& grasp : sample_grasps({shape_at(MeshShape{wedge})}, gripper, options).grasps)
+      count += std::abs((grasp.T_object_hand.linear() * gripper.closing).x()) > 0.8;
     return count;
   };
   EXPECT_EQ(across(0.25), 0);
@@ -133,14 +133,13 @@ TEST(SurfaceGrasps, TooWidePairsEqualARecountWithAWiderGripper) {
   GraspSamplerOptions options;
   options.max_grasps = 1000000;
   options.approaches = 1;
-  Gripper narrow, wide;
+  Hand narrow, wide;
   narrow.max_opening = 0.07;
   wide.max_opening = 1;
-  int narrow_count = -1, wide_count = -1;
-  const auto kept = sample_grasps({shape_at(MeshShape{mesh})}, narrow, options, &narrow_count);
-  const auto all = sample_grasps({shape_at(MeshShape{mesh})}, wide, options, &wide_count);
+  const auto [kept, narrow_count] = sample_grasps({shape_at(MeshShape{mesh})}, narrow, options);
+  const auto [all, wide_count] = sample_grasps({shape_at(MeshShape{mesh})}, wide, options);
   EXPECT_EQ(wide_count, 0);
-  const auto wider = std::count_if(all.begin(), all.end(), [](const Grasp& grasp) { return grasp.width > 0.07; });
+  const auto wider = std::count_if(all.begin(), all.end(), [](const Grasp& grasp) { return grasp.opening > 0.07; });
   EXPECT_GT(wider, 0);
   EXPECT_EQ(narrow_count, wider / 2);  // a pair gives one approach here, and its flip
   EXPECT_EQ(kept.size() + static_cast<std::size_t>(wider), all.size());
@@ -154,18 +153,18 @@ TEST(SurfaceGrasps, ShapesThatOverlapAreOneSolid) {
     left.translation().x() = -shift;
     right.translation().x() = shift;
     const double length = 0.05 + 2 * shift;
-    Gripper gripper;
+    Hand gripper;
     gripper.max_opening = 0.2;
     GraspSamplerOptions options;
     options.max_grasps = 1000000;
     options.friction = 0.2;
-    const auto grasps = sample_grasps({shape_at(half, left), shape_at(half, right)}, gripper, options);
+    const auto grasps = sample_grasps({shape_at(half, left), shape_at(half, right)}, gripper, options).grasps;
     ASSERT_GT(grasps.size(), 1000u);
     for (const Grasp& grasp : grasps) {
-      const Eigen::Vector3d closing = grasp.T_object_tcp.linear() * gripper.closing;
+      const Eigen::Vector3d closing = grasp.T_object_hand.linear() * gripper.closing;
       Eigen::Index axis;
       const double cosine = closing.cwiseAbs().maxCoeff(&axis);
-      EXPECT_NEAR(grasp.width, (axis == 0 ? length : 0.02) / cosine, 1e-9);
+      EXPECT_NEAR(grasp.opening, (axis == 0 ? length : 0.02) / cosine, 1e-9);
     }
   }
 }
@@ -176,30 +175,30 @@ TEST(SurfaceGrasps, OpenSurfacesAreHeldFromWallToWall) {
       {{0, 0, 0}, {.05, 0, 0}, {.05, .05, 0}, {0, .05, 0}, {0, 0, .04}, {.05, 0, .04}, {.05, .05, .04}, {0, .05, .04}},
       {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}});
   ASSERT_FALSE(mesh->closed);
-  Gripper gripper;
-  const auto grasps = sample_grasps({shape_at(MeshShape{mesh})}, gripper);
+  Hand gripper;
+  const auto grasps = sample_grasps({shape_at(MeshShape{mesh})}, gripper).grasps;
   ASSERT_FALSE(grasps.empty());
   for (const Grasp& grasp : grasps) {
-    const double cosine = std::abs((grasp.T_object_tcp.linear() * gripper.closing).z());
-    EXPECT_NEAR(grasp.width, 0.04 / cosine, 1e-9);
+    const double cosine = std::abs((grasp.T_object_hand.linear() * gripper.closing).z());
+    EXPECT_NEAR(grasp.opening, 0.04 / cosine, 1e-9);
   }
 }
 
 TEST(SurfaceGrasps, SeedDecidesTheAnswer) {
   const auto mesh = shape_mesh(Sphere{0.03});
-  Gripper gripper;
+  Hand gripper;
   GraspSamplerOptions options;
-  const auto first = sample_grasps({shape_at(MeshShape{mesh})}, gripper, options);
-  const auto again = sample_grasps({shape_at(MeshShape{mesh})}, gripper, options);
+  const auto first = sample_grasps({shape_at(MeshShape{mesh})}, gripper, options).grasps;
+  const auto again = sample_grasps({shape_at(MeshShape{mesh})}, gripper, options).grasps;
   ASSERT_EQ(first.size(), again.size());
   for (std::size_t i = 0; i < first.size(); ++i) {
-    EXPECT_EQ(first[i].T_object_tcp.matrix(), again[i].T_object_tcp.matrix());
+    EXPECT_EQ(first[i].T_object_hand.matrix(), again[i].T_object_hand.matrix());
     EXPECT_EQ(first[i].quality, again[i].quality);
   }
   options.seed = 2;
-  const auto other = sample_grasps({shape_at(MeshShape{mesh})}, gripper, options);
+  const auto other = sample_grasps({shape_at(MeshShape{mesh})}, gripper, options).grasps;
   ASSERT_FALSE(other.empty());
-  EXPECT_NE(first.front().T_object_tcp.matrix(), other.front().T_object_tcp.matrix());
+  EXPECT_NE(first.front().T_object_hand.matrix(), other.front().T_object_hand.matrix());
 }
 
 }  // namespace

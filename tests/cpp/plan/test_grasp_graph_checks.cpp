@@ -18,22 +18,22 @@ namespace {
 /// A configuration that is free with one grasp, while with another one the bar, and it alone, collides.
 struct Gate {
   Eigen::VectorXd q;
-  CandidateGrasp passing, blocked;
+  Grasp passing, blocked;
 };
 
 class OneVertex : public ::testing::Test {
  protected:
   /// Both ends of a grasp, by the checker of everything.
-  bool has_ends(const CandidateGrasp& grasp) const { return !ends(grasp, false).empty() && !ends(grasp, true).empty(); }
+  bool has_ends(const Grasp& grasp) const { return !ends(grasp, false).empty() && !ends(grasp, true).empty(); }
 
-  std::vector<Eigen::VectorXd> ends(const CandidateGrasp& grasp, bool at_goal) const {
+  std::vector<Eigen::VectorXd> ends(const Grasp& grasp, bool at_goal) const {
     CollisionChecker checker(problem_.group, test::carrying(problem_, grasp));
     return solve_ik_all(problem_.group,
-                        (at_goal ? problem_.T_world_goal : problem_.T_world_start) * grasp.T_object_tool, 2, {},
+                        (at_goal ? problem_.T_world_goal : problem_.T_world_start) * grasp.T_object_hand, 2, {},
                         [&](const Eigen::VectorXd& q) { return checker.rejection(q); });
   }
 
-  bool passes(const CandidateGrasp& grasp, const Eigen::VectorXd& q) const {
+  bool passes(const Grasp& grasp, const Eigen::VectorXd& q) const {
     CollisionChecker checker(problem_.group, test::carrying(problem_, grasp));
     for (const bool at_goal : {false, true}) {
       bool joined = false;
@@ -45,8 +45,8 @@ class OneVertex : public ::testing::Test {
 
   Gate find_gate() const {
     CollisionChecker alone(problem_.group, problem_.world);
-    std::vector<CandidateGrasp> grasps;
-    for (const CandidateGrasp& grasp : problem_.grasps)
+    std::vector<Grasp> grasps;
+    for (const Grasp& grasp : problem_.grasps)
       if (has_ends(grasp)) grasps.push_back(grasp);
     Rng rng(1, 0);
     while (true) {
@@ -54,12 +54,12 @@ class OneVertex : public ::testing::Test {
       gate.q = rng.uniform(problem_.group.sample_lower(), problem_.group.sample_upper());
       if (!alone.is_free(gate.q)) continue;
       bool blocked = false;
-      for (const CandidateGrasp& grasp : grasps) {
+      for (const Grasp& grasp : grasps) {
         if (CollisionChecker(problem_.group, test::carrying(problem_, grasp)).is_free(gate.q)) continue;
         gate.blocked = grasp;
         blocked = true;
       }
-      for (const CandidateGrasp& grasp : grasps) {
+      for (const Grasp& grasp : grasps) {
         if (!blocked || !passes(grasp, gate.q)) continue;
         gate.passing = grasp;
         return gate;
@@ -81,7 +81,7 @@ TEST_F(OneVertex, IsNotClosedToAllGraspsByWhatOneOfThemHolds) {
   problem_.grasps = {gate.blocked};
   EXPECT_EQ(plan_manipulation(problem_, options, &roadmap).outcome, Outcome::infeasible);
   // The other grasp costs more than any path, so that it is searched last.
-  CandidateGrasp passing = gate.passing;
+  Grasp passing = gate.passing;
   passing.cost = 100;
   for (const int batch : {0, 1})
     for (const bool lazy : {true, false})

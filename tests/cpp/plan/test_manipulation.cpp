@@ -31,12 +31,12 @@ ManipulationOptions bar_options() {
 /// in hand.
 double exhaustive_cost(const ManipulationProblem& problem, const ManipulationOptions& options, const Roadmap& roadmap,
                        int index) {
-  const CandidateGrasp& grasp = problem.grasps[index];
+  const Grasp& grasp = problem.grasps[index];
   CollisionChecker checker(problem.group, test::carrying(problem, grasp));
   IkOptions ik = options.ik;
   ik.seed = options.ik.seed + static_cast<unsigned>(index);
   const auto solve = [&](const Pose& T) {
-    return solve_ik_all(problem.group, T * grasp.T_object_tool, options.ik_solutions, ik,
+    return solve_ik_all(problem.group, T * grasp.T_object_hand, options.ik_solutions, ik,
                         [&](const Eigen::VectorXd& q) { return checker.rejection(q); });
   };
   std::vector<Eigen::VectorXd> nodes;
@@ -282,12 +282,12 @@ TEST(PrmStarMg, PathMovesTheObjectAndIsFree) {
   EXPECT_NEAR(result.cost, result.path->length(), 1e-9);
   EXPECT_EQ(result.stats.roadmap_cost, over_roadmap.cost);
   EXPECT_EQ(result.improvements.size(), over_roadmap.improvements.size() + 1);
-  const CandidateGrasp& grasp = problem.grasps[result.grasp_index];
+  const Grasp& grasp = problem.grasps[result.grasp_index];
   CollisionChecker checker(problem.group, test::carrying(problem, grasp));
   const auto& waypoints = result.path->waypoints;
   for (std::size_t i = 0; i + 1 < waypoints.size(); ++i)
     EXPECT_TRUE(checker.edge_is_free(waypoints[i], waypoints[i + 1], 0.001));
-  const auto object_at = [&](const Eigen::VectorXd& q) { return problem.group.fk(q) * grasp.T_object_tool.inverse(); };
+  const auto object_at = [&](const Eigen::VectorXd& q) { return problem.group.fk(q) * grasp.T_object_hand.inverse(); };
   EXPECT_LT((object_at(waypoints.front()).matrix() - problem.T_world_start.matrix()).norm(), 3e-4);
   EXPECT_LT((object_at(waypoints.back()).matrix() - problem.T_world_goal.matrix()).norm(), 3e-4);
 }
@@ -344,8 +344,8 @@ TEST(PrmStarMg, RefusesNonsense) {
   problem.grasps.clear();
   refused(problem, "grasps");
   problem = good;
-  problem.grasps[3].T_object_tool.linear() *= 1.1;
-  refused(problem, "grasps[3].T_object_tool");
+  problem.grasps[3].T_object_hand.linear() *= 1.1;
+  refused(problem, "grasps[3].T_object_hand");
   problem = good;
   problem.T_world_goal.translation().x() = std::nan("");
   refused(problem, "T_world_goal");

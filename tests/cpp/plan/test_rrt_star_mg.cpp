@@ -28,12 +28,12 @@ ManipulationOptions tree_options(int samples = 1000) {
 
 void expect_sound(const ManipulationProblem& problem, const ManipulationResult& result) {
   ASSERT_EQ(result.outcome, Outcome::solved);
-  const CandidateGrasp& grasp = problem.grasps[result.grasp_index];
+  const Grasp& grasp = problem.grasps[result.grasp_index];
   CollisionChecker checker(problem.group, test::carrying(problem, grasp));
   const auto& waypoints = result.path->waypoints;
   for (std::size_t i = 0; i + 1 < waypoints.size(); ++i)
     EXPECT_TRUE(checker.edge_is_free(waypoints[i], waypoints[i + 1], 0.005));
-  const auto object_at = [&](const Eigen::VectorXd& q) { return problem.group.fk(q) * grasp.T_object_tool.inverse(); };
+  const auto object_at = [&](const Eigen::VectorXd& q) { return problem.group.fk(q) * grasp.T_object_hand.inverse(); };
   EXPECT_LT((object_at(waypoints.front()).matrix() - problem.T_world_start.matrix()).norm(), 3e-4);
   EXPECT_LT((object_at(waypoints.back()).matrix() - problem.T_world_goal.matrix()).norm(), 3e-4);
   EXPECT_NEAR(result.cost, result.path->length() + grasp.cost, 1e-9);
@@ -217,9 +217,9 @@ TEST(RrtStarMg, TreesAreWholeAndFree) {
     ASSERT_FALSE(result.trees.empty());
     std::size_t edges = 0;
     for (const SearchTree& tree : result.trees) {
-      const CandidateGrasp& grasp = problem.grasps[tree.grasp];
+      const Grasp& grasp = problem.grasps[tree.grasp];
       CollisionChecker checker(problem.group, test::carrying(problem, grasp));
-      const Pose T_world_tip = (tree.from_goal ? problem.T_world_goal : problem.T_world_start) * grasp.T_object_tool;
+      const Pose T_world_tip = (tree.from_goal ? problem.T_world_goal : problem.T_world_start) * grasp.T_object_hand;
       ASSERT_EQ(tree.vertices.cols(), static_cast<Eigen::Index>(tree.parents.size()));
       int roots = 0;
       for (std::size_t i = 0; i < tree.parents.size(); ++i) {
@@ -287,7 +287,7 @@ TEST(RrtStarMg, OneReachableGraspOfManyIsFound) {
   // 500 grasps beyond the arm's reach, and one within it, somewhere among them.
   problem.grasps.assign(500, {flat_pose(2.5, 0, 0), 0, 0});
   for (std::size_t i = 0; i < 500; ++i)
-    problem.grasps[i].T_object_tool.translation().x() += 0.001 * static_cast<double>(i);
+    problem.grasps[i].T_object_hand.translation().x() += 0.001 * static_cast<double>(i);
   problem.grasps[317] = all.grasps[any.grasp_index];
   for (unsigned seed = 1; seed <= 20; ++seed) {
     ManipulationOptions options = tree_options();

@@ -23,7 +23,7 @@ constexpr double kStep = 0.2, kLower = -2.8;
 
 class GridSearch {
  public:
-  GridSearch(const ManipulationProblem& problem, const CandidateGrasp& grasp)
+  GridSearch(const ManipulationProblem& problem, const Grasp& grasp)
       : checker_(problem.group, test::carrying(problem, grasp)) {}
 
   /// Length of the shortest path from any start to any goal, first along the grid, then shortcut; infinite when there
@@ -121,10 +121,10 @@ class GridSearch {
 /// Taut grid length of each grasp.
 std::vector<double> exhaustive(const ManipulationProblem& problem, double bound) {
   std::vector<double> out;
-  for (const CandidateGrasp& grasp : problem.grasps) {
+  for (const Grasp& grasp : problem.grasps) {
     CollisionChecker checker(problem.group, test::carrying(problem, grasp));
     const auto ends = [&](const Pose& T) {
-      return solve_ik_all(problem.group, T * grasp.T_object_tool, 4, {},
+      return solve_ik_all(problem.group, T * grasp.T_object_hand, 4, {},
                           [&](const VectorXd& q) { return checker.rejection(q); });
     };
     const auto starts = ends(problem.T_world_start), goals = ends(problem.T_world_goal);

@@ -31,10 +31,10 @@ inline ManipulationProblem bar_transfer() {
 }
 
 /// The problem's world with the object in hand.
-inline World carrying(const ManipulationProblem& problem, const CandidateGrasp& grasp) {
+inline World carrying(const ManipulationProblem& problem, const Grasp& grasp) {
   World world = problem.world;
   world.add("object", WorldObject{problem.object, problem.T_world_start});
-  world.attach("object", "tip", grasp.T_object_tool.inverse(), problem.touch_links);
+  world.attach("object", "tip", grasp.T_object_hand.inverse(), problem.touch_links);
   return world;
 }
 

@@ -17,7 +17,7 @@ namespace mmgrasp::test {
 class FclCarry {
  public:
   FclCarry(const ManipulationProblem& problem, int grasp, double length, double width) : length_(length) {
-    T_tip_bar_ = problem.grasps[grasp].T_object_tool.inverse();
+    T_tip_bar_ = problem.grasps[grasp].T_object_hand.inverse();
     for (const auto& [name, object] : problem.world.objects())
       for (const LinkShape& shape : object.shapes)
         scene_.push_back(box(shape, object.T_world_object * shape.T_link_shape));

@@ -30,7 +30,7 @@ class RegionTruth {
     for (const Tray& tray : problem.trays) {
       for (const Part& part : tray.parts) {
         for (const Grasp& grasp : part.grasps) {
-          const double opening = problem.gripper.pregrasp_opening(grasp.width);
+          const double opening = problem.gripper.pregrasp_opening(grasp.opening);
           if (!checkers_.empty() && opening == opening_) continue;
           opening_ = opening;
           Eigen::VectorXd values = problem.arm.reference();
@@ -63,7 +63,7 @@ class RegionTruth {
       IkOptions options;
       options.restarts = restarts_;
       options.time_limit = 1e6;
-      if (solve_collision_free_ik(checker, part.T_world_part * grasp.T_object_tcp, problem_.home, options).outcome ==
+      if (solve_collision_free_ik(checker, part.T_world_part * grasp.T_object_hand, problem_.home, options).outcome ==
           Outcome::solved)
         return true;
     }
@@ -78,7 +78,7 @@ class RegionTruth {
     CollisionChecker& checker = checkers_.front();
     checker.set_root(pose_from_planar(base_pose));
     const Pose tool = checker.group().fk(seen.q);
-    const Pose wanted = part.T_world_part * part.grasps[seen.grasp].T_object_tcp;
+    const Pose wanted = part.T_world_part * part.grasps[seen.grasp].T_object_hand;
     return (tool.translation() - wanted.translation()).norm() < 2e-5 && rotation_distance(tool, wanted) < 2e-4 &&
            checker.rejection(seen.q) == Rejection::none;
   }

@@ -62,11 +62,11 @@ inline std::vector<Grasp> grasps_from_above(double width) {
   for (double tilt : {0.0, 0.5, -0.5}) {
     for (int quarter = 0; quarter < 4; ++quarter) {
       Grasp grasp;
-      grasp.width = width;
-      grasp.T_object_tcp.linear() = (Eigen::AngleAxisd(0.5 * M_PI * quarter, Eigen::Vector3d::UnitZ()) *
+      grasp.opening = width;
+      grasp.T_object_hand.linear() = (Eigen::AngleAxisd(0.5 * M_PI * quarter, Eigen::Vector3d::UnitZ()) *
                                      Eigen::AngleAxisd(M_PI + tilt, Eigen::Vector3d::UnitY()))
                                         .toRotationMatrix();
-      grasp.T_object_tcp.translation().z() = 0.01;
+      grasp.T_object_hand.translation().z() = 0.01;
       grasp.quality = tilt == 0 ? 1 : 0.5;
       grasps.push_back(grasp);
     }
@@ -97,8 +97,8 @@ inline PartSupplyProblem small_storeroom(int parts_per_tray = 2) {
   RobotOptions options;
   options.base = BaseKind::diff_drive;
   const Robot robot = Robot::from_strings(small_robot_urdf(), "", options, "small");
-  Gripper gripper;
-  gripper.tcp_link = "tcp";
+  Hand gripper;
+  gripper.tool_link = "tcp";
   gripper.approach = Eigen::Vector3d::UnitZ();
   gripper.closing = Eigen::Vector3d::UnitY();
   gripper.max_opening = 0.08;

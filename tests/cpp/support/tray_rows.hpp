@@ -16,7 +16,7 @@ namespace mmgrasp::testing_support {
 struct MobileManipulator {
   std::string name;
   JointGroup arm;
-  Gripper gripper;
+  Hand gripper;
   Eigen::VectorXd home;
 };
 
@@ -29,8 +29,8 @@ inline MobileManipulator fetchlike(const std::string& assets) {
   options.base = BaseKind::diff_drive;
   const Robot robot =
       Robot::load(assets + "/robots/fetchlike/fetchlike.urdf", assets + "/robots/fetchlike/fetchlike.srdf", options);
-  Gripper gripper;
-  gripper.tcp_link = "gripper_tcp";
+  Hand gripper;
+  gripper.tool_link = "gripper_tcp";
   gripper.max_opening = 0.10;
   gripper.finger_depth = 0.04;
   gripper.finger_width = 0.022;
@@ -58,9 +58,9 @@ inline Robot with_two_finger_gripper(const Robot& robot, const std::string& data
   return compute_disabled_pairs(whole, pairs);
 }
 
-inline Gripper two_finger_gripper() {
-  Gripper gripper;
-  gripper.tcp_link = "tcp";
+inline Hand two_finger_gripper() {
+  Hand gripper;
+  gripper.tool_link = "tcp";
   gripper.approach = Eigen::Vector3d::UnitZ();
   gripper.closing = Eigen::Vector3d::UnitX();
   gripper.max_opening = 0.078;
@@ -165,9 +165,9 @@ inline PartSupplyProblem tray_row(const MobileManipulator& robot, const RowOptio
           const double turn = M_PI * g / row.grasps, c = std::cos(turn), s = std::sin(turn);
           world << 0, -s, c, 0, c, s, -1, 0, 0;  // down; along the closing; their cross product
           Grasp grasp;
-          grasp.width = kPart;
-          grasp.T_object_tcp.linear() = world * tool.transpose();
-          grasp.T_object_tcp.translation().z() = row.tool_height - 0.01;
+          grasp.opening = kPart;
+          grasp.T_object_hand.linear() = world * tool.transpose();
+          grasp.T_object_hand.translation().z() = row.tool_height - 0.01;
           part.grasps.push_back(grasp);
         }
         tray.parts.push_back(part);

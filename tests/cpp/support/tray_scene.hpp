@@ -15,9 +15,9 @@ namespace tray_scene {
 using namespace mmgrasp;
 using Eigen::Vector3d;
 
-inline Gripper gripper() {
-  Gripper g;
-  g.tcp_link = "tcp";
+inline Hand gripper() {
+  Hand g;
+  g.tool_link = "tcp";
   g.max_opening = 0.1;
   g.finger_depth = 0.04;
   g.finger_width = 0.022;
@@ -48,8 +48,9 @@ inline HeightMap map_of(const std::vector<PlacedShape>& scene, const Eigen::Vect
   return make_height_map(seen, Pose::Identity(), size, options);
 }
 
-/// The hand as boxes in the tcp's frame, approach x, closing y, as HandShape describes it but without its margin.
-inline std::vector<LinkShape> hand_body(const Gripper& g, const HandShape& hand, double opening) {
+/// The hand as boxes in the tool frame, approach x, closing y, as HandBody describes it.
+inline std::vector<LinkShape> hand_body(const Hand& g, double opening) {
+  const HandBody& hand = g.body;
   std::vector<LinkShape> shapes;
   const double tip = g.finger_depth / 2, middle = tip - hand.finger_length / 2;
   for (const double side : {-1.0, 1.0}) {
@@ -62,11 +63,11 @@ inline std::vector<LinkShape> hand_body(const Gripper& g, const HandShape& hand,
 }
 
 /// Asks the collision checker whether the open hand at a grasp touches the true bodies.
-inline bool hand_is_free(const ScoredGrasp& grasp, const Gripper& g, const HandShape& hand, const World& world) {
-  CollisionChecker checker(free_body::group(hand_body(g, hand, grasp.opening)), world);
-  const Vector3d rpy = rpy_from_rotation(grasp.T_world_tcp.linear());
+inline bool hand_is_free(const Grasp& grasp, const Hand& g, const World& world) {
+  CollisionChecker checker(free_body::group(hand_body(g, g.pregrasp_opening(grasp.opening))), world);
+  const Vector3d rpy = rpy_from_rotation(grasp.T_object_hand.linear());
   Eigen::VectorXd q(6);
-  q << grasp.T_world_tcp.translation(), rpy.z(), rpy.y(), rpy.x();
+  q << grasp.T_object_hand.translation(), rpy.z(), rpy.y(), rpy.x();
   return checker.is_free(q);
 }
 

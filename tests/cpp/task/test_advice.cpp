@@ -32,7 +32,7 @@ void give_grasps(PartSupplyProblem& problem) {
 
 void set_opening(PartSupplyProblem& problem, double opening) {
   problem.gripper.max_opening = opening;
-  for (FingerJoint& joint : problem.gripper.joints) joint.open = 0.5 * opening;
+  for (HandJoint& joint : problem.gripper.joints) joint.open = 0.5 * opening;
   give_grasps(problem);
 }
 

@@ -113,7 +113,7 @@ TEST_F(BaseRegions, CellsAreFeasibleForAnotherIk) {
       for (std::size_t g = 0; g < part.grasps.size() && !any; ++g) {
         IkOptions options;
         options.restarts = 60;
-        const IkResult ik = solve_ik(checker.group(), part.T_world_part * part.grasps[g].T_object_tcp, problem_->home,
+        const IkResult ik = solve_ik(checker.group(), part.T_world_part * part.grasps[g].T_object_hand, problem_->home,
                                      options, [&](const Eigen::VectorXd& q) { return checker.rejection(q); });
         any = ik.outcome == Outcome::solved;
       }
@@ -135,7 +135,7 @@ TEST_F(BaseRegions, ConfigurationsReachTheirGrasps) {
       if (!seen.feasible) continue;
       ++seen_feasible;
       const Part& part = problem_->trays[0].parts[0];
-      const Pose wanted = part.T_world_part * part.grasps[seen.grasp].T_object_tcp;
+      const Pose wanted = part.T_world_part * part.grasps[seen.grasp].T_object_hand;
       const Pose tool = problem_->robot.link_poses(problem_->arm.full_values(seen.q),
                                                    pose_from_planar(pose))[problem_->robot.link_index("tcp")];
       EXPECT_LT((tool.translation() - wanted.translation()).norm(), 1e-4);
@@ -186,7 +186,7 @@ TEST_F(BaseRegions, NoGraspAndNoTargetGiveEmptyRegions) {
 TEST_F(BaseRegions, BlockedHandsAreFilteredBeforeTheArm) {
   PartSupplyProblem other = *problem_;
   Grasp below = other.trays[0].parts[0].grasps[0];
-  below.T_object_tcp.linear() = Eigen::Matrix3d::Identity();
+  below.T_object_hand.linear() = Eigen::Matrix3d::Identity();
   other.trays[0].parts[0].grasps = {below};
   BasePoseEvaluator evaluator(other, *database_);
   EXPECT_TRUE(evaluator.hand_blocked({TrayId(0), 0}, 0));

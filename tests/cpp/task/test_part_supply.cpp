@@ -25,11 +25,11 @@ verify::PlanToCheck to_check(const PartSupplyProblem& problem, const PartSupplyP
     check.velocity_limits.push_back(problem.arm.velocity_limits()[i]);
     check.acceleration_limits.push_back(problem.arm.acceleration_limits()[i]);
   }
-  check.tip_link = problem.gripper.tcp_link;
+  check.tip_link = problem.gripper.tool_link;
   check.max_opening = problem.gripper.max_opening;
   check.clearance = problem.gripper.clearance;
   check.approach = problem.gripper.approach;
-  for (const FingerJoint& finger : problem.gripper.joints)
+  for (const HandJoint& finger : problem.gripper.joints)
     check.fingers.push_back({finger.name, finger.closed, finger.open});
   check.finger_links = problem.gripper.finger_links;
   check.home = problem.home;
@@ -45,7 +45,7 @@ verify::PlanToCheck to_check(const PartSupplyProblem& problem, const PartSupplyP
     check.trays.push_back(tray.name);
     for (const Part& part : tray.parts) {
       verify::CheckedPart checked{{part.name, part.shapes, part.T_world_part}, tray.name, part.target, {}};
-      for (const Grasp& grasp : part.grasps) checked.grasps.push_back({grasp.T_object_tcp, grasp.width});
+      for (const Grasp& grasp : part.grasps) checked.grasps.push_back({grasp.T_object_hand, grasp.opening});
       check.parts.push_back(checked);
     }
   }
@@ -245,7 +245,7 @@ TEST(PartSupply, BadOptionsAreRefusedByName) {
   EXPECT_NE(message([](auto& p) { p.home[2] = 9; }).find("elbow"), std::string::npos);
   EXPECT_NE(message([](auto& p) { p.trays[1].name = "A"; }).find("tray name"), std::string::npos);
   EXPECT_NE(message([](auto& p) { p.trays[1].parts[0].name = "table"; }).find("table"), std::string::npos);
-  EXPECT_NE(message([](auto& p) { p.trays[0].parts[0].grasps[0].width = 0.2; }).find("max_opening"), std::string::npos);
+  EXPECT_NE(message([](auto& p) { p.trays[0].parts[0].grasps[0].opening = 0.2; }).find("max_opening"), std::string::npos);
   EXPECT_EQ(message([](auto&) {}), "");
 }
 

@@ -82,7 +82,7 @@ TEST(Pick, BadInputIsRefused) {
   problem.object = "mug";
   EXPECT_THROW(plan_pick(problem, database()), InvalidInput);
   problem = pin_on_table();
-  problem.grasps[1].width = 0.2;
+  problem.grasps[1].opening = 0.2;
   EXPECT_THROW(plan_pick(problem, database()), InvalidInput);
   problem = pin_on_table();
   problem.options.lift_height = 0;

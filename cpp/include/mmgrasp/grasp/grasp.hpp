@@ -1,49 +1,80 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/pose.hpp"
-#include "mmgrasp/geometry/shape.hpp"
-#include "mmgrasp/grasp/gripper.hpp"
-#include "mmgrasp/robot/joint.hpp"
 
 namespace mmgrasp {
 
-/// One way to hold an object.
-struct MMGRASP_EXPORT Grasp {
-  Pose T_object_tcp = Pose::Identity();
-  double width = 0;    ///< Distance between the contacts [m]: the fingers' opening while holding.
-  double quality = 1;  ///< Larger is better, in [0, 1].
+/// One factor of a grasp's quality, 1 - weight + weight * value: a part of weight 0.5 halves the quality at worst.
+struct MMGRASP_EXPORT QualityPart {
+  std::string name;
+  double value = 1;   ///< From 0 to 1, the best.
+  double weight = 1;  ///< From 0 (counts nothing) to 1.
+
+  double factor() const { return 1 - weight + weight * value; }
 };
 
-struct MMGRASP_EXPORT GraspSamplerOptions {
-  int approaches = 8;  ///< Approach directions around each closing axis; > 0.
-  int positions = 3;   ///< Pad positions along each free direction of a box or cylinder (odd: the middle first); > 0.
-  int mesh_samples = 400;  ///< Surface points tried on a mesh; > 0.
-  int max_grasps = 200;    ///< Best kept, spread over approach directions; > 0.
-  double friction =
-      0.5;  ///< Coulomb coefficient; an antipodal pair's normals lie within atan(friction) of its axis; > 0.
-  double standoff = 0.0;  ///< How far the tcp stays outside the object's middle along the approach [m].
-  unsigned seed = 1;
-  void check() const;
+/// Provenance of sample_grasps: two opposed contacts and a direction of approach.
+struct MMGRASP_EXPORT ContactPairProvenance {
+  int pair = 0;          ///< Index among the object's contact pairs, those that are too wide included.
+  int approach = 0;      ///< Index among GraspSamplerOptions::approaches.
+  bool flipped = false;  ///< The hand is turned by half a turn about the approach.
 };
 
-/// Antipodal grasps of a rigid body (box, cylinder, sphere, mesh or several shapes; P1 3.4.1, Algorithm 3): contact
-/// pairs, tool centre point midway, approach directions across the closing axis. Pairs wider than the gripper are
-/// counted in `too_wide`: a pair is too wide when it exceeds max_opening; a part that leaves less than the wanted
-/// clearance is kept (the gap shrinks, see Gripper::pregrasp_opening) with a lower quality. Sorted by quality, then by
-/// order of sampling.
+/// Provenance of sample_pipe_grasps: P2's four variables (3.2.3.1, figure 3.5).
+struct MMGRASP_EXPORT PipeProvenance {
+  int section = 0;
+  double length = 0;     ///< From the section's first node to the tool frame [m].
+  double angle = 0;      ///< From the section's y axis to the approach direction about its x axis, in [-pi, pi) [rad].
+  bool flipped = false;  ///< The hand is turned by half a turn about the approach.
+};
+
+/// Provenance of evaluate_graspability: a place of a height map and, if a depth image was given, of the image.
+struct MMGRASP_EXPORT HeightMapProvenance {
+  double angle = 0;    ///< Direction of the closing axis in the map's frame, in [0, pi) [rad].
+  double height = 0;   ///< Height of the finger tips above the map's frame [m].
+  int ix = 0, iy = 0;  ///< Cell of the map.
+  Eigen::Vector2d pixel = Eigen::Vector2d::Constant(-1);  ///< (u, v); (-1, -1): no image, or outside of it.
+};
+
+/// Which sampler a grasp came from, and with which numbers; monostate: it was given.
+using GraspProvenance = std::variant<std::monostate, ContactPairProvenance, PipeProvenance, HeightMapProvenance>;
+
+/// One way to hold an object: where the hand stands, how far it is open, what it costs and how good it is.
 ///
-/// Both hands of a grasp are given: turned by half a turn about the approach axis the same contacts are another grasp.
-/// T_object_tcp turns Gripper::approach into the direction the hand moves in and Gripper::closing into the line of
-/// contact. A single box, cylinder, sphere or capsule is sampled in closed form; anything else by rays through its
-/// triangles: solids from outside to outside of their union, open surfaces from wall to wall. Quality is a product of
-/// factors in [0.5, 1]: normals along the contact line, line through the centre of mass, share of the pad on a flat
-/// face (boxes), little material behind the pads, clearance left. Collisions of the hand are not looked at here. Throws
-/// InvalidInput on an empty object, a plane, a bad shape, gripper or option.
-MMGRASP_EXPORT std::vector<Grasp> sample_grasps(const std::vector<LinkShape>& object, const Gripper& gripper,
-                                                const GraspSamplerOptions& options = {}, int* too_wide = nullptr);
+/// Samplers, planners, trays and plans all speak of this one record. The hand's frame is its tool frame
+/// (Hand::tool_link); a robot holds the object when T_world_hand = T_world_object * T_object_hand.
+///
+///     Grasp grasp;
+///     grasp.T_object_hand = pose_from_xyz_rpy({0, 0, 0.01}, {0, 1.5708, 0});  // from above, approaching along x
+///     grasp.opening = 0.04;
+///     problem.grasps = {grasp};
+struct MMGRASP_EXPORT Grasp {
+  /// Pose of the hand's tool frame in the object's frame. Where no object is known (evaluate_graspability) the object's
+  /// frame is the world's.
+  Pose T_object_hand = Pose::Identity();
+  double opening = 0;  ///< Distance between the fingers while holding [m]: the object's width between them; >= 0.
+  double cost = 0;     ///< Added by planners to their path's length; >= 0.
+  double quality = 1;  ///< Larger is better, in [0, 1].
+  std::vector<QualityPart> parts{};  ///< What `quality` is the product of; empty when it was given as a number.
+  /// Posture of a hand with several joint groups: for each of Hand::groups() how far it is open, in [0, 1]. Empty: the
+  /// posture that belongs to `opening`.
+  std::vector<double> posture{};
+  GraspProvenance provenance{};
+
+  /// Sets `parts`, and `quality` to the product of their factors.
+  void set_quality(std::vector<QualityPart> by_name);
+};
+
+/// What a sampler found, and what it left out because the hand does not open so far.
+struct MMGRASP_EXPORT SampledGrasps {
+  std::vector<Grasp> grasps;
+  int too_wide = 0;  ///< Contact pairs (sample_grasps) or sections of a pipe (sample_pipe_grasps) wider than the hand.
+};
 
 }  // namespace mmgrasp

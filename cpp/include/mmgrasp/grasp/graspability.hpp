@@ -8,14 +8,14 @@
 #include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/grasp/grasp.hpp"
-#include "mmgrasp/grasp/gripper.hpp"
+#include "mmgrasp/grasp/hand.hpp"
 #include "mmgrasp/grasp/hand_mask.hpp"
 #include "mmgrasp/mapping/height_map.hpp"
 
 namespace mmgrasp {
 
 struct MMGRASP_EXPORT GraspabilityOptions {
-  HandShape hand;            ///< Fingers and palm.
+  double margin = 0.001;     ///< Kept free around the hand [m]; >= 0.
   int orientations = 16;     ///< Closing directions over half a turn; > 0.
   int openings = 2;          ///< Openings tried: max_opening, and equal parts of it; > 0.
   double layer_step = 0.01;  ///< Between the heights at which fingertips are tried [m]; > 0.
@@ -29,20 +29,7 @@ struct MMGRASP_EXPORT GraspabilityOptions {
   void check() const;
 };
 
-/// A way to grasp something that a depth image shows, straight along -z of the map's frame.
-struct MMGRASP_EXPORT ScoredGrasp {
-  Pose T_world_tcp = Pose::Identity();
-  double opening = 0;  ///< Of the fingers while moving in: Gripper::pregrasp_opening(width) [m].
-  double width = 0;    ///< Of the part between the fingers [m].
-  double score = 0;    ///< In (0, 1].
-  double angle = 0;    ///< Of the closing axis in the map's frame, in [0, pi) [rad].
-  double height = 0;   ///< Of the fingertips above the map's frame [m].
-  int ix = 0, iy = 0;  ///< Cell of the map.
-  int orientation = 0;
-  Eigen::Vector2d pixel = Eigen::Vector2d::Constant(-1);  ///< Of the depth image; (-1, -1) without one or outside.
-};
-
-/// Places of the hand that were looked at more closely, by what became of them.
+/// Places of the hand that were checked more closely, by what became of them.
 struct MMGRASP_EXPORT GraspabilityCounts {
   std::size_t tried = 0;        ///< Local maxima of graspability.
   std::size_t too_wide = 0;     ///< The part leaves no room for the fingers once the hand is centred on it.
@@ -52,27 +39,28 @@ struct MMGRASP_EXPORT GraspabilityCounts {
 };
 
 struct MMGRASP_EXPORT Graspability {
-  std::vector<ScoredGrasp> grasps;  ///< Best first.
+  std::vector<Grasp> grasps;  ///< Best first; T_object_hand is the pose in the world.
   GraspabilityCounts counts;
 };
 
 /// Fast graspability evaluation (Domae et al. 2014; P1 3.7.2) on a height map: for every closing direction, opening and
 /// height of the fingertips the contact mask is convolved with the cells that rise above the tips, the masks of fingers
 /// and palm with those that would be touched. Graspability is the contact count where nothing is touched, smoothed; at
-/// its local maxima the hand is centred on the part, its width measured, and the hand opened for that width is checked
-/// again. Cells of which nothing is known, and all beyond the map, count as touched. The score is the product of the
-/// share of the pads in contact, how solid the part is between them, how deep they hold it, how near its middle and how
-/// far the hand may shift. Same answer at any thread count. Throws InvalidInput on a bad map, gripper or option.
-MMGRASP_EXPORT Graspability evaluate_graspability(const HeightMap& map, const Gripper& gripper,
+/// its local maxima the hand is centred on the part, its width measured (the grasp's opening), and the hand opened for
+/// that width (Hand::pregrasp_opening) is checked again. Cells of which nothing is known, and all beyond the map, count
+/// as touched. Grasps move straight in along -z of the map's frame. Their quality has five parts: `contact`, the share
+/// of the pads in contact, and `solidity` of the part between them, of weight 1; `depth` of the hold, `centring` on the
+/// part and `room` for the hand to shift, of weight 0.5. Same answer at any thread count. Throws InvalidInput on a bad
+/// map, hand or option.
+MMGRASP_EXPORT Graspability evaluate_graspability(const HeightMap& map, const Hand& hand,
                                                   const GraspabilityOptions& options = {}, const Monitor& monitor = {});
 
 /// The smoothed graspability of one closing direction, opening and fingertip height, one value a cell in [0, 1]: the
 /// picture of P1's figure 3.21d.
-MMGRASP_EXPORT std::vector<float> graspability_map(const HeightMap& map, const Gripper& gripper, double angle,
-                                                   double opening, double tip_height,
-                                                   const GraspabilityOptions& options = {});
+MMGRASP_EXPORT std::vector<float> graspability_map(const HeightMap& map, const Hand& hand, double angle, double opening,
+                                                   double tip_height, const GraspabilityOptions& options = {});
 
-/// Fills in the pixel of each grasp in the image the map was made of.
-MMGRASP_EXPORT void find_pixels(const DepthImage& image, std::vector<ScoredGrasp>& grasps);
+/// Fills in the pixel of each grasp of evaluate_graspability in the image that the map was made of.
+MMGRASP_EXPORT void find_pixels(const DepthImage& image, std::vector<Grasp>& grasps);
 
 }  // namespace mmgrasp

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mmgrasp/core/export.hpp"
-#include "mmgrasp/grasp/gripper.hpp"
+#include "mmgrasp/grasp/hand.hpp"
 
 namespace mmgrasp {
 
@@ -20,24 +20,14 @@ struct MMGRASP_EXPORT MaskImage {
   void check(const char* field) const;  ///< Throws InvalidInput on a wrong size or more than 65,535 ones.
 };
 
-/// What the gripper's own numbers leave open about the hand's body.
-struct MMGRASP_EXPORT HandShape {
-  double finger_thickness = 0.012;  ///< Of a finger along the closing axis [m]; > 0.
-  double finger_length = 0.12;      ///< From the fingertip back to the palm [m]; > 0.
-  double palm_length = 0.13;        ///< Of the palm along the closing axis [m]; > 0.
-  double palm_width = 0.065;        ///< Of the palm across it [m]; > 0.
-  double margin = 0.001;            ///< Air kept around the hand [m]; >= 0.
-  void check() const;
-};
-
 /// The hand seen along its approach, closing axis at an angle [rad] from x (P1 3.7.2, figure 3.21): between the fingers
 /// where the part should be, at the fingers where nothing may be, and at the palm above them. Fingers and palm cover
-/// every cell that they touch, the contact region those whose centre it holds.
+/// every cell that they touch or that comes within `margin` [m], the contact region those whose centre it holds.
 struct MMGRASP_EXPORT HandMasks {
   MaskImage contact, fingers, palm;
 };
-MMGRASP_EXPORT HandMasks make_hand_masks(const Gripper& gripper, const HandShape& shape, double opening, double angle,
-                                         double resolution);
+MMGRASP_EXPORT HandMasks make_hand_masks(const Hand& hand, double opening, double angle, double resolution,
+                                         double margin = 0.001);
 
 /// How many ones of the mask fall on ones of the image, for the mask's middle at every cell: the convolution (strictly
 /// the correlation) of the two. Cells outside the image count as `outside`.

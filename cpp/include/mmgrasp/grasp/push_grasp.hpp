@@ -1,10 +1,11 @@
 #pragma once
 
 #include "mmgrasp/core/export.hpp"
+#include "mmgrasp/grasp/hand.hpp"
 
 namespace mmgrasp {
 
-/// A parallel gripper that takes an object while the tool moves on along the approach (P1 4.3, figure 4.7). Lengths
+/// A parallel hand that takes an object while it moves on along the approach (P1 4.3, figure 4.7). Lengths
 /// along the approach are engagements: how far the finger tips are beyond the object's near face, negative before they
 /// reach it. The palm touches at `finger_length`; from there the object slides with it.
 struct MMGRASP_EXPORT PushGraspProblem {
@@ -22,7 +23,12 @@ struct MMGRASP_EXPORT PushGraspProblem {
   void check() const;           ///< Throws InvalidInput naming field, value and rule.
 };
 
-/// What one moment to begin closing comes to.
+/// The push-grasp of an object this wide [m] by a hand that is wide open: opening, finger length and clearance are the
+/// hand's, half a pad must engage, and planned is the middle of the fingers; speeds and errors keep their defaults.
+/// Throws InvalidInput when the object is no narrower than the hand opens.
+MMGRASP_EXPORT PushGraspProblem push_grasp_problem(const Hand& hand, double object_width);
+
+/// What beginning to close at one moment leads to.
 struct MMGRASP_EXPORT ClosingOutcome {
   double start = 0;              ///< Engagement at which closing begins [m].
   double both_touch = 0;         ///< The same when both fingers touch, were the object not pushed [m].

@@ -11,7 +11,8 @@
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/core/outcome.hpp"
-#include "mmgrasp/grasp/gripper.hpp"
+#include "mmgrasp/grasp/grasp.hpp"
+#include "mmgrasp/grasp/hand.hpp"
 #include "mmgrasp/plan/improvement.hpp"
 #include "mmgrasp/plan/roadmap.hpp"
 #include "mmgrasp/plan/rrt_star_mg.hpp"
@@ -21,13 +22,6 @@
 
 namespace mmgrasp {
 
-/// One way to hold the object while it is moved.
-struct MMGRASP_EXPORT CandidateGrasp {
-  Pose T_object_tool = Pose::Identity();  ///< Pose of the group's tip in the object's frame.
-  double opening = 0;                     ///< Opening of the fingers [m]; used when the problem has a gripper.
-  double cost = 0;                        ///< Added to the path's length; >= 0.
-};
-
 /// An object to be moved from one pose to another with any of many grasps (P2 4.2): the planner chooses the grasp.
 struct MMGRASP_EXPORT ManipulationProblem {
   /// Arm, or arm and omni base; its tip is the tool. A diff-drive base could not drive the paths: it is refused.
@@ -35,8 +29,8 @@ struct MMGRASP_EXPORT ManipulationProblem {
   World world;                    ///< Does not hold the object.
   std::vector<LinkShape> object;  ///< Shapes in the object's frame.
   Pose T_world_start = Pose::Identity(), T_world_goal = Pose::Identity();
-  std::vector<CandidateGrasp> grasps{};
-  std::optional<Gripper> gripper{};     ///< Sets the fingers to each grasp's opening.
+  std::vector<Grasp> grasps{};          ///< T_object_hand is the pose of the group's tip.
+  std::optional<Hand> gripper{};        ///< Sets the fingers to each grasp's opening or posture.
   std::set<std::string> touch_links{};  ///< Links that may touch the object; empty: the end effector's.
   std::string object_name = "object";
   /// Throws InvalidInput: a diff-drive base, no grasps, a pose that is no rigid transform (index and field named), a

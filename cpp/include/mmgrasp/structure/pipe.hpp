@@ -33,7 +33,7 @@ struct MMGRASP_EXPORT Pipe {
   /// At the section's first node, x along the section. y is the object's z turned into the plane across the section,
   /// or the object's x when the section runs along z (within 0.06 rad): what P2 figure 3.5 leaves open.
   Pose T_object_section(int section) const;
-  /// Of tubes with equal walls: sections weigh by length times diameter.
+  /// Centre of mass of tubes with equal walls: sections weigh by length times diameter.
   Eigen::Vector3d centre_of_mass() const;
   /// The solid for collision checks: a shape for each section and, with flat ends, a ball at each node where sections
   /// meet, as wide as the widest of them.

@@ -5,26 +5,16 @@
 
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/pose.hpp"
-#include "mmgrasp/grasp/gripper.hpp"
+#include "mmgrasp/grasp/grasp.hpp"
+#include "mmgrasp/grasp/hand.hpp"
 #include "mmgrasp/structure/pipe.hpp"
 
 namespace mmgrasp {
 
-/// A parallel-jaw grasp of a pipe by P2's four variables (3.2.3.1, figure 3.5).
-struct MMGRASP_EXPORT PipeGrasp {
-  int section = 0;
-  double length = 0;     ///< Of the tool centre point from the section's first node [m].
-  double angle = 0;      ///< From the section's y axis to the approach direction about its x axis, in [-pi, pi) [rad].
-  bool flipped = false;  ///< Turned by half a turn about the approach direction.
-  Pose T_object_tool = Pose::Identity();
-  double opening = 0;  ///< Of the fingers while holding: the section's diameter [m].
-  double cost = 0;     ///< What a planner adds to its path's length.
-};
-
 struct MMGRASP_EXPORT PipeGraspOptions {
-  Eigen::Vector3d approach = Eigen::Vector3d::UnitX();  ///< Unit axis of the tool along which the hand moves in.
-  Eigen::Vector3d closing = Eigen::Vector3d::UnitY();   ///< Unit axis of the tool along which the pads close.
-  double max_opening = 0.1;  ///< Sections thicker than this get no grasps (their count is told) [m]; > 0.
+  Eigen::Vector3d approach = Eigen::Vector3d::UnitX();  ///< Unit axis of the tool frame along which the hand moves in.
+  Eigen::Vector3d closing = Eigen::Vector3d::UnitY();   ///< Unit axis of the tool frame along which the pads close.
+  double max_opening = 0.1;  ///< Sections thicker than this get no grasps (they are counted) [m]; > 0.
   double end_margin = 0.02;  ///< Kept from either node of a section, for the fingers' width [m]; >= 0.
   /// Any two grasps of a section and flip are this far apart along it or in angle [m], [rad]; > 0.
   double length_spacing = 0.01, angle_spacing = 5 * 3.14159265358979323846 / 180;
@@ -34,19 +24,18 @@ struct MMGRASP_EXPORT PipeGraspOptions {
   void check() const;
 };
 
-/// Options for a gripper: its axes and widest opening, half its fingers' width kept from the nodes.
-MMGRASP_EXPORT PipeGraspOptions pipe_grasp_options(const Gripper& gripper);
+/// Options for a hand: its axes and widest opening, half its fingers' width kept from the nodes.
+MMGRASP_EXPORT PipeGraspOptions pipe_grasp_options(const Hand& hand);
 
-/// One grasp placed: T_object_tool turns the tool's approach axis to `angle` across the section and its closing axis
-/// across both (P2's B_e^P). Throws InvalidInput unless the section exists and 0 <= length <= its length.
-MMGRASP_EXPORT PipeGrasp place_pipe_grasp(const Pipe& pipe, int section, double length, double angle, bool flipped,
-                                          const PipeGraspOptions& options = {});
+/// One grasp by P2's four variables (3.2.3.1, figure 3.5), which become its provenance: T_object_hand turns the hand's
+/// approach axis to `angle` across the section and its closing axis across both (P2's B_e^P); the opening is the
+/// section's diameter. Throws InvalidInput unless the section exists and 0 <= length <= its length.
+MMGRASP_EXPORT Grasp place_pipe_grasp(const Pipe& pipe, int section, double length, double angle, bool flipped,
+                                      const PipeGraspOptions& options = {});
 
 /// Grasps drawn over the whole pipe: sections by their length without margins, length and angle uniform, either flip
-/// alike. Returns at most `count`: fewer when no more fit (see `draws`). `too_thick` counts sections left out. Neither
-/// the hand's nor the arm's collisions are looked at here.
-MMGRASP_EXPORT std::vector<PipeGrasp> sample_pipe_grasps(const Pipe& pipe, int count,
-                                                         const PipeGraspOptions& options = {},
-                                                         int* too_thick = nullptr);
+/// alike. Returns at most `count`: fewer when no more fit (see `draws`); `too_wide` counts sections left out. Neither
+/// the hand's nor the arm's collisions are checked here.
+MMGRASP_EXPORT SampledGrasps sample_pipe_grasps(const Pipe& pipe, int count, const PipeGraspOptions& options = {});
 
 }  // namespace mmgrasp

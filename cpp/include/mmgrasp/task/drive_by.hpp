@@ -110,7 +110,7 @@ MMGRASP_EXPORT std::string drive_by_csv(const DriveByResult& result, int between
 /// value with a report.
 /// @code
 ///   DriveByTask pick;
-///   pick.candidates = {T_world_part * grasp.T_object_tcp};
+///   pick.candidates = {T_world_part * grasp.T_object_hand};
 ///   pick.object = "part";
 ///   pick.dwell = 0.5;  // until the gripper has closed
 ///   const DriveByResult result = plan_drive_by(robot.group("base_arm"), world, start, {pick}, {goal, goal});

@@ -53,7 +53,7 @@ struct MMGRASP_EXPORT PickProblem {
   /// Without base joints, its root where the robot stands (JointGroup::at); its reference holds the other joints (head,
   /// ...) and the fingers at rest.
   JointGroup arm;
-  Gripper gripper;
+  Hand gripper;
   World world;                ///< Everything in its place, the object among it.
   std::string object;         ///< Name of the world's object that is picked.
   std::vector<Grasp> grasps;  ///< Candidates in the object's frame, best first.

@@ -8,7 +8,7 @@
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/grasp/grasp.hpp"
-#include "mmgrasp/grasp/gripper.hpp"
+#include "mmgrasp/grasp/hand.hpp"
 #include "mmgrasp/reach/reach_database.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
 
@@ -20,7 +20,7 @@ struct MMGRASP_EXPORT Part {
   std::vector<LinkShape> shapes;  ///< Its body, in the part's frame.
   Pose T_world_part = Pose::Identity();
   bool target = true;         ///< False: it stays, and is an obstacle.
-  std::vector<Grasp> grasps;  ///< Candidate grasps, best first. The opening is Grasp::width.
+  std::vector<Grasp> grasps;  ///< Candidates, best first; without postures.
   int grasps_too_wide = 0;    ///< Candidates dropped before planning because the gripper does not open so far.
 };
 
@@ -69,7 +69,7 @@ struct MMGRASP_EXPORT PartSupplyOptions {
 struct MMGRASP_EXPORT PartSupplyProblem {
   Robot robot;
   JointGroup arm;
-  Gripper gripper;
+  Hand gripper;
   World scene;
   std::vector<Tray> trays;
   Eigen::VectorXd home;                             ///< Arm configuration while driving, fingers closed.

@@ -7,7 +7,7 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr int kMostMaxima = 60;  // of one closing direction, opening and height
+constexpr int kMaxMaxima = 60;  // kept of one closing direction, opening and height
 
 /// Running mean along x over 2 r + 1 values, zeros beyond the ends.
 void mean_along_rows(const std::vector<float>& in, std::vector<float>& out, int nx, int ny, int r) {
@@ -114,13 +114,13 @@ double Pieces::centring(const Eigen::Vector2d& point) const {
   return std::max(0.0, 1 - (point - piece.middle).norm() / (piece.radius + map_.resolution));
 }
 
-TipLayer::TipLayer(const HeightMap& map, double tip, const GraspabilityOptions& options, int border)
+TipLayer::TipLayer(const HeightMap& map, double tip, const Hand& hand, const GraspabilityOptions& options, int border)
     : tip_height(tip), pieces(map, tip + options.insertion, options.insertion) {
   const std::size_t cells = map.height.size();
   std::vector<std::uint8_t> between(cells), low(cells), high(cells);
   const auto held = static_cast<float>(tip + options.insertion),
-             fingers_free = static_cast<float>(tip - options.hand.margin);
-  const auto palm_free = static_cast<float>(tip + options.hand.finger_length - options.hand.margin);
+             fingers_free = static_cast<float>(tip - options.margin);
+  const auto palm_free = static_cast<float>(tip + hand.body.finger_length - options.margin);
   for (std::size_t i = 0; i < cells; ++i) {
     between[i] = map.height[i] > held;
     low[i] = !(map.upper[i] <= fingers_free);  // unknown cells too
@@ -179,7 +179,7 @@ std::vector<int> local_maxima(const LayerMap& map, int nx, int ny, double distan
   for (const int i : order) {
     if (covered[i]) continue;
     maxima.push_back(i);
-    if (static_cast<int>(maxima.size()) == kMostMaxima) break;
+    if (static_cast<int>(maxima.size()) == kMaxMaxima) break;
     const int x = i % nx, y = i / nx;
     for (int dy = -r; dy <= r; ++dy) {
       for (int dx = -r; dx <= r; ++dx) {
@@ -198,8 +198,8 @@ std::vector<double> tip_heights(const HeightMap& map, const GraspabilityOptions&
     if (h > top) top = h;
   }
   std::vector<double> heights;
-  constexpr int kMost = 1000;
-  for (int i = 0; i < kMost; ++i) {
+  constexpr int kMaxHeights = 1000;
+  for (int i = 0; i < kMaxHeights; ++i) {
     const double tip = options.lowest + i * options.layer_step;
     if (!(tip + options.insertion < top)) break;
     heights.push_back(tip);

@@ -27,7 +27,7 @@ class Pieces {
 /// What a height of the fingertips makes of a height map: where the part would stand between the fingers, what fingers
 /// and palm would touch.
 struct TipLayer {
-  TipLayer(const HeightMap& map, double tip_height, const GraspabilityOptions& options, int border);
+  TipLayer(const HeightMap& map, double tip_height, const Hand& hand, const GraspabilityOptions& options, int border);
   double tip_height;
   RowSums contact, fingers, palm;
   Pieces pieces;
@@ -57,17 +57,18 @@ std::vector<double> tip_heights(const HeightMap& map, const GraspabilityOptions&
 
 enum class Refined { good, too_wide, poor, collision };
 
-/// Centres the hand on the part under a cell, measures it and checks the hand opened for it; fills all of `grasp` but
-/// the world pose and the score's last factor.
+/// Centres the hand on the part under a cell, measures it and checks the hand opened for it. A good grasp gets its
+/// opening and position in the map's frame, its place and the parts of its quality but `room`.
 class Refiner {
  public:
-  Refiner(const HeightMap& map, const Gripper& gripper, const GraspabilityOptions& options)
-      : map_(map), gripper_(gripper), options_(options) {
+  Refiner(const HeightMap& map, const Hand& hand, const GraspabilityOptions& options)
+      : map_(map), hand_(hand), options_(options) {
     for (const float upper : map.upper) {
       if (upper > top_) top_ = upper;
     }
   }
-  Refined refine(int ix, int iy, double angle, double opening, const TipLayer& layer, ScoredGrasp& grasp) const;
+  Refined refine(int ix, int iy, double angle, double opening, const TipLayer& layer, Grasp& grasp,
+                 HeightMapProvenance& place, std::vector<QualityPart>& parts) const;
 
  private:
   bool touches(const Eigen::Vector2d& middle, const Eigen::Vector2d& along, double u0, double u1, double v_half,
@@ -77,7 +78,7 @@ class Refiner {
   float height_at(const Eigen::Vector2d& p) const;
 
   const HeightMap& map_;
-  const Gripper& gripper_;
+  const Hand& hand_;
   const GraspabilityOptions& options_;
   double top_ = -1e30;  // nothing of the map rises higher
 };

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "grasp/graspability/graspability_layers.hpp"
+#include "grasp/hand/hand_outline.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
@@ -28,7 +29,7 @@ float Refiner::height_at(const Vector2d& p) const {
 
 bool Refiner::touches(const Vector2d& middle, const Vector2d& along, double u0, double u1, double v_half,
                       double above) const {
-  const double grow = options_.hand.margin + map_.resolution * std::sqrt(0.5);
+  const double grow = options_.margin + map_.resolution * std::sqrt(0.5);
   const Vector2d across(-along.y(), along.x());
   const Vector2d centre = middle + (u0 + u1) / 2 * along;
   const double u_half = (u1 - u0) / 2 + grow, side = v_half + grow;
@@ -43,48 +44,48 @@ bool Refiner::touches(const Vector2d& middle, const Vector2d& along, double u0, 
       const Vector2d d = (Vector2d(ix, iy) - in_cells) * map_.resolution;
       if (std::abs(d.dot(along)) > u_half || std::abs(d.dot(across)) > side) continue;
       if (ix < 0 || iy < 0 || ix >= map_.nx || iy >= map_.ny) return true;
-      if (!(map_.upper[map_.index(ix, iy)] <= above - options_.hand.margin)) return true;
+      if (!(map_.upper[map_.index(ix, iy)] <= above - options_.margin)) return true;
     }
   }
   return false;
 }
 
 bool Refiner::hand_touches(const Vector2d& middle, const Vector2d& along, double opening, double tip) const {
-  const double inner = opening / 2, outer = inner + options_.hand.finger_thickness, side = gripper_.finger_width / 2;
-  if (touches(middle, along, -outer, -inner, side, tip) || touches(middle, along, inner, outer, side, tip)) return true;
-  const double palm = std::max(outer, options_.hand.palm_length / 2),
-               palm_side = std::max(side, options_.hand.palm_width / 2);
-  const double above = tip + options_.hand.finger_length;
-  if (top_ <= above - options_.hand.margin) return false;
+  const HandOutline o(hand_, opening);
+  if (touches(middle, along, -o.outer, -o.inner, o.side, tip) || touches(middle, along, o.inner, o.outer, o.side, tip))
+    return true;
+  const double above = tip + hand_.body.finger_length;
+  if (top_ <= above - options_.margin) return false;
   // Beyond the map and where nothing was seen the palm is only as free as the fingers beside it: see TipLayer.
-  const int reach = static_cast<int>(std::ceil(std::hypot(palm, palm_side) / map_.resolution)) + 2;
+  const int reach = static_cast<int>(std::ceil(std::hypot(o.palm, o.palm_side) / map_.resolution)) + 2;
   const int cx = static_cast<int>(std::floor(middle.x() / map_.resolution + 0.5 * map_.nx));
   const int cy = static_cast<int>(std::floor(middle.y() / map_.resolution + 0.5 * map_.ny));
-  const double grow = options_.hand.margin + map_.resolution * std::sqrt(0.5);
+  const double grow = options_.margin + map_.resolution * std::sqrt(0.5);
   const Vector2d across(-along.y(), along.x());
   for (int iy = std::max(0, cy - reach); iy <= std::min(map_.ny - 1, cy + reach); ++iy) {
     for (int ix = std::max(0, cx - reach); ix <= std::min(map_.nx - 1, cx + reach); ++ix) {
-      if (!(map_.upper[map_.index(ix, iy)] > above - options_.hand.margin)) continue;
+      if (!(map_.upper[map_.index(ix, iy)] > above - options_.margin)) continue;
       const Vector2d d = map_.centre(ix, iy) - middle;
-      if (std::abs(d.dot(along)) <= palm + grow && std::abs(d.dot(across)) <= palm_side + grow) return true;
+      if (std::abs(d.dot(along)) <= o.palm + grow && std::abs(d.dot(across)) <= o.palm_side + grow) return true;
     }
   }
   return false;
 }
 
-Refined Refiner::refine(int ix, int iy, double angle, double opening, const TipLayer& layer, ScoredGrasp& grasp) const {
+Refined Refiner::refine(int ix, int iy, double angle, double opening, const TipLayer& layer, Grasp& grasp,
+                        HeightMapProvenance& place, std::vector<QualityPart>& parts) const {
   const double tip = layer.tip_height;
   const Vector2d along(std::cos(angle), std::sin(angle)), across(-along.y(), along.x());
   const Vector2d start = map_.centre(ix, iy);
   // Lines across the pads every half cell, points along the closing axis every half cell.
   const double step = map_.resolution / 2;
-  const int lines = std::max(1, static_cast<int>(gripper_.finger_width / step));
+  const int lines = std::max(1, static_cast<int>(hand_.finger_width / step));
   const int points = std::max(1, static_cast<int>(opening / step));
   const double held_above = tip + options_.insertion;
   Rows rows;
   double top = tip;
   for (int j = 0; j < lines; ++j) {
-    const double v = ((j + 0.5) / lines - 0.5) * gripper_.finger_width;
+    const double v = ((j + 0.5) / lines - 0.5) * hand_.finger_width;
     double left = 0, right = 0;
     std::size_t held = 0;
     for (int i = 0; i < points; ++i) {
@@ -115,18 +116,20 @@ Refined Refiner::refine(int ix, int iy, double angle, double opening, const TipL
   if (contact < options_.min_contact || solid < 0.5) return Refined::poor;
 
   // Silhouettes end on average half a pixel inside the part's edge.
-  grasp.width = rows.right - rows.left + opening / points + map_.pixel;
-  if (grasp.width + 2 * options_.hand.margin > gripper_.max_opening) return Refined::too_wide;
-  grasp.opening = gripper_.pregrasp_opening(grasp.width);
+  grasp.opening = rows.right - rows.left + opening / points + map_.pixel;
+  if (grasp.opening + 2 * options_.margin > hand_.max_opening) return Refined::too_wide;
   const Vector2d middle = start + (rows.left + rows.right) / 2 * along;
-  if (hand_touches(middle, along, grasp.opening, tip)) return Refined::collision;
-  grasp.angle = angle;
-  grasp.height = tip;
-  grasp.ix = static_cast<int>(std::floor(middle.x() / map_.resolution + 0.5 * map_.nx));
-  grasp.iy = static_cast<int>(std::floor(middle.y() / map_.resolution + 0.5 * map_.ny));
-  grasp.T_world_tcp.translation() << middle, tip + gripper_.finger_depth / 2;
-  const double depth = std::min(1.0, (top - tip) / gripper_.finger_depth);
-  grasp.score = contact * solid * (0.5 + 0.5 * depth) * (0.5 + 0.5 * layer.pieces.centring(middle));
+  if (hand_touches(middle, along, hand_.pregrasp_opening(grasp.opening), tip)) return Refined::collision;
+  place.angle = angle;
+  place.height = tip;
+  place.ix = static_cast<int>(std::floor(middle.x() / map_.resolution + 0.5 * map_.nx));
+  place.iy = static_cast<int>(std::floor(middle.y() / map_.resolution + 0.5 * map_.ny));
+  grasp.T_object_hand.translation() << middle, tip + hand_.finger_depth / 2;
+  const double depth = std::min(1.0, (top - tip) / hand_.finger_depth);
+  parts = {{"contact", contact, 1},
+           {"solidity", solid, 1},
+           {"depth", depth, 0.5},
+           {"centring", layer.pieces.centring(middle), 0.5}};
   return Refined::good;
 }
 

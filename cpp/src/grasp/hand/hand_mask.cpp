@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "grasp/hand/hand_outline.hpp"
 #include "grasp/hand/row_spans.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -67,36 +68,20 @@ void MaskImage::check(const char* field) const {
   require(count() <= 65535, field, std::to_string(count()) + " ones", "must be at most 65535 (use coarser cells)");
 }
 
-void HandShape::check() const {
-  const auto positive = [](double value, const char* field) {
-    require(std::isfinite(value) && value > 0, field, value, "must be positive and finite [m]");
-  };
-  positive(finger_thickness, "finger_thickness");
-  positive(finger_length, "finger_length");
-  positive(palm_length, "palm_length");
-  positive(palm_width, "palm_width");
-  require(std::isfinite(margin) && margin >= 0, "margin", margin, "must be zero or positive [m]");
-}
-
-HandMasks make_hand_masks(const Gripper& gripper, const HandShape& shape, double opening, double angle,
-                          double resolution) {
-  gripper.check();
-  shape.check();
-  require(opening >= 0 && opening <= gripper.max_opening + 1e-9, "opening", opening,
-          "must be from 0 to the gripper's max_opening [m]");
+HandMasks make_hand_masks(const Hand& hand, double opening, double angle, double resolution, double margin) {
+  hand.check();
   require(std::isfinite(angle), "angle", angle, "must be finite [rad]");
   require(std::isfinite(resolution) && resolution > 0, "resolution", resolution, "must be positive and finite [m]");
-  const double half = opening / 2, side = gripper.finger_width / 2;
+  require(std::isfinite(margin) && margin >= 0, "margin", margin, "must be zero or positive [m]");
+  const detail::HandOutline o(hand, opening);
   // A cell is touched when its centre lies within half its diagonal.
-  const double grow = shape.margin + resolution * std::sqrt(0.5);
-  const double outer = half + shape.finger_thickness;
-  const double palm = std::max(shape.palm_length / 2, outer), palm_side = std::max(shape.palm_width / 2, side);
+  const double grow = margin + resolution * std::sqrt(0.5);
   HandMasks masks;
-  masks.contact = mask_of({{-half, half, -side, side}}, angle, resolution);
-  masks.fingers = mask_of(
-      {HandRectangle{-outer, -half, -side, side}.grown(grow), HandRectangle{half, outer, -side, side}.grown(grow)},
-      angle, resolution);
-  masks.palm = mask_of({HandRectangle{-palm, palm, -palm_side, palm_side}.grown(grow)}, angle, resolution);
+  masks.contact = mask_of({{-o.inner, o.inner, -o.side, o.side}}, angle, resolution);
+  masks.fingers = mask_of({HandRectangle{-o.outer, -o.inner, -o.side, o.side}.grown(grow),
+                           HandRectangle{o.inner, o.outer, -o.side, o.side}.grown(grow)},
+                          angle, resolution);
+  masks.palm = mask_of({HandRectangle{-o.palm, o.palm, -o.palm_side, o.palm_side}.grown(grow)}, angle, resolution);
   masks.contact.check("contact mask");
   masks.fingers.check("finger mask");
   masks.palm.check("palm mask");

@@ -47,6 +47,19 @@ void PushGraspProblem::check() const {
   check_not_negative(lateral_error, "lateral_error");
 }
 
+PushGraspProblem push_grasp_problem(const Hand& hand, double object_width) {
+  hand.check();
+  PushGraspProblem problem;
+  problem.opening = hand.max_opening;
+  problem.object_width = object_width;
+  problem.finger_length = hand.body.finger_length;
+  problem.grip_depth = std::min(hand.finger_depth, hand.body.finger_length) / 2;
+  problem.planned_depth = std::max(problem.grip_depth, hand.body.finger_length / 2);
+  problem.clearance = hand.clearance;
+  problem.check();
+  return problem;
+}
+
 ClosingOutcome closing_outcome(const PushGraspProblem& problem, double start) {
   problem.check();
   require(std::isfinite(start), "start", start, "must be finite");

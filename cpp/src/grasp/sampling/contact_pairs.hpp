@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "mmgrasp/grasp/grasp.hpp"
+#include "mmgrasp/grasp/sample_grasps.hpp"
 
 namespace mmgrasp::detail {
 
@@ -12,7 +12,7 @@ namespace mmgrasp::detail {
 struct ContactFace {
   Eigen::Vector3d u, v;               ///< Unit axes of the face, orthogonal to the closing axis.
   double half_u = 0, half_v = 0;      ///< Half sizes [m].
-  double offset_u = 0, offset_v = 0;  ///< Of the contact from the face's middle [m].
+  double offset_u = 0, offset_v = 0;  ///< Place of the contact from the face's middle [m].
 };
 
 /// Two opposed contacts: middle -+ axis * width / 2, in the object frame.
@@ -26,13 +26,13 @@ struct ContactPair {
 };
 
 struct ContactPairs {
-  std::vector<ContactPair> pairs;                            ///< In the order of sampling, too wide ones included.
+  std::vector<ContactPair> pairs;  ///< Pairs in the order of sampling, too wide ones included.
   Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();  ///< Uniform density.
   std::vector<Eigen::Vector3d> corners;                      ///< Points whose hull holds the object.
 };
 
 /// Analytic pairs of one box, sphere, cylinder or capsule; nothing for other shapes.
-std::optional<ContactPairs> primitive_pairs(const LinkShape& shape, const Gripper& gripper,
+std::optional<ContactPairs> primitive_pairs(const LinkShape& shape, const Hand& hand,
                                             const GraspSamplerOptions& options);
 
 /// Pairs by rays through the union of all shapes' surfaces.

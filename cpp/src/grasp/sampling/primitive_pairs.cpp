@@ -181,9 +181,9 @@ double pad_overlap(const ContactFace& face, const Eigen::Vector3d& approach, dou
   return std::min(1.0, polygon_area(pad) / (depth * width));
 }
 
-std::optional<ContactPairs> primitive_pairs(const LinkShape& shape, const Gripper& gripper,
+std::optional<ContactPairs> primitive_pairs(const LinkShape& shape, const Hand& hand,
                                             const GraspSamplerOptions& options) {
-  const double pad = gripper.finger_depth;
+  const double pad = hand.finger_depth;
   std::optional<ContactPairs> result;
   if (const auto* box = std::get_if<Box>(&shape.shape)) result = box_pairs(*box, pad, options);
   if (const auto* sphere = std::get_if<Sphere>(&shape.shape)) result = sphere_pairs(*sphere, options);

@@ -1,3 +1,5 @@
+#include "mmgrasp/grasp/sample_grasps.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -5,7 +7,6 @@
 #include "grasp/sampling/contact_pairs.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "mmgrasp/grasp/grasp.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -35,21 +36,24 @@ int direction_bin(const Eigen::Vector3d& direction) {
   return bin;
 }
 
-/// Judges grasps of one object. Every factor lies in [0.5, 1], so their product orders grasps without ruling any out.
+/// Judges grasps of one object. Every part has weight 0.5, so their product orders grasps without ruling any out.
 class Judge {
  public:
-  Judge(const ContactPairs& pairs, const Gripper& gripper) : pairs_(pairs), gripper_(gripper) {
+  Judge(const ContactPairs& pairs, const Hand& hand) : pairs_(pairs), hand_(hand) {
     for (const Eigen::Vector3d& corner : pairs.corners)
       radius_ = std::max(radius_, (corner - pairs.centre_of_mass).norm());
   }
 
-  double operator()(const ContactPair& pair, const Eigen::Vector3d& approach, const Eigen::Vector3d& tcp) const {
-    return half_plus(pair.alignment) * half_plus(centring(pair)) * half_plus(support(pair, approach)) *
-           half_plus(insertion(approach, tcp)) * half_plus(gap(pair.width));
+  /// `tool` is the origin of the tool frame in the object's frame.
+  std::vector<QualityPart> operator()(const ContactPair& pair, const Eigen::Vector3d& approach,
+                                      const Eigen::Vector3d& tool) const {
+    return {half("alignment", pair.alignment), half("centring", centring(pair)),
+            half("support", support(pair, approach)), half("insertion", insertion(approach, tool)),
+            half("clearance", clearance(pair.width))};
   }
 
  private:
-  static double half_plus(double share) { return 0.5 + 0.5 * std::clamp(share, 0.0, 1.0); }
+  static QualityPart half(const char* name, double share) { return {name, std::clamp(share, 0.0, 1.0), 0.5}; }
 
   /// 1 when the line of contact passes through the centre of mass (no moment from gravity), 0 at the object's radius.
   double centring(const ContactPair& pair) const {
@@ -58,29 +62,29 @@ class Judge {
   }
 
   double support(const ContactPair& pair, const Eigen::Vector3d& approach) const {
-    return pair.face ? detail::pad_overlap(*pair.face, approach, gripper_.finger_depth, gripper_.finger_width) : 1;
+    return pair.face ? detail::pad_overlap(*pair.face, approach, hand_.finger_depth, hand_.finger_width) : 1;
   }
 
   /// 1 when nothing of the object stands further back than the pad does; falls with what must fit in front of the palm.
-  double insertion(const Eigen::Vector3d& approach, const Eigen::Vector3d& tcp) const {
+  double insertion(const Eigen::Vector3d& approach, const Eigen::Vector3d& tool) const {
     double behind = 0;
-    for (const Eigen::Vector3d& corner : pairs_.corners) behind = std::max(behind, approach.dot(tcp - corner));
-    const double excess = std::max(0.0, behind - gripper_.finger_depth / 2);
-    return 1 / (1 + excess / gripper_.finger_depth);
+    for (const Eigen::Vector3d& corner : pairs_.corners) behind = std::max(behind, approach.dot(tool - corner));
+    const double excess = std::max(0.0, behind - hand_.finger_depth / 2);
+    return 1 / (1 + excess / hand_.finger_depth);
   }
 
   /// Share of the wanted clearance that the opening leaves.
-  double gap(double width) const {
-    return gripper_.clearance > 0 ? (gripper_.max_opening - width) / 2 / gripper_.clearance : 1;
+  double clearance(double width) const {
+    return hand_.clearance > 0 ? (hand_.max_opening - width) / 2 / hand_.clearance : 1;
   }
 
   const ContactPairs& pairs_;
-  const Gripper& gripper_;
+  const Hand& hand_;
   double radius_ = 0;
 };
 
-void add_grasps(const ContactPair& pair, const Gripper& gripper, const GraspSamplerOptions& options, const Judge& judge,
-                std::vector<Candidate>& candidates) {
+void add_grasps(int index, const ContactPair& pair, const Hand& hand, const GraspSamplerOptions& options,
+                const Judge& judge, std::vector<Candidate>& candidates) {
   const Eigen::Vector3d side = pair.axis.cross(pair.first_approach);
   for (int i = 0; i < options.approaches; ++i) {
     const double angle = detail::kTwoPi * i / options.approaches;
@@ -89,12 +93,14 @@ void add_grasps(const ContactPair& pair, const Gripper& gripper, const GraspSamp
     for (const double flip : {1.0, -1.0}) {
       const Eigen::Vector3d closing = flip * pair.axis;
       Candidate candidate;
-      candidate.grasp.T_object_tcp.linear() = align_axes(gripper.approach, gripper.closing, approach, closing);
-      candidate.grasp.T_object_tcp.translation() = pair.middle - options.standoff * approach;
-      candidate.grasp.width = pair.width;
-      candidate.grasp.quality = judge(pair, approach, candidate.grasp.T_object_tcp.translation());
+      Grasp& grasp = candidate.grasp;
+      grasp.T_object_hand.linear() = align_axes(hand.approach, hand.closing, approach, closing);
+      grasp.T_object_hand.translation() = pair.middle - options.standoff * approach;
+      grasp.opening = pair.width;
+      grasp.set_quality(judge(pair, approach, grasp.T_object_hand.translation()));
+      grasp.provenance = ContactPairProvenance{index, i, flip < 0};
       candidate.bin = 27 * direction_bin(approach) + direction_bin(closing);
-      candidates.push_back(candidate);
+      candidates.push_back(std::move(candidate));
     }
   }
 }
@@ -143,27 +149,28 @@ void GraspSamplerOptions::check() const {
   require(std::isfinite(standoff), "standoff", standoff, "must be finite [m]");
 }
 
-std::vector<Grasp> sample_grasps(const std::vector<LinkShape>& object, const Gripper& gripper,
-                                 const GraspSamplerOptions& options, int* too_wide) {
-  gripper.check();
+SampledGrasps sample_grasps(const std::vector<LinkShape>& object, const Hand& hand,
+                            const GraspSamplerOptions& options) {
+  hand.check();
   options.check();
   check_object(object);
 
   std::optional<ContactPairs> pairs;
-  if (object.size() == 1) pairs = detail::primitive_pairs(object.front(), gripper, options);
+  if (object.size() == 1) pairs = detail::primitive_pairs(object.front(), hand, options);
   if (!pairs) pairs = detail::surface_pairs(object, options);
 
-  int wide = 0;
+  SampledGrasps sampled;
   std::vector<Candidate> candidates;
-  const Judge judge(*pairs, gripper);
-  for (const ContactPair& pair : pairs->pairs) {
-    if (pair.width > gripper.max_opening)
-      ++wide;
+  const Judge judge(*pairs, hand);
+  for (std::size_t i = 0; i < pairs->pairs.size(); ++i) {
+    const ContactPair& pair = pairs->pairs[i];
+    if (pair.width > hand.max_opening)
+      ++sampled.too_wide;
     else
-      add_grasps(pair, gripper, options, judge, candidates);
+      add_grasps(static_cast<int>(i), pair, hand, options, judge, candidates);
   }
-  if (too_wide) *too_wide = wide;
-  return keep_spread(candidates, options.max_grasps);
+  sampled.grasps = keep_spread(candidates, options.max_grasps);
+  return sampled;
 }
 
 }  // namespace mmgrasp

@@ -59,11 +59,12 @@ void ManipulationProblem::check() const {
   for (const std::string& link : touch_links) check_touch_link(group.robot(), link);
   const double widest = gripper ? gripper->max_opening : 1e9;
   for (std::size_t i = 0; i < grasps.size(); ++i) {
-    const CandidateGrasp& grasp = grasps[i];
+    const Grasp& grasp = grasps[i];
     const bool good_cost = std::isfinite(grasp.cost) && grasp.cost >= 0;
     const bool good_opening = grasp.opening >= 0 && grasp.opening <= widest;
     const std::string name = "grasps[" + std::to_string(i) + "].";
-    checked_pose(grasp.T_object_tool.matrix(), name + "T_object_tool");
+    checked_pose(grasp.T_object_hand.matrix(), name + "T_object_hand");
+    if (gripper && !grasp.posture.empty()) gripper->joint_values(grasp.posture);
     if (good_cost && good_opening) continue;
     require(good_cost, name + "cost", grasp.cost, "must be finite and >= 0");
     require(good_opening, name + "opening", grasp.opening, "must be in [0, the gripper's max_opening]");

@@ -115,7 +115,7 @@ bool BasePoseEvaluator::part_with_restarts(const Eigen::Vector3d& base_pose, Par
     options.restarts = kCheckRestarts;
     options.time_limit = detail::kNoTimeLimit;
     options.seed = static_cast<unsigned>(g) + 1;
-    const IkResult found = solve_ik(tables.arm, T_base_part * wanted.grasps[g].T_object_tcp, tables.problem->home,
+    const IkResult found = solve_ik(tables.arm, T_base_part * wanted.grasps[g].T_object_hand, tables.problem->home,
                                     options, [&](const Eigen::VectorXd& q) { return checker.rejection(q); });
     if (found.outcome == Outcome::solved) return true;
   }
@@ -134,7 +134,7 @@ double BasePoseEvaluator::reach_deficit(const Eigen::Vector3d& base_pose, PartRe
   double nearest = detail::kInfinity;
   for (int g = 0; g < static_cast<int>(part.grasps.size()); ++g) {
     if (hand_blocked(ref, g)) continue;
-    const Eigen::Vector3d p = (T_base_part * part.grasps[g].T_object_tcp).translation();
+    const Eigen::Vector3d p = (T_base_part * part.grasps[g].T_object_hand).translation();
     const double outside = std::sqrt(bounds.squaredExteriorDistance(p));
     nearest = std::min(nearest, std::max(outside, p.norm() - impl_->database->reach()));
   }

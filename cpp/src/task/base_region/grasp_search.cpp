@@ -74,7 +74,7 @@ const GraspSearch::PlacedGrasp& GraspSearch::placed(double heading, const Part& 
   PlacedGrasp& result = placed_[grasp];
   if (result.slice == nullptr) {
     result.T_root_tcp = pose_from_planar(Eigen::Vector3d(0, 0, heading)).inverse() *
-                        (part.T_world_part * part.grasps[index].T_object_tcp);
+                        (part.T_world_part * part.grasps[index].T_object_hand);
     result.slice = &tables_->seeds->slice(result.T_root_tcp.linear(), result.T_root_tcp.translation().z());
   }
   return result;

@@ -16,7 +16,7 @@ GraspTable::GraspTable(const PartSupplyProblem& problem) : problem_(&problem) {
     for (const Part& part : tray.parts) {
       first_.back().push_back(static_cast<int>(opening_.size()));
       for (const Grasp& grasp : part.grasps) {
-        const double opening = problem.gripper.pregrasp_opening(grasp.width);
+        const double opening = problem.gripper.pregrasp_opening(grasp.opening);
         const auto [it, is_new] = known.emplace(std::lround(opening * 1e9), static_cast<int>(openings_.size()));
         if (is_new) openings_.push_back(opening);
         opening_.push_back(it->second);
@@ -43,7 +43,7 @@ void GraspTable::find_blocked(const std::vector<PartRef>& parts, const World& wo
     for (std::size_t g = 0; g < part.grasps.size(); ++g) {
       if (!blocked_[begin + g]) continue;
       CollisionChecker& checker = own[opening_[begin + g]];
-      checker.set_root(part.T_world_part * part.grasps[g].T_object_tcp);
+      checker.set_root(part.T_world_part * part.grasps[g].T_object_hand);
       blocked_[begin + g] = !checker.is_free(still);
     }
   });

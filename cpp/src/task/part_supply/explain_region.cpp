@@ -115,7 +115,7 @@ std::string advice(const PartExplanation& part, const Obstruction& o, std::size_
 }
 
 /// Narrowest extent that a gripper with a larger opening could span; fingers above and below a lying part have no room.
-double needed_opening(const Part& part, const Gripper& gripper) {
+double needed_opening(const Part& part, const Hand& gripper) {
   Eigen::AlignedBox3d bounds;
   for (const LinkShape& shape : part.shapes) bounds.extend(shape_bounds(shape.shape, shape.T_link_shape));
   double narrowest = kInfinity;
@@ -127,7 +127,7 @@ double needed_opening(const Part& part, const Gripper& gripper) {
   return std::isfinite(narrowest) ? narrowest + 2 * gripper.clearance : 0;
 }
 
-Obstruction without_grasps(Obstruction obstruction, const Part& part, const Gripper& gripper) {
+Obstruction without_grasps(Obstruction obstruction, const Part& part, const Hand& gripper) {
   obstruction.stage = "grasp";
   obstruction.message = "part '" + part.name + "' has no grasp";
   if (part.grasps_too_wide == 0) {

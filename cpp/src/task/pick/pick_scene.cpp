@@ -45,7 +45,7 @@ CollisionChecker& PickScene::after(double opening) {
 CollisionChecker PickScene::holding(double opening, const Pose& T_tcp_object) const {
   World world = problem_.world;
   const std::vector<std::string>& fingers = problem_.gripper.finger_links;
-  world.attach(problem_.object, problem_.gripper.tcp_link, T_tcp_object,
+  world.attach(problem_.object, problem_.gripper.tool_link, T_tcp_object,
                std::set<std::string>(fingers.begin(), fingers.end()));
   return CollisionChecker(arm(opening), world);
 }

@@ -75,7 +75,7 @@ class PickPlanner {
     return false;
   }
 
-  Pose T_world_tcp(int grasp) const { return T_world_object_ * problem_.grasps[grasp].T_object_tcp; }
+  Pose T_world_tcp(int grasp) const { return T_world_object_ * problem_.grasps[grasp].T_object_hand; }
 
   /// Free configurations at the grasp, nearest to home first. Second round: from random starts instead of the database.
   std::vector<Eigen::VectorXd> grasp_configurations(int grasp, int round, CollisionChecker& checker) {
@@ -116,7 +116,7 @@ class PickPlanner {
   }
 
   bool try_grasp(int grasp, int round) {
-    const double width = problem_.grasps[grasp].width;
+    const double width = problem_.grasps[grasp].opening;
     const double opening = problem_.gripper.pregrasp_opening(width);
     CollisionChecker& before = scene_.before(opening);
     const std::vector<Eigen::VectorXd> configurations = grasp_configurations(grasp, round, before);

@@ -25,8 +25,10 @@ void check_part(const Part& part, const std::string& tray) {
   checked_pose(part.T_world_part.matrix(), field + " pose");
   for (std::size_t i = 0; i < part.grasps.size(); ++i) {
     const std::string grasp = field + " grasp " + std::to_string(i);
-    checked_pose(part.grasps[i].T_object_tcp.matrix(), grasp + " pose");
-    require_not_negative(part.grasps[i].width, grasp + " width");
+    checked_pose(part.grasps[i].T_object_hand.matrix(), grasp + " pose");
+    require_not_negative(part.grasps[i].opening, grasp + " width");
+    require(part.grasps[i].posture.empty(), grasp + " posture",
+            std::to_string(part.grasps[i].posture.size()) + " numbers", "must be empty: fingers pick by their opening");
   }
 }
 
@@ -48,7 +50,8 @@ void check_trays(const PartSupplyProblem& problem) {
               "is in use for an object of the scene");
       check_part(part, tray.name);
       for (const Grasp& grasp : part.grasps) {
-        require(grasp.width <= problem.gripper.max_opening + 1e-9, "part '" + part.name + "' grasp width", grasp.width,
+        require(grasp.opening <= problem.gripper.max_opening + 1e-9, "part '" + part.name + "' grasp width",
+                grasp.opening,
                 "must not exceed gripper.max_opening (" + std::to_string(problem.gripper.max_opening) + " m)");
       }
     }
@@ -79,9 +82,9 @@ void PartSupplyProblem::check() const {
     require(home[i] >= arm.lower()[i] - 1e-9 && home[i] <= arm.upper()[i] + 1e-9, "home '" + arm.names()[i] + "'",
             home[i], "must lie in [" + std::to_string(arm.lower()[i]) + ", " + std::to_string(arm.upper()[i]) + "]");
   }
-  require(robot.link_index(gripper.tcp_link) == arm.tip_link(), "gripper.tcp_link", "'" + gripper.tcp_link + "'",
+  require(robot.link_index(gripper.tool_link) == arm.tip_link(), "gripper.tool_link", "'" + gripper.tool_link + "'",
           "must be the arm's tip");
-  for (const FingerJoint& joint : gripper.joints) robot.joint_index(joint.name);
+  for (const HandJoint& joint : gripper.joints) robot.joint_index(joint.name);
   for (const std::string& link : gripper.finger_links) robot.link_index(link);
   require(start.allFinite(), "start", start.sum(), "must be finite");
   require(goal.allFinite(), "goal", goal.sum(), "must be finite");

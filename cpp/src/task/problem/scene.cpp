@@ -38,7 +38,7 @@ World world_with_parts(const PartSupplyProblem& problem, const std::vector<PartR
   return world;
 }
 
-JointGroup arm_with_opening(const JointGroup& arm, const Gripper& gripper, double opening) {
+JointGroup arm_with_opening(const JointGroup& arm, const Hand& gripper, double opening) {
   Eigen::VectorXd values = arm.reference();
   for (const auto& [name, value] : gripper.joint_values(opening)) {
     const Joint& joint = arm.robot().joints()[arm.robot().joint_index(name)];

@@ -25,6 +25,6 @@ std::vector<PartRef> target_parts(const PartSupplyProblem& problem, TrayId tray)
 World world_with_parts(const PartSupplyProblem& problem, const std::vector<PartRef>& parts);
 
 /// The arm with the gripper's fingers opened so far [m]; everything else as in the arm's reference.
-JointGroup arm_with_opening(const JointGroup& arm, const Gripper& gripper, double opening);
+JointGroup arm_with_opening(const JointGroup& arm, const Hand& gripper, double opening);
 
 }  // namespace mmgrasp::detail

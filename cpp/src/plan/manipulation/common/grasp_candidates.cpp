@@ -17,7 +17,7 @@ constexpr std::size_t kMinParallelGrasps = 16;  // Fewer are checked in one thre
 
 Pose pose_of_tool(const ManipulationProblem& problem, int grasp, bool at_goal) {
   const Pose& T_world_object = at_goal ? problem.T_world_goal : problem.T_world_start;
-  return T_world_object * problem.grasps[grasp].T_object_tool;
+  return T_world_object * problem.grasps[grasp].T_object_hand;
 }
 
 IkOptions ik_of(const ManipulationOptions& options, int grasp) {

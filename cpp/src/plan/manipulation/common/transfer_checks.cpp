@@ -10,10 +10,10 @@ namespace {
 
 constexpr double kFinalStep = 0.005;  // Largest joint step of the final check of paths [rad or m].
 
-JointGroup with_fingers(const JointGroup& group, const Gripper& gripper, double opening) {
+JointGroup with_fingers(const JointGroup& group, const Hand& hand, const Grasp& grasp) {
   Eigen::VectorXd values = group.reference();
   const Robot& robot = group.robot();
-  for (const auto& [name, value] : gripper.joint_values(opening))
+  for (const auto& [name, value] : hand.joint_values(grasp))
     values[robot.joints()[robot.joint_index(name)].value_index] = value;
   return group.with_reference(values);
 }
@@ -44,12 +44,14 @@ TransferChecks::TransferChecks(const ManipulationProblem& problem, const EdgeOpt
   search_edge_.joint_step *= search_steps;
   search_edge_.workspace_step *= search_steps;
   path_edge_.joint_step = std::min(path_edge_.joint_step, kFinalStep);
-  std::map<double, int> openings;
-  for (const CandidateGrasp& grasp : problem.grasps) {
-    const double opening = problem.gripper ? grasp.opening : 0;
-    const auto [at, added] = openings.emplace(opening, static_cast<int>(groups_.size()));
+  std::map<std::pair<double, std::vector<double>>, int> openings;  // by opening and posture
+  for (const Grasp& grasp : problem.grasps) {
+    const bool fingers = problem.gripper.has_value();
+    const auto [at, added] =
+        openings.emplace(fingers ? std::pair(grasp.opening, grasp.posture) : std::pair(0.0, std::vector<double>{}),
+                         static_cast<int>(groups_.size()));
     if (added) {
-      groups_.push_back(problem.gripper ? with_fingers(problem.group, *problem.gripper, opening) : problem.group);
+      groups_.push_back(fingers ? with_fingers(problem.group, *problem.gripper, grasp) : problem.group);
     }
     opening_of_.push_back(at->second);
   }
@@ -74,7 +76,7 @@ TransferChecks::RobotAlone& TransferChecks::robot(int worker, int opening) {
 }
 
 Pose TransferChecks::T_tool_object(int grasp) const {
-  return problem_.grasps[grasp].T_object_tool.inverse();
+  return problem_.grasps[grasp].T_object_hand.inverse();
 }
 
 World TransferChecks::world_with(int grasp) const {

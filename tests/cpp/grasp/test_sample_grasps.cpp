@@ -1,4 +1,4 @@
-#include "mmgrasp/grasp/grasp.hpp"
+#include "mmgrasp/grasp/sample_grasps.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,8 +20,8 @@ LinkShape shape_at(const Shape& shape, const Pose& pose = Pose::Identity()) {
   return result;
 }
 
-Gripper wide_gripper() {
-  Gripper gripper;
+Hand wide_gripper() {
+  Hand gripper;
   gripper.max_opening = 0.10;
   gripper.finger_depth = 0.03;
   gripper.finger_width = 0.02;
@@ -34,20 +34,19 @@ GraspSamplerOptions all_kept() {
   return options;
 }
 
-Eigen::Vector3d closing_in_object(const Grasp& grasp, const Gripper& gripper) {
-  return grasp.T_object_tcp.linear() * gripper.closing;
+Eigen::Vector3d closing_in_object(const Grasp& grasp, const Hand& gripper) {
+  return grasp.T_object_hand.linear() * gripper.closing;
 }
 
-Eigen::Vector3d approach_in_object(const Grasp& grasp, const Gripper& gripper) {
-  return grasp.T_object_tcp.linear() * gripper.approach;
+Eigen::Vector3d approach_in_object(const Grasp& grasp, const Hand& gripper) {
+  return grasp.T_object_hand.linear() * gripper.approach;
 }
 
 TEST(SampleGrasps, BoxContactsLieOnOppositeFacesAtTheBoxesSize) {
   const Eigen::Vector3d size(0.03, 0.05, 0.08);
   const Pose T = pose_from_xyz_rpy({0.1, -0.2, 0.3}, {0.4, -0.7, 1.1});
-  const Gripper gripper = wide_gripper();
-  int too_wide = -1;
-  const auto grasps = sample_grasps({shape_at(Box{size}, T)}, gripper, all_kept(), &too_wide);
+  const Hand gripper = wide_gripper();
+  const auto [grasps, too_wide] = sample_grasps({shape_at(Box{size}, T)}, gripper, all_kept());
   ASSERT_EQ(grasps.size(), 3u * 9 * 8 * 2);
   EXPECT_EQ(too_wide, 0);
   std::set<int> axes;
@@ -56,9 +55,9 @@ TEST(SampleGrasps, BoxContactsLieOnOppositeFacesAtTheBoxesSize) {
     Eigen::Index axis;
     ASSERT_NEAR(closing.cwiseAbs().maxCoeff(&axis), 1, 1e-12);
     axes.insert(static_cast<int>(axis));
-    EXPECT_NEAR(grasp.width, size[axis], 1e-12);
+    EXPECT_NEAR(grasp.opening, size[axis], 1e-12);
     for (const double side : {-0.5, 0.5}) {
-      const Eigen::Vector3d contact = T.inverse() * grasp.T_object_tcp.translation() + side * grasp.width * closing;
+      const Eigen::Vector3d contact = T.inverse() * grasp.T_object_hand.translation() + side * grasp.opening * closing;
       EXPECT_NEAR(std::abs(contact[axis]), size[axis] / 2, 1e-12);
       for (const int other : {(axis + 1) % 3, (axis + 2) % 3}) EXPECT_LT(std::abs(contact[other]), size[other] / 2);
     }
@@ -66,16 +65,16 @@ TEST(SampleGrasps, BoxContactsLieOnOppositeFacesAtTheBoxesSize) {
   EXPECT_EQ(axes.size(), 3u);
 }
 
-TEST(SampleGrasps, TcpAxesFollowTheGrippersConventions) {
-  Gripper gripper = wide_gripper();
+TEST(SampleGrasps, ToolAxesFollowTheGrippersConventions) {
+  Hand gripper = wide_gripper();
   gripper.approach = Eigen::Vector3d::UnitZ();
   gripper.closing = -Eigen::Vector3d::UnitX();
   const Eigen::Vector3d size(0.03, 0.2, 0.2);  // only x can be held
-  const auto grasps = sample_grasps({shape_at(Box{size})}, gripper, all_kept());
+  const auto grasps = sample_grasps({shape_at(Box{size})}, gripper, all_kept()).grasps;
   ASSERT_FALSE(grasps.empty());
   int from_above = 0;
   for (const Grasp& grasp : grasps) {
-    const Eigen::Matrix3d R = grasp.T_object_tcp.linear();
+    const Eigen::Matrix3d R = grasp.T_object_hand.linear();
     EXPECT_LT((R.transpose() * R - Eigen::Matrix3d::Identity()).norm(), 1e-12);
     EXPECT_NEAR(R.determinant(), 1, 1e-12);
     EXPECT_NEAR(std::abs(R.col(0).x()), 1, 1e-12);  // tcp x, the closing axis up to sign, joins the contacts
@@ -86,46 +85,46 @@ TEST(SampleGrasps, TcpAxesFollowTheGrippersConventions) {
 }
 
 TEST(SampleGrasps, EveryGraspComesWithItsFlip) {
-  const Gripper gripper = wide_gripper();
-  const auto grasps = sample_grasps({shape_at(Cylinder{0.02, 0.06})}, gripper, all_kept());
+  const Hand gripper = wide_gripper();
+  const auto grasps = sample_grasps({shape_at(Cylinder{0.02, 0.06})}, gripper, all_kept()).grasps;
   ASSERT_FALSE(grasps.empty());
   for (const Grasp& grasp : grasps) {
     const Eigen::Matrix3d flipped =
-        grasp.T_object_tcp.linear() * Eigen::AngleAxisd(kPi, gripper.approach).toRotationMatrix();
+        grasp.T_object_hand.linear() * Eigen::AngleAxisd(kPi, gripper.approach).toRotationMatrix();
     const bool found = std::any_of(grasps.begin(), grasps.end(), [&](const Grasp& other) {
-      return (other.T_object_tcp.translation() - grasp.T_object_tcp.translation()).norm() < 1e-9 &&
-             (other.T_object_tcp.linear() - flipped).norm() < 1e-9 && other.quality == grasp.quality;
+      return (other.T_object_hand.translation() - grasp.T_object_hand.translation()).norm() < 1e-9 &&
+             (other.T_object_hand.linear() - flipped).norm() < 1e-9 && other.quality == grasp.quality;
     });
     EXPECT_TRUE(found);
   }
 }
 
 TEST(SampleGrasps, StandoffMovesTheTcpBackAlongTheApproach) {
-  const Gripper gripper = wide_gripper();
+  const Hand gripper = wide_gripper();
   GraspSamplerOptions options = all_kept();
   options.positions = 1;
   options.standoff = 0.015;
-  for (const Grasp& grasp : sample_grasps({shape_at(Box{{0.04, 0.05, 0.06}})}, gripper, options)) {
-    EXPECT_LT((grasp.T_object_tcp.translation() + 0.015 * approach_in_object(grasp, gripper)).norm(), 1e-12);
+  for (const Grasp& grasp : sample_grasps({shape_at(Box{{0.04, 0.05, 0.06}})}, gripper, options).grasps) {
+    EXPECT_LT((grasp.T_object_hand.translation() + 0.015 * approach_in_object(grasp, gripper)).norm(), 1e-12);
   }
 }
 
 TEST(SampleGrasps, CylinderWidthsAreDiameterOrLength) {
   const double radius = 0.025, length = 0.09;
-  const Gripper gripper = wide_gripper();
-  const auto grasps = sample_grasps({shape_at(Cylinder{radius, length})}, gripper, all_kept());
+  const Hand gripper = wide_gripper();
+  const auto grasps = sample_grasps({shape_at(Cylinder{radius, length})}, gripper, all_kept()).grasps;
   int across = 0, along = 0;
   for (const Grasp& grasp : grasps) {
-    const Eigen::Vector3d closing = closing_in_object(grasp, gripper), middle = grasp.T_object_tcp.translation();
+    const Eigen::Vector3d closing = closing_in_object(grasp, gripper), middle = grasp.T_object_hand.translation();
     if (std::abs(closing.z()) < 0.5) {
       ++across;
       EXPECT_NEAR(closing.z(), 0, 1e-12);
-      EXPECT_NEAR(grasp.width, 2 * radius, 1e-12);
+      EXPECT_NEAR(grasp.opening, 2 * radius, 1e-12);
       EXPECT_NEAR(middle.head<2>().norm(), 0, 1e-12);
       EXPECT_LT(std::abs(middle.z()), length / 2);
     } else {
       ++along;
-      EXPECT_NEAR(grasp.width, length, 1e-12);
+      EXPECT_NEAR(grasp.opening, length, 1e-12);
       EXPECT_LT(middle.head<2>().norm(), radius);
       EXPECT_NEAR(middle.z(), 0, 1e-12);
     }
@@ -135,36 +134,36 @@ TEST(SampleGrasps, CylinderWidthsAreDiameterOrLength) {
 }
 
 TEST(SampleGrasps, SphereAndCapsuleMatchTheirClosedForms) {
-  const Gripper gripper = wide_gripper();
+  const Hand gripper = wide_gripper();
   const Pose T = pose_from_xyz_rpy({0, 0, 0.5}, {0, 0, 0});
-  const auto sphere = sample_grasps({shape_at(Sphere{0.03}, T)}, gripper, all_kept());
+  const auto sphere = sample_grasps({shape_at(Sphere{0.03}, T)}, gripper, all_kept()).grasps;
   ASSERT_EQ(sphere.size(), (3u + 8 * 3) * 8 * 2);
   for (const Grasp& grasp : sphere) {
-    EXPECT_NEAR(grasp.width, 0.06, 1e-12);
-    EXPECT_NEAR((grasp.T_object_tcp.translation() - T.translation()).norm(), 0, 1e-12);
+    EXPECT_NEAR(grasp.opening, 0.06, 1e-12);
+    EXPECT_NEAR((grasp.T_object_hand.translation() - T.translation()).norm(), 0, 1e-12);
   }
-  for (const Grasp& grasp : sample_grasps({shape_at(Capsule{0.02, 0.05})}, gripper, all_kept())) {
+  for (const Grasp& grasp : sample_grasps({shape_at(Capsule{0.02, 0.05})}, gripper, all_kept()).grasps) {
     const bool across = std::abs(closing_in_object(grasp, gripper).z()) < 0.5;
-    EXPECT_NEAR(grasp.width, across ? 0.04 : 0.09, 1e-12);
+    EXPECT_NEAR(grasp.opening, across ? 0.04 : 0.09, 1e-12);
   }
 }
 
 TEST(SampleGrasps, CountsPairsWiderThanTheOpening) {
-  Gripper gripper = wide_gripper();
+  Hand gripper = wide_gripper();
   gripper.max_opening = 0.06;
-  int too_wide = -1;
-  const auto grasps = sample_grasps({shape_at(Box{{0.05, 0.061, 0.2}})}, gripper, all_kept(), &too_wide);
+  const auto [grasps, too_wide] = sample_grasps({shape_at(Box{{0.05, 0.061, 0.2}})}, gripper, all_kept());
   EXPECT_EQ(too_wide, 2 * 9);  // nine pad positions on each of two pairs of faces
   EXPECT_EQ(grasps.size(), 9u * 8 * 2);
-  for (const Grasp& grasp : grasps) EXPECT_LE(grasp.width, gripper.max_opening);
+  for (const Grasp& grasp : grasps) EXPECT_LE(grasp.opening, gripper.max_opening);
   gripper.max_opening = 0.04;
-  EXPECT_TRUE(sample_grasps({shape_at(Box{{0.05, 0.061, 0.2}})}, gripper, {}, &too_wide).empty());
-  EXPECT_EQ(too_wide, 3 * 9);
+  const SampledGrasps none = sample_grasps({shape_at(Box{{0.05, 0.061, 0.2}})}, gripper);
+  EXPECT_TRUE(none.grasps.empty());
+  EXPECT_EQ(none.too_wide, 3 * 9);
 }
 
 TEST(SampleGrasps, QualityIsSortedAndPrefersTheMiddle) {
-  const Gripper gripper = wide_gripper();
-  const auto grasps = sample_grasps({shape_at(Box{{0.03, 0.15, 0.15}})}, gripper, all_kept());
+  const Hand gripper = wide_gripper();
+  const auto grasps = sample_grasps({shape_at(Box{{0.03, 0.15, 0.15}})}, gripper, all_kept()).grasps;
   for (std::size_t i = 1; i < grasps.size(); ++i) EXPECT_GE(grasps[i - 1].quality, grasps[i].quality);
   for (const Grasp& grasp : grasps) {
     EXPECT_GT(grasp.quality, 0);
@@ -173,7 +172,7 @@ TEST(SampleGrasps, QualityIsSortedAndPrefersTheMiddle) {
   // Same approach: through the centre of mass beats off to the side at the same depth.
   const auto quality_at = [&](const Eigen::Vector3d& tcp) {
     for (const Grasp& grasp : grasps)
-      if ((grasp.T_object_tcp.translation() - tcp).norm() < 1e-9 &&
+      if ((grasp.T_object_hand.translation() - tcp).norm() < 1e-9 &&
           (approach_in_object(grasp, gripper) + Eigen::Vector3d::UnitZ()).norm() < 1e-9)
         return grasp.quality;
     return -1.0;
@@ -186,22 +185,22 @@ TEST(SampleGrasps, QualityIsSortedAndPrefersTheMiddle) {
 }
 
 TEST(SampleGrasps, LimitKeepsDirectionsSpread) {
-  const Gripper gripper = wide_gripper();
+  const Hand gripper = wide_gripper();
   GraspSamplerOptions options;
   options.max_grasps = 48;  // three closing axes, eight approaches, two flips
-  const auto grasps = sample_grasps({shape_at(Box{{0.04, 0.05, 0.06}})}, gripper, options);
+  const auto grasps = sample_grasps({shape_at(Box{{0.04, 0.05, 0.06}})}, gripper, options).grasps;
   ASSERT_EQ(grasps.size(), 48u);
   for (std::size_t i = 0; i < grasps.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
-      EXPECT_GT(rotation_distance(grasps[i].T_object_tcp, grasps[j].T_object_tcp), 0.5) << i << " " << j;
+      EXPECT_GT(rotation_distance(grasps[i].T_object_hand, grasps[j].T_object_hand), 0.5) << i << " " << j;
 }
 
 TEST(SampleGrasps, RefusesBadInput) {
-  const Gripper gripper = wide_gripper();
+  const Hand gripper = wide_gripper();
   EXPECT_THROW(sample_grasps({}, gripper), InvalidInput);
   EXPECT_THROW(sample_grasps({shape_at(Plane{})}, gripper), InvalidInput);
   EXPECT_THROW(sample_grasps({shape_at(Box{{0.1, 0, 0.1}})}, gripper), InvalidInput);
-  Gripper crooked = gripper;
+  Hand crooked = gripper;
   crooked.closing = crooked.approach;
   EXPECT_THROW(sample_grasps({shape_at(Sphere{0.02})}, crooked), InvalidInput);
   for (int field = 0; field < 5; ++field) {

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include "mmgrasp/core/export.hpp"
+#include "mmgrasp/grasp/grasp.hpp"
+#include "mmgrasp/grasp/hand.hpp"
+#include "mmgrasp/robot/joint.hpp"
+
+namespace mmgrasp {
+
+struct MMGRASP_EXPORT GraspSamplerOptions {
+  int approaches = 8;  ///< Approach directions around each closing axis; > 0.
+  int positions = 3;   ///< Pad positions along each free direction of a box or cylinder (odd: the middle first); > 0.
+  int mesh_samples = 400;  ///< Surface points tried on a mesh; > 0.
+  int max_grasps = 200;    ///< Best kept, spread over approach directions; > 0.
+  /// Coulomb coefficient; an antipodal pair's normals lie within atan(friction) of its axis; > 0.
+  double friction = 0.5;
+  double standoff = 0.0;  ///< How far the tool frame stays outside the object's middle along the approach [m].
+  unsigned seed = 1;
+  void check() const;
+};
+
+/// Antipodal grasps of a rigid body (box, cylinder, sphere, mesh or several shapes; P1 3.4.1, Algorithm 3): pairs of
+/// opposed contacts, tool frame midway, approach directions across the closing axis. Sorted by quality, then by order
+/// of sampling.
+///
+/// - Both hands of a grasp are given: turned by half a turn about the approach axis the same contacts are another
+/// grasp.
+/// - T_object_hand turns Hand::approach into the direction the hand moves in and Hand::closing into the line of
+/// contact.
+/// - A single box, cylinder, sphere or capsule is sampled in closed form; anything else by rays through its triangles:
+///   solids from outside to outside of their union, open surfaces from wall to wall.
+/// - Pairs wider than max_opening are counted in `too_wide`. A part that leaves less than the wanted clearance is kept
+///   (the clearance shrinks, see Hand::pregrasp_opening) with a lower quality.
+/// - Quality has five parts of weight 0.5: `alignment` of the normals with the contact line, `centring` of that line on
+///   the centre of mass, `support` (share of the pad on a flat face), `insertion` (little material behind the pads) and
+///   `clearance` left.
+///
+/// Collisions of the hand are not checked here. Throws InvalidInput on an empty object, a plane, a bad shape, hand or
+/// option.
+MMGRASP_EXPORT SampledGrasps sample_grasps(const std::vector<LinkShape>& object, const Hand& hand,
+                                           const GraspSamplerOptions& options = {});
+
+}  // namespace mmgrasp

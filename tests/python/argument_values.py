@@ -129,6 +129,7 @@ def capability_map() -> mg.CapabilityMap:
 
 OBJECTS = {
     "Robot": lambda: ROBOT,
+    "RobotSource": lambda: ROBOT.source,
     "JointGroup": lambda: ARM,
     "World": world,
     "World.detach": held,
@@ -157,6 +158,7 @@ COMPANIONS: dict[str, dict[str, Any]] = {
 }
 OTHERS: dict[str, Any] = {
     "robot": lambda: ROBOT,
+    "urdf": lambda: URDF,
     "JointTrajectory.names": lambda: ["i", "j", "k"],
     "depth": lambda: np.ones((480, 640), np.float32),
     "height": lambda: np.ones((3, 4)),

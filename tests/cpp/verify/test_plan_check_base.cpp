@@ -333,11 +333,11 @@ TEST(PlanCheckRoute, OmniMayDriveSidewaysFixedMayNot) {
   PlanToCheck plan = good_plan();
   mmgrasp::RobotOptions options;
   options.base = mmgrasp::BaseKind::omni;
-  plan.robot = mmgrasp::Robot::from_strings(urdf(), srdf(), options);
+  plan.robot = mmgrasp::source_of(mmgrasp::Robot::from_strings(urdf(), srdf(), options));
   plan.route[1] = {plan.stops[0].pose, plan.stops[1].pose};
   EXPECT_TRUE(codes_of(plan).empty());
   options.base = mmgrasp::BaseKind::fixed;
-  plan.robot = mmgrasp::Robot::from_strings(urdf(), srdf(), options);
+  plan.robot = mmgrasp::source_of(mmgrasp::Robot::from_strings(urdf(), srdf(), options));
   EXPECT_EQ(codes_of(plan), Codes{"route-not-driveable"});
 }
 

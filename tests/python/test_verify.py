@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import itertools
 import json
+import re
 
 import pytest
 
@@ -230,6 +231,55 @@ def test_broken_plans_are_refused(small_plan_dict, breaking):
     verdict = mg.verify_plan(plan, samples=200)
     assert not verdict.ok
     assert all(fault.code and fault.message for fault in verdict.faults)
+
+
+def urdf_changed(plan, old, new):
+    """The URDF that was given says something else than the robot that was planned for."""
+    urdf = next(u for u in plan["scenario"]["robot"]["urdfs"] if old in u["urdf"])
+    urdf["urdf"] = urdf["urdf"].replace(old, new, 1)
+
+
+def joint_text(plan, joint):
+    text = next(u["urdf"] for u in plan["scenario"]["robot"]["urdfs"] if f'joint name="{joint}"' in u["urdf"])
+    start = text.index(f'<joint name="{joint}"')
+    return text[start : text.index("</joint>", start)]
+
+
+@pytest.mark.parametrize(
+    ("tag", "quantity"), [("origin", "its origin"), ("axis", "its axis"), ("limit", "its upper limit")]
+)
+def test_a_robot_that_was_read_wrongly_is_named(small_plan_dict, tag, quantity):
+    plan = copy.deepcopy(small_plan_dict)
+    joint = plan["scenario"]["arm"]["joints"][1]
+    text = joint_text(plan, joint)
+    before = re.search(f"<{tag} [^>]*>", text)[0]
+    after = {
+        "origin": before.replace('xyz="', 'xyz="1'),
+        "axis": re.sub('xyz="[^"]*"', 'xyz="0.6 0.8 0"', before),
+        "limit": re.sub('upper="[^"]*"', 'upper="0.01"', re.sub('lower="[^"]*"', 'lower="-0.01"', before)),
+    }[tag]
+    urdf_changed(plan, text, text.replace(before, after))
+    faults = mg.verify_plan(plan, samples=50).faults
+    named = [f for f in faults if f.code == "robot-differs"]
+    assert {f.where for f in named} == {f"joint '{joint}'"}
+    assert any(quantity in f.message for f in named), named
+    assert any(f.code != "robot-differs" for f in faults), "the motions must give it away, too"
+
+
+def test_what_urdfdom_refuses_is_named(small_plan_dict):
+    plan = copy.deepcopy(small_plan_dict)
+    urdf_changed(plan, "</robot>", '<joint name="loose" type="fixed"><parent link="nowhere"/></joint></robot>')
+    (fault,) = mg.verify_plan(plan).faults
+    assert fault.code == "robot-unreadable"
+    assert "urdfdom" in fault.message
+    assert "loose" in fault.message or "nowhere" in fault.message
+
+
+def test_plans_without_the_urdfs_are_read_from_the_composed_one(small_plan_dict, small, write):
+    plan = copy.deepcopy(small_plan_dict)
+    del plan["scenario"]["robot"]["urdfs"], plan["scenario"]["robot"]["links"]
+    verdict = mg.verify_plan(plan, scenario=write(small), samples=50)
+    assert verdict.ok, verdict.faults
 
 
 def test_a_changed_scenario_is_named(small_plan_dict, small, write):

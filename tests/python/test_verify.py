@@ -10,6 +10,9 @@ import re
 import pytest
 
 import mmgrasp as mg
+from conftest import ASSETS, DATA, REPOSITORY
+from mmgrasp._core import RobotSource
+from mmgrasp._core import verify as checks
 from mmgrasp.plan_file import runs_of
 
 
@@ -264,6 +267,27 @@ def test_a_robot_that_was_read_wrongly_is_named(small_plan_dict, tag, quantity):
     assert {f.where for f in named} == {f"joint '{joint}'"}
     assert any(quantity in f.message for f in named), named
     assert any(f.code != "robot-differs" for f in faults), "the motions must give it away, too"
+
+
+FOLDERS = (ASSETS, REPOSITORY / "tests" / "fuzz" / "corpus" / "urdf", DATA / "robots")
+
+
+@pytest.mark.parametrize(
+    "path", [p for folder in FOLDERS for p in sorted(folder.rglob("*.urdf"))], ids=lambda p: p.stem
+)
+def test_urdfdom_reads_the_same_robot_as_we_do(path):
+    try:
+        robot = mg.Robot.load(path, allow_missing_meshes=True)
+    except mg.InvalidInput:
+        pytest.skip("refused by our reader")
+    files = {s.mesh_path: s.mesh_path for link in robot.links for s in robot.collisions(link) if s.mesh_path}
+    plan = checks.PlanToCheck(robot.source)
+    planned = RobotSource(srdf=robot.to_srdf())
+    planned.add_urdf(robot.to_urdf(), mesh_files=files)
+    plan.planned_robot = planned
+    faults = checks.check_plan(plan).faults
+    assert faults, "a plan without anything in it"
+    assert not [f for f in faults if f.code in ("robot-differs", "robot-unreadable")], faults
 
 
 def test_what_urdfdom_refuses_is_named(small_plan_dict):

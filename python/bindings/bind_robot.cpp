@@ -7,6 +7,7 @@
 #include "mmgrasp/robot/joint_group.hpp"
 #include "mmgrasp/robot/packages.hpp"
 #include "mmgrasp/robot/robot.hpp"
+#include "mmgrasp/robot/robot_source.hpp"
 
 namespace mmgrasp::python {
 namespace {
@@ -142,6 +143,62 @@ JointGroup make_group(const Robot& robot, const py::object& name, const py::obje
   return robot.chain(py::cast<std::string>(base_link), tip_name, with_base);
 }
 
+py::list urdf_dicts(const RobotSource& source) {
+  py::list out;
+  for (const UrdfSource& u : source.urdfs) {
+    out.append(py::dict("urdf"_a = u.urdf, "origin"_a = u.origin, "prefix"_a = u.prefix,
+                        "parent_link"_a = u.parent_link, "T"_a = to_array(u.T_parent_root),
+                        "mesh_files"_a = u.mesh_files));
+  }
+  return out;
+}
+
+py::list added_link_dicts(const RobotSource& source) {
+  py::list out;
+  for (const AddedLink& link : source.added_links) {
+    out.append(py::dict("name"_a = link.name, "parent_link"_a = link.parent_link, "T"_a = to_array(link.T_parent_link),
+                        "shapes"_a = link.shapes));
+  }
+  return out;
+}
+
+void bind_robot_source(py::module_& m) {
+  py::class_<RobotSource>(m, "RobotSource",
+                          "What a robot was made of, unread: its URDFs as they were given, for those who read them by\n"
+                          "other means than Robot does (verify).")
+      .def(py::init([](const std::string& base, const py::object& base_limits, const std::string& srdf) {
+             RobotSource source;
+             source.base = base_kind_from_string(base);
+             source.base_limits = base_limits_argument(base_limits);
+             source.srdf = srdf;
+             return source;
+           }),
+           py::arg("base") = "fixed", py::kw_only(), py::arg("base_limits") = py::none(), py::arg("srdf") = "")
+      .def(
+          "add_urdf",
+          [](RobotSource& source, const std::string& urdf, const std::string& origin, const std::string& prefix,
+             const std::string& parent_link, const py::object& T,
+             const std::map<std::string, std::string>& mesh_files) {
+            source.urdfs.push_back({urdf, origin, prefix, parent_link, pose_argument(T, "T"), mesh_files});
+          },
+          py::arg("urdf"), py::kw_only(), py::arg("origin") = "<string>", py::arg("prefix") = "",
+          py::arg("parent_link") = "", py::arg("T") = py::none(),
+          py::arg("mesh_files") = std::map<std::string, std::string>{},
+          "A URDF's text. Every name in it gets the prefix; its root link hangs at T on `parent_link` (empty: it is "
+          "the\n"
+          "robot's root). `mesh_files` maps the URDF's mesh filenames to files; an empty one leaves the mesh out.")
+      .def(
+          "add_link",
+          [](RobotSource& source, const std::string& name, const std::string& parent_link, const py::object& T,
+             const std::vector<LinkShape>& shapes) {
+            source.added_links.push_back({name, parent_link, pose_argument(T, "T"), shapes});
+          },
+          py::arg("name"), py::arg("parent_link"), py::arg("T") = py::none(),
+          py::arg("shapes") = std::vector<LinkShape>{}, "A fixed link that comes from no URDF.")
+      .def_property_readonly("urdfs", &urdf_dicts, "As dicts with the arguments of add_urdf.")
+      .def_property_readonly("added_links", &added_link_dicts, "As dicts with the arguments of add_link.");
+}
+
 void bind_robot_class(py::module_& m) {
   auto robot = declared<Robot>(m, "Robot");
   robot
@@ -249,6 +306,8 @@ void bind_robot_class(py::module_& m) {
       .def_property_readonly("passive_joints", &Robot::passive_joints,
                              "Joints that nothing drives (SRDF passive_joint): in no group.")
       .def_property_readonly("has_srdf", &Robot::has_srdf)
+      .def_property_readonly(
+          "source", [](const Robot& r) { return source_of(r); }, "The URDFs and links that it was made of.")
       .def_property_readonly("hash", &Robot::hash, "Content hash: kinematics, shapes, limits, disabled pairs.")
       .def(
           "collisions",
@@ -364,6 +423,7 @@ void bind_base_motion(py::module_& m) {
 }  // namespace
 
 void bind_robot(py::module_& m) {
+  bind_robot_source(m);
   bind_robot_class(m);
   bind_base_motion(m);
   bind_group(m);

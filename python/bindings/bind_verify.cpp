@@ -97,11 +97,10 @@ void bind_parts(py::module_& m) {
 
 void bind_plan_to_check(py::module_& m) {
   py::class_<PlanToCheck>(m, "PlanToCheck", "A whole plan as read from plan.json.")
-      .def(py::init([](const Robot& robot) {
-             PlanToCheck plan{robot};
-             return plan;
-           }),
-           py::arg("robot"))
+      .def(py::init<RobotSource>(), py::arg("robot"))
+      .def_readwrite("robot", &PlanToCheck::robot, "What the robot really is: its URDFs as they were given.")
+      .def_readwrite("planned_robot", &PlanToCheck::planned_robot,
+                     "As the planners understood it; without URDFs: not compared.")
       .def_readwrite("arm_joints", &PlanToCheck::arm_joints)
       .def_readwrite("velocity_limits", &PlanToCheck::velocity_limits)
       .def_readwrite("acceleration_limits", &PlanToCheck::acceleration_limits)
@@ -154,7 +153,7 @@ void bind_path_check(py::module_& m) {
       "check_path",
       [](const Robot& robot, const std::vector<std::string>& joints, const ArrayLike& path,
          const std::vector<CheckedBody>& bodies, const std::map<std::string, double>& other_joints, double joint_step) {
-        PathToCheck check{robot};
+        PathToCheck check{source_of(robot)};
         check.joints = joints;
         check.waypoints = rows_argument(path, "path", static_cast<Eigen::Index>(joints.size()));
         check.bodies = bodies;

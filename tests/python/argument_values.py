@@ -127,6 +127,7 @@ def capability_map() -> mg.base.CapabilityMap:
 
 OBJECTS: dict[str, Any] = {
     "Robot": lambda: ROBOT,
+    "RobotSource": lambda: ROBOT.source,
     "JointGroup": lambda: ARM,
     "World": world,
     "World.detach": held,
@@ -155,6 +156,7 @@ COMPANIONS: dict[str, dict[str, Any]] = {
 }
 OTHERS: dict[str, Any] = {
     "robot": lambda: ROBOT,
+    "urdf": lambda: URDF,
     "JointTrajectory.names": lambda: ["i", "j", "k"],
     "depth": lambda: np.ones((480, 640), np.float32),
     "height": lambda: np.ones((3, 4)),

@@ -59,8 +59,8 @@ struct Limit {
 
 void check_limits(const PlanToCheck& plan, const CheckedMotion& motion, const std::vector<Vector3d>& drive,
                   const std::string& where, Faults& faults) {
-  const BaseLimits& limits = plan.robot.base_limits();
-  const bool diff_drive = plan.robot.base() == BaseKind::diff_drive;
+  const BaseLimits& limits = plan.robot.base_limits;
+  const bool diff_drive = plan.robot.base == BaseKind::diff_drive;
   Limit speed{"speed [m/s]", limits.linear_velocity}, turning{"turning rate [rad/s]", limits.angular_velocity};
   Limit wheel{"wheel speed [m/s]", limits.wheel_velocity};
   Limit gain{"acceleration [m/s^2]", limits.linear_acceleration};
@@ -86,7 +86,7 @@ void check_limits(const PlanToCheck& plan, const CheckedMotion& motion, const st
 }  // namespace
 
 void check_base_course(const PlanToCheck& plan, const CheckedMotion& motion, const std::string& where, Faults& faults) {
-  const BaseKind base = plan.robot.base();
+  const BaseKind base = plan.robot.base;
   std::vector<Vector3d> drive;
   for (std::size_t i = 0; i < motion.times.size(); ++i)
     drive.push_back(drive_of(base, motion.positions[i], motion.velocities[i]));

@@ -36,7 +36,8 @@ struct Context {
 };
 
 /// Names, lengths and numbers (structure.cpp). With any fault here nothing else can be checked.
-bool check_structure(const PlanToCheck& plan, Faults& faults, ArmSetup& setup, std::vector<int>& finger_links);
+bool check_structure(const PlanToCheck& plan, const RobotModel& robot, Faults& faults, ArmSetup& setup,
+                     std::vector<int>& finger_links);
 
 /// Which part is picked when and where (picks.cpp).
 void check_pick_list(Context& context, Faults& faults);

@@ -19,59 +19,57 @@ void place_solids(PlacedBody& body, const Pose& T_world_body) {
 }
 
 /// How far the robot can get from its root, by adding up every joint's offset and stroke.
-double robot_reach(const Robot& robot, const std::vector<std::vector<Solid>>& link_solids) {
-  std::vector<double> origin(robot.links().size(), 0.0);
-  std::vector<int> queue{robot.root_link()};
-  double reach = 0;
-  for (std::size_t next = 0; next < queue.size(); ++next) {
-    const int link = queue[next];
-    if (!link_solids[link].empty()) reach = std::max(reach, origin[link] + radius_of(link_solids[link]));
-    for (const int index : robot.links()[link].child_joints) {
-      const Joint& joint = robot.joints()[index];
-      double stroke = 0;
-      // A mimic joint's own limits need not hold it: what it follows may drive it farther.
-      if (joint.type == JointType::prismatic) {
-        stroke = joint.mimic_joint >= 0 ? std::numeric_limits<double>::infinity()
-                                        : std::max(std::abs(joint.lower), std::abs(joint.upper));
-      }
-      origin[joint.child_link] = origin[link] + joint.T_parent_joint.translation().norm() + stroke;
-      queue.push_back(joint.child_link);
+double robot_reach(const RobotModel& robot, const std::vector<std::vector<Solid>>& link_solids) {
+  std::vector<double> origin(robot.links.size(), 0.0);
+  double reach = link_solids[0].empty() ? 0 : radius_of(link_solids[0]);
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const ModelJoint& joint = robot.joints[i];
+    double stroke = 0;
+    // A mimic joint's own limits need not hold it: what it follows may drive it farther.
+    if (joint.kind == JointKind::prismatic) {
+      stroke = joint.source != static_cast<int>(i) ? std::numeric_limits<double>::infinity()
+                                                   : std::max(std::abs(joint.lower), std::abs(joint.upper));
     }
+    origin[joint.child] = origin[joint.parent] + joint.T_parent_child.p.Norm() + stroke;
+    const std::vector<Solid>& solids = link_solids[joint.child];
+    if (!solids.empty()) reach = std::max(reach, origin[joint.child] + radius_of(solids));
   }
   return reach;
 }
 
-int parent_of(const Robot& robot, int link) {
-  const int joint = robot.links()[link].parent_joint;
-  return joint < 0 ? -1 : robot.joints()[joint].parent_link;
+int parent_of(const RobotModel& robot, int link) {
+  const int joint = robot.links[link].joint;
+  return joint < 0 ? -1 : robot.joints[joint].parent;
 }
 
 /// The link that `link` is joined to, looking through links without shapes.
-int carrier_of(const Robot& robot, int link) {
+int carrier_of(const RobotModel& robot, int link) {
   int above = parent_of(robot, link);
-  while (above >= 0 && robot.links()[above].collisions.empty()) above = parent_of(robot, above);
+  while (above >= 0 && robot.links[above].shapes.empty() && !robot.links[above].shapes_left_out)
+    above = parent_of(robot, above);
   return above;
 }
 
 /// First link of the rigid body that this link belongs to.
-int rigid_body_of(const Robot& robot, int link) {
-  int joint = robot.links()[link].parent_joint;
-  while (joint >= 0 && robot.joints()[joint].type == JointType::fixed) {
-    link = robot.joints()[joint].parent_link;
-    joint = robot.links()[link].parent_joint;
+int rigid_body_of(const RobotModel& robot, int link) {
+  int joint = robot.links[link].joint;
+  while (joint >= 0 && robot.joints[joint].kind == JointKind::fixed) {
+    link = robot.joints[joint].parent;
+    joint = robot.links[link].joint;
   }
   return link;
 }
 
-bool joined(const Robot& robot, int a, int b) {
+bool joined(const RobotModel& robot, int a, int b) {
   return carrier_of(robot, a) == b || carrier_of(robot, b) == a || rigid_body_of(robot, a) == rigid_body_of(robot, b);
 }
 
 /// Links that are said to touch never must not touch: testing them shows whether that is true. Links joined by a joint
 /// or rigidly touch by construction, others for a reason that this check cannot know.
-bool needs_test(const Robot& robot, int a, int b) {
-  if (!robot.pair_disabled(a, b)) return true;
-  return robot.disabled_pairs().at({a, b}) == DisabledReason::never && !joined(robot, a, b);
+bool needs_test(const RobotModel& robot, int a, int b) {
+  const auto disabled = robot.disabled.find({a, b});
+  if (disabled != robot.disabled.end()) return disabled->second && !joined(robot, a, b);
+  return robot.enabled.count({a, b}) > 0 || !joined(robot, a, b);
 }
 
 }  // namespace
@@ -84,23 +82,24 @@ PlacedBody place_body(const std::string& name, const std::vector<LinkShape>& sha
   return body;
 }
 
-Stage make_stage(const Robot& robot, const ArmSetup& setup, const std::vector<int>& finger_links) {
-  Stage stage{robot, setup, {}, {}, {}, {}, 0, 0};
-  for (const Link& link : robot.links()) stage.link_solids.push_back(make_solids(link.collisions));
-  const int links = static_cast<int>(robot.links().size());
+Stage make_stage(std::shared_ptr<const RobotModel> robot, const ArmSetup& setup, const std::vector<int>& finger_links) {
+  Stage stage{std::move(robot), setup, {}, {}, {}, {}, 0, 0};
+  for (const ModelLink& link : stage.robot->links) stage.link_solids.push_back(make_solids(link.shapes));
+  const int links = static_cast<int>(stage.robot->links.size());
   for (int a = 0; a < links; ++a) {
     for (int b = a + 1; b < links; ++b) {
       const bool solid = !stage.link_solids[a].empty() && !stage.link_solids[b].empty();
-      if (solid && needs_test(robot, a, b)) stage.self_pairs.emplace_back(a, b);
+      if (solid && needs_test(*stage.robot, a, b)) stage.self_pairs.emplace_back(a, b);
     }
   }
   stage.is_finger.assign(links, false);
   for (const int link : finger_links) stage.is_finger[link] = true;
-  stage.reach = robot_reach(robot, stage.link_solids);
+  stage.reach = robot_reach(*stage.robot, stage.link_solids);
   return stage;
 }
 
-Judge::Judge(std::shared_ptr<const Stage> stage) : stage_(std::move(stage)), kinematics_(stage_->robot, stage_->setup) {
+Judge::Judge(std::shared_ptr<const Stage> stage)
+    : stage_(std::move(stage)), kinematics_(*stage_->robot, stage_->setup) {
   present_.assign(stage_->bodies.size(), true);
   const std::size_t links = stage_->link_solids.size();
   solid_poses_.resize(links);
@@ -170,7 +169,7 @@ bool Judge::link_touches(int link, const Solid& solid, const Pose& T, const Boun
 }
 
 Touch Judge::self_touch() const {
-  const std::vector<Link>& links = stage_->robot.links();
+  const std::vector<ModelLink>& links = stage_->robot->links;
   for (const auto& [a, b] : stage_->self_pairs) {
     if (!link_bounds_[a].intersects(link_bounds_[b])) continue;
     for (std::size_t i = 0; i < solid_poses_[b].size(); ++i) {
@@ -192,7 +191,7 @@ Touch Judge::scene_touch() const {
       if (!all.intersects(body.bounds[i])) continue;
       for (const int link : solid_links_) {
         if (link_touches(link, body.solids[i], body.T_world_shape[i], body.bounds[i])) {
-          return {TouchKind::scene, stage_->robot.links()[link].name, body.name};
+          return {TouchKind::scene, stage_->robot->links[link].name, body.name};
         }
       }
     }
@@ -205,7 +204,7 @@ Touch Judge::held_touch() const {
     const Solid& solid = held_body_.solids[i];
     for (const int link : solid_links_) {
       if (!stage_->is_finger[link] && link_touches(link, solid, held_body_.T_world_shape[i], held_body_.bounds[i])) {
-        return {TouchKind::held, held_body_.name, stage_->robot.links()[link].name};
+        return {TouchKind::held, held_body_.name, stage_->robot->links[link].name};
       }
     }
     for (std::size_t index = 0; index < stage_->bodies.size(); ++index) {

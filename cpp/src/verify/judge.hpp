@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "mmgrasp/robot/robot.hpp"
 #include "verify/kinematics.hpp"
+#include "verify/robot_model.hpp"
 #include "verify/solid.hpp"
 
 namespace mmgrasp::verify {
@@ -24,7 +24,7 @@ PlacedBody place_body(const std::string& name, const std::vector<LinkShape>& sha
 
 /// What does not change while a plan is checked: the robot's solids, the pairs of links to test, the scene.
 struct Stage {
-  Robot robot;
+  std::shared_ptr<const RobotModel> robot;
   ArmSetup setup;
   std::vector<std::vector<Solid>> link_solids;  ///< By link index.
   std::vector<std::pair<int, int>> self_pairs;
@@ -35,7 +35,7 @@ struct Stage {
 };
 
 /// Solids of the links, pairs and reach. Bodies are added by the caller.
-Stage make_stage(const Robot& robot, const ArmSetup& setup, const std::vector<int>& finger_links);
+Stage make_stage(std::shared_ptr<const RobotModel> robot, const ArmSetup& setup, const std::vector<int>& finger_links);
 
 enum class TouchKind { none, self, scene, held };
 

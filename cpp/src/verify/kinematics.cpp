@@ -1,108 +1,52 @@
 #include "verify/kinematics.hpp"
 
 #include <algorithm>
-#include <kdl/frames.hpp>
-#include <kdl/joint.hpp>
-#include <limits>
+#include <kdl/tree.hpp>
+
+#include "verify/kdl_pose.hpp"
 
 namespace mmgrasp::verify {
 namespace {
 
-KDL::Vector to_kdl(const Eigen::Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
-KDL::Frame to_kdl(const Pose& T) {
-  const Eigen::Matrix3d R = T.linear();
-  return {KDL::Rotation(R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)),
-          to_kdl(Eigen::Vector3d(T.translation()))};
-}
-
-Pose from_kdl(const KDL::Frame& frame) {
-  Pose T = Pose::Identity();
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) T(row, column) = frame.M(row, column);
-    T(row, 3) = frame.p(row);
-  }
-  return T;
-}
-
-KDL::Joint kdl_joint(const Joint& joint) {
-  const KDL::Vector origin = to_kdl(Eigen::Vector3d(joint.T_parent_joint.translation()));
-  const KDL::Vector axis = to_kdl(Eigen::Vector3d(joint.T_parent_joint.linear() * joint.axis));
-  switch (joint.type) {
-    case JointType::revolute:
-    case JointType::continuous:
-      return {joint.name, origin, axis, KDL::Joint::RotAxis};
-    case JointType::prismatic:
-      return {joint.name, origin, axis, KDL::Joint::TransAxis};
-    default:
-      return KDL::Joint(joint.name, KDL::Joint::Fixed);
-  }
-}
-
-bool moves(const Joint& joint) {
-  return joint.type == JointType::revolute || joint.type == JointType::continuous || joint.type == JointType::prismatic;
-}
-
 /// Zero, moved into limits where zero is outside.
-double rest_value(const Joint& joint) {
-  if (!moves(joint) || joint.type == JointType::continuous) return 0;
+double rest_value(const ModelJoint& joint) {
+  if (!joint.moves()) return 0;
   return std::min(std::max(0.0, joint.lower), std::max(joint.lower, joint.upper));
 }
 
 }  // namespace
 
-Kinematics::Kinematics(const Robot& robot, const ArmSetup& setup) : setup_(setup) {
-  const std::vector<Link>& links = robot.links();
-  for (const Joint& joint : robot.joints()) values_.push_back(rest_value(joint));
+Kinematics::Kinematics(const RobotModel& robot, const ArmSetup& setup) : setup_(setup) {
+  for (const ModelJoint& joint : robot.joints) values_.push_back(rest_value(joint));
   for (const auto& [joint, value] : setup.others) values_[joint] = value;
-  frames_.assign(links.size(), KDL::Frame::Identity());
-  poses_.assign(links.size(), Pose::Identity());
+  frames_.assign(robot.links.size(), KDL::Frame::Identity());
+  poses_.assign(robot.links.size(), Pose::Identity());
 
-  std::vector<int> queue{robot.root_link()};
-  std::vector<int> element_of_link(links.size(), -1);
-  for (std::size_t next = 0; next < queue.size(); ++next) {
-    for (const int joint : links[queue[next]].child_joints) {
-      elements_.push_back(make_element(robot, joint));
-      element_of_link[elements_.back().link] = static_cast<int>(elements_.size()) - 1;
-      queue.push_back(elements_.back().link);
-    }
-  }
-  for (int element = element_of_link[setup.tip_link]; element >= 0;
-       element = element_of_link[elements_[element].parent]) {
-    chain_.insert(chain_.begin(), element);
+  for (const ModelJoint& joint : robot.joints) elements_.push_back(make_element(robot, joint));
+  for (int joint = robot.links[setup.tip_link].joint; joint >= 0; joint = robot.links[elements_[joint].parent].joint) {
+    chain_.insert(chain_.begin(), joint);
   }
 
   lower_.resize(arm_size());
   upper_.resize(arm_size());
   for (int i = 0; i < arm_size(); ++i) {
-    const Joint& joint = robot.joints()[setup.arm[i]];
-    const bool free = joint.type == JointType::continuous;
-    lower_[i] = free ? -std::numeric_limits<double>::infinity() : joint.lower;
-    upper_[i] = free ? std::numeric_limits<double>::infinity() : joint.upper;
-    continuous_.push_back(free);
+    const ModelJoint& joint = robot.joints[setup.arm[i]];
+    lower_[i] = joint.lower;
+    upper_[i] = joint.upper;
+    continuous_.push_back(joint.kind == JointKind::continuous);
   }
 }
 
-Kinematics::Element Kinematics::make_element(const Robot& robot, int index) const {
-  const std::vector<Joint>& joints = robot.joints();
-  const Joint& joint = joints[index];
+Kinematics::Element Kinematics::make_element(const RobotModel& robot, const ModelJoint& joint) const {
   Element element;
-  element.joint = index;
-  element.parent = joint.parent_link;
-  element.link = joint.child_link;
-  element.segment = KDL::Segment(robot.links()[joint.child_link].name, kdl_joint(joint), to_kdl(joint.T_parent_joint));
-  element.source = index;
-  // A mimic joint may follow another mimic joint; the count ends a ring of them.
-  for (std::size_t hops = 0; hops < joints.size() && joints[element.source].mimic_joint >= 0; ++hops) {
-    const Joint& follower = joints[element.source];
-    element.offset += element.multiplier * follower.mimic_offset;
-    element.multiplier *= follower.mimic_multiplier;
-    element.source = follower.mimic_joint;
-  }
+  element.parent = joint.parent;
+  element.link = joint.child;
+  element.segment = GetTreeElementSegment(robot.tree.getSegment(robot.links[joint.child].name)->second);
+  element.source = joint.source;
+  element.multiplier = joint.multiplier;
+  element.offset = joint.offset;
   const auto driven = std::find(setup_.arm.begin(), setup_.arm.end(), element.source);
-  if (moves(joint) && driven != setup_.arm.end()) element.column = static_cast<int>(driven - setup_.arm.begin());
+  if (joint.moves() && driven != setup_.arm.end()) element.column = static_cast<int>(driven - setup_.arm.begin());
   return element;
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mmgrasp/core/pose.hpp"
-#include "mmgrasp/robot/robot.hpp"
+#include "verify/robot_model.hpp"
 
 namespace mmgrasp::verify {
 
@@ -25,11 +25,11 @@ struct ArmSetup {
   double max_opening = 0.1;
 };
 
-/// Forward kinematics and Jacobian by KDL segments, all in the root link's frame. One a thread: KDL's joints remember
-/// their last pose. Planar and floating joints are held at zero.
+/// Forward kinematics and Jacobian by the segments of the KDL tree, all in the root link's frame. One a thread: KDL's
+/// joints remember their last pose. Planar and floating joints are held at zero.
 class Kinematics {
  public:
-  Kinematics(const Robot& robot, const ArmSetup& setup);
+  Kinematics(const RobotModel& robot, const ArmSetup& setup);
 
   int arm_size() const { return static_cast<int>(setup_.arm.size()); }
   const Eigen::VectorXd& lower() const { return lower_; }
@@ -45,18 +45,18 @@ class Kinematics {
  private:
   /// One joint with the link it carries.
   struct Element {
-    int joint = -1, parent = -1, link = -1;
+    int parent = -1, link = -1;
     KDL::Segment segment;
     int source = -1;  ///< Joint whose value it follows: itself, or what it mimics.
     double multiplier = 1, offset = 0;
     int column = -1;  ///< Arm joint that drives it; -1: none.
   };
-  Element make_element(const Robot& robot, int joint) const;
+  Element make_element(const RobotModel& robot, const ModelJoint& joint) const;
   void set_arm(const Eigen::VectorXd& arm);
   double value(const Element& element) const;
 
   ArmSetup setup_;
-  std::vector<Element> elements_;   ///< Parents first.
+  std::vector<Element> elements_;   ///< By joint index, parents first.
   std::vector<int> chain_;          ///< Elements from the root to the tip.
   std::vector<double> values_;      ///< By joint index.
   std::vector<KDL::Frame> frames_;  ///< By link index.

@@ -11,19 +11,18 @@ namespace {
 
 constexpr double kLimitSlack = 1e-6;
 
-int known_joint(const Robot& robot, const std::string& name) {
-  for (std::size_t j = 0; j < robot.joints().size(); ++j) {
-    if (robot.joints()[j].name == name) return static_cast<int>(j);
-  }
-  throw InvalidInput("joint \"" + name + "\": the robot has none of this name");
+int known_joint(const RobotModel& robot, const std::string& name) {
+  const int joint = robot.joint_index(name);
+  if (joint < 0) throw InvalidInput("joint \"" + name + "\": the robot has none of this name");
+  return joint;
 }
 
-ArmSetup setup_of(const PathToCheck& path) {
+ArmSetup setup_of(const PathToCheck& path, const RobotModel& robot) {
   ArmSetup setup;
-  for (const std::string& name : path.joints) setup.arm.push_back(known_joint(path.robot, name));
+  for (const std::string& name : path.joints) setup.arm.push_back(known_joint(robot, name));
   require(!setup.arm.empty(), "joints", "[]", "must name at least one joint");
-  for (const auto& [name, value] : path.other_joints) setup.others[known_joint(path.robot, name)] = value;
-  setup.tip_link = path.robot.joints()[setup.arm.back()].child_link;
+  for (const auto& [name, value] : path.other_joints) setup.others[known_joint(robot, name)] = value;
+  setup.tip_link = robot.joints[setup.arm.back()].child;
   return setup;
 }
 
@@ -77,12 +76,13 @@ class PathWalk {
 PathCheckResult check_path(const PathToCheck& path, double joint_step) {
   require(joint_step > 0 && std::isfinite(joint_step), "joint_step", joint_step, "must be finite and > 0");
   require(!path.waypoints.empty(), "waypoints", "[]", "must hold at least one configuration");
-  const ArmSetup setup = setup_of(path);
+  const auto robot = std::make_shared<const RobotModel>(read_robot(path.robot));
+  const ArmSetup setup = setup_of(path, *robot);
   for (const auto& q : path.waypoints) {
     require(q.size() == static_cast<Eigen::Index>(setup.arm.size()) && q.allFinite(), "waypoints",
             static_cast<double>(q.size()), "must have a finite value for each of the joints");
   }
-  auto stage = std::make_shared<Stage>(make_stage(path.robot, setup, {}));
+  auto stage = std::make_shared<Stage>(make_stage(robot, setup, {}));
   for (const CheckedBody& body : path.bodies) {
     stage->bodies.push_back(place_body(body.name, body.shapes, body.T_world_body));
   }

@@ -1,14 +1,27 @@
 #include "mmgrasp/verify/plan_check.hpp"
 
 #include "mmgrasp/core/error.hpp"
+#include "verify/compare_robots.hpp"
 #include "verify/context.hpp"
 
 namespace mmgrasp::verify {
 namespace {
 
-std::shared_ptr<const Stage> build_stage(const PlanToCheck& plan, const ArmSetup& setup,
-                                         const std::vector<int>& finger_links) {
-  auto stage = std::make_shared<Stage>(make_stage(plan.robot, setup, finger_links));
+/// Null, with a fault, when the robot cannot be read.
+std::shared_ptr<const RobotModel> model_of(const PlanToCheck& plan, Faults& faults) {
+  try {
+    auto robot = std::make_shared<RobotModel>(read_robot(plan.robot));
+    if (!plan.planned_robot.urdfs.empty()) compare_robots(*robot, read_robot(plan.planned_robot, false), faults);
+    return robot;
+  } catch (const Error& error) {
+    faults.push_back({"robot-unreadable", "robot", error.what()});
+    return nullptr;
+  }
+}
+
+std::shared_ptr<const Stage> build_stage(const PlanToCheck& plan, std::shared_ptr<const RobotModel> robot,
+                                         const ArmSetup& setup, const std::vector<int>& finger_links) {
+  auto stage = std::make_shared<Stage>(make_stage(std::move(robot), setup, finger_links));
   const auto add = [&](const CheckedBody& body) {
     stage->bodies.push_back(place_body(body.name, body.shapes, body.T_world_body));
   };
@@ -72,9 +85,10 @@ PlanCheckResult check_plan(const PlanToCheck& plan, const PlanCheckOptions& opti
   PlanCheckResult result;
   ArmSetup setup;
   std::vector<int> finger_links;
-  if (!check_structure(plan, result.faults, setup, finger_links)) return result;
+  const std::shared_ptr<const RobotModel> robot = model_of(plan, result.faults);
+  if (!robot || !check_structure(plan, *robot, result.faults, setup, finger_links)) return result;
 
-  Context context{plan, options, monitor, build_stage(plan, setup, finger_links), {}, {}, {}};
+  Context context{plan, options, monitor, build_stage(plan, robot, setup, finger_links), {}, {}, {}};
   for (std::size_t i = 0; i < plan.parts.size(); ++i) context.part_index[plan.parts[i].body.name] = static_cast<int>(i);
   check_scene_at_rest(*context.stage, result.faults);
   check_pick_list(context, result.faults);

@@ -92,14 +92,14 @@ class RouteCheck {
     check_end(poses.front(), from, name(leg), "starts");
     check_end(poses.back(), to, name(leg), "ends");
     for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
-      if (driveable(plan_.robot.base(), poses[i], poses[i + 1])) continue;
+      if (driveable(plan_.robot.base, poses[i], poses[i + 1])) continue;
       faults_.push_back({"route-not-driveable", name(leg) + ", step " + std::to_string(i),
-                         std::string("a ") + to_string(plan_.robot.base()) + " base cannot go straight from " +
+                         std::string("a ") + to_string(plan_.robot.base) + " base cannot go straight from " +
                              text(poses[i]) + " to " + text(poses[i + 1])});
       break;
     }
     const bool told = leg < plan_.route_figures.size();
-    if (told && !figures_hold(plan_.route_figures[leg], poses, plan_.robot.base(), plan_.robot.base_limits())) {
+    if (told && !figures_hold(plan_.route_figures[leg], poses, plan_.robot.base, plan_.robot.base_limits)) {
       faults_.push_back({"route-figures", name(leg),
                          "length or turning are not those of its poses, or the duration is below what the base needs"});
     }

@@ -7,7 +7,7 @@
 
 #include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
-#include "mmgrasp/robot/joint.hpp"
+#include "mmgrasp/robot/robot_source.hpp"
 
 namespace mmgrasp::verify {
 

@@ -28,6 +28,7 @@ bool is_pose(const Pose& T) {
 /// Collects structural faults; `ok` tells whether there were any.
 struct Structure {
   const PlanToCheck& plan;
+  const RobotModel& robot;
   Faults& faults;
   bool ok = true;
 
@@ -40,24 +41,18 @@ struct Structure {
   }
 
   int joint(const std::string& name, const std::string& where) {
-    for (std::size_t i = 0; i < plan.robot.joints().size(); ++i) {
-      const Joint& joint = plan.robot.joints()[i];
-      if (joint.name != name) continue;
-      const bool drivable = joint.mimic_joint < 0 && joint.value_count() == 1;
-      return need(drivable, where, "joint '" + name + "' cannot be set: it is fixed, planar, floating or a mimic")
-                 ? static_cast<int>(i)
-                 : -1;
-    }
-    need(false, where, "the robot has no joint '" + name + "'");
-    return -1;
+    const int index = robot.joint_index(name);
+    if (!need(index >= 0, where, "the robot has no joint '" + name + "'")) return -1;
+    const ModelJoint& joint = robot.joints[index];
+    const bool drivable = joint.moves() && joint.source == index;
+    need(drivable, where, "joint '" + name + "' cannot be set: it is fixed, planar, floating or a mimic");
+    return drivable ? index : -1;
   }
 
   int link(const std::string& name, const std::string& where) {
-    for (std::size_t i = 0; i < plan.robot.links().size(); ++i) {
-      if (plan.robot.links()[i].name == name) return static_cast<int>(i);
-    }
-    need(false, where, "the robot has no link '" + name + "'");
-    return -1;
+    const int index = robot.link_index(name);
+    need(index >= 0, where, "the robot has no link '" + name + "'");
+    return index;
   }
 
   void arm(ArmSetup& setup);
@@ -92,7 +87,7 @@ void Structure::arm(ArmSetup& setup) {
   limits(plan.acceleration_limits, "acceleration_limits");
   for (std::size_t i = 0; i < std::min(plan.velocity_limits.size(), count); ++i) {
     if (setup.arm[i] < 0 || !finite(plan.velocity_limits[i])) continue;
-    const double most = plan.robot.joints()[setup.arm[i]].velocity;
+    const double most = robot.joints[setup.arm[i]].velocity;
     if (plan.velocity_limits[i] <= most * (1 + 1e-9)) continue;
     faults.push_back({"limit-exceeds-robot", "velocity_limits",
                       text(plan.velocity_limits[i]) + " for '" + plan.arm_joints[i] + "', the robot itself allows " +
@@ -114,10 +109,9 @@ void Structure::gripper(ArmSetup& setup, std::vector<int>& finger_links) {
     if (index < 0 || !finite_ends) continue;
     for (const int arm_joint : setup.arm) need(arm_joint != index, "fingers", "'" + finger.joint + "' is an arm joint");
     setup.fingers.push_back({index, finger.closed, finger.open});
-    const Joint& limits = plan.robot.joints()[index];
+    const ModelJoint& limits = robot.joints[index];
     for (const double value : {finger.closed, finger.open}) {
-      if (limits.type == JointType::continuous || (value >= limits.lower - 1e-6 && value <= limits.upper + 1e-6))
-        continue;
+      if (value >= limits.lower - 1e-6 && value <= limits.upper + 1e-6) continue;
       faults.push_back({"finger-limit", "fingers",
                         "'" + finger.joint + "' at " + text(value) + " is outside [" + text(limits.lower) + ", " +
                             text(limits.upper) + "]"});
@@ -189,8 +183,9 @@ std::string text(const Eigen::Vector3d& pose) {
   return "(" + text(pose.x()) + ", " + text(pose.y()) + ", " + text(pose.z()) + ")";
 }
 
-bool check_structure(const PlanToCheck& plan, Faults& faults, ArmSetup& setup, std::vector<int>& finger_links) {
-  Structure structure{plan, faults};
+bool check_structure(const PlanToCheck& plan, const RobotModel& robot, Faults& faults, ArmSetup& setup,
+                     std::vector<int>& finger_links) {
+  Structure structure{plan, robot, faults};
   structure.arm(setup);
   structure.gripper(setup, finger_links);
   structure.scalars();

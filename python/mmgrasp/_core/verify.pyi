@@ -50,7 +50,7 @@ class PlanToCheck:
     """
     grid: CheckedGrid
     tip_link: str
-    def __init__(self, robot: mmgrasp._core.Robot) -> None:
+    def __init__(self, robot: mmgrasp._core.RobotSource) -> None:
         ...
     @property
     def T_base_bin(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -173,6 +173,14 @@ class PlanToCheck:
     def picks(self, arg0: collections.abc.Sequence[CheckedPick]) -> None:
         ...
     @property
+    def planned_robot(self) -> mmgrasp._core.RobotSource:
+        """
+        As the planners understood it; without URDFs: not compared.
+        """
+    @planned_robot.setter
+    def planned_robot(self, arg0: mmgrasp._core.RobotSource) -> None:
+        ...
+    @property
     def positioning_uncertainty(self) -> float:
         ...
     @positioning_uncertainty.setter
@@ -183,6 +191,14 @@ class PlanToCheck:
         ...
     @regions.setter
     def regions(self, arg0: collections.abc.Sequence[CheckedRegion]) -> None:
+        ...
+    @property
+    def robot(self) -> mmgrasp._core.RobotSource:
+        """
+        What the robot really is: its URDFs as they were given.
+        """
+    @robot.setter
+    def robot(self, arg0: mmgrasp._core.RobotSource) -> None:
         ...
     @property
     def robustness_rate(self) -> float:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import InvalidInput, PartSupplyPlan, Robot
+from .._core import InvalidInput, PartSupplyPlan, Robot, RobotSource
 from .._core import verify as checks
 from .._files import SCHEMAS, sha256_of
 from ..scenario import Scenario
@@ -72,6 +72,8 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
         "robot": {
             "urdf": robot.to_urdf(),
             "srdf": robot.to_srdf(),
+            "urdfs": [_urdf(u) for u in robot.source.urdfs],
+            "links": [_link(link) for link in robot.source.added_links],
             "base": robot.base,
             "base_limits": {key: value for key, value in robot.base_limits.items() if math.isfinite(value)},
             "meshes": [{"file": path, "sha256": sha256_of(path)} for path in _mesh_files(robot)],
@@ -112,9 +114,24 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
     }
 
 
+def _urdf(source: dict[str, Any]) -> dict[str, Any]:
+    """A URDF as it was given; verify reads it instead of ours."""
+    return {key: value for key, value in source.items() if key != "T"} | {"pose": pose_to_dict(source["T"])}
+
+
+def _link(link: dict[str, Any]) -> dict[str, Any]:
+    return {
+        "name": link["name"],
+        "parent_link": link["parent_link"],
+        "pose": pose_to_dict(link["T"]),
+        "shapes": [shape_to_dict(s) for s in link["shapes"]],
+    }
+
+
 def _mesh_files(robot: Robot) -> list[str]:
     """The robot's collision meshes, each once."""
-    return sorted({s.mesh_path for link in robot.links for s in robot.collisions(link) if s.mesh_path})
+    shapes = {s.mesh_path for link in robot.links for s in robot.collisions(link)}
+    return sorted((shapes | {path for u in robot.source.urdfs for path in u["mesh_files"].values()}) - {""})
 
 
 def _part(part: _core.Part, tray: str) -> dict[str, Any]:
@@ -228,20 +245,39 @@ def plan_to_check(root: Node) -> checks.PlanToCheck:
     for mesh in robot["meshes"].elements():
         if sha256_of(mesh["file"].string()) != mesh["sha256"].string():
             mesh["file"].fail("the mesh file has changed since the plan was made")
-    plan = checks.PlanToCheck(
-        Robot.from_strings(
-            robot["urdf"].string(),
-            robot["srdf"].string(),
-            None,
-            robot["base"].choice("diff_drive", "omni"),
-            base_limits=limits,
-            origin=root.document.source,
-        )
-    )
+    base = robot["base"].choice("diff_drive", "omni")
+    planned = RobotSource(base, base_limits=limits, srdf=robot["srdf"].string())
+    files = {mesh["file"].raw: mesh["file"].raw for mesh in robot["meshes"].elements()}
+    planned.add_urdf(robot["urdf"].string(), origin=f"{root.document.source}: scenario.robot.urdf", mesh_files=files)
+    if "urdfs" in robot:
+        plan = checks.PlanToCheck(_read_source(robot, RobotSource(base, base_limits=limits, srdf=robot["srdf"].raw)))
+        plan.planned_robot = planned
+    else:  # a plan from before these were kept
+        plan = checks.PlanToCheck(planned)
     _read_arm(plan, scenario)
     _read_scene(plan, scenario)
     _read_answer(plan, root)
     return plan
+
+
+def _text(node: Node) -> str:
+    """A text that may be empty."""
+    return node.raw if node.raw == "" else node.string()
+
+
+def _read_source(robot: Node, source: RobotSource) -> RobotSource:
+    hashed = {mesh["file"].raw for mesh in robot["meshes"].elements()} | {""}
+    for node in robot["urdfs"].elements():
+        node.mapping("urdf origin prefix parent_link pose mesh_files")
+        files = {name: _text(file) for name, file in node["mesh_files"].items()}
+        if not hashed.issuperset(files.values()):
+            node["mesh_files"].fail("every file must be among the robot's meshes")
+        texts = {key: _text(node[key]) for key in ("urdf", "origin", "prefix", "parent_link")}
+        source.add_urdf(**texts, T=node["pose"].pose(), mesh_files=files)
+    for node in robot["links"].elements():
+        shapes = [shape_from_node(shape) for shape in node["shapes"].elements()]
+        source.add_link(node["name"].string(), node["parent_link"].string(), node["pose"].pose(), shapes)
+    return source
 
 
 def _read_arm(plan: checks.PlanToCheck, scenario: Node) -> None:

@@ -19,7 +19,8 @@ const ReachDatabase& database() {
 
 /// The plan as the independent checker wants it: it shares no code with the planners.
 verify::PlanToCheck to_check(const PartSupplyProblem& problem, const PartSupplyPlan& plan) {
-  verify::PlanToCheck check{problem.robot};
+  verify::PlanToCheck check{source_of(problem.robot)};
+  check.planned_robot = written_source(problem.robot);
   check.arm_joints = problem.arm.names();
   for (int i = 0; i < problem.arm.size(); ++i) {
     check.velocity_limits.push_back(problem.arm.velocity_limits()[i]);

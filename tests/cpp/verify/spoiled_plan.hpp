@@ -24,7 +24,7 @@ inline PlanToCheck on_other_robot(const PlanToCheck& good, std::string urdf_text
   mmgrasp::RobotOptions options;
   options.base = mmgrasp::BaseKind::diff_drive;
   PlanToCheck plan = good;
-  plan.robot = mmgrasp::Robot::from_strings(urdf_text, srdf_text, options);
+  plan.robot = mmgrasp::source_of(mmgrasp::Robot::from_strings(urdf_text, srdf_text, options));
   return plan;
 }
 

@@ -75,7 +75,7 @@ TEST(DriveByCheck, LimitsOfBaseAndWheels) {
   mmgrasp::RobotOptions options;
   options.base = mmgrasp::BaseKind::diff_drive;
   options.base_limits.wheel_velocity = 0.4;  // the base comes at 0.45 m/s
-  plan.robot = mmgrasp::Robot::from_strings(urdf(), srdf(), options);
+  plan.robot = mmgrasp::source_of(mmgrasp::Robot::from_strings(urdf(), srdf(), options));
   EXPECT_TRUE(codes_of(plan).count("base-limit"));
 }
 

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector2d;
 
 PathToCheck two_links(const test::PlanarArm& arm, const Vector2d& from, const Vector2d& to) {
-  PathToCheck path{arm.robot()};
+  PathToCheck path{source_of(arm.robot())};
   path.joints = {"j1", "j2"};
   path.waypoints = {from, to};
   return path;

@@ -303,7 +303,7 @@ TEST(PlanCheckFigures, WhatDescribesMustNotLie) {
   std::vector<PlanToCheck> lies(6, good);
   lies[0].route_figures[1].length = 2.99;
   lies[1].route_figures[1].turning = 0;
-  lies[2].route_figures[0].duration = 1.39 / good.robot.base_limits().linear_velocity;  // no time to speed up and brake
+  lies[2].route_figures[0].duration = 1.39 / good.robot.base_limits.linear_velocity;  // no time to speed up and brake
   lies[3].route_figures.pop_back();
   lies[4].route_figures[2].duration = -1;
   lies[5].route_figures[2].length = std::nan("");
@@ -333,11 +333,11 @@ TEST(PlanCheckRoute, OmniMayDriveSidewaysFixedMayNot) {
   PlanToCheck plan = good_plan();
   mmgrasp::RobotOptions options;
   options.base = mmgrasp::BaseKind::omni;
-  plan.robot = mmgrasp::Robot::from_strings(urdf(), srdf(), options);
+  plan.robot = mmgrasp::source_of(mmgrasp::Robot::from_strings(urdf(), srdf(), options));
   plan.route[1] = {plan.stops[0].pose, plan.stops[1].pose};
   EXPECT_TRUE(codes_of(plan).empty());
   options.base = mmgrasp::BaseKind::fixed;
-  plan.robot = mmgrasp::Robot::from_strings(urdf(), srdf(), options);
+  plan.robot = mmgrasp::source_of(mmgrasp::Robot::from_strings(urdf(), srdf(), options));
   EXPECT_EQ(codes_of(plan), Codes{"route-not-driveable"});
 }
 

@@ -190,7 +190,7 @@ inline void add_stops_and_route(PlanToCheck& plan) {
 inline PlanToCheck good_plan(const Variation& how = {}) {
   mmgrasp::RobotOptions options;
   options.base = mmgrasp::BaseKind::diff_drive;
-  PlanToCheck plan{mmgrasp::Robot::from_strings(urdf(how.x_upper), srdf(), options)};
+  PlanToCheck plan{mmgrasp::source_of(mmgrasp::Robot::from_strings(urdf(how.x_upper), srdf(), options))};
   add_robot_data(plan);
   add_scene(plan, how);
   add_stops_and_route(plan);

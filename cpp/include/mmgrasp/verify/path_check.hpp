@@ -6,16 +6,16 @@
 #include <vector>
 
 #include "mmgrasp/core/export.hpp"
-#include "mmgrasp/robot/robot.hpp"
+#include "mmgrasp/robot/robot_source.hpp"
 #include "mmgrasp/verify/plan_check.hpp"
 
 namespace mmgrasp::verify {
 
 /// An arm's joint path among bodies that stand still.
 struct MMGRASP_EXPORT PathToCheck {
-  explicit PathToCheck(Robot checked_robot) : robot(std::move(checked_robot)) {}
+  explicit PathToCheck(RobotSource checked_robot) : robot(std::move(checked_robot)) {}
 
-  Robot robot;
+  RobotSource robot;                           ///< E.g. source_of(robot).
   std::vector<std::string> joints;             ///< One a value of a waypoint.
   std::map<std::string, double> other_joints;  ///< Where the others stand; those not named at zero.
   std::vector<CheckedBody> bodies;
@@ -29,9 +29,9 @@ struct MMGRASP_EXPORT PathCheckResult {
 };
 
 /// Looks at a path in steps of at most `joint_step` [rad or m] in any joint, ends included: joint limits (slack 1e-6),
-/// links against each other and against the bodies. Kinematics by KDL and collisions by FCL on the loaded shapes, as
-/// check_plan does; the robot's root stands at the origin. Throws InvalidInput on names it does not know, wrong lengths
-/// and a step that is not > 0.
+/// links against each other and against the bodies. The robot read by urdfdom, kinematics by KDL and collisions by FCL,
+/// as check_plan does; the robot's root stands at the origin. Throws InvalidInput on robots it cannot read, names it
+/// does not know, wrong lengths and a step that is not > 0.
 MMGRASP_EXPORT PathCheckResult check_path(const PathToCheck& path, double joint_step = 0.005);
 
 }  // namespace mmgrasp::verify

@@ -11,8 +11,7 @@
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/core/pose.hpp"
-#include "mmgrasp/robot/joint.hpp"
-#include "mmgrasp/robot/robot.hpp"
+#include "mmgrasp/robot/robot_source.hpp"
 
 namespace mmgrasp::verify {
 
@@ -98,9 +97,10 @@ struct MMGRASP_EXPORT CheckedIntersection {
 
 /// A whole plan, as read from plan.json. Knows nothing of how it was made.
 struct MMGRASP_EXPORT PlanToCheck {
-  explicit PlanToCheck(Robot checked_robot) : robot(std::move(checked_robot)) {}
+  explicit PlanToCheck(RobotSource checked_robot) : robot(std::move(checked_robot)) {}
 
-  Robot robot;
+  RobotSource robot;          ///< What the robot really is: its URDFs as they were given.
+  RobotSource planned_robot;  ///< As the planners understood it (Robot::to_urdf()); without URDFs: not compared.
   std::vector<std::string> arm_joints;
   std::vector<double> velocity_limits, acceleration_limits;  ///< One an arm joint.
   std::string tip_link;
@@ -145,6 +145,8 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 
 /// One thing that is physically wrong with the plan. The codes, by what they are about:
 /// - the data: `malformed` (names, lengths, numbers; nothing else is checked then), `stopped` (ended by the monitor);
+/// - the robot: `robot-unreadable` (urdfdom, KDL or assimp cannot make sense of it; nothing else is checked then),
+///   `robot-differs` (a link or joint that was planned for is not the one of the URDF);
 /// - the scene: `part-overlap` (a part in another one or in an obstacle, deeper than 1e-4 m);
 /// - home: `home-limit`, `home-collision` (robot with itself), `start-collision`, `finger-limit`,
 ///   `finger-links` (fewer than two), `limit-exceeds-robot` (velocity limits above the URDF's);
@@ -185,8 +187,9 @@ struct MMGRASP_EXPORT PlanCheckResult {
   std::size_t configurations_checked = 0;
 };
 
-/// Checks a finished plan against its scenario: kinematics by KDL, collisions by FCL on the loaded shapes, the cover
-/// solved again by CBC on discs found by searching the floor. Shares no code with the planners. A broken plan gives
+/// Checks a finished plan against its scenario: the robot read again by urdfdom and assimp, kinematics by KDL,
+/// collisions by FCL, the cover solved again by CBC on discs found by searching the floor. Shares no code with the
+/// planners. A broken plan gives
 /// faults, never an exception; only unusable options throw (InvalidInput). Same answer at any thread count.
 ///
 /// Between samples a motion is the cubic through positions and velocities. Limits on positions hold on all of it (slack

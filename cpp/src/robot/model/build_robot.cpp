@@ -214,6 +214,8 @@ std::shared_ptr<Robot::Data> build_robot(const RobotParts& parts) {
   data->has_srdf = parts.has_srdf;
   data->inertials = parts.inertials;
   data->shapes_left_out = parts.shapes_left_out;
+  data->urdfs = parts.urdfs;
+  data->added_links = parts.added_links;
   for (const int old_link : order) {
     Link link = parts.links[old_link];
     const int index = static_cast<int>(data->links.size());
@@ -267,6 +269,8 @@ RobotParts to_parts(const Robot::Data& data) {
   parts.has_srdf = data.has_srdf;
   parts.inertials = data.inertials;
   parts.shapes_left_out = data.shapes_left_out;
+  parts.urdfs = data.urdfs;
+  parts.added_links = data.added_links;
   for (const auto& [pair, reason] : data.disabled_pairs) {
     const std::string& a = data.links[pair.first].name;
     const std::string& b = data.links[pair.second].name;

@@ -63,6 +63,12 @@ void add_prefix(RobotParts& parts, const std::string& prefix) {
   std::set<std::string> left_out;
   for (const std::string& link : parts.shapes_left_out) left_out.insert(prefix + link);
   parts.shapes_left_out = std::move(left_out);
+  for (UrdfSource& source : parts.urdfs) {
+    source.prefix = prefix + source.prefix;
+    if (!source.parent_link.empty()) source.parent_link = prefix + source.parent_link;
+  }
+  for (AddedLink& link : parts.added_links)
+    for (std::string* name : {&link.name, &link.parent_link}) *name = prefix + *name;
 }
 
 template <typename T>
@@ -84,6 +90,10 @@ Robot Robot::mount(const Robot& other, const std::string& parent_link, const Pos
   RobotParts mounted = detail::to_parts(*other.data_);
   const std::string used = prefix.empty() ? other.name() + "_" : prefix;
   add_prefix(mounted, used);
+  mounted.urdfs.front().parent_link = parent_link;
+  mounted.urdfs.front().T_parent_root = T_parent_other;
+  append(parts.urdfs, mounted.urdfs);
+  append(parts.added_links, mounted.added_links);
   // The mounted robot's links follow in their own order, which starts with its root.
   const std::string mounted_root = root_name(mounted);
   append(parts.links, mounted.links);
@@ -124,6 +134,7 @@ Robot Robot::with_link(const std::string& name, const std::string& parent_link, 
   RobotParts parts = detail::to_parts(*data_);
   parts.origin = "adding link \"" + name + "\" to robot \"" + data_->name + "\"";
   parts.links.push_back(std::move(link));
+  parts.added_links.push_back({name, parent_link, T_parent_link, collisions});
   parts.joints.push_back(fixed_joint(name + "_joint", parent_link, name, T_parent_link));
   return Robot(detail::build_robot(parts));
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mmgrasp/robot/robot.hpp"
+#include "mmgrasp/robot/robot_source.hpp"
 
 namespace mmgrasp {
 
@@ -35,6 +36,8 @@ struct Robot::Data {
   std::map<std::pair<int, int>, DisabledReason> disabled_pairs;
   std::map<std::string, std::string> inertials;  // link -> its <inertial> as XML: nothing here computes with it
   std::set<std::string> shapes_left_out;  // links whose meshes were not loaded: without shapes here, but not in truth
+  std::vector<UrdfSource> urdfs;          // what it was read from
+  std::vector<AddedLink> added_links;     // and what came from no URDF
 
   // Derived from the above.
   std::unordered_map<std::string, int> link_by_name;
@@ -72,6 +75,8 @@ struct RobotParts {
   NamedPairs disabled_pairs;
   std::map<std::string, std::string> inertials;
   std::set<std::string> shapes_left_out;
+  std::vector<UrdfSource> urdfs;
+  std::vector<AddedLink> added_links;
 };
 
 /// Orders links and joints breadth first, resolves mimic joints, numbers values, disables pairs that cannot collide in

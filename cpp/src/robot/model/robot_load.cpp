@@ -3,6 +3,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "mmgrasp/core/detail/utf8.hpp"
 #include "mmgrasp/core/detail/xml_document.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/shape.hpp"
@@ -78,6 +79,7 @@ std::string missing_message(const std::string& origin, const std::string& link, 
 void resolve_meshes(detail::RobotParts& parts, const RobotOptions& options) {
   detail::MeshLocator locator(fs::path(parts.origin).parent_path(), options.mesh_dir, options.package_dirs);
   MeshCache cache(options.mesh_tolerance);
+  std::map<std::string, std::string>& mesh_files = parts.urdfs.front().mesh_files;
   for (Link& link : parts.links) {
     std::vector<LinkShape> kept;
     for (LinkShape& shape : link.collisions) {
@@ -85,6 +87,7 @@ void resolve_meshes(detail::RobotParts& parts, const RobotOptions& options) {
         kept.push_back(shape);
         continue;
       }
+      mesh_files[shape.mesh_uri] = "";
       if (!options.load_meshes) {
         parts.shapes_left_out.insert(link.name);
         continue;
@@ -99,6 +102,7 @@ void resolve_meshes(detail::RobotParts& parts, const RobotOptions& options) {
         parts.report.warnings.push_back(message);
         continue;
       }
+      mesh_files[shape.mesh_uri] = shape.mesh_path;
       cache.load(shape, parts.report);
       kept.push_back(shape);
     }
@@ -126,6 +130,9 @@ Robot load_robot(const std::string& urdf, const std::string& urdf_origin, const 
   detail::RobotParts parts = detail::read_urdf(urdf, urdf_origin);
   parts.base = options.base;
   parts.base_limits = options.base_limits;
+  parts.urdfs.emplace_back();
+  parts.urdfs.front().urdf = detail::is_utf8(urdf) ? urdf : detail::utf8_from_latin1(urdf);
+  parts.urdfs.front().origin = urdf_origin;
   // The tree first: its faults are the reader's own, and cheaper to find than a missing mesh.
   detail::build_robot(parts);
   resolve_meshes(parts, options);

@@ -1,0 +1,66 @@
+#include "verify/mesh_file.hpp"
+
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <array>
+#include <assimp/Importer.hpp>
+#include <utility>
+#include <vector>
+
+#include "mmgrasp/core/error.hpp"
+
+namespace mmgrasp::verify {
+namespace {
+
+struct Triangles {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<std::array<int, 3>> corners;
+};
+
+void add_node(const aiScene& scene, const aiNode& node, const aiMatrix4x4& T_file_parent, const Eigen::Vector3d& scale,
+              Triangles& out) {
+  const aiMatrix4x4 T = T_file_parent * node.mTransformation;
+  const bool mirrored = T.Determinant() * scale.prod() < 0;  // the outside stays outside
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
+    const int first = static_cast<int>(out.vertices.size());
+    for (unsigned k = 0; k < mesh.mNumVertices; ++k) {
+      const aiVector3D v = T * mesh.mVertices[k];
+      out.vertices.push_back(scale.cwiseProduct(Eigen::Vector3d(v.x, v.y, v.z)));
+    }
+    for (unsigned k = 0; k < mesh.mNumFaces; ++k) {
+      const aiFace& face = mesh.mFaces[k];
+      if (face.mNumIndices != 3) continue;  // points and lines
+      std::array<int, 3> corners;
+      for (int c = 0; c < 3; ++c) corners[c] = first + static_cast<int>(face.mIndices[c]);
+      if (mirrored) std::swap(corners[1], corners[2]);
+      out.corners.push_back(corners);
+    }
+  }
+  for (unsigned i = 0; i < node.mNumChildren; ++i) add_node(scene, *node.mChildren[i], T, scale, out);
+}
+
+std::shared_ptr<const TriangleMesh> read_mesh(const std::string& path, const Eigen::Vector3d& scale) {
+  Assimp::Importer importer;
+  // URDF tools show DAE coordinates as they stand, whatever <up_axis> says.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
+  if (!scene || !scene->mRootNode)
+    throw InvalidInput("mesh file '" + path + "': assimp refuses it: " + importer.GetErrorString());
+  Triangles triangles;
+  add_node(*scene, *scene->mRootNode, aiMatrix4x4(), scale, triangles);
+  if (triangles.corners.empty()) throw InvalidInput("mesh file '" + path + "': assimp finds no triangle in it");
+  return make_mesh(std::move(triangles.vertices), std::move(triangles.corners), path);
+}
+
+}  // namespace
+
+std::shared_ptr<const TriangleMesh> MeshFiles::read(const std::string& path, const Eigen::Vector3d& scale) {
+  std::shared_ptr<const TriangleMesh>& mesh = meshes_[{path, scale.x(), scale.y(), scale.z()}];
+  if (!mesh) mesh = read_mesh(path, scale);
+  return mesh;
+}
+
+}  // namespace mmgrasp::verify

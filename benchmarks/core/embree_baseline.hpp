@@ -20,8 +20,8 @@ class EmbreeScene {
                                                                  3 * sizeof(float), mesh.vertices.size()));
     for (const Eigen::Vector3d& v : mesh.vertices)
       for (int k = 0; k < 3; ++k) *vertices++ = static_cast<float>(v[k]);
-    auto* corners = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), mesh.triangles.size()));
+    auto* corners = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                   3 * sizeof(unsigned), mesh.triangles.size()));
     for (const auto& t : mesh.triangles)
       for (const int corner : t) *corners++ = static_cast<unsigned>(corner);
     rtcCommitGeometry(geometry);

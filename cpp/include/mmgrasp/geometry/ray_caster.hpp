@@ -17,7 +17,7 @@ class TriangleTree;
 /// The points origin + t * direction with nearest <= t <= farthest. Lengths along it are multiples of the direction's
 /// length: metres when the direction is a unit vector.
 struct MMGRASP_EXPORT Ray {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();     ///< [m]
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();      ///< [m]
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< Not zero; need not be a unit vector.
   double nearest = 0;  ///< A ray that starts on the surface meets it at about 0; start later to leave that out.
   double farthest = std::numeric_limits<double>::infinity();  ///< With nearest = -infinity the whole line.
@@ -25,7 +25,7 @@ struct MMGRASP_EXPORT Ray {
 
 /// Where a ray meets a mesh.
 struct MMGRASP_EXPORT RayHit {
-  int triangle = -1;  ///< Index in the mesh; -1: the ray meets nothing, and the other fields mean nothing.
+  int triangle = -1;   ///< Index in the mesh; -1: the ray meets nothing, and the other fields mean nothing.
   bool front = false;  ///< Met on the side that the normal points to: of a closed mesh the ray enters the solid.
   double distance = std::numeric_limits<double>::infinity();  ///< In multiples of the direction's length.
   Eigen::Vector3d point = Eigen::Vector3d::Zero();            ///< origin + distance * direction [m].

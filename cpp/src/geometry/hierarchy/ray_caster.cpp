@@ -30,7 +30,7 @@ RayHit make_hit(const TriangleTree& tree, const Ray& ray, double t, int packet, 
   hit.triangle = tree.packet(packet).triangle[lane];
   hit.distance = t;
   hit.point = ray.origin + t * ray.direction;
-  hit.normal = normal / normal.norm();
+  hit.normal = normal * (1 / normal.norm());
   hit.front = hit.normal.dot(ray.direction) < 0;
   return hit;
 }

@@ -14,7 +14,9 @@ namespace mmgrasp::detail {
 #pragma GCC target("avx2,bmi")
 namespace avx2 {
 #define MMGRASP_KERNEL_NAME "avx2"
+#define MMGRASP_KERNEL_AVX2  // g++ does not set __AVX2__ for the pragma
 #include "geometry/hierarchy/ray_kernels_body.inc"
+#undef MMGRASP_KERNEL_AVX2
 #undef MMGRASP_KERNEL_NAME
 }  // namespace avx2
 #pragma GCC pop_options

@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "mmgrasp/core/export.hpp"
+
 namespace mmgrasp::detail {
 
 constexpr int kTreeWidth = 8;    // children of a node
@@ -36,9 +38,9 @@ struct PreparedRay {
   double shear[3];  // direction[axis[0 or 1]] / direction[axis[2]], 1 / direction[axis[2]]
   // For boxes: lengths in the tree's coordinates, from where the ray enters the tree's box.
   float inverse[3], offset[3];  // 1 / direction, -start / direction
-  int near_row[3];              // the bounds through which it enters
-  float length;
-  double begin, to_length;  // length = (t - begin) * to_length
+  int near_row[3], far_row[3];  // the bounds through which it enters and leaves
+  float start, length;          // how far boxes are worth a visit
+  double begin, to_length;      // length = (t - begin) * to_length
 };
 
 struct RayRecord {
@@ -57,6 +59,6 @@ struct RayKernels {
 /// Those of the best instruction set that the machine has.
 const RayKernels& ray_kernels();
 /// For tests: "portable", or "" for the best. Every set gives the same answers.
-void use_ray_kernels(const std::string& name);
+MMGRASP_EXPORT void use_ray_kernels(const std::string& name);
 
 }  // namespace mmgrasp::detail

@@ -38,8 +38,7 @@ float TreeBuilder::Box::area() const {
 TreeBuilder::TreeBuilder(TriangleTree& tree, const TriangleMesh& mesh) : tree_(tree), mesh_(mesh) {
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     Eigen::AlignedBox3d box;
-    for (const int corner : mesh.triangles[i])
-      box.extend((mesh.vertices[corner] - tree.centre_) * tree.scale_);
+    for (const int corner : mesh.triangles[i]) box.extend((mesh.vertices[corner] - tree.centre_) * tree.scale_);
     Item item;
     for (int k = 0; k < 3; ++k) {
       item.box.lower[k] = static_cast<float>(box.min()[k] - kMargin);
@@ -154,8 +153,7 @@ int TreeBuilder::build(const Range& whole, int depth) {
       node.bounds[3 + k][i] = box.upper[k];
     }
     node.child[i] = 0;
-    if (filled)
-      node.child[i] = parts[i].count() <= kPacketWidth ? add_packet(parts[i]) : build(parts[i], depth + 1);
+    if (filled) node.child[i] = parts[i].count() <= kPacketWidth ? add_packet(parts[i]) : build(parts[i], depth + 1);
   }
   tree_.nodes_[index] = node;
   return index;

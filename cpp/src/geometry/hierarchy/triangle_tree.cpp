@@ -119,8 +119,8 @@ bool TriangleTree::contains(const Vector3d& point) const {
   visit_leaves(ray, [&](int packet) {
     for (int lane = 0; lane < kPacketWidth; ++lane) {
       if (packets_[packet].triangle[lane] < 0) continue;
-      winding +=
-          ray_crossing(corner(packet, lane, 0) - point, corner(packet, lane, 1) - point, corner(packet, lane, 2) - point);
+      winding += ray_crossing(corner(packet, lane, 0) - point, corner(packet, lane, 1) - point,
+                              corner(packet, lane, 2) - point);
     }
   });
   return winding > 0;
@@ -135,7 +135,8 @@ bool TriangleTree::prepare(const Vector3d& origin, const Vector3d& direction, do
   double begin = nearest, end = farthest, inverse[3];
   for (int k = 0; k < 3; ++k) {
     // Parallel to the box's face is as good as almost parallel.
-    const double component = std::abs(direction[k]) > 1e-30 * size ? direction[k] : std::copysign(1e-30 * size, direction[k]);
+    const double component =
+        std::abs(direction[k]) > 1e-30 * size ? direction[k] : std::copysign(1e-30 * size, direction[k]);
     inverse[k] = 1 / component;
     const double a = (bounds_.min()[k] - margin - origin[k]) * inverse[k];
     const double b = (bounds_.max()[k] + margin - origin[k]) * inverse[k];
@@ -143,11 +144,13 @@ bool TriangleTree::prepare(const Vector3d& origin, const Vector3d& direction, do
     end = std::min(end, std::max(a, b));
   }
   if (!(begin <= end)) return false;
-  const double length = size * (direction / size).norm();
+  double length = direction.norm();
+  if (!(length > 1e-140 && length < 1e140)) length = size * (direction / size).norm();
   ray.nearest = nearest;
   ray.farthest = farthest;
   ray.begin = begin;
   ray.to_length = length * scale_;
+  ray.start = -2e-6f;
   ray.length = static_cast<float>((end - begin) * ray.to_length) * 1.000001f + 2e-6f;
   for (int k = 0; k < 3; ++k) {
     ray.origin[k] = origin[k];
@@ -155,6 +158,7 @@ bool TriangleTree::prepare(const Vector3d& origin, const Vector3d& direction, do
     ray.inverse[k] = inverse_unit;
     ray.offset[k] = -static_cast<float>((origin[k] + begin * direction[k] - centre_[k]) * scale_) * inverse_unit;
     ray.near_row[k] = std::signbit(direction[k]) ? 3 + k : k;
+    ray.far_row[k] = 2 * k + 3 - ray.near_row[k];
   }
   ray.axis[2] = longest;
   ray.axis[0] = (longest + 1) % 3;

@@ -1,19 +1,23 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
+#include <optional>
 
-#include "mapping/shape_rays.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "mmgrasp/geometry/detail/shape_rays.hpp"
+#include "mmgrasp/geometry/ray_caster.hpp"
 #include "mmgrasp/mapping/depth_image.hpp"
 
 namespace mmgrasp {
 namespace {
 
 using Eigen::Vector3d;
-constexpr int kBand = 16;  // rows of a work item
+constexpr int kBand = 16;                                      // rows of a work item
+constexpr double kFront = std::numeric_limits<double>::min();  // only what lies in front of the camera is seen
 
 struct Pixels {
   int u0 = 0, u1 = -1, v0 = 0, v1 = -1;  // inclusive; empty when u0 > u1
@@ -41,20 +45,6 @@ Pixels pixels_around(const PinholeCamera& camera, const Points& points) {
           std::min(camera.height - 1, clamped(std::ceil(upper[1]) + 1, camera.height))};
 }
 
-/// Triangles in the camera's frame as linear functions of the ray's direction. Neighbours compute the function of a
-/// shared edge from the same two corners in the same order, so that no ray slips between them.
-struct Triangle {
-  Vector3d edge[3];  // ray . edge has one sign for all three inside
-  Vector3d normal;   // depth = offset / (ray . normal)
-  double offset = 0;
-  Pixels pixels;
-};
-
-Vector3d edge_function(const Vector3d& a, const Vector3d& b) {
-  const bool swapped = std::lexicographical_compare(b.data(), b.data() + 3, a.data(), a.data() + 3);
-  return swapped ? Vector3d(-b.cross(a)) : Vector3d(a.cross(b));
-}
-
 struct Analytic {
   Shape shape;
   Pose T_shape_camera;
@@ -73,12 +63,15 @@ class Renderer {
           std::holds_alternative<MeshShape>(scene[i].shape) || std::holds_alternative<Voxels>(scene[i].shape);
       faceted ? add_mesh(*shape_mesh(scene[i].shape), T) : add_analytic(scene[i].shape, T);
     }
+    if (mesh_.triangles.empty()) return;
+    mesh_pixels_ = pixels_around(camera_, mesh_.vertices);
+    caster_.emplace(mesh_);
   }
 
   void render_band(int v0, int v1, float* depth) const {
     std::vector<double> nearest(static_cast<std::size_t>(camera_.width) * (v1 - v0), detail::kInfinity);
     for (const Analytic& body : analytic_) draw(body, v0, v1, nearest.data());
-    for (const Triangle& triangle : triangles_) draw(triangle, v0, v1, nearest.data());
+    if (caster_) draw_mesh(v0, v1, nearest.data());
     for (std::size_t i = 0; i < nearest.size(); ++i) {
       const bool seen = nearest[i] >= camera_.nearest && nearest[i] <= camera_.farthest;
       depth[i] = seen ? static_cast<float>(nearest[i]) : 0.0f;
@@ -102,18 +95,9 @@ class Renderer {
   }
 
   void add_mesh(const TriangleMesh& mesh, const Pose& T) {
-    std::vector<Vector3d> vertices;
-    for (const Vector3d& v : mesh.vertices) vertices.push_back(T * v);
-    for (const auto& t : mesh.triangles) {
-      const std::array<Vector3d, 3> c{vertices[t[0]], vertices[t[1]], vertices[t[2]]};
-      if (c[0].z() <= 0 && c[1].z() <= 0 && c[2].z() <= 0) continue;
-      Triangle out;
-      for (int k = 0; k < 3; ++k) out.edge[k] = edge_function(c[k], c[(k + 1) % 3]);
-      out.normal = (c[1] - c[0]).cross(c[2] - c[0]);
-      out.offset = out.normal.dot(c[0]);
-      out.pixels = pixels_around(camera_, c);
-      triangles_.push_back(out);
-    }
+    const int first = static_cast<int>(mesh_.vertices.size());
+    for (const Vector3d& v : mesh.vertices) mesh_.vertices.push_back(T * v);
+    for (const auto& t : mesh.triangles) mesh_.triangles.push_back({first + t[0], first + t[1], first + t[2]});
   }
 
   void draw(const Analytic& body, int v0, int v1, double* nearest) const {
@@ -127,25 +111,22 @@ class Renderer {
     }
   }
 
-  void draw(const Triangle& triangle, int v0, int v1, double* nearest) const {
-    for (int v = std::max(v0, triangle.pixels.v0); v <= std::min(v1 - 1, triangle.pixels.v1); ++v) {
-      for (int u = triangle.pixels.u0; u <= triangle.pixels.u1; ++u) {
-        const Vector3d d = ray(u, v);
-        const double a = d.dot(triangle.edge[0]), b = d.dot(triangle.edge[1]), c = d.dot(triangle.edge[2]);
-        if (!((a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0))) continue;
-        const double speed = d.dot(triangle.normal);
-        if (speed == 0) continue;  // seen edge-on: its neighbours are met
-        const double t = triangle.offset / speed;
-        if (!(t > 0)) continue;
+  /// Depth is the distance along a ray whose z is 1.
+  void draw_mesh(int v0, int v1, double* nearest) const {
+    for (int v = std::max(v0, mesh_pixels_.v0); v <= std::min(v1 - 1, mesh_pixels_.v1); ++v) {
+      for (int u = mesh_pixels_.u0; u <= mesh_pixels_.u1; ++u) {
         double& best = nearest[static_cast<std::size_t>(v - v0) * camera_.width + u];
-        best = std::min(best, t);
+        const RayHit hit = caster_->closest_hit({Vector3d::Zero(), ray(u, v), kFront, best});
+        if (hit) best = hit.distance;
       }
     }
   }
 
   PinholeCamera camera_;
   std::vector<Analytic> analytic_;
-  std::vector<Triangle> triangles_;
+  TriangleMesh mesh_;  ///< All meshes in the camera's frame.
+  Pixels mesh_pixels_;
+  std::optional<RayCaster> caster_;
 };
 
 void disturb(DepthImage& image, const RenderOptions& options, int v) {

@@ -45,10 +45,12 @@ TEST_P(DerivativeFree, FindTheBottomOfABowl) {
   EXPECT_EQ(r.violation, 0);
 }
 
-TEST_P(DerivativeFree, FindAMinimumOnTheBound) {
+TEST_P(DerivativeFree, FindAMinimumOnTheBoundAndAtAKink) {
   DerivativeFreeProblem problem{{all(2, 0.5), all(2, 4)}, [](const VectorXd& x) { return x[0] + x[1] * x[1]; }, {}, 0};
   const DerivativeFreeResult r = solver_->solve(problem, all(2, 3));
   EXPECT_NEAR(r.value, 0.75, GetParam() == "esch" ? 2e-2 : 1e-4);
+  DerivativeFreeProblem line{{all(1, -1), all(1, 2)}, [](const VectorXd& x) { return std::abs(x[0] - 0.7); }, {}, 0};
+  EXPECT_NEAR(solver_->solve(line, all(1, 0)).value, 0, GetParam() == "esch" ? 2e-2 : 1e-3);
 }
 
 /// Global ones leave the basin of the guess: Rastrigin's function, whose minimum 0 is at the origin.
@@ -88,7 +90,7 @@ TEST_P(DerivativeFree, KeepConstraintsOrRefuseThem) {
   options.max_evaluations = 2000;
   const DerivativeFreeResult none = solver_->solve(problem, all(2, 0), options);
   EXPECT_TRUE(none.outcome == Outcome::infeasible || none.outcome == Outcome::timeout);
-  EXPECT_NEAR(none.violation, 1, 1e-6);
+  EXPECT_NEAR(none.violation, 1, solver_->is_global() ? 0.1 : 1e-6);
   // A wrong number of constraints is refused by name.
   problem.constraints = [](const VectorXd&) { return all(2, 0); };
   EXPECT_THROW(solver_->solve(problem, all(2, 0), options), InvalidInput);
@@ -124,7 +126,7 @@ TEST_P(DerivativeFree, StayInsideBoundsAndBudget) {
     EXPECT_EQ(x[1], 1.25);
     return objective(x);
   };
-  for (const int budget : {1, 2, 57}) {
+  for (const int budget : {1, 2, 17}) {
     DerivativeFreeOptions options;
     options.max_evaluations = budget;
     calls = 0;

@@ -55,7 +55,7 @@ bool crosses(const TriangleTree& tree, const PreparedRay& ray, int packet, int l
     else
       positive += from.x() != to.x() ? from.x() < to.x() : from.y() < to.y();
   }
-  const double total = side[0] + side[1] + side[2];
+  const double total = side[1] + side[2] + side[0];  // in the kernels' order: the same rounding
   if ((positive != 0 && positive != 3) || total == 0) return false;
   front = total < 0;
   t = (side[1] * z[0] + side[2] * z[1] + side[0] * z[2]) / total * ray.shear[2];

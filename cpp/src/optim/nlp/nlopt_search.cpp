@@ -51,7 +51,7 @@ class Evaluator {
   double value() const { return value_; }
   const VectorXd& constraints() const { return c_; }
   bool exhausted() const { return exhausted_; }
-  /// The best point seen becomes the current one; without any the one given. Not counted: its functions are not called.
+  /// The best point seen; when f was defined at none, the guess.
   void report_best(const VectorXd& guess, DerivativeFreeResult& result) const {
     result.x = best_.any() ? best_.x() : guess;
     result.value = best_.any() ? best_value_ : kInfinity;

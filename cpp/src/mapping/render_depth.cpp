@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
-#include <optional>
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -25,8 +25,7 @@ struct Pixels {
 
 /// The pixels whose rays may meet the convex hull of these points; all of them when one lies beside or behind the
 /// camera.
-template <typename Points>
-Pixels pixels_around(const PinholeCamera& camera, const Points& points) {
+Pixels pixels_around(const PinholeCamera& camera, const std::vector<Vector3d>& points) {
   double lower[2] = {detail::kInfinity, detail::kInfinity}, upper[2] = {-detail::kInfinity, -detail::kInfinity};
   for (const Vector3d& p : points) {
     if (p.z() < 1e-6) return {0, camera.width - 1, 0, camera.height - 1};
@@ -45,10 +44,17 @@ Pixels pixels_around(const PinholeCamera& camera, const Points& points) {
           std::min(camera.height - 1, clamped(std::ceil(upper[1]) + 1, camera.height))};
 }
 
-struct Analytic {
+struct Body {
   Shape shape;
+  std::shared_ptr<const RayCaster> caster;  ///< Of meshes and voxels; the other shapes are met in closed form.
   Pose T_shape_camera;
   Pixels pixels;
+
+  /// How far along the ray, or infinity. Nothing farther than `limit` is wanted.
+  double first_hit(const Vector3d& origin, const Vector3d& direction, double limit) const {
+    if (caster) return caster->closest_hit({origin, direction, kFront, limit}).distance;
+    return detail::first_hit(shape, origin, direction);
+  }
 };
 
 class Renderer {
@@ -58,20 +64,13 @@ class Renderer {
     const Pose T_camera_world = T_world_camera.inverse(Eigen::Isometry);
     for (std::size_t i = 0; i < scene.size(); ++i) {
       check_shape(scene[i].shape, "scene shape " + std::to_string(i));
-      const Pose T = T_camera_world * scene[i].T_world_shape;
-      const bool faceted =
-          std::holds_alternative<MeshShape>(scene[i].shape) || std::holds_alternative<Voxels>(scene[i].shape);
-      faceted ? add_mesh(*shape_mesh(scene[i].shape), T) : add_analytic(scene[i].shape, T);
+      add(scene[i].shape, T_camera_world * scene[i].T_world_shape);
     }
-    if (mesh_.triangles.empty()) return;
-    mesh_pixels_ = pixels_around(camera_, mesh_.vertices);
-    caster_.emplace(mesh_);
   }
 
   void render_band(int v0, int v1, float* depth) const {
     std::vector<double> nearest(static_cast<std::size_t>(camera_.width) * (v1 - v0), detail::kInfinity);
-    for (const Analytic& body : analytic_) draw(body, v0, v1, nearest.data());
-    if (caster_) draw_mesh(v0, v1, nearest.data());
+    for (const Body& body : bodies_) draw(body, v0, v1, nearest.data());
     for (std::size_t i = 0; i < nearest.size(); ++i) {
       const bool seen = nearest[i] >= camera_.nearest && nearest[i] <= camera_.farthest;
       depth[i] = seen ? static_cast<float>(nearest[i]) : 0.0f;
@@ -79,9 +78,10 @@ class Renderer {
   }
 
  private:
+  /// Lengths along it are depths.
   Vector3d ray(int u, int v) const { return {(u - camera_.cx) / camera_.fx, (v - camera_.cy) / camera_.fy, 1.0}; }
 
-  void add_analytic(const Shape& shape, const Pose& T) {
+  void add(const Shape& shape, const Pose& T) {
     Pixels pixels{0, camera_.width - 1, 0, camera_.height - 1};
     if (!std::holds_alternative<Plane>(shape)) {
       const Eigen::AlignedBox3d box = shape_bounds(shape);
@@ -91,42 +91,32 @@ class Renderer {
       if (behind) return;
       pixels = pixels_around(camera_, corners);
     }
-    analytic_.push_back({shape, T.inverse(Eigen::Isometry), pixels});
+    bodies_.push_back({shape, caster_of(shape), T.inverse(Eigen::Isometry), pixels});
   }
 
-  void add_mesh(const TriangleMesh& mesh, const Pose& T) {
-    const int first = static_cast<int>(mesh_.vertices.size());
-    for (const Vector3d& v : mesh.vertices) mesh_.vertices.push_back(T * v);
-    for (const auto& t : mesh.triangles) mesh_.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  /// One for all places where the same mesh stands.
+  std::shared_ptr<const RayCaster> caster_of(const Shape& shape) {
+    if (std::holds_alternative<Voxels>(shape)) return std::make_shared<RayCaster>(*shape_mesh(shape));
+    const auto* mesh = std::get_if<MeshShape>(&shape);
+    if (!mesh) return nullptr;
+    auto& caster = casters_[mesh->mesh.get()];
+    if (!caster) caster = std::make_shared<RayCaster>(*mesh->mesh);
+    return caster;
   }
 
-  void draw(const Analytic& body, int v0, int v1, double* nearest) const {
+  void draw(const Body& body, int v0, int v1, double* nearest) const {
     const Vector3d origin = body.T_shape_camera.translation();
     for (int v = std::max(v0, body.pixels.v0); v <= std::min(v1 - 1, body.pixels.v1); ++v) {
       for (int u = body.pixels.u0; u <= body.pixels.u1; ++u) {
-        const double t = detail::first_hit(body.shape, origin, body.T_shape_camera.linear() * ray(u, v));
         double& best = nearest[static_cast<std::size_t>(v - v0) * camera_.width + u];
-        best = std::min(best, t);
-      }
-    }
-  }
-
-  /// Depth is the distance along a ray whose z is 1.
-  void draw_mesh(int v0, int v1, double* nearest) const {
-    for (int v = std::max(v0, mesh_pixels_.v0); v <= std::min(v1 - 1, mesh_pixels_.v1); ++v) {
-      for (int u = mesh_pixels_.u0; u <= mesh_pixels_.u1; ++u) {
-        double& best = nearest[static_cast<std::size_t>(v - v0) * camera_.width + u];
-        const RayHit hit = caster_->closest_hit({Vector3d::Zero(), ray(u, v), kFront, best});
-        if (hit) best = hit.distance;
+        best = std::min(best, body.first_hit(origin, body.T_shape_camera.linear() * ray(u, v), best));
       }
     }
   }
 
   PinholeCamera camera_;
-  std::vector<Analytic> analytic_;
-  TriangleMesh mesh_;  ///< All meshes in the camera's frame.
-  Pixels mesh_pixels_;
-  std::optional<RayCaster> caster_;
+  std::vector<Body> bodies_;
+  std::map<const TriangleMesh*, std::shared_ptr<const RayCaster>> casters_;
 };
 
 void disturb(DepthImage& image, const RenderOptions& options, int v) {

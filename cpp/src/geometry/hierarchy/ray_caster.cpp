@@ -18,7 +18,8 @@ using Eigen::Vector3d;
 constexpr int kBlock = 1024;  // rays of a work item
 
 bool prepare(const TriangleTree& tree, const Ray& ray, PreparedRay& out) {
-  if (!ray.origin.allFinite() || !ray.direction.allFinite() || ray.direction.isZero(0))
+  // A number that is not finite is not 0 even times 0.
+  if ((0.0 * (ray.origin + ray.direction)).sum() != 0 || ray.direction.isZero(0))
     throw InvalidInput("ray: origin and direction must be finite, and the direction not zero");
   return tree.prepare(ray.origin, ray.direction, ray.nearest, ray.farthest, out);
 }

@@ -3,6 +3,7 @@
 // What the traversal of a triangle tree by a ray exchanges with its callers: plain arrays only, because the functions
 // are compiled once for each instruction set.
 
+#include <cstddef>
 #include <string>
 
 #include "mmgrasp/core/export.hpp"
@@ -37,10 +38,10 @@ struct PreparedRay {
   int axis[3];      // the last is the one along which the ray is longest; the others so that front faces stay front
   double shear[3];  // direction[axis[0 or 1]] / direction[axis[2]], 1 / direction[axis[2]]
   // For boxes: lengths in the tree's coordinates, from where the ray enters the tree's box.
-  float inverse[3], offset[3];  // 1 / direction, -start / direction
-  int near_row[3], far_row[3];  // the bounds through which it enters and leaves
-  float start, length;          // how far boxes are worth a visit
-  double begin, to_length;      // length = (t - begin) * to_length
+  float inverse[3], offset[3];     // 1 / direction, -start / direction
+  std::ptrdiff_t near[3], far[3];  // places in TreeNode::bounds of the faces through which it enters and leaves
+  float start, length;             // how far boxes are worth a visit
+  double begin, to_length;         // length = (t - begin) * to_length
 };
 
 struct RayRecord {

@@ -105,9 +105,9 @@ int TreeBuilder::best_split(const Range& range) {
     }
   }
   if (best_axis < 0) return range.begin + range.count() / 2;  // all middles coincide
-  const auto middle = std::stable_partition(
-      items_.begin() + range.begin, items_.begin() + range.end,
-      [&](const Item& item) { return bin_of(item.middle(best_axis), best_low, best_scale) < best_bin; });
+  const auto middle = std::partition(items_.begin() + range.begin, items_.begin() + range.end, [&](const Item& item) {
+    return bin_of(item.middle(best_axis), best_low, best_scale) < best_bin;
+  });
   return static_cast<int>(middle - items_.begin());
 }
 

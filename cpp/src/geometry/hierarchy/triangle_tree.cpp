@@ -157,8 +157,9 @@ bool TriangleTree::prepare(const Vector3d& origin, const Vector3d& direction, do
     const float inverse_unit = static_cast<float>(inverse[k] * length);
     ray.inverse[k] = inverse_unit;
     ray.offset[k] = -static_cast<float>((origin[k] + begin * direction[k] - centre_[k]) * scale_) * inverse_unit;
-    ray.near_row[k] = std::signbit(direction[k]) ? 3 + k : k;
-    ray.far_row[k] = 2 * k + 3 - ray.near_row[k];
+    const int lower = k * kTreeWidth, upper = (3 + k) * kTreeWidth;
+    ray.near[k] = std::signbit(direction[k]) ? upper : lower;
+    ray.far[k] = lower + upper - ray.near[k];
   }
   ray.axis[2] = longest;
   ray.axis[0] = (longest + 1) % 3;

@@ -35,7 +35,6 @@ DerivativeFreeResult minimize(const py::object& objective, const ArrayLike& give
                               const ArrayLike& given_upper, const std::string& solver, const py::object& constraints,
                               int constraint_count, const py::object& progress, const py::kwargs& options) {
   const DerivativeFreeOptions read = read_options(derivative_free_fields(), options, "minimize_derivative_free");
-  const auto chosen = make_derivative_free_solver(solver);
   const Eigen::VectorXd guess = vector_argument(given_guess, "guess");
   DerivativeFreeProblem problem;
   problem.bounds = {any_numbers(given_lower, "lower", guess.size()), any_numbers(given_upper, "upper", guess.size())};
@@ -51,7 +50,8 @@ DerivativeFreeResult minimize(const py::object& objective, const ArrayLike& give
       return any_numbers(constraints(x), "constraints(x)", -1);
     };
   }
-  return LongCall(progress).run([&](const Monitor& monitor) { return chosen->solve(problem, guess, read, monitor); });
+  return LongCall(progress).run(
+      [&](const Monitor& monitor) { return minimize_derivative_free(solver, problem, guess, read, monitor); });
 }
 
 void bind_derivative_free(py::module_& m) {

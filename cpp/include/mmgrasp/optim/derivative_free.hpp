@@ -48,7 +48,7 @@ struct MMGRASP_EXPORT DerivativeFreeResult {
 /// Search by values alone, for objectives without derivatives: simulations, counts, measured success.
 ///
 ///     DerivativeFreeProblem problem{{lower, upper}, [&](const Eigen::VectorXd& x) { return cost(x); }};
-///     const auto result = make_derivative_free_solver("bobyqa")->solve(problem, guess);
+///     const auto result = minimize_derivative_free("bobyqa", problem, guess);
 ///
 /// An exception thrown by a function ends the solve and reaches the caller. The stop token and the clock end it at the
 /// next evaluation. Solvers may be called from several threads; those that draw random numbers wait for each other,
@@ -78,5 +78,11 @@ class MMGRASP_EXPORT DerivativeFreeSolver {
 MMGRASP_EXPORT std::vector<std::string> derivative_free_solver_names();
 /// Throws InvalidInput listing the known names on a wrong one.
 MMGRASP_EXPORT std::unique_ptr<DerivativeFreeSolver> make_derivative_free_solver(const std::string& name);
+/// Both steps in one: solve() of the solver of that name.
+MMGRASP_EXPORT DerivativeFreeResult minimize_derivative_free(const std::string& solver,
+                                                             const DerivativeFreeProblem& problem,
+                                                             const Eigen::VectorXd& guess,
+                                                             const DerivativeFreeOptions& options = {},
+                                                             const Monitor& monitor = {});
 
 }  // namespace mmgrasp

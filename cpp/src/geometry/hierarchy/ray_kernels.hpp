@@ -16,13 +16,13 @@ constexpr int kStackSize = 512;  // the builder keeps the tree so flat that 7 en
 
 /// Eight children with their boxes, in the tree's own coordinates: the mesh fills [-1, 1] along its longest side, and
 /// every box is larger than what it holds by more than the rounding of single precision.
-struct alignas(32) TreeNode {
+struct alignas(64) TreeNode {
   float bounds[6][kTreeWidth];  // lower x, y, z, upper x, y, z; lower > upper where there is no child
   int child[kTreeWidth];        // a node, or ~packet
 };
 
 /// Up to four triangles in the mesh's coordinates. Places left over hold triangles without an area.
-struct alignas(32) TrianglePacket {
+struct alignas(64) TrianglePacket {
   double corner[3][3][kPacketWidth];  // [corner][axis][triangle]
   int triangle[kPacketWidth];         // index in the mesh, -1 where there is none
 };

@@ -8,6 +8,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr int kBins = 16;
+constexpr int kFew = 48;  // so few that every cut is tried
 // In the tree's coordinates, where the rounding of single precision is below 4e-7 for boxes and rays within them.
 constexpr double kMargin = 2e-6;
 constexpr int kDepthOfHalves = 24;  // deeper than that ranges are halved, which bounds the depth of any mesh's tree
@@ -59,6 +60,7 @@ TreeBuilder::Range TreeBuilder::range(int begin, int end) const {
 // Where the second part begins, after sorting the items of the range into the two parts: of the cuts between bins along
 // each axis the one with the least sum of area times packets.
 int TreeBuilder::best_split(const Range& range) {
+  if (range.count() <= kFew) return best_split_of_few(range);
   struct Bin {
     Box box;
     int count = 0;
@@ -109,6 +111,38 @@ int TreeBuilder::best_split(const Range& range) {
     return bin_of(item.middle(best_axis), best_low, best_scale) < best_bin;
   });
   return static_cast<int>(middle - items_.begin());
+}
+
+// The same with a cut at every item.
+int TreeBuilder::best_split_of_few(const Range& range) {
+  const auto begin = items_.begin() + range.begin, end = items_.begin() + range.end;
+  const auto sort_along = [&](int axis) {
+    std::sort(begin, end, [axis](const Item& a, const Item& b) {
+      return a.middle(axis) != b.middle(axis) ? a.middle(axis) < b.middle(axis) : a.triangle < b.triangle;
+    });
+  };
+  float best_cost = std::numeric_limits<float>::infinity();
+  int best_axis = 0, best_left = range.count() / 2;
+  for (int axis = 0; axis < 3; ++axis) {
+    sort_along(axis);
+    std::array<float, kFew> left_cost;
+    Box box;
+    for (int i = 1; i < range.count(); ++i) {
+      box.extend(begin[i - 1].box);
+      left_cost[i] = box.area() * static_cast<float>(packets(i));
+    }
+    box = {};
+    for (int i = range.count() - 1; i > 0; --i) {
+      box.extend(begin[i].box);
+      const float cost = left_cost[i] + box.area() * static_cast<float>(packets(range.count() - i));
+      if (cost >= best_cost) continue;
+      best_cost = cost;
+      best_axis = axis;
+      best_left = i;
+    }
+  }
+  sort_along(best_axis);
+  return range.begin + best_left;
 }
 
 int TreeBuilder::add_packet(const Range& range) {

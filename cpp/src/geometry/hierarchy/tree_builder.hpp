@@ -29,6 +29,7 @@ class TreeBuilder {
 
   Range range(int begin, int end) const;
   int best_split(const Range& range);
+  int best_split_of_few(const Range& range);
   int build(const Range& range, int depth);
   int add_packet(const Range& range);
 

@@ -62,12 +62,13 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) : closed_(mesh.closed) {
 NearestTriangle TriangleTree::nearest(const Vector3d& point) const {
   NearestTriangle best{kInfinity};
   if (empty()) return best;
-  const Eigen::Vector3f from = ((point - centre_) * scale_).cast<float>();
+  // Squares must stay finite; a point moved nearer makes boxes nearer, which is safe.
+  const Eigen::Vector3f from = ((point - centre_) * scale_).cwiseMax(-1e15).cwiseMin(1e15).cast<float>();
   // A box's distance from far away has the rounding of its coordinates, which this factor covers; near by the boxes'
   // own margin does.
   const auto bound = [&](double distance) {
     const double length = distance * scale_ * (1 + 1e-5);
-    return length < 1e18 ? static_cast<float>(length * length) : std::numeric_limits<float>::infinity();
+    return length < 1e18 ? static_cast<float>(length * length) : std::numeric_limits<float>::max();
   };
   float allowed = bound(kInfinity);
   struct Pending {

@@ -83,4 +83,10 @@ std::unique_ptr<DerivativeFreeSolver> make_derivative_free_solver(const std::str
                      comma_separated(derivative_free_solver_names()));
 }
 
+DerivativeFreeResult minimize_derivative_free(const std::string& solver, const DerivativeFreeProblem& problem,
+                                              const Eigen::VectorXd& guess, const DerivativeFreeOptions& options,
+                                              const Monitor& monitor) {
+  return make_derivative_free_solver(solver)->solve(problem, guess, options, monitor);
+}
+
 }  // namespace mmgrasp

@@ -30,12 +30,35 @@ class Evaluator {
   Evaluator(const DerivativeFreeProblem& problem, const DerivativeFreeOptions& options, SolveClock& clock)
       : problem_(problem), options_(options), clock_(clock), best_(options.constraint_tolerance) {}
 
-  /// Throws nlopt::forced_stop when the solve has to end.
-  void move(unsigned n, const double* given) {
+  /// The solver asks for f at x. Throws nlopt::forced_stop when the solve has to end.
+  double objective(unsigned n, const double* x) {
+    move(n, x, value_given_);
+    value_given_ = true;
+    return value_;
+  }
+  /// The solver asks for c at x: before or after f, the functions are called once.
+  const VectorXd& constraints(unsigned n, const double* x) {
+    move(n, x, constraints_given_);
+    constraints_given_ = true;
+    return c_;
+  }
+  bool exhausted() const { return exhausted_; }
+  /// The best point seen; when f was defined at none, the guess.
+  void report_best(const VectorXd& guess, DerivativeFreeResult& result) const {
+    result.x = best_.any() ? best_.x() : guess;
+    result.value = best_.any() ? best_value_ : kInfinity;
+    result.violation = best_.any() ? best_violation_ : kInfinity;
+  }
+
+  int evaluations = 0;
+
+ private:
+  /// `again`: the solver has had the answer for this x; asking again costs, or a solver that stands still never ended.
+  void move(unsigned n, const double* given, bool again) {
     if (clock_.over() || exhausted_) throw nlopt::forced_stop();
     const VectorXd x =
         Eigen::Map<const VectorXd>(given, n).cwiseMax(problem_.bounds.lower).cwiseMin(problem_.bounds.upper);
-    if (x_.size() > 0 && x == x_) return;
+    if (x_.size() > 0 && x == x_ && !again) return;
     if (evaluations == options_.max_evaluations) {
       exhausted_ = true;
       throw nlopt::forced_stop();
@@ -48,21 +71,9 @@ class Evaluator {
     }
   }
 
-  double value() const { return value_; }
-  const VectorXd& constraints() const { return c_; }
-  bool exhausted() const { return exhausted_; }
-  /// The best point seen; when f was defined at none, the guess.
-  void report_best(const VectorXd& guess, DerivativeFreeResult& result) const {
-    result.x = best_.any() ? best_.x() : guess;
-    result.value = best_.any() ? best_value_ : kInfinity;
-    result.violation = best_.any() ? best_violation_ : kInfinity;
-  }
-
-  int evaluations = 0;
-
- private:
   void evaluate(const VectorXd& x) {
     ++evaluations;
+    value_given_ = constraints_given_ = false;
     const double value = problem_.objective(x);
     double violation = 0;
     VectorXd c;
@@ -91,19 +102,16 @@ class Evaluator {
   BestIterate best_;
   VectorXd x_, c_;
   double value_ = 0, best_value_ = 0, best_violation_ = 0;
-  bool exhausted_ = false;
+  bool value_given_ = false, constraints_given_ = false, exhausted_ = false;
 };
 
 double objective_of(unsigned n, const double* x, double*, void* data) {
-  auto* evaluator = static_cast<Evaluator*>(data);
-  evaluator->move(n, x);
-  return evaluator->value();
+  return static_cast<Evaluator*>(data)->objective(n, x);
 }
 
 void constraints_of(unsigned m, double* out, unsigned n, const double* x, double*, void* data) {
-  auto* evaluator = static_cast<Evaluator*>(data);
-  evaluator->move(n, x);
-  std::copy(evaluator->constraints().data(), evaluator->constraints().data() + m, out);
+  const VectorXd& c = static_cast<Evaluator*>(data)->constraints(n, x);
+  std::copy(c.data(), c.data() + m, out);
 }
 
 /// NLopt has one generator, so seeding and drawing are one step. Recursive: an objective may solve a problem itself.
@@ -166,7 +174,7 @@ class NloptSearch : public DerivativeFreeSolver {
     std::vector<double> x = list(guess);
     if (problem.bounds.lower == problem.bounds.upper) {  // one point
       try {
-        evaluator.move(static_cast<unsigned>(x.size()), x.data());
+        evaluator.objective(static_cast<unsigned>(x.size()), x.data());
       } catch (const nlopt::forced_stop&) {
         return false;
       }
@@ -187,8 +195,9 @@ class NloptSearch : public DerivativeFreeSolver {
         solver.add_inequality_mconstraint(&constraints_of, &evaluator,
                                           std::vector<double>(problem.constraint_count, options.constraint_tolerance));
       solver.set_xtol_abs(step_tolerances(problem.bounds, options.tolerance));
-      // Values change with the square of the step around a minimum.
-      solver.set_ftol_rel(options.tolerance * options.tolerance);
+      // Values change with the square of the step around a minimum. A search of the whole box is not over because it
+      // has found nothing better for a while.
+      if (!algorithm_.global) solver.set_ftol_rel(options.tolerance * options.tolerance);
       double value = 0;
       const nlopt::result code = solver.optimize(x, value);
       message = code == nlopt::XTOL_REACHED ? "steps below the tolerance" : "values no longer change";

@@ -39,7 +39,7 @@ struct MMGRASP_EXPORT DerivativeFreeResult {
   Outcome outcome = Outcome::infeasible;
   Eigen::VectorXd x;     ///< The best point seen: the least violated, then the cheapest. Inside the bounds.
   double value = 0;      ///< f(x); infinite when f was defined nowhere.
-  double violation = 0;  ///< Largest c_i(x), or 0.
+  double violation = 0;  ///< Largest c_i(x), or 0; infinite when f was defined nowhere.
   int evaluations = 0;   ///< Points at which the functions were called.
   double seconds = 0;
   std::string message;  ///< How the solver itself put it.

@@ -89,8 +89,7 @@ class Evaluator {
     x_ = x;
     c_ = c;
     value_ = std::isfinite(value) ? value : kUndefined;
-    best_.offer(x, value, violation);
-    if (best_.any() && best_.x() == x) {
+    if (best_.offer(x, value, violation)) {
       best_value_ = value;
       best_violation_ = violation;
     }

@@ -32,5 +32,7 @@ GOALS = [
     Goal("free or not", "mmgrasp", "coal", 4.0, at_most=False),
     Goal("edge of 0.5 rad", "mmgrasp", "FCL", 5.0, at_most=False),
     Goal("signed distance", "mmgrasp with gradient", "FCL", 5.0, at_most=False),
+    Goal("rays", "mmgrasp", "", 5.0, at_most=False, field="million rays per s", on="mustard bottle, from outside"),
+    Goal("rays", "mmgrasp", "", 5.0, at_most=False, field="million rays per s", on="mustard bottle, from its middle"),
     Goal("point cloud", "mmgrasp", "FCL and OctoMap", 3.0, at_most=False),
 ]

@@ -52,7 +52,7 @@ def goal_table(lines: list[dict]) -> str:
                     f"{goal.row}{'' if goal.field == 'value' else ', ' + goal.field}",
                     mine["on"],
                     goal.ours,
-                    f"{a:.3g} {mine['unit']}" if peer else f"{a:.4%}",
+                    f"{a:.3g} {mine['unit']}" if peer else f"{a:.4%}" if goal.field == "success" else f"{a:.3g}",
                     peer["who"] if peer else "",
                     f"{b:.3g} {peer['unit']}" if peer else "",
                     f"{ratio:.2f}" if peer else "",

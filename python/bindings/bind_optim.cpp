@@ -1,5 +1,6 @@
 #include "bindings.hpp"
 #include "mmgrasp/optim/assignment.hpp"
+#include "mmgrasp/optim/derivative_free.hpp"
 #include "mmgrasp/optim/set_cover.hpp"
 #include "mmgrasp/optim/shared_tours.hpp"
 #include "mmgrasp/optim/tour.hpp"
@@ -7,8 +8,94 @@
 namespace mmgrasp::python {
 
 using namespace py::literals;
+namespace {
+
+const std::vector<OptionField<DerivativeFreeOptions>>& derivative_free_fields() {
+  using O = DerivativeFreeOptions;
+  static const std::vector<OptionField<O>> fields{
+      option<O>("tolerance", &O::tolerance, "converged when steps fall below this share of a variable's range"),
+      option<O>("constraint_tolerance", &O::constraint_tolerance, "largest c_i(x) that still counts as kept"),
+      option<O>("max_evaluations", &O::max_evaluations, "budget in points"),
+      option<O>("time_limit", &O::time_limit, "wall-clock cap [s]"),
+      option<O>("seed", &O::seed, "same seed, same answer")};
+  return fields;
+}
+
+/// (n,), also infinite or NaN; size < 0 takes any length.
+Eigen::VectorXd any_numbers(const py::handle& value, const std::string& name, Eigen::Index size) {
+  const auto array = py::array_t<double, py::array::forcecast>::ensure(value);
+  if (!array || array.ndim() != 1 || (size >= 0 && array.shape(0) != size)) {
+    PyErr_Clear();
+    throw InvalidInput(name + ": must be an array of " + (size >= 0 ? std::to_string(size) + " " : "") + "numbers");
+  }
+  return py::cast<Eigen::VectorXd>(array);
+}
+
+DerivativeFreeResult minimize(const py::object& objective, const ArrayLike& given_guess, const ArrayLike& given_lower,
+                              const ArrayLike& given_upper, const std::string& solver, const py::object& constraints,
+                              int constraint_count, const py::object& progress, const py::kwargs& options) {
+  const DerivativeFreeOptions read = read_options(derivative_free_fields(), options, "minimize_derivative_free");
+  const Eigen::VectorXd guess = vector_argument(given_guess, "guess");
+  DerivativeFreeProblem problem;
+  problem.bounds = {any_numbers(given_lower, "lower", guess.size()), any_numbers(given_upper, "upper", guess.size())};
+  if (function_argument(objective, "objective").is_none()) throw InvalidInput("objective = None: must be a function");
+  problem.objective = [&](const Eigen::VectorXd& x) {
+    const py::gil_scoped_acquire gil;
+    return py::cast<double>(objective(x));
+  };
+  problem.constraint_count = constraint_count;
+  if (!function_argument(constraints, "constraints").is_none()) {
+    problem.constraints = [&](const Eigen::VectorXd& x) {
+      const py::gil_scoped_acquire gil;
+      return any_numbers(constraints(x), "constraints(x)", -1);
+    };
+  }
+  return LongCall(progress).run(
+      [&](const Monitor& monitor) { return minimize_derivative_free(solver, problem, guess, read, monitor); });
+}
+
+void bind_derivative_free(py::module_& m) {
+  using Result = DerivativeFreeResult;
+  py::class_<Result>(m, "DerivativeFreeResult", "What a search by values alone found.")
+      .def_readonly("outcome", &Result::outcome,
+                    "`solved`: converged, constraints kept; `timeout`: the budget or the clock ended it.")
+      .def_readonly("x", &Result::x, "The best point seen: the least violated, then the cheapest; inside the bounds.")
+      .def_readonly("value", &Result::value, "Objective at x.")
+      .def_readonly("violation", &Result::violation, "Largest c_i(x), or 0.")
+      .def_readonly("evaluations", &Result::evaluations, "Points at which the functions were called.")
+      .def_readonly("seconds", &Result::seconds, "Wall-clock time [s].")
+      .def_readonly("message", &Result::message, "How the solver itself put it.")
+      .def(
+          "to_dict",
+          [](const Result& r) {
+            return py::dict("outcome"_a = to_string(r.outcome), "x"_a = r.x, "value"_a = r.value,
+                            "violation"_a = r.violation, "evaluations"_a = r.evaluations, "seconds"_a = r.seconds,
+                            "message"_a = r.message);
+          },
+          "All fields by name.")
+      .def("__repr__", [](const Result& r) {
+        return std::string("DerivativeFreeResult(") + to_string(r.outcome) +
+               ", value=" + std::string(py::repr(py::float_(r.value))) + ", " + std::to_string(r.evaluations) +
+               " evaluations)";
+      });
+  m.def("derivative_free_solver_names", &derivative_free_solver_names,
+        "Names that minimize_derivative_free's `solver` takes.");
+  m.def(
+      "minimize_derivative_free", &minimize, py::arg("objective"), py::arg("guess"), py::arg("lower"), py::arg("upper"),
+      py::kw_only(), py::arg("solver") = "bobyqa", py::arg("constraints") = py::none(), py::arg("constraint_count") = 0,
+      py::arg("progress") = py::none(),
+      ("Least value of `objective(x)` for lower <= x <= upper, found by values alone. `x` is a (n,) array; bounds may "
+       "be infinite for the local solvers (bobyqa, cobyla, nelder_mead, sbplx), not for the global ones (crs2, isres, "
+       "direct_l, esch). `constraints(x)` gives `constraint_count` numbers that must be at most 0 (cobyla, isres). "
+       "Values that are not finite are avoided. What a function raises ends the search and is raised here." +
+       option_help(derivative_free_fields()))
+          .c_str());
+}
+
+}  // namespace
 
 void bind_optim(py::module_& m) {
+  bind_derivative_free(m);
   py::class_<SetCoverResult>(m, "SetCoverResult")
       .def_readonly("outcome", &SetCoverResult::outcome, "`solved` only with a proof of optimality.")
       .def_readonly("chosen", &SetCoverResult::chosen, "Indices of the chosen sets, ascending.")

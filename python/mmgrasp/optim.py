@@ -1,4 +1,4 @@
-"""Discrete optimisation with proof: set covers, visiting tours, assignments, and stops shared among robots."""
+"""Optimisation: set covers, tours, assignments and shared stops with proof; search by values without derivatives."""
 
 from ._core import (
     solve_set_cover as solve_set_cover,
@@ -8,4 +8,7 @@ from ._core import (
     cheapest_assignment as cheapest_assignment,
     share_stops as share_stops,
     SharedTours as SharedTours,
+    minimize_derivative_free as minimize_derivative_free,
+    derivative_free_solver_names as derivative_free_solver_names,
+    DerivativeFreeResult as DerivativeFreeResult,
 )

@@ -1,5 +1,7 @@
 #include "mmgrasp/geometry/mesh.hpp"
 
+#include <Eigen/Geometry>
+
 #include "geometry/mesh_cleaning.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/detail/mesh_topology.hpp"

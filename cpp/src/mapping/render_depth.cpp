@@ -1,19 +1,23 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <memory>
 
-#include "mapping/shape_rays.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "mmgrasp/geometry/detail/shape_rays.hpp"
+#include "mmgrasp/geometry/ray_caster.hpp"
 #include "mmgrasp/mapping/depth_image.hpp"
 
 namespace mmgrasp {
 namespace {
 
 using Eigen::Vector3d;
-constexpr int kBand = 16;  // rows of a work item
+constexpr int kBand = 16;                                      // rows of a work item
+constexpr double kFront = std::numeric_limits<double>::min();  // only what lies in front of the camera is seen
 
 struct Pixels {
   int u0 = 0, u1 = -1, v0 = 0, v1 = -1;  // inclusive; empty when u0 > u1
@@ -21,8 +25,7 @@ struct Pixels {
 
 /// The pixels whose rays may meet the convex hull of these points; all of them when one lies beside or behind the
 /// camera.
-template <typename Points>
-Pixels pixels_around(const PinholeCamera& camera, const Points& points) {
+Pixels pixels_around(const PinholeCamera& camera, const std::vector<Vector3d>& points) {
   double lower[2] = {detail::kInfinity, detail::kInfinity}, upper[2] = {-detail::kInfinity, -detail::kInfinity};
   for (const Vector3d& p : points) {
     if (p.z() < 1e-6) return {0, camera.width - 1, 0, camera.height - 1};
@@ -41,24 +44,17 @@ Pixels pixels_around(const PinholeCamera& camera, const Points& points) {
           std::min(camera.height - 1, clamped(std::ceil(upper[1]) + 1, camera.height))};
 }
 
-/// Triangles in the camera's frame as linear functions of the ray's direction. Neighbours compute the function of a
-/// shared edge from the same two corners in the same order, so that no ray slips between them.
-struct Triangle {
-  Vector3d edge[3];  // ray . edge has one sign for all three inside
-  Vector3d normal;   // depth = offset / (ray . normal)
-  double offset = 0;
-  Pixels pixels;
-};
-
-Vector3d edge_function(const Vector3d& a, const Vector3d& b) {
-  const bool swapped = std::lexicographical_compare(b.data(), b.data() + 3, a.data(), a.data() + 3);
-  return swapped ? Vector3d(-b.cross(a)) : Vector3d(a.cross(b));
-}
-
-struct Analytic {
+struct Body {
   Shape shape;
+  std::shared_ptr<const RayCaster> caster;  ///< Of meshes and voxels; the other shapes are met in closed form.
   Pose T_shape_camera;
   Pixels pixels;
+
+  /// How far along the ray, or infinity. Nothing farther than `limit` is wanted.
+  double first_hit(const Vector3d& origin, const Vector3d& direction, double limit) const {
+    if (caster) return caster->closest_hit({origin, direction, kFront, limit}).distance;
+    return detail::first_hit(shape, origin, direction);
+  }
 };
 
 class Renderer {
@@ -68,17 +64,13 @@ class Renderer {
     const Pose T_camera_world = T_world_camera.inverse(Eigen::Isometry);
     for (std::size_t i = 0; i < scene.size(); ++i) {
       check_shape(scene[i].shape, "scene shape " + std::to_string(i));
-      const Pose T = T_camera_world * scene[i].T_world_shape;
-      const bool faceted =
-          std::holds_alternative<MeshShape>(scene[i].shape) || std::holds_alternative<Voxels>(scene[i].shape);
-      faceted ? add_mesh(*shape_mesh(scene[i].shape), T) : add_analytic(scene[i].shape, T);
+      add(scene[i].shape, T_camera_world * scene[i].T_world_shape);
     }
   }
 
   void render_band(int v0, int v1, float* depth) const {
     std::vector<double> nearest(static_cast<std::size_t>(camera_.width) * (v1 - v0), detail::kInfinity);
-    for (const Analytic& body : analytic_) draw(body, v0, v1, nearest.data());
-    for (const Triangle& triangle : triangles_) draw(triangle, v0, v1, nearest.data());
+    for (const Body& body : bodies_) draw(body, v0, v1, nearest.data());
     for (std::size_t i = 0; i < nearest.size(); ++i) {
       const bool seen = nearest[i] >= camera_.nearest && nearest[i] <= camera_.farthest;
       depth[i] = seen ? static_cast<float>(nearest[i]) : 0.0f;
@@ -86,9 +78,10 @@ class Renderer {
   }
 
  private:
+  /// Lengths along it are depths.
   Vector3d ray(int u, int v) const { return {(u - camera_.cx) / camera_.fx, (v - camera_.cy) / camera_.fy, 1.0}; }
 
-  void add_analytic(const Shape& shape, const Pose& T) {
+  void add(const Shape& shape, const Pose& T) {
     Pixels pixels{0, camera_.width - 1, 0, camera_.height - 1};
     if (!std::holds_alternative<Plane>(shape)) {
       const Eigen::AlignedBox3d box = shape_bounds(shape);
@@ -98,54 +91,32 @@ class Renderer {
       if (behind) return;
       pixels = pixels_around(camera_, corners);
     }
-    analytic_.push_back({shape, T.inverse(Eigen::Isometry), pixels});
+    bodies_.push_back({shape, caster_of(shape), T.inverse(Eigen::Isometry), pixels});
   }
 
-  void add_mesh(const TriangleMesh& mesh, const Pose& T) {
-    std::vector<Vector3d> vertices;
-    for (const Vector3d& v : mesh.vertices) vertices.push_back(T * v);
-    for (const auto& t : mesh.triangles) {
-      const std::array<Vector3d, 3> c{vertices[t[0]], vertices[t[1]], vertices[t[2]]};
-      if (c[0].z() <= 0 && c[1].z() <= 0 && c[2].z() <= 0) continue;
-      Triangle out;
-      for (int k = 0; k < 3; ++k) out.edge[k] = edge_function(c[k], c[(k + 1) % 3]);
-      out.normal = (c[1] - c[0]).cross(c[2] - c[0]);
-      out.offset = out.normal.dot(c[0]);
-      out.pixels = pixels_around(camera_, c);
-      triangles_.push_back(out);
-    }
+  /// One for all places where the same mesh stands.
+  std::shared_ptr<const RayCaster> caster_of(const Shape& shape) {
+    if (std::holds_alternative<Voxels>(shape)) return std::make_shared<RayCaster>(*shape_mesh(shape));
+    const auto* mesh = std::get_if<MeshShape>(&shape);
+    if (!mesh) return nullptr;
+    auto& caster = casters_[mesh->mesh.get()];
+    if (!caster) caster = std::make_shared<RayCaster>(*mesh->mesh);
+    return caster;
   }
 
-  void draw(const Analytic& body, int v0, int v1, double* nearest) const {
+  void draw(const Body& body, int v0, int v1, double* nearest) const {
     const Vector3d origin = body.T_shape_camera.translation();
     for (int v = std::max(v0, body.pixels.v0); v <= std::min(v1 - 1, body.pixels.v1); ++v) {
       for (int u = body.pixels.u0; u <= body.pixels.u1; ++u) {
-        const double t = detail::first_hit(body.shape, origin, body.T_shape_camera.linear() * ray(u, v));
         double& best = nearest[static_cast<std::size_t>(v - v0) * camera_.width + u];
-        best = std::min(best, t);
-      }
-    }
-  }
-
-  void draw(const Triangle& triangle, int v0, int v1, double* nearest) const {
-    for (int v = std::max(v0, triangle.pixels.v0); v <= std::min(v1 - 1, triangle.pixels.v1); ++v) {
-      for (int u = triangle.pixels.u0; u <= triangle.pixels.u1; ++u) {
-        const Vector3d d = ray(u, v);
-        const double a = d.dot(triangle.edge[0]), b = d.dot(triangle.edge[1]), c = d.dot(triangle.edge[2]);
-        if (!((a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0))) continue;
-        const double speed = d.dot(triangle.normal);
-        if (speed == 0) continue;  // seen edge-on: its neighbours are met
-        const double t = triangle.offset / speed;
-        if (!(t > 0)) continue;
-        double& best = nearest[static_cast<std::size_t>(v - v0) * camera_.width + u];
-        best = std::min(best, t);
+        best = std::min(best, body.first_hit(origin, body.T_shape_camera.linear() * ray(u, v), best));
       }
     }
   }
 
   PinholeCamera camera_;
-  std::vector<Analytic> analytic_;
-  std::vector<Triangle> triangles_;
+  std::vector<Body> bodies_;
+  std::map<const TriangleMesh*, std::shared_ptr<const RayCaster>> casters_;
 };
 
 void disturb(DepthImage& image, const RenderOptions& options, int v) {

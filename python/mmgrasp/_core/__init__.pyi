@@ -8,7 +8,7 @@ import numpy
 import numpy.typing
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CandidateGrasp', 'CapabilityMap', 'Capsule', 'CarryPlace', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'CuboidFit', 'Cylinder', 'DepthImage', 'DistanceResult', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FingerJoint', 'FittedCuboid', 'Grasp', 'GraspReport', 'Graspability', 'Gripper', 'HeightMap', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeGrasp', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'ScoredGrasp', 'SearchTree', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'ToolCone', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'drive_arc', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'least_stops', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_stops', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CandidateGrasp', 'CapabilityMap', 'Capsule', 'CarryPlace', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'CuboidFit', 'Cylinder', 'DepthImage', 'DerivativeFreeResult', 'DistanceResult', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FingerJoint', 'FittedCuboid', 'Grasp', 'GraspReport', 'Graspability', 'Gripper', 'HeightMap', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeGrasp', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'ScoredGrasp', 'SearchTree', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'ToolCone', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'derivative_free_solver_names', 'drive_arc', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'least_stops', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_stops', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -574,6 +574,51 @@ class LinkShape:
     @property
     def shape(self) -> Box | Sphere | Cylinder | Capsule | Plane | Mesh | Voxels:
         ...
+class DerivativeFreeResult:
+    """
+    What a search by values alone found.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        """
+        All fields by name.
+        """
+    @property
+    def evaluations(self) -> int:
+        """
+        Points at which the functions were called.
+        """
+    @property
+    def message(self) -> str:
+        """
+        How the solver itself put it.
+        """
+    @property
+    def outcome(self) -> Outcome:
+        """
+        `solved`: converged, constraints kept; `timeout`: the budget or the clock ended it.
+        """
+    @property
+    def seconds(self) -> float:
+        """
+        Wall-clock time [s].
+        """
+    @property
+    def value(self) -> float:
+        """
+        Objective at x.
+        """
+    @property
+    def violation(self) -> float:
+        """
+        Largest c_i(x), or 0.
+        """
+    @property
+    def x(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        The best point seen: the least violated, then the cheapest; inside the bounds.
+        """
 class SetCoverResult:
     def __repr__(self) -> str:
         ...
@@ -1547,7 +1592,7 @@ class CandidateGrasp:
         ...
 class ManipulationProblem:
     """
-    Carry an object from one pose to another with any of many grasps (P2 4.2).
+    TransferPath an object from one pose to another with any of many grasps (P2 4.2).
     """
     def __init__(self, group: JointGroup, world: World, object: typing.Any, T_world_start: numpy.typing.ArrayLike, T_world_goal: numpy.typing.ArrayLike, grasps: typing.Any, *, gripper: Gripper | None = None, touch_links: collections.abc.Sequence[str] = [], object_name: str = 'object', **kwargs) -> None:
         """
@@ -3154,6 +3199,10 @@ def compute_disabled_pairs(robot: Robot, *, progress: typing.Any = None, **kwarg
         seed = 1: same seed, same pairs
         threads = 0: 0: all
     """
+def derivative_free_solver_names() -> list[str]:
+    """
+    Names that minimize_derivative_free's `solver` takes.
+    """
 def drive_arc(pose: numpy.typing.ArrayLike, platform_velocity: numpy.typing.ArrayLike, time: typing.SupportsFloat | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
     """
     Base pose (x, y, theta) after `time` [s] at a constant platform velocity (v_x, v_y, omega): the exact arc.
@@ -3253,6 +3302,17 @@ def maximal_intersections(grid: BaseGrid, regions: collections.abc.Sequence, min
 def minimal_stops(grid: BaseGrid, intersections: collections.abc.Sequence[Intersection], trays: typing.SupportsInt | typing.SupportsIndex) -> StopSet:
     """
     The least number of intersections that cover all trays (P1 equation 3.1), with proof.
+    """
+def minimize_derivative_free(objective: typing.Any, guess: numpy.typing.ArrayLike, lower: numpy.typing.ArrayLike, upper: numpy.typing.ArrayLike, *, solver: str = 'bobyqa', constraints: typing.Any = None, constraint_count: typing.SupportsInt | typing.SupportsIndex = 0, progress: typing.Any = None, **kwargs) -> DerivativeFreeResult:
+    """
+    Least value of `objective(x)` for lower <= x <= upper, found by values alone. `x` is a (n,) array; bounds may be infinite for the local solvers (bobyqa, cobyla, nelder_mead, sbplx), not for the global ones (crs2, isres, direct_l, esch). `constraints(x)` gives `constraint_count` numbers that must be at most 0 (cobyla, isres). Values that are not finite are avoided. What a function raises ends the search and is raised here.
+    
+    Keyword options:
+        tolerance = 1e-06: converged when steps fall below this share of a variable's range
+        constraint_tolerance = 1e-08: largest c_i(x) that still counts as kept
+        max_evaluations = 10000: budget in points
+        time_limit = 30.0: wall-clock cap [s]
+        seed = 1: same seed, same answer
     """
 def nlp_solver_names() -> list[str]:
     """

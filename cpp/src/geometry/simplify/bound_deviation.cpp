@@ -2,7 +2,7 @@
 #include <cmath>
 #include <queue>
 
-#include "geometry/triangle_tree.hpp"
+#include "geometry/hierarchy/triangle_tree.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/simplify_mesh.hpp"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <queue>
 
-#include "geometry/triangle_tree.hpp"
+#include "geometry/hierarchy/triangle_tree.hpp"
 
 namespace mmgrasp::detail {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "geometry/simplify/decimate_outwards.hpp"
-#include "geometry/triangle_tree.hpp"
+#include "geometry/hierarchy/triangle_tree.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 

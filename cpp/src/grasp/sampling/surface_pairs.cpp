@@ -4,6 +4,7 @@
 #include "grasp/sampling/contact_pairs.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "mmgrasp/geometry/ray_caster.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -16,6 +17,7 @@ struct Triangle {
 /// All shapes of the object as one heap of triangles in the object frame.
 struct Surface {
   std::vector<Triangle> triangles;
+  TriangleMesh mesh;  ///< The same triangles, for the ray caster.
   std::vector<double> cumulative_area;
   Eigen::AlignedBox3d bounds;
   Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();
@@ -43,6 +45,8 @@ Surface gather(const std::vector<LinkShape>& object) {
   for (const LinkShape& shape : object) {
     const auto mesh = shape_mesh(shape.shape);
     surface.solid = surface.solid && mesh->closed;
+    const int first = static_cast<int>(surface.mesh.vertices.size());
+    for (const Eigen::Vector3d& v : mesh->vertices) surface.mesh.vertices.push_back(shape.T_link_shape * v);
     for (const auto& [i, j, k] : mesh->triangles) {
       Triangle t;
       t.a = shape.T_link_shape * mesh->vertices[i];
@@ -53,6 +57,7 @@ Surface gather(const std::vector<LinkShape>& object) {
       if (t.area <= 0) continue;
       t.normal = cross / (2 * t.area);
       surface.triangles.push_back(t);
+      surface.mesh.triangles.push_back({first + i, first + j, first + k});
       surface.cumulative_area.push_back(area += t.area);
       for (const Eigen::Vector3d& corner : {t.a, Eigen::Vector3d(t.a + t.ab), Eigen::Vector3d(t.a + t.ac)})
         surface.bounds.extend(corner);
@@ -64,45 +69,19 @@ Surface gather(const std::vector<LinkShape>& object) {
   return surface;
 }
 
-/// Where a line meets a triangle: point = origin + t * direction.
-struct Hit {
-  double t = 0;
-  const Triangle* triangle = nullptr;
-};
-
-/// All hits of the whole line (both ways), sorted along it (Moeller and Trumbore's test).
-std::vector<Hit> cast_line(const Surface& surface, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
-  std::vector<Hit> hits;
-  for (const Triangle& triangle : surface.triangles) {
-    const Eigen::Vector3d p = direction.cross(triangle.ac);
-    const double determinant = triangle.ab.dot(p);
-    if (determinant == 0) continue;
-    const Eigen::Vector3d s = origin - triangle.a;
-    const double u = s.dot(p) / determinant;
-    if (u < 0 || u > 1) continue;
-    const Eigen::Vector3d q = s.cross(triangle.ab);
-    const double v = direction.dot(q) / determinant;
-    if (v < 0 || u + v > 1) continue;
-    hits.push_back({triangle.ac.dot(q) / determinant, &triangle});
-  }
-  std::stable_sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return a.t < b.t; });
-  return hits;
-}
-
 /// Hits at which the line leaves the union of solids, when it enters that union at t = 0; none when the start is buried
-/// in another shape, or when the line grazes an edge so that entries and exits do not balance.
-std::vector<Hit> solid_exits(const std::vector<Hit>& hits, const Eigen::Vector3d& direction, double tolerance) {
-  std::vector<Hit> exits;
+/// in another shape, or when a shape is not what it says and entries and exits do not balance.
+std::vector<RayHit> solid_exits(const std::vector<RayHit>& hits, double tolerance) {
+  std::vector<RayHit> exits;
   bool entered_at_start = false;
   int depth = 0;
   for (std::size_t i = 0; i < hits.size();) {
-    const double t = hits[i].t;
+    const double t = hits[i].distance;
     const int before = depth;
-    const Hit* leaving = nullptr;
-    for (; i < hits.size() && hits[i].t - t <= tolerance; ++i) {
-      const bool leaves = direction.dot(hits[i].triangle->normal) > 0;
-      if (leaves) leaving = &hits[i];
-      depth += leaves ? -1 : 1;
+    const RayHit* leaving = nullptr;
+    for (; i < hits.size() && hits[i].distance - t <= tolerance; ++i) {
+      if (!hits[i].front) leaving = &hits[i];
+      depth += hits[i].front ? 1 : -1;
     }
     if (depth < 0) return {};
     if (before == 0 && depth > 0 && std::abs(t) <= tolerance) entered_at_start = true;
@@ -113,10 +92,10 @@ std::vector<Hit> solid_exits(const std::vector<Hit>& hits, const Eigen::Vector3d
 }
 
 /// On open surfaces there is no inside: every other hit is an opposite wall.
-std::vector<Hit> other_hits(const std::vector<Hit>& hits, double tolerance) {
-  std::vector<Hit> others;
-  for (const Hit& hit : hits)
-    if (std::abs(hit.t) > tolerance) others.push_back(hit);
+std::vector<RayHit> other_hits(const std::vector<RayHit>& hits, double tolerance) {
+  std::vector<RayHit> others;
+  for (const RayHit& hit : hits)
+    if (std::abs(hit.distance) > tolerance) others.push_back(hit);
   return others;
 }
 
@@ -148,20 +127,20 @@ double line_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), std::abs(a.dot(b)));
 }
 
-void add_pairs_from(const SurfacePoint& start, const Eigen::Vector3d& direction, const Surface& surface, double cone,
-                    std::vector<ContactPair>& pairs) {
+void add_pairs_from(const SurfacePoint& start, const Eigen::Vector3d& direction, const Surface& surface,
+                    const RayCaster& caster, double cone, std::vector<ContactPair>& pairs) {
   const double start_angle = line_angle(direction, start.triangle->normal);
   if (start_angle > cone) return;
-  const std::vector<Hit> hits = cast_line(surface, start.point, direction);
-  const std::vector<Hit> ends =
-      surface.solid ? solid_exits(hits, direction, surface.tolerance) : other_hits(hits, surface.tolerance);
-  for (const Hit& end : ends) {
-    const double end_angle = line_angle(direction, end.triangle->normal);
+  const std::vector<RayHit> hits = caster.all_hits({start.point, direction, -kInfinity});  // the whole line
+  const std::vector<RayHit> ends =
+      surface.solid ? solid_exits(hits, surface.tolerance) : other_hits(hits, surface.tolerance);
+  for (const RayHit& end : ends) {
+    const double end_angle = line_angle(direction, end.normal);
     if (end_angle > cone) continue;
     ContactPair pair;
-    pair.middle = start.point + direction * (end.t / 2);
+    pair.middle = start.point + direction * (end.distance / 2);
     pair.axis = direction;
-    pair.width = std::abs(end.t);
+    pair.width = std::abs(end.distance);
     pair.alignment = 1 - std::max(start_angle, end_angle) / cone;
     pair.first_approach = orthogonal_to(direction);
     pairs.push_back(pair);
@@ -178,6 +157,7 @@ ContactPairs surface_pairs(const std::vector<LinkShape>& object, const GraspSamp
   for (int i = 0; i < 8; ++i)
     result.corners.push_back(surface.bounds.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
 
+  const RayCaster caster(surface.mesh);
   const double cone = std::atan(options.friction);
   for (int i = 0; i < options.mesh_samples; ++i) {
     Rng rng(options.seed, static_cast<std::uint64_t>(i));
@@ -185,7 +165,7 @@ ContactPairs surface_pairs(const std::vector<LinkShape>& object, const GraspSamp
     const Eigen::Vector3d inward = -start.triangle->normal;
     // Along the normal the first contact is perfect; tilted lines also find wedges that need friction on both sides.
     const Eigen::Vector3d direction = i % 2 == 0 ? inward : sample_in_cone(inward, cone, rng);
-    add_pairs_from(start, direction, surface, cone, result.pairs);
+    add_pairs_from(start, direction, surface, caster, cone, result.pairs);
   }
   return result;
 }

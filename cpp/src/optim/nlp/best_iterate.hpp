@@ -13,13 +13,15 @@ namespace mmgrasp::detail {
 class BestIterate {
  public:
   explicit BestIterate(double tolerance) : tolerance_(tolerance) {}
-  void offer(const Eigen::VectorXd& x, double objective, double violation) {
-    if (!std::isfinite(objective) || !std::isfinite(violation) || !x.allFinite()) return;
+  /// True when it is now the best.
+  bool offer(const Eigen::VectorXd& x, double objective, double violation) {
+    if (!std::isfinite(objective) || !std::isfinite(violation) || !x.allFinite()) return false;
     const bool keeps = violation <= tolerance_, best_keeps = violation_ <= tolerance_;
-    if (keeps != best_keeps ? !keeps : keeps ? objective >= objective_ : violation >= violation_) return;
+    if (keeps != best_keeps ? !keeps : keeps ? objective >= objective_ : violation >= violation_) return false;
     x_ = x;
     objective_ = objective;
     violation_ = violation;
+    return true;
   }
   bool any() const { return x_.size() > 0; }
   const Eigen::VectorXd& x() const { return x_; }

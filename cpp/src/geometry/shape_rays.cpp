@@ -1,4 +1,4 @@
-#include "mapping/shape_rays.hpp"
+#include "mmgrasp/geometry/detail/shape_rays.hpp"
 
 #include <algorithm>
 #include <cmath>

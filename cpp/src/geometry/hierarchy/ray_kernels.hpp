@@ -1,0 +1,65 @@
+#pragma once
+
+// What the traversal of a triangle tree by a ray exchanges with its callers: plain arrays only, because the functions
+// are compiled once for each instruction set.
+
+#include <cstddef>
+#include <string>
+
+#include "mmgrasp/core/export.hpp"
+
+namespace mmgrasp::detail {
+
+constexpr int kTreeWidth = 8;    // children of a node
+constexpr int kPacketWidth = 4;  // triangles of a leaf
+constexpr int kStackSize = 512;  // the builder keeps the tree so flat that 7 entries a level fit
+
+/// Eight children with their boxes, in the tree's own coordinates: the mesh fills [-1, 1] along its longest side, and
+/// every box is larger than what it holds by more than the rounding of single precision.
+struct alignas(64) TreeNode {
+  float bounds[6][kTreeWidth];  // lower x, y, z, upper x, y, z; lower > upper where there is no child
+  int child[kTreeWidth];        // a node, or ~packet
+};
+
+/// Up to four triangles in the mesh's coordinates. Places left over hold triangles without an area.
+struct alignas(64) TrianglePacket {
+  double corner[3][3][kPacketWidth];  // [corner][axis][triangle]
+  int triangle[kPacketWidth];         // index in the mesh, -1 where there is none
+};
+
+struct TreeView {
+  const TreeNode* nodes;
+  const TrianglePacket* packets;
+};
+
+/// A ray cut to the tree's box, ready for the traversal.
+struct PreparedRay {
+  double origin[3], nearest, farthest;
+  int axis[3];      // the last is the one along which the ray is longest; the others so that front faces stay front
+  double shear[3];  // direction[axis[0 or 1]] / direction[axis[2]], 1 / direction[axis[2]]
+  // For boxes: lengths in the tree's coordinates, from where the ray enters the tree's box.
+  float inverse[3], offset[3];     // 1 / direction, -start / direction
+  std::ptrdiff_t near[3], far[3];  // places in TreeNode::bounds of the faces through which it enters and leaves
+  float start, length;             // how far boxes are worth a visit
+  double begin, to_length;         // length = (t - begin) * to_length
+};
+
+struct RayRecord {
+  double t;  // in: the farthest allowed
+  int triangle = -1, packet = -1, lane = -1;
+};
+
+struct RayKernels {
+  const char* name;
+  void (*closest)(const TreeView& tree, const PreparedRay& ray, RayRecord& best);
+  bool (*any)(const TreeView& tree, const PreparedRay& ray);
+  /// Calls visit(data, packet) for each leaf whose box the ray meets.
+  void (*leaves)(const TreeView& tree, const PreparedRay& ray, void (*visit)(void* data, int packet), void* data);
+};
+
+/// Those of the best instruction set that the machine has.
+const RayKernels& ray_kernels();
+/// For tests: "portable", or "" for the best. Every set gives the same answers.
+MMGRASP_EXPORT void use_ray_kernels(const std::string& name);
+
+}  // namespace mmgrasp::detail

@@ -1,11 +1,11 @@
 #include "geometry/triangle_tree.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/geometry/detail/mesh_topology.hpp"
+#include "mmgrasp/geometry/detail/triangle_distance.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -14,24 +14,7 @@ using Eigen::Vector3d;
 
 constexpr int kLeaf = 4;
 
-double segment_distance(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
-  const Vector3d ab = b - a;
-  const double length = ab.squaredNorm();
-  const double s = length > 0 ? std::clamp((p - a).dot(ab) / length, 0.0, 1.0) : 0.0;
-  return (p - a - s * ab).norm();
-}
-
 }  // namespace
-
-double triangle_distance(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-  const Vector3d n = (b - a).cross(c - a);
-  const double area = n.norm();
-  // Above the inside of the triangle the plane is nearest; else an edge is.
-  if (area > 0 && n.dot((b - a).cross(p - a)) >= 0 && n.dot((c - b).cross(p - b)) >= 0 &&
-      n.dot((a - c).cross(p - c)) >= 0)
-    return std::abs(n.dot(p - a)) / area;
-  return std::min({segment_distance(p, a, b), segment_distance(p, b, c), segment_distance(p, c, a)});
-}
 
 TriangleTree::TriangleTree(const TriangleMesh& mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
   std::iota(order_.begin(), order_.end(), 0);

@@ -7,10 +7,6 @@
 
 namespace mmgrasp::detail {
 
-/// Distance of a point from a triangle.
-double triangle_distance(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                         const Eigen::Vector3d& c);
-
 /// Bounding boxes over a mesh's triangles, for distances from its surface and the question of inside or outside.
 class TriangleTree {
  public:

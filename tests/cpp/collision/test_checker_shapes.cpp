@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(Kernels, CheckerShapesOnKernels, ::testing::Values("", 
 
 }  // namespace
 
-// Capsules have few balls and no finer ones, next to bodies that look at three levels of them.
+// Capsules have few spheres and no finer ones, next to bodies that look at three levels of them.
 TEST_P(CheckerShapesOnKernels, LongCapsulesAgreeWithFcl) {
   if (!GetParam().empty()) {
     ASSERT_EQ(detail::collision_kernels(), GetParam());
@@ -182,17 +182,17 @@ TEST_P(CheckerShapesOnKernels, EveryPairAgreesWithFcl) {
   const int samples = 250;
   int free = 0, hit = 0, unjudged = 0;
   for (const Case& mover : all_shapes()) {
-    // A link cannot be made of voxels, a held object can.
-    const bool held = mover.name == "voxels";
-    const JointGroup group =
-        free_body::group(held ? std::vector<LinkShape>{} : std::vector<LinkShape>{free_body::link_shape(mover.shape)});
+    // A link cannot be made of voxels, a attached object can.
+    const bool attached = mover.name == "voxels";
+    const JointGroup group = free_body::group(attached ? std::vector<LinkShape>{}
+                                                       : std::vector<LinkShape>{free_body::link_shape(mover.shape)});
     const fcl_reference::Body body = fcl_reference::make_body(mover.shape);
     std::vector<Case> others = all_shapes();
     others.push_back({"plane", Plane{Eigen::Vector3d(0.6, 0, 0.8), 0.1}});
     for (const Case& other : others) {
       World world;
       const Pose T = pose_from_xyz_rpy({0.3, -0.2, 0.5}, {0.4, -0.9, 2.0});
-      if (held) {
+      if (attached) {
         world.add("held", mover.shape, Pose::Identity());
         world.attach("held", "carrier", Pose::Identity());
       }

@@ -98,6 +98,7 @@ std::vector<int> default_touch_links(const Robot& robot, int link) {
 Snapshot::Snapshot(const Robot& robot_in, const World& world_in, const CheckerOptions& options_in)
     : robot(robot_in), world(world_in), options(options_in) {
   add_robot();
+  first_attached = static_cast<int>(shapes.size());
   add_attached();
   add_scene();
 }
@@ -140,10 +141,8 @@ void Snapshot::add_attached() {
 }
 
 void Snapshot::place_attached(const Pose& T_link_object) {
-  auto part = world.attached().begin()->second.shapes.begin();
-  for (BodyShape& shape : shapes) {
-    if (bodies[shape.body].attached) shape.place(in_link(T_link_object, *part++));
-  }
+  auto shape = shapes.begin() + first_attached;
+  for (const LinkShape& part : world.attached().begin()->second.shapes) (shape++)->place(in_link(T_link_object, part));
 }
 
 void Snapshot::add_scene() {

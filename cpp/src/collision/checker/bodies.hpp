@@ -58,6 +58,7 @@ struct MMGRASP_EXPORT Snapshot {
   CheckerOptions options;
   std::vector<Body> bodies;
   std::vector<BodyShape> shapes;
+  int first_attached = 0;  ///< Shapes from here on belong to attached objects.
   std::vector<std::string> object_names;
   std::vector<SceneShape> scene;  ///< First those in `packs`, then voxels and planes.
   int packed = 0;                 ///< How many of them are in `packs`.

@@ -24,11 +24,10 @@ void CheckerEngine::set_root(const Pose& T_world_root) {
 }
 
 void CheckerEngine::attached_moved() {
-  const Snapshot& snapshot = placement_.snapshot();
-  const std::vector<int>& fixed = placement_.plan().fixed;
-  const bool one_is_fixed =
-      std::any_of(fixed.begin(), fixed.end(), [&](int s) { return snapshot.bodies[snapshot.shapes[s].body].attached; });
-  if (one_is_fixed) {
+  const PairPlan& plan = placement_.plan();
+  const auto is_fixed = [&](int sphere) { return sphere >= static_cast<int>(plan.moving.size()); };
+  const int first = placement_.snapshot().first_attached;
+  if (std::any_of(plan.sphere_of.begin() + first, plan.sphere_of.end(), is_fixed)) {
     placement_.forget();
     search_.forget_root();
   }

@@ -96,9 +96,7 @@ void PairPlan::place_shape(const Snapshot& snapshot, int s) {
 }
 
 void PairPlan::place_attached(const Snapshot& snapshot) {
-  for (std::size_t s = 0; s < snapshot.shapes.size(); ++s) {
-    if (snapshot.bodies[snapshot.shapes[s].body].attached) place_shape(snapshot, static_cast<int>(s));
-  }
+  for (int s = snapshot.first_attached; s < static_cast<int>(snapshot.shapes.size()); ++s) place_shape(snapshot, s);
 }
 
 void PairPlan::list_pairs(const Snapshot& snapshot, const JointGroup& group) {
@@ -192,7 +190,7 @@ MotionRates PairPlan::bound_motion(const Eigen::VectorXd& largest) const {
 }
 
 void PairPlan::bound_attached(const Snapshot& snapshot) {
-  const auto attached = [&](int s) { return snapshot.bodies[snapshot.shapes[s].body].attached; };
+  const auto attached = [&](int s) { return s >= snapshot.first_attached; };
   for (Eigen::Index i = 0; i < rates.shapes.cols(); ++i) {
     if (attached(moving[i])) rates.shapes.col(i) = frames.point_rates(spheres[i], largest_);
   }

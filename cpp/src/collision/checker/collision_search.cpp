@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "collision/checker/pair_tests.hpp"
+#include "collision/narrow/stages.hpp"
 
 namespace mmgrasp::detail {
 
@@ -13,6 +14,12 @@ void CollisionSearch::gather_near(const Placement& placement, int first, int las
   const ScenePacks& packs = placement.snapshot().packs;
   const SphereRows spheres = placement.spheres();
   near_.clear();
+  if constexpr (!runs(kSphereStage)) {
+    for (int s = first; s < last; ++s) {
+      for (int i = 0; i < placement.snapshot().packed; ++i) near_.push_back({s, i});
+    }
+    return;
+  }
   const auto add = [&](int sphere, int pack, unsigned mask) {
     for (; mask != 0; mask &= mask - 1) near_.push_back({sphere, packs.item(pack, __builtin_ctz(mask))});
   };
@@ -44,7 +51,7 @@ bool CollisionSearch::body_is_free(Placement& placement, int body, double motion
   // A body that moves far is only tested where it is: what its sphere, grown by the motion, meets would hardly ever
   // turn out to stay clear.
   const bool far = motion > kMaxProvenMotion;
-  float grown_radius = static_cast<float>(*sphere.radius + (far ? 0 : motion));
+  float grown_radius = runs(kSphereStage) ? static_cast<float>(*sphere.radius + (far ? 0 : motion)) : 1e9f;
   const SphereRows grown{sphere.x, sphere.y, sphere.z, &grown_radius};
   const auto hits_any = [&](int pack, unsigned mask) {
     for (; mask != 0; mask &= mask - 1) {
@@ -63,7 +70,9 @@ bool CollisionSearch::body_is_free(Placement& placement, int body, double motion
     }
     return false;
   };
-  const auto stays_far = [&](float nearest) { return std::sqrt(nearest) - *sphere.radius > motion; };
+  const auto stays_far = [&](float nearest) {
+    return runs(kSphereStage) && std::sqrt(nearest) - *sphere.radius > motion;
+  };
   if (packs.flat()) {
     std::uint8_t flat_masks[ScenePacks::kFlat];
     float nearest = std::numeric_limits<float>::infinity();
@@ -133,12 +142,13 @@ bool CollisionSearch::self_collides(Placement& placement) {
     }
   }
   if (*constant_self_) return true;
-  if (last_pair_ >= 0 && pair_collides(placement, plan.varying[last_pair_])) return true;
+  if (runs(kLastCollisionStage) && last_pair_ >= 0 && pair_collides(placement, plan.varying[last_pair_])) return true;
   unsure_.clear();
   kernels().sphere_pairs_meet(plan.blocks.data(), static_cast<int>(plan.blocks.size()), placement.spheres(),
                               pair_masks_.data());
   for (std::size_t block = 0; block < plan.blocks.size(); ++block) {
-    for (unsigned mask = pair_masks_[block]; mask != 0; mask &= mask - 1) {
+    const unsigned lanes = runs(kSphereStage) ? pair_masks_[block] : plan.blocks[block].lanes;
+    for (unsigned mask = lanes; mask != 0; mask &= mask - 1) {
       const int i = plan.pair_of[block * kLanes + static_cast<std::size_t>(__builtin_ctz(mask))];
       const CoverAnswer answer = pair_by_covers(placement, plan.varying[i]);
       if (answer == kApart) continue;
@@ -165,7 +175,8 @@ bool CollisionSearch::scene_collides(Placement& placement) {
 
 bool CollisionSearch::is_free(Placement& placement) {
   const CheckerOptions& options = placement.snapshot().options;
-  if (options.check_scene && last_shape_ >= 0 && detail::scene_collides(placement, last_shape_, last_scene_))
+  if (runs(kLastCollisionStage) && options.check_scene && last_shape_ >= 0 &&
+      detail::scene_collides(placement, last_shape_, last_scene_))
     return false;
   if (options.check_self && self_collides(placement)) return false;
   return !(options.check_scene && scene_collides(placement));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "collision/checker/pair_tests.hpp"
+#include "collision/narrow/stages.hpp"
 
 namespace mmgrasp::detail {
 
@@ -42,6 +43,7 @@ EdgeWalk::EdgeWalk(Placement& placement, CollisionSearch& search, const Eigen::V
 
 bool EdgeWalk::all_free() {
   if (pieces_ < 2) return true;
+  if constexpr (!runs(kIntervalStage)) return each_is_free();
   const Snapshot& snapshot = placement_.snapshot();
   const PairPlan& plan = placement_.plan();
   open_.clear();
@@ -77,6 +79,16 @@ bool EdgeWalk::all_free() {
   }
   // What was proven counts as checked.
   checks_ = static_cast<std::size_t>(pieces_ - 1);
+  return true;
+}
+
+bool EdgeWalk::each_is_free() {
+  for (long at = 1; at < pieces_; ++at) {
+    q_ = q0_ + delta_ * (static_cast<double>(at) / static_cast<double>(pieces_));
+    ++checks_;
+    placement_.place(q_.data());
+    if (!search_.is_free(placement_)) return false;
+  }
   return true;
 }
 
@@ -119,8 +131,8 @@ bool EdgeWalk::pairs_free(const Interval& interval, double reach) {
         (placement_.sphere_centre(pair.sphere_a) - placement_.sphere_centre(pair.sphere_b)).norm() -
         radius[pair.sphere_a] - radius[pair.sphere_b];
     const double motion = with_slack(pair_motion_[index] * reach);
-    if (clearance > motion) continue;
-    if (pair.clearances) {
+    if (runs(kSphereStage) && clearance > motion) continue;
+    if (runs(kTableStage) && pair.clearances) {
       const double wanted = reach > 0 ? motion : 0;
       const double apart = pair.clearances->at_least(q_[pair.columns[0]], q_[pair.columns[1]], wanted);
       if (apart > wanted) continue;

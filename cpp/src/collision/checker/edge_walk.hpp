@@ -26,6 +26,8 @@ class EdgeWalk {
     long low, high;                  ///< Checks strictly between are open.
     std::size_t bodies, pairs, end;  ///< Where its lists begin in open_, and end.
   };
+  /// The same without proofs, one check after the other (see Stage).
+  bool each_is_free();
   /// Places check `at`; false when something open collides there. What may collide within `reach` pieces of it is
   /// appended to open_.
   bool check(const Interval& interval, long at, double reach, Interval& rest);

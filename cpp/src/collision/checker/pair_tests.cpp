@@ -6,6 +6,7 @@
 
 #include "collision/narrow/convex_clearance.hpp"
 #include "collision/narrow/narrow.hpp"
+#include "collision/narrow/stages.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -104,7 +105,7 @@ bool spheres_apart(const SphereRows& spheres, int a, int b) {
 bool pair_meets_exactly(Placement& placement, const ShapePair& pair, double motion, bool hulls_meet) {
   const Snapshot& snapshot = placement.snapshot();
   const BodyShape &a = snapshot.shapes[pair.a], &b = snapshot.shapes[pair.b];
-  if (a.solid->kind == SolidKind::mesh && b.solid->kind == SolidKind::mesh) {
+  if (runs(kFineStage) && a.solid->kind == SolidKind::mesh && b.solid->kind == SolidKind::mesh) {
     // Few large triangles look for their like in a grid around the smaller body.
     const bool grid_of_a = a.solid->sphere_radius < b.solid->sphere_radius;
     const BodyShape &first = grid_of_a ? a : b, &second = grid_of_a ? b : a;
@@ -129,11 +130,13 @@ CoverAnswer pair_by_covers(Placement& placement, const ShapePair& pair, double m
   if (a.bounds->cover().empty() || b.bounds->cover().empty()) return kMaybe;
   const Rigid &T_a = placement.pose(pair.a), &T_b = placement.pose(pair.b);
   const bool seek_overlap = motion == 0;
-  const CoverAnswer first = cover_against_box(a.bounds->cover(), T_a, *b.solid, T_b, motion, seek_overlap);
-  if (first == kApart || (first == kOverlap && b.solid->is_box)) return first;
-  const CoverAnswer second = cover_against_box(b.bounds->cover(), T_b, *a.solid, T_a, motion, seek_overlap);
-  if (second == kApart || (second == kOverlap && a.solid->is_box)) return second;
-  if (motion > kMaxGridMotion) return kMaybe;
+  if constexpr (runs(kCoverStage)) {
+    const CoverAnswer first = cover_against_box(a.bounds->cover(), T_a, *b.solid, T_b, motion, seek_overlap);
+    if (first == kApart || (first == kOverlap && b.solid->is_box)) return first;
+    const CoverAnswer second = cover_against_box(b.bounds->cover(), T_b, *a.solid, T_a, motion, seek_overlap);
+    if (second == kApart || (second == kOverlap && a.solid->is_box)) return second;
+  }
+  if (!runs(kFineStage) || motion > kMaxGridMotion) return kMaybe;
   // A box needs no grid.
   if (a.solid->is_box != b.solid->is_box) {
     const BodyShape &box = a.solid->is_box ? a : b, &other = a.solid->is_box ? b : a;
@@ -167,6 +170,7 @@ CoverAnswer scene_by_covers(Placement& placement, int s, int scene_shape, double
     return cover_in_grid(*other.solid->grid, other.T_world, shape.bounds->fine(*shape.solid).covers, placement.pose(s),
                          grow, motion == 0);
   }
+  if constexpr (!runs(kCoverStage)) return kMaybe;
   const CoverAnswer answer =
       cover_against_box(shape.bounds->cover(), placement.pose(s), *other.solid, other.T_world, grow, motion == 0);
   return answer == kOverlap && !other.solid->is_box ? kMaybe : answer;

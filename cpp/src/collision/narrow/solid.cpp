@@ -3,6 +3,7 @@
 #include <map>
 #include <numeric>
 
+#include "collision/narrow/stages.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/detail/mesh_topology.hpp"
@@ -136,8 +137,8 @@ void set_mesh(Solid& solid, const TriangleMesh& mesh, std::vector<double>& hull_
     set_hull(solid.core, hull_points);
     // The hull's own rounding must not cut anything off.
     solid.core.radius = 1e-6 * solid.box_half.norm();
-    solid.has_hull = true;
-    solid.has_inner = mesh.closed && set_inner(solid, mesh, *hull, inner_points);
+    solid.has_hull = runs(kHullStage);
+    solid.has_inner = runs(kHullStage) && mesh.closed && set_inner(solid, mesh, *hull, inner_points);
   } catch (const InvalidInput&) {
     solid.has_hull = false;  // a flat sheet has no hull
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/core/detail/ball_volume.hpp"
 #include "plan/manipulation/rrt_star_mg/rrt_star_mg.hpp"
 
 namespace mmgrasp::detail {

@@ -1,0 +1,175 @@
+"""The arguments of the command `mmgrasp`."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .. import _core
+
+if TYPE_CHECKING:  # argparse has no public name for what add_subparsers gives
+    Commands = argparse._SubParsersAction["_Parser"]
+
+_LARGEST = 2**31 - 1
+
+
+class _Parser(argparse.ArgumentParser):
+    """An argument parser whose options may not be abbreviated: a script keeps its meaning when options are added."""
+
+    def __init__(self, **keywords: Any) -> None:
+        super().__init__(allow_abbrev=False, **keywords)
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """The parser of all commands; `command` is the name of the one that was asked for."""
+    parser = _Parser(prog="mmgrasp", description="Planning for mobile manipulators.")
+    parser.add_argument("--version", action="version", version=f"mmgrasp {_core.__version__}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="command", parser_class=_Parser)
+    for add in (_add_plan, _add_verify, _add_check, _add_reproduce, _add_bench, _add_view):
+        add(commands)
+    return parser
+
+
+def _add_plan(commands: Commands) -> None:
+    parser = commands.add_parser(
+        "plan", help="plan a part-supply round and write plan, report, pictures and trajectories"
+    )
+    parser.add_argument("scenario", type=Path, help="scenario file (YAML)")
+    parser.add_argument("-o", "--out", type=Path, required=True, metavar="DIR", help="folder to write into")
+    parser.add_argument(
+        "--robot", metavar="NAME", help="another robot: a shipped profile (tiago, ...) or a profile file"
+    )
+    parser.add_argument("--threads", type=_count, metavar="N", help="0: all (default); the plan does not depend on it")
+    parser.add_argument("--seed", type=_count, metavar="N", help="same seed, same plan")
+    parser.add_argument(
+        "--drive-by", action="store_true", help="take the first part at each stop without stopping for it"
+    )
+    parser.add_argument("--no-pictures", action="store_true", help="write plan.json and the trajectories only")
+
+
+def _add_verify(commands: Commands) -> None:
+    parser = commands.add_parser("verify", help="check a finished plan without the planner")
+    parser.add_argument("plan", type=Path, help="plan.json")
+    parser.add_argument("--scenario", type=Path, metavar="FILE", help="compare with this scenario, read anew")
+    parser.add_argument("--robot", metavar="NAME", help="the robot profile the plan was made with")
+    parser.add_argument("--samples", type=_count, metavar="N", help="base poses drawn at each stop (default 1000)")
+    parser.add_argument("--threads", type=_count, metavar="N", help="0: all (default)")
+    parser.add_argument("--json", action="store_true", help="print the verdict as JSON")
+
+
+def _add_check(commands: Commands) -> None:
+    parser = commands.add_parser("check", help="tell what mmgrasp understands of a robot")
+    parser.add_argument("urdf", type=Path, help="a URDF, or a .xacro file that expands to one")
+    parser.add_argument("--srdf", type=Path, metavar="FILE")
+    parser.add_argument(
+        "--xacro-arg",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        type=_xacro_argument,
+        help="an argument of the xacro file; may be repeated",
+    )
+    parser.add_argument(
+        "--package",
+        action="append",
+        default=[],
+        metavar="NAME=DIR",
+        type=_package,
+        help="where package://NAME/... lies; may be repeated",
+    )
+    parser.add_argument("--base", choices=["fixed", "diff_drive", "omni"], default="fixed")
+    parser.add_argument(
+        "--mesh-tolerance",
+        type=float,
+        default=0.0,
+        metavar="M",
+        help="how far simpler solids may stick out of collision meshes [m] (default 0: only the same solid)",
+    )
+    parser.add_argument("--write-srdf", type=Path, metavar="FILE", help="write an SRDF with the computed link pairs")
+    parser.add_argument("--json", action="store_true")
+
+
+def _add_reproduce(commands: Commands) -> None:
+    parser = commands.add_parser(
+        "reproduce", help="compute a paper's tables and figures again, beside the paper's numbers"
+    )
+    parser.add_argument("name", nargs="*", help="p1-table-3.3, ... or all; none: list them")
+    parser.add_argument("--quick", action="store_true", help="smaller set-ups that show the same in seconds")
+    parser.add_argument(
+        "--json", action="store_true", help="print JSON instead of Markdown: an object for one name, else a list"
+    )
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help="also write JSON and pictures there, and a page of all of them"
+    )
+    parser.add_argument("--seed", type=_count, default=1, metavar="N", help="of whatever is random (default 1)")
+    _add_cluster_options(parser)
+
+
+def _add_bench(commands: Commands) -> None:
+    parser = commands.add_parser("bench", help="run published problem sets and look at every answer again")
+    parser.add_argument("name", choices=["mbm"], help="mbm: MotionBenchMaker's problems for Panda and UR5")
+    parser.add_argument(
+        "--data",
+        type=Path,
+        default=Path("../shared/data"),
+        metavar="DIR",
+        help="folder with robots/ and planning/ (default ../shared/data)",
+    )
+    parser.add_argument("--robot", nargs="+", default=["panda", "ur5"], metavar="NAME")
+    parser.add_argument("--set", nargs="+", metavar="NAME", help="bookshelf_small, ...; default: all seven")
+    parser.add_argument(
+        "--limit", type=_at_least_one, default=50, metavar="N", help="problems of each set (default 50)"
+    )
+    parser.add_argument("--seeds", type=_at_least_one, default=1, metavar="N", help="runs of each problem (default 1)")
+    parser.add_argument("--planner", default="rrt_connect", help="a name of planner_names()")
+    parser.add_argument("--json", action="store_true")
+
+
+def _add_view(commands: Commands) -> None:
+    parser = commands.add_parser("view", help="show a plan in the browser, or draw it")
+    parser.add_argument("plan", type=Path, help="plan.json")
+    parser.add_argument("--png", type=Path, metavar="FILE", help="write a picture instead of opening the browser")
+    parser.add_argument("--port", type=_count, default=8080, metavar="N")
+
+
+def _add_cluster_options(parser: argparse.ArgumentParser) -> None:
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument(
+        "--workers", type=_count, metavar="N", help="spread the work over N local processes (0: one a core)"
+    )
+    where.add_argument("--scheduler", metavar="ADDRESS", help="spread the work over a Dask cluster, tcp://host:port")
+    parser.add_argument(
+        "--shards", type=Path, metavar="DIR", help="where --workers and --scheduler keep finished shards"
+    )
+
+
+def _count(text: str, least: int = 0) -> int:
+    try:
+        value = int(text)
+    except ValueError:
+        value = -1
+    if not least <= value <= _LARGEST:
+        rule = f"at most {_LARGEST}" if value > _LARGEST else f"at least {least}"
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a whole number, {rule}")
+    return value
+
+
+def _at_least_one(text: str) -> int:
+    return _count(text, least=1)
+
+
+def _package(text: str) -> tuple[str, str]:
+    name, found, folder = text.partition("=")
+    if not found or not name or not folder:
+        raise argparse.ArgumentTypeError(f"{text!r} is not NAME=DIR")
+    if not Path(folder).is_dir():
+        raise argparse.ArgumentTypeError(f"{folder!r} is no folder")
+    return name, folder
+
+
+def _xacro_argument(text: str) -> tuple[str, str]:
+    name, found, value = text.partition("=")
+    if not found or not name:
+        raise argparse.ArgumentTypeError(f"{text!r} is not NAME=VALUE")
+    return name.removesuffix(":"), value  # xacro's own command writes NAME:=VALUE

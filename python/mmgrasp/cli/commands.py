@@ -1,0 +1,224 @@
+"""The command `mmgrasp`.
+
+Exit codes: 0 done, 1 a plan has faults, a robot cannot be planned for or an exact value of a paper is missed, 2 bad input, 3 there is no plan, 130 Ctrl-C.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+
+from .._core import Error, InvalidInput, Outcome
+from .._files import check_folder, write_file
+from ..part_supply import ScenarioPlan, plan_drive_by_picks, plan_part_supply, plan_to_check, read_plan, verify_plan
+from ..scenario import load_scenario
+from ..scenario.reading import read_json
+from .arguments import build_parser
+from .check import check_robot, describe
+from .console import Reporter
+from .tables import bench_table, drive_by_summary, print_verdict, summary
+
+if TYPE_CHECKING:
+    from ..reproduce.entry import Sweep
+
+DONE, FAULTY, BAD_INPUT, NO_PLAN, INTERRUPTED = 0, 1, 2, 3, 130
+
+
+def run_plan(arguments: argparse.Namespace, console: Console) -> int:
+    check_folder(arguments.out)
+    with Reporter(console) as report:
+        scenario = load_scenario(
+            arguments.scenario, robot=arguments.robot, seed=arguments.seed, threads=arguments.threads, progress=report
+        )
+        plan = plan_part_supply(scenario, progress=report)
+        written = write_outputs(plan, arguments.out, report, pictures=not arguments.no_pictures)
+        passing = None
+        if arguments.drive_by and plan.outcome == Outcome.solved:
+            passing = plan_drive_by_picks(plan, progress=report)
+            passing.save(arguments.out)
+            if not arguments.no_pictures:
+                from ..viz.report import write_report
+
+                write_report(passing.plan_to_dict(), arguments.out)
+    if plan.outcome != Outcome.solved:
+        console.print(f"no plan: {plan.outcome.name}", style="bold red", markup=False)
+        for obstruction in plan.obstructions:
+            console.print(f"- {obstruction.message}", markup=False, soft_wrap=True)
+    else:
+        console.print(summary(plan))
+    if passing is not None:
+        console.print(drive_by_summary(passing))
+    console.print(f"report: {written}", markup=False, soft_wrap=True)
+    return exit_code(plan.outcome)
+
+
+def exit_code(outcome: Outcome) -> int:
+    return {
+        Outcome.solved: DONE,
+        Outcome.stopped: INTERRUPTED,
+        Outcome.invalid_start: BAD_INPUT,
+        Outcome.invalid_goal: BAD_INPUT,
+    }.get(outcome, NO_PLAN)
+
+
+def write_outputs(plan: ScenarioPlan, out: Path, report: Callable[[str, float], None], pictures: bool) -> Path:
+    """Writes everything into the folder and returns the page to look at."""
+    report("writing", 0.0)
+    path = plan.save(out / "plan.json")
+    plan.save_trajectories(out / "trajectories")
+    if pictures:
+        from ..viz.pictures import write_pictures
+        from ..viz.report import write_report
+
+        content = plan.to_dict()
+        report("writing", 0.3)
+        write_pictures(content, out)
+        report("writing", 0.9)
+        path = Path(write_report(content, out) or out / "report.html")
+    report("writing", 1.0)
+    return path
+
+
+def run_verify(arguments: argparse.Namespace, console: Console) -> int:
+    options = {key: value for key in ("samples", "threads") if (value := getattr(arguments, key)) is not None}
+    with Reporter(console) as report:
+        verdict = verify_plan(
+            arguments.plan, scenario=arguments.scenario, robot=arguments.robot, progress=report, **options
+        )
+    if arguments.json:
+        print(json.dumps(verdict.to_dict(), indent=1))
+    else:
+        print_verdict(verdict, console)
+    return DONE if verdict.ok else FAULTY
+
+
+def run_check(arguments: argparse.Namespace, console: Console) -> int:
+    with Reporter(console) as report:
+        found = check_robot(
+            arguments.urdf,
+            arguments.srdf,
+            dict(arguments.package),
+            arguments.base,
+            report,
+            arguments.mesh_tolerance,
+            dict(arguments.xacro_arg) or None,
+        )
+    if arguments.write_srdf:
+        write_file(arguments.write_srdf, found.srdf())
+    print(json.dumps(found.to_dict(), indent=1, default=str) if arguments.json else describe(found))
+    return DONE if found.ok else FAULTY
+
+
+def run_view(arguments: argparse.Namespace, console: Console) -> int:
+    content = read_plan(arguments.plan)
+    if content.get("outcome") == "solved":
+        plan_to_check(read_json(arguments.plan).root)  # says what is wrong with a damaged plan before anything is drawn
+    if arguments.png:
+        from ..viz.viewer import write_png
+
+        write_png(content, arguments.png)
+        console.print(str(arguments.png), markup=False)
+        return DONE
+    from ..viz.viewer import view
+
+    try:
+        view(content, port=arguments.port)
+    except ImportError:
+        raise InvalidInput("the browser view needs viser: pip install 'mmgrasp[view]'") from None
+    return DONE
+
+
+def run_bench(arguments: argparse.Namespace, console: Console) -> int:
+    from ..problems.motion_bench import MBM_SETS
+    from ..problems.motion_bench_run import holds, run_motion_bench
+
+    with Reporter(console) as report:
+        results = run_motion_bench(
+            arguments.data,
+            list(dict.fromkeys(arguments.robot)),
+            list(dict.fromkeys(arguments.set or MBM_SETS)),
+            arguments.limit,
+            range(1, 1 + arguments.seeds),
+            progress=report,
+            planner=arguments.planner,
+        )
+    rows = [result.to_dict() for result in results]
+    if arguments.json:
+        print(json.dumps({"rows": rows, "holds": holds(results)}))
+    else:
+        console.print(bench_table(rows))
+        for fault in (fault for row in rows for fault in row["faults"]):
+            console.print(f"- {fault}", markup=False, soft_wrap=True)
+    return DONE if holds(results) else FAULTY
+
+
+def run_reproduce(arguments: argparse.Namespace, console: Console) -> int:
+    from .. import reproduce as again
+    from ..reproduce.page import markdown, store
+
+    if not arguments.name:
+        for entry in again.ENTRIES.values():
+            print(f"{entry.name:<24}{entry.title}")
+        return DONE
+    names = [e for name in arguments.name for e in (again.ENTRIES if name == "all" else [again.entry(name).name])]
+    if arguments.out:
+        check_folder(arguments.out)
+    results = []
+    with Reporter(console) as report, _sweep(arguments) as sweep:
+        for name in dict.fromkeys(names):
+            result = again.reproduce(name, quick=arguments.quick, seed=arguments.seed, progress=report, sweep=sweep)
+            results.append(result)
+            if arguments.out:
+                store(result, arguments.out)
+            if not arguments.json:
+                print(markdown(result), flush=True)
+    if arguments.json:
+        print(json.dumps(results[0] if len(results) == 1 else results, allow_nan=False))
+    return DONE if all(c["holds"] for result in results for c in result["checks"] if c["kind"] == "E") else FAULTY
+
+
+@contextlib.contextmanager
+def _sweep(arguments: argparse.Namespace) -> Iterator[Sweep]:
+    """Calls here, or on the cluster that the arguments ask for."""
+    if arguments.workers is None and arguments.scheduler is None:
+        from ..reproduce.entry import sweep_here
+
+        yield sweep_here
+        return
+    from .. import cluster
+
+    with cluster.connect(workers=arguments.workers, scheduler=arguments.scheduler, folder=arguments.shards) as engine:
+        yield engine.run
+
+
+COMMANDS = {
+    "plan": run_plan,
+    "verify": run_verify,
+    "check": run_check,
+    "reproduce": run_reproduce,
+    "bench": run_bench,
+    "view": run_view,
+}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    parsed = build_parser().parse_args(arguments)
+    console = Console(highlight=False)
+    try:
+        return COMMANDS[parsed.command](parsed, console)
+    except (Error, OSError) as error:
+        print(f"mmgrasp: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except MemoryError:
+        print("mmgrasp: out of memory: use a coarser grid, fewer samples or fewer parts", file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        print("mmgrasp: interrupted", file=sys.stderr)
+        return INTERRUPTED

@@ -1,0 +1,92 @@
+"""Writes docs/options.md from the defaults of the C++ structs: python -m mmgrasp.cli.options_page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from .. import _core
+
+Table = Callable[[], dict[str, tuple[Any, str]]]
+
+SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
+    ("options", "How to plan (`PartSupplyOptions`)", _core._supply_option_table, {"positioning_uncertainty"}),
+    ("reach", "The reachability database (`ReachOptions`)", _core._reach_option_table, set()),
+    (
+        "capability_map",
+        "Keywords of `CapabilityMap.build` (`CapabilityOptions`)",
+        _core._capability_option_table,
+        set(),
+    ),
+    ("grasp_options", "The grasp sampler of a part type (`GraspSamplerOptions`)", _core._grasp_option_table, set()),
+    ("ik", "Inverse kinematics, keywords of `JointGroup.ik` and its kin (`IkOptions`)", _core._ik_option_table, set()),
+    ("collision_checker", "Keywords of `CollisionChecker` (`CheckerOptions`)", _core._checker_option_table, set()),
+    ("check_edge", "Keywords of `CollisionChecker.check_edge` (`EdgeOptions`)", _core._edge_option_table, set()),
+    ("plan_motion", "Motions of arm and base, keywords (`MotionOptions`)", _core._motion_option_table, set()),
+    (
+        "plan_cartesian",
+        "Straight tool lines, keywords; those of `plan_straight_line` are all but `max_branches` (`CartesianOptions`)",
+        _core._cartesian_option_table,
+        set(),
+    ),
+    (
+        "time_parameterize",
+        "Timing of paths, keywords; also of `time_parameterize_free` (`TimingOptions`)",
+        _core._timing_option_table,
+        set(),
+    ),
+    ("roadmap", "Keywords of `Roadmap.build` (`RoadmapOptions`)", _core._roadmap_option_table, set()),
+    (
+        "plan_manipulation",
+        "Carrying an object with any of many grasps, keywords (`ManipulationOptions`)",
+        _core._manipulation_option_table,
+        set(),
+    ),
+    (
+        "plan_platform_locations",
+        "Two base poses for two tool poses, keywords (`PlatformLocationsOptions`)",
+        _core._platform_option_table,
+        set(),
+    ),
+    (
+        "evaluate_graspability",
+        "Grasps from a height map, keywords (`GraspabilityOptions`)",
+        _core._graspability_option_table,
+        set(),
+    ),
+    (
+        "track_base",
+        "A base on its plan, keywords; those of `BaseTracker` are the first eight (`BaseTrackingOptions`, `BaseDisturbance`)",
+        _core._tracking_option_table,
+        set(),
+    ),
+    (
+        "pipe_grasps",
+        "Grasps of a pipe, keywords of `Pipe.sample_grasps` (`PipeGraspOptions`)",
+        _core._pipe_grasp_option_table,
+        set(),
+    ),
+    ("push_grasp", "A grasp in passing, keywords (`PushGraspProblem`)", _core._push_option_table, set()),
+    (
+        "plan_drive_by",
+        "Grasping while driving, keywords (`DriveByOptions`, `WholeBodyOptions`)",
+        _core._drive_by_option_table,
+        set(),
+    ),
+    ("fit_cuboids", "Box-shaped parts of a cloud, keywords (`CuboidFitOptions`)", _core._cuboid_option_table, set()),
+)
+
+
+def options_page() -> str:
+    lines = ["# Options of a scenario", "", "Written by `./dev docs` from the library's own defaults.", ""]
+    for section, title, table, elsewhere in SECTIONS:
+        lines += [f"## `{section}`: {title}", "", "| option | default | meaning |", "|---|---|---|"]
+        lines += [
+            f"| `{name}` | {default} | {help_} |" for name, (default, help_) in table().items() if name not in elsewhere
+        ]
+        lines.append("")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    print(options_page(), end="")

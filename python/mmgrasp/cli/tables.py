@@ -1,0 +1,87 @@
+"""What the command `mmgrasp` prints of its answers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from ..part_supply import DriveByPlan, PlanVerdict, ScenarioPlan
+
+
+def summary(plan: ScenarioPlan) -> Table:
+    """Stops of a plan."""
+    table = Table(
+        title=f"{plan.scenario.name}: {len(plan.stops)} stops (proven least {plan.plan.lower_bound}), "
+        f"{len(plan.picks)} picks"
+    )
+    for title in ("stop", "x [m]", "y [m]", "heading [deg]", "free disc [m]", "trays", "picks", "arm time [s]"):
+        table.add_column(title, justify="left" if title == "trays" else "right")
+    names = [plan.scenario.trays[t].tray.name for t in plan.plan.region_trays]
+    for i, stop in enumerate(plan.stops):
+        picks = [pick for pick in plan.picks if pick.stop == i]
+        x, y, theta = stop.pose
+        table.add_row(
+            str(i + 1),
+            f"{x:.2f}",
+            f"{y:.2f}",
+            f"{theta * 57.29578:.0f}",
+            f"{stop.radius:.3f}",
+            ", ".join(names[t] for t in stop.trays),
+            str(len(picks)),
+            f"{sum(p.duration for p in picks):.1f}",
+        )
+    length = sum(leg.length for leg in plan.route)
+    seconds = sum(leg.duration(plan.scenario.setup.robot) for leg in plan.route)
+    planning = sum(seconds for _, seconds in plan.timings)
+    table.caption = f"drive {length:.2f} m in {seconds:.1f} s, planned in {planning:.1f} s"
+    return table
+
+
+def drive_by_summary(passing: DriveByPlan) -> Table:
+    """Parts taken in passing, and what that saves."""
+    table = Table(title="parts taken in passing")
+    for title in ("stop", "part", "stop and pick [s]", "drive-by [s]", ""):
+        table.add_column(title, justify="left" if title in ("part", "") else "right")
+    for pick in passing.picks:
+        now = f"{pick.drive_by:.1f}" if pick.used else "-"
+        table.add_row(str(pick.stop + 1), pick.part, f"{pick.stop_and_pick:.1f}", now, pick.why)
+    share = 100 * passing.saved / passing.stop_and_pick
+    table.caption = f"whole round {passing.stop_and_pick:.1f} s, in passing {passing.drive_by:.1f} s: {passing.saved:.1f} s or {share:.1f} % saved"
+    return table
+
+
+def print_verdict(verdict: PlanVerdict, console: Console) -> None:
+    """Faults, rates of success, and whether the plan holds."""
+    for fault in verdict.faults:
+        console.print(f"FAULT {fault.code}: {fault.where}: {fault.message}", markup=False, soft_wrap=True)
+    for rate in verdict.rates:
+        share = 100 * rate.good / max(rate.samples, 1)
+        worst = f" (worst: {rate.worst_part})" if rate.good < rate.samples else ""
+        console.print(
+            f"stop {rate.stop + 1}: every part graspable from {rate.good} of {rate.samples} base poses, "
+            f"{share:.2f} %{worst}",
+            markup=False,
+        )
+    if verdict.ok:
+        console.print(
+            f"the plan holds: {verdict.configurations_checked} configurations checked, "
+            f"{verdict.minimal_stops} stops are the least",
+            markup=False,
+        )
+    else:
+        count = len(verdict.faults)
+        console.print(f"the plan does not hold: {count} fault{'s' if count > 1 else ''}", markup=False)
+
+
+def bench_table(rows: list[dict[str, Any]]) -> Table:
+    """The problem sets of `mmgrasp bench mbm`."""
+    table = Table(title="MotionBenchMaker: edges at 5 mm of any link point, paths looked at again by FCL at 0.005 rad")
+    for title in ("robot", "set", "solved", "verified", "median [ms]", "p95 [ms]", "call median [ms]"):
+        table.add_column(title, justify="left" if title in ("robot", "set") else "right")
+    for row in rows:
+        times = [f"{row[key]:.2f}" for key in ("median [ms]", "p95 [ms]", "call median [ms]")]
+        solved = f"{row['solved']}/{row['runs']}"
+        table.add_row(row["robot"], row["set"], solved, f"{row['verified']}/{row['solved']}", *times)
+    return table

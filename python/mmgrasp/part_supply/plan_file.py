@@ -1,0 +1,366 @@
+"""plan.json: everything resolved, so that a plan can be read, shown and checked without its scenario (docs/plan_format.md)."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+from .._core import InvalidInput, PartSupplyPlan, Robot
+from .._core import verify as checks
+from .._files import SCHEMAS, sha256_of
+from ..scenario import Scenario
+from ..scenario.reading import Node, read_json
+from ..scenario.shapes import pose_to_dict, shape_from_node, shape_to_dict
+
+VERSION = 1
+
+
+# --- writing ----------------------------------------------------------------------------------------------------------
+def plan_to_dict(scenario: Scenario, plan: PartSupplyPlan, timings: list[tuple[str, float]]) -> dict[str, Any]:
+    """The whole content of plan.json."""
+    names = [scenario.trays[tray].tray.name for tray in plan.region_trays]
+    return {
+        "format": "mmgrasp-plan",
+        "version": VERSION,
+        "mmgrasp": _core.__version__,
+        "outcome": plan.outcome.name,
+        "scenario": scenario_to_dict(scenario),
+        "grid": _grid(plan),
+        "regions": [_region(region, plan) for region in plan.regions],
+        "intersections": [_intersection(i, names) for i in plan.intersections.robust],
+        "lost_intersections": [_intersection(i, names) for i in plan.intersections.lost],
+        "stops": [
+            {
+                "pose": s.pose.tolist(),
+                "radius": s.radius,
+                "trays": [names[t] for t in s.trays],
+                "intersection": s.intersection,
+            }
+            for s in plan.stops
+        ],
+        "lower_bound": plan.lower_bound,
+        "proven_minimal": plan.proven_minimal,
+        "route": [
+            {
+                "poses": leg.poses.tolist(),
+                "length": leg.length,
+                "turning": leg.turning,
+                "duration": leg.duration(scenario.setup.robot),
+            }
+            for leg in plan.route
+        ],
+        "picks": [_pick(pick, scenario) for pick in plan.picks],
+        "robustness_rate": plan.robustness_rate,
+        "obstructions": [o.to_dict() for o in plan.obstructions],
+        "timings": [{"stage": stage, "seconds": seconds} for stage, seconds in timings],
+    }
+
+
+def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
+    """The part of the plan that the scenario alone decides."""
+    setup = scenario.setup
+    gripper, arm, robot, carry = setup.gripper, setup.arm, setup.robot, setup.carry
+    return {
+        "name": scenario.name,
+        "source": scenario.source,
+        "robot": {
+            "urdf": robot.to_urdf(),
+            "srdf": robot.to_srdf(),
+            "base": robot.base,
+            "base_limits": {key: value for key, value in robot.base_limits.items() if math.isfinite(value)},
+            "meshes": [{"file": path, "sha256": sha256_of(path)} for path in _mesh_files(robot)],
+        },
+        "arm": {
+            "joints": arm.names,
+            "tip_link": arm.tip,
+            "velocity_limits": arm.velocity_limits.tolist(),
+            "acceleration_limits": arm.acceleration_limits.tolist(),
+        },
+        "gripper": {
+            "tcp_link": gripper.tcp_link,
+            "approach": gripper.approach.tolist(),
+            "closing": gripper.closing.tolist(),
+            "max_opening": gripper.max_opening,
+            "finger_depth": gripper.finger_depth,
+            "finger_width": gripper.finger_width,
+            "clearance": gripper.clearance,
+            "joints": [{"name": j.name, "closed": j.closed, "open": j.open} for j in gripper.joints],
+            "finger_links": gripper.finger_links,
+        },
+        "other_joints": setup.other_joints,
+        "home": setup.home.tolist(),
+        "start": scenario.start.tolist(),
+        "goal": scenario.goal.tolist(),
+        "positioning_uncertainty": scenario.positioning_uncertainty,
+        "carry": {"pose": pose_to_dict(carry.T_base_bin), "size": carry.size.tolist(), "drop_gap": carry.drop_gap},
+        "obstacles": [
+            {"name": o.name, "pose": pose_to_dict(o.pose), "shapes": [shape_to_dict(s) for s in o.shapes]}
+            for o in scenario.obstacles
+        ],
+        "trays": [
+            {"name": t.tray.name, "pose": pose_to_dict(t.tray.T_world_tray), "size": t.tray.size.tolist()}
+            for t in scenario.trays
+        ],
+        "parts": [_part(part, t.tray.name) for t in scenario.trays for part in t.tray.parts],
+        "options": dict(scenario.problem().options),
+    }
+
+
+def _mesh_files(robot: Robot) -> list[str]:
+    """The robot's collision meshes, each once."""
+    return sorted({s.mesh_path for link in robot.links for s in robot.collisions(link) if s.mesh_path})
+
+
+def _part(part: _core.Part, tray: str) -> dict[str, Any]:
+    return {
+        "name": part.name,
+        "tray": tray,
+        "target": part.target,
+        "pose": pose_to_dict(part.T_world_part),
+        "shapes": [shape_to_dict(s) for s in part.shapes],
+        "grasps": [{"pose": pose_to_dict(g.T_object_tcp), "width": g.width, "quality": g.quality} for g in part.grasps]
+        if part.target
+        else [],
+    }
+
+
+def _grid(plan: PartSupplyPlan) -> dict[str, Any]:
+    grid = plan.grid
+    return {
+        "origin": grid.origin.tolist(),
+        "resolution": grid.resolution,
+        "nx": grid.nx,
+        "ny": grid.ny,
+        "headings": list(grid.headings),
+    }
+
+
+def runs_of(layer: np.ndarray) -> list[list[int]]:
+    """Cells of one layer (ny, nx) as [iy, first ix, one past the last ix]."""
+    runs = []
+    for iy, row in enumerate(layer):
+        edges = np.flatnonzero(np.diff(np.concatenate(([0], row != 0, [0])).astype(np.int8)))
+        runs += [[iy, int(a), int(b)] for a, b in edges.reshape(-1, 2)]
+    return runs
+
+
+def _region(region: _core.BaseRegion, plan: PartSupplyPlan) -> dict[str, Any]:
+    layers = region.cells(plan.grid)
+    return {
+        "tray": region.tray,
+        "cells": {str(k): runs for k, layer in enumerate(layers) if (runs := runs_of(layer))},
+        "base_poses_in_collision": region.base_poses_in_collision,
+        "explanations": [e.to_dict() for e in region.explanations],
+    }
+
+
+def _intersection(intersection: _core.Intersection, names: list[str]) -> dict[str, Any]:
+    return {
+        "trays": [names[t] for t in intersection.trays],
+        "heading": intersection.heading,
+        "centre": intersection.centre.tolist(),
+        "radius": intersection.radius,
+        "cells": intersection.cells,
+    }
+
+
+def _pick(pick: _core.Pick, scenario: Scenario) -> dict[str, Any]:
+    tray = scenario.trays[pick.tray].tray
+    motions = []
+    for motion in pick.motions:
+        t = motion.trajectory
+        motions.append(
+            {
+                "kind": motion.kind,
+                "opening": motion.opening,
+                "holding": motion.holding,
+                "times": t.times.tolist(),
+                "positions": t.positions.tolist(),
+                "velocities": t.velocities.tolist(),
+                "accelerations": t.accelerations.tolist(),
+            }
+        )
+    return {
+        "stop": pick.stop,
+        "tray": tray.name,
+        "part": tray.parts[pick.part].name,
+        "grasp": pick.grasp,
+        "motions": motions,
+    }
+
+
+# --- reading ----------------------------------------------------------------------------------------------------------
+def read_plan(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """The content of a plan.json; raises IoError or InvalidInput when it is not one."""
+    root = read_json(Path(path)).root
+    check_header(root)
+    content: dict[str, Any] = root.raw
+    return content
+
+
+def check_header(root: Node) -> None:
+    if not isinstance(root.raw, dict) or "format" not in root.raw:
+        raise InvalidInput(f"{root.document.source}: is no plan: the key format: mmgrasp-plan is missing")
+    root["format"].choice("mmgrasp-plan")
+    if root["version"].integer() != VERSION:
+        root["version"].fail(f"this version of mmgrasp reads version {VERSION}")
+
+
+def plan_schema() -> dict[str, Any]:
+    """The JSON Schema of plan.json."""
+    schema: dict[str, Any] = json.loads((SCHEMAS / "plan.schema.json").read_text())
+    return schema
+
+
+def plan_to_check(root: Node) -> checks.PlanToCheck:
+    """The plan as the checker takes it; every value is read strictly."""
+    scenario = root["scenario"]
+    robot = scenario["robot"]
+    limits = {key: node.number(above=0) for key, node in robot["base_limits"].items()}
+    for mesh in robot["meshes"].elements():
+        if sha256_of(mesh["file"].string()) != mesh["sha256"].string():
+            mesh["file"].fail("the mesh file has changed since the plan was made")
+    plan = checks.PlanToCheck(
+        Robot.from_strings(
+            robot["urdf"].string(),
+            robot["srdf"].string(),
+            None,
+            robot["base"].choice("diff_drive", "omni"),
+            base_limits=limits,
+            origin=root.document.source,
+        )
+    )
+    _read_arm(plan, scenario)
+    _read_scene(plan, scenario)
+    _read_answer(plan, root)
+    return plan
+
+
+def _read_arm(plan: checks.PlanToCheck, scenario: Node) -> None:
+    arm, gripper = scenario["arm"], scenario["gripper"]
+    plan.arm_joints = [name.string() for name in arm["joints"].elements()]
+    count = len(plan.arm_joints)
+    plan.velocity_limits = arm["velocity_limits"].numbers(count, above=0)
+    plan.acceleration_limits = arm["acceleration_limits"].numbers(count, above=0)
+    plan.tip_link = arm["tip_link"].string()
+    plan.other_joints = {name: value.number() for name, value in scenario["other_joints"].items()}
+    plan.max_opening = gripper["max_opening"].number(above=0)
+    plan.clearance = gripper["clearance"].number(least=0)
+    plan.approach = np.array(gripper["approach"].numbers(3))
+    plan.fingers = [
+        checks.CheckedFinger(j["name"].string(), j["closed"].number(), j["open"].number())
+        for j in gripper["joints"].elements()
+    ]
+    plan.finger_links = [link.string() for link in gripper["finger_links"].elements()]
+    plan.home = np.array(scenario["home"].numbers(count))
+
+
+def _read_body(node: Node) -> checks.CheckedBody:
+    shapes = [shape_from_node(shape) for shape in node["shapes"].elements()]
+    return checks.CheckedBody(node["name"].string(), shapes, node["pose"].pose())
+
+
+def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
+    plan.start, plan.goal = (np.array(scenario[key].numbers(3)) for key in ("start", "goal"))
+    plan.positioning_uncertainty = scenario["positioning_uncertainty"].number(least=0)
+    carry = scenario["carry"]
+    plan.T_base_bin = carry["pose"].pose()
+    plan.bin_size = np.array(carry["size"].numbers(2, above=0))
+    plan.drop_gap = carry["drop_gap"].number(least=0)
+    plan.obstacles = [_read_body(node) for node in scenario["obstacles"].elements()]
+    plan.trays = [tray["name"].string() for tray in scenario["trays"].elements()]
+    parts = []
+    for node in scenario["parts"].elements():
+        grasps = [checks.CheckedGrasp(g["pose"].pose(), g["width"].number(least=0)) for g in node["grasps"].elements()]
+        tray = node["tray"]
+        if tray.string() not in plan.trays:
+            tray.fail("no such tray")
+        parts.append(checks.CheckedPart(_read_body(node), tray.raw, node["target"].boolean(), grasps))
+    plan.parts = parts
+
+
+def _read_answer(plan: checks.PlanToCheck, root: Node) -> None:
+    grid = root["grid"]
+    nx, ny, headings = grid["nx"].integer(least=1), grid["ny"].integer(least=1), grid["headings"].numbers()
+    plan.grid = checks.CheckedGrid(grid["origin"].numbers(2), grid["resolution"].number(above=0), nx, ny, headings)
+    plan.regions = [
+        checks.CheckedRegion(region["tray"].string(), _cells(region["cells"], len(headings), ny, nx))
+        for region in root["regions"].elements()
+    ]
+    plan.stops = [
+        checks.CheckedStop(s["pose"].numbers(3), s["radius"].number(), [t.string() for t in s["trays"].elements()])
+        for s in root["stops"].elements()
+    ]
+    plan.route = [list(leg["poses"].array(3)) for leg in root["route"].elements()]
+    plan.picks = [_read_pick(node, len(plan.arm_joints)) for node in root["picks"].elements()]
+    if "drive_by" in root.raw:
+        plan.closing_speed = root["drive_by"]["closing_speed"].number(above=0)
+        plan.drive_by = [
+            checks.CheckedDriveBy(
+                node["pick"].integer(),
+                node["close_at"].number(),
+                node["closed_at"].number(),
+                _read_motion(node, "drive-by", False, 3 + len(plan.arm_joints)),
+            )
+            for node in root["drive_by"]["motions"].elements()
+        ]
+    plan.lower_bound = root["lower_bound"].integer(least=0)
+    plan.route_figures = [
+        checks.CheckedLegFigures(*(leg[key].number() for key in ("length", "turning", "duration")))
+        for leg in root["route"].elements()
+    ]
+    plan.intersections = [_read_intersection(node, headings) for node in root["intersections"].elements()]
+    plan.robustness_rate = root["robustness_rate"].number()
+
+
+def _read_intersection(node: Node, headings: list[float]) -> checks.CheckedIntersection:
+    index = node["heading"].integer(least=0)
+    if index >= len(headings):
+        node["heading"].fail("must be the index of a heading of the grid")
+    trays = [tray.string() for tray in node["trays"].elements()]
+    return checks.CheckedIntersection(trays, headings[index], node["centre"].numbers(2), node["radius"].number())
+
+
+def _cells(node: Node, layers: int, ny: int, nx: int) -> np.ndarray:
+    if layers * ny * nx > 100_000_000:
+        node.fail("the grid has more than 100 million cells")
+    cells = np.zeros((layers, ny, nx), dtype=np.uint8)
+    for key, runs in node.items():
+        if not (key.isascii() and key.isdigit() and len(key) < 6) or int(key) >= layers:
+            runs.fail("must belong to a heading of the grid")
+        for run in runs.elements():
+            iy, a, b = (
+                (value.integer(least=0) for value in run.elements())
+                if len(run.raw) == 3
+                else run.fail("needs 3 numbers")
+            )
+            if iy >= ny or not a < b <= nx:
+                run.fail("must lie inside the grid")
+            cells[int(key), iy, a:b] = 1
+    return cells.reshape(-1)
+
+
+def _read_motion(node: Node, kind: str, holding: bool, columns: int) -> checks.CheckedMotion:
+    times = node["times"].numbers()
+    if not times:
+        node["times"].fail("must not be empty")
+    rows = [node[key].array(columns) for key in ("positions", "velocities", "accelerations")]
+    if any(len(values) != len(times) for values in rows):
+        node["times"].fail("must be as many as positions, velocities and accelerations")
+    return checks.CheckedMotion(kind, node["opening"].number(), holding, times, *rows)
+
+
+def _read_pick(node: Node, joints: int) -> checks.CheckedPick:
+    motions = [
+        _read_motion(motion, motion["kind"].string(), motion["holding"].boolean(), joints)
+        for motion in node["motions"].elements()
+    ]
+    return checks.CheckedPick(
+        node["stop"].integer(), node["tray"].string(), node["part"].string(), node["grasp"].integer(), motions
+    )

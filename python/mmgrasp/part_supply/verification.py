@@ -1,0 +1,109 @@
+"""Checks a finished plan again, without the planner: KDL, FCL and CBC called directly by the C++ module `verify`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from .._core import verify as checks
+from .._progress import Progress
+from ..scenario import load_scenario
+from ..scenario.reading import Document, read_json
+from .plan_file import check_header, plan_to_check, scenario_to_dict
+
+
+@dataclass
+class PlanVerdict:
+    """What the check found. Without faults the plan holds."""
+
+    faults: list[checks.Fault]
+    rates: list[checks.StopRate] = field(default_factory=list)
+    minimal_stops: int = 0
+    configurations_checked: int = 0
+
+    @property
+    def ok(self) -> bool:
+        return not self.faults
+
+    def to_dict(self) -> dict[str, Any]:
+        return {
+            "ok": self.ok,
+            "faults": [f.to_dict() for f in self.faults],
+            "rates": [r.to_dict() for r in self.rates],
+            "minimal_stops": self.minimal_stops,
+            "configurations_checked": self.configurations_checked,
+        }
+
+
+def verify_plan(
+    plan: dict[str, Any] | str | os.PathLike[str],
+    *,
+    scenario: str | os.PathLike[str] | None = None,
+    robot: str | None = None,
+    progress: Progress = None,
+    **options: Any,
+) -> PlanVerdict:
+    """Checks a plan given as plan.json or as its content, against the scenario stored in it.
+
+    With `scenario` the stored one is first compared with that file, read anew (`robot` as in load_scenario). Options are
+    those of the C++ PlanCheckOptions (joint_step, samples, ...). Raises InvalidInput when the plan cannot be read at all.
+    """
+    document = Document("plan", plan, {}) if isinstance(plan, dict) else read_json(Path(plan))
+    root = document.root
+    check_header(root)
+    outcome = root["outcome"].string()
+    if outcome != "solved":
+        return PlanVerdict([checks.Fault("no-plan", "outcome", f"the file holds no plan: its outcome is {outcome}")])
+    faults = []
+    if scenario is not None:
+        expected = scenario_to_dict(load_scenario(scenario, robot=robot, progress=progress))
+        faults = [_changed(path, was, now) for path, was, now in differences(root["scenario"].raw, expected)]
+    checked = checks.check_plan(plan_to_check(root), progress=progress, **options)
+    return PlanVerdict(faults + checked.faults, checked.rates, checked.minimal_stops, checked.configurations_checked)
+
+
+def _changed(path: str, was: Any, now: Any) -> checks.Fault:
+    return checks.Fault(
+        "scenario-changed", f"scenario{path}", f"the plan was made for {_short(was)}, the file says {_short(now)}"
+    )
+
+
+def _short(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def differences(was: Any, now: Any, path: str = "", limit: int = 20) -> list[tuple[str, Any, Any]]:
+    """Where two scenario sections differ physically; numbers may differ by rounding."""
+    out = []
+    for found in _walk(was, now, path):
+        out.append(found)
+        if len(out) == limit:
+            break
+    return out
+
+
+IGNORED = {".name", ".source", ".options.threads", ".options.seed"}
+
+
+def _walk(was: Any, now: Any, path: str) -> Iterator[tuple[str, Any, Any]]:
+    if path in IGNORED:
+        return
+    if isinstance(was, dict) and isinstance(now, dict):
+        for key in sorted(was.keys() | now.keys()):
+            yield from _walk(was.get(key), now.get(key), f"{path}.{key}")
+    elif isinstance(was, list) and isinstance(now, list) and len(was) == len(now):
+        for i, (a, b) in enumerate(zip(was, now, strict=True)):
+            yield from _walk(a, b, f"{path}[{i}]")
+    elif _is_number(was) and _is_number(now):
+        if abs(was - now) > 1e-9 * max(1.0, abs(was)):
+            yield path, was, now
+    elif was != now:
+        yield path, was, now
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)

@@ -1,0 +1,206 @@
+"""Motion planning problems of the MotionBenchMaker kind: a MoveIt planning scene and a motion plan request, two YAML files.
+
+Read are the scene's objects, its allowed collision matrix, and the request's group, start state and joint goal.
+Cylinders are [height, radius], boxes full lengths; an object's pose times its primitive's is where the primitive stands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from .._core import (
+    Box,
+    CollisionChecker,
+    Cylinder,
+    InvalidInput,
+    IoError,
+    JointGroup,
+    LinkShape,
+    Robot,
+    Sphere,
+    World,
+    pose,
+)
+from ..scenario.reading import bad_yaml
+
+MBM_SETS = ("bookshelf_small", "bookshelf_tall", "bookshelf_thin", "box", "cage", "table_pick", "table_under_pick")
+"""The sets of problems that MotionBenchMaker makes for an arm."""
+
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+@dataclass(frozen=True)
+class MotionProblem:
+    """Where a robot is to go from a start to a goal, and among what."""
+
+    name: str
+    group: str
+    start: dict[str, float]
+    """Joint name to value [rad or m], every joint the request names (those of a gripper too)."""
+    goal: dict[str, float]
+    """The joints of the group."""
+    bodies: dict[str, tuple[list[LinkShape], np.ndarray | None]] = field(repr=False)
+    """Name to shapes and pose (None: the world's origin) of each object of the scene."""
+    allowed: frozenset[frozenset[str]] = field(repr=False)
+    """Pairs of links that may touch."""
+
+    @property
+    def world(self) -> World:
+        """The scene."""
+        world = World()
+        for name, (shapes, at) in self.bodies.items():
+            world.add(name, shapes, at)
+        return world
+
+    def setting(self, robot: Robot) -> tuple[Robot, JointGroup]:
+        """The robot with the problem's allowed pairs on top of its disabled ones, and the problem's group of it.
+
+        Joints outside the group stand where the start has them; those the robot does not move are passed over.
+        """
+        pairs = {(a, b): reason for a, b, reason in robot.disabled_pairs}
+        known = set(robot.links)
+        for pair in self.allowed:
+            a, b = sorted(pair)
+            if a in known and b in known and (a, b) not in pairs and (b, a) not in pairs:
+                pairs[a, b] = "user"
+        robot = robot.with_disabled_pairs([(a, b, reason) for (a, b), reason in pairs.items()])
+        group = robot.group(self.group)
+        movable = set(robot.joints) - set(group.names)
+        return robot, group.with_reference({name: value for name, value in self.start.items() if name in movable})
+
+    def checker(self, robot: Robot, **options: Any) -> CollisionChecker:
+        """Checks the problem's group (see setting()) in its scene; options as CollisionChecker's."""
+        robot, group = self.setting(robot)
+        return CollisionChecker(robot, self.world, group=group, **options)
+
+    def start_of(self, group: JointGroup) -> np.ndarray:
+        """The start as a configuration of the group."""
+        return self._values(group, self.start, "start state")
+
+    def goal_of(self, group: JointGroup) -> np.ndarray:
+        """The goal as a configuration of the group."""
+        return self._values(group, self.goal, "goal")
+
+    def _values(self, group: JointGroup, values: dict[str, float], what: str) -> np.ndarray:
+        for name in group.names:
+            if name not in values:
+                raise InvalidInput(f"{self.name}: the {what} says nothing of joint '{name}'")
+        return np.array([values[name] for name in group.names])
+
+
+def read_motion_problem(scene: str | Path, request: str | Path) -> MotionProblem:
+    """Reads one problem. Errors name the file and the entry."""
+    scene_file, request_file = _File(scene), _File(request)
+    goals = request_file.items("goal_constraints")
+    if len(goals) != 1:
+        raise InvalidInput(f"{request}: goal_constraints: has {len(goals)} entries, must have one")
+    state = request_file.of(request_file.root, "start_state", "joint_state")
+    names, positions = request_file.of(state, "name"), request_file.of(state, "position")
+    if len(names) != len(positions):
+        raise InvalidInput(f"{request}: start_state: {len(names)} names but {len(positions)} positions")
+    path = Path(scene)
+    return MotionProblem(
+        name=f"{path.parent.name}/{path.stem}",
+        group=request_file.of(request_file.root, "group_name"),
+        start={name: request_file.number(value) for name, value in zip(names, positions, strict=True)},
+        goal={
+            request_file.of(constraint, "joint_name"): request_file.number(request_file.of(constraint, "position"))
+            for constraint in request_file.of(goals[0], "joint_constraints")
+        },
+        bodies=_bodies(scene_file),
+        allowed=_allowed(scene_file),
+    )
+
+
+def read_motion_problems(folder: str | Path) -> Iterator[MotionProblem]:
+    """The problems of a folder, scene0001.yaml with request0001.yaml and so on, by number."""
+    scenes = sorted(Path(folder).glob("scene*.yaml"))
+    if not scenes:
+        raise IoError(f"{folder}: holds no scene*.yaml")
+    for scene in scenes:
+        yield read_motion_problem(scene, scene.with_name(scene.name.replace("scene", "request")))
+
+
+class _File:
+    """A YAML file whose entries are looked up by name."""
+
+    def __init__(self, path: str | Path) -> None:
+        self.path = path
+        try:
+            self.root = yaml.load(Path(path).read_text(), Loader=_LOADER)
+        except (OSError, UnicodeDecodeError) as error:
+            raise IoError(f"{path}: {error}") from error
+        except yaml.YAMLError as error:
+            raise bad_yaml(path, error) from None
+
+    def of(self, value: Any, *keys: str) -> Any:
+        for key in keys:
+            if not isinstance(value, dict) or key not in value:
+                raise InvalidInput(f"{self.path}: {key} is missing")
+            value = value[key]
+        return value
+
+    def items(self, key: str) -> list[Any]:
+        value = self.of(self.root, key)
+        if not isinstance(value, list):
+            raise InvalidInput(f"{self.path}: {key}: must be a list")
+        return value
+
+    def number(self, value: Any) -> float:
+        try:
+            out = float(value)  # YAML 1.1 reads 1e-05 as a word
+        except (TypeError, ValueError):
+            out = np.nan
+        if not np.isfinite(out):
+            raise InvalidInput(f"{self.path}: {value!r}: must be a finite number")
+        return out
+
+    def pose(self, value: Any) -> np.ndarray:
+        xyz = [self.number(x) for x in self.of(value, "position")]
+        return pose(xyz=xyz, quat_xyzw=[self.number(x) for x in self.of(value, "orientation")])
+
+
+def _shape(file: _File, primitive: dict[str, Any]) -> Box | Cylinder | Sphere:
+    kind = file.of(primitive, "type")
+    sizes = [file.number(x) for x in file.of(primitive, "dimensions")]
+    wanted = {"box": 3, "cylinder": 2, "sphere": 1}
+    if kind not in wanted:
+        raise InvalidInput(f"{file.path}: primitive type '{kind}': must be one of {', '.join(wanted)}")
+    if len(sizes) != wanted[kind]:
+        raise InvalidInput(f"{file.path}: {kind} dimensions {sizes}: must be {wanted[kind]} numbers")
+    if kind == "box":
+        return Box(sizes)
+    return Cylinder(radius=sizes[1], length=sizes[0]) if kind == "cylinder" else Sphere(sizes[0])
+
+
+def _bodies(file: _File) -> dict[str, tuple[list[LinkShape], np.ndarray | None]]:
+    bodies: dict[str, tuple[list[LinkShape], np.ndarray | None]] = {}
+    for entry in file.of(file.root, "world", "collision_objects"):
+        name = file.of(entry, "id")
+        primitives, poses = file.of(entry, "primitives"), file.of(entry, "primitive_poses")
+        if len(primitives) != len(poses):
+            raise InvalidInput(f"{file.path}: object '{name}': {len(primitives)} primitives but {len(poses)} poses")
+        shapes = [
+            LinkShape(_shape(file, primitive), file.pose(at)) for primitive, at in zip(primitives, poses, strict=True)
+        ]
+        if name in bodies:
+            raise InvalidInput(f"{file.path}: object '{name}': is there twice")
+        bodies[name] = (shapes, file.pose(entry["pose"]) if "pose" in entry else None)
+    return bodies
+
+
+def _allowed(file: _File) -> frozenset[frozenset[str]]:
+    matrix = file.of(file.root, "allowed_collision_matrix")
+    names, rows = file.of(matrix, "entry_names"), file.of(matrix, "entry_values")
+    if len(rows) != len(names) or any(len(row) != len(names) for row in rows):
+        raise InvalidInput(f"{file.path}: allowed_collision_matrix: must have a row and a column for each of its names")
+    pairs = set()
+    for i, row in enumerate(rows):
+        pairs |= {frozenset((names[i], names[k])) for k in range(i) if row[k]}
+    return frozenset(pairs)

@@ -1,0 +1,275 @@
+"""Strict reading of YAML and JSON: every message names file, line (YAML), key, value and rule."""
+
+from __future__ import annotations
+
+import difflib
+import json
+import math
+import re
+from collections.abc import Collection, Iterator, Mapping
+from pathlib import Path
+from typing import Any, NoReturn
+
+import numpy as np
+import yaml
+
+from .._core import InvalidInput, IoError, pose
+
+LARGEST = 1e6  # no length, angle or time in a file is larger [SI]
+LARGEST_INTEGER = 2**31 - 1
+_EXPONENT = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)[eE][-+]?\d+")
+
+Key = str | int
+
+
+def near_miss(wrong: str, known: list[str]) -> str:
+    """ "; did you mean x?", or the list of what is known."""
+    close = difflib.get_close_matches(wrong, known, 1, 0.5)
+    return f"; did you mean {close[0]}?" if close else "; known are " + ", ".join(known)
+
+
+def check_name(field: str, value: Any, known: Collection[str]) -> None:
+    """Raises InvalidInput, with the one that was probably meant, unless the value is one of the known names."""
+    if isinstance(value, str) and value in known:
+        return
+    close = difflib.get_close_matches(value, known, 1, 0.5) if isinstance(value, str) else []
+    meant = f"; did you mean {close[0]}?" if close else ""
+    raise InvalidInput(f"{field} = {value!r}: must be one of {', '.join(known)}{meant}")
+
+
+def bad_yaml(path: str | Path, error: yaml.YAMLError) -> InvalidInput:
+    """What the parser said, in one line with the file's."""
+    mark = getattr(error, "problem_mark", None)
+    where = f"{path}:{mark.line + 1}" if mark else str(path)
+    problem = getattr(error, "problem", None) or str(error).splitlines()[0]
+    return InvalidInput(f"{where}: is no valid YAML: {problem}")
+
+
+class Document:
+    """A parsed file: raw values, and the line of each key where the format has lines."""
+
+    def __init__(self, source: str, raw: Any, lines: dict[tuple[Key, ...], int]) -> None:
+        self.source = source
+        self.raw = raw
+        self.lines = lines
+
+    @property
+    def root(self) -> Node:
+        return Node(self, self.raw, ())
+
+
+class Node:
+    """One value of a document, with typed getters that refuse anything else."""
+
+    def __init__(self, document: Document, raw: Any, path: tuple[Key, ...]) -> None:
+        self.document = document
+        self.raw = raw
+        self.path = path
+
+    @property
+    def name(self) -> str:
+        text = ""
+        for key in self.path:
+            text += f"[{key}]" if isinstance(key, int) else (f".{key}" if text else key)
+        return text or "(top level)"
+
+    @property
+    def place(self) -> str:
+        path = self.path
+        while path and path not in self.document.lines:
+            path = path[:-1]
+        line = self.document.lines.get(path)
+        return f"{self.document.source}:{line}" if line else self.document.source
+
+    def fail(self, rule: str) -> NoReturn:
+        shown = repr(self.raw)
+        if len(shown) > 80:
+            shown = shown[:77] + "..."
+        raise InvalidInput(f"{self.place}: {self.name} = {shown}: {rule}")
+
+    # --- mappings -------------------------------------------------------------------------------------------------
+    def mapping(self, required: str = "", optional: str = "") -> Node:
+        """Checks the keys: `required` and `optional` are names separated by blanks."""
+        if not isinstance(self.raw, Mapping):
+            self.fail("must be a mapping")
+        needed, known = required.split(), required.split() + optional.split()
+        for key in self.raw:
+            if key not in known:
+                self.child(key).refuse_key(known)
+        for key in needed:
+            if key not in self.raw:
+                raise InvalidInput(f"{self.place}: {self.name}: {key} is missing")
+        return self
+
+    def refuse_key(self, known: list[str]) -> NoReturn:
+        raise InvalidInput(f"{self.place}: {self.name}: unknown key{near_miss(str(self.path[-1]), known)}")
+
+    def __contains__(self, key: str) -> bool:
+        return isinstance(self.raw, Mapping) and key in self.raw
+
+    def child(self, key: Key) -> Node:
+        return Node(self.document, self.raw[key], (*self.path, key))
+
+    def __getitem__(self, key: str) -> Node:
+        if not isinstance(self.raw, Mapping):
+            self.fail("must be a mapping")
+        if key not in self.raw:
+            raise InvalidInput(f"{self.place}: {self.name}: {key} is missing")
+        return self.child(key)
+
+    def items(self) -> Iterator[tuple[str, Node]]:
+        if not isinstance(self.raw, Mapping):
+            self.fail("must be a mapping")
+        for key in self.raw:
+            if not isinstance(key, str):
+                self.child(key).fail("keys must be names")
+            yield key, self.child(key)
+
+    # --- lists ----------------------------------------------------------------------------------------------------
+    def elements(self) -> list[Node]:
+        if not isinstance(self.raw, list):
+            self.fail("must be a list")
+        return [self.child(i) for i in range(len(self.raw))]
+
+    # --- scalars --------------------------------------------------------------------------------------------------
+    def number(self, *, above: float | None = None, least: float | None = None) -> float:
+        value = self.raw
+        if isinstance(value, str) and _EXPONENT.fullmatch(value):
+            value = float(value)  # YAML 1.1 takes 1e-3 for a string
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            self.fail("must be a number")
+        if isinstance(value, float) and not math.isfinite(value):
+            self.fail("must be finite")
+        if not -LARGEST <= value <= LARGEST:
+            self.fail(f"must lie between -{LARGEST:g} and {LARGEST:g}")
+        if above is not None and not value > above:
+            self.fail(f"must be > {above:g}")
+        if least is not None and not value >= least:
+            self.fail(f"must be >= {least:g}")
+        return float(value)
+
+    def integer(self, *, least: int | None = None) -> int:
+        value = self.raw
+        if isinstance(value, bool) or not isinstance(value, int):
+            self.fail("must be a whole number")
+        if abs(value) > LARGEST_INTEGER:
+            self.fail(f"must lie between -{LARGEST_INTEGER} and {LARGEST_INTEGER}")
+        if least is not None and value < least:
+            self.fail(f"must be >= {least}")
+        return value
+
+    def boolean(self) -> bool:
+        if not isinstance(self.raw, bool):
+            self.fail("must be true or false")
+        return self.raw
+
+    def string(self) -> str:
+        if not isinstance(self.raw, str) or not self.raw:
+            self.fail("must be a text that is not empty")
+        return self.raw
+
+    def choice(self, *known: str) -> str:
+        value = self.string()
+        if value not in known:
+            self.fail("must be one of " + ", ".join(known))
+        return value
+
+    def numbers(self, count: int | None = None, *, above: float | None = None) -> list[float]:
+        elements = self.elements()
+        if count is not None and len(elements) != count:
+            self.fail(f"must be a list of {count} numbers")
+        return [element.number(above=above) for element in elements]
+
+    def array(self, columns: int | None = None) -> np.ndarray:
+        """Numbers or rows of numbers as an array, fast for long lists."""
+        try:
+            out = np.array(self.raw, dtype=float)
+        except (TypeError, ValueError):
+            self.fail("must be numbers in rows of equal length")
+        if not np.isfinite(out).all():
+            self.fail("must be finite numbers")
+        if columns is not None and (out.ndim != 2 or out.shape[1] != columns):
+            self.fail(f"must be rows of {columns} numbers")
+        return out
+
+    def pose(self) -> np.ndarray:
+        """{xyz, rpy} or {xyz, quat_xyzw} as (4, 4)."""
+        self.mapping("xyz", "rpy quat_xyzw")
+        xyz = self["xyz"].numbers(3)
+        if "rpy" in self and "quat_xyzw" in self:
+            self.fail("give rpy or quat_xyzw, not both")
+        if "quat_xyzw" in self:
+            quat = self["quat_xyzw"].numbers(4)
+            if abs(math.sqrt(sum(x * x for x in quat)) - 1) > 1e-3:
+                self["quat_xyzw"].fail("must have norm 1")
+            return pose(xyz, quat_xyzw=quat)
+        return pose(xyz, rpy=self["rpy"].numbers(3) if "rpy" in self else [0, 0, 0])
+
+
+class _Lines(yaml.SafeLoader):
+    """Builds plain values and remembers the line of every key."""
+
+
+def _plain(
+    loader: _Lines,
+    node: yaml.Node,
+    path: tuple[Key, ...],
+    lines: dict[tuple[Key, ...], int],
+    source: str,
+    depth: int = 0,
+) -> Any:
+    if depth > 50:
+        raise InvalidInput(f"{source}:{node.start_mark.line + 1}: nested more than 50 deep")
+    lines.setdefault(path, node.start_mark.line + 1)
+    if isinstance(node, yaml.MappingNode):
+        out: dict[str, Any] = {}
+        for key_node, value_node in node.value:
+            line = key_node.start_mark.line + 1
+            key = loader.construct_object(key_node) if isinstance(key_node, yaml.ScalarNode) else None
+            if not isinstance(key, str):
+                raise InvalidInput(f"{source}:{line}: a key must be a name, not {key_node.value!r}")
+            if key in out:
+                raise InvalidInput(f"{source}:{line}: {key}: is given twice")
+            lines[(*path, key)] = line
+            out[key] = _plain(loader, value_node, (*path, key), lines, source, depth + 1)
+        return out
+    if isinstance(node, yaml.SequenceNode):
+        return [_plain(loader, child, (*path, i), lines, source, depth + 1) for i, child in enumerate(node.value)]
+    return loader.construct_object(node)
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise IoError(f"{path}: is no UTF-8 text (byte {error.start})") from None
+    except OSError as error:
+        raise IoError(f"{path}: cannot be read: {error.strerror or error}") from None
+
+
+def read_yaml(path: Path) -> Document:
+    """Parses a YAML file; syntax errors name the line."""
+    text = _text(path)
+    lines: dict[tuple[Key, ...], int] = {}
+    try:
+        loader = _Lines(text)
+        node = loader.get_single_node()
+        raw = {} if node is None else _plain(loader, node, (), lines, str(path))
+    except yaml.YAMLError as error:
+        raise bad_yaml(path, error) from None
+    except ValueError as error:
+        if isinstance(error, InvalidInput):
+            raise
+        raise InvalidInput(f"{path}: is no valid YAML: {error}") from None
+    return Document(str(path), raw, lines)
+
+
+def read_json(path: Path) -> Document:
+    """Parses a JSON file; syntax errors name the line."""
+    try:
+        raw = json.loads(_text(path))
+    except json.JSONDecodeError as error:
+        raise InvalidInput(f"{path}:{error.lineno}: is no valid JSON: {error.msg}") from None
+    except RecursionError:
+        raise InvalidInput(f"{path}: is nested too deeply") from None
+    return Document(str(path), raw, {})

@@ -1,0 +1,253 @@
+"""The sections `robot`, `gripper` and `carry` of a scenario: one robot composed of files, mounts, frames and a bin."""
+
+from __future__ import annotations
+
+import importlib.util
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+from .._core import Box, CarryPlace, FingerJoint, Gripper, InvalidInput, JointGroup, LinkShape, Robot
+from .._files import ASSETS, shipped
+from .._progress import Progress
+from .reading import Node, near_miss, read_yaml
+from .shapes import read_shapes
+
+BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation"
+ROBOT_KEYS = "urdf srdf packages xacro_args base base_limits mount frames group tcp joints home"
+CARRY_LINK = "carry_bin"
+
+
+@dataclass
+class RobotSetup:
+    """The composed robot and what the planner has to know about it."""
+
+    robot: Robot
+    arm: JointGroup
+    gripper: Gripper
+    carry: CarryPlace
+    home: np.ndarray
+    other_joints: dict[str, float]
+
+
+@dataclass
+class RobotSections:
+    """Where the three sections are read from: the scenario itself, or a robot profile that it names."""
+
+    robot: Node
+    gripper: Node
+    carry: Node
+
+
+def find_file(node: Node) -> Path:
+    """A path relative to its file, `asset:...` in the shipped assets, or `robot-data:...` in example-robot-data."""
+    text = node.string()
+    if text.startswith("asset:"):
+        path = shipped(text)
+    elif text.startswith("robot-data:"):
+        path = robot_data_folder(node) / text.removeprefix("robot-data:")
+    else:
+        path = Path(node.document.source).parent / Path(text).expanduser()
+    if not path.exists():
+        node.fail(f"no such file ({path})")
+    return path
+
+
+def robot_data_folder(node: Node) -> Path:
+    """Where the optional package example-robot-data keeps its robots."""
+    spec = importlib.util.find_spec("cmeel")
+    for folder in [Path(p) for p in (spec.submodule_search_locations or [])] if spec else []:
+        data = folder.parent / "cmeel.prefix" / "share" / "example-robot-data"
+        if data.is_dir():
+            return data
+    node.fail("needs the robots of example-robot-data: pip install 'mmgrasp[robots]'")
+
+
+def profile_path(name: str) -> Path:
+    """A robot profile by name (shipped) or by path."""
+    path = Path(name)
+    if path.suffix in (".yaml", ".yml"):
+        return path
+    known = sorted(p.stem for p in (ASSETS / "robots").glob("*/*.yaml") if p.stem == p.parent.name)
+    if name not in known:
+        raise InvalidInput(f"robot name = {name!r}: no such robot{near_miss(name, known)}")
+    return ASSETS / "robots" / name / f"{name}.yaml"
+
+
+def choose_sections(root: Node, robot_name: str | None) -> RobotSections:
+    """The scenario's own sections, or those of the profile that `--robot` or `robot: {name: ...}` asks for."""
+    own = root["robot"]
+    replaced = robot_name is not None
+    if robot_name is None and "name" in own:
+        own.mapping("name")
+        robot_name = own["name"].string()
+    if robot_name is None:
+        return RobotSections(own, root["gripper"], root["carry"])
+    profile = read_yaml(profile_path(robot_name)).root.mapping("format version robot gripper carry")
+    profile["format"].choice("mmgrasp-robot")
+    if profile["version"].integer() != 1:
+        profile["version"].fail("this version of mmgrasp reads version 1")
+    pick = {key: root[key] if key in root and not replaced else profile[key] for key in ("gripper", "carry")}
+    return RobotSections(profile["robot"], pick["gripper"], pick["carry"])
+
+
+def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup:
+    """Composes the robot, finds which of its links can never touch, and sets up its arm, gripper and bin."""
+    node = sections.robot.mapping("urdf group tcp home", ROBOT_KEYS)
+    robot = _compose(node)
+    tcp = node["tcp"].string()
+    _link(robot, node["tcp"])
+    gripper = _read_gripper(sections.gripper, robot, tcp)
+    robot, carry_pose = _add_bin(robot, sections.carry)
+    robot = _core.with_sampled_pairs(robot, progress=progress)
+
+    other = {name: _joint_value(robot, name, value) for name, value in _named_numbers(node, "joints")}
+    closed = gripper.joint_values(0.0)
+    arm = _read_group(robot, node["group"], tcp).with_reference({**other, **closed})
+    home = _read_home(node["home"], arm)
+    _fixed_to_root(arm, sections.carry["parent"], home)
+    return RobotSetup(robot, arm, gripper, _read_carry(sections.carry, carry_pose), home, other)
+
+
+def _compose(node: Node) -> Robot:
+    limits = {}
+    if "base_limits" in node:
+        section = node["base_limits"].mapping("", BASE_LIMITS)
+        limits = {key: value.number(above=0) for key, value in section.items()}
+    base = node["base"].choice("fixed", "diff_drive", "omni") if "base" in node else "fixed"
+    robot = _load(node, base, limits)
+    for mount in node["mount"].elements() if "mount" in node else []:
+        mount.mapping("urdf parent_link", "srdf packages xacro_args pose prefix")
+        other = _load(mount, "fixed", {})
+        _link(robot, mount["parent_link"])
+        T = mount["pose"].pose() if "pose" in mount else np.eye(4)
+        prefix = mount["prefix"].string() if "prefix" in mount else ""
+        robot = robot.mount(other, mount["parent_link"].string(), T, prefix)
+    for frame in node["frames"].elements() if "frames" in node else []:
+        frame.mapping("name parent", "pose box cylinder sphere mesh shapes scale")
+        _link(robot, frame["parent"])
+        T = frame["pose"].pose() if "pose" in frame else np.eye(4)
+        robot = robot.with_link(
+            frame["name"].string(), frame["parent"].string(), T, read_shapes(frame, find_file, required=False)
+        )
+    return robot
+
+
+def _load(node: Node, base: str, limits: dict[str, float]) -> Robot:
+    urdf = find_file(node["urdf"])
+    srdf = find_file(node["srdf"]) if "srdf" in node else None
+    packages = {}
+    for name, folder in node["packages"].items() if "packages" in node else []:
+        packages[name] = str(find_file(folder))
+    arguments = {name: value.raw for name, value in node["xacro_args"].items()} if "xacro_args" in node else None
+    return Robot.load(urdf, srdf, packages, base, base_limits=limits, xacro_args=arguments)
+
+
+def _link(robot: Robot, node: Node) -> None:
+    if node.string() not in robot.links:
+        node.fail(f"the robot has no such link{near_miss(node.raw, robot.links)}")
+
+
+def _named_numbers(node: Node, key: str) -> list[tuple[str, Node]]:
+    return list(node[key].items()) if key in node else []
+
+
+def _joint_value(robot: Robot, name: str, node: Node) -> float:
+    if name not in robot.joints:
+        node.fail(f"the robot has no movable joint {name}{near_miss(name, robot.joints)}")
+    value = node.number()
+    try:
+        robot.values({name: value})
+    except InvalidInput as error:
+        node.fail(str(error))
+    return value
+
+
+def _read_group(robot: Robot, node: Node, tcp: str) -> JointGroup:
+    make: dict[str, Any]
+    if isinstance(node.raw, str):
+        if node.raw not in robot.groups:
+            node.fail(f"the SRDF has no such group{near_miss(node.raw, list(robot.groups) or ['(none)'])}")
+        make = {"name": node.raw, "tip": tcp}
+    else:
+        node.mapping("base_link", "tip_link")
+        for key in ("base_link", "tip_link"):
+            if key in node:
+                _link(robot, node[key])
+        make = {"base_link": node["base_link"].string(), "tip": tcp}
+    try:
+        return robot.group(**make)
+    except InvalidInput as error:
+        node.fail(str(error))
+
+
+def _read_home(node: Node, arm: JointGroup) -> np.ndarray:
+    given = dict(node.items())
+    for name, value in given.items():
+        if name not in arm.names:
+            value.fail(f"the arm has no joint {name}{near_miss(name, arm.names)}")
+    missing = [name for name in arm.names if name not in given]
+    if missing:
+        node.fail("every arm joint must be given; missing: " + ", ".join(missing))
+    home = np.array([given[name].number() for name in arm.names])
+    for i, name in enumerate(arm.names):
+        if not arm.lower[i] - 1e-9 <= home[i] <= arm.upper[i] + 1e-9:
+            given[name].fail(f"must be in [{arm.lower[i]:g}, {arm.upper[i]:g}]")
+    return home
+
+
+def _read_gripper(node: Node, robot: Robot, tcp: str) -> Gripper:
+    node.mapping("approach closing max_opening finger_depth finger_width joints finger_links", "clearance")
+    joints = []
+    for joint in node["joints"].elements():
+        joint.mapping("name closed open")
+        name = joint["name"].string()
+        joints.append(
+            FingerJoint(name, _joint_value(robot, name, joint["closed"]), _joint_value(robot, name, joint["open"]))
+        )
+    for link in node["finger_links"].elements():
+        _link(robot, link)
+    sizes = {key: node[key].number(above=0) for key in ("max_opening", "finger_depth", "finger_width")}
+    if "clearance" in node:
+        sizes["clearance"] = node["clearance"].number(least=0)
+    axes = {}
+    for key in ("approach", "closing"):
+        axis = np.array(node[key].numbers(3))
+        if abs(np.linalg.norm(axis) - 1) > 1e-6:
+            node[key].fail("must be a unit axis of the tcp frame")
+        axes[key] = axis
+    if abs(axes["approach"] @ axes["closing"]) > 1e-6:
+        node["closing"].fail("must be orthogonal to approach")
+    return Gripper(
+        tcp, joints=joints, finger_links=[link.raw for link in node["finger_links"].elements()], **axes, **sizes
+    )
+
+
+def _add_bin(robot: Robot, node: Node) -> tuple[Robot, np.ndarray]:
+    """The robot with the bin's solid box as a link; the link's frame is the middle of the box's top face."""
+    node.mapping("parent pose size", "drop_gap")
+    _link(robot, node["parent"])
+    size = node["size"].numbers(3, above=0)
+    parent, T_parent_bin = node["parent"].string(), node["pose"].pose()
+    box = LinkShape(Box(size), _core.pose([0, 0, -size[2] / 2]))
+    robot = robot.with_link(CARRY_LINK, parent, T_parent_bin, [box])
+    T_root_bin = robot.link_poses()[CARRY_LINK]
+    if T_root_bin[2, 2] < 1 - 1e-9:
+        node["pose"].fail("the bin's top face must be level")
+    return robot, T_root_bin
+
+
+def _read_carry(node: Node, T_root_bin: np.ndarray) -> CarryPlace:
+    size = node["size"].numbers(3, above=0)
+    options = {"drop_gap": node["drop_gap"].number(least=0)} if "drop_gap" in node else {}
+    return CarryPlace(T_root_bin, size[:2], **options)
+
+
+def _fixed_to_root(arm: JointGroup, node: Node, home: np.ndarray) -> None:
+    moved = home + 0.05 * np.where(home + 0.05 <= arm.upper, 1.0, -1.0)
+    before, after = arm.link_poses(home)[node.raw], arm.link_poses(moved)[node.raw]
+    if np.abs(before - after).max() > 1e-9:
+        node.fail("the bin's parent must not move with the arm")

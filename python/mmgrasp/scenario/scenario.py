@@ -1,0 +1,200 @@
+"""Scenarios: one YAML file that says which robot does what in which storeroom (docs/scenario_format.md)."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+from .._core import CollisionChecker, InvalidInput, LinkShape, PartSupplyProblem, ReachDatabase, World
+from .._files import shipped
+from .._progress import Progress
+from .reading import Node, read_yaml
+from .robot_section import RobotSetup, choose_sections, find_file, read_setup
+from .shapes import read_shapes
+from .tray_section import PartType, TraySetup, read_part_types, read_tray
+
+TOP_KEYS = "format version name robot start goal positioning_uncertainty trays part_types"
+TOP_OPTIONAL = "gripper carry obstacles options reach"
+SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
+
+
+@dataclass
+class Obstacle:
+    name: str
+    pose: np.ndarray
+    shapes: list[LinkShape]
+
+
+@dataclass
+class Scenario:
+    """A scenario with everything resolved: files read, robot composed, parts placed, grasps sampled."""
+
+    name: str
+    source: str
+    setup: RobotSetup
+    obstacles: list[Obstacle]
+    trays: list[TraySetup]
+    start: np.ndarray
+    goal: np.ndarray
+    positioning_uncertainty: float
+    options: dict[str, Any] = field(default_factory=dict)
+    reach: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def world(self) -> World:
+        """Obstacles and trays, without the parts."""
+        world = World()
+        for obstacle in self.obstacles:
+            world.add(obstacle.name, obstacle.shapes, obstacle.pose)
+        return world
+
+    @property
+    def world_with_parts(self) -> World:
+        world = self.world
+        for tray in self.trays:
+            for part in tray.tray.parts:
+                world.add(part.name, part.shapes, part.T_world_part)
+        return world
+
+    def problem(self) -> PartSupplyProblem:
+        """The same as objects for the planner."""
+        setup = self.setup
+        return PartSupplyProblem(
+            setup.robot,
+            setup.arm,
+            setup.gripper,
+            self.world,
+            [t.tray for t in self.trays],
+            setup.home,
+            self.start,
+            self.goal,
+            setup.carry,
+            positioning_uncertainty=self.positioning_uncertainty,
+            **self.options,
+        )
+
+    def reach_database(self, progress: Progress = None) -> ReachDatabase:
+        """The arm's reachability database, from the cache or built now."""
+        options = {"threads": self.options.get("threads", 0)} | self.reach
+        return ReachDatabase.load_or_build(self.setup.arm, _core.cache_folder(), progress=progress, **options)
+
+    def __repr__(self) -> str:
+        parts = sum(len(t.targets) for t in self.trays)
+        return (
+            f"Scenario({self.name!r}, robot {self.setup.robot.name!r}, {len(self.trays)} trays, {parts} parts to pick)"
+        )
+
+
+def load_scenario(
+    path: str | os.PathLike[str],
+    *,
+    robot: str | None = None,
+    seed: int | None = None,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> Scenario:
+    """Reads a scenario (`asset:scenarios/...` for a shipped one); `robot` puts a robot profile (name or file) in place of the scenario's robot, gripper and bin.
+
+    Raises InvalidInput or IoError with one message that names file, line, key, value and rule.
+    """
+    root = read_yaml(shipped(path)).root
+    _check_header(root)
+    start, goal = np.array(root["start"].numbers(3)), np.array(root["goal"].numbers(3))
+    uncertainty = root["positioning_uncertainty"].number(least=0)
+    options = _read_options(root, "options", _core._supply_option_table(), {"positioning_uncertainty"})
+    reach = _read_options(root, "reach", _core._reach_option_table(), set())
+    obstacles = _read_obstacles(root)
+    setup = read_setup(choose_sections(root, robot), progress)
+    if setup.robot.base == "fixed":
+        root["robot"].fail("a part-supply round needs base: diff_drive or omni")
+    types = read_part_types(root["part_types"], setup.gripper)
+    trays = _read_trays(root, types, setup)
+    for tray in trays:
+        obstacles.append(Obstacle(f"tray {tray.tray.name}", tray.tray.T_world_tray, tray.walls))
+    _check_names(root, obstacles, trays)
+    if seed is not None:
+        options["seed"] = seed
+    if threads is not None:
+        options["threads"] = threads
+    scenario = Scenario(
+        root["name"].string(),
+        str(Path(path).resolve()),
+        setup,
+        obstacles,
+        trays,
+        start,
+        goal,
+        uncertainty,
+        options,
+        reach,
+    )
+    for key in ("start", "goal"):
+        _check_stands_free(root[key], scenario)
+    return scenario
+
+
+def _check_header(root: Node) -> None:
+    if not isinstance(root.raw, dict) or "format" not in root.raw:
+        raise InvalidInput(f"{root.document.source}: is no scenario: the key format: mmgrasp-scenario is missing")
+    root.mapping(TOP_KEYS, TOP_OPTIONAL)
+    root["format"].choice("mmgrasp-scenario")
+    if root["version"].integer() != 1:
+        root["version"].fail("this version of mmgrasp reads version 1")
+
+
+def _read_options(root: Node, section: str, table: dict[str, tuple[Any, str]], elsewhere: set[str]) -> dict[str, Any]:
+    options: dict[str, Any] = {}
+    if section not in root:
+        return options
+    known = [key for key in table if key not in elsewhere]
+    for key, node in root[section].items():
+        if key not in known:
+            node.refuse_key(known)
+        options[key] = node.integer() if isinstance(table[key][0], int) else node.number()
+    try:
+        _core._check_options(section, **options)
+    except InvalidInput as error:
+        root[section].fail(str(error))
+    return options
+
+
+def _read_obstacles(root: Node) -> list[Obstacle]:
+    out = []
+    for node in root["obstacles"].elements() if "obstacles" in root else []:
+        node.mapping("name", "pose " + SHAPE_KEYS)
+        pose = node["pose"].pose() if "pose" in node else np.eye(4)
+        out.append(Obstacle(node["name"].string(), pose, read_shapes(node, find_file)))
+    return out
+
+
+def _read_trays(root: Node, types: dict[str, PartType], setup: RobotSetup) -> list[TraySetup]:
+    trays = [read_tray(node, types, setup.gripper) for node in root["trays"].elements()]
+    if not any(tray.targets for tray in trays):
+        root["trays"].fail("at least one part of one tray must be a target")
+    return trays
+
+
+def _check_names(root: Node, obstacles: list[Obstacle], trays: list[TraySetup]) -> None:
+    seen: set[str] = set()
+    for name in [o.name for o in obstacles] + [p.name for t in trays for p in t.tray.parts]:
+        if name in seen:
+            raise InvalidInput(
+                f"{root.document.source}: the name {name!r} is used twice (obstacles, trays and parts share names)"
+            )
+        seen.add(name)
+
+
+def _check_stands_free(node: Node, scenario: Scenario) -> None:
+    x, y, theta = node.numbers(3)
+    setup = scenario.setup
+    arm = setup.arm.at(_core.pose([x, y, 0], rpy=[0, 0, theta]))
+    contacts = CollisionChecker(setup.robot, scenario.world_with_parts, arm).contacts(setup.home)
+    if contacts:
+        pairs = ", ".join(f"{c.a} touches {c.b}" for c in contacts[:3])
+        more = f" and {len(contacts) - 3} more" if len(contacts) > 3 else ""
+        node.fail(f"the robot at home is in collision there: {pairs}{more}")

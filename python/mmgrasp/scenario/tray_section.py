@@ -1,0 +1,203 @@
+"""The sections `part_types` and `trays` of a scenario: trays as walls in the scene, parts in them with their grasps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .. import _core
+from .._core import Box, Grasp, Gripper, LinkShape, Part, Tray
+from .reading import Node, near_miss
+from .robot_section import find_file
+from .shapes import read_shapes
+
+WALL = 0.005  # thickness of a tray's floor and walls [m]
+GAP = 0.001  # parts rest this far above the floor, so that nothing touches at rest [m]
+
+
+@dataclass
+class PartType:
+    shapes: list[LinkShape]
+    grasps: list[Grasp]
+    too_wide: int
+    node: Node
+
+
+@dataclass
+class TraySetup:
+    tray: Tray
+    walls: list[LinkShape]
+    targets: list[str] = field(default_factory=list)
+
+
+def read_part_types(node: Node, gripper: Gripper) -> dict[str, PartType]:
+    types = {}
+    for name, entry in node.items():
+        entry.mapping("", "box cylinder sphere mesh shapes scale grasps grasp_options")
+        shapes = read_shapes(entry, find_file)
+        if "grasps" in entry:
+            grasps, too_wide = _listed_grasps(entry["grasps"], gripper)
+        else:
+            grasps, too_wide = _core._sample_grasps(shapes, gripper, **_grasp_options(entry))
+        types[name] = PartType(shapes, grasps, too_wide, entry)
+    return types
+
+
+def _grasp_options(entry: Node) -> dict[str, float | int]:
+    if "grasp_options" not in entry:
+        return {}
+    options = {}
+    known = _core._grasp_option_table()
+    for key, value in entry["grasp_options"].items():
+        if key not in known:
+            value.refuse_key(list(known))
+        options[key] = value.integer() if isinstance(known[key][0], int) else value.number()
+    try:
+        _core._sample_grasps([LinkShape(Box([0.01, 0.01, 0.01]))], _any_gripper(), **options)
+    except _core.InvalidInput as error:
+        entry["grasp_options"].fail(str(error))
+    return options
+
+
+def _any_gripper() -> Gripper:
+    return Gripper("tcp", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.03, finger_width=0.02)
+
+
+def _listed_grasps(node: Node, gripper: Gripper) -> tuple[list[Grasp], int]:
+    grasps, too_wide = [], 0
+    for entry in node.elements():
+        entry.mapping("pose width", "quality")
+        width = entry["width"].number(least=0)
+        if width > gripper.max_opening:
+            too_wide += 1
+            continue
+        quality = entry["quality"].number(least=0) if "quality" in entry else 1.0
+        grasps.append(Grasp(entry["pose"].pose(), width, quality))
+    return grasps, too_wide
+
+
+def read_tray(node: Node, types: dict[str, PartType], gripper: Gripper) -> TraySetup:
+    node.mapping("name pose size parts", "headings targets")
+    name, T_world_tray, size = node["name"].string(), node["pose"].pose(), node["size"].numbers(3, above=0)
+    if T_world_tray[2, 2] < 1 - 1e-9:
+        node["pose"].fail("a tray must stand level (roll and pitch 0)")
+    if min(size[:2]) <= 2 * WALL:
+        node["size"].fail(f"must leave room between walls of {WALL} m")
+    placed = _grid(node["parts"], types) if isinstance(node["parts"].raw, dict) else _list(node["parts"], types)
+    if not placed:
+        node["parts"].fail("a tray must hold at least one part")
+    names = [f"{name}/{own}" for own, _, _ in placed]
+    targets = _targets(node, names, [own for own, _, _ in placed])
+    parts = []
+    for full, (_, kind, T_tray_part) in zip(names, placed, strict=True):
+        _check_inside(node, full, types[kind], T_tray_part, size)
+        if full in targets:
+            _check_graspable(full, types[kind], gripper)
+        parts.append(
+            Part(
+                full,
+                types[kind].shapes,
+                T_world_tray @ T_tray_part,
+                types[kind].grasps,
+                target=full in targets,
+                grasps_too_wide=types[kind].too_wide,
+            )
+        )
+    headings = node["headings"].numbers() if "headings" in node else []
+    return TraySetup(Tray(name, T_world_tray, size, parts, headings), _core.tray_shapes(size, WALL), targets)
+
+
+def _kind(node: Node, types: dict[str, PartType]) -> str:
+    kind = node.string()
+    if kind not in types:
+        node.fail(f"no such part type{near_miss(kind, list(types))}")
+    return kind
+
+
+def _bounds(kind: PartType, T: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    boxes = [LinkShape(shape.shape, T @ shape.pose).bounds for shape in kind.shapes]
+    return np.min([low for low, _ in boxes], axis=0), np.max([high for _, high in boxes], axis=0)
+
+
+def _resting(kind: PartType, x: float, y: float, rpy: list[float]) -> np.ndarray:
+    T = _core.pose([x, y, 0], rpy=rpy)
+    T[2, 3] = GAP - _bounds(kind, T)[0][2]
+    return T
+
+
+Placed = tuple[str, str, np.ndarray]
+
+
+def _grid(node: Node, types: dict[str, PartType]) -> list[Placed]:
+    node.mapping("type grid spacing", "yaw")
+    kind = _kind(node["type"], types)
+    counts = [entry.integer(least=1) for entry in node["grid"].elements()]
+    if len(counts) != 2:
+        node["grid"].fail("must be two numbers: how many along x and along y")
+    if counts[0] * counts[1] > 1000:
+        node["grid"].fail("must not place more than 1000 parts in one tray")
+    spacing = node["spacing"].numbers(2, above=0)
+    yaw = node["yaw"].number() if "yaw" in node else 0.0
+    placed: list[Placed] = []
+    for i in range(counts[0]):
+        for j in range(counts[1]):
+            x, y = (i - (counts[0] - 1) / 2) * spacing[0], (j - (counts[1] - 1) / 2) * spacing[1]
+            placed.append((f"{kind}_{len(placed):02d}", kind, _resting(types[kind], x, y, [0, 0, yaw])))
+    return placed
+
+
+def _list(node: Node, types: dict[str, PartType]) -> list[Placed]:
+    placed: list[Placed] = []
+    for entry in node.elements():
+        entry.mapping("type xyz", "name rpy")
+        kind = _kind(entry["type"], types)
+        name = entry["name"].string() if "name" in entry else f"{kind}_{len(placed):02d}"
+        if name in [other for other, _, _ in placed]:
+            entry.fail(f"the name {name} is used twice in this tray")
+        rpy = entry["rpy"].numbers(3) if "rpy" in entry else [0.0, 0.0, 0.0]
+        xyz = entry["xyz"].numbers()
+        if len(xyz) not in (2, 3):
+            entry["xyz"].fail("must be x, y (the part rests on the floor) or x, y, z in the tray's frame")
+        T = _resting(types[kind], xyz[0], xyz[1], rpy) if len(xyz) == 2 else _core.pose(xyz, rpy=rpy)
+        placed.append((name, kind, T))
+    return placed
+
+
+def _targets(node: Node, names: list[str], own: list[str]) -> list[str]:
+    if "targets" not in node or node["targets"].raw == "all":
+        return list(names)
+    chosen = []
+    for entry in node["targets"].elements():
+        if isinstance(entry.raw, str):
+            if entry.raw not in own and entry.raw not in names:
+                entry.fail(f"no such part in this tray{near_miss(entry.raw, own)}")
+            chosen.append(names[own.index(entry.raw)] if entry.raw in own else entry.raw)
+        else:
+            index = entry.integer(least=0)
+            if index >= len(names):
+                entry.fail(f"must be below the number of parts, {len(names)}")
+            chosen.append(names[index])
+    return chosen
+
+
+def _check_inside(node: Node, name: str, kind: PartType, T: np.ndarray, size: list[float]) -> None:
+    low, high = _bounds(kind, T)
+    inner = np.array(size[:2]) / 2 - WALL
+    if (low[:2] < -inner).any() or (high[:2] > inner).any():
+        node["parts"].fail(
+            f"part {name} reaches through the tray's wall (inner size {2 * inner[0]:g} x {2 * inner[1]:g} m)"
+        )
+    if low[2] <= 0:
+        node["parts"].fail(f"part {name} reaches {-low[2]:.4g} m through the tray's floor")
+
+
+def _check_graspable(name: str, kind: PartType, gripper: Gripper) -> None:
+    if kind.grasps:
+        return
+    if kind.too_wide:
+        kind.node.fail(
+            f"part {name} is larger than the gripper: none of {kind.too_wide} grasps fits its opening of "
+            f"{gripper.max_opening:g} m"
+        )
+    kind.node.fail(f"part {name} has no grasp: no two opposite surfaces were found for the gripper")

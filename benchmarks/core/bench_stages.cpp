@@ -1,5 +1,6 @@
 // What single queries, edges and whole plans cost with the library at hand: run_stages.py runs it with one stage of the
-// checks left out after the other. The answers are hashed, for they must be the same without a stage.
+// checks left out after the other. The answers are hashed, for they must be the same without a stage. Arguments:
+// rounds, and the beginning of the rows to run, each of which then starts with nothing made by the others.
 
 #include <cstdlib>
 
@@ -32,19 +33,25 @@ void measure(const bench::Arm& arm, const std::string& row, std::size_t count, i
                 "\"first\": " + std::to_string(first) + ", \"answers\": \"" + std::to_string(digest.value) + "\"", ""});
 }
 
-void run(const bench::Arm& arm, int rounds) {
+void run(const bench::Arm& arm, int rounds, const std::string& only) {
   using namespace mmgrasp;
+  const auto wanted = [&](const std::string& row) { return row.compare(0, only.size(), only) == 0; };
   CollisionChecker checker(arm.group, bench::twenty_boxes(arm, 3));
   const std::vector<Eigen::VectorXd> draws = bench::planner_draws(checker, 4400, 5);
-  measure(arm, "free or not", draws.size(), rounds, [&](Digest& digest) {
-    for (const Eigen::VectorXd& q : draws) digest.add(checker.is_free(q));
-  });
+  if (wanted("free or not")) {
+    measure(arm, "free or not", draws.size(), rounds, [&](Digest& digest) {
+      for (const Eigen::VectorXd& q : draws) digest.add(checker.is_free(q));
+    });
+  }
   for (const double length : {0.5, 2.0}) {
+    const std::string row = length < 1 ? "edge of 0.5 rad" : "edge of 2 rad";
+    if (!wanted(row)) continue;
     const auto edges = bench::planner_edges(checker, 400, length, 7);
-    measure(arm, length < 1 ? "edge of 0.5 rad" : "edge of 2 rad", edges.size(), rounds, [&](Digest& digest) {
+    measure(arm, row, edges.size(), rounds, [&](Digest& digest) {
       for (const auto& [from, to] : edges) digest.add(checker.edge_is_free(from, to, 0.02));
     });
   }
+  if (!wanted("whole plan")) return;
   const auto ends = bench::planner_edges(checker, 40, 0.5, 9);
   measure(arm, "whole plan", ends.size() - 1, rounds, [&](Digest& digest) {
     for (std::size_t i = 1; i < ends.size(); ++i) {
@@ -63,5 +70,5 @@ void run(const bench::Arm& arm, int rounds) {
 
 int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 5;
-  for (const bench::Arm& arm : bench::arms()) run(arm, rounds);
+  for (const bench::Arm& arm : bench::arms()) run(arm, rounds, argc > 2 ? argv[2] : "");
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/core/detail/instruction_set.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "support/fcl_reference.hpp"
 #include "support/free_body.hpp"
@@ -115,29 +116,20 @@ TEST(CheckerShapes, MeshesAreWhatTheNamesSay) {
   EXPECT_FALSE(open_bin()->closed);
 }
 
-namespace mmgrasp::detail {
-MMGRASP_EXPORT void use_collision_kernels(const std::string& name);
-MMGRASP_EXPORT std::string collision_kernels();
-}  // namespace mmgrasp::detail
-
 namespace {
 
-/// "" the quickest kernels of this machine, "portable" those of every machine.
 class CheckerShapesOnKernels : public ::testing::TestWithParam<std::string> {
  protected:
-  void SetUp() override { detail::use_collision_kernels(GetParam()); }
-  void TearDown() override { detail::use_collision_kernels(""); }
+  void SetUp() override { detail::use_instruction_set(GetParam()); }
+  void TearDown() override { detail::use_instruction_set(detail::instruction_sets().front()); }
 };
-INSTANTIATE_TEST_SUITE_P(Kernels, CheckerShapesOnKernels, ::testing::Values("", "portable"),
-                         [](const auto& info) { return info.param.empty() ? "quickest" : info.param; });
+INSTANTIATE_TEST_SUITE_P(Kernels, CheckerShapesOnKernels, ::testing::ValuesIn(detail::instruction_sets()),
+                         [](const auto& info) { return info.param; });
 
 }  // namespace
 
 // Capsules have few spheres and no finer ones, next to bodies that look at three levels of them.
 TEST_P(CheckerShapesOnKernels, LongCapsulesAgreeWithFcl) {
-  if (!GetParam().empty()) {
-    ASSERT_EQ(detail::collision_kernels(), GetParam());
-  }
   Rng rng(21);
   int free = 0, hit = 0, unjudged = 0;
   for (const Capsule& capsule : {Capsule{0.1, 0.4}, Capsule{0.03, 0.6}, Capsule{0.1, 0.05}}) {

@@ -17,7 +17,7 @@ namespace {
 /// Two spheres of 0.1 m radius on the base and on the tip of a planar arm; the sphere halfway along the upper link has
 /// 0.05 m.
 CollisionChecker two_spheres() {
-  return CollisionChecker(Robot::from_strings(test::two_spheres_urdf()).chain("base", "tip"), World());
+  return CollisionChecker(Robot::from_strings(test::two_balls_urdf()).chain("base", "tip"), World());
 }
 
 /// Distance of the tip's centre from the base: both links are 0.5 m.

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "mmgrasp/core/detail/instruction_set.hpp"
 #include "mmgrasp/core/random.hpp"
 
 // Each loop of the collision kernels, in every version this machine runs, against plain double precision: they may err
@@ -17,15 +18,15 @@ using Eigen::Vector3d;
 
 constexpr double kSlack = 1e-5;
 
-/// Runs a test once with the portable kernels and once with the quickest.
-class CollisionKernels : public testing::TestWithParam<const char*> {
+/// Runs a test with every instruction set of this machine.
+class CollisionKernels : public testing::TestWithParam<std::string> {
  protected:
-  void SetUp() override { use_collision_kernels(GetParam()); }
-  void TearDown() override { use_collision_kernels(""); }
+  void SetUp() override { use_instruction_set(GetParam()); }
+  void TearDown() override { use_instruction_set(instruction_sets().front()); }
 };
 
-INSTANTIATE_TEST_SUITE_P(Each, CollisionKernels, testing::Values("portable", ""),
-                         [](const auto& info) { return std::string(*info.param ? info.param : "quickest"); });
+INSTANTIATE_TEST_SUITE_P(Each, CollisionKernels, testing::ValuesIn(instruction_sets()),
+                         [](const auto& info) { return info.param; });
 
 Vector3d point_within(Rng& random, double half) {
   return {random.uniform(-half, half), random.uniform(-half, half), random.uniform(-half, half)};

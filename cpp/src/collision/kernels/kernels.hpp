@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 
 #include "mmgrasp/core/export.hpp"
 
@@ -79,7 +78,6 @@ struct GridView {
 enum CoverAnswer : unsigned { kApart = 0, kMaybe = 1, kOverlap = 2 };
 
 struct Kernels {
-  const char* name;
   /// frames: 16 numbers each, columns R0 R1 R2 p of four; frame 0 is given.
   void (*place_frames)(const FrameStep* steps, int count, const double* q, double* frames);
   /// World centre and radius of each sphere, the radius with a slack for single precision: x, y, z and radius in rows
@@ -104,11 +102,7 @@ struct Kernels {
                                       const float* half, float grow, float slack, bool seek_overlap);
 };
 
-/// The quickest this machine can run, unless use_collision_kernels() chose others.
+/// The version for the instruction set in use (mmgrasp/core/detail/instruction_set.hpp).
 MMGRASP_EXPORT const Kernels& kernels();
-/// "portable" (they run everywhere), or "" for the quickest; for tests, while no checker is at work.
-MMGRASP_EXPORT void use_collision_kernels(const std::string& name);
-/// Name of those in use.
-MMGRASP_EXPORT std::string collision_kernels();
 
 }  // namespace mmgrasp::detail

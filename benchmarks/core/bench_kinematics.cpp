@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/report.hpp"
+#include "mmgrasp/core/detail/instruction_set.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/robot/kinematics_batch.hpp"
 #include "support/robot_support.hpp"

@@ -1,4 +1,4 @@
-#include "collision/edge/attached_checker.hpp"
+#include "mmgrasp/collision/detail/attached_checker.hpp"
 
 #include <gtest/gtest.h>
 
@@ -47,21 +47,21 @@ TEST(AttachedChecker, SaysWhatACheckerMadeForThePoseSays) {
       Rng rng(7);
       CheckerOptions options;
       options.held_only = held_only;
-      AttachedChecker turned(CollisionChecker(cell.group, cell.world(random_pose(rng), name), options));
+      AttachedChecker turned(cell.group, cell.world(random_pose(rng), name), options);
       EdgeOptions edge;
       edge.workspace_step = 0.01;
       int free = 0, blocked = 0, free_edges = 0, blocked_edges = 0;
       for (int i = 0; i < 25; ++i) {
         const Pose T = random_pose(rng);
         CollisionChecker made(cell.group, cell.world(T, name), options);
-        turned.hold(T);
+        turned.place_attached(T);
         for (int k = 0; k < 40; ++k) {
           const Eigen::VectorXd a = rng.uniform(cell.group.sample_lower(), cell.group.sample_upper());
           const Eigen::VectorXd b = a + 0.1 * rng.uniform(cell.group.sample_lower(), cell.group.sample_upper());
           EXPECT_EQ(turned.is_free(a), made.is_free(a));
           EXPECT_EQ(turned.rejection(a), made.rejection(a));
           ++(made.is_free(a) ? free : blocked);
-          // Steps need not be the same ones: the held object's motion bounds them alone, not the robot's.
+          // Steps need not be the same ones: the attached object's motion bounds them alone, not the robot's.
           const bool expected = check_edge(made, a, b, edge).free;
           if (!held_only) {
             EXPECT_EQ(turned.edge_is_free(a, b, edge), expected);
@@ -81,9 +81,9 @@ TEST(AttachedChecker, SaysWhatACheckerMadeForThePoseSays) {
   }
 }
 
-TEST(AttachedChecker, RefusesCheckersWithoutOneHeldObject) {
+TEST(AttachedChecker, RefusesWorldsWithoutOneAttachedObject) {
   const Cell cell;
-  EXPECT_THROW(AttachedChecker(CollisionChecker(cell.group, World())), InvalidInput);
+  EXPECT_THROW(AttachedChecker(cell.group, World()), InvalidInput);
 }
 
 }  // namespace

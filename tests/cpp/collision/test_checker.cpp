@@ -25,7 +25,7 @@ Pose shifted(double x, double y, double z) {
 }
 
 // A box mesh with one vertex pushed in: closed, concave, so that it is no convex body.
-MeshShape dented_box(const Eigen::Vector3d& size) {
+MeshShape concave_box(const Eigen::Vector3d& size) {
   std::vector<Eigen::Vector3d> v;
   for (int i = 0; i < 8; ++i)
     v.push_back(0.5 * size.cwiseProduct(Eigen::Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
@@ -84,7 +84,7 @@ const char* kGripperSrdf = R"(<robot name="r">
 }  // namespace
 
 TEST(Checker, ClosedMeshesAreSolids) {
-  const MeshShape big = dented_box({2, 2, 2}), small = dented_box({0.1, 0.1, 0.1});
+  const MeshShape big = concave_box({2, 2, 2}), small = concave_box({0.1, 0.1, 0.1});
   ASSERT_TRUE(big.mesh->closed);
   ASSERT_FALSE(big.mesh->convex);
   const Shape inner[] = {Box{{0.1, 0.1, 0.1}}, Sphere{0.1}, Cylinder{0.1, 0.1},
@@ -108,26 +108,26 @@ TEST(Checker, ClosedMeshesAreSolids) {
 
 TEST(Checker, BoxesTouchWhereTheirFacesMeet) {
   CollisionChecker checker = make_checker(Box{{1, 1, 1}}, Box{{1, 1, 1}}, shifted(0, 0, 0));
-  CollisionChecker ball = make_checker(Sphere{0.5}, Box{{1, 1, 1}}, shifted(0, 0, 0));
+  CollisionChecker sphere = make_checker(Sphere{0.5}, Box{{1, 1, 1}}, shifted(0, 0, 0));
   CollisionChecker plane = make_checker(Cylinder{0.5, 1}, Plane{Eigen::Vector3d::UnitZ(), 0.25}, shifted(0, 0, 0));
-  for (const double gap : {1e-6, 1e-8}) {
-    EXPECT_TRUE(checker.is_free(at(1 + gap, 0, 0)));
-    EXPECT_FALSE(checker.is_free(at(1 - gap, 0, 0)));
+  for (const double clearance : {1e-6, 1e-8}) {
+    EXPECT_TRUE(checker.is_free(at(1 + clearance, 0, 0)));
+    EXPECT_FALSE(checker.is_free(at(1 - clearance, 0, 0)));
     const double corner = 0.5 + 0.5 / std::sqrt(3.0);
-    EXPECT_TRUE(ball.is_free(at(corner + gap, corner + gap, corner + gap)));
-    EXPECT_FALSE(ball.is_free(at(corner - gap, corner - gap, corner - gap)));
-    EXPECT_TRUE(plane.is_free(at(3, 4, 0.75 + gap)));
-    EXPECT_FALSE(plane.is_free(at(3, 4, 0.75 - gap)));
+    EXPECT_TRUE(sphere.is_free(at(corner + clearance, corner + clearance, corner + clearance)));
+    EXPECT_FALSE(sphere.is_free(at(corner - clearance, corner - clearance, corner - clearance)));
+    EXPECT_TRUE(plane.is_free(at(3, 4, 0.75 + clearance)));
+    EXPECT_FALSE(plane.is_free(at(3, 4, 0.75 - clearance)));
     // Edge against edge: the box turned by 45 degrees about z.
-    EXPECT_TRUE(checker.is_free(at(0.5 + std::sqrt(0.5) + gap, 0, 0, M_PI / 4)));
-    EXPECT_FALSE(checker.is_free(at(0.5 + std::sqrt(0.5) - gap, 0, 0, M_PI / 4)));
+    EXPECT_TRUE(checker.is_free(at(0.5 + std::sqrt(0.5) + clearance, 0, 0, M_PI / 4)));
+    EXPECT_FALSE(checker.is_free(at(0.5 + std::sqrt(0.5) - clearance, 0, 0, M_PI / 4)));
   }
 }
 
 TEST(Checker, FclAgreesJustBeforeAndAfterContact) {
   // Bisects to where the answer changes and asks FCL on both sides of it, well outside the band.
   const Shape shapes[] = {Box{{0.3, 0.2, 0.5}}, Sphere{0.2}, Cylinder{0.15, 0.4}, Capsule{0.1, 0.4},
-                          dented_box({0.4, 0.3, 0.5})};
+                          concave_box({0.4, 0.3, 0.5})};
   Rng rng(3);
   int judged = 0;
   for (const Shape& body : shapes) {
@@ -143,13 +143,13 @@ TEST(Checker, FclAgreesJustBeforeAndAfterContact) {
           q.head<3>() = 0.5 * (near + far) * direction;
           (checker.is_free(q) ? far : near) = 0.5 * (near + far);
         }
-        // Moving by 2e-5 along the direction opens the gap by 2e-5 times the cosine to the contact's normal.
+        // Moving by 2e-5 along the direction opens the clearance by 2e-5 times the cosine to the contact's normal.
         q.head<3>() = (far + 2e-5) * direction;
         const bool out = fcl_reference::touch(a, free_body::pose(q), b, Pose::Identity());
-        const double gap = checker.distance(q).value;
+        const double clearance = checker.distance(q).value;
         q.head<3>() = (near - 2e-5) * direction;
         const bool in = fcl_reference::touch(a, free_body::pose(q), b, Pose::Identity());
-        if (gap < 4e-6) continue;  // grazing
+        if (clearance < 4e-6) continue;  // grazing
         EXPECT_FALSE(out) << shape_kind(body) << " " << shape_kind(object);
         EXPECT_TRUE(in) << shape_kind(body) << " " << shape_kind(object);
         ++judged;
@@ -163,29 +163,29 @@ TEST(Checker, PaddingGrowsTheRobotOnly) {
   CheckerOptions options;
   options.padding = 0.1;
   const Shape bodies[] = {Box{{1, 1, 1}}, Cylinder{0.5, 1}, MeshShape{shape_mesh(Box{{1, 1, 1}})},
-                          dented_box({1, 1, 1})};
+                          concave_box({1, 1, 1})};
   for (const Shape& body : bodies) {
     CollisionChecker checker = make_checker(body, Box{{1, 1, 1}}, shifted(0, 0, 0), options);
     EXPECT_TRUE(checker.is_free(at(0, 0, -1.1 - 1e-6))) << shape_kind(body);
     EXPECT_FALSE(checker.is_free(at(0, 0, -1.1 + 1e-6))) << shape_kind(body);
     EXPECT_NEAR(checker.distance(at(0, 0, -1.2)).value, 0.2, 1e-9) << shape_kind(body);
   }
-  CollisionChecker ball = make_checker(Sphere{0.5}, Sphere{0.5}, shifted(0, 0, 0), options);
-  EXPECT_TRUE(ball.is_free(at(1.1 + 1e-9, 0, 0)));
-  EXPECT_FALSE(ball.is_free(at(1.1 - 1e-9, 0, 0)));
+  CollisionChecker sphere = make_checker(Sphere{0.5}, Sphere{0.5}, shifted(0, 0, 0), options);
+  EXPECT_TRUE(sphere.is_free(at(1.1 + 1e-9, 0, 0)));
+  EXPECT_FALSE(sphere.is_free(at(1.1 - 1e-9, 0, 0)));
   options.padding = -1;
   EXPECT_THROW(make_checker(Sphere{0.5}, Sphere{0.5}, shifted(0, 0, 0), options), InvalidInput);
 }
 
 TEST(Checker, DistanceInClosedForm) {
-  CollisionChecker balls = make_checker(Sphere{0.5}, Sphere{0.25}, shifted(1, 2, 3));
-  const DistanceResult d = balls.distance(at(4, 6, 3));
+  CollisionChecker spheres = make_checker(Sphere{0.5}, Sphere{0.25}, shifted(1, 2, 3));
+  const DistanceResult d = spheres.distance(at(4, 6, 3));
   EXPECT_NEAR(d.value, 5 - 0.75, 1e-12);
   EXPECT_EQ(d.a, "body");
   EXPECT_EQ(d.b, "object");
   EXPECT_TRUE(d.point_a.isApprox(Eigen::Vector3d(4 - 0.3, 6 - 0.4, 3), 1e-9));
   EXPECT_TRUE(d.point_b.isApprox(Eigen::Vector3d(1 + 0.15, 2 + 0.2, 3), 1e-9));
-  EXPECT_NEAR(balls.distance(at(1, 2.5, 3)).value, -0.25, 1e-9);
+  EXPECT_NEAR(spheres.distance(at(1, 2.5, 3)).value, -0.25, 1e-9);
   CollisionChecker boxes = make_checker(Box{{1, 1, 1}}, Box{{1, 1, 1}}, shifted(0, 0, 0));
   EXPECT_NEAR(boxes.distance(at(4, 5, 0)).value, 5, 1e-12);
   EXPECT_NEAR(boxes.distance(at(0.9, 0.1, 0.2)).value, -0.1, 1e-9);
@@ -195,7 +195,7 @@ TEST(Checker, DistanceInClosedForm) {
             std::numeric_limits<double>::infinity());
 }
 
-TEST(Checker, HeldObjectsTouchTheirGripperAndNothingElse) {
+TEST(Checker, AttachedObjectsTouchTheirGripperAndNothingElse) {
   const Robot robot = Robot::from_strings(kGripperUrdf, kGripperSrdf);
   const JointGroup arm = robot.group("arm");
   Eigen::VectorXd q(2);
@@ -204,9 +204,9 @@ TEST(Checker, HeldObjectsTouchTheirGripperAndNothingElse) {
   world.add("part", Box{{0.1, 0.08, 0.02}}, shifted(0.6, 0, 0));
   EXPECT_EQ(CollisionChecker(arm, world).rejection(q), Rejection::scene);
   world.attach("part", "tcp", Pose::Identity());  // overlaps hand and both fingers: all of the end effector
-  CollisionChecker held(arm, world);
-  EXPECT_EQ(held.rejection(q), Rejection::none);
-  EXPECT_TRUE(held.contacts(q).empty());
+  CollisionChecker attached(arm, world);
+  EXPECT_EQ(attached.rejection(q), Rejection::none);
+  EXPECT_TRUE(attached.contacts(q).empty());
   // The arm folded back: the part hits the base, the hand does not yet.
   q << 0, 2.9;
   World bar = world;
@@ -226,7 +226,7 @@ TEST(Checker, HeldObjectsTouchTheirGripperAndNothingElse) {
   EXPECT_EQ(CollisionChecker(arm, strict).rejection(q), Rejection::self_collision);
   strict.detach("part", shifted(9, 9, 9));
   EXPECT_EQ(CollisionChecker(arm, strict).rejection(q), Rejection::none);
-  // Held part against the scene.
+  // Attached part against the scene.
   world.add("wall", Box{{0.1, 1, 1}}, shifted(0.675, 0, 0));
   CollisionChecker walled(arm, world);
   EXPECT_EQ(walled.rejection(q), Rejection::scene);
@@ -345,13 +345,13 @@ TEST(Checker, DetachPutsBackAndRemoveTakesAway) {
   const Robot robot = Robot::from_strings(kGripperUrdf, kGripperSrdf);
   Eigen::VectorXd q(2);
   q << 0, 0;
-  World held;
-  held.add("part", Box{{0.1, 0.08, 0.02}}, shifted(0.6, 0, 0));
-  held.attach("part", "tcp", Pose::Identity());
-  World detached = held, removed = held;
+  World attached;
+  attached.add("part", Box{{0.1, 0.08, 0.02}}, shifted(0.6, 0, 0));
+  attached.attach("part", "tcp", Pose::Identity());
+  World detached = attached, removed = attached;
   detached.detach("part", shifted(0.6, 0, 0));  // where the hand is: now it is an obstacle
   removed.remove("part");
-  EXPECT_EQ(CollisionChecker(robot.group("arm"), held).rejection(q), Rejection::none);
+  EXPECT_EQ(CollisionChecker(robot.group("arm"), attached).rejection(q), Rejection::none);
   EXPECT_EQ(CollisionChecker(robot.group("arm"), detached).rejection(q), Rejection::scene);
   EXPECT_EQ(CollisionChecker(robot.group("arm"), removed).rejection(q), Rejection::none);
   EXPECT_FALSE(removed.has("part"));

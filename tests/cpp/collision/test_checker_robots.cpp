@@ -175,11 +175,11 @@ TEST(CheckerRobots, TiagoOnItsBaseAgreesWithFcl) {
 TEST(CheckerRobots, CloudAgreesWithFcl) {
   MMGRASP_NEEDS_SHARED_DATA();
   Rng rng(21);
-  // Balls of cells, hollow ones and full ones, and single cells strewn about.
+  // Spheres of cells, hollow ones and full ones, and single cells strewn about.
   auto centres = std::make_shared<std::vector<Eigen::Vector3d>>();
   const double edge = 0.02;
-  for (int ball = 0; ball < 8; ++ball) {
-    const double angle = rng.uniform(-M_PI, M_PI), r = rng.uniform(0.4, 0.8), inner = ball % 2 == 0 ? 0 : 3;
+  for (int sphere = 0; sphere < 8; ++sphere) {
+    const double angle = rng.uniform(-M_PI, M_PI), r = rng.uniform(0.4, 0.8), inner = sphere % 2 == 0 ? 0 : 3;
     const Eigen::Vector3d middle(std::floor(r * std::cos(angle) / edge), std::floor(r * std::sin(angle) / edge),
                                  std::floor(rng.uniform(0, 1) / edge));
     for (int i = -4; i <= 4; ++i) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/core/detail/instruction_set.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "support/fcl_reference.hpp"
 #include "support/free_body.hpp"
@@ -115,29 +116,20 @@ TEST(CheckerShapes, MeshesAreWhatTheNamesSay) {
   EXPECT_FALSE(open_bin()->closed);
 }
 
-namespace mmgrasp::detail {
-MMGRASP_EXPORT void use_collision_kernels(const std::string& name);
-MMGRASP_EXPORT std::string collision_kernels();
-}  // namespace mmgrasp::detail
-
 namespace {
 
-/// "" the quickest kernels of this machine, "portable" those of every machine.
 class CheckerShapesOnKernels : public ::testing::TestWithParam<std::string> {
  protected:
-  void SetUp() override { detail::use_collision_kernels(GetParam()); }
-  void TearDown() override { detail::use_collision_kernels(""); }
+  void SetUp() override { detail::use_instruction_set(GetParam()); }
+  void TearDown() override { detail::use_instruction_set(detail::instruction_sets().front()); }
 };
-INSTANTIATE_TEST_SUITE_P(Kernels, CheckerShapesOnKernels, ::testing::Values("", "portable"),
-                         [](const auto& info) { return info.param.empty() ? "quickest" : info.param; });
+INSTANTIATE_TEST_SUITE_P(Kernels, CheckerShapesOnKernels, ::testing::ValuesIn(detail::instruction_sets()),
+                         [](const auto& info) { return info.param; });
 
 }  // namespace
 
-// Capsules have few balls and no finer ones, next to bodies that look at three levels of them.
+// Capsules have few spheres and no finer ones, next to bodies that look at three levels of them.
 TEST_P(CheckerShapesOnKernels, LongCapsulesAgreeWithFcl) {
-  if (!GetParam().empty()) {
-    ASSERT_EQ(detail::collision_kernels(), GetParam());
-  }
   Rng rng(21);
   int free = 0, hit = 0, unjudged = 0;
   for (const Capsule& capsule : {Capsule{0.1, 0.4}, Capsule{0.03, 0.6}, Capsule{0.1, 0.05}}) {
@@ -182,17 +174,17 @@ TEST_P(CheckerShapesOnKernels, EveryPairAgreesWithFcl) {
   const int samples = 250;
   int free = 0, hit = 0, unjudged = 0;
   for (const Case& mover : all_shapes()) {
-    // A link cannot be made of voxels, a held object can.
-    const bool held = mover.name == "voxels";
-    const JointGroup group =
-        free_body::group(held ? std::vector<LinkShape>{} : std::vector<LinkShape>{free_body::link_shape(mover.shape)});
+    // A link cannot be made of voxels, a attached object can.
+    const bool attached = mover.name == "voxels";
+    const JointGroup group = free_body::group(attached ? std::vector<LinkShape>{}
+                                                       : std::vector<LinkShape>{free_body::link_shape(mover.shape)});
     const fcl_reference::Body body = fcl_reference::make_body(mover.shape);
     std::vector<Case> others = all_shapes();
     others.push_back({"plane", Plane{Eigen::Vector3d(0.6, 0, 0.8), 0.1}});
     for (const Case& other : others) {
       World world;
       const Pose T = pose_from_xyz_rpy({0.3, -0.2, 0.5}, {0.4, -0.9, 2.0});
-      if (held) {
+      if (attached) {
         world.add("held", mover.shape, Pose::Identity());
         world.attach("held", "carrier", Pose::Identity());
       }

@@ -57,7 +57,7 @@ std::shared_ptr<const TriangleMesh> bent_sheet() {
 }
 
 // A box whose lid is pressed in: closed, not convex.
-std::shared_ptr<const TriangleMesh> dented_box(const Eigen::Vector3d& size) {
+std::shared_ptr<const TriangleMesh> concave_box(const Eigen::Vector3d& size) {
   const Eigen::Vector3d h = 0.5 * size;
   return make_mesh({{-h[0], -h[1], -h[2]},
                     {h[0], -h[1], -h[2]},
@@ -84,10 +84,10 @@ std::shared_ptr<const TriangleMesh> dented_box(const Eigen::Vector3d& size) {
                     {7, 4, 8}});
 }
 
-// Links of closed dented meshes and capsules on a chain that folds back on itself: fields and covers are made when
+// Links of closed concave meshes and capsules on a chain that folds back on itself: fields and covers are made when
 // first asked for.
 Robot mesh_chain(double step, int links) {
-  const auto mesh = dented_box({0.1, 0.12, 0.3});
+  const auto mesh = concave_box({0.1, 0.12, 0.3});
   std::string urdf = "<robot name='chain'><link name='l0'/>";
   for (int i = 1; i <= links; ++i) {
     const std::string n = std::to_string(i);
@@ -117,7 +117,7 @@ World cloud(Rng& rng) {
   world.add("cloud", Voxels{cells, 0.04}, Pose::Identity());
   Pose T = Pose::Identity();
   T.translation() << 0.5, 0.2, 0.5;
-  world.add("dented", MeshShape{dented_box({0.3, 0.2, 0.4})}, T);
+  world.add("dented", MeshShape{concave_box({0.3, 0.2, 0.4})}, T);
   return world;
 }
 

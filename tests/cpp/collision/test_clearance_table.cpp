@@ -8,8 +8,8 @@
 #include "collision/narrow/narrow.hpp"
 #include "mmgrasp/core/random.hpp"
 
-// What a table says of two dented bodies, against the gap measured in the very pose. The pose is composed here by
-// Eigen's own rotations.
+// What a table says of two concave bodies, against the clearance measured in the very pose. The pose is composed here
+// by Eigen's own rotations.
 
 namespace mmgrasp::detail {
 namespace {
@@ -47,8 +47,8 @@ struct Elbows {
   }
 
   // Rates: the short iron never reaches farther than this from either axis.
-  TwoTurns turns() const {
-    TwoTurns out;
+  RevolutePair joints() const {
+    RevolutePair out;
     out.before = Rigid(before);
     out.between = Rigid(between);
     out.after = Rigid(after);
@@ -56,21 +56,21 @@ struct Elbows {
     return out;
   }
 
-  double gap(double first, double second) const {
+  double clearance(double first, double second) const {
     const Pose T = before * Eigen::AngleAxisd(first, Vector3d::UnitZ()) * between *
                    Eigen::AngleAxisd(second, Vector3d::UnitZ()) * after;
     return std::max(0.0, solids_distance(*a.solid, Rigid(), *b.solid, Rigid(T)).distance);
   }
 };
 
-TEST(ClearanceTable, NeverOverstatesAndFindsMostGaps) {
+TEST(ClearanceTable, NeverOverstatesAndFindsMostClearances) {
   const Elbows elbows;
-  const ClearanceTable table(elbows.a, elbows.b, elbows.turns());
+  const ClearanceTable table(elbows.a, elbows.b, elbows.joints());
   Rng rng(1);
   int touching = 0, narrow = 0, found = 0, wide = 0, far = 0;
   for (int i = 0; i < 4000; ++i) {
     const double first = rng.uniform(-7.0, 7.0), second = rng.uniform(-7.0, 7.0);
-    const double truth = elbows.gap(first, second), wanted = rng.uniform(0.0, i % 2 == 0 ? 0.003 : 0.02);
+    const double truth = elbows.clearance(first, second), wanted = rng.uniform(0.0, i % 2 == 0 ? 0.003 : 0.02);
     const double least = table.at_least(first, second, wanted);
     ASSERT_LE(least, truth) << first << " " << second << " " << wanted;
     touching += truth == 0;
@@ -90,7 +90,7 @@ TEST(ClearanceTable, AnswersDoNotDependOnWhatWasAskedBefore) {
   Rng rng(2);
   for (int i = 0; i < 600; ++i)
     questions.push_back({rng.uniform(-0.6, 0.6), rng.uniform(-0.6, 0.6), rng.uniform(0.0, 0.02)});
-  const ClearanceTable one(elbows.a, elbows.b, elbows.turns()), other(elbows.a, elbows.b, elbows.turns());
+  const ClearanceTable one(elbows.a, elbows.b, elbows.joints()), other(elbows.a, elbows.b, elbows.joints());
   std::vector<double> forwards;
   for (const Vector3d& q : questions) forwards.push_back(one.at_least(q[0], q[1], q[2]));
   std::vector<double> shared(questions.size());
@@ -110,12 +110,12 @@ TEST(ClearanceTable, AnswersDoNotDependOnWhatWasAskedBefore) {
 
 TEST(ClearanceTable, IsSharedWhileItsBodiesLiveAndByNoOtherPair) {
   const Elbows elbows;
-  const auto table = shared_gap_table(elbows.a, elbows.b, elbows.turns());
-  EXPECT_EQ(shared_gap_table(elbows.a, elbows.b, elbows.turns()), table);
-  TwoTurns moved = elbows.turns();
+  const auto table = shared_clearance_table(elbows.a, elbows.b, elbows.joints());
+  EXPECT_EQ(shared_clearance_table(elbows.a, elbows.b, elbows.joints()), table);
+  RevolutePair moved = elbows.joints();
   moved.between.t[0] += 1e-6;
-  EXPECT_NE(shared_gap_table(elbows.a, elbows.b, moved), table);
-  EXPECT_NE(shared_gap_table(elbows.b, elbows.a, elbows.turns()), table);
+  EXPECT_NE(shared_clearance_table(elbows.a, elbows.b, moved), table);
+  EXPECT_NE(shared_clearance_table(elbows.b, elbows.a, elbows.joints()), table);
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
-#include "collision/checker/bodies.hpp"
+#include "collision/checker/pair_plan.hpp"
 #include "collision/narrow/narrow.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "support/mesh_robots.hpp"
 
-// How fast a pair can close its gap, against gaps measured before and after a small motion.
+// How fast a pair can close its clearance, against clearances measured before and after a small motion.
 
 namespace mmgrasp::detail {
 namespace {
@@ -35,14 +35,14 @@ Robot two_arms() {
   return Robot::from_strings(urdf + "</robot>", srdf + "</group></robot>");
 }
 
-// Returns how many gaps changed by more than half of what the bound allows.
+// Returns how many clearances changed by more than half of what the bound allows.
 int expect_bounded(const JointGroup& group, int draws) {
   const Snapshot snapshot(group.robot(), World(), CheckerOptions());
   const PairPlan plan(snapshot, group);
   EXPECT_TRUE(plan.rates.finite);
   std::vector<double> frames(16 * static_cast<std::size_t>(plan.frames.count()));
   MovingFrames::set(Rigid(), frames.data());
-  const auto gap = [&](const ShapePair& pair, const Eigen::VectorXd& q) {
+  const auto clearance = [&](const ShapePair& pair, const Eigen::VectorXd& q) {
     plan.frames.place(q.data(), frames.data());
     const auto pose = [&](int s) {
       return MovingFrames::get(frames.data() + 16 * plan.placed[s].frame) * plan.placed[s].in_frame;
@@ -59,7 +59,7 @@ int expect_bounded(const JointGroup& group, int draws) {
     if (i % 2 == 1) step = 0.02 * rng.uniform(-Eigen::VectorXd::Ones(q.size()), Eigen::VectorXd::Ones(q.size()));
     const Eigen::VectorXd next = (q + step).cwiseMax(group.lower()).cwiseMin(group.upper());
     for (std::size_t p = 0; p < plan.varying.size(); ++p) {
-      const double before = gap(plan.varying[p], q), after = gap(plan.varying[p], next);
+      const double before = clearance(plan.varying[p], q), after = clearance(plan.varying[p], next);
       if (before <= 0 || after <= 0) continue;
       const double bound = plan.rates.pairs.col(static_cast<Eigen::Index>(p)).dot((next - q).cwiseAbs());
       EXPECT_LE(std::abs(after - before), bound + 1e-9) << "pair " << p << " at " << q.transpose();
@@ -69,14 +69,14 @@ int expect_bounded(const JointGroup& group, int draws) {
   return close;
 }
 
-TEST(ClosingRates, BoundHowGapsOfRealArmsChange) {
+TEST(ClosingRates, BoundHowClearancesOfRealArmsChange) {
   for (const auto& arm : {testing_support::ur5_arm(), testing_support::tiago_arm()}) {
     SCOPED_TRACE(arm.name);
     EXPECT_GT(expect_bounded(arm.group, 30), 50);
   }
 }
 
-TEST(ClosingRates, BoundHowGapsAcrossBranchesChange) {
+TEST(ClosingRates, BoundHowClearancesAcrossBranchesChange) {
   EXPECT_GT(expect_bounded(two_arms().group("all", "left_hand"), 2000), 1000);
 }
 

@@ -14,9 +14,9 @@ using namespace mmgrasp;
 
 namespace {
 
-/// Two balls of 0.1 m radius on the base and on the tip of a planar arm; the ball halfway along the upper link has 0.05
-/// m.
-CollisionChecker two_balls() {
+/// Two spheres of 0.1 m radius on the base and on the tip of a planar arm; the sphere halfway along the upper link has
+/// 0.05 m.
+CollisionChecker two_spheres() {
   return CollisionChecker(Robot::from_strings(test::two_balls_urdf()).chain("base", "tip"), World());
 }
 
@@ -27,21 +27,21 @@ double tip_distance(const Eigen::VectorXd& q) {
 
 }  // namespace
 
-TEST(SelfDistanceObjective, ClosedFormOfTwoBalls) {
-  const CollisionChecker checker = two_balls();
+TEST(SelfDistanceObjective, ClosedFormOfTwoSpheres) {
+  const CollisionChecker checker = two_spheres();
   const auto objective = make_self_distance_objective(checker, 0.15, 2.0);
   Rng rng(19);
   int near = 0;
   for (int i = 0; i < 300; ++i) {
     const Eigen::VectorXd q = rng.uniform(checker.group().lower(), checker.group().upper());
-    const double base_gap = tip_distance(q) - 0.2;
-    // The small ball sits at 0.25 m on the upper link, the tip at 0.5 m behind the elbow.
+    const double base_clearance = tip_distance(q) - 0.2;
+    // The small sphere sits at 0.25 m on the upper link, the tip at 0.5 m behind the elbow.
     const double x = 0.25 + 0.5 * std::cos(q[1]), y = 0.5 * std::sin(q[1]);
-    const double upper_gap = std::hypot(x, y) - 0.15;
-    const auto part = [](double gap) { return gap < 0.15 ? 2 * std::pow(1 - gap / 0.15, 2) : 0; };
+    const double upper_clearance = std::hypot(x, y) - 0.15;
+    const auto part = [](double clearance) { return clearance < 0.15 ? 2 * std::pow(1 - clearance / 0.15, 2) : 0; };
     const bool upper_counts = !checker.group().robot().pair_disabled(checker.group().robot().link_index("upper"),
                                                                      checker.group().robot().link_index("tip"));
-    const double expected = part(base_gap) + (upper_counts ? part(upper_gap) : 0);
+    const double expected = part(base_clearance) + (upper_counts ? part(upper_clearance) : 0);
     Eigen::VectorXd gradient;
     EXPECT_NEAR(objective->evaluate(q, gradient), expected, 1e-9) << q.transpose();
     if (expected == 0) continue;
@@ -85,7 +85,7 @@ TEST(SelfDistanceObjective, SlidingMovesLinksApart) {
 }
 
 TEST(SelfDistanceObjective, ThreadsShareIt) {
-  const CollisionChecker checker = two_balls();
+  const CollisionChecker checker = two_spheres();
   const auto objective = make_self_distance_objective(checker, 0.5);
   Rng rng(21);
   std::vector<Eigen::VectorXd> q;
@@ -107,7 +107,7 @@ TEST(SelfDistanceObjective, ThreadsShareIt) {
 }
 
 TEST(SelfDistanceObjective, BadInput) {
-  const CollisionChecker checker = two_balls();
+  const CollisionChecker checker = two_spheres();
   EXPECT_THROW(make_self_distance_objective(checker, 0), InvalidInput);
   EXPECT_THROW(make_self_distance_objective(checker, 0.1, NAN), InvalidInput);
 }

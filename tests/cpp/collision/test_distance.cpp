@@ -23,7 +23,7 @@ MeshShape random_hull(unsigned seed) {
 }
 
 // A box whose lid is pressed in towards its middle: closed, not convex.
-MeshShape dented_box(const Eigen::Vector3d& size) {
+MeshShape concave_box(const Eigen::Vector3d& size) {
   const auto box = shape_mesh(Box{size});
   std::vector<Eigen::Vector3d> v = box->vertices;
   std::vector<std::array<int, 3>> t;
@@ -57,7 +57,7 @@ std::vector<Shape> convex_shapes() {
 
 std::vector<Shape> link_shapes() {
   std::vector<Shape> shapes = convex_shapes();
-  shapes.push_back(dented_box({0.4, 0.3, 0.5}));
+  shapes.push_back(concave_box({0.4, 0.3, 0.5}));
   return shapes;
 }
 
@@ -153,21 +153,21 @@ TEST(Distance, DepthOfBoxesIsTheSeparatingAxes) {
 }
 
 TEST(Distance, DepthOfRoundBodiesInClosedForm) {
-  CollisionChecker balls = make_checker(Sphere{0.2}, Sphere{0.3});
-  CollisionChecker ball_in_box = make_checker(Sphere{0.1}, Box{{1, 1.2, 2}});
+  CollisionChecker spheres = make_checker(Sphere{0.2}, Sphere{0.3});
+  CollisionChecker sphere_in_box = make_checker(Sphere{0.1}, Box{{1, 1.2, 2}});
   CollisionChecker pills = make_checker(Capsule{0.1, 0.6}, Capsule{0.2, 0.6});
   CollisionChecker cans = make_checker(Cylinder{0.1, 0.6}, Cylinder{0.2, 0.6});
   Eigen::VectorXd q = Eigen::VectorXd::Zero(6);
   q.head<3>() << 0.03, 0.04, 0.12;  // 0.13 from the middle
-  EXPECT_NEAR(balls.distance(q).value, 0.13 - 0.5, 1e-12);
+  EXPECT_NEAR(spheres.distance(q).value, 0.13 - 0.5, 1e-12);
   EXPECT_NEAR(pills.distance(q).value, 0.05 - 0.3, 1e-9) << "parallel capsules: the axes are 0.05 m apart";
   EXPECT_NEAR(cans.distance(q).value, 0.05 - 0.3, 1e-9);
   q.head<3>() << 0.03, 0.04, 0.55;
   EXPECT_NEAR(cans.distance(q).value, 0.55 - 0.6, 1e-9) << "end to end";
   q.head<3>() << 0.35, 0.1, -0.2;
-  EXPECT_NEAR(ball_in_box.distance(q).value, -(0.5 - 0.35) - 0.1, 1e-9);
+  EXPECT_NEAR(sphere_in_box.distance(q).value, -(0.5 - 0.35) - 0.1, 1e-9);
   // The deepest points and the way out.
-  const DistanceResult out = ball_in_box.distance_and_gradient(q);
+  const DistanceResult out = sphere_in_box.distance_and_gradient(q);
   EXPECT_LT((out.point_a - Eigen::Vector3d(0.25, 0.1, -0.2)).norm(), 1e-7);
   EXPECT_LT((out.point_b - Eigen::Vector3d(0.5, 0.1, -0.2)).norm(), 1e-7);
   Eigen::VectorXd expected = Eigen::VectorXd::Zero(6);
@@ -175,7 +175,7 @@ TEST(Distance, DepthOfRoundBodiesInClosedForm) {
   EXPECT_LT((out.gradient - expected).norm(), 1e-7);
   // Concentric: any way out is as good.
   q.setZero();
-  EXPECT_NEAR(balls.distance(q).value, -0.5, 1e-12);
+  EXPECT_NEAR(spheres.distance(q).value, -0.5, 1e-12);
 }
 
 TEST(Distance, DepthIsTheShortestWayOutOfConvexBodies) {
@@ -242,7 +242,7 @@ TEST(Distance, OfVoxelsAndPlanes) {
   EXPECT_NEAR(wall.distance(q).value, 0.3 - 0.025 - 0.1, 1e-12);
   q[0] = 0.1;
   EXPECT_NEAR(wall.distance(q).value, -0.025, 1e-9) << "the cell straight ahead is the deepest";
-  CollisionChecker floor = make_checker(dented_box({0.4, 0.4, 0.2}), Plane{Eigen::Vector3d::UnitZ(), 0.5});
+  CollisionChecker floor = make_checker(concave_box({0.4, 0.4, 0.2}), Plane{Eigen::Vector3d::UnitZ(), 0.5});
   q.head<3>() << 1, 2, 1;
   const DistanceResult above = floor.distance_and_gradient(q);
   EXPECT_NEAR(above.value, 0.4, 1e-12);

@@ -12,7 +12,7 @@ using namespace mmgrasp::testing_support;
 
 namespace {
 
-World boxes(const MeshArm& arm, unsigned seed, int count, bool held) {
+World boxes(const MeshArm& arm, unsigned seed, int count, bool attached) {
   Rng rng(seed);
   World world;
   for (int i = 0; i < count; ++i) {
@@ -22,7 +22,7 @@ World boxes(const MeshArm& arm, unsigned seed, int count, bool held) {
     T.linear() = rng.rotation().toRotationMatrix();
     world.add("box" + std::to_string(i), Box{{rng.uniform(0.04, 0.2), 0.1, rng.uniform(0.04, 0.2)}}, T);
   }
-  if (held) {
+  if (attached) {
     Pose T = Pose::Identity();
     T.translation().z() = 0.25;
     world.add("part", Cylinder{0.03, 0.2}, Pose::Identity());
@@ -32,7 +32,7 @@ World boxes(const MeshArm& arm, unsigned seed, int count, bool held) {
 }
 
 struct Tally {
-  int scene = 0, self = 0, held = 0, overlapping = 0, kinks = 0;
+  int scene = 0, self = 0, attached = 0, overlapping = 0, kinks = 0;
 };
 
 // Steps that straddle a change of the closest points have no derivative: one-sided differences tell them.
@@ -67,7 +67,7 @@ void expect_gradients(const MeshArm& arm, CheckerOptions options, int samples, T
     tally.kinks += kink;
     if (kink) continue;
     ++(here.with_scene ? tally.scene : tally.self);
-    tally.held += here.a == "part" || here.b == "part";
+    tally.attached += here.a == "part" || here.b == "part";
     tally.overlapping += here.value < 0;
   }
 }
@@ -81,7 +81,7 @@ Tally tally_of(const MeshArm& arm) {
     expect_gradients(arm, options, 60, tally);
   }
   std::printf("%s: gradients of %d scene pairs, %d self pairs, %d of a held part, %d in overlap; %d kinks\n",
-              arm.name.c_str(), tally.scene, tally.self, tally.held, tally.overlapping, tally.kinks);
+              arm.name.c_str(), tally.scene, tally.self, tally.attached, tally.overlapping, tally.kinks);
   EXPECT_GT(tally.scene, 30);
   EXPECT_GT(tally.self, 30);
   EXPECT_LT(tally.kinks, 40);
@@ -92,14 +92,14 @@ Tally tally_of(const MeshArm& arm) {
 
 TEST(DistanceRobots, GradientIsTheDifference) {
   MMGRASP_NEEDS_SHARED_DATA();
-  int held = 0, overlapping = 0;
+  int attached = 0, overlapping = 0;
   for (const MeshArm& arm : {panda_arm(), ur5_arm(), tiago_arm(BaseKind::diff_drive)}) {
     const Tally tally = tally_of(arm);
-    held += tally.held;
+    attached += tally.attached;
     overlapping += tally.overlapping;
     if (::testing::Test::HasFatalFailure()) return;
   }
-  EXPECT_GT(held, 10);
+  EXPECT_GT(attached, 10);
   EXPECT_GT(overlapping, 10);
 }
 

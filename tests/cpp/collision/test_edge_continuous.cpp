@@ -148,7 +148,7 @@ TEST(EdgeContinuous, PaddingLimitsAndStartsAreKept) {
   EXPECT_TRUE(check_edge(plain, q0, q0, continuous()).free);
 }
 
-TEST(EdgeContinuous, AFloatingBallMeetsAThinWall) {
+TEST(EdgeContinuous, AFloatingSphereMeetsAThinWall) {
   const Robot robot =
       Robot::from_strings(
           "<robot name='r'><link name='root'/><link name='arm'/><link name='carrier'/>"

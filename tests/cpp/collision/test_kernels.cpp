@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "mmgrasp/core/detail/instruction_set.hpp"
 #include "mmgrasp/core/random.hpp"
 
 // Each loop of the collision kernels, in every version this machine runs, against plain double precision: they may err
@@ -17,15 +18,15 @@ using Eigen::Vector3d;
 
 constexpr double kSlack = 1e-5;
 
-/// Runs a test once with the portable kernels and once with the quickest.
-class CollisionKernels : public testing::TestWithParam<const char*> {
+/// Runs a test with every instruction set of this machine.
+class CollisionKernels : public testing::TestWithParam<std::string> {
  protected:
-  void SetUp() override { use_collision_kernels(GetParam()); }
-  void TearDown() override { use_collision_kernels(""); }
+  void SetUp() override { use_instruction_set(GetParam()); }
+  void TearDown() override { use_instruction_set(instruction_sets().front()); }
 };
 
-INSTANTIATE_TEST_SUITE_P(Each, CollisionKernels, testing::Values("portable", ""),
-                         [](const auto& info) { return std::string(*info.param ? info.param : "quickest"); });
+INSTANTIATE_TEST_SUITE_P(Each, CollisionKernels, testing::ValuesIn(instruction_sets()),
+                         [](const auto& info) { return info.param; });
 
 Vector3d point_within(Rng& random, double half) {
   return {random.uniform(-half, half), random.uniform(-half, half), random.uniform(-half, half)};
@@ -57,7 +58,7 @@ FloatRigid to_float(const Matrix3d& R, const Vector3d& t) {
   return out;
 }
 
-/// Balls as a CoverView wants them: padded to whole vectors with balls far away.
+/// Spheres as a CoverView wants them: padded to whole vectors with spheres far away.
 struct Cover {
   std::vector<float> x, y, z, outer, inner;
   int filled = 0;
@@ -98,18 +99,18 @@ TEST_P(CollisionKernels, FramesEqualProductsOfTransforms) {
       step.offset = random.uniform(-1, 1);
       step.parent = static_cast<int>(random.uniform(0, i + 0.999));
       step.column = static_cast<int>(q.size());
-      step.motion = i % 3 == 0 ? FrameMotion::turn : i % 3 == 1 ? FrameMotion::slide : FrameMotion::ball;
+      step.motion = i % 3 == 0 ? FrameMotion::revolute : i % 3 == 1 ? FrameMotion::prismatic : FrameMotion::spherical;
       Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
-      if (step.motion == FrameMotion::ball) {
+      if (step.motion == FrameMotion::spherical) {
         const Vector3d w = round == 0 ? Vector3d::Zero() : point_within(random, 2);
         if (w.norm() > 0) moved.linear() = Eigen::AngleAxisd(w.norm(), w.normalized()).toRotationMatrix();
         for (int k = 0; k < 3; ++k) q.push_back(w[k]);
       } else {
         q.push_back(random.uniform(-3, 3));
         const double value = step.multiplier * q.back() + step.offset;
-        if (step.motion == FrameMotion::turn)
+        if (step.motion == FrameMotion::revolute)
           moved.linear() = Eigen::AngleAxisd(value, Vector3d::UnitZ()).toRotationMatrix();
-        if (step.motion == FrameMotion::slide) moved.translation().z() = value;
+        if (step.motion == FrameMotion::prismatic) moved.translation().z() = value;
       }
       expected.push_back(expected[step.parent] * fixed * moved);
       steps.push_back(step);
@@ -120,9 +121,9 @@ TEST_P(CollisionKernels, FramesEqualProductsOfTransforms) {
       for (int c = 0; c < 4; ++c)
         for (int r = 0; r < 3; ++r) EXPECT_NEAR(frames[16 * f + 4 * c + r], expected[f].matrix()(r, c), 1e-13) << f;
 
-    const FrameSphere ball{{0.1, -0.2, 0.3}, 0.07, 5};
+    const FrameSphere sphere{{0.1, -0.2, 0.3}, 0.07, 5};
     float placed[4];
-    kernels().place_balls(&ball, 1, frames, placed, 1);
+    kernels().place_spheres(&sphere, 1, frames, placed, 1);
     const Vector3d centre = expected[5] * Vector3d(0.1, -0.2, 0.3);
     const double moved_by = (Vector3d(placed[0], placed[1], placed[2]) - centre).norm();
     EXPECT_GE(placed[3], 0.07 + moved_by);  // what rounding moved, the radius makes good
@@ -130,7 +131,7 @@ TEST_P(CollisionKernels, FramesEqualProductsOfTransforms) {
   }
 }
 
-TEST_P(CollisionKernels, BallsMeetBoxesWhenTheyDo) {
+TEST_P(CollisionKernels, SpheresMeetBoxesWhenTheyDo) {
   Rng random(5);
   int met = 0, apart = 0;
   for (int round = 0; round < 300; ++round) {
@@ -152,12 +153,12 @@ TEST_P(CollisionKernels, BallsMeetBoxesWhenTheyDo) {
     const double radius = static_cast<float>(random.uniform(0.05, 0.5));
     float numbers[4] = {static_cast<float>(centre.x()), static_cast<float>(centre.y()), static_cast<float>(centre.z()),
                         static_cast<float>(radius)};
-    const BallRows ball{numbers, numbers + 1, numbers + 2, numbers + 3};
+    const SphereRows sphere{numbers, numbers + 1, numbers + 2, numbers + 3};
     std::uint8_t masks[2] = {};
     float nearest = 0;
-    kernels().balls_meet(packs, 2, ball, 1, masks, &nearest);
+    kernels().spheres_meet_boxes(packs, 2, sphere, 1, masks, &nearest);
     std::uint8_t without_nearest[2] = {};
-    kernels().balls_meet(packs, 2, ball, 1, without_nearest, nullptr);
+    kernels().spheres_meet_boxes(packs, 2, sphere, 1, without_nearest, nullptr);
     EXPECT_EQ(masks[0], without_nearest[0]);
     EXPECT_EQ(masks[1], without_nearest[1]);
     double least = 1e9;
@@ -179,25 +180,25 @@ TEST_P(CollisionKernels, BallsMeetBoxesWhenTheyDo) {
   EXPECT_GT(apart, 300);
 }
 
-TEST_P(CollisionKernels, PairsOfBallsMeetWhenTheyDo) {
+TEST_P(CollisionKernels, PairsOfSpheresMeetWhenTheyDo) {
   Rng random(9);
-  constexpr int kBalls = 21;
+  constexpr int kSpheres = 21;
   int met = 0, apart = 0;
   for (int round = 0; round < 200; ++round) {
     constexpr int kRow = 24;
     std::vector<float> numbers(4 * kRow);
-    const BallRows balls{&numbers[0], &numbers[kRow], &numbers[2 * kRow], &numbers[3 * kRow]};
+    const SphereRows spheres{&numbers[0], &numbers[kRow], &numbers[2 * kRow], &numbers[3 * kRow]};
     for (int i = 0; i < 3 * kRow; ++i) numbers[i] = static_cast<float>(random.uniform(-1, 1));
     for (int i = 3 * kRow; i < 4 * kRow; ++i) numbers[i] = static_cast<float>(random.uniform(0.05, 0.6));
     std::vector<PairBlock> blocks;
-    for (int i = 0; i < kBalls; ++i) {
+    for (int i = 0; i < kSpheres; ++i) {
       const int first = static_cast<int>(random.index(3)) * kLanes;
-      // Lanes beyond the last ball belong to no pair.
-      const unsigned lanes = first + kLanes > kBalls ? (1u << (kBalls - first)) - 1 : 0xffu;
+      // Lanes beyond the last sphere belong to no pair.
+      const unsigned lanes = first + kLanes > kSpheres ? (1u << (kSpheres - first)) - 1 : 0xffu;
       blocks.push_back({i, first, static_cast<std::uint8_t>(random.index(256) & lanes)});
     }
     std::vector<std::uint8_t> masks(blocks.size());
-    kernels().pairs_meet(blocks.data(), kBalls, balls, masks.data());
+    kernels().sphere_pairs_meet(blocks.data(), kSpheres, spheres, masks.data());
     for (std::size_t b = 0; b < blocks.size(); ++b) {
       for (int lane = 0; lane < kLanes; ++lane) {
         const bool said = (masks[b] >> lane & 1) != 0;
@@ -205,11 +206,12 @@ TEST_P(CollisionKernels, PairsOfBallsMeetWhenTheyDo) {
           EXPECT_FALSE(said);
           continue;
         }
-        const int i = blocks[b].ball, k = blocks[b].first + lane;
-        const double gap = std::hypot(balls.x[i] - balls.x[k], balls.y[i] - balls.y[k], balls.z[i] - balls.z[k]) -
-                           balls.radius[i] - balls.radius[k];
-        if (std::abs(gap) > kSlack) {
-          EXPECT_EQ(said, gap < 0);
+        const int i = blocks[b].sphere, k = blocks[b].first + lane;
+        const double clearance =
+            std::hypot(spheres.x[i] - spheres.x[k], spheres.y[i] - spheres.y[k], spheres.z[i] - spheres.z[k]) -
+            spheres.radius[i] - spheres.radius[k];
+        if (std::abs(clearance) > kSlack) {
+          EXPECT_EQ(said, clearance < 0);
         }
         ++(said ? met : apart);
       }
@@ -235,8 +237,8 @@ TEST_P(CollisionKernels, CoverAgainstBoxIsNeverSureAndWrong) {
     const double grow = random.uniform(0, 0.01);
     const CoverView view = cover.view();
     const auto ask = [&](bool seek_overlap) {
-      return kernels().cover_box(view, to_float(box.R, box.centre), half, static_cast<float>(grow),
-                                 static_cast<float>(kSlack), seek_overlap);
+      return kernels().cover_meets_box(view, to_float(box.R, box.centre), half, static_cast<float>(grow),
+                                       static_cast<float>(kSlack), seek_overlap);
     };
     const CoverAnswer answer = ask(true);
     EXPECT_EQ(ask(false) == kApart, answer == kApart);
@@ -261,7 +263,7 @@ TEST_P(CollisionKernels, CoverAgainstBoxIsNeverSureAndWrong) {
   for (const int count : answers) EXPECT_GT(count, 100);
 }
 
-/// Two levels: big balls, each with eight small ones inside it.
+/// Two levels: big spheres, each with eight small ones inside it.
 struct TwoLevels {
   TwoLevels(Rng& random, double within, double inner) {
     for (int i = 0; i < kLanes; ++i) {
@@ -276,17 +278,17 @@ struct TwoLevels {
   CoverView views[2];
 };
 
-/// What balls of a cover may be told: `least` is the smallest gap of their outer balls, those above `surely_apart` must
-/// be told apart; `overlap_possible`: an inner ball meets the body.
+/// What spheres of a cover may be told: `least` is the smallest clearance of their outer spheres, those above
+/// `surely_apart` must be told apart; `overlap_possible`: an inner sphere meets the body.
 void expect_never_sure_and_wrong(CoverAnswer answer, double least, double surely_apart, bool overlap_possible) {
   if (least < 0) EXPECT_NE(answer, kApart);
   if (least > surely_apart) EXPECT_EQ(answer, kApart);
   if (!overlap_possible) EXPECT_NE(answer, kOverlap);
 }
 
-/// The field of a ball of radius 0.2 about the origin. Each cell holds the distance of its centre, or a lower bound of
+/// The grid of a sphere of radius 0.2 about the origin. Each cell holds the distance of its centre, or a lower bound of
 /// all distances within it.
-void field_is_never_sure_and_wrong(bool of_centres) {
+void grid_is_never_sure_and_wrong(bool of_centres) {
   constexpr int kCount = 24;
   constexpr double kLow = -0.36, kStep = 0.03, kRadius = 0.2, kQuantum = 0.004;
   std::vector<std::int8_t> cells(kCount * kCount * kCount);
@@ -298,16 +300,16 @@ void field_is_never_sure_and_wrong(bool of_centres) {
         const double units = d + reach < 0 ? -1 : std::max(0.0, of_centres ? d : d - reach) / kQuantum;
         cells[(i * kCount + j) * kCount + k] = static_cast<std::int8_t>(std::min(127.0, std::floor(units)));
       }
-  FieldView field{};
+  GridView grid{};
   for (int k = 0; k < 3; ++k) {
-    field.low[k] = static_cast<float>(kLow);
-    field.half[k] = static_cast<float>(kRadius);
-    field.count[k] = kCount;
+    grid.low[k] = static_cast<float>(kLow);
+    grid.half[k] = static_cast<float>(kRadius);
+    grid.count[k] = kCount;
   }
-  field.per_step = static_cast<float>(1 / kStep);
-  field.quantum = static_cast<float>(kQuantum);
-  field.spread = of_centres ? static_cast<float>(kStep) : 0;
-  field.cells = cells.data();
+  grid.per_step = static_cast<float>(1 / kStep);
+  grid.quantum = static_cast<float>(kQuantum);
+  grid.spread = of_centres ? static_cast<float>(kStep) : 0;
+  grid.cells = cells.data();
   Rng random(11);
   int answers[3] = {};
   for (int round = 0; round < 4000; ++round) {
@@ -316,7 +318,8 @@ void field_is_never_sure_and_wrong(bool of_centres) {
     const Matrix3d R = any_rotation(random);
     const Vector3d t = point_within(random, 0.4);
     const auto ask = [&](bool seek_overlap) {
-      return kernels().field_cover(field, levels.views, 2, to_float(R, t), 0, static_cast<float>(kSlack), seek_overlap);
+      return kernels().cover_tree_meets_grid(grid, levels.views, 2, to_float(R, t), 0, static_cast<float>(kSlack),
+                                             seek_overlap);
     };
     const CoverAnswer answer = ask(true);
     EXPECT_EQ(ask(false) == kApart, answer == kApart);
@@ -344,8 +347,8 @@ TEST_P(CollisionKernels, LevelsOfCoversAgainstBoxAreNeverSureAndWrong) {
     const float half[3] = {static_cast<float>(box.half[0]), static_cast<float>(box.half[1]),
                            static_cast<float>(box.half[2])};
     const auto ask = [&](bool seek_overlap) {
-      return kernels().box_cover(levels.views, 2, to_float(box.R, box.centre), half, 0, static_cast<float>(kSlack),
-                                 seek_overlap);
+      return kernels().cover_tree_meets_box(levels.views, 2, to_float(box.R, box.centre), half, 0,
+                                            static_cast<float>(kSlack), seek_overlap);
     };
     const CoverAnswer answer = ask(true);
     EXPECT_EQ(ask(false) == kApart, answer == kApart);
@@ -361,12 +364,12 @@ TEST_P(CollisionKernels, LevelsOfCoversAgainstBoxAreNeverSureAndWrong) {
   for (const int count : answers) EXPECT_GT(count, 100);
 }
 
-TEST_P(CollisionKernels, FieldOfCellsIsNeverSureAndWrong) {
-  field_is_never_sure_and_wrong(false);
+TEST_P(CollisionKernels, GridOfCellsIsNeverSureAndWrong) {
+  grid_is_never_sure_and_wrong(false);
 }
 
-TEST_P(CollisionKernels, FieldOfCentresIsNeverSureAndWrong) {
-  field_is_never_sure_and_wrong(true);
+TEST_P(CollisionKernels, GridOfCentresIsNeverSureAndWrong) {
+  grid_is_never_sure_and_wrong(true);
 }
 
 }  // namespace

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "collision/narrow/distance_field.hpp"
+#include "collision/narrow/distance_grid.hpp"
 #include "mmgrasp/core/random.hpp"
 
-// Whether two bodies are farther apart than a given gap, against their distance.
+// Whether two bodies are farther apart than a given clearance, against their distance.
 
 namespace mmgrasp::detail {
 namespace {
@@ -34,11 +34,11 @@ Rigid random_pose(Rng& rng) {
   return Rigid(T);
 }
 
-TEST(Narrow, SaysWhetherAGapIsWiderThanAsked) {
+TEST(Narrow, SaysWhetherTheClearanceExceedsABound) {
   const auto large = std::make_shared<const TriangleMesh>(ring(12, 0.2));
   const auto small = std::make_shared<const TriangleMesh>(ring(5, 0.06));
   const auto a = make_solid(MeshShape{large}), b = make_solid(MeshShape{small}), can = make_solid(Cylinder{0.04, 0.1});
-  const DistanceField field(*small, *b);
+  const DistanceGrid grid(*small, *b);
   Rng rng(5);
   int wider = 0, narrower = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -47,10 +47,10 @@ TEST(Narrow, SaysWhetherAGapIsWiderThanAsked) {
       const double distance = solids_distance(*a, T_a, *other, T_b).distance;
       if (distance <= 0) continue;
       for (const double share : {0.2, 0.999, 1.001, 5.0}) {
-        const double gap = share * distance;
-        const bool within = solids_collide(*a, T_a, *other, T_b, gap);
-        EXPECT_EQ(within, share > 1) << "distance " << distance << ", asked for " << gap;
-        if (other == b.get()) EXPECT_EQ(meshes_collide(*b, T_b, field, *a, T_a, gap), within) << distance;
+        const double clearance = share * distance;
+        const bool within = solids_collide(*a, T_a, *other, T_b, clearance);
+        EXPECT_EQ(within, share > 1) << "distance " << distance << ", asked for " << clearance;
+        if (other == b.get()) EXPECT_EQ(meshes_collide(*b, T_b, grid, *a, T_a, clearance), within) << distance;
         ++(within ? narrower : wider);
       }
     }

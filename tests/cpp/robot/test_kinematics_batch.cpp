@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "mmgrasp/core/detail/instruction_set.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "support/kinematics_support.hpp"
 

@@ -5,6 +5,7 @@
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
 
+#include "mmgrasp/core/detail/instruction_set.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/robot/kinematics_batch.hpp"
 #include "support/robot_support.hpp"

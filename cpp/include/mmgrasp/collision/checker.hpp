@@ -14,40 +14,50 @@
 
 namespace mmgrasp {
 
-namespace detail {
-struct CheckerAccess;
-}
+class CollisionChecker;
+struct EdgeOptions;
+struct EdgeResult;
+MMGRASP_EXPORT EdgeResult check_edge(CollisionChecker& checker, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
+                                     const EdgeOptions& options);
+MMGRASP_EXPORT Eigen::VectorXd motion_bounds(const CollisionChecker& checker);
 
 struct MMGRASP_EXPORT CheckerOptions {
-  double padding = 0;       ///< Robot links (not what they hold) are grown by this [m] against the scene; >= 0.
-  bool check_self = true;   ///< Robot (and what it holds) against itself.
-  bool check_scene = true;  ///< Robot (and what it holds) against the scene.
-  /// Only what it holds, against the robot and the scene: the robot alone is taken to be free (many grasps of one
-  /// object share what is known of the robot, P2 4.3.2.4).
+  double padding = 0;  ///< Robot links (not what is attached to them) are grown by this [m] against the scene; >= 0.
+  bool check_self = true;   ///< Check the robot and what is attached to it against itself.
+  bool check_scene = true;  ///< Check the robot and what is attached to it against the scene.
+  /// Check only what is attached, against the robot and the scene: the robot alone is taken to be free (many grasps of
+  /// one object share what is known of the robot, P2 4.3.2.4).
   bool held_only = false;
   void check() const;
 };
 
-/// Two bodies that touch. `a` is a robot link or a held object, `b` a link, a held object or a scene object.
+/// Two bodies that touch. `a` is a robot link or an attached object, `b` a link, an attached object or a scene object.
 struct MMGRASP_EXPORT Contact {
   std::string a, b;
   bool with_scene = false;
 };
 
-/// Signed distance of two bodies. Overlapping: minus the least shift that parts them, exact for convex bodies; for
-/// others that of their hulls (bounding boxes of meshes without one), which is never too small, and for voxels the
-/// deepest cell's. The witness points are then the deepest ones.
 struct MMGRASP_EXPORT DistanceResult {
   double value = std::numeric_limits<double>::infinity();  ///< [m]; negative: depth.
   std::string a, b;                                        ///< The closest pair.
   Eigen::Vector3d point_a = Eigen::Vector3d::Zero();       ///< Witness points, world frame.
   Eigen::Vector3d point_b = Eigen::Vector3d::Zero();
   bool with_scene = false;   ///< `b` is an object of the scene.
-  Eigen::VectorXd gradient;  ///< d value / d q, length of the configuration; only when it was asked for.
+  Eigen::VectorXd gradient;  ///< d value / d q, length of the configuration; empty unless requested.
 };
 
-/// Answers collision questions about one group of one robot in one snapshot of a world. Not thread-safe (scratch
-/// inside): `clone()` gives one per thread, sharing everything immutable. Closed meshes are solids, open ones surfaces.
+/// Is a configuration free of collisions, what touches, and how far away is the rest? A checker answers for one group
+/// of one robot in one snapshot of a world: it prepares shapes and pairs once, so that a query takes microseconds.
+///
+///   CollisionChecker checker(robot.group("arm"), world);
+///   if (!checker.is_free(q)) std::cout << checker.first_contact(q)->a;
+///   checker.edge_is_free(q0, q1);             // the straight line between two configurations, in steps of 0.02 rad
+///   CollisionChecker other = checker.clone();  // for another thread
+///
+/// - Closed meshes are solids: a body wholly inside one collides. Open meshes are surfaces.
+/// - The answers are exact; docs/methods/collision.md says how they get quick.
+/// - Later changes of the world do not reach the checker: make a new one, which is cheap, since meshes stay prepared.
+/// - Not thread-safe, for it has scratch inside; clones share everything that does not change.
 class MMGRASP_EXPORT CollisionChecker {
  public:
   CollisionChecker(const JointGroup& group, const World& world, const CheckerOptions& options = {});
@@ -68,11 +78,11 @@ class MMGRASP_EXPORT CollisionChecker {
   /// Limits (with 1e-9 of slack for rounding), then self, then scene: the first cause found, or none. The hot query.
   /// `q` must have the right length and be finite (checked; throws InvalidInput).
   Rejection rejection(const Eigen::VectorXd& q);
-  /// rejection(q) == Rejection::none, quicker: what collided last is looked at first.
+  /// rejection(q) == Rejection::none, quicker: what collided last is tested first.
   bool is_free(const Eigen::VectorXd& q);
-  /// Every touching pair (limits are not looked at).
+  /// Every touching pair (limits are not checked).
   std::vector<Contact> contacts(const Eigen::VectorXd& q);
-  /// One touching pair (limits are not looked at), self before scene; nothing when free. Cheaper than contacts().
+  /// One touching pair (limits are not checked), self before scene; nothing when free. Cheaper than contacts().
   std::optional<Contact> first_contact(const Eigen::VectorXd& q);
   /// Smallest distance over all checked pairs; padding is not subtracted. Infinite when there is no pair.
   DistanceResult distance(const Eigen::VectorXd& q);
@@ -90,7 +100,8 @@ class MMGRASP_EXPORT CollisionChecker {
   std::size_t queries() const;  ///< Configurations checked so far.
 
  private:
-  friend struct detail::CheckerAccess;
+  friend EdgeResult check_edge(CollisionChecker&, const Eigen::VectorXd&, const Eigen::VectorXd&, const EdgeOptions&);
+  friend Eigen::VectorXd motion_bounds(const CollisionChecker&);
   struct Impl;
   explicit CollisionChecker(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;

@@ -10,12 +10,13 @@ namespace mmgrasp {
 
 struct MMGRASP_EXPORT EdgeOptions {
   double joint_step = 0.02;  ///< No joint moves more than this between two checks [rad or m]; > 0.
-  /// No point of the robot (or of what it holds) moves more than this between two checks [m]; > 0, infinite: no bound.
+  /// No point of the robot (or of what is attached to it) moves more than this between two checks [m]; > 0, infinite:
+  /// no bound.
   double workspace_step = std::numeric_limits<double>::infinity();
   /// Conservative advancement instead of steps: free means that every configuration between is free, wherever the
   /// bodies stay `tolerance` apart.
   bool continuous = false;
-  double tolerance = 1e-4;  ///< Continuous only: gaps below this count as contact [m]; > 0.
+  double tolerance = 1e-4;  ///< Continuous only: clearances below this count as contact [m]; > 0.
   void check() const;
 };
 
@@ -23,7 +24,7 @@ struct MMGRASP_EXPORT EdgeResult {
   bool free = false;
   double fraction = 1;             ///< Where along the edge the first refused check was, in [0, 1]; 1 when free.
   std::optional<Contact> contact;  ///< What touches there; empty when limits refuse it.
-  int checks = 0;                  ///< Configurations looked at.
+  int checks = 0;                  ///< Configurations checked.
 };
 
 /// Straight joint-space edge (angles are not wrapped), ends included. Throws InvalidInput on a wrong length or a number
@@ -31,8 +32,8 @@ struct MMGRASP_EXPORT EdgeResult {
 MMGRASP_EXPORT EdgeResult check_edge(CollisionChecker& checker, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
                                      const EdgeOptions& options = {});
 
-/// Bound on how far any point of the robot (or of what it holds) moves when joint i moves by one unit [m/rad or m/m],
-/// at any configuration: workspace motion <= sum_i bound_i |dq_i|.
+/// Bound on how far any point of the robot (or of what is attached to it) moves when joint i moves by one unit [m/rad
+/// or m/m], at any configuration: workspace motion <= sum_i bound_i |dq_i|.
 MMGRASP_EXPORT Eigen::VectorXd motion_bounds(const CollisionChecker& checker);
 
 /// is_free of each column of Q (size() x m), with one clone of the checker per thread; the answers do not depend on

@@ -18,7 +18,7 @@ struct MMGRASP_EXPORT WorldObject {
   Pose T_world_object = Pose::Identity();
 };
 
-/// A body held by the robot.
+/// A body attached by the robot.
 struct MMGRASP_EXPORT AttachedObject {
   std::vector<LinkShape> shapes;
   std::string link;  ///< It moves with this robot link.
@@ -33,7 +33,7 @@ class MMGRASP_EXPORT World {
   void add(const std::string& name, const Shape& shape, const Pose& T_world_object);
   void add(const std::string& name, WorldObject object);
   void move(const std::string& name, const Pose& T_world_object);
-  void remove(const std::string& name);  ///< Takes an object, held or not, out of the world.
+  void remove(const std::string& name);  ///< Takes an object, attached or not, out of the world.
   /// From the scene to a link. Empty touch_links: `link`, every link below it and, when `link` lies in an SRDF end
   /// effector's group or below its parent link, all links of that group (resolved by the checker, which also refuses
   /// unknown links). Links that are rigidly joined to `link` are never checked against the object.

@@ -21,14 +21,4 @@ MMGRASP_EXPORT void fk_jacobian_batch(const JointGroup& group, const Eigen::Ref<
 MMGRASP_EXPORT Eigen::VectorXd manipulability_batch(const JointGroup& group,
                                                     const Eigen::Ref<const Eigen::MatrixXd>& Q);
 
-namespace detail {
-
-/// For tests and measurements: the code that kinematics runs on, "portable" and what this machine has besides ("avx2",
-/// "avx512"), best first; the first is used unless another is chosen, for the whole process. Values differ between them
-/// by roundings.
-MMGRASP_EXPORT std::vector<std::string> instruction_sets();
-MMGRASP_EXPORT void use_instruction_set(const std::string& name);
-
-}  // namespace detail
-
 }  // namespace mmgrasp

@@ -13,7 +13,7 @@ void put(BoxPack& pack, int lane, const Rigid& T, const Eigen::Vector3d& half) {
   for (int k = 0; k < 3; ++k) {
     for (int i = 0; i < 3; ++i) pack.axes[3 * k + i][lane] = static_cast<float>(T.R(i, k));
     pack.centre[k][lane] = static_cast<float>(T.t[k]);
-    // Balls grow by what single precision rounds of their own coordinates; this is the box's share.
+    // Spheres grow by what single precision rounds of their own coordinates; this is the box's share.
     const double rounding = 2e-6 * (T.t.lpNorm<1>() + half.lpNorm<1>());
     pack.half[k][lane] = static_cast<float>(half[k] + rounding);
   }

@@ -27,10 +27,10 @@ class ScenePacks {
   bool flat() const { return count() <= kFlat; }
   /// Number of the item in a lane of a pack.
   int item(int pack, int lane) const { return items_[pack * kLanes + lane]; }
-  /// Calls visit(pack) for packs whose bounds meet the ball (x, y, z, radius) until it returns true; true then.
+  /// Calls visit(pack) for packs whose bounds meet the sphere (x, y, z, radius) until it returns true; true then.
   template <class Visit>
-  bool packs_near(const float* ball, const Visit& visit) const {
-    return tree_.any_in(Eigen::Vector3d(ball[0], ball[1], ball[2]), Eigen::Vector3d::Constant(ball[3]), visit);
+  bool packs_near(const float* sphere, const Visit& visit) const {
+    return tree_.any_in(Eigen::Vector3d(sphere[0], sphere[1], sphere[2]), Eigen::Vector3d::Constant(sphere[3]), visit);
   }
 
   static constexpr int kFlat = 6;

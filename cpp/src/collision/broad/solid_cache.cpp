@@ -10,7 +10,7 @@ namespace {
 using Key = std::tuple<const void*, double, double>;
 
 struct Entry {
-  std::weak_ptr<const void> source;  // tells a new mesh at an old address from the one the solid was made of
+  std::weak_ptr<const void> source;  // distinguishes a new mesh at an old address from the one the solid was made of
   std::shared_ptr<const Solid> solid;
 };
 
@@ -71,7 +71,7 @@ struct BoundsEntry {
   std::shared_ptr<const BoundingVolumes> bounds;
 };
 
-// Of primitives: nothing tells when the last user of a size is gone.
+// Most primitives kept: nothing shows when the last user of a size is removed.
 constexpr std::size_t kMaxPrimitives = 1000;
 
 bool of_primitive(const BoundsKey& key) {
@@ -99,7 +99,7 @@ std::shared_ptr<const BoundingVolumes> shared_bounds(const Solid& solid, const S
     it = dead ? known.erase(it) : std::next(it);
   }
   for (auto it = known.begin(); primitives >= kMaxPrimitives && it != known.end();) {
-    // Checkers that use them hold them too: what goes is made again only by new ones.
+    // Checkers that use them own them too: only new checkers make what is removed again.
     it = of_primitive(it->first) ? known.erase(it) : std::next(it);
   }
   known[key] = {source, bounds};

@@ -6,24 +6,25 @@
 #include <functional>
 
 #include "collision/narrow/solid.hpp"
-#include "collision/narrow/triangle_distance.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/geometry/detail/triangle_distance.hpp"
 
 namespace mmgrasp::detail {
 
 namespace {
 
 constexpr int kMaxCells = 64;
-constexpr int kRounds = 48, kPartRounds = 16;  // spent on a ball of the coarsest level, and of the others
-// Inner balls of larger meshes would take too long to find.
+constexpr int kRounds = 48, kPartRounds = 16;  // spent on a sphere of the coarsest level, and of the others
+// Inner spheres of larger meshes would take too long to find.
 constexpr std::size_t kMaxTriangles = 20000;
 // Rounding of the construction itself, far above that of double precision.
 constexpr double kGrowth = 1 + 1e-6;
 
 using Points = std::vector<Eigen::Vector3d>;
 
-// Ball that holds all points: towards the farthest one again and again (Badoiu and Clarkson), then as large as needed.
-std::pair<Eigen::Vector3d, double> small_ball(const Points& points, int rounds) {
+// Sphere that holds all points: towards the farthest one again and again (Badoiu and Clarkson), then as large as
+// needed.
+std::pair<Eigen::Vector3d, double> small_sphere(const Points& points, int rounds) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& p : points) box.extend(p);
   Eigen::Vector3d centre = box.center(), best = centre;
@@ -137,7 +138,7 @@ double surface_distance(const TriangleMesh& mesh, const Eigen::Vector3d& p) {
   return best;
 }
 
-// One ball, no finer ones: the first of its parts on each level is itself, the other places below it stay empty.
+// One sphere, no finer ones: the first of its parts on each level is itself, the other places below it stay empty.
 void add_single(CoverLevels& levels, const Eigen::Vector3d& centre, double outer, double inner) {
   int places = 1;
   for (SphereCover& level : levels) {
@@ -149,9 +150,10 @@ void add_single(CoverLevels& levels, const Eigen::Vector3d& centre, double outer
 
 // A cell of one level with all that lies in it, and its eight parts on the next.
 template <class Depth>
-class CellBalls {
+class CellSpheres {
  public:
-  CellBalls(const std::vector<Points>& cells, const std::array<int, 3>& count, const Depth& depth, CoverLevels& levels)
+  CellSpheres(const std::vector<Points>& cells, const std::array<int, 3>& count, const Depth& depth,
+              CoverLevels& levels)
       : cells_(cells), count_(count), depth_(depth), levels_(levels) {}
 
   // Adds cell (i, j, k) of the coarsest level, unless it is empty.
@@ -159,7 +161,7 @@ class CellBalls {
     Points points;
     gather(0, i, j, k, points);
     if (points.empty()) return;
-    const auto [centre, outer] = small_ball(points, kRounds);
+    const auto [centre, outer] = small_sphere(points, kRounds);
     add_parts(0, i, j, k, centre, outer, depth_(centre));
   }
 
@@ -185,13 +187,13 @@ class CellBalls {
         add_nothing(level + 1);
         continue;
       }
-      const auto [part, radius] = small_ball(points, kPartRounds);
+      const auto [part, radius] = small_sphere(points, kPartRounds);
       // Depth changes no faster than the place.
       add_parts(level + 1, a, b, d, part, radius, inner - (part - centre).norm());
     }
   }
 
-  // Keeps the numbering: eight places on the next level for each ball.
+  // Keeps the numbering: eight places on the next level for each sphere.
   void add_nothing(std::size_t level) {
     levels_[level].add_far();
     if (level + 1 == levels_.size()) return;
@@ -210,10 +212,10 @@ void cover_surface(const TriangleMesh& mesh, const Contains& contains, const Dep
   for (const Eigen::Vector3d& v : mesh.vertices) bounds.extend(v);
   const Grid grid(bounds), finest = grid.cut(1 << (levels.size() - 1));
   const std::vector<Points> cells = cell_points(mesh, finest, contains);
-  CellBalls<Depth> balls(cells, finest.count, depth, levels);
+  CellSpheres<Depth> spheres(cells, finest.count, depth, levels);
   for (int i = 0; i < grid.count[0]; ++i) {
     for (int j = 0; j < grid.count[1]; ++j) {
-      for (int k = 0; k < grid.count[2]; ++k) balls.add(i, j, k);
+      for (int k = 0; k < grid.count[2]; ++k) spheres.add(i, j, k);
     }
   }
 }
@@ -354,23 +356,23 @@ BoundingVolumes::BoundingVolumes(const Solid& solid, const Shape& shape) {
     if (!std::holds_alternative<Voxels>(shape)) shape_ = shape;
     cover_primitive(shape, levels);
   }
-  balls_ = std::move(levels.front());
-  balls_.pad();
+  cover_ = std::move(levels.front());
+  cover_.pad();
 }
 
-const BoundingVolumes::Detail& BoundingVolumes::detail(const Solid& solid) const {
+const BoundingVolumes::Fine& BoundingVolumes::fine(const Solid& solid) const {
   std::call_once(once_, [&] {
-    detail_.covers.resize(kLevels);
-    if (balls_.empty()) return;
+    fine_.covers.resize(kLevels);
+    if (cover_.empty()) return;
     if (const auto mesh = mesh_.lock()) {
-      cover_mesh(*mesh, solid, detail_.covers);
-      detail_.field = std::make_unique<const DistanceField>(*mesh, solid);
+      cover_mesh(*mesh, solid, fine_.covers);
+      fine_.grid = std::make_unique<const DistanceGrid>(*mesh, solid);
     } else {
-      cover_primitive(shape_, detail_.covers);
+      cover_primitive(shape_, fine_.covers);
     }
-    detail_.covers.front().pad();
+    fine_.covers.front().pad();
   });
-  return detail_;
+  return fine_;
 }
 
 }  // namespace mmgrasp::detail

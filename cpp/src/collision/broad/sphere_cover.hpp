@@ -6,17 +6,17 @@
 #include <vector>
 
 #include "collision/kernels/kernels.hpp"
-#include "collision/narrow/distance_field.hpp"
+#include "collision/narrow/distance_grid.hpp"
 #include "mmgrasp/geometry/shape.hpp"
 
 namespace mmgrasp::detail {
 
 struct Solid;
 
-/// Balls that cover a body, and balls within it: what misses the former is apart, what meets the latter overlaps.
+/// Spheres that cover a body, and spheres within it: what misses the former is apart, what meets the latter overlaps.
 class SphereCover {
  public:
-  /// `inner` is the radius of a ball about the same centre that lies within the body, negative when there is none.
+  /// `inner` is the radius of a sphere about the same centre that lies within the body, negative when there is none.
   void add(const Eigen::Vector3d& centre, double outer, double inner);
   /// A place that stays empty: infinitely far away.
   void add_far();
@@ -30,38 +30,38 @@ class SphereCover {
 
  private:
   std::vector<float> data_[5];
-  int filled_ = 0;  ///< Up to the last real ball.
+  int filled_ = 0;  ///< Up to the last real sphere.
   float extent_ = 0;
 };
 
-/// Covers of the same body, each finer than the one before: the balls kLanes * i ... of a level cover what ball i of
-/// the level above covers.
+/// Covers of the same body, each finer than the one before: the spheres kLanes * i ... of a level cover what sphere i
+/// of the level above covers.
 using CoverLevels = std::vector<SphereCover>;
 
-/// What stands in for a body before its exact shape is looked at (padding not included).
+/// Bounds that stand in for a body before its exact shape is tested (padding not included).
 class MMGRASP_EXPORT BoundingVolumes {
  public:
   static constexpr int kLevels = 3;
 
   BoundingVolumes(const Solid& solid, const Shape& shape);
 
-  /// The bounding box cut into cells, a ball for each cell's part of the body. Empty for planes and voxels.
-  const SphereCover& balls() const { return balls_; }
+  /// The bounding box cut into cells, a sphere for each cell's part of the body. Empty for planes and voxels.
+  const SphereCover& cover() const { return cover_; }
 
-  /// Made when first asked for: most bodies never come that close to others.
-  struct Detail {
-    CoverLevels covers;                          ///< kLevels of them.
-    std::unique_ptr<const DistanceField> field;  ///< Distances to a mesh; null for other shapes.
+  /// Cover in levels and distance grid, made when first needed: most bodies never come that close to others.
+  struct Fine {
+    CoverLevels covers;                        ///< kLevels of them.
+    std::unique_ptr<const DistanceGrid> grid;  ///< Distances to a mesh; null for other shapes.
   };
   /// `solid` is the one it was made with. Safe from several threads.
-  const Detail& detail(const Solid& solid) const;
+  const Fine& fine(const Solid& solid) const;
 
  private:
-  SphereCover balls_;
+  SphereCover cover_;
   Shape shape_;                             // primitives
-  std::weak_ptr<const TriangleMesh> mesh_;  // lives in the robot as long as somebody asks
+  std::weak_ptr<const TriangleMesh> mesh_;  // lives in the robot, which outlives the queries
   mutable std::once_flag once_;
-  mutable Detail detail_;
+  mutable Fine fine_;
 };
 
 }  // namespace mmgrasp::detail

@@ -12,12 +12,15 @@ BodyShape place_on_link(const LinkShape& shape, const Rigid& in_link, int body, 
   BodyShape out;
   out.body = body;
   out.link = link;
-  out.in_link = in_link;
   out.solid = shared_solid(shape.shape, 0);
   out.padded = padding > 0 ? shared_solid(shape.shape, padding) : out.solid;
   out.bounds = shared_bounds(*out.solid, shape.shape);
-  out.ball = in_link * out.solid->ball_centre;
+  out.place(in_link);
   return out;
+}
+
+Rigid in_link(const Pose& T_link_object, const LinkShape& part) {
+  return Rigid(T_link_object) * Rigid(part.T_link_shape);
 }
 
 void add_subtree(const Robot& robot, int link, std::vector<char>& in) {
@@ -71,6 +74,11 @@ std::vector<char> end_effector_links(const Robot& robot, const EndEffectorDescri
 
 }  // namespace
 
+void BodyShape::place(const Rigid& pose_in_link) {
+  in_link = pose_in_link;
+  sphere_centre = in_link * solid->sphere_centre;
+}
+
 std::vector<int> default_touch_links(const Robot& robot, int link) {
   std::vector<char> in(robot.links().size(), 0);
   add_subtree(robot, link, in);
@@ -90,7 +98,8 @@ std::vector<int> default_touch_links(const Robot& robot, int link) {
 Snapshot::Snapshot(const Robot& robot_in, const World& world_in, const CheckerOptions& options_in)
     : robot(robot_in), world(world_in), options(options_in) {
   add_robot();
-  add_held();
+  first_attached = static_cast<int>(shapes.size());
+  add_attached();
   add_scene();
 }
 
@@ -109,7 +118,7 @@ void Snapshot::add_robot() {
   }
 }
 
-void Snapshot::add_held() {
+void Snapshot::add_attached() {
   for (const auto& [name, object] : world.attached()) {
     if (!robot.has_link(object.link)) {
       throw InvalidInput("held object '" + name + "': link = " + object.link + ": is no link of robot '" +
@@ -118,17 +127,22 @@ void Snapshot::add_held() {
     Body body;
     body.name = name;
     body.link = robot.link_index(object.link);
-    body.held = true;
+    body.attached = true;
     for (const std::string& link : object.touch_links) body.touch_links.push_back(robot.link_index(link));
     if (object.touch_links.empty()) body.touch_links = default_touch_links(robot, body.link);
     std::sort(body.touch_links.begin(), body.touch_links.end());
     bodies.push_back(body);
     for (const LinkShape& shape : object.shapes) {
-      const Rigid in_link = Rigid(object.T_link_object) * Rigid(shape.T_link_shape);
-      // Padding is a safety margin of the robot; a held part may stand closer to the tray it came from.
-      shapes.push_back(place_on_link(shape, in_link, static_cast<int>(bodies.size()) - 1, body.link, 0));
+      // Padding is a safety margin of the robot; a part it carries may stand closer to the tray it came from.
+      shapes.push_back(place_on_link(shape, in_link(object.T_link_object, shape), static_cast<int>(bodies.size()) - 1,
+                                     body.link, 0));
     }
   }
+}
+
+void Snapshot::place_attached(const Pose& T_link_object) {
+  auto shape = shapes.begin() + first_attached;
+  for (const LinkShape& part : world.attached().begin()->second.shapes) (shape++)->place(in_link(T_link_object, part));
 }
 
 void Snapshot::add_scene() {
@@ -142,7 +156,7 @@ void Snapshot::add_scene() {
       out.T_world = Rigid(object.T_world_object) * Rigid(shape.T_link_shape);
       out.solid = shared_solid(shape.shape, 0);
       if (out.solid->never_collides()) continue;
-      out.ball = out.T_world * out.solid->ball_centre;
+      out.sphere_centre = out.T_world * out.solid->sphere_centre;
       if (out.solid->kind == SolidKind::plane || out.solid->kind == SolidKind::voxels) {
         others.push_back(out);
         continue;

@@ -3,19 +3,11 @@
 #include <cmath>
 
 #include "collision/checker/checker_impl.hpp"
-#include "collision/checker/edge_walk.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
 
-namespace {
-
-// The group's own check builds its message's words first: too slow for the hot path, so only when something is wrong.
-void check_configuration(const JointGroup& group, const Eigen::VectorXd& q, const char* field) {
-  if (q.size() != group.lower().size() || !q.allFinite()) group.check_configuration(q, field);
-}
-
-}  // namespace
+using detail::check_configuration;
 
 void CheckerOptions::check() const {
   require(std::isfinite(padding) && padding >= 0, "padding", padding, "must be finite and >= 0 [m]");
@@ -23,7 +15,8 @@ void CheckerOptions::check() const {
 
 CollisionChecker::CollisionChecker(const JointGroup& group, const World& world, const CheckerOptions& options) {
   options.check();
-  impl_ = std::make_unique<Impl>(std::make_shared<detail::Snapshot>(group.robot(), world, options), group);
+  const auto snapshot = std::make_shared<const detail::Snapshot>(group.robot(), world, options);
+  impl_ = std::make_unique<Impl>(Impl{detail::CheckerEngine(snapshot, group)});
 }
 
 CollisionChecker::CollisionChecker(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -36,55 +29,68 @@ CollisionChecker CollisionChecker::clone() const {
 }
 
 const JointGroup& CollisionChecker::group() const {
-  return impl_->group;
+  return impl_->engine.group();
 }
 const World& CollisionChecker::world() const {
-  return impl_->snapshot->world;
+  return impl_->engine.placement().snapshot().world;
 }
 std::size_t CollisionChecker::queries() const {
-  return impl_->queries;
+  return impl_->engine.queries();
 }
 
 CollisionChecker CollisionChecker::with_group(const JointGroup& group) const {
-  if (&group.robot().data() != &impl_->snapshot->robot.data()) {
+  const std::shared_ptr<const detail::Snapshot>& snapshot = impl_->engine.placement().shared_snapshot();
+  if (&group.robot().data() != &snapshot->robot.data()) {
     throw InvalidInput("group = " + group.name() + ": belongs to another robot than the checker's; make a new checker");
   }
-  return CollisionChecker(std::make_unique<Impl>(impl_->snapshot, group));
+  return CollisionChecker(std::make_unique<Impl>(Impl{detail::CheckerEngine(snapshot, group)}));
 }
 
 void CollisionChecker::set_root(const Pose& T_world_root) {
-  impl_->group = impl_->group.at(T_world_root);
-  // Constant self pairs do not depend on where the robot stands.
-  const std::optional<bool> constant_self = impl_->constant_self;
-  impl_->forget();
-  impl_->constant_self = constant_self;
+  impl_->engine.set_root(T_world_root);
 }
 
 Rejection CollisionChecker::rejection(const Eigen::VectorXd& q) {
-  check_configuration(impl_->group, q, "q");
-  return impl_->rejection(q);
+  check_configuration(group(), q, "q");
+  return impl_->engine.rejection(q);
 }
 
 bool CollisionChecker::is_free(const Eigen::VectorXd& q) {
-  check_configuration(impl_->group, q, "q");
-  return impl_->is_free(q);
+  check_configuration(group(), q, "q");
+  return impl_->engine.is_free(q);
+}
+
+std::vector<Contact> CollisionChecker::contacts(const Eigen::VectorXd& q) {
+  check_configuration(group(), q, "q");
+  return impl_->engine.contacts(q);
 }
 
 std::optional<Contact> CollisionChecker::first_contact(const Eigen::VectorXd& q) {
-  check_configuration(impl_->group, q, "q");
-  ++impl_->queries;
-  impl_->place_balls(q.data());
-  return impl_->placed_contact();
+  check_configuration(group(), q, "q");
+  return impl_->engine.first_contact(q);
+}
+
+DistanceResult CollisionChecker::distance(const Eigen::VectorXd& q) {
+  check_configuration(group(), q, "q");
+  return impl_->engine.distance(q, false);
+}
+
+DistanceResult CollisionChecker::distance_and_gradient(const Eigen::VectorXd& q) {
+  check_configuration(group(), q, "q");
+  return impl_->engine.distance(q, true);
+}
+
+std::vector<DistanceResult> CollisionChecker::distances(const Eigen::VectorXd& q, double within) {
+  check_configuration(group(), q, "q");
+  require(std::isfinite(within) && within > 0, "within", within, "must be finite and > 0 [m]");
+  return impl_->engine.distances(q, within);
 }
 
 bool CollisionChecker::edge_is_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double step) {
-  check_configuration(impl_->group, q0, "q0");
-  check_configuration(impl_->group, q1, "q1");
+  check_configuration(group(), q0, "q0");
+  check_configuration(group(), q1, "q1");
   require(std::isfinite(step) && step > 0, "step", step, "must be finite and > 0 [rad or m]");
-  if (!impl_->is_free(q0) || !impl_->is_free(q1)) return false;
-  const double pieces = std::ceil((q1 - q0).cwiseAbs().maxCoeff() / step - 1e-9);
-  require(pieces < detail::kMaxPieces, "step", step, "must not cut the edge into more than 1e9 pieces");
-  return Impl::EdgeWalk(*impl_, q0, q1, static_cast<long>(pieces)).all_free();
+  return impl_->engine.edge_is_free(q0, q1, step);
 }
 
 }  // namespace mmgrasp

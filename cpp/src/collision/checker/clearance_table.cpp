@@ -12,12 +12,12 @@ namespace mmgrasp::detail {
 
 namespace {
 
-constexpr int kFinest = 512;              // Cells around.
-constexpr int kCoarser = 4;               // Cells of one level in one of the level above, each way.
-constexpr double kQuantum = 2.5e-4;       // Of the gaps kept [m].
-constexpr double kMost = 254 * kQuantum;  // Wider gaps are kept as this one.
-constexpr double kExactReach = 0.01;      // Triangles are only asked for gaps up to this [m].
-constexpr double kSlack = 1e-6;           // Poses here and in the checker are rounded differently.
+constexpr int kFinest = 512;                      // Cells around.
+constexpr int kCoarser = 4;                       // Cells of one level in one of the level above, each way.
+constexpr double kQuantum = 2.5e-4;               // Resolution of the clearances kept [m].
+constexpr double kMaxClearance = 254 * kQuantum;  // Wider clearances are kept as this one.
+constexpr double kMaxExactClearance = 0.01;       // Triangles are only asked for clearances up to this [m].
+constexpr double kRounding = 1e-6;                // Poses here and in the checker are rounded differently.
 constexpr std::size_t kMaxTables = 256;
 
 constexpr int cells_around(int level) {
@@ -45,10 +45,10 @@ long wrapped(long i, long n) {
 
 }  // namespace
 
-ClearanceTable::ClearanceTable(const TableBody& a, const TableBody& b, const TwoTurns& turns)
-    : a_(*a.solid), b_(*b.solid), bounds_a_(*a.bounds), bounds_b_(*b.bounds), turns_(turns) {
+ClearanceTable::ClearanceTable(const TableBody& a, const TableBody& b, const RevolutePair& joints)
+    : a_(*a.solid), b_(*b.solid), bounds_a_(*a.bounds), bounds_b_(*b.bounds), joints_(joints) {
   for (int level = 0; level < kLevels; ++level)
-    within_cell_[level] = (turns.rates[0] + turns.rates[1]) * kPi / cells_around(level) + kSlack;
+    within_cell_[level] = (joints.rates[0] + joints.rates[1]) * kPi / cells_around(level) + kRounding;
 }
 ClearanceTable::~ClearanceTable() = default;
 
@@ -63,19 +63,19 @@ double ClearanceTable::at_least(double first, double second, double wanted) cons
     // Cells that cannot say enough are not asked.
     if (best > 0 && widest(level) < wanted) break;
     const long ci = in_i / shift, cj = in_j / shift;
-    const double off = turns_.rates[0] * std::abs(first - middle(level, ci)) +
-                       turns_.rates[1] * std::abs(second - middle(level, cj)) + kSlack;
-    best = std::max(best, gap_in_middle(level, static_cast<int>(ci), static_cast<int>(cj)) - off);
+    const double off = joints_.rates[0] * std::abs(first - middle(level, ci)) +
+                       joints_.rates[1] * std::abs(second - middle(level, cj)) + kRounding;
+    best = std::max(best, clearance_in_middle(level, static_cast<int>(ci), static_cast<int>(cj)) - off);
     if (best > wanted) break;
   }
   return best;
 }
 
 double ClearanceTable::widest(int level) const {
-  return std::min(4 * within_cell_[level], kMost);
+  return std::min(4 * within_cell_[level], kMaxClearance);
 }
 
-double ClearanceTable::gap_in_middle(int level, int i, int j) const {
+double ClearanceTable::clearance_in_middle(int level, int i, int j) const {
   const int n = cells_around(level);
   std::call_once(made_[level], [&] { cells_[level] = std::make_unique<Code[]>(static_cast<std::size_t>(n) * n); });
   Code& cell = cells_[level][static_cast<std::size_t>(i) * n + j];
@@ -88,26 +88,27 @@ double ClearanceTable::gap_in_middle(int level, int i, int j) const {
 }
 
 double ClearanceTable::measured(int level, int i, int j) const {
-  const Rigid T = turned(turned(turns_.before, middle(level, i)) * turns_.between, middle(level, j)) * turns_.after;
+  const Rigid T = turned(turned(joints_.before, middle(level, i)) * joints_.between, middle(level, j)) * joints_.after;
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
-  ConvexGap hulls;
-  GapKind kind = GapKind::overlapping;
+  ConvexClearance hulls;
+  ClearanceKind kind = ClearanceKind::overlapping;
   if (a_.has_hull && b_.has_hull) kind = convex_clearance(a_.core, b_.core, T, widest(level), axis, hulls);
-  if (kind == GapKind::beyond) return widest(level);
-  if (kind == GapKind::apart && hulls.distance > 2 * within_cell_[level]) return hulls.distance;
-  for (const double gap : {2 * within_cell_[level], within_cell_[level]}) {
-    if (gap <= kExactReach && !collide(T, gap)) return gap;
+  if (kind == ClearanceKind::beyond) return widest(level);
+  if (kind == ClearanceKind::apart && hulls.distance > 2 * within_cell_[level]) return hulls.distance;
+  for (const double clearance : {2 * within_cell_[level], within_cell_[level]}) {
+    if (clearance <= kMaxExactClearance && !collide(T, clearance)) return clearance;
   }
-  return kind == GapKind::apart ? hulls.distance : 0;
+  return kind == ClearanceKind::apart ? hulls.distance : 0;
 }
 
 bool ClearanceTable::collide(const Rigid& b_in_a, double more) const {
   const Rigid T_a;
-  if (a_.ball_radius < b_.ball_radius) return meshes_collide(a_, T_a, *bounds_a_.detail(a_).field, b_, b_in_a, more);
-  return meshes_collide(b_, b_in_a, *bounds_b_.detail(b_).field, a_, T_a, more);
+  if (a_.sphere_radius < b_.sphere_radius) return meshes_collide(a_, T_a, *bounds_a_.fine(a_).grid, b_, b_in_a, more);
+  return meshes_collide(b_, b_in_a, *bounds_b_.fine(b_).grid, a_, T_a, more);
 }
 
-std::shared_ptr<const ClearanceTable> shared_gap_table(const TableBody& a, const TableBody& b, const TwoTurns& turns) {
+std::shared_ptr<const ClearanceTable> shared_clearance_table(const TableBody& a, const TableBody& b,
+                                                             const RevolutePair& joints) {
   struct Entry {
     std::weak_ptr<const Solid> a, b;
     std::shared_ptr<const ClearanceTable> table;
@@ -115,8 +116,8 @@ std::shared_ptr<const ClearanceTable> shared_gap_table(const TableBody& a, const
   using Key = std::pair<std::pair<const Solid*, const Solid*>, std::vector<double>>;
   static std::mutex mutex;
   static std::map<Key, Entry> known;
-  std::vector<double> numbers(turns.rates.begin(), turns.rates.end());
-  for (const Rigid* T : {&turns.before, &turns.between, &turns.after}) {
+  std::vector<double> numbers(joints.rates.begin(), joints.rates.end());
+  for (const Rigid* T : {&joints.before, &joints.between, &joints.after}) {
     numbers.insert(numbers.end(), T->R.data(), T->R.data() + 9);
     numbers.insert(numbers.end(), T->t.data(), T->t.data() + 3);
   }
@@ -130,7 +131,7 @@ std::shared_ptr<const ClearanceTable> shared_gap_table(const TableBody& a, const
   if (known.size() >= kMaxTables) known.erase(known.begin());
   // Whoever uses the table holds the solids, but perhaps bounds that another thread made of them.
   std::shared_ptr<const ClearanceTable> table(
-      new ClearanceTable(a, b, turns),
+      new ClearanceTable(a, b, joints),
       [kept = std::pair(a.bounds, b.bounds)](const ClearanceTable* old) { delete old; });
   known[key] = {a.solid, b.solid, table};
   return table;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "collision/checker/bodies.hpp"
+#include "collision/checker/pair_plan.hpp"
 #include "collision/narrow/narrow.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -63,22 +63,22 @@ class Sampler {
   void count(const Eigen::VectorXd& values, int worker, std::vector<BodyPair>& pairs) const {
     const Poses links = snapshot_.robot.link_poses(values);
     std::vector<detail::Rigid> poses;
-    std::vector<Eigen::Vector3d> balls;
+    std::vector<Eigen::Vector3d> spheres;
     for (const detail::BodyShape& shape : snapshot_.shapes) {
       poses.push_back(detail::Rigid(links[shape.link]) * shape.in_link);
-      balls.push_back(links[shape.link] * shape.ball);
+      spheres.push_back(links[shape.link] * shape.sphere_centre);
     }
-    for (BodyPair& pair : pairs) pair.hits[worker] += collide(pair, poses, balls);
+    for (BodyPair& pair : pairs) pair.hits[worker] += collide(pair, poses, spheres);
   }
 
  private:
   bool collide(const BodyPair& pair, const std::vector<detail::Rigid>& poses,
-               const std::vector<Eigen::Vector3d>& balls) const {
+               const std::vector<Eigen::Vector3d>& spheres) const {
     for (const int i : shapes_of_[pair.a]) {
       for (const int j : shapes_of_[pair.b]) {
         const detail::Solid &a = *snapshot_.shapes[i].solid, &b = *snapshot_.shapes[j].solid;
-        const double reach = a.ball_radius + b.ball_radius;
-        if ((balls[i] - balls[j]).squaredNorm() > reach * reach) continue;
+        const double reach = a.sphere_radius + b.sphere_radius;
+        if ((spheres[i] - spheres[j]).squaredNorm() > reach * reach) continue;
         if (detail::solids_collide(a, poses[i], b, poses[j])) return true;
       }
     }

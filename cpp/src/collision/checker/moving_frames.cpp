@@ -18,18 +18,19 @@ struct Region {
   double radius;
 };
 
-// Whatever the joint's value, seen from its frame before it moves; as good the other way round.
+// The region that holds the body at every value of the joint, seen from its frame before it moves; the same holds the
+// other way round.
 Region swept(const FrameStep& step, Region region, const Eigen::VectorXd& largest) {
   switch (step.motion) {
-    case FrameMotion::turn:
+    case FrameMotion::revolute:
       region.radius += region.centre.head<2>().norm();
       region.centre.head<2>().setZero();
       break;
-    case FrameMotion::slide:
+    case FrameMotion::prismatic:
       region.radius +=
           std::abs(step.offset) + (step.multiplier != 0 ? std::abs(step.multiplier) * largest[step.column] : 0);
       break;
-    case FrameMotion::ball:
+    case FrameMotion::spherical:
       region.radius += region.centre.norm();
       region.centre.setZero();
       break;
@@ -41,22 +42,22 @@ Region swept(const FrameStep& step, Region region, const Eigen::VectorXd& larges
 double rate_about(const FrameStep& step, const Region& region) {
   const double factor = std::abs(step.multiplier);
   switch (step.motion) {
-    case FrameMotion::turn:
+    case FrameMotion::revolute:
       return factor * (region.centre.head<2>().norm() + region.radius);
-    case FrameMotion::slide:
+    case FrameMotion::prismatic:
       return factor;
-    case FrameMotion::ball:
+    case FrameMotion::spherical:
       break;
   }
   return region.centre.norm() + region.radius;
 }
 
-// rates[i]: how fast the body in `ball` moves about joint path[i]; the path leads from its frame up to joint `top` - 1
-// and down from joint `top` on.
-std::vector<double> rates_on_path(const std::vector<const FrameStep*>& path, std::size_t top, const FrameSphere& ball,
+// rates[i]: how fast the body in `sphere` moves about joint path[i]; the path leads from its frame up to joint `top` -
+// 1 and down from joint `top` on.
+std::vector<double> rates_on_path(const std::vector<const FrameStep*>& path, std::size_t top, const FrameSphere& sphere,
                                   const Eigen::VectorXd& largest) {
   std::vector<double> rates;
-  Region region{Eigen::Vector3d(ball.p), ball.radius};
+  Region region{Eigen::Vector3d(sphere.p), sphere.radius};
   for (std::size_t i = 0; i < path.size(); ++i) {
     const FrameStep& step = *path[i];
     const Rigid T = MovingFrames::rest(step);
@@ -77,7 +78,7 @@ int column_of(const JointGroup& group, int index) {
 }
 
 // One motion about or along z of `align`, seen from the joint's frame.
-struct Motion {
+struct ElementaryMotion {
   Eigen::Matrix3d align;
   FrameMotion kind;
 };
@@ -89,26 +90,26 @@ Eigen::Matrix3d axis_first(const Eigen::Matrix3d& frame, int axis) {
   return align;
 }
 
-// A column of the configuration each, but for the ball, which takes three.
-std::vector<Motion> motions_of(const Joint& joint) {
+// A column of the configuration each, but for the sphere, which takes three.
+std::vector<ElementaryMotion> motions_of(const Joint& joint) {
   const Eigen::Matrix3d own = Eigen::Matrix3d::Identity(), turned = z_to(joint.axis);
   switch (joint.type) {
     case JointType::fixed:
       return {};
     case JointType::revolute:
     case JointType::continuous:
-      return {{turned, FrameMotion::turn}};
+      return {{turned, FrameMotion::revolute}};
     case JointType::prismatic:
-      return {{turned, FrameMotion::slide}};
+      return {{turned, FrameMotion::prismatic}};
     case JointType::planar:
-      return {{axis_first(turned, 0), FrameMotion::slide},
-              {axis_first(turned, 1), FrameMotion::slide},
-              {turned, FrameMotion::turn}};
+      return {{axis_first(turned, 0), FrameMotion::prismatic},
+              {axis_first(turned, 1), FrameMotion::prismatic},
+              {turned, FrameMotion::revolute}};
     case JointType::floating:
-      return {{axis_first(own, 0), FrameMotion::slide},
-              {axis_first(own, 1), FrameMotion::slide},
-              {own, FrameMotion::slide},
-              {own, FrameMotion::ball}};
+      return {{axis_first(own, 0), FrameMotion::prismatic},
+              {axis_first(own, 1), FrameMotion::prismatic},
+              {own, FrameMotion::prismatic},
+              {own, FrameMotion::spherical}};
   }
   return {};
 }
@@ -133,7 +134,7 @@ MovingFrames::MovingFrames(const JointGroup& group)
     const bool mimics = joint.mimic_joint >= 0;
     int frame = frame_of_[joint.parent_link], at = column;
     Rigid rest = parent * Rigid(joint.T_parent_joint);
-    for (const Motion& motion : motions_of(joint)) {
+    for (const ElementaryMotion& motion : motions_of(joint)) {
       FrameStep step{};
       const Eigen::Matrix3d R = rest.R * motion.align;
       for (int c = 0; c < 3; ++c) {
@@ -185,15 +186,16 @@ void MovingFrames::place(const double* q, double* frames) const {
   kernels().place_frames(steps_.data(), static_cast<int>(steps_.size()), q, frames);
 }
 
-void MovingFrames::add_rates(int frame, double radius, int against, const Eigen::VectorXd& largest,
-                             Eigen::VectorXd& rates) const {
-  // Walking up: `radius` always bounds the distance from the point to the origin of the frame at hand.
-  while (frame > 0 && frame != against) {
+Eigen::VectorXd MovingFrames::point_rates(const FrameSphere& sphere, const Eigen::VectorXd& largest) const {
+  Eigen::VectorXd rates = Eigen::VectorXd::Zero(columns_);
+  // Walking up: `radius` always bounds the distance from the points to the origin of the frame at hand.
+  double radius = Eigen::Vector3d(sphere.p).norm() + sphere.radius;
+  for (int frame = sphere.frame; frame > 0;) {
     const FrameStep& step = steps_[frame - 1];
     const double factor = std::abs(step.multiplier);
-    const bool slides = step.motion == FrameMotion::slide;
+    const bool slides = step.motion == FrameMotion::prismatic;
     rates[step.column] += slides ? factor : factor * radius;
-    if (step.motion == FrameMotion::ball) {
+    if (step.motion == FrameMotion::spherical) {
       // A rotation vector's rate is never less than the angular velocity it makes.
       rates[step.column + 1] += radius;
       rates[step.column + 2] += radius;
@@ -202,14 +204,17 @@ void MovingFrames::add_rates(int frame, double radius, int against, const Eigen:
     radius += Eigen::Vector3d(step.p[0], step.p[1], step.p[2]).norm();
     frame = step.parent;
   }
-  if (!has_base_ || frame == against) return;
-  rates[0] += 1;
-  rates[1] += 1;
-  rates[2] += radius;
+  if (has_base_) {
+    rates[0] += 1;
+    rates[1] += 1;
+    rates[2] += radius;
+  }
+  return rates;
 }
 
-void MovingFrames::add_closing_rates(const FrameSphere& a, const FrameSphere& b, const Eigen::VectorXd& largest,
-                                     Eigen::VectorXd& rates) const {
+Eigen::VectorXd MovingFrames::closing_rates(const FrameSphere& a, const FrameSphere& b,
+                                            const Eigen::VectorXd& largest) const {
+  Eigen::VectorXd rates = Eigen::VectorXd::Zero(columns_);
   const int common = common_frame(a.frame, b.frame);
   std::vector<const FrameStep*> path, down;
   for (int frame = a.frame; frame != common; frame = path.back()->parent) path.push_back(&steps_[frame - 1]);
@@ -223,8 +228,9 @@ void MovingFrames::add_closing_rates(const FrameSphere& a, const FrameSphere& b,
     const FrameStep& step = *path[i];
     const double rate = std::min(of_a[path.size() - 1 - i], of_b[i]);
     // A rotation vector's rate is never less than the angular velocity it makes.
-    for (int k = 0; k < (step.motion == FrameMotion::ball ? 3 : 1); ++k) rates[step.column + k] += rate;
+    for (int k = 0; k < (step.motion == FrameMotion::spherical ? 3 : 1); ++k) rates[step.column + k] += rate;
   }
+  return rates;
 }
 
 int MovingFrames::common_frame(int a, int b) const {

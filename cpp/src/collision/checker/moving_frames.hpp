@@ -3,13 +3,13 @@
 #include <vector>
 
 #include "collision/kernels/kernels.hpp"
-#include "collision/narrow/convex.hpp"
+#include "mmgrasp/core/detail/rigid.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
 
 namespace mmgrasp::detail {
 
 /// Forward kinematics for collision checks: one frame for each joint the group moves, links rigidly joined to it (or
-/// held at the reference) folded in. Frame 0 is the robot's root. Immutable.
+/// attached at the reference) folded in. Frame 0 is the robot's root. Immutable.
 class MMGRASP_EXPORT MovingFrames {
  public:
   explicit MovingFrames(const JointGroup& group);
@@ -29,21 +29,20 @@ class MMGRASP_EXPORT MovingFrames {
   static Rigid rest(const FrameStep& step);
   /// Numbers in a configuration.
   int columns() const { return columns_; }
-  /// Bound on how fast a point at most `radius` from the origin of `frame` moves against frame `against` (one on its
-  /// way to the root, or -1: the world) per unit of each column [m/rad or m/m] while no column exceeds `largest` in
-  /// magnitude; added to `rates`.
-  void add_rates(int frame, double radius, int against, const Eigen::VectorXd& largest, Eigen::VectorXd& rates) const;
-  /// Bound on how fast the bodies within two balls can close a gap between them, likewise. Turning about a joint
-  /// between them closes it no faster than the nearer of the two can move: either may be taken for the one that turns.
-  void add_closing_rates(const FrameSphere& a, const FrameSphere& b, const Eigen::VectorXd& largest,
-                         Eigen::VectorXd& rates) const;
+  /// Bound on how fast any point within a sphere moves in the world, per unit of each column [m/rad or m/m], while no
+  /// column exceeds `largest` in magnitude.
+  Eigen::VectorXd point_rates(const FrameSphere& sphere, const Eigen::VectorXd& largest) const;
+  /// Bound on how fast the bodies within two spheres can close a clearance between them, likewise. Turning about a
+  /// joint between them closes it no faster than the nearer of the two can move: either may be taken for the one that
+  /// turns.
+  Eigen::VectorXd closing_rates(const FrameSphere& a, const FrameSphere& b, const Eigen::VectorXd& largest) const;
 
  private:
-  bool has_base_;
-  int columns_;
   /// The last frame on both ways to the root.
   int common_frame(int a, int b) const;
 
+  bool has_base_;
+  int columns_;
   std::vector<FrameStep> steps_;
   std::vector<int> frame_of_;
   std::vector<Rigid> link_in_frame_;

@@ -1,8 +1,7 @@
-#include <algorithm>
-#include <array>
-#include <map>
+#include "collision/checker/pair_plan.hpp"
 
-#include "collision/checker/bodies.hpp"
+#include <algorithm>
+#include <map>
 
 namespace mmgrasp::detail {
 
@@ -35,12 +34,12 @@ std::vector<char> active_joints(const Robot& robot, const JointGroup& group) {
 
 bool never_needs_check(const Snapshot& snapshot, const Body& a, const Body& b, const std::vector<int>& assembly) {
   if (assembly[a.link] == assembly[b.link]) return true;
-  const auto may_touch = [](const Body& held, const Body& link) {
-    return std::binary_search(held.touch_links.begin(), held.touch_links.end(), link.link);
+  const auto may_touch = [](const Body& attached, const Body& link) {
+    return std::binary_search(attached.touch_links.begin(), attached.touch_links.end(), link.link);
   };
-  if (a.held && b.held) return false;
-  if (a.held) return may_touch(a, b);
-  if (b.held) return may_touch(b, a);
+  if (a.attached && b.attached) return false;
+  if (a.attached) return may_touch(a, b);
+  if (b.attached) return may_touch(b, a);
   return snapshot.robot.pair_disabled(a.link, b.link);
 }
 
@@ -50,65 +49,84 @@ std::vector<int> rigid_assemblies(const Robot& robot) {
   return group_links(robot, [&](int joint) { return robot.joints()[joint].type != JointType::fixed; });
 }
 
-PairPlan::PairPlan(const Snapshot& snapshot, const JointGroup& group) : frames(group) {
-  const Robot& robot = snapshot.robot;
-  const std::vector<int> assembly = rigid_assemblies(robot);
-  const std::vector<char> active = active_joints(robot, group);
-  const std::vector<int> moved_by = group_links(robot, [&](int joint) { return active[joint] != 0; });
+PairPlan::PairPlan(const Snapshot& snapshot, const JointGroup& group)
+    : frames(group),
+      // Limits are kept up to rounding.
+      largest_(group.lower().cwiseAbs().cwiseMax(group.upper().cwiseAbs()) +
+               Eigen::VectorXd::Constant(group.size(), 1e-6)) {
+  sort_shapes(snapshot, group);
+  placed.resize(snapshot.shapes.size());
+  for (std::size_t s = 0; s < snapshot.shapes.size(); ++s) place_shape(snapshot, static_cast<int>(s));
+  list_pairs(snapshot, group);
+  block_pairs();
+  find_clearance_tables(snapshot);
+  rates = bound_motion(largest_);
+}
 
-  std::vector<char> link_moves(robot.links().size(), 0);
+void PairPlan::sort_shapes(const Snapshot& snapshot, const JointGroup& group) {
+  std::vector<char> link_moves(snapshot.robot.links().size(), 0);
   for (const int link : group.moving_links()) link_moves[link] = 1;
   for (std::size_t s = 0; s < snapshot.shapes.size(); ++s) {
     const BodyShape& shape = snapshot.shapes[s];
-    placed.push_back({frames.frame_of(shape.link), frames.link_in_frame(shape.link) * shape.in_link});
     if (shape.solid->never_collides()) continue;
     (link_moves[shape.link] ? moving : fixed).push_back(static_cast<int>(s));
   }
   const auto in_scene = [&](int s) {
-    return !snapshot.options.held_only || snapshot.bodies[snapshot.shapes[s].body].held;
+    return !snapshot.options.held_only || snapshot.bodies[snapshot.shapes[s].body].attached;
   };
   const auto scene_first = [&](std::vector<int>& shapes) {
     return static_cast<int>(std::stable_partition(shapes.begin(), shapes.end(), in_scene) - shapes.begin());
   };
   moving_in_scene = scene_first(moving);
   fixed_in_scene = scene_first(fixed);
-  ball_of.assign(snapshot.shapes.size(), -1);
+  sphere_of.assign(snapshot.shapes.size(), -1);
+  int sphere = 0;
   for (const auto* shapes : {&moving, &fixed}) {
-    for (const int s : *shapes) {
-      const Solid& solid = *snapshot.shapes[s].padded;
-      const Eigen::Vector3d centre = placed[s].in_frame * solid.ball_centre;
-      ball_of[s] = static_cast<int>(balls.size());
-      balls.push_back({{centre[0], centre[1], centre[2]}, solid.ball_radius, placed[s].frame});
-    }
+    for (const int s : *shapes) sphere_of[s] = sphere++;
   }
+  spheres.resize(static_cast<std::size_t>(sphere));
+}
+
+void PairPlan::place_shape(const Snapshot& snapshot, int s) {
+  const BodyShape& shape = snapshot.shapes[s];
+  placed[s] = {frames.frame_of(shape.link), frames.link_in_frame(shape.link) * shape.in_link};
+  if (sphere_of[s] < 0) return;
+  const Eigen::Vector3d centre = placed[s].in_frame * shape.padded->sphere_centre;
+  spheres[sphere_of[s]] = {{centre[0], centre[1], centre[2]}, shape.padded->sphere_radius, placed[s].frame};
+}
+
+void PairPlan::place_attached(const Snapshot& snapshot) {
+  for (int s = snapshot.first_attached; s < static_cast<int>(snapshot.shapes.size()); ++s) place_shape(snapshot, s);
+}
+
+void PairPlan::list_pairs(const Snapshot& snapshot, const JointGroup& group) {
+  const Robot& robot = snapshot.robot;
+  const std::vector<int> assembly = rigid_assemblies(robot);
+  const std::vector<char> active = active_joints(robot, group);
+  const std::vector<int> moved_by = group_links(robot, [&](int joint) { return active[joint] != 0; });
   for (std::size_t i = 0; i < snapshot.shapes.size(); ++i) {
     for (std::size_t j = i + 1; j < snapshot.shapes.size(); ++j) {
       const BodyShape &a = snapshot.shapes[i], &b = snapshot.shapes[j];
+      const Body &body_a = snapshot.bodies[a.body], &body_b = snapshot.bodies[b.body];
       if (a.body == b.body || a.solid->never_collides() || b.solid->never_collides()) continue;
-      if (snapshot.options.held_only && !snapshot.bodies[a.body].held && !snapshot.bodies[b.body].held) continue;
-      if (never_needs_check(snapshot, snapshot.bodies[a.body], snapshot.bodies[b.body], assembly)) continue;
-      const ShapePair pair{static_cast<int>(i),
-                           static_cast<int>(j),
-                           ball_of[i],
-                           ball_of[j],
-                           a.solid->ball_radius + b.solid->ball_radius,
-                           nullptr,
-                           {}};
+      if (snapshot.options.held_only && !body_a.attached && !body_b.attached) continue;
+      if (never_needs_check(snapshot, body_a, body_b, assembly)) continue;
+      ShapePair pair;
+      pair.a = static_cast<int>(i);
+      pair.b = static_cast<int>(j);
+      pair.sphere_a = sphere_of[i];
+      pair.sphere_b = sphere_of[j];
+      pair.reach = a.solid->sphere_radius + b.solid->sphere_radius;
       (moved_by[a.link] == moved_by[b.link] ? constant : varying).push_back(pair);
     }
   }
-  block_pairs();
-  find_gap_tables(snapshot);
-  // Limits are kept up to rounding.
-  rates = bound_motion(group.lower().cwiseAbs().cwiseMax(group.upper().cwiseAbs()) +
-                       Eigen::VectorXd::Constant(group.size(), 1e-6));
 }
 
-void PairPlan::find_gap_tables(const Snapshot& snapshot) {
+void PairPlan::find_clearance_tables(const Snapshot& snapshot) {
   for (ShapePair& pair : varying) {
     const BodyShape &a = snapshot.shapes[pair.a], &b = snapshot.shapes[pair.b];
     if (a.solid->kind != SolidKind::mesh || b.solid->kind != SolidKind::mesh) continue;
-    if (snapshot.bodies[a.body].held || snapshot.bodies[b.body].held) continue;
+    if (snapshot.bodies[a.body].attached || snapshot.bodies[b.body].attached) continue;
     // Frames are numbered from the root outwards.
     const bool b_outer = placed[pair.b].frame > placed[pair.a].frame;
     const PlacedShape &inner = placed[b_outer ? pair.a : pair.b], &outer = placed[b_outer ? pair.b : pair.a];
@@ -117,18 +135,18 @@ void PairPlan::find_gap_tables(const Snapshot& snapshot) {
     if (second.parent == 0) continue;
     const FrameStep& first = frames.steps()[second.parent - 1];
     const auto plain = [](const FrameStep& s) {
-      return s.motion == FrameMotion::turn && s.multiplier == 1 && s.offset == 0;
+      return s.motion == FrameMotion::revolute && s.multiplier == 1 && s.offset == 0;
     };
     if (first.parent != inner.frame || !plain(first) || !plain(second)) continue;
-    Eigen::VectorXd rates = Eigen::VectorXd::Zero(frames.columns());
-    frames.add_closing_rates(balls[pair.ball_a], balls[pair.ball_b], rates, rates);
-    TwoTurns turns;
-    turns.before = inner.in_frame.to(MovingFrames::rest(first));
-    turns.between = MovingFrames::rest(second);
-    turns.after = outer.in_frame;
-    turns.rates = {rates[first.column], rates[second.column]};
-    pair.gaps = b_outer ? shared_gap_table({a.solid, a.bounds}, {b.solid, b.bounds}, turns)
-                        : shared_gap_table({b.solid, b.bounds}, {a.solid, a.bounds}, turns);
+    // No prismatic joint lies between the two, so no limit has a part in this.
+    const Eigen::VectorXd closing = pair_rates(pair, Eigen::VectorXd::Zero(frames.columns()));
+    RevolutePair joints;
+    joints.before = inner.in_frame.to(MovingFrames::rest(first));
+    joints.between = MovingFrames::rest(second);
+    joints.after = outer.in_frame;
+    joints.rates = {closing[first.column], closing[second.column]};
+    pair.clearances = b_outer ? shared_clearance_table({a.solid, a.bounds}, {b.solid, b.bounds}, joints)
+                              : shared_clearance_table({b.solid, b.bounds}, {a.solid, a.bounds}, joints);
     pair.columns = {first.column, second.column};
   }
 }
@@ -136,8 +154,8 @@ void PairPlan::find_gap_tables(const Snapshot& snapshot) {
 void PairPlan::block_pairs() {
   std::map<std::pair<int, int>, std::array<int, kLanes>> lanes;
   for (std::size_t i = 0; i < varying.size(); ++i) {
-    const auto [ball, other] = std::minmax(varying[i].ball_a, varying[i].ball_b);
-    const auto [block, fresh] = lanes.try_emplace({ball, other / kLanes * kLanes});
+    const auto [sphere, other] = std::minmax(varying[i].sphere_a, varying[i].sphere_b);
+    const auto [block, fresh] = lanes.try_emplace({sphere, other / kLanes * kLanes});
     if (fresh) block->second.fill(-1);
     block->second[other % kLanes] = static_cast<int>(i);
   }
@@ -157,25 +175,34 @@ MotionRates PairPlan::rates_along(const Eigen::VectorXd& q0, const Eigen::Vector
   return bound_motion(q0.cwiseAbs().cwiseMax(q1.cwiseAbs()));
 }
 
+Eigen::VectorXd PairPlan::pair_rates(const ShapePair& pair, const Eigen::VectorXd& largest) const {
+  return frames.closing_rates(spheres[pair.sphere_a], spheres[pair.sphere_b], largest);
+}
+
 MotionRates PairPlan::bound_motion(const Eigen::VectorXd& largest) const {
-  const auto radius = [&](int ball) { return Eigen::Vector3d(balls[ball].p).norm() + balls[ball].radius; };
   MotionRates out;
-  Eigen::VectorXd column(largest.size());
   out.shapes.resize(largest.size(), static_cast<Eigen::Index>(moving.size()));
-  for (Eigen::Index i = 0; i < out.shapes.cols(); ++i) {
-    column.setZero();
-    frames.add_rates(balls[i].frame, radius(static_cast<int>(i)), -1, largest, column);
-    out.shapes.col(i) = column;
-  }
+  for (Eigen::Index i = 0; i < out.shapes.cols(); ++i) out.shapes.col(i) = frames.point_rates(spheres[i], largest);
   out.pairs.resize(largest.size(), static_cast<Eigen::Index>(varying.size()));
-  for (Eigen::Index i = 0; i < out.pairs.cols(); ++i) {
-    const ShapePair& pair = varying[i];
-    column.setZero();
-    frames.add_closing_rates(balls[pair.ball_a], balls[pair.ball_b], largest, column);
-    out.pairs.col(i) = column;
-  }
+  for (Eigen::Index i = 0; i < out.pairs.cols(); ++i) out.pairs.col(i) = pair_rates(varying[i], largest);
   out.finite = out.shapes.allFinite() && out.pairs.allFinite();
   return out;
+}
+
+void PairPlan::bound_attached(const Snapshot& snapshot) {
+  const auto attached = [&](int s) { return s >= snapshot.first_attached; };
+  for (Eigen::Index i = 0; i < rates.shapes.cols(); ++i) {
+    if (attached(moving[i])) rates.shapes.col(i) = frames.point_rates(spheres[i], largest_);
+  }
+  for (Eigen::Index i = 0; i < rates.pairs.cols(); ++i) {
+    if (attached(varying[i].a) || attached(varying[i].b)) rates.pairs.col(i) = pair_rates(varying[i], largest_);
+  }
+}
+
+Eigen::VectorXd PairPlan::motion_bounds(bool in_scene_only) const {
+  const Eigen::Index count = in_scene_only ? moving_in_scene : rates.shapes.cols();
+  if (count == 0) return Eigen::VectorXd::Zero(rates.shapes.rows());
+  return rates.shapes.leftCols(count).rowwise().maxCoeff();
 }
 
 }  // namespace mmgrasp::detail

@@ -57,16 +57,16 @@ void World::attach(const std::string& name, const std::string& link, const Pose&
           attached_.count(name) != 0 ? "is held already" : "is not in the world");
   require(!link.empty(), "link", "\"\"", "must name the robot link that holds '" + name + "'");
   check_pose(T_link_object, "object '" + name + "' pose on link '" + link + "'");
-  AttachedObject held;
-  held.shapes = it->second.shapes;
-  held.link = link;
-  held.T_link_object = T_link_object;
-  held.touch_links = std::move(touch_links);
-  for (const LinkShape& shape : held.shapes) {
+  AttachedObject attached;
+  attached.shapes = it->second.shapes;
+  attached.link = link;
+  attached.T_link_object = T_link_object;
+  attached.touch_links = std::move(touch_links);
+  for (const LinkShape& shape : attached.shapes) {
     require(!std::holds_alternative<Plane>(shape.shape), "object '" + name + "'", "plane",
             "cannot be held: it has no end");
   }
-  attached_.emplace(name, std::move(held));
+  attached_.emplace(name, std::move(attached));
   objects_.erase(it);
 }
 

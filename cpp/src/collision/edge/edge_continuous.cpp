@@ -3,16 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collision/checker/checker_access.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 
-namespace mmgrasp {
-
-namespace detail {
+namespace mmgrasp::detail {
 
 namespace {
-
-using Impl = CheckerAccess::Impl;
 
 // Along the edge up to which both joint limits (with the checker's slack) hold; 1 when they hold everywhere.
 double within_limits_up_to(const JointGroup& group, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) {
@@ -25,27 +20,25 @@ double within_limits_up_to(const JointGroup& group, const Eigen::VectorXd& q0, c
   return end;
 }
 
-// Conservative advancement (Mirtich 1996), each pair at its own pace: a gap divided by how fast the two can close it is
-// a stretch of the edge on which they cannot meet, so a pair is looked at again only when its stretch ends.
+// Conservative advancement (Mirtich 1996), each pair at its own pace: a clearance divided by how fast the two can close
+// it is a stretch of the edge on which they cannot meet, so a pair is measured again only when its stretch ends.
 class Advance {
  public:
-  Advance(Impl& checker, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double tolerance)
-      : checker_(checker), q0_(q0), delta_(q1 - q0), tolerance_(tolerance) {
+  Advance(Placement& placement, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double tolerance)
+      : placement_(placement), snapshot_(placement.snapshot()), q0_(q0), delta_(q1 - q0), tolerance_(tolerance) {
     const Eigen::VectorXd way = delta_.cwiseAbs();
-    const CheckerOptions& options = checker.snapshot->options;
-    const PairPlan& plan = *checker.plan;
-    const MotionRates own = plan.rates_along(q0, q1);
-    const MotionRates& bounds = plan.rates.finite ? plan.rates : own;
-    if (options.check_self && !plan.varying.empty()) {
+    const PairPlan& plan = placement.plan();
+    const MotionRates along_edge = plan.rates_along(q0, q1);
+    const MotionRates& bounds = plan.rates.finite ? plan.rates : along_edge;
+    if (snapshot_.options.check_self && !plan.varying.empty()) {
       const Eigen::VectorXd rates = bounds.pairs.transpose() * way;
       for (std::size_t i = 0; i < plan.varying.size(); ++i)
         add(plan.varying[i].a, plan.varying[i].b, false, rates[static_cast<Eigen::Index>(i)]);
     }
-    if (options.check_scene && !plan.moving.empty()) {
+    if (snapshot_.options.check_scene && !plan.moving.empty()) {
       const Eigen::VectorXd rates = bounds.shapes.transpose() * way;
-      for (std::size_t i = 0; i < static_cast<std::size_t>(plan.moving_in_scene); ++i) {
-        for (int k = 0; k < static_cast<int>(checker.snapshot->scene.size()); ++k)
-          add(plan.moving[i], k, true, rates[static_cast<Eigen::Index>(i)]);
+      for (int i = 0; i < plan.moving_in_scene; ++i) {
+        for (int k = 0; k < static_cast<int>(snapshot_.scene.size()); ++k) add(plan.moving[i], k, true, rates[i]);
       }
     }
   }
@@ -55,20 +48,20 @@ class Advance {
   bool run(double end, double& fraction, std::optional<Contact>& contact) {
     double at = 0;
     while (!open_.empty()) {
-      ++checker_.queries;
-      checker_.place(q0_ + delta_ * at);
+      ++checks_;
+      placement_.place_links(q0_ + delta_ * at);
       std::size_t kept = 0;
       double next = kInfinity;
       for (Item item : open_) {
         if (item.clear_to <= at + kTogether) {
-          const double gap = gap_of(item, item.rate * (end - at) + tolerance_);
-          if (gap < tolerance_) {
+          const double clearance = clearance_of(item, item.rate * (end - at) + tolerance_);
+          if (clearance < tolerance_) {
             fraction = at;
             contact = contact_of(item);
             return false;
           }
           // Half the tolerance stays between them: rounding cannot let them meet.
-          item.clear_to = at + (gap - 0.5 * tolerance_) / item.rate;
+          item.clear_to = at + (clearance - 0.5 * tolerance_) / item.rate;
         }
         if (item.clear_to >= end) continue;
         next = std::min(next, item.clear_to);
@@ -80,14 +73,17 @@ class Advance {
     return true;
   }
 
+  /// Configurations placed by run().
+  std::size_t checks() const { return checks_; }
+
  private:
   struct Item {
     int shape, other;
     bool with_scene;
     double rate;      ///< The two approach each other by at most this along the whole edge [m].
-    double clear_to;  ///< Up to here they cannot meet.
+    double clear_to;  ///< They cannot meet before this fraction of the edge.
   };
-  // Pairs whose stretches end this close together are looked at in one go.
+  // Pairs whose stretches end this close together are measured in one go, as a fraction of the edge.
   static constexpr double kTogether = 0.02;
 
   void add(int shape, int other, bool with_scene, double rate) {
@@ -95,62 +91,62 @@ class Advance {
   }
 
   const Solid& solid_of(const Item& item) const {
-    const BodyShape& shape = checker_.snapshot->shapes[item.shape];
+    const BodyShape& shape = snapshot_.shapes[item.shape];
     return item.with_scene ? *shape.padded : *shape.solid;
   }
 
-  // A number the gap, padding taken off, is not below; the gap itself when that would be below the tolerance or tell
-  // of a short stretch only.
-  double gap_of(const Item& item, double enough) {
-    const Snapshot& snapshot = *checker_.snapshot;
+  // A lower bound of the clearance, padding taken off; the clearance itself when the bound would be below the tolerance
+  // or prove a short stretch only.
+  double clearance_of(const Item& item, double enough) {
     const Solid& a = solid_of(item);
-    const Solid& b = item.with_scene ? *snapshot.scene[item.other].solid : *snapshot.shapes[item.other].solid;
-    const Rigid& T_b = item.with_scene ? snapshot.scene[item.other].T_world : checker_.pose(item.other);
-    const Eigen::Vector3d& ball_b = item.with_scene ? snapshot.scene[item.other].ball : checker_.balls[item.other];
+    const Solid& b = item.with_scene ? *snapshot_.scene[item.other].solid : *snapshot_.shapes[item.other].solid;
+    const Rigid& T_b = item.with_scene ? snapshot_.scene[item.other].T_world : placement_.pose(item.other);
+    const Eigen::Vector3d& centre_b =
+        item.with_scene ? snapshot_.scene[item.other].sphere_centre : placement_.shape_centre(item.other);
     const double useful = std::min(enough, 0.1 * item.rate + tolerance_);
-    const double balls = (checker_.balls[item.shape] - ball_b).norm() - a.ball_radius - b.ball_radius;
-    if (balls >= useful) return balls;
+    const double spheres = (placement_.shape_centre(item.shape) - centre_b).norm() - a.sphere_radius - b.sphere_radius;
+    if (spheres >= useful) return spheres;
     const double margin = a.margin + b.margin;
-    const double boxes = boxes_gap(a, checker_.pose(item.shape), b, T_b) - margin;
+    const Rigid& T_a = placement_.pose(item.shape);
+    const double boxes = boxes_clearance(a, T_a, b, T_b) - margin;
     if (boxes >= useful) return boxes;
-    return std::min(enough, solids_distance(a, checker_.pose(item.shape), b, T_b, enough + margin).distance - margin);
+    return std::min(enough, solids_distance(a, T_a, b, T_b, enough + margin).distance - margin);
   }
 
   Contact contact_of(const Item& item) const {
-    const Snapshot& snapshot = *checker_.snapshot;
-    return {snapshot.bodies[snapshot.shapes[item.shape].body].name,
-            item.with_scene ? snapshot.object_names[snapshot.scene[item.other].object]
-                            : snapshot.bodies[snapshot.shapes[item.other].body].name,
+    return {snapshot_.bodies[snapshot_.shapes[item.shape].body].name,
+            item.with_scene ? snapshot_.object_names[snapshot_.scene[item.other].object]
+                            : snapshot_.bodies[snapshot_.shapes[item.other].body].name,
             item.with_scene};
   }
 
-  Impl& checker_;
+  Placement& placement_;
+  const Snapshot& snapshot_;
   const Eigen::VectorXd& q0_;
   Eigen::VectorXd delta_;
   double tolerance_;
   std::vector<Item> open_;
+  std::size_t checks_ = 0;
 };
 
 }  // namespace
 
-EdgeResult advance_edge(CollisionChecker& checker, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
-                        const EdgeOptions& options) {
-  Impl& impl = CheckerAccess::of(checker);
-  const std::size_t before = checker.queries();
+EdgeResult advance_edge(CheckerEngine& engine, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double tolerance) {
+  const std::size_t before = engine.queries();
   EdgeResult result;
-  const Rejection start = checker.rejection(q0);
+  const Rejection start = engine.rejection(q0);
   if (start != Rejection::none) {
     result.fraction = 0;
-    if (start != Rejection::limits) result.contact = checker.first_contact(q0);
+    if (start != Rejection::limits) result.contact = engine.first_contact(q0);
   } else {
-    const double end = within_limits_up_to(checker.group(), q0, q1);
-    result.free = Advance(impl, q0, q1, options.tolerance).run(end, result.fraction, result.contact) && end == 1;
+    const double end = within_limits_up_to(engine.group(), q0, q1);
+    Advance advance(engine.placement(), q0, q1, tolerance);
+    result.free = advance.run(end, result.fraction, result.contact) && end == 1;
+    engine.count_queries(advance.checks());
     if (!result.free && !result.contact) result.fraction = end;
   }
-  result.checks = static_cast<int>(checker.queries() - before);
+  result.checks = static_cast<int>(engine.queries() - before);
   return result;
 }
 
-}  // namespace detail
-
-}  // namespace mmgrasp
+}  // namespace mmgrasp::detail

@@ -1,11 +1,12 @@
 #pragma once
 
+#include "collision/checker/engine.hpp"
 #include "mmgrasp/collision/edge.hpp"
 
 namespace mmgrasp::detail {
 
-/// check_edge by conservative advancement (options.continuous); lengths and numbers have been checked.
-EdgeResult advance_edge(CollisionChecker& checker, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
-                        const EdgeOptions& options);
+/// check_edge() by conservative advancement: free means that every configuration on the way is free, as long as nothing
+/// comes nearer than `tolerance` [m].
+EdgeResult advance_edge(CheckerEngine& engine, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double tolerance);
 
 }  // namespace mmgrasp::detail

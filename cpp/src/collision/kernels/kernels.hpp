@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 
 #include "mmgrasp/core/export.hpp"
 
@@ -9,7 +8,7 @@ namespace mmgrasp::detail {
 
 /// The loops that decide how quick a check is. They exchange plain arrays and are compiled twice: for every machine of
 /// the platform and for AVX2 with FMA; which one runs is decided once at run time. Everything in single precision takes
-/// a slack that covers its rounding, so that it may only err towards "not sure".
+/// a slack that covers its rounding, so that it may only err towards "not proven".
 
 constexpr int kLanes = 8;
 
@@ -18,23 +17,23 @@ struct BoxPack {
   float axes[9][kLanes];  ///< Row k of the inverse rotation: 3k .. 3k + 2.
   float centre[3][kLanes];
   float half[3][kLanes];
-  float radius[kLanes];  ///< Of the ball around the box.
+  float radius[kLanes];  ///< Radius of the sphere around the box.
 };
 
-/// Placed balls, coordinate by coordinate; the arrays end with whole lanes.
-struct BallRows {
+/// Placed spheres, coordinate by coordinate; the arrays end with whole lanes.
+struct SphereRows {
   const float *x, *y, *z, *radius;
-  BallRows from(int ball) const { return {x + ball, y + ball, z + ball, radius + ball}; }
+  SphereRows from(int sphere) const { return {x + sphere, y + sphere, z + sphere, radius + sphere}; }
 };
 
-/// A ball and up to eight others in a row that it may meet.
+/// A sphere and up to eight others in a row that it may meet.
 struct PairBlock {
-  int ball, first;     ///< The others are first .. first + kLanes - 1.
+  int sphere, first;   ///< The others are first .. first + kLanes - 1.
   std::uint8_t lanes;  ///< Which of them make pairs.
 };
 
 /// How a frame moves: about its own z, along it, or by a rotation vector (three columns).
-enum class FrameMotion { turn, slide, ball };
+enum class FrameMotion { revolute, prismatic, spherical };
 
 /// A joint's frame on its way down the tree: turned so that the joint moves about or along its own z.
 struct FrameStep {
@@ -46,19 +45,19 @@ struct FrameStep {
   FrameMotion motion;
 };
 
-/// A bounding ball that moves with a frame.
+/// A bounding sphere that moves with a frame.
 struct FrameSphere {
   double p[3];
   double radius;
   int frame;
 };
 
-/// Small balls that cover a body together, in its own frame. No point of the body lies outside all outer balls; each
-/// inner ball lies within the body (radius negative: none).
+/// Small spheres that cover a body together, in its own frame. No point of the body lies outside all outer spheres;
+/// each inner sphere lies within the body (radius negative: none).
 struct CoverView {
   const float *x, *y, *z, *outer, *inner;
   int count;   ///< Multiple of kLanes; the last ones are infinitely far away.
-  int filled;  ///< Balls without the padding.
+  int filled;  ///< Spheres without the padding.
 };
 
 /// R (rows) and t of a body in the frame of another one, single precision.
@@ -66,8 +65,8 @@ struct FloatRigid {
   float R[9], t[3];
 };
 
-/// A grid of distances to a body from below (DistanceField).
-struct FieldView {
+/// A grid of distances to a body from below (DistanceGrid).
+struct GridView {
   float low[3], per_step;    ///< Lower corner; cells per metre.
   float quantum;             ///< Metres per unit of a cell.
   float spread;              ///< Taken off for each cell of distance from the cell's centre [m].
@@ -79,36 +78,31 @@ struct FieldView {
 enum CoverAnswer : unsigned { kApart = 0, kMaybe = 1, kOverlap = 2 };
 
 struct Kernels {
-  const char* name;
   /// frames: 16 numbers each, columns R0 R1 R2 p of four; frame 0 is given.
   void (*place_frames)(const FrameStep* steps, int count, const double* q, double* frames);
-  /// World centre and radius of each ball, the radius with a slack for single precision: x, y, z and radius in rows of
-  /// `row` numbers.
-  void (*place_balls)(const FrameSphere* balls, int count, const double* frames, float* out, int row);
-  /// masks[b * packs + k]: which boxes of pack k ball b meets. nearest[b], unless null: least squared distance of the
-  /// ball's centre to any box.
-  void (*balls_meet)(const BoxPack* packs, int pack_count, const BallRows& balls, int ball_count, std::uint8_t* masks,
-                     float* nearest);
+  /// World centre and radius of each sphere, the radius with a slack for single precision: x, y, z and radius in rows
+  /// of `row` numbers.
+  void (*place_spheres)(const FrameSphere* spheres, int count, const double* frames, float* out, int row);
+  /// masks[b * packs + k]: which boxes of pack k sphere b meets. nearest[b], unless null: least squared distance of the
+  /// sphere's centre to any box.
+  void (*spheres_meet_boxes)(const BoxPack* packs, int pack_count, const SphereRows& spheres, int sphere_count,
+                             std::uint8_t* masks, float* nearest);
   /// masks[i]: which pairs of block i meet.
-  void (*pairs_meet)(const PairBlock* blocks, int block_count, const BallRows& balls, std::uint8_t* masks);
+  void (*sphere_pairs_meet)(const PairBlock* blocks, int block_count, const SphereRows& spheres, std::uint8_t* masks);
   /// Cover against a box placed in its frame. `grow` is added to the outer radii, `slack` covers rounding. Without
-  /// `seek_overlap` the first ball that may touch ends the search.
-  CoverAnswer (*cover_box)(const CoverView& cover, const FloatRigid& box, const float* half, float grow, float slack,
-                           bool seek_overlap);
-  /// A field against covers placed in its frame, each level with kLanes balls for each ball of the level above: only
-  /// where a ball may touch are its parts looked at.
-  CoverAnswer (*field_cover)(const FieldView& field, const CoverView* levels, int level_count,
-                             const FloatRigid& cover_in_field, float grow, float slack, bool seek_overlap);
+  /// `seek_overlap` the first sphere that may touch ends the search.
+  CoverAnswer (*cover_meets_box)(const CoverView& cover, const FloatRigid& box, const float* half, float grow,
+                                 float slack, bool seek_overlap);
+  /// A grid against covers placed in its frame, each level with kLanes spheres for each sphere of the level above: only
+  /// where a sphere may touch are its parts tested.
+  CoverAnswer (*cover_tree_meets_grid)(const GridView& grid, const CoverView* levels, int level_count,
+                                       const FloatRigid& cover_in_field, float grow, float slack, bool seek_overlap);
   /// A box placed in the frame of such covers against them.
-  CoverAnswer (*box_cover)(const CoverView* levels, int level_count, const FloatRigid& box, const float* half,
-                           float grow, float slack, bool seek_overlap);
+  CoverAnswer (*cover_tree_meets_box)(const CoverView* levels, int level_count, const FloatRigid& box,
+                                      const float* half, float grow, float slack, bool seek_overlap);
 };
 
-/// The quickest this machine can run, unless use_collision_kernels() chose others.
+/// The version for the instruction set in use (mmgrasp/core/detail/instruction_set.hpp).
 MMGRASP_EXPORT const Kernels& kernels();
-/// "portable" (they run everywhere), or "" for the quickest; for tests, while no checker is at work.
-MMGRASP_EXPORT void use_collision_kernels(const std::string& name);
-/// Name of those in use.
-MMGRASP_EXPORT std::string collision_kernels();
 
 }  // namespace mmgrasp::detail

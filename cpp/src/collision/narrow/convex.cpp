@@ -103,7 +103,7 @@ bool convex_collide(const Convex& a, const Convex& b, const Rigid& b_in_a, doubl
     const Eigen::Vector3d closest = simplex.closest();
     const double squared = closest.squaredNorm();
     if (squared <= reach * reach) return true;
-    if (squared < 1e-16 && squared <= touching_gap(p) * touching_gap(p)) return true;
+    if (squared < 1e-16 && squared <= touching_clearance(p) * touching_clearance(p)) return true;
     if (!(squared < best)) break;  // rounding stops the descent
     best = squared;
     axis = closest;

@@ -4,21 +4,9 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "mmgrasp/core/detail/rigid.hpp"
+
 namespace mmgrasp::detail {
-
-/// Rotation and translation, without the fourth row of a Pose: x_a = R x_b + t.
-struct Rigid {
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d t = Eigen::Vector3d::Zero();
-
-  Rigid() = default;
-  Rigid(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation) : R(rotation), t(translation) {}
-  explicit Rigid(const Eigen::Isometry3d& T) : R(T.linear()), t(T.translation()) {}
-  Eigen::Vector3d operator*(const Eigen::Vector3d& x) const { return R * x + t; }
-  Rigid operator*(const Rigid& other) const { return {R * other.R, R * other.t + t}; }
-  /// inverse(*this) * other
-  Rigid to(const Rigid& other) const { return {R.transpose() * other.R, R.transpose() * (other.t - t)}; }
-};
 
 enum class ConvexKind { point, segment, box, cylinder, hull };
 

@@ -11,8 +11,8 @@ constexpr int kMaxIterations = 128;
 
 }  // namespace
 
-GapKind convex_clearance(const Convex& a, const Convex& b, const Rigid& b_in_a, double bound, Eigen::Vector3d& axis,
-                         ConvexGap& gap) {
+ClearanceKind convex_clearance(const Convex& a, const Convex& b, const Rigid& b_in_a, double bound,
+                               Eigen::Vector3d& axis, ConvexClearance& clearance) {
   const double reach = bound + a.radius + b.radius;  // of the cores
   if (!(axis.squaredNorm() > 1e-20)) axis = a.centre - b_in_a * b.centre;
   if (!(axis.squaredNorm() > 1e-20)) axis = Eigen::Vector3d::UnitX();
@@ -22,29 +22,29 @@ GapKind convex_clearance(const Convex& a, const Convex& b, const Rigid& b_in_a, 
     const SimplexPoint p = difference(a, b, b_in_a, axis);
     const double along = axis.dot(p.w);
     // The whole difference lies beyond the plane through w.
-    if (along > 0 && (reach <= 0 || along * along >= reach * reach * axis.squaredNorm())) return GapKind::beyond;
+    if (along > 0 && (reach <= 0 || along * along >= reach * reach * axis.squaredNorm())) return ClearanceKind::beyond;
     if (i > 0 && (best - along <= 1e-13 * best || simplex.holds(p.w))) break;
     simplex.add(p);
     if (simplex.reduce()) {
       if (along > 0 && i > 0) break;  // apart for certain: only rounding put the origin inside a flat tetrahedron
-      return GapKind::overlapping;
+      return ClearanceKind::overlapping;
     }
     const Eigen::Vector3d closest = simplex.closest();
     const double squared = closest.squaredNorm();
-    if (squared <= touching_gap(p) * touching_gap(p)) return GapKind::overlapping;
+    if (squared <= touching_clearance(p) * touching_clearance(p)) return ClearanceKind::overlapping;
     if (!(squared < best)) break;  // rounding stops the descent
     best = squared;
     axis = closest;
     last = simplex;
   }
   const double core = std::sqrt(best);
-  if (core >= reach) return GapKind::beyond;
-  last.witness(gap.on_a, gap.on_b);
-  gap.distance = core - a.radius - b.radius;
-  gap.normal = axis / core;
-  gap.on_a -= a.radius * gap.normal;
-  gap.on_b += b.radius * gap.normal;
-  return GapKind::apart;
+  if (core >= reach) return ClearanceKind::beyond;
+  last.witness(clearance.on_a, clearance.on_b);
+  clearance.distance = core - a.radius - b.radius;
+  clearance.normal = axis / core;
+  clearance.on_a -= a.radius * clearance.normal;
+  clearance.on_b += b.radius * clearance.normal;
+  return ClearanceKind::apart;
 }
 
 Nearness convex_nearness(const Convex& a, const Convex& b, const Rigid& b_in_a, double bound, double touch) {
@@ -68,7 +68,7 @@ Nearness convex_nearness(const Convex& a, const Convex& b, const Rigid& b_in_a, 
     const double squared = closest.squaredNorm();
     // A point of the difference lies nearer than the reach: it cannot be beyond.
     if (parted && squared < reach * reach) return Nearness::near;
-    if (squared <= touching_gap(p) * touching_gap(p) || !(squared < best)) break;
+    if (squared <= touching_clearance(p) * touching_clearance(p) || !(squared < best)) break;
     best = squared;
     axis = closest;
   }

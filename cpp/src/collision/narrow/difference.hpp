@@ -14,8 +14,9 @@ inline SimplexPoint difference(const Convex& a, const Convex& b, const Rigid& b_
   return p;
 }
 
-/// Gap taken for touching: rounding of coordinates as large as those of w, which spans both bodies when they overlap.
-inline double touching_gap(const SimplexPoint& p) {
+/// Clearance taken for touching: rounding of coordinates as large as those of w, which spans both bodies when they
+/// overlap.
+inline double touching_clearance(const SimplexPoint& p) {
   return 1e-12 * (1e-3 + p.w.lpNorm<1>() + p.on_a.lpNorm<1>());
 }
 

@@ -9,10 +9,10 @@ namespace mmgrasp::detail {
 /// With `more` > 0 [m], false means that they are farther apart by more than that; true proves nothing.
 MMGRASP_EXPORT bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double more = 0);
 
-class DistanceField;
-/// The same answer for two meshes whose bodies are known to be close, sooner: `field` (of a) says which triangles of b
-/// need no look, `hulls_meet` that their hulls do.
-MMGRASP_EXPORT bool meshes_collide(const Solid& a, const Rigid& T_a, const DistanceField& field, const Solid& b,
+class DistanceGrid;
+/// The same answer for two meshes whose bodies are known to be close, sooner: `grid` is that of a and rules out
+/// triangles of b; `hulls_meet`: their hulls are known to meet.
+MMGRASP_EXPORT bool meshes_collide(const Solid& a, const Rigid& T_a, const DistanceGrid& grid, const Solid& b,
                                    const Rigid& T_b, double more = 0, bool hulls_meet = false);
 
 /// distance = normal . (on_a - on_b).
@@ -20,16 +20,17 @@ struct SolidClearance {
   double distance = kInfinity;                     ///< [m]; negative when they overlap.
   Eigen::Vector3d on_a = Eigen::Vector3d::Zero();  ///< World frame.
   Eigen::Vector3d on_b = Eigen::Vector3d::Zero();
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< Unit, world frame, the way a goes to get away from b.
+  Eigen::Vector3d normal =
+      Eigen::Vector3d::UnitX();  ///< Unit, world frame, the direction in which a moves away from b.
 };
 
-/// Gap between the two, margins not counted. Exact below `bound`; otherwise the distance is infinite. Overlap: the
-/// exact depth for convex bodies; for meshes that of their hulls (bounding boxes where there is no hull), which no
+/// Clearance between the two, margins not counted. Exact below `bound`; otherwise the distance is infinite. Overlap:
+/// the exact depth for convex bodies; for meshes that of their hulls (bounding boxes where there is no hull), which no
 /// shift needs to exceed; for voxels that of the deepest cell.
 MMGRASP_EXPORT SolidClearance solids_distance(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b,
                                               double bound = kInfinity);
 
 /// A number the distance is not below, from bounding boxes; cheap. Minus infinity for planes and where boxes overlap.
-double boxes_gap(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b);
+double boxes_clearance(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b);
 
 }  // namespace mmgrasp::detail

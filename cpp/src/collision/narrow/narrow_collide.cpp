@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "collision/narrow/distance_field.hpp"
+#include "collision/narrow/distance_grid.hpp"
 #include "collision/narrow/narrow.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 
@@ -142,36 +142,35 @@ bool tree_hits_triangle(const Solid& a, const Convex& triangle, const Rigid& b_i
   return false;
 }
 
-// True when the field proves the triangle farther away than the margin, cutting it in halves where it must.
-bool field_clears(const DistanceField& field, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                  const Eigen::Vector3d& c, double margin, int cuts) {
+// True when the grid proves the triangle farther away than the margin, cutting it in halves where it must.
+bool grid_clears(const DistanceGrid& grid, const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                 double margin, int cuts) {
   const Eigen::Vector3d middle = (a + b + c) / 3;
-  const double distance = field.distance(middle) - margin;
+  const double distance = grid.distance(middle) - margin;
   if (distance <= 0) return false;
   const double squared = std::max({(a - middle).squaredNorm(), (b - middle).squaredNorm(), (c - middle).squaredNorm()});
   if (distance * distance > squared) return true;
   if (cuts == 0) return false;
   const auto halves = [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Eigen::Vector3d& other) {
     const Eigen::Vector3d half = 0.5 * (from + to);
-    return field_clears(field, from, half, other, margin, cuts - 1) &&
-           field_clears(field, half, to, other, margin, cuts - 1);
+    return grid_clears(grid, from, half, other, margin, cuts - 1) &&
+           grid_clears(grid, half, to, other, margin, cuts - 1);
   };
   const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
   if (ab >= bc && ab >= ca) return halves(a, b, c);
   return bc >= ca ? halves(b, c, a) : halves(c, a, b);
 }
 
-// More halves cost more than the exact look they may save.
+// More halves cost more than the exact test they may save.
 constexpr int kCuts = 1;
 
-// Triangles of b that the field of a cannot rule out, against the tree of a.
-bool tree_hits_field(const Solid& a, const DistanceField& field, const Solid& b, const PairFrame& frame,
-                     double margin) {
+// Triangles of b that the grid of a cannot rule out, against the tree of a.
+bool tree_hits_grid(const Solid& a, const DistanceGrid& grid, const Solid& b, const PairFrame& frame, double margin) {
   int stack[64], size = 0;
   stack[size++] = 0;
   while (size > 0) {
     const BoxTree::Node& node = b.tree.nodes()[stack[--size]];
-    if (field.distance(frame.b_in_a * node.centre) > node.half.norm() + margin) continue;
+    if (grid.distance(frame.b_in_a * node.centre) > node.half.norm() + margin) continue;
     if (node.count == 0) {
       stack[size++] = node.first + 1;
       stack[size++] = node.first;
@@ -182,7 +181,7 @@ bool tree_hits_field(const Solid& a, const DistanceField& field, const Solid& b,
       const double* p = triangle.points;
       Eigen::Vector3d corner[3];
       for (int c = 0; c < 3; ++c) corner[c] = frame.b_in_a * Eigen::Vector3d(p[c], p[3 + c], p[6 + c]);
-      if (field_clears(field, corner[0], corner[1], corner[2], margin, kCuts)) continue;
+      if (grid_clears(grid, corner[0], corner[1], corner[2], margin, kCuts)) continue;
       if (tree_hits_triangle(a, triangle, frame.b_in_a, margin)) return true;
     }
   }
@@ -215,7 +214,7 @@ bool plane_collides(const Solid& plane, const Solid& b, const Rigid& b_in_a, dou
   const Eigen::Vector3d normal = b_in_a.R.transpose() * plane.normal;  // in the frame of b
   const double shift = plane.normal.dot(b_in_a.t);
   if (b.kind == SolidKind::plane) {
-    // Half-spaces miss each other only when they look away from each other with a gap between.
+    // Half-spaces miss each other only when they face away from each other with a clearance between.
     const bool opposite = (normal + b.normal).norm() < 1e-9;
     return !opposite || shift - b.offset <= plane.offset + margin;
   }
@@ -252,7 +251,7 @@ bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigi
   return inside(a, b, frame.b_in_a) || inside(b, a, T_b.to(T_a));
 }
 
-bool meshes_collide(const Solid& a, const Rigid& T_a, const DistanceField& field, const Solid& b, const Rigid& T_b,
+bool meshes_collide(const Solid& a, const Rigid& T_a, const DistanceGrid& grid, const Solid& b, const Rigid& T_b,
                     double more, bool hulls_meet) {
   const PairFrame frame(T_a, T_b);
   const double margin = a.margin + b.margin + more;
@@ -260,7 +259,7 @@ bool meshes_collide(const Solid& a, const Rigid& T_a, const DistanceField& field
   if (!hulls_meet && a.has_hull && b.has_hull && !convex_collide(a.core, b.core, frame.b_in_a, margin, axis))
     return false;
   if (a.has_inner && b.has_inner && convex_collide(a.inner, b.inner, frame.b_in_a, margin, axis)) return true;
-  if (tree_hits_field(a, field, b, frame, margin)) return true;
+  if (tree_hits_grid(a, grid, b, frame, margin)) return true;
   return inside(a, b, frame.b_in_a) || inside(b, a, T_b.to(T_a));
 }
 

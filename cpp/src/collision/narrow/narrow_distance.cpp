@@ -28,38 +28,38 @@ Convex around(const Solid& s) {
 // Lowest point of a body along a direction of its own frame.
 std::pair<double, Eigen::Vector3d> lowest_point(const Solid& body, const Eigen::Vector3d& normal) {
   std::pair<double, Eigen::Vector3d> best{kInfinity, Eigen::Vector3d::Zero()};
-  const auto look_at = [&](const Convex& piece) {
+  const auto take = [&](const Convex& piece) {
     const Eigen::Vector3d point = piece.support(-normal) - piece.radius * normal;
     if (normal.dot(point) < best.first) best = {normal.dot(point), point};
   };
-  if (body.kind == SolidKind::convex) look_at(body.core);
-  for (std::size_t i = 0; i < body.triangles.size() + body.cells.size(); ++i) look_at(body.piece(static_cast<int>(i)));
+  if (body.kind == SolidKind::convex) take(body.core);
+  for (std::size_t i = 0; i < body.triangles.size() + body.cells.size(); ++i) take(body.piece(static_cast<int>(i)));
   return best;
 }
 
 // Frame of the plane's shape.
-ConvexGap plane_gap(const Solid& plane, const Solid& b, const Rigid& b_in_a) {
+ConvexClearance plane_clearance(const Solid& plane, const Solid& b, const Rigid& b_in_a) {
   const auto [height, point] = lowest_point(b, b_in_a.R.transpose() * plane.normal);
-  ConvexGap gap;
-  gap.distance = height + plane.normal.dot(b_in_a.t) - plane.offset;
-  gap.on_b = b_in_a * point;
-  gap.on_a = gap.on_b - gap.distance * plane.normal;
-  gap.normal = -plane.normal;
-  return gap;
+  ConvexClearance clearance;
+  clearance.distance = height + plane.normal.dot(b_in_a.t) - plane.offset;
+  clearance.on_b = b_in_a * point;
+  clearance.on_a = clearance.on_b - clearance.distance * plane.normal;
+  clearance.normal = -plane.normal;
+  return clearance;
 }
 
-ConvexGap swapped(const ConvexGap& gap, const Rigid& T) {
-  return {gap.distance, T * gap.on_b, T * gap.on_a, -(T.R * gap.normal)};
+ConvexClearance swapped(const ConvexClearance& clearance, const Rigid& T) {
+  return {clearance.distance, T * clearance.on_b, T * clearance.on_a, -(T.R * clearance.normal)};
 }
 
-// Lets the deeper of two gaps stand.
-void keep_deeper(const ConvexGap& gap, ConvexGap& deepest) {
-  if (gap.distance < deepest.distance) deepest = gap;
+// Lets the deeper of two clearances stand.
+void keep_deeper(const ConvexClearance& clearance, ConvexClearance& deepest) {
+  if (clearance.distance < deepest.distance) deepest = clearance;
 }
 
 // The cell of `cloud` that lies deepest in b. Cells that could not be deeper, by their overlap along the cloud's axes,
 // are passed over.
-ConvexGap deepest_cell(const Solid& cloud, const Convex& b, const Rigid& b_in_cloud) {
+ConvexClearance deepest_cell(const Solid& cloud, const Convex& b, const Rigid& b_in_cloud) {
   Eigen::Vector3d low, high;
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector3d axis = b_in_cloud.R.row(k);
@@ -69,7 +69,7 @@ ConvexGap deepest_cell(const Solid& cloud, const Convex& b, const Rigid& b_in_cl
   const auto overlap = [&](const Eigen::Vector3d& centre, const Eigen::Vector3d& half) {
     return (centre + half - low).cwiseMin(high - centre + half).minCoeff();
   };
-  ConvexGap deepest;  // 0 where rounding finds no cell
+  ConvexClearance deepest;  // 0 where rounding finds no cell
   deepest.on_a = deepest.on_b = b_in_cloud * b.centre;
   const Eigen::Vector3d half = Eigen::Vector3d::Constant(cloud.cell_half);
   int stack[64], size = 0;
@@ -85,15 +85,15 @@ ConvexGap deepest_cell(const Solid& cloud, const Convex& b, const Rigid& b_in_cl
     for (int i = node.first; i < node.first + node.count; ++i) {
       if (overlap(cloud.cells[i], half) <= -deepest.distance) continue;
       const Convex cell = cloud.piece(i);
-      ConvexGap gap;
+      ConvexClearance clearance;
       Eigen::Vector3d axis = Eigen::Vector3d::Zero();
-      switch (convex_clearance(cell, b, b_in_cloud, deepest.distance, axis, gap)) {
-        case GapKind::beyond:
+      switch (convex_clearance(cell, b, b_in_cloud, deepest.distance, axis, clearance)) {
+        case ClearanceKind::beyond:
           break;
-        case GapKind::apart:
-          keep_deeper(gap, deepest);
+        case ClearanceKind::apart:
+          keep_deeper(clearance, deepest);
           break;
-        case GapKind::overlapping:
+        case ClearanceKind::overlapping:
           keep_deeper(convex_penetration(cell, b, b_in_cloud), deepest);
       }
     }
@@ -101,8 +101,8 @@ ConvexGap deepest_cell(const Solid& cloud, const Convex& b, const Rigid& b_in_cl
   return deepest;
 }
 
-// Of bodies that touch.
-ConvexGap overlap(const Solid& a, const Solid& b, const Rigid& b_in_a) {
+// The depth of bodies that touch.
+ConvexClearance overlap(const Solid& a, const Solid& b, const Rigid& b_in_a) {
   if (a.kind == SolidKind::voxels) return deepest_cell(a, around(b), b_in_a);
   if (b.kind == SolidKind::voxels) {
     const Rigid a_in_b(b_in_a.R.transpose(), -(b_in_a.R.transpose() * b_in_a.t));
@@ -111,60 +111,61 @@ ConvexGap overlap(const Solid& a, const Solid& b, const Rigid& b_in_a) {
   return convex_penetration(around(a), around(b), b_in_a);
 }
 
-// Bodies with bounds. False when they are not nearer than `bound`; `gap` is in the frame of a.
-bool find_gap(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double bound, ConvexGap& gap) {
+// Bodies with bounds. False when they are not nearer than `bound`; `clearance` is in the frame of a.
+bool find_clearance(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double bound,
+                    ConvexClearance& clearance) {
   const Rigid b_in_a = T_a.to(T_b);
   const bool trees = is_tree(a) || is_tree(b);
   const bool bounded = (!is_tree(a) || a.has_hull) && (!is_tree(b) || b.has_hull);
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
-  ConvexGap outer;  // of the bodies, or of their hulls: then it comes from below
-  GapKind kind = GapKind::overlapping;
+  ConvexClearance outer;  // of the bodies, or of their hulls: then it comes from below
+  ClearanceKind kind = ClearanceKind::overlapping;
   if (bounded) kind = convex_clearance(a.core, b.core, b_in_a, bound, axis, outer);
-  if (kind == GapKind::beyond) return false;
+  if (kind == ClearanceKind::beyond) return false;
   if (!trees) {
-    gap = kind == GapKind::apart ? outer : convex_penetration(a.core, b.core, b_in_a);
-    return gap.distance < bound;
+    clearance = kind == ClearanceKind::apart ? outer : convex_penetration(a.core, b.core, b_in_a);
+    return clearance.distance < bound;
   }
-  if (!(kind == GapKind::apart && outer.distance > 0)) {
+  if (!(kind == ClearanceKind::apart && outer.distance > 0)) {
     outer.distance = 0;
     axis.setZero();
     if (solids_collide(a, T_a, b, T_b)) {
-      gap = overlap(a, b, b_in_a);
-      return gap.distance < bound;
+      clearance = overlap(a, b, b_in_a);
+      return clearance.distance < bound;
     }
   }
-  // The surfaces lie at most their dents behind their hulls, so no search beyond that.
-  const bool dents_known = bounded && (!is_tree(a) || a.has_inner) && (!is_tree(b) || b.has_inner);
-  if (dents_known) bound = std::min(bound, outer.distance + a.dent + b.dent + 1e-9);
-  return bound > 0 && tree_clearance(a, b, b_in_a, bound, axis, gap);
+  // The surfaces lie at most their concavities behind their hulls, so no search beyond that.
+  const bool concavity_known = bounded && (!is_tree(a) || a.has_inner) && (!is_tree(b) || b.has_inner);
+  if (concavity_known) bound = std::min(bound, outer.distance + a.concavity + b.concavity + 1e-9);
+  return bound > 0 && tree_clearance(a, b, b_in_a, bound, axis, clearance);
 }
 
 }  // namespace
 
-double boxes_gap(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b) {
+double boxes_clearance(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b) {
   if (a.kind == SolidKind::plane || b.kind == SolidKind::plane) return -kInfinity;
   const Rigid b_in_a = T_a.to(T_b);
-  const double gap =
-      box_gap(a.box_half, b.box_half, b_in_a.R, b_in_a.R.cwiseAbs(), b_in_a * b.box_centre - a.box_centre);
-  return gap > 0 ? gap : -kInfinity;
+  const double clearance =
+      box_clearance(a.box_half, b.box_half, b_in_a.R, b_in_a.R.cwiseAbs(), b_in_a * b.box_centre - a.box_centre);
+  return clearance > 0 ? clearance : -kInfinity;
 }
 
 SolidClearance solids_distance(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double bound) {
   SolidClearance out;
   if (a.never_collides() || b.never_collides()) return out;
   if (a.kind != SolidKind::plane && b.kind == SolidKind::plane) {
-    const SolidClearance gap = solids_distance(b, T_b, a, T_a, bound);
-    return {gap.distance, gap.on_b, gap.on_a, -gap.normal};
+    const SolidClearance clearance = solids_distance(b, T_b, a, T_a, bound);
+    return {clearance.distance, clearance.on_b, clearance.on_a, -clearance.normal};
   }
-  ConvexGap gap;
+  ConvexClearance clearance;
   if (a.kind == SolidKind::plane) {
     if (b.kind == SolidKind::plane) return out;
-    gap = plane_gap(a, b, T_a.to(T_b));
-    if (!(gap.distance < bound)) return out;
-  } else if (!find_gap(a, T_a, b, T_b, bound, gap)) {
+    clearance = plane_clearance(a, b, T_a.to(T_b));
+    if (!(clearance.distance < bound)) return out;
+  } else if (!find_clearance(a, T_a, b, T_b, bound, clearance)) {
     return out;
   }
-  return {gap.distance, T_a * gap.on_a, T_a * gap.on_b, T_a.R * gap.normal};
+  return {clearance.distance, T_a * clearance.on_a, T_a * clearance.on_b, T_a.R * clearance.normal};
 }
 
 }  // namespace mmgrasp::detail

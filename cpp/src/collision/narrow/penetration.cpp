@@ -162,17 +162,17 @@ class Polytope {
 
 }  // namespace
 
-ConvexGap convex_penetration(const Convex& a, const Convex& b, const Rigid& b_in_a) {
+ConvexClearance convex_penetration(const Convex& a, const Convex& b, const Rigid& b_in_a) {
   Polytope polytope(a, b, b_in_a);
-  ConvexGap gap;
+  ConvexClearance clearance;
   double depth = kInfinity;
   Eigen::Vector3d outward = Eigen::Vector3d::UnitX();
   if (!polytope.start(outward)) {
     // Cores without volume (points, segments): they meet, and any shift out of their common plane parts them.
     const SimplexPoint p = polytope.support(outward);
     depth = std::max(0.0, outward.dot(p.w));
-    gap.on_a = p.on_a;
-    gap.on_b = p.on_a - depth * outward;
+    clearance.on_a = p.on_a;
+    clearance.on_b = p.on_a - depth * outward;
   } else {
     const double accuracy = 1e-12 * polytope.scale();
     for (int i = 0; i < kMaxExpansions; ++i) {
@@ -186,14 +186,14 @@ ConvexGap convex_penetration(const Convex& a, const Convex& b, const Rigid& b_in
       if (height - face.offset <= accuracy || !polytope.expand(p)) break;
     }
     depth = std::max(0.0, depth);
-    polytope.witness(gap.on_a, gap.on_b);
-    gap.on_b = gap.on_a - depth * outward;
+    polytope.witness(clearance.on_a, clearance.on_b);
+    clearance.on_b = clearance.on_a - depth * outward;
   }
-  gap.distance = -depth - a.radius - b.radius;
-  gap.normal = -outward;
-  gap.on_a -= a.radius * gap.normal;
-  gap.on_b += b.radius * gap.normal;
-  return gap;
+  clearance.distance = -depth - a.radius - b.radius;
+  clearance.normal = -outward;
+  clearance.on_a -= a.radius * clearance.normal;
+  clearance.on_b += b.radius * clearance.normal;
+  return clearance;
 }
 
 }  // namespace mmgrasp::detail

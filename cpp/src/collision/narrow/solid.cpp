@@ -3,6 +3,7 @@
 #include <map>
 #include <numeric>
 
+#include "collision/narrow/stages.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/detail/mesh_topology.hpp"
@@ -36,11 +37,11 @@ void set_hull(Convex& core, const std::vector<double>& points) {
 }
 
 // The smaller of two simple choices: around the box, or around the farthest vertex from the box's middle.
-void set_bounds(Solid& solid, const Eigen::AlignedBox3d& box, double ball_radius) {
+void set_bounds(Solid& solid, const Eigen::AlignedBox3d& box, double sphere_radius) {
   solid.box_centre = box.center();
   solid.box_half = 0.5 * box.sizes();
-  solid.ball_centre = solid.box_centre;
-  solid.ball_radius = std::min(ball_radius, solid.box_half.norm()) + solid.margin;
+  solid.sphere_centre = solid.box_centre;
+  solid.sphere_radius = std::min(sphere_radius, solid.box_half.norm()) + solid.margin;
 }
 
 void set_mesh_bounds(Solid& solid, const TriangleMesh& mesh) {
@@ -53,7 +54,7 @@ void set_mesh_bounds(Solid& solid, const TriangleMesh& mesh) {
 
 // How deep the mesh's surface dips below its hull, from above: over a triangle the depth under the nearest hull face is
 // at most the least, over faces, of the deepest corner.
-double deepest_dent(const TriangleMesh& mesh, const std::vector<Eigen::Vector4d>& planes) {
+double deepest_concavity(const TriangleMesh& mesh, const std::vector<Eigen::Vector4d>& planes) {
   double deepest = 0;
   for (const auto& t : mesh.triangles) {
     double least = kInfinity;
@@ -69,8 +70,8 @@ double deepest_dent(const TriangleMesh& mesh, const std::vector<Eigen::Vector4d>
   return deepest;
 }
 
-// The hull scaled down about its middle until no point of it is less deep than the deepest dent: no surface reaches it,
-// so it is inside as a whole when its middle is.
+// The hull scaled down about its middle until no point of it is less deep than the deepest concavity: no surface
+// reaches it, so it is inside as a whole when its middle is.
 bool set_inner(Solid& solid, const TriangleMesh& mesh, const TriangleMesh& hull, std::vector<double>& inner_points) {
   const Eigen::Vector3d middle = solid.core.centre;
   std::vector<Eigen::Vector4d> planes;
@@ -81,13 +82,13 @@ bool set_inner(Solid& solid, const TriangleMesh& mesh, const TriangleMesh& hull,
     planes.emplace_back(normal[0], normal[1], normal[2], normal.dot(a));
     middle_depth = std::min(middle_depth, normal.dot(a - middle));
   }
-  const double shrink = (deepest_dent(mesh, planes) + solid.core.radius) / middle_depth;
+  const double shrink = (deepest_concavity(mesh, planes) + solid.core.radius) / middle_depth;
   if (!(middle_depth > 0) || shrink > 0.5 || !solid.contains(middle)) return false;
   std::vector<Eigen::Vector3d> points;
   for (const Eigen::Vector3d& v : hull.vertices) {
     points.push_back(middle + (1 - shrink) * (v - middle));
     // From any point of the hull the way to the middle meets the mesh before it enters the inner body.
-    solid.dent = std::max(solid.dent, shrink * (v - middle).norm() + solid.core.radius);
+    solid.concavity = std::max(solid.concavity, shrink * (v - middle).norm() + solid.core.radius);
   }
   inner_points = by_coordinate(points);
   set_hull(solid.inner, inner_points);
@@ -136,8 +137,8 @@ void set_mesh(Solid& solid, const TriangleMesh& mesh, std::vector<double>& hull_
     set_hull(solid.core, hull_points);
     // The hull's own rounding must not cut anything off.
     solid.core.radius = 1e-6 * solid.box_half.norm();
-    solid.has_hull = true;
-    solid.has_inner = mesh.closed && set_inner(solid, mesh, *hull, inner_points);
+    solid.has_hull = runs(kHullStage);
+    solid.has_inner = runs(kHullStage) && mesh.closed && set_inner(solid, mesh, *hull, inner_points);
   } catch (const InvalidInput&) {
     solid.has_hull = false;  // a flat sheet has no hull
   }
@@ -191,7 +192,7 @@ void set_voxels(Solid& solid, const Voxels& voxels) {
   for (const int item : solid.tree.items()) solid.cells.push_back((*voxels.centres)[item]);
   set_bounds(solid, all, all.diagonal().norm());
   solid.part_points = cell_groups(*voxels.centres, voxels.resolution);
-  solid.field = std::make_shared<const DistanceField>(*voxels.centres, voxels.resolution);
+  solid.grid = std::make_shared<const DistanceGrid>(*voxels.centres, voxels.resolution);
 }
 
 void set_primitive(Solid& solid, const Shape& shape, double padding) {
@@ -212,7 +213,7 @@ void set_primitive(Solid& solid, const Shape& shape, double padding) {
     core.radius = s->radius + padding;
   }
   solid.box_half = core.half + Eigen::Vector3d::Constant(core.radius);
-  solid.ball_radius =
+  solid.sphere_radius =
       core.kind == ConvexKind::cylinder ? std::hypot(core.half[0], core.half[2]) : core.half.norm() + core.radius;
 }
 
@@ -281,7 +282,7 @@ std::shared_ptr<const Solid> make_solid(const Shape& shape, double padding) {
     solid->normal = s->normal;
     solid->offset = s->offset + padding;
     solid->box_half.setConstant(kInfinity);
-    solid->ball_radius = kInfinity;
+    solid->sphere_radius = kInfinity;
   } else {
     set_primitive(*solid, shape, padding);
   }

@@ -6,7 +6,7 @@
 
 #include "collision/narrow/box_tree.hpp"
 #include "collision/narrow/convex.hpp"
-#include "collision/narrow/distance_field.hpp"
+#include "collision/narrow/distance_grid.hpp"
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/geometry/shape.hpp"
 
@@ -25,22 +25,22 @@ struct MMGRASP_EXPORT Solid {
   /// Kind mesh: a convex body that lies wholly inside a closed, nearly convex mesh. What meets it collides for certain.
   Convex inner;
   bool has_inner = false;
-  double dent = 0;    ///< With `has_inner`: no point of the hull is farther than this from the mesh [m].
-  double margin = 0;  ///< Meshes and voxels grown by padding: they collide at this distance already [m].
+  double concavity = 0;  ///< With `has_inner`: no point of the hull is farther than this from the mesh [m].
+  double margin = 0;     ///< Meshes and voxels grown by padding: they collide at this distance already [m].
 
   Eigen::Vector3d box_centre = Eigen::Vector3d::Zero();  ///< Bounding box in the shape's frame (margin not included).
   Eigen::Vector3d box_half = Eigen::Vector3d::Zero();
-  Eigen::Vector3d ball_centre =
+  Eigen::Vector3d sphere_centre =
       Eigen::Vector3d::Zero();  ///< Bounding sphere (margin included); radius infinite for planes.
-  double ball_radius = 0;
+  double sphere_radius = 0;
   bool is_box = false;  ///< The bounding box is the shape.
 
   BoxTree tree;                                  ///< Over triangles or voxels.
-  std::vector<std::array<double, 9>> triangles;  ///< In tree order: x of three corners, y, z.
+  std::vector<std::array<double, 9>> triangles;  ///< Corners in tree order: x of the three, then y, then z.
   std::vector<Eigen::Vector3d> cells;            ///< Voxel centres in tree order.
   double cell_half = 0;
-  std::shared_ptr<const DistanceField> field;  ///< Kind voxels: distances to the cells.
-  bool closed = false;                         ///< Mesh with an inside.
+  std::shared_ptr<const DistanceGrid> grid;  ///< Kind voxels: distances to the cells.
+  bool closed = false;                       ///< Mesh with an inside.
   /// One point of each connected part: with no contact of surfaces, the part is inside a solid if and only if its point
   /// is.
   std::vector<Eigen::Vector3d> part_points;

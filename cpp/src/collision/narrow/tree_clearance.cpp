@@ -8,26 +8,26 @@ namespace mmgrasp::detail {
 
 namespace {
 
-// Depth first, nearer child first. Whatever pair of pieces gave the best gap so far, its direction tells most others
-// apart: what lies beyond along it needs no closer look.
-class TreeGap {
+// Depth first, nearer child first. The direction of the best clearance so far separates most other pairs of pieces:
+// those farther apart along it are skipped.
+class TreeClearance {
  public:
-  TreeGap(const Solid& a, const Solid& b, const Rigid& b_in_a, double bound)
+  TreeClearance(const Solid& a, const Solid& b, const Rigid& b_in_a, double bound)
       : a_(a), b_(b), b_in_a_(b_in_a), abs_R_(b_in_a.R.cwiseAbs()) {
     best_.distance = bound;
     leaf_a_ = whole(a);
     leaf_b_ = whole(b);
   }
 
-  bool run(const Eigen::Vector3d& axis, ConvexGap& gap) {
+  bool run(const Eigen::Vector3d& axis, ConvexClearance& clearance) {
     if (axis.squaredNorm() > 0) {
-      look_along(axis.normalized());
+      set_direction(axis.normalized());
     } else {
       const Eigen::Vector3d between = a_.box_centre - b_in_a_ * b_.box_centre;
-      look_along(between.norm() > 0 ? between.normalized() : Eigen::Vector3d::UnitX());
+      set_direction(between.norm() > 0 ? between.normalized() : Eigen::Vector3d::UnitX());
     }
     visit(node_a(0), node_b(0));
-    if (found_) gap = best_;
+    if (found_) clearance = best_;
     return found_;
   }
 
@@ -46,7 +46,7 @@ class TreeGap {
   const Node& node_a(int i) const { return is_tree(a_) ? a_.tree.nodes()[i] : leaf_a_; }
   const Node& node_b(int i) const { return is_tree(b_) ? b_.tree.nodes()[i] : leaf_b_; }
 
-  void look_along(const Eigen::Vector3d& normal) {
+  void set_direction(const Eigen::Vector3d& normal) {
     normal_ = normal;
     normal_in_b_ = b_in_a_.R.transpose() * normal;
     shift_ = normal.dot(b_in_a_.t);
@@ -65,7 +65,7 @@ class TreeGap {
     const double apart = lowest_of(na) - highest_of(nb);
     if (apart >= best_.distance) return apart;
     const Eigen::Vector3d t = b_in_a_ * nb.centre - na.centre;
-    return std::max(apart, box_gap(na.half, nb.half, b_in_a_.R, abs_R_, t));
+    return std::max(apart, box_clearance(na.half, nb.half, b_in_a_.R, abs_R_, t));
   }
 
   // Lowest and highest point of one piece along the current direction.
@@ -91,22 +91,22 @@ class TreeGap {
     for (int i = na.first; i < na.first + na.count; ++i) {
       for (int j = nb.first; j < nb.first + nb.count; ++j) {
         if (lowest_piece(i) - highest_piece(j) >= best_.distance) continue;
-        look_at(is_tree(a_) ? a_.piece(i) : a_.core, is_tree(b_) ? b_.piece(j) : b_.core);
+        measure(is_tree(a_) ? a_.piece(i) : a_.core, is_tree(b_) ? b_.piece(j) : b_.core);
         if (best_.distance <= 0) return;
       }
     }
   }
 
-  void look_at(const Convex& a, const Convex& b) {
+  void measure(const Convex& a, const Convex& b) {
     Eigen::Vector3d axis = normal_;
     switch (convex_clearance(a, b, b_in_a_, best_.distance, axis, best_)) {
-      case GapKind::beyond:
+      case ClearanceKind::beyond:
         return;
-      case GapKind::apart:
+      case ClearanceKind::apart:
         found_ = true;
-        look_along(best_.normal);
+        set_direction(best_.normal);
         return;
-      case GapKind::overlapping:
+      case ClearanceKind::overlapping:
         found_ = true;
         best_.distance = 0;
         best_.on_a = best_.on_b = a.centre;
@@ -133,17 +133,17 @@ class TreeGap {
   const Rigid& b_in_a_;
   Eigen::Matrix3d abs_R_;
   Node leaf_a_, leaf_b_;
-  ConvexGap best_;
+  ConvexClearance best_;
   bool found_ = false;
-  Eigen::Vector3d normal_, normal_in_b_;  // the direction looked along, from b to a
+  Eigen::Vector3d normal_, normal_in_b_;  // the direction pieces are compared along, from b to a
   double shift_ = 0, lowest_a_ = 0, highest_b_ = 0;
 };
 
 }  // namespace
 
 bool tree_clearance(const Solid& a, const Solid& b, const Rigid& b_in_a, double bound, const Eigen::Vector3d& axis,
-                    ConvexGap& gap) {
-  return TreeGap(a, b, b_in_a, bound).run(axis, gap);
+                    ConvexClearance& clearance) {
+  return TreeClearance(a, b, b_in_a, bound).run(axis, clearance);
 }
 
 }  // namespace mmgrasp::detail

@@ -7,6 +7,7 @@
 #include "geometry/hierarchy/tree_builder.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/geometry/detail/mesh_topology.hpp"
+#include "mmgrasp/geometry/detail/triangle_distance.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -25,10 +26,6 @@ bool above_inside(const Vector3d& p, const Vector3d& a, const Vector3d& b, const
   return n.dot((b - a).cross(p - a)) >= 0 && n.dot((c - b).cross(p - b)) >= 0 && n.dot((a - c).cross(p - c)) >= 0;
 }
 
-double segment_distance(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
-  return (p - closest_on_segment(p, a, b)).norm();
-}
-
 }  // namespace
 
 Vector3d closest_on_triangle(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
@@ -39,14 +36,6 @@ Vector3d closest_on_triangle(const Vector3d& p, const Vector3d& a, const Vector3
   return *std::min_element(edges, edges + 3, [&](const Vector3d& s, const Vector3d& t) {
     return (p - s).squaredNorm() < (p - t).squaredNorm();
   });
-}
-
-double triangle_distance(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-  const Vector3d n = (b - a).cross(c - a);
-  const double area = n.norm();
-  // Above the inside of the triangle the plane is nearest; else an edge is.
-  if (area > 0 && above_inside(p, a, b, c, n)) return std::abs(n.dot(p - a)) / area;
-  return std::min({segment_distance(p, a, b), segment_distance(p, b, c), segment_distance(p, c, a)});
 }
 
 TriangleTree::TriangleTree(const TriangleMesh& mesh) : closed_(mesh.closed) {

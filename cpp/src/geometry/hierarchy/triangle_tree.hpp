@@ -11,10 +11,6 @@ namespace mmgrasp::detail {
 /// The point of a triangle that is nearest to p.
 Eigen::Vector3d closest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                     const Eigen::Vector3d& c);
-/// Distance of a point from a triangle.
-double triangle_distance(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                         const Eigen::Vector3d& c);
-
 /// The triangle nearest to a point.
 struct NearestTriangle {
   double distance;  ///< Infinite for an empty mesh.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mmgrasp/collision/detail/edge_steps.hpp"
 #include "mmgrasp/collision/edge.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "plan/motion/steered_base.hpp"
@@ -35,10 +36,7 @@ MotionEdges::MotionEdges(CollisionChecker& checker, const MotionOptions& options
 }
 
 double MotionEdges::step(const Eigen::VectorXd& delta, double resolution) const {
-  const double largest = delta.lpNorm<Eigen::Infinity>();
-  if (largest == 0 || bounds_.size() == 0) return joint_step_ / resolution;
-  const double motion = bounds_.dot(delta.cwiseAbs());
-  return std::min(joint_step_, largest * workspace_step_ / motion) / resolution;
+  return edge_step(delta, bounds_, joint_step_, workspace_step_) / resolution;
 }
 
 double MotionEdges::tilt(const Eigen::VectorXd& q) const {

@@ -24,7 +24,7 @@ LockedArm locked_at(const JointGroup& arm, const std::vector<int>& turning, cons
     locked.six.h[i] = w;
     locked.six.p[i] = T_world_tip.translation() - v.cross(w);
   }
-  locked.six.tip = Motion{T_world_tip.linear(), T_world_tip.translation()};
+  locked.six.tip = Rigid(T_world_tip);
   locked.tip_inverse = locked.six.tip.inverse();
   locked.form = closed_form_of(locked.six);
   return locked;

@@ -12,7 +12,7 @@ namespace mmgrasp::detail {
 struct LockedArm {
   Screws six;  ///< Of the other six, at these values and all else zero.
   ClosedForm form;
-  Motion tip_inverse;  ///< T_world_tip^-1 there: a target times this is what the six turns multiply to.
+  Rigid tip_inverse;   ///< T_world_tip^-1 there: a target times this is what the six turns multiply to.
   Eigen::VectorXd at;  ///< The configuration: locked values, zeros.
 };
 
@@ -37,7 +37,7 @@ class BranchTable {
   /// did. q is scratch: the branch, clamped to limits (joints that may turn more than once: nearest to their middle);
   /// `outside` says by how much in sum [rad], 0 for branches within limits. Exact for ideal geometry.
   template <class Use>
-  bool each_branch(const LockedArm& arm, const Motion& target, Eigen::VectorXd& q, const Use& use) const {
+  bool each_branch(const LockedArm& arm, const Rigid& target, Eigen::VectorXd& q, const Use& use) const {
     Branches branches;
     solve_closed_form(arm.form, arm.six, target * arm.tip_inverse, branches);
     for (int b = 0; b < branches.count; ++b) {

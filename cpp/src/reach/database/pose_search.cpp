@@ -39,7 +39,7 @@ PoseSearch::PoseSearch(const CollisionChecker& checker, const HandProbe& hand, c
 
 bool PoseSearch::start(const Pose& T_world_tip, std::uint64_t number) {
   target_ = T_world_tip;
-  motion_ = Motion{T_world_tip.linear(), T_world_tip.translation()};
+  motion_ = Rigid(T_world_tip);
   number_ = number;
   cause_ = Rejection::reach;
   hopeless_ = hand_asked_ = false;

@@ -55,7 +55,7 @@ class PoseSearch {
   IkOptions ik_;
   IkWorkspace workspace_;
   Pose target_ = Pose::Identity();
-  Motion motion_;
+  Rigid motion_;
   std::uint64_t number_ = 0;
   Rejection cause_ = Rejection::reach;
   bool hopeless_ = false, hand_asked_ = false;

@@ -56,7 +56,7 @@ Candidates closed_form_candidates(const JointGroup& group, const Pose& T_world_t
   candidates.known_form = locked >= 0 || form.family != ClosedForm::Family::none;
   if (!candidates.known_form) return candidates;
   candidates.redundant_joint = locked;
-  const Motion target = Motion{T_world_tip.linear(), T_world_tip.translation()} * screws.tip.inverse();
+  const Rigid target = Rigid(T_world_tip) * screws.tip.inverse();
   double lower = 0, cell = 0;
   if (locked >= 0) {
     lower = group.sample_lower()[locked];
@@ -68,7 +68,7 @@ Candidates closed_form_candidates(const JointGroup& group, const Pose& T_world_t
   Branches branches;
   Eigen::VectorXd q(screws.size);
   for (int i = 0; i < values; ++i) {
-    Motion G = target;
+    Rigid G = target;
     double locked_value = 0;
     if (locked >= 0) {
       locked_value = lower + (i + 0.5) * cell;

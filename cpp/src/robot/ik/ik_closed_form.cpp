@@ -115,7 +115,7 @@ void add(Branches& branches, const std::array<double, 6>& values, bool reversed)
   for (std::size_t i = 0; i < 6; ++i) slot[i] = reversed ? -values[5 - i] : values[i];
 }
 
-void solve_spherical(const Screws& s, const Motion& G, bool reversed, Branches& branches) {
+void solve_spherical(const Screws& s, const Rigid& G, bool reversed, Branches& branches) {
   const Vector3d w = *wrist_point(s);
   const Positions positions = wrist_positions(s, w, G * w);
   branches.free = branches.free || positions.free;
@@ -133,7 +133,7 @@ void solve_spherical(const Screws& s, const Motion& G, bool reversed, Branches& 
   }
 }
 
-void solve_parallel(const Screws& s, const Motion& G, bool reversed, Branches& branches) {
+void solve_parallel(const Screws& s, const Rigid& G, bool reversed, Branches& branches) {
   const Vector3d h = s.h[1];
   const Vector3d o = *meeting_point(s, 4, 5);
   const Vector3d Go = G * o, Gh = G.R * s.h[5];
@@ -167,10 +167,10 @@ ClosedForm::Family family_of(const Screws& s) {
 
 }  // namespace
 
-Motion turn_about(const Vector3d& h, const Vector3d& p, double angle) {
-  Motion motion;
+Rigid turn_about(const Vector3d& h, const Vector3d& p, double angle) {
+  Rigid motion;
   motion.R = Eigen::AngleAxisd(angle, h).toRotationMatrix();
-  motion.p = p - motion.R * p;
+  motion.t = p - motion.R * p;
   return motion;
 }
 
@@ -202,7 +202,7 @@ Screws screws_of(const JointGroup& group) {
     screws.h[i] = w;
     screws.p[i] = T_world_tip.translation() - v.cross(w);
   }
-  screws.tip = Motion{T_world_tip.linear(), T_world_tip.translation()};
+  screws.tip = Rigid(T_world_tip);
   screws.size = n;
   return screws;
 }
@@ -213,12 +213,12 @@ ClosedForm closed_form_of(const Screws& six) {
   return {family_of(reversed(six)), true};
 }
 
-void solve_closed_form(const ClosedForm& form, const Screws& six, const Motion& G, Branches& branches) {
+void solve_closed_form(const ClosedForm& form, const Screws& six, const Rigid& G, Branches& branches) {
   branches.count = 0;
   branches.free = false;
   if (form.family == ClosedForm::Family::none) return;
   const Screws s = form.reversed ? reversed(six) : six;
-  const Motion target = form.reversed ? G.inverse() : G;
+  const Rigid target = form.reversed ? G.inverse() : G;
   if (form.family == ClosedForm::Family::spherical)
     solve_spherical(s, target, form.reversed, branches);
   else
@@ -228,7 +228,7 @@ void solve_closed_form(const ClosedForm& form, const Screws& six, const Motion& 
 int redundant_joint(const Screws& seven) {
   if (seven.size != 7) return -1;
   for (const int locked : {6, 0, 2, 1, 3, 4, 5}) {
-    Motion G;
+    Rigid G;
     bool always = true;
     for (const double angle : {0.3, 1.7, -2.1})  // no special angles: what holds here holds everywhere
       always = always && closed_form_of(lock_joint(seven, locked, angle, G)).family != ClosedForm::Family::none;
@@ -237,9 +237,9 @@ int redundant_joint(const Screws& seven) {
   return -1;
 }
 
-Screws lock_joint(const Screws& seven, int locked, double angle, Motion& G) {
+Screws lock_joint(const Screws& seven, int locked, double angle, Rigid& G) {
   // E_k moves to the other side of the joints behind it: E_k E_j = (E_k E_j E_k^-1) E_k.
-  const Motion E = turn_about(seven.h[locked], seven.p[locked], angle);
+  const Rigid E = turn_about(seven.h[locked], seven.p[locked], angle);
   Screws six;
   six.size = 6;
   for (int i = 0; i < 6; ++i) {

@@ -11,7 +11,7 @@ namespace {
 
 }  // namespace
 
-const KinematicsKernels kAvx2Kinematics{"avx2", MMGRASP_LANES, &single, &batch, &links};
+const KinematicsKernels kAvx2Kinematics{MMGRASP_LANES, &single, &batch, &links};
 
 }  // namespace mmgrasp::detail
 #endif

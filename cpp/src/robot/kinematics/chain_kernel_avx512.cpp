@@ -11,7 +11,7 @@ namespace {
 
 }  // namespace
 
-const KinematicsKernels kAvx512Kinematics{"avx512", MMGRASP_LANES, &single, &batch, &links};
+const KinematicsKernels kAvx512Kinematics{MMGRASP_LANES, &single, &batch, &links};
 
 }  // namespace mmgrasp::detail
 #endif

@@ -12,7 +12,7 @@ namespace {
 
 }  // namespace
 
-const KinematicsKernels kPortableKinematics{"portable", MMGRASP_LANES, &single, &batch, &links};
+const KinematicsKernels kPortableKinematics{MMGRASP_LANES, &single, &batch, &links};
 
 void turn_any(const TurnTable& turns, const double* q, double* sines, double* cosines) {
   for (int i = 0; i < turns.count; ++i) {

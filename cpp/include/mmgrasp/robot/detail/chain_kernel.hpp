@@ -1,5 +1,7 @@
 #pragma once
 
+#include "mmgrasp/core/detail/instruction_set.hpp"
+
 /// The arithmetic of kinematics on plain arrays, compiled once for every instruction set. No Eigen type passes through
 /// here: wider registers would change the alignment that Eigen's types were given elsewhere.
 namespace mmgrasp::detail {
@@ -68,7 +70,6 @@ struct LinkStep {
 };
 
 struct KinematicsKernels {
-  const char* name;
   int lanes;  ///< Configurations that `batch` takes at a time.
   /// `T` receives a 4 x 4 pose, `J` (may be null) 6 x columns with `stride` between columns.
   void (*single)(const Chain&, const RootPose&, const double* q, const Ball*, double* T, double* J, long stride);
@@ -84,8 +85,7 @@ struct KinematicsKernels {
 const KinematicsKernels& kinematics_kernels();
 
 extern const KinematicsKernels kPortableKinematics;
-#if defined(__x86_64__) && defined(__GNUC__)
-#define MMGRASP_X86_KERNELS
+#ifdef MMGRASP_X86_KERNELS
 extern const KinematicsKernels kAvx2Kinematics;
 extern const KinematicsKernels kAvx512Kinematics;
 #endif

@@ -3,22 +3,13 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "mmgrasp/core/detail/rigid.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
 
 namespace mmgrasp::detail {
 
-/// A rigid motion; cheaper to compose than a 4 x 4 matrix.
-struct Motion {
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d p = Eigen::Vector3d::Zero();
-
-  Motion operator*(const Motion& other) const { return {R * other.R, R * other.p + p}; }
-  Eigen::Vector3d operator*(const Eigen::Vector3d& x) const { return R * x + p; }
-  Motion inverse() const { return {R.transpose(), -(R.transpose() * p)}; }
-};
-
 /// The turn about the axis h through the point p.
-Motion turn_about(const Eigen::Vector3d& h, const Eigen::Vector3d& p, double angle);
+Rigid turn_about(const Eigen::Vector3d& h, const Eigen::Vector3d& p, double angle);
 
 /// A chain of turning joints as the product of exponentials E_1 ... E_n = G, with axes as they lie when all joint
 /// values are zero, seen from the root: G = T_root_tip T_root_tip(0)^-1.
@@ -26,7 +17,7 @@ struct Screws {
   static constexpr int kMost = 7;
   int size = 0;
   std::array<Eigen::Vector3d, kMost> h, p;
-  Motion tip;  ///< T_world_tip at zero.
+  Rigid tip;  ///< T_world_tip at zero.
 };
 
 /// True when each column moves one joint that turns or slides (no mimic, planar or floating joints on the way to the
@@ -54,11 +45,11 @@ struct ClosedForm {
   bool reversed = false;
 };
 ClosedForm closed_form_of(const Screws& six);
-void solve_closed_form(const ClosedForm& form, const Screws& six, const Motion& G, Branches& branches);
+void solve_closed_form(const ClosedForm& form, const Screws& six, const Rigid& G, Branches& branches);
 
 /// Seven joints: the joint which, once locked, leaves six that have a closed form, whatever its value; -1 for none.
 int redundant_joint(const Screws& seven);
 /// The six others with joint `locked` at `angle`; G changes with it.
-Screws lock_joint(const Screws& seven, int locked, double angle, Motion& G);
+Screws lock_joint(const Screws& seven, int locked, double angle, Rigid& G);
 
 }  // namespace mmgrasp::detail

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "mmgrasp/collision/detail/edge_steps.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
@@ -94,10 +95,9 @@ AttachedChecker& TransferChecks::holding(std::optional<WithObject>& slot, int gr
   if (!slot) {
     CheckerOptions options;
     options.held_only = held_only;
-    const CollisionChecker checker(group(opening_of(grasp)), world_with(grasp), options);
-    slot.emplace(WithObject{AttachedChecker(checker), grasp});
+    slot.emplace(WithObject{AttachedChecker(group(opening_of(grasp)), world_with(grasp), options), grasp});
   } else if (slot->grasp != grasp) {
-    slot->checker.hold(T_tool_object(grasp));
+    slot->checker.place_attached(T_tool_object(grasp));
     slot->grasp = grasp;
   }
   return slot->checker;
@@ -131,7 +131,8 @@ bool TransferChecks::robot_is_free(int worker, int opening, const Eigen::VectorX
 bool TransferChecks::robot_edge_is_free(int worker, int opening, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   RobotAlone& own = robot(worker, opening);
   if (search_edge_.continuous) return check_edge(own.checker, a, b, search_edge_).free;
-  return stepped_edge_is_free(own.checker, own.motion, a, b, search_edge_);
+  return own.checker.edge_is_free(a, b,
+                                  edge_step(b - a, own.motion, search_edge_.joint_step, search_edge_.workspace_step));
 }
 Rejection TransferChecks::robot_rejection(int worker, int opening, const Eigen::VectorXd& q) {
   return robot(worker, opening).checker.rejection(q);

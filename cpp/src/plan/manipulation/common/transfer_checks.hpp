@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "collision/edge/attached_checker.hpp"
 #include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/collision/detail/attached_checker.hpp"
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
 #include "mmgrasp/robot/trajectory.hpp"

@@ -14,16 +14,16 @@ namespace mmgrasp::detail {
 
 struct Solid;
 
-/// A grid around a body that bounds the distance to it from below: what is farther than a ball's radius misses the ball
-/// for certain. Cells that lie wholly within the body are marked. Immutable.
-class MMGRASP_EXPORT DistanceField {
+/// A grid around a body that bounds the distance to it from below: what is farther than a sphere's radius misses the
+/// sphere for certain. Cells that lie wholly within the body are marked. Immutable.
+class MMGRASP_EXPORT DistanceGrid {
  public:
-  /// Of a mesh; `solid` was made of it.
-  DistanceField(const TriangleMesh& mesh, const Solid& solid);
-  /// Of solid cells of one edge length. The grid is their own as long as it is small enough, else a coarser one.
-  DistanceField(const std::vector<Eigen::Vector3d>& centres, double resolution);
+  /// The grid of a mesh; `solid` was made of it.
+  DistanceGrid(const TriangleMesh& mesh, const Solid& solid);
+  /// The grid of solid cells of one edge length: their own lattice as long as it is small enough, else a coarser one.
+  DistanceGrid(const std::vector<Eigen::Vector3d>& centres, double resolution);
 
-  FieldView view() const;
+  GridView view() const;
   /// The point, in the body's frame, is at least this far from the body [m]; 0 when that is not known.
   double distance(const Eigen::Vector3d& point) const {
     const Eigen::Vector3d cell = (point - low_) * per_step_;
@@ -45,7 +45,8 @@ class MMGRASP_EXPORT DistanceField {
   std::size_t index(int i, int j, int k) const { return (static_cast<std::size_t>(i) * count_[1] + j) * count_[2] + k; }
   /// Cells that the triangle may touch become kNear.
   void mark(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
-  /// Cells that cannot be reached from outside without crossing kNear become kNear, or kInside where the solid says so.
+  /// Cells that cannot be reached from outside without crossing kNear become kNear, or kInside where they lie inside
+  /// the solid.
   void fill(const Solid& solid);
   /// Distance of the centres of kFree cells to the mesh where that is at most `band`; infinite elsewhere [m].
   std::vector<float> centre_distances(const TriangleMesh& mesh, double band) const;
@@ -58,7 +59,7 @@ class MMGRASP_EXPORT DistanceField {
 
   Eigen::AlignedBox3d body_;
   Eigen::Vector3d low_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d size_ = Eigen::Vector3d::Zero();  ///< In cells.
+  Eigen::Vector3d size_ = Eigen::Vector3d::Zero();  ///< Number of cells along each axis.
   double step_ = 1, per_step_ = 1, quantum_ = 1;
   double spread_ = 0;  ///< Per distance from the cell's centre, in cells, that is to be taken off a value [m].
   std::array<int, 3> count_{{1, 1, 1}};

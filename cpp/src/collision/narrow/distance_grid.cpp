@@ -1,11 +1,11 @@
-#include "collision/narrow/distance_field.hpp"
+#include "collision/narrow/distance_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "collision/narrow/solid.hpp"
-#include "collision/narrow/triangle_distance.hpp"
+#include "mmgrasp/geometry/detail/triangle_distance.hpp"
 
 namespace mmgrasp::detail {
 
@@ -52,8 +52,8 @@ void line_distances(std::vector<float>& line, std::vector<float>& out, std::vect
 
 }  // namespace
 
-void DistanceField::lay_out(const Eigen::AlignedBox3d& body, const Eigen::Vector3d& low, double step,
-                            const std::array<int, 3>& count, int quanta_per_cell) {
+void DistanceGrid::lay_out(const Eigen::AlignedBox3d& body, const Eigen::Vector3d& low, double step,
+                           const std::array<int, 3>& count, int quanta_per_cell) {
   body_ = body;
   low_ = low;
   step_ = step;
@@ -68,10 +68,10 @@ void DistanceField::lay_out(const Eigen::AlignedBox3d& body, const Eigen::Vector
     extent_ = static_cast<float>(std::max({double(extent_), std::abs(low[k]), std::abs(low[k] + step * count[k])}));
 }
 
-DistanceField::DistanceField(const TriangleMesh& mesh, const Solid& solid) {
+DistanceGrid::DistanceGrid(const TriangleMesh& mesh, const Solid& solid) {
   Eigen::AlignedBox3d body;
   for (const Eigen::Vector3d& v : mesh.vertices) body.extend(v);
-  // Room for distances around the body; more would only say what its bounding box says.
+  // Room for distances around the body; farther out its bounding box is as good a bound.
   const double room = 0.03 + 0.1 * body.sizes().maxCoeff();
   const Eigen::Vector3d size = body.sizes() + Eigen::Vector3d::Constant(2 * room);
   const double step = std::cbrt(size.prod() / kMeshCells);
@@ -85,7 +85,7 @@ DistanceField::DistanceField(const TriangleMesh& mesh, const Solid& solid) {
   measure_centres(centre_distances(mesh, band), band);
 }
 
-DistanceField::DistanceField(const std::vector<Eigen::Vector3d>& centres, double resolution) {
+DistanceGrid::DistanceGrid(const std::vector<Eigen::Vector3d>& centres, double resolution) {
   const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * resolution);
   Eigen::AlignedBox3d body;
   for (const Eigen::Vector3d& c : centres) {
@@ -124,8 +124,8 @@ DistanceField::DistanceField(const std::vector<Eigen::Vector3d>& centres, double
   measure_cells();
 }
 
-FieldView DistanceField::view() const {
-  FieldView out{};
+GridView DistanceGrid::view() const {
+  GridView out{};
   for (int k = 0; k < 3; ++k) {
     out.low[k] = static_cast<float>(low_[k]);
     out.count[k] = count_[k];
@@ -139,7 +139,7 @@ FieldView DistanceField::view() const {
   return out;
 }
 
-void DistanceField::mark(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+void DistanceGrid::mark(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const Eigen::Vector3d p[3] = {(a - low_) / step_, (b - low_) / step_, (c - low_) / step_};  // in cells
   const Eigen::Vector3d low = p[0].cwiseMin(p[1]).cwiseMin(p[2]), high = p[0].cwiseMax(p[1]).cwiseMax(p[2]);
   const Eigen::Vector3d n = (p[1] - p[0]).cross(p[2] - p[0]);
@@ -177,7 +177,7 @@ void DistanceField::mark(const Eigen::Vector3d& a, const Eigen::Vector3d& b, con
   }
 }
 
-void DistanceField::fill(const Solid& solid) {
+void DistanceGrid::fill(const Solid& solid) {
   // Floods from each cell not seen yet; the first flood starts in a corner and is the outside.
   std::vector<char> seen(cells_.size(), 0);
   std::vector<std::array<int, 3>> stack;
@@ -214,7 +214,7 @@ void DistanceField::fill(const Solid& solid) {
   }
 }
 
-std::vector<float> DistanceField::centre_distances(const TriangleMesh& mesh, double band) const {
+std::vector<float> DistanceGrid::centre_distances(const TriangleMesh& mesh, double band) const {
   std::vector<float> squared(cells_.size(), std::numeric_limits<float>::infinity());
   for (const auto& t : mesh.triangles) {
     const Eigen::Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
@@ -245,7 +245,7 @@ std::vector<float> DistanceField::centre_distances(const TriangleMesh& mesh, dou
   return squared;
 }
 
-void DistanceField::spread_out(std::vector<float>& squared) const {
+void DistanceGrid::spread_out(std::vector<float>& squared) const {
   const std::size_t stride[3] = {static_cast<std::size_t>(count_[1]) * count_[2], static_cast<std::size_t>(count_[2]),
                                  1};
   for (int axis = 0; axis < 3; ++axis) {
@@ -263,7 +263,7 @@ void DistanceField::spread_out(std::vector<float>& squared) const {
   }
 }
 
-void DistanceField::measure_centres(const std::vector<float>& near, double band) {
+void DistanceGrid::measure_centres(const std::vector<float>& near, double band) {
   std::vector<float> squared(cells_.size());
   for (std::size_t n = 0; n < cells_.size(); ++n) squared[n] = cells_[n] == kFree ? 1e12f : 0;
   spread_out(squared);
@@ -276,7 +276,7 @@ void DistanceField::measure_centres(const std::vector<float>& near, double band)
   }
 }
 
-void DistanceField::measure_cells() {
+void DistanceGrid::measure_cells() {
   // Distances from cell to cell are those of their nearest corners: as if the others were grown by a cell all around.
   std::vector<float> squared(cells_.size(), 1e12f);
   for (int i = 0; i < count_[0]; ++i) {

@@ -1,4 +1,4 @@
-#include "collision/narrow/distance_field.hpp"
+#include "collision/narrow/distance_grid.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "collision/narrow/solid.hpp"
 #include "mmgrasp/core/random.hpp"
 
-// What a distance field of a mesh promises, against distances to every triangle by vector algebra of its own.
+// What a distance grid of a mesh promises, against distances to every triangle by vector algebra of its own.
 
 namespace mmgrasp::detail {
 namespace {
@@ -29,23 +29,23 @@ double distance_to_triangle(const Vector3d& p, const Vector3d& a, const Vector3d
   return best;
 }
 
-/// Two balls apart: one body that is not convex.
+/// Two spheres apart: one body that is not convex.
 TriangleMesh dumbbell() {
   TriangleMesh mesh;
   for (const double z : {-0.12, 0.12}) {
-    const auto ball = shape_mesh(Sphere{0.08}, 16);
+    const auto sphere = shape_mesh(Sphere{0.08}, 16);
     const int first = static_cast<int>(mesh.vertices.size());
-    for (const Vector3d& v : ball->vertices) mesh.vertices.push_back(v + Vector3d(0, 0, z));
-    for (const auto& t : ball->triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    for (const Vector3d& v : sphere->vertices) mesh.vertices.push_back(v + Vector3d(0, 0, z));
+    for (const auto& t : sphere->triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
   }
   mesh.closed = true;
   return mesh;
 }
 
-TEST(DistanceField, NeverOverstatesAndLosesHalfACellNearTheBody) {
+TEST(DistanceGrid, NeverOverstatesAndLosesHalfACellNearTheBody) {
   const auto mesh = std::make_shared<const TriangleMesh>(dumbbell());
   const auto solid = make_solid(MeshShape{mesh});
-  const DistanceField field(*mesh, *solid);
+  const DistanceGrid grid(*mesh, *solid);
   Rng rng(3);
   const double step = std::cbrt((0.16 + 0.14) * (0.16 + 0.14) * (0.4 + 0.14) / 2e5);
   double lost = 0;
@@ -58,7 +58,7 @@ TEST(DistanceField, NeverOverstatesAndLosesHalfACellNearTheBody) {
           std::min(truth, distance_to_triangle(p, mesh->vertices[t[0]], mesh->vertices[t[1]], mesh->vertices[t[2]]));
     }
     if (solid->contains(p)) truth = 0;
-    const double said = field.distance(p);
+    const double said = grid.distance(p);
     EXPECT_LE(said, truth + 1e-12) << p.transpose();
     if (truth > 0 && truth < 2 * step) {
       ++near;

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "collision/checker/placement.hpp"
+
+namespace mmgrasp::detail {
+
+/// Finds something that collides in a placed configuration, and remembers what did last: it tends to collide again.
+class CollisionSearch {
+ public:
+  explicit CollisionSearch(const PairPlan& plan) : pair_masks_(plan.blocks.size()) {}
+
+  bool self_collides(Placement& placement);
+  bool scene_collides(Placement& placement);
+  /// Neither of the two, by the options; what collided last is tested first.
+  bool is_free(Placement& placement);
+  /// The first contact in the order of the plan, self before scene.
+  std::optional<Contact> first_contact(Placement& placement);
+
+  /// False when plan().moving[body] hits a bounded shape of the scene. Clears `proven` unless it stays free while none
+  /// of its points moves more than `motion` [m].
+  bool body_is_free(Placement& placement, int body, double motion, bool& proven);
+  void remember_pair(int varying) { last_pair_ = varying; }
+
+  /// Forgets what depends on where the root stands.
+  void forget_root() { fixed_scene_.reset(); }
+  /// Forgets whether the pairs collide that no configuration changes.
+  void forget_constant_pairs() { constant_self_.reset(); }
+
+ private:
+  struct Near {
+    int shape, other;  ///< `other`: a shape of the scene, or the number of a varying pair.
+  };
+
+  /// Fills `near_` with the bounded scene shapes whose boxes meet the spheres first .. last of the plan.
+  void gather_near(const Placement& placement, int first, int last);
+  /// The first of `count` shapes of the plan that hits the scene is remembered; false when none does.
+  bool find_scene_hit(Placement& placement, const std::vector<int>& shapes, int count, int first_sphere);
+  bool fixed_hits_scene(Placement& placement);
+  bool moving_hits_scene(Placement& placement);
+
+  std::vector<Near> near_, unsure_;
+  std::vector<std::uint8_t> masks_, pair_masks_;
+  std::optional<bool> constant_self_;  ///< Whether pairs collide whose relative pose no configuration changes.
+  std::optional<bool> fixed_scene_;    ///< Whether links that no configuration moves hit the scene.
+  int last_pair_ = -1;                 ///< The varying pair that collided last.
+  int last_shape_ = -1, last_scene_ = -1;
+};
+
+}  // namespace mmgrasp::detail

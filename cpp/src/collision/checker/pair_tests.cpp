@@ -1,0 +1,232 @@
+#include "collision/checker/pair_tests.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "collision/narrow/convex_clearance.hpp"
+#include "collision/narrow/narrow.hpp"
+#include "collision/narrow/stages.hpp"
+
+namespace mmgrasp::detail {
+namespace {
+
+FloatRigid to_float(const Rigid& T) {
+  FloatRigid out;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) out.R[3 * r + c] = static_cast<float>(T.R(r, c));
+    out.t[r] = static_cast<float>(T.t[r]);
+  }
+  return out;
+}
+
+// Spheres grown by more than this meet cells of a grid everywhere [m].
+constexpr double kMaxGridMotion = 0.02;
+
+// The exact shapes are only tested for clearances up to this [m]: spheres and hulls have proven most wider ones.
+constexpr double kMaxExactMotion = 0.01;
+
+// Hulls this close are left to the exact answer [m].
+constexpr double kHullTouch = 1e-7;
+
+// Single precision rounds sums of these magnitudes a few times: far below 2e-6 of them.
+float slack_of(const FloatRigid& T, float extent_a, float extent_b) {
+  return 2e-6f * (std::abs(T.t[0]) + std::abs(T.t[1]) + std::abs(T.t[2]) + 3 * (extent_a + extent_b));
+}
+
+// The bounding box of a body in the frame of another one, single precision.
+struct FloatBox {
+  FloatBox(const Rigid& T_from, const Solid& solid, const Rigid& T_solid) {
+    Rigid box = T_from.to(T_solid);
+    box.t += box.R * solid.box_centre;
+    T = to_float(box);
+    for (int k = 0; k < 3; ++k) half[k] = static_cast<float>(solid.box_half[k]);
+  }
+  float slack(const SphereCover& cover) const {
+    return slack_of(T, cover.extent(), std::max({half[0], half[1], half[2]}));
+  }
+  FloatRigid T;
+  float half[3];
+};
+
+// The arrays of all levels of a cover.
+std::array<CoverView, BoundingVolumes::kLevels> views(const CoverLevels& covers) {
+  std::array<CoverView, BoundingVolumes::kLevels> out;
+  for (std::size_t i = 0; i < covers.size(); ++i) out[i] = covers[i].view();
+  return out;
+}
+
+// A body's cover, placed at T_a, against the bounding box of the other one.
+CoverAnswer cover_against_box(const SphereCover& cover, const Rigid& T_a, const Solid& other, const Rigid& T_b,
+                              double grow, bool seek_overlap) {
+  const FloatBox box(T_a, other, T_b);
+  return kernels().cover_meets_box(cover.view(), box.T, box.half, static_cast<float>(grow), box.slack(cover),
+                                   seek_overlap);
+}
+
+// The same for its cover in all levels.
+CoverAnswer cover_tree_against_box(const CoverLevels& covers, const Rigid& T_a, const Solid& other, const Rigid& T_b,
+                                   double grow, bool seek_overlap) {
+  const FloatBox box(T_a, other, T_b);
+  return kernels().cover_tree_meets_box(views(covers).data(), static_cast<int>(covers.size()), box.T, box.half,
+                                        static_cast<float>(grow), box.slack(covers[0]), seek_overlap);
+}
+
+// A body's spheres, placed at T_cover, in the grid of a body at T_grid.
+CoverAnswer cover_in_grid(const DistanceGrid& grid, const Rigid& T_grid, const CoverLevels& spheres,
+                          const Rigid& T_cover, double grow, bool seek_overlap) {
+  const FloatRigid T = to_float(T_grid.to(T_cover));
+  return kernels().cover_tree_meets_grid(grid.view(), views(spheres).data(), static_cast<int>(spheres.size()), T,
+                                         static_cast<float>(grow), slack_of(T, grid.extent(), spheres[0].extent()),
+                                         seek_overlap);
+}
+
+// How near two solids, or the hulls around them, come to each other; `touching` also where there is no such hull.
+Nearness hull_nearness(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double motion) {
+  const auto bounded = [](const Solid& s) { return s.kind == SolidKind::convex || s.has_hull; };
+  if (!bounded(a) || !bounded(b)) return Nearness::touching;
+  const double margin = a.margin + b.margin;
+  return convex_nearness(a.core, b.core, T_a.to(T_b), motion + margin + kHullTouch, margin + kHullTouch);
+}
+
+// Padding pushes out the corners of a box by up to sqrt(3) of it.
+double padding_of(const Snapshot& snapshot, const BodyShape& shape) {
+  return shape.padded != shape.solid ? 1.75 * snapshot.options.padding : 0;
+}
+
+bool spheres_apart(const SphereRows& spheres, int a, int b) {
+  const auto [x, y, z, radius] = spheres;
+  const float dx = x[a] - x[b], dy = y[a] - y[b], dz = z[a] - z[b], reach = radius[a] + radius[b];
+  return dx * dx + dy * dy + dz * dz > reach * reach;
+}
+
+// With `motion` > 0 [m] false proves a clearance wider than that, and true nothing. `hulls_meet`: their hulls are known
+// to.
+bool pair_meets_exactly(Placement& placement, const ShapePair& pair, double motion, bool hulls_meet) {
+  const Snapshot& snapshot = placement.snapshot();
+  const BodyShape &a = snapshot.shapes[pair.a], &b = snapshot.shapes[pair.b];
+  if (runs(kFineStage) && a.solid->kind == SolidKind::mesh && b.solid->kind == SolidKind::mesh) {
+    // Few large triangles look for their like in a grid around the smaller body.
+    const bool grid_of_a = a.solid->sphere_radius < b.solid->sphere_radius;
+    const BodyShape &first = grid_of_a ? a : b, &second = grid_of_a ? b : a;
+    return meshes_collide(*first.solid, placement.pose(grid_of_a ? pair.a : pair.b),
+                          *first.bounds->fine(*first.solid).grid, *second.solid,
+                          placement.pose(grid_of_a ? pair.b : pair.a), motion, hulls_meet);
+  }
+  return solids_collide(*a.solid, placement.pose(pair.a), *b.solid, placement.pose(pair.b), motion);
+}
+
+bool scene_meets_exactly(Placement& placement, int shape, int scene_shape, double motion) {
+  const Snapshot& snapshot = placement.snapshot();
+  const SceneShape& other = snapshot.scene[scene_shape];
+  return solids_collide(*snapshot.shapes[shape].padded, placement.pose(shape), *other.solid, other.T_world, motion);
+}
+
+}  // namespace
+
+CoverAnswer pair_by_covers(Placement& placement, const ShapePair& pair, double motion) {
+  const Snapshot& snapshot = placement.snapshot();
+  const BodyShape &a = snapshot.shapes[pair.a], &b = snapshot.shapes[pair.b];
+  if (a.bounds->cover().empty() || b.bounds->cover().empty()) return kMaybe;
+  const Rigid &T_a = placement.pose(pair.a), &T_b = placement.pose(pair.b);
+  const bool seek_overlap = motion == 0;
+  if constexpr (runs(kCoverStage)) {
+    const CoverAnswer first = cover_against_box(a.bounds->cover(), T_a, *b.solid, T_b, motion, seek_overlap);
+    if (first == kApart || (first == kOverlap && b.solid->is_box)) return first;
+    const CoverAnswer second = cover_against_box(b.bounds->cover(), T_b, *a.solid, T_a, motion, seek_overlap);
+    if (second == kApart || (second == kOverlap && a.solid->is_box)) return second;
+  }
+  if (!runs(kFineStage) || motion > kMaxGridMotion) return kMaybe;
+  // A box needs no grid.
+  if (a.solid->is_box != b.solid->is_box) {
+    const BodyShape &box = a.solid->is_box ? a : b, &other = a.solid->is_box ? b : a;
+    const Rigid &T_box = a.solid->is_box ? T_a : T_b, &T_other = a.solid->is_box ? T_b : T_a;
+    return cover_tree_against_box(other.bounds->fine(*other.solid).covers, T_other, *box.solid, T_box, motion,
+                                  seek_overlap);
+  }
+  const auto by_grid = [&](const BodyShape& body, const Rigid& T_body, const BodyShape& covered,
+                           const Rigid& T_covered) {
+    const auto& grid = body.bounds->fine(*body.solid).grid;
+    if (grid == nullptr) return kMaybe;
+    return cover_in_grid(*grid, T_body, covered.bounds->fine(*covered.solid).covers, T_covered, motion, seek_overlap);
+  };
+  // The grid of the larger body first: the smaller one has the smaller spheres.
+  const bool a_larger = a.solid->sphere_radius > b.solid->sphere_radius;
+  const CoverAnswer answer = a_larger ? by_grid(a, T_a, b, T_b) : by_grid(b, T_b, a, T_a);
+  if (answer != kMaybe) return answer;
+  return a_larger ? by_grid(b, T_b, a, T_a) : by_grid(a, T_a, b, T_b);
+}
+
+CoverAnswer scene_by_covers(Placement& placement, int s, int scene_shape, double motion) {
+  const Snapshot& snapshot = placement.snapshot();
+  const BodyShape& shape = snapshot.shapes[s];
+  const SceneShape& other = snapshot.scene[scene_shape];
+  if (shape.bounds->cover().empty() || other.solid->kind == SolidKind::plane) return kMaybe;
+  const double grow = padding_of(snapshot, shape) + motion;
+  if (other.solid->kind == SolidKind::voxels) {
+    const int sphere = placement.plan().sphere_of[s];
+    const Eigen::Vector3d centre = other.T_world.R.transpose() * (placement.sphere_centre(sphere) - other.T_world.t);
+    if (other.solid->grid->distance(centre) > placement.spheres().radius[sphere] + motion) return kApart;
+    return cover_in_grid(*other.solid->grid, other.T_world, shape.bounds->fine(*shape.solid).covers, placement.pose(s),
+                         grow, motion == 0);
+  }
+  if constexpr (!runs(kCoverStage)) return kMaybe;
+  const CoverAnswer answer =
+      cover_against_box(shape.bounds->cover(), placement.pose(s), *other.solid, other.T_world, grow, motion == 0);
+  return answer == kOverlap && !other.solid->is_box ? kMaybe : answer;
+}
+
+bool pair_collides_exactly(Placement& placement, const ShapePair& pair) {
+  return pair_meets_exactly(placement, pair, 0, false);
+}
+
+bool scene_collides_exactly(Placement& placement, int shape, int scene_shape) {
+  return scene_meets_exactly(placement, shape, scene_shape, 0);
+}
+
+bool pair_collides(Placement& placement, const ShapePair& pair) {
+  if (spheres_apart(placement.spheres(), pair.sphere_a, pair.sphere_b)) return false;
+  const CoverAnswer answer = pair_by_covers(placement, pair);
+  return answer == kMaybe ? pair_collides_exactly(placement, pair) : answer == kOverlap;
+}
+
+bool scene_collides(Placement& placement, int shape, int scene_shape) {
+  const CoverAnswer answer = scene_by_covers(placement, shape, scene_shape);
+  return answer == kMaybe ? scene_collides_exactly(placement, shape, scene_shape) : answer == kOverlap;
+}
+
+CoverAnswer pair_within(Placement& placement, const ShapePair& pair, double motion, char& hulls_meet) {
+  if (motion > 0 && motion <= kMaxProvenMotion) {
+    const CoverAnswer covers = pair_by_covers(placement, pair, motion);
+    if (covers != kMaybe) return covers;
+    if (!hulls_meet) {
+      const Snapshot& snapshot = placement.snapshot();
+      const Solid &a = *snapshot.shapes[pair.a].solid, &b = *snapshot.shapes[pair.b].solid;
+      const Nearness hulls = hull_nearness(a, placement.pose(pair.a), b, placement.pose(pair.b), motion);
+      if (hulls == Nearness::beyond) return kApart;
+      if (hulls == Nearness::near) return kMaybe;
+      hulls_meet = 1;
+    }
+    if (motion <= kMaxExactMotion && !pair_meets_exactly(placement, pair, motion, true)) return kApart;
+  }
+  return pair_collides(placement, pair) ? kOverlap : kMaybe;
+}
+
+CoverAnswer scene_within(Placement& placement, int s, int scene_shape, double motion) {
+  const CoverAnswer covers = scene_by_covers(placement, s, scene_shape, motion);
+  if (covers != kMaybe) return covers;
+  const Snapshot& snapshot = placement.snapshot();
+  const SceneShape& other = snapshot.scene[scene_shape];
+  switch (hull_nearness(*snapshot.shapes[s].padded, placement.pose(s), *other.solid, other.T_world, motion)) {
+    case Nearness::beyond:
+      return kApart;
+    case Nearness::near:
+      return kMaybe;
+    case Nearness::touching:
+      break;
+  }
+  if (motion <= kMaxExactMotion && !scene_meets_exactly(placement, s, scene_shape, motion)) return kApart;
+  return scene_collides(placement, s, scene_shape) ? kOverlap : kMaybe;
+}
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,62 @@
+#include "collision/checker/placement.hpp"
+
+namespace mmgrasp::detail {
+
+Placement::Placement(std::shared_ptr<const Snapshot> snapshot, std::shared_ptr<const PairPlan> plan,
+                     const JointGroup& group)
+    : snapshot_(std::move(snapshot)),
+      plan_(std::move(plan)),
+      group_(group),
+      frames_(16 * static_cast<std::size_t>(plan_->frames.count())),
+      sphere_row_(static_cast<int>((plan_->spheres.size() + kLanes - 1) / kLanes * kLanes)),
+      shape_centres_(snapshot_->shapes.size(), Eigen::Vector3d::Zero()),
+      poses_(snapshot_->shapes.size()),
+      pose_stamp_(snapshot_->shapes.size(), 0),
+      moves_(snapshot_->shapes.size(), 0) {
+  sphere_numbers_.resize(4 * static_cast<std::size_t>(sphere_row_));
+  for (const int s : plan_->moving) moves_[s] = 1;
+}
+
+void Placement::place(const double* q) {
+  ++stamp_;
+  const bool first = !frames_valid_;
+  if (first) {
+    MovingFrames::set(Rigid(group_.T_world_root()), frames_.data());
+    fixed_stamp_ = stamp_;
+    frames_valid_ = true;
+  }
+  plan_->frames.place(q, frames_.data());
+  const std::size_t count = first ? plan_->spheres.size() : plan_->moving.size();
+  kernels().place_spheres(plan_->spheres.data(), static_cast<int>(count), frames_.data(), sphere_numbers_.data(),
+                          sphere_row_);
+}
+
+void Placement::place_links(const Eigen::VectorXd& q) {
+  place(q.data());
+  const bool first = !links_valid_;
+  group_.link_poses(q, links_, links_valid_);
+  links_valid_ = true;
+  const auto place_centre = [&](int s) {
+    const BodyShape& shape = snapshot_->shapes[s];
+    const Pose& T = links_[shape.link];
+    shape_centres_[s].noalias() = T.linear() * shape.sphere_centre + T.translation();
+  };
+  for (const int s : plan_->moving) place_centre(s);
+  if (!first) return;
+  for (const int s : plan_->fixed) place_centre(s);
+}
+
+void Placement::set_root(const Pose& T_world_root) {
+  group_ = group_.at(T_world_root);
+  forget();
+}
+
+void Placement::compute_pose(int s) {
+  const PlacedShape& shape = plan_->placed[s];
+  const Rigid T = frame(shape.frame);
+  poses_[s].R.noalias() = T.R * shape.in_frame.R;
+  poses_[s].t.noalias() = T.R * shape.in_frame.t + T.t;
+  pose_stamp_[s] = moves_[s] ? stamp_ : fixed_stamp_;
+}
+
+}  // namespace mmgrasp::detail

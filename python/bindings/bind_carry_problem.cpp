@@ -62,7 +62,7 @@ void refuse_unknown(const py::kwargs& unknown, const Strings& known) {
 
 void bind_carry_problem(py::module_& m) {
   py::class_<ManipulationProblem>(m, "ManipulationProblem",
-                                  "TransferPath an object from one pose to another with any of many grasps (P2 4.2).")
+                                  "Moves an object from one pose to another with any of many grasps (P2 4.2).")
       .def(py::init([](const Given<JointGroup>& group, const Given<World>& world, const py::object& object,
                        const ArrayLike& T_world_start, const ArrayLike& T_world_goal, const py::object& grasps,
                        const std::optional<Given<Hand>>& gripper, const Given<Strings>& touch_links,

@@ -1,8 +1,9 @@
-"""The independent checker: a finished plan or path against the scenario, by KDL and FCL called directly, without any planner.
+"""The independent checker: a finished plan or path against the scenario, by urdfdom, KDL and FCL called directly, without any planner.
 
 `mmgrasp.verify_plan` reads a plan.json and calls `check_plan`; `check_path` checks a joint path.
 """
 
+from ._core import RobotSource as RobotSource
 from ._core.verify import (
     CheckedBody as CheckedBody,
     CheckedDriveBy as CheckedDriveBy,

@@ -1592,7 +1592,7 @@ class CandidateGrasp:
         ...
 class ManipulationProblem:
     """
-    TransferPath an object from one pose to another with any of many grasps (P2 4.2).
+    Moves an object from one pose to another with any of many grasps (P2 4.2).
     """
     def __init__(self, group: JointGroup, world: World, object: typing.Any, T_world_start: numpy.typing.ArrayLike, T_world_goal: numpy.typing.ArrayLike, grasps: typing.Any, *, gripper: Gripper | None = None, touch_links: collections.abc.Sequence[str] = [], object_name: str = 'object', **kwargs) -> None:
         """

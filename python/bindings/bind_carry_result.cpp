@@ -70,7 +70,7 @@ void bind_tree(py::module_& m) {
       });
 }
 
-void bind_parts(py::module_& m) {
+void bind_result_parts(py::module_& m) {
   py::class_<Improvement>(m, "Improvement", "A better solution on the way.")
       .def_readonly("seconds", &Improvement::seconds, "Since the call began, the first roadmap's building left out.")
       .def_readonly("cost", &Improvement::cost)
@@ -99,7 +99,7 @@ void bind_parts(py::module_& m) {
 
 void bind_carry_result(py::module_& m) {
   bind_tree(m);
-  bind_parts(m);
+  bind_result_parts(m);
   py::class_<ManipulationResult>(m, "ManipulationResult", "What plan_manipulation found.")
       .def_readonly("outcome", &ManipulationResult::outcome)
       .def_readonly("grasp_index", &ManipulationResult::grasp_index, "Of the problem's grasps; -1 unless solved.")

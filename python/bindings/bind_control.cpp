@@ -70,7 +70,7 @@ py::array_t<double> numbers(const std::vector<double>& values) {
   return py::array_t<double>(py::ssize_t(values.size()), values.data());
 }
 
-void bind_result(py::module_& m) {
+void bind_tracking_result(py::module_& m) {
   using R = BaseTrackingResult;
   py::class_<R>(m, "BaseTrackingResult", "A base driven along a plan, one row a period; poses are (x, y, theta).")
       .def_property_readonly(
@@ -108,7 +108,7 @@ void bind_result(py::module_& m) {
 }  // namespace
 
 void bind_control(py::module_& m) {
-  bind_result(m);
+  bind_tracking_result(m);
   py::class_<BaseTracker>(m, "BaseTracker",
                           "The feedback law that keeps a base on its plan (P1 4.12 to 4.15), one command a period.")
       .def(py::init([](const Robot& robot, const py::kwargs& options) {

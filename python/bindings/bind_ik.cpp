@@ -58,7 +58,7 @@ IkResult solve(const JointGroup& group, const Pose& T, const Eigen::VectorXd& se
   });
 }
 
-void bind_result(py::module_& m) {
+void bind_ik_result(py::module_& m) {
   py::class_<IkResult>(m, "IkResult", "Answer of inverse kinematics.")
       .def_readonly("outcome", &IkResult::outcome)
       .def_property_readonly(
@@ -170,7 +170,7 @@ void bind_group_methods(py::module_& m) {
 
 void bind_ik(py::module_& m) {
   m.def("_ik_option_table", [] { return option_table(ik_fields()); });
-  bind_result(m);
+  bind_ik_result(m);
   bind_branches(m);
   bind_group_methods(m);
 }

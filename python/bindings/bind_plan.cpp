@@ -35,10 +35,10 @@ std::vector<Eigen::VectorXd> goals_argument(const ArrayLike& goal, Eigen::Index 
   return {vector_argument(goal, "goal", size)};
 }
 
-MotionResult plan(const Given<Robot>& given_robot, const Given<JointGroup>& given_group, const Given<World>& world,
-                  const ArrayLike& start, const py::object& goal, const py::object& tool_poses,
-                  const Given<std::vector<ToolRegion>>& regions, const std::optional<Given<ToolCone>>& tool_cone,
-                  const py::object& on_solution, const py::object& progress, const py::kwargs& options) {
+MotionResult motion(const Given<Robot>& given_robot, const Given<JointGroup>& given_group, const Given<World>& world,
+                    const ArrayLike& start, const py::object& goal, const py::object& tool_poses,
+                    const Given<std::vector<ToolRegion>>& regions, const std::optional<Given<ToolCone>>& tool_cone,
+                    const py::object& on_solution, const py::object& progress, const py::kwargs& options) {
   const JointGroup& group = taken(given_group, "group");
   check_same_robot(taken(given_robot, "robot"), group);
   MotionOptions read = read_options(motion_fields(), options, "plan_motion");
@@ -141,7 +141,7 @@ void bind_motion(py::module_& m) {
   m.def("_motion_option_table", [] { return option_table(motion_fields()); });
   m.def("planner_names", &planner_names, "Names that plan_motion's `planner` takes.");
   m.def(
-      "plan_motion", &plan, py::arg("robot"), py::arg("group"), py::arg("world"), py::kw_only(), py::arg("start"),
+      "plan_motion", &motion, py::arg("robot"), py::arg("group"), py::arg("world"), py::kw_only(), py::arg("start"),
       py::arg("goal") = py::none(), py::arg("tool_poses") = py::none(), py::arg("regions") = std::vector<ToolRegion>{},
       py::arg("tool_cone") = py::none(), py::arg("on_solution") = py::none(), py::arg("progress") = py::none(),
       ("A collision-free path of the group from `start` (n,) to any of its goals: `goal` (n,) or several as (m, n),\n"

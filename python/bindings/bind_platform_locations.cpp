@@ -18,7 +18,7 @@ const std::vector<OptionField<PlatformLocationsOptions>>& fields() {
   return all;
 }
 
-py::dict to_dict(const PlatformLocationsCounts& counts) {
+py::dict counts_dict(const PlatformLocationsCounts& counts) {
   return py::dict("draws"_a = counts.draws, "rejections"_a = python::to_dict(counts.rejections), "view"_a = counts.view,
                   "singular"_a = counts.singular, "iterations"_a = counts.iterations);
 }
@@ -27,7 +27,7 @@ py::object configuration(const PlatformLocations& found, const Eigen::VectorXd& 
   return found.outcome == Outcome::solved ? py::cast(q) : py::none();
 }
 
-void bind_result(py::module_& m) {
+void bind_platform_locations_result(py::module_& m) {
   py::class_<PlatformLocations>(m, "PlatformLocations", "Two base + arm configurations for two tool poses.")
       .def_readonly("outcome", &PlatformLocations::outcome)
       .def_property_readonly(
@@ -38,14 +38,14 @@ void bind_result(py::module_& m) {
       .def_readonly("travel", &PlatformLocations::travel, "Of the base between the two [m].")
       .def_readonly("turn", &PlatformLocations::turn, "[rad]")
       .def_property_readonly(
-          "pick", [](const PlatformLocations& p) { return to_dict(p.pick); },
+          "pick", [](const PlatformLocations& p) { return counts_dict(p.pick); },
           "Draws, what they fell at, and iterations of the first pose.")
-      .def_property_readonly("place", [](const PlatformLocations& p) { return to_dict(p.place); })
+      .def_property_readonly("place", [](const PlatformLocations& p) { return counts_dict(p.place); })
       .def("to_dict",
            [](const PlatformLocations& p) {
              return py::dict("outcome"_a = to_string(p.outcome), "q_pick"_a = configuration(p, p.q_pick),
                              "q_place"_a = configuration(p, p.q_place), "cost"_a = p.cost, "travel"_a = p.travel,
-                             "turn"_a = p.turn, "pick"_a = to_dict(p.pick), "place"_a = to_dict(p.place));
+                             "turn"_a = p.turn, "pick"_a = counts_dict(p.pick), "place"_a = counts_dict(p.place));
            })
       .def("__repr__", [](const PlatformLocations& p) {
         return std::string("PlatformLocations(") + to_string(p.outcome) +
@@ -122,7 +122,7 @@ void bind_database(py::module_& m) {
 void bind_platform_locations(py::module_& m) {
   m.def("_platform_option_table", [] { return option_table(fields()); });
   bind_camera(m);
-  bind_result(m);
+  bind_platform_locations_result(m);
   bind_database(m);
   m.def(
       "plan_platform_locations",

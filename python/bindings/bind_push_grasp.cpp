@@ -31,7 +31,7 @@ py::dict outcome_dict(const ClosingOutcome& o) {
                   "nearer_tolerance"_a = o.nearer_tolerance, "farther_tolerance"_a = o.farther_tolerance);
 }
 
-std::string number(double value) {
+std::string number_repr(double value) {
   return std::string(py::repr(py::float_(value)));
 }
 
@@ -55,8 +55,8 @@ void bind_push_grasp(py::module_& m) {
       .def_readonly("farther_tolerance", &O::farther_tolerance, "It may stand this much farther [m].")
       .def("to_dict", &outcome_dict)
       .def("__repr__", [](const O& o) {
-        return "ClosingOutcome(starts at " + number(o.start) + " m, gap " + number(o.gap) + " m, pushed " +
-               number(o.pushed) + (o.holds ? " m, holds)" : " m, does not hold)");
+        return "ClosingOutcome(starts at " + number_repr(o.start) + " m, gap " + number_repr(o.gap) + " m, pushed " +
+               number_repr(o.pushed) + (o.holds ? " m, holds)" : " m, does not hold)");
       });
   py::class_<G>(m, "PushGrasp", "Closing windows of a grasp in passing, and both strategies of P1's figure 4.7.")
       .def_readonly("closing_time", &G::closing_time, "[s]")
@@ -74,7 +74,8 @@ void bind_push_grasp(py::module_& m) {
                              "push"_a = outcome_dict(g.push), "plain"_a = outcome_dict(g.plain));
            })
       .def("__repr__", [](const G& g) {
-        return g.feasible ? "PushGrasp(window " + number(g.window) + " s, at most " + number(g.max_tool_speed) + " m/s)"
+        return g.feasible ? "PushGrasp(window " + number_repr(g.window) + " s, at most " +
+                                number_repr(g.max_tool_speed) + " m/s)"
                           : std::string("PushGrasp(no window)");
       });
   m.def(

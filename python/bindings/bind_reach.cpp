@@ -40,7 +40,7 @@ const std::vector<OptionField<ReachSolveOptions>>& solve_fields() {
   return fields;
 }
 
-const std::vector<OptionField<BasePlacementOptions>>& placement_fields() {
+const std::vector<OptionField<BasePlacementOptions>>& base_placement_fields() {
   using Options = BasePlacementOptions;
   static const std::vector<OptionField<Options>> fields{
       option<Options>("step", &Options::step, "grid of base positions [m]"),
@@ -55,7 +55,7 @@ const std::vector<OptionField<BasePlacementOptions>>& placement_fields() {
 }
 
 /// (m, 4, 4)
-Poses poses_argument(const ArrayLike& value, const std::string& name) {
+Poses pose_stack_argument(const ArrayLike& value, const std::string& name) {
   py::array array;
   try {
     array = py::module_::import("numpy").attr("asarray")(value);
@@ -143,7 +143,7 @@ void bind_queries(py::module_& m, py::class_<ReachDatabase>& database) {
           [](const ReachDatabase& db, const JointGroup& arm, const ArrayLike& T_base_tips,
              const CollisionChecker* checker, const py::kwargs& options) {
             const ReachSolveOptions read = read_options(solve_fields(), options, "ReachDatabase.solve_batch");
-            const Poses poses = poses_argument(T_base_tips, "T_base_tips");
+            const Poses poses = pose_stack_argument(T_base_tips, "T_base_tips");
             const auto found = LongCall(py::none()).run([&](const Monitor& monitor) {
               return solve_reach_batch(db, arm, poses, read, checker, monitor);
             });
@@ -157,7 +157,8 @@ void bind_queries(py::module_& m, py::class_<ReachDatabase>& database) {
           "base_poses_for",
           [](const ReachDatabase& db, const JointGroup& arm, const ArrayLike& T_world_tip, int count,
              const CollisionChecker* checker, const py::kwargs& options) {
-            const BasePlacementOptions read = read_options(placement_fields(), options, "ReachDatabase.base_poses_for");
+            const BasePlacementOptions read =
+                read_options(base_placement_fields(), options, "ReachDatabase.base_poses_for");
             const Pose T = pose_argument(T_world_tip, "T_world_tip");
             const auto found = LongCall(py::none()).run([&](const Monitor& monitor) {
               return base_poses_for(db, arm, T, count, read, checker, monitor);
@@ -173,21 +174,21 @@ void bind_queries(py::module_& m, py::class_<ReachDatabase>& database) {
           "arm"_a, "T_world_tip"_a, py::kw_only(), "count"_a = 32, "checker"_a = py::none(),
           ("Base poses (k, 3) on the floor from which the tool reaches a pose in the world, and the configurations "
            "(k, n) that do." +
-           option_help(placement_fields()))
+           option_help(base_placement_fields()))
               .c_str())
       .def(
           "find_base_placement",
           [](const ReachDatabase& db, const JointGroup& arm, const ArrayLike& T_world_tips,
              const CollisionChecker* checker, const py::object& progress, const py::kwargs& options) {
             const BasePlacementOptions read =
-                read_options(placement_fields(), options, "ReachDatabase.find_base_placement");
-            const Poses poses = poses_argument(T_world_tips, "T_world_tips");
+                read_options(base_placement_fields(), options, "ReachDatabase.find_base_placement");
+            const Poses poses = pose_stack_argument(T_world_tips, "T_world_tips");
             return LongCall(progress).run(
                 [&](const Monitor& monitor) { return find_base_placement(db, arm, poses, read, checker, monitor); });
           },
           "arm"_a, "T_world_tips"_a, py::kw_only(), "checker"_a = py::none(), "progress"_a = py::none(),
           ("One base pose from which as many tool poses (m, 4, 4) in the world as possible are reached." +
-           option_help(placement_fields()))
+           option_help(base_placement_fields()))
               .c_str());
 }
 

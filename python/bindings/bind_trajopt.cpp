@@ -10,9 +10,9 @@ namespace mmgrasp::python {
 namespace {
 
 using namespace py::literals;
-using O = DriveByOptions;
 
-const std::vector<OptionField<O>>& drive_by_fields() {
+const std::vector<OptionField<DriveByOptions>>& drive_by_fields() {
+  using O = DriveByOptions;
   using W = WholeBodyOptions;
   static const std::vector<OptionField<O>> fields{
       option<O>("waypoints", &O::waypoints, "waypoints of the whole motion"),
@@ -202,7 +202,7 @@ void bind_trajectory_class(py::module_& m) {
       });
 }
 
-void bind_result(py::module_& m) {
+void bind_drive_by_result(py::module_& m) {
   py::class_<DriveByResult>(m, "DriveByResult", "What plan_drive_by found.")
       .def_readonly("outcome", &DriveByResult::outcome)
       .def_property_readonly(
@@ -280,9 +280,9 @@ DriveByResult shorten(const JointGroup& group, const World& world, const std::ve
       [&](const Monitor& monitor) { return shorten_drive_by(with_pairs, world, tasks, known, read, monitor); });
 }
 
-DriveByResult plan(const Robot& robot, const JointGroup& group, const World& world, const ArrayLike& start,
-                   const std::vector<DriveByTask>& tasks, const ArrayLike& goal, const py::object& progress,
-                   const py::kwargs& options) {
+DriveByResult drive_by(const Robot& robot, const JointGroup& group, const World& world, const ArrayLike& start,
+                       const std::vector<DriveByTask>& tasks, const ArrayLike& goal, const py::object& progress,
+                       const py::kwargs& options) {
   check_same_robot(robot, group);
   const DriveByOptions read = read_options(drive_by_fields(), options, "plan_drive_by");
   const Eigen::VectorXd from = vector_argument(start, "start", group.size());
@@ -322,9 +322,9 @@ void bind_trajopt(py::module_& m) {
       "solve() "
       "takes it from there, judging included: whether it is solved, and the duration.");
   bind_trajectory_class(m);
-  bind_result(m);
-  m.def("plan_drive_by", &plan, py::arg("robot"), py::arg("group"), py::arg("world"), py::kw_only(), py::arg("start"),
-        py::arg("tasks"), py::arg("goal"), py::arg("progress") = py::none(),
+  bind_drive_by_result(m);
+  m.def("plan_drive_by", &drive_by, py::arg("robot"), py::arg("group"), py::arg("world"), py::kw_only(),
+        py::arg("start"), py::arg("tasks"), py::arg("goal"), py::arg("progress") = py::none(),
         ("The fastest motion of base and arm from `start` (n,), at rest, through the tasks in order to `goal`, at "
          "rest, without\n"
          "stopping for them (P1 chapter 4). goal: a configuration (n,), or (2, n) with lower and upper bounds, "

@@ -26,7 +26,7 @@ CheckedBody body(const std::string& name, std::vector<LinkShape> shapes, const A
   return {name, std::move(shapes), pose_argument(pose, "pose of " + name)};
 }
 
-void bind_parts(py::module_& m) {
+void bind_checked_parts(py::module_& m) {
   py::class_<CheckedBody>(m, "CheckedBody").def(py::init(&body), py::arg("name"), py::arg("shapes"), py::arg("pose"));
   py::class_<CheckedGrasp>(m, "CheckedGrasp")
       .def(py::init([](const ArrayLike& pose, double width) {
@@ -172,7 +172,7 @@ void bind_path_check(py::module_& m) {
 
 void bind_verify(py::module_& top) {
   py::module_ m = top.def_submodule("verify", "Checks finished plans; shares no code with the planners.");
-  bind_parts(m);
+  bind_checked_parts(m);
   bind_plan_to_check(m);
   bind_path_check(m);
   py::class_<Fault>(m, "Fault", "One thing that is physically wrong with a plan.")

@@ -6,6 +6,9 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kMaskList[] = "list[numpy.typing.NDArray[numpy.uint8]]";
+using MaskList = Shown<kMaskList>;
+
 using namespace py::literals;
 
 py::array_t<std::uint8_t> mask_array(const BaseGrid& grid, const CellMask& cells) {
@@ -78,7 +81,7 @@ void bind_region_classes(py::module_& m) {
           "(headings, ny, nx) array of 0 and 1.")
       .def(
           "part_cells",
-          [](const BaseRegion& r, const BaseGrid& grid) {
+          [](const BaseRegion& r, const BaseGrid& grid) -> MaskList {
             py::list out;
             for (const PartCells& cells : r.part_cells) out.append(mask_array(grid, cells.mask()));
             return out;
@@ -94,7 +97,7 @@ void bind_region_classes(py::module_& m) {
   m.def(
       "compute_base_regions",
       [](const PartSupplyProblem& problem, const ReachDatabase& database, const BaseGrid& grid,
-         const py::object& progress) {
+         const Progress& progress) {
         return LongCall(progress).run(
             [&](const Monitor& monitor) { return compute_base_regions(problem, database, grid, monitor); });
       },
@@ -119,7 +122,7 @@ void bind_object_regions(py::module_& m) {
       .def_static(
           "compute",
           [](const PartSupplyProblem& problem, const ReachDatabase& database, const BaseGrid& grid,
-             const py::object& progress) {
+             const Progress& progress) {
             return LongCall(progress).run(
                 [&](const Monitor& monitor) { return ObjectRegions::compute(problem, database, grid, monitor); });
           },
@@ -140,7 +143,7 @@ void bind_object_regions(py::module_& m) {
            "The region of all target parts in place, with what became of the candidates.")
       .def(
           "remove",
-          [](ObjectRegions& r, const std::vector<std::pair<int, int>>& tray_and_part, const py::object& progress) {
+          [](ObjectRegions& r, const std::vector<std::pair<int, int>>& tray_and_part, const Progress& progress) {
             return LongCall(progress).run([&](const Monitor& monitor) { return r.remove(tray_and_part, monitor); });
           },
           py::arg("tray_and_part"), py::kw_only(), py::arg("progress") = py::none(),

@@ -8,6 +8,16 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kOneRegionATray[] = "collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike]";
+using OneRegionATray = ShownSequence<kOneRegionATray>;
+constexpr char kPlacesOfTrays[] = "collections.abc.Sequence[numpy.typing.ArrayLike]";
+using PlacesOfTrays = ShownSequence<kPlacesOfTrays>;
+constexpr char kPartMasks[] = "collections.abc.Sequence[collections.abc.Sequence[numpy.typing.ArrayLike]]";
+using PartMasks = ShownSequence<kPartMasks>;
+constexpr char kRegionsOfRound[] =
+    "collections.abc.Callable[[int], collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike]] | None";
+using RegionsOfRound = Shown<kRegionsOfRound>;
+
 using namespace py::literals;
 
 CellMask mask_of(const BaseGrid& grid, const py::handle& cells) {
@@ -82,15 +92,15 @@ void bind_stops(py::module_& m) {
       });
   m.def(
       "robust_intersections",
-      [](const BaseGrid& grid, const py::sequence& regions, double min_radius, std::size_t max_sets) {
+      [](const BaseGrid& grid, const OneRegionATray& regions, double min_radius, std::size_t max_sets) {
         return robust_intersections(grid, regions_argument(grid, regions), min_radius, max_sets);
       },
       py::arg("grid"), py::arg("regions"), py::arg("min_radius"), py::arg("max_sets") = std::size_t{200000},
       "Every set of trays whose shared cells hold a disc of at least `min_radius` [m] (P1 3.4.2).");
   m.def(
       "maximal_intersections",
-      [](const BaseGrid& grid, const py::sequence& given, double min_radius, std::size_t max_boxes,
-         const py::object& progress) {
+      [](const BaseGrid& grid, const OneRegionATray& given, double min_radius, std::size_t max_boxes,
+         const Progress& progress) {
         const std::vector<BaseRegion> regions = regions_argument(grid, given);
         return LongCall(progress).run([&](const Monitor& monitor) {
           return maximal_intersections(grid, regions, min_radius, max_boxes, monitor);
@@ -121,8 +131,8 @@ void bind_stops(py::module_& m) {
         "The least number of intersections that cover all trays (P1 equation 3.1), with proof.");
   m.def(
       "least_stops",
-      [](const BaseGrid& grid, const py::sequence& given, double min_radius, double time_limit, double tie_time_limit,
-         const py::object& start, const py::object& goal, const py::object& progress) {
+      [](const BaseGrid& grid, const OneRegionATray& given, double min_radius, double time_limit, double tie_time_limit,
+         const OptionalArray& start, const OptionalArray& goal, const Progress& progress) {
         const std::vector<BaseRegion> regions = regions_argument(grid, given);
         StopOptions options;
         options.min_radius = min_radius;
@@ -181,7 +191,7 @@ void bind_routes(py::module_& m) {
   m.def(
       "route_lengths",
       [](const JointGroup& arm, const World& world, const ArrayLike& home, const ArrayLike& positions,
-         double resolution, int threads, const py::object& progress) {
+         double resolution, int threads, const Progress& progress) {
         BaseRouteOptions options;
         options.base = arm.robot().base();
         options.resolution = resolution;
@@ -247,7 +257,7 @@ void bind_policies(py::module_& m) {
       });
   m.def(
       "paired_order",
-      [](const py::sequence& places) {
+      [](const PlacesOfTrays& places) {
         std::vector<std::vector<Eigen::Vector2d>> points;
         for (const py::handle& tray : places) {
           const Eigen::MatrixXd rows = matrix_argument(tray, "places", 2);
@@ -261,7 +271,7 @@ void bind_policies(py::module_& m) {
       "one (m, 2) array of positions a tray; the answer is [tray][round].");
   m.def(
       "optimised_order",
-      [](const BaseGrid& grid, const py::sequence& cells, const std::vector<std::vector<int>>& groups,
+      [](const BaseGrid& grid, const PartMasks& cells, const std::vector<std::vector<int>>& groups,
          const PickingOrder& order, bool smallest_first, int restarts, unsigned rng_seed) {
         const PartRegions parts = part_regions_argument(grid, cells);
         OrderOptions options;
@@ -276,9 +286,9 @@ void bind_policies(py::module_& m) {
       "`cells` is [tray][part], bitmaps (headings, ny, nx).");
   m.def(
       "run_policy",
-      [](const BaseGrid& grid, const py::sequence& cells, const PickingOrder& order, const std::string& policy,
-         double min_radius, double online_limit, double time_limit, double tie_time_limit, const py::object& planned,
-         const py::object& progress) {
+      [](const BaseGrid& grid, const PartMasks& cells, const PickingOrder& order, const std::string& policy,
+         double min_radius, double online_limit, double time_limit, double tie_time_limit,
+         const RegionsOfRound& planned, const Progress& progress) {
         const PartRegions parts = part_regions_argument(grid, cells);
         PolicyOptions options;
         options.stops.min_radius = min_radius;

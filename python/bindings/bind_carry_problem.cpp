@@ -8,6 +8,11 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kShapeOrShapes[] = "LinkShape | collections.abc.Sequence[LinkShape]";
+using ShapeOrShapes = Shown<kShapeOrShapes>;
+constexpr char kGraspsOrPoses[] = "collections.abc.Sequence[CandidateGrasp] | numpy.typing.ArrayLike";
+using GraspsOrPoses = Shown<kGraspsOrPoses>;
+
 using namespace py::literals;
 
 /// A list of CandidateGrasp, or poses as (m, 4, 4).
@@ -85,8 +90,8 @@ void bind_carry_problem(py::module_& m) {
   bind_grasp_candidate(m);
   py::class_<ManipulationProblem>(m, "ManipulationProblem",
                                   "TransferPath an object from one pose to another with any of many grasps (P2 4.2).")
-      .def(py::init([](const Given<JointGroup>& group, const Given<World>& world, const py::object& object,
-                       const ArrayLike& T_world_start, const ArrayLike& T_world_goal, const py::object& grasps,
+      .def(py::init([](const Given<JointGroup>& group, const Given<World>& world, const ShapeOrShapes& object,
+                       const ArrayLike& T_world_start, const ArrayLike& T_world_goal, const GraspsOrPoses& grasps,
                        const std::optional<Given<Gripper>>& gripper, const Given<Strings>& touch_links,
                        const Given<std::string>& object_name, const py::kwargs& unknown) {
              refuse_unknown(unknown, {"group", "world", "object", "T_world_start", "T_world_goal", "grasps", "gripper",

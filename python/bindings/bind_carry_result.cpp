@@ -5,9 +5,12 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kStatsDict[] = "mmgrasp._records.ManipulationStats";
+using StatsDict = Shown<kStatsDict>;
+
 using namespace py::literals;
 
-py::dict stats_dict(const ManipulationStats& s) {
+StatsDict stats_dict(const ManipulationStats& s) {
   return py::dict("ik_seconds"_a = s.ik_seconds, "roadmap_seconds"_a = s.roadmap_seconds,
                   "search_seconds"_a = s.search_seconds, "graph_searches"_a = s.graph_searches,
                   "ways_opened"_a = s.ways_opened, "grasps_searched"_a = s.grasps_searched,

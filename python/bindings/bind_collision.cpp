@@ -46,7 +46,10 @@ void bind_answers(py::module_& m) {
       .def_readonly("point_b", &DistanceResult::point_b)
       .def_readonly("with_scene", &DistanceResult::with_scene, "`b` is an object of the scene.")
       .def_property_readonly(
-          "gradient", [](const DistanceResult& d) { return d.gradient.size() > 0 ? py::cast(d.gradient) : py::none(); },
+          "gradient",
+          [](const DistanceResult& d) -> MaybeFloats {
+            return d.gradient.size() > 0 ? py::cast(d.gradient) : py::none();
+          },
           "d value / d q, (n,); None unless it was asked for.")
       .def("to_dict",
            [](const DistanceResult& d) {

@@ -32,7 +32,7 @@ struct TrackingRun {
 };
 
 OptionField<TrackingRun> triple(const char* name, Eigen::Vector3d BaseDisturbance::*member, const char* help) {
-  return {name,
+  return {name, "numpy.typing.ArrayLike",
           [=](TrackingRun& run, const py::handle& value) { run.disturbance.*member = vector3_argument(value, name); },
           [=](const TrackingRun& run) -> py::object {
             const Eigen::Vector3d& v = run.disturbance.*member;
@@ -47,7 +47,8 @@ const std::vector<OptionField<TrackingRun>>& run_fields() {
   static const std::vector<OptionField<R>> fields = [] {
     std::vector<OptionField<R>> all;
     for (const OptionField<BaseTrackingOptions>& field : tracking_fields()) {
-      all.push_back({field.name, [field](R& run, const py::handle& value) { field.set(run.options, value); },
+      all.push_back({field.name, field.type,
+                     [field](R& run, const py::handle& value) { field.set(run.options, value); },
                      [field](const R& run) { return field.get(run.options); }, field.help});
     }
     all.push_back(option<R>("slip_left", &R::disturbance, &D::slip_left, "share of the left wheel's travel lost"));

@@ -78,7 +78,7 @@ void bind_outcomes(py::module_& m) {
 void bind_poses(py::module_& m) {
   m.def(
       "pose",
-      [](const ArrayLike& xyz, const py::object& rpy, const py::object& quat_xyzw) {
+      [](const ArrayLike& xyz, const OptionalArray& rpy, const OptionalArray& quat_xyzw) {
         if (!rpy.is_none() && !quat_xyzw.is_none()) {
           throw InvalidInput("pose(rpy=..., quat_xyzw=...): give one of the two");
         }

@@ -8,6 +8,9 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kStandIn[] = "mmgrasp._records.MeshStandIn";
+using StandIn = Shown<kStandIn>;
+
 std::string number(double value) {
   std::ostringstream out;
   out << value;
@@ -87,7 +90,7 @@ void bind_mesh(py::module_& m) {
   py::class_<MeshShape>(m, "Mesh", "A triangle mesh [m]; closed ones are solids, open ones surfaces.")
       .def_static(
           "load",
-          [](const py::object& path, const py::object& scale) {
+          [](const PathLike& path, const ArrayLike& scale) {
             return MeshShape{load_mesh(path_argument(path, "path"), scale_argument(scale))};
           },
           py::arg("path"), py::arg("scale") = 1.0,
@@ -116,7 +119,7 @@ void bind_mesh(py::module_& m) {
 }
 
 /// The stand-in with the names that a robot's report has.
-py::dict stand_in_dict(const MeshShape& mesh, double tolerance) {
+StandIn stand_in_dict(const MeshShape& mesh, double tolerance) {
   MeshStandIn found;
   {
     py::gil_scoped_release release;
@@ -135,7 +138,7 @@ void bind_geometry(py::module_& m) {
   bind_primitives(m);
   bind_mesh(m);
   py::class_<LinkShape>(m, "LinkShape", "A shape and its pose in the body (robot link, part, obstacle) it belongs to.")
-      .def(py::init([](const Shape& shape, const py::object& pose) {
+      .def(py::init([](const Shape& shape, const OptionalArray& pose) {
              LinkShape out;
              check_shape(shape, "shape");
              out.shape = shape;
@@ -146,7 +149,7 @@ void bind_geometry(py::module_& m) {
            py::arg("shape"), py::arg("pose") = py::none())
       .def_static(
           "mesh",
-          [](const py::object& path, const py::object& scale, const py::object& pose) {
+          [](const PathLike& path, const ArrayLike& scale, const OptionalArray& pose) {
             LinkShape out;
             out.mesh_path = out.mesh_uri = path_argument(path, "path");
             out.mesh_scale = scale_argument(scale);

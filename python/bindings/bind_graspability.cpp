@@ -5,6 +5,9 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kMaskImages[] = "dict[str, numpy.typing.NDArray[numpy.uint8]]";
+using MaskImages = Shown<kMaskImages>;
+
 using namespace py::literals;
 
 const std::vector<OptionField<GraspabilityOptions>>& graspability_fields() {
@@ -56,7 +59,7 @@ void bind_scored_grasps(py::module_& m) {
   py::class_<Graspability>(m, "Graspability", "Grasps, best first, and what became of the other places looked at.")
       .def_readonly("grasps", &Graspability::grasps)
       .def_property_readonly("counts",
-                             [](const Graspability& g) {
+                             [](const Graspability& g) -> NamedCounts {
                                return py::dict("tried"_a = g.counts.tried, "too_wide"_a = g.counts.too_wide,
                                                "poor"_a = g.counts.poor, "collision"_a = g.counts.collision,
                                                "near_better"_a = g.counts.near_better);
@@ -91,10 +94,13 @@ void bind_scored_grasps(py::module_& m) {
         return out;
       },
       py::arg("map"), py::arg("gripper"), py::arg("angle"), py::arg("opening"), py::arg("tip_height"),
-      "(ny, nx) smoothed graspability in [0, 1] of one closing direction, opening and height of the fingertips.");
+      ("(ny, nx) smoothed graspability in [0, 1] of one closing direction, opening and height of the fingertips." +
+       option_help(graspability_fields()))
+          .c_str());
   m.def(
       "hand_masks",
-      [](const Gripper& gripper, double opening, double angle, double resolution, const py::kwargs& options) {
+      [](const Gripper& gripper, double opening, double angle, double resolution,
+         const py::kwargs& options) -> MaskImages {
         const GraspabilityOptions read = read_options(graspability_fields(), options, "hand_masks");
         const HandMasks masks = make_hand_masks(gripper, read.hand, opening, angle, resolution);
         py::dict out;
@@ -107,7 +113,9 @@ void bind_scored_grasps(py::module_& m) {
         return out;
       },
       py::arg("gripper"), py::arg("opening"), py::arg("angle"), py::arg("resolution"),
-      "The masks `contact`, `fingers` and `palm` as images of zeros and ones with the hand in the middle.");
+      ("The masks `contact`, `fingers` and `palm` as images of zeros and ones with the hand in the middle." +
+       option_help(graspability_fields()))
+          .c_str());
 }
 
 void bind_placement(py::module_& m) {

@@ -112,7 +112,7 @@ void bind_group_class(py::module_& m) {
       .def("jacobian_batch", &jacobian_batch, py::arg("Q"), "(m, 6, n) at the tip's origin, for configurations (m, n).")
       .def(
           "link_poses",
-          [](const JointGroup& g, const ArrayLike& q) {
+          [](const JointGroup& g, const ArrayLike& q) -> NamedPoses {
             Poses poses;
             g.link_poses(configuration(g, q), poses);
             py::dict out;

@@ -37,9 +37,11 @@ const std::vector<OptionField<IkOptions>>& ik_fields() {
       option<IkOptions>("restarts", &IkOptions::restarts, "random restarts after the seed"),
       option<IkOptions>("time_limit", &IkOptions::time_limit, "wall-clock cap [s]"),
       option<IkOptions>("rng_seed", &IkOptions::seed, "same seed, same answer"),
-      {"joint_weights", set_weights, [](const IkOptions& o) { return py::cast(o.joint_weights); },
+      {"joint_weights", "numpy.typing.ArrayLike | None", set_weights,
+       [](const IkOptions& o) { return py::cast(o.joint_weights); },
        "how dear it is to move each joint, > 0; empty: all the same"},
-      {"objectives", set_objectives, [](const IkOptions&) { return py::list(); },
+      {"objectives", "collections.abc.Sequence[IkObjective]", set_objectives,
+       [](const IkOptions&) { return py::list(); },
        "costs (IkObjective) that the redundancy lowers once the pose is reached"},
       option<IkOptions>("objective_iterations", &IkOptions::objective_iterations, "steps along the solutions")};
   return fields;
@@ -63,7 +65,7 @@ void bind_ik_result(py::module_& m) {
       .def_readonly("outcome", &IkResult::outcome)
       .def_property_readonly(
           "q",
-          [](const IkResult& r) -> py::object {
+          [](const IkResult& r) -> MaybeFloats {
             if (r.outcome != Outcome::solved) return py::none();
             return py::cast(r.q);
           },
@@ -124,7 +126,7 @@ void bind_group_methods(py::module_& m) {
   declared<JointGroup>(m, "JointGroup")
       .def(
           "ik",
-          [](const JointGroup& g, const ArrayLike& T_world_tip, const py::object& seed, const World* world,
+          [](const JointGroup& g, const ArrayLike& T_world_tip, const OptionalArray& seed, const World* world,
              const py::kwargs& options) {
             const Eigen::VectorXd q0 = seed.is_none() ? Eigen::VectorXd(0.5 * (g.sample_lower() + g.sample_upper()))
                                                       : vector_argument(seed, "seed", g.size());

@@ -44,7 +44,7 @@ void bind_ik_objectives(py::module_& m) {
   m.def(
       "camera_view_objective",
       [](const JointGroup& group, const std::string& camera_link, const ArrayLike& point,
-         const py::object& T_link_camera, double weight) {
+         const OptionalArray& T_link_camera, double weight) {
         return handle(make_camera_view_objective(group, group.robot().link_index(camera_link),
                                                  pose_argument(T_link_camera, "T_link_camera"),
                                                  vector3_argument(point, "point"), weight));

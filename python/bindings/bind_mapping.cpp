@@ -99,14 +99,14 @@ void bind_clouds(py::module_& m) {
         return "PointCloud(" + std::to_string(c.width) + " x " + std::to_string(c.height) + ")";
       });
   m.def(
-      "read_pcd", [](const py::object& path) { return read_pcd(path_argument(path, "path")); }, py::arg("path"),
+      "read_pcd", [](const PathLike& path) { return read_pcd(path_argument(path, "path")); }, py::arg("path"),
       "Reads a PCD file: ascii, binary or binary_compressed. Raises IoError naming file and rule.");
 }
 
 void bind_images(py::module_& m) {
   py::class_<DepthImage>(m, "DepthImage",
                          "What a depth camera saw: depth along the camera's axis [m], 0 where nothing was measured.")
-      .def(py::init([](const py::object& depth, const PinholeCamera& camera, const py::object& T_world_camera) {
+      .def(py::init([](const ArrayLike& depth, const PinholeCamera& camera, const OptionalArray& T_world_camera) {
              camera.check();
              DepthImage image{camera, pose_argument(T_world_camera, "T_world_camera"),
                               image_argument(depth, "depth", camera.height, camera.width)};
@@ -143,7 +143,7 @@ void bind_images(py::module_& m) {
       "look_down", [](const ArrayLike& eye) { return to_array(look_down(vector3_argument(eye, "eye"))); },
       py::arg("eye"), "T_world_camera of a camera at `eye` [m] that looks straight down, image x along the world's x.");
   py::class_<HeightMap>(m, "HeightMap", "Heights over square cells, seen along -z of the map's frame [m].")
-      .def(py::init([](const py::object& height, double resolution, const py::object& T_world_map) {
+      .def(py::init([](const ArrayLike& height, double resolution, const OptionalArray& T_world_map) {
              HeightMap map;
              map.height = image_argument(height, "height", -1, -1);
              map.upper = map.height;
@@ -204,8 +204,8 @@ void bind_cuboids(py::module_& m) {
            [](const CuboidFit& f) { return "CuboidFit(" + std::to_string(f.cuboids.size()) + " cuboids)"; });
   m.def(
       "fit_cuboids",
-      [](const py::object& points, const py::object& T_world_tray, const py::object& tray_size, double wall,
-         const py::object& up, const py::object& eye, const py::kwargs& options) {
+      [](const ArrayLike& points, const OptionalArray& T_world_tray, const OptionalArray& tray_size, double wall,
+         const OptionalArray& up, const OptionalArray& eye, const py::kwargs& options) {
         CuboidFitOptions read = read_options(cuboid_fields(), options, "fit_cuboids");
         if (!up.is_none()) read.up = vector3_argument(up, "up");
         const Eigen::Vector3d from = eye.is_none() ? Eigen::Vector3d::Zero() : vector3_argument(eye, "eye");

@@ -28,7 +28,7 @@ void bind_optim(py::module_& m) {
   m.def(
       "solve_set_cover",
       [](int elements, const std::vector<std::vector<int>>& sets, const std::vector<double>& costs, double time_limit,
-         const py::object& progress) {
+         const Progress& progress) {
         SetCoverProblem problem{elements, sets, costs};
         problem.check();
         return LongCall(progress).run([&](const Monitor&) { return solve_set_cover(problem, time_limit); });

@@ -7,6 +7,9 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kOnSolution[] = "collections.abc.Callable[[numpy.typing.NDArray[numpy.float64], float], object] | None";
+using OnSolution = Shown<kOnSolution>;
+
 using namespace py::literals;
 
 const std::vector<OptionField<MotionOptions>>& motion_fields() {
@@ -36,9 +39,9 @@ std::vector<Eigen::VectorXd> goals_argument(const ArrayLike& goal, Eigen::Index 
 }
 
 MotionResult motion(const Given<Robot>& given_robot, const Given<JointGroup>& given_group, const Given<World>& world,
-                    const ArrayLike& start, const py::object& goal, const py::object& tool_poses,
+                    const ArrayLike& start, const OptionalArray& goal, const OptionalArray& tool_poses,
                     const Given<std::vector<ToolRegion>>& regions, const std::optional<Given<ToolCone>>& tool_cone,
-                    const py::object& on_solution, const py::object& progress, const py::kwargs& options) {
+                    const OnSolution& on_solution, const Progress& progress, const py::kwargs& options) {
   const JointGroup& group = taken(given_group, "group");
   check_same_robot(taken(given_robot, "robot"), group);
   MotionOptions read = read_options(motion_fields(), options, "plan_motion");
@@ -64,7 +67,7 @@ MotionResult motion(const Given<Robot>& given_robot, const Given<JointGroup>& gi
 
 void bind_goals(py::module_& m) {
   py::class_<ToolRegion>(m, "ToolRegion", "A box of tool poses around a pose.")
-      .def(py::init([](const ArrayLike& pose, const py::object& position, const py::object& rotation) {
+      .def(py::init([](const ArrayLike& pose, const OptionalArray& position, const OptionalArray& rotation) {
              ToolRegion region;
              region.T_world_region = pose_argument(pose, "pose");
              if (!position.is_none()) region.position = vector3_argument(position, "position");

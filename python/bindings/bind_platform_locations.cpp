@@ -4,6 +4,11 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kSearchCounts[] = "mmgrasp._records.SearchCounts";
+using SearchCounts = Shown<kSearchCounts>;
+constexpr char kOptionalPixel[] = "numpy.typing.NDArray[numpy.float64] | None";
+using OptionalPixel = Shown<kOptionalPixel>;
+
 using namespace py::literals;
 
 const std::vector<OptionField<PlatformLocationsOptions>>& fields() {
@@ -18,12 +23,12 @@ const std::vector<OptionField<PlatformLocationsOptions>>& fields() {
   return all;
 }
 
-py::dict counts_dict(const PlatformLocationsCounts& counts) {
+SearchCounts counts_dict(const PlatformLocationsCounts& counts) {
   return py::dict("draws"_a = counts.draws, "rejections"_a = python::to_dict(counts.rejections), "view"_a = counts.view,
                   "singular"_a = counts.singular, "iterations"_a = counts.iterations);
 }
 
-py::object configuration(const PlatformLocations& found, const Eigen::VectorXd& q) {
+MaybeFloats configuration(const PlatformLocations& found, const Eigen::VectorXd& q) {
   return found.outcome == Outcome::solved ? py::cast(q) : py::none();
 }
 
@@ -80,7 +85,7 @@ void bind_camera(py::module_& m) {
       .def_readonly("farthest", &PinholeCamera::farthest)
       .def(
           "project",
-          [](const PinholeCamera& camera, const ArrayLike& point) -> py::object {
+          [](const PinholeCamera& camera, const ArrayLike& point) -> OptionalPixel {
             const auto pixel = camera.project(vector3_argument(point, "point"));
             return pixel ? py::cast(*pixel) : py::none();
           },
@@ -106,11 +111,11 @@ void bind_database(py::module_& m) {
           py::arg("T_world_tip"), py::arg("count") = 8,
           "(k, n): remembered arm postures with the base put where they reach the pose, best match first.")
       .def(
-          "save", [](const IkSeedDatabase& db, const py::object& path) { db.save(path_argument(path, "path")); },
+          "save", [](const IkSeedDatabase& db, const PathLike& path) { db.save(path_argument(path, "path")); },
           py::arg("path"))
       .def_static(
           "load",
-          [](const py::object& path, const JointGroup& group, int capacity) {
+          [](const PathLike& path, const JointGroup& group, int capacity) {
             return IkSeedDatabase::load(path_argument(path, "path"), group, capacity);
           },
           py::arg("path"), py::arg("group"), py::arg("capacity") = 10000,
@@ -127,8 +132,8 @@ void bind_platform_locations(py::module_& m) {
   m.def(
       "plan_platform_locations",
       [](CollisionChecker& checker, const ArrayLike& T_world_pick, const ArrayLike& T_world_place,
-         const py::object& pick_point, const py::object& place_point, const py::object& camera_link,
-         const py::object& T_link_camera, const PinholeCamera* camera, IkSeedDatabase* database,
+         const OptionalArray& pick_point, const OptionalArray& place_point, const OptionalText& camera_link,
+         const OptionalArray& T_link_camera, const PinholeCamera* camera, IkSeedDatabase* database,
          const py::kwargs& options) {
         PlatformLocationsProblem problem;
         problem.T_world_pick = pose_argument(T_world_pick, "T_world_pick");

@@ -10,6 +10,13 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kNamedArrays[] = "dict[str, numpy.typing.NDArray[typing.Any]]";
+using NamedArrays = Shown<kNamedArrays>;
+constexpr char kArrayList[] = "list[numpy.typing.NDArray[numpy.float64]]";
+using ArrayList = Shown<kArrayList>;
+constexpr char kMaybeArrayList[] = "list[numpy.typing.NDArray[numpy.float64] | None]";
+using MaybeArrayList = Shown<kMaybeArrayList>;
+
 using namespace py::literals;
 
 const std::vector<OptionField<ReachOptions>>& reach_fields() {
@@ -78,7 +85,7 @@ py::array view(const py::object& owner, const T* data, std::vector<py::ssize_t> 
   return out;
 }
 
-py::dict arrays(const py::object& self) {
+NamedArrays arrays(const py::object& self) {
   const ReachArrays a = reach_arrays(self.cast<const ReachDatabase&>());
   return py::dict("positions"_a = view(self, a.position_cells, {a.positions, 3}),
                   "position_first"_a = view(self, a.position_first, {a.positions + 1}),
@@ -107,7 +114,7 @@ void bind_queries(py::module_& m, py::class_<ReachDatabase>& database) {
       .def_readonly("reached", &BasePlacement::reached, "How many of the targets.")
       .def_property_readonly(
           "configurations",
-          [](const BasePlacement& p) {
+          [](const BasePlacement& p) -> MaybeArrayList {
             py::list out;
             for (const Eigen::VectorXd& q : p.configurations) out.append(q.size() > 0 ? py::cast(q) : py::none());
             return out;
@@ -141,7 +148,7 @@ void bind_queries(py::module_& m, py::class_<ReachDatabase>& database) {
       .def(
           "solve_batch",
           [](const ReachDatabase& db, const JointGroup& arm, const ArrayLike& T_base_tips,
-             const CollisionChecker* checker, const py::kwargs& options) {
+             const CollisionChecker* checker, const py::kwargs& options) -> ArrayList {
             const ReachSolveOptions read = read_options(solve_fields(), options, "ReachDatabase.solve_batch");
             const Poses poses = pose_stack_argument(T_base_tips, "T_base_tips");
             const auto found = LongCall(py::none()).run([&](const Monitor& monitor) {
@@ -152,7 +159,8 @@ void bind_queries(py::module_& m, py::class_<ReachDatabase>& database) {
             return out;
           },
           "arm"_a, "T_base_tips"_a, py::kw_only(), "checker"_a = py::none(),
-          "solve() for many poses (m, 4, 4) at a time: a list of arrays. The same keywords.")
+          ("solve() for many poses (m, 4, 4) at a time: a list of arrays (k, n)." + option_help(solve_fields()))
+              .c_str())
       .def(
           "base_poses_for",
           [](const ReachDatabase& db, const JointGroup& arm, const ArrayLike& T_world_tip, int count,
@@ -179,7 +187,7 @@ void bind_queries(py::module_& m, py::class_<ReachDatabase>& database) {
       .def(
           "find_base_placement",
           [](const ReachDatabase& db, const JointGroup& arm, const ArrayLike& T_world_tips,
-             const CollisionChecker* checker, const py::object& progress, const py::kwargs& options) {
+             const CollisionChecker* checker, const Progress& progress, const py::kwargs& options) {
             const BasePlacementOptions read =
                 read_options(base_placement_fields(), options, "ReachDatabase.find_base_placement");
             const Poses poses = pose_stack_argument(T_world_tips, "T_world_tips");
@@ -205,7 +213,7 @@ void bind_reach(py::module_& m) {
   database
       .def_static(
           "build",
-          [](const JointGroup& arm, const py::object& progress, const py::kwargs& options) {
+          [](const JointGroup& arm, const Progress& progress, const py::kwargs& options) {
             const ReachOptions read = read_options(reach_fields(), options, "ReachDatabase.build");
             const JointGroup group = with_sampled_pairs(arm);
             return LongCall(progress).run(
@@ -222,8 +230,8 @@ void bind_reach(py::module_& m) {
           py::arg("arm"), "Into how many parts build_to divides a build with these options.")
       .def_static(
           "build_parts",
-          [](const py::object& folder, const JointGroup& arm, const std::vector<std::int64_t>& parts,
-             const py::object& progress, const py::kwargs& options) {
+          [](const PathLike& folder, const JointGroup& arm, const std::vector<std::int64_t>& parts,
+             const Progress& progress, const py::kwargs& options) {
             const ReachOptions read = read_options(reach_fields(), options, "ReachDatabase.build_parts");
             const std::string name = path_argument(folder, "folder");
             const JointGroup group = with_sampled_pairs(arm);
@@ -234,8 +242,7 @@ void bind_reach(py::module_& m) {
           "Draws single parts into a folder; in `path`.partial they are what build_to(path, ...) goes on from.")
       .def_static(
           "load_or_build",
-          [](const JointGroup& arm, const py::object& cache_dir, const py::object& progress,
-             const py::kwargs& options) {
+          [](const JointGroup& arm, const PathLike& cache_dir, const Progress& progress, const py::kwargs& options) {
             const ReachOptions read = read_options(reach_fields(), options, "ReachDatabase.load_or_build");
             const std::string folder = path_argument(cache_dir, "cache_dir");
             const JointGroup group = with_sampled_pairs(arm);
@@ -246,7 +253,7 @@ void bind_reach(py::module_& m) {
           "The database of this arm and these options from the cache folder; built and stored when it is not there.")
       .def_static(
           "build_to",
-          [](const py::object& path, const JointGroup& arm, const py::object& progress, const py::kwargs& options) {
+          [](const PathLike& path, const JointGroup& arm, const Progress& progress, const py::kwargs& options) {
             const ReachOptions read = read_options(reach_fields(), options, "ReachDatabase.build_to");
             const std::string name = path_argument(path, "path");
             const JointGroup group = with_sampled_pairs(arm);
@@ -257,7 +264,7 @@ void bind_reach(py::module_& m) {
           "Builds through files into a folder; interrupted and called again, it goes on where it was.")
       .def_static(
           "load",
-          [](const py::object& path, const JointGroup* arm) {
+          [](const PathLike& path, const JointGroup* arm) {
             const std::string name = path_argument(path, "path");
             const std::optional<JointGroup> group =
                 arm ? std::optional<JointGroup>(with_sampled_pairs(*arm)) : std::nullopt;
@@ -285,7 +292,7 @@ void bind_reach(py::module_& m) {
       .def("to_dict", &database_dict)
       .def(
           "save",
-          [](const ReachDatabase& db, const py::object& path) {
+          [](const ReachDatabase& db, const PathLike& path) {
             const std::string name = path_argument(path, "path");
             py::gil_scoped_release release;
             db.save(name);

@@ -9,6 +9,9 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kNodePairs[] = "list[tuple[int, int]]";
+using NodePairs = Shown<kNodePairs>;
+
 using namespace py::literals;
 
 const std::vector<OptionField<PipeGraspOptions>>& pipe_grasp_fields() {
@@ -96,7 +99,7 @@ void bind_structure(py::module_& m) {
            "(n, 3) nodes [m], pairs of node indices from 0, and outer diameters [m]: one for all or one a section.")
       .def_property_readonly("nodes", [](const Pipe& p) { return rows_to_array(p.nodes); })
       .def_property_readonly("sections",
-                             [](const Pipe& p) {
+                             [](const Pipe& p) -> NodePairs {
                                py::list pairs;
                                for (const auto& [a, b] : p.sections) pairs.append(py::make_tuple(a, b));
                                return pairs;

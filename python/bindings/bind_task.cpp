@@ -114,7 +114,7 @@ void bind_problem(py::module_& m) {
       .def_readonly("start", &PartSupplyProblem::start)
       .def_readonly("goal", &PartSupplyProblem::goal)
       .def_readonly("carry", &PartSupplyProblem::carry)
-      .def_property_readonly("options", [](const PartSupplyProblem& p) {
+      .def_property_readonly("options", [](const PartSupplyProblem& p) -> NamedOptions {
         py::dict out;
         for (const auto& field : supply_fields()) out[field.name.c_str()] = field.get(p.options);
         return out;
@@ -205,7 +205,7 @@ void bind_plan_result(py::module_& m) {
       });
   m.def(
       "solve_part_supply",
-      [](const PartSupplyProblem& problem, const ReachDatabase& database, const py::object& progress) {
+      [](const PartSupplyProblem& problem, const ReachDatabase& database, const Progress& progress) {
         return LongCall(progress).run(
             [&](const Monitor& monitor) { return plan_part_supply(problem, database, monitor); });
       },

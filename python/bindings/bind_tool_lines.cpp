@@ -51,7 +51,7 @@ void bind_line(py::module_& m) {
   m.def(
       "plan_straight_line",
       [](const Given<CollisionChecker>& given_checker, const ArrayLike& start, const ArrayLike& T_world_to,
-         const py::object& progress, const py::kwargs& options) {
+         const Progress& progress, const py::kwargs& options) {
         CollisionChecker checker = taken(given_checker, "checker").clone();
         const StraightLineOptions read = read_options(line_fields(), options, "plan_straight_line");
         const Eigen::VectorXd from = vector_argument(start, "start", checker.group().size());
@@ -108,8 +108,8 @@ void bind_cartesian(py::module_& m) {
       });
   m.def(
       "plan_cartesian",
-      [](const Given<CollisionChecker>& given_checker, const ArrayLike& tool_poses, const py::object& near,
-         const py::object& progress, const py::kwargs& options) {
+      [](const Given<CollisionChecker>& given_checker, const ArrayLike& tool_poses, const OptionalArray& near,
+         const Progress& progress, const py::kwargs& options) {
         CollisionChecker checker = taken(given_checker, "checker").clone();
         const CartesianOptions read = read_options(cartesian_fields(), options, "plan_cartesian");
         const Poses poses = poses_argument(tool_poses, "tool_poses");

@@ -60,8 +60,8 @@ std::vector<Eigen::VectorXd> samples_argument(const py::handle& value, const cha
 }
 
 JointTrajectory make_trajectory(const std::vector<std::string>& names, const ArrayLike& times,
-                                const ArrayLike& positions, const py::object& velocities,
-                                const py::object& accelerations) {
+                                const ArrayLike& positions, const OptionalArray& velocities,
+                                const OptionalArray& accelerations) {
   JointTrajectory t;
   t.names = names;
   const Eigen::VectorXd clock = vector_argument(times, "times");
@@ -106,7 +106,7 @@ void bind_trajectory(py::module_& m) {
       .def("at", &JointTrajectory::at, py::arg("time"), "Configuration (n,) at a time [s], clamped at the ends.")
       .def(
           "to_csv",
-          [](const JointTrajectory& t, const py::object& base_pose) {
+          [](const JointTrajectory& t, const OptionalArray& base_pose) {
             return base_pose.is_none() ? t.to_csv() : csv_with_base(t, base_argument(base_pose));
           },
           py::arg("base_pose") = py::none(),
@@ -115,7 +115,7 @@ void bind_trajectory(py::module_& m) {
           "pose and twist follow the time.")
       .def(
           "to_joint_trajectory",
-          [](const JointTrajectory& t, const py::object& base_pose) {
+          [](const JointTrajectory& t, const OptionalArray& base_pose) {
             return joint_trajectory(t, base_pose.is_none() ? Eigen::Vector3d::Zero() : base_argument(base_pose));
           },
           py::arg("base_pose") = py::none(),

@@ -9,6 +9,17 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kEventRows[] = "list[mmgrasp._records.DriveByEventRow]";
+using EventRows = Shown<kEventRows>;
+constexpr char kViolationRows[] = "dict[str, mmgrasp._records.ViolationRow]";
+using ViolationRows = Shown<kViolationRows>;
+constexpr char kPushKeywords[] = "dict[str, typing.Any]";
+using PushKeywords = ShownDict<kPushKeywords>;
+constexpr char kOptionalPush[] = "PushGrasp | None";
+using OptionalPush = Shown<kOptionalPush>;
+constexpr char kOptionalTrajectory[] = "WholeBodyTrajectory | None";
+using OptionalTrajectory = Shown<kOptionalTrajectory>;
+
 using namespace py::literals;
 
 const std::vector<OptionField<DriveByOptions>>& drive_by_fields() {
@@ -45,7 +56,7 @@ py::dict violation_dict(const Violation& v) {
                   "waypoint"_a = v.waypoint, "what"_a = v.what, "kept"_a = v.kept());
 }
 
-py::dict violations_dict(const std::vector<Violation>& violations) {
+ViolationRows violations_dict(const std::vector<Violation>& violations) {
   py::dict result;
   for (const Violation& v : violations) result[v.kind.c_str()] = violation_dict(v);
   return result;
@@ -123,9 +134,9 @@ void bind_drive_by_task(py::module_& m) {
       "the tip's frame, and free_length [m], the straight way before the finger tips reach the "
       "object. T_world_tip is then\n"
       "the planned grasp; tolerance, free, max_tool_speed and dwell are left out.")
-      .def(py::init([](const ArrayLike& T_world_tip, const py::object& tolerance, const std::vector<std::string>& free,
-                       const py::object& max_tool_speed, double dwell, const std::string& object,
-                       const std::optional<py::dict>& push, int touching) {
+      .def(py::init([](const ArrayLike& T_world_tip, const OptionalArray& tolerance,
+                       const std::vector<std::string>& free, const OptionalNumber& max_tool_speed, double dwell,
+                       const std::string& object, const std::optional<PushKeywords>& push, int touching) {
              DriveByTask task;
              task.candidates = candidates_argument(T_world_tip);
              if (!tolerance.is_none()) task.tolerance = vector_argument(tolerance, "tolerance", 6);
@@ -156,7 +167,9 @@ void bind_drive_by_task(py::module_& m) {
       .def_readonly("object", &DriveByTask::object)
       .def_property_readonly(
           "push",
-          [](const DriveByTask& t) { return t.push ? py::cast(push_grasp(t.push->closing)) : py::object(py::none()); },
+          [](const DriveByTask& t) -> OptionalPush {
+            return t.push ? py::cast(push_grasp(t.push->closing)) : py::object(py::none());
+          },
           "What push_grasp says: closing time, window, tolerance to the object's position; None without one.")
       .def("__repr__", [](const DriveByTask& t) {
         return "DriveByTask(" + std::to_string(t.candidates.size()) +
@@ -207,12 +220,14 @@ void bind_drive_by_result(py::module_& m) {
       .def_readonly("outcome", &DriveByResult::outcome)
       .def_property_readonly(
           "trajectory",
-          [](const DriveByResult& r) { return std::const_pointer_cast<WholeBodyTrajectory>(r.trajectory); },
+          [](const DriveByResult& r) -> OptionalTrajectory {
+            return py::cast(std::const_pointer_cast<WholeBodyTrajectory>(r.trajectory));
+          },
           "The answer or, when not solved, the best iterate; None when there was not even a guess.")
       .def_property_readonly("duration", &DriveByResult::duration, "[s]")
       .def_property_readonly(
           "events",
-          [](const DriveByResult& r) {
+          [](const DriveByResult& r) -> EventRows {
             py::list events;
             for (const DriveByEvent& e : r.events) events.append(event_dict(e));
             return events;
@@ -272,7 +287,7 @@ DriveByGoal goal_argument(const ArrayLike& goal, Eigen::Index size) {
 
 DriveByResult shorten(const JointGroup& group, const World& world, const std::vector<DriveByTask>& tasks,
                       std::vector<double> times, const ArrayLike& positions, std::vector<double> task_times,
-                      const py::object& progress, const py::kwargs& options) {
+                      const Progress& progress, const py::kwargs& options) {
   const DriveByOptions read = read_options(drive_by_fields(), options, "shorten_drive_by");
   const KnownMotion known{std::move(times), rows_argument(positions, "positions", group.size()), std::move(task_times)};
   const JointGroup with_pairs = with_sampled_pairs(group);
@@ -281,7 +296,7 @@ DriveByResult shorten(const JointGroup& group, const World& world, const std::ve
 }
 
 DriveByResult drive_by(const Robot& robot, const JointGroup& group, const World& world, const ArrayLike& start,
-                       const std::vector<DriveByTask>& tasks, const ArrayLike& goal, const py::object& progress,
+                       const std::vector<DriveByTask>& tasks, const ArrayLike& goal, const Progress& progress,
                        const py::kwargs& options) {
   check_same_robot(robot, group);
   const DriveByOptions read = read_options(drive_by_fields(), options, "plan_drive_by");
@@ -335,9 +350,11 @@ void bind_trajopt(py::module_& m) {
   m.def(
       "shorten_drive_by", &shorten, py::arg("group"), py::arg("world"), py::kw_only(), py::arg("tasks"),
       py::arg("times"), py::arg("positions"), py::arg("task_times"), py::arg("progress") = py::none(),
-      "plan_drive_by from a motion that is known instead of guesses: positions (m, n) at times [s], straight between "
-      "them, free of\ncollisions, from rest to rest, at each task at its time; e.g. a drive and a pick one after the "
-      "other. The answer is near that\nmotion. Tasks have one pose and no push. Keywords are those of plan_drive_by.");
+      ("plan_drive_by from a motion that is known instead of guesses: positions (m, n) at times [s], straight between "
+       "them, free of\ncollisions, from rest to rest, at each task at its time; e.g. a drive and a pick one after the "
+       "other. The answer is near that\nmotion. Tasks have one pose and no push." +
+       option_help(drive_by_fields()))
+          .c_str());
 }
 
 }  // namespace mmgrasp::python

@@ -45,7 +45,7 @@ void bind_checked_parts(py::module_& m) {
            py::arg("joint"), py::arg("closed"), py::arg("open"));
   py::class_<CheckedMotion>(m, "CheckedMotion")
       .def(py::init([](std::string kind, double opening, bool holding, std::vector<double> times,
-                       const ArrayLike& positions, const ArrayLike& velocities, const py::object& accelerations) {
+                       const ArrayLike& positions, const ArrayLike& velocities, const OptionalArray& accelerations) {
              return CheckedMotion{std::move(kind),
                                   opening,
                                   holding,
@@ -220,7 +220,7 @@ void bind_verify(py::module_& top) {
       });
   m.def(
       "check_plan",
-      [](const PlanToCheck& plan, const py::object& progress, const py::kwargs& options) {
+      [](const PlanToCheck& plan, const Progress& progress, const py::kwargs& options) {
         const PlanCheckOptions read = read_options(check_fields(), options, "check_plan");
         return LongCall(progress).run([&](const Monitor& monitor) { return check_plan(plan, read, monitor); });
       },

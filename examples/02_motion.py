@@ -16,6 +16,6 @@ goal = arm.ik(mg.pose([0.6, -0.4, 0.9]), seed=start, world=world).q
 result = mg.plan_motion(robot, arm, world, start=start, goal=goal, planner="rrt_connect", seed=1, time_limit=5.0)
 print(result)
 checker = mg.CollisionChecker(robot, world, group=arm)
-trajectory = mg.time_parameterize_free(checker, result.path)
+trajectory = mg.planning.time_parameterize_free(checker, result.path)
 print(trajectory)
 Path("motion.csv").write_text(trajectory.to_csv())

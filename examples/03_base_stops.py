@@ -9,14 +9,14 @@ scenario.reach = {"samples": 500_000}  # a smaller database than the scenario as
 problem, database = scenario.problem(), scenario.reach_database()
 print(database)
 
-grid = mg.make_base_grid(problem, database)
-regions = mg.compute_base_regions(problem, database, grid)
+grid = mg.base.make_base_grid(problem, database)
+regions = mg.base.compute_base_regions(problem, database, grid)
 for region in regions:
     print(region, "limited by", min(region.explanations, key=lambda e: e.base_poses_feasible))
 
-shared = mg.robust_intersections(grid, regions, scenario.positioning_uncertainty)
+shared = mg.base.robust_intersections(grid, regions, scenario.positioning_uncertainty)
 print(shared)
-stops = mg.minimal_stops(grid, shared.robust, len(regions))
+stops = mg.base.minimal_stops(grid, shared.robust, len(regions))
 print(stops, "- at least", stops.lower_bound, "are needed")
 for stop in stops.stops:
     print(

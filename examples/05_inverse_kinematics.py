@@ -11,7 +11,7 @@ T_world_tip = mg.pose([0.7, 0.2, 0.9], rpy=[0, 0, 0])
 
 # One solution, and the same with the joints kept away from their limits.
 plain = arm.ik(T_world_tip, rng_seed=1)
-limits = mg.joint_limit_objective(arm, soft_fraction=0.3)
+limits = mg.robot.joint_limit_objective(arm, soft_fraction=0.3)
 better = arm.ik(T_world_tip, rng_seed=1, objectives=[limits])
 print(f"joint limit cost {limits.evaluate(plain.q)[0]:.4f} -> {better.objective:.4f}")
 
@@ -26,10 +26,10 @@ print(arm.ik_branches(T_world_tip, world=world))
 whole = robot.group("arm_with_torso", tip="gripper_tcp", with_base=True)
 print(whole.ik(mg.pose([4, 3, 0.9], rpy=[0, 0, 1.5]), rng_seed=1))
 checker = mg.CollisionChecker(robot, world, group=whole)
-database = mg.IkSeedDatabase(whole)
+database = mg.base.IkSeedDatabase(whole)
 down = [0, 1.5708, 0]
 for place in (0.3, 0.5):
-    found = mg.plan_platform_locations(
+    found = mg.base.plan_platform_locations(
         checker,
         mg.pose([0.8, -place, 0.9], rpy=down),
         mg.pose([0.8, place, 0.9], rpy=down),

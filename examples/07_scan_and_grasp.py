@@ -9,27 +9,28 @@ import sys
 import numpy as np
 
 import mmgrasp as mg
+from mmgrasp.problems import random_trays
 
 TRAY = [0.3, 0.4, 0.1]
 part = [mg.LinkShape(mg.Box([0.07, 0.035, 0.03]))]
-gripper = mg.Gripper(
+gripper = mg.grasping.Gripper(
     "tcp", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.04, finger_width=0.022
 )
 
 # Grasps of four random fillings together stand for all places a part may lie in.
-scans = [mg.scan_random_tray(part, TRAY, gripper, count=12, fill=0.5, seed=seed) for seed in (1, 2, 3, 4)]
+scans = [random_trays.scan_random_tray(part, TRAY, gripper, count=12, fill=0.5, seed=seed) for seed in (1, 2, 3, 4)]
 for i, scan in enumerate(scans):
     print(f"scan {i + 1}: {len(scan.placement.parts)} parts, {len(scan.grasps)} grasps, counts {scan.found.counts}")
-union = mg.union_of_grasps(scans)
+union = random_trays.union_of_grasps(scans)
 print(f"union: {len(union)} grasps; the best: {union[0]}")
 
-# For base regions every grasp is a part of its own, to be placed in a mg.Tray.
-parts = mg.parts_of_grasps("tray", union, gripper, mg.pose([0.8, 0, 0.7]))
+# For base regions every grasp is a part of its own, to be placed in a mg.base.Tray.
+parts = random_trays.parts_of_grasps("tray", union, gripper, mg.pose([0.8, 0, 0.7]))
 print(f"a tray of {len(parts)} wanted grasps, the first at {parts[0].T_world_part[:3, 3].round(3)}")
 
 scan = scans[0]
 eye = scan.image.T_world_camera[:3, 3]
-fit = mg.fit_cuboids(scan.image.points(), T_world_tray=np.eye(4), tray_size=TRAY, eye=eye)
+fit = mg.mapping.fit_cuboids(scan.image.points(), T_world_tray=np.eye(4), tray_size=TRAY, eye=eye)
 for cuboid in fit.cuboids:
     print(f"cuboid of {np.round(cuboid.size, 3)} m at {cuboid.T_world_box[:3, 3].round(3)}")
 

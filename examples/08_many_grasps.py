@@ -26,10 +26,10 @@ for i, (x, y, height) in enumerate([(0.7, 0.4, 0.8), (1.3, 0.85, 0.7), (1.3, 0.0
 bar = mg.LinkShape(mg.Box([LENGTH, 0.02, 0.02]))
 places = np.linspace(-LENGTH / 2 + 0.02, LENGTH / 2 - 0.02, 25)
 # The farther from the middle, the more the bar's weight bends the hand: a cost beside the path's length.
-grasps = [mg.CandidateGrasp(mg.pose([place, 0, 0]), cost=0.5 * abs(place)) for place in places]
+grasps = [mg.grasping.CandidateGrasp(mg.pose([place, 0, 0]), cost=0.5 * abs(place)) for place in places]
 problem = mg.ManipulationProblem(gantry, world, bar, mg.pose([0.33, 0.3, 0]), mg.pose([1.65, 0.9, 0]), grasps)
 
-roadmap = mg.Roadmap.build(gantry, vertices=1500, gamma=1.5)
+roadmap = mg.planning.Roadmap.build(gantry, vertices=1500, gamma=1.5)
 print(roadmap, roadmap.figures)
 result = mg.plan_manipulation(problem, roadmap=roadmap, shorten=False)
 print(result)
@@ -37,7 +37,7 @@ print(f"held {places[result.grasp_index]:+.2f} m from the bar's middle; nothing 
 worst = max(range(len(grasps)), key=lambda i: abs(places[i] - places[result.grasp_index]))
 
 
-def with_grasps(chosen: list[mg.CandidateGrasp]) -> mg.ManipulationProblem:
+def with_grasps(chosen: list[mg.grasping.CandidateGrasp]) -> mg.ManipulationProblem:
     return mg.ManipulationProblem(gantry, world, bar, problem.T_world_start, problem.T_world_goal, chosen)
 
 
@@ -51,7 +51,7 @@ forest = mg.plan_manipulation(
 print(f"by trees, with {len(five)} of the grasps: {forest}, {len(forest.trees)} trees in the race")
 
 
-def blocked(grasp: mg.CandidateGrasp, configurations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def blocked(grasp: mg.grasping.CandidateGrasp, configurations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Which configurations the hand alone blocks, and which of the others the bar in the hand."""
     held = world.copy()
     held.add("bar", [bar])
@@ -70,7 +70,7 @@ def draw_overlays(file: str) -> None:
     for axis, grasp, found in zip(axes, (result.grasp_index, worst), (result, other), strict=True):
         by_hand, by_bar = blocked(grasps[grasp], roadmap.vertices)
         ends = roadmap.vertices[roadmap.edges]
-        axis.add_collection(LineCollection(ends, colors="0.85", linewidths=0.5))
+        axis.add_collection(LineCollection(list(ends), colors="0.85", linewidths=0.5))
         open_ = ~by_hand & ~by_bar
         for mask, colour, label in ((open_, "0.6", "free"), (by_hand, "k", "hand"), (by_bar, "C1", "bar in hand")):
             axis.plot(*roadmap.vertices[mask].T, ".", color=colour, ms=4, label=label)
@@ -96,7 +96,7 @@ def draw_forest(file: str) -> None:
         colour, grown = f"C{tree.grasp}", np.array(tree.parents) >= 0
         ways = np.stack([tree.vertices[grown], tree.vertices[np.array(tree.parents)[grown]]], axis=1)
         axis.add_collection(
-            LineCollection(ways, colors=colour, linewidths=1, linestyles="--" if tree.from_goal else "-")
+            LineCollection(list(ways), colors=colour, linewidths=1, linestyles="--" if tree.from_goal else "-")
         )
         place = f"held {places[five[tree.grasp]]:+.2f} m from the middle"
         roots = tree.vertices[~grown].T

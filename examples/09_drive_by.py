@@ -12,7 +12,8 @@ import numpy as np
 
 import mmgrasp as mg
 from mmgrasp import sim
-from mmgrasp.sim.pictures import Camera, Painter, planned_states, write_gif, write_strip
+from mmgrasp.sim.pictures import Painter, planned_states, write_gif, write_strip
+from mmgrasp.viz.raster import Camera
 
 # Planned at 0.5 m/s, carried out by a base that can do 0.6: what is left corrects the way.
 robots = Path(mg.__file__).parent / "assets" / "robots" / "fetchlike"
@@ -25,9 +26,9 @@ real = mg.Robot.load(
     base_limits={**limits, "linear_velocity": 0.6},
 )
 fingers = ["left_gripper_finger", "right_gripper_finger"]
-gripper = mg.Gripper(
+gripper = mg.grasping.Gripper(
     "gripper_tcp", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.10, finger_depth=0.04, finger_width=0.022,
-    joints=[mg.FingerJoint(f"{name}_joint", 0.0, 0.05) for name in fingers],
+    joints=[mg.grasping.FingerJoint(f"{name}_joint", 0.0, 0.05) for name in fingers],
     finger_links=[f"{name}_link" for name in fingers],
 )  # fmt: skip
 
@@ -65,8 +66,10 @@ if importlib.util.find_spec("mujoco") is None:
     print("no physics here: pip install 'mmgrasp[sim]'")
 else:
     trial = sim.Simulation(real, scene, [bottle], gripper=gripper, joints={"head_tilt_joint": 0.4})
-    noise = {"position_noise": 0.002, "heading_noise": 0.002, "travel_noise": 0.003}
-    run = trial.run(trajectory, close_at=grasp["time"], opening=opening, hold=2.0, **noise)
+    run = trial.run(
+        trajectory, close_at=grasp["time"], opening=opening, hold=2.0,
+        position_noise=0.002, heading_noise=0.002, travel_noise=0.003,
+    )  # fmt: skip
     print(run.parts["bottle"])
     print(f"the base was off its way by at most {1000 * run.base_error:.0f} mm")
     states = run.states
@@ -75,7 +78,7 @@ painter = Painter(real, gripper, scene, [bottle])
 camera = Camera(np.array([2.0, -3.4, 2.0]), np.array([2.0, -0.3, 0.72]), 440, 250, fov=34)
 
 
-def pictures(times):
+def pictures(times: np.ndarray) -> list[np.ndarray]:
     if states is None:
         chosen = planned_states(
             real, trajectory, times, [bottle], joints=at_rest, held=("bottle", grasp["time"], "gripper_tcp")

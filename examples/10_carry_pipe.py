@@ -1,7 +1,7 @@
 """Carry a pipe structure through a cell: of hundreds of grasps the planner takes the one with the shortest motion."""
 
 import mmgrasp as mg
-from mmgrasp.pipe_cells import pipe_cell
+from mmgrasp.problems.pipe_cells import pipe_cell
 from mmgrasp.viz.carry import write_carry
 
 cell = pipe_cell(5, seed=1)

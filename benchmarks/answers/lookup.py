@@ -12,7 +12,7 @@ from typing import Any
 
 PATIENT = 3600.0  # a time limit that never decides [s]
 FACADES = ("robot", "collision", "planning", "grasping", "base", "mapping", "optim", "problems")
-PLACES = ("mmgrasp", *(f"mmgrasp.{name}" for name in (*FACADES, "pipe_cells", "problems.pipe_cells", "_core")))
+PLACES = ("mmgrasp", *(f"mmgrasp.{name}" for name in (*FACADES, "pipe_cells", "problems.pipe_cells", "problems.random_trays", "part_supply", "part_supply.drive_by", "_core")))
 KEYWORDS: dict[str, tuple[str, ...]] = {
     "neighbours": ("neighbors",),
     "tool_cone": ("orientation_constraint",),

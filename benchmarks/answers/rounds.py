@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from .lookup import PATIENT, Answer, call, find, threads
+from .lookup import PATIENT, Answer, call, find, get, threads
 from .results import rejections, shared_cells, stop, timed
 from .setups import asset, group, pose, tucked
 
@@ -38,7 +38,7 @@ def plan(name: str, trays: int, targets: int) -> Any:
 
 def supply(name: str, trays: int, targets: int) -> Answer:
     made = plan(name, trays, targets)
-    found = made.result
+    found = get(made, "plan", "result")
     picks = [
         [pick.outcome, pick.stop, pick.tray, pick.part, pick.grasp, rejections(pick.rejections)] for pick in found.picks
     ]

@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 
 import mmgrasp as mg
-from mmgrasp.motion_bench import MBM_SETS, MotionProblem, read_motion_problems
-from mmgrasp.motion_bench_run import verify_motion
+from mmgrasp.problems.motion_bench import MBM_SETS, MotionProblem, read_motion_problems
+from mmgrasp.problems.motion_bench_run import verify_motion
 
 HERE = Path(__file__).resolve().parent
 STEPS = (0.01, 0.005)

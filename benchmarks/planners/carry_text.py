@@ -8,11 +8,10 @@ import numpy as np
 from mbm_text import KINDS, numbers, sizes
 
 import mmgrasp as mg
-from mmgrasp._pipe_cell import FINGERS
-from mmgrasp.pipe_cells import PipeCell
+from mmgrasp.problems.pipe_cells import FINGERS, PipeCell
 
 
-def _robot_line(cell: PipeCell, grasp: mg.PipeGrasp, folder: Path, number: int) -> str:
+def _robot_line(cell: PipeCell, grasp: mg.grasping.PipeGrasp, folder: Path, number: int) -> str:
     """Writes the robot with the pipe in its hand."""
     robot = cell.robot.with_link("pipe", "gripper_tcp", np.linalg.inv(grasp.T_object_tool), cell.pipe.shapes())
     touching = [("pipe", finger, "user") for finger in sorted(FINGERS)]
@@ -33,7 +32,9 @@ def _scene_lines(world: mg.World) -> list[str]:
     return lines
 
 
-def write_carries(cell: PipeCell, carries: list[tuple[mg.PipeGrasp, np.ndarray, np.ndarray]], file: Path) -> None:
+def write_carries(
+    cell: PipeCell, carries: list[tuple[mg.grasping.PipeGrasp, np.ndarray, np.ndarray]], file: Path
+) -> None:
     """`carries`: a grasp, a start (6) and goals (k, 6) each."""
     lines, scene, names = [], _scene_lines(cell.world), cell.arm.names
     for number, (grasp, start, goals) in enumerate(carries):

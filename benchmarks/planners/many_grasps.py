@@ -35,7 +35,7 @@ from pathlib import Path
 from carry_text import write_carries
 
 import mmgrasp as mg
-from mmgrasp.pipe_cells import ROBOTS, PipeCell, pipe_cell
+from mmgrasp.problems.pipe_cells import ROBOTS, PipeCell, pipe_cell
 
 UNLIMITED = 10_000_000
 VERTICES, NEIGHBOURS = 5000, 12
@@ -48,11 +48,15 @@ class Enough(Exception):  # noqa: N818 - it is no error
 
 
 def ours(planner: str):
-    def run(cell: PipeCell, grasps: list[mg.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool) -> dict:
+    def run(
+        cell: PipeCell, grasps: list[mg.grasping.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool
+    ) -> dict:
         options: dict = {"planner": planner, "seed": seed, "threads": 1, "time_limit": given.seconds}
         options["ik_solutions"] = CONFIGURATIONS
         if planner == "prm_star_mg":
-            options["roadmap"] = mg.Roadmap.build(cell.arm, vertices=VERTICES, neighbours=NEIGHBOURS, seed=seed)
+            options["roadmap"] = mg.planning.Roadmap.build(
+                cell.arm, vertices=VERTICES, neighbours=NEIGHBOURS, seed=seed
+            )
             options["refinements"] = UNLIMITED
         else:
             options["max_samples"] = UNLIMITED
@@ -76,7 +80,7 @@ def ours(planner: str):
 class Ends:
     """Arm configurations of each grasp, computed when first asked for."""
 
-    def __init__(self, cell: PipeCell, grasps: list[mg.PipeGrasp]) -> None:
+    def __init__(self, cell: PipeCell, grasps: list[mg.grasping.PipeGrasp]) -> None:
         self.cell, self.grasps, self.kept = cell, grasps, {}
 
     def __getitem__(self, i: int):
@@ -89,14 +93,16 @@ class Ends:
         return (i for i in range(len(self.grasps)) if all(map(len, self[i])))
 
 
-def plan(cell: PipeCell, grasp: mg.PipeGrasp, start, goals, **options):
+def plan(cell: PipeCell, grasp: mg.grasping.PipeGrasp, start, goals, **options):
     group, world = cell.arm_holding(grasp), cell.world_holding(grasp)
     return mg.plan_motion(
         cell.robot, group, world, start=start, goal=goals, edge_step=0.02, workspace_step=0.005, **options
     )
 
 
-def first_of(cell: PipeCell, grasp: mg.PipeGrasp, begin: float, only_first: bool, *ends, **options) -> dict | None:
+def first_of(
+    cell: PipeCell, grasp: mg.grasping.PipeGrasp, begin: float, only_first: bool, *ends, **options
+) -> dict | None:
     """Time until a path is found, and its length once shortened; None without one."""
     if plan(cell, grasp, *ends, shorten=False, **options).outcome != mg.Outcome.solved:
         return None
@@ -108,7 +114,9 @@ def first_of(cell: PipeCell, grasp: mg.PipeGrasp, begin: float, only_first: bool
 
 
 def one_by_one(planner: str):
-    def run(cell: PipeCell, grasps: list[mg.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool) -> dict:
+    def run(
+        cell: PipeCell, grasps: list[mg.grasping.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool
+    ) -> dict:
         begin, ends = time.process_time(), Ends(cell, grasps)
         for i in ends.usable():
             starts, goals = ends[i]
@@ -129,7 +137,9 @@ def one_by_one(planner: str):
     return run
 
 
-def today(cell: PipeCell, grasps: list[mg.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool) -> dict:
+def today(
+    cell: PipeCell, grasps: list[mg.grasping.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool
+) -> dict:
     begin, ends = time.process_time(), Ends(cell, grasps)
     planning, apart = 0.0, 0.0  # [s] in the other program; on what it is told
     for i in ends.usable():
@@ -151,7 +161,7 @@ def today(cell: PipeCell, grasps: list[mg.PipeGrasp], seed: int, given: argparse
 
 
 def all_goals(
-    cell: PipeCell, grasps: list[mg.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool
+    cell: PipeCell, grasps: list[mg.grasping.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool
 ) -> dict:
     begin, ends, budget = time.process_time(), Ends(cell, grasps), 100
     while time.process_time() - begin < given.cap:
@@ -168,7 +178,7 @@ def all_goals(
 
 
 def informed(
-    cell: PipeCell, grasps: list[mg.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool
+    cell: PipeCell, grasps: list[mg.grasping.PipeGrasp], seed: int, given: argparse.Namespace, only_first: bool
 ) -> dict:
     begin, ends, told = time.process_time(), Ends(cell, grasps), []
     usable = list(ends.usable())

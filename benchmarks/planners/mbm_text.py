@@ -10,7 +10,7 @@ import itertools
 from pathlib import Path
 
 import mmgrasp as mg
-from mmgrasp.motion_bench import MBM_SETS, MotionProblem, read_motion_problems
+from mmgrasp.problems.motion_bench import MBM_SETS, MotionProblem, read_motion_problems
 
 KINDS = {mg.Box: "box", mg.Cylinder: "cylinder", mg.Sphere: "sphere"}
 

@@ -16,13 +16,13 @@ import time
 from pathlib import Path
 
 import mmgrasp as mg
-from mmgrasp.pipe_cells import ROBOTS, PipeCell, pipe_cell
+from mmgrasp.problems.pipe_cells import ROBOTS, PipeCell, pipe_cell
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from tables import markdown, show
 
 
-def carries(cell: PipeCell, grasp: mg.PipeGrasp, seconds: float) -> str:
+def carries(cell: PipeCell, grasp: mg.grasping.PipeGrasp, seconds: float) -> str:
     """ "out of reach", "solved" or "failed"."""
     starts, goals = cell.ends(grasp, 8)
     if len(starts) == 0 or len(goals) == 0:

@@ -39,7 +39,7 @@ def make_targets(count: int) -> np.ndarray:
     return np.array(targets)
 
 
-def postures(database: mg.ReachDatabase, arm: mg.JointGroup) -> list[list[float]]:
+def postures(database: mg.ReachDatabase, arm: mg.robot.JointGroup) -> list[list[float]]:
     """Working postures to start from: the hand forward, low, high and tilted down."""
     hands = [([0.85, 0, 0.9], 0.0), ([0.75, 0, 0.65], 0.5), ([0.75, 0, 1.15], 0.0), ([0.8, 0, 0.8], 1.0)]
     return [database.solve(arm, mg.pose(xyz, rpy=[0, pitch, 0]))[0].tolist() for xyz, pitch in hands]

@@ -30,7 +30,7 @@ def main() -> None:
 
         peer = Peer(group)
     for seed in given.seeds:
-        ours: list[tuple[float, mg.DriveByResult]] = []
+        ours: list[tuple[float, mg.planning.DriveByResult]] = []
         alone: list[tuple[float, tuple[bool, float]]] = []
         theirs: list[tuple[float, tuple[bool, float]]] = []
         for pose in grasps(seed, given.count):

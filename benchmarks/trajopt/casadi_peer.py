@@ -16,7 +16,7 @@ NODES, WEIGHTS = (NODES + 1) / 2, WEIGHTS / 2
 
 
 class Peer:
-    def __init__(self, group: mg.JointGroup):
+    def __init__(self, group: mg.robot.JointGroup):
         self.group = group
         self.n = len(group.names)
         self.axes, self.points = self._screws()

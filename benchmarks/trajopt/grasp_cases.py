@@ -96,7 +96,7 @@ def arguments(text: str | None, **integers: int) -> argparse.ArgumentParser:
     return parser
 
 
-def plan(tasks: list[mg.DriveByTask], world: mg.World | None = None, **options: Any) -> mg.DriveByResult:
+def plan(tasks: list[mg.DriveByTask], world: mg.World | None = None, **options: Any) -> mg.planning.DriveByResult:
     """The motion of the paper's example, past other tasks."""
     robot, group = whole_body()
     ends = {"start": START, "goal": GOAL} | {k: options.pop(k) for k in ("start", "goal") if k in options}

@@ -71,7 +71,7 @@ bool is_xacro(const std::string& path) {
 /// A robot of which at least one file is xacro: that one is expanded in Python, the other read as it is.
 Robot load_expanded(const std::string& urdf_path, const std::string& srdf_path, const py::object& xacro_args,
                     const RobotOptions& options) {
-  const py::module_ xacro = py::module_::import("mmgrasp._xacro");
+  const py::module_ xacro = py::module_::import("mmgrasp.scenario.xacro_file");
   const auto text = [&](const std::string& path) {
     return py::cast<std::string>(xacro.attr("read_or_expand")(path, options.package_dirs, xacro_args));
   };

@@ -180,7 +180,7 @@ void bind_plan_result(py::module_& m) {
                              "needed_opening"_a = o.needed_opening);
            })
       .def("__repr__", [](const Obstruction& o) { return "Obstruction(" + o.stage + ": " + o.message + ")"; });
-  py::class_<PartSupplyPlan>(m, "PartSupplyResult", "The planner's answer; PartSupplyPlan joins it with its scenario.")
+  py::class_<PartSupplyPlan>(m, "PartSupplyPlan", "The planner's answer; a ScenarioPlan joins it with its scenario.")
       .def_readonly("outcome", &PartSupplyPlan::outcome)
       .def_readonly("grid", &PartSupplyPlan::grid)
       .def_readonly("regions", &PartSupplyPlan::regions)
@@ -200,11 +200,11 @@ void bind_plan_result(py::module_& m) {
                                return out;
                              })
       .def("__repr__", [](const PartSupplyPlan& p) {
-        return std::string("PartSupplyResult(") + to_string(p.outcome) + ", " + std::to_string(p.stops.size()) +
+        return std::string("PartSupplyPlan(") + to_string(p.outcome) + ", " + std::to_string(p.stops.size()) +
                " stops, " + std::to_string(p.picks.size()) + " picks)";
       });
   m.def(
-      "solve_part_supply",
+      "plan_part_supply",
       [](const PartSupplyProblem& problem, const ReachDatabase& database, const Progress& progress) {
         return LongCall(progress).run(
             [&](const Monitor& monitor) { return plan_part_supply(problem, database, monitor); });

@@ -10,6 +10,7 @@ from pathlib import Path
 from ._core import IoError
 
 ASSETS = Path(__file__).parent / "assets"
+SCHEMAS = Path(__file__).parent / "schemas"
 
 
 def shipped(path: str | os.PathLike[str]) -> Path:

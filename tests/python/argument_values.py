@@ -23,7 +23,7 @@ ARM = ROBOT.group(base_link="o", tip="tip").with_acceleration_limits([1, 1, 1])
 Q = np.array([0.25, 0.5, 0.5])
 POSE = ARM.fk(Q)
 WHOLE_BODY = ROBOT.group(base_link="o", tip="tip", with_base=True)
-GRID = mg.BaseGrid([0.0, 0.0], 0.1, 4, 3)
+GRID = mg.base.BaseGrid([0.0, 0.0], 0.1, 4, 3)
 
 
 def world() -> mg.World:
@@ -38,16 +38,16 @@ def held() -> mg.World:
     return held
 
 
-def gripper() -> mg.Gripper:
-    return mg.Gripper(
+def gripper() -> mg.grasping.Gripper:
+    return mg.grasping.Gripper(
         "tip", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.05, finger_width=0.02
     )
 
 
 BOX = mg.LinkShape(mg.Box([0.05, 0.05, 0.05]))
-PART = mg.Part("part", [BOX], POSE, [mg.Grasp(np.eye(4), 0.05)])
-TRAY = mg.Tray("tray", np.eye(4), [0.3, 0.3, 0.1], [PART])
-CARRY = mg.CarryPlace(np.eye(4), [0.3, 0.3])
+PART = mg.base.Part("part", [BOX], POSE, [mg.Grasp(np.eye(4), 0.05)])
+TRAY = mg.base.Tray("tray", np.eye(4), [0.3, 0.3, 0.1], [PART])
+CARRY = mg.base.CarryPlace(np.eye(4), [0.3, 0.3])
 X_Y_THETA = np.array([0.5, 0.25, 0.75])
 
 # Good arrays by the argument's name, and by class or function where the name means something else there.
@@ -123,11 +123,11 @@ VALUES: dict[str, Any] = {
 
 
 @functools.cache
-def capability_map() -> mg.CapabilityMap:
-    return mg.CapabilityMap.build(ARM, upper=(1, 1, 2), voxel=1, poses=2, threads=1)
+def capability_map() -> mg.base.CapabilityMap:
+    return mg.base.CapabilityMap.build(ARM, upper=(1, 1, 2), voxel=1, poses=2, threads=1)
 
 
-OBJECTS = {
+OBJECTS: dict[str, Any] = {
     "Robot": lambda: ROBOT,
     "JointGroup": lambda: ARM,
     "World": world,
@@ -135,13 +135,13 @@ OBJECTS = {
     "CollisionChecker": lambda: mg.CollisionChecker(ROBOT, world(), ARM),
     "ReachDatabase": lambda: mg.ReachDatabase.build(ARM, samples=1000, threads=1),
     "CapabilityMap": capability_map,
-    "PinholeCamera": mg.PinholeCamera,
-    "BaseTracker": lambda: mg.BaseTracker(ROBOT),
-    "IkObjective": lambda: mg.joint_limit_objective(ARM),
-    "IkSeedDatabase": lambda: mg.IkSeedDatabase(WHOLE_BODY),
-    "Roadmap": lambda: mg.Roadmap.build(ARM, vertices=10),
+    "PinholeCamera": mg.mapping.PinholeCamera,
+    "BaseTracker": lambda: mg.base.BaseTracker(ROBOT),
+    "IkObjective": lambda: mg.robot.joint_limit_objective(ARM),
+    "IkSeedDatabase": lambda: mg.base.IkSeedDatabase(WHOLE_BODY),
+    "Roadmap": lambda: mg.planning.Roadmap.build(ARM, vertices=10),
     "JointTrajectory": lambda: mg.time_parameterize([Q, Q / 2], np.ones(3), np.ones(3), names=["i", "j", "k"]),
-    "PartSupplyProblem": lambda: mg.PartSupplyProblem(
+    "PartSupplyProblem": lambda: mg.base.PartSupplyProblem(
         ROBOT, ARM, gripper(), world(), [TRAY], Q, X_Y_THETA, X_Y_THETA, CARRY
     ),
 }
@@ -173,12 +173,12 @@ OTHERS: dict[str, Any] = {
     "gripper": gripper,
     "grid": lambda: GRID,
     "carry": lambda: CARRY,
-    "camera": mg.PinholeCamera,
+    "camera": mg.mapping.PinholeCamera,
     "render_depth.scene": lambda: [BOX],
     "random_placement.part": lambda: [BOX],
-    "make_height_map.image": lambda: mg.render_depth([BOX], mg.PinholeCamera(width=8, height=6), POSE),
+    "make_height_map.image": lambda: mg.mapping.render_depth([BOX], mg.mapping.PinholeCamera(width=8, height=6), POSE),
     "sections": lambda: [(0, 1)],
-    "least_stops.regions": lambda: [mg.BaseRegion("tray", np.ones((1, 3, 4), np.uint8), GRID)],
+    "least_stops.regions": lambda: [mg.base.BaseRegion("tray", np.ones((1, 3, 4), np.uint8), GRID)],
     "_first_drive_by_guess.tasks": lambda: [mg.DriveByTask(POSE)],
     "diameters": lambda: 0.02,
     "shape": lambda: mg.Box([0.1, 0.1, 0.1]),
@@ -212,7 +212,7 @@ OTHERS: dict[str, Any] = {
     "World.attach.name": lambda: "box",
     "World.detach.name": lambda: "box",
     "ManipulationProblem.object": lambda: BOX,
-    "ManipulationProblem.grasps": lambda: [mg.CandidateGrasp(np.eye(4))],
+    "ManipulationProblem.grasps": lambda: [mg.grasping.CandidateGrasp(np.eye(4))],
     "verify.check_path.joints": lambda: ["i", "j", "k"],
     "verify.check_path.bodies": lambda: [],
     "verify.CheckedStop.trays": lambda: ["tray"],

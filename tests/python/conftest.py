@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import copy
 import os
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
@@ -17,7 +19,7 @@ ASSETS = Path(mg.__file__).parent / "assets"
 
 
 @pytest.fixture(scope="session", autouse=True)
-def own_cache(tmp_path_factory):
+def own_cache(tmp_path_factory: pytest.TempPathFactory) -> None:
     """Tests never read or write the user's cache, but share one of their own."""
     os.environ["XDG_CACHE_HOME"] = str(tmp_path_factory.mktemp("cache"))
 
@@ -30,13 +32,14 @@ def data() -> Path:
 
 
 @pytest.fixture(scope="session")
-def storeroom() -> dict:
+def storeroom() -> dict[str, Any]:
     """The shipped scenario as plain values."""
-    return yaml.safe_load((ASSETS / "scenarios" / "storeroom.yaml").read_text())
+    values: dict[str, Any] = yaml.safe_load((ASSETS / "scenarios" / "storeroom.yaml").read_text())
+    return values
 
 
 @pytest.fixture(scope="session")
-def small(storeroom) -> dict:
+def small(storeroom: dict[str, Any]) -> dict[str, Any]:
     """One tray of the storeroom with two parts to pick: everything a plan has, in a few seconds."""
     scenario = copy.deepcopy(storeroom)
     tray = copy.deepcopy(scenario["trays"][0])
@@ -48,10 +51,10 @@ def small(storeroom) -> dict:
 
 
 @pytest.fixture(scope="session")
-def write(tmp_path_factory):
+def write(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
     """Writes a scenario given as values and returns its path."""
 
-    def write_scenario(values: dict | str, name: str = "scenario.yaml") -> Path:
+    def write_scenario(values: dict[str, Any] | str, name: str = "scenario.yaml") -> Path:
         path = tmp_path_factory.mktemp("scenario") / name
         path.write_text(values if isinstance(values, str) else yaml.safe_dump(values, sort_keys=False))
         return path
@@ -60,17 +63,17 @@ def write(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def small_path(small, write) -> Path:
+def small_path(small: dict[str, Any], write: Callable[..., Path]) -> Path:
     return write(small)
 
 
 @pytest.fixture(scope="session")
-def small_plan(small_path) -> mg.PartSupplyPlan:
+def small_plan(small_path: Path) -> mg.part_supply.ScenarioPlan:
     plan = mg.plan_part_supply(small_path)
     assert plan.outcome == mg.Outcome.solved, plan
     return plan
 
 
 @pytest.fixture(scope="session")
-def small_plan_dict(small_plan) -> dict:
+def small_plan_dict(small_plan: mg.part_supply.ScenarioPlan) -> dict[str, Any]:
     return small_plan.to_dict()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from typing import Any
 
 import numpy as np
 
@@ -21,21 +22,21 @@ def robot() -> mg.Robot:
     return mg.Robot.load(path, path.with_suffix(".srdf"), base="diff_drive", base_limits={"wheel_separation": 0.37476})
 
 
-def gripper() -> mg.Gripper:
-    return mg.Gripper(
+def gripper() -> mg.grasping.Gripper:
+    return mg.grasping.Gripper(
         "gripper_tcp",
         approach=[1, 0, 0],
         closing=[0, 1, 0],
         max_opening=0.10,
         finger_depth=0.04,
         finger_width=0.022,
-        joints=[mg.FingerJoint(f"{f}_joint", 0.0, 0.05) for f in FINGERS],
+        joints=[mg.grasping.FingerJoint(f"{f}_joint", 0.0, 0.05) for f in FINGERS],
         finger_links=[f"{f}_link" for f in FINGERS],
     )
 
 
 @functools.cache
-def arm() -> mg.JointGroup:
+def arm() -> mg.robot.JointGroup:
     return robot().group("arm_with_torso", tip="gripper_tcp").with_reference(gripper().joint_values(0.1))
 
 
@@ -45,12 +46,12 @@ def table() -> mg.World:
     return world
 
 
-def box(x: float = 0.8, y: float = 0.0, **keywords) -> sim.SimPart:
+def box(x: float = 0.8, y: float = 0.0, **keywords: Any) -> sim.SimPart:
     return sim.SimPart("box", [mg.LinkShape(mg.Box([0.05, 0.05, 0.12]))], mg.pose([x, y, TABLE + 0.0601]), **keywords)
 
 
 @functools.cache
-def approach(x: float = 0.8, length: float = 0.15) -> mg.JointTrajectory:
+def approach(x: float = 0.8, length: float = 0.15) -> mg.planning.JointTrajectory:
     """The tool goes straight ahead and stops where the box is."""
     first = arm().ik(mg.pose([x - length, 0, TOOL]), rng_seed=3)
     assert first.outcome == mg.Outcome.solved

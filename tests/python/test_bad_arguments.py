@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import itertools
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -104,7 +105,7 @@ def value_of(argument: Argument) -> np.ndarray:
     if value is None and argument.name.startswith("T_"):
         value = POSE
     assert value is not None, f"{argument.function}: no good value known for {argument.name}, add one to VALUES"
-    return value
+    return np.asarray(value)
 
 
 def call(argument: Argument, value: Any) -> Any:
@@ -160,14 +161,14 @@ def name_of(argument: Argument) -> str:
     return f"{argument.function}({argument.name})"
 
 
-def test_the_stubs_were_read():
+def test_the_stubs_were_read() -> None:
     names = {name_of(a) for a in ARGUMENTS}
     assert len(names) >= 60
     assert {"JointGroup.fk(q)", "World.add_box(pose)", "Tray(T_world_tray)", "pose(rpy)"} <= names
 
 
 @pytest.mark.parametrize("argument", ARGUMENTS, ids=name_of)
-def test_bad_arrays_are_refused_by_name(argument):
+def test_bad_arrays_are_refused_by_name(argument: Argument) -> None:
     if argument.function not in ("plan_pick", "plan_platform_locations"):  # which would plan
         call(argument, value_of(argument))
     accepted = []
@@ -199,7 +200,7 @@ PURE = [
 
 
 @pytest.mark.parametrize("argument", [a for a in ARGUMENTS if a.function in PURE], ids=name_of)
-def test_layout_and_precision_do_not_matter(argument):
+def test_layout_and_precision_do_not_matter(argument: Argument) -> None:
     good = value_of(argument)
     expected = call(argument, good)
     spread = np.zeros(tuple(2 * n for n in good.shape))
@@ -217,26 +218,26 @@ def test_layout_and_precision_do_not_matter(argument):
             assert np.array_equal(a, b), what
 
 
-def test_whole_numbers_are_numbers():
+def test_whole_numbers_are_numbers() -> None:
     assert np.array_equal(ARM.fk([0, 1, 0]), ARM.fk([0.0, 1.0, 0.0]))
     assert np.array_equal(ARM.fk(np.array([0, 1, 0], np.int8)), ARM.fk([0.0, 1.0, 0.0]))
     assert np.array_equal(ARM.fk(np.array([0, 0.5, 0], np.float16)), ARM.fk([0.0, 0.5, 0.0]))
 
 
 @pytest.mark.parametrize("number", [float("nan"), float("inf"), "x", None, 1j])
-def test_numbers_that_are_none(number):
+def test_numbers_that_are_none(number: Any) -> None:
     world = mg.World()
-    calls = [
+    calls: list[Callable[[], Any]] = [
         lambda: world.add_sphere("a", number),
         lambda: world.add_cylinder("a", 0.1, number),
         lambda: world.add_points("a", [[1.0, 2, 3]], number),
         lambda: mg.Sphere(number),
-        lambda: mg.Capsule(number, 1.0),
-        lambda: mg.Plane([0, 0, 1], number),
-        lambda: mg.Voxels([[1.0, 2, 3]], number),
-        lambda: mg.BaseGrid([0, 0], number, 4, 3),
-        lambda: mg.BaseGrid([0, 0], 0.1, 4, 3, [number]),
-        lambda: mg.CarryPlace(np.eye(4), [0.3, 0.3], number),
+        lambda: mg.collision.Capsule(number, 1.0),
+        lambda: mg.collision.Plane([0, 0, 1], number),
+        lambda: mg.collision.Voxels([[1.0, 2, 3]], number),
+        lambda: mg.base.BaseGrid([0, 0], number, 4, 3),
+        lambda: mg.base.BaseGrid([0, 0], 0.1, 4, 3, [number]),
+        lambda: mg.base.CarryPlace(np.eye(4), [0.3, 0.3], number),
         lambda: mg.Grasp(np.eye(4), number),
         lambda: mg.CollisionChecker(ROBOT, world, ARM, padding=number),
         lambda: OBJECTS["CollisionChecker"]().edge_is_free(Q, Q, number),
@@ -244,32 +245,33 @@ def test_numbers_that_are_none(number):
         lambda: ROBOT.link_poses({"i": number}),
         lambda: ROBOT.values({"i": number}),
         lambda: ARM.within_limits(Q, number),
-        lambda: mg.solve_set_cover(1, [[0]], [number]),
+        lambda: mg.optim.solve_set_cover(1, [[0]], [number]),
     ]
     for k, bad in enumerate(calls):
         with pytest.raises((mg.Error, ValueError, TypeError)):
             print(k, bad())
 
 
-def test_deep_and_endless_sequences_do_not_crash():
+def test_deep_and_endless_sequences_do_not_crash() -> None:
     endless: list[Any] = []
     endless.append(endless)
     deep: Any = 1.0
     for _ in range(5000):
         deep = [deep]
+    value: Any
     for value in (endless, deep, itertools.count(), (x for x in Q), {1.0, 2.0}, b"abc", memoryview(b"abcd")):
         with pytest.raises((mg.Error, ValueError, TypeError)):
             ARM.fk(value)
 
 
-def test_an_array_that_lies_does_not_crash():
+def test_an_array_that_lies_does_not_crash() -> None:
     """__array__ that fails, or returns something else, ends in an error and leaves no other one behind."""
 
     class Liar:
-        def __init__(self, answer):
+        def __init__(self, answer: Any) -> None:
             self.answer = answer
 
-        def __array__(self, *args, **kwargs):
+        def __array__(self, *args: Any, **kwargs: Any) -> Any:
             if isinstance(self.answer, Exception):
                 raise self.answer
             return self.answer
@@ -280,11 +282,11 @@ def test_an_array_that_lies_does_not_crash():
     assert np.array_equal(ARM.fk(Liar(Q)), ARM.fk(Q))
 
 
-def test_indices_out_of_range_are_refused():
+def test_indices_out_of_range_are_refused() -> None:
     problem, database = OBJECTS["PartSupplyProblem"](), OBJECTS["ReachDatabase"]()
     for tray, part, remaining in [(1, 0, [(0, 0)]), (-1, 0, [(0, 0)]), (0, 1, [(0, 0)]), (0, 0, [(0, 7)])]:
         with pytest.raises(mg.InvalidInput, match=r"(tray|part) = .*must be in \[0, 1\)"):
-            mg.plan_pick(problem, database, X_Y_THETA, tray, part, remaining)
+            mg.base.plan_pick(problem, database, X_Y_THETA, tray, part, remaining)
     for index in [(1, 0, 0), (0, 4, 0), (0, 0, -1)]:
         with pytest.raises(mg.InvalidInput, match="must be in"):
             GRID.centre(*index)

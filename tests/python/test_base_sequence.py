@@ -10,9 +10,9 @@ import mmgrasp as mg
 RESOLUTION = 0.05
 
 
-def squares(count: int, width: int = 12, step: int = 8) -> tuple[mg.BaseGrid, list[np.ndarray]]:
+def squares(count: int, width: int = 12, step: int = 8) -> tuple[mg.base.BaseGrid, list[np.ndarray]]:
     """Square regions in a row; neighbours share `width - step` columns."""
-    grid = mg.BaseGrid([0.0, 0.0], RESOLUTION, step * count + width, width + 4)
+    grid = mg.base.BaseGrid([0.0, 0.0], RESOLUTION, step * count + width, width + 4)
     masks = []
     for i in range(count):
         mask = np.zeros((1, grid.ny, grid.nx), np.uint8)
@@ -21,25 +21,25 @@ def squares(count: int, width: int = 12, step: int = 8) -> tuple[mg.BaseGrid, li
     return grid, masks
 
 
-def test_least_stops_of_a_row():
+def test_least_stops_of_a_row() -> None:
     grid, masks = squares(7)
-    found = mg.least_stops(grid, masks, 0.1, start=[0, 0], goal=[3, 0])
+    found = mg.base.least_stops(grid, masks, 0.1, start=[0, 0], goal=[3, 0])
     assert found.outcome == mg.Outcome.solved
     assert len(found.stops) == found.lower_bound == 4  # two to a stop: neighbours share 0.2 m
     assert sorted(tray for stop in found.stops for tray in stop.trays) == list(range(7))
     lone = [stop for stop in found.stops if len(stop.trays) == 1]
     assert [stop.radius for stop in lone] == pytest.approx([0.3], abs=1e-6)
     assert sorted(len(c.trays) for c in found.candidates.robust) == [2] * 6
-    assert sorted(map(tuple, (c.trays for c in mg.maximal_intersections(grid, masks, 0.1).robust))) == [
+    assert sorted(map(tuple, (c.trays for c in mg.base.maximal_intersections(grid, masks, 0.1).robust))) == [
         (i, i + 1) for i in range(6)
     ]
     with pytest.raises(mg.Error, match="both or neither"):
-        mg.least_stops(grid, masks, 0.1, start=[0, 0])
+        mg.base.least_stops(grid, masks, 0.1, start=[0, 0])
     with pytest.raises(mg.Error, match="cells"):
-        mg.least_stops(grid, [masks[0][:, 1:]], 0.1)
+        mg.base.least_stops(grid, [masks[0][:, 1:]], 0.1)
 
 
-def test_share_stops_among_robots():
+def test_share_stops_among_robots() -> None:
     rng = np.random.default_rng(3)
     points = rng.uniform(0, 10, (4 + 4, 2))
     drive = np.linalg.norm(points[:, None] - points[None], axis=2)
@@ -49,31 +49,31 @@ def test_share_stops_among_robots():
         if not order:
             return 0.0
         way = [4 + robot, *order, 6 + robot]
-        return sum(drive[a, b] for a, b in itertools.pairwise(way)) + sum(work[i] for i in order)
+        return float(sum(drive[a, b] for a, b in itertools.pairwise(way)) + sum(work[i] for i in order))
 
     best = min(
         max(duration(0, order[:k]), duration(1, order[k:]))
         for order in itertools.permutations(range(4))
         for k in range(5)
     )
-    shared = mg.share_stops(drive, work, 2)
+    shared = mg.optim.share_stops(drive, work, 2)
     assert shared.outcome == mg.Outcome.solved
     assert shared.makespan == pytest.approx(best)
     assert [duration(r, tuple(o)) for r, o in enumerate(shared.orders)] == pytest.approx(shared.durations)
     assert shared.to_dict()["lower_bound"] == pytest.approx(best)
 
 
-def test_assignment_and_bound():
+def test_assignment_and_bound() -> None:
     costs = np.array([[4.0, 1, 3], [2, 0, 5], [3, 2, 2]])
     best = min(sum(costs[i, p[i]] for i in range(3)) for p in itertools.permutations(range(3)))
-    assert sum(costs[i, c] for i, c in enumerate(mg.cheapest_assignment(costs))) == best
+    assert sum(costs[i, c] for i, c in enumerate(mg.optim.cheapest_assignment(costs))) == best
     points = np.random.default_rng(1).uniform(0, 1, (42, 2))
-    tour = mg.shortest_visiting_tour(np.linalg.norm(points[:, None] - points[None], axis=2))
+    tour = mg.optim.shortest_visiting_tour(np.linalg.norm(points[:, None] - points[None], axis=2))
     assert 0.95 * tour.length < tour.lower_bound <= tour.length
 
 
-def parts_in_front(trays: int, parts: int) -> tuple[mg.BaseGrid, list[list[np.ndarray]], list[np.ndarray]]:
-    grid = mg.BaseGrid([-1.0, -1.5], RESOLUTION, 40 + 10 * trays, 30)
+def parts_in_front(trays: int, parts: int) -> tuple[mg.base.BaseGrid, list[list[np.ndarray]], list[np.ndarray]]:
+    grid = mg.base.BaseGrid([-1.0, -1.5], RESOLUTION, 40 + 10 * trays, 30)
     x = -1.0 + RESOLUTION * (np.arange(grid.nx) + 0.5)
     y = -1.5 + RESOLUTION * (np.arange(grid.ny) + 0.5)
     cells, places = [], []
@@ -84,18 +84,18 @@ def parts_in_front(trays: int, parts: int) -> tuple[mg.BaseGrid, list[list[np.nd
     return grid, cells, places
 
 
-def test_policies():
+def test_policies() -> None:
     grid, cells, places = parts_in_front(4, 3)
-    order = mg.paired_order(places)
+    order = mg.base.paired_order(places)
     assert order == [[0, 1, 2]] * 4
-    results = {name: mg.run_policy(grid, cells, order, name) for name in ("all", "remaining", "targets")}
+    results = {name: mg.base.run_policy(grid, cells, order, name) for name in ("all", "remaining", "targets")}
     for result in results.values():
         assert result.solved
         assert result.reliable
         assert len(result.rounds) == 3
         assert result.mean_radius == pytest.approx(np.mean([r.mean_radius for r in result.rounds]))
     assert results["targets"].mean_stops <= results["all"].mean_stops
-    best = mg.optimised_order(grid, cells, [[0, 1], [2, 3]], order)
+    best = mg.base.optimised_order(grid, cells, [[0, 1], [2, 3]], order)
     assert best.proven
     assert [sorted(tray) for tray in best.order] == [[0, 1, 2]] * 4
     asked = []
@@ -104,9 +104,9 @@ def test_policies():
         asked.append(round_)
         return [np.roll(tray[0], 14, axis=2) for tray in cells]
 
-    wrong = mg.run_policy(grid, cells, order, planned=planned)
+    wrong = mg.base.run_policy(grid, cells, order, planned=planned)
     assert asked == [0, 1, 2]
     assert not wrong.reliable
     assert not wrong.feasible
     with pytest.raises(mg.Error, match="policy"):
-        mg.run_policy(grid, cells, order, "updateR")
+        mg.base.run_policy(grid, cells, order, "updateR")

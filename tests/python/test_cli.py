@@ -7,6 +7,8 @@ import json
 import os
 import subprocess
 import sys
+from pathlib import Path
+from typing import Any
 
 import jsonschema
 import numpy as np
@@ -15,19 +17,19 @@ import pytest
 import mmgrasp as mg
 from conftest import ASSETS
 from mmgrasp.cli import main
-from mmgrasp.plan_file import plan_schema, read_plan
+from mmgrasp.part_supply.plan_file import plan_schema, read_plan
 
 FETCH = ASSETS / "robots" / "fetchlike"
 
 
 @pytest.fixture(scope="module")
-def out(small_path, tmp_path_factory):
+def out(small_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("out")
     assert main(["plan", str(small_path), "-o", str(folder)]) == 0
     return folder
 
 
-def test_plan_writes_everything(out):
+def test_plan_writes_everything(out: Path) -> None:
     assert (out / "report.html").stat().st_size > 10_000
     assert sorted(out.rglob("*.png"))
     plan = read_plan(out / "plan.json")
@@ -38,7 +40,7 @@ def test_plan_writes_everything(out):
     assert not [p for p in out.rglob(".*") if p.is_file()], "a temporary file was left"
 
 
-def test_csv_holds_the_plans_numbers(out):
+def test_csv_holds_the_plans_numbers(out: Path) -> None:
     plan = read_plan(out / "plan.json")
     first = sorted((out / "trajectories").glob("pick_00_*_0_reach.csv"))[0]
     rows = list(csv.reader(first.read_text().splitlines()))
@@ -50,14 +52,14 @@ def test_csv_holds_the_plans_numbers(out):
     np.testing.assert_array_equal(values[:, 7 : 7 + len(plan["scenario"]["home"])], motion["positions"])
 
 
-def test_verify_accepts_the_plan(out, small_path, capfd):
+def test_verify_accepts_the_plan(out: Path, small_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["verify", str(out / "plan.json"), "--scenario", str(small_path)]) == 0
     assert "the plan holds" in capfd.readouterr().out
     assert main(["verify", str(out / "plan.json"), "--json", "--samples", "50"]) == 0
     assert json.loads(capfd.readouterr().out)["ok"] is True
 
 
-def test_plan_in_passing(small_path, tmp_path, capfd):
+def test_plan_in_passing(small_path: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     """The command's table says what is saved, and verify looks at the motion in passing too."""
     assert main(["plan", str(small_path), "-o", str(tmp_path), "--drive-by", "--no-pictures"]) == 0
     printed = capfd.readouterr()
@@ -86,7 +88,9 @@ def test_plan_in_passing(small_path, tmp_path, capfd):
         ('{"format": "mmgrasp-plan", "version": 1, "outcome": "solved"}', "scenario"),
     ],
 )
-def test_verify_refuses_what_is_no_plan(tmp_path, capfd, content, piece):
+def test_verify_refuses_what_is_no_plan(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], content: str, piece: str
+) -> None:
     (tmp_path / "plan.json").write_text(content)
     assert main(["verify", str(tmp_path / "plan.json")]) == 2
     error = capfd.readouterr().err
@@ -94,7 +98,7 @@ def test_verify_refuses_what_is_no_plan(tmp_path, capfd, content, piece):
     assert "plan.json" in error
 
 
-def test_check_describes_the_robot(capfd):
+def test_check_describes_the_robot(capfd: pytest.CaptureFixture[str]) -> None:
     assert (
         main(["check", str(FETCH / "fetchlike.urdf"), "--srdf", str(FETCH / "fetchlike.srdf"), "--base", "diff_drive"])
         == 0
@@ -106,7 +110,7 @@ def test_check_describes_the_robot(capfd):
     assert json.loads(capfd.readouterr().out)["ok"] is True
 
 
-def test_check_of_a_robot_with_missing_mesh(tmp_path, capfd):
+def test_check_of_a_robot_with_missing_mesh(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     urdf = """<robot name="r"><link name="a"><collision><geometry><mesh filename="package://p/none.stl"/></geometry></collision>
     </link><link name="b"/><joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
     <limit lower="-1" upper="1" velocity="1" effort="1"/></joint></robot>"""
@@ -137,9 +141,9 @@ def test_check_of_a_robot_with_missing_mesh(tmp_path, capfd):
         (["reproduce", "all", "none"], 2, "name = 'none'"),
     ],
 )
-def test_exit_codes(arguments, code, piece, tmp_path):
+def test_exit_codes(arguments: list[Any], code: int, piece: str, tmp_path: Path) -> None:
     done = subprocess.run(
-        [sys.executable, "-m", "mmgrasp.cli", *arguments],
+        [sys.executable, "-m", "mmgrasp", *arguments],
         capture_output=True,
         text=True,
         cwd=tmp_path,
@@ -151,18 +155,20 @@ def test_exit_codes(arguments, code, piece, tmp_path):
     assert "Traceback" not in done.stderr
 
 
-def test_unknown_robot_lists_the_known(small_path, tmp_path, capfd):
+def test_unknown_robot_lists_the_known(small_path: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["plan", str(small_path), "-o", str(tmp_path), "--robot", "tiagoo"]) == 2
     assert "tiago" in capfd.readouterr().err
 
 
-def test_output_folder_that_cannot_be(small_plan, tmp_path):
+def test_output_folder_that_cannot_be(small_plan: mg.part_supply.ScenarioPlan, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(mg.IoError, match="file"):
         small_plan.save(tmp_path / "file" / "plan.json")
 
 
-def test_output_folders_that_cannot_be_are_told_before_anything_runs(small_path, tmp_path, capfd):
+def test_output_folders_that_cannot_be_are_told_before_anything_runs(
+    small_path: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "file").write_text("")
     for command in (["plan", str(small_path)], ["reproduce", "p2-figure-4.5"]):
         for out in (tmp_path / "file", tmp_path / "file" / "below"):
@@ -173,6 +179,6 @@ def test_output_folders_that_cannot_be_are_told_before_anything_runs(small_path,
             assert not told.out
 
 
-def test_view_draws_a_picture(out, tmp_path):
+def test_view_draws_a_picture(out: Path, tmp_path: Path) -> None:
     assert main(["view", str(out / "plan.json"), "--png", str(tmp_path / "plan.png")]) == 0
     assert (tmp_path / "plan.png").read_bytes().startswith(b"\x89PNG")

@@ -10,6 +10,9 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,34 +30,34 @@ ROW = Row(trays=6, objects=(2, 2), spacing=0.4, threads=1)
 SAMPLES = {"samples": 200_000, "seed": 1}
 
 
-def state(region: mg.BaseRegion) -> tuple:
+def state(region: mg.base.BaseRegion) -> tuple[Any, ...]:
     """Everything that a region holds."""
     return region.__getstate__()
 
 
-def alike(function_seed: int, length: int, pause: float) -> dict:
+def alike(function_seed: int, length: int, pause: float) -> dict[str, Any]:
     time.sleep(pause)
     return {"noise": np.random.default_rng(function_seed).normal(size=length), "seed": function_seed}
 
 
 @pytest.fixture(scope="module")
-def expected():
+def expected() -> list[Any]:
     problem, reach = ROW.problem(), database(ROW, SAMPLES["samples"])
-    return [state(r) for r in mg.compute_base_regions(problem, reach, mg.make_base_grid(problem, reach))]
+    return [state(r) for r in mg.base.compute_base_regions(problem, reach, mg.base.make_base_grid(problem, reach))]
 
 
 @pytest.fixture
-def processes(tmp_path):
+def processes(tmp_path: Path) -> Iterator[str | None]:
     """A scheduler and three workers, each a process of its own, without a nanny that would start one again."""
     found = tmp_path / "scheduler.json"
     own = {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
 
-    def start(*arguments: str) -> subprocess.Popen:
+    def start(*arguments: str) -> subprocess.Popen[bytes]:
         with (tmp_path / f"{len(running)}.log").open("w") as out:
             command = [sys.executable, "-m", "dask", *arguments, "--scheduler-file", str(found)]
             return subprocess.Popen(command, stdout=out, stderr=out, env=os.environ | own)
 
-    running: list[subprocess.Popen] = []
+    running: list[subprocess.Popen[bytes]] = []
     running.append(start("scheduler", "--port", "0", "--no-dashboard"))
     workers = ["--nthreads", "1", "--no-nanny", "--no-dashboard", "--local-directory", str(tmp_path)]
     running += [start("worker", *workers, "--name", f"w{i}") for i in range(3)]
@@ -68,7 +71,9 @@ def processes(tmp_path):
         process.wait()
 
 
-def test_a_killed_worker_costs_only_its_shards(processes, expected, tmp_path, caplog):
+def test_a_killed_worker_costs_only_its_shards(
+    processes: str, expected: list[Any], tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
     killed: list[tuple[str, float]] = []
     with cluster.connect(scheduler=processes, folder=tmp_path / "shards") as engine:
         engine.client.wait_for_workers(3, timeout=60)
@@ -106,11 +111,11 @@ def test_a_killed_worker_costs_only_its_shards(processes, expected, tmp_path, ca
     assert len({e.shard for e in events}) == ROW.trays
 
 
-def test_only_missing_shards_are_computed(expected, tmp_path):
+def test_only_missing_shards_are_computed(expected: list[Any], tmp_path: Path) -> None:
     """Local processes this time. A finished shard is read, one that is gone or damaged is computed again."""
     folder = tmp_path / "shards"
 
-    def run(engine) -> list[str]:
+    def run(engine: Any) -> list[str]:
         before = len(engine.events)
         _, regions = cluster.compute_base_regions(ROW, engine=engine, database=SAMPLES)
         assert [state(r) for r in regions] == expected
@@ -129,16 +134,16 @@ def test_only_missing_shards_are_computed(expected, tmp_path):
         # Something else went in: nothing stored is taken for it.
         other = ROW.with_(shift=0.03)
         problem, reach = other.problem(), database(other, SAMPLES["samples"])
-        alone = mg.compute_base_regions(problem, reach, mg.make_base_grid(problem, reach))
+        alone = mg.base.compute_base_regions(problem, reach, mg.base.make_base_grid(problem, reach))
         _, regions = cluster.compute_base_regions(other, engine=engine, database=SAMPLES)
         assert [state(r) for r in regions] == [state(r) for r in alone]
-        items = [{"function_seed": s, "length": 100, "pause": 0.0} for s in range(5)]
+        items: list[dict[str, Any]] = [{"function_seed": s, "length": 100, "pause": 0.0} for s in range(5)]
         for ours, item in zip(cluster.run_sweep(alike, items, engine=engine), items, strict=True):
             np.testing.assert_array_equal(ours["noise"], alike(**item)["noise"])
 
 
-def test_a_database_drawn_in_parts_is_the_same_file_for_file(tmp_path):
-    options = {"samples": 120_000, "seed": 3, "max_per_cell": 4}
+def test_a_database_drawn_in_parts_is_the_same_file_for_file(tmp_path: Path) -> None:
+    options: dict[str, Any] = {"samples": 120_000, "seed": 3, "max_per_cell": 4}
     alone = mg.ReachDatabase.build_to(tmp_path / "alone", ROW.problem().arm, **options)
     with cluster.connect(workers=2, folder=tmp_path / "shards") as engine:
         spread = cluster.build_database(ROW, tmp_path / "spread", engine=engine, **options)
@@ -152,11 +157,11 @@ def test_a_database_drawn_in_parts_is_the_same_file_for_file(tmp_path):
         mg.ReachDatabase.build_parts(tmp_path / "parts", ROW.problem().arm, [1_000_000], **options)
 
 
-def test_a_scenario_gives_what_one_process_gives(small_path, tmp_path):
+def test_a_scenario_gives_what_one_process_gives(small_path: Path, tmp_path: Path) -> None:
     scenario = mg.load_scenario(small_path)
     problem, reach = scenario.problem(), scenario.reach_database()
-    grid = mg.make_base_grid(problem, reach)
-    alone = mg.compute_base_regions(problem, reach, grid)
+    grid = mg.base.make_base_grid(problem, reach)
+    alone = mg.base.compute_base_regions(problem, reach, grid)
     with cluster.connect(workers=1, folder=tmp_path) as engine:
         same, regions = cluster.compute_base_regions(small_path, engine=engine)
     assert same.__getstate__()[1:] == grid.__getstate__()[1:]
@@ -164,7 +169,7 @@ def test_a_scenario_gives_what_one_process_gives(small_path, tmp_path):
     assert [state(r) for r in regions] == [state(r) for r in alone]
 
 
-def test_the_command_spreads_its_work(tmp_path, capfd):
+def test_the_command_spreads_its_work(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     """Everything but times is what one process computes."""
     arguments = ["reproduce", "p1-random-placement", "--quick", "--json"]
     assert main(arguments) == 0
@@ -175,17 +180,18 @@ def test_the_command_spreads_its_work(tmp_path, capfd):
     assert list(tmp_path.rglob("*.shard"))
 
 
-def test_digest_tells_problems_apart():
+def test_digest_tells_problems_apart() -> None:
     reach = database(ROW, SAMPLES["samples"])
     base = problem_digest(ROW.problem(), reach)
     assert base == problem_digest(ROW.with_(threads=2).problem(), reach)
-    changed = [{"shift": 1e-9}, {"tool": 0.121}, {"targets": ((0,),) * 6}, {"ik_seeds": 9}, {"objects": (2, 3)}]
+    changed: list[dict[str, Any]] = [{"shift": 1e-9}, {"tool": 0.121}, {"targets": ((0,),) * 6}, {"ik_seeds": 9}]
+    changed.append({"objects": (2, 3)})
     assert len({base, *(problem_digest(ROW.with_(**c).problem(), reach) for c in changed)}) == 6
     # The torso stands elsewhere: another problem even beside the same database.
     assert problem_digest(ROW.with_(torso=ROW.torso - 0.01).problem(), reach) != base
 
 
-def test_what_has_no_content_is_refused():
+def test_what_has_no_content_is_refused() -> None:
     with pytest.raises(mg.InvalidInput, match=r"item\.x\[1\]: a object"):
         cluster.shard_key(alike, {"x": [1, object()]})
     assert cluster.shard_key(alike, {"x": 1}) != cluster.shard_key(alike, {"x": 1.0})
@@ -193,7 +199,7 @@ def test_what_has_no_content_is_refused():
     assert cluster.shard_key(alike, {"a": 1, "b": 2}) == cluster.shard_key(alike, {"b": 2, "a": 1})
 
 
-def test_an_absent_scheduler_is_named(tmp_path):
+def test_an_absent_scheduler_is_named(tmp_path: Path) -> None:
     with (
         pytest.raises(mg.InvalidInput, match=r"tcp://127\.0\.0\.1:9"),
         cluster.connect(scheduler="tcp://127.0.0.1:9", folder=tmp_path, timeout=0.5),
@@ -201,12 +207,12 @@ def test_an_absent_scheduler_is_named(tmp_path):
         pass
 
 
-def test_what_is_no_address_is_refused():
+def test_what_is_no_address_is_refused() -> None:
     with pytest.raises(mg.InvalidInput, match="scheduler = 'nonsense'"), cluster.connect(scheduler="nonsense"):
         pass
 
 
-def test_store_keeps_results(tmp_path):
+def test_store_keeps_results(tmp_path: Path) -> None:
     store = ShardStore(tmp_path)
     store.put("ab12", {"x": 1.5})
     assert store.get("ab12") == (True, {"x": 1.5})

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -16,7 +20,7 @@ def robot() -> mg.Robot:
 
 
 @pytest.fixture(scope="module")
-def arm(robot) -> mg.JointGroup:
+def arm(robot: mg.Robot) -> mg.robot.JointGroup:
     return robot.group("arm_with_torso", tip="gripper_tcp")
 
 
@@ -30,17 +34,17 @@ def world() -> mg.World:
 
 
 @pytest.fixture
-def checker(robot, arm, world) -> mg.CollisionChecker:
+def checker(robot: mg.Robot, arm: mg.robot.JointGroup, world: mg.World) -> mg.CollisionChecker:
     return mg.CollisionChecker(robot, world, group=arm)
 
 
 @pytest.fixture(scope="module")
-def draws(arm) -> np.ndarray:
+def draws(arm: mg.robot.JointGroup) -> np.ndarray:
     lower, upper = np.maximum(arm.lower, -np.pi), np.minimum(arm.upper, np.pi)
     return np.random.default_rng(1).uniform(lower, upper, (300, len(arm.names)))
 
 
-def test_answers_fit_together(checker, draws):
+def test_answers_fit_together(checker: mg.CollisionChecker, draws: np.ndarray) -> None:
     scene = own = free = 0
     for q in draws:
         contacts, first, nearest = checker.contacts(q), checker.first_contact(q), checker.distance(q)
@@ -50,7 +54,9 @@ def test_answers_fit_together(checker, draws):
             free += 1
             continue
         assert (first.a, first.b) in [(c.a, c.b) for c in contacts]
-        assert checker.rejection(q) == (mg.Rejection.self_collision if not first.with_scene else mg.Rejection.scene)
+        assert checker.rejection(q) == (
+            mg.planning.Rejection.self_collision if not first.with_scene else mg.planning.Rejection.scene
+        )
         assert (first.b in checker_world_names(checker)) == first.with_scene
         assert first.a in repr(first) and first.b in repr(first)
         scene += first.with_scene
@@ -58,11 +64,11 @@ def test_answers_fit_together(checker, draws):
     assert free > 50 and scene > 20 and own > 20
 
 
-def checker_world_names(checker) -> list[str]:
+def checker_world_names(checker: mg.CollisionChecker) -> list[str]:
     return ["table", "post", "lamp"]
 
 
-def test_gradient_is_the_difference(checker, draws):
+def test_gradient_is_the_difference(checker: mg.CollisionChecker, draws: np.ndarray) -> None:
     compared = 0
     for q in draws[:60]:
         nearest = checker.distance(q, gradient=True)
@@ -79,7 +85,7 @@ def test_gradient_is_the_difference(checker, draws):
     assert compared > 40
 
 
-def test_near_pairs(checker, draws):
+def test_near_pairs(checker: mg.CollisionChecker, draws: np.ndarray) -> None:
     for q in draws[:40]:
         pairs = checker.distances(q, within=0.3)
         values = [p.value for p in pairs]
@@ -91,7 +97,7 @@ def test_near_pairs(checker, draws):
         assert {(p.a, p.b) for p in pairs if p.value <= 0} == {(c.a, c.b) for c in checker.contacts(q)}
 
 
-def test_batch_is_the_loop(checker, draws):
+def test_batch_is_the_loop(checker: mg.CollisionChecker, draws: np.ndarray) -> None:
     expected = [checker.is_free(q) for q in draws]
     for threads in (1, 2, 0):
         free = checker.are_free(draws, threads=threads)
@@ -99,7 +105,9 @@ def test_batch_is_the_loop(checker, draws):
     assert checker.are_free(np.empty((0, draws.shape[1]))).shape == (0,)
 
 
-def test_edges_say_what_refuses_them(robot, arm, world, checker, draws):
+def test_edges_say_what_refuses_them(
+    robot: mg.Robot, arm: mg.robot.JointGroup, world: mg.World, checker: mg.CollisionChecker, draws: np.ndarray
+) -> None:
     free = refused = 0
     for q0, q1 in zip(draws[:150], draws[150:], strict=True):
         if not checker.is_free(q0):
@@ -112,10 +120,10 @@ def test_edges_say_what_refuses_them(robot, arm, world, checker, draws):
             free += 1
             continue
         refused += 1
-        assert 0 <= gliding.fraction <= 1 and gliding.contact.a in repr(gliding)
+        assert 0 <= gliding.fraction <= 1 and gliding.contact is not None and gliding.contact.a in repr(gliding)
         assert checker.distance(q0 + gliding.fraction * (q1 - q0)).value <= 1e-4
         if not stepped:
-            assert stepped.fraction >= gliding.fraction - 1e-9
+            assert stepped.contact is not None and stepped.fraction >= gliding.fraction - 1e-9
             assert stepped.to_dict()["contact"]["a"] == stepped.contact.a
     assert free > 30 and refused > 5
     bounds = checker.motion_bounds
@@ -126,7 +134,7 @@ def test_edges_say_what_refuses_them(robot, arm, world, checker, draws):
         checker.check_edge(draws[0], draws[1], tolerance=0.0)
 
 
-def test_padding_is_a_margin(robot, arm, world, draws):
+def test_padding_is_a_margin(robot: mg.Robot, arm: mg.robot.JointGroup, world: mg.World, draws: np.ndarray) -> None:
     padded = mg.CollisionChecker(robot, world, group=arm, padding=0.05, check_self=False)
     plain = mg.CollisionChecker(robot, world, group=arm, check_self=False)
     between = 0
@@ -141,7 +149,7 @@ def test_padding_is_a_margin(robot, arm, world, draws):
     assert between > 5
 
 
-def test_attach_detach_remove(robot, arm):
+def test_attach_detach_remove(robot: mg.Robot, arm: mg.robot.JointGroup) -> None:
     world = mg.World()
     world.add_box("part", (0.05, 0.05, 0.2), mg.pose([0.8, 0, 0.8]))
     world.attach("part", "gripper_link", mg.pose([0.1, 0, 0]))
@@ -159,7 +167,12 @@ def test_attach_detach_remove(robot, arm):
     assert "part" not in world
     none = mg.CollisionChecker(robot, world, group=arm, check_self=False).distance(q, gradient=True)
     assert none.value == np.inf and not none.gradient.any()
-    for call in (lambda: world.remove("part"), lambda: world.detach("part"), lambda: world.attach("part", "x")):
+    calls: list[Callable[[], Any]] = [
+        lambda: world.remove("part"),
+        lambda: world.detach("part"),
+        lambda: world.attach("part", "x"),
+    ]
+    for call in calls:
         with pytest.raises(mg.InvalidInput, match="part"):
             call()
     world.add_box("part", (0.05, 0.05, 0.2))
@@ -168,7 +181,7 @@ def test_attach_detach_remove(robot, arm):
         mg.CollisionChecker(robot, world, group=arm)
 
 
-def test_points_and_octrees(robot, arm, data):
+def test_points_and_octrees(robot: mg.Robot, arm: mg.robot.JointGroup, data: Path) -> None:
     world = mg.World()
     grid = np.arange(-0.5, 0.5, 0.005)
     wall = np.array([[0.605, y, z] for y in grid for z in grid + 0.8])
@@ -204,7 +217,7 @@ def test_points_and_octrees(robot, arm, data):
     "ask",
     ["is_free", "rejection", "contacts", "first_contact", "distance", "distances", "edge_is_free", "check_edge"],
 )
-def test_wrong_configurations_are_refused(checker, draws, ask):
+def test_wrong_configurations_are_refused(checker: mg.CollisionChecker, draws: np.ndarray, ask: str) -> None:
     more = {"distances": (0.1,), "edge_is_free": (draws[1],), "check_edge": (draws[1],)}.get(ask, ())
     question = getattr(checker, ask)
     n = draws.shape[1]
@@ -217,7 +230,7 @@ def test_wrong_configurations_are_refused(checker, draws, ask):
             question(q, *more)
 
 
-def test_wrong_batches_are_refused(checker, draws):
+def test_wrong_batches_are_refused(checker: mg.CollisionChecker, draws: np.ndarray) -> None:
     n = draws.shape[1]
     with pytest.raises(mg.InvalidInput, match=rf"Q has shape \(300, {n - 1}\): must be \(m, {n}\)"):
         checker.are_free(draws[:, :-1])

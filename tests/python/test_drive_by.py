@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import threading
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,16 +22,16 @@ def robot() -> mg.Robot:
 
 
 @pytest.fixture(scope="module")
-def group() -> mg.JointGroup:
+def group() -> mg.robot.JointGroup:
     return whole_body()[1]
 
 
 @pytest.fixture(scope="module")
-def plan(robot, group) -> mg.DriveByResult:
+def plan(robot: mg.Robot, group: mg.robot.JointGroup) -> mg.planning.DriveByResult:
     return mg.plan_drive_by(robot, group, mg.World(), start=START, tasks=[mg.DriveByTask(TASK)], goal=GOAL, **PATIENT)
 
 
-def test_the_example_of_the_paper(plan, group):
+def test_the_example_of_the_paper(plan: mg.planning.DriveByResult, group: mg.robot.JointGroup) -> None:
     assert plan.outcome == mg.Outcome.solved, plan.report
     assert all(v["kept"] for v in plan.violations.values())
     assert {"dynamics", "nonholonomic", "velocity", "acceleration", "task position", "collision"} <= set(
@@ -50,7 +51,7 @@ def read_csv(text: str) -> np.ndarray:
     return np.genfromtxt(io.StringIO(text), delimiter=",", names=True, deletechars="")
 
 
-def test_a_stranger_can_recompute_the_motion_from_the_csv(plan, robot):
+def test_a_stranger_can_recompute_the_motion_from_the_csv(plan: mg.planning.DriveByResult, robot: mg.Robot) -> None:
     """Wheel speeds, linear between waypoints, lead the base along the plan: integrated here with small straight steps."""
     table = read_csv(plan.trajectory.to_csv())
     separation = robot.base_limits["wheel_separation"]
@@ -75,7 +76,7 @@ def test_a_stranger_can_recompute_the_motion_from_the_csv(plan, robot):
     )
 
 
-def test_printed_errata_would_fail(plan, robot):
+def test_printed_errata_would_fail(plan: mg.planning.DriveByResult, robot: mg.Robot) -> None:
     """(4.1) printed with m instead of m + 1 segments misses the last one; (4.11) needs the wheel separation."""
     t = plan.trajectory
     steps = np.diff(t.times)
@@ -90,7 +91,7 @@ def test_printed_errata_would_fail(plan, robot):
     assert np.allclose(omega, t.drive[:, t.drive_names.index("omega")])
 
 
-def test_fine_samples_keep_the_limits(plan, group):
+def test_fine_samples_keep_the_limits(plan: mg.planning.DriveByResult, group: mg.robot.JointGroup) -> None:
     fine = plan.trajectory.sampled(9)
     assert len(fine) == 34 * 10 + 1
     joints = slice(3, None)
@@ -101,14 +102,14 @@ def test_fine_samples_keep_the_limits(plan, group):
     assert np.allclose(plan.trajectory.at(fine.times[17]), fine.positions[17])
 
 
-def test_same_seed_same_answer(plan, robot, group):
+def test_same_seed_same_answer(plan: mg.planning.DriveByResult, robot: mg.Robot, group: mg.robot.JointGroup) -> None:
     again = mg.plan_drive_by(
         robot, group, mg.World(), start=START, tasks=[mg.DriveByTask(TASK)], goal=GOAL, threads=2, **PATIENT
     )
     assert again.trajectory.to_csv() == plan.trajectory.to_csv()
 
 
-def test_results_print_and_convert(plan):
+def test_results_print_and_convert(plan: mg.planning.DriveByResult) -> None:
     assert repr(plan).startswith("DriveByResult(solved, ")
     assert "waypoints" in repr(plan.trajectory)
     plain = plan.to_dict()
@@ -118,7 +119,7 @@ def test_results_print_and_convert(plan):
     assert "attempt 1" in plan.report
 
 
-def test_goal_as_a_box(robot, group):
+def test_goal_as_a_box(robot: mg.Robot, group: mg.robot.JointGroup) -> None:
     lower, upper = np.full(10, -np.inf), np.full(10, np.inf)
     lower[:3] = upper[:3] = [8, 1, 0.5]
     found = mg.plan_drive_by(
@@ -129,7 +130,7 @@ def test_goal_as_a_box(robot, group):
     assert np.allclose(found.trajectory.positions[-1, :3], [8, 1, 0.5])
 
 
-def test_out_of_reach_is_told(robot, group):
+def test_out_of_reach_is_told(robot: mg.Robot, group: mg.robot.JointGroup) -> None:
     found = mg.plan_drive_by(
         robot, group, mg.World(), start=START, tasks=[mg.DriveByTask(mg.pose([5, 0, 4]))], goal=GOAL
     )
@@ -139,7 +140,7 @@ def test_out_of_reach_is_told(robot, group):
     assert found.duration == 0
 
 
-def test_start_in_collision(robot, group):
+def test_start_in_collision(robot: mg.Robot, group: mg.robot.JointGroup) -> None:
     world = mg.World()
     world.add_box("pillar", size=(0.3, 0.3, 1), pose=mg.pose([0, 0, 0.5]))
     found = mg.plan_drive_by(robot, group, world, start=START, tasks=[mg.DriveByTask(TASK)], goal=GOAL)
@@ -147,7 +148,7 @@ def test_start_in_collision(robot, group):
     assert "pillar" in found.report
 
 
-def test_best_iterate_when_time_ends(robot, group):
+def test_best_iterate_when_time_ends(robot: mg.Robot, group: mg.robot.JointGroup) -> None:
     found = mg.plan_drive_by(
         robot,
         group,
@@ -181,13 +182,13 @@ def test_best_iterate_when_time_ends(robot, group):
         ({"tasks": [mg.DriveByTask(np.eye(4), object="ghost")]}, "ghost"),
     ],
 )
-def test_bad_input(robot, group, change, message):
+def test_bad_input(robot: mg.Robot, group: mg.robot.JointGroup, change: dict[str, Any], message: str) -> None:
     arguments = {"start": START, "tasks": [mg.DriveByTask(TASK)], "goal": GOAL, **change}
     with pytest.raises(mg.InvalidInput, match=message):
         mg.plan_drive_by(robot, group, mg.World(), **arguments)
 
 
-def test_bad_tasks():
+def test_bad_tasks() -> None:
     with pytest.raises(mg.InvalidInput, match="roll"):
         mg.DriveByTask(TASK, free=["rol"])
     with pytest.raises(mg.InvalidInput, match="max_tool_speed"):
@@ -198,10 +199,10 @@ def test_bad_tasks():
         mg.DriveByTask(TASK, tolerance=[0, 0, 0, 0, 0, -1])
 
 
-def test_push_grasp_as_data():
+def test_push_grasp_as_data() -> None:
     push = {"opening": 0.08, "tool_speed": 0.3, "along_error": 0.01, "approach": [1, 0, 0], "free_length": 0.08}
     task = mg.DriveByTask(TASK, push=push)
-    expected = mg.push_grasp(opening=0.08, tool_speed=0.3, along_error=0.01)
+    expected = mg.grasping.push_grasp(opening=0.08, tool_speed=0.3, along_error=0.01)
     assert task.push.to_dict() == expected.to_dict()
     assert mg.DriveByTask(TASK).push is None
     with pytest.raises(mg.InvalidInput, match="tool_speed"):
@@ -210,20 +211,20 @@ def test_push_grasp_as_data():
         mg.DriveByTask(TASK, push={"approach": [1, 0]})
 
 
-def test_push_grasp_has_its_own_limits(robot, group):
+def test_push_grasp_has_its_own_limits(robot: mg.Robot, group: mg.robot.JointGroup) -> None:
     task = mg.DriveByTask(TASK, push={}, dwell=0.2)
     with pytest.raises(mg.InvalidInput, match=r"tasks\[0\].push with dwell"):
         mg.plan_drive_by(robot, group, mg.World(), start=START, tasks=[task], goal=GOAL)
 
 
-def test_contradictory_base_limits(group):
+def test_contradictory_base_limits(group: mg.robot.JointGroup) -> None:
     with pytest.raises(mg.InvalidInput, match="linear_velocity"):
         mg.Robot.from_strings(
             "<robot name='r'><link name='a'/></robot>", base="diff_drive", base_limits={"linear_velocity": 0}
         )
 
 
-def test_arm_alone(robot):
+def test_arm_alone(robot: mg.Robot) -> None:
     """A task for an arm on the spot is the special case without a base."""
     arm = robot.group("arm", tip="gripper_link")
     start = np.array([0.3, -0.5, 0, 1.2, 0, 0.8, 0])
@@ -235,10 +236,10 @@ def test_arm_alone(robot):
     assert np.allclose(arm.fk(found.trajectory.positions[found.events[0]["waypoint"]]), middle, atol=1e-6)
 
 
-def test_threads_run_side_by_side(robot, group, plan):
-    found: list[mg.DriveByResult] = []
+def test_threads_run_side_by_side(robot: mg.Robot, group: mg.robot.JointGroup, plan: mg.planning.DriveByResult) -> None:
+    found: list[mg.planning.DriveByResult] = []
 
-    def work():
+    def work() -> None:
         found.append(
             mg.plan_drive_by(robot, group, mg.World(), start=START, tasks=[mg.DriveByTask(TASK)], goal=GOAL, **PATIENT)
         )
@@ -251,7 +252,7 @@ def test_threads_run_side_by_side(robot, group, plan):
     assert {r.trajectory.to_csv() for r in found} == {plan.trajectory.to_csv()}
 
 
-def test_interrupt_ends_it(robot, group):
+def test_interrupt_ends_it(robot: mg.Robot, group: mg.robot.JointGroup) -> None:
     class StopError(Exception):
         pass
 
@@ -265,7 +266,7 @@ def test_interrupt_ends_it(robot, group):
         )  # fmt: skip
 
 
-def test_both_solvers_drive_the_same_way(robot, group):
+def test_both_solvers_drive_the_same_way(robot: mg.Robot, group: mg.robot.JointGroup) -> None:
     """Dense and sparse, first and second derivatives: nothing in common but the problem."""
     found = {
         solver: mg.plan_drive_by(

@@ -5,6 +5,8 @@ from __future__ import annotations
 import copy
 import io
 import json
+from pathlib import Path
+from typing import Any
 
 import jsonschema
 import numpy as np
@@ -13,30 +15,32 @@ import pytest
 import mmgrasp as mg
 from conftest import ASSETS
 from mmgrasp import sim
-from mmgrasp.plan_file import plan_schema
+from mmgrasp.part_supply.plan_file import plan_schema
 from mmgrasp.viz.report import report_html
 from mmgrasp.viz.timeline import Timeline
 
 
 @pytest.fixture(scope="module")
-def passing(small_plan):
+def passing(small_plan: mg.part_supply.ScenarioPlan) -> mg.part_supply.DriveByPlan:
     stages: list[str] = []
-    found = mg.plan_drive_by_picks(small_plan, progress=lambda stage, _: stages.append(stage))
+    found = mg.part_supply.plan_drive_by_picks(small_plan, progress=lambda stage, _: stages.append(stage))
     assert stages
     assert set(stages) <= {f"drive-by 1 of 1: {found.picks[0].part}"}
     return found
 
 
 @pytest.fixture(scope="module")
-def content(passing) -> dict:
+def content(passing: mg.part_supply.DriveByPlan) -> dict[str, Any]:
     return passing.plan_to_dict()
 
 
-def codes(plan: dict) -> set[str]:
+def codes(plan: dict[str, Any]) -> set[str]:
     return {fault.code for fault in mg.verify_plan(plan, samples=20).faults}
 
 
-def test_the_first_pick_is_done_in_passing(passing, small_plan):
+def test_the_first_pick_is_done_in_passing(
+    passing: mg.part_supply.DriveByPlan, small_plan: mg.part_supply.ScenarioPlan
+) -> None:
     """It is shorter than what it replaces, begins where the plan does, and stands where the plan goes on."""
     (done,) = passing.picks
     pick = small_plan.picks[0]
@@ -59,9 +63,9 @@ def test_the_first_pick_is_done_in_passing(passing, small_plan):
     assert done.result.events[-1]["base_speed"] > 0.02
 
 
-def test_the_storeroom_is_shortened_from_its_own_plan():
+def test_the_storeroom_is_shortened_from_its_own_plan() -> None:
     """Its three stops need no motion guessed from nothing, and the base drives on at each."""
-    found = mg.plan_drive_by_picks(mg.plan_part_supply(ASSETS / "scenarios" / "storeroom.yaml"))
+    found = mg.part_supply.plan_drive_by_picks(mg.plan_part_supply(ASSETS / "scenarios" / "storeroom.yaml"))
     assert len(found.picks) == 3
     for done in found.picks:
         assert done.used, done.report
@@ -73,18 +77,18 @@ def test_the_storeroom_is_shortened_from_its_own_plan():
     assert verdict.ok, verdict.faults
 
 
-def test_the_plan_holds_for_the_independent_check(content):
+def test_the_plan_holds_for_the_independent_check(content: dict[str, Any]) -> None:
     verdict = mg.verify_plan(content, samples=50)
     assert verdict.ok, verdict.faults
     jsonschema.validate(content, plan_schema())
 
 
-def spoiled(content: dict) -> tuple[dict, dict]:
+def spoiled(content: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
     plan = copy.deepcopy(content)
     return plan, plan["drive_by"]["motions"][0]
 
 
-def test_what_is_wrong_in_passing_is_found(content):
+def test_what_is_wrong_in_passing_is_found(content: dict[str, Any]) -> None:
     """The plan without it stays good; with one thing changed in it each time the check names that."""
     plan, motion = spoiled(content)
     for row in motion["positions"]:
@@ -114,7 +118,12 @@ def test_what_is_wrong_in_passing_is_found(content):
     assert "drive-by-pick" in codes(plan)
 
 
-def test_what_is_written(passing, small_plan, content, tmp_path):
+def test_what_is_written(
+    passing: mg.part_supply.DriveByPlan,
+    small_plan: mg.part_supply.ScenarioPlan,
+    content: dict[str, Any],
+    tmp_path: Path,
+) -> None:
     """A stranger with the CSV alone: wheel speeds lead the base along, joints follow their velocities, accelerations fit, and the
     grasp is where the marks say."""
     files = {path.name: path for path in passing.save(tmp_path)}
@@ -151,7 +160,7 @@ def test_what_is_written(passing, small_plan, content, tmp_path):
     assert set(held[table["time"] >= done.close_at + done.dwell]) == {done.part}
 
 
-def test_physics_takes_the_part(passing, small_plan):
+def test_physics_takes_the_part(passing: mg.part_supply.DriveByPlan, small_plan: mg.part_supply.ScenarioPlan) -> None:
     """Contact and friction only, with a little noise of the wheels: the part is held at the end, its neighbours stand where they stood."""
     pytest.importorskip("mujoco")
     (done,) = passing.picks
@@ -159,14 +168,22 @@ def test_physics_takes_the_part(passing, small_plan):
     parts = [sim.SimPart(p.name, p.shapes, p.T_world_part, mass=0.1) for p in problem.trays[0].parts]
     trial = sim.Simulation(setup.robot, problem.scene, parts, gripper=setup.gripper, joints=setup.other_joints)
     # At half speed: plans know limits of joints, not of their motors, which cannot follow this one at full speed.
-    how = {"close_at": done.close_at, "opening": done.opening, "speed": 0.5, "hold": 1.0, "travel_noise": 0.001}
+    how: dict[str, Any] = {
+        "close_at": done.close_at,
+        "opening": done.opening,
+        "speed": 0.5,
+        "hold": 1.0,
+        "travel_noise": 0.001,
+    }
     run = trial.run(done.result.trajectory.sampled(between=9), **how)
     assert run.parts[done.part].grasped, run.parts[done.part].cause
     assert run.parts[done.part].rise > 0.05
     assert max(p.displacement for name, p in run.parts.items() if name != done.part) < 0.002
 
 
-def test_clock_and_report_know_of_it(content, passing, small_plan):
+def test_clock_and_report_know_of_it(
+    content: dict[str, Any], passing: mg.part_supply.DriveByPlan, small_plan: mg.part_supply.ScenarioPlan
+) -> None:
     (done,) = passing.picks
     timeline, before = Timeline(content), Timeline(small_plan.to_dict())
     motion = content["drive_by"]["motions"][0]
@@ -175,13 +192,14 @@ def test_clock_and_report_know_of_it(content, passing, small_plan):
     assert start.base == pytest.approx(motion["positions"][0][:3])
     assert end.arm == pytest.approx(motion["positions"][-1][3:], abs=1e-6)
     assert timeline.state_at(motion["closed_at"] - 0.01).held is None
-    assert timeline.state_at(motion["closed_at"] + 0.01).held[0] == done.part
+    held = timeline.state_at(motion["closed_at"] + 0.01).held
+    assert held is not None and held[0] == done.part
     assert len(timeline.grasp_times()) == len(content["picks"])
     assert "Parts taken in passing" in report_html(content)
     assert "Parts taken in passing" not in report_html(small_plan.to_dict())
 
 
-def test_it_can_be_stopped(small_plan):
+def test_it_can_be_stopped(small_plan: mg.part_supply.ScenarioPlan) -> None:
     class StopError(Exception):
         pass
 
@@ -189,4 +207,4 @@ def test_it_can_be_stopped(small_plan):
         raise StopError
 
     with pytest.raises(StopError):
-        mg.plan_drive_by_picks(small_plan, progress=progress)
+        mg.part_supply.plan_drive_by_picks(small_plan, progress=progress)

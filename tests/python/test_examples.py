@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -16,7 +17,7 @@ BUILD = REPOSITORY / "build" / "dev"
 
 
 @pytest.mark.parametrize("name", sorted(p.name for p in EXAMPLES.glob("[0-9]*.py")))
-def test_python_example(name, tmp_path):
+def test_python_example(name: str, tmp_path: Path) -> None:
     done = subprocess.run(
         [sys.executable, str(EXAMPLES / name)], capture_output=True, text=True, cwd=tmp_path, timeout=300
     )
@@ -24,7 +25,7 @@ def test_python_example(name, tmp_path):
     assert done.stdout.strip()
 
 
-def test_stand_alone_cmake_project(tmp_path):
+def test_stand_alone_cmake_project(tmp_path: Path) -> None:
     """Install the library, build a consumer that knows nothing but find_package(mmgrasp), and run all C++ examples in it."""
     if shutil.which("cmake") is None or not (BUILD / "cmake_install.cmake").is_file():
         pytest.skip(f"no build in {BUILD}: ./dev build makes it")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -12,24 +14,27 @@ FOLDER = ASSETS / "robots" / "fetchlike"
 
 
 @pytest.fixture(scope="module")
-def robot():
+def robot() -> mg.Robot:
     return mg.Robot.load(FOLDER / "fetchlike.urdf", FOLDER / "fetchlike.srdf", base="diff_drive")
 
 
 @pytest.fixture(scope="module")
-def arm(robot):
+def arm(robot: mg.Robot) -> mg.robot.JointGroup:
     return robot.group("arm_with_torso", tip="gripper_tcp")
 
 
 TARGET = mg.pose([0.7, 0.2, 0.9], rpy=[0, 0, 0])
 
 
-def test_objectives_lower_the_cost(arm):
-    objective = mg.joint_limit_objective(arm, soft_fraction=0.4)
+def test_objectives_lower_the_cost(arm: mg.robot.JointGroup) -> None:
+    objective = mg.robot.joint_limit_objective(arm, soft_fraction=0.4)
     plain = arm.ik(TARGET, rng_seed=1)
-    better = arm.ik(TARGET, rng_seed=1, objectives=[objective, mg.singularity_objective(arm, 0.05)])
+    better = arm.ik(TARGET, rng_seed=1, objectives=[objective, mg.robot.singularity_objective(arm, 0.05)])
     assert better.outcome == mg.Outcome.solved
-    assert better.objective <= objective.evaluate(plain.q)[0] + mg.singularity_objective(arm, 0.05).evaluate(plain.q)[0]
+    assert (
+        better.objective
+        <= objective.evaluate(plain.q)[0] + mg.robot.singularity_objective(arm, 0.05).evaluate(plain.q)[0]
+    )
     assert np.abs(arm.fk(better.q) - TARGET).max() < 2e-4
     cost, gradient = objective.evaluate(better.q)
     step = 1e-6 * np.eye(arm.size)
@@ -38,7 +43,7 @@ def test_objectives_lower_the_cost(arm):
     assert np.allclose(gradient, numeric, atol=1e-6)
 
 
-def test_objectives_and_weights_are_checked(arm):
+def test_objectives_and_weights_are_checked(arm: mg.robot.JointGroup) -> None:
     with pytest.raises(mg.InvalidInput, match="objectives"):
         arm.ik(TARGET, objectives=[1])
     with pytest.raises(mg.InvalidInput, match="joint_weights length"):
@@ -47,7 +52,7 @@ def test_objectives_and_weights_are_checked(arm):
         arm.ik(TARGET, joint_weights=[0.0] * arm.size)
 
 
-def test_ik_all_is_diverse_and_free(robot, arm):
+def test_ik_all_is_diverse_and_free(robot: mg.Robot, arm: mg.robot.JointGroup) -> None:
     world = mg.World()
     world.add_box("table", size=(0.6, 1.2, 0.04), pose=mg.pose([0.9, 0, 0.7]))
     found = arm.ik_all(TARGET, count=6, world=world)
@@ -63,13 +68,13 @@ def test_ik_all_is_diverse_and_free(robot, arm):
         arm.ik_all(TARGET, count=0)
 
 
-def test_platform_locations(robot, tmp_path):
+def test_platform_locations(robot: mg.Robot, tmp_path: Path) -> None:
     whole = robot.group("arm_with_torso", tip="gripper_tcp", with_base=True)
     checker = mg.CollisionChecker(robot, mg.World(), group=whole)
-    database = mg.IkSeedDatabase(whole)
+    database = mg.base.IkSeedDatabase(whole)
     down = [0, np.pi / 2, 0]
     pick, place = mg.pose([0.8, -0.2, 0.9], rpy=down), mg.pose([0.8, 0.2, 0.9], rpy=down)
-    found = mg.plan_platform_locations(checker, pick, place, database=database, samples=10)
+    found = mg.base.plan_platform_locations(checker, pick, place, database=database, samples=10)
     assert found.outcome == mg.Outcome.solved
     assert np.abs(whole.fk(found.q_pick) - pick).max() < 2e-4
     assert np.abs(whole.fk(found.q_place) - place).max() < 2e-4
@@ -77,10 +82,10 @@ def test_platform_locations(robot, tmp_path):
     assert found.to_dict()["pick"]["draws"] > 0
     assert len(database) > 0
     database.save(tmp_path / "seeds.txt")
-    back = mg.IkSeedDatabase.load(tmp_path / "seeds.txt", whole)
+    back = mg.base.IkSeedDatabase.load(tmp_path / "seeds.txt", whole)
     assert np.array_equal(back.seeds(pick, 3), database.seeds(pick, 3))
     (tmp_path / "seeds.txt").write_text("nonsense")
     with pytest.raises(mg.IoError, match="seeds"):
-        mg.IkSeedDatabase.load(tmp_path / "seeds.txt", whole)
+        mg.base.IkSeedDatabase.load(tmp_path / "seeds.txt", whole)
     with pytest.raises(mg.InvalidInput, match="samples"):
-        mg.plan_platform_locations(checker, pick, place, sample=3)
+        mg.base.plan_platform_locations(checker, pick, place, sample=3)

@@ -9,6 +9,9 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +21,7 @@ from argument_values import ARM, OBJECTS, POSE, Q
 
 
 @pytest.fixture(autouse=True)
-def interruptible():
+def interruptible() -> Iterator[None]:
     """A shell's background job is started with SIGINT ignored, and so would be what it starts."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
@@ -31,7 +34,7 @@ def interrupt_soon() -> threading.Timer:
     return timer
 
 
-def test_building_a_database_can_be_interrupted(small_path, tmp_path):
+def test_building_a_database_can_be_interrupted(small_path: Path, tmp_path: Path) -> None:
     arm = mg.load_scenario(small_path).setup.arm
     timer = interrupt_soon()
     begun = time.monotonic()
@@ -45,16 +48,16 @@ def test_building_a_database_can_be_interrupted(small_path, tmp_path):
 CHECKER = OBJECTS["CollisionChecker"]()
 AHEAD = ARM.fk(Q + [0, 0, 0.2])
 LONG_PATH = np.cumsum(np.random.default_rng(1).normal(size=(20_000, 3)) / 10, axis=0)
-ENDLESS = {
-    "plan_straight_line": lambda **k: mg.plan_straight_line(CHECKER, Q, AHEAD, position_step=1e-12, **k),
+ENDLESS: dict[str, Callable[..., Any]] = {
+    "plan_straight_line": lambda **k: mg.planning.plan_straight_line(CHECKER, Q, AHEAD, position_step=1e-12, **k),
     "plan_cartesian": lambda **k: mg.plan_cartesian(CHECKER, [POSE, AHEAD], near=Q, position_step=1e-12, **k),
     "time_parameterize": lambda **k: mg.time_parameterize(LONG_PATH, [1] * 3, [1] * 3, jerk_limits=[1] * 3, **k),
-    "time_parameterize_free": lambda **k: mg.time_parameterize_free(CHECKER, [Q, Q / 2], edge_step=1e-12, **k),
+    "time_parameterize_free": lambda **k: mg.planning.time_parameterize_free(CHECKER, [Q, Q / 2], edge_step=1e-12, **k),
 }
 
 
 @pytest.mark.parametrize("name", ENDLESS)
-def test_lines_and_timing_can_be_interrupted(name):
+def test_lines_and_timing_can_be_interrupted(name: str) -> None:
     """With the lock held, the timer could not even send the signal."""
     timer = interrupt_soon()
     with pytest.raises(KeyboardInterrupt):
@@ -62,33 +65,33 @@ def test_lines_and_timing_can_be_interrupted(name):
     timer.join()
 
 
-def test_lines_and_timing_tell_their_progress():
-    calls = {
-        "straight line": lambda **k: mg.plan_straight_line(CHECKER, Q, AHEAD, **k),
+def test_lines_and_timing_tell_their_progress() -> None:
+    calls: dict[str, Callable[..., Any]] = {
+        "straight line": lambda **k: mg.planning.plan_straight_line(CHECKER, Q, AHEAD, **k),
         "cartesian path": lambda **k: mg.plan_cartesian(CHECKER, [POSE, AHEAD], near=Q, **k),
         "limit jerk": lambda **k: mg.time_parameterize([Q, Q / 2], [1] * 3, [1] * 3, jerk_limits=[1] * 3, **k),
-        "check timed path": lambda **k: mg.time_parameterize_free(CHECKER, [Q, Q / 2], **k),
+        "check timed path": lambda **k: mg.planning.time_parameterize_free(CHECKER, [Q, Q / 2], **k),
     }
     for stage, call in calls.items():
-        told = []
+        told: list[tuple[str, float]] = []
         call(progress=lambda *now, told=told: told.append(now))
         assert told and {name for name, _ in told} == {stage}
         assert all(0 <= fraction <= 1 for _, fraction in told)
 
 
-def test_an_error_in_the_progress_callback_ends_the_call(small_path):
+def test_an_error_in_the_progress_callback_ends_the_call(small_path: Path) -> None:
     arm = mg.load_scenario(small_path).setup.arm
 
-    def fail(stage, fraction):
+    def fail(stage: str, fraction: float) -> None:
         raise RuntimeError("no more")
 
     with pytest.raises(RuntimeError, match="no more"):
         mg.ReachDatabase.build(arm, samples=2_000_000_000, progress=fail)
 
 
-def test_the_command_ends_on_ctrl_c(small, write, tmp_path):
+def test_the_command_ends_on_ctrl_c(small: dict[str, Any], write: Callable[..., Path], tmp_path: Path) -> None:
     scenario = {**small, "reach": {"samples": 2_000_000_000}}
-    command = [sys.executable, "-m", "mmgrasp.cli", "plan", str(write(scenario)), "-o", str(tmp_path / "out")]
+    command = [sys.executable, "-m", "mmgrasp", "plan", str(write(scenario)), "-o", str(tmp_path / "out")]
     environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path / "cache")}
     process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment)
     assert process.stderr is not None
@@ -103,9 +106,9 @@ def test_the_command_ends_on_ctrl_c(small, write, tmp_path):
     assert not list((tmp_path / "cache").rglob("*.reach"))
 
 
-def test_a_plan_survives_when_motions_in_passing_are_interrupted(small_path, tmp_path):
+def test_a_plan_survives_when_motions_in_passing_are_interrupted(small_path: Path, tmp_path: Path) -> None:
     """What is found first is a plan of its own: Ctrl-C later ends the command at once and leaves that whole."""
-    command = [sys.executable, "-m", "mmgrasp.cli", "plan", str(small_path), "-o", str(tmp_path), "--drive-by"]
+    command = [sys.executable, "-m", "mmgrasp", "plan", str(small_path), "-o", str(tmp_path), "--drive-by"]
     process = subprocess.Popen([*command, "--no-pictures"], stderr=subprocess.PIPE, text=True)
     assert process.stderr is not None
     for line in process.stderr:

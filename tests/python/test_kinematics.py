@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -10,18 +13,18 @@ from conftest import ASSETS
 
 
 @pytest.fixture(scope="module")
-def arm() -> mg.JointGroup:
+def arm() -> mg.robot.JointGroup:
     folder = ASSETS / "robots" / "fetchlike"
     robot = mg.Robot.load(folder / "fetchlike.urdf", folder / "fetchlike.srdf", base="diff_drive")
     return robot.group("arm_with_torso", tip="gripper_tcp")
 
 
 @pytest.fixture(scope="module")
-def configurations(arm) -> np.ndarray:
+def configurations(arm: mg.robot.JointGroup) -> np.ndarray:
     return np.random.default_rng(5).uniform(arm.sample_lower, arm.sample_upper, (23, len(arm)))
 
 
-def differences(arm, q, pose) -> np.ndarray:
+def differences(arm: mg.robot.JointGroup, q: np.ndarray, pose: Callable[..., Any]) -> np.ndarray:
     """Central differences of a pose's position and rotation."""
     columns = []
     for i in range(len(arm)):
@@ -33,7 +36,7 @@ def differences(arm, q, pose) -> np.ndarray:
     return np.array(columns).T
 
 
-def test_batches_equal_single_calls(arm, configurations):
+def test_batches_equal_single_calls(arm: mg.robot.JointGroup, configurations: np.ndarray) -> None:
     poses, jacobians = arm.fk_batch(configurations), arm.jacobian_batch(configurations)
     values = arm.manipulability_batch(configurations)
     assert poses.shape == (23, 4, 4)
@@ -48,23 +51,23 @@ def test_batches_equal_single_calls(arm, configurations):
     assert arm.fk_batch(np.zeros((0, len(arm)))).shape == (0, 4, 4)
 
 
-def test_jacobian_of_any_point(arm, configurations):
+def test_jacobian_of_any_point(arm: mg.robot.JointGroup, configurations: np.ndarray) -> None:
     point = [0.1, -0.2, 0.3]
     tip = arm.robot.links[-1]
     for q in configurations[:5]:
         np.testing.assert_allclose(arm.jacobian(q), differences(arm, q, arm.fk), atol=1e-8)
         for link in (arm.tip, tip, arm.robot.links[0], *arm.robot.links[5:9]):
 
-            def pose(at, link=link):
+            def pose(at: np.ndarray, link: str = link) -> np.ndarray:
                 T = arm.link_poses(at)[link].copy()
                 T[:3, 3] = (T @ [*point, 1])[:3]
-                return T
+                return np.asarray(T)
 
             np.testing.assert_allclose(arm.jacobian(q, link=link, point=point), differences(arm, q, pose), atol=1e-8)
         np.testing.assert_allclose(arm.jacobian(q, link=arm.tip), arm.jacobian(q), atol=1e-12)
 
 
-def test_ellipsoids_along_a_direction(arm, configurations):
+def test_ellipsoids_along_a_direction(arm: mg.robot.JointGroup, configurations: np.ndarray) -> None:
     z = np.array([0.3, -2.0, 0.6, 0.1, 0.5, -0.4])
     for q in configurations[:5]:
         J = arm.jacobian(q)
@@ -77,7 +80,7 @@ def test_ellipsoids_along_a_direction(arm, configurations):
         assert arm.velocity_manipulability(q, z[:3]) >= arm.velocity_manipulability(q, [*z[:3], 0, 0, 0])
 
 
-def test_bad_arguments_are_named(arm, configurations):
+def test_bad_arguments_are_named(arm: mg.robot.JointGroup, configurations: np.ndarray) -> None:
     q = configurations[0]
     nan = q.copy()
     nan[2] = np.nan
@@ -99,7 +102,7 @@ def test_bad_arguments_are_named(arm, configurations):
         arm.manipulability_batch([[0] * 7 + [np.inf]])
 
 
-def test_floating_joints_are_columns():
+def test_floating_joints_are_columns() -> None:
     urdf = """<robot name="r"><link name="a"/><link name="b"/>
       <joint name="f" type="floating"><parent link="a"/><child link="b"/></joint></robot>"""
     group = mg.Robot.from_strings(urdf).group(base_link="a", tip="b")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from graphlib import TopologicalSorter
+from pathlib import Path
 
 import pytest
 
@@ -29,11 +30,11 @@ from layers import (
 STANDARD = re.compile(r"[a-z_0-9]+|Eigen/\w+|unistd\.h")
 
 
-def relative(path) -> str:
+def relative(path: Path) -> str:
     return path.relative_to(REPOSITORY).as_posix()
 
 
-def test_layers_are_a_hierarchy():
+def test_layers_are_a_hierarchy() -> None:
     order = list(TopologicalSorter(MODULES).static_order())
     assert order[0] == "core"
     assert set(order) == set(MODULES)
@@ -41,7 +42,7 @@ def test_layers_are_a_hierarchy():
         assert set(TopologicalSorter(rooms).static_order()) == set(rooms)
 
 
-def test_every_folder_is_a_module_or_a_room():
+def test_every_folder_is_a_module_or_a_room() -> None:
     folders = {path.relative_to(SOURCE).as_posix() for path in SOURCE.rglob("*") if path.is_dir()}
     files = {path.parent.relative_to(SOURCE).as_posix() for path in SOURCE.rglob("*") if path.suffix in INCLUDED}
     assert files <= folders
@@ -51,9 +52,9 @@ def test_every_folder_is_a_module_or_a_room():
 
 
 @pytest.mark.parametrize("module", sorted(MODULES))
-def test_module_includes_only_what_it_may(module):
+def test_module_includes_only_what_it_may(module: str) -> None:
     allowed = {module, *MODULES[module]}
-    wrong = []
+    wrong: list[str] = []
     for path in files_of(module):
         for _, name in includes(path):
             to = target(name)
@@ -67,7 +68,7 @@ def test_module_includes_only_what_it_may(module):
 
 
 @pytest.mark.parametrize("module", sorted(ROOMS))
-def test_room_includes_only_what_it_may(module):
+def test_room_includes_only_what_it_may(module: str) -> None:
     assert {room_of(path) for path in files_of(module)} == set(ROOMS[module])
     wrong = [
         f"{room or module} -> {other or module}: {include}"
@@ -79,10 +80,10 @@ def test_room_includes_only_what_it_may(module):
 
 
 @pytest.mark.parametrize("module", sorted(LAYERS["only"]))
-def test_narrow_rules(module):
+def test_narrow_rules(module: str) -> None:
     rules = LAYERS["only"][module]
     limited = {rule.split("/")[0] for rule in rules}
-    wrong = []
+    wrong: list[str] = []
     for path in files_of(module):
         for _, name in includes(path):
             short = name.removeprefix("mmgrasp/")
@@ -91,8 +92,8 @@ def test_narrow_rules(module):
     assert not wrong
 
 
-def test_public_headers_need_std_and_eigen_only():
-    wrong = []
+def test_public_headers_need_std_and_eigen_only() -> None:
+    wrong: list[str] = []
     for path in sorted(PUBLIC.rglob("*.hpp")):
         for bracket, name in includes(path):
             if not name.startswith("mmgrasp/") and (bracket == '"' or not STANDARD.fullmatch(name)):
@@ -102,7 +103,7 @@ def test_public_headers_need_std_and_eigen_only():
     assert not wrong
 
 
-def test_ompl_stays_in_its_plugin():
+def test_ompl_stays_in_its_plugin() -> None:
     wrong = [
         relative(path)
         for root in ("cpp", "python/bindings")
@@ -114,6 +115,6 @@ def test_ompl_stays_in_its_plugin():
     assert not wrong
 
 
-def test_architecture_page_is_what_the_includes_say():
+def test_architecture_page_is_what_the_includes_say() -> None:
     page = (REPOSITORY / "docs" / "architecture.md").read_text()
     assert page == architecture_page(), "out of date: ./dev architecture"

@@ -6,6 +6,8 @@ import json
 import os
 import signal
 import threading
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +17,7 @@ import mmgrasp as mg
 LENGTH = 0.4
 
 
-def planar_arm(joints: int = 3, length: float = LENGTH) -> mg.JointGroup:
+def planar_arm(joints: int = 3, length: float = LENGTH) -> mg.robot.JointGroup:
     links, rows = ['<link name="l0"/>'], []
     for i in range(1, joints + 1):
         links.append(
@@ -49,10 +51,14 @@ def scene() -> mg.World:
     return world
 
 
-GRASPS = [mg.CandidateGrasp(flat(-0.18 + 0.04 * i, 0, side)) for i in range(10) for side in (0.5 * np.pi, -0.5 * np.pi)]
+GRASPS = [
+    mg.grasping.CandidateGrasp(flat(-0.18 + 0.04 * i, 0, side))
+    for i in range(10)
+    for side in (0.5 * np.pi, -0.5 * np.pi)
+]
 
 
-def problem(**changes) -> mg.ManipulationProblem:
+def problem(**changes: Any) -> mg.ManipulationProblem:
     arguments = {
         "group": ARM,
         "world": scene(),
@@ -65,15 +71,15 @@ def problem(**changes) -> mg.ManipulationProblem:
     return mg.ManipulationProblem(**{**arguments, **changes})
 
 
-OPTIONS = {"vertices": 300, "gamma": 5, "ik_solutions": 2, "time_limit": 100, "shorten": False}
+OPTIONS: dict[str, Any] = {"vertices": 300, "gamma": 5, "ik_solutions": 2, "time_limit": 100, "shorten": False}
 
 
-def plan(**changes) -> mg.ManipulationResult:
+def plan(**changes: Any) -> mg.planning.ManipulationResult:
     return mg.plan_manipulation(problem(**changes), **OPTIONS)
 
 
-def test_the_bar_is_carried_from_start_to_goal():
-    improvements = []
+def test_the_bar_is_carried_from_start_to_goal() -> None:
+    improvements: list[mg.planning.Improvement] = []
     result = mg.plan_manipulation(problem(), improved=improvements.append, **OPTIONS)
     assert result.outcome == mg.Outcome.solved
     grasp = GRASPS[result.grasp_index]
@@ -94,7 +100,7 @@ def test_the_bar_is_carried_from_start_to_goal():
         assert checker.edge_is_free(a, b, 0.002)
 
 
-def test_poses_in_an_array_are_grasps():
+def test_poses_in_an_array_are_grasps() -> None:
     poses = np.array([grasp.T_object_tool for grasp in GRASPS])
     by_array, by_list = plan(grasps=poses), plan()
     assert by_array.cost == by_list.cost and by_array.grasp_index == by_list.grasp_index
@@ -102,10 +108,10 @@ def test_poses_in_an_array_are_grasps():
 
 
 @pytest.mark.parametrize("batch", [0, 1, 5])
-def test_variants_threads_and_a_loaded_roadmap_agree(tmp_path, batch):
-    roadmap = mg.Roadmap.build(ARM, vertices=300, gamma=5)
+def test_variants_threads_and_a_loaded_roadmap_agree(tmp_path: Path, batch: int) -> None:
+    roadmap = mg.planning.Roadmap.build(ARM, vertices=300, gamma=5)
     roadmap.save(tmp_path / "arm.roadmap")
-    loaded = mg.Roadmap.load(tmp_path / "arm.roadmap", ARM)
+    loaded = mg.planning.Roadmap.load(tmp_path / "arm.roadmap", ARM)
     expected = plan()
     for threads in (1, 2):
         found = mg.plan_manipulation(
@@ -115,8 +121,8 @@ def test_variants_threads_and_a_loaded_roadmap_agree(tmp_path, batch):
         assert found.stats["roadmap_seconds"] == 0
 
 
-def test_a_roadmap_tells_of_itself():
-    roadmap = mg.Roadmap.build(ARM, vertices=200, neighbours=5, seed=3)
+def test_a_roadmap_tells_of_itself() -> None:
+    roadmap = mg.planning.Roadmap.build(ARM, vertices=200, neighbours=5, seed=3)
     assert len(roadmap) == 200 and roadmap.vertices.shape == (200, 3)
     degree = np.bincount(roadmap.edges.ravel(), minlength=200)
     assert degree.min() >= 5 and roadmap.figures["mean_degree"] == pytest.approx(degree.mean())
@@ -127,7 +133,7 @@ def test_a_roadmap_tells_of_itself():
     assert "200 vertices" in repr(roadmap)
 
 
-def test_results_convert_and_print():
+def test_results_convert_and_print() -> None:
     result = plan()
     data = json.loads(json.dumps(result.to_dict()))
     assert data["outcome"] == "solved" and len(data["grasps"]) == 20 and data["path"] == result.path.tolist()
@@ -136,14 +142,14 @@ def test_results_convert_and_print():
     assert "20 grasps" in repr(problem())
 
 
-def test_out_of_reach_with_every_grasp():
+def test_out_of_reach_with_every_grasp() -> None:
     result = plan(T_world_start=flat(5, 0, 0))
     assert result.outcome == mg.Outcome.invalid_start and result.path is None
     assert [report.start.reach for report in result.grasps] == [1] * 20
     assert result.rejections.reach == 20 and result.contacts == []
 
 
-def test_start_in_collision_with_every_grasp_names_the_pair():
+def test_start_in_collision_with_every_grasp_names_the_pair() -> None:
     result = plan(T_world_start=flat(0.85, 0, np.pi / 2))
     assert result.outcome == mg.Outcome.invalid_start
     assert result.rejections.scene > 0 and all(report.start_solutions == 0 for report in result.grasps)
@@ -151,15 +157,15 @@ def test_start_in_collision_with_every_grasp_names_the_pair():
     assert "'post'" in repr(result)
 
 
-def test_goal_in_collision_with_every_grasp():
+def test_goal_in_collision_with_every_grasp() -> None:
     result = plan(T_world_goal=flat(0.85, 0, np.pi / 2))
     assert result.outcome == mg.Outcome.invalid_goal
     assert sum(report.start_solutions for report in result.grasps) > 0
     assert sum(report.goal.scene for report in result.grasps) > 0
 
 
-def test_only_one_of_many_grasps_leads_there():
-    far = [mg.CandidateGrasp(flat(3 + 0.01 * i, 0, 0)) for i in range(300)]
+def test_only_one_of_many_grasps_leads_there() -> None:
+    far = [mg.grasping.CandidateGrasp(flat(3 + 0.01 * i, 0, 0)) for i in range(300)]
     good = plan()
     result = plan(grasps=[*far, GRASPS[good.grasp_index], *far])
     assert result.outcome == mg.Outcome.solved and result.grasp_index == 300
@@ -171,7 +177,7 @@ def test_only_one_of_many_grasps_leads_there():
     ("changes", "words"),
     [
         ({"grasps": []}, ["grasps", "at least one"]),
-        ({"grasps": [mg.CandidateGrasp(np.eye(4), cost=-1)]}, ["grasps[0].cost"]),
+        ({"grasps": [mg.grasping.CandidateGrasp(np.eye(4), cost=-1)]}, ["grasps[0].cost"]),
         ({"grasps": np.eye(4)}, ["grasps", "(4, 4)", "(m, 4, 4)"]),
         ({"grasps": [np.eye(4), 2 * np.eye(4)]}, ["grasps[1]"]),
         ({"grasps": "all"}, ["grasps"]),
@@ -191,39 +197,43 @@ def test_only_one_of_many_grasps_leads_there():
         ({"touch_link": ["l3"]}, ["touch_link=", "did you mean touch_links"]),
     ],
 )
-def test_bad_problems_are_refused(changes, words):
+def test_bad_problems_are_refused(changes: dict[str, Any], words: list[str]) -> None:
     with pytest.raises(mg.InvalidInput) as refused:
         plan(**changes)
     for word in words:
         assert word in str(refused.value)
 
 
-def test_poses_of_grasps_must_be_rigid():
+def test_poses_of_grasps_must_be_rigid() -> None:
     with pytest.raises(mg.InvalidInput, match="T_object_tool"):
-        mg.CandidateGrasp(2 * np.eye(4))
+        mg.grasping.CandidateGrasp(2 * np.eye(4))
     with pytest.raises(mg.InvalidInput, match="opening"):
-        mg.CandidateGrasp(np.eye(4), opening=float("nan"))
+        mg.grasping.CandidateGrasp(np.eye(4), opening=float("nan"))
+    wrong: Any = "a"
     with pytest.raises(mg.InvalidInput, match="cost = 'a'"):
-        mg.CandidateGrasp(np.eye(4), cost="a")
+        mg.grasping.CandidateGrasp(np.eye(4), cost=wrong)
 
 
-def test_what_is_no_problem_and_no_roadmap_is_refused_by_name():
+def test_what_is_no_problem_and_no_roadmap_is_refused_by_name() -> None:
+    three: Any = 3
+    word: Any = "x"
     with pytest.raises(mg.InvalidInput, match="problem = 3: must be a ManipulationProblem"):
-        mg.plan_manipulation(3)
-    for call in (lambda: mg.Roadmap.build(group=3), lambda: mg.Roadmap.load("some.roadmap", group=3)):
-        with pytest.raises(mg.InvalidInput, match="group = 3: must be a JointGroup"):
-            call()
+        mg.plan_manipulation(three)
+    with pytest.raises(mg.InvalidInput, match="group = 3: must be a JointGroup"):
+        mg.planning.Roadmap.build(group=three)
+    with pytest.raises(mg.InvalidInput, match="group = 3: must be a JointGroup"):
+        mg.planning.Roadmap.load("some.roadmap", group=three)
     with pytest.raises(mg.InvalidInput, match="improved = 3: must be a function, or None"):
-        mg.plan_manipulation(problem(), improved=3)
+        mg.plan_manipulation(problem(), improved=three)
     with pytest.raises(mg.InvalidInput, match="roadmap = 'x': must be a Roadmap"):
-        mg.plan_manipulation(problem(), roadmap="x")
+        mg.plan_manipulation(problem(), roadmap=word)
 
 
 @pytest.mark.parametrize(
     ("name", "value"),
     [("batch", 1), ("lazy_grasps", True), ("refinements", 5), ("shorten", False), ("vertices", 50), ("gamma", 4.0)],
 )
-def test_options_of_prm_star_mg_are_not_rrt_star_mgs(name, value):
+def test_options_of_prm_star_mg_are_not_rrt_star_mgs(name: str, value: Any) -> None:
     with pytest.raises(mg.InvalidInput, match=f"{name}: is an option of prm_star_mg, not of rrt_star_mg"):
         mg.plan_manipulation(problem(), planner="rrt_star_mg", **{name: value})
 
@@ -231,19 +241,19 @@ def test_options_of_prm_star_mg_are_not_rrt_star_mgs(name, value):
 @pytest.mark.parametrize(
     ("name", "value"), [("max_samples", 9), ("step", 0.5), ("rrt_gamma", 1.0), ("goal_cost", 2.0), ("keep_trees", True)]
 )
-def test_options_of_rrt_star_mg_are_not_prm_star_mgs(name, value):
+def test_options_of_rrt_star_mg_are_not_prm_star_mgs(name: str, value: Any) -> None:
     with pytest.raises(mg.InvalidInput, match=f"{name}: is an option of rrt_star_mg, not of prm_star_mg"):
         mg.plan_manipulation(problem(), **{name: value})
 
 
-def test_a_roadmap_is_of_no_use_to_rrt_star_mg():
-    roadmap = mg.Roadmap.build(ARM, vertices=20)
+def test_a_roadmap_is_of_no_use_to_rrt_star_mg() -> None:
+    roadmap = mg.planning.Roadmap.build(ARM, vertices=20)
     with pytest.raises(mg.InvalidInput, match="roadmap: is an option of prm_star_mg"):
         mg.plan_manipulation(problem(), planner="rrt_star_mg", roadmap=roadmap)
 
 
-def test_trees_are_handed_over_when_asked_for():
-    given = {"planner": "rrt_star_mg", "max_samples": 500, "time_limit": 100.0}
+def test_trees_are_handed_over_when_asked_for() -> None:
+    given: dict[str, Any] = {"planner": "rrt_star_mg", "max_samples": 500, "time_limit": 100.0}
     assert mg.plan_manipulation(problem(), **given).trees == []
     found = mg.plan_manipulation(problem(), keep_trees=True, **given)
     assert {tree.from_goal for tree in found.trees} == {False, True}
@@ -260,7 +270,7 @@ def test_trees_are_handed_over_when_asked_for():
     assert json.loads(json.dumps(found.trees[0].to_dict()))["grasp"] == found.trees[0].grasp
 
 
-def test_grasps_searched_are_counted_once():
+def test_grasps_searched_are_counted_once() -> None:
     found = mg.plan_manipulation(problem(), **{**OPTIONS, "shorten": True}, refinements=20)
     reached = [report for report in found.grasps if report.start_solutions and report.goal_solutions]
     searched = [report for report in found.grasps if report.searched]
@@ -286,38 +296,38 @@ def test_grasps_searched_are_counted_once():
         ({"threads": 10**6}, ["threads = 1000000", "1024"]),
     ],
 )
-def test_bad_options_are_refused(options, words):
+def test_bad_options_are_refused(options: dict[str, Any], words: list[str]) -> None:
     with pytest.raises(mg.InvalidInput) as refused:
         mg.plan_manipulation(problem(), **options)
     for word in words:
         assert word in str(refused.value)
 
 
-def test_a_roadmap_of_another_robot_is_refused(tmp_path):
-    other = mg.Roadmap.build(planar_arm(length=0.5), vertices=50)
+def test_a_roadmap_of_another_robot_is_refused(tmp_path: Path) -> None:
+    other = mg.planning.Roadmap.build(planar_arm(length=0.5), vertices=50)
     with pytest.raises(mg.InvalidInput, match=r"another robot.*origins, axes or limits"):
         mg.plan_manipulation(problem(), roadmap=other)
     with pytest.raises(mg.InvalidInput, match="for j1, j2, not for j1, j2, j3"):
-        mg.plan_manipulation(problem(), roadmap=mg.Roadmap.build(planar_arm(joints=2), vertices=50))
+        mg.plan_manipulation(problem(), roadmap=mg.planning.Roadmap.build(planar_arm(joints=2), vertices=50))
     other.save(tmp_path / "other.roadmap")
     with pytest.raises(mg.IoError, match="another robot"):
-        mg.Roadmap.load(tmp_path / "other.roadmap", ARM)
+        mg.planning.Roadmap.load(tmp_path / "other.roadmap", ARM)
     with pytest.raises(mg.IoError, match="cannot be opened"):
-        mg.Roadmap.load(tmp_path / "none.roadmap", ARM)
+        mg.planning.Roadmap.load(tmp_path / "none.roadmap", ARM)
     (tmp_path / "text").write_text("no roadmap")
     with pytest.raises(mg.IoError, match="no roadmap"):
-        mg.Roadmap.load(tmp_path / "text", ARM)
+        mg.planning.Roadmap.load(tmp_path / "text", ARM)
 
 
-def test_what_improved_raises_ends_the_call():
-    def fail(improvement):
+def test_what_improved_raises_ends_the_call() -> None:
+    def fail(improvement: Any) -> None:
         raise RuntimeError("good enough")
 
     with pytest.raises(RuntimeError, match="good enough"):
         mg.plan_manipulation(problem(), improved=fail, **OPTIONS)
 
 
-def test_ctrl_c_ends_it():
+def test_ctrl_c_ends_it() -> None:
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
@@ -329,10 +339,10 @@ def test_ctrl_c_ends_it():
         signal.signal(signal.SIGINT, before)
 
 
-def test_other_threads_run_meanwhile():
+def test_other_threads_run_meanwhile() -> None:
     ticks, done = [], threading.Event()
 
-    def tick():
+    def tick() -> None:
         while not done.wait(0.001):
             ticks.append(1)
 
@@ -344,8 +354,8 @@ def test_other_threads_run_meanwhile():
     assert len(ticks) > 5
 
 
-def test_goal_cost_may_be_infinite():
-    told = []
+def test_goal_cost_may_be_infinite() -> None:
+    told: list[mg.planning.Improvement] = []
     first = mg.plan_manipulation(
         problem(), planner="rrt_star_mg", goal_cost=float("inf"), seed=3, time_limit=100.0, improved=told.append
     )

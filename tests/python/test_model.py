@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,11 +20,11 @@ CUBE = """solid cube
 """
 
 
-def fetch(**options) -> mg.Robot:
+def fetch(**options: Any) -> mg.Robot:
     return mg.Robot.load(FETCH / "fetchlike.urdf", FETCH / "fetchlike.srdf", base="diff_drive", **options)
 
 
-def write_box(path, size) -> None:
+def write_box(path: Path, size: np.ndarray) -> None:
     """An ASCII STL of a box, corner at the origin."""
     corners = [np.array([x, y, z]) * size for x in (0, 1) for y in (0, 1) for z in (0, 1)]
     sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -34,20 +36,20 @@ def write_box(path, size) -> None:
     path.write_text(CUBE.format(facets))
 
 
-def test_base_motion():
-    np.testing.assert_allclose(mg.platform_velocity(math.pi / 2, [0.0, 0.5, 0.2]), [0.5, 0, 0.2], atol=1e-15)
-    np.testing.assert_allclose(mg.joint_velocity(math.pi / 2, [0.5, 0, 0.2]), [0, 0.5, 0.2], atol=1e-15)
-    left, right = mg.wheel_speeds(0.5, 0.6, wheel_separation=0.4)
+def test_base_motion() -> None:
+    np.testing.assert_allclose(mg.base.platform_velocity(math.pi / 2, [0.0, 0.5, 0.2]), [0.5, 0, 0.2], atol=1e-15)
+    np.testing.assert_allclose(mg.base.joint_velocity(math.pi / 2, [0.5, 0, 0.2]), [0, 0.5, 0.2], atol=1e-15)
+    left, right = mg.base.wheel_speeds(0.5, 0.6, wheel_separation=0.4)
     assert (left, right) == pytest.approx((0.38, 0.62))
-    np.testing.assert_allclose(mg.platform_velocity(left=left, right=right, wheel_separation=0.4), [0.5, 0, 0.6])
+    np.testing.assert_allclose(mg.base.platform_velocity(left=left, right=right, wheel_separation=0.4), [0.5, 0, 0.6])
     for bad in ([0.1, 0.2], [0, math.nan, 0], "xyz"):
         with pytest.raises(mg.InvalidInput, match="joint_velocity"):
-            mg.platform_velocity(0.0, bad)
+            mg.base.platform_velocity(0.0, bad)
     with pytest.raises(mg.InvalidInput, match="wheel_separation"):
-        mg.wheel_speeds(0.1, 0.1, wheel_separation=0)
+        mg.base.wheel_speeds(0.1, 0.1, wheel_separation=0)
 
 
-def test_wheel_limits_reach_the_robot():
+def test_wheel_limits_reach_the_robot() -> None:
     robot = fetch(base_limits={"wheel_velocity": 0.5, "wheel_separation": 0.4})
     assert robot.base_limits["wheel_velocity"] == 0.5
     assert robot.velocity_scale([0.6, 0, 1.0]) == pytest.approx(0.5 / 0.8)
@@ -60,24 +62,24 @@ def test_wheel_limits_reach_the_robot():
         fetch(base_limits={"wheel_seperation": 0.4})
 
 
-def test_wheel_limits_slow_a_drive():
+def test_wheel_limits_slow_a_drive() -> None:
     path = {}
     for velocity in (None, 0.3):
         robot = fetch(base_limits={"wheel_velocity": velocity, "linear_acceleration": 0.5, "linear_velocity": 0.6})
         arm = robot.group("arm_with_torso")
         home = np.clip(np.zeros(len(arm.names)), arm.lower, arm.upper)
-        route = mg.plan_base_route(arm, mg.World(), home=home, start=[0, 0, 0], goal=[3, 0, 0])
+        route = mg.base.plan_base_route(arm, mg.World(), home=home, start=[0, 0, 0], goal=[3, 0, 0])
         path[velocity] = route.duration(robot)
     assert path[None] == pytest.approx(3 / 0.6 + 0.6 / 0.5)
     assert path[0.3] == pytest.approx(3 / 0.3 + 0.3 / 0.5)
 
 
-def test_check_writes_an_srdf_with_the_computed_pairs(tmp_path, capfd):
+def test_check_writes_an_srdf_with_the_computed_pairs(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     target = tmp_path / "new" / "fetch.srdf"
     assert main(["check", str(FETCH / "fetchlike.urdf"), "--write-srdf", str(target)]) == 0
     capfd.readouterr()
     plain = mg.Robot.load(FETCH / "fetchlike.urdf")
-    sampled = mg.with_sampled_pairs(plain)
+    sampled = mg.robot.with_sampled_pairs(plain)
     again = mg.Robot.load(FETCH / "fetchlike.urdf", target)
     assert again.disabled_pairs == sampled.disabled_pairs
     assert {"adjacent", "never"} <= {reason for *_, reason in again.disabled_pairs}
@@ -102,7 +104,7 @@ def test_check_writes_an_srdf_with_the_computed_pairs(tmp_path, capfd):
     assert set(original.disabled_pairs) <= set(full.disabled_pairs)
 
 
-def test_an_srdf_is_not_written_with_meshes_missing(tmp_path, capfd):
+def test_an_srdf_is_not_written_with_meshes_missing(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     urdf = '<robot name="r"><link name="a"><collision><geometry><mesh filename="no.stl"/></geometry></collision></link></robot>'
     (tmp_path / "r.urdf").write_text(urdf)
     assert main(["check", str(tmp_path / "r.urdf"), "--write-srdf", str(tmp_path / "r.srdf")]) == 2
@@ -110,7 +112,7 @@ def test_an_srdf_is_not_written_with_meshes_missing(tmp_path, capfd):
     assert not (tmp_path / "r.srdf").exists()
 
 
-def test_check_tells_what_stands_in_for_a_mesh(tmp_path, capfd):
+def test_check_tells_what_stands_in_for_a_mesh(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     write_box(tmp_path / "part.stl", np.array([0.2, 0.3, 0.4]))
     urdf = (
         '<robot name="r"><link name="a"><collision><geometry><mesh filename="part.stl"/></geometry></collision></link>'
@@ -122,25 +124,25 @@ def test_check_tells_what_stands_in_for_a_mesh(tmp_path, capfd):
     assert "checked as box" in line and "saves 12 triangles" in line and "the same solid" in line
     robot = mg.Robot.load(tmp_path / "r.urdf")
     (shape,) = robot.collisions("a")
-    assert shape.kind == "box" and sorted(shape.shape.size) == pytest.approx([0.2, 0.3, 0.4])
-    np.testing.assert_allclose(shape.bounds, [[0, 0, 0], [0.2, 0.3, 0.4]], atol=1e-9)
+    assert isinstance(shape.shape, mg.Box) and sorted(shape.shape.size) == pytest.approx([0.2, 0.3, 0.4])
+    np.testing.assert_allclose(np.array(shape.bounds), np.array([[0, 0, 0], [0.2, 0.3, 0.4]]), atol=1e-9)
     assert robot.report["meshes"][0]["chosen"] == "box"
     again = mg.Robot.from_strings(robot.to_urdf())
     np.testing.assert_allclose(again.collisions("a")[0].bounds, shape.bounds, atol=1e-12)
 
 
-def test_simplify_mesh_of_arrays():
+def test_simplify_mesh_of_arrays() -> None:
     shape = mg.LinkShape(mg.Cylinder(0.05, 0.3)).surface(segments=48)
-    assert mg.simplify_mesh(shape)["chosen"] == "hull"
-    found = mg.simplify_mesh(shape, 0.001)
+    assert mg.collision.simplify_mesh(shape)["chosen"] == "hull"
+    found = mg.collision.simplify_mesh(shape, 0.001)
     assert found["chosen"] == "cylinder" and 0 < found["deviation"] <= 0.001
     assert found["triangles_saved"] == len(shape.triangles)
     with pytest.raises(mg.InvalidInput, match="mesh_tolerance"):
-        mg.simplify_mesh(shape, -1.0)
+        mg.collision.simplify_mesh(shape, -1.0)
 
 
 @pytest.mark.skipif(not DATA.is_dir(), reason="the shared test data is not there")
-def test_tolerance_at_the_door_and_in_the_command(capfd):
+def test_tolerance_at_the_door_and_in_the_command(capfd: pytest.CaptureFixture[str]) -> None:
     urdf = DATA / "robots/wsg50/wsg_50_simulation/urdf/wsg_50.urdf"
     simple = mg.Robot.load(urdf, mesh_tolerance=0.01)
     assert all(mesh["deviation"] <= 0.01 for mesh in simple.report["meshes"])
@@ -152,9 +154,9 @@ def test_tolerance_at_the_door_and_in_the_command(capfd):
         mg.Robot.load(urdf, mesh_tolerance=-0.01)
 
 
-def test_find_package(tmp_path):
+def test_find_package(tmp_path: Path) -> None:
     (tmp_path / "ws/pkg_folder/urdf").mkdir(parents=True)
     (tmp_path / "ws/pkg_folder/package.xml").write_text("<package><name>pkg</name></package>")
-    assert mg.find_package("pkg", tmp_path / "ws/pkg_folder/urdf") == str(tmp_path / "ws/pkg_folder")
-    assert mg.find_package("other", tmp_path) == ""
-    assert mg.find_package("other", tmp_path, {"other": str(tmp_path)}) == str(tmp_path)
+    assert mg.robot.find_package("pkg", tmp_path / "ws/pkg_folder/urdf") == str(tmp_path / "ws/pkg_folder")
+    assert mg.robot.find_package("other", tmp_path) == ""
+    assert mg.robot.find_package("other", tmp_path, {"other": str(tmp_path)}) == str(tmp_path)

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import itertools
 import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,8 +14,8 @@ import pytest
 import mmgrasp as mg
 from conftest import ASSETS
 from mmgrasp.cli import main
-from mmgrasp.motion_bench import read_motion_problem
-from mmgrasp.motion_bench_run import verify_motion
+from mmgrasp.problems.motion_bench import read_motion_problem
+from mmgrasp.problems.motion_bench_run import verify_motion
 
 LINK = 0.4
 URDF = "<robot name='planar'><link name='l0'/>" + "".join(
@@ -35,7 +38,7 @@ def robot() -> mg.Robot:
 
 
 @pytest.fixture(scope="module")
-def arm(robot) -> mg.JointGroup:
+def arm(robot: mg.Robot) -> mg.robot.JointGroup:
     return robot.group(base_link="l0", tip="tip")
 
 
@@ -55,12 +58,12 @@ def tip(q: np.ndarray) -> np.ndarray:
 START, GOAL = np.array([-0.9, 0.3, 0.3, 0.3]), np.array([0.9, -0.3, -0.3, -0.3])
 
 
-def test_goals_may_be_poses_and_regions(robot, arm, world):
+def test_goals_may_be_poses_and_regions(robot: mg.Robot, arm: mg.robot.JointGroup, world: mg.World) -> None:
     wanted = mg.pose([0.6, 0.8, 0], rpy=[0, 0, 1.2])
     found = mg.plan_motion(robot, arm, world, start=START, tool_poses=wanted)
     assert found.outcome == mg.Outcome.solved
     np.testing.assert_allclose(tip(found.path[-1])[:2], [0.6, 0.8], atol=1e-4)
-    region = mg.ToolRegion(wanted, position=[0.1, 0.1, 0], rotation=[0, 0, 0.3])
+    region = mg.planning.ToolRegion(wanted, position=[0.1, 0.1, 0], rotation=[0, 0, 0.3])
     found = mg.plan_motion(robot, arm, world, start=START, goal=[[2.8, 2.8, 2.8, 9]], regions=[region])
     assert found.goal_index == 1
     assert np.hypot(*(tip(found.path[-1])[:2] - [0.6, 0.8])) <= 0.1 * 2**0.5 + 1e-4
@@ -68,8 +71,8 @@ def test_goals_may_be_poses_and_regions(robot, arm, world):
         mg.plan_motion(robot, arm, world, start=START)
 
 
-def test_a_cone_holds_and_better_paths_are_reported(robot, arm, world):
-    cone = mg.ToolCone(tool_axis=[1, 0, 0], world_axis=[1, 0, 0], half_angle=0.3)
+def test_a_cone_holds_and_better_paths_are_reported(robot: mg.Robot, arm: mg.robot.JointGroup, world: mg.World) -> None:
+    cone = mg.planning.ToolCone(tool_axis=[1, 0, 0], world_axis=[1, 0, 0], half_angle=0.3)
     found = mg.plan_motion(robot, arm, world, start=START, goal=GOAL, tool_cone=cone)
     for a, b in zip(found.path[:-1], found.path[1:], strict=True):
         for s in np.linspace(0, 1, 20):
@@ -91,14 +94,14 @@ def test_a_cone_holds_and_better_paths_are_reported(robot, arm, world):
     assert all(cost == pytest.approx(length) for cost, length in costs)
     assert costs[-1][0] <= found.cost + 1e-9
 
-    def fail(path, cost):
+    def fail(path: Any, cost: Any) -> None:
         raise RuntimeError("enough")
 
     with pytest.raises(RuntimeError, match="enough"):
         mg.plan_motion(robot, arm, world, start=START, goal=GOAL, on_solution=fail)
 
 
-def test_lines_from_pose_to_pose():
+def test_lines_from_pose_to_pose() -> None:
     scene = mg.World()
     robot = mg.Robot.from_strings(URDF, SRDF)
     arm = robot.group(base_link="l0", tip="tip")
@@ -116,7 +119,7 @@ def test_lines_from_pose_to_pose():
     assert json.dumps(found.to_dict())
 
 
-def test_jerk_limits():
+def test_jerk_limits() -> None:
     distance, v, a, j = 3.0, 1.0, 2.0, 20.0
     motion = mg.time_parameterize([[0.0], [distance]], [v], [a], jerk_limits=[j], sample_period=0.005)
     assert motion.duration == pytest.approx(distance / v + v / a + a / j, rel=5e-3)
@@ -125,7 +128,9 @@ def test_jerk_limits():
 
 
 @pytest.mark.parametrize("robot_name", ["panda", "ur5"])
-def test_motion_bench_maker_is_solved_and_verified(robot_name, data, capsys):
+def test_motion_bench_maker_is_solved_and_verified(
+    robot_name: str, data: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     command = ["bench", "mbm", "--data", str(data), "--robot", robot_name, "--set", "table_pick", "box"]
     assert main([*command, "--limit", "2", "--json"]) == 0
     answer = json.loads(capsys.readouterr().out)
@@ -135,7 +140,7 @@ def test_motion_bench_maker_is_solved_and_verified(robot_name, data, capsys):
     assert all(row["mean length [rad]"] > 1 for row in answer["rows"])
 
 
-def test_the_verification_finds_what_is_wrong(data):
+def test_the_verification_finds_what_is_wrong(data: Path) -> None:
     folder = data / "planning/vamp_panda/problems/box_panda"
     problem = read_motion_problem(folder / "scene0001.yaml", folder / "request0001.yaml")
     panda = mg.Robot.load(data / "robots/panda_vamp/panda/panda.urdf", data / "robots/panda_vamp/panda/panda.srdf")
@@ -145,7 +150,7 @@ def test_the_verification_finds_what_is_wrong(data):
     assert "goal" in verify_motion(problem, panda, straight[[0, 0]])
 
 
-def test_the_bench_refuses_what_is_not_there(tmp_path, capsys):
+def test_the_bench_refuses_what_is_not_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["bench", "mbm", "--data", str(tmp_path)]) == 2
     assert "--data" in capsys.readouterr().err
     assert main(["bench", "mbm", "--set", "kitchen"]) == 2
@@ -158,7 +163,9 @@ def test_the_bench_refuses_what_is_not_there(tmp_path, capsys):
         assert option in told and "at least 1" in told
 
 
-def test_a_start_beyond_limits_is_told_by_joint_value_and_limits(robot, arm, world):
+def test_a_start_beyond_limits_is_told_by_joint_value_and_limits(
+    robot: mg.Robot, arm: mg.robot.JointGroup, world: mg.World
+) -> None:
     found = mg.plan_motion(robot, arm, world, start=[0, 0, 3.25, 0], goal=GOAL)
     assert found.outcome == mg.Outcome.invalid_start
     assert found.rejections.limits == 1
@@ -188,7 +195,9 @@ def test_a_start_beyond_limits_is_told_by_joint_value_and_limits(robot, arm, wor
         ({"world": "x" * 100_000}, ["world = 'xxx", "xxx...: must be a World"]),
     ],
 )
-def test_bad_arguments_are_refused_by_name(robot, arm, world, changes, words):
+def test_bad_arguments_are_refused_by_name(
+    robot: mg.Robot, arm: mg.robot.JointGroup, world: mg.World, changes: dict[str, Any], words: list[str]
+) -> None:
     given = {"robot": robot, "group": arm, "world": world, "start": START, "goal": GOAL, **changes}
     with pytest.raises(mg.InvalidInput) as refused:
         mg.plan_motion(**given)
@@ -204,56 +213,65 @@ def test_bad_arguments_are_refused_by_name(robot, arm, world, changes, words):
         ({"checker": mg.World()}, ["checker = ", "a CollisionChecker"]),
     ],
 )
-def test_a_wrong_checker_is_refused_by_name(changes, words):
-    calls = [
-        lambda checker: mg.plan_straight_line(checker, START, np.eye(4)),
+def test_a_wrong_checker_is_refused_by_name(changes: dict[str, Any], words: list[str]) -> None:
+    calls: list[Callable[[Any], Any]] = [
+        lambda checker: mg.planning.plan_straight_line(checker, START, np.eye(4)),
         lambda checker: mg.plan_cartesian(checker, [np.eye(4)] * 2),
-        lambda checker: mg.time_parameterize_free(checker, [START, GOAL]),
+        lambda checker: mg.planning.time_parameterize_free(checker, [START, GOAL]),
     ]
     for call in calls:
         with pytest.raises(mg.InvalidInput) as refused:
-            call(**changes)
+            call(changes["checker"])
         for word in words:
             assert word in str(refused.value)
 
 
-def test_wrong_timing_arguments_are_refused_by_name(robot, arm, world):
+def test_wrong_timing_arguments_are_refused_by_name(robot: mg.Robot, arm: mg.robot.JointGroup, world: mg.World) -> None:
     checker = mg.CollisionChecker(robot, world, arm)
-    for call, words in [
-        (lambda: mg.time_parameterize_free(checker, [START, GOAL], edge_step="fine"), ["edge_step = 'fine'", "number"]),
-        (lambda: mg.time_parameterize_free(checker, [START, GOAL], edge_step=0), ["edge_step = 0", "> 0"]),
-        (lambda: mg.time_parameterize([START, GOAL], [1] * 4, [1] * 4, names=5), ["names = 5", "names of joints"]),
+    word: Any = "fine"
+    five: Any = 5
+    refusals: list[tuple[Callable[[], Any], list[str]]] = [
+        (
+            lambda: mg.planning.time_parameterize_free(checker, [START, GOAL], edge_step=word),
+            ["edge_step = 'fine'", "number"],
+        ),
+        (lambda: mg.planning.time_parameterize_free(checker, [START, GOAL], edge_step=0), ["edge_step = 0", "> 0"]),
+        (lambda: mg.time_parameterize([START, GOAL], [1] * 4, [1] * 4, names=five), ["names = 5", "names of joints"]),
         (lambda: mg.time_parameterize([START, GOAL], [1] * 4, [1] * 4, sample_period=1e-13), ["sample_period", "1e7"]),
         (lambda: mg.time_parameterize([[0], [2]], [1], [1], sample_period=1e-7), ["sample_period = 1e-07", "takes 3"]),
-    ]:
+    ]
+    for call, words in refusals:
         with pytest.raises(mg.InvalidInput) as refused:
             call()
         for word in words:
             assert word in str(refused.value)
 
 
-def test_a_tool_line_from_a_start_that_is_not_allowed_says_why(robot, arm):
+def test_a_tool_line_from_a_start_that_is_not_allowed_says_why(robot: mg.Robot, arm: mg.robot.JointGroup) -> None:
     q = np.array([-0.9, 0.9, 0.9, 0.3])
     first, scene = arm.fk(q), mg.World()
     scene.add_box("crate", [0.05, 0.05, 0.05], first)
     checker = mg.CollisionChecker(robot, scene, arm)
     second = mg.pose([0.1, 0.1, 0]) @ first
-    for found in (mg.plan_cartesian(checker, [first, second], near=q), mg.plan_straight_line(checker, q, second)):
+    for found in (
+        mg.plan_cartesian(checker, [first, second], near=q),
+        mg.planning.plan_straight_line(checker, q, second),
+    ):
         assert found.outcome == mg.Outcome.invalid_start
-        assert found.cause == mg.Rejection.scene
+        assert found.cause == mg.planning.Rejection.scene
         assert found.contact is not None and found.contact.b == "crate"
         assert "touches 'crate'" in repr(found)
         assert found.to_dict()["contact"]["b"] == "crate"
     checker = mg.CollisionChecker(robot, mg.World(), arm)
-    found = mg.plan_straight_line(checker, [0, 0, 3.25, 0], second)
+    found = mg.planning.plan_straight_line(checker, [0, 0, 3.25, 0], second)
     assert found.outcome == mg.Outcome.invalid_start
     for word in ("j3", "3.25", "[-2.8, 2.8]"):
         assert word in found.beyond_limits and word in repr(found)
     assert found.to_dict()["beyond_limits"] == found.beyond_limits
 
 
-def test_a_group_of_another_robot_is_told_by_what_differs(robot, world):
-    def other(urdf: str = URDF, srdf: str = SRDF, **options) -> mg.Robot:
+def test_a_group_of_another_robot_is_told_by_what_differs(robot: mg.Robot, world: mg.World) -> None:
+    def other(urdf: str = URDF, srdf: str = SRDF, **options: Any) -> mg.Robot:
         return mg.Robot.from_strings(urdf, srdf, **options)
 
     for another, words in [
@@ -272,7 +290,7 @@ def test_a_group_of_another_robot_is_told_by_what_differs(robot, world):
             mg.CollisionChecker(robot, world, group)
 
 
-def test_a_diff_drive_base_is_not_moved_sideways():
+def test_a_diff_drive_base_is_not_moved_sideways() -> None:
     folder = ASSETS / "robots" / "fetchlike"
     robot = mg.Robot.load(folder / "fetchlike.urdf", folder / "fetchlike.srdf", base="diff_drive")
     group = robot.group("arm", with_base=True)
@@ -280,11 +298,11 @@ def test_a_diff_drive_base_is_not_moved_sideways():
     q = np.zeros(len(group.names))
     aside = mg.pose([0, 0.2, 0]) @ group.fk(q)
     box = mg.LinkShape(mg.Box([0.02, 0.02, 0.02]))
-    calls = {
-        "plan_straight_line": lambda: mg.plan_straight_line(checker, q, aside),
+    calls: dict[str, Callable[[], Any]] = {
+        "plan_straight_line": lambda: mg.planning.plan_straight_line(checker, q, aside),
         "plan_cartesian": lambda: mg.plan_cartesian(checker, [group.fk(q), aside], near=q),
         "plan_manipulation": lambda: mg.ManipulationProblem(
-            group, mg.World(), box, group.fk(q), aside, [mg.CandidateGrasp(np.eye(4))]
+            group, mg.World(), box, group.fk(q), aside, [mg.grasping.CandidateGrasp(np.eye(4))]
         ),
     }
     for name, call in calls.items():

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import shutil
+from pathlib import Path
+from typing import Any
 
 import pytest
 
 import mmgrasp as mg
-from mmgrasp.motion_bench import read_motion_problem, read_motion_problems
+from mmgrasp.problems.motion_bench import read_motion_problem, read_motion_problems
 
 SETS = ["bookshelf_small", "bookshelf_tall", "bookshelf_thin", "box", "cage", "table_pick", "table_under_pick"]
 
 
 @pytest.fixture(scope="module")
-def robots(data) -> dict[str, mg.Robot]:
+def robots(data: Path) -> dict[str, mg.Robot]:
     return {
         name: mg.Robot.load(
             data / f"robots/{name}_vamp/{name}/{name}.urdf", data / f"robots/{name}_vamp/{name}/{name}.srdf"
@@ -24,7 +26,7 @@ def robots(data) -> dict[str, mg.Robot]:
 
 @pytest.mark.parametrize("which", SETS)
 @pytest.mark.parametrize("robot", ["panda", "ur5"])
-def test_starts_and_goals_are_free(robot, which, robots, data):
+def test_starts_and_goals_are_free(robot: str, which: str, robots: dict[str, Any], data: Path) -> None:
     problems = list(read_motion_problems(data / f"planning/vamp_{robot}/problems/{which}_{robot}"))
     assert len(problems) == 50
     refused = []
@@ -40,7 +42,7 @@ def test_starts_and_goals_are_free(robot, which, robots, data):
 
 
 @pytest.mark.parametrize("robot", ["panda", "ur5"])
-def test_scenes_stand_in_the_way(robot, robots, data):
+def test_scenes_stand_in_the_way(robot: str, robots: dict[str, Any], data: Path) -> None:
     """The straight way from start to goal is blocked in most problems: the objects are where they should be."""
     blocked = 0
     for which in SETS:
@@ -52,7 +54,7 @@ def test_scenes_stand_in_the_way(robot, robots, data):
     assert blocked >= 4
 
 
-def test_bad_files_are_refused_by_name(data, tmp_path):
+def test_bad_files_are_refused_by_name(data: Path, tmp_path: Path) -> None:
     folder = data / "planning/vamp_panda/problems/box_panda"
     scene, request = tmp_path / "scene0001.yaml", tmp_path / "request0001.yaml"
     for wrong, right, message in (

@@ -4,25 +4,26 @@ from __future__ import annotations
 
 import itertools
 import math
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import mmgrasp as mg
-from mmgrasp._core.verify import CheckedBody, check_path
-from mmgrasp._pipe_cell import FINGERS
-from mmgrasp.pipe_cells import ROBOTS, PipeCell, pipe_cell, pipe_robot, pipe_structures
+from mmgrasp.problems.pipe_cells import FINGERS, ROBOTS, PipeCell, pipe_cell, pipe_robot, pipe_structures
+from mmgrasp.verify import CheckedBody, check_path
 from mmgrasp.viz.carry import along, carry_scene, write_carry
 
 
-def distance_of_segments(a, b, c, d) -> float:
+def distance_of_segments(a: Any, b: Any, c: Any, d: Any) -> float:
     """Of two straight sections' centre lines, by sampling one and projecting on the other."""
     points = a + np.linspace(0, 1, 201)[:, None] * (b - a)
     t = np.clip((points - c) @ (d - c) / ((d - c) @ (d - c)), 0, 1)
     return float(np.linalg.norm(points - c - t[:, None] * (d - c), axis=1).min())
 
 
-def test_structures_go_from_one_bend_to_eight_sections():
+def test_structures_go_from_one_bend_to_eight_sections() -> None:
     pipes = pipe_structures()
     assert [len(p.sections) for p in pipes] == [2, 3, 3, 4, 5, 6, 7, 8]
     for pipe in pipes:
@@ -42,7 +43,7 @@ def test_structures_go_from_one_bend_to_eight_sections():
 
 @pytest.mark.parametrize("robot", ROBOTS)
 @pytest.mark.parametrize("number", [1, 3])
-def test_a_cell_is_what_it_says(number, robot):
+def test_a_cell_is_what_it_says(number: int, robot: str) -> None:
     cell = pipe_cell(number, seed=1, robot=robot)
     assert cell.drawn == 1 + sum(cell.rejected.values())
     for T in (cell.T_world_start, cell.T_world_goal):
@@ -63,7 +64,7 @@ def test_a_cell_is_what_it_says(number, robot):
     assert reachable >= 2
 
 
-def test_cells_repeat_by_seed_and_differ_between_seeds():
+def test_cells_repeat_by_seed_and_differ_between_seeds() -> None:
     one = pipe_cell(1, seed=1)
     pipe_cell.__globals__["_pipe_cell"].cache_clear()
     again, other = pipe_cell(1, seed=1), pipe_cell(1, seed=2)
@@ -74,7 +75,7 @@ def test_cells_repeat_by_seed_and_differ_between_seeds():
 
 
 @pytest.mark.parametrize("number", range(1, 9))
-def test_grasps_keep_their_distance(number):
+def test_grasps_keep_their_distance(number: int) -> None:
     """1 cm along the section or 5 degrees about it."""
     pipe = pipe_structures()[number - 1]
     grasps = pipe.sample_grasps(500, gripper=pipe_robot("tm14like")[2], seed=1)
@@ -89,7 +90,7 @@ def test_grasps_keep_their_distance(number):
     assert alike > 0, "some differ in one of the two alone"
 
 
-def test_grasps_leave_the_hand_free():
+def test_grasps_leave_the_hand_free() -> None:
     """Palm and fingers against the other sections, by the distance of sampled points of the hand."""
     cell = pipe_cell(3)
     grasps = cell.grasps(150)
@@ -102,6 +103,7 @@ def test_grasps_leave_the_hand_free():
     points = []
     for link in ("gripper_link", "left_finger_link", "right_finger_link"):
         (shape,) = robot.collisions(link)
+        assert isinstance(shape.shape, mg.Box)
         local = rng.uniform(-0.5, 0.5, (200, 3)) * shape.shape.size
         T = T_tool_world @ poses[link] @ shape.pose
         points.append(local @ T[:3, :3].T + T[:3, 3])
@@ -121,7 +123,7 @@ def test_grasps_leave_the_hand_free():
     assert refused > 0, "some hands do meet the pipe"
 
 
-def fault_by_fcl(cell, grasp, path) -> str:
+def fault_by_fcl(cell: PipeCell, grasp: mg.grasping.PipeGrasp, path: np.ndarray) -> str:
     """What is wrong with a path by KDL and FCL called directly, the pipe being a link of the hand; empty: nothing."""
     held = cell.robot.with_link("pipe", "gripper_tcp", np.linalg.inv(grasp.T_object_tool), cell.pipe.shapes())
     may_touch = [(finger, "pipe", "user") for finger in sorted(FINGERS)]
@@ -134,7 +136,7 @@ def fault_by_fcl(cell, grasp, path) -> str:
 
 @pytest.mark.parametrize("robot", ROBOTS)
 @pytest.mark.parametrize("number", range(1, 9))
-def test_both_arms_carry_every_structure(number, robot):
+def test_both_arms_carry_every_structure(number: int, robot: str) -> None:
     """With another planner than the one the generator asks, over other grasps."""
     cell = pipe_cell(number, robot=robot)
     grasps = cell.grasps(500)
@@ -149,11 +151,11 @@ def test_both_arms_carry_every_structure(number, robot):
     assert fault_by_fcl(cell, carrier, found.path) == ""
 
 
-def within_reach(cell: PipeCell, count: int) -> list[mg.PipeGrasp]:
+def within_reach(cell: PipeCell, count: int) -> list[mg.grasping.PipeGrasp]:
     return list(itertools.islice((g for g in cell.grasps(200) if all(map(len, cell.ends(g, 1)))), count))
 
 
-def test_fcl_finds_a_pipe_that_is_carried_through_a_post():
+def test_fcl_finds_a_pipe_that_is_carried_through_a_post() -> None:
     cell = pipe_cell(3)
     grasps = cell.grasps(100)
     found = mg.plan_manipulation(cell.problem(grasps), planner="rrt_star_mg", goal_cost=float("inf"), time_limit=600.0)
@@ -164,7 +166,7 @@ def test_fcl_finds_a_pipe_that_is_carried_through_a_post():
     assert any("'pipe' touches" in fault for fault in faults)
 
 
-def test_trees_of_good_paths_join_few_of_the_vertices_within_a_step():
+def test_trees_of_good_paths_join_few_of_the_vertices_within_a_step() -> None:
     """Nearly all are within one in the ellipsoids of good paths, and most edges to them are blocked."""
     cell = pipe_cell(8, style="open")
     carry = cell.problem(cell.grasps(500))
@@ -190,7 +192,7 @@ def test_trees_of_good_paths_join_few_of_the_vertices_within_a_step():
     assert excess[0] < excess[1] + 0.002, excess
 
 
-def test_not_every_grasp_that_reaches_both_ends_can_carry():
+def test_not_every_grasp_that_reaches_both_ends_can_carry() -> None:
     """P2's reason to plan over many grasps: in cell 8 the first reachable grasp fails where another one carries the pipe."""
     assert pipe_cell(8, seed=2).rejected["the first grasp within reach will do"] >= 1
     cell = pipe_cell(8)
@@ -209,7 +211,7 @@ def test_not_every_grasp_that_reaches_both_ends_can_carry():
 
 
 @pytest.mark.parametrize("number", [4, 7, 8])
-def test_few_single_grasps_reach_both_ends(number):
+def test_few_single_grasps_reach_both_ends(number: int) -> None:
     """What cannot hold the pipe at both ends admits no motion: counted over other grasps than the generator's."""
     cell = pipe_cell(number)
     grasps = cell.grasps(500)
@@ -219,7 +221,7 @@ def test_few_single_grasps_reach_both_ends(number):
 
 
 @pytest.mark.parametrize("number", [1, 5, 8])
-def test_straight_lines_do_not_carry_through_narrow_cells(number):
+def test_straight_lines_do_not_carry_through_narrow_cells(number: int) -> None:
     """Each start with each goal of a grasp, joined in steps: over other grasps and arm configurations than the generator's."""
     cell = pipe_cell(number)
     lines = free = 0
@@ -236,13 +238,13 @@ def test_straight_lines_do_not_carry_through_narrow_cells(number):
     assert free == 0
 
 
-def test_open_cells_are_solved_over_roadmaps_as_sparse_as_in_p2():
+def test_open_cells_are_solved_over_roadmaps_as_sparse_as_in_p2() -> None:
     """With other roadmaps than the generator's, and no edge that the roadmap would not have."""
     cell = pipe_cell(2, style="open")
     assert cell.style == "open"
     problem, solved = cell.problem(cell.grasps(500)), 0
     for seed in range(1, 6):
-        roadmap = mg.Roadmap.build(cell.arm, vertices=5000, gamma=4.0, seed=seed)
+        roadmap = mg.planning.Roadmap.build(cell.arm, vertices=5000, gamma=4.0, seed=seed)
         assert roadmap.figures["mean_degree"] < 3
         found = mg.plan_manipulation(problem, roadmap=roadmap, straight=False, shorten=False)
         if found.outcome == mg.Outcome.solved:
@@ -251,21 +253,25 @@ def test_open_cells_are_solved_over_roadmaps_as_sparse_as_in_p2():
     assert solved >= 3
 
 
-def test_cells_with_too_many_grasps_within_reach_are_turned_down():
+def test_cells_with_too_many_grasps_within_reach_are_turned_down() -> None:
     cell = pipe_cell(8, seed=2)
     assert cell.rejected["30 % of the grasps within reach, or more"] >= 1
     assert cell.drawn == 1 + sum(cell.rejected.values())
 
 
-def test_what_are_no_grasps_is_refused():
+def test_what_are_no_grasps_is_refused() -> None:
+    grasps: Any
     for grasps in (5, [5], [np.eye(4)]):
         with pytest.raises(mg.InvalidInput, match=r"(?s)grasps = .*: must be a list of PipeGrasp"):
             pipe_cell(1).problem(grasps)
 
 
-def test_unknown_cells_are_refused():
+def test_unknown_cells_are_refused() -> None:
     with pytest.raises(mg.InvalidInput, match=r"number = 9: must be from 1 to 8"):
         pipe_cell(9)
+    number: Any
+    seed: Any
+    style: Any
     for number in ("one", 1.0, True, None, -1):
         with pytest.raises(mg.InvalidInput, match=f"number = {number!r}: must be from 1 to 8"):
             pipe_cell(number)
@@ -282,7 +288,7 @@ def test_unknown_cells_are_refused():
         pipe_cell(1, seed=-1)
 
 
-def test_a_picture_shows_the_pipe_from_start_to_goal(tmp_path):
+def test_a_picture_shows_the_pipe_from_start_to_goal(tmp_path: Path) -> None:
     cell = pipe_cell(1)
     for grasp in cell.grasps(100):
         starts, goals = cell.ends(grasp, 4)

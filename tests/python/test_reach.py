@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import zlib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,21 +22,21 @@ def fetch() -> mg.Robot:
 
 
 @pytest.fixture(scope="module")
-def arm(fetch) -> mg.JointGroup:
+def arm(fetch: mg.Robot) -> mg.robot.JointGroup:
     return fetch.group("arm_with_torso", tip="gripper_tcp")
 
 
 @pytest.fixture(scope="module")
-def saved(arm, tmp_path_factory):
+def saved(arm: mg.robot.JointGroup, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("reach") / "arm.reach"
     mg.ReachDatabase.build(arm, samples=40_000, seed=3).save(folder)
     return folder
 
 
-def chain_fk(meta: dict, q: np.ndarray) -> np.ndarray:
+def chain_fk(meta: dict[str, Any], q: np.ndarray) -> np.ndarray:
     """Tool pose from the file alone, by the formula of docs/methods/reach.md."""
 
-    def matrix(rows):
+    def matrix(rows: Any) -> np.ndarray:
         T = np.eye(4)
         T[:3] = np.reshape(rows, (3, 4))
         return T
@@ -47,10 +48,10 @@ def chain_fk(meta: dict, q: np.ndarray) -> np.ndarray:
         step = np.array([[1, 0, 0, px], [0, cx, -sx, py], [0, sx, cx, pz], [0, 0, 0, 1]])
         turn = np.array([[c, -n, 0, 0], [n, c, 0, 0], [0, 0, 1, s * value + t], [0, 0, 0, 1]])
         T = T @ step @ turn
-    return T @ matrix(meta["tip_pose"])
+    return np.asarray(T @ matrix(meta["tip_pose"]))
 
 
-def test_numpy_reads_the_files(arm, saved):
+def test_numpy_reads_the_files(arm: mg.robot.JointGroup, saved: Path) -> None:
     meta = json.loads((saved / "meta.json").read_text())
     files = {name: np.load(saved / name, mmap_mode="r") for name in meta["files"]}
     for name, entry in meta["files"].items():
@@ -78,7 +79,7 @@ def test_numpy_reads_the_files(arm, saved):
     assert bytes_a_pose < 2 * arm.size + 12, "two bytes a joint, and tables that a small database does not spread"
 
 
-def test_arrays_are_views_that_cannot_be_written(arm, saved):
+def test_arrays_are_views_that_cannot_be_written(arm: mg.robot.JointGroup, saved: Path) -> None:
     db = mg.ReachDatabase.load(saved, arm)
     for name, array in db.arrays.items():
         np.testing.assert_array_equal(array, np.load(saved / f"{name}.npy"))
@@ -93,20 +94,20 @@ def test_arrays_are_views_that_cannot_be_written(arm, saved):
     assert str(len(db)) in repr(db)
 
 
-def test_another_robot_is_noticed(fetch, arm, saved):
+def test_another_robot_is_noticed(fetch: mg.Robot, arm: mg.robot.JointGroup, saved: Path) -> None:
     other = fetch.group("arm", tip="gripper_tcp")
     with pytest.raises(mg.IoError, match="list of joints"):
         mg.ReachDatabase.load(saved, other)
     assert mg.ReachDatabase.load(saved).difference(arm) == ""
 
 
-def test_an_old_file_is_refused_with_a_hint(tmp_path):
+def test_an_old_file_is_refused_with_a_hint(tmp_path: Path) -> None:
     (tmp_path / "old.reach").write_bytes(b"MMGREACH" + bytes(200))
     with pytest.raises(mg.IoError, match="build it again"):
         mg.ReachDatabase.load(tmp_path / "old.reach")
 
 
-def test_solutions_are_exact_and_free(fetch, arm, saved):
+def test_solutions_are_exact_and_free(fetch: mg.Robot, arm: mg.robot.JointGroup, saved: Path) -> None:
     db = mg.ReachDatabase.load(saved, arm)
     checker = mg.CollisionChecker(fetch, mg.World(), arm)
     rng = np.random.default_rng(5)
@@ -122,7 +123,7 @@ def test_solutions_are_exact_and_free(fetch, arm, saved):
     assert solved > 20
 
 
-def test_base_poses_bring_the_tool_there(fetch, arm, saved):
+def test_base_poses_bring_the_tool_there(fetch: mg.Robot, arm: mg.robot.JointGroup, saved: Path) -> None:
     db = mg.ReachDatabase.load(saved, arm)
     world = mg.World()
     world.add_box("table", size=(0.6, 1.0, 0.5), pose=mg.pose([2.0, 1.0, 0.25]))

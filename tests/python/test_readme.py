@@ -3,13 +3,17 @@
 import re
 from pathlib import Path
 
+import pytest
+
 README = Path(__file__).parents[2] / "README.md"
 
 
-def test_the_ten_lines_of_python_run(tmp_path, monkeypatch, capsys):
+def test_the_ten_lines_of_python_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     (code,) = re.findall(r"```python\n(.*?)```", README.read_text(), re.DOTALL)
     monkeypatch.chdir(tmp_path)
     exec(compile(code, "README.md", "exec"), {})
     printed = capsys.readouterr().out
-    assert "PartSupplyPlan(solved" in printed and printed.strip().endswith("the plan holds")
+    assert "ScenarioPlan(solved" in printed and printed.strip().endswith("the plan holds")
     assert (tmp_path / "plan.json").exists()

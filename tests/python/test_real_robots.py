@@ -1,6 +1,7 @@
 """The main job on robots we did not write: TIAGo and a UR10e on a Ridgeback, with their meshes and a mounted gripper."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -12,7 +13,7 @@ DATA = Path(__file__).parents[2].parent / "shared" / "data"
 
 @pytest.mark.skipif(not DATA.exists(), reason="the robots' files (../shared/data) are not here")
 @pytest.mark.parametrize(("name", "trays", "most_stops"), [("tiago_2f85", 3, 2), ("ur10e_ridgeback", 3, 2)])
-def test_main_job_is_planned_and_holds(name, trays, most_stops, tmp_path):
+def test_main_job_is_planned_and_holds(name: str, trays: Any, most_stops: Any, tmp_path: Path) -> None:
     plan = mg.plan_part_supply(SCENARIOS / f"{name}.yaml")
     assert plan.outcome == mg.Outcome.solved, plan
     targets = {part for tray in plan.scenario.trays for part in tray.targets}

@@ -8,6 +8,9 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import jsonschema
 import numpy as np
@@ -54,11 +57,11 @@ SCHEMA = {
 
 
 @pytest.fixture(scope="session")
-def quick():
+def quick() -> Callable[[str], dict[str, Any]]:
     """Results of the quick versions, each computed once."""
-    done: dict[str, dict] = {}
+    done: dict[str, dict[str, Any]] = {}
 
-    def result(name: str) -> dict:
+    def result(name: str) -> dict[str, Any]:
         if name not in done:
             if name in ("p1-figure-4.10", "p1-figure-4.12"):
                 pytest.importorskip("mujoco", reason="MuJoCo is not installed (pip install 'mmgrasp[sim]')")
@@ -68,12 +71,14 @@ def quick():
     return result
 
 
-def values(result: dict, column: str, side: str = "ours") -> list:
+def values(result: dict[str, Any], column: str, side: str = "ours") -> list[Any]:
     return [row["values"][column][side] for row in result["rows"] if column in row["values"]]
 
 
 @pytest.mark.parametrize("name", ENTRIES)
-def test_every_entry_has_the_shape_and_its_picture(name, quick, tmp_path):
+def test_every_entry_has_the_shape_and_its_picture(
+    name: str, quick: Callable[[str], dict[str, Any]], tmp_path: Path
+) -> None:
     result = quick(name)
     jsonschema.validate(json.loads(json.dumps(result, allow_nan=False)), SCHEMA)
     page = store(result, tmp_path)
@@ -84,7 +89,7 @@ def test_every_entry_has_the_shape_and_its_picture(name, quick, tmp_path):
         assert picture.stat().st_size > 5000
 
 
-def test_other_seeds_stand_beside_the_first(quick, tmp_path):
+def test_other_seeds_stand_beside_the_first(quick: Callable[[str], dict[str, Any]], tmp_path: Path) -> None:
     first = quick("p1-figure-3.9")
     store(first, tmp_path)
     fault = {"kind": "T", "what": "the sky is green", "holds": False, "clock": False}
@@ -96,12 +101,12 @@ def test_other_seeds_stand_beside_the_first(quick, tmp_path):
 
 
 @pytest.mark.parametrize("name", ENTRIES)
-def test_exact_values_and_trends_hold(name, quick):
+def test_exact_values_and_trends_hold(name: str, quick: Callable[[str], dict[str, Any]]) -> None:
     late = [c["what"] for c in quick(name)["checks"] if not c["holds"] and not c["clock"]]
     assert late == []
 
 
-def test_sequence_sizes_are_the_papers(quick):
+def test_sequence_sizes_are_the_papers(quick: Callable[[str], dict[str, Any]]) -> None:
     result = quick("p1-table-3.3")
     counts = [row["key"]["trays"] for row in result["rows"]]
     assert values(result, "sequence size") == [PAPER_ROWS[n][0] for n in counts] == [n // 2 for n in counts]
@@ -113,7 +118,7 @@ def test_sequence_sizes_are_the_papers(quick):
         assert row["values"]["objects"]["ours"] == row["values"]["grasps"]["ours"] == 12 * n
 
 
-def test_figure_3_9_against_circles(quick):
+def test_figure_3_9_against_circles(quick: Callable[[str], dict[str, Any]]) -> None:
     """The discs of two circles' lens are known in closed form: half the overlap of their diameters."""
     result = quick("p1-figure-3.9")
     assert values(result, "robust intersections") == [5, 3, 0, 8]
@@ -123,14 +128,14 @@ def test_figure_3_9_against_circles(quick):
         assert radius == pytest.approx(0.5 - (max(ends) - min(ends)) / 2, abs=0.015)
 
 
-def test_experiment_saves_a_stop(quick):
+def test_experiment_saves_a_stop(quick: Callable[[str], dict[str, Any]]) -> None:
     result = quick("p1-experiment-3.7.1")
     assert values(result, "stops") == [2, 3] == values(result, "stops", "paper")
     assert values(result, "trays of each stop") == ["{1,2} {4}", "{1} {2} {4}"]
     assert values(result, "objects") == [12]
 
 
-def test_setups_are_the_papers():
+def test_setups_are_the_papers() -> None:
     row = Row(objects=(9, 12))
     problem = row.problem()
     assert list(problem.trays[0].size) == [0.30, 0.40, 0.10]
@@ -146,7 +151,7 @@ def test_setups_are_the_papers():
     assert np.abs(places).max(axis=0) == pytest.approx([0.15 - 0.30 / 18, 0.20 - 0.40 / 24])
 
 
-def test_the_json_of_the_command_is_the_contract(capfd):
+def test_the_json_of_the_command_is_the_contract(capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["reproduce", "p1-figure-3.9", "--json", "--quick"]) == 0
     printed = json.loads(capfd.readouterr().out)
     assert printed["name"] == "p1-figure-3.9"
@@ -154,7 +159,7 @@ def test_the_json_of_the_command_is_the_contract(capfd):
     assert printed["rows"][3]["values"]["proven least"]["paper"] is None
 
 
-def test_the_command_lists_and_refuses(capfd):
+def test_the_command_lists_and_refuses(capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["reproduce"]) == 0
     listed = [line.split()[0] for line in capfd.readouterr().out.splitlines()]
     assert listed == list(ENTRIES)
@@ -162,13 +167,13 @@ def test_the_command_lists_and_refuses(capfd):
     assert "p1-table-3.3" in capfd.readouterr().err
 
 
-def test_names_may_be_written_in_capitals():
+def test_names_may_be_written_in_capitals() -> None:
     assert entry("P2-TABLE-4.2") is entry("p2-table-4.2")
     with pytest.raises(mg.InvalidInput, match=r"name = 'P2-TABLE-9.9': .*did you mean p2-table"):
         entry("P2-TABLE-9.9")
 
 
-def test_a_figure_is_found_by_its_table(capfd):
+def test_a_figure_is_found_by_its_table(capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["reproduce", "p1-figure-3.13", "--quick", "--json"]) == 0
     assert json.loads(capfd.readouterr().out)["name"] == "p1-table-3.1"
 
@@ -178,22 +183,22 @@ import sys, mmgrasp as mg, numpy as np
 from mmgrasp.reproduce.setup import Row, database
 row = Row(trays=2, objects=(2, 2), spacing=0.4, shift=float(sys.argv[1]))
 problem, reach = row.problem(), database(row, 200_000)
-grid = mg.make_base_grid(problem, reach)
-np.save(sys.argv[2], [r.cells(grid) for r in mg.compute_base_regions(problem, reach, grid)])
+grid = mg.base.make_base_grid(problem, reach)
+np.save(sys.argv[2], [r.cells(grid) for r in mg.base.compute_base_regions(problem, reach, grid)])
 """
 
 
-def test_trays_moved_by_3_cm_give_what_empty_caches_give(tmp_path):
+def test_trays_moved_by_3_cm_give_what_empty_caches_give(tmp_path: Path) -> None:
     """After other trays in the same process, and in a process that computed nothing before."""
     row = Row(trays=2, objects=(2, 2), spacing=0.4)
     reach = database(row, 200_000)
     found = {}
     for shift in (0.0, 0.03):
         problem = row.with_(shift=shift).problem()
-        grid = mg.make_base_grid(problem, reach)
-        regions = mg.compute_base_regions(problem, reach, grid)
+        grid = mg.base.make_base_grid(problem, reach)
+        regions = mg.base.compute_base_regions(problem, reach, grid)
         found[shift] = [region.cells(grid) for region in regions]
-        kept = mg.ObjectRegions.compute(problem, reach, grid)
+        kept = mg.base.ObjectRegions.compute(problem, reach, grid)
         for t, cells in enumerate(found[shift]):
             np.testing.assert_array_equal(kept.region(t, kept.parts(t)), cells)
     assert np.sum(found[0.03]) > 0
@@ -202,13 +207,13 @@ def test_trays_moved_by_3_cm_give_what_empty_caches_give(tmp_path):
     np.testing.assert_array_equal(np.load(fresh), found[0.03])
 
 
-def test_regions_and_grids_survive_pickling():
+def test_regions_and_grids_survive_pickling() -> None:
     import pickle
 
     row = Row(objects=(1, 2))
     problem, reach = row.problem(), database(row, 200_000)
-    grid = mg.make_base_grid(problem, reach)
-    region = mg.compute_base_regions(problem, reach, grid)[0]
+    grid = mg.base.make_base_grid(problem, reach)
+    region = mg.base.compute_base_regions(problem, reach, grid)[0]
     again, same = pickle.loads(pickle.dumps((grid, region)))
     assert (again.nx, again.ny, again.resolution, again.headings) == (grid.nx, grid.ny, grid.resolution, grid.headings)
     np.testing.assert_array_equal(again.origin, grid.origin)
@@ -219,7 +224,7 @@ def test_regions_and_grids_survive_pickling():
     assert (same.tray, same.base_poses_in_collision) == (region.tray, region.base_poses_in_collision)
 
 
-def test_the_robot_is_the_shipped_one():
+def test_the_robot_is_the_shipped_one() -> None:
     setup = robot_setup(Row().torso)
     assert setup.robot.name == "fetchlike"
     assert setup.robot.base == "diff_drive"

@@ -9,7 +9,7 @@ import mmgrasp as mg
 from mmgrasp.reproduce import shelf
 
 
-def test_shelf_rows_are_the_papers_with_its_errors_corrected():
+def test_shelf_rows_are_the_papers_with_its_errors_corrected() -> None:
     """P3 prints 70 and 83 % where its rows give 67.5 and 82.5 %; table 3.1's 26 % is 26.7 %."""
     averages = {name: sum(row) / 4 for name, row in shelf.ARM_AND_BASE.items()}
     assert averages == {"RRT-Connect": 92.5, "PRM*": 87.5, "EST": 67.5}
@@ -17,7 +17,7 @@ def test_shelf_rows_are_the_papers_with_its_errors_corrected():
     assert np.mean([sum(row) / 4 for row in shelf.ARM_ONLY.values()]) == pytest.approx(26.7, abs=0.05)
 
 
-def test_shelf_goals_are_arm_configurations_inside_the_shelf():
+def test_shelf_goals_are_arm_configurations_inside_the_shelf() -> None:
     arm, whole = shelf.group(False), shelf.group(True)
     alone = mg.CollisionChecker(shelf.robot(), shelf.world(), arm)
     together = mg.CollisionChecker(shelf.robot(), shelf.world(), whole)
@@ -32,7 +32,7 @@ def test_shelf_goals_are_arm_configurations_inside_the_shelf():
         np.testing.assert_allclose(whole.fk(shelf.configuration(goal, True)), arm.fk(goal), atol=1e-12)
 
 
-def test_paths_of_base_and_arm_stay_free_at_a_finer_step():
+def test_paths_of_base_and_arm_stay_free_at_a_finer_step() -> None:
     whole = shelf.group(True)
     checker = mg.CollisionChecker(shelf.robot(), shelf.world(), whole)
     for goal in shelf.GOALS:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,13 +23,13 @@ def fetch() -> mg.Robot:
 
 
 @pytest.fixture(scope="module")
-def arm(fetch) -> mg.JointGroup:
+def arm(fetch: mg.Robot) -> mg.robot.JointGroup:
     return fetch.group("arm_with_torso", tip="gripper_tcp")
 
 
 @pytest.mark.skipif(not CASES, reason="the shared reference numbers are not there")
 @pytest.mark.parametrize("name", sorted(CASES) or ["none"])
-def test_kinematics_equal_pinocchio(name):
+def test_kinematics_equal_pinocchio(name: str) -> None:
     entry = CASES[name]
     robot = mg.Robot.load(DATA / "robots" / entry["urdf"], load_meshes=False)
     group = robot.group(base_link=robot.links[0], tip=entry["tip"])
@@ -36,13 +38,13 @@ def test_kinematics_equal_pinocchio(name):
     columns = [entry["joints"].index(joint) for joint in group.names]
     for q, T, case in zip(configurations, poses, entry["cases"], strict=True):
         np.testing.assert_allclose(T[:3, 3], case["p"], atol=2e-9)
-        _, quat = mg.pose_to_xyz_quat(T)
+        _, quat = mg.robot.pose_to_xyz_quat(T)
         assert abs(abs(np.dot(quat, case["quat"])) - 1) < 1e-8
         np.testing.assert_array_equal(T, group.fk(q))
         np.testing.assert_allclose(group.jacobian(q), np.array(case["J"])[:, columns], atol=2e-9)
 
 
-def test_inverse_kinematics_meets_the_pose(arm):
+def test_inverse_kinematics_meets_the_pose(arm: mg.robot.JointGroup) -> None:
     rng = np.random.default_rng(3)
     for _ in range(20):
         T = arm.fk(rng.uniform(arm.sample_lower, arm.sample_upper))
@@ -54,7 +56,7 @@ def test_inverse_kinematics_meets_the_pose(arm):
         np.testing.assert_array_equal(found.q, again.q)
 
 
-def test_unreachable_is_a_value(arm):
+def test_unreachable_is_a_value(arm: mg.robot.JointGroup) -> None:
     found = arm.ik(mg.pose([9, 0, 0]), restarts=2)
     assert found.outcome != mg.Outcome.solved
     assert found.q is None
@@ -86,7 +88,7 @@ def test_unreachable_is_a_value(arm):
         (lambda a: mg.time_parameterize(np.zeros((2, 2)), [1], [1, 1]), ["velocity_limits"]),
     ],
 )
-def test_misuse_names_the_argument(arm, call, pieces):
+def test_misuse_names_the_argument(arm: mg.robot.JointGroup, call: Any, pieces: list[str]) -> None:
     with pytest.raises(mg.InvalidInput) as raised:
         call(arm)
     assert isinstance(raised.value, ValueError)
@@ -95,7 +97,7 @@ def test_misuse_names_the_argument(arm, call, pieces):
         assert piece in str(raised.value)
 
 
-def test_missing_files_are_os_errors(tmp_path):
+def test_missing_files_are_os_errors(tmp_path: Path) -> None:
     with pytest.raises(mg.IoError, match=r"nowhere\.urdf"):
         mg.Robot.load(tmp_path / "nowhere.urdf")
     with pytest.raises(OSError, match=r"nowhere\.stl"):
@@ -104,13 +106,13 @@ def test_missing_files_are_os_errors(tmp_path):
         mg.World().add_octree("m", tmp_path / "nowhere.bt")
 
 
-def test_checker_and_held_objects(fetch, arm):
+def test_checker_and_held_objects(fetch: mg.Robot, arm: mg.robot.JointGroup) -> None:
     q = arm.ik(mg.pose([0.7, 0.0, 1.0]), world=mg.World()).q
     world = mg.World()
     assert mg.CollisionChecker(fetch, world, group=arm).is_free(q)
     world.add_box("wall", size=(0.1, 1, 1), pose=mg.pose([0.7, 0, 1]))
     checker = mg.CollisionChecker(fetch, world, group=arm)
-    assert checker.rejection(q) == mg.Rejection.scene
+    assert checker.rejection(q) == mg.planning.Rejection.scene
     assert any("wall" in (c.a, c.b) for c in checker.contacts(q))
     assert checker.distance(q).value <= 0
     world.move("wall", mg.pose([3, 0, 1]))
@@ -125,10 +127,11 @@ def test_checker_and_held_objects(fetch, arm):
     assert "long" not in world
 
 
-def test_octree_has_every_occupied_leaf(data):
+def test_octree_has_every_occupied_leaf(data: Path) -> None:
     world = mg.World()
     world.add_octree("map", data / "clouds" / "octomap" / "geb079.bt")
-    shapes = [s.shape for s in world.shapes_of("map")]
+    shapes = [s.shape for s in world.shapes_of("map") if isinstance(s.shape, mg.collision.Voxels)]
+    assert len(shapes) == len(world.shapes_of("map"))
     expected = json.loads((data / "reference" / "transcribed" / "octomap_counts.json").read_text())["geb079.bt"]
     assert sum(len(s.centres) for s in shapes) == expected["occupied_leaves"]
     low = np.min([(s.centres - s.resolution / 2).min(axis=0) for s in shapes], axis=0)
@@ -136,14 +139,15 @@ def test_octree_has_every_occupied_leaf(data):
     np.testing.assert_allclose([low, high], expected["occupied_bbox"], atol=1e-6)
 
 
-def test_points_become_the_cells_that_hold_one():
+def test_points_become_the_cells_that_hold_one() -> None:
     world = mg.World()
     world.add_points("scan", [[0.01, 0.02, 0.03], [0.09, 0.05, 0.01], [-0.01, 0, 0]], resolution=0.1)
-    centres = world.shapes_of("scan")[0].shape.centres
-    np.testing.assert_allclose(sorted(centres.tolist()), [[-0.05, 0.05, 0.05], [0.05, 0.05, 0.05]])
+    cells = world.shapes_of("scan")[0].shape
+    assert isinstance(cells, mg.collision.Voxels)
+    np.testing.assert_allclose(sorted(cells.centres.tolist()), [[-0.05, 0.05, 0.05], [0.05, 0.05, 0.05]])
 
 
-def test_motion_is_free_and_repeats(fetch, arm):
+def test_motion_is_free_and_repeats(fetch: mg.Robot, arm: mg.robot.JointGroup) -> None:
     world = mg.World()
     world.add_box("post", size=(0.08, 0.08, 1.6), pose=mg.pose([0.75, 0, 0.8]))
     start = arm.ik(mg.pose([0.6, 0.4, 0.9]), world=world).q
@@ -175,13 +179,13 @@ def test_motion_is_free_and_repeats(fetch, arm):
     assert last["sec"] + last["nanosec"] * 1e-9 == pytest.approx(timed.duration, abs=1e-9)
 
 
-def test_unknown_planner_lists_the_known(fetch, arm):
+def test_unknown_planner_lists_the_known(fetch: mg.Robot, arm: mg.robot.JointGroup) -> None:
     q = arm.ik(mg.pose([0.6, 0.4, 0.9]), world=mg.World()).q
     with pytest.raises(mg.InvalidInput, match="rrt_connect"):
         mg.plan_motion(fetch, arm, mg.World(), start=q, goal=q, planner="rrt_conect")
 
 
-def test_database_answers_after_a_round_trip(arm, tmp_path):
+def test_database_answers_after_a_round_trip(arm: mg.robot.JointGroup, tmp_path: Path) -> None:
     db = mg.ReachDatabase.build(arm, samples=20_000, seed=1)
     db.save(tmp_path / "arm.reach")
     again = mg.ReachDatabase.load(tmp_path / "arm.reach")
@@ -196,7 +200,7 @@ def test_database_answers_after_a_round_trip(arm, tmp_path):
         mg.ReachDatabase.load(tmp_path / "arm.reach")
 
 
-def test_mounting_writes_one_robot(fetch, arm):
+def test_mounting_writes_one_robot(fetch: mg.Robot, arm: mg.robot.JointGroup) -> None:
     omni = ASSETS / "robots" / "omni6"
     other = mg.Robot.load(omni / "omni6.urdf", omni / "omni6.srdf")
     both = fetch.mount(other, "torso_lift_link", mg.pose([0, 0, 1]), "second_")
@@ -209,18 +213,18 @@ def test_mounting_writes_one_robot(fetch, arm):
         np.testing.assert_allclose(T[link], T_again[link], atol=1e-12)
 
 
-def test_exact_small_programmes():
-    cover = mg.solve_set_cover(4, [[0, 1], [1, 2], [2, 3], [0, 3], [1, 2, 3]])
+def test_exact_small_programmes() -> None:
+    cover = mg.optim.solve_set_cover(4, [[0, 1], [1, 2], [2, 3], [0, 3], [1, 2, 3]])
     assert cover.outcome == mg.Outcome.solved
     assert cover.cost == 2
     lengths = np.abs(np.subtract.outer([1.0, 3, 2, 0, 4], [1.0, 3, 2, 0, 4]))
-    tour = mg.shortest_visiting_tour(lengths)
+    tour = mg.optim.shortest_visiting_tour(lengths)
     assert tour.order == [0, 2, 1]
     assert tour.length == pytest.approx(4)
-    grid = mg.BaseGrid([0, 0], 0.1, 8, 6)
-    _, radius = mg.inscribed_circle(grid, np.ones((1, 6, 8), dtype=np.uint8))
+    grid = mg.base.BaseGrid([0, 0], 0.1, 8, 6)
+    _, radius = mg.base.inscribed_circle(grid, np.ones((1, 6, 8), dtype=np.uint8))
     assert radius == pytest.approx(0.3, abs=1e-5)
 
 
-def test_results_read_well(arm):
+def test_results_read_well(arm: mg.robot.JointGroup) -> None:
     assert "gripper_tcp" in repr(arm)

@@ -6,6 +6,9 @@ import copy
 import json
 import math
 import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import jsonschema
 import numpy as np
@@ -19,10 +22,10 @@ from mmgrasp.cli import main
 REMOVE = object()
 
 
-def edited(scenario: dict, path: str, value) -> dict:
+def edited(scenario: dict[str, Any], path: str, value: Any) -> dict[str, Any]:
     """A copy with one value set; the path is written like trays.0.size."""
     out = copy.deepcopy(scenario)
-    target = out
+    target: Any = out
     *parents, last = [int(key) if key.isdigit() else key for key in path.split(".")]
     for key in parents:
         target = target[key]
@@ -105,7 +108,15 @@ BAD = [
 
 
 @pytest.mark.parametrize(("path", "value", "pieces"), BAD, ids=[f"{i:02d}-{entry[0]}" for i, entry in enumerate(BAD)])
-def test_bad_scenario_gets_one_message(small, write, capfd, tmp_path, path, value, pieces):
+def test_bad_scenario_gets_one_message(
+    small: dict[str, Any],
+    write: Callable[..., Path],
+    capfd: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    path: Any,
+    value: Any,
+    pieces: list[str],
+) -> None:
     file = write(edited(small, path, value))
     (file.parent.parent / "bad.stl").write_text("solid nothing\n")
     assert main(["plan", str(file), "-o", str(tmp_path / "out")]) == 2
@@ -119,7 +130,7 @@ def test_bad_scenario_gets_one_message(small, write, capfd, tmp_path, path, valu
     assert not (tmp_path / "out").exists()
 
 
-def test_part_larger_than_the_gripper(small, write):
+def test_part_larger_than_the_gripper(small: dict[str, Any], write: Callable[..., Path]) -> None:
     scenario = edited(small, "part_types.bracket.box", [0.12, 0.12, 0.12])
     scenario["trays"][0]["parts"] = [{"type": "bracket", "xyz": [0, 0]}]
     scenario["trays"][0]["targets"] = "all"
@@ -127,7 +138,7 @@ def test_part_larger_than_the_gripper(small, write):
         mg.load_scenario(write(scenario))
 
 
-def test_messages_name_the_line(small, write):
+def test_messages_name_the_line(small: dict[str, Any], write: Callable[..., Path]) -> None:
     text = yaml.safe_dump(small, sort_keys=False)
     number = next(i for i, line in enumerate(text.splitlines(), 1) if line.startswith("positioning_uncertainty"))
     file = write(text.replace("positioning_uncertainty: 0.1", "positioning_uncertainty: -1"))
@@ -148,12 +159,12 @@ def test_messages_name_the_line(small, write):
         ("a: " + "[" * 80 + "]" * 80, "deep"),
     ],
 )
-def test_what_is_no_scenario(write, text, piece):
+def test_what_is_no_scenario(write: Callable[..., Path], text: Any, piece: str) -> None:
     with pytest.raises(mg.InvalidInput, match=re.escape(piece)):
         mg.load_scenario(write(text))
 
 
-def test_unreadable_files(tmp_path):
+def test_unreadable_files(tmp_path: Path) -> None:
     with pytest.raises(mg.IoError, match=r"none\.yaml"):
         mg.load_scenario(tmp_path / "none.yaml")
     (tmp_path / "binary.yaml").write_bytes(b"\xff\xfe\x00")
@@ -163,7 +174,9 @@ def test_unreadable_files(tmp_path):
         mg.load_scenario(tmp_path)
 
 
-def test_no_plan_is_explained(small, write, capfd, tmp_path):
+def test_no_plan_is_explained(
+    small: dict[str, Any], write: Callable[..., Path], capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
     file = write(edited(small, "positioning_uncertainty", 0.9))
     assert main(["plan", str(file), "-o", str(tmp_path), "--no-pictures"]) == 3
     assert "uncertainty" in capfd.readouterr().out
@@ -173,14 +186,16 @@ def test_no_plan_is_explained(small, write, capfd, tmp_path):
     assert main(["verify", str(tmp_path / "plan.json")]) == 1
 
 
-def test_tray_out_of_reach_is_explained(small, write, capfd, tmp_path):
+def test_tray_out_of_reach_is_explained(
+    small: dict[str, Any], write: Callable[..., Path], capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
     scenario = edited(small, "trays.0.pose.xyz", [2.78, -1.3, 2.5])
     assert main(["plan", str(write(scenario)), "-o", str(tmp_path), "--no-pictures"]) == 3
     assert "A" in capfd.readouterr().out
     assert any(o["tray"] == "A" for o in json.loads((tmp_path / "plan.json").read_text())["obstructions"])
 
 
-def test_parts_lie_where_the_grid_says(small_path):
+def test_parts_lie_where_the_grid_says(small_path: Path) -> None:
     scenario = mg.load_scenario(small_path)
     tray = scenario.trays[0].tray
     assert [p.name for p in tray.parts[:2]] == ["A/bracket_00", "A/bracket_01"]
@@ -193,7 +208,7 @@ def test_parts_lie_where_the_grid_says(small_path):
     np.testing.assert_allclose(high - low, [0.30, 0.40, 0.10], atol=1e-12)
 
 
-def test_listed_parts_and_own_grasps(small, write):
+def test_listed_parts_and_own_grasps(small: dict[str, Any], write: Callable[..., Path]) -> None:
     scenario = copy.deepcopy(small)
     pose = {"xyz": [0, 0, 0.01], "rpy": [0, math.pi / 2, 0]}
     scenario["part_types"]["bracket"]["grasps"] = [{"pose": pose, "width": 0.03}, {"pose": pose, "width": 0.2}]
@@ -209,6 +224,6 @@ def test_listed_parts_and_own_grasps(small, write):
 
 
 @pytest.mark.parametrize("name", sorted(p.name for p in (ASSETS / "scenarios").glob("*.yaml")))
-def test_shipped_scenarios_keep_the_schema(name):
+def test_shipped_scenarios_keep_the_schema(name: str) -> None:
     schema = json.loads((ASSETS.parent / "schemas" / "scenario.schema.json").read_text())
     jsonschema.validate(yaml.safe_load((ASSETS / "scenarios" / name).read_text()), schema)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -44,7 +45,7 @@ def files(data: Path, *suffixes: str) -> list[Path]:
     return found
 
 
-def refusals(data: Path, paths: list[Path], load) -> dict[str, str]:
+def refusals(data: Path, paths: list[Path], load: Any) -> dict[str, str]:
     refused = {}
     for path in paths:
         try:
@@ -62,15 +63,16 @@ def expect_known(refused: dict[str, str], suffixes: tuple[str, ...]) -> None:
             assert piece in message
 
 
-def test_meshes_load_or_are_refused_for_the_right_reason(data):
+def test_meshes_load_or_are_refused_for_the_right_reason(data: Path) -> None:
     expect_known(refusals(data, files(data, *MESHES), mg.Mesh.load), MESHES)
 
 
 def surface(corners: np.ndarray) -> float:
-    return 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return 0.5 * float(np.linalg.norm(normals, axis=1).sum())
 
 
-def test_binary_stl_keeps_its_surface(data):
+def test_binary_stl_keeps_its_surface(data: Path) -> None:
     checked = 0
     for path in files(data, ".stl"):
         content = path.read_bytes()
@@ -85,8 +87,8 @@ def test_binary_stl_keeps_its_surface(data):
     assert checked > 100
 
 
-def test_robots_load_or_are_refused_for_the_right_reason(data):
-    def load(path):
+def test_robots_load_or_are_refused_for_the_right_reason(data: Path) -> None:
+    def load(path: Any) -> None:
         robot = mg.Robot.load(path, allow_missing_meshes=True)
         tree = ElementTree.parse(path).getroot()
         assert {e.get("name") for e in tree.findall("link")} == set(robot.links)
@@ -95,7 +97,7 @@ def test_robots_load_or_are_refused_for_the_right_reason(data):
     expect_known(refusals(data, files(data, ".urdf"), load), (".urdf",))
 
 
-def test_srdfs_load_with_their_robots(data):
+def test_srdfs_load_with_their_robots(data: Path) -> None:
     robots = data / "robots"
     assert {p.relative_to(robots).as_posix() for p in files(data, ".srdf")} == set(PAIRS)
     for srdf, urdf in PAIRS.items():
@@ -106,14 +108,14 @@ def test_srdfs_load_with_their_robots(data):
             assert any(f'"{name}"' in w and "dropped" in w for w in robot.report["warnings"])
 
 
-def test_octomaps_load(data):
+def test_octomaps_load(data: Path) -> None:
     assert refusals(data, files(data, ".bt"), lambda path: mg.World().add_octree("map", path)) == {}
 
 
 @pytest.mark.parametrize(
     "name", ["robots/panda/expanded/panda.urdf", "robots/kuka_iiwa/kuka_lbr_iiwa_support/urdf/lbr_iiwa_14_r820.urdf"]
 )
-def test_every_truncation_of_a_urdf_is_refused(data, name, tmp_path):
+def test_every_truncation_of_a_urdf_is_refused(data: Path, name: str, tmp_path: Path) -> None:
     path, whole = tmp_path / "cut.urdf", (data / name).read_bytes().rstrip()
     for percent in range(100):
         path.write_bytes(whole[: len(whole) * percent // 100])
@@ -128,7 +130,7 @@ def test_every_truncation_of_a_urdf_is_refused(data, name, tmp_path):
         "robots/tiago/example-robot-data/robots/tiago_description/meshes/arm/arm_1_collision.dae",
     ],
 )
-def test_every_truncation_of_a_mesh_is_refused(data, name, tmp_path):
+def test_every_truncation_of_a_mesh_is_refused(data: Path, name: str, tmp_path: Path) -> None:
     whole = (data / name).read_bytes().rstrip()
     path = tmp_path / f"cut{Path(name).suffix}"
     for percent in range(100):

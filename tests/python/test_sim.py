@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import sys
 import xml.etree.ElementTree as ET
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -34,38 +36,39 @@ def steps(world: sim.Simulation, seconds: float) -> None:
 
 
 # --- the model ---------------------------------------------------------------------------------------------------------
-def test_without_mujoco_the_error_names_the_extra(monkeypatch):
+def test_without_mujoco_the_error_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mujoco", None)
     with pytest.raises(mg.InvalidInput, match=r"mmgrasp\[sim\]"):
         sim.Simulation(stone(), mg.World())
 
 
-def test_the_model_has_every_joint_shape_and_mass():
+def test_the_model_has_every_joint_shape_and_mass() -> None:
     built = sim.build(robot(), table(), [box()], gripper())
     root = ET.fromstring(built.xml)
-    assert built.joints == [j for j in (e.get("name") for e in root.find("actuator")) if not j.startswith("base/")]
+    actuated = [e.attrib["name"] for e in root.findall("actuator/*")]
+    assert built.joints == [name for name in actuated if not name.startswith("base/")]
     assert sorted(built.joints) == sorted(robot().joints)
     assert built.fingers == [j.name for j in gripper().joints]
     shapes = sum(len(robot().collisions(link)) for link in robot().links)
     assert len(root.findall("worldbody//geom")) == shapes + 3 == len(built.owner)  # floor, table, box
     urdf = ET.fromstring(robot().to_urdf())
-    masses = sum(float(m.get("value")) for m in urdf.findall(".//inertial/mass"))
-    assert sum(float(i.get("mass")) for i in root.findall(".//inertial")) == pytest.approx(masses)
+    masses = sum(float(m.attrib["value"]) for m in urdf.findall(".//inertial/mass"))
+    assert sum(float(i.attrib["mass"]) for i in root.findall(".//inertial")) == pytest.approx(masses)
     assert "weld" not in built.xml
 
 
 @physics
-def test_links_stand_where_forward_kinematics_puts_them():
+def test_links_stand_where_forward_kinematics_puts_them() -> None:
     world = sim.Simulation(robot(), table(), gripper=gripper())
     joints = dict(zip(arm().names, approach().positions[3], strict=True))
     world.reset(np.array([0.3, -0.2, 0.7]), joints)
     T = mg.pose([0.3, -0.2, 0], rpy=[0, 0, 0.7])
     for link, expected in robot().link_poses(joints, T).items():
-        assert world._pose(f"link/{link}") == pytest.approx(expected, abs=1e-9), link
+        assert world.body_pose(f"link/{link}") == pytest.approx(expected, abs=1e-9), link
 
 
 @physics
-def test_free_fall():
+def test_free_fall() -> None:
     ball = sim.SimPart("ball", [mg.LinkShape(mg.Sphere(0.05))], mg.pose([0, 0, 2.0]))
     world = sim.Simulation(stone(), mg.World(), [ball])
     steps(world, 0.5)
@@ -78,7 +81,7 @@ def test_free_fall():
 
 @physics
 @pytest.mark.parametrize("angle", [0.15, 0.25, 0.35, 0.5])
-def test_a_block_on_a_slope_keeps_to_the_friction_cone(angle):
+def test_a_block_on_a_slope_keeps_to_the_friction_cone(angle: Any) -> None:
     tilted = sim.Physics(gravity=(G * np.sin(angle), 0, -G * np.cos(angle)))
     block = sim.SimPart("block", [mg.LinkShape(mg.Box([0.1, 0.1, 0.02]))], mg.pose([0, 0, 0.01]), mass=0.5)
     world = sim.Simulation(stone(), mg.World(), [block], physics=tilted)
@@ -92,7 +95,7 @@ def test_a_block_on_a_slope_keeps_to_the_friction_cone(angle):
 
 
 @physics
-def test_a_part_weighs_what_it_is_told():
+def test_a_part_weighs_what_it_is_told() -> None:
     part = sim.SimPart("two", [mg.LinkShape(mg.Box([0.1, 0.1, 0.1]), mg.pose([0.05, 0, 0.05])), mg.LinkShape(mg.Box([0.1, 0.1, 0.1]), mg.pose([-0.05, 0, 0.05]))], mg.pose([0, 0, 0]), mass=0.7)  # fmt: skip
     world = sim.Simulation(stone(), mg.World(), [part])
     assert world.model.body("part/two").mass[0] == pytest.approx(0.7)
@@ -106,7 +109,7 @@ def test_a_part_weighs_what_it_is_told():
 
 # --- grasping ----------------------------------------------------------------------------------------------------------
 @physics
-def test_a_box_is_picked_from_the_table_and_held():
+def test_a_box_is_picked_from_the_table_and_held() -> None:
     world = sim.Simulation(robot(), table(), [box()], gripper=gripper())
     run = world.run(approach(), arm=arm())
     part = run.parts["box"]
@@ -126,7 +129,7 @@ def test_a_box_is_picked_from_the_table_and_held():
 
 @physics
 @pytest.mark.parametrize("y, cause", [(0.2, "never touched"), (0.06, "never had it|not lifted")])
-def test_a_box_beside_the_gripper_is_not_grasped(y, cause):
+def test_a_box_beside_the_gripper_is_not_grasped(y: Any, cause: str) -> None:
     world = sim.Simulation(robot(), table(), [box(y=y)], gripper=gripper())
     part = world.run(approach(), arm=arm()).parts["box"]
     assert not part.grasped
@@ -136,7 +139,7 @@ def test_a_box_beside_the_gripper_is_not_grasped(y, cause):
 
 @physics
 @pytest.mark.parametrize("share, holds", [(0.8, True), (1.25, False)])
-def test_the_grip_carries_what_its_friction_cones_do(share, holds):
+def test_the_grip_carries_what_its_friction_cones_do(share: Any, holds: Any) -> None:
     """Two fingers with force F and friction mu carry 2 mu F; the lift adds next to nothing."""
     weak = sim.Physics(grip_force=20.0, finger_friction=0.9)
     mass = share * 2 * 0.9 * 20.0 / G
@@ -145,15 +148,15 @@ def test_the_grip_carries_what_its_friction_cones_do(share, holds):
 
 
 # --- the base ----------------------------------------------------------------------------------------------------------
-def drive(v: float = 0.4, duration: float = 3.0) -> mg.JointTrajectory:
+def drive(v: float = 0.4, duration: float = 3.0) -> mg.planning.JointTrajectory:
     times = np.arange(0.0, duration + 0.01, 0.02)
     share = times / duration
     way = v * duration * share**3 * (10 - 15 * share + 6 * share**2)
-    return mg.JointTrajectory(["x", "y", "theta"], times, np.outer(way, [1, 0, 0]))
+    return mg.planning.JointTrajectory(["x", "y", "theta"], times, np.outer(way, [1, 0, 0]))
 
 
 @physics
-def test_the_base_drives_as_planned_and_slips_as_told():
+def test_the_base_drives_as_planned_and_slips_as_told() -> None:
     world = sim.Simulation(robot(), mg.World())
     run = world.run(drive(0.25), hold=0.5)
     assert run.base_error < 0.01
@@ -165,7 +168,7 @@ def test_the_base_drives_as_planned_and_slips_as_told():
 
 
 @physics
-def test_speed_stretches_the_plan():
+def test_speed_stretches_the_plan() -> None:
     world = sim.Simulation(robot(), mg.World())
     slow = world.run(drive(0.25), hold=0.0, speed=0.5)
     assert slow.duration == pytest.approx(6.0, abs=0.01)
@@ -173,10 +176,10 @@ def test_speed_stretches_the_plan():
 
 
 @physics
-def test_same_seed_same_run():
+def test_same_seed_same_run() -> None:
     world = sim.Simulation(robot(), table(), [box()], gripper=gripper())
-    noisy = {"position_noise": 0.003, "heading_noise": 0.003, "travel_noise": 0.01, "hold": 0.2}
-    plan = mg.JointTrajectory(["x", "y", "theta"], [0, 1], [[-1, 0, 0], [-0.8, 0, 0]])
+    noisy: dict[str, Any] = {"position_noise": 0.003, "heading_noise": 0.003, "travel_noise": 0.01, "hold": 0.2}
+    plan = mg.planning.JointTrajectory(["x", "y", "theta"], [0, 1], [[-1.0, 0, 0], [-0.8, 0, 0]])
     first, again, other = (world.run(plan, seed=s, **noisy) for s in (4, 4, 5))
     assert first.to_dict() == again.to_dict()
     assert first.states[-1]["base"] == again.states[-1]["base"] != other.states[-1]["base"]
@@ -184,7 +187,7 @@ def test_same_seed_same_run():
 
 # --- wrong input -------------------------------------------------------------------------------------------------------
 @physics
-def test_wrong_input_is_refused_by_name():
+def test_wrong_input_is_refused_by_name() -> None:
     world = sim.Simulation(robot(), table(), [box()], gripper=gripper())
     for bad in (
         {"speed": 0}, {"speed": 2.0}, {"closing_speed": 0}, {"lift": -1}, {"hold": np.nan}, {"slip": (0, 1)}, {"close_at": -1},
@@ -195,7 +198,7 @@ def test_wrong_input_is_refused_by_name():
     with pytest.raises(mg.InvalidInput, match="spede"):
         world.run(approach(), spede=1)
     with pytest.raises(mg.InvalidInput, match="elbow"):
-        world.run(mg.JointTrajectory(["elbow"], [0, 1], [[0], [1]]))
+        world.run(mg.planning.JointTrajectory(["elbow"], [0, 1], [[0], [1]]))
     with pytest.raises(mg.InvalidInput, match="without the base"):
         world.run(approach(), arm=robot().group("arm_with_torso", tip="gripper_tcp", with_base=True))
     with pytest.raises(mg.InvalidInput, match="lift"):
@@ -204,13 +207,15 @@ def test_wrong_input_is_refused_by_name():
         frames(world, world.run(drive(), hold=0.0), [0], eye=[1, 1, 1], target=[0, 0, 0], renderer="x")
 
 
-def test_wrong_parts_and_numbers_are_refused():
+def test_wrong_parts_and_numbers_are_refused() -> None:
     for bad in (box(mass=0), box(mass=np.nan), box(friction=-1), sim.SimPart("empty", [], np.eye(4))):
         with pytest.raises(mg.InvalidInput, match="part"):
             sim.build(stone(), mg.World(), [bad])
     for field in ("time_step", "grip_force", "finger_friction"):
+        wrong = sim.Physics()
+        setattr(wrong, field, 0)
         with pytest.raises(mg.InvalidInput, match=field):
-            sim.build(stone(), mg.World(), physics=sim.Physics(**{field: 0}))
+            sim.build(stone(), mg.World(), physics=wrong)
     floating = mg.Robot.from_strings('<robot name="f"><link name="a"/><link name="b"/><joint name="j" type="floating"><parent link="a"/><child link="b"/></joint></robot>')  # fmt: skip
     with pytest.raises(mg.InvalidInput, match="'j'"):
         sim.build(floating, mg.World())
@@ -218,7 +223,7 @@ def test_wrong_parts_and_numbers_are_refused():
 
 # --- pictures ----------------------------------------------------------------------------------------------------------
 @physics
-def test_pictures_show_the_part_where_it_is(tmp_path):
+def test_pictures_show_the_part_where_it_is(tmp_path: Path) -> None:
     """The orange box stands in the middle of a camera that looks at it, before and after the lift."""
     world = sim.Simulation(robot(), table(), [box()], gripper=gripper())
     run = world.run(approach(), arm=arm(), frame_period=0.2)
@@ -234,7 +239,7 @@ def test_pictures_show_the_part_where_it_is(tmp_path):
 
 # --- in passing --------------------------------------------------------------------------------------------------------
 @pytest.mark.parametrize("share", [0.2, 0.5, 1.0])
-def test_plans_in_passing_meet_the_box_at_the_speed_asked_for(share):
+def test_plans_in_passing_meet_the_box_at_the_speed_asked_for(share: Any) -> None:
     """The tool is at the planned engagement as closing begins, and moves on at the speed until both fingers touch."""
     passing = Passing(share)
     plan, close_at = passing.plan()
@@ -249,7 +254,7 @@ def test_plans_in_passing_meet_the_box_at_the_speed_asked_for(share):
 
 
 @physics
-def test_push_grasp_forgives_what_plain_closing_does_not():
+def test_push_grasp_forgives_what_plain_closing_does_not() -> None:
     """At full speed plain closing leaves 4.5 mm on either side, the push-grasp 25 mm."""
     for push in (False, True):
         passing = Passing(1.0, push, aside=0.02)
@@ -259,7 +264,7 @@ def test_push_grasp_forgives_what_plain_closing_does_not():
 
 
 @physics
-def test_the_plan_knows_where_the_bottle_lies_in_the_hand():
+def test_the_plan_knows_where_the_bottle_lies_in_the_hand() -> None:
     """A push-grasp in one motion of base and arm: from the moment it is held the part is in physics where the plan has it, to 1 cm."""
     bottle = Bottle()
     found, close_at = bottle.plan()
@@ -269,7 +274,9 @@ def test_the_plan_knows_where_the_bottle_lies_in_the_hand():
     quiet = {"travel_noise": 0.0, "position_noise": 0.0, "heading_noise": 0.0}
     run = bottle.run(found, close_at, hold=0.5, **quiet)
     assert run.grasped, run.parts["bottle"].cause
-    hand = bottle.simulation().gripper.tcp_link
+    hand_of = bottle.simulation().gripper
+    assert hand_of is not None
+    hand = hand_of.tcp_link
     offsets = []
     for state in run.states:
         if state["time"] < event["held_time"] + 0.2:

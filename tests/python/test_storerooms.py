@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
-from mmgrasp import storerooms
+from mmgrasp.problems import storerooms
 
 
 def distances(points: np.ndarray) -> np.ndarray:
     d = np.linalg.norm(points[:, None, :2] - points[None, :, :2], axis=2)
-    return d[np.triu_indices(len(points), 1)]
+    return np.asarray(d[np.triu_indices(len(points), 1)])
 
 
-def test_regular_placements():
+def test_regular_placements() -> None:
     row = storerooms.row(4, 0.5)
     assert row[:, 0].tolist() == [0, 0.5, 1.0, 1.5]
     assert np.all(row[:, 2] == math.pi / 2)
@@ -30,7 +30,7 @@ def test_regular_placements():
     assert parts[:, :2].mean(axis=0) == pytest.approx([0, 0])
 
 
-def test_random_placements_repeat_and_keep_their_distances():
+def test_random_placements_repeat_and_keep_their_distances() -> None:
     trays = storerooms.scattered(60, seed=3)
     assert np.array_equal(trays, storerooms.scattered(60, seed=3))
     assert not np.array_equal(trays, storerooms.scattered(60, seed=4))
@@ -40,7 +40,7 @@ def test_random_placements_repeat_and_keep_their_distances():
     assert apart[~np.eye(60, dtype=bool)].min() >= 0.58
 
 
-def test_what_does_not_fit_is_said():
+def test_what_does_not_fit_is_said() -> None:
     with pytest.raises(mg.Error, match="spacing"):
         storerooms.row(3, 0.0)
     with pytest.raises(mg.Error, match="area"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -46,7 +47,7 @@ def load(name: str) -> mg.Robot:
     return mg.Robot.load(shipped(f"asset:robots/{name}/{name}.urdf"), shipped(f"asset:robots/{name}/{name}.srdf"))
 
 
-def denavit_hartenberg(rows, q) -> np.ndarray:
+def denavit_hartenberg(rows: Any, q: Any) -> np.ndarray:
     T = np.eye(4)
     for (offset, d, a, alpha), value in zip(rows, q, strict=True):
         c, s = math.cos(offset + value), math.sin(offset + value)
@@ -56,7 +57,7 @@ def denavit_hartenberg(rows, q) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", DH)
-def test_flange_stands_where_the_published_lengths_put_it(name):
+def test_flange_stands_where_the_published_lengths_put_it(name: str) -> None:
     flange = load(name).group(base_link="base_link", tip=FLANGE[name])
     np.testing.assert_allclose(np.degrees(flange.lower), [low for low, _ in DEGREES[name]], atol=1e-3)
     np.testing.assert_allclose(np.degrees(flange.upper), [high for _, high in DEGREES[name]], atol=1e-3)
@@ -68,7 +69,7 @@ def test_flange_stands_where_the_published_lengths_put_it(name):
 @pytest.mark.parametrize(
     ("name", "reach", "links"), [("tm14like", 1.1, ("wrist_1_link", 0.106)), ("kr6like", 0.9, ("link_5", 0.0))]
 )
-def test_reach_is_the_published_one(name, reach, links):
+def test_reach_is_the_published_one(name: str, reach: Any, links: Any) -> None:
     """TM14: 1100 mm with the arm stretched, over the fifth joint's offset. KR6 R900: 901.5 mm to the wrist's centre."""
     tip, more = links
     chain = load(name).group(base_link="base_link", tip=tip)
@@ -90,7 +91,7 @@ def test_reach_is_the_published_one(name, reach, links):
 
 
 @pytest.mark.parametrize("name", DH)
-def test_every_branch_is_found_in_closed_form_and_home_is_free(name):
+def test_every_branch_is_found_in_closed_form_and_home_is_free(name: str) -> None:
     robot = load(name)
     arm = robot.group("arm")
     assert arm.tip == "gripper_tcp"
@@ -105,7 +106,7 @@ def test_every_branch_is_found_in_closed_form_and_home_is_free(name):
 
 
 @pytest.mark.parametrize("name", DH)
-def test_check_finds_nothing_to_complain_about(name, capsys):
+def test_check_finds_nothing_to_complain_about(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     folder = ASSETS / "robots" / name
     assert main(["check", str(folder / f"{name}.urdf"), "--srdf", str(folder / f"{name}.srdf")]) == 0
     out = capsys.readouterr().out
@@ -114,7 +115,7 @@ def test_check_finds_nothing_to_complain_about(name, capsys):
 
 
 @pytest.mark.parametrize("name", DH)
-def test_pairs_left_out_never_touch(name):
+def test_pairs_left_out_never_touch(name: str) -> None:
     """With all pairs but adjacent ones checked, the same configurations are free."""
     robot = load(name)
     adjacent = [pair for pair in robot.disabled_pairs if "adjacent" in str(pair[2]).lower()]
@@ -128,8 +129,8 @@ def test_pairs_left_out_never_touch(name):
     np.testing.assert_array_equal(kept, full)
 
 
-def test_pipe_and_grasps_in_python():
-    pipe = mg.Pipe([[0, 0, 0], [0.3, 0, 0], [0.3, 0.2, 0]], [(0, 1), (1, 2)], 0.02)
+def test_pipe_and_grasps_in_python() -> None:
+    pipe = mg.grasping.Pipe([[0.0, 0, 0], [0.3, 0, 0], [0.3, 0.2, 0]], [(0, 1), (1, 2)], 0.02)
     assert pipe.lengths == pytest.approx([0.3, 0.2])
     assert pipe.sections == [(0, 1), (1, 2)]
     np.testing.assert_allclose(pipe.centre_of_mass, [(0.3 * 0.15 + 0.2 * 0.3) / 0.5, 0.2 * 0.1 / 0.5, 0])
@@ -143,7 +144,7 @@ def test_pipe_and_grasps_in_python():
     same = pipe.grasp(one.section, one.length, one.angle, one.flipped)
     np.testing.assert_array_equal(one.T_object_tool, same.T_object_tool)
     assert set(one.to_dict()) == {"section", "length", "angle", "flipped", "T_object_tool", "opening", "cost"}
-    hand = mg.Gripper(
+    hand = mg.grasping.Gripper(
         "tool", approach=[0, 0, 1], closing=[1, 0, 0], max_opening=0.015, finger_depth=0.03, finger_width=0.02
     )
     assert pipe.sample_grasps(10, gripper=hand) == []
@@ -165,20 +166,22 @@ def test_pipe_and_grasps_in_python():
         ([[0, 0, 0], [1, 0, 0]], [(0, 1)], "thick", "diameters = 'thick': must be a number or a list of numbers"),
     ],
 )
-def test_bad_pipes_are_refused(nodes, sections, diameters, message):
+def test_bad_pipes_are_refused(nodes: Any, sections: Any, diameters: Any, message: str) -> None:
     with pytest.raises(mg.InvalidInput, match=message):
-        mg.Pipe(nodes, sections, diameters)
+        mg.grasping.Pipe(nodes, sections, diameters)
 
 
-def test_bad_grasp_arguments_are_refused():
-    pipe = mg.Pipe([[0, 0, 0], [0.3, 0, 0]], [(0, 1)], 0.02)
+def test_bad_grasp_arguments_are_refused() -> None:
+    pipe = mg.grasping.Pipe([[0.0, 0, 0], [0.3, 0, 0]], [(0, 1)], 0.02)
     with pytest.raises(mg.InvalidInput, match="count = -1"):
         pipe.sample_grasps(-1)
     with pytest.raises(mg.InvalidInput, match=r"count = 2\.5: must be a whole number"):
         pipe.sample_grasps(2.5)
-    for call in (pipe.sample_grasps, lambda *a, **k: pipe.grasp(0, 0.1, 0.0, **k)):
-        with pytest.raises(mg.InvalidInput, match="gripper = 'hand': must be a Gripper"):
-            call(1, gripper="hand")
+    hand: Any = "hand"
+    with pytest.raises(mg.InvalidInput, match="gripper = 'hand': must be a Gripper"):
+        pipe.sample_grasps(1, gripper=hand)
+    with pytest.raises(mg.InvalidInput, match="gripper = 'hand': must be a Gripper"):
+        pipe.grasp(0, 0.1, 0.0, gripper=hand)
     with pytest.raises(mg.InvalidInput, match=r"lenght_spacing.*length_spacing"):
         pipe.sample_grasps(1, lenght_spacing=0.02)
     with pytest.raises(mg.InvalidInput, match="section = 1"):

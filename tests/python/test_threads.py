@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import threading
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -12,20 +14,20 @@ from argument_values import ARM, OBJECTS, Q
 from conftest import ASSETS
 
 
-def without_times(plan: mg.PartSupplyPlan) -> str:
+def without_times(plan: mg.part_supply.ScenarioPlan) -> str:
     content = plan.to_dict()
     del content["timings"]
     content["scenario"]["options"].pop("threads")
     return json.dumps(content, sort_keys=True)
 
 
-def test_same_plan_at_one_and_two_threads(small_path):
+def test_same_plan_at_one_and_two_threads(small_path: Path) -> None:
     plans = [mg.plan_part_supply(small_path, seed=1, threads=threads) for threads in (1, 2)]
     assert plans[0].outcome == mg.Outcome.solved
     assert without_times(plans[0]) == without_times(plans[1])
 
 
-def test_same_database_at_one_and_two_threads(small_path, tmp_path):
+def test_same_database_at_one_and_two_threads(small_path: Path, tmp_path: Path) -> None:
     arm = mg.load_scenario(small_path).setup.arm
     files = []
     for threads in (1, 2):
@@ -36,18 +38,18 @@ def test_same_database_at_one_and_two_threads(small_path, tmp_path):
     assert first == second
 
 
-def test_lines_of_several_threads_share_one_checker():
+def test_lines_of_several_threads_share_one_checker() -> None:
     """Each call has scratch of its own, so that they may run side by side and next to questions to the checker."""
     checker = OBJECTS["CollisionChecker"]()
     lines = [ARM.fk(Q + [0, 0, along]) for along in (0.1, 0.2, 0.4, 0.6)]  # the last one beyond a limit
 
-    def follow(to: np.ndarray) -> tuple:
-        found = mg.plan_straight_line(checker, Q, to, position_step=1e-4)
+    def follow(to: np.ndarray) -> tuple[Any, ...]:
+        found = mg.planning.plan_straight_line(checker, Q, to, position_step=1e-4)
         return found.outcome, found.fraction, None if found.path is None else found.path.tobytes()
 
     alone = [follow(to) for to in lines]
     assert len(set(alone)) == len(lines)
-    together: list[list] = [[] for _ in lines]
+    together: list[list[Any]] = [[] for _ in lines]
     workers = [
         threading.Thread(target=lambda k=k: together[k].extend(follow(lines[k]) for _ in range(5)))
         for k in range(len(lines))
@@ -60,12 +62,12 @@ def test_lines_of_several_threads_share_one_checker():
         assert answers == [alone[k]] * 5
 
 
-def test_threads_share_one_seed_database():
+def test_threads_share_one_seed_database() -> None:
     folder = ASSETS / "robots" / "fetchlike"
     robot = mg.Robot.load(folder / "fetchlike.urdf", folder / "fetchlike.srdf", base="diff_drive")
     whole = robot.group("arm_with_torso", tip="gripper_tcp", with_base=True)
     checker = mg.CollisionChecker(robot, mg.World(), group=whole)
-    database = mg.IkSeedDatabase(whole, capacity=50)
+    database = mg.base.IkSeedDatabase(whole, capacity=50)
     down = [0, np.pi / 2, 0]
     failures: list[str] = []
 
@@ -74,7 +76,7 @@ def test_threads_share_one_seed_database():
         for i in range(3):
             pick = mg.pose([0.8 + 0.05 * i, -0.2, 0.9], rpy=down)
             place = mg.pose([0.8, 0.2 + 0.05 * number, 0.9], rpy=down)
-            found = mg.plan_platform_locations(own, pick, place, database=database, samples=5, seed=number + 1)
+            found = mg.base.plan_platform_locations(own, pick, place, database=database, samples=5, seed=number + 1)
             if found.outcome != mg.Outcome.solved:
                 failures.append(f"{number}/{i}: {found.outcome}")
             elif max(np.abs(whole.fk(found.q_pick) - pick).max(), np.abs(whole.fk(found.q_place) - place).max()) > 2e-4:

@@ -5,38 +5,41 @@ from __future__ import annotations
 import copy
 import itertools
 import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import pytest
 
 import mmgrasp as mg
-from mmgrasp.plan_file import runs_of
+from mmgrasp.part_supply.plan_file import runs_of
 
 
-def motion(plan, kind, pick=0):
+def motion(plan: dict[str, Any], kind: str, pick: Any = 0) -> Any:
     return next(m for m in plan["picks"][pick]["motions"] if m["kind"] == kind)
 
 
-def joint_moved(plan):
+def joint_moved(plan: dict[str, Any]) -> None:
     m = motion(plan, "reach")
     m["positions"][len(m["positions"]) // 2][1] += 0.3
 
 
-def end_moved(plan):
+def end_moved(plan: dict[str, Any]) -> None:
     motion(plan, "approach")["positions"][-1][3] += 0.02
 
 
-def joint_beyond_limit(plan):
+def joint_beyond_limit(plan: dict[str, Any]) -> None:
     m = motion(plan, "carry")
     m["positions"][len(m["positions"]) // 2][2] += 7.0
 
 
-def too_fast(plan):
+def too_fast(plan: dict[str, Any]) -> None:
     for m in plan["picks"][0]["motions"]:
         m["times"] = [t / 3 for t in m["times"]]
         m["velocities"] = [[3 * v for v in row] for row in m["velocities"]]
 
 
-def obstacle_added(plan):
+def obstacle_added(plan: dict[str, Any]) -> None:
     x, y, _ = plan["stops"][0]["pose"]
     shape = {"type": "box", "pose": {"xyz": [0, 0, 0], "quat_xyzw": [0, 0, 0, 1]}, "size": [0.5, 0.5, 2.0]}
     plan["scenario"]["obstacles"].append(
@@ -44,7 +47,7 @@ def obstacle_added(plan):
     )
 
 
-def obstacle_on_the_route(plan):
+def obstacle_on_the_route(plan: dict[str, Any]) -> None:
     poses = plan["route"][0]["poses"]
     a, b = max(itertools.pairwise(poses), key=lambda e: abs(e[0][0] - e[1][0]) + abs(e[0][1] - e[1][1]))
     xyz = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, 0.2]
@@ -54,126 +57,126 @@ def obstacle_on_the_route(plan):
     )
 
 
-def stop_shifted(plan):
+def stop_shifted(plan: dict[str, Any]) -> None:
     plan["stops"][0]["pose"][0] += 0.15
 
 
-def stop_turned(plan):
+def stop_turned(plan: dict[str, Any]) -> None:
     plan["stops"][0]["pose"][2] += 0.2
 
 
-def part_forgotten(plan):
+def part_forgotten(plan: dict[str, Any]) -> None:
     del plan["picks"][-1]
 
 
-def part_picked_twice(plan):
+def part_picked_twice(plan: dict[str, Any]) -> None:
     plan["picks"].append(copy.deepcopy(plan["picks"][0]))
 
 
-def motions_swapped(plan):
+def motions_swapped(plan: dict[str, Any]) -> None:
     m = plan["picks"][0]["motions"]
     m[1], m[2] = m[2], m[1]
 
 
-def motion_missing(plan):
+def motion_missing(plan: dict[str, Any]) -> None:
     del plan["picks"][0]["motions"][2]
 
 
-def picks_exchanged_motions(plan):
+def picks_exchanged_motions(plan: dict[str, Any]) -> None:
     a, b = plan["picks"][0], plan["picks"][1]
     a["motions"], b["motions"] = b["motions"], a["motions"]
 
 
-def part_renamed(plan):
+def part_renamed(plan: dict[str, Any]) -> None:
     plan["picks"][0]["part"] = "A/bracket_99"
 
 
-def other_grasp(plan):
+def other_grasp(plan: dict[str, Any]) -> None:
     pick = plan["picks"][0]
     part = next(p for p in plan["scenario"]["parts"] if p["name"] == pick["part"])
     pick["grasp"] = (pick["grasp"] + 1) % len(part["grasps"])
 
 
-def grasp_out_of_range(plan):
+def grasp_out_of_range(plan: dict[str, Any]) -> None:
     plan["picks"][0]["grasp"] = 100000
 
 
-def part_moved(plan):
+def part_moved(plan: dict[str, Any]) -> None:
     name = plan["picks"][0]["part"]
     part = next(p for p in plan["scenario"]["parts"] if p["name"] == name)
     part["pose"]["xyz"][0] += 0.01
 
 
-def route_cut(plan):
+def route_cut(plan: dict[str, Any]) -> None:
     del plan["route"][-1]
 
 
-def route_jumps(plan):
+def route_jumps(plan: dict[str, Any]) -> None:
     leg = max(plan["route"], key=lambda leg: len(leg["poses"]))
     leg["poses"][len(leg["poses"]) // 2][1] += 0.4
 
 
-def route_sideways(plan):
+def route_sideways(plan: dict[str, Any]) -> None:
     leg = plan["route"][0]
     leg["poses"] = [leg["poses"][0], leg["poses"][-1]]
 
 
-def start_elsewhere(plan):
+def start_elsewhere(plan: dict[str, Any]) -> None:
     plan["scenario"]["start"][0] -= 0.3
 
 
-def fingers_closed_too_early(plan):
+def fingers_closed_too_early(plan: dict[str, Any]) -> None:
     motion(plan, "approach")["opening"] = 0.0
     motion(plan, "reach")["opening"] = 0.0
 
 
-def fingers_open_while_holding(plan):
+def fingers_open_while_holding(plan: dict[str, Any]) -> None:
     motion(plan, "carry")["opening"] = plan["scenario"]["gripper"]["max_opening"]
 
 
-def not_holding(plan):
+def not_holding(plan: dict[str, Any]) -> None:
     motion(plan, "carry")["holding"] = False
 
 
-def time_runs_backwards(plan):
+def time_runs_backwards(plan: dict[str, Any]) -> None:
     times = motion(plan, "lift")["times"]
     times[-1] = times[-2] - 0.01
 
 
-def time_stands(plan):
+def time_stands(plan: dict[str, Any]) -> None:
     times = motion(plan, "reach")["times"]
     times[3] = times[2]
 
 
-def stop_added(plan):
+def stop_added(plan: dict[str, Any]) -> None:
     plan["stops"].append(copy.deepcopy(plan["stops"][0]))
     last = plan["route"][-1]["poses"][0]
     plan["route"].insert(-1, {"poses": [list(last), list(last)], "length": 0, "turning": 0, "duration": 0})
 
 
-def bound_lowered(plan):
+def bound_lowered(plan: dict[str, Any]) -> None:
     plan["lower_bound"] = 0
 
 
-def uncertainty_grown(plan):
+def uncertainty_grown(plan: dict[str, Any]) -> None:
     plan["scenario"]["positioning_uncertainty"] = 0.8
 
 
-def region_emptied(plan):
+def region_emptied(plan: dict[str, Any]) -> None:
     plan["regions"][0]["cells"] = {}
 
 
-def wrist_jumps(plan):
+def wrist_jumps(plan: dict[str, Any]) -> None:
     m = motion(plan, "carry")
     for row in m["positions"][len(m["positions"]) // 2 :]:
         row[-1] += 0.5
 
 
-def robot_shrunk_arm_limits(plan):
+def robot_shrunk_arm_limits(plan: dict[str, Any]) -> None:
     plan["scenario"]["arm"]["velocity_limits"] = [v / 10 for v in plan["scenario"]["arm"]["velocity_limits"]]
 
 
-def bin_moved(plan):
+def bin_moved(plan: dict[str, Any]) -> None:
     plan["scenario"]["carry"]["pose"]["xyz"][0] -= 0.5
 
 
@@ -214,7 +217,7 @@ BREAKS = [
 ]
 
 
-def test_the_plan_itself_holds(small_plan_dict):
+def test_the_plan_itself_holds(small_plan_dict: dict[str, Any]) -> None:
     verdict = mg.verify_plan(small_plan_dict)
     assert verdict.ok, verdict.faults
     assert verdict.configurations_checked > 100
@@ -223,7 +226,7 @@ def test_the_plan_itself_holds(small_plan_dict):
 
 
 @pytest.mark.parametrize("breaking", BREAKS, ids=lambda f: f.__name__)
-def test_broken_plans_are_refused(small_plan_dict, breaking):
+def test_broken_plans_are_refused(small_plan_dict: dict[str, Any], breaking: Any) -> None:
     plan = copy.deepcopy(small_plan_dict)
     breaking(plan)
     assert plan != small_plan_dict, "the break changed nothing"
@@ -232,7 +235,9 @@ def test_broken_plans_are_refused(small_plan_dict, breaking):
     assert all(fault.code and fault.message for fault in verdict.faults)
 
 
-def test_a_changed_scenario_is_named(small_plan_dict, small, write):
+def test_a_changed_scenario_is_named(
+    small_plan_dict: dict[str, Any], small: dict[str, Any], write: Callable[..., Path]
+) -> None:
     changed = copy.deepcopy(small)
     changed["obstacles"][0]["box"][0] += 0.01
     verdict = mg.verify_plan(small_plan_dict, scenario=write(changed), samples=50)
@@ -240,7 +245,7 @@ def test_a_changed_scenario_is_named(small_plan_dict, small, write):
     assert "obstacles[0]" in verdict.faults[0].where
 
 
-def test_values_that_are_no_numbers_are_refused(small_plan_dict):
+def test_values_that_are_no_numbers_are_refused(small_plan_dict: dict[str, Any]) -> None:
     for value in (None, "x", float("nan"), [1]):
         plan = json.loads(json.dumps(small_plan_dict))
         plan["picks"][0]["motions"][0]["positions"][0][0] = value
@@ -248,7 +253,7 @@ def test_values_that_are_no_numbers_are_refused(small_plan_dict):
             mg.verify_plan(plan)
 
 
-def test_runs_hold_every_cell():
+def test_runs_hold_every_cell() -> None:
     import numpy as np
 
     layer = np.random.default_rng(1).integers(0, 2, (7, 11))

@@ -6,6 +6,8 @@ import builtins
 import json
 import shutil
 import threading
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -35,7 +37,7 @@ CASES = {
 pytestmark = pytest.mark.skipif(not DATA.is_dir(), reason="the shared test data is not there")
 
 
-def stub_package(folder, name):
+def stub_package(folder: Any, name: str) -> Any:
     """What the data's notes call a stub: a package whose macro files define nothing."""
     (folder / name / "urdf").mkdir(parents=True)
     (folder / name / "package.xml").write_text(f"<package><name>{name}</name></package>")
@@ -45,7 +47,7 @@ def stub_package(folder, name):
 
 
 @pytest.mark.parametrize("name", sorted(CASES))
-def test_expansion_equals_the_one_in_the_data(name, tmp_path):
+def test_expansion_equals_the_one_in_the_data(name: str, tmp_path: Path) -> None:
     source, expanded = CASES[name]
     packages = None
     if name == "ridgeback":
@@ -72,7 +74,7 @@ def test_expansion_equals_the_one_in_the_data(name, tmp_path):
             np.testing.assert_allclose(poses[link], expected[link], atol=1e-12)
 
 
-def test_arguments_change_the_robot(tmp_path):
+def test_arguments_change_the_robot(tmp_path: Path) -> None:
     path = tmp_path / "r.urdf.xacro"
     path.write_text(
         '<robot name="r" xmlns:xacro="http://ros.org/wiki/xacro"><xacro:arg name="length" default="1"/>'
@@ -90,7 +92,7 @@ def test_arguments_change_the_robot(tmp_path):
         mg.Robot.load(ROBOTS / "ur/expanded/ur5e.urdf", load_meshes=False, xacro_args={"a": 1})
 
 
-def test_srdf_may_be_xacro_too():
+def test_srdf_may_be_xacro_too() -> None:
     config = ROBOTS / "panda/moveit_resources_panda_moveit_config/config"
     robot = mg.Robot.load(ROBOTS / "panda/expanded/panda.urdf", config / "panda_arm_hand.srdf.xacro", load_meshes=False)
     assert {"panda_arm", "hand"} <= set(robot.groups)
@@ -111,7 +113,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", sorted(BAD))
-def test_errors_name_the_file(name, tmp_path, capfd):
+def test_errors_name_the_file(name: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     inside, told = BAD[name]
     path = tmp_path / "bad.xacro"
     path.write_text(f'<robot name="r" xmlns:xacro="http://ros.org/wiki/xacro">{inside}</robot>')
@@ -122,7 +124,7 @@ def test_errors_name_the_file(name, tmp_path, capfd):
     assert capfd.readouterr() == ("", "")
 
 
-def test_errors_name_the_included_file(tmp_path):
+def test_errors_name_the_included_file(tmp_path: Path) -> None:
     (tmp_path / "inner.xacro").write_text('<robot><link name="${1 / 0}"/></robot>')
     (tmp_path / "outer.xacro").write_text(
         '<robot name="r" xmlns:xacro="http://ros.org/wiki/xacro"><xacro:include filename="inner.xacro"/></robot>'
@@ -131,7 +133,7 @@ def test_errors_name_the_included_file(tmp_path):
         mg.Robot.load(tmp_path / "outer.xacro")
 
 
-def test_entity_declarations_are_refused(tmp_path):
+def test_entity_declarations_are_refused(tmp_path: Path) -> None:
     bomb = '<!DOCTYPE r [<!ENTITY a "x"><!ENTITY b "&a;&a;">]><robot name="&b;"/>'
     (tmp_path / "bomb.xacro").write_text(bomb)
     (tmp_path / "outer.xacro").write_text(
@@ -142,10 +144,10 @@ def test_entity_declarations_are_refused(tmp_path):
             mg.Robot.load(tmp_path / name)
 
 
-def test_without_the_package_the_error_says_how_to_get_it(monkeypatch):
+def test_without_the_package_the_error_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
     real = builtins.__import__
 
-    def without_xacro(name, *arguments, **keywords):
+    def without_xacro(name: str, *arguments: Any, **keywords: Any) -> Any:
         if name.split(".")[0] == "xacro":
             raise ImportError(name)
         return real(name, *arguments, **keywords)
@@ -155,17 +157,17 @@ def test_without_the_package_the_error_says_how_to_get_it(monkeypatch):
         mg.Robot.load(CASES["ur5e"][0])
 
 
-def test_missing_files_are_io_errors(tmp_path):
+def test_missing_files_are_io_errors(tmp_path: Path) -> None:
     with pytest.raises(mg.IoError, match=r"none\.xacro"):
         mg.Robot.load(tmp_path / "none.xacro")
     with pytest.raises(mg.IoError, match=r"none\.srdf"):
         mg.Robot.load(CASES["ur5e"][0], tmp_path / "none.srdf")
 
 
-def test_threads_do_not_mix_their_robots():
+def test_threads_do_not_mix_their_robots() -> None:
     names = {}
 
-    def load(key):
+    def load(key: Any) -> None:
         names[key] = [mg.Robot.load(CASES[key][0], load_meshes=False).name for _ in range(3)]
 
     threads = [threading.Thread(target=load, args=(key,)) for key in ("ur5e", "ur10e", "panda")]
@@ -176,6 +178,6 @@ def test_threads_do_not_mix_their_robots():
     assert names == {"ur5e": ["ur5e_robot"] * 3, "ur10e": ["ur10e_robot"] * 3, "panda": ["panda"] * 3}
 
 
-def test_check_reads_xacro(capfd):
+def test_check_reads_xacro(capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["check", str(CASES["ur5e"][0]), "--json"]) == 0
     assert json.loads(capfd.readouterr().out)["name"] == "ur5e_robot"

@@ -13,20 +13,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from .database import build_database
-from .engine import Engine, Progress, ShardEvent, connect, shard_key
-from .regions import ProblemSource, compute_base_regions
-
-__all__ = [
-    "Engine",
-    "ProblemSource",
-    "ShardEvent",
-    "build_database",
-    "compute_base_regions",
-    "connect",
-    "run_sweep",
-    "shard_key",
-]
+from .._progress import Progress
+from .database import build_database as build_database
+from .engine import Engine as Engine
+from .engine import ShardEvent as ShardEvent
+from .engine import connect as connect
+from .engine import shard_key as shard_key
+from .regions import ProblemSource as ProblemSource
+from .regions import compute_base_regions as compute_base_regions
 
 
 def run_sweep(

@@ -10,9 +10,10 @@ from typing import Any
 
 from .._core import Error, InvalidInput, JointGroup, ReachDatabase
 from .._files import write_file
+from .._progress import Progress
 from ..scenario import Scenario, load_scenario
 from .content import arm_key
-from .engine import Engine, Progress
+from .engine import Engine
 from .regions import ProblemSource, named
 
 PARTS_A_SHARD = 4

@@ -15,6 +15,7 @@ from typing import Any
 
 from .. import _core
 from .._core import Error, InvalidInput
+from .._progress import Progress
 from .content import Hasher, code_digest
 from .store import ShardStore
 
@@ -22,8 +23,6 @@ log = logging.getLogger("mmgrasp.cluster")
 TOPIC = "mmgrasp-shards"
 PATIENCE = 2.0  # for the last lines of the log [s]
 FAILURES = 10  # workers that a shard may outlive before it is held for the cause
-
-Progress = Callable[[str, float], None] | None
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,10 @@ from typing import Any, Protocol
 
 from .. import _core
 from .._core import BaseGrid, BaseRegion, Error, Part, PartSupplyProblem, ReachDatabase, Tray
+from .._progress import Progress
 from ..scenario import Scenario, load_scenario
 from .content import problem_digest
-from .engine import Engine, Progress
+from .engine import Engine
 
 
 class ProblemSource(Protocol):
@@ -27,7 +28,7 @@ def compute_base_regions(
     database: str | os.PathLike[str] | dict[str, Any] | None = None,
     progress: Progress = None,
 ) -> tuple[BaseGrid, list[BaseRegion]]:
-    """What mmgrasp.compute_base_regions gives on make_base_grid's grid, bit for bit, computed tray by tray on the engine.
+    """What mmgrasp.base.compute_base_regions gives on make_base_grid's grid, bit for bit, computed tray by tray on the engine.
 
     `source` is a scenario's path or a ProblemSource. `database` is the path of a saved database or the options to build one
     with (from each machine's cache); None: a scenario's own `reach` section. Paths must mean the same files on every

@@ -9,7 +9,8 @@ import time
 from typing import Any
 
 from .._core import InvalidInput, __version__
-from .._reading import near_miss
+from .._progress import Progress
+from ..scenario.reading import near_miss
 from . import (
     base_regions,
     capability,
@@ -28,7 +29,7 @@ from . import (
     three_ways,
     tracking,
 )
-from .entry import Context, Entry, Progress, Result, Sweep, sweep_here
+from .entry import Context, Entry, Result, Sweep, sweep_here
 
 __all__ = ["ENTRIES", "Context", "Entry", "Result", "entry", "reproduce"]
 

@@ -6,11 +6,12 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from .._progress import Progress
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Progress = Callable[[str, float], None] | None
-Sweep = Callable[..., list]
+Sweep = Callable[..., list[Any]]
 
 
 def sweep_here(

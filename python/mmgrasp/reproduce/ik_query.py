@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from .. import _core
+from .._progress import Progress
 from .drawing import figure
-from .entry import Context, Entry, Progress, Result
+from .entry import Context, Entry, Result
 from .setup import Row, database, robot_setup
 
 POSE = (0.6, 0.0, 0.8, 0.0, 0.5, 0.5)  # x, y, z [m], roll, pitch, yaw [rad]

@@ -84,7 +84,7 @@ def frames_of_one_run(seed: int, count: int) -> dict[str, Any]:
 def run(context: Context) -> Result:
     from ..sim import Physics
     from ..sim.passing import FULL_SPEED, SIZE
-    from ..sim.simulation import mujoco_module
+    from ..sim.scene import mujoco_module
 
     mujoco = mujoco_module()
     items = trials(context.quick, context.seed)
@@ -204,7 +204,7 @@ def carried_out(x: float, y: float, push: bool, shares: list[float], seed: int) 
 
 def run_speeds(context: Context) -> Result:
     from ..sim.bottle import PLANNED_SPEED, WAY
-    from ..sim.simulation import mujoco_module
+    from ..sim.scene import mujoco_module
 
     mujoco = mujoco_module()
     rng = np.random.default_rng(context.seed)

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from .._core import Outcome, Roadmap, plan_manipulation
-from ..pipe_cells import PipeCell, pipe_cell, pipe_robot
+from ..problems.pipe_cells import PipeCell, pipe_cell, pipe_robot
 from .entry import Context
 
 PROBLEMS = 8

@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import _core
 from .._core import Box, LinkShape, Part, ScoredGrasp
-from ..random_trays import TrayScan, parts_of_grasps, scan_random_tray, scan_tray
+from ..problems.random_trays import RandomTrayScan, parts_of_grasps, scan_random_tray, scan_tray
 from .setup import Row, robot_setup
 
 BODY = [LinkShape(Box([0.03, 0.03, 0.05]), np.eye(4))]
@@ -33,7 +33,7 @@ def scan_seed(seed: int, tray: int, scan: int) -> int:
     return (seed * 1000 + tray) * 10 + scan
 
 
-def random_scan(row: Row, tray: int, scan: int, seed: int, fill: int = 100) -> TrayScan:
+def random_scan(row: Row, tray: int, scan: int, seed: int, fill: int = 100) -> RandomTrayScan:
     """A random filling of which `fill` percent are left, another one for every number of scan."""
     gripper = robot_setup(row.torso).gripper
     chosen = scan_seed(seed, tray, scan)

@@ -8,7 +8,7 @@ collisions with the trays and what carries them. What it leaves open is a field 
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -17,11 +17,10 @@ import numpy as np
 from .. import _core
 from .._core import BaseGrid, Box, Grasp, LinkShape, Part, PartSupplyProblem, ReachDatabase, Tray, World
 from .._files import shipped
-from .._reading import read_yaml
-from .._robot_section import RobotSetup, choose_sections, read_setup
-from .._tray_section import WALL
-
-Progress = Callable[[str, float], None] | None
+from .._progress import Progress
+from ..scenario.reading import read_yaml
+from ..scenario.robot_section import RobotSetup, choose_sections, read_setup
+from ..scenario.tray_section import WALL
 
 UNCERTAINTY = 0.10  # P1 3.7.1 [m]
 RESOLUTION = 0.05  # P1 3.6 [m]

@@ -8,8 +8,11 @@
 Needs the extra `sim` (docs/methods/sim.md). Pictures of a run need nothing more: see `frames`.
 """
 
-from .model import Physics, SimPart, build
-from .result import ContactEvent, PartMotion, SimResult
-from .simulation import Execution, Simulation
-
-__all__ = ["ContactEvent", "Execution", "PartMotion", "Physics", "SimPart", "SimResult", "Simulation", "build"]
+from .execution import Execution as Execution
+from .model import Physics as Physics
+from .model import SimPart as SimPart
+from .model import build as build
+from .result import ContactEvent as ContactEvent
+from .result import PartMotion as PartMotion
+from .result import SimResult as SimResult
+from .simulation import Simulation as Simulation

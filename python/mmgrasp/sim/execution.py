@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from .. import _core
 from .._core import InvalidInput, JointGroup, JointTrajectory
 from .result import ContactLog, PartWatch, SimResult
-
-if TYPE_CHECKING:
-    from .simulation import Execution, Simulation
+from .scene import SimScene
 
 SETTLE = 0.4  # after the fingers should have met, before the lift [s]
 LIFT_STEPS = 20
@@ -19,12 +18,58 @@ BASE_NAMES = ("x", "y", "theta")
 WATCHED = 2  # contacts are looked at every so many physics steps
 
 
+@dataclass
+class Execution:
+    """How a trajectory is run. Times are those of the plan; `speed` stretches them all."""
+
+    speed: float = 1.0
+    """Share of the planned speed, in (0, 1]."""
+    close_at: float | None = None
+    """Plan time at which the gripper begins to close [s]; None: at the plan's end."""
+    opening: float | None = None
+    """Of the gripper at first [m]; None: fully open."""
+    closing_speed: float = 0.1
+    """How fast the opening shrinks [m/s] (P1 4.4.1); not stretched by `speed`."""
+    lift: float = 0.1
+    """The tool then rises this far [m]; 0: no lift."""
+    lift_time: float = 2.0
+    """[s]"""
+    hold: float = 2.0
+    """And stands this long [s]."""
+    tracking: dict[str, Any] = field(default_factory=dict)
+    """Keywords of BaseTracker; kp, feedback, ..."""
+    slip: tuple[float, float] = (0.0, 0.0)
+    """Share of the left and right wheel's speed that is lost; in [0, 1)."""
+    travel_noise: float = 0.0
+    """Deviation of a wheel's travel after 1 m [m]."""
+    position_noise: float = 0.0
+    """Deviation of the base's measured x and y [m]."""
+    heading_noise: float = 0.0
+    """Deviation of its measured heading [rad]."""
+    frame_period: float = 0.04
+    """Between two recorded states [s]."""
+    seed: int = 1
+    """Same seed, same run."""
+
+    def check(self) -> None:
+        def rule(name: str, holds: bool, text: str) -> None:
+            if not holds:
+                raise InvalidInput(f"{name} = {getattr(self, name)!r}: must {text}")
+
+        rule("speed", 0 < self.speed <= 1, "lie in (0, 1]")
+        for name in ("closing_speed", "lift_time", "frame_period"):
+            rule(name, 0 < getattr(self, name) < np.inf, "be finite and positive")
+        for name in ("lift", "hold", "travel_noise", "position_noise", "heading_noise"):
+            rule(name, 0 <= getattr(self, name) < np.inf, "be finite and not negative")
+        rule("slip", len(self.slip) == 2 and all(0 <= s < 1 for s in self.slip), "be two shares in [0, 1)")
+        rule("close_at", self.close_at is None or 0 <= self.close_at < np.inf, "be a time of the plan")
+        rule("opening", self.opening is None or 0 <= self.opening < np.inf, "be finite and not negative")
+
+
 class Run:
     """All of one execution, computed by the constructor."""
 
-    def __init__(
-        self, sim: Simulation, plan: JointTrajectory, base: np.ndarray, arm: JointGroup | None, how: Execution
-    ):
+    def __init__(self, sim: SimScene, plan: JointTrajectory, base: np.ndarray, arm: JointGroup | None, how: Execution):
         self.sim, self.plan, self.arm, self.how = sim, plan, arm, how
         self.h = sim.physics.time_step
         self._read_columns(base)
@@ -194,7 +239,7 @@ class Run:
             self.base_error = max(self.base_error, float(np.hypot(*off)))
         if tool is None:
             return
-        T_world_tool = sim._pose(tool)
+        T_world_tool = sim.body_pose(tool)
         for watch in self.watches:
             touching = {b if a == watch.name else a for a, b in forces if watch.name in (a, b)}
             watch.step(sim.part_pose(watch.name), T_world_tool, touching, time >= self.lifted)

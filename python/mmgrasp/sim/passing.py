@@ -15,8 +15,8 @@ import numpy as np
 from .. import _core
 from .._core import Box, JointTrajectory, LinkShape, PushGrasp, World
 from .._files import shipped
-from .._reading import read_yaml
-from .._robot_section import RobotSetup, choose_sections, read_setup
+from ..scenario.reading import read_yaml
+from ..scenario.robot_section import RobotSetup, choose_sections, read_setup
 from .model import SimPart
 from .result import SimResult
 from .simulation import Simulation

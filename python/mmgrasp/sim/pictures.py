@@ -70,7 +70,7 @@ class Painter:
 def planned_states(
     robot: Robot,
     trajectory: JointTrajectory,
-    times: Sequence[float],
+    times: Iterable[float],
     parts: Iterable[SimPart] = (),
     *,
     joints: dict[str, float] | None = None,

@@ -14,7 +14,7 @@ from .scene import placed_triangles, transformed
 
 if TYPE_CHECKING:
     from .._core import PipeGrasp
-    from ..pipe_cells import PipeCell
+    from ..problems.pipe_cells import PipeCell
 
 ARM, HAND, TABLE, FIXTURE, OBSTACLE = "#D9DBDE", "#55585C", "#EDE8DF", "#9AA0A8", "#B9C4CF"
 START, GOAL = np.array([0x2A, 0x9D, 0x5C]), np.array([0xC1, 0x12, 0x1F])

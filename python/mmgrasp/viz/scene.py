@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-import mmgrasp
-
+from .._core import Box, Capsule, Cylinder, LinkShape, Robot, Sphere
 from .raster import Scene
 from .style import FLOOR, OBSTACLE, PART, ROBOT, ROBOT_ARM, TRAY_BODY
 from .timeline import State, Timeline, pose_matrix
@@ -23,18 +22,18 @@ def shape_mesh(shape: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
     T = pose_matrix(shape["pose"])
     kind = shape["type"]
     if kind == "mesh":
-        placed = mmgrasp.LinkShape.mesh(shape["file"], shape["scale"], T)
+        placed = LinkShape.mesh(shape["file"], shape["scale"], T)
     elif kind == "box":
-        placed = mmgrasp.LinkShape(mmgrasp.Box(shape["size"]), T)
+        placed = LinkShape(Box(shape["size"]), T)
     elif kind == "sphere":
-        placed = mmgrasp.LinkShape(mmgrasp.Sphere(shape["radius"]), T)
+        placed = LinkShape(Sphere(shape["radius"]), T)
     else:
-        make = mmgrasp.Cylinder if kind == "cylinder" else mmgrasp.Capsule
-        placed = mmgrasp.LinkShape(make(shape["radius"], shape["length"]), T)
+        make = Cylinder if kind == "cylinder" else Capsule
+        placed = LinkShape(make(shape["radius"], shape["length"]), T)
     return placed_triangles(placed)
 
 
-def placed_triangles(shape: mmgrasp.LinkShape) -> tuple[np.ndarray, np.ndarray]:
+def placed_triangles(shape: LinkShape) -> tuple[np.ndarray, np.ndarray]:
     """Vertices and faces of a shape in the frame of the body it belongs to."""
     mesh = shape.surface()
     return transformed(shape.pose, mesh.vertices), mesh.triangles
@@ -58,7 +57,7 @@ class PlanScene:
         self.plan = plan
         self.timeline = Timeline(plan)
         scenario = plan["scenario"]
-        self.robot = mmgrasp.Robot.from_strings(
+        self.robot = Robot.from_strings(
             scenario["robot"]["urdf"], scenario["robot"]["srdf"], base=scenario["robot"]["base"]
         )
         self.link_meshes = [

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from .._core import quat_xyzw_from_rotation
 from .pictures import write_scene as write_png
 from .scene import PlanScene
 from .style import OBSTACLE, PART, ROBOT, ROBOT_ARM, STOP, TRAY_BODY, rgb, tray_colour
@@ -16,8 +17,6 @@ __all__ = ["PlanViewer", "view", "write_png"]
 
 def _wxyz(T: np.ndarray) -> np.ndarray:
     """Quaternion (w, x, y, z) of T's rotation."""
-    from mmgrasp import quat_xyzw_from_rotation
-
     x, y, z, w = quat_xyzw_from_rotation(T[:3, :3])
     return np.array([w, x, y, z])
 

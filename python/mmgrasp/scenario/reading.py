@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 import numpy as np
 import yaml
 
-from ._core import InvalidInput, IoError, pose
+from .._core import InvalidInput, IoError, pose
 
 LARGEST = 1e6  # no length, angle or time in a file is larger [SI]
 LARGEST_INTEGER = 2**31 - 1
@@ -210,12 +210,19 @@ class _Lines(yaml.SafeLoader):
     """Builds plain values and remembers the line of every key."""
 
 
-def _plain(loader: _Lines, node: yaml.Node, path: tuple[Key, ...], lines: dict, source: str, depth: int = 0) -> Any:
+def _plain(
+    loader: _Lines,
+    node: yaml.Node,
+    path: tuple[Key, ...],
+    lines: dict[tuple[Key, ...], int],
+    source: str,
+    depth: int = 0,
+) -> Any:
     if depth > 50:
         raise InvalidInput(f"{source}:{node.start_mark.line + 1}: nested more than 50 deep")
     lines.setdefault(path, node.start_mark.line + 1)
     if isinstance(node, yaml.MappingNode):
-        out: dict = {}
+        out: dict[str, Any] = {}
         for key_node, value_node in node.value:
             line = key_node.start_mark.line + 1
             key = loader.construct_object(key_node) if isinstance(key_node, yaml.ScalarNode) else None

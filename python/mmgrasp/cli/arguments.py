@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from . import _core
+from .. import _core
+
+if TYPE_CHECKING:  # argparse has no public name for what add_subparsers gives
+    Commands = argparse._SubParsersAction["_Parser"]
 
 _LARGEST = 2**31 - 1
 
@@ -13,7 +17,7 @@ _LARGEST = 2**31 - 1
 class _Parser(argparse.ArgumentParser):
     """An argument parser whose options may not be abbreviated: a script keeps its meaning when options are added."""
 
-    def __init__(self, **keywords) -> None:
+    def __init__(self, **keywords: Any) -> None:
         super().__init__(allow_abbrev=False, **keywords)
 
 
@@ -27,7 +31,7 @@ def build_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _add_plan(commands) -> None:
+def _add_plan(commands: Commands) -> None:
     parser = commands.add_parser(
         "plan", help="plan a part-supply round and write plan, report, pictures and trajectories"
     )
@@ -44,7 +48,7 @@ def _add_plan(commands) -> None:
     parser.add_argument("--no-pictures", action="store_true", help="write plan.json and the trajectories only")
 
 
-def _add_verify(commands) -> None:
+def _add_verify(commands: Commands) -> None:
     parser = commands.add_parser("verify", help="check a finished plan without the planner")
     parser.add_argument("plan", type=Path, help="plan.json")
     parser.add_argument("--scenario", type=Path, metavar="FILE", help="compare with this scenario, read anew")
@@ -54,7 +58,7 @@ def _add_verify(commands) -> None:
     parser.add_argument("--json", action="store_true", help="print the verdict as JSON")
 
 
-def _add_check(commands) -> None:
+def _add_check(commands: Commands) -> None:
     parser = commands.add_parser("check", help="tell what mmgrasp understands of a robot")
     parser.add_argument("urdf", type=Path, help="a URDF, or a .xacro file that expands to one")
     parser.add_argument("--srdf", type=Path, metavar="FILE")
@@ -86,7 +90,7 @@ def _add_check(commands) -> None:
     parser.add_argument("--json", action="store_true")
 
 
-def _add_reproduce(commands) -> None:
+def _add_reproduce(commands: Commands) -> None:
     parser = commands.add_parser(
         "reproduce", help="compute a paper's tables and figures again, beside the paper's numbers"
     )
@@ -102,7 +106,7 @@ def _add_reproduce(commands) -> None:
     _add_cluster_options(parser)
 
 
-def _add_bench(commands) -> None:
+def _add_bench(commands: Commands) -> None:
     parser = commands.add_parser("bench", help="run published problem sets and look at every answer again")
     parser.add_argument("name", choices=["mbm"], help="mbm: MotionBenchMaker's problems for Panda and UR5")
     parser.add_argument(
@@ -122,7 +126,7 @@ def _add_bench(commands) -> None:
     parser.add_argument("--json", action="store_true")
 
 
-def _add_view(commands) -> None:
+def _add_view(commands: Commands) -> None:
     parser = commands.add_parser("view", help="show a plan in the browser, or draw it")
     parser.add_argument("plan", type=Path, help="plan.json")
     parser.add_argument("--png", type=Path, metavar="FILE", help="write a picture instead of opening the browser")

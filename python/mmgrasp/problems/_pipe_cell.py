@@ -10,7 +10,7 @@ from math import acos, pi, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from ._core import (
+from .._core import (
     CandidateGrasp,
     CollisionChecker,
     FingerJoint,
@@ -24,8 +24,8 @@ from ._core import (
     Robot,
     World,
 )
-from ._files import shipped
-from ._reading import check_name
+from .._files import shipped
+from ..scenario.reading import check_name
 
 Pose = NDArray[np.float64]
 ROBOTS = ("tm14like", "kr6like")

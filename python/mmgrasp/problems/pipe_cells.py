@@ -16,7 +16,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from ._core import (
+from .._core import (
     CollisionChecker,
     InvalidInput,
     ManipulationResult,
@@ -29,8 +29,8 @@ from ._core import (
     plan_motion,
     pose,
 )
+from ..scenario.reading import check_name
 from ._pipe_cell import FINGERS, ROBOTS, PipeCell, Pose, pipe_robot, pipe_structures
-from ._reading import check_name
 
 __all__ = ["FINGERS", "ROBOTS", "PipeCell", "pipe_cell", "pipe_robot", "pipe_structures"]
 
@@ -208,7 +208,10 @@ def _post_tops(pipe: Pipe, T: Pose, rng: np.random.Generator) -> list[NDArray[np
         if np.all(beside | above):
             tops.append(along[i] - [0, 0, radius[i] + _POST_GAP])
     pairs = [(a, b) for i, a in enumerate(tops) for b in tops[:i]]
-    return list(max(pairs, key=lambda pair: float(np.linalg.norm(pair[0] - pair[1])), default=tuple(tops)))
+    if not pairs:
+        return tops
+    widest = max(pairs, key=lambda pair: float(np.linalg.norm(pair[0] - pair[1])))
+    return list(widest)
 
 
 def _add_bay(world: World, name: str, pipe: Pipe, T: Pose) -> None:

@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ._core import Error, InvalidInput
+from .._core import Error, InvalidInput
 
 Poses = NDArray[np.float64]
 
@@ -61,7 +61,7 @@ def scattered(
     _check(count, area=area, apart=apart, stand=stand, room=room)
     rng = np.random.default_rng(seed)
     side = math.sqrt(area * max(count, 1))
-    laid: list[tuple[NDArray, NDArray, float]] = []
+    laid: list[tuple[Poses, Poses, float]] = []
     for _ in range(2000 * max(count, 1)):
         if len(laid) == count:
             break

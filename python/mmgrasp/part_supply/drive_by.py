@@ -16,11 +16,11 @@ from typing import Any
 
 import numpy as np
 
-from . import _core
-from ._core import InvalidInput, JointGroup, Outcome, Pick, World
-from ._files import write_file
-from ._robot_section import Progress
-from .part_supply import PartSupplyPlan
+from .. import _core
+from .._core import InvalidInput, JointGroup, Outcome, Pick, World
+from .._files import write_file
+from .._progress import Progress
+from .planning import ScenarioPlan
 
 CLOSING_SPEED = 0.1  # of the gripper's opening [m/s] (P1 4.4.1)
 SETTLING = 0.1  # fingers press before the part is lifted [s]
@@ -101,7 +101,7 @@ class DriveByPick:
 class DriveByPlan:
     """A part-supply plan and what of it is done in passing."""
 
-    plan: PartSupplyPlan
+    plan: ScenarioPlan
     problem: _core.PartSupplyProblem = field(repr=False)
     picks: list[DriveByPick] = field(default_factory=list)
 
@@ -154,7 +154,7 @@ class DriveByPlan:
         return written
 
 
-def plan_drive_by_picks(plan: PartSupplyPlan, *, progress: Progress = None, **options: Any) -> DriveByPlan:
+def plan_drive_by_picks(plan: ScenarioPlan, *, progress: Progress = None, **options: Any) -> DriveByPlan:
     """Tries to take the first part at each stop in passing. Keywords are those of `plan_drive_by`.
 
     Raises InvalidInput for a plan that is not solved and for a robot that does not drive.
@@ -177,7 +177,7 @@ def plan_drive_by_picks(plan: PartSupplyPlan, *, progress: Progress = None, **op
 
 
 def _in_passing(
-    plan: PartSupplyPlan,
+    plan: ScenarioPlan,
     problem: _core.PartSupplyProblem,
     leg: int,
     here: np.ndarray,
@@ -290,7 +290,7 @@ def _slower(robot: _core.Robot) -> _core.Robot:
     return _core.Robot.from_strings(robot.to_urdf(), robot.to_srdf(), base=robot.base, base_limits=limits)
 
 
-def _moving_group(plan: PartSupplyPlan, problem: _core.PartSupplyProblem, opening: float) -> JointGroup:
+def _moving_group(plan: ScenarioPlan, problem: _core.PartSupplyProblem, opening: float) -> JointGroup:
     joints = {**plan.scenario.setup.other_joints, **problem.gripper.joint_values(opening)}
     group = _slower(problem.robot).group(problem.arm.name, tip=problem.gripper.tcp_link, with_base=True)
     return group.with_reference(joints)

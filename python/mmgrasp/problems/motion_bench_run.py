@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from ._core import IoError, Robot, plan_motion
-from ._core.verify import CheckedBody, check_path
-from ._reading import check_name
+from .._core import IoError, Robot, plan_motion
+from .._core.verify import CheckedBody, check_path
+from ..scenario.reading import check_name
 from .motion_bench import MBM_SETS, MotionProblem, read_motion_problems
 
 ROBOTS = ("panda", "ur5")

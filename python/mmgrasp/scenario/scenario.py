@@ -9,13 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from . import _core
-from ._core import CollisionChecker, InvalidInput, LinkShape, PartSupplyProblem, ReachDatabase, World
-from ._files import shipped
-from ._reading import Node, read_yaml
-from ._robot_section import Progress, RobotSetup, choose_sections, find_file, read_setup
-from ._shapes import read_shapes
-from ._tray_section import TraySetup, read_part_types, read_tray
+from .. import _core
+from .._core import CollisionChecker, InvalidInput, LinkShape, PartSupplyProblem, ReachDatabase, World
+from .._files import shipped
+from .._progress import Progress
+from .reading import Node, read_yaml
+from .robot_section import RobotSetup, choose_sections, find_file, read_setup
+from .shapes import read_shapes
+from .tray_section import PartType, TraySetup, read_part_types, read_tray
 
 TOP_KEYS = "format version name robot start goal positioning_uncertainty trays part_types"
 TOP_OPTIONAL = "gripper carry obstacles options reach"
@@ -171,7 +172,7 @@ def _read_obstacles(root: Node) -> list[Obstacle]:
     return out
 
 
-def _read_trays(root: Node, types: dict, setup: RobotSetup) -> list[TraySetup]:
+def _read_trays(root: Node, types: dict[str, PartType], setup: RobotSetup) -> list[TraySetup]:
     trays = [read_tray(node, types, setup.gripper) for node in root["trays"].elements()]
     if not any(tray.targets for tray in trays):
         root["trays"].fail("at least one part of one tray must be a target")

@@ -7,14 +7,14 @@ a part may come to lie.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _core
-from ._core import (
+from .. import _core
+from .._core import (
     DepthImage,
     Grasp,
     Graspability,
@@ -36,8 +36,6 @@ MARKER = 0.001  # radius of the body that stands for a grasp [m]
 class TrayScan:
     """One filling of a tray, its depth image and the grasps found in it; poses are in the tray's frame."""
 
-    placement: RandomPlacement | None
-    """None: the poses were given."""
     image: DepthImage
     height_map: HeightMap
     found: Graspability
@@ -45,6 +43,13 @@ class TrayScan:
     @property
     def grasps(self) -> list[ScoredGrasp]:
         return self.found.grasps
+
+
+@dataclass(frozen=True)
+class RandomTrayScan(TrayScan):
+    """A scan of a filling that was drawn at random."""
+
+    placement: RandomPlacement
 
 
 def scan_random_tray(
@@ -62,7 +67,7 @@ def scan_random_tray(
     noise: float = 0.0005,
     resolution: float = 0.002,
     **options: Any,
-) -> TrayScan:
+) -> RandomTrayScan:
     """Fills a tray at random, renders it from above its middle and evaluates graspability.
 
     `fill` is the share of `count` parts that is left in the tray (P1: 1, 0.75, 0.5, 0.25); with
@@ -86,7 +91,7 @@ def scan_random_tray(
         resolution=resolution,
         **options,
     )
-    return replace(scan, placement=placement)
+    return RandomTrayScan(**vars(scan), placement=placement)
 
 
 def scan_tray(
@@ -117,7 +122,7 @@ def scan_tray(
     around = size[:2] + 2 * BORDER
     height_map = _core.make_height_map(image, np.eye(4), around, resolution=resolution)
     found = _core.evaluate_graspability(height_map, gripper, image=image, **options)
-    return TrayScan(None, image, height_map, found)
+    return TrayScan(image, height_map, found)
 
 
 def _body(part: Sequence[LinkShape]) -> list[LinkShape]:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from ._core import (
+from .._core import (
     Box,
     CollisionChecker,
     Cylinder,
@@ -27,7 +27,7 @@ from ._core import (
     World,
     pose,
 )
-from ._reading import bad_yaml
+from ..scenario.reading import bad_yaml
 
 MBM_SETS = ("bookshelf_small", "bookshelf_tall", "bookshelf_thin", "box", "cage", "table_pick", "table_under_pick")
 """The sets of problems that MotionBenchMaker makes for an arm."""
@@ -146,7 +146,7 @@ class _File:
             value = value[key]
         return value
 
-    def items(self, key: str) -> list:
+    def items(self, key: str) -> list[Any]:
         value = self.of(self.root, key)
         if not isinstance(value, list):
             raise InvalidInput(f"{self.path}: {key}: must be a list")
@@ -166,7 +166,7 @@ class _File:
         return pose(xyz=xyz, quat_xyzw=[self.number(x) for x in self.of(value, "orientation")])
 
 
-def _shape(file: _File, primitive: dict) -> Box | Cylinder | Sphere:
+def _shape(file: _File, primitive: dict[str, Any]) -> Box | Cylinder | Sphere:
     kind = file.of(primitive, "type")
     sizes = [file.number(x) for x in file.of(primitive, "dimensions")]
     wanted = {"box": 3, "cylinder": 2, "sphere": 1}

@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from . import _core
-from ._core import Box, Grasp, Gripper, LinkShape, Part, Tray
-from ._reading import Node, near_miss
-from ._robot_section import find_file
-from ._shapes import read_shapes
+from .. import _core
+from .._core import Box, Grasp, Gripper, LinkShape, Part, Tray
+from .reading import Node, near_miss
+from .robot_section import find_file
+from .shapes import read_shapes
 
 WALL = 0.005  # thickness of a tray's floor and walls [m]
 GAP = 0.001  # parts rest this far above the floor, so that nothing touches at rest [m]
@@ -139,7 +139,7 @@ def _grid(node: Node, types: dict[str, PartType]) -> list[Placed]:
         node["grid"].fail("must not place more than 1000 parts in one tray")
     spacing = node["spacing"].numbers(2, above=0)
     yaw = node["yaw"].number() if "yaw" in node else 0.0
-    placed = []
+    placed: list[Placed] = []
     for i in range(counts[0]):
         for j in range(counts[1]):
             x, y = (i - (counts[0] - 1) / 2) * spacing[0], (j - (counts[1] - 1) / 2) * spacing[1]

@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from . import _core
-from ._core import InvalidInput, IoError
+from .. import _core
+from .._core import InvalidInput, IoError
 
 _LOCK = threading.Lock()  # the package keeps what it works on in module variables
 
@@ -68,7 +68,7 @@ def expand(
             stack.enter_context(patch)
         try:
             with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
-                expanded = xacro.process_file(path, mappings=arguments, verbosity=0).toprettyxml(indent="  ")
+                expanded: str = xacro.process_file(path, mappings=arguments, verbosity=0).toprettyxml(indent="  ")
         except Exception as error:  # the package raises whatever its expressions raise
             place = next((file for file in reversed(xacro.filestack or []) if file), path)
             inside = "" if str(place) == path else f" (in {place})"

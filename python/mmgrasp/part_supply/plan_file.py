@@ -6,38 +6,35 @@ import json
 import math
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from . import _core
-from ._core import InvalidInput, PartSupplyResult, Robot
-from ._core import verify as checks
-from ._files import sha256_of
-from ._reading import Node, read_json
-from ._shapes import pose_to_dict, shape_from_node, shape_to_dict
-
-if TYPE_CHECKING:
-    from .scenario import Scenario
+from .. import _core
+from .._core import InvalidInput, PartSupplyPlan, Robot
+from .._core import verify as checks
+from .._files import SCHEMAS, sha256_of
+from ..scenario import Scenario
+from ..scenario.reading import Node, read_json
+from ..scenario.shapes import pose_to_dict, shape_from_node, shape_to_dict
 
 VERSION = 1
-SCHEMA = Path(__file__).parent / "schemas" / "plan.schema.json"
 
 
 # --- writing ----------------------------------------------------------------------------------------------------------
-def plan_to_dict(scenario: Scenario, result: PartSupplyResult, timings: list[tuple[str, float]]) -> dict[str, Any]:
+def plan_to_dict(scenario: Scenario, plan: PartSupplyPlan, timings: list[tuple[str, float]]) -> dict[str, Any]:
     """The whole content of plan.json."""
-    names = [scenario.trays[tray].tray.name for tray in result.region_trays]
+    names = [scenario.trays[tray].tray.name for tray in plan.region_trays]
     return {
         "format": "mmgrasp-plan",
         "version": VERSION,
         "mmgrasp": _core.__version__,
-        "outcome": result.outcome.name,
+        "outcome": plan.outcome.name,
         "scenario": scenario_to_dict(scenario),
-        "grid": _grid(result),
-        "regions": [_region(region, result) for region in result.regions],
-        "intersections": [_intersection(i, names) for i in result.intersections.robust],
-        "lost_intersections": [_intersection(i, names) for i in result.intersections.lost],
+        "grid": _grid(plan),
+        "regions": [_region(region, plan) for region in plan.regions],
+        "intersections": [_intersection(i, names) for i in plan.intersections.robust],
+        "lost_intersections": [_intersection(i, names) for i in plan.intersections.lost],
         "stops": [
             {
                 "pose": s.pose.tolist(),
@@ -45,10 +42,10 @@ def plan_to_dict(scenario: Scenario, result: PartSupplyResult, timings: list[tup
                 "trays": [names[t] for t in s.trays],
                 "intersection": s.intersection,
             }
-            for s in result.stops
+            for s in plan.stops
         ],
-        "lower_bound": result.lower_bound,
-        "proven_minimal": result.proven_minimal,
+        "lower_bound": plan.lower_bound,
+        "proven_minimal": plan.proven_minimal,
         "route": [
             {
                 "poses": leg.poses.tolist(),
@@ -56,11 +53,11 @@ def plan_to_dict(scenario: Scenario, result: PartSupplyResult, timings: list[tup
                 "turning": leg.turning,
                 "duration": leg.duration(scenario.setup.robot),
             }
-            for leg in result.route
+            for leg in plan.route
         ],
-        "picks": [_pick(pick, scenario) for pick in result.picks],
-        "robustness_rate": result.robustness_rate,
-        "obstructions": [o.to_dict() for o in result.obstructions],
+        "picks": [_pick(pick, scenario) for pick in plan.picks],
+        "robustness_rate": plan.robustness_rate,
+        "obstructions": [o.to_dict() for o in plan.obstructions],
         "timings": [{"stage": stage, "seconds": seconds} for stage, seconds in timings],
     }
 
@@ -133,8 +130,8 @@ def _part(part: _core.Part, tray: str) -> dict[str, Any]:
     }
 
 
-def _grid(result: PartSupplyResult) -> dict[str, Any]:
-    grid = result.grid
+def _grid(plan: PartSupplyPlan) -> dict[str, Any]:
+    grid = plan.grid
     return {
         "origin": grid.origin.tolist(),
         "resolution": grid.resolution,
@@ -153,8 +150,8 @@ def runs_of(layer: np.ndarray) -> list[list[int]]:
     return runs
 
 
-def _region(region: _core.BaseRegion, result: PartSupplyResult) -> dict[str, Any]:
-    layers = region.cells(result.grid)
+def _region(region: _core.BaseRegion, plan: PartSupplyPlan) -> dict[str, Any]:
+    layers = region.cells(plan.grid)
     return {
         "tray": region.tray,
         "cells": {str(k): runs for k, layer in enumerate(layers) if (runs := runs_of(layer))},
@@ -203,7 +200,8 @@ def read_plan(path: str | os.PathLike[str]) -> dict[str, Any]:
     """The content of a plan.json; raises IoError or InvalidInput when it is not one."""
     root = read_json(Path(path)).root
     check_header(root)
-    return root.raw
+    content: dict[str, Any] = root.raw
+    return content
 
 
 def check_header(root: Node) -> None:
@@ -216,7 +214,8 @@ def check_header(root: Node) -> None:
 
 def plan_schema() -> dict[str, Any]:
     """The JSON Schema of plan.json."""
-    return json.loads(SCHEMA.read_text())
+    schema: dict[str, Any] = json.loads((SCHEMAS / "plan.schema.json").read_text())
+    return schema
 
 
 def plan_to_check(root: Node) -> checks.PlanToCheck:

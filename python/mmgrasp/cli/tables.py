@@ -7,20 +7,18 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from .drive_by import DriveByPlan
-from .part_supply import PartSupplyPlan
-from .verification import PlanVerdict
+from ..part_supply import DriveByPlan, PlanVerdict, ScenarioPlan
 
 
-def summary(plan: PartSupplyPlan) -> Table:
+def summary(plan: ScenarioPlan) -> Table:
     """Stops of a plan."""
     table = Table(
-        title=f"{plan.scenario.name}: {len(plan.stops)} stops (proven least {plan.result.lower_bound}), "
+        title=f"{plan.scenario.name}: {len(plan.stops)} stops (proven least {plan.plan.lower_bound}), "
         f"{len(plan.picks)} picks"
     )
     for title in ("stop", "x [m]", "y [m]", "heading [deg]", "free disc [m]", "trays", "picks", "arm time [s]"):
         table.add_column(title, justify="left" if title == "trays" else "right")
-    names = [plan.scenario.trays[t].tray.name for t in plan.result.region_trays]
+    names = [plan.scenario.trays[t].tray.name for t in plan.plan.region_trays]
     for i, stop in enumerate(plan.stops):
         picks = [pick for pick in plan.picks if pick.stop == i]
         x, y, theta = stop.pose

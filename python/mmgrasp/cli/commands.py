@@ -11,21 +11,22 @@ import json
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from ._cli_arguments import build_parser
-from ._cli_tables import bench_table, drive_by_summary, print_verdict, summary
-from ._console import Reporter
-from ._core import Error, InvalidInput, Outcome
-from ._files import check_folder, write_file
-from ._reading import read_json
+from .._core import Error, InvalidInput, Outcome
+from .._files import check_folder, write_file
+from ..part_supply import ScenarioPlan, plan_drive_by_picks, plan_part_supply, plan_to_check, read_plan, verify_plan
+from ..scenario import load_scenario
+from ..scenario.reading import read_json
+from .arguments import build_parser
 from .check import check_robot, describe
-from .drive_by import plan_drive_by_picks
-from .part_supply import PartSupplyPlan, plan_part_supply
-from .plan_file import plan_to_check, read_plan
-from .scenario import load_scenario
-from .verification import verify_plan
+from .console import Reporter
+from .tables import bench_table, drive_by_summary, print_verdict, summary
+
+if TYPE_CHECKING:
+    from ..reproduce.entry import Sweep
 
 DONE, FAULTY, BAD_INPUT, NO_PLAN, INTERRUPTED = 0, 1, 2, 3, 130
 
@@ -43,7 +44,7 @@ def run_plan(arguments: argparse.Namespace, console: Console) -> int:
             passing = plan_drive_by_picks(plan, progress=report)
             passing.save(arguments.out)
             if not arguments.no_pictures:
-                from .viz.report import write_report
+                from ..viz.report import write_report
 
                 write_report(passing.plan_to_dict(), arguments.out)
     if plan.outcome != Outcome.solved:
@@ -67,14 +68,14 @@ def exit_code(outcome: Outcome) -> int:
     }.get(outcome, NO_PLAN)
 
 
-def write_outputs(plan: PartSupplyPlan, out: Path, report: Callable[[str, float], None], pictures: bool) -> Path:
+def write_outputs(plan: ScenarioPlan, out: Path, report: Callable[[str, float], None], pictures: bool) -> Path:
     """Writes everything into the folder and returns the page to look at."""
     report("writing", 0.0)
     path = plan.save(out / "plan.json")
     plan.save_trajectories(out / "trajectories")
     if pictures:
-        from .viz.pictures import write_pictures
-        from .viz.report import write_report
+        from ..viz.pictures import write_pictures
+        from ..viz.report import write_report
 
         content = plan.to_dict()
         report("writing", 0.3)
@@ -120,12 +121,12 @@ def run_view(arguments: argparse.Namespace, console: Console) -> int:
     if content.get("outcome") == "solved":
         plan_to_check(read_json(arguments.plan).root)  # says what is wrong with a damaged plan before anything is drawn
     if arguments.png:
-        from .viz.viewer import write_png
+        from ..viz.viewer import write_png
 
         write_png(content, arguments.png)
         console.print(str(arguments.png), markup=False)
         return DONE
-    from .viz.viewer import view
+    from ..viz.viewer import view
 
     try:
         view(content, port=arguments.port)
@@ -135,8 +136,8 @@ def run_view(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def run_bench(arguments: argparse.Namespace, console: Console) -> int:
-    from .motion_bench import MBM_SETS
-    from .motion_bench_run import holds, run_motion_bench
+    from ..problems.motion_bench import MBM_SETS
+    from ..problems.motion_bench_run import holds, run_motion_bench
 
     with Reporter(console) as report:
         results = run_motion_bench(
@@ -159,8 +160,8 @@ def run_bench(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def run_reproduce(arguments: argparse.Namespace, console: Console) -> int:
-    from . import reproduce as again
-    from .reproduce.page import markdown, store
+    from .. import reproduce as again
+    from ..reproduce.page import markdown, store
 
     if not arguments.name:
         for entry in again.ENTRIES.values():
@@ -184,14 +185,14 @@ def run_reproduce(arguments: argparse.Namespace, console: Console) -> int:
 
 
 @contextlib.contextmanager
-def _sweep(arguments: argparse.Namespace) -> Iterator[Callable]:
+def _sweep(arguments: argparse.Namespace) -> Iterator[Sweep]:
     """Calls here, or on the cluster that the arguments ask for."""
     if arguments.workers is None and arguments.scheduler is None:
-        from .reproduce import sweep_here
+        from ..reproduce.entry import sweep_here
 
         yield sweep_here
         return
-    from . import cluster
+    from .. import cluster
 
     with cluster.connect(workers=arguments.workers, scheduler=arguments.scheduler, folder=arguments.shards) as engine:
         yield engine.run
@@ -221,7 +222,3 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("mmgrasp: interrupted", file=sys.stderr)
         return INTERRUPTED
-
-
-if __name__ == "__main__":
-    sys.exit(main())

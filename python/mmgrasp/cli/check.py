@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from . import _core
-from ._core import InvalidInput, Robot
-from ._robot_section import Progress
+from .. import _core
+from .._core import InvalidInput, Robot
+from .._progress import Progress
 
 
 @dataclass

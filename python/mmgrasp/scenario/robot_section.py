@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import importlib.util
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from . import _core
-from ._core import Box, CarryPlace, FingerJoint, Gripper, InvalidInput, JointGroup, LinkShape, Robot
-from ._files import ASSETS, shipped
-from ._reading import Node, near_miss, read_yaml
-from ._shapes import read_shapes
-
-Progress = Callable[[str, float], None] | None
+from .. import _core
+from .._core import Box, CarryPlace, FingerJoint, Gripper, InvalidInput, JointGroup, LinkShape, Robot
+from .._files import ASSETS, shipped
+from .._progress import Progress
+from .reading import Node, near_miss, read_yaml
+from .shapes import read_shapes
 
 BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation"
 ROBOT_KEYS = "urdf srdf packages xacro_args base base_limits mount frames group tcp joints home"
@@ -168,6 +167,7 @@ def _joint_value(robot: Robot, name: str, node: Node) -> float:
 
 
 def _read_group(robot: Robot, node: Node, tcp: str) -> JointGroup:
+    make: dict[str, Any]
     if isinstance(node.raw, str):
         if node.raw not in robot.groups:
             node.fail(f"the SRDF has no such group{near_miss(node.raw, list(robot.groups) or ['(none)'])}")

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from . import _core
-from ._core import Box, Capsule, Cylinder, InvalidInput, LinkShape, Sphere
-from ._files import sha256_of
-from ._reading import Node
+from .. import _core
+from .._core import Box, Capsule, Cylinder, InvalidInput, LinkShape, Sphere
+from .._files import sha256_of
+from .reading import Node
 
 KINDS = ("box", "cylinder", "sphere", "mesh")
 

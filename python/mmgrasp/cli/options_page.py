@@ -1,10 +1,15 @@
-"""Writes docs/options.md from the defaults of the C++ structs: python -m mmgrasp._options_page."""
+"""Writes docs/options.md from the defaults of the C++ structs: python -m mmgrasp.cli.options_page."""
 
 from __future__ import annotations
 
-from . import _core
+from collections.abc import Callable
+from typing import Any
 
-SECTIONS = (
+from .. import _core
+
+Table = Callable[[], dict[str, tuple[Any, str]]]
+
+SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
     ("options", "How to plan (`PartSupplyOptions`)", _core._supply_option_table, {"positioning_uncertainty"}),
     ("reach", "The reachability database (`ReachOptions`)", _core._reach_option_table, set()),
     (

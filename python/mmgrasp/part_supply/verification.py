@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ._core import verify as checks
-from ._reading import Document, read_json
-from ._robot_section import Progress
+from .._core import verify as checks
+from .._progress import Progress
+from ..scenario import load_scenario
+from ..scenario.reading import Document, read_json
 from .plan_file import check_header, plan_to_check, scenario_to_dict
-from .scenario import load_scenario
 
 
 @dataclass

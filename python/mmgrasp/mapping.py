@@ -1,0 +1,29 @@
+"""What a camera sees: depth images, height maps, point clouds, box-shaped parts, and parts that lie at random."""
+
+# Cameras and their images
+from ._core import (
+    PinholeCamera as PinholeCamera,
+    look_down as look_down,
+    render_depth as render_depth,
+    DepthImage as DepthImage,
+    make_height_map as make_height_map,
+    HeightMap as HeightMap,
+)
+
+# Point clouds
+from ._core import (
+    PointCloud as PointCloud,
+    read_pcd as read_pcd,
+    fit_cuboids as fit_cuboids,
+    CuboidFit as CuboidFit,
+    FittedCuboid as FittedCuboid,
+)
+
+# How parts lie
+from ._core import (
+    resting_poses as resting_poses,
+    RestingPose as RestingPose,
+    random_placement as random_placement,
+    RandomPlacement as RandomPlacement,
+    PlacedPart as PlacedPart,
+)

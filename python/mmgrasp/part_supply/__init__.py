@@ -1,0 +1,16 @@
+"""The main job: a storeroom's parts are picked and supplied (P1).
+
+A scenario is planned (`plan_part_supply`), parts may be taken in passing (`plan_drive_by_picks`), plans are written to and
+read from plan.json (`read_plan`, `plan_schema`), and checked again without the planner (`verify_plan`).
+"""
+
+from .drive_by import DriveByPick as DriveByPick
+from .drive_by import DriveByPlan as DriveByPlan
+from .drive_by import plan_drive_by_picks as plan_drive_by_picks
+from .plan_file import plan_schema as plan_schema
+from .plan_file import plan_to_check as plan_to_check
+from .plan_file import read_plan as read_plan
+from .planning import ScenarioPlan as ScenarioPlan
+from .planning import plan_part_supply as plan_part_supply
+from .verification import PlanVerdict as PlanVerdict
+from .verification import verify_plan as verify_plan

@@ -1,0 +1,133 @@
+"""The main job: a scenario in, a checked and explained plan out."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, overload
+
+from .. import _core
+from .._core import InvalidInput, Outcome, PartSupplyPlan, PartSupplyProblem, ReachDatabase
+from .._files import write_file
+from .._progress import Progress
+from ..scenario import Scenario, load_scenario
+from .plan_file import plan_to_dict
+
+
+class ScenarioPlan:
+    """A scenario and the plan made for it: where the base stops, which grasps it takes, how base and arm move, and why alternatives lost.
+
+    The plan names trays and parts by their indices in the scenario; both together are what plan.json holds.
+    """
+
+    def __init__(self, scenario: Scenario, plan: PartSupplyPlan, extra_timings: list[tuple[str, float]]) -> None:
+        self.scenario = scenario
+        self.plan = plan
+        self.timings: list[tuple[str, float]] = [*extra_timings, *plan.timings]
+
+    @property
+    def outcome(self) -> Outcome:
+        """Solved, or how the planning ended; `obstructions` then says why."""
+        return self.plan.outcome
+
+    @property
+    def stops(self) -> list[_core.Stop]:
+        return self.plan.stops
+
+    @property
+    def picks(self) -> list[_core.Pick]:
+        return self.plan.picks
+
+    @property
+    def route(self) -> list[_core.BasePath]:
+        return self.plan.route
+
+    @property
+    def obstructions(self) -> list[_core.Obstruction]:
+        return self.plan.obstructions
+
+    def to_dict(self) -> dict[str, Any]:
+        """The content of plan.json (docs/plan_format.md)."""
+        return plan_to_dict(self.scenario, self.plan, self.timings)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Writes plan.json."""
+        target = Path(path)
+        write_file(target, json.dumps(self.to_dict(), allow_nan=False) + "\n")
+        return target
+
+    def save_trajectories(self, folder: str | os.PathLike[str]) -> list[Path]:
+        """One CSV per arm motion and per leg of the route, named in the order they are carried out."""
+        written = []
+        for i, pick in enumerate(self.picks):
+            tray = self.scenario.trays[pick.tray].tray
+            part = re.sub(r"[^A-Za-z0-9_.-]+", "_", tray.parts[pick.part].name)
+            for j, motion in enumerate(pick.motions):
+                path = Path(folder) / f"pick_{i:02d}_{part}_{j}_{motion.kind}.csv"
+                write_file(path, motion.trajectory.to_csv(base_pose=self.stops[pick.stop].pose))
+                written.append(path)
+        for i, leg in enumerate(self.route):
+            path = Path(folder) / f"drive_{i:02d}.csv"
+            rows = [",".join(f"{value:.17g}" for value in pose) for pose in leg.poses]
+            write_file(path, "\n".join(["base.x,base.y,base.theta", *rows]) + "\n")
+            written.append(path)
+        return written
+
+    def __repr__(self) -> str:
+        if self.outcome != Outcome.solved:
+            why = "; ".join(o.message for o in self.obstructions)
+            return f"ScenarioPlan({self.outcome.name}: {why})"
+        length = sum(leg.length for leg in self.route)
+        return f"ScenarioPlan(solved, {len(self.stops)} stops, {len(self.picks)} picks, {length:.2f} m driven)"
+
+
+@overload
+def plan_part_supply(
+    scenario: Scenario | str | os.PathLike[str],
+    *,
+    seed: int | None = None,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> ScenarioPlan: ...
+@overload
+def plan_part_supply(
+    scenario: PartSupplyProblem, database: ReachDatabase, *, progress: Progress = None
+) -> PartSupplyPlan: ...
+def plan_part_supply(
+    scenario: Scenario | PartSupplyProblem | str | os.PathLike[str],
+    database: ReachDatabase | None = None,
+    *,
+    seed: int | None = None,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> ScenarioPlan | PartSupplyPlan:
+    """Plans a part-supply round: least stops, grasps, arm motions and the drive between (P1 chapter 3).
+
+    `scenario` is a Scenario or a path to its YAML file and stays as it is; `seed` and `threads` go before those of its
+    options, for this call. Given as objects instead, a PartSupplyProblem comes with its arm's reachability database, its
+    seed and threads are in its own options, and the answer is the plan alone. `progress` is called with (stage, fraction).
+    Raises InvalidInput or IoError on bad input; that there is no plan is said by the answer's `outcome` and `obstructions`.
+    """
+    if isinstance(scenario, PartSupplyProblem):
+        if database is None:
+            raise InvalidInput("database = None: a PartSupplyProblem needs its arm's ReachDatabase")
+        if seed is not None or threads is not None:
+            raise InvalidInput("seed, threads: those of a PartSupplyProblem are in its own options")
+        return _core.plan_part_supply(scenario, database, progress=progress)
+    if database is not None:
+        raise InvalidInput("database: only a PartSupplyProblem takes one; a scenario has its own (its section `reach`)")
+    begun = time.perf_counter()
+    if not isinstance(scenario, Scenario):
+        scenario = load_scenario(scenario, progress=progress)
+    given = {"seed": seed, "threads": threads}
+    options = scenario.options | {key: value for key, value in given.items() if value is not None}
+    scenario = replace(scenario, options=options)  # the caller's keeps its own
+    problem = scenario.problem()
+    loaded = time.perf_counter()
+    reach = scenario.reach_database(progress)
+    timings = [("scenario", loaded - begun), ("reach database", time.perf_counter() - loaded)]
+    return ScenarioPlan(scenario, _core.plan_part_supply(problem, reach, progress=progress), timings)

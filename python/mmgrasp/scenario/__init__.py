@@ -1,0 +1,11 @@
+"""Scenarios: one YAML file that says which robot does what in which storeroom (docs/scenario_format.md).
+
+`load_scenario` resolves it: files read, the robot composed of its sections (`RobotSetup`), parts placed in their trays
+(`TraySetup`) and grasps sampled.
+"""
+
+from .robot_section import RobotSetup as RobotSetup
+from .scenario import Obstacle as Obstacle
+from .scenario import Scenario as Scenario
+from .scenario import load_scenario as load_scenario
+from .tray_section import TraySetup as TraySetup

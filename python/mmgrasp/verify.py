@@ -1,0 +1,26 @@
+"""The independent checker: a finished plan or path against the scenario, by KDL and FCL called directly, without any planner.
+
+`mmgrasp.verify_plan` reads a plan.json and calls `check_plan`; `check_path` checks a joint path.
+"""
+
+from ._core.verify import (
+    CheckedBody as CheckedBody,
+    CheckedDriveBy as CheckedDriveBy,
+    CheckedFinger as CheckedFinger,
+    CheckedGrasp as CheckedGrasp,
+    CheckedGrid as CheckedGrid,
+    CheckedIntersection as CheckedIntersection,
+    CheckedLegFigures as CheckedLegFigures,
+    CheckedMotion as CheckedMotion,
+    CheckedPart as CheckedPart,
+    CheckedPick as CheckedPick,
+    CheckedRegion as CheckedRegion,
+    CheckedStop as CheckedStop,
+    Fault as Fault,
+    PathCheckResult as PathCheckResult,
+    PlanCheckResult as PlanCheckResult,
+    PlanToCheck as PlanToCheck,
+    StopRate as StopRate,
+    check_path as check_path,
+    check_plan as check_plan,
+)

@@ -117,8 +117,9 @@ void bind_map(py::module_& m) {
             return CapabilityMap::load(name);
           },
           "path"_a, "Raises IoError on a truncated, foreign or corrupt folder.")
-      .def_property_readonly("shape",
-                             [](const CapabilityMap& map) -> GridShape { return py::tuple(py::cast(map.shape())); })
+      .def_property_readonly(
+          "shape", [](const CapabilityMap& map) -> GridShape { return py::tuple(py::cast(map.shape())); },
+          "Voxels along x, y, z.")
       .def_property_readonly(
           "index",
           [](const py::object& self) -> Floats32 {
@@ -144,8 +145,12 @@ void bind_map(py::module_& m) {
           "A configuration for each reached pose (reached, n), float32, in the order of `classes`.")
       .def_property_readonly("centres", &centres, "Centres of the voxels (nx, ny, nz, 3) [m].")
       .def_property_readonly("tool_poses", &tool_poses, "Tool poses around a voxel's centre (poses, 4, 4).")
-      .def_property_readonly("lower", [](const CapabilityMap& map) { return map.options().lower; })
-      .def_property_readonly("upper", [](const CapabilityMap& map) { return map.options().upper; })
+      .def_property_readonly(
+          "lower", [](const CapabilityMap& map) { return map.options().lower; },
+          "Lower corner of the grid (3,) in the robot's root frame [m].")
+      .def_property_readonly(
+          "upper", [](const CapabilityMap& map) { return map.options().upper; },
+          "Upper corner of the grid (3,) in the robot's root frame [m].")
       .def_property_readonly(
           "voxel", [](const CapabilityMap& map) { return map.options().voxel; }, "Edge of a voxel [m].")
       .def_property_readonly("reached", &CapabilityMap::reached, "Poses reached.")

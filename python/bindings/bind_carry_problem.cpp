@@ -116,13 +116,17 @@ void bind_carry_problem(py::module_& m) {
            "set to each grasp's opening. Links in `touch_links` may touch the object; none given: those of the end "
            "effector. The group may be an arm or an arm on an omni base; a diff_drive base is refused, since it could "
            "not drive the paths.")
-      .def_property_readonly("T_world_start", [](const ManipulationProblem& p) { return to_array(p.T_world_start); })
-      .def_property_readonly("T_world_goal", [](const ManipulationProblem& p) { return to_array(p.T_world_goal); })
-      .def_readonly("group", &ManipulationProblem::group)
-      .def_readonly("world", &ManipulationProblem::world)
-      .def_readonly("object", &ManipulationProblem::object)
-      .def_readonly("grasps", &ManipulationProblem::grasps)
-      .def_readonly("object_name", &ManipulationProblem::object_name)
+      .def_property_readonly(
+          "T_world_start", [](const ManipulationProblem& p) { return to_array(p.T_world_start); },
+          "Pose of the object at the beginning (4, 4).")
+      .def_property_readonly(
+          "T_world_goal", [](const ManipulationProblem& p) { return to_array(p.T_world_goal); },
+          "Pose of the object at the end (4, 4).")
+      .def_readonly("group", &ManipulationProblem::group, "Arm, or arm and omni base; its tip is the tool.")
+      .def_readonly("world", &ManipulationProblem::world, "The world without the object.")
+      .def_readonly("object", &ManipulationProblem::object, "Shapes of the object in its own frame.")
+      .def_readonly("grasps", &ManipulationProblem::grasps, "The grasps to choose from.")
+      .def_readonly("object_name", &ManipulationProblem::object_name, "Name under which it is attached.")
       .def("__repr__", [](const ManipulationProblem& p) {
         return "ManipulationProblem('" + p.object_name + "', " + std::to_string(p.grasps.size()) + " grasps, '" +
                p.group.name() + "')";

@@ -91,14 +91,16 @@ void bind_tracking_result(py::module_& m) {
       .def_property_readonly("mean_error", &R::mean_error, "[m]")
       .def_property_readonly("max_error", &R::max_error, "[m]")
       .def_property_readonly("final_error", &R::final_error, "[m]")
-      .def("to_dict",
-           [](const R& r) {
-             return py::dict("times"_a = r.times, "desired"_a = rows_to_array(r.desired).attr("tolist")(),
-                             "actual"_a = rows_to_array(r.actual).attr("tolist")(),
-                             "commands"_a = rows_to_array(r.commands).attr("tolist")(),
-                             "position_errors"_a = r.position_errors, "heading_errors"_a = r.heading_errors,
-                             "limited"_a = r.limited);
-           })
+      .def(
+          "to_dict",
+          [](const R& r) {
+            return py::dict("times"_a = r.times, "desired"_a = rows_to_array(r.desired).attr("tolist")(),
+                            "actual"_a = rows_to_array(r.actual).attr("tolist")(),
+                            "commands"_a = rows_to_array(r.commands).attr("tolist")(),
+                            "position_errors"_a = r.position_errors, "heading_errors"_a = r.heading_errors,
+                            "limited"_a = r.limited);
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const R& r) {
         const auto number = [](double value) { return std::string(py::repr(py::float_(value))); };
         return "BaseTrackingResult(" + std::to_string(r.times.size()) + " samples, mean error " +
@@ -116,8 +118,8 @@ void bind_control(py::module_& m) {
              return BaseTracker(robot.base(), robot.base_limits(),
                                 read_options(tracking_fields(), options, "BaseTracker"));
            }),
-           py::arg("robot"), option_help(tracking_fields()).c_str())
-      .def("reset", &BaseTracker::reset)
+           py::arg("robot"), ("For a robot on a diff_drive or omni base." + option_help(tracking_fields())).c_str())
+      .def("reset", &BaseTracker::reset, "Forgets the integral of the errors, to begin another plan.")
       .def(
           "command",
           [](BaseTracker& t, const ArrayLike& desired, const ArrayLike& desired_next, const ArrayLike& measured) {
@@ -129,7 +131,8 @@ void bind_control(py::module_& m) {
           "Platform velocity (v_x, v_y, omega) to hold until the plan is at desired_next, one period on; poses are "
           "(x, y, theta).")
       .def_property_readonly("limited", &BaseTracker::limited, "The last command was scaled down to the limits.")
-      .def_property_readonly("period", [](const BaseTracker& t) { return t.options().period; });
+      .def_property_readonly(
+          "period", [](const BaseTracker& t) { return t.options().period; }, "Time for which a command is held [s].");
   m.def(
       "track_base",
       [](const Robot& robot, const JointTrajectory& trajectory, const py::kwargs& options) {

@@ -17,7 +17,7 @@ void bind_ik_objectives(py::module_& m) {
   py::class_<IkObjective, Handle>(m, "IkObjective",
                                   "A cost of configurations that inverse kinematics lowers with the freedom that the "
                                   "pose leaves: pass a list as ik(..., objectives=[...]).")
-      .def_property_readonly("name", &IkObjective::name)
+      .def_property_readonly("name", &IkObjective::name, "Which objective it is.")
       .def(
           "evaluate",
           [](const IkObjective& o, const ArrayLike& q) {

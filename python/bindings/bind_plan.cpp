@@ -96,40 +96,45 @@ void bind_goals(py::module_& m) {
 }
 
 void bind_motion(py::module_& m) {
-  py::class_<MotionStats>(m, "MotionStats")
-      .def_readonly("seconds", &MotionStats::seconds)
-      .def_readonly("collision_queries", &MotionStats::collision_queries)
-      .def_readonly("length_before_shortening", &MotionStats::length_before_shortening)
-      .def("to_dict",
-           [](const MotionStats& s) {
-             return py::dict("seconds"_a = s.seconds, "collision_queries"_a = s.collision_queries,
-                             "length_before_shortening"_a = s.length_before_shortening);
-           })
+  py::class_<MotionStats>(m, "MotionStats", "What a search of plan_motion took.")
+      .def_readonly("seconds", &MotionStats::seconds, "Wall-clock time [s].")
+      .def_readonly("collision_queries", &MotionStats::collision_queries, "Configurations checked.")
+      .def_readonly("length_before_shortening", &MotionStats::length_before_shortening,
+                    "Length of the first path in joint space.")
+      .def(
+          "to_dict",
+          [](const MotionStats& s) {
+            return py::dict("seconds"_a = s.seconds, "collision_queries"_a = s.collision_queries,
+                            "length_before_shortening"_a = s.length_before_shortening);
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const MotionStats& s) {
         return "MotionStats(" + std::string(py::repr(py::float_(s.seconds))) + " s, " +
                std::to_string(s.collision_queries) + " queries)";
       });
   py::class_<MotionResult>(m, "MotionResult", "What plan_motion found.")
-      .def_readonly("outcome", &MotionResult::outcome)
+      .def_readonly("outcome", &MotionResult::outcome, "How it ended; `solved` alone comes with an answer.")
       .def_property_readonly(
           "path", [](const MotionResult& r) { return path_array(r.path); },
           "Waypoints (k, n), joined by straight lines; None unless solved.")
       .def_readonly("cost", &MotionResult::cost, "Length of the path in joint space.")
-      .def_readonly("goal_index", &MotionResult::goal_index)
+      .def_readonly("goal_index", &MotionResult::goal_index, "Which of the goals the path reaches; -1 unless solved.")
       .def_readonly("contacts", &MotionResult::contacts, "With invalid_start or invalid_goal: what touches.")
       .def_readonly("rejections", &MotionResult::rejections, "Of the start, or of goals, turned down.")
       .def_readonly("beyond_limits", &MotionResult::beyond_limits,
                     "With invalid_start or invalid_goal: which joint is outside of its limits, its value and these.")
-      .def_readonly("stats", &MotionResult::stats)
-      .def("to_dict",
-           [](const MotionResult& r) {
-             py::list contacts;
-             for (const Contact& c : r.contacts) contacts.append(py::cast(c).attr("to_dict")());
-             return py::dict("outcome"_a = to_string(r.outcome), "path"_a = path_list(r.path), "cost"_a = r.cost,
-                             "goal_index"_a = r.goal_index, "contacts"_a = contacts,
-                             "rejections"_a = to_dict(r.rejections), "beyond_limits"_a = r.beyond_limits,
-                             "stats"_a = py::cast(r.stats).attr("to_dict")());
-           })
+      .def_readonly("stats", &MotionResult::stats, "What the search took.")
+      .def(
+          "to_dict",
+          [](const MotionResult& r) {
+            py::list contacts;
+            for (const Contact& c : r.contacts) contacts.append(py::cast(c).attr("to_dict")());
+            return py::dict("outcome"_a = to_string(r.outcome), "path"_a = path_list(r.path), "cost"_a = r.cost,
+                            "goal_index"_a = r.goal_index, "contacts"_a = contacts,
+                            "rejections"_a = to_dict(r.rejections), "beyond_limits"_a = r.beyond_limits,
+                            "stats"_a = py::cast(r.stats).attr("to_dict")());
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const MotionResult& r) {
         std::string out = std::string("MotionResult(") + to_string(r.outcome);
         if (r.path) {

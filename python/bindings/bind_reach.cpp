@@ -120,14 +120,16 @@ void bind_queries(py::module_& m, py::class_<ReachDatabase>& database) {
             return out;
           },
           "One per target; None where it is not reached.")
-      .def("to_dict",
-           [](const BasePlacement& p) {
-             py::list rows;
-             for (const Eigen::VectorXd& q : p.configurations)
-               rows.append(q.size() > 0 ? py::object(py::cast(q).attr("tolist")()) : py::none());
-             return py::dict("base_pose"_a = py::cast(p.base_pose).attr("tolist")(), "reached"_a = p.reached,
-                             "configurations"_a = rows);
-           })
+      .def(
+          "to_dict",
+          [](const BasePlacement& p) {
+            py::list rows;
+            for (const Eigen::VectorXd& q : p.configurations)
+              rows.append(q.size() > 0 ? py::object(py::cast(q).attr("tolist")()) : py::none());
+            return py::dict("base_pose"_a = py::cast(p.base_pose).attr("tolist")(), "reached"_a = p.reached,
+                            "configurations"_a = rows);
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const BasePlacement& p) {
         return "BasePlacement(" + std::to_string(p.reached) + " of " + std::to_string(p.configurations.size()) +
                " reached from " + text(p.base_pose) + ")";
@@ -285,11 +287,13 @@ void bind_reach(py::module_& m) {
           py::arg("arm"), "What of the arm has changed since the build, in words; empty when nothing.")
       .def_property_readonly("arrays", &arrays, "Read-only views of the database's arrays, by file name.")
       .def_property_readonly("path", &ReachDatabase::path, "The folder; empty for a database in memory only.")
-      .def_property_readonly("joint_lower", [](const ReachDatabase& db) { return reach_arrays(db).joint_lower; })
+      .def_property_readonly(
+          "joint_lower", [](const ReachDatabase& db) { return reach_arrays(db).joint_lower; },
+          "Least value of each joint [rad or m].")
       .def_property_readonly(
           "joint_step", [](const ReachDatabase& db) { return reach_arrays(db).joint_step; },
           "q = joint_lower + joint_step * arrays['configurations'].")
-      .def("to_dict", &database_dict)
+      .def("to_dict", &database_dict, "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def(
           "save",
           [](const ReachDatabase& db, const PathLike& path) {
@@ -297,11 +301,14 @@ void bind_reach(py::module_& m) {
             py::gil_scoped_release release;
             db.save(name);
           },
-          py::arg("path"))
-      .def_property_readonly("key", &ReachDatabase::key)
+          py::arg("path"),
+          "Writes a folder to a temporary name and renames it; raises IoError where something other than a database "
+          "stands.")
+      .def_property_readonly("key", &ReachDatabase::key,
+                             "Hash of robot, group and options: databases of one key are the same.")
       .def("__len__", &ReachDatabase::size)
       .def_property_readonly("cell_count", &ReachDatabase::cell_count, "Non-empty cells.")
-      .def_property_readonly("joint_count", &ReachDatabase::joint_count)
+      .def_property_readonly("joint_count", &ReachDatabase::joint_count, "Columns of a stored configuration.")
       .def_property_readonly("reach", &ReachDatabase::reach,
                              "Largest distance of a stored tool position from the root [m].")
       .def(

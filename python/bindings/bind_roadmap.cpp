@@ -95,7 +95,7 @@ void bind_roadmap(py::module_& m) {
       .def_property_readonly("figures", &figures_dict,
                              "Mean degree, connected parts, the largest one's vertices, connection radius, the joint "
                              "box's volume, and the gamma that PRM* asks for.")
-      .def("to_dict", &roadmap_dict)
+      .def("to_dict", &roadmap_dict, "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const Roadmap& r) {
         return "Roadmap(" + std::to_string(r.size()) + " vertices, " + std::to_string(r.edge_count()) + " edges, '" +
                r.group().name() + "')";

@@ -198,17 +198,20 @@ void bind_robot_class(py::module_& m) {
           py::kw_only(), py::arg("base_limits") = py::none(), py::arg("load_meshes") = true,
           py::arg("allow_missing_meshes") = false, py::arg("mesh_tolerance") = 0.0, py::arg("origin") = "<string>",
           "The same from the texts of URDF and SRDF; `origin` names the source in messages.")
-      .def_property_readonly("name", &Robot::name)
+      .def_property_readonly("name", &Robot::name, "As the URDF says.")
       .def_property_readonly(
           "base", [](const Robot& r) { return to_string(r.base()); }, "fixed, diff_drive or omni.")
-      .def_property_readonly("base_limits",
-                             [](const Robot& r) -> NamedFloats {
-                               py::dict out;
-                               for (const auto& field : base_limit_fields()) {
-                                 out[field.name.c_str()] = field.get(r.base_limits());
-                               }
-                               return out;
-                             })
+      .def_property_readonly(
+          "base_limits",
+          [](const Robot& r) -> NamedFloats {
+            py::dict out;
+            for (const auto& field : base_limit_fields()) {
+              out[field.name.c_str()] = field.get(r.base_limits());
+            }
+            return out;
+          },
+          "Speed and acceleration limits of the base, its workspace and its wheels, by keyword of `load`'s "
+          "base_limits.")
       .def(
           "velocity_scale",
           [](const Robot& r, const ArrayLike& platform_velocity) {
@@ -260,10 +263,11 @@ void bind_robot_class(py::module_& m) {
               out.append(py::dict("name"_a = e.name, "group"_a = e.group, "parent_link"_a = e.parent_link));
             }
             return out;
-          })
+          },
+          "SRDF end effectors: name, group and parent_link.")
       .def_property_readonly("passive_joints", &Robot::passive_joints,
                              "Joints that nothing drives (SRDF passive_joint): in no group.")
-      .def_property_readonly("has_srdf", &Robot::has_srdf)
+      .def_property_readonly("has_srdf", &Robot::has_srdf, "An SRDF was given.")
       .def_property_readonly("hash", &Robot::hash, "Content hash: kinematics, shapes, limits, disabled pairs.")
       .def(
           "collisions",
@@ -323,7 +327,9 @@ void bind_robot_class(py::module_& m) {
             }
             return r.with_disabled_pairs(std::move(out));
           },
-          py::arg("pairs"))
+          py::arg("pairs"),
+          "This robot with these pairs (link, link, reason) left out of collision checks instead of its own; reason is "
+          "adjacent,\nnever, always, user or default. Raises InvalidInput on an unknown link or reason.")
       .def("to_urdf", &Robot::to_urdf, "The whole robot as one URDF, without visuals; mesh files by absolute path.")
       .def("to_srdf", &Robot::to_srdf,
            "Groups, states, end effectors, passive and virtual joints and the disabled pairs with their reasons as one "

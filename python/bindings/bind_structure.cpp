@@ -97,14 +97,17 @@ void bind_structure(py::module_& m) {
                    "A pipe structure: straight round sections between nodes in the object's frame (P2 3.2.2).")
       .def(py::init(&make_pipe), py::arg("nodes"), py::arg("sections"), py::arg("diameters"),
            "(n, 3) nodes [m], pairs of node indices from 0, and outer diameters [m]: one for all or one a section.")
-      .def_property_readonly("nodes", [](const Pipe& p) { return rows_to_array(p.nodes); })
-      .def_property_readonly("sections",
-                             [](const Pipe& p) -> NodePairs {
-                               py::list pairs;
-                               for (const auto& [a, b] : p.sections) pairs.append(py::make_tuple(a, b));
-                               return pairs;
-                             })
-      .def_readonly("diameters", &Pipe::diameters)
+      .def_property_readonly(
+          "nodes", [](const Pipe& p) { return rows_to_array(p.nodes); }, "(n, 3) in the object's frame [m].")
+      .def_property_readonly(
+          "sections",
+          [](const Pipe& p) -> NodePairs {
+            py::list pairs;
+            for (const auto& [a, b] : p.sections) pairs.append(py::make_tuple(a, b));
+            return pairs;
+          },
+          "First and second node of each section, counted from 0.")
+      .def_readonly("diameters", &Pipe::diameters, "Outer diameter of each section [m].")
       .def_property_readonly(
           "lengths",
           [](const Pipe& p) {

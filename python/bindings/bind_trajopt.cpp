@@ -158,13 +158,16 @@ void bind_drive_by_task(py::module_& m) {
            }),
            py::arg("T_world_tip"), py::kw_only(), py::arg("tolerance") = py::none(),
            py::arg("free") = std::vector<std::string>{}, py::arg("max_tool_speed") = py::none(), py::arg("dwell") = 0.0,
-           py::arg("object") = "", py::arg("push") = py::none(), py::arg("touching") = 2)
+           py::arg("object") = "", py::arg("push") = py::none(), py::arg("touching") = 2,
+           "The class says what the arguments mean; raises InvalidInput naming one that breaks its rule.")
       .def_property_readonly(
           "candidates", [](const DriveByTask& t) { return to_array(t.candidates); }, "(m, 4, 4)")
-      .def_readonly("max_tool_speed", &DriveByTask::max_tool_speed)
-      .def_readonly("dwell", &DriveByTask::dwell)
-      .def_readonly("touching", &DriveByTask::touching)
-      .def_readonly("object", &DriveByTask::object)
+      .def_readonly("max_tool_speed", &DriveByTask::max_tool_speed,
+                    "Fastest tool at the task [m/s]; infinite: no limit.")
+      .def_readonly("dwell", &DriveByTask::dwell, "Time for which the tool's pose is kept [s].")
+      .def_readonly("touching", &DriveByTask::touching,
+                    "Intervals before and after the task in which hand and object may touch what they must.")
+      .def_readonly("object", &DriveByTask::object, "Name of the world's object that is held afterwards; empty: none.")
       .def_property_readonly(
           "push",
           [](const DriveByTask& t) -> OptionalPush {
@@ -183,8 +186,12 @@ void bind_trajectory_class(py::module_& m) {
                                     "Base and arm on one clock. Between waypoints the drive velocities are linear in "
                                     "time; for a diff-drive base they are\n"
                                     "its speed v and turning rate omega, so that it never slips sideways.")
-      .def_property_readonly("names", [](const T& t) { return t.group().names(); })
-      .def_property_readonly("drive_names", [](const T& t) { return drive_names(t.group()); })
+      .def_property_readonly(
+          "names", [](const T& t) { return t.group().names(); }, "One a column of `positions`: x, y, theta first.")
+      .def_property_readonly(
+          "drive_names", [](const T& t) { return drive_names(t.group()); },
+          "Columns of `drive`: v [m/s] and omega [rad/s] of a diff-drive base, x, y, theta of an omni base; then the "
+          "joints.")
       .def_property_readonly(
           "times", [](const T& t) { return py::array_t<double>(py::ssize_t(t.size()), t.times().data()); },
           "(k,) [s], of the waypoints")
@@ -217,7 +224,9 @@ void bind_trajectory_class(py::module_& m) {
 
 void bind_drive_by_result(py::module_& m) {
   py::class_<DriveByResult>(m, "DriveByResult", "What plan_drive_by found.")
-      .def_readonly("outcome", &DriveByResult::outcome)
+      .def_readonly("outcome", &DriveByResult::outcome,
+                    "`solved`: every constraint is kept on a finer roll-out; `approximate`: the best iterate, with its "
+                    "violations.")
       .def_property_readonly(
           "trajectory",
           [](const DriveByResult& r) -> OptionalTrajectory {
@@ -240,32 +249,34 @@ void bind_drive_by_result(py::module_& m) {
           "By kind of constraint: value (0 when kept), tolerance, unit, time [s], waypoint, what, kept; measured on a "
           "roll-out ten times\nfiner than the waypoints.")
       .def_readonly("choices", &DriveByResult::choices, "Choices of candidates planned.")
-      .def_readonly("attempts", &DriveByResult::attempts)
-      .def_readonly("iterations", &DriveByResult::iterations)
-      .def_readonly("seconds", &DriveByResult::seconds)
+      .def_readonly("attempts", &DriveByResult::attempts, "Guesses from which the optimiser began.")
+      .def_readonly("iterations", &DriveByResult::iterations, "Of the optimiser, over all attempts.")
+      .def_readonly("seconds", &DriveByResult::seconds, "Wall-clock time of the call [s].")
       .def_readonly("report", &DriveByResult::report, "What was tried, and what is broken where, by how much.")
       .def("to_csv", &drive_by_csv, py::arg("between") = 0,
            "The trajectory's to_csv with two columns more: task, its index in the row of a task's waypoint, and held, "
            "the "
            "object in the hand.")
-      .def("to_dict",
-           [](const DriveByResult& r) {
-             py::object trajectory = py::none();
-             if (r.trajectory) {
-               trajectory =
-                   py::dict("names"_a = r.trajectory->group().names(),
-                            "drive_names"_a = drive_names(r.trajectory->group()), "times"_a = r.trajectory->times(),
-                            "positions"_a = rows_to_array(r.trajectory->positions()).attr("tolist")(),
-                            "drive"_a = rows_to_array(r.trajectory->drive()).attr("tolist")());
-             }
-             py::list events;
-             for (const DriveByEvent& e : r.events) events.append(event_dict(e));
-             return py::dict("outcome"_a = to_string(r.outcome), "duration"_a = r.duration(),
-                             "trajectory"_a = trajectory, "events"_a = events,
-                             "violations"_a = violations_dict(r.violations), "choices"_a = r.choices,
-                             "attempts"_a = r.attempts, "iterations"_a = r.iterations, "seconds"_a = r.seconds,
-                             "report"_a = r.report);
-           })
+      .def(
+          "to_dict",
+          [](const DriveByResult& r) {
+            py::object trajectory = py::none();
+            if (r.trajectory) {
+              trajectory =
+                  py::dict("names"_a = r.trajectory->group().names(),
+                           "drive_names"_a = drive_names(r.trajectory->group()), "times"_a = r.trajectory->times(),
+                           "positions"_a = rows_to_array(r.trajectory->positions()).attr("tolist")(),
+                           "drive"_a = rows_to_array(r.trajectory->drive()).attr("tolist")());
+            }
+            py::list events;
+            for (const DriveByEvent& e : r.events) events.append(event_dict(e));
+            return py::dict("outcome"_a = to_string(r.outcome), "duration"_a = r.duration(),
+                            "trajectory"_a = trajectory, "events"_a = events,
+                            "violations"_a = violations_dict(r.violations), "choices"_a = r.choices,
+                            "attempts"_a = r.attempts, "iterations"_a = r.iterations, "seconds"_a = r.seconds,
+                            "report"_a = r.report);
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const DriveByResult& r) {
         return std::string("DriveByResult(") + to_string(r.outcome) +
                (r.trajectory ? ", " + std::string(py::repr(py::float_(r.duration()))) + " s" : "") + ", " +

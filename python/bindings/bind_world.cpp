@@ -73,8 +73,9 @@ std::vector<std::string> attached_keys(const World& world) {
 
 void bind_world(py::module_& m) {
   declared<World>(m, "World")
-      .def(py::init<>())
-      .def("copy", [](const World& w) { return World(w); })
+      .def(py::init<>(), "An empty world.")
+      .def(
+          "copy", [](const World& w) { return World(w); }, "A world of its own with the same bodies.")
       .def(
           "add",
           [](World& w, const std::string& name, const BodyShape& shapes, const OptionalArray& pose) {
@@ -103,7 +104,7 @@ void bind_world(py::module_& m) {
           [](World& w, const std::string& name, double radius, const OptionalArray& pose) {
             w.add(name, Sphere{radius}, pose_argument(pose, "pose"));
           },
-          py::arg("name"), py::arg("radius"), py::arg("pose") = py::none())
+          py::arg("name"), py::arg("radius"), py::arg("pose") = py::none(), "Centred; `radius` [m].")
       .def(
           "add_mesh",
           [](World& w, const std::string& name, const PathLike& path, const OptionalArray& pose,
@@ -131,7 +132,7 @@ void bind_world(py::module_& m) {
       .def(
           "move",
           [](World& w, const std::string& name, const ArrayLike& pose) { w.move(name, pose_argument(pose, "pose")); },
-          py::arg("name"), py::arg("pose"))
+          py::arg("name"), py::arg("pose"), "Puts an object of the scene at T_world_object (4, 4).")
       .def("remove", &World::remove, py::arg("name"), "Takes an object, held or not, out of the world.")
       .def(
           "attach",
@@ -166,7 +167,7 @@ void bind_world(py::module_& m) {
             if (object == w.objects().end()) throw InvalidInput("name = '" + name + "': no such scene object");
             return to_array(object->second.T_world_object);
           },
-          py::arg("name"))
+          py::arg("name"), "T_world_object (4, 4) of an object of the scene. Raises InvalidInput on any other name.")
       .def(
           "shapes_of",
           [](const World& w, const std::string& name) {
@@ -176,7 +177,7 @@ void bind_world(py::module_& m) {
             if (held == w.attached().end()) throw InvalidInput("name = '" + name + "': no such object");
             return held->second.shapes;
           },
-          py::arg("name"))
+          py::arg("name"), "Shapes of an object, attached or not, in its own frame.")
       .def("__repr__", [](const World& w) {
         return "World(" + std::to_string(w.objects().size()) + " objects, " + std::to_string(w.attached().size()) +
                " held)";

@@ -68,7 +68,7 @@ void bind_primitives(py::module_& m) {
              return checked(Plane{vector3_argument(normal, "normal"), offset}, "plane");
            }),
            py::arg("normal"), py::arg("offset"),
-           "Solid where normal . x <= offset; `normal` (3,) is made a unit vector, `offset` [m].")
+           "Solid where normal . x <= offset; `normal` (3,) is a unit vector, `offset` [m].")
       .def_readonly("normal", &Plane::normal, "Unit normal (3,), out of the solid.")
       .def_readonly("offset", &Plane::offset, "normal . x = offset on the surface [m].")
       .def("__repr__",

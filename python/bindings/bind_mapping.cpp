@@ -116,8 +116,9 @@ void bind_images(py::module_& m) {
              return image;
            }),
            py::arg("depth"), py::arg("camera"), py::arg("T_world_camera") = py::none(),
-           "`depth` (height, width) along the camera's axis [m], 0 or NaN where nothing was measured, of the camera's "
-           "size;\n`T_world_camera` (4, 4), default: the identity.")
+           "`depth` (height, width) along the camera's axis [m], 0 where nothing was measured; `T_world_camera` (4, "
+           "4),\n"
+           "default: the identity. Raises InvalidInput where the size is not the camera's.")
       .def_property_readonly(
           "depth", [](const DepthImage& i) { return to_image(i.depth, i.camera.height, i.camera.width); },
           "(height, width) float32 [m]")

@@ -8,6 +8,8 @@
 namespace mmgrasp::python {
 namespace {
 
+/// Others than those named are refused with the near miss.
+using NoMoreKeywords = py::KWArgs<py::typing::Never>;
 constexpr char kShapeOrShapes[] = "LinkShape | collections.abc.Sequence[LinkShape]";
 using ShapeOrShapes = Shown<kShapeOrShapes>;
 constexpr char kGraspsOrPoses[] = "collections.abc.Sequence[CandidateGrasp] | numpy.typing.ArrayLike";
@@ -89,11 +91,11 @@ void bind_grasp_candidate(py::module_& m) {
 void bind_carry_problem(py::module_& m) {
   bind_grasp_candidate(m);
   py::class_<ManipulationProblem>(m, "ManipulationProblem",
-                                  "TransferPath an object from one pose to another with any of many grasps (P2 4.2).")
+                                  "Carry an object from one pose to another with any of many grasps (P2 4.2).")
       .def(py::init([](const Given<JointGroup>& group, const Given<World>& world, const ShapeOrShapes& object,
                        const ArrayLike& T_world_start, const ArrayLike& T_world_goal, const GraspsOrPoses& grasps,
                        const std::optional<Given<Gripper>>& gripper, const Given<Strings>& touch_links,
-                       const Given<std::string>& object_name, const py::kwargs& unknown) {
+                       const Given<std::string>& object_name, const NoMoreKeywords& unknown) {
              refuse_unknown(unknown, {"group", "world", "object", "T_world_start", "T_world_goal", "grasps", "gripper",
                                       "touch_links", "object_name"});
              ManipulationProblem problem{with_sampled_pairs(taken(group, "group")),

@@ -98,7 +98,8 @@ void bind_grasp(py::module_& m) {
         return py::make_tuple(std::move(grasps), too_wide);
       },
       py::arg("object"), py::arg("gripper"),
-      "(grasps, too_wide): as sample_grasps, with the number dropped as too wide.");
+      ("(grasps, too_wide): as sample_grasps, with the number dropped as too wide." + option_help(sampler_fields()))
+          .c_str());
   m.def(
       "sample_grasps",
       [](const std::vector<LinkShape>& object, const Gripper& gripper, const py::kwargs& options) {

@@ -92,7 +92,8 @@ void bind_push_grasp(py::module_& m) {
       [](double start, const py::kwargs& problem) {
         return closing_outcome(read_options(push_fields(), problem, "closing_outcome"), start);
       },
-      py::arg("start"), "What beginning to close at an engagement [m] comes to; keywords as of push_grasp.");
+      py::arg("start"),
+      ("What beginning to close at an engagement [m] comes to." + option_help(push_fields())).c_str());
   m.def("push_speed_limit", &push_speed_limit, py::kw_only(), py::arg("length"), py::arg("friction"),
         py::arg("restitution"),
         "Fastest tool [m/s] before whose palm a hit object does not leap more than `length` [m].");

@@ -229,7 +229,8 @@ void bind_reach(py::module_& m) {
             return reach_part_count(with_sampled_pairs(arm),
                                     read_options(reach_fields(), options, "ReachDatabase.part_count"));
           },
-          py::arg("arm"), "Into how many parts build_to divides a build with these options.")
+          py::arg("arm"),
+          ("Into how many parts build_to divides a build with these options." + option_help(reach_fields())).c_str())
       .def_static(
           "build_parts",
           [](const PathLike& folder, const JointGroup& arm, const std::vector<std::int64_t>& parts,
@@ -241,7 +242,9 @@ void bind_reach(py::module_& m) {
                 [&](const Monitor& monitor) { return build_reach_parts(name, group, read, parts, monitor); });
           },
           py::arg("folder"), py::arg("arm"), py::arg("parts"), py::kw_only(), py::arg("progress") = py::none(),
-          "Draws single parts into a folder; in `path`.partial they are what build_to(path, ...) goes on from.")
+          ("Draws single parts into a folder; in `path`.partial they are what build_to(path, ...) goes on from." +
+           option_help(reach_fields()))
+              .c_str())
       .def_static(
           "load_or_build",
           [](const JointGroup& arm, const PathLike& cache_dir, const Progress& progress, const py::kwargs& options) {
@@ -252,7 +255,9 @@ void bind_reach(py::module_& m) {
                 [&](const Monitor& monitor) { return ReachDatabase::load_or_build(group, read, folder, monitor); });
           },
           py::arg("arm"), py::arg("cache_dir"), py::kw_only(), py::arg("progress") = py::none(),
-          "The database of this arm and these options from the cache folder; built and stored when it is not there.")
+          ("The database of this arm and these options from the cache folder; built and stored when it is not there." +
+           option_help(reach_fields()))
+              .c_str())
       .def_static(
           "build_to",
           [](const PathLike& path, const JointGroup& arm, const Progress& progress, const py::kwargs& options) {
@@ -263,7 +268,9 @@ void bind_reach(py::module_& m) {
                 [&](const Monitor& monitor) { return ReachDatabase::build_to(name, group, read, monitor); });
           },
           py::arg("path"), py::arg("arm"), py::kw_only(), py::arg("progress") = py::none(),
-          "Builds through files into a folder; interrupted and called again, it goes on where it was.")
+          ("Builds through files into a folder; interrupted and called again, it goes on where it was." +
+           option_help(reach_fields()))
+              .c_str())
       .def_static(
           "load",
           [](const PathLike& path, const JointGroup* arm) {

@@ -131,7 +131,8 @@ void bind_structure(py::module_& m) {
             return place_pipe_grasp(p, section, length, angle, flipped, grasp_options(gripper, options, "grasp"));
           },
           py::arg("section"), py::arg("length"), py::arg("angle"), py::arg("flipped") = false, py::kw_only(),
-          py::arg("gripper") = py::none(), "The grasp with these four variables (P2 3.2.3.1).")
+          py::arg("gripper") = py::none(),
+          ("The grasp with these four variables (P2 3.2.3.1)." + option_help(pipe_grasp_fields())).c_str())
       .def(
           "sample_grasps",
           [](const Pipe& p, const Given<int>& given_count, const std::optional<Given<Gripper>>& gripper,

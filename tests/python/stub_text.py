@@ -63,11 +63,14 @@ def split_parameters(text: str) -> list[str]:
 
 def with_options(line: str, following: Iterable[str]) -> str:
     """A signature with the keywords that its docstring lists in place of **kwargs."""
+    line = re.sub(r", \*\*kwargs: typing(_extensions)?\.Never\)", ")", line)
     if "**kwargs" not in line or not line.lstrip().startswith("def "):
         return line
     options = [
         f"{o['name']}: {o['type']} = {'...' if o['default'] == 'inf' else o['default']}" for o in listed(following)
     ]
+    if not options and line.startswith("def _"):
+        return line.replace("**kwargs", "**kwargs: typing.Any")
     if not options:
         raise ValueError(f"no option is listed in the docstring of: {line.strip()}")
     keyword_only = "" if re.search(r"[(,] ?\*,", line) else "*, "

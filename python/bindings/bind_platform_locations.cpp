@@ -6,8 +6,6 @@ namespace {
 
 constexpr char kSearchCounts[] = "mmgrasp._records.SearchCounts";
 using SearchCounts = Shown<kSearchCounts>;
-constexpr char kOptionalPixel[] = "numpy.typing.NDArray[numpy.float64] | None";
-using OptionalPixel = Shown<kOptionalPixel>;
 
 using namespace py::literals;
 
@@ -90,7 +88,7 @@ void bind_camera(py::module_& m) {
       .def_readonly("farthest", &PinholeCamera::farthest, "What lies farther along the axis is not seen [m].")
       .def(
           "project",
-          [](const PinholeCamera& camera, const ArrayLike& point) -> OptionalPixel {
+          [](const PinholeCamera& camera, const ArrayLike& point) -> MaybeFloats {
             const auto pixel = camera.project(vector3_argument(point, "point"));
             return pixel ? py::cast(*pixel) : py::none();
           },

@@ -23,8 +23,10 @@ constexpr char kEndEffectorRows[] = "list[mmgrasp._records.EndEffectorRow]";
 using EndEffectorRows = Shown<kEndEffectorRows>;
 constexpr char kLinkPairs[] = "list[tuple[str, str, str]]";
 using LinkPairs = Shown<kLinkPairs>;
-constexpr char kOptionalDict[] = "collections.abc.Mapping[str, typing.Any] | None";
-using OptionalDict = Shown<kOptionalDict>;
+constexpr char kXacroArguments[] = "collections.abc.Mapping[str, typing.Any] | None";
+using XacroArguments = Shown<kXacroArguments>;
+constexpr char kBaseLimitsDict[] = "collections.abc.Mapping[str, float | None] | None";
+using BaseLimitsDict = Shown<kBaseLimitsDict>;
 
 using namespace py::literals;
 
@@ -163,8 +165,8 @@ void bind_robot_class(py::module_& m) {
       .def_static(
           "load",
           [](const PathLike& urdf, const OptionalPath& srdf, const PackageFolders& package_dirs,
-             const std::string& base, const OptionalDict& base_limits, bool load_meshes, bool allow_missing_meshes,
-             double mesh_tolerance, const OptionalDict& xacro_args) {
+             const std::string& base, const BaseLimitsDict& base_limits, bool load_meshes, bool allow_missing_meshes,
+             double mesh_tolerance, const XacroArguments& xacro_args) {
             const RobotOptions options =
                 robot_options(package_dirs, base, base_limits, load_meshes, allow_missing_meshes, mesh_tolerance);
             const std::string urdf_path = path_argument(urdf, "urdf");
@@ -187,7 +189,7 @@ void bind_robot_class(py::module_& m) {
       .def_static(
           "from_strings",
           [](const std::string& urdf, const std::string& srdf, const PackageFolders& package_dirs,
-             const std::string& base, const OptionalDict& base_limits, bool load_meshes, bool allow_missing_meshes,
+             const std::string& base, const BaseLimitsDict& base_limits, bool load_meshes, bool allow_missing_meshes,
              double mesh_tolerance, const std::string& origin) {
             const RobotOptions options =
                 robot_options(package_dirs, base, base_limits, load_meshes, allow_missing_meshes, mesh_tolerance);

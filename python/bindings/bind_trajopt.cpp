@@ -15,9 +15,9 @@ constexpr char kViolationRows[] = "dict[str, mmgrasp._records.ViolationRow]";
 using ViolationRows = Shown<kViolationRows>;
 constexpr char kPushKeywords[] = "dict[str, typing.Any]";
 using PushKeywords = ShownDict<kPushKeywords>;
-constexpr char kOptionalPush[] = "PushGrasp | None";
+constexpr char kOptionalPush[] = "PushGrasp | typing.Any";
 using OptionalPush = Shown<kOptionalPush>;
-constexpr char kOptionalTrajectory[] = "WholeBodyTrajectory | None";
+constexpr char kOptionalTrajectory[] = "WholeBodyTrajectory | typing.Any";
 using OptionalTrajectory = Shown<kOptionalTrajectory>;
 
 using namespace py::literals;

@@ -29,7 +29,8 @@ inline constexpr char kOptionalArray[] = "numpy.typing.ArrayLike | None";
 inline constexpr char kOptionalText[] = "str | None";
 inline constexpr char kOptionalNumber[] = "float | None";
 inline constexpr char kProgress[] = "collections.abc.Callable[[str, float], object] | None";
-inline constexpr char kMaybeFloats[] = "numpy.typing.NDArray[numpy.float64] | None";
+// None without an answer. Any stands for it, as in typeshed, so that code which knows the outcome need not ask again.
+inline constexpr char kMaybeFloats[] = "numpy.typing.NDArray[numpy.float64] | typing.Any";
 inline constexpr char kFloats32[] = "numpy.typing.NDArray[numpy.float32]";
 inline constexpr char kBytes[] = "numpy.typing.NDArray[numpy.uint8]";
 inline constexpr char kNamedFloats[] = "dict[str, float]";

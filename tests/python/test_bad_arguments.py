@@ -21,7 +21,14 @@ from mmgrasp import _core
 
 STUBS = Path(mg.__file__).parent / "_core"
 # Images and points of scans may hold NaN; a scale may be a number.
-OTHER_RULES = ("DepthImage.depth", "HeightMap.height", "fit_cuboids.points", "LinkShape.mesh.scale", "Mesh.load.scale", "World.add_mesh.scale")
+OTHER_RULES = (
+    "DepthImage.depth",
+    "HeightMap.height",
+    "fit_cuboids.points",
+    "LinkShape.mesh.scale",
+    "Mesh.load.scale",
+    "World.add_mesh.scale",
+)
 
 
 class Argument(NamedTuple):
@@ -46,7 +53,7 @@ def arguments_of(node: ast.FunctionDef, function: str, is_method: bool) -> list[
     )
     needed = [a.arg for a, default in pairs if default is None]
     found = []
-    for argument, default in pairs:
+    for argument, _ in pairs:
         annotation = ast.unparse(argument.annotation) if argument.annotation else ""
         is_array = annotation in ("numpy.typing.ArrayLike", "numpy.typing.ArrayLike | None")
         if is_array and f"{function}.{argument.arg}" not in OTHER_RULES:

@@ -7,6 +7,9 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kMaskList[] = "list[numpy.typing.NDArray[numpy.uint8]]";
+using MaskList = Shown<kMaskList>;
+
 using namespace py::literals;
 
 py::array_t<std::uint8_t> mask_array(const BaseGrid& grid, const CellMask& cells) {
@@ -33,12 +36,14 @@ void bind_region_classes(py::module_& m) {
                              finite_argument(std::move(headings), "headings")};
            }),
            py::arg("origin"), py::arg("resolution"), py::arg("nx"), py::arg("ny"),
-           py::arg("headings") = std::vector<double>{0.0})
+           py::arg("headings") = std::vector<double>{0.0},
+           "`origin` (2,) is the lower corner of cell (0, 0) [m], `resolution` the edge of a cell [m], nx and ny "
+           "the\ncells along x and y, `headings` one layer each [rad], distinct.")
       .def_readonly("origin", &BaseGrid::origin, "Lower corner of cell (0, 0) [m].")
-      .def_readonly("resolution", &BaseGrid::resolution)
-      .def_readonly("nx", &BaseGrid::nx)
-      .def_readonly("ny", &BaseGrid::ny)
-      .def_readonly("headings", &BaseGrid::headings)
+      .def_readonly("resolution", &BaseGrid::resolution, "Edge of a cell [m].")
+      .def_readonly("nx", &BaseGrid::nx, "Cells along x.")
+      .def_readonly("ny", &BaseGrid::ny, "Cells along y.")
+      .def_readonly("headings", &BaseGrid::headings, "Heading of each layer [rad].")
       .def(
           "centre",
           [](const BaseGrid& g, int heading, int ix, int iy) {
@@ -58,35 +63,41 @@ void bind_region_classes(py::module_& m) {
       });
   py::class_<PartExplanation>(m, "PartExplanation",
                               "What became of the candidates for one part over all base poses tried.")
-      .def_readonly("part", &PartExplanation::part)
-      .def_readonly("grasps", &PartExplanation::grasps)
-      .def_readonly("base_poses_tried", &PartExplanation::base_poses_tried)
-      .def_readonly("base_poses_feasible", &PartExplanation::base_poses_feasible)
-      .def_readonly("rejections", &PartExplanation::rejections)
-      .def("to_dict",
-           [](const PartExplanation& e) {
-             return py::dict("part"_a = e.part, "grasps"_a = e.grasps, "base_poses_tried"_a = e.base_poses_tried,
-                             "base_poses_feasible"_a = e.base_poses_feasible, "rejections"_a = to_dict(e.rejections));
-           })
+      .def_readonly("part", &PartExplanation::part, "Name of the part.")
+      .def_readonly("grasps", &PartExplanation::grasps, "Candidates.")
+      .def_readonly("base_poses_tried", &PartExplanation::base_poses_tried,
+                    "Base poses tried, without those where the robot at home touches the scene.")
+      .def_readonly("base_poses_feasible", &PartExplanation::base_poses_feasible,
+                    "Base poses from which the part has a collision-free grasp.")
+      .def_readonly("rejections", &PartExplanation::rejections,
+                    "Pairs of grasp and base pose by the cause that turned them down.")
+      .def(
+          "to_dict",
+          [](const PartExplanation& e) {
+            return py::dict("part"_a = e.part, "grasps"_a = e.grasps, "base_poses_tried"_a = e.base_poses_tried,
+                            "base_poses_feasible"_a = e.base_poses_feasible, "rejections"_a = to_dict(e.rejections));
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const PartExplanation& e) {
         return "PartExplanation('" + e.part + "', feasible at " + std::to_string(e.base_poses_feasible) + " of " +
                std::to_string(e.base_poses_tried) + " base poses, rejected: " + e.rejections.summary() + ")";
       });
   py::class_<BaseRegion>(m, "BaseRegion", "Base poses from which every target part of a tray can be grasped.")
-      .def_readonly("tray", &BaseRegion::tray)
+      .def_readonly("tray", &BaseRegion::tray, "Name of the tray.")
       .def(
           "cells", [](const BaseRegion& r, const BaseGrid& grid) { return mask_array(grid, r.cells); }, py::arg("grid"),
           "(headings, ny, nx) array of 0 and 1.")
       .def(
           "part_cells",
-          [](const BaseRegion& r, const BaseGrid& grid) {
+          [](const BaseRegion& r, const BaseGrid& grid) -> MaskList {
             py::list out;
             for (const PartCells& cells : r.part_cells) out.append(mask_array(grid, cells.mask()));
             return out;
           },
           py::arg("grid"), "The same for each target part alone.")
-      .def_readonly("explanations", &BaseRegion::explanations)
-      .def_readonly("base_poses_in_collision", &BaseRegion::base_poses_in_collision)
+      .def_readonly("explanations", &BaseRegion::explanations, "One PartExplanation for each target part.")
+      .def_readonly("base_poses_in_collision", &BaseRegion::base_poses_in_collision,
+                    "Base poses left out because the robot at home touches the scene there.")
       .def_property_readonly("count", &BaseRegion::count, "Number of cells.")
       .def("__repr__",
            [](const BaseRegion& r) { return "BaseRegion('" + r.tray + "', " + std::to_string(r.count()) + " cells)"; });
@@ -95,7 +106,7 @@ void bind_region_classes(py::module_& m) {
   m.def(
       "compute_base_regions",
       [](const PartSupplyProblem& problem, const ReachDatabase& database, const BaseGrid& grid,
-         const py::object& progress) {
+         const Progress& progress) {
         return LongCall(progress).run(
             [&](const Monitor& monitor) { return compute_base_regions(problem, database, grid, monitor); });
       },
@@ -120,13 +131,13 @@ void bind_object_regions(py::module_& m) {
       .def_static(
           "compute",
           [](const PartSupplyProblem& problem, const ReachDatabase& database, const BaseGrid& grid,
-             const py::object& progress) {
+             const Progress& progress) {
             return LongCall(progress).run(
                 [&](const Monitor& monitor) { return ObjectRegions::compute(problem, database, grid, monitor); });
           },
           py::arg("problem"), py::arg("database"), py::arg("grid"), py::kw_only(), py::arg("progress") = py::none(),
           "The same as compute_base_regions, kept part by part.")
-      .def_property_readonly("grid", &ObjectRegions::grid)
+      .def_property_readonly("grid", &ObjectRegions::grid, "The grid that all regions share.")
       .def_property_readonly("trays", &ObjectRegions::trays, "How many.")
       .def(
           "parts", [](const ObjectRegions& r, int tray) { return r.parts(TrayId(tray)); }, py::arg("tray"),
@@ -143,7 +154,7 @@ void bind_object_regions(py::module_& m) {
           "The region of all target parts in place, with what became of the candidates.")
       .def(
           "remove",
-          [](ObjectRegions& r, const std::vector<std::pair<int, int>>& tray_and_part, const py::object& progress) {
+          [](ObjectRegions& r, const std::vector<std::pair<int, int>>& tray_and_part, const Progress& progress) {
             const std::vector<PartRef> removed = parts_argument(tray_and_part);
             return LongCall(progress).run([&](const Monitor& monitor) { return r.remove(removed, monitor); });
           },

@@ -8,6 +8,16 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kOneRegionATray[] = "collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike]";
+using OneRegionATray = ShownSequence<kOneRegionATray>;
+constexpr char kPlacesOfTrays[] = "collections.abc.Sequence[numpy.typing.ArrayLike]";
+using PlacesOfTrays = ShownSequence<kPlacesOfTrays>;
+constexpr char kPartMasks[] = "collections.abc.Sequence[collections.abc.Sequence[numpy.typing.ArrayLike]]";
+using PartMasks = ShownSequence<kPartMasks>;
+constexpr char kRegionsOfRound[] =
+    "collections.abc.Callable[[int], collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike]] | None";
+using RegionsOfRound = Shown<kRegionsOfRound>;
+
 using namespace py::literals;
 
 CellMask mask_of(const BaseGrid& grid, const py::handle& cells) {
@@ -49,37 +59,39 @@ py::dict intersection_dict(const Intersection& i) {
 
 void bind_stops(py::module_& m) {
   py::class_<Intersection>(m, "Intersection", "Cells that several regions share, with their largest disc.")
-      .def_readonly("trays", &Intersection::trays)
-      .def_readonly("heading", &Intersection::heading)
-      .def_readonly("centre", &Intersection::centre)
-      .def_readonly("radius", &Intersection::radius)
-      .def_readonly("cells", &Intersection::cells)
-      .def("to_dict", &intersection_dict)
+      .def_readonly("trays", &Intersection::trays, "Indices of the regions that share them, ascending.")
+      .def_readonly("heading", &Intersection::heading, "Index of the heading's layer.")
+      .def_readonly("centre", &Intersection::centre, "Centre of the largest disc (2,) [m].")
+      .def_readonly("radius", &Intersection::radius, "Radius of the largest disc of shared cells [m].")
+      .def_readonly("cells", &Intersection::cells, "How many cells are shared.")
+      .def("to_dict", &intersection_dict, "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const Intersection& i) {
         return "Intersection(trays " + std::string(py::repr(py::cast(i.trays))) + ", radius " +
                std::string(py::repr(py::float_(i.radius))) + ")";
       });
-  py::class_<Intersections>(m, "Intersections")
-      .def_readonly("robust", &Intersections::robust)
+  py::class_<Intersections>(m, "Intersections",
+                            "Sets of regions whose shared cells hold a disc that is large enough (P1 3.4.2).")
+      .def_readonly("robust", &Intersections::robust, "The sets whose disc is large enough.")
       .def_readonly("lost", &Intersections::lost, "Shared cells whose disc is too small, largest first.")
-      .def_readonly("sets_tried", &Intersections::sets_tried)
+      .def_readonly("sets_tried", &Intersections::sets_tried, "Sets looked at.")
       .def_readonly("complete", &Intersections::complete, "False when the search ended early.")
-      .def_readonly("sets_too_small", &Intersections::sets_too_small)
+      .def_readonly("sets_too_small", &Intersections::sets_too_small,
+                    "Sets that share cells, but with too small a disc.")
       .def("__repr__", [](const Intersections& i) {
         return "Intersections(" + std::to_string(i.robust.size()) + " robust, " + std::to_string(i.sets_too_small) +
                " too small, " + std::to_string(i.sets_tried) + " tried)";
       });
   m.def(
       "robust_intersections",
-      [](const BaseGrid& grid, const py::sequence& regions, double min_radius, std::size_t max_sets) {
+      [](const BaseGrid& grid, const OneRegionATray& regions, double min_radius, std::size_t max_sets) {
         return robust_intersections(grid, regions_argument(grid, regions), min_radius, max_sets);
       },
       py::arg("grid"), py::arg("regions"), py::arg("min_radius"), py::arg("max_sets") = std::size_t{200000},
       "Every set of trays whose shared cells hold a disc of at least `min_radius` [m] (P1 3.4.2).");
   m.def(
       "maximal_intersections",
-      [](const BaseGrid& grid, const py::sequence& given, double min_radius, std::size_t max_boxes,
-         const py::object& progress) {
+      [](const BaseGrid& grid, const OneRegionATray& given, double min_radius, std::size_t max_boxes,
+         const Progress& progress) {
         const std::vector<BaseRegion> regions = regions_argument(grid, given);
         return LongCall(progress).run([&](const Monitor& monitor) {
           return maximal_intersections(grid, regions, min_radius, max_boxes, monitor);
@@ -91,16 +103,18 @@ void bind_stops(py::module_& m) {
   py::class_<Stop>(m, "Stop", "Where the base stops and which trays it serves there.")
       .def_readonly("pose", &Stop::pose, "x, y, theta.")
       .def_readonly("radius", &Stop::radius, "Of the disc in which every target part stays graspable [m].")
-      .def_readonly("trays", &Stop::trays)
-      .def_readonly("intersection", &Stop::intersection)
+      .def_readonly("trays", &Stop::trays, "Indices of the trays picked here; each tray has one stop.")
+      .def_readonly("intersection", &Stop::intersection, "Index into the robust intersections.")
       .def("__repr__", [](const Stop& s) {
         return "Stop(" + text(s.pose) + ", trays " + std::string(py::repr(py::cast(s.trays))) + ")";
       });
-  py::class_<StopSet>(m, "StopSet")
-      .def_readonly("outcome", &StopSet::outcome)
-      .def_readonly("stops", &StopSet::stops)
+  py::class_<StopSet>(m, "StopSet", "Stops that serve all trays.")
+      .def_readonly("outcome", &StopSet::outcome,
+                    "`solved`: proven least; `approximate`: a cover that may have too many stops.")
+      .def_readonly("stops", &StopSet::stops, "In no order yet.")
       .def_readonly("lower_bound", &StopSet::lower_bound, "Proven least number of stops.")
-      .def_readonly("unreachable_trays", &StopSet::unreachable_trays)
+      .def_readonly("unreachable_trays", &StopSet::unreachable_trays,
+                    "Indices of trays that no disc of the asked radius serves.")
       .def_readonly("candidates", &StopSet::candidates, "What least_stops chose from.")
       .def("__repr__", [](const StopSet& s) {
         return std::string("StopSet(") + to_string(s.outcome) + ", " + std::to_string(s.stops.size()) + " stops)";
@@ -110,8 +124,8 @@ void bind_stops(py::module_& m) {
         "The least number of intersections that cover all trays (P1 equation 3.1), with proof.");
   m.def(
       "least_stops",
-      [](const BaseGrid& grid, const py::sequence& given, double min_radius, double time_limit, double tie_time_limit,
-         const py::object& start, const py::object& goal, const py::object& progress) {
+      [](const BaseGrid& grid, const OneRegionATray& given, double min_radius, double time_limit, double tie_time_limit,
+         const OptionalArray& start, const OptionalArray& goal, const Progress& progress) {
         const std::vector<BaseRegion> regions = regions_argument(grid, given);
         StopOptions options;
         options.min_radius = min_radius;
@@ -135,17 +149,17 @@ void bind_stops(py::module_& m) {
 
 void bind_routes(py::module_& m) {
   py::class_<BasePath>(m, "BasePath", "A drive of the base.")
-      .def_readonly("outcome", &BasePath::outcome)
+      .def_readonly("outcome", &BasePath::outcome, "How it ended; `solved` alone comes with an answer.")
       .def_property_readonly(
           "poses", [](const BasePath& p) { return rows_to_array(p.poses); }, "(k, 3): x, y, theta.")
-      .def_readonly("length", &BasePath::length)
-      .def_readonly("turning", &BasePath::turning)
+      .def_readonly("length", &BasePath::length, "Driven distance [m].")
+      .def_readonly("turning", &BasePath::turning, "Sum of absolute heading changes [rad].")
       .def(
           "duration",
           [](const BasePath& p, const Robot& robot) {
             return base_path_duration(p, robot.base(), robot.base_limits());
           },
-          py::arg("robot"))
+          py::arg("robot"), "Time the robot's base takes for it within its speed and acceleration limits [s].")
       .def("__repr__", [](const BasePath& p) {
         return std::string("BasePath(") + to_string(p.outcome) + ", " + std::string(py::repr(py::float_(p.length))) +
                " m)";
@@ -170,7 +184,7 @@ void bind_routes(py::module_& m) {
   m.def(
       "route_lengths",
       [](const JointGroup& arm, const World& world, const ArrayLike& home, const ArrayLike& positions,
-         double resolution, int threads, const py::object& progress) {
+         double resolution, int threads, const Progress& progress) {
         BaseRouteOptions options;
         options.base = arm.robot().base();
         options.resolution = resolution;
@@ -192,15 +206,16 @@ void bind_policies(py::module_& m) {
   py::class_<OptimisedOrder>(m, "OptimisedOrder", "In which order parts are best picked.")
       .def_readonly("order", &OptimisedOrder::order, "[tray][round]: index of the part.")
       .def_readonly("mean_radius", &OptimisedOrder::mean_radius, "Over rounds and groups [m].")
-      .def_readonly("smallest_radius", &OptimisedOrder::smallest_radius)
+      .def_readonly("smallest_radius", &OptimisedOrder::smallest_radius, "Least radius over rounds and groups [m].")
       .def_readonly("proven", &OptimisedOrder::proven, "No other order is better for these groups.")
       .def("__repr__", [](const OptimisedOrder& o) {
         return "OptimisedOrder(mean radius " + std::string(py::repr(py::float_(o.mean_radius))) +
                (o.proven ? ", proven)" : ")");
       });
   py::class_<PolicyRound>(m, "PolicyRound", "One round of pick and place.")
-      .def_readonly("outcome", &PolicyRound::outcome)
-      .def_readonly("stops", &PolicyRound::stops)
+      .def_readonly("outcome", &PolicyRound::outcome, "Of the choice of stops.")
+      .def_readonly("stops", &PolicyRound::stops,
+                    "The stops of the round; their trays are indices into the picking order.")
       .def_readonly("mean_radius", &PolicyRound::mean_radius, "Over the stops [m].")
       .def_readonly("seconds", &PolicyRound::seconds, "Spent on regions and stops between the rounds.")
       .def_readonly("reliable", &PolicyRound::reliable,
@@ -210,33 +225,35 @@ void bind_policies(py::module_& m) {
                " stops, mean radius " + std::string(py::repr(py::float_(r.mean_radius))) + ")";
       });
   py::class_<PolicyResult>(m, "PolicyResult", "A row of P1 table 3.4.")
-      .def_readonly("rounds", &PolicyResult::rounds)
+      .def_readonly("rounds", &PolicyResult::rounds, "In order.")
       .def_readonly("mean_radius", &PolicyResult::mean_radius, "P1 equation 3.2 [m].")
-      .def_readonly("smallest_radius", &PolicyResult::smallest_radius)
-      .def_readonly("mean_stops", &PolicyResult::mean_stops)
+      .def_readonly("smallest_radius", &PolicyResult::smallest_radius, "Over all stops of all rounds [m].")
+      .def_readonly("mean_stops", &PolicyResult::mean_stops, "Stops a round.")
       .def_readonly("solved", &PolicyResult::solved, "Every round has stops.")
-      .def_readonly("reliable", &PolicyResult::reliable)
+      .def_readonly("reliable", &PolicyResult::reliable, "Every round is.")
       .def_readonly("online", &PolicyResult::online, "Every round's seconds are within the limit.")
       .def_readonly("feasible", &PolicyResult::feasible, "Solved, reliable and online.")
-      .def("to_dict",
-           [](const PolicyResult& r) {
-             py::list rounds;
-             for (const PolicyRound& round : r.rounds) {
-               rounds.append(py::dict("outcome"_a = to_string(round.outcome), "stops"_a = round.stops.size(),
-                                      "mean_radius"_a = round.mean_radius, "seconds"_a = round.seconds,
-                                      "reliable"_a = round.reliable));
-             }
-             return py::dict("mean_radius"_a = r.mean_radius, "smallest_radius"_a = r.smallest_radius,
-                             "mean_stops"_a = r.mean_stops, "solved"_a = r.solved, "reliable"_a = r.reliable,
-                             "online"_a = r.online, "feasible"_a = r.feasible, "rounds"_a = rounds);
-           })
+      .def(
+          "to_dict",
+          [](const PolicyResult& r) {
+            py::list rounds;
+            for (const PolicyRound& round : r.rounds) {
+              rounds.append(py::dict("outcome"_a = to_string(round.outcome), "stops"_a = round.stops.size(),
+                                     "mean_radius"_a = round.mean_radius, "seconds"_a = round.seconds,
+                                     "reliable"_a = round.reliable));
+            }
+            return py::dict("mean_radius"_a = r.mean_radius, "smallest_radius"_a = r.smallest_radius,
+                            "mean_stops"_a = r.mean_stops, "solved"_a = r.solved, "reliable"_a = r.reliable,
+                            "online"_a = r.online, "feasible"_a = r.feasible, "rounds"_a = rounds);
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const PolicyResult& r) {
         return "PolicyResult(" + std::to_string(r.rounds.size()) + " rounds, mean radius " +
                std::string(py::repr(py::float_(r.mean_radius))) + (r.feasible ? ", feasible)" : ", not feasible)");
       });
   m.def(
       "paired_order",
-      [](const py::sequence& places) {
+      [](const PlacesOfTrays& places) {
         std::vector<std::vector<Eigen::Vector2d>> points;
         for (const py::handle& tray : places) {
           const Eigen::MatrixXd rows = matrix_argument(tray, "places", 2);
@@ -250,7 +267,7 @@ void bind_policies(py::module_& m) {
       "one (m, 2) array of positions a tray; the answer is [tray][round].");
   m.def(
       "optimised_order",
-      [](const BaseGrid& grid, const py::sequence& cells, const std::vector<std::vector<int>>& groups,
+      [](const BaseGrid& grid, const PartMasks& cells, const std::vector<std::vector<int>>& groups,
          const PickingOrder& order, bool smallest_first, int restarts, unsigned rng_seed) {
         const PartRegions parts = part_regions_argument(grid, cells);
         OrderOptions options;
@@ -265,9 +282,9 @@ void bind_policies(py::module_& m) {
       "`cells` is [tray][part], bitmaps (headings, ny, nx).");
   m.def(
       "run_policy",
-      [](const BaseGrid& grid, const py::sequence& cells, const PickingOrder& order, const std::string& policy,
-         double min_radius, double online_limit, double time_limit, double tie_time_limit, const py::object& planned,
-         const py::object& progress) {
+      [](const BaseGrid& grid, const PartMasks& cells, const PickingOrder& order, const std::string& policy,
+         double min_radius, double online_limit, double time_limit, double tie_time_limit,
+         const RegionsOfRound& planned, const Progress& progress) {
         const PartRegions parts = part_regions_argument(grid, cells);
         PolicyOptions options;
         options.stops.min_radius = min_radius;

@@ -8,9 +8,13 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kGridShape[] = "tuple[int, int, int]";
+using GridShape = Shown<kGridShape>;
+
 OptionField<CapabilityOptions> vector_option(const char* name, Eigen::Vector3d CapabilityOptions::*member,
                                              const char* help) {
-  return {name, [=](CapabilityOptions& o, const py::handle& v) { o.*member = vector3_argument(v, name); },
+  return {name, "numpy.typing.ArrayLike",
+          [=](CapabilityOptions& o, const py::handle& v) { o.*member = vector3_argument(v, name); },
           [=](const CapabilityOptions& o) -> py::object {
             const Eigen::Vector3d& v = o.*member;
             return py::make_tuple(v[0], v[1], v[2]);
@@ -76,7 +80,7 @@ void bind_map(py::module_& m) {
       "(P3 3.9.2, equation 3.13). Everything is in the robot's root frame. Immutable.")
       .def_static(
           "build",
-          [](const JointGroup& arm, const std::optional<World>& world, const py::object& progress,
+          [](const JointGroup& arm, const std::optional<World>& world, const Progress& progress,
              const py::kwargs& options) {
             const CapabilityOptions read = read_options(capability_fields(), options, "CapabilityMap.build");
             const JointGroup group = with_sampled_pairs(arm);
@@ -90,7 +94,7 @@ void bind_map(py::module_& m) {
               .c_str())
       .def(
           "restricted",
-          [](const CapabilityMap& map, const JointGroup& arm, const World& world, const py::object& progress) {
+          [](const CapabilityMap& map, const JointGroup& arm, const World& world, const Progress& progress) {
             const JointGroup group = with_sampled_pairs(arm);
             return LongCall(progress).run(
                 [&](const Monitor& monitor) { return map.restricted(group, world, monitor); });
@@ -99,7 +103,7 @@ void bind_map(py::module_& m) {
           "The map of the same arm in a world with more in it: only what is reached here is looked at again.")
       .def(
           "save",
-          [](const CapabilityMap& map, const py::object& path) {
+          [](const CapabilityMap& map, const PathLike& path) {
             const std::string name = path_argument(path, "path");
             py::gil_scoped_release release;
             map.save(name);
@@ -107,23 +111,25 @@ void bind_map(py::module_& m) {
           "path"_a, "Writes a folder of .npy files and meta.json.")
       .def_static(
           "load",
-          [](const py::object& path) {
+          [](const PathLike& path) {
             const std::string name = path_argument(path, "path");
             py::gil_scoped_release release;
             return CapabilityMap::load(name);
           },
           "path"_a, "Raises IoError on a truncated, foreign or corrupt folder.")
-      .def_property_readonly("shape", [](const CapabilityMap& map) { return py::tuple(py::cast(map.shape())); })
+      .def_property_readonly(
+          "shape", [](const CapabilityMap& map) -> GridShape { return py::tuple(py::cast(map.shape())); },
+          "Voxels along x, y, z.")
       .def_property_readonly(
           "index",
-          [](const py::object& self) {
+          [](const py::object& self) -> Floats32 {
             const auto& map = self.cast<const CapabilityMap&>();
             return view(map.index(), grid_shape(map), self);
           },
           "Reachability index of each voxel (nx, ny, nz), float32 in [0, 1].")
       .def_property_readonly(
           "classes",
-          [](const py::object& self) {
+          [](const py::object& self) -> Bytes {
             const auto& map = self.cast<const CapabilityMap&>();
             return view(map.classes(), grid_shape(map, {map.options().poses}), self);
           },
@@ -132,15 +138,19 @@ void bind_map(py::module_& m) {
           "4 scene.")
       .def_property_readonly(
           "configurations",
-          [](const py::object& self) {
+          [](const py::object& self) -> Floats32 {
             const auto& map = self.cast<const CapabilityMap&>();
             return view(map.configurations(), {map.reached(), map.joint_count()}, self);
           },
           "A configuration for each reached pose (reached, n), float32, in the order of `classes`.")
       .def_property_readonly("centres", &centres, "Centres of the voxels (nx, ny, nz, 3) [m].")
       .def_property_readonly("tool_poses", &tool_poses, "Tool poses around a voxel's centre (poses, 4, 4).")
-      .def_property_readonly("lower", [](const CapabilityMap& map) { return map.options().lower; })
-      .def_property_readonly("upper", [](const CapabilityMap& map) { return map.options().upper; })
+      .def_property_readonly(
+          "lower", [](const CapabilityMap& map) { return map.options().lower; },
+          "Lower corner of the grid (3,) in the robot's root frame [m].")
+      .def_property_readonly(
+          "upper", [](const CapabilityMap& map) { return map.options().upper; },
+          "Upper corner of the grid (3,) in the robot's root frame [m].")
       .def_property_readonly(
           "voxel", [](const CapabilityMap& map) { return map.options().voxel; }, "Edge of a voxel [m].")
       .def_property_readonly("reached", &CapabilityMap::reached, "Poses reached.")
@@ -154,14 +164,14 @@ void bind_map(py::module_& m) {
           "point"_a, "Index of the voxel that holds a point of the root frame; 0 outside.")
       .def(
           "configuration",
-          [](const CapabilityMap& map, int x, int y, int z, int pose) -> py::object {
+          [](const CapabilityMap& map, int x, int y, int z, int pose) -> MaybeFloats {
             const Eigen::VectorXd q = map.configuration(map.voxel(x, y, z), pose);
             return q.size() == 0 ? py::none() : py::cast(q);
           },
           "x"_a, "y"_a, "z"_a, "pose"_a, "Configuration that reaches a pose of a voxel, or None.")
       .def(
           "slice",
-          [](const py::object& self, const std::string& axis, double at) -> py::array {
+          [](const py::object& self, const std::string& axis, double at) -> Floats32 {
             const auto& map = self.cast<const CapabilityMap&>();
             const std::size_t which = std::string("xyz").find(axis);
             if (axis.size() != 1 || which == std::string::npos)
@@ -175,7 +185,7 @@ void bind_map(py::module_& m) {
           "axis"_a, "at"_a, "Cut through the voxels at a coordinate [m]: `slice(\"z\", 0.75)` is (nx, ny).")
       .def(
           "score",
-          [](const CapabilityMap& map, const ArrayLike& T_world_tips, const py::object& T_world_root, double cone) {
+          [](const CapabilityMap& map, const ArrayLike& T_world_tips, const OptionalArray& T_world_root, double cone) {
             return map.score(poses_argument(T_world_tips, "T_world_tips"), pose_argument(T_world_root, "T_world_root"),
                              finite_argument(cone, "cone"));
           },

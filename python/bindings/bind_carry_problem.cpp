@@ -8,6 +8,13 @@
 namespace mmgrasp::python {
 namespace {
 
+/// Others than those named are refused with the near miss.
+using NoMoreKeywords = py::KWArgs<py::typing::Never>;
+constexpr char kShapeOrShapes[] = "LinkShape | collections.abc.Sequence[LinkShape]";
+using ShapeOrShapes = Shown<kShapeOrShapes>;
+constexpr char kGraspsOrPoses[] = "collections.abc.Sequence[CandidateGrasp] | numpy.typing.ArrayLike";
+using GraspsOrPoses = Shown<kGraspsOrPoses>;
+
 using namespace py::literals;
 
 /// A list of Grasp, or poses as (m, 4, 4).
@@ -63,10 +70,10 @@ void refuse_unknown(const py::kwargs& unknown, const Strings& known) {
 void bind_carry_problem(py::module_& m) {
   py::class_<ManipulationProblem>(m, "ManipulationProblem",
                                   "Moves an object from one pose to another with any of many grasps (P2 4.2).")
-      .def(py::init([](const Given<JointGroup>& group, const Given<World>& world, const py::object& object,
-                       const ArrayLike& T_world_start, const ArrayLike& T_world_goal, const py::object& grasps,
+      .def(py::init([](const Given<JointGroup>& group, const Given<World>& world, const ShapeOrShapes& object,
+                       const ArrayLike& T_world_start, const ArrayLike& T_world_goal, const GraspsOrPoses& grasps,
                        const std::optional<Given<Hand>>& gripper, const Given<Strings>& touch_links,
-                       const Given<std::string>& object_name, const py::kwargs& unknown) {
+                       const Given<std::string>& object_name, const NoMoreKeywords& unknown) {
              refuse_unknown(unknown, {"group", "world", "object", "T_world_start", "T_world_goal", "grasps", "gripper",
                                       "touch_links", "object_name"});
              ManipulationProblem problem{with_sampled_pairs(taken(group, "group")),
@@ -89,13 +96,17 @@ void bind_carry_problem(py::module_& m) {
            "set to each grasp's opening. Links in `touch_links` may touch the object; none given: those of the end "
            "effector. The group may be an arm or an arm on an omni base; a diff_drive base is refused, since it could "
            "not drive the paths.")
-      .def_property_readonly("T_world_start", [](const ManipulationProblem& p) { return to_array(p.T_world_start); })
-      .def_property_readonly("T_world_goal", [](const ManipulationProblem& p) { return to_array(p.T_world_goal); })
-      .def_readonly("group", &ManipulationProblem::group)
-      .def_readonly("world", &ManipulationProblem::world)
-      .def_readonly("object", &ManipulationProblem::object)
-      .def_readonly("grasps", &ManipulationProblem::grasps)
-      .def_readonly("object_name", &ManipulationProblem::object_name)
+      .def_property_readonly(
+          "T_world_start", [](const ManipulationProblem& p) { return to_array(p.T_world_start); },
+          "Pose of the object at the beginning (4, 4).")
+      .def_property_readonly(
+          "T_world_goal", [](const ManipulationProblem& p) { return to_array(p.T_world_goal); },
+          "Pose of the object at the end (4, 4).")
+      .def_readonly("group", &ManipulationProblem::group, "Arm, or arm and omni base; its tip is the tool.")
+      .def_readonly("world", &ManipulationProblem::world, "The world without the object.")
+      .def_readonly("object", &ManipulationProblem::object, "Shapes of the object in its own frame.")
+      .def_readonly("grasps", &ManipulationProblem::grasps, "The grasps to choose from.")
+      .def_readonly("object_name", &ManipulationProblem::object_name, "Name under which it is attached.")
       .def("__repr__", [](const ManipulationProblem& p) {
         return "ManipulationProblem('" + p.object_name + "', " + std::to_string(p.grasps.size()) + " grasps, '" +
                p.group.name() + "')";

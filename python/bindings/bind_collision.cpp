@@ -31,31 +31,38 @@ const std::vector<OptionField<EdgeOptions>>& edge_fields() {
 
 void bind_answers(py::module_& m) {
   py::class_<Contact>(m, "Contact", "Two bodies that touch.")
-      .def_readonly("a", &Contact::a)
-      .def_readonly("b", &Contact::b)
-      .def_readonly("with_scene", &Contact::with_scene)
-      .def("to_dict",
-           [](const Contact& c) { return py::dict("a"_a = c.a, "b"_a = c.b, "with_scene"_a = c.with_scene); })
+      .def_readonly("a", &Contact::a, "A robot link or an attached object.")
+      .def_readonly("b", &Contact::b, "A robot link, an attached object or an object of the scene.")
+      .def_readonly("with_scene", &Contact::with_scene, "`b` is an object of the scene.")
+      .def(
+          "to_dict", [](const Contact& c) { return py::dict("a"_a = c.a, "b"_a = c.b, "with_scene"_a = c.with_scene); },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const Contact& c) { return "Contact('" + c.a + "', '" + c.b + "')"; });
   py::class_<DistanceResult>(m, "DistanceResult", "The smallest distance and where it is.")
       .def_readonly("value", &DistanceResult::value,
                     "[m]; negative: depth, exact for convex bodies (see docs/methods/collision.md for others).")
-      .def_readonly("a", &DistanceResult::a)
-      .def_readonly("b", &DistanceResult::b)
+      .def_readonly("a", &DistanceResult::a, "One body of the closest pair: a robot link or an attached object.")
+      .def_readonly("b", &DistanceResult::b,
+                    "The other body: a robot link, an attached object or an object of the scene.")
       .def_readonly("point_a", &DistanceResult::point_a, "(3,) in the world frame.")
-      .def_readonly("point_b", &DistanceResult::point_b)
+      .def_readonly("point_b", &DistanceResult::point_b, "The closest point on `b` (3,) in the world frame [m].")
       .def_readonly("with_scene", &DistanceResult::with_scene, "`b` is an object of the scene.")
       .def_property_readonly(
-          "gradient", [](const DistanceResult& d) { return d.gradient.size() > 0 ? py::cast(d.gradient) : py::none(); },
+          "gradient",
+          [](const DistanceResult& d) -> MaybeFloats {
+            return d.gradient.size() > 0 ? py::cast(d.gradient) : py::none();
+          },
           "d value / d q, (n,); None unless it was asked for.")
-      .def("to_dict",
-           [](const DistanceResult& d) {
-             py::dict out("value"_a = d.value, "a"_a = d.a, "b"_a = d.b, "with_scene"_a = d.with_scene,
-                          "point_a"_a = py::cast(d.point_a).attr("tolist")(),
-                          "point_b"_a = py::cast(d.point_b).attr("tolist")());
-             if (d.gradient.size() > 0) out["gradient"] = py::cast(d.gradient).attr("tolist")();
-             return out;
-           })
+      .def(
+          "to_dict",
+          [](const DistanceResult& d) {
+            py::dict out("value"_a = d.value, "a"_a = d.a, "b"_a = d.b, "with_scene"_a = d.with_scene,
+                         "point_a"_a = py::cast(d.point_a).attr("tolist")(),
+                         "point_b"_a = py::cast(d.point_b).attr("tolist")());
+            if (d.gradient.size() > 0) out["gradient"] = py::cast(d.gradient).attr("tolist")();
+            return out;
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__float__", [](const DistanceResult& d) { return d.value; })
       .def("__repr__", [](const DistanceResult& d) {
         return "DistanceResult(" + std::string(py::repr(py::float_(d.value))) + " m between '" + d.a + "' and '" + d.b +
@@ -63,18 +70,20 @@ void bind_answers(py::module_& m) {
       });
   py::class_<EdgeResult>(m, "EdgeResult",
                          "Whether a straight joint-space edge is free, and where it is refused if not.")
-      .def_readonly("free", &EdgeResult::free)
+      .def_readonly("free", &EdgeResult::free, "The whole edge is free.")
       .def_readonly("fraction", &EdgeResult::fraction,
                     "Where along the edge the first refused check was, in [0, 1]; 1 when free.")
       .def_readonly("contact", &EdgeResult::contact, "What touches there; None when limits refuse it or all is free.")
       .def_readonly("checks", &EdgeResult::checks, "Configurations looked at.")
       .def("__bool__", [](const EdgeResult& r) { return r.free; })
-      .def("to_dict",
-           [](const EdgeResult& r) {
-             return py::dict("free"_a = r.free, "fraction"_a = r.fraction,
-                             "contact"_a = r.contact ? py::cast(*r.contact).attr("to_dict")() : py::none(),
-                             "checks"_a = r.checks);
-           })
+      .def(
+          "to_dict",
+          [](const EdgeResult& r) {
+            return py::dict("free"_a = r.free, "fraction"_a = r.fraction,
+                            "contact"_a = r.contact ? py::cast(*r.contact).attr("to_dict")() : py::none(),
+                            "checks"_a = r.checks);
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const EdgeResult& r) {
         if (r.free) return std::string("EdgeResult(free)");
         const std::string why =
@@ -94,15 +103,17 @@ void bind_checker(py::module_& m) {
       m, "CollisionChecker",
       "Collision questions about one group in a snapshot of the world: later changes of the world\n"
       "are not seen. Links pairs are sampled (and cached) when no SRDF says which never touch.")
-      .def(py::init([](const Given<Robot>& robot, const Given<World>& world, const Given<JointGroup>& given_group,
-                       const py::kwargs& options) {
-             const JointGroup& group = taken(given_group, "group");
-             check_same_robot(taken(robot, "robot"), group);
-             return CollisionChecker(with_sampled_pairs(group), taken(world, "world"),
-                                     read_options(checker_fields(), options, "CollisionChecker"));
-           }),
-           py::arg("robot"), py::arg("world"), py::arg("group"), option_help(checker_fields()).c_str())
-      .def_property_readonly("group", &CollisionChecker::group)
+      .def(
+          py::init([](const Given<Robot>& robot, const Given<World>& world, const Given<JointGroup>& given_group,
+                      const py::kwargs& options) {
+            const JointGroup& group = taken(given_group, "group");
+            check_same_robot(taken(robot, "robot"), group);
+            return CollisionChecker(with_sampled_pairs(group), taken(world, "world"),
+                                    read_options(checker_fields(), options, "CollisionChecker"));
+          }),
+          py::arg("robot"), py::arg("world"), py::arg("group"),
+          ("For configurations of `group` of `robot` in `world` as it is now." + option_help(checker_fields())).c_str())
+      .def_property_readonly("group", &CollisionChecker::group, "The group whose configurations it checks.")
       .def(
           "is_free", [](CollisionChecker& c, const ArrayLike& q) { return c.is_free(configuration(c, q, "q")); },
           py::arg("q"), "Inside limits and without any contact.")

@@ -32,7 +32,7 @@ struct TrackingRun {
 };
 
 OptionField<TrackingRun> triple(const char* name, Eigen::Vector3d BaseDisturbance::*member, const char* help) {
-  return {name,
+  return {name, "numpy.typing.ArrayLike",
           [=](TrackingRun& run, const py::handle& value) { run.disturbance.*member = vector3_argument(value, name); },
           [=](const TrackingRun& run) -> py::object {
             const Eigen::Vector3d& v = run.disturbance.*member;
@@ -47,7 +47,8 @@ const std::vector<OptionField<TrackingRun>>& run_fields() {
   static const std::vector<OptionField<R>> fields = [] {
     std::vector<OptionField<R>> all;
     for (const OptionField<BaseTrackingOptions>& field : tracking_fields()) {
-      all.push_back({field.name, [field](R& run, const py::handle& value) { field.set(run.options, value); },
+      all.push_back({field.name, field.type,
+                     [field](R& run, const py::handle& value) { field.set(run.options, value); },
                      [field](const R& run) { return field.get(run.options); }, field.help});
     }
     all.push_back(option<R>("slip_left", &R::disturbance, &D::slip_left, "share of the left wheel's travel lost"));
@@ -70,7 +71,7 @@ py::array_t<double> numbers(const std::vector<double>& values) {
   return py::array_t<double>(py::ssize_t(values.size()), values.data());
 }
 
-void bind_result(py::module_& m) {
+void bind_tracking_result(py::module_& m) {
   using R = BaseTrackingResult;
   py::class_<R>(m, "BaseTrackingResult", "A base driven along a plan, one row a period; poses are (x, y, theta).")
       .def_property_readonly(
@@ -90,14 +91,16 @@ void bind_result(py::module_& m) {
       .def_property_readonly("mean_error", &R::mean_error, "[m]")
       .def_property_readonly("max_error", &R::max_error, "[m]")
       .def_property_readonly("final_error", &R::final_error, "[m]")
-      .def("to_dict",
-           [](const R& r) {
-             return py::dict("times"_a = r.times, "desired"_a = rows_to_array(r.desired).attr("tolist")(),
-                             "actual"_a = rows_to_array(r.actual).attr("tolist")(),
-                             "commands"_a = rows_to_array(r.commands).attr("tolist")(),
-                             "position_errors"_a = r.position_errors, "heading_errors"_a = r.heading_errors,
-                             "limited"_a = r.limited);
-           })
+      .def(
+          "to_dict",
+          [](const R& r) {
+            return py::dict("times"_a = r.times, "desired"_a = rows_to_array(r.desired).attr("tolist")(),
+                            "actual"_a = rows_to_array(r.actual).attr("tolist")(),
+                            "commands"_a = rows_to_array(r.commands).attr("tolist")(),
+                            "position_errors"_a = r.position_errors, "heading_errors"_a = r.heading_errors,
+                            "limited"_a = r.limited);
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const R& r) {
         const auto number = [](double value) { return std::string(py::repr(py::float_(value))); };
         return "BaseTrackingResult(" + std::to_string(r.times.size()) + " samples, mean error " +
@@ -108,15 +111,15 @@ void bind_result(py::module_& m) {
 }  // namespace
 
 void bind_control(py::module_& m) {
-  bind_result(m);
+  bind_tracking_result(m);
   py::class_<BaseTracker>(m, "BaseTracker",
                           "The feedback law that keeps a base on its plan (P1 4.12 to 4.15), one command a period.")
       .def(py::init([](const Robot& robot, const py::kwargs& options) {
              return BaseTracker(robot.base(), robot.base_limits(),
                                 read_options(tracking_fields(), options, "BaseTracker"));
            }),
-           py::arg("robot"), option_help(tracking_fields()).c_str())
-      .def("reset", &BaseTracker::reset)
+           py::arg("robot"), ("For a robot on a diff_drive or omni base." + option_help(tracking_fields())).c_str())
+      .def("reset", &BaseTracker::reset, "Forgets the integral of the errors, to begin another plan.")
       .def(
           "command",
           [](BaseTracker& t, const ArrayLike& desired, const ArrayLike& desired_next, const ArrayLike& measured) {
@@ -128,7 +131,8 @@ void bind_control(py::module_& m) {
           "Platform velocity (v_x, v_y, omega) to hold until the plan is at desired_next, one period on; poses are "
           "(x, y, theta).")
       .def_property_readonly("limited", &BaseTracker::limited, "The last command was scaled down to the limits.")
-      .def_property_readonly("period", [](const BaseTracker& t) { return t.options().period; });
+      .def_property_readonly(
+          "period", [](const BaseTracker& t) { return t.options().period; }, "Time for which a command is held [s].");
   m.def(
       "track_base",
       [](const Robot& robot, const JointTrajectory& trajectory, const py::kwargs& options) {

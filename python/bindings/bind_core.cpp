@@ -48,21 +48,22 @@ void bind_errors(py::module_& m) {
 void bind_outcomes(py::module_& m) {
   py::native_enum<Outcome>(m, "Outcome", "enum.Enum",
                            "How a query ended. \"No solution\" is a value, not an exception.")
-      .value("solved", Outcome::solved)
-      .value("approximate", Outcome::approximate)
-      .value("infeasible", Outcome::infeasible)
-      .value("timeout", Outcome::timeout)
-      .value("stopped", Outcome::stopped)
-      .value("invalid_start", Outcome::invalid_start)
-      .value("invalid_goal", Outcome::invalid_goal)
+      .value("solved", Outcome::solved, "The answer is there and passed its check.")
+      .value("approximate", Outcome::approximate,
+             "The best that was found; misses its tolerance or bound. Never a path in collision.")
+      .value("infeasible", Outcome::infeasible, "Proven or exhausted: there is no answer.")
+      .value("timeout", Outcome::timeout, "The budget (samples, iterations or clock) ended first.")
+      .value("stopped", Outcome::stopped, "The caller ended it.")
+      .value("invalid_start", Outcome::invalid_start, "The start violates limits or is in collision.")
+      .value("invalid_goal", Outcome::invalid_goal, "No goal is inside limits and collision-free.")
       .finalize();
   py::native_enum<Rejection>(m, "Rejection", "enum.Enum", "Why one candidate was turned down.")
-      .value("none", Rejection::none)
-      .value("reach", Rejection::reach)
-      .value("limits", Rejection::limits)
-      .value("self_collision", Rejection::self_collision)
-      .value("scene", Rejection::scene)
-      .value("grasp_filter", Rejection::grasp_filter)
+      .value("none", Rejection::none, "It was not turned down.")
+      .value("reach", Rejection::reach, "No arm configuration reaches the pose.")
+      .value("limits", Rejection::limits, "Reached only outside joint limits.")
+      .value("self_collision", Rejection::self_collision, "Robot hits robot or what it holds.")
+      .value("scene", Rejection::scene, "Robot (or what it holds) hits the scene.")
+      .value("grasp_filter", Rejection::grasp_filter, "Turned down before inverse kinematics.")
       .finalize();
   py::class_<Rejections>(m, "Rejections", "How many candidates fell at which filter.")
       .def_readonly("reach", &Rejections::reach, "No arm configuration reaches the pose.")
@@ -70,15 +71,17 @@ void bind_outcomes(py::module_& m) {
       .def_readonly("self_collision", &Rejections::self_collision, "Reached, but robot hits robot or what it holds.")
       .def_readonly("scene", &Rejections::scene, "Reached, but robot (or what it holds) hits the scene.")
       .def_readonly("grasp_filter", &Rejections::grasp_filter, "Turned down before inverse kinematics.")
-      .def_property_readonly("total", &Rejections::total)
-      .def("to_dict", [](const Rejections& r) { return to_dict(r); })
+      .def_property_readonly("total", &Rejections::total, "Over all filters.")
+      .def(
+          "to_dict", [](const Rejections& r) { return to_dict(r); },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const Rejections& r) { return "Rejections(" + r.summary() + ")"; });
 }
 
 void bind_poses(py::module_& m) {
   m.def(
       "pose",
-      [](const ArrayLike& xyz, const py::object& rpy, const py::object& quat_xyzw) {
+      [](const ArrayLike& xyz, const OptionalArray& rpy, const OptionalArray& quat_xyzw) {
         if (!rpy.is_none() && !quat_xyzw.is_none()) {
           throw InvalidInput("pose(rpy=..., quat_xyzw=...): give one of the two");
         }

@@ -60,7 +60,7 @@ void write_pairs(const std::filesystem::path& file, const Robot& before, const R
   std::filesystem::rename(draft, file, ignored);
 }
 
-Robot sampled(const Robot& robot, const py::object& progress) {
+Robot sampled(const Robot& robot, const Progress& progress) {
   const std::filesystem::path file = cache_folder() / ("pairs-" + robot.hash() + ".txt");
   if (auto pairs = read_pairs(file, robot); !pairs.empty()) return robot.with_disabled_pairs(std::move(pairs));
   Robot out =
@@ -117,7 +117,7 @@ JointGroup with_sampled_pairs(const JointGroup& group) {
 void bind_disabled_pairs(py::module_& m) {
   m.def(
       "compute_disabled_pairs",
-      [](const Robot& robot, const py::object& progress, const py::kwargs& options) {
+      [](const Robot& robot, const Progress& progress, const py::kwargs& options) {
         const DisabledPairsOptions read = read_options(pair_fields(), options, "compute_disabled_pairs");
         return LongCall(progress).run(
             [&](const Monitor& monitor) { return compute_disabled_pairs(robot, read, monitor); });

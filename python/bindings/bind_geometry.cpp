@@ -8,6 +8,9 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kStandIn[] = "mmgrasp._records.MeshStandIn";
+using StandIn = Shown<kStandIn>;
+
 std::string number(double value) {
   std::ostringstream out;
   out << value;
@@ -32,20 +35,21 @@ Eigen::Vector3d scale_argument(const py::object& scale) {
 void bind_primitives(py::module_& m) {
   py::class_<Box>(m, "Box", "A box, centred; full lengths [m].")
       .def(py::init([](const ArrayLike& size) { return checked(Box{vector3_argument(size, "size")}, "box"); }),
-           py::arg("size"))
-      .def_readonly("size", &Box::size)
+           py::arg("size"), "`size` (3,): full lengths along x, y, z [m], > 0.")
+      .def_readonly("size", &Box::size, "Full lengths (3,) [m].")
       .def("__repr__", [](const Box& s) { return "Box(size=" + text(s.size) + ")"; });
   py::class_<Sphere>(m, "Sphere", "A sphere [m].")
-      .def(py::init([](double radius) { return checked(Sphere{radius}, "sphere"); }), py::arg("radius"))
-      .def_readonly("radius", &Sphere::radius)
+      .def(py::init([](double radius) { return checked(Sphere{radius}, "sphere"); }), py::arg("radius"),
+           "`radius` [m], > 0.")
+      .def_readonly("radius", &Sphere::radius, "[m]")
       .def("__repr__", [](const Sphere& s) { return "Sphere(radius=" + number(s.radius) + ")"; });
   py::class_<Cylinder>(m, "Cylinder", "A cylinder along z, centred [m].")
       .def(py::init([](double radius, double length) {
              return checked(Cylinder{radius, length}, "cylinder");
            }),
-           py::arg("radius"), py::arg("length"))
-      .def_readonly("radius", &Cylinder::radius)
-      .def_readonly("length", &Cylinder::length)
+           py::arg("radius"), py::arg("length"), "`radius` and `length` along z [m], > 0.")
+      .def_readonly("radius", &Cylinder::radius, "[m]")
+      .def_readonly("length", &Cylinder::length, "Along z [m].")
       .def("__repr__", [](const Cylinder& s) {
         return "Cylinder(radius=" + number(s.radius) + ", length=" + number(s.length) + ")";
       });
@@ -53,9 +57,9 @@ void bind_primitives(py::module_& m) {
       .def(py::init([](double radius, double length) {
              return checked(Capsule{radius, length}, "capsule");
            }),
-           py::arg("radius"), py::arg("length"))
-      .def_readonly("radius", &Capsule::radius)
-      .def_readonly("length", &Capsule::length)
+           py::arg("radius"), py::arg("length"), "`radius` and `length` (without the caps) [m], > 0.")
+      .def_readonly("radius", &Capsule::radius, "[m]")
+      .def_readonly("length", &Capsule::length, "Length without the caps [m].")
       .def("__repr__", [](const Capsule& s) {
         return "Capsule(radius=" + number(s.radius) + ", length=" + number(s.length) + ")";
       });
@@ -63,9 +67,10 @@ void bind_primitives(py::module_& m) {
       .def(py::init([](const ArrayLike& normal, double offset) {
              return checked(Plane{vector3_argument(normal, "normal"), offset}, "plane");
            }),
-           py::arg("normal"), py::arg("offset"))
-      .def_readonly("normal", &Plane::normal)
-      .def_readonly("offset", &Plane::offset)
+           py::arg("normal"), py::arg("offset"),
+           "Solid where normal . x <= offset; `normal` (3,) is a unit vector, `offset` [m].")
+      .def_readonly("normal", &Plane::normal, "Unit normal (3,), out of the solid.")
+      .def_readonly("offset", &Plane::offset, "normal . x = offset on the surface [m].")
       .def("__repr__",
            [](const Plane& s) { return "Plane(normal=" + text(s.normal) + ", offset=" + number(s.offset) + ")"; });
   py::class_<Voxels>(m, "Voxels", "Axis-aligned solid voxels of one edge length [m].")
@@ -75,9 +80,10 @@ void bind_primitives(py::module_& m) {
              for (Eigen::Index i = 0; i < rows.rows(); ++i) points->push_back(rows.row(i).transpose());
              return checked(Voxels{points, resolution}, "voxels");
            }),
-           py::arg("centres"), py::arg("resolution"))
-      .def_property_readonly("centres", [](const Voxels& v) { return rows_to_array(*v.centres); })
-      .def_readonly("resolution", &Voxels::resolution)
+           py::arg("centres"), py::arg("resolution"), "`centres` (m, 3) of cubes with edge `resolution` [m], > 0.")
+      .def_property_readonly(
+          "centres", [](const Voxels& v) { return rows_to_array(*v.centres); }, "(m, 3) [m].")
+      .def_readonly("resolution", &Voxels::resolution, "Edge of a voxel [m].")
       .def("__repr__", [](const Voxels& v) {
         return "Voxels(" + std::to_string(v.centres->size()) + " of " + number(v.resolution) + " m)";
       });
@@ -87,14 +93,17 @@ void bind_mesh(py::module_& m) {
   py::class_<MeshShape>(m, "Mesh", "A triangle mesh [m]; closed ones are solids, open ones surfaces.")
       .def_static(
           "load",
-          [](const py::object& path, const py::object& scale) {
+          [](const PathLike& path, const ArrayLike& scale) {
             return MeshShape{load_mesh(path_argument(path, "path"), scale_argument(scale))};
           },
           py::arg("path"), py::arg("scale") = 1.0,
           "Reads STL, OBJ, DAE or PLY. `scale` is a number or one per axis. Raises IoError naming file and place.")
-      .def_property_readonly("closed", [](const MeshShape& s) { return s.mesh->closed; })
-      .def_property_readonly("convex", [](const MeshShape& s) { return s.mesh->convex; })
-      .def_property_readonly("source", [](const MeshShape& s) { return s.mesh->source; })
+      .def_property_readonly(
+          "closed", [](const MeshShape& s) { return s.mesh->closed; }, "A solid; open meshes are surfaces.")
+      .def_property_readonly(
+          "convex", [](const MeshShape& s) { return s.mesh->convex; }, "Closed and convex.")
+      .def_property_readonly(
+          "source", [](const MeshShape& s) { return s.mesh->source; }, "File it was read from.")
       .def_property_readonly(
           "volume", [](const MeshShape& s) { return mesh_volume(*s.mesh); },
           "Signed volume [m^3]; meaningful for closed meshes.")
@@ -116,7 +125,7 @@ void bind_mesh(py::module_& m) {
 }
 
 /// The stand-in with the names that a robot's report has.
-py::dict stand_in_dict(const MeshShape& mesh, double tolerance) {
+StandIn stand_in_dict(const MeshShape& mesh, double tolerance) {
   MeshStandIn found;
   {
     py::gil_scoped_release release;
@@ -135,7 +144,7 @@ void bind_geometry(py::module_& m) {
   bind_primitives(m);
   bind_mesh(m);
   py::class_<LinkShape>(m, "LinkShape", "A shape and its pose in the body (robot link, part, obstacle) it belongs to.")
-      .def(py::init([](const Shape& shape, const py::object& pose) {
+      .def(py::init([](const Shape& shape, const OptionalArray& pose) {
              LinkShape out;
              check_shape(shape, "shape");
              out.shape = shape;
@@ -143,10 +152,11 @@ void bind_geometry(py::module_& m) {
              if (const auto* mesh = std::get_if<MeshShape>(&shape)) out.mesh_path = out.mesh_uri = mesh->mesh->source;
              return out;
            }),
-           py::arg("shape"), py::arg("pose") = py::none())
+           py::arg("shape"), py::arg("pose") = py::none(),
+           "`shape` at `pose` (4, 4) in the body's frame, default: the identity.")
       .def_static(
           "mesh",
-          [](const py::object& path, const py::object& scale, const py::object& pose) {
+          [](const PathLike& path, const ArrayLike& scale, const OptionalArray& pose) {
             LinkShape out;
             out.mesh_path = out.mesh_uri = path_argument(path, "path");
             out.mesh_scale = scale_argument(scale);
@@ -156,11 +166,15 @@ void bind_geometry(py::module_& m) {
           },
           py::arg("path"), py::arg("scale") = 1.0, py::arg("pose") = py::none(),
           "A mesh read from a file, which is remembered so that robots and plans can be written out.")
-      .def_readonly("shape", &LinkShape::shape)
-      .def_property_readonly("pose", [](const LinkShape& s) { return to_array(s.T_link_shape); })
-      .def_readonly("mesh_path", &LinkShape::mesh_path)
-      .def_readonly("mesh_scale", &LinkShape::mesh_scale)
-      .def_property_readonly("kind", [](const LinkShape& s) { return shape_kind(s.shape); })
+      .def_readonly("shape", &LinkShape::shape, "The shape itself.")
+      .def_property_readonly(
+          "pose", [](const LinkShape& s) { return to_array(s.T_link_shape); },
+          "Pose of the shape in the body's frame (4, 4).")
+      .def_readonly("mesh_path", &LinkShape::mesh_path, "File of a mesh; empty for other shapes.")
+      .def_readonly("mesh_scale", &LinkShape::mesh_scale, "Scale of the file along its axes (3,).")
+      .def_property_readonly(
+          "kind", [](const LinkShape& s) { return shape_kind(s.shape); },
+          "box, sphere, cylinder, capsule, plane, mesh or voxels.")
       .def_property_readonly(
           "bounds",
           [](const LinkShape& s) {

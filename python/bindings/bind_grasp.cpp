@@ -141,7 +141,8 @@ void bind_grasp(py::module_& m) {
         return py::make_tuple(std::move(sampled.grasps), sampled.too_wide);
       },
       py::arg("object"), py::arg("gripper"),
-      "(grasps, too_wide): as sample_grasps, with the number dropped as too wide.");
+      ("(grasps, too_wide): as sample_grasps, with the number dropped as too wide." + option_help(sampler_fields()))
+          .c_str());
   m.def(
       "sample_grasps",
       [](const std::vector<LinkShape>& object, const Hand& gripper, const py::kwargs& options) {

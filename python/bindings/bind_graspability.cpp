@@ -5,6 +5,9 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kMaskImages[] = "dict[str, numpy.typing.NDArray[numpy.uint8]]";
+using MaskImages = Shown<kMaskImages>;
+
 using namespace py::literals;
 
 const std::vector<OptionField<GraspabilityOptions>>& graspability_fields() {
@@ -35,13 +38,14 @@ const std::vector<OptionField<PlacementOptions>>& placement_fields() {
 
 void bind_evaluation(py::module_& m) {
   py::class_<Graspability>(m, "Graspability", "Grasps, best first, and what became of the other places looked at.")
-      .def_readonly("grasps", &Graspability::grasps)
-      .def_property_readonly("counts",
-                             [](const Graspability& g) {
-                               return py::dict("tried"_a = g.counts.tried, "too_wide"_a = g.counts.too_wide,
-                                               "poor"_a = g.counts.poor, "collision"_a = g.counts.collision,
-                                               "near_better"_a = g.counts.near_better);
-                             })
+      .def_readonly("grasps", &Graspability::grasps, "Best first.")
+      .def_property_readonly(
+          "counts",
+          [](const Graspability& g) -> NamedCounts {
+            return py::dict("tried"_a = g.counts.tried, "too_wide"_a = g.counts.too_wide, "poor"_a = g.counts.poor,
+                            "collision"_a = g.counts.collision, "near_better"_a = g.counts.near_better);
+          },
+          "Places looked at (tried) and turned down: too_wide, poor, collision, near_better.")
       .def("__repr__",
            [](const Graspability& g) { return "Graspability(" + std::to_string(g.grasps.size()) + " grasps)"; });
   m.def(
@@ -71,10 +75,13 @@ void bind_evaluation(py::module_& m) {
         return out;
       },
       py::arg("map"), py::arg("gripper"), py::arg("angle"), py::arg("opening"), py::arg("tip_height"),
-      "(ny, nx) smoothed graspability in [0, 1] of one closing direction, opening and height of the fingertips.");
+      ("(ny, nx) smoothed graspability in [0, 1] of one closing direction, opening and height of the fingertips." +
+       option_help(graspability_fields()))
+          .c_str());
   m.def(
       "hand_masks",
-      [](const Hand& gripper, double opening, double angle, double resolution, const py::kwargs& options) {
+      [](const Hand& gripper, double opening, double angle, double resolution,
+         const py::kwargs& options) -> MaskImages {
         const GraspabilityOptions read = read_options(graspability_fields(), options, "hand_masks");
         const HandMasks masks = make_hand_masks(gripper, opening, angle, resolution, read.margin);
         py::dict out;
@@ -87,25 +94,31 @@ void bind_evaluation(py::module_& m) {
         return out;
       },
       py::arg("gripper"), py::arg("opening"), py::arg("angle"), py::arg("resolution"),
-      "The masks `contact`, `fingers` and `palm` as images of zeros and ones with the hand in the middle.");
+      ("The masks `contact`, `fingers` and `palm` as images of zeros and ones with the hand in the middle." +
+       option_help(graspability_fields()))
+          .c_str());
 }
 
 void bind_placement(py::module_& m) {
   py::class_<RestingPose>(m, "RestingPose", "How a part may lie on a level floor.")
-      .def_property_readonly("T_floor_part", [](const RestingPose& r) { return to_array(r.T_floor_part); })
-      .def_readonly("probability", &RestingPose::probability)
+      .def_property_readonly(
+          "T_floor_part", [](const RestingPose& r) { return to_array(r.T_floor_part); },
+          "Pose (4, 4): centre of mass above the origin, lowest point at height 0.")
+      .def_readonly("probability", &RestingPose::probability, "All of a part's sum to 1.")
       .def("__repr__", [](const RestingPose& r) {
         return "RestingPose(" + std::string(py::repr(py::float_(r.probability))) + ")";
       });
   m.def("resting_poses", &resting_poses, py::arg("part"),
         "Faces of a part's convex hull on which it does not tip over, most probable first.");
   py::class_<PlacedPart>(m, "PlacedPart", "A part lying in a tray.")
-      .def_property_readonly("T_tray_part", [](const PlacedPart& p) { return to_array(p.T_tray_part); })
+      .def_property_readonly(
+          "T_tray_part", [](const PlacedPart& p) { return to_array(p.T_tray_part); },
+          "Pose of the part in the tray's frame (4, 4).")
       .def_readonly("resting_pose", &PlacedPart::resting_pose, "Index into resting_poses(part).")
       .def_readonly("on_floor", &PlacedPart::on_floor, "False: it lies on others.")
       .def("__repr__", [](const PlacedPart& p) { return "PlacedPart(at " + text(p.T_tray_part.translation()) + ")"; });
   py::class_<RandomPlacement>(m, "RandomPlacement", "Parts lying in a tray at random.")
-      .def_readonly("parts", &RandomPlacement::parts)
+      .def_readonly("parts", &RandomPlacement::parts, "In the order in which they were placed.")
       .def_readonly("not_placed", &RandomPlacement::not_placed, "Parts for which no place was found.")
       .def("__repr__",
            [](const RandomPlacement& p) { return "RandomPlacement(" + std::to_string(p.parts.size()) + " parts)"; });

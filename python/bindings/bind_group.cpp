@@ -47,25 +47,32 @@ py::array_t<double> jacobian_batch(const JointGroup& g, const ArrayLike& Q) {
 
 void bind_group_class(py::module_& m) {
   declared<JointGroup>(m, "JointGroup")
-      .def_property_readonly("robot", &JointGroup::robot)
-      .def_property_readonly("name", &JointGroup::name)
+      .def_property_readonly("robot", &JointGroup::robot, "The robot it belongs to.")
+      .def_property_readonly("name", &JointGroup::name, "Name of the SRDF group, or of the chain.")
       .def_property_readonly(
           "names", &JointGroup::names,
           "Names of the columns: joints, with x, y, theta first when the group has the base. A planar joint "
           "has three, \"<joint>/x\", \"/y\", \"/theta\"; a floating one six, \"/x\", \"/y\", \"/z\", \"/rx\", \"/ry\", "
           "\"/rz\" "
           "(a rotation vector).")
-      .def_property_readonly("size", &JointGroup::size)
+      .def_property_readonly("size", &JointGroup::size, "Number of columns of a configuration.")
       .def("__len__", &JointGroup::size)
-      .def_property_readonly("has_base", &JointGroup::has_base)
-      .def_property_readonly("tip", [](const JointGroup& g) { return g.robot().links()[g.tip_link()].name; })
+      .def_property_readonly("has_base", &JointGroup::has_base, "x, y, theta come first.")
+      .def_property_readonly(
+          "tip", [](const JointGroup& g) { return g.robot().links()[g.tip_link()].name; },
+          "Link whose pose fk() and ik() are about.")
       .def_property_readonly("lower", &JointGroup::lower, "[rad or m], -inf for continuous joints.")
-      .def_property_readonly("upper", &JointGroup::upper)
-      .def_property_readonly("velocity_limits", &JointGroup::velocity_limits)
-      .def_property_readonly("acceleration_limits", &JointGroup::acceleration_limits)
+      .def_property_readonly("upper", &JointGroup::upper, "[rad or m], inf for continuous joints.")
+      .def_property_readonly("velocity_limits", &JointGroup::velocity_limits, "(n,) [rad/s or m/s].")
+      .def_property_readonly(
+          "acceleration_limits", &JointGroup::acceleration_limits,
+          "(n,) [rad/s^2 or m/s^2]; URDF has none: 4 times the velocity limit per second unless set.")
       .def_property_readonly("sample_lower", &JointGroup::sample_lower, "Finite bounds to sample from.")
-      .def_property_readonly("sample_upper", &JointGroup::sample_upper)
-      .def_property_readonly("T_world_root", [](const JointGroup& g) { return to_array(g.T_world_root()); })
+      .def_property_readonly("sample_upper", &JointGroup::sample_upper,
+                             "Upper end of the finite bounds to sample from (n,).")
+      .def_property_readonly(
+          "T_world_root", [](const JointGroup& g) { return to_array(g.T_world_root()); },
+          "Pose of the robot's root (4, 4); with the base in the group its joints come on top.")
       .def(
           "at", [](const JointGroup& g, const ArrayLike& T) { return g.at(pose_argument(T, "T_world_root")); },
           py::arg("T_world_root"), "The same group with the robot's root standing elsewhere.")
@@ -80,13 +87,14 @@ void bind_group_class(py::module_& m) {
           [](const JointGroup& g, const ArrayLike& limits) {
             return g.with_acceleration_limits(vector_argument(limits, "limits", g.size()));
           },
-          py::arg("limits"))
+          py::arg("limits"), "The same group with these limits (n,) [rad/s^2 or m/s^2], > 0.")
       .def(
           "within_limits",
           [](const JointGroup& g, const ArrayLike& q, double slack) {
             return g.within_limits(configuration(g, q), finite_argument(slack, "slack"));
           },
-          py::arg("q"), py::arg("slack") = 0.0)
+          py::arg("q"), py::arg("slack") = 0.0,
+          "Whether a configuration (n,) lies inside the limits, each widened by `slack` [rad or m].")
       .def(
           "fk",
           [](const JointGroup& g, const ArrayLike& q) { return to_array(fk_as_in_batches(g, configuration(g, q))); },
@@ -112,7 +120,7 @@ void bind_group_class(py::module_& m) {
       .def("jacobian_batch", &jacobian_batch, py::arg("Q"), "(m, 6, n) at the tip's origin, for configurations (m, n).")
       .def(
           "link_poses",
-          [](const JointGroup& g, const ArrayLike& q) {
+          [](const JointGroup& g, const ArrayLike& q) -> NamedPoses {
             Poses poses;
             g.link_poses(configuration(g, q), poses);
             py::dict out;

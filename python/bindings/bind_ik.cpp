@@ -37,9 +37,11 @@ const std::vector<OptionField<IkOptions>>& ik_fields() {
       option<IkOptions>("restarts", &IkOptions::restarts, "random restarts after the seed"),
       option<IkOptions>("time_limit", &IkOptions::time_limit, "wall-clock cap [s]"),
       option<IkOptions>("rng_seed", &IkOptions::seed, "same seed, same answer"),
-      {"joint_weights", set_weights, [](const IkOptions& o) { return py::cast(o.joint_weights); },
+      {"joint_weights", "numpy.typing.ArrayLike | None", set_weights,
+       [](const IkOptions& o) { return py::cast(o.joint_weights); },
        "how dear it is to move each joint, > 0; empty: all the same"},
-      {"objectives", set_objectives, [](const IkOptions&) { return py::list(); },
+      {"objectives", "collections.abc.Sequence[IkObjective]", set_objectives,
+       [](const IkOptions&) { return py::list(); },
        "costs (IkObjective) that the redundancy lowers once the pose is reached"},
       option<IkOptions>("objective_iterations", &IkOptions::objective_iterations, "steps along the solutions")};
   return fields;
@@ -58,29 +60,31 @@ IkResult solve(const JointGroup& group, const Pose& T, const Eigen::VectorXd& se
   });
 }
 
-void bind_result(py::module_& m) {
+void bind_ik_result(py::module_& m) {
   py::class_<IkResult>(m, "IkResult", "Answer of inverse kinematics.")
-      .def_readonly("outcome", &IkResult::outcome)
+      .def_readonly("outcome", &IkResult::outcome, "How it ended; `solved` alone comes with an answer.")
       .def_property_readonly(
           "q",
-          [](const IkResult& r) -> py::object {
+          [](const IkResult& r) -> MaybeFloats {
             if (r.outcome != Outcome::solved) return py::none();
             return py::cast(r.q);
           },
           "The configuration, inside limits and checked by forward kinematics; None unless solved.")
       .def_readonly("position_error", &IkResult::position_error, "[m] of q, or of the best attempt.")
       .def_readonly("rotation_error", &IkResult::rotation_error, "[rad]")
-      .def_readonly("rejections", &IkResult::rejections)
+      .def_readonly("rejections", &IkResult::rejections, "What the descents ended at: reach, limits or collisions.")
       .def_readonly("objective", &IkResult::objective, "Sum of the objectives' costs at q.")
-      .def_readonly("iterations", &IkResult::iterations)
-      .def("to_dict",
-           [](const IkResult& r) {
-             py::object q = py::none();
-             if (r.outcome == Outcome::solved) q = py::cast(r.q).attr("tolist")();
-             return py::dict("outcome"_a = to_string(r.outcome), "q"_a = q, "position_error"_a = r.position_error,
-                             "rotation_error"_a = r.rotation_error, "rejections"_a = to_dict(r.rejections),
-                             "objective"_a = r.objective, "iterations"_a = r.iterations);
-           })
+      .def_readonly("iterations", &IkResult::iterations, "Steps of all descents.")
+      .def(
+          "to_dict",
+          [](const IkResult& r) {
+            py::object q = py::none();
+            if (r.outcome == Outcome::solved) q = py::cast(r.q).attr("tolist")();
+            return py::dict("outcome"_a = to_string(r.outcome), "q"_a = q, "position_error"_a = r.position_error,
+                            "rotation_error"_a = r.rotation_error, "rejections"_a = to_dict(r.rejections),
+                            "objective"_a = r.objective, "iterations"_a = r.iterations);
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const IkResult& r) {
         return std::string("IkResult(") + to_string(r.outcome) +
                (r.outcome == Outcome::solved ? ", q=" + text(r.q) : ", rejected: " + r.rejections.summary()) + ")";
@@ -107,13 +111,15 @@ void bind_branches(py::module_& m) {
       .def_readonly("redundant_joint", &IkBranches::redundant_joint, "Joint that was sampled; -1 for none.")
       .def_readonly("rejections", &IkBranches::rejections, "Branches turned down, by cause.")
       .def("__len__", [](const IkBranches& b) { return b.solutions.size(); })
-      .def("to_dict",
-           [](const IkBranches& b) {
-             py::list solutions;
-             for (const Eigen::VectorXd& q : b.solutions) solutions.append(py::cast(q).attr("tolist")());
-             return py::dict("solutions"_a = solutions, "complete"_a = b.complete,
-                             "redundant_joint"_a = b.redundant_joint, "rejections"_a = to_dict(b.rejections));
-           })
+      .def(
+          "to_dict",
+          [](const IkBranches& b) {
+            py::list solutions;
+            for (const Eigen::VectorXd& q : b.solutions) solutions.append(py::cast(q).attr("tolist")());
+            return py::dict("solutions"_a = solutions, "complete"_a = b.complete,
+                            "redundant_joint"_a = b.redundant_joint, "rejections"_a = to_dict(b.rejections));
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const IkBranches& b) {
         return "IkBranches(" + std::to_string(b.solutions.size()) + " solutions" + (b.complete ? ", complete" : "") +
                ", rejected: " + b.rejections.summary() + ")";
@@ -124,7 +130,7 @@ void bind_group_methods(py::module_& m) {
   declared<JointGroup>(m, "JointGroup")
       .def(
           "ik",
-          [](const JointGroup& g, const ArrayLike& T_world_tip, const py::object& seed, const World* world,
+          [](const JointGroup& g, const ArrayLike& T_world_tip, const OptionalArray& seed, const World* world,
              const py::kwargs& options) {
             const Eigen::VectorXd q0 = seed.is_none() ? Eigen::VectorXd(0.5 * (g.sample_lower() + g.sample_upper()))
                                                       : vector_argument(seed, "seed", g.size());
@@ -170,7 +176,7 @@ void bind_group_methods(py::module_& m) {
 
 void bind_ik(py::module_& m) {
   m.def("_ik_option_table", [] { return option_table(ik_fields()); });
-  bind_result(m);
+  bind_ik_result(m);
   bind_branches(m);
   bind_group_methods(m);
 }

@@ -17,7 +17,7 @@ void bind_ik_objectives(py::module_& m) {
   py::class_<IkObjective, Handle>(m, "IkObjective",
                                   "A cost of configurations that inverse kinematics lowers with the freedom that the "
                                   "pose leaves: pass a list as ik(..., objectives=[...]).")
-      .def_property_readonly("name", &IkObjective::name)
+      .def_property_readonly("name", &IkObjective::name, "Which objective it is.")
       .def(
           "evaluate",
           [](const IkObjective& o, const ArrayLike& q) {
@@ -44,7 +44,7 @@ void bind_ik_objectives(py::module_& m) {
   m.def(
       "camera_view_objective",
       [](const JointGroup& group, const std::string& camera_link, const ArrayLike& point,
-         const py::object& T_link_camera, double weight) {
+         const OptionalArray& T_link_camera, double weight) {
         return handle(make_camera_view_objective(group, group.robot().link_index(camera_link),
                                                  pose_argument(T_link_camera, "T_link_camera"),
                                                  vector3_argument(point, "point"), weight));

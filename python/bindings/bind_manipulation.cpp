@@ -9,6 +9,9 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kOnImproved[] = "collections.abc.Callable[[Improvement], object] | None";
+using OnImproved = Shown<kOnImproved>;
+
 using namespace py::literals;
 using O = ManipulationOptions;
 
@@ -24,7 +27,7 @@ OptionField<O> of_rrt(const char* name, Value RrtStarMgOptions::*member, const c
 
 template <typename Value>
 OptionField<O> of_roadmap(const char* name, Value RoadmapOptions::*member, const char* help) {
-  return {name, [=](O& o, const py::handle& v) { convert(v, name, o.prm.roadmap.*member); },
+  return {name, annotation<Value>(), [=](O& o, const py::handle& v) { convert(v, name, o.prm.roadmap.*member); },
           [=](const O& o) { return py::cast(o.prm.roadmap.*member); }, help};
 }
 
@@ -69,7 +72,7 @@ const Fields& rrt_fields() {
              "rrt_star_mg: once solved, chance to grow the drawn grasp's own tree (P2's p_blt)"),
       of_rrt("bidirectional", &RrtStarMgOptions::bidirectional, "rrt_star_mg: trees from both ends"),
       of_rrt("informed", &RrtStarMgOptions::informed, "rrt_star_mg: draw only where a better path can pass"),
-      {"goal_cost", convert_goal_cost, [](const O& o) { return py::cast(o.rrt.goal_cost); },
+      {"goal_cost", "float", convert_goal_cost, [](const O& o) { return py::cast(o.rrt.goal_cost); },
        "rrt_star_mg: ends with the first path that costs no more; inf: the first at all"},
       of_rrt("keep_trees", &RrtStarMgOptions::keep_trees, "rrt_star_mg: hand over the trees with the result")};
   return fields;
@@ -145,7 +148,7 @@ void bind_manipulation(py::module_& m) {
   m.def(
       "plan_manipulation",
       [](const Given<ManipulationProblem>& given_problem, const std::optional<Given<Roadmap>>& given_roadmap,
-         const py::object& progress, const py::object& improved, const py::kwargs& options) {
+         const Progress& progress, const OnImproved& improved, const py::kwargs& options) {
         const ManipulationProblem& problem = taken(given_problem, "problem");
         const Roadmap* roadmap = given_roadmap ? &taken(*given_roadmap, "roadmap") : nullptr;
         const ManipulationOptions read = read_options(manipulation_fields(), options, "plan_manipulation");

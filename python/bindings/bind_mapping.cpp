@@ -90,35 +90,42 @@ void bind_clouds(py::module_& m) {
   py::class_<PointCloud>(m, "PointCloud", "Points of a scan [m]; an organised cloud keeps the image's rows.")
       .def_property_readonly(
           "points", [](const PointCloud& c) { return rows_to_array(c.points); }, "(n, 3); NaN: not measured.")
-      .def_readonly("width", &PointCloud::width)
+      .def_readonly("width", &PointCloud::width, "Points in a row.")
       .def_readonly("height", &PointCloud::height, "1 when the points are in no order.")
       .def_readonly("labels", &PointCloud::labels, "One a point where the file has them, else empty.")
-      .def_property_readonly("T_world_sensor", [](const PointCloud& c) { return to_array(c.T_world_sensor); })
+      .def_property_readonly(
+          "T_world_sensor", [](const PointCloud& c) { return to_array(c.T_world_sensor); },
+          "Pose of the sensor that the file gives (4, 4).")
       .def_readonly("warning", &PointCloud::warning, "What the reader put up with, or empty.")
       .def("__repr__", [](const PointCloud& c) {
         return "PointCloud(" + std::to_string(c.width) + " x " + std::to_string(c.height) + ")";
       });
   m.def(
-      "read_pcd", [](const py::object& path) { return read_pcd(path_argument(path, "path")); }, py::arg("path"),
+      "read_pcd", [](const PathLike& path) { return read_pcd(path_argument(path, "path")); }, py::arg("path"),
       "Reads a PCD file: ascii, binary or binary_compressed. Raises IoError naming file and rule.");
 }
 
 void bind_images(py::module_& m) {
   py::class_<DepthImage>(m, "DepthImage",
                          "What a depth camera saw: depth along the camera's axis [m], 0 where nothing was measured.")
-      .def(py::init([](const py::object& depth, const PinholeCamera& camera, const py::object& T_world_camera) {
+      .def(py::init([](const ArrayLike& depth, const PinholeCamera& camera, const OptionalArray& T_world_camera) {
              camera.check();
              DepthImage image{camera, pose_argument(T_world_camera, "T_world_camera"),
                               image_argument(depth, "depth", camera.height, camera.width)};
              image.clean();
              return image;
            }),
-           py::arg("depth"), py::arg("camera"), py::arg("T_world_camera") = py::none())
+           py::arg("depth"), py::arg("camera"), py::arg("T_world_camera") = py::none(),
+           "`depth` (height, width) along the camera's axis [m], 0 where nothing was measured; `T_world_camera` (4, "
+           "4),\n"
+           "default: the identity. Raises InvalidInput where the size is not the camera's.")
       .def_property_readonly(
           "depth", [](const DepthImage& i) { return to_image(i.depth, i.camera.height, i.camera.width); },
           "(height, width) float32 [m]")
-      .def_readonly("camera", &DepthImage::camera)
-      .def_property_readonly("T_world_camera", [](const DepthImage& i) { return to_array(i.T_world_camera); })
+      .def_readonly("camera", &DepthImage::camera, "The camera that took it.")
+      .def_property_readonly(
+          "T_world_camera", [](const DepthImage& i) { return to_array(i.T_world_camera); },
+          "Pose of the camera (4, 4); it looks along its +z.")
       .def(
           "points", [](const DepthImage& i) { return rows_to_array(i.points()); },
           "(n, 3): every measured point in the world, row by row [m].")
@@ -143,7 +150,7 @@ void bind_images(py::module_& m) {
       "look_down", [](const ArrayLike& eye) { return to_array(look_down(vector3_argument(eye, "eye"))); },
       py::arg("eye"), "T_world_camera of a camera at `eye` [m] that looks straight down, image x along the world's x.");
   py::class_<HeightMap>(m, "HeightMap", "Heights over square cells, seen along -z of the map's frame [m].")
-      .def(py::init([](const py::object& height, double resolution, const py::object& T_world_map) {
+      .def(py::init([](const ArrayLike& height, double resolution, const OptionalArray& T_world_map) {
              HeightMap map;
              map.height = image_argument(height, "height", -1, -1);
              map.upper = map.height;
@@ -163,9 +170,11 @@ void bind_images(py::module_& m) {
       .def_property_readonly(
           "upper", [](const HeightMap& h) { return to_image(h.upper, h.ny, h.nx); },
           "(ny, nx) no surface is higher; NaN: nothing known.")
-      .def_readonly("resolution", &HeightMap::resolution)
+      .def_readonly("resolution", &HeightMap::resolution, "Edge of a cell [m].")
       .def_readonly("pixel", &HeightMap::pixel, "What a pixel of the image covers [m]; 0 without an image.")
-      .def_property_readonly("T_world_map", [](const HeightMap& h) { return to_array(h.T_world_map); })
+      .def_property_readonly(
+          "T_world_map", [](const HeightMap& h) { return to_array(h.T_world_map); },
+          "Frame in the middle of the rectangle (4, 4), z up.")
       .def("__repr__",
            [](const HeightMap& h) { return "HeightMap(" + std::to_string(h.nx) + " x " + std::to_string(h.ny) + ")"; });
   m.def(
@@ -185,9 +194,11 @@ void bind_images(py::module_& m) {
 
 void bind_cuboids(py::module_& m) {
   py::class_<FittedCuboid>(m, "FittedCuboid", "A box-shaped part on its supporting plane.")
-      .def_property_readonly("T_world_box", [](const FittedCuboid& c) { return to_array(c.T_world_box); })
+      .def_property_readonly(
+          "T_world_box", [](const FittedCuboid& c) { return to_array(c.T_world_box); },
+          "Pose of its centre (4, 4): z along the plane's normal, x along the longer side.")
       .def_readonly("size", &FittedCuboid::size, "Full lengths, the longer side of the top first [m].")
-      .def_readonly("points", &FittedCuboid::points)
+      .def_readonly("points", &FittedCuboid::points, "Number of points it was fitted to.")
       .def_readonly("fill", &FittedCuboid::fill, "Share of the top rectangle that was seen: how box-like it is.")
       .def(
           "shape", [](const FittedCuboid& c) { return Box{c.size}; }, "The cuboid as a shape.")
@@ -195,17 +206,18 @@ void bind_cuboids(py::module_& m) {
         return "FittedCuboid(size=" + text(c.size) + " at " + text(c.T_world_box.translation()) + ")";
       });
   py::class_<CuboidFit>(m, "CuboidFit", "The supporting plane, the cuboids on it, and which point belongs to what.")
-      .def_readonly("plane_found", &CuboidFit::plane_found)
-      .def_readonly("plane_normal", &CuboidFit::plane_normal)
+      .def_readonly("plane_found", &CuboidFit::plane_found, "A supporting plane was found, or given.")
+      .def_readonly("plane_normal", &CuboidFit::plane_normal,
+                    "Unit normal of the plane (3,), upwards, in the points' frame.")
       .def_readonly("plane_offset", &CuboidFit::plane_offset, "plane_normal . x = plane_offset [m]")
-      .def_readonly("cuboids", &CuboidFit::cuboids)
+      .def_readonly("cuboids", &CuboidFit::cuboids, "Those with most points first.")
       .def_readonly("labels", &CuboidFit::labels, "One a point: its cuboid, -1 the plane, -2 left out.")
       .def("__repr__",
            [](const CuboidFit& f) { return "CuboidFit(" + std::to_string(f.cuboids.size()) + " cuboids)"; });
   m.def(
       "fit_cuboids",
-      [](const py::object& points, const py::object& T_world_tray, const py::object& tray_size, double wall,
-         const py::object& up, const py::object& eye, const py::kwargs& options) {
+      [](const ArrayLike& points, const OptionalArray& T_world_tray, const OptionalArray& tray_size, double wall,
+         const OptionalArray& up, const OptionalArray& eye, const py::kwargs& options) {
         CuboidFitOptions read = read_options(cuboid_fields(), options, "fit_cuboids");
         if (!up.is_none()) read.up = vector3_argument(up, "up");
         const Eigen::Vector3d from = eye.is_none() ? Eigen::Vector3d::Zero() : vector3_argument(eye, "eye");

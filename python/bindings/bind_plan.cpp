@@ -7,6 +7,9 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kOnSolution[] = "collections.abc.Callable[[numpy.typing.NDArray[numpy.float64], float], object] | None";
+using OnSolution = Shown<kOnSolution>;
+
 using namespace py::literals;
 
 const std::vector<OptionField<MotionOptions>>& motion_fields() {
@@ -35,10 +38,10 @@ std::vector<Eigen::VectorXd> goals_argument(const ArrayLike& goal, Eigen::Index 
   return {vector_argument(goal, "goal", size)};
 }
 
-MotionResult plan(const Given<Robot>& given_robot, const Given<JointGroup>& given_group, const Given<World>& world,
-                  const ArrayLike& start, const py::object& goal, const py::object& tool_poses,
-                  const Given<std::vector<ToolRegion>>& regions, const std::optional<Given<ToolCone>>& tool_cone,
-                  const py::object& on_solution, const py::object& progress, const py::kwargs& options) {
+MotionResult motion(const Given<Robot>& given_robot, const Given<JointGroup>& given_group, const Given<World>& world,
+                    const ArrayLike& start, const OptionalArray& goal, const OptionalArray& tool_poses,
+                    const Given<std::vector<ToolRegion>>& regions, const std::optional<Given<ToolCone>>& tool_cone,
+                    const OnSolution& on_solution, const Progress& progress, const py::kwargs& options) {
   const JointGroup& group = taken(given_group, "group");
   check_same_robot(taken(given_robot, "robot"), group);
   MotionOptions read = read_options(motion_fields(), options, "plan_motion");
@@ -64,7 +67,7 @@ MotionResult plan(const Given<Robot>& given_robot, const Given<JointGroup>& give
 
 void bind_goals(py::module_& m) {
   py::class_<ToolRegion>(m, "ToolRegion", "A box of tool poses around a pose.")
-      .def(py::init([](const ArrayLike& pose, const py::object& position, const py::object& rotation) {
+      .def(py::init([](const ArrayLike& pose, const OptionalArray& position, const OptionalArray& rotation) {
              ToolRegion region;
              region.T_world_region = pose_argument(pose, "pose");
              if (!position.is_none()) region.position = vector3_argument(position, "position");
@@ -93,40 +96,45 @@ void bind_goals(py::module_& m) {
 }
 
 void bind_motion(py::module_& m) {
-  py::class_<MotionStats>(m, "MotionStats")
-      .def_readonly("seconds", &MotionStats::seconds)
-      .def_readonly("collision_queries", &MotionStats::collision_queries)
-      .def_readonly("length_before_shortening", &MotionStats::length_before_shortening)
-      .def("to_dict",
-           [](const MotionStats& s) {
-             return py::dict("seconds"_a = s.seconds, "collision_queries"_a = s.collision_queries,
-                             "length_before_shortening"_a = s.length_before_shortening);
-           })
+  py::class_<MotionStats>(m, "MotionStats", "What a search of plan_motion took.")
+      .def_readonly("seconds", &MotionStats::seconds, "Wall-clock time [s].")
+      .def_readonly("collision_queries", &MotionStats::collision_queries, "Configurations checked.")
+      .def_readonly("length_before_shortening", &MotionStats::length_before_shortening,
+                    "Length of the first path in joint space.")
+      .def(
+          "to_dict",
+          [](const MotionStats& s) {
+            return py::dict("seconds"_a = s.seconds, "collision_queries"_a = s.collision_queries,
+                            "length_before_shortening"_a = s.length_before_shortening);
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const MotionStats& s) {
         return "MotionStats(" + std::string(py::repr(py::float_(s.seconds))) + " s, " +
                std::to_string(s.collision_queries) + " queries)";
       });
   py::class_<MotionResult>(m, "MotionResult", "What plan_motion found.")
-      .def_readonly("outcome", &MotionResult::outcome)
+      .def_readonly("outcome", &MotionResult::outcome, "How it ended; `solved` alone comes with an answer.")
       .def_property_readonly(
           "path", [](const MotionResult& r) { return path_array(r.path); },
           "Waypoints (k, n), joined by straight lines; None unless solved.")
       .def_readonly("cost", &MotionResult::cost, "Length of the path in joint space.")
-      .def_readonly("goal_index", &MotionResult::goal_index)
+      .def_readonly("goal_index", &MotionResult::goal_index, "Which of the goals the path reaches; -1 unless solved.")
       .def_readonly("contacts", &MotionResult::contacts, "With invalid_start or invalid_goal: what touches.")
       .def_readonly("rejections", &MotionResult::rejections, "Of the start, or of goals, turned down.")
       .def_readonly("beyond_limits", &MotionResult::beyond_limits,
                     "With invalid_start or invalid_goal: which joint is outside of its limits, its value and these.")
-      .def_readonly("stats", &MotionResult::stats)
-      .def("to_dict",
-           [](const MotionResult& r) {
-             py::list contacts;
-             for (const Contact& c : r.contacts) contacts.append(py::cast(c).attr("to_dict")());
-             return py::dict("outcome"_a = to_string(r.outcome), "path"_a = path_list(r.path), "cost"_a = r.cost,
-                             "goal_index"_a = r.goal_index, "contacts"_a = contacts,
-                             "rejections"_a = to_dict(r.rejections), "beyond_limits"_a = r.beyond_limits,
-                             "stats"_a = py::cast(r.stats).attr("to_dict")());
-           })
+      .def_readonly("stats", &MotionResult::stats, "What the search took.")
+      .def(
+          "to_dict",
+          [](const MotionResult& r) {
+            py::list contacts;
+            for (const Contact& c : r.contacts) contacts.append(py::cast(c).attr("to_dict")());
+            return py::dict("outcome"_a = to_string(r.outcome), "path"_a = path_list(r.path), "cost"_a = r.cost,
+                            "goal_index"_a = r.goal_index, "contacts"_a = contacts,
+                            "rejections"_a = to_dict(r.rejections), "beyond_limits"_a = r.beyond_limits,
+                            "stats"_a = py::cast(r.stats).attr("to_dict")());
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const MotionResult& r) {
         std::string out = std::string("MotionResult(") + to_string(r.outcome);
         if (r.path) {
@@ -141,7 +149,7 @@ void bind_motion(py::module_& m) {
   m.def("_motion_option_table", [] { return option_table(motion_fields()); });
   m.def("planner_names", &planner_names, "Names that plan_motion's `planner` takes.");
   m.def(
-      "plan_motion", &plan, py::arg("robot"), py::arg("group"), py::arg("world"), py::kw_only(), py::arg("start"),
+      "plan_motion", &motion, py::arg("robot"), py::arg("group"), py::arg("world"), py::kw_only(), py::arg("start"),
       py::arg("goal") = py::none(), py::arg("tool_poses") = py::none(), py::arg("regions") = std::vector<ToolRegion>{},
       py::arg("tool_cone") = py::none(), py::arg("on_solution") = py::none(), py::arg("progress") = py::none(),
       ("A collision-free path of the group from `start` (n,) to any of its goals: `goal` (n,) or several as (m, n),\n"

@@ -4,6 +4,9 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kSearchCounts[] = "mmgrasp._records.SearchCounts";
+using SearchCounts = Shown<kSearchCounts>;
+
 using namespace py::literals;
 
 const std::vector<OptionField<PlatformLocationsOptions>>& fields() {
@@ -18,35 +21,40 @@ const std::vector<OptionField<PlatformLocationsOptions>>& fields() {
   return all;
 }
 
-py::dict to_dict(const PlatformLocationsCounts& counts) {
+SearchCounts counts_dict(const PlatformLocationsCounts& counts) {
   return py::dict("draws"_a = counts.draws, "rejections"_a = python::to_dict(counts.rejections), "view"_a = counts.view,
                   "singular"_a = counts.singular, "iterations"_a = counts.iterations);
 }
 
-py::object configuration(const PlatformLocations& found, const Eigen::VectorXd& q) {
+MaybeFloats configuration(const PlatformLocations& found, const Eigen::VectorXd& q) {
   return found.outcome == Outcome::solved ? py::cast(q) : py::none();
 }
 
-void bind_result(py::module_& m) {
+void bind_platform_locations_result(py::module_& m) {
   py::class_<PlatformLocations>(m, "PlatformLocations", "Two base + arm configurations for two tool poses.")
-      .def_readonly("outcome", &PlatformLocations::outcome)
+      .def_readonly("outcome", &PlatformLocations::outcome, "How it ended; `solved` alone comes with an answer.")
       .def_property_readonly(
           "q_pick", [](const PlatformLocations& p) { return configuration(p, p.q_pick); },
           "Base and arm at the first pose; None unless solved.")
-      .def_property_readonly("q_place", [](const PlatformLocations& p) { return configuration(p, p.q_place); })
+      .def_property_readonly(
+          "q_place", [](const PlatformLocations& p) { return configuration(p, p.q_place); },
+          "Base and arm at the second pose; None unless solved.")
       .def_readonly("cost", &PlatformLocations::cost, "Travel [m] + turn_weight * turn [rad].")
       .def_readonly("travel", &PlatformLocations::travel, "Of the base between the two [m].")
       .def_readonly("turn", &PlatformLocations::turn, "[rad]")
       .def_property_readonly(
-          "pick", [](const PlatformLocations& p) { return to_dict(p.pick); },
+          "pick", [](const PlatformLocations& p) { return counts_dict(p.pick); },
           "Draws, what they fell at, and iterations of the first pose.")
-      .def_property_readonly("place", [](const PlatformLocations& p) { return to_dict(p.place); })
-      .def("to_dict",
-           [](const PlatformLocations& p) {
-             return py::dict("outcome"_a = to_string(p.outcome), "q_pick"_a = configuration(p, p.q_pick),
-                             "q_place"_a = configuration(p, p.q_place), "cost"_a = p.cost, "travel"_a = p.travel,
-                             "turn"_a = p.turn, "pick"_a = to_dict(p.pick), "place"_a = to_dict(p.place));
-           })
+      .def_property_readonly(
+          "place", [](const PlatformLocations& p) { return counts_dict(p.place); }, "The same of the second pose.")
+      .def(
+          "to_dict",
+          [](const PlatformLocations& p) {
+            return py::dict("outcome"_a = to_string(p.outcome), "q_pick"_a = configuration(p, p.q_pick),
+                            "q_place"_a = configuration(p, p.q_place), "cost"_a = p.cost, "travel"_a = p.travel,
+                            "turn"_a = p.turn, "pick"_a = counts_dict(p.pick), "place"_a = counts_dict(p.place));
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const PlatformLocations& p) {
         return std::string("PlatformLocations(") + to_string(p.outcome) +
                (p.outcome == Outcome::solved
@@ -70,17 +78,17 @@ void bind_camera(py::module_& m) {
            py::arg("fy") = usual.fy, py::arg("cx") = usual.cx, py::arg("cy") = usual.cy,
            py::arg("nearest") = usual.nearest, py::arg("farthest") = usual.farthest,
            "Sizes, focal lengths and principal point in pixels, depths seen in [nearest, farthest] [m].")
-      .def_readonly("width", &PinholeCamera::width)
-      .def_readonly("height", &PinholeCamera::height)
-      .def_readonly("fx", &PinholeCamera::fx)
-      .def_readonly("fy", &PinholeCamera::fy)
-      .def_readonly("cx", &PinholeCamera::cx)
-      .def_readonly("cy", &PinholeCamera::cy)
-      .def_readonly("nearest", &PinholeCamera::nearest)
-      .def_readonly("farthest", &PinholeCamera::farthest)
+      .def_readonly("width", &PinholeCamera::width, "[pixels]")
+      .def_readonly("height", &PinholeCamera::height, "[pixels]")
+      .def_readonly("fx", &PinholeCamera::fx, "Focal length along x [pixels].")
+      .def_readonly("fy", &PinholeCamera::fy, "Focal length along y [pixels].")
+      .def_readonly("cx", &PinholeCamera::cx, "Principal point along x [pixels].")
+      .def_readonly("cy", &PinholeCamera::cy, "Principal point along y [pixels].")
+      .def_readonly("nearest", &PinholeCamera::nearest, "What lies closer along the axis is not seen [m].")
+      .def_readonly("farthest", &PinholeCamera::farthest, "What lies farther along the axis is not seen [m].")
       .def(
           "project",
-          [](const PinholeCamera& camera, const ArrayLike& point) -> py::object {
+          [](const PinholeCamera& camera, const ArrayLike& point) -> MaybeFloats {
             const auto pixel = camera.project(vector3_argument(point, "point"));
             return pixel ? py::cast(*pixel) : py::none();
           },
@@ -93,11 +101,14 @@ void bind_camera(py::module_& m) {
 
 void bind_database(py::module_& m) {
   py::class_<IkSeedDatabase>(m, "IkSeedDatabase", "Past solutions that start the next searches; grows with use.")
-      .def(py::init<const JointGroup&, int>(), py::arg("group"), py::arg("capacity") = 10000)
+      .def(py::init<const JointGroup&, int>(), py::arg("group"), py::arg("capacity") = 10000,
+           "Empty, for configurations of `group`; beyond `capacity` the oldest are forgotten.")
       .def("__len__", &IkSeedDatabase::size)
       .def(
           "add", [](IkSeedDatabase& db, const ArrayLike& q) { db.add(vector_argument(q, "q", db.group().size())); },
-          py::arg("q"))
+          py::arg("q"),
+          "Remembers a configuration (n,) with the base taken out: where the tool stood relative to the root, and the "
+          "arm's joints.")
       .def(
           "seeds",
           [](const IkSeedDatabase& db, const ArrayLike& T, int count) {
@@ -106,11 +117,11 @@ void bind_database(py::module_& m) {
           py::arg("T_world_tip"), py::arg("count") = 8,
           "(k, n): remembered arm postures with the base put where they reach the pose, best match first.")
       .def(
-          "save", [](const IkSeedDatabase& db, const py::object& path) { db.save(path_argument(path, "path")); },
-          py::arg("path"))
+          "save", [](const IkSeedDatabase& db, const PathLike& path) { db.save(path_argument(path, "path")); },
+          py::arg("path"), "Writes a text file. Raises IoError.")
       .def_static(
           "load",
-          [](const py::object& path, const JointGroup& group, int capacity) {
+          [](const PathLike& path, const JointGroup& group, int capacity) {
             return IkSeedDatabase::load(path_argument(path, "path"), group, capacity);
           },
           py::arg("path"), py::arg("group"), py::arg("capacity") = 10000,
@@ -122,13 +133,13 @@ void bind_database(py::module_& m) {
 void bind_platform_locations(py::module_& m) {
   m.def("_platform_option_table", [] { return option_table(fields()); });
   bind_camera(m);
-  bind_result(m);
+  bind_platform_locations_result(m);
   bind_database(m);
   m.def(
       "plan_platform_locations",
       [](CollisionChecker& checker, const ArrayLike& T_world_pick, const ArrayLike& T_world_place,
-         const py::object& pick_point, const py::object& place_point, const py::object& camera_link,
-         const py::object& T_link_camera, const PinholeCamera* camera, IkSeedDatabase* database,
+         const OptionalArray& pick_point, const OptionalArray& place_point, const OptionalText& camera_link,
+         const OptionalArray& T_link_camera, const PinholeCamera* camera, IkSeedDatabase* database,
          const py::kwargs& options) {
         PlatformLocationsProblem problem;
         problem.T_world_pick = pose_argument(T_world_pick, "T_world_pick");

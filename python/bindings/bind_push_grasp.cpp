@@ -34,7 +34,7 @@ py::dict outcome_dict(const ClosingOutcome& o) {
                   "nearer_tolerance"_a = o.nearer_tolerance, "farther_tolerance"_a = o.farther_tolerance);
 }
 
-std::string number(double value) {
+std::string number_repr(double value) {
   return std::string(py::repr(py::float_(value)));
 }
 
@@ -56,28 +56,31 @@ void bind_push_grasp(py::module_& m) {
       .def_readonly("lateral_tolerance", &O::lateral_tolerance, "It may stand this far to a side [m]; < 0: none.")
       .def_readonly("nearer_tolerance", &O::nearer_tolerance, "It may stand this much nearer [m].")
       .def_readonly("farther_tolerance", &O::farther_tolerance, "It may stand this much farther [m].")
-      .def("to_dict", &outcome_dict)
+      .def("to_dict", &outcome_dict, "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const O& o) {
-        return "ClosingOutcome(starts at " + number(o.start) + " m, gap " + number(o.gap) + " m, pushed " +
-               number(o.pushed) + (o.holds ? " m, holds)" : " m, does not hold)");
+        return "ClosingOutcome(starts at " + number_repr(o.start) + " m, gap " + number_repr(o.gap) + " m, pushed " +
+               number_repr(o.pushed) + (o.holds ? " m, holds)" : " m, does not hold)");
       });
   py::class_<G>(m, "PushGrasp", "Closing windows of a grasp in passing, and both strategies of P1's figure 4.7.")
       .def_readonly("closing_time", &G::closing_time, "[s]")
       .def_readonly("earliest", &G::earliest, "First engagement at which closing may begin [m].")
       .def_readonly("latest", &G::latest, "Last engagement at which closing may begin [m].")
-      .def_readonly("feasible", &G::feasible)
+      .def_readonly("feasible", &G::feasible, "There is a moment at which closing may begin.")
       .def_readonly("window", &G::window, "From the first to the last [s].")
       .def_readonly("max_tool_speed", &G::max_tool_speed, "Fastest tool with a window [m/s].")
       .def_readonly("push", &G::push, "Push-grasp: closing begins when the object is between the fingers.")
       .def_readonly("plain", &G::plain, "Closing while moving, so that both fingers touch at the planned pose.")
-      .def("to_dict",
-           [](const G& g) {
-             return py::dict("closing_time"_a = g.closing_time, "earliest"_a = g.earliest, "latest"_a = g.latest,
-                             "feasible"_a = g.feasible, "window"_a = g.window, "max_tool_speed"_a = g.max_tool_speed,
-                             "push"_a = outcome_dict(g.push), "plain"_a = outcome_dict(g.plain));
-           })
+      .def(
+          "to_dict",
+          [](const G& g) {
+            return py::dict("closing_time"_a = g.closing_time, "earliest"_a = g.earliest, "latest"_a = g.latest,
+                            "feasible"_a = g.feasible, "window"_a = g.window, "max_tool_speed"_a = g.max_tool_speed,
+                            "push"_a = outcome_dict(g.push), "plain"_a = outcome_dict(g.plain));
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const G& g) {
-        return g.feasible ? "PushGrasp(window " + number(g.window) + " s, at most " + number(g.max_tool_speed) + " m/s)"
+        return g.feasible ? "PushGrasp(window " + number_repr(g.window) + " s, at most " +
+                                number_repr(g.max_tool_speed) + " m/s)"
                           : std::string("PushGrasp(no window)");
       });
   m.def(
@@ -104,7 +107,8 @@ void bind_push_grasp(py::module_& m) {
       [](double start, const py::kwargs& problem) {
         return closing_outcome(read_options(push_fields(), problem, "closing_outcome"), start);
       },
-      py::arg("start"), "What beginning to close at an engagement [m] comes to; keywords as of push_grasp.");
+      py::arg("start"),
+      ("What beginning to close at an engagement [m] comes to." + option_help(push_fields())).c_str());
   m.def("push_speed_limit", &push_speed_limit, py::kw_only(), py::arg("length"), py::arg("friction"),
         py::arg("restitution"),
         "Fastest tool [m/s] before whose palm a hit object does not leap more than `length` [m].");

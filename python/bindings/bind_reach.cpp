@@ -10,6 +10,13 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kNamedArrays[] = "dict[str, numpy.typing.NDArray[typing.Any]]";
+using NamedArrays = Shown<kNamedArrays>;
+constexpr char kArrayList[] = "list[numpy.typing.NDArray[numpy.float64]]";
+using ArrayList = Shown<kArrayList>;
+constexpr char kMaybeArrayList[] = "list[numpy.typing.NDArray[numpy.float64] | None]";
+using MaybeArrayList = Shown<kMaybeArrayList>;
+
 using namespace py::literals;
 
 const std::vector<OptionField<ReachOptions>>& reach_fields() {
@@ -40,7 +47,7 @@ const std::vector<OptionField<ReachSolveOptions>>& solve_fields() {
   return fields;
 }
 
-const std::vector<OptionField<BasePlacementOptions>>& placement_fields() {
+const std::vector<OptionField<BasePlacementOptions>>& base_placement_fields() {
   using Options = BasePlacementOptions;
   static const std::vector<OptionField<Options>> fields{
       option<Options>("step", &Options::step, "grid of base positions [m]"),
@@ -55,7 +62,7 @@ const std::vector<OptionField<BasePlacementOptions>>& placement_fields() {
 }
 
 /// (m, 4, 4)
-Poses poses_argument(const ArrayLike& value, const std::string& name) {
+Poses pose_stack_argument(const ArrayLike& value, const std::string& name) {
   py::array array;
   try {
     array = py::module_::import("numpy").attr("asarray")(value);
@@ -78,7 +85,7 @@ py::array view(const py::object& owner, const T* data, std::vector<py::ssize_t> 
   return out;
 }
 
-py::dict arrays(const py::object& self) {
+NamedArrays arrays(const py::object& self) {
   const ReachArrays a = reach_arrays(self.cast<const ReachDatabase&>());
   return py::dict("positions"_a = view(self, a.position_cells, {a.positions, 3}),
                   "position_first"_a = view(self, a.position_first, {a.positions + 1}),
@@ -107,20 +114,22 @@ void bind_queries(py::module_& m, py::class_<ReachDatabase>& database) {
       .def_readonly("reached", &BasePlacement::reached, "How many of the targets.")
       .def_property_readonly(
           "configurations",
-          [](const BasePlacement& p) {
+          [](const BasePlacement& p) -> MaybeArrayList {
             py::list out;
             for (const Eigen::VectorXd& q : p.configurations) out.append(q.size() > 0 ? py::cast(q) : py::none());
             return out;
           },
           "One per target; None where it is not reached.")
-      .def("to_dict",
-           [](const BasePlacement& p) {
-             py::list rows;
-             for (const Eigen::VectorXd& q : p.configurations)
-               rows.append(q.size() > 0 ? py::object(py::cast(q).attr("tolist")()) : py::none());
-             return py::dict("base_pose"_a = py::cast(p.base_pose).attr("tolist")(), "reached"_a = p.reached,
-                             "configurations"_a = rows);
-           })
+      .def(
+          "to_dict",
+          [](const BasePlacement& p) {
+            py::list rows;
+            for (const Eigen::VectorXd& q : p.configurations)
+              rows.append(q.size() > 0 ? py::object(py::cast(q).attr("tolist")()) : py::none());
+            return py::dict("base_pose"_a = py::cast(p.base_pose).attr("tolist")(), "reached"_a = p.reached,
+                            "configurations"_a = rows);
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const BasePlacement& p) {
         return "BasePlacement(" + std::to_string(p.reached) + " of " + std::to_string(p.configurations.size()) +
                " reached from " + text(p.base_pose) + ")";
@@ -141,9 +150,9 @@ void bind_queries(py::module_& m, py::class_<ReachDatabase>& database) {
       .def(
           "solve_batch",
           [](const ReachDatabase& db, const JointGroup& arm, const ArrayLike& T_base_tips,
-             const CollisionChecker* checker, const py::kwargs& options) {
+             const CollisionChecker* checker, const py::kwargs& options) -> ArrayList {
             const ReachSolveOptions read = read_options(solve_fields(), options, "ReachDatabase.solve_batch");
-            const Poses poses = poses_argument(T_base_tips, "T_base_tips");
+            const Poses poses = pose_stack_argument(T_base_tips, "T_base_tips");
             const auto found = LongCall(py::none()).run([&](const Monitor& monitor) {
               return solve_reach_batch(db, arm, poses, read, checker, monitor);
             });
@@ -152,12 +161,14 @@ void bind_queries(py::module_& m, py::class_<ReachDatabase>& database) {
             return out;
           },
           "arm"_a, "T_base_tips"_a, py::kw_only(), "checker"_a = py::none(),
-          "solve() for many poses (m, 4, 4) at a time: a list of arrays. The same keywords.")
+          ("solve() for many poses (m, 4, 4) at a time: a list of arrays (k, n)." + option_help(solve_fields()))
+              .c_str())
       .def(
           "base_poses_for",
           [](const ReachDatabase& db, const JointGroup& arm, const ArrayLike& T_world_tip, int count,
              const CollisionChecker* checker, const py::kwargs& options) {
-            const BasePlacementOptions read = read_options(placement_fields(), options, "ReachDatabase.base_poses_for");
+            const BasePlacementOptions read =
+                read_options(base_placement_fields(), options, "ReachDatabase.base_poses_for");
             const Pose T = pose_argument(T_world_tip, "T_world_tip");
             const auto found = LongCall(py::none()).run([&](const Monitor& monitor) {
               return base_poses_for(db, arm, T, count, read, checker, monitor);
@@ -173,21 +184,21 @@ void bind_queries(py::module_& m, py::class_<ReachDatabase>& database) {
           "arm"_a, "T_world_tip"_a, py::kw_only(), "count"_a = 32, "checker"_a = py::none(),
           ("Base poses (k, 3) on the floor from which the tool reaches a pose in the world, and the configurations "
            "(k, n) that do." +
-           option_help(placement_fields()))
+           option_help(base_placement_fields()))
               .c_str())
       .def(
           "find_base_placement",
           [](const ReachDatabase& db, const JointGroup& arm, const ArrayLike& T_world_tips,
-             const CollisionChecker* checker, const py::object& progress, const py::kwargs& options) {
+             const CollisionChecker* checker, const Progress& progress, const py::kwargs& options) {
             const BasePlacementOptions read =
-                read_options(placement_fields(), options, "ReachDatabase.find_base_placement");
-            const Poses poses = poses_argument(T_world_tips, "T_world_tips");
+                read_options(base_placement_fields(), options, "ReachDatabase.find_base_placement");
+            const Poses poses = pose_stack_argument(T_world_tips, "T_world_tips");
             return LongCall(progress).run(
                 [&](const Monitor& monitor) { return find_base_placement(db, arm, poses, read, checker, monitor); });
           },
           "arm"_a, "T_world_tips"_a, py::kw_only(), "checker"_a = py::none(), "progress"_a = py::none(),
           ("One base pose from which as many tool poses (m, 4, 4) in the world as possible are reached." +
-           option_help(placement_fields()))
+           option_help(base_placement_fields()))
               .c_str());
 }
 
@@ -204,7 +215,7 @@ void bind_reach(py::module_& m) {
   database
       .def_static(
           "build",
-          [](const JointGroup& arm, const py::object& progress, const py::kwargs& options) {
+          [](const JointGroup& arm, const Progress& progress, const py::kwargs& options) {
             const ReachOptions read = read_options(reach_fields(), options, "ReachDatabase.build");
             const JointGroup group = with_sampled_pairs(arm);
             return LongCall(progress).run(
@@ -218,11 +229,12 @@ void bind_reach(py::module_& m) {
             return reach_part_count(with_sampled_pairs(arm),
                                     read_options(reach_fields(), options, "ReachDatabase.part_count"));
           },
-          py::arg("arm"), "Into how many parts build_to divides a build with these options.")
+          py::arg("arm"),
+          ("Into how many parts build_to divides a build with these options." + option_help(reach_fields())).c_str())
       .def_static(
           "build_parts",
-          [](const py::object& folder, const JointGroup& arm, const std::vector<std::int64_t>& parts,
-             const py::object& progress, const py::kwargs& options) {
+          [](const PathLike& folder, const JointGroup& arm, const std::vector<std::int64_t>& parts,
+             const Progress& progress, const py::kwargs& options) {
             const ReachOptions read = read_options(reach_fields(), options, "ReachDatabase.build_parts");
             const std::string name = path_argument(folder, "folder");
             const JointGroup group = with_sampled_pairs(arm);
@@ -230,11 +242,12 @@ void bind_reach(py::module_& m) {
                 [&](const Monitor& monitor) { return build_reach_parts(name, group, read, parts, monitor); });
           },
           py::arg("folder"), py::arg("arm"), py::arg("parts"), py::kw_only(), py::arg("progress") = py::none(),
-          "Draws single parts into a folder; in `path`.partial they are what build_to(path, ...) goes on from.")
+          ("Draws single parts into a folder; in `path`.partial they are what build_to(path, ...) goes on from." +
+           option_help(reach_fields()))
+              .c_str())
       .def_static(
           "load_or_build",
-          [](const JointGroup& arm, const py::object& cache_dir, const py::object& progress,
-             const py::kwargs& options) {
+          [](const JointGroup& arm, const PathLike& cache_dir, const Progress& progress, const py::kwargs& options) {
             const ReachOptions read = read_options(reach_fields(), options, "ReachDatabase.load_or_build");
             const std::string folder = path_argument(cache_dir, "cache_dir");
             const JointGroup group = with_sampled_pairs(arm);
@@ -242,10 +255,12 @@ void bind_reach(py::module_& m) {
                 [&](const Monitor& monitor) { return ReachDatabase::load_or_build(group, read, folder, monitor); });
           },
           py::arg("arm"), py::arg("cache_dir"), py::kw_only(), py::arg("progress") = py::none(),
-          "The database of this arm and these options from the cache folder; built and stored when it is not there.")
+          ("The database of this arm and these options from the cache folder; built and stored when it is not there." +
+           option_help(reach_fields()))
+              .c_str())
       .def_static(
           "build_to",
-          [](const py::object& path, const JointGroup& arm, const py::object& progress, const py::kwargs& options) {
+          [](const PathLike& path, const JointGroup& arm, const Progress& progress, const py::kwargs& options) {
             const ReachOptions read = read_options(reach_fields(), options, "ReachDatabase.build_to");
             const std::string name = path_argument(path, "path");
             const JointGroup group = with_sampled_pairs(arm);
@@ -253,10 +268,12 @@ void bind_reach(py::module_& m) {
                 [&](const Monitor& monitor) { return ReachDatabase::build_to(name, group, read, monitor); });
           },
           py::arg("path"), py::arg("arm"), py::kw_only(), py::arg("progress") = py::none(),
-          "Builds through files into a folder; interrupted and called again, it goes on where it was.")
+          ("Builds through files into a folder; interrupted and called again, it goes on where it was." +
+           option_help(reach_fields()))
+              .c_str())
       .def_static(
           "load",
-          [](const py::object& path, const JointGroup* arm) {
+          [](const PathLike& path, const JointGroup* arm) {
             const std::string name = path_argument(path, "path");
             const std::optional<JointGroup> group =
                 arm ? std::optional<JointGroup>(with_sampled_pairs(*arm)) : std::nullopt;
@@ -277,23 +294,28 @@ void bind_reach(py::module_& m) {
           py::arg("arm"), "What of the arm has changed since the build, in words; empty when nothing.")
       .def_property_readonly("arrays", &arrays, "Read-only views of the database's arrays, by file name.")
       .def_property_readonly("path", &ReachDatabase::path, "The folder; empty for a database in memory only.")
-      .def_property_readonly("joint_lower", [](const ReachDatabase& db) { return reach_arrays(db).joint_lower; })
+      .def_property_readonly(
+          "joint_lower", [](const ReachDatabase& db) { return reach_arrays(db).joint_lower; },
+          "Least value of each joint [rad or m].")
       .def_property_readonly(
           "joint_step", [](const ReachDatabase& db) { return reach_arrays(db).joint_step; },
           "q = joint_lower + joint_step * arrays['configurations'].")
-      .def("to_dict", &database_dict)
+      .def("to_dict", &database_dict, "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def(
           "save",
-          [](const ReachDatabase& db, const py::object& path) {
+          [](const ReachDatabase& db, const PathLike& path) {
             const std::string name = path_argument(path, "path");
             py::gil_scoped_release release;
             db.save(name);
           },
-          py::arg("path"))
-      .def_property_readonly("key", &ReachDatabase::key)
+          py::arg("path"),
+          "Writes a folder to a temporary name and renames it; raises IoError where something other than a database "
+          "stands.")
+      .def_property_readonly("key", &ReachDatabase::key,
+                             "Hash of robot, group and options: databases of one key are the same.")
       .def("__len__", &ReachDatabase::size)
       .def_property_readonly("cell_count", &ReachDatabase::cell_count, "Non-empty cells.")
-      .def_property_readonly("joint_count", &ReachDatabase::joint_count)
+      .def_property_readonly("joint_count", &ReachDatabase::joint_count, "Columns of a stored configuration.")
       .def_property_readonly("reach", &ReachDatabase::reach,
                              "Largest distance of a stored tool position from the root [m].")
       .def(

@@ -5,6 +5,9 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kRoadmapFigures[] = "mmgrasp._records.RoadmapFigures";
+using RoadmapFigures = Shown<kRoadmapFigures>;
+
 using namespace py::literals;
 
 const std::vector<OptionField<RoadmapOptions>>& roadmap_fields() {
@@ -17,7 +20,7 @@ const std::vector<OptionField<RoadmapOptions>>& roadmap_fields() {
   return fields;
 }
 
-py::dict figures_dict(const Roadmap& roadmap) {
+RoadmapFigures figures_dict(const Roadmap& roadmap) {
   const RoadmapStatistics f = roadmap.statistics();
   return py::dict("mean_degree"_a = f.mean_degree, "components"_a = f.components,
                   "largest_component"_a = f.largest_component, "radius"_a = f.radius, "volume"_a = f.volume,
@@ -51,7 +54,7 @@ void bind_roadmap(py::module_& m) {
                       "check: it serves every grasp, object and scene (P2 4.3.2.1). Immutable.")
       .def_static(
           "build",
-          [](const Given<JointGroup>& given_group, const py::object& progress, const py::kwargs& options) {
+          [](const Given<JointGroup>& given_group, const Progress& progress, const py::kwargs& options) {
             const JointGroup& group = taken(given_group, "group");
             const RoadmapOptions read = read_options(roadmap_fields(), options, "Roadmap.build");
             return LongCall(progress).run([&](const Monitor& monitor) { return Roadmap::build(group, read, monitor); });
@@ -62,7 +65,7 @@ void bind_roadmap(py::module_& m) {
               .c_str())
       .def_static(
           "load",
-          [](const py::object& path, const Given<JointGroup>& given_group) {
+          [](const PathLike& path, const Given<JointGroup>& given_group) {
             const JointGroup& group = taken(given_group, "group");
             const std::string file = path_argument(path, "path");
             py::gil_scoped_release release;
@@ -71,7 +74,7 @@ void bind_roadmap(py::module_& m) {
           "path"_a, "group"_a, "Raises IoError on a damaged file or one made for another robot, joints or limits.")
       .def(
           "save",
-          [](const Roadmap& roadmap, const py::object& path) {
+          [](const Roadmap& roadmap, const PathLike& path) {
             const std::string file = path_argument(path, "path");
             py::gil_scoped_release release;
             roadmap.save(file);
@@ -92,7 +95,7 @@ void bind_roadmap(py::module_& m) {
       .def_property_readonly("figures", &figures_dict,
                              "Mean degree, connected parts, the largest one's vertices, connection radius, the joint "
                              "box's volume, and the gamma that PRM* asks for.")
-      .def("to_dict", &roadmap_dict)
+      .def("to_dict", &roadmap_dict, "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const Roadmap& r) {
         return "Roadmap(" + std::to_string(r.size()) + " vertices, " + std::to_string(r.edge_count()) + " edges, '" +
                r.group().name() + "')";

@@ -12,6 +12,23 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kPackageFolders[] = "collections.abc.Mapping[str, str | os.PathLike[str]] | None";
+using PackageFolders = Shown<kPackageFolders>;
+constexpr char kRobotReport[] = "mmgrasp._records.RobotReport";
+using RobotReportDict = Shown<kRobotReport>;
+constexpr char kJointRows[] = "list[mmgrasp._records.JointRow]";
+using JointRows = Shown<kJointRows>;
+constexpr char kGroupRows[] = "dict[str, mmgrasp._records.GroupRow]";
+using GroupRows = Shown<kGroupRows>;
+constexpr char kEndEffectorRows[] = "list[mmgrasp._records.EndEffectorRow]";
+using EndEffectorRows = Shown<kEndEffectorRows>;
+constexpr char kLinkPairs[] = "list[tuple[str, str, str]]";
+using LinkPairs = Shown<kLinkPairs>;
+constexpr char kXacroArguments[] = "collections.abc.Mapping[str, typing.Any] | None";
+using XacroArguments = Shown<kXacroArguments>;
+constexpr char kBaseLimitsDict[] = "collections.abc.Mapping[str, float | None] | None";
+using BaseLimitsDict = Shown<kBaseLimitsDict>;
+
 using namespace py::literals;
 
 const std::vector<OptionField<BaseLimits>>& base_limit_fields() {
@@ -21,7 +38,7 @@ const std::vector<OptionField<BaseLimits>>& base_limit_fields() {
       option<BaseLimits>("linear_acceleration", &BaseLimits::linear_acceleration, "[m/s^2]"),
       option<BaseLimits>("angular_acceleration", &BaseLimits::angular_acceleration, "[rad/s^2]"),
       option<BaseLimits>("workspace", &BaseLimits::workspace, "x and y lie in [-workspace, workspace] [m]"),
-      {"wheel_velocity",
+      {"wheel_velocity", "float | None",
        [](BaseLimits& limits, const py::handle& value) {
          limits.wheel_velocity = std::numeric_limits<double>::infinity();
          if (!value.is_none() && !value.equal(py::float_(limits.wheel_velocity)))
@@ -103,7 +120,7 @@ DisabledReason reason_from_name(const std::string& name) {
   throw InvalidInput("reason = '" + name + "': must be adjacent, never, always, user or default");
 }
 
-py::dict report_dict(const RobotReport& report) {
+RobotReportDict report_dict(const RobotReport& report) {
   py::list meshes;
   for (const MeshReport& mesh : report.meshes) {
     meshes.append(py::dict("path"_a = mesh.path, "vertices_read"_a = mesh.vertices_read,
@@ -131,8 +148,8 @@ std::vector<std::string> movable_joints(const Robot& robot) {
   return names;
 }
 
-JointGroup make_group(const Robot& robot, const py::object& name, const py::object& tip, const py::object& base_link,
-                      bool with_base) {
+JointGroup make_group(const Robot& robot, const OptionalText& name, const OptionalText& tip,
+                      const OptionalText& base_link, bool with_base) {
   const std::string tip_name = tip.is_none() ? "" : py::cast<std::string>(tip);
   if (base_link.is_none()) {
     if (name.is_none()) throw InvalidInput("group(): give the name of an SRDF group, or base_link and tip");
@@ -204,9 +221,9 @@ void bind_robot_class(py::module_& m) {
   robot
       .def_static(
           "load",
-          [](const py::object& urdf, const py::object& srdf, const py::object& package_dirs, const std::string& base,
-             const py::object& base_limits, bool load_meshes, bool allow_missing_meshes, double mesh_tolerance,
-             const py::object& xacro_args) {
+          [](const PathLike& urdf, const OptionalPath& srdf, const PackageFolders& package_dirs,
+             const std::string& base, const BaseLimitsDict& base_limits, bool load_meshes, bool allow_missing_meshes,
+             double mesh_tolerance, const XacroArguments& xacro_args) {
             const RobotOptions options =
                 robot_options(package_dirs, base, base_limits, load_meshes, allow_missing_meshes, mesh_tolerance);
             const std::string urdf_path = path_argument(urdf, "urdf");
@@ -228,9 +245,9 @@ void bind_robot_class(py::module_& m) {
           "what is the same solid. Raises IoError or InvalidInput naming file, element, value and rule.")
       .def_static(
           "from_strings",
-          [](const std::string& urdf, const std::string& srdf, const py::object& package_dirs, const std::string& base,
-             const py::object& base_limits, bool load_meshes, bool allow_missing_meshes, double mesh_tolerance,
-             const std::string& origin) {
+          [](const std::string& urdf, const std::string& srdf, const PackageFolders& package_dirs,
+             const std::string& base, const BaseLimitsDict& base_limits, bool load_meshes, bool allow_missing_meshes,
+             double mesh_tolerance, const std::string& origin) {
             const RobotOptions options =
                 robot_options(package_dirs, base, base_limits, load_meshes, allow_missing_meshes, mesh_tolerance);
             py::gil_scoped_release release;
@@ -240,17 +257,20 @@ void bind_robot_class(py::module_& m) {
           py::kw_only(), py::arg("base_limits") = py::none(), py::arg("load_meshes") = true,
           py::arg("allow_missing_meshes") = false, py::arg("mesh_tolerance") = 0.0, py::arg("origin") = "<string>",
           "The same from the texts of URDF and SRDF; `origin` names the source in messages.")
-      .def_property_readonly("name", &Robot::name)
+      .def_property_readonly("name", &Robot::name, "As the URDF says.")
       .def_property_readonly(
           "base", [](const Robot& r) { return to_string(r.base()); }, "fixed, diff_drive or omni.")
-      .def_property_readonly("base_limits",
-                             [](const Robot& r) {
-                               py::dict out;
-                               for (const auto& field : base_limit_fields()) {
-                                 out[field.name.c_str()] = field.get(r.base_limits());
-                               }
-                               return out;
-                             })
+      .def_property_readonly(
+          "base_limits",
+          [](const Robot& r) -> NamedFloats {
+            py::dict out;
+            for (const auto& field : base_limit_fields()) {
+              out[field.name.c_str()] = field.get(r.base_limits());
+            }
+            return out;
+          },
+          "Speed and acceleration limits of the base, its workspace and its wheels, by keyword of `load`'s "
+          "base_limits.")
       .def(
           "velocity_scale",
           [](const Robot& r, const ArrayLike& platform_velocity) {
@@ -272,7 +292,7 @@ void bind_robot_class(py::module_& m) {
           "Names of the movable joints that follow no other.")
       .def_property_readonly(
           "joint_table",
-          [](const Robot& r) {
+          [](const Robot& r) -> JointRows {
             py::list out;
             for (const Joint& joint : r.joints()) out.append(joint_dict(r, joint));
             return out;
@@ -282,7 +302,7 @@ void bind_robot_class(py::module_& m) {
           "report", [](const Robot& r) { return report_dict(r.report()); }, "What loading found.")
       .def_property_readonly(
           "groups",
-          [](const Robot& r) {
+          [](const Robot& r) -> GroupRows {
             py::dict out;
             for (const GroupDescription& g : r.groups()) {
               out[g.name.c_str()] =
@@ -296,16 +316,17 @@ void bind_robot_class(py::module_& m) {
           "SRDF states: group, state, joint to value. Joints with several values appear as joint/x, joint/y, ...")
       .def_property_readonly(
           "end_effectors",
-          [](const Robot& r) {
+          [](const Robot& r) -> EndEffectorRows {
             py::list out;
             for (const EndEffectorDescription& e : r.end_effectors()) {
               out.append(py::dict("name"_a = e.name, "group"_a = e.group, "parent_link"_a = e.parent_link));
             }
             return out;
-          })
+          },
+          "SRDF end effectors: name, group and parent_link.")
       .def_property_readonly("passive_joints", &Robot::passive_joints,
                              "Joints that nothing drives (SRDF passive_joint): in no group.")
-      .def_property_readonly("has_srdf", &Robot::has_srdf)
+      .def_property_readonly("has_srdf", &Robot::has_srdf, "An SRDF was given.")
       .def_property_readonly(
           "source", [](const Robot& r) { return source_of(r); }, "The URDFs and links that it was made of.")
       .def_property_readonly("hash", &Robot::hash, "Content hash: kinematics, shapes, limits, disabled pairs.")
@@ -315,7 +336,8 @@ void bind_robot_class(py::module_& m) {
           py::arg("link"), "Collision shapes of a link (list of LinkShape).")
       .def(
           "link_poses",
-          [](const Robot& r, const std::map<std::string, double>& joints, const py::object& T_world_root) {
+          [](const Robot& r, const std::map<std::string, double>& joints,
+             const OptionalArray& T_world_root) -> NamedPoses {
             const Poses poses = r.link_poses(r.values(joints), pose_argument(T_world_root, "T_world_root"));
             py::dict out;
             for (std::size_t i = 0; i < poses.size(); ++i) out[r.links()[i].name.c_str()] = to_array(poses[i]);
@@ -334,13 +356,13 @@ void bind_robot_class(py::module_& m) {
            "`with_base` puts the virtual joints x, y, theta first.")
       .def(
           "mount",
-          [](const Robot& r, const Robot& other, const std::string& parent_link, const py::object& T,
+          [](const Robot& r, const Robot& other, const std::string& parent_link, const OptionalArray& T,
              const std::string& prefix) { return r.mount(other, parent_link, pose_argument(T, "T"), prefix); },
           py::arg("other"), py::arg("parent_link"), py::arg("T") = py::none(), py::arg("prefix") = "",
           "This robot with `other` put on one of its links; the names of `other` get the prefix, SRDFs are merged.")
       .def(
           "with_link",
-          [](const Robot& r, const std::string& name, const std::string& parent_link, const py::object& T,
+          [](const Robot& r, const std::string& name, const std::string& parent_link, const OptionalArray& T,
              const std::vector<LinkShape>& shapes) {
             return r.with_link(name, parent_link, pose_argument(T, "T"), shapes);
           },
@@ -348,7 +370,7 @@ void bind_robot_class(py::module_& m) {
           py::arg("shapes") = std::vector<LinkShape>{}, "This robot with one more fixed link.")
       .def_property_readonly(
           "disabled_pairs",
-          [](const Robot& r) {
+          [](const Robot& r) -> LinkPairs {
             py::list out;
             for (const auto& [pair, reason] : r.disabled_pairs()) {
               out.append(py::make_tuple(r.links()[pair.first].name, r.links()[pair.second].name, reason_name(reason)));
@@ -366,7 +388,9 @@ void bind_robot_class(py::module_& m) {
             }
             return r.with_disabled_pairs(std::move(out));
           },
-          py::arg("pairs"))
+          py::arg("pairs"),
+          "This robot with these pairs (link, link, reason) left out of collision checks instead of its own; reason is "
+          "adjacent,\nnever, always, user or default. Raises InvalidInput on an unknown link or reason.")
       .def("to_urdf", &Robot::to_urdf, "The whole robot as one URDF, without visuals; mesh files by absolute path.")
       .def("to_srdf", &Robot::to_srdf,
            "Groups, states, end effectors, passive and virtual joints and the disabled pairs with their reasons as one "
@@ -381,7 +405,7 @@ void bind_robot_class(py::module_& m) {
 void bind_base_motion(py::module_& m) {
   m.def(
       "find_package",
-      [](const std::string& name, const py::object& folder, const py::object& package_dirs) {
+      [](const std::string& name, const PathLike& folder, const PackageFolders& package_dirs) {
         return find_package(name, path_argument(folder, "folder"), package_argument(package_dirs));
       },
       py::arg("name"), py::arg("folder"), py::arg("package_dirs") = py::none(),

@@ -9,6 +9,11 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kNodePairs[] = "list[tuple[int, int]]";
+using NodePairs = Shown<kNodePairs>;
+
+using namespace py::literals;
+
 const std::vector<OptionField<PipeGraspOptions>>& pipe_grasp_fields() {
   using O = PipeGraspOptions;
   static const std::vector<OptionField<O>> fields{
@@ -68,14 +73,17 @@ void bind_structure(py::module_& m) {
                    "A pipe structure: straight round sections between nodes in the object's frame (P2 3.2.2).")
       .def(py::init(&make_pipe), py::arg("nodes"), py::arg("sections"), py::arg("diameters"),
            "(n, 3) nodes [m], pairs of node indices from 0, and outer diameters [m]: one for all or one a section.")
-      .def_property_readonly("nodes", [](const Pipe& p) { return rows_to_array(p.nodes); })
-      .def_property_readonly("sections",
-                             [](const Pipe& p) {
-                               py::list pairs;
-                               for (const auto& [a, b] : p.sections) pairs.append(py::make_tuple(a, b));
-                               return pairs;
-                             })
-      .def_readonly("diameters", &Pipe::diameters)
+      .def_property_readonly(
+          "nodes", [](const Pipe& p) { return rows_to_array(p.nodes); }, "(n, 3) in the object's frame [m].")
+      .def_property_readonly(
+          "sections",
+          [](const Pipe& p) -> NodePairs {
+            py::list pairs;
+            for (const auto& [a, b] : p.sections) pairs.append(py::make_tuple(a, b));
+            return pairs;
+          },
+          "First and second node of each section, counted from 0.")
+      .def_readonly("diameters", &Pipe::diameters, "Outer diameter of each section [m].")
       .def_property_readonly(
           "lengths",
           [](const Pipe& p) {
@@ -99,7 +107,8 @@ void bind_structure(py::module_& m) {
             return place_pipe_grasp(p, section, length, angle, flipped, grasp_options(gripper, options, "grasp"));
           },
           py::arg("section"), py::arg("length"), py::arg("angle"), py::arg("flipped") = false, py::kw_only(),
-          py::arg("gripper") = py::none(), "The grasp with these four variables (P2 3.2.3.1).")
+          py::arg("gripper") = py::none(),
+          ("The grasp with these four variables (P2 3.2.3.1)." + option_help(pipe_grasp_fields())).c_str())
       .def(
           "sample_grasps",
           [](const Pipe& p, const Given<int>& given_count, const std::optional<Given<Hand>>& gripper,

@@ -67,13 +67,18 @@ void bind_problem(py::module_& m) {
                          target,          std::move(grasps), grasps_too_wide};
            }),
            py::arg("name"), py::arg("shapes"), py::arg("T_world_part"), py::arg("grasps") = std::vector<Grasp>{},
-           py::kw_only(), py::arg("target") = true, py::arg("grasps_too_wide") = 0)
-      .def_readonly("name", &Part::name)
-      .def_readonly("shapes", &Part::shapes)
-      .def_property_readonly("T_world_part", [](const Part& p) { return to_array(p.T_world_part); })
-      .def_readonly("target", &Part::target)
-      .def_readonly("grasps", &Part::grasps)
-      .def_readonly("grasps_too_wide", &Part::grasps_too_wide)
+           py::kw_only(), py::arg("target") = true, py::arg("grasps_too_wide") = 0,
+           "`shapes` in the part's frame, `T_world_part` (4, 4), candidate `grasps` best first. A part that is no "
+           "`target`\nstays where it is; `grasps_too_wide` says how many candidates were left out because the gripper "
+           "does not open so far.")
+      .def_readonly("name", &Part::name, "Unique over the problem.")
+      .def_readonly("shapes", &Part::shapes, "In the part's frame.")
+      .def_property_readonly(
+          "T_world_part", [](const Part& p) { return to_array(p.T_world_part); }, "Pose of the part (4, 4).")
+      .def_readonly("target", &Part::target, "To be picked; otherwise an obstacle that stays.")
+      .def_readonly("grasps", &Part::grasps, "Candidates, best first.")
+      .def_readonly("grasps_too_wide", &Part::grasps_too_wide,
+                    "Candidates left out because the gripper does not open so far.")
       .def("__repr__", [](const Part& p) {
         return "Part('" + p.name + "', " + std::to_string(p.grasps.size()) + " grasps" + (p.target ? ")" : ", stays)");
       });
@@ -84,12 +89,18 @@ void bind_problem(py::module_& m) {
                          std::move(parts), finite_argument(std::move(headings), "headings")};
            }),
            py::arg("name"), py::arg("T_world_tray"), py::arg("size"), py::arg("parts"),
-           py::arg("headings") = std::vector<double>{})
-      .def_readonly("name", &Tray::name)
-      .def_property_readonly("T_world_tray", [](const Tray& t) { return to_array(t.T_world_tray); })
+           py::arg("headings") = std::vector<double>{},
+           "`T_world_tray` (4, 4): middle of the tray's floor, a robot in front of it looks along its +x; `size` (3,): "
+           "depth,\nwidth, height [m]; `headings` of the base that are tried [rad], none given: the one that faces the "
+           "tray.")
+      .def_readonly("name", &Tray::name, "Unique over the problem.")
+      .def_property_readonly(
+          "T_world_tray", [](const Tray& t) { return to_array(t.T_world_tray); },
+          "Middle of the tray's floor (4, 4); a robot in front of it looks along its +x.")
       .def_readonly("size", &Tray::size, "Depth, width, height [m].")
-      .def_readonly("parts", &Tray::parts)
-      .def_readonly("headings", &Tray::headings)
+      .def_readonly("parts", &Tray::parts, "The parts in it.")
+      .def_readonly("headings", &Tray::headings,
+                    "Headings of the base that are tried [rad]; empty: the one that faces the tray.")
       .def("__repr__",
            [](const Tray& t) { return "Tray('" + t.name + "', " + std::to_string(t.parts.size()) + " parts)"; });
   py::class_<CarryPlace>(m, "CarryPlace", "Where picked parts go: a bin fixed to the robot.")
@@ -97,10 +108,15 @@ void bind_problem(py::module_& m) {
              return CarryPlace{pose_argument(T_base_bin, "T_base_bin"), vector2_argument(size, "size"),
                                finite_argument(drop_gap, "drop_gap")};
            }),
-           py::arg("T_base_bin"), py::arg("size"), py::arg("drop_gap") = CarryPlace{}.drop_gap)
-      .def_property_readonly("T_base_bin", [](const CarryPlace& c) { return to_array(c.T_base_bin); })
-      .def_readonly("size", &CarryPlace::size)
-      .def_readonly("drop_gap", &CarryPlace::drop_gap);
+           py::arg("T_base_bin"), py::arg("size"), py::arg("drop_gap") = CarryPlace{}.drop_gap,
+           "`T_base_bin` (4, 4): middle of the bin's top plane in the robot's root frame, z up; `size` (2,): inner x "
+           "and y\n[m], > 0; `drop_gap`: how far above the top plane a part is released [m], >= 0.")
+      .def_property_readonly(
+          "T_base_bin", [](const CarryPlace& c) { return to_array(c.T_base_bin); },
+          "Middle of the bin's top plane in the robot's root frame (4, 4), z up.")
+      .def_readonly("size", &CarryPlace::size, "Inner x and y (2,) [m].")
+      .def_readonly("drop_gap", &CarryPlace::drop_gap,
+                    "A part is released with its lowest point so far above the bin's top plane [m].");
   py::class_<PartSupplyProblem>(m, "PartSupplyProblem", "Everything the part-supply planner needs.")
       .def(py::init([](const Robot& robot, const JointGroup& arm, const Hand& gripper, const World& scene,
                        std::vector<Tray> trays, const ArrayLike& home, const ArrayLike& start, const ArrayLike& goal,
@@ -119,43 +135,54 @@ void bind_problem(py::module_& m) {
              return problem;
            }),
            py::arg("robot"), py::arg("arm"), py::arg("gripper"), py::arg("scene"), py::arg("trays"), py::arg("home"),
-           py::arg("start"), py::arg("goal"), py::arg("carry"), option_help(supply_fields()).c_str())
-      .def_readonly("robot", &PartSupplyProblem::robot)
-      .def_readonly("arm", &PartSupplyProblem::arm)
-      .def_readonly("gripper", &PartSupplyProblem::gripper)
-      .def_readonly("scene", &PartSupplyProblem::scene)
-      .def_readonly("trays", &PartSupplyProblem::trays)
-      .def_readonly("home", &PartSupplyProblem::home)
-      .def_readonly("start", &PartSupplyProblem::start)
-      .def_readonly("goal", &PartSupplyProblem::goal)
-      .def_readonly("carry", &PartSupplyProblem::carry)
-      .def_property_readonly("options", [](const PartSupplyProblem& p) {
-        py::dict out;
-        for (const auto& field : supply_fields()) out[field.name.c_str()] = field.get(p.options);
-        return out;
-      });
+           py::arg("start"), py::arg("goal"), py::arg("carry"),
+           ("`scene` is without the parts; `home` (n,) is the arm's configuration while driving; `start` and `goal` "
+            "(3,) are base\nposes x, y, theta [m, m, rad]. Raises InvalidInput naming the field that breaks its rule." +
+            option_help(supply_fields()))
+               .c_str())
+      .def_readonly("robot", &PartSupplyProblem::robot, "The robot.")
+      .def_readonly("arm", &PartSupplyProblem::arm, "The arm, without base joints.")
+      .def_readonly("gripper", &PartSupplyProblem::gripper, "The gripper of the arm.")
+      .def_readonly("scene", &PartSupplyProblem::scene, "Obstacles, tables and trays, without the parts.")
+      .def_readonly("trays", &PartSupplyProblem::trays, "The trays with their parts.")
+      .def_readonly("home", &PartSupplyProblem::home, "Arm configuration while driving (n,), fingers closed.")
+      .def_readonly("start", &PartSupplyProblem::start, "Base pose at the beginning (3,): x, y, theta [m, m, rad].")
+      .def_readonly("goal", &PartSupplyProblem::goal, "Base pose at the end (3,): x, y, theta [m, m, rad].")
+      .def_readonly("carry", &PartSupplyProblem::carry, "Where picked parts go.")
+      .def_property_readonly(
+          "options",
+          [](const PartSupplyProblem& p) -> NamedOptions {
+            py::dict out;
+            for (const auto& field : supply_fields()) out[field.name.c_str()] = field.get(p.options);
+            return out;
+          },
+          "Every keyword option with its value.");
 }
 
 void bind_picks(py::module_& m) {
   py::class_<PickMotion>(m, "PickMotion", "One timed arm motion at a stop.")
-      .def_property_readonly("kind", [](const PickMotion& p) { return to_string(p.kind); })
-      .def_readonly("opening", &PickMotion::opening)
-      .def_readonly("holding", &PickMotion::holding)
-      .def_readonly("trajectory", &PickMotion::trajectory)
+      .def_property_readonly(
+          "kind", [](const PickMotion& p) { return to_string(p.kind); }, "reach, approach, lift, carry or retreat.")
+      .def_readonly("opening", &PickMotion::opening, "Opening of the fingers during the motion [m].")
+      .def_readonly("holding", &PickMotion::holding, "The part is attached during the motion.")
+      .def_readonly("trajectory", &PickMotion::trajectory, "The arm on its clock, from 0.")
       .def("__repr__", [](const PickMotion& p) {
         return std::string("PickMotion(") + to_string(p.kind) + ", " +
                std::string(py::repr(py::float_(p.trajectory.duration()))) + " s)";
       });
   py::class_<Pick>(m, "Pick", "Home, pre-grasp, grasp, lift, carry, home.")
-      .def_readonly("outcome", &Pick::outcome)
-      .def_readonly("stop", &Pick::stop)
-      .def_property_readonly("tray", [](const Pick& p) { return p.part.tray; })
-      .def_property_readonly("part", [](const Pick& p) { return p.part.part; })
-      .def_readonly("grasp", &Pick::grasp)
-      .def_readonly("motions", &Pick::motions)
-      .def_readonly("rejections", &Pick::rejections)
-      .def_readonly("failed_at", &Pick::failed_at)
-      .def_property_readonly("duration", &Pick::duration)
+      .def_readonly("outcome", &Pick::outcome, "How it ended; `solved` alone comes with an answer.")
+      .def_readonly("stop", &Pick::stop, "Index of the stop.")
+      .def_property_readonly(
+          "tray", [](const Pick& p) { return p.part.tray; }, "Index of the tray.")
+      .def_property_readonly(
+          "part", [](const Pick& p) { return p.part.part; }, "Index into the tray's parts.")
+      .def_readonly("grasp", &Pick::grasp, "Index into the part's grasps.")
+      .def_readonly("motions", &Pick::motions, "reach, approach, lift, carry, retreat.")
+      .def_readonly("rejections", &Pick::rejections,
+                    "Grasps and their configurations turned down on the way, by cause.")
+      .def_readonly("failed_at", &Pick::failed_at, "Without a solution: the stage at which most candidates fell.")
+      .def_property_readonly("duration", &Pick::duration, "Of all its motions [s].")
       .def("__repr__", [](const Pick& p) {
         return std::string("Pick(") + to_string(p.outcome) + ", tray " + std::to_string(p.part.tray) + ", part " +
                std::to_string(p.part.part) + ")";
@@ -231,28 +258,33 @@ class ListedRegions {
 
 void bind_plan_result(py::module_& m) {
   py::class_<Obstruction>(m, "Obstruction", "Why there is no plan, and what would help.")
-      .def_readonly("tray", &Obstruction::tray)
-      .def_readonly("part", &Obstruction::part)
-      .def_readonly("stage", &Obstruction::stage)
-      .def_readonly("message", &Obstruction::message)
-      .def_readonly("largest_uncertainty", &Obstruction::largest_uncertainty)
-      .def_readonly("missing_reach", &Obstruction::missing_reach)
+      .def_readonly("tray", &Obstruction::tray, "Name of the tray.")
+      .def_readonly("part", &Obstruction::part, "Name of the part that blocks; empty when the whole tray does.")
+      .def_readonly("stage", &Obstruction::stage, "grasp, region, robustness, motion or route.")
+      .def_readonly("message", &Obstruction::message, "One sentence that a person can act on.")
+      .def_readonly("largest_uncertainty", &Obstruction::largest_uncertainty,
+                    "Largest positioning uncertainty that still works [m]; < 0: none does.")
+      .def_readonly("missing_reach", &Obstruction::missing_reach,
+                    "How far the nearest base pose falls short of the part [m]; 0: reach is not it. `advised_move` is "
+                    "what suffices.")
       .def_readonly("advised_move", &Obstruction::advised_move, "Translation of the tray in the world's x and y [m].")
       .def_readonly("move_trays", &Obstruction::move_trays, "Trays that move together by advised_move.")
       .def_readonly("move_objects", &Obstruction::move_objects, "Objects of the scene that move with them.")
       .def_readonly("needed_opening", &Obstruction::needed_opening, "Gripper opening that would do [m]; 0: not it.")
-      .def("to_dict",
-           [](const Obstruction& o) {
-             return py::dict("tray"_a = o.tray, "part"_a = o.part, "stage"_a = o.stage, "message"_a = o.message,
-                             "largest_uncertainty"_a = o.largest_uncertainty, "missing_reach"_a = o.missing_reach,
-                             "advised_move"_a = std::vector<double>{o.advised_move.x(), o.advised_move.y()},
-                             "move_trays"_a = o.move_trays, "move_objects"_a = o.move_objects,
-                             "needed_opening"_a = o.needed_opening);
-           })
+      .def(
+          "to_dict",
+          [](const Obstruction& o) {
+            return py::dict("tray"_a = o.tray, "part"_a = o.part, "stage"_a = o.stage, "message"_a = o.message,
+                            "largest_uncertainty"_a = o.largest_uncertainty, "missing_reach"_a = o.missing_reach,
+                            "advised_move"_a = std::vector<double>{o.advised_move.x(), o.advised_move.y()},
+                            "move_trays"_a = o.move_trays, "move_objects"_a = o.move_objects,
+                            "needed_opening"_a = o.needed_opening);
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const Obstruction& o) { return "Obstruction(" + o.stage + ": " + o.message + ")"; });
   py::class_<PartSupplyPlan>(m, "PartSupplyPlan", "The planner's answer; a ScenarioPlan joins it with its scenario.")
-      .def_readonly("outcome", &PartSupplyPlan::outcome)
-      .def_readonly("grid", &PartSupplyPlan::grid)
+      .def_readonly("outcome", &PartSupplyPlan::outcome, "How it ended; `solved` alone comes with an answer.")
+      .def_readonly("grid", &PartSupplyPlan::grid, "The grid that all regions share.")
       .def_property_readonly(
           "regions",
           [](const py::object& self) {
@@ -261,38 +293,48 @@ void bind_plan_result(py::module_& m) {
             for (int tray : ListedRegions(plan).trays())
               regions.append(py::cast(&plan.regions[tray], py::return_value_policy::reference_internal, self));
             return regions;
-          })
+          },
+          "One a tray that has target parts.")
       .def_property_readonly(
           "region_trays", [](const PartSupplyPlan& p) { return ListedRegions(p).trays(); },
           "Tray index of each region.")
-      .def_property_readonly("intersections",
-                             [](const PartSupplyPlan& p) {
-                               const ListedRegions listed(p);
-                               Intersections found = p.intersections;
-                               found.robust = listed.counted(std::move(found.robust));
-                               found.lost = listed.counted(std::move(found.lost));
-                               return found;
-                             })
-      .def_property_readonly("stops", [](const PartSupplyPlan& p) { return ListedRegions(p).counted(p.stops); })
-      .def_readonly("lower_bound", &PartSupplyPlan::lower_bound)
+      .def_property_readonly(
+          "intersections",
+          [](const PartSupplyPlan& p) {
+            const ListedRegions listed(p);
+            Intersections found = p.intersections;
+            found.robust = listed.counted(std::move(found.robust));
+            found.lost = listed.counted(std::move(found.lost));
+            return found;
+          },
+          "What the stops were chosen from.")
+      .def_property_readonly(
+          "stops", [](const PartSupplyPlan& p) { return ListedRegions(p).counted(p.stops); },
+          "In the order in which they are visited.")
+      .def_readonly("lower_bound", &PartSupplyPlan::lower_bound, "Proven least number of stops over the regions.")
       .def_readonly("proven_minimal", &PartSupplyPlan::proven_minimal, "No fewer stops can serve the regions.")
-      .def_readonly("route", &PartSupplyPlan::route)
-      .def_readonly("picks", &PartSupplyPlan::picks)
-      .def_readonly("robustness_rate", &PartSupplyPlan::robustness_rate)
-      .def_readonly("obstructions", &PartSupplyPlan::obstructions)
-      .def_property_readonly("timings",
-                             [](const PartSupplyPlan& p) {
-                               std::vector<std::pair<std::string, double>> out;
-                               for (const StageTime& t : p.timings) out.emplace_back(t.stage, t.seconds);
-                               return out;
-                             })
+      .def_readonly("route", &PartSupplyPlan::route,
+                    "Drives from start over the stops to the goal: one more than stops.")
+      .def_readonly("picks", &PartSupplyPlan::picks, "In the order in which they are done.")
+      .def_readonly("robustness_rate", &PartSupplyPlan::robustness_rate,
+                    "Least share over the stops of base poses drawn in the disc from which every part can be grasped.")
+      .def_readonly("obstructions", &PartSupplyPlan::obstructions,
+                    "Why there is no plan, and what would help; empty with a plan.")
+      .def_property_readonly(
+          "timings",
+          [](const PartSupplyPlan& p) {
+            std::vector<std::pair<std::string, double>> out;
+            for (const StageTime& t : p.timings) out.emplace_back(t.stage, t.seconds);
+            return out;
+          },
+          "Seconds of each stage, by name.")
       .def("__repr__", [](const PartSupplyPlan& p) {
         return std::string("PartSupplyPlan(") + to_string(p.outcome) + ", " + std::to_string(p.stops.size()) +
                " stops, " + std::to_string(p.picks.size()) + " picks)";
       });
   m.def(
       "plan_part_supply",
-      [](const PartSupplyProblem& problem, const ReachDatabase& database, const py::object& progress) {
+      [](const PartSupplyProblem& problem, const ReachDatabase& database, const Progress& progress) {
         return LongCall(progress).run(
             [&](const Monitor& monitor) { return plan_part_supply(problem, database, monitor); });
       },

@@ -16,7 +16,7 @@ const std::vector<OptionField<TimingOptions>>& timing_fields() {
   static const std::vector<OptionField<O>> fields{
       option<O>("max_deviation", &O::max_deviation, "corners are blended within this joint distance [rad]"),
       option<O>("sample_period", &O::sample_period, "spacing of the samples [s]"),
-      {"jerk_limits",
+      {"jerk_limits", "numpy.typing.ArrayLike | None",
        [](O& o, const py::handle& v) {
          o.jerk_limits = v.is_none() ? Eigen::VectorXd() : vector_argument(v, "jerk_limits");
        },
@@ -31,7 +31,7 @@ void bind_timing(py::module_& m) {
   m.def(
       "time_parameterize",
       [](const ArrayLike& path, const ArrayLike& velocity_limits, const ArrayLike& acceleration_limits,
-         const Given<Strings>& given_names, const py::object& progress, const py::kwargs& options) {
+         const Given<Strings>& given_names, const Progress& progress, const py::kwargs& options) {
         const TimingOptions read = read_options(timing_fields(), options, "time_parameterize");
         const JointPath waypoints{rows_argument(path, "path")};
         const Eigen::Index n = waypoints.waypoints.empty() ? -1 : waypoints.waypoints[0].size();
@@ -52,7 +52,7 @@ void bind_timing(py::module_& m) {
   m.def(
       "time_parameterize_free",
       [](const Given<CollisionChecker>& given_checker, const ArrayLike& path, const Given<double>& given_step,
-         const py::object& progress, const py::kwargs& options) {
+         const Progress& progress, const py::kwargs& options) {
         CollisionChecker checker = taken(given_checker, "checker").clone();
         const TimingOptions read = read_options(timing_fields(), options, "time_parameterize_free");
         const JointPath waypoints{rows_argument(path, "path", checker.group().size())};

@@ -29,7 +29,7 @@ std::string why(Rejection cause, const std::optional<Contact>& contact, const st
 
 void bind_line(py::module_& m) {
   py::class_<StraightLineResult>(m, "StraightLineResult", "What plan_straight_line found.")
-      .def_readonly("outcome", &StraightLineResult::outcome)
+      .def_readonly("outcome", &StraightLineResult::outcome, "`solved` when the whole line is followed.")
       .def_property_readonly(
           "path", [](const StraightLineResult& r) { return path_array(r.path); }, "(k, n) or None.")
       .def_readonly("fraction", &StraightLineResult::fraction, "How far along the line it came, in [0, 1].")
@@ -37,13 +37,15 @@ void bind_line(py::module_& m) {
       .def_readonly("contact", &StraightLineResult::contact, "What touches there, when something does, or None.")
       .def_readonly("beyond_limits", &StraightLineResult::beyond_limits,
                     "With invalid_start: which joint is outside of its limits, its value and these.")
-      .def("to_dict",
-           [](const StraightLineResult& r) {
-             return py::dict("outcome"_a = to_string(r.outcome), "path"_a = path_list(r.path),
-                             "fraction"_a = r.fraction, "cause"_a = to_string(r.cause),
-                             "contact"_a = r.contact ? py::cast(*r.contact).attr("to_dict")() : py::none(),
-                             "beyond_limits"_a = r.beyond_limits);
-           })
+      .def(
+          "to_dict",
+          [](const StraightLineResult& r) {
+            return py::dict("outcome"_a = to_string(r.outcome), "path"_a = path_list(r.path), "fraction"_a = r.fraction,
+                            "cause"_a = to_string(r.cause),
+                            "contact"_a = r.contact ? py::cast(*r.contact).attr("to_dict")() : py::none(),
+                            "beyond_limits"_a = r.beyond_limits);
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const StraightLineResult& r) {
         return std::string("StraightLineResult(") + to_string(r.outcome) + ", fraction " +
                std::string(py::repr(py::float_(r.fraction))) + why(r.cause, r.contact, r.beyond_limits) + ")";
@@ -51,7 +53,7 @@ void bind_line(py::module_& m) {
   m.def(
       "plan_straight_line",
       [](const Given<CollisionChecker>& given_checker, const ArrayLike& start, const ArrayLike& T_world_to,
-         const py::object& progress, const py::kwargs& options) {
+         const Progress& progress, const py::kwargs& options) {
         CollisionChecker checker = taken(given_checker, "checker").clone();
         const StraightLineOptions read = read_options(line_fields(), options, "plan_straight_line");
         const Eigen::VectorXd from = vector_argument(start, "start", checker.group().size());
@@ -80,7 +82,7 @@ const std::vector<OptionField<CartesianOptions>>& cartesian_fields() {
 
 void bind_cartesian(py::module_& m) {
   py::class_<CartesianResult>(m, "CartesianResult", "What plan_cartesian found.")
-      .def_readonly("outcome", &CartesianResult::outcome)
+      .def_readonly("outcome", &CartesianResult::outcome, "`solved` when every pose is reached in order.")
       .def_property_readonly(
           "path", [](const CartesianResult& r) { return path_array(r.path); }, "(k, n) or None.")
       .def_readonly("corners", &CartesianResult::corners, "Waypoint at which each pose is reached.")
@@ -92,14 +94,16 @@ void bind_cartesian(py::module_& m) {
       .def_readonly("rejections", &CartesianResult::rejections, "Of the first pose's configurations, by cause.")
       .def_readonly("beyond_limits", &CartesianResult::beyond_limits,
                     "With invalid_start: which joint of `near` is outside of its limits, its value and these.")
-      .def("to_dict",
-           [](const CartesianResult& r) {
-             return py::dict("outcome"_a = to_string(r.outcome), "path"_a = path_list(r.path), "corners"_a = r.corners,
-                             "fraction"_a = r.fraction, "cause"_a = to_string(r.cause),
-                             "contact"_a = r.contact ? py::cast(*r.contact).attr("to_dict")() : py::none(),
-                             "branches"_a = r.branches, "tried"_a = r.tried, "rejections"_a = to_dict(r.rejections),
-                             "beyond_limits"_a = r.beyond_limits);
-           })
+      .def(
+          "to_dict",
+          [](const CartesianResult& r) {
+            return py::dict("outcome"_a = to_string(r.outcome), "path"_a = path_list(r.path), "corners"_a = r.corners,
+                            "fraction"_a = r.fraction, "cause"_a = to_string(r.cause),
+                            "contact"_a = r.contact ? py::cast(*r.contact).attr("to_dict")() : py::none(),
+                            "branches"_a = r.branches, "tried"_a = r.tried, "rejections"_a = to_dict(r.rejections),
+                            "beyond_limits"_a = r.beyond_limits);
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const CartesianResult& r) {
         return std::string("CartesianResult(") + to_string(r.outcome) + ", fraction " +
                std::string(py::repr(py::float_(r.fraction))) + ", " + std::to_string(r.tried) + " of " +
@@ -108,8 +112,8 @@ void bind_cartesian(py::module_& m) {
       });
   m.def(
       "plan_cartesian",
-      [](const Given<CollisionChecker>& given_checker, const ArrayLike& tool_poses, const py::object& near,
-         const py::object& progress, const py::kwargs& options) {
+      [](const Given<CollisionChecker>& given_checker, const ArrayLike& tool_poses, const OptionalArray& near,
+         const Progress& progress, const py::kwargs& options) {
         CollisionChecker checker = taken(given_checker, "checker").clone();
         const CartesianOptions read = read_options(cartesian_fields(), options, "plan_cartesian");
         const Poses poses = poses_argument(tool_poses, "tool_poses");

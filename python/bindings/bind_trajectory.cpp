@@ -60,8 +60,8 @@ std::vector<Eigen::VectorXd> samples_argument(const py::handle& value, const cha
 }
 
 JointTrajectory make_trajectory(const std::vector<std::string>& names, const ArrayLike& times,
-                                const ArrayLike& positions, const py::object& velocities,
-                                const py::object& accelerations) {
+                                const ArrayLike& positions, const OptionalArray& velocities,
+                                const OptionalArray& accelerations) {
   JointTrajectory t;
   t.names = names;
   const Eigen::VectorXd clock = vector_argument(times, "times");
@@ -93,20 +93,24 @@ void bind_trajectory(py::module_& m) {
            "From samples: times (k,) from 0 and increasing [s], positions (k, n), and if given velocities and "
            "accelerations\n"
            "(k, n). Without velocities the samples are joined by straight lines.")
-      .def_readonly("names", &JointTrajectory::names)
+      .def_readonly("names", &JointTrajectory::names, "One a column.")
       .def_property_readonly(
           "times",
           [](const JointTrajectory& t) { return py::array_t<double>(py::ssize_t(t.times.size()), t.times.data()); },
           "(k,) [s]")
       .def_property_readonly(
           "positions", [](const JointTrajectory& t) { return rows_to_array(t.positions); }, "(k, n)")
-      .def_property_readonly("velocities", [](const JointTrajectory& t) { return rows_to_array(t.velocities); })
-      .def_property_readonly("accelerations", [](const JointTrajectory& t) { return rows_to_array(t.accelerations); })
+      .def_property_readonly(
+          "velocities", [](const JointTrajectory& t) { return rows_to_array(t.velocities); },
+          "(k, n) [rad/s or m/s]; (0, 0) when not known.")
+      .def_property_readonly(
+          "accelerations", [](const JointTrajectory& t) { return rows_to_array(t.accelerations); },
+          "(k, n) [rad/s^2 or m/s^2]; (0, 0) when not known.")
       .def_property_readonly("duration", &JointTrajectory::duration, "[s]")
       .def("at", &JointTrajectory::at, py::arg("time"), "Configuration (n,) at a time [s], clamped at the ends.")
       .def(
           "to_csv",
-          [](const JointTrajectory& t, const py::object& base_pose) {
+          [](const JointTrajectory& t, const OptionalArray& base_pose) {
             return base_pose.is_none() ? t.to_csv() : csv_with_base(t, base_argument(base_pose));
           },
           py::arg("base_pose") = py::none(),
@@ -115,18 +119,20 @@ void bind_trajectory(py::module_& m) {
           "pose and twist follow the time.")
       .def(
           "to_joint_trajectory",
-          [](const JointTrajectory& t, const py::object& base_pose) {
+          [](const JointTrajectory& t, const OptionalArray& base_pose) {
             return joint_trajectory(t, base_pose.is_none() ? Eigen::Vector3d::Zero() : base_argument(base_pose));
           },
           py::arg("base_pose") = py::none(),
           "A dict shaped like a ROS trajectory_msgs/JointTrajectory, with base_pose and base_twist at every point.")
-      .def("to_dict",
-           [](const JointTrajectory& t) {
-             return py::dict("names"_a = t.names, "times"_a = t.times,
-                             "positions"_a = rows_to_array(t.positions).attr("tolist")(),
-                             "velocities"_a = rows_to_array(t.velocities).attr("tolist")(),
-                             "accelerations"_a = rows_to_array(t.accelerations).attr("tolist")());
-           })
+      .def(
+          "to_dict",
+          [](const JointTrajectory& t) {
+            return py::dict("names"_a = t.names, "times"_a = t.times,
+                            "positions"_a = rows_to_array(t.positions).attr("tolist")(),
+                            "velocities"_a = rows_to_array(t.velocities).attr("tolist")(),
+                            "accelerations"_a = rows_to_array(t.accelerations).attr("tolist")());
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__len__", [](const JointTrajectory& t) { return t.times.size(); })
       .def("__repr__", [](const JointTrajectory& t) {
         return "JointTrajectory(" + std::to_string(t.times.size()) + " samples, " +

@@ -9,10 +9,21 @@
 namespace mmgrasp::python {
 namespace {
 
-using namespace py::literals;
-using O = DriveByOptions;
+constexpr char kEventRows[] = "list[mmgrasp._records.DriveByEventRow]";
+using EventRows = Shown<kEventRows>;
+constexpr char kViolationRows[] = "dict[str, mmgrasp._records.ViolationRow]";
+using ViolationRows = Shown<kViolationRows>;
+constexpr char kPushKeywords[] = "dict[str, typing.Any]";
+using PushKeywords = ShownDict<kPushKeywords>;
+constexpr char kOptionalPush[] = "PushGrasp | typing.Any";
+using OptionalPush = Shown<kOptionalPush>;
+constexpr char kOptionalTrajectory[] = "WholeBodyTrajectory | typing.Any";
+using OptionalTrajectory = Shown<kOptionalTrajectory>;
 
-const std::vector<OptionField<O>>& drive_by_fields() {
+using namespace py::literals;
+
+const std::vector<OptionField<DriveByOptions>>& drive_by_fields() {
+  using O = DriveByOptions;
   using W = WholeBodyOptions;
   static const std::vector<OptionField<O>> fields{
       option<O>("waypoints", &O::waypoints, "waypoints of the whole motion"),
@@ -45,7 +56,7 @@ py::dict violation_dict(const Violation& v) {
                   "waypoint"_a = v.waypoint, "what"_a = v.what, "kept"_a = v.kept());
 }
 
-py::dict violations_dict(const std::vector<Violation>& violations) {
+ViolationRows violations_dict(const std::vector<Violation>& violations) {
   py::dict result;
   for (const Violation& v : violations) result[v.kind.c_str()] = violation_dict(v);
   return result;
@@ -123,9 +134,9 @@ void bind_drive_by_task(py::module_& m) {
       "the tip's frame, and free_length [m], the straight way before the finger tips reach the "
       "object. T_world_tip is then\n"
       "the planned grasp; tolerance, free, max_tool_speed and dwell are left out.")
-      .def(py::init([](const ArrayLike& T_world_tip, const py::object& tolerance, const std::vector<std::string>& free,
-                       const py::object& max_tool_speed, double dwell, const std::string& object,
-                       const std::optional<py::dict>& push, int touching) {
+      .def(py::init([](const ArrayLike& T_world_tip, const OptionalArray& tolerance,
+                       const std::vector<std::string>& free, const OptionalNumber& max_tool_speed, double dwell,
+                       const std::string& object, const std::optional<PushKeywords>& push, int touching) {
              DriveByTask task;
              task.candidates = candidates_argument(T_world_tip);
              if (!tolerance.is_none()) task.tolerance = vector_argument(tolerance, "tolerance", 6);
@@ -147,16 +158,21 @@ void bind_drive_by_task(py::module_& m) {
            }),
            py::arg("T_world_tip"), py::kw_only(), py::arg("tolerance") = py::none(),
            py::arg("free") = std::vector<std::string>{}, py::arg("max_tool_speed") = py::none(), py::arg("dwell") = 0.0,
-           py::arg("object") = "", py::arg("push") = py::none(), py::arg("touching") = 2)
+           py::arg("object") = "", py::arg("push") = py::none(), py::arg("touching") = 2,
+           "The class says what the arguments mean; raises InvalidInput naming one that breaks its rule.")
       .def_property_readonly(
           "candidates", [](const DriveByTask& t) { return to_array(t.candidates); }, "(m, 4, 4)")
-      .def_readonly("max_tool_speed", &DriveByTask::max_tool_speed)
-      .def_readonly("dwell", &DriveByTask::dwell)
-      .def_readonly("touching", &DriveByTask::touching)
-      .def_readonly("object", &DriveByTask::object)
+      .def_readonly("max_tool_speed", &DriveByTask::max_tool_speed,
+                    "Fastest tool at the task [m/s]; infinite: no limit.")
+      .def_readonly("dwell", &DriveByTask::dwell, "Time for which the tool's pose is kept [s].")
+      .def_readonly("touching", &DriveByTask::touching,
+                    "Intervals before and after the task in which hand and object may touch what they must.")
+      .def_readonly("object", &DriveByTask::object, "Name of the world's object that is held afterwards; empty: none.")
       .def_property_readonly(
           "push",
-          [](const DriveByTask& t) { return t.push ? py::cast(push_grasp(t.push->closing)) : py::object(py::none()); },
+          [](const DriveByTask& t) -> OptionalPush {
+            return t.push ? py::cast(push_grasp(t.push->closing)) : py::object(py::none());
+          },
           "What push_grasp says: closing time, window, tolerance to the object's position; None without one.")
       .def("__repr__", [](const DriveByTask& t) {
         return "DriveByTask(" + std::to_string(t.candidates.size()) +
@@ -170,8 +186,12 @@ void bind_trajectory_class(py::module_& m) {
                                     "Base and arm on one clock. Between waypoints the drive velocities are linear in "
                                     "time; for a diff-drive base they are\n"
                                     "its speed v and turning rate omega, so that it never slips sideways.")
-      .def_property_readonly("names", [](const T& t) { return t.group().names(); })
-      .def_property_readonly("drive_names", [](const T& t) { return drive_names(t.group()); })
+      .def_property_readonly(
+          "names", [](const T& t) { return t.group().names(); }, "One a column of `positions`: x, y, theta first.")
+      .def_property_readonly(
+          "drive_names", [](const T& t) { return drive_names(t.group()); },
+          "Columns of `drive`: v [m/s] and omega [rad/s] of a diff-drive base, x, y, theta of an omni base; then the "
+          "joints.")
       .def_property_readonly(
           "times", [](const T& t) { return py::array_t<double>(py::ssize_t(t.size()), t.times().data()); },
           "(k,) [s], of the waypoints")
@@ -202,17 +222,21 @@ void bind_trajectory_class(py::module_& m) {
       });
 }
 
-void bind_result(py::module_& m) {
+void bind_drive_by_result(py::module_& m) {
   py::class_<DriveByResult>(m, "DriveByResult", "What plan_drive_by found.")
-      .def_readonly("outcome", &DriveByResult::outcome)
+      .def_readonly("outcome", &DriveByResult::outcome,
+                    "`solved`: every constraint is kept on a finer roll-out; `approximate`: the best iterate, with its "
+                    "violations.")
       .def_property_readonly(
           "trajectory",
-          [](const DriveByResult& r) { return std::const_pointer_cast<WholeBodyTrajectory>(r.trajectory); },
+          [](const DriveByResult& r) -> OptionalTrajectory {
+            return py::cast(std::const_pointer_cast<WholeBodyTrajectory>(r.trajectory));
+          },
           "The answer or, when not solved, the best iterate; None when there was not even a guess.")
       .def_property_readonly("duration", &DriveByResult::duration, "[s]")
       .def_property_readonly(
           "events",
-          [](const DriveByResult& r) {
+          [](const DriveByResult& r) -> EventRows {
             py::list events;
             for (const DriveByEvent& e : r.events) events.append(event_dict(e));
             return events;
@@ -225,32 +249,34 @@ void bind_result(py::module_& m) {
           "By kind of constraint: value (0 when kept), tolerance, unit, time [s], waypoint, what, kept; measured on a "
           "roll-out ten times\nfiner than the waypoints.")
       .def_readonly("choices", &DriveByResult::choices, "Choices of candidates planned.")
-      .def_readonly("attempts", &DriveByResult::attempts)
-      .def_readonly("iterations", &DriveByResult::iterations)
-      .def_readonly("seconds", &DriveByResult::seconds)
+      .def_readonly("attempts", &DriveByResult::attempts, "Guesses from which the optimiser began.")
+      .def_readonly("iterations", &DriveByResult::iterations, "Of the optimiser, over all attempts.")
+      .def_readonly("seconds", &DriveByResult::seconds, "Wall-clock time of the call [s].")
       .def_readonly("report", &DriveByResult::report, "What was tried, and what is broken where, by how much.")
       .def("to_csv", &drive_by_csv, py::arg("between") = 0,
            "The trajectory's to_csv with two columns more: task, its index in the row of a task's waypoint, and held, "
            "the "
            "object in the hand.")
-      .def("to_dict",
-           [](const DriveByResult& r) {
-             py::object trajectory = py::none();
-             if (r.trajectory) {
-               trajectory =
-                   py::dict("names"_a = r.trajectory->group().names(),
-                            "drive_names"_a = drive_names(r.trajectory->group()), "times"_a = r.trajectory->times(),
-                            "positions"_a = rows_to_array(r.trajectory->positions()).attr("tolist")(),
-                            "drive"_a = rows_to_array(r.trajectory->drive()).attr("tolist")());
-             }
-             py::list events;
-             for (const DriveByEvent& e : r.events) events.append(event_dict(e));
-             return py::dict("outcome"_a = to_string(r.outcome), "duration"_a = r.duration(),
-                             "trajectory"_a = trajectory, "events"_a = events,
-                             "violations"_a = violations_dict(r.violations), "choices"_a = r.choices,
-                             "attempts"_a = r.attempts, "iterations"_a = r.iterations, "seconds"_a = r.seconds,
-                             "report"_a = r.report);
-           })
+      .def(
+          "to_dict",
+          [](const DriveByResult& r) {
+            py::object trajectory = py::none();
+            if (r.trajectory) {
+              trajectory =
+                  py::dict("names"_a = r.trajectory->group().names(),
+                           "drive_names"_a = drive_names(r.trajectory->group()), "times"_a = r.trajectory->times(),
+                           "positions"_a = rows_to_array(r.trajectory->positions()).attr("tolist")(),
+                           "drive"_a = rows_to_array(r.trajectory->drive()).attr("tolist")());
+            }
+            py::list events;
+            for (const DriveByEvent& e : r.events) events.append(event_dict(e));
+            return py::dict("outcome"_a = to_string(r.outcome), "duration"_a = r.duration(),
+                            "trajectory"_a = trajectory, "events"_a = events,
+                            "violations"_a = violations_dict(r.violations), "choices"_a = r.choices,
+                            "attempts"_a = r.attempts, "iterations"_a = r.iterations, "seconds"_a = r.seconds,
+                            "report"_a = r.report);
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const DriveByResult& r) {
         return std::string("DriveByResult(") + to_string(r.outcome) +
                (r.trajectory ? ", " + std::string(py::repr(py::float_(r.duration()))) + " s" : "") + ", " +
@@ -272,7 +298,7 @@ DriveByGoal goal_argument(const ArrayLike& goal, Eigen::Index size) {
 
 DriveByResult shorten(const JointGroup& group, const World& world, const std::vector<DriveByTask>& tasks,
                       std::vector<double> times, const ArrayLike& positions, std::vector<double> task_times,
-                      const py::object& progress, const py::kwargs& options) {
+                      const Progress& progress, const py::kwargs& options) {
   const DriveByOptions read = read_options(drive_by_fields(), options, "shorten_drive_by");
   const KnownMotion known{std::move(times), rows_argument(positions, "positions", group.size()), std::move(task_times)};
   const JointGroup with_pairs = with_sampled_pairs(group);
@@ -280,9 +306,9 @@ DriveByResult shorten(const JointGroup& group, const World& world, const std::ve
       [&](const Monitor& monitor) { return shorten_drive_by(with_pairs, world, tasks, known, read, monitor); });
 }
 
-DriveByResult plan(const Robot& robot, const JointGroup& group, const World& world, const ArrayLike& start,
-                   const std::vector<DriveByTask>& tasks, const ArrayLike& goal, const py::object& progress,
-                   const py::kwargs& options) {
+DriveByResult drive_by(const Robot& robot, const JointGroup& group, const World& world, const ArrayLike& start,
+                       const std::vector<DriveByTask>& tasks, const ArrayLike& goal, const Progress& progress,
+                       const py::kwargs& options) {
   check_same_robot(robot, group);
   const DriveByOptions read = read_options(drive_by_fields(), options, "plan_drive_by");
   const Eigen::VectorXd from = vector_argument(start, "start", group.size());
@@ -322,9 +348,9 @@ void bind_trajopt(py::module_& m) {
       "solve() "
       "takes it from there, judging included: whether it is solved, and the duration.");
   bind_trajectory_class(m);
-  bind_result(m);
-  m.def("plan_drive_by", &plan, py::arg("robot"), py::arg("group"), py::arg("world"), py::kw_only(), py::arg("start"),
-        py::arg("tasks"), py::arg("goal"), py::arg("progress") = py::none(),
+  bind_drive_by_result(m);
+  m.def("plan_drive_by", &drive_by, py::arg("robot"), py::arg("group"), py::arg("world"), py::kw_only(),
+        py::arg("start"), py::arg("tasks"), py::arg("goal"), py::arg("progress") = py::none(),
         ("The fastest motion of base and arm from `start` (n,), at rest, through the tasks in order to `goal`, at "
          "rest, without\n"
          "stopping for them (P1 chapter 4). goal: a configuration (n,), or (2, n) with lower and upper bounds, "
@@ -335,9 +361,11 @@ void bind_trajopt(py::module_& m) {
   m.def(
       "shorten_drive_by", &shorten, py::arg("group"), py::arg("world"), py::kw_only(), py::arg("tasks"),
       py::arg("times"), py::arg("positions"), py::arg("task_times"), py::arg("progress") = py::none(),
-      "plan_drive_by from a motion that is known instead of guesses: positions (m, n) at times [s], straight between "
-      "them, free of\ncollisions, from rest to rest, at each task at its time; e.g. a drive and a pick one after the "
-      "other. The answer is near that\nmotion. Tasks have one pose and no push. Keywords are those of plan_drive_by.");
+      ("plan_drive_by from a motion that is known instead of guesses: positions (m, n) at times [s], straight between "
+       "them, free of\ncollisions, from rest to rest, at each task at its time; e.g. a drive and a pick one after the "
+       "other. The answer is near that\nmotion. Tasks have one pose and no push." +
+       option_help(drive_by_fields()))
+          .c_str());
 }
 
 }  // namespace mmgrasp::python

@@ -26,26 +26,31 @@ CheckedBody body(const std::string& name, std::vector<LinkShape> shapes, const A
   return {name, std::move(shapes), pose_argument(pose, "pose of " + name)};
 }
 
-void bind_parts(py::module_& m) {
-  py::class_<CheckedBody>(m, "CheckedBody").def(py::init(&body), py::arg("name"), py::arg("shapes"), py::arg("pose"));
-  py::class_<CheckedGrasp>(m, "CheckedGrasp")
+void bind_checked_parts(py::module_& m) {
+  py::class_<CheckedBody>(m, "CheckedBody", "A body of the scene as the plan file describes it.")
+      .def(py::init(&body), py::arg("name"), py::arg("shapes"), py::arg("pose"),
+           "`pose` (4, 4): T_world_body; `shapes` in its frame.");
+  py::class_<CheckedGrasp>(m, "CheckedGrasp", "A grasp of a part as the plan file describes it.")
       .def(py::init([](const ArrayLike& pose, double width) {
              return CheckedGrasp{pose_argument(pose, "grasp pose"), width};
            }),
-           py::arg("pose"), py::arg("width"));
-  py::class_<CheckedPart>(m, "CheckedPart")
+           py::arg("pose"), py::arg("width"),
+           "`pose` (4, 4): T_object_tcp; `width`: opening of the fingers while holding [m].");
+  py::class_<CheckedPart>(m, "CheckedPart", "A part and the grasps that a plan may use.")
       .def(py::init([](CheckedBody b, std::string tray, bool target, std::vector<CheckedGrasp> grasps) {
              return CheckedPart{std::move(b), std::move(tray), target, std::move(grasps)};
            }),
-           py::arg("body"), py::arg("tray"), py::arg("target"), py::arg("grasps"));
-  py::class_<CheckedFinger>(m, "CheckedFinger")
+           py::arg("body"), py::arg("tray"), py::arg("target"), py::arg("grasps"),
+           "`tray`: name of the tray it lies in; a part that is no `target` stays.");
+  py::class_<CheckedFinger>(m, "CheckedFinger", "A finger joint, linear in the opening.")
       .def(py::init([](std::string joint, double closed, double open) {
              return CheckedFinger{std::move(joint), closed, open};
            }),
-           py::arg("joint"), py::arg("closed"), py::arg("open"));
-  py::class_<CheckedMotion>(m, "CheckedMotion")
+           py::arg("joint"), py::arg("closed"), py::arg("open"),
+           "Values of the joint with the fingers `closed` and fully `open` [rad or m].");
+  py::class_<CheckedMotion>(m, "CheckedMotion", "One timed arm motion of a pick.")
       .def(py::init([](std::string kind, double opening, bool holding, std::vector<double> times,
-                       const ArrayLike& positions, const ArrayLike& velocities, const py::object& accelerations) {
+                       const ArrayLike& positions, const ArrayLike& velocities, const OptionalArray& accelerations) {
              return CheckedMotion{std::move(kind),
                                   opening,
                                   holding,
@@ -57,95 +62,113 @@ void bind_parts(py::module_& m) {
                                       : rows_argument(accelerations.cast<ArrayLike>(), "accelerations")};
            }),
            py::arg("kind"), py::arg("opening"), py::arg("holding"), py::arg("times"), py::arg("positions"),
-           py::arg("velocities"), py::arg("accelerations") = py::none());
-  py::class_<CheckedPick>(m, "CheckedPick")
+           py::arg("velocities"), py::arg("accelerations") = py::none(),
+           "`kind`: reach, approach, lift, carry or retreat; `opening` of the fingers [m]; `holding` the part; `times` "
+           "(k,) [s];\n`positions`, `velocities` and, where given, `accelerations` (k, n) of the arm's joints.");
+  py::class_<CheckedPick>(m, "CheckedPick", "One pick of a plan.")
       .def(py::init([](int stop, std::string tray, std::string part, int grasp, std::vector<CheckedMotion> motions) {
              return CheckedPick{stop, std::move(tray), std::move(part), grasp, std::move(motions)};
            }),
-           py::arg("stop"), py::arg("tray"), py::arg("part"), py::arg("grasp"), py::arg("motions"));
-  py::class_<CheckedDriveBy>(m, "CheckedDriveBy")
+           py::arg("stop"), py::arg("tray"), py::arg("part"), py::arg("grasp"), py::arg("motions"),
+           "Index of its stop, names of tray and part, index into the part's grasps, motions in order.");
+  py::class_<CheckedDriveBy>(
+      m, "CheckedDriveBy", "A drive to a stop and the first pick there up to its lift, in one motion of base and arm.")
       .def(py::init([](int pick, double close_at, double closed_at, CheckedMotion motion) {
              return CheckedDriveBy{pick, close_at, closed_at, std::move(motion)};
            }),
-           py::arg("pick"), py::arg("close_at"), py::arg("closed_at"), py::arg("motion"));
-  py::class_<CheckedStop>(m, "CheckedStop")
+           py::arg("pick"), py::arg("close_at"), py::arg("closed_at"), py::arg("motion"),
+           "`pick`: index into the plan's picks; the fingers begin to close at `close_at` [s] and hold the part from "
+           "`closed_at`\n[s] on; rows of `motion` hold x, y, theta, then the arm's joints.");
+  py::class_<CheckedStop>(m, "CheckedStop", "A stop of the base.")
       .def(py::init([](const ArrayLike& pose, double radius, std::vector<std::string> trays) {
              return CheckedStop{vector3_argument(pose, "stop pose"), radius, std::move(trays)};
            }),
-           py::arg("pose"), py::arg("radius"), py::arg("trays"));
-  py::class_<CheckedRegion>(m, "CheckedRegion")
+           py::arg("pose"), py::arg("radius"), py::arg("trays"),
+           "`pose` (3,): x, y, theta [m, m, rad]; `radius` of the disc in which every target part stays graspable [m]; "
+           "names of\nthe trays served.");
+  py::class_<CheckedRegion>(m, "CheckedRegion", "Base poses that a plan says serve a tray.")
       .def(py::init([](std::string tray, const ArrayLike& cells) {
              return CheckedRegion{std::move(tray), flags_argument(cells, "cells")};
            }),
-           py::arg("tray"), py::arg("cells"));
-  py::class_<CheckedLegFigures>(m, "CheckedLegFigures")
+           py::arg("tray"), py::arg("cells"), "`cells`: zeros and ones, (headings, ny, nx) flattened.");
+  py::class_<CheckedLegFigures>(m, "CheckedLegFigures", "What a plan says about a leg of its route.")
       .def(py::init([](double length, double turning, double duration) {
              return CheckedLegFigures{length, turning, duration};
            }),
-           py::arg("length"), py::arg("turning"), py::arg("duration"));
-  py::class_<CheckedIntersection>(m, "CheckedIntersection")
+           py::arg("length"), py::arg("turning"), py::arg("duration"),
+           "Length [m], sum of absolute heading changes [rad], duration [s].");
+  py::class_<CheckedIntersection>(m, "CheckedIntersection",
+                                  "A place that a plan says lies in the regions of several trays.")
       .def(py::init([](std::vector<std::string> trays, double heading, const ArrayLike& centre, double radius) {
              return CheckedIntersection{std::move(trays), heading, vector2_argument(centre, "centre"), radius};
            }),
-           py::arg("trays"), py::arg("heading"), py::arg("centre"), py::arg("radius"));
-  py::class_<CheckedGrid>(m, "CheckedGrid")
+           py::arg("trays"), py::arg("heading"), py::arg("centre"), py::arg("radius"),
+           "Names of the trays, heading [rad], centre (2,) and radius of the disc [m].");
+  py::class_<CheckedGrid>(m, "CheckedGrid", "The grid of a plan's regions.")
       .def(py::init([](const ArrayLike& origin, double resolution, int nx, int ny, std::vector<double> headings) {
              return CheckedGrid{vector2_argument(origin, "grid origin"), resolution, nx, ny, std::move(headings)};
            }),
-           py::arg("origin"), py::arg("resolution"), py::arg("nx"), py::arg("ny"), py::arg("headings"));
+           py::arg("origin"), py::arg("resolution"), py::arg("nx"), py::arg("ny"), py::arg("headings"),
+           "Lower corner of cell (0, 0) (2,) [m], edge of a cell [m], cells along x and y, headings [rad].");
 }
 
 void bind_plan_to_check(py::module_& m) {
   py::class_<PlanToCheck>(m, "PlanToCheck", "A whole plan as read from plan.json.")
-      .def(py::init<RobotSource>(), py::arg("robot"))
+      .def(py::init<RobotSource>(), py::arg("robot"), "Of this robot; everything else is set afterwards.")
       .def_readwrite("robot", &PlanToCheck::robot, "What the robot really is: its URDFs as they were given.")
       .def_readwrite("planned_robot", &PlanToCheck::planned_robot,
                      "As the planners understood it; without URDFs: not compared.")
-      .def_readwrite("arm_joints", &PlanToCheck::arm_joints)
-      .def_readwrite("velocity_limits", &PlanToCheck::velocity_limits)
-      .def_readwrite("acceleration_limits", &PlanToCheck::acceleration_limits)
-      .def_readwrite("tip_link", &PlanToCheck::tip_link)
-      .def_readwrite("other_joints", &PlanToCheck::other_joints)
-      .def_readwrite("max_opening", &PlanToCheck::max_opening)
-      .def_readwrite("clearance", &PlanToCheck::clearance)
-      .def_readwrite("approach", &PlanToCheck::approach)
-      .def_readwrite("fingers", &PlanToCheck::fingers)
-      .def_readwrite("finger_links", &PlanToCheck::finger_links)
-      .def_readwrite("home", &PlanToCheck::home)
-      .def_readwrite("start", &PlanToCheck::start)
-      .def_readwrite("goal", &PlanToCheck::goal)
-      .def_readwrite("positioning_uncertainty", &PlanToCheck::positioning_uncertainty)
+      .def_readwrite("arm_joints", &PlanToCheck::arm_joints, "Names of the columns of the motions.")
+      .def_readwrite("velocity_limits", &PlanToCheck::velocity_limits, "One an arm joint [rad/s or m/s].")
+      .def_readwrite("acceleration_limits", &PlanToCheck::acceleration_limits, "One an arm joint [rad/s^2 or m/s^2].")
+      .def_readwrite("tip_link", &PlanToCheck::tip_link, "Link of the tool centre point.")
+      .def_readwrite("other_joints", &PlanToCheck::other_joints, "Values of joints outside the arm [rad or m].")
+      .def_readwrite("max_opening", &PlanToCheck::max_opening, "Of the gripper [m].")
+      .def_readwrite("clearance", &PlanToCheck::clearance, "Opening beyond the part's width before grasping [m].")
+      .def_readwrite("approach", &PlanToCheck::approach,
+                     "Unit vector (3,) in the tip's frame along which the hand comes.")
+      .def_readwrite("fingers", &PlanToCheck::fingers, "Finger joints.")
+      .def_readwrite("finger_links", &PlanToCheck::finger_links, "Links that may touch the part that is held.")
+      .def_readwrite("home", &PlanToCheck::home, "Arm configuration while driving (n,).")
+      .def_readwrite("start", &PlanToCheck::start, "Base pose at the beginning (3,): x, y, theta [m, m, rad].")
+      .def_readwrite("goal", &PlanToCheck::goal, "Base pose at the end (3,): x, y, theta [m, m, rad].")
+      .def_readwrite("positioning_uncertainty", &PlanToCheck::positioning_uncertainty,
+                     "Radius of the disc in which the base may come to stand [m].")
       .def_property(
           "T_base_bin", [](const PlanToCheck& p) { return to_array(p.T_base_bin); },
-          [](PlanToCheck& p, const ArrayLike& T) { p.T_base_bin = pose_argument(T, "T_base_bin"); })
-      .def_readwrite("bin_size", &PlanToCheck::bin_size)
-      .def_readwrite("drop_gap", &PlanToCheck::drop_gap)
-      .def_readwrite("obstacles", &PlanToCheck::obstacles)
-      .def_readwrite("parts", &PlanToCheck::parts)
-      .def_readwrite("trays", &PlanToCheck::trays)
-      .def_readwrite("grid", &PlanToCheck::grid)
-      .def_readwrite("regions", &PlanToCheck::regions)
-      .def_readwrite("stops", &PlanToCheck::stops)
-      .def_readwrite("route", &PlanToCheck::route)
-      .def_readwrite("picks", &PlanToCheck::picks)
-      .def_readwrite("drive_by", &PlanToCheck::drive_by)
-      .def_readwrite("closing_speed", &PlanToCheck::closing_speed)
-      .def_readwrite("lower_bound", &PlanToCheck::lower_bound)
-      .def_readwrite("route_figures", &PlanToCheck::route_figures)
-      .def_readwrite("intersections", &PlanToCheck::intersections)
-      .def_readwrite("robustness_rate", &PlanToCheck::robustness_rate);
+          [](PlanToCheck& p, const ArrayLike& T) { p.T_base_bin = pose_argument(T, "T_base_bin"); },
+          "Middle of the bin's top plane in the robot's root frame (4, 4), z up.")
+      .def_readwrite("bin_size", &PlanToCheck::bin_size, "Inner x and y (2,) [m].")
+      .def_readwrite("drop_gap", &PlanToCheck::drop_gap,
+                     "Height above the bin's top plane at which parts are released [m].")
+      .def_readwrite("obstacles", &PlanToCheck::obstacles, "Bodies of the scene.")
+      .def_readwrite("parts", &PlanToCheck::parts, "All parts, targets and others.")
+      .def_readwrite("trays", &PlanToCheck::trays, "Names of the trays.")
+      .def_readwrite("grid", &PlanToCheck::grid, "Grid of the regions.")
+      .def_readwrite("regions", &PlanToCheck::regions, "One a tray.")
+      .def_readwrite("stops", &PlanToCheck::stops, "In the order in which they are visited.")
+      .def_readwrite("route", &PlanToCheck::route, "Legs of base poses (3,), one more than stops.")
+      .def_readwrite("picks", &PlanToCheck::picks, "In order.")
+      .def_readwrite("drive_by", &PlanToCheck::drive_by, "What of route and picks is done in passing.")
+      .def_readwrite("closing_speed", &PlanToCheck::closing_speed, "Of the opening [m/s], for drive_by.")
+      .def_readwrite("lower_bound", &PlanToCheck::lower_bound, "Least number of stops, as the plan says.")
+      .def_readwrite("route_figures", &PlanToCheck::route_figures, "One a leg; empty: not given.")
+      .def_readwrite("intersections", &PlanToCheck::intersections, "Places that the plan says lie in several regions.")
+      .def_readwrite("robustness_rate", &PlanToCheck::robustness_rate, "As the plan says; NaN: not given.");
 }
 
 void bind_path_check(py::module_& m) {
   py::class_<PathCheckResult>(m, "PathCheckResult", "What check_path found.")
-      .def_readonly("free", &PathCheckResult::free)
+      .def_readonly("free", &PathCheckResult::free, "Nothing is wrong.")
       .def_readonly("where", &PathCheckResult::where, "Where and what is wrong; empty when free.")
-      .def_readonly("configurations_checked", &PathCheckResult::configurations_checked)
-      .def("to_dict",
-           [](const PathCheckResult& r) {
-             return py::dict("free"_a = r.free, "where"_a = r.where,
-                             "configurations_checked"_a = r.configurations_checked);
-           })
+      .def_readonly("configurations_checked", &PathCheckResult::configurations_checked, "How many were looked at.")
+      .def(
+          "to_dict",
+          [](const PathCheckResult& r) {
+            return py::dict("free"_a = r.free, "where"_a = r.where,
+                            "configurations_checked"_a = r.configurations_checked);
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const PathCheckResult& r) {
         return "PathCheckResult(" + (r.free ? std::string("free") : r.where) + ")";
       });
@@ -171,55 +194,65 @@ void bind_path_check(py::module_& m) {
 
 void bind_verify(py::module_& top) {
   py::module_ m = top.def_submodule("verify", "Checks finished plans; shares no code with the planners.");
-  bind_parts(m);
+  bind_checked_parts(m);
   bind_plan_to_check(m);
   bind_path_check(m);
   py::class_<Fault>(m, "Fault", "One thing that is physically wrong with a plan.")
       .def(py::init([](std::string code, std::string where, std::string message) {
              return Fault{std::move(code), std::move(where), std::move(message)};
            }),
-           py::arg("code"), py::arg("where"), py::arg("message"))
-      .def_readonly("code", &Fault::code)
-      .def_readonly("where", &Fault::where)
-      .def_readonly("message", &Fault::message)
-      .def("to_dict",
-           [](const Fault& f) { return py::dict("code"_a = f.code, "where"_a = f.where, "message"_a = f.message); })
+           py::arg("code"), py::arg("where"), py::arg("message"),
+           "A fault found elsewhere, e.g. while reading the plan.")
+      .def_readonly("code", &Fault::code, "Which rule is broken.")
+      .def_readonly("where", &Fault::where, "E.g. pick, motion and time.")
+      .def_readonly("message", &Fault::message, "What is wrong, with the value and the bound.")
+      .def(
+          "to_dict",
+          [](const Fault& f) { return py::dict("code"_a = f.code, "where"_a = f.where, "message"_a = f.message); },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const Fault& f) { return "Fault(" + f.code + " at " + f.where + ": " + f.message + ")"; });
   py::class_<StopRate>(m, "StopRate", "How often every target part stayed graspable around a stop.")
-      .def_readonly("stop", &StopRate::stop)
-      .def_readonly("samples", &StopRate::samples)
-      .def_readonly("good", &StopRate::good)
-      .def_readonly("worst_part", &StopRate::worst_part)
-      .def("to_dict",
-           [](const StopRate& r) {
-             return py::dict("stop"_a = r.stop, "samples"_a = r.samples, "good"_a = r.good,
-                             "worst_part"_a = r.worst_part);
-           })
+      .def_readonly("stop", &StopRate::stop, "Index of the stop.")
+      .def_readonly("samples", &StopRate::samples,
+                    "Draws looked at; fewer than asked when the verdict was clear before.")
+      .def_readonly("good", &StopRate::good, "Draws from which every target part could be grasped.")
+      .def_readonly("worst_part", &StopRate::worst_part, "The part that was lost most often; empty: none.")
+      .def(
+          "to_dict",
+          [](const StopRate& r) {
+            return py::dict("stop"_a = r.stop, "samples"_a = r.samples, "good"_a = r.good,
+                            "worst_part"_a = r.worst_part);
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const StopRate& r) {
         return "StopRate(stop " + std::to_string(r.stop) + ": " + std::to_string(r.good) + " of " +
                std::to_string(r.samples) + ")";
       });
   py::class_<PlanCheckResult>(m, "PlanCheckResult", "What the check of a plan found.")
       .def_readonly("faults", &PlanCheckResult::faults, "Empty: the plan holds.")
-      .def_readonly("rates", &PlanCheckResult::rates)
-      .def_readonly("minimal_stops", &PlanCheckResult::minimal_stops)
-      .def_readonly("configurations_checked", &PlanCheckResult::configurations_checked)
-      .def_property_readonly("ok", [](const PlanCheckResult& r) { return r.faults.empty(); })
-      .def("to_dict",
-           [](const PlanCheckResult& r) {
-             py::list faults, rates;
-             for (const Fault& f : r.faults) faults.append(py::cast(f).attr("to_dict")());
-             for (const StopRate& s : r.rates) rates.append(py::cast(s).attr("to_dict")());
-             return py::dict("faults"_a = faults, "rates"_a = rates, "minimal_stops"_a = r.minimal_stops,
-                             "configurations_checked"_a = r.configurations_checked);
-           })
+      .def_readonly("rates", &PlanCheckResult::rates, "One a stop.")
+      .def_readonly("minimal_stops", &PlanCheckResult::minimal_stops,
+                    "Least number of stops, found again from the regions.")
+      .def_readonly("configurations_checked", &PlanCheckResult::configurations_checked, "How many were looked at.")
+      .def_property_readonly(
+          "ok", [](const PlanCheckResult& r) { return r.faults.empty(); }, "There are no faults.")
+      .def(
+          "to_dict",
+          [](const PlanCheckResult& r) {
+            py::list faults, rates;
+            for (const Fault& f : r.faults) faults.append(py::cast(f).attr("to_dict")());
+            for (const StopRate& s : r.rates) rates.append(py::cast(s).attr("to_dict")());
+            return py::dict("faults"_a = faults, "rates"_a = rates, "minimal_stops"_a = r.minimal_stops,
+                            "configurations_checked"_a = r.configurations_checked);
+          },
+          "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const PlanCheckResult& r) {
         return "PlanCheckResult(" + std::to_string(r.faults.size()) + " faults, " +
                std::to_string(r.configurations_checked) + " configurations)";
       });
   m.def(
       "check_plan",
-      [](const PlanToCheck& plan, const py::object& progress, const py::kwargs& options) {
+      [](const PlanToCheck& plan, const Progress& progress, const py::kwargs& options) {
         const PlanCheckOptions read = read_options(check_fields(), options, "check_plan");
         return LongCall(progress).run([&](const Monitor& monitor) { return check_plan(plan, read, monitor); });
       },

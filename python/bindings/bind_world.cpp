@@ -10,6 +10,10 @@
 namespace mmgrasp::python {
 namespace {
 
+constexpr char kBodyShape[] =
+    "Box | Sphere | Cylinder | Capsule | Plane | Mesh | Voxels | collections.abc.Sequence[LinkShape]";
+using BodyShape = Shown<kBodyShape>;
+
 /// Occupied leaves of an OctoMap file: one Voxels shape for each leaf size, so that pruned leaves keep their size.
 std::vector<LinkShape> octree_shapes(const std::string& path) {
   std::vector<LinkShape> shapes;
@@ -69,11 +73,12 @@ std::vector<std::string> attached_keys(const World& world) {
 
 void bind_world(py::module_& m) {
   declared<World>(m, "World")
-      .def(py::init<>())
-      .def("copy", [](const World& w) { return World(w); })
+      .def(py::init<>(), "An empty world.")
+      .def(
+          "copy", [](const World& w) { return World(w); }, "A world of its own with the same bodies.")
       .def(
           "add",
-          [](World& w, const std::string& name, const py::object& shapes, const py::object& pose) {
+          [](World& w, const std::string& name, const BodyShape& shapes, const OptionalArray& pose) {
             if (py::isinstance<py::list>(shapes)) {
               w.add(name, object_of(py::cast<std::vector<LinkShape>>(shapes), pose));
             } else {
@@ -84,26 +89,26 @@ void bind_world(py::module_& m) {
           "A shape, or a list of LinkShape as one body.")
       .def(
           "add_box",
-          [](World& w, const std::string& name, const ArrayLike& size, const py::object& pose) {
+          [](World& w, const std::string& name, const ArrayLike& size, const OptionalArray& pose) {
             w.add(name, Box{vector3_argument(size, "size")}, pose_argument(pose, "pose"));
           },
           py::arg("name"), py::arg("size"), py::arg("pose") = py::none(), "Full lengths [m], centred.")
       .def(
           "add_cylinder",
-          [](World& w, const std::string& name, double radius, double length, const py::object& pose) {
+          [](World& w, const std::string& name, double radius, double length, const OptionalArray& pose) {
             w.add(name, Cylinder{radius, length}, pose_argument(pose, "pose"));
           },
           py::arg("name"), py::arg("radius"), py::arg("length"), py::arg("pose") = py::none(), "Along z, centred [m].")
       .def(
           "add_sphere",
-          [](World& w, const std::string& name, double radius, const py::object& pose) {
+          [](World& w, const std::string& name, double radius, const OptionalArray& pose) {
             w.add(name, Sphere{radius}, pose_argument(pose, "pose"));
           },
-          py::arg("name"), py::arg("radius"), py::arg("pose") = py::none())
+          py::arg("name"), py::arg("radius"), py::arg("pose") = py::none(), "Centred; `radius` [m].")
       .def(
           "add_mesh",
-          [](World& w, const std::string& name, const py::object& path, const py::object& pose,
-             const py::object& scale) {
+          [](World& w, const std::string& name, const PathLike& path, const OptionalArray& pose,
+             const ArrayLike& scale) {
             const py::object shape = py::type::of<LinkShape>().attr("mesh")(path, scale);
             w.add(name, object_of({py::cast<LinkShape>(shape)}, pose));
           },
@@ -111,14 +116,14 @@ void bind_world(py::module_& m) {
           "STL, OBJ, DAE or PLY; closed meshes are solids, open ones surfaces.")
       .def(
           "add_octree",
-          [](World& w, const std::string& name, const py::object& path, const py::object& pose) {
+          [](World& w, const std::string& name, const PathLike& path, const OptionalArray& pose) {
             w.add(name, object_of(octree_shapes(path_argument(path, "path")), pose));
           },
           py::arg("name"), py::arg("path"), py::arg("pose") = py::none(),
           "Occupied leaves of an OctoMap file (.bt or .ot) as solid voxels.")
       .def(
           "add_points",
-          [](World& w, const std::string& name, const ArrayLike& points, double resolution, const py::object& pose) {
+          [](World& w, const std::string& name, const ArrayLike& points, double resolution, const OptionalArray& pose) {
             w.add(name, voxels_of_points(matrix_argument(points, "points", 3), resolution),
                   pose_argument(pose, "pose"));
           },
@@ -127,11 +132,11 @@ void bind_world(py::module_& m) {
       .def(
           "move",
           [](World& w, const std::string& name, const ArrayLike& pose) { w.move(name, pose_argument(pose, "pose")); },
-          py::arg("name"), py::arg("pose"))
+          py::arg("name"), py::arg("pose"), "Puts an object of the scene at T_world_object (4, 4).")
       .def("remove", &World::remove, py::arg("name"), "Takes an object, held or not, out of the world.")
       .def(
           "attach",
-          [](World& w, const std::string& name, const std::string& link, const py::object& pose,
+          [](World& w, const std::string& name, const std::string& link, const OptionalArray& pose,
              const std::set<std::string>& touch_links) {
             w.attach(name, link, pose_argument(pose, "pose"), touch_links);
           },
@@ -141,7 +146,7 @@ void bind_world(py::module_& m) {
           "fingers.")
       .def(
           "detach",
-          [](World& w, const std::string& name, const py::object& pose) {
+          [](World& w, const std::string& name, const OptionalArray& pose) {
             const auto held = w.attached().find(name);
             if (held == w.attached().end()) throw InvalidInput("name = '" + name + "': is not attached");
             if (pose.is_none()) {
@@ -162,7 +167,7 @@ void bind_world(py::module_& m) {
             if (object == w.objects().end()) throw InvalidInput("name = '" + name + "': no such scene object");
             return to_array(object->second.T_world_object);
           },
-          py::arg("name"))
+          py::arg("name"), "T_world_object (4, 4) of an object of the scene. Raises InvalidInput on any other name.")
       .def(
           "shapes_of",
           [](const World& w, const std::string& name) {
@@ -172,7 +177,7 @@ void bind_world(py::module_& m) {
             if (held == w.attached().end()) throw InvalidInput("name = '" + name + "': no such object");
             return held->second.shapes;
           },
-          py::arg("name"))
+          py::arg("name"), "Shapes of an object, attached or not, in its own frame.")
       .def("__repr__", [](const World& w) {
         return "World(" + std::to_string(w.objects().size()) + " objects, " + std::to_string(w.attached().size()) +
                " held)";

@@ -9,6 +9,7 @@
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "options.hpp"
+#include "shown.hpp"
 
 namespace mmgrasp::python {
 

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "mmgrasp/core/error.hpp"
@@ -17,6 +18,7 @@ namespace py = pybind11;
 template <typename Options>
 struct OptionField {
   std::string name;
+  std::string type;  ///< As a Python annotation.
   std::function<void(Options&, const py::handle&)> set;
   std::function<py::object(const Options&)> get;
   std::string help;
@@ -33,16 +35,31 @@ void convert(const py::handle& value, const std::string& name, unsigned& out);
 void convert(const py::handle& value, const std::string& name, bool& out);
 void convert(const py::handle& value, const std::string& name, std::string& out);
 
+/// How annotations spell a type that convert() takes.
+template <typename Value>
+constexpr const char* annotation() {
+  if constexpr (std::is_same_v<Value, bool>)
+    return "bool";
+  else if constexpr (std::is_integral_v<Value>)
+    return "int";
+  else if constexpr (std::is_floating_point_v<Value>)
+    return "float";
+  else {
+    static_assert(std::is_same_v<Value, std::string>);
+    return "str";
+  }
+}
+
 template <typename Options, typename Outer, typename Value>
 OptionField<Options> option(const char* name, Value Outer::*member, const char* help) {
-  return {name, [=](Options& o, const py::handle& v) { convert(v, name, o.*member); },
+  return {name, annotation<Value>(), [=](Options& o, const py::handle& v) { convert(v, name, o.*member); },
           [=](const Options& o) { return py::cast(o.*member); }, help};
 }
 
 /// A field of a struct inside the options.
 template <typename Options, typename Inner, typename Value>
 OptionField<Options> option(const char* name, Inner Options::*inner, Value Inner::*member, const char* help) {
-  return {name, [=](Options& o, const py::handle& v) { convert(v, name, o.*inner.*member); },
+  return {name, annotation<Value>(), [=](Options& o, const py::handle& v) { convert(v, name, o.*inner.*member); },
           [=](const Options& o) { return py::cast(o.*inner.*member); }, help};
 }
 
@@ -84,13 +101,14 @@ py::dict option_table(const std::vector<OptionField<Options>>& fields) {
   return table;
 }
 
-/// The docstring's list of keywords with the defaults of the C++ struct.
+/// The docstring's list of keywords with the defaults of the C++ struct; the stubs' signatures are made from it.
 template <typename Options>
 std::string option_help(const std::vector<OptionField<Options>>& fields) {
   std::string out = "\n\nKeyword options:\n";
   const Options defaults;
   for (const auto& field : fields) {
-    out += "    " + field.name + " = " + std::string(py::repr(field.get(defaults))) + ": " + field.help + "\n";
+    out += "    " + field.name + ": " + field.type + " = " + std::string(py::repr(field.get(defaults))) + "  # " +
+           field.help + "\n";
   }
   return out;
 }

@@ -14,8 +14,8 @@ Poses poses_argument(const ArrayLike& value, const std::string& name) {
   return poses;
 }
 
-py::object path_array(const std::optional<JointPath>& path) {
-  if (!path) return py::none();
+MaybeFloats path_array(const std::optional<JointPath>& path) {
+  if (!path) return MaybeFloats(py::none());
   return rows_to_array(path->waypoints);
 }
 

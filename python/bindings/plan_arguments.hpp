@@ -12,7 +12,7 @@ namespace mmgrasp::python {
 Poses poses_argument(const ArrayLike& value, const std::string& name);
 
 /// Waypoints (k, n), or None.
-py::object path_array(const std::optional<JointPath>& path);
+MaybeFloats path_array(const std::optional<JointPath>& path);
 /// The same as lists, for to_dict().
 py::object path_list(const std::optional<JointPath>& path);
 

@@ -46,7 +46,7 @@ class Body:
         for shape in self.shapes:
             mesh = shape.surface()
             vertices.append(moved(shape.pose, mesh.vertices))
-            faces.append(np.asarray(mesh.triangles) + count)
+            faces.append(np.asarray(mesh.triangles, np.int64) + count)
             count += len(mesh.vertices)
         return np.concatenate(vertices), np.concatenate(faces)
 

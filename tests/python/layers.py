@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path, PurePosixPath
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -46,7 +46,7 @@ def room_of(path: Path) -> str:
     if path.is_relative_to(SOURCE):
         room = path.parent.relative_to(SOURCE / module).as_posix()
         return "" if room == "." else room
-    stated = LAYERS["headers"].get(path.relative_to(PUBLIC).as_posix())
+    stated: str | None = LAYERS["headers"].get(path.relative_to(PUBLIC).as_posix())
     if stated is not None:
         return stated
     sources = sorted((SOURCE / module).rglob(path.stem + ".cpp"))
@@ -89,7 +89,7 @@ def reduced(edges: set[tuple[str, str]]) -> set[tuple[str, str]]:
 def architecture_page() -> str:
     """docs/architecture.md: what the includes say, as Mermaid diagrams."""
 
-    def diagram(edges: set[tuple[str, str]], nodes: list[str], label) -> list[str]:
+    def diagram(edges: set[tuple[str, str]], nodes: list[str], label: Callable[[str], str]) -> list[str]:
         key = {node: f"n{i}" for i, node in enumerate(nodes)}
         lines = ["```mermaid", "graph TD"]
         lines += [f'  {key[node]}["{label(node)}"]' for node in nodes]
@@ -107,10 +107,14 @@ def architecture_page() -> str:
         *diagram(edges_between_modules(), sorted(MODULES), str),
     ]
     for module in sorted(ROOMS):
+
+        def name_of(room: str, module: str = module) -> str:
+            return room or f"{module}/"
+
         page += [
             f"## Rooms of `{module}`",
             "",
-            *diagram(set(edges_between_rooms(module)), sorted(ROOMS[module]), lambda room, m=module: room or f"{m}/"),
+            *diagram(set(edges_between_rooms(module)), sorted(ROOMS[module]), name_of),
             "| room | files | public headers |",
             "| --- | --- | --- |",
         ]

@@ -20,24 +20,15 @@ from argument_values import ARM, COMPANIONS, GRID, OBJECTS, OTHERS, POSE, ROBOT,
 from mmgrasp import _core
 
 STUBS = Path(mg.__file__).parent / "_core"
-# Optional arrays are annotated Any, since None stands for "left out".
-OPTIONAL = {
-    "pose",
-    "T",
-    "pick_point",
-    "place_point",
-    "T_world_root",
-    "seed",
-    "rpy",
-    "quat_xyzw",
-    "base_pose",
-    "accelerations",
-    "goal",
-    "near",
-    "tool_poses",
-}
-
-NUMBERS = ("SupportsFloat", "SupportsInt")
+# Images and points of scans may hold NaN; a scale may be a number.
+OTHER_RULES = (
+    "DepthImage.depth",
+    "HeightMap.height",
+    "fit_cuboids.points",
+    "LinkShape.mesh.scale",
+    "Mesh.load.scale",
+    "World.add_mesh.scale",
+)
 
 
 class Argument(NamedTuple):
@@ -62,12 +53,12 @@ def arguments_of(node: ast.FunctionDef, function: str, is_method: bool) -> list[
     )
     needed = [a.arg for a, default in pairs if default is None]
     found = []
-    for argument, default in pairs:
+    for argument, _ in pairs:
         annotation = ast.unparse(argument.annotation) if argument.annotation else ""
-        optional = annotation == "typing.Any" and (argument.arg in OPTIONAL or argument.arg.startswith("T_"))
-        if "ArrayLike" in annotation or optional:
+        is_array = annotation in ("numpy.typing.ArrayLike", "numpy.typing.ArrayLike | None")
+        if is_array and f"{function}.{argument.arg}" not in OTHER_RULES:
             rest = tuple(name for name in needed if name != argument.arg)
-            found.append(Argument(function, argument.arg, default is not None, rest))
+            found.append(Argument(function, argument.arg, annotation.endswith("None"), rest))
     return found
 
 

@@ -94,7 +94,7 @@ def test_the_best_distance_is_the_best_of_the_scores(made: mg.base.CapabilityMap
 
 def test_unknown_options_are_named(arm: mg.robot.JointGroup) -> None:
     with pytest.raises(mg.InvalidInput, match="voxel"):
-        mg.base.CapabilityMap.build(arm, voxels=0.1)
+        mg.base.CapabilityMap.build(arm, voxels=0.1)  # type: ignore[call-arg]
 
 
 def test_pictures_show_the_map(made: mg.base.CapabilityMap, robot: mg.Robot) -> None:

@@ -62,7 +62,7 @@ def test_trajectories_made_by_hand() -> None:
 
 def test_wrong_input_is_refused() -> None:
     with pytest.raises(mg.InvalidInput, match=r"did you mean slip_left"):
-        mg.base.track_base(ROBOT, straight(), slip_lef=0.1)
+        mg.base.track_base(ROBOT, straight(), slip_lef=0.1)  # type: ignore[call-arg]
     for bad in ({"slip_left": 1.0}, {"kp": -1}, {"offset": 0}, {"drift": [0, 0]}, {"start_error": [0, np.nan, 0]}):
         with pytest.raises(mg.InvalidInput, match=next(iter(bad))):
             mg.base.track_base(ROBOT, straight(), **bad)

@@ -13,7 +13,7 @@ import mmgrasp as mg
 from mmgrasp.reproduce.drive_by import GOAL, START, whole_body
 
 TASK = mg.pose([5.5, -2, 0.5], [1, 1, 0])
-PATIENT = {"time_limit": 600.0}  # how busy the machine is must not decide
+PATIENT: dict[str, Any] = {"time_limit": 600.0}  # how busy the machine is must not decide
 
 
 @pytest.fixture(scope="module")

@@ -45,7 +45,7 @@ def test_objectives_lower_the_cost(arm: mg.robot.JointGroup) -> None:
 
 def test_objectives_and_weights_are_checked(arm: mg.robot.JointGroup) -> None:
     with pytest.raises(mg.InvalidInput, match="objectives"):
-        arm.ik(TARGET, objectives=[1])
+        arm.ik(TARGET, objectives=[1])  # type: ignore[list-item]
     with pytest.raises(mg.InvalidInput, match="joint_weights length"):
         arm.ik(TARGET, joint_weights=[1, 2])
     with pytest.raises(mg.InvalidInput, match="joint_weights"):
@@ -88,4 +88,4 @@ def test_platform_locations(robot: mg.Robot, tmp_path: Path) -> None:
     with pytest.raises(mg.IoError, match="seeds"):
         mg.base.IkSeedDatabase.load(tmp_path / "seeds.txt", whole)
     with pytest.raises(mg.InvalidInput, match="samples"):
-        mg.base.plan_platform_locations(checker, pick, place, sample=3)
+        mg.base.plan_platform_locations(checker, pick, place, sample=3)  # type: ignore[call-arg]

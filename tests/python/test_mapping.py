@@ -53,7 +53,7 @@ def test_bad_points_are_refused_by_name(points: Any) -> None:
 
 def test_unknown_keyword_names_the_near_miss() -> None:
     with pytest.raises(mg.InvalidInput, match="cluster_tolerance"):
-        mg.mapping.fit_cuboids(np.zeros((4, 3)), cluster_tolerence=0.1)
+        mg.mapping.fit_cuboids(np.zeros((4, 3)), cluster_tolerence=0.1)  # type: ignore[call-arg]
 
 
 def test_not_measured_is_no_error() -> None:

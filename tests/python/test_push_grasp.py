@@ -29,7 +29,7 @@ def test_the_leap_limits_the_speed() -> None:
 
 def test_wrong_input_is_refused() -> None:
     with pytest.raises(mg.InvalidInput, match="did you mean tool_speed"):
-        mg.grasping.push_grasp(tol_speed=1)
+        mg.grasping.push_grasp(tol_speed=1)  # type: ignore[call-arg]
     for bad in ({"tool_speed": 0}, {"opening": 0.01}, {"grip_depth": 1.0}, {"max_push": -1}):
         with pytest.raises(mg.InvalidInput, match=next(iter(bad))):
             mg.grasping.push_grasp(**bad)

@@ -6,6 +6,8 @@ import importlib.util
 import json
 import sys
 from enum import Enum
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,8 +18,9 @@ SCRIPT = REPOSITORY / "benchmarks" / "same_answers.py"
 
 
 @pytest.fixture(scope="module")
-def script():
+def script() -> Any:
     spec = importlib.util.spec_from_file_location("same_answers", SCRIPT)
+    assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -45,7 +48,7 @@ PATH = np.array([[0.1, 0.2], [0.3, 0.4]])
         ({"cost": 1.5, "seconds": 2.0}, {"cost": 1.5, "seconds": 3.0, "report": "words"}),
     ],
 )
-def test_other_names_are_the_same_answer(script, a, b):
+def test_other_names_are_the_same_answer(script: Any, a: object, b: object) -> None:
     assert script.digest(a) == script.digest(b)
 
 
@@ -66,25 +69,27 @@ def test_other_names_are_the_same_answer(script, a, b):
         ({"cost": 1.5}, {"cost": 1.5, "grasp": 1}),
     ],
 )
-def test_other_numbers_are_another_answer(script, a, b):
+def test_other_numbers_are_another_answer(script: Any, a: object, b: object) -> None:
     assert script.digest(a) != script.digest(b)
 
 
-def test_what_is_no_number_is_refused(script):
+def test_what_is_no_number_is_refused(script: Any) -> None:
     with pytest.raises(TypeError, match="object"):
         script.digest([object()])
 
 
-def answers(**calls) -> dict:
+def answers(**calls: object) -> dict[str, object]:
     return {"format": "mmgrasp-answers", "version": 1, "calls": calls}
 
 
-def test_the_table_and_the_exit_code(script, tmp_path, monkeypatch, capsys):
+def test_the_table_and_the_exit_code(
+    script: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     one = {"sha256": "1", "parts": {"path": "p", "cost": "c"}, "shown": {"cost": 1.0}}
     other = {"sha256": "2", "parts": {"path": "q", "cost": "c"}, "shown": {"cost": 1.0}}
     failed, skipped = {"error": "InvalidInput: no"}, {"skipped": "no data"}
 
-    def compared(a: dict, b: dict, *options: str) -> tuple[int, str]:
+    def compared(a: dict[str, object], b: dict[str, object], *options: str) -> tuple[int, str]:
         files = [tmp_path / "a.json", tmp_path / "b.json"]
         for file, content in zip(files, (a, b), strict=True):
             file.write_text(json.dumps(content))
@@ -105,7 +110,9 @@ def test_the_table_and_the_exit_code(script, tmp_path, monkeypatch, capsys):
         compared({"format": "another"}, answers(x=one))
 
 
-def test_some_calls_repeat(script, tmp_path, monkeypatch, capsys):
+def test_some_calls_repeat(
+    script: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.syspath_prepend(str(SCRIPT.parent))
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     names, file = ["forward_kinematics", "rrt_connect_omni", "prm_star_mg_bar"], tmp_path / "answers.json"

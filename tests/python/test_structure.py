@@ -178,14 +178,14 @@ def test_bad_grasp_arguments_are_refused() -> None:
     with pytest.raises(mg.InvalidInput, match="count = -1"):
         pipe.sample_grasps(-1)
     with pytest.raises(mg.InvalidInput, match=r"count = 2\.5: must be a whole number"):
-        pipe.sample_grasps(2.5)
+        pipe.sample_grasps(2.5)  # type: ignore[arg-type]
     hand: Any = "hand"
     with pytest.raises(mg.InvalidInput, match="gripper = 'hand': must be a Hand"):
         pipe.sample_grasps(1, gripper=hand)
     with pytest.raises(mg.InvalidInput, match="gripper = 'hand': must be a Hand"):
         pipe.grasp(0, 0.1, 0.0, gripper=hand)
     with pytest.raises(mg.InvalidInput, match=r"lenght_spacing.*length_spacing"):
-        pipe.sample_grasps(1, lenght_spacing=0.02)
+        pipe.sample_grasps(1, lenght_spacing=0.02)  # type: ignore[call-arg]
     with pytest.raises(mg.InvalidInput, match="section = 1"):
         pipe.grasp(1, 0.1, 0.0)
     with pytest.raises(mg.InvalidInput, match=r"length = 0\.4"):

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from mmgrasp import _core
+from stub_text import precise, with_none, with_options
 
 STUBS = Path(__file__).resolve().parents[2] / "python" / "mmgrasp" / "_core"
 
 
 def generate(folder: Path) -> dict[str, str]:
-    """File name to text, as pybind11-stubgen writes it."""
+    """File name to text: what pybind11-stubgen writes, made precise."""
     command = [
         sys.executable,
         "-m",
@@ -26,7 +30,8 @@ def generate(folder: Path) -> dict[str, str]:
     done = subprocess.run(command, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr
     made = folder / "mmgrasp" / "_core"
-    return {path.name: with_exceptions(path.read_text()) for path in sorted(made.glob("*.pyi"))}
+    modules = {"__init__.pyi": _core, "verify.pyi": _core.verify}
+    return {name: precise(with_exceptions((made / name).read_text()), module) for name, module in modules.items()}
 
 
 def with_exceptions(stub: str) -> str:
@@ -50,6 +55,46 @@ def test_stubs_are_up_to_date(tmp_path: Path) -> None:
     assert made.keys() == committed.keys()
     for name, text in made.items():
         assert text == committed[name], f"{name} is out of date: ./dev stubs"
+
+
+def test_no_annotation_says_nothing() -> None:
+    """No call hides its options, and `Any` stands only where any value can."""
+    for path in sorted(STUBS.glob("*.pyi")):
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            if not line.lstrip().startswith("def ") or line.startswith("def _"):
+                continue
+            place = f"{path.name}:{number}: {line.strip()}"
+            assert "**kwargs" not in line, place
+            assert re.search(r": typing\.Any\b|-> typing\.Any\b|Supports(Float|Int)", line) is None, place
+            assert re.search(r"(: |-> |\[|\| )(list|dict|tuple)(?![\w\[.])", line) is None, place
+
+
+def test_options_become_typed_keywords() -> None:
+    lines = [
+        "def go(a: int, *, b: int = 1, **kwargs) -> int:",
+        '    """',
+        "    Keyword options:",
+        "        step: float = inf  # longest [m]",
+        "        solver: str = 'ipopt'  # its name",
+        '    """',
+        '    """',
+        "        other: int = 1  # of another call",
+    ]
+    expected = "def go(a: int, *, b: int = 1, step: float = ..., solver: str = 'ipopt') -> int:"
+    assert with_options(lines[0], lines[1:]) == expected
+    assert (
+        with_options("def go(**kwargs) -> int:", lines[1:6])
+        == "def go(*, step: float = ..., solver: str = 'ipopt') -> int:"
+    )
+    with pytest.raises(ValueError, match="no option is listed"):
+        with_options(lines[0], ['    """', "    Nothing.", '    """'])
+
+
+def test_none_as_a_default_is_allowed_as_an_argument() -> None:
+    line = "def f(self, world: World = None, at: int | None = None, name: str = 'None', q: list[float] = None) -> None:"
+    assert with_none(line) == (
+        "def f(self, world: World | None = None, at: int | None = None, name: str = 'None', q: list[float] | None = None) -> None:"
+    )
 
 
 if __name__ == "__main__":

@@ -2,6 +2,8 @@
 The C++ library behind mmgrasp. Import names from mmgrasp itself.
 """
 from __future__ import annotations
+import mmgrasp._records
+import os
 import collections.abc
 import enum
 import numpy
@@ -26,12 +28,12 @@ class Robot:
     A robot as URDF and SRDF describe it. Immutable; joints and links by name.
     """
     @staticmethod
-    def from_strings(urdf: str, srdf: str = '', package_dirs: typing.Any = None, base: str = 'fixed', *, base_limits: typing.Any = None, load_meshes: bool = True, allow_missing_meshes: bool = False, mesh_tolerance: typing.SupportsFloat | typing.SupportsIndex = 0.0, origin: str = '<string>') -> Robot:
+    def from_strings(urdf: str, srdf: str = '', package_dirs: collections.abc.Mapping[str, str | os.PathLike[str]] | None = None, base: str = 'fixed', *, base_limits: collections.abc.Mapping[str, float | None] | None = None, load_meshes: bool = True, allow_missing_meshes: bool = False, mesh_tolerance: float = 0.0, origin: str = '<string>') -> Robot:
         """
         The same from the texts of URDF and SRDF; `origin` names the source in messages.
         """
     @staticmethod
-    def load(urdf: typing.Any, srdf: typing.Any = None, package_dirs: typing.Any = None, base: str = 'fixed', *, base_limits: typing.Any = None, load_meshes: bool = True, allow_missing_meshes: bool = False, mesh_tolerance: typing.SupportsFloat | typing.SupportsIndex = 0.0, xacro_args: typing.Any = None) -> Robot:
+    def load(urdf: str | os.PathLike[str], srdf: str | os.PathLike[str] | None = None, package_dirs: collections.abc.Mapping[str, str | os.PathLike[str]] | None = None, base: str = 'fixed', *, base_limits: collections.abc.Mapping[str, float | None] | None = None, load_meshes: bool = True, allow_missing_meshes: bool = False, mesh_tolerance: float = 0.0, xacro_args: collections.abc.Mapping[str, typing.Any] | None = None) -> Robot:
         """
         Reads a URDF and, if given, its SRDF. `base` is fixed, diff_drive or omni; `package_dirs` maps the names
         in package://NAME/... to folders. Files called .xacro are expanded first (needs the package xacro; macros
@@ -45,16 +47,16 @@ class Robot:
         """
         Collision shapes of a link (list of LinkShape).
         """
-    def group(self, name: typing.Any = None, tip: typing.Any = None, *, base_link: typing.Any = None, with_base: bool = False) -> JointGroup:
+    def group(self, name: str | None = None, tip: str | None = None, *, base_link: str | None = None, with_base: bool = False) -> JointGroup:
         """
         An SRDF group by name, its tip moved to any link its last joint carries; or the chain base_link to tip.
         `with_base` puts the virtual joints x, y, theta first.
         """
-    def link_poses(self, joints: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}, T_world_root: typing.Any = None) -> dict:
+    def link_poses(self, joints: collections.abc.Mapping[str, float] = {}, T_world_root: numpy.typing.ArrayLike | None = None) -> dict[str, numpy.typing.NDArray[numpy.float64]]:
         """
         Pose (4, 4) of every link, other joints at their default values.
         """
-    def mount(self, other: Robot, parent_link: str, T: typing.Any = None, prefix: str = '') -> Robot:
+    def mount(self, other: Robot, parent_link: str, T: numpy.typing.ArrayLike | None = None, prefix: str = '') -> Robot:
         """
         This robot with `other` put on one of its links; the names of `other` get the prefix, SRDFs are merged.
         """
@@ -67,7 +69,7 @@ class Robot:
         """
         The whole robot as one URDF, without visuals; mesh files by absolute path.
         """
-    def values(self, joints: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def values(self, joints: collections.abc.Mapping[str, float] = {}) -> numpy.typing.NDArray[numpy.float64]:
         """
         Full value vector (for with_reference) with the named joints set.
         """
@@ -78,7 +80,7 @@ class Robot:
         """
     def with_disabled_pairs(self, pairs: collections.abc.Sequence[tuple[str, str, str]]) -> Robot:
         ...
-    def with_link(self, name: str, parent_link: str, T: typing.Any = None, shapes: collections.abc.Sequence[LinkShape] = []) -> Robot:
+    def with_link(self, name: str, parent_link: str, T: numpy.typing.ArrayLike | None = None, shapes: collections.abc.Sequence[LinkShape] = []) -> Robot:
         """
         This robot with one more fixed link.
         """
@@ -88,15 +90,15 @@ class Robot:
         fixed, diff_drive or omni.
         """
     @property
-    def base_limits(self) -> dict:
+    def base_limits(self) -> dict[str, float]:
         ...
     @property
-    def disabled_pairs(self) -> list:
+    def disabled_pairs(self) -> list[tuple[str, str, str]]:
         """
         Link pairs that need no collision check: (a, b, reason).
         """
     @property
-    def end_effectors(self) -> list:
+    def end_effectors(self) -> list[mmgrasp._records.EndEffectorRow]:
         ...
     @property
     def group_states(self) -> dict[str, dict[str, dict[str, float]]]:
@@ -104,7 +106,7 @@ class Robot:
         SRDF states: group, state, joint to value. Joints with several values appear as joint/x, joint/y, ...
         """
     @property
-    def groups(self) -> dict:
+    def groups(self) -> dict[str, mmgrasp._records.GroupRow]:
         """
         SRDF groups: name to joints, base_link, tip_link.
         """
@@ -117,7 +119,7 @@ class Robot:
         Content hash: kinematics, shapes, limits, disabled pairs.
         """
     @property
-    def joint_table(self) -> list:
+    def joint_table(self) -> list[mmgrasp._records.JointRow]:
         """
         Every joint as a dict.
         """
@@ -140,7 +142,7 @@ class Robot:
         Joints that nothing drives (SRDF passive_joint): in no group.
         """
     @property
-    def report(self) -> dict:
+    def report(self) -> mmgrasp._records.RobotReport:
         """
         What loading found.
         """
@@ -169,54 +171,54 @@ class JointGroup:
         Length of the force ellipsoid along a direction (P2 equation 3.3), as for velocity_manipulability;
         infinite where no joint works against such a force.
         """
-    def ik(self, T_world_tip: numpy.typing.ArrayLike, seed: typing.Any = None, world: World = None, **kwargs) -> IkResult:
+    def ik(self, T_world_tip: numpy.typing.ArrayLike, seed: numpy.typing.ArrayLike | None = None, world: World | None = None, *, position_tolerance: float = 1e-05, rotation_tolerance: float = 0.0001, max_iterations: int = 60, restarts: int = 30, time_limit: float = 1.0, rng_seed: int = 1, joint_weights: numpy.typing.ArrayLike | None = [], objectives: collections.abc.Sequence[IkObjective] = [], objective_iterations: int = 50) -> IkResult:
         """
         Inverse kinematics from `seed` (default: middle of the limits), then random restarts. With a world the answer is
         free of collisions with it and of self-collision; without one, collisions are not looked at.
         
         Keyword options:
-            position_tolerance = 1e-05: [m]
-            rotation_tolerance = 0.0001: [rad]
-            max_iterations = 60: per descent
-            restarts = 30: random restarts after the seed
-            time_limit = 1.0: wall-clock cap [s]
-            rng_seed = 1: same seed, same answer
-            joint_weights = []: how dear it is to move each joint, > 0; empty: all the same
-            objectives = []: costs (IkObjective) that the redundancy lowers once the pose is reached
-            objective_iterations = 50: steps along the solutions
+            position_tolerance: float = 1e-05  # [m]
+            rotation_tolerance: float = 0.0001  # [rad]
+            max_iterations: int = 60  # per descent
+            restarts: int = 30  # random restarts after the seed
+            time_limit: float = 1.0  # wall-clock cap [s]
+            rng_seed: int = 1  # same seed, same answer
+            joint_weights: numpy.typing.ArrayLike | None = []  # how dear it is to move each joint, > 0; empty: all the same
+            objectives: collections.abc.Sequence[IkObjective] = []  # costs (IkObjective) that the redundancy lowers once the pose is reached
+            objective_iterations: int = 50  # steps along the solutions
         """
-    def ik_all(self, T_world_tip: numpy.typing.ArrayLike, count: typing.SupportsInt | typing.SupportsIndex = 16, world: World = None, **kwargs) -> numpy.typing.NDArray[numpy.float64]:
+    def ik_all(self, T_world_tip: numpy.typing.ArrayLike, count: int = 16, world: World | None = None, *, position_tolerance: float = 1e-05, rotation_tolerance: float = 0.0001, max_iterations: int = 60, restarts: int = 30, time_limit: float = 1.0, rng_seed: int = 1, joint_weights: numpy.typing.ArrayLike | None = [], objectives: collections.abc.Sequence[IkObjective] = [], objective_iterations: int = 50) -> numpy.typing.NDArray[numpy.float64]:
         """
         Up to `count` solutions (k, n), the first ones farthest apart; ik_branches tells why others fell.
         
         Keyword options:
-            position_tolerance = 1e-05: [m]
-            rotation_tolerance = 0.0001: [rad]
-            max_iterations = 60: per descent
-            restarts = 30: random restarts after the seed
-            time_limit = 1.0: wall-clock cap [s]
-            rng_seed = 1: same seed, same answer
-            joint_weights = []: how dear it is to move each joint, > 0; empty: all the same
-            objectives = []: costs (IkObjective) that the redundancy lowers once the pose is reached
-            objective_iterations = 50: steps along the solutions
+            position_tolerance: float = 1e-05  # [m]
+            rotation_tolerance: float = 0.0001  # [rad]
+            max_iterations: int = 60  # per descent
+            restarts: int = 30  # random restarts after the seed
+            time_limit: float = 1.0  # wall-clock cap [s]
+            rng_seed: int = 1  # same seed, same answer
+            joint_weights: numpy.typing.ArrayLike | None = []  # how dear it is to move each joint, > 0; empty: all the same
+            objectives: collections.abc.Sequence[IkObjective] = []  # costs (IkObjective) that the redundancy lowers once the pose is reached
+            objective_iterations: int = 50  # steps along the solutions
         """
-    def ik_branches(self, T_world_tip: numpy.typing.ArrayLike, world: World = None, redundant_values: typing.SupportsInt | typing.SupportsIndex = 0, **kwargs) -> IkBranches:
+    def ik_branches(self, T_world_tip: numpy.typing.ArrayLike, world: World | None = None, redundant_values: int = 0, *, position_tolerance: float = 1e-05, rotation_tolerance: float = 0.0001, max_iterations: int = 60, restarts: int = 30, time_limit: float = 1.0, rng_seed: int = 1, joint_weights: numpy.typing.ArrayLike | None = [], objectives: collections.abc.Sequence[IkObjective] = [], objective_iterations: int = 50) -> IkBranches:
         """
         Every branch of an arm of six turning joints, and of one of seven for `redundant_values` values of its
         redundant joint (0: 24); random descents search where no closed form fits. With a world, free ones only.
         
         Keyword options:
-            position_tolerance = 1e-05: [m]
-            rotation_tolerance = 0.0001: [rad]
-            max_iterations = 60: per descent
-            restarts = 30: random restarts after the seed
-            time_limit = 1.0: wall-clock cap [s]
-            rng_seed = 1: same seed, same answer
-            joint_weights = []: how dear it is to move each joint, > 0; empty: all the same
-            objectives = []: costs (IkObjective) that the redundancy lowers once the pose is reached
-            objective_iterations = 50: steps along the solutions
+            position_tolerance: float = 1e-05  # [m]
+            rotation_tolerance: float = 0.0001  # [rad]
+            max_iterations: int = 60  # per descent
+            restarts: int = 30  # random restarts after the seed
+            time_limit: float = 1.0  # wall-clock cap [s]
+            rng_seed: int = 1  # same seed, same answer
+            joint_weights: numpy.typing.ArrayLike | None = []  # how dear it is to move each joint, > 0; empty: all the same
+            objectives: collections.abc.Sequence[IkObjective] = []  # costs (IkObjective) that the redundancy lowers once the pose is reached
+            objective_iterations: int = 50  # steps along the solutions
         """
-    def jacobian(self, q: numpy.typing.ArrayLike, link: str | None = None, point: numpy.typing.ArrayLike | None = None) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    def jacobian(self, q: numpy.typing.ArrayLike, link: str | None = None, point: numpy.typing.ArrayLike | None = None) -> numpy.typing.NDArray[numpy.float64]:
         """
         (6, n), world-aligned: linear rows [m/rad, m/m], then angular. At the tip's origin, or at `point` [m] in the frame of
         `link` (default: the tip; point (0, 0, 0)), which moves with it. Columns of joints that do not move it are zero.
@@ -225,7 +227,7 @@ class JointGroup:
         """
         (m, 6, n) at the tip's origin, for configurations (m, n).
         """
-    def link_poses(self, q: numpy.typing.ArrayLike) -> dict:
+    def link_poses(self, q: numpy.typing.ArrayLike) -> dict[str, numpy.typing.NDArray[numpy.float64]]:
         """
         World pose (4, 4) of every link of the robot.
         """
@@ -233,7 +235,7 @@ class JointGroup:
         """
         sqrt(det(J J^T)) (Yoshikawa): 0 at singularities, and for groups of fewer than six joints.
         """
-    def manipulability_batch(self, Q: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def manipulability_batch(self, Q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
         """
         (m,) for configurations (m, n).
         """
@@ -244,23 +246,23 @@ class JointGroup:
         """
     def with_acceleration_limits(self, limits: numpy.typing.ArrayLike) -> JointGroup:
         ...
-    def with_reference(self, joints: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex]) -> JointGroup:
+    def with_reference(self, joints: collections.abc.Mapping[str, float]) -> JointGroup:
         """
         The same group with the named other joints held at these values, the rest at default.
         """
-    def within_limits(self, q: numpy.typing.ArrayLike, slack: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> bool:
+    def within_limits(self, q: numpy.typing.ArrayLike, slack: float = 0.0) -> bool:
         ...
     @property
     def T_world_root(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
-    def acceleration_limits(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def acceleration_limits(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
     def has_base(self) -> bool:
         ...
     @property
-    def lower(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def lower(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         [rad or m], -inf for continuous joints.
         """
@@ -276,12 +278,12 @@ class JointGroup:
     def robot(self) -> Robot:
         ...
     @property
-    def sample_lower(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def sample_lower(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Finite bounds to sample from.
         """
     @property
-    def sample_upper(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def sample_upper(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
     def size(self) -> int:
@@ -290,10 +292,10 @@ class JointGroup:
     def tip(self) -> str:
         ...
     @property
-    def upper(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def upper(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
-    def velocity_limits(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def velocity_limits(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
 class World:
     """
@@ -305,39 +307,39 @@ class World:
         ...
     def __repr__(self) -> str:
         ...
-    def add(self, name: str, shape: typing.Any, pose: typing.Any = None) -> None:
+    def add(self, name: str, shape: Box | Sphere | Cylinder | Capsule | Plane | Mesh | Voxels | collections.abc.Sequence[LinkShape], pose: numpy.typing.ArrayLike | None = None) -> None:
         """
         A shape, or a list of LinkShape as one body.
         """
-    def add_box(self, name: str, size: numpy.typing.ArrayLike, pose: typing.Any = None) -> None:
+    def add_box(self, name: str, size: numpy.typing.ArrayLike, pose: numpy.typing.ArrayLike | None = None) -> None:
         """
         Full lengths [m], centred.
         """
-    def add_cylinder(self, name: str, radius: typing.SupportsFloat | typing.SupportsIndex, length: typing.SupportsFloat | typing.SupportsIndex, pose: typing.Any = None) -> None:
+    def add_cylinder(self, name: str, radius: float, length: float, pose: numpy.typing.ArrayLike | None = None) -> None:
         """
         Along z, centred [m].
         """
-    def add_mesh(self, name: str, path: typing.Any, pose: typing.Any = None, scale: typing.Any = 1.0) -> None:
+    def add_mesh(self, name: str, path: str | os.PathLike[str], pose: numpy.typing.ArrayLike | None = None, scale: numpy.typing.ArrayLike = 1.0) -> None:
         """
         STL, OBJ, DAE or PLY; closed meshes are solids, open ones surfaces.
         """
-    def add_octree(self, name: str, path: typing.Any, pose: typing.Any = None) -> None:
+    def add_octree(self, name: str, path: str | os.PathLike[str], pose: numpy.typing.ArrayLike | None = None) -> None:
         """
         Occupied leaves of an OctoMap file (.bt or .ot) as solid voxels.
         """
-    def add_points(self, name: str, points: numpy.typing.ArrayLike, resolution: typing.SupportsFloat | typing.SupportsIndex, pose: typing.Any = None) -> None:
+    def add_points(self, name: str, points: numpy.typing.ArrayLike, resolution: float, pose: numpy.typing.ArrayLike | None = None) -> None:
         """
         Points (m, 3) as the solid cells of edge `resolution` [m] that hold one.
         """
-    def add_sphere(self, name: str, radius: typing.SupportsFloat | typing.SupportsIndex, pose: typing.Any = None) -> None:
+    def add_sphere(self, name: str, radius: float, pose: numpy.typing.ArrayLike | None = None) -> None:
         ...
-    def attach(self, name: str, link: str, pose: typing.Any = None, touch_links: collections.abc.Set[str] = set()) -> None:
+    def attach(self, name: str, link: str, pose: numpy.typing.ArrayLike | None = None, touch_links: collections.abc.Set[str] = set()) -> None:
         """
         From the scene to a link, at T_link_object. Empty touch_links: the link, all below it, and its gripper's fingers.
         """
     def copy(self) -> World:
         ...
-    def detach(self, name: str, pose: typing.Any = None) -> None:
+    def detach(self, name: str, pose: numpy.typing.ArrayLike | None = None) -> None:
         """
         Puts a held object back into the scene at T_world_object; without a pose it leaves the world.
         """
@@ -365,36 +367,30 @@ class Outcome(enum.Enum):
     """
     How a query ended. "No solution" is a value, not an exception.
     """
-    approximate: typing.ClassVar[Outcome]
-    infeasible: typing.ClassVar[Outcome]
-    invalid_goal: typing.ClassVar[Outcome]
-    invalid_start: typing.ClassVar[Outcome]
-    solved: typing.ClassVar[Outcome]
-    stopped: typing.ClassVar[Outcome]
-    timeout: typing.ClassVar[Outcome]
-    @classmethod
-    def __new__(cls, value):
-        ...
+    approximate = 1
+    infeasible = 2
+    invalid_goal = 6
+    invalid_start = 5
+    solved = 0
+    stopped = 4
+    timeout = 3
 class Rejection(enum.Enum):
     """
     Why one candidate was turned down.
     """
-    grasp_filter: typing.ClassVar[Rejection]
-    limits: typing.ClassVar[Rejection]
-    none: typing.ClassVar[Rejection]
-    reach: typing.ClassVar[Rejection]
-    scene: typing.ClassVar[Rejection]
-    self_collision: typing.ClassVar[Rejection]
-    @classmethod
-    def __new__(cls, value):
-        ...
+    grasp_filter = 5
+    limits = 2
+    none = 0
+    reach = 1
+    scene = 4
+    self_collision = 3
 class Rejections:
     """
     How many candidates fell at which filter.
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def grasp_filter(self) -> int:
@@ -433,13 +429,13 @@ class Box:
     def __repr__(self) -> str:
         ...
     @property
-    def size(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def size(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
 class Sphere:
     """
     A sphere [m].
     """
-    def __init__(self, radius: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __init__(self, radius: float) -> None:
         ...
     def __repr__(self) -> str:
         ...
@@ -450,7 +446,7 @@ class Cylinder:
     """
     A cylinder along z, centred [m].
     """
-    def __init__(self, radius: typing.SupportsFloat | typing.SupportsIndex, length: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __init__(self, radius: float, length: float) -> None:
         ...
     def __repr__(self) -> str:
         ...
@@ -464,7 +460,7 @@ class Capsule:
     """
     A capsule along z, centred; `length` without the caps [m].
     """
-    def __init__(self, radius: typing.SupportsFloat | typing.SupportsIndex, length: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __init__(self, radius: float, length: float) -> None:
         ...
     def __repr__(self) -> str:
         ...
@@ -478,12 +474,12 @@ class Plane:
     """
     A half space: solid where normal . x <= offset.
     """
-    def __init__(self, normal: numpy.typing.ArrayLike, offset: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __init__(self, normal: numpy.typing.ArrayLike, offset: float) -> None:
         ...
     def __repr__(self) -> str:
         ...
     @property
-    def normal(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def normal(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
     def offset(self) -> float:
@@ -492,7 +488,7 @@ class Voxels:
     """
     Axis-aligned solid voxels of one edge length [m].
     """
-    def __init__(self, centres: numpy.typing.ArrayLike, resolution: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __init__(self, centres: numpy.typing.ArrayLike, resolution: float) -> None:
         ...
     def __repr__(self) -> str:
         ...
@@ -507,7 +503,7 @@ class Mesh:
     A triangle mesh [m]; closed ones are solids, open ones surfaces.
     """
     @staticmethod
-    def load(path: typing.Any, scale: typing.Any = 1.0) -> Mesh:
+    def load(path: str | os.PathLike[str], scale: numpy.typing.ArrayLike = 1.0) -> Mesh:
         """
         Reads STL, OBJ, DAE or PLY. `scale` is a number or one per axis. Raises IoError naming file and place.
         """
@@ -542,20 +538,20 @@ class LinkShape:
     A shape and its pose in the body (robot link, part, obstacle) it belongs to.
     """
     @staticmethod
-    def mesh(path: typing.Any, scale: typing.Any = 1.0, pose: typing.Any = None) -> LinkShape:
+    def mesh(path: str | os.PathLike[str], scale: numpy.typing.ArrayLike = 1.0, pose: numpy.typing.ArrayLike | None = None) -> LinkShape:
         """
         A mesh read from a file, which is remembered so that robots and plans can be written out.
         """
-    def __init__(self, shape: Box | Sphere | Cylinder | Capsule | Plane | Mesh | Voxels, pose: typing.Any = None) -> None:
+    def __init__(self, shape: Box | Sphere | Cylinder | Capsule | Plane | Mesh | Voxels, pose: numpy.typing.ArrayLike | None = None) -> None:
         ...
     def __repr__(self) -> str:
         ...
-    def surface(self, segments: typing.SupportsInt | typing.SupportsIndex = 24) -> Mesh:
+    def surface(self, segments: int = 24) -> Mesh:
         """
         Its surface as triangles in the shape's own frame, for pictures.
         """
     @property
-    def bounds(self) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"], typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]]:
+    def bounds(self) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
         Lower and upper corner of its axis-aligned box in the body frame [m].
         """
@@ -566,7 +562,7 @@ class LinkShape:
     def mesh_path(self) -> str:
         ...
     @property
-    def mesh_scale(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def mesh_scale(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
     def pose(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -622,7 +618,7 @@ class DerivativeFreeResult:
 class SetCoverResult:
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def chosen(self) -> list[int]:
@@ -650,7 +646,7 @@ class SetCoverResult:
 class TourResult:
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def length(self) -> float:
@@ -679,7 +675,7 @@ class SharedTours:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def durations(self) -> list[float]:
@@ -708,7 +704,7 @@ class IkResult:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def iterations(self) -> int:
@@ -727,7 +723,7 @@ class IkResult:
         [m] of q, or of the best attempt.
         """
     @property
-    def q(self) -> typing.Any:
+    def q(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         """
         The configuration, inside limits and checked by forward kinematics; None unless solved.
         """
@@ -747,7 +743,7 @@ class IkBranches:
         ...
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def complete(self) -> bool:
@@ -773,7 +769,7 @@ class JointTrajectory:
     """
     A path on a clock; cubic Hermite between samples.
     """
-    def __init__(self, names: collections.abc.Sequence[str], times: numpy.typing.ArrayLike, positions: numpy.typing.ArrayLike, velocities: typing.Any = None, accelerations: typing.Any = None) -> None:
+    def __init__(self, names: collections.abc.Sequence[str], times: numpy.typing.ArrayLike, positions: numpy.typing.ArrayLike, velocities: numpy.typing.ArrayLike | None = None, accelerations: numpy.typing.ArrayLike | None = None) -> None:
         """
         From samples: times (k,) from 0 and increasing [s], positions (k, n), and if given velocities and accelerations
         (k, n). Without velocities the samples are joined by straight lines.
@@ -782,18 +778,18 @@ class JointTrajectory:
         ...
     def __repr__(self) -> str:
         ...
-    def at(self, time: typing.SupportsFloat | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def at(self, time: float) -> numpy.typing.NDArray[numpy.float64]:
         """
         Configuration (n,) at a time [s], clamped at the ends.
         """
-    def to_csv(self, base_pose: typing.Any = None) -> str:
+    def to_csv(self, base_pose: numpy.typing.ArrayLike | None = None) -> str:
         """
         Header time, names, name.velocity, ...; one line a sample. With base_pose (x, y, theta) of the standing base, its
         pose and twist follow the time.
         """
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
-    def to_joint_trajectory(self, base_pose: typing.Any = None) -> dict:
+    def to_joint_trajectory(self, base_pose: numpy.typing.ArrayLike | None = None) -> dict[str, typing.Any]:
         """
         A dict shaped like a ROS trajectory_msgs/JointTrajectory, with base_pose and base_twist at every point.
         """
@@ -827,7 +823,7 @@ class Contact:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def a(self) -> str:
@@ -846,7 +842,7 @@ class DistanceResult:
         ...
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def a(self) -> str:
@@ -855,17 +851,17 @@ class DistanceResult:
     def b(self) -> str:
         ...
     @property
-    def gradient(self) -> typing.Any:
+    def gradient(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         """
         d value / d q, (n,); None unless it was asked for.
         """
     @property
-    def point_a(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def point_a(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (3,) in the world frame.
         """
     @property
-    def point_b(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def point_b(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
     def value(self) -> float:
@@ -885,7 +881,7 @@ class EdgeResult:
         ...
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def checks(self) -> int:
@@ -910,29 +906,29 @@ class CollisionChecker:
     Collision questions about one group in a snapshot of the world: later changes of the world
     are not seen. Links pairs are sampled (and cached) when no SRDF says which never touch.
     """
-    def __init__(self, robot: Robot, world: World, group: JointGroup, **kwargs) -> None:
+    def __init__(self, robot: Robot, world: World, group: JointGroup, *, padding: float = 0.0, check_self: bool = True, check_scene: bool = True, held_only: bool = False) -> None:
         """
         Keyword options:
-            padding = 0.0: robot shapes are grown by this against the scene [m]
-            check_self = True: robot (and what it holds) against itself
-            check_scene = True: robot (and what it holds) against the scene
-            held_only = False: only what it holds, against the robot and the scene
+            padding: float = 0.0  # robot shapes are grown by this against the scene [m]
+            check_self: bool = True  # robot (and what it holds) against itself
+            check_scene: bool = True  # robot (and what it holds) against the scene
+            held_only: bool = False  # only what it holds, against the robot and the scene
         """
     def __repr__(self) -> str:
         ...
-    def are_free(self, Q: numpy.typing.ArrayLike, threads: typing.SupportsInt | typing.SupportsIndex = 0) -> numpy.typing.NDArray[numpy.bool]:
+    def are_free(self, Q: numpy.typing.ArrayLike, threads: int = 0) -> numpy.typing.NDArray[numpy.bool]:
         """
         is_free of each row of Q (m, n), as (m,) booleans; 0 threads: all.
         """
-    def check_edge(self, q0: numpy.typing.ArrayLike, q1: numpy.typing.ArrayLike, **kwargs) -> EdgeResult:
+    def check_edge(self, q0: numpy.typing.ArrayLike, q1: numpy.typing.ArrayLike, *, joint_step: float = 0.02, workspace_step: float = ..., continuous: bool = False, tolerance: float = 0.0001) -> EdgeResult:
         """
         The straight joint-space edge with what refuses it: in steps, or by conservative advancement.
         
         Keyword options:
-            joint_step = 0.02: no joint moves more than this between two checks [rad or m]
-            workspace_step = inf: no point moves more than this between two checks [m]
-            continuous = False: conservative advancement instead of steps
-            tolerance = 0.0001: continuous only: gaps below this count as contact [m]
+            joint_step: float = 0.02  # no joint moves more than this between two checks [rad or m]
+            workspace_step: float = inf  # no point moves more than this between two checks [m]
+            continuous: bool = False  # conservative advancement instead of steps
+            tolerance: float = 0.0001  # continuous only: gaps below this count as contact [m]
         """
     def clone(self) -> CollisionChecker:
         """
@@ -947,11 +943,11 @@ class CollisionChecker:
         Smallest signed distance over all checked pairs, padding not subtracted; with `gradient` also d value / d q.
         Infinite when there is no pair.
         """
-    def distances(self, q: numpy.typing.ArrayLike, within: typing.SupportsFloat | typing.SupportsIndex) -> list[DistanceResult]:
+    def distances(self, q: numpy.typing.ArrayLike, within: float) -> list[DistanceResult]:
         """
         Every pair of bodies nearer than `within` [m], nearest first, each with its gradient.
         """
-    def edge_is_free(self, q0: numpy.typing.ArrayLike, q1: numpy.typing.ArrayLike, step: typing.SupportsFloat | typing.SupportsIndex = 0.02) -> bool:
+    def edge_is_free(self, q0: numpy.typing.ArrayLike, q1: numpy.typing.ArrayLike, step: float = 0.02) -> bool:
         """
         The straight joint-space edge, checked so finely that no joint moves more than `step` [rad or m].
         """
@@ -971,7 +967,7 @@ class CollisionChecker:
     def group(self) -> JointGroup:
         ...
     @property
-    def motion_bounds(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def motion_bounds(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) bounds on how far any point moves when a joint moves by one unit [m/rad or m/m].
         """
@@ -981,7 +977,7 @@ class IkObjective:
     """
     def __repr__(self) -> str:
         ...
-    def evaluate(self, q: numpy.typing.ArrayLike) -> tuple[float, typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]]:
+    def evaluate(self, q: numpy.typing.ArrayLike) -> tuple[float, numpy.typing.NDArray[numpy.float64]]:
         """
         (cost, gradient (n,)).
         """
@@ -993,115 +989,158 @@ class ReachDatabase:
     Sampled arm configurations free of self-collision, in cells of the tool pose (P1 3.2.1).
     """
     @staticmethod
-    def build(arm: JointGroup, *, progress: typing.Any = None, **kwargs) -> ReachDatabase:
+    def build(arm: JointGroup, *, progress: collections.abc.Callable[[str, float], object] | None = None, samples: int = 2000000, position_cell: float = 0.1, rotation_cell: float = 0.55, max_per_cell: int = 16, min_manipulability: float = 0.02, thinning: float = 0.0, seed: int = 1, threads: int = 0) -> ReachDatabase:
         """
         Samples the arm. `progress` is called with (stage, fraction).
         
         Keyword options:
-            samples = 2000000: arm configurations drawn
-            position_cell = 0.1: edge of a position cell [m]
-            rotation_cell = 0.55: approximate diameter of a rotation cell [rad]
-            max_per_cell = 16: configurations kept in a cell
-            min_manipulability = 0.02: least manipulability kept, as a fraction of the largest
-            thinning = 0.0: below this fraction of the largest manipulability kept by chance; 0: all
-            seed = 1: same seed, same database
-            threads = 0: 0: all; does not change the answer
+            samples: int = 2000000  # arm configurations drawn
+            position_cell: float = 0.1  # edge of a position cell [m]
+            rotation_cell: float = 0.55  # approximate diameter of a rotation cell [rad]
+            max_per_cell: int = 16  # configurations kept in a cell
+            min_manipulability: float = 0.02  # least manipulability kept, as a fraction of the largest
+            thinning: float = 0.0  # below this fraction of the largest manipulability kept by chance; 0: all
+            seed: int = 1  # same seed, same database
+            threads: int = 0  # 0: all; does not change the answer
         """
     @staticmethod
-    def build_parts(folder: typing.Any, arm: JointGroup, parts: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], *, progress: typing.Any = None, **kwargs) -> bool:
+    def build_parts(folder: str | os.PathLike[str], arm: JointGroup, parts: collections.abc.Sequence[int], *, progress: collections.abc.Callable[[str, float], object] | None = None, samples: int = 2000000, position_cell: float = 0.1, rotation_cell: float = 0.55, max_per_cell: int = 16, min_manipulability: float = 0.02, thinning: float = 0.0, seed: int = 1, threads: int = 0) -> bool:
         """
         Draws single parts into a folder; in `path`.partial they are what build_to(path, ...) goes on from.
+        Keyword options:
+            samples: int = 2000000  # arm configurations drawn
+            position_cell: float = 0.1  # edge of a position cell [m]
+            rotation_cell: float = 0.55  # approximate diameter of a rotation cell [rad]
+            max_per_cell: int = 16  # configurations kept in a cell
+            min_manipulability: float = 0.02  # least manipulability kept, as a fraction of the largest
+            thinning: float = 0.0  # below this fraction of the largest manipulability kept by chance; 0: all
+            seed: int = 1  # same seed, same database
+            threads: int = 0  # 0: all; does not change the answer
         """
     @staticmethod
-    def build_to(path: typing.Any, arm: JointGroup, *, progress: typing.Any = None, **kwargs) -> ReachDatabase:
+    def build_to(path: str | os.PathLike[str], arm: JointGroup, *, progress: collections.abc.Callable[[str, float], object] | None = None, samples: int = 2000000, position_cell: float = 0.1, rotation_cell: float = 0.55, max_per_cell: int = 16, min_manipulability: float = 0.02, thinning: float = 0.0, seed: int = 1, threads: int = 0) -> ReachDatabase:
         """
         Builds through files into a folder; interrupted and called again, it goes on where it was.
+        Keyword options:
+            samples: int = 2000000  # arm configurations drawn
+            position_cell: float = 0.1  # edge of a position cell [m]
+            rotation_cell: float = 0.55  # approximate diameter of a rotation cell [rad]
+            max_per_cell: int = 16  # configurations kept in a cell
+            min_manipulability: float = 0.02  # least manipulability kept, as a fraction of the largest
+            thinning: float = 0.0  # below this fraction of the largest manipulability kept by chance; 0: all
+            seed: int = 1  # same seed, same database
+            threads: int = 0  # 0: all; does not change the answer
         """
     @staticmethod
-    def load(path: typing.Any, arm: JointGroup = None) -> ReachDatabase:
+    def load(path: str | os.PathLike[str], arm: JointGroup | None = None) -> ReachDatabase:
         """
         Raises IoError on a truncated, foreign or corrupt database, and on one built for another arm than `arm`.
         """
     @staticmethod
-    def load_or_build(arm: JointGroup, cache_dir: typing.Any, *, progress: typing.Any = None, **kwargs) -> ReachDatabase:
+    def load_or_build(arm: JointGroup, cache_dir: str | os.PathLike[str], *, progress: collections.abc.Callable[[str, float], object] | None = None, samples: int = 2000000, position_cell: float = 0.1, rotation_cell: float = 0.55, max_per_cell: int = 16, min_manipulability: float = 0.02, thinning: float = 0.0, seed: int = 1, threads: int = 0) -> ReachDatabase:
         """
         The database of this arm and these options from the cache folder; built and stored when it is not there.
+        Keyword options:
+            samples: int = 2000000  # arm configurations drawn
+            position_cell: float = 0.1  # edge of a position cell [m]
+            rotation_cell: float = 0.55  # approximate diameter of a rotation cell [rad]
+            max_per_cell: int = 16  # configurations kept in a cell
+            min_manipulability: float = 0.02  # least manipulability kept, as a fraction of the largest
+            thinning: float = 0.0  # below this fraction of the largest manipulability kept by chance; 0: all
+            seed: int = 1  # same seed, same database
+            threads: int = 0  # 0: all; does not change the answer
         """
     @staticmethod
-    def part_count(arm: JointGroup, **kwargs) -> int:
+    def part_count(arm: JointGroup, *, samples: int = 2000000, position_cell: float = 0.1, rotation_cell: float = 0.55, max_per_cell: int = 16, min_manipulability: float = 0.02, thinning: float = 0.0, seed: int = 1, threads: int = 0) -> int:
         """
         Into how many parts build_to divides a build with these options.
+        Keyword options:
+            samples: int = 2000000  # arm configurations drawn
+            position_cell: float = 0.1  # edge of a position cell [m]
+            rotation_cell: float = 0.55  # approximate diameter of a rotation cell [rad]
+            max_per_cell: int = 16  # configurations kept in a cell
+            min_manipulability: float = 0.02  # least manipulability kept, as a fraction of the largest
+            thinning: float = 0.0  # below this fraction of the largest manipulability kept by chance; 0: all
+            seed: int = 1  # same seed, same database
+            threads: int = 0  # 0: all; does not change the answer
         """
     def __len__(self) -> int:
         ...
     def __repr__(self) -> str:
         ...
-    def base_poses_for(self, arm: JointGroup, T_world_tip: numpy.typing.ArrayLike, *, count: typing.SupportsInt | typing.SupportsIndex = 32, checker: CollisionChecker = None, **kwargs) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    def base_poses_for(self, arm: JointGroup, T_world_tip: numpy.typing.ArrayLike, *, count: int = 32, checker: CollisionChecker | None = None, step: float = 0.05, headings: int = 24, candidates: int = 64, seeds: int = 8, refinements: int = 4, position_tolerance: float = 1e-05, rotation_tolerance: float = 0.0001, threads: int = 0) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
         Base poses (k, 3) on the floor from which the tool reaches a pose in the world, and the configurations (k, n) that do.
         
         Keyword options:
-            step = 0.05: grid of base positions [m]
-            headings = 24: of the base, evenly over the circle
-            candidates = 64: best base poses of the grid looked at exactly
-            seeds = 8: stored configurations tried for a target
-            refinements = 4: rounds of smaller steps about the best
-            position_tolerance = 1e-05: [m]
-            rotation_tolerance = 0.0001: [rad]
-            threads = 0: 0: all; does not change the answer
+            step: float = 0.05  # grid of base positions [m]
+            headings: int = 24  # of the base, evenly over the circle
+            candidates: int = 64  # best base poses of the grid looked at exactly
+            seeds: int = 8  # stored configurations tried for a target
+            refinements: int = 4  # rounds of smaller steps about the best
+            position_tolerance: float = 1e-05  # [m]
+            rotation_tolerance: float = 0.0001  # [rad]
+            threads: int = 0  # 0: all; does not change the answer
         """
     def difference(self, arm: JointGroup) -> str:
         """
         What of the arm has changed since the build, in words; empty when nothing.
         """
-    def find_base_placement(self, arm: JointGroup, T_world_tips: numpy.typing.ArrayLike, *, checker: CollisionChecker = None, progress: typing.Any = None, **kwargs) -> BasePlacement:
+    def find_base_placement(self, arm: JointGroup, T_world_tips: numpy.typing.ArrayLike, *, checker: CollisionChecker | None = None, progress: collections.abc.Callable[[str, float], object] | None = None, step: float = 0.05, headings: int = 24, candidates: int = 64, seeds: int = 8, refinements: int = 4, position_tolerance: float = 1e-05, rotation_tolerance: float = 0.0001, threads: int = 0) -> BasePlacement:
         """
         One base pose from which as many tool poses (m, 4, 4) in the world as possible are reached.
         
         Keyword options:
-            step = 0.05: grid of base positions [m]
-            headings = 24: of the base, evenly over the circle
-            candidates = 64: best base poses of the grid looked at exactly
-            seeds = 8: stored configurations tried for a target
-            refinements = 4: rounds of smaller steps about the best
-            position_tolerance = 1e-05: [m]
-            rotation_tolerance = 0.0001: [rad]
-            threads = 0: 0: all; does not change the answer
+            step: float = 0.05  # grid of base positions [m]
+            headings: int = 24  # of the base, evenly over the circle
+            candidates: int = 64  # best base poses of the grid looked at exactly
+            seeds: int = 8  # stored configurations tried for a target
+            refinements: int = 4  # rounds of smaller steps about the best
+            position_tolerance: float = 1e-05  # [m]
+            rotation_tolerance: float = 0.0001  # [rad]
+            threads: int = 0  # 0: all; does not change the answer
         """
-    def nearest(self, T_base_tip: numpy.typing.ArrayLike, count: typing.SupportsInt | typing.SupportsIndex = 8) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    def nearest(self, T_base_tip: numpy.typing.ArrayLike, count: int = 8) -> numpy.typing.NDArray[numpy.float64]:
         """
         Up to `count` stored configurations (k, n) near the pose, nearest first.
         """
-    def query(self, T_base_tip: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    def query(self, T_base_tip: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
         """
         Stored configurations (k, n) whose tool pose lies in the pose's cell; k may be 0.
         """
-    def save(self, path: typing.Any) -> None:
+    def save(self, path: str | os.PathLike[str]) -> None:
         ...
-    def solve(self, arm: JointGroup, T_base_tip: numpy.typing.ArrayLike, *, checker: CollisionChecker = None, **kwargs) -> numpy.typing.NDArray[numpy.float64]:
+    def solve(self, arm: JointGroup, T_base_tip: numpy.typing.ArrayLike, *, checker: CollisionChecker | None = None, count: int = 8, candidates: int = 64, distinct: float = 0.1, position_tolerance: float = 1e-05, rotation_tolerance: float = 0.0001, threads: int = 0) -> numpy.typing.NDArray[numpy.float64]:
         """
         Exact configurations (k, n) for a pose relative to the root, from stored ones near it; the most different ones first, with a checker the free ones.
         
         Keyword options:
-            count = 8: solutions at most
-            candidates = 64: stored configurations tried
-            distinct = 0.1: solutions differ by more than this in some joint [rad or m]
-            position_tolerance = 1e-05: [m]
-            rotation_tolerance = 0.0001: [rad]
-            threads = 0: of batches; 0: all
+            count: int = 8  # solutions at most
+            candidates: int = 64  # stored configurations tried
+            distinct: float = 0.1  # solutions differ by more than this in some joint [rad or m]
+            position_tolerance: float = 1e-05  # [m]
+            rotation_tolerance: float = 0.0001  # [rad]
+            threads: int = 0  # of batches; 0: all
         """
-    def solve_batch(self, arm: JointGroup, T_base_tips: numpy.typing.ArrayLike, *, checker: CollisionChecker = None, **kwargs) -> list:
+    def solve_batch(self, arm: JointGroup, T_base_tips: numpy.typing.ArrayLike, *, checker: CollisionChecker | None = None, count: int = 8, candidates: int = 64, distinct: float = 0.1, position_tolerance: float = 1e-05, rotation_tolerance: float = 0.0001, threads: int = 0) -> list[numpy.typing.NDArray[numpy.float64]]:
         """
         solve() for many poses (m, 4, 4) at a time: a list of arrays. The same keywords.
+        Keyword options:
+            count: int = 8  # solutions at most
+            candidates: int = 64  # stored configurations tried
+            distinct: float = 0.1  # solutions differ by more than this in some joint [rad or m]
+            position_tolerance: float = 1e-05  # [m]
+            rotation_tolerance: float = 0.0001  # [rad]
+            threads: int = 0  # of batches; 0: all
         """
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     def verify(self) -> None:
         """
         Compares every file with its checksums; raises IoError where they differ.
         """
     @property
-    def arrays(self) -> dict:
+    def arrays(self) -> dict[str, numpy.typing.NDArray[typing.Any]]:
         """
         Read-only views of the database's arrays, by file name.
         """
@@ -1140,15 +1179,15 @@ class BasePlacement:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
-    def base_pose(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def base_pose(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         x, y, theta
         """
     @property
-    def configurations(self) -> list:
+    def configurations(self) -> list[numpy.typing.NDArray[numpy.float64] | None]:
         """
         One per target; None where it is not reached.
         """
@@ -1163,37 +1202,37 @@ class CapabilityMap:
     (P3 3.9.2, equation 3.13). Everything is in the robot's root frame. Immutable.
     """
     @staticmethod
-    def build(arm: JointGroup, world: World | None = None, *, progress: typing.Any = None, **kwargs) -> CapabilityMap:
+    def build(arm: JointGroup, world: World | None = None, *, progress: collections.abc.Callable[[str, float], object] | None = None, lower: numpy.typing.ArrayLike = (-1.0, -1.0, 0.0), upper: numpy.typing.ArrayLike = (1.0, 1.0, 2.6), voxel: float = 0.1, poses: int = 200, rolls: int = 1, approach: numpy.typing.ArrayLike = (0.0, 0.0, 1.0), samples: int = 0, sweeps: int = 4, restarts: int = 0, padding: float = 0.0, seed: int = 1, threads: int = 0) -> CapabilityMap:
         """
         Tries every tool pose of every voxel. `progress` is called with (stage, fraction).
         
         Keyword options:
-            lower = (-1.0, -1.0, 0.0): corner of the grid in the robot's root frame [m]
-            upper = (1.0, 1.0, 2.6): the opposite corner, a whole number of voxels away [m]
-            voxel = 0.1: edge of a voxel and diameter of its sphere [m]
-            poses = 200: tool poses in a voxel; a multiple of rolls
-            rolls = 1: rolls about each approach direction
-            approach = (0.0, 0.0, 1.0): where the tool points, in the tip's frame
-            samples = 0: values tried of joints a pose leaves free; 0: 64 for one, 128 for two
-            sweeps = 4: times that solutions spread from pose to neighbouring pose
-            restarts = 0: further random descents for poses that border reached ones
-            padding = 0.0: robot links are grown by this against the scene [m]
-            seed = 1: same seed, same map
-            threads = 0: 0: all; does not change the answer
+            lower: numpy.typing.ArrayLike = (-1.0, -1.0, 0.0)  # corner of the grid in the robot's root frame [m]
+            upper: numpy.typing.ArrayLike = (1.0, 1.0, 2.6)  # the opposite corner, a whole number of voxels away [m]
+            voxel: float = 0.1  # edge of a voxel and diameter of its sphere [m]
+            poses: int = 200  # tool poses in a voxel; a multiple of rolls
+            rolls: int = 1  # rolls about each approach direction
+            approach: numpy.typing.ArrayLike = (0.0, 0.0, 1.0)  # where the tool points, in the tip's frame
+            samples: int = 0  # values tried of joints a pose leaves free; 0: 64 for one, 128 for two
+            sweeps: int = 4  # times that solutions spread from pose to neighbouring pose
+            restarts: int = 0  # further random descents for poses that border reached ones
+            padding: float = 0.0  # robot links are grown by this against the scene [m]
+            seed: int = 1  # same seed, same map
+            threads: int = 0  # 0: all; does not change the answer
         """
     @staticmethod
-    def load(path: typing.Any) -> CapabilityMap:
+    def load(path: str | os.PathLike[str]) -> CapabilityMap:
         """
         Raises IoError on a truncated, foreign or corrupt folder.
         """
     def __repr__(self) -> str:
         ...
-    def best_base_distance(self, T_world_tips: numpy.typing.ArrayLike, distances: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], heading: typing.SupportsFloat | typing.SupportsIndex = 0.0, cone: typing.SupportsFloat | typing.SupportsIndex = 4.0) -> tuple[float, float, list[float]]:
+    def best_base_distance(self, T_world_tips: numpy.typing.ArrayLike, distances: collections.abc.Sequence[float], heading: float = 0.0, cone: float = 4.0) -> tuple[float, float, list[float]]:
         """
         Which distance [m] to stand behind the poses' middle, facing along `heading` [rad]:
         (distance, score, scores of all).
         """
-    def configuration(self, x: typing.SupportsInt | typing.SupportsIndex, y: typing.SupportsInt | typing.SupportsIndex, z: typing.SupportsInt | typing.SupportsIndex, pose: typing.SupportsInt | typing.SupportsIndex) -> typing.Any:
+    def configuration(self, x: int, y: int, z: int, pose: int) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         """
         Configuration that reaches a pose of a voxel, or None.
         """
@@ -1201,20 +1240,20 @@ class CapabilityMap:
         """
         Index of the voxel that holds a point of the root frame; 0 outside.
         """
-    def restricted(self, arm: JointGroup, world: World, *, progress: typing.Any = None) -> CapabilityMap:
+    def restricted(self, arm: JointGroup, world: World, *, progress: collections.abc.Callable[[str, float], object] | None = None) -> CapabilityMap:
         """
         The map of the same arm in a world with more in it: only what is reached here is looked at again.
         """
-    def save(self, path: typing.Any) -> None:
+    def save(self, path: str | os.PathLike[str]) -> None:
         """
         Writes a folder of .npy files and meta.json.
         """
-    def score(self, T_world_tips: numpy.typing.ArrayLike, T_world_root: typing.Any = None, cone: typing.SupportsFloat | typing.SupportsIndex = 4.0) -> float:
+    def score(self, T_world_tips: numpy.typing.ArrayLike, T_world_root: numpy.typing.ArrayLike | None = None, cone: float = 4.0) -> float:
         """
         Mean index over tool poses (m, 4, 4) with the root at a pose. With `cone` below pi [rad] only tool poses
         that approach within that angle of each pose count.
         """
-    def slice(self, axis: str, at: typing.SupportsFloat | typing.SupportsIndex) -> numpy.ndarray[typing.Any, numpy.dtype[typing.Any]]:
+    def slice(self, axis: str, at: float) -> numpy.typing.NDArray[numpy.float32]:
         """
         Cut through the voxels at a coordinate [m]: `slice("z", 0.75)` is (nx, ny).
         """
@@ -1224,23 +1263,23 @@ class CapabilityMap:
         Centres of the voxels (nx, ny, nz, 3) [m].
         """
     @property
-    def classes(self) -> numpy.ndarray[typing.Any, numpy.dtype[typing.Any]]:
+    def classes(self) -> numpy.typing.NDArray[numpy.float32]:
         """
         What became of each pose (nx, ny, nz, poses), uint8: 0 reached, 1 out of reach, 2 limits, 3 self-collision,
         4 scene.
         """
     @property
-    def configurations(self) -> numpy.ndarray[typing.Any, numpy.dtype[typing.Any]]:
+    def configurations(self) -> numpy.typing.NDArray[numpy.float32]:
         """
         A configuration for each reached pose (reached, n), float32, in the order of `classes`.
         """
     @property
-    def index(self) -> numpy.ndarray[typing.Any, numpy.dtype[typing.Any]]:
+    def index(self) -> numpy.typing.NDArray[numpy.float32]:
         """
         Reachability index of each voxel (nx, ny, nz), float32 in [0, 1].
         """
     @property
-    def lower(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def lower(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
     def maximum(self) -> float:
@@ -1258,7 +1297,7 @@ class CapabilityMap:
         Poses not reached, by cause.
         """
     @property
-    def shape(self) -> tuple:
+    def shape(self) -> tuple[int, int, int]:
         ...
     @property
     def tool_poses(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1266,7 +1305,7 @@ class CapabilityMap:
         Tool poses around a voxel's centre (poses, 4, 4).
         """
     @property
-    def upper(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def upper(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
     def voxel(self) -> float:
@@ -1277,7 +1316,7 @@ class FingerJoint:
     """
     A finger joint, linear in the opening.
     """
-    def __init__(self, name: str, closed: typing.SupportsFloat | typing.SupportsIndex, open: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __init__(self, name: str, closed: float, open: float) -> None:
         ...
     def __repr__(self) -> str:
         ...
@@ -1294,24 +1333,24 @@ class Gripper:
     """
     A parallel-jaw gripper; the tool centre point lies midway between the pads' centres.
     """
-    def __init__(self, tcp_link: str, *, approach: numpy.typing.ArrayLike, closing: numpy.typing.ArrayLike, max_opening: typing.SupportsFloat | typing.SupportsIndex, finger_depth: typing.SupportsFloat | typing.SupportsIndex, finger_width: typing.SupportsFloat | typing.SupportsIndex, clearance: typing.SupportsFloat | typing.SupportsIndex = 0.01, joints: collections.abc.Sequence[FingerJoint] = [], finger_links: collections.abc.Sequence[str] = []) -> None:
+    def __init__(self, tcp_link: str, *, approach: numpy.typing.ArrayLike, closing: numpy.typing.ArrayLike, max_opening: float, finger_depth: float, finger_width: float, clearance: float = 0.01, joints: collections.abc.Sequence[FingerJoint] = [], finger_links: collections.abc.Sequence[str] = []) -> None:
         ...
     def __repr__(self) -> str:
         ...
-    def joint_values(self, opening: typing.SupportsFloat | typing.SupportsIndex) -> dict[str, float]:
+    def joint_values(self, opening: float) -> dict[str, float]:
         """
         Finger joint values at an opening [m].
         """
-    def pregrasp_opening(self, width: typing.SupportsFloat | typing.SupportsIndex) -> float:
+    def pregrasp_opening(self, width: float) -> float:
         ...
     @property
-    def approach(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def approach(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
     def clearance(self) -> float:
         ...
     @property
-    def closing(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def closing(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
     def finger_depth(self) -> float:
@@ -1335,11 +1374,11 @@ class Grasp:
     """
     One way to hold an object.
     """
-    def __init__(self, T_object_tcp: numpy.typing.ArrayLike, width: typing.SupportsFloat | typing.SupportsIndex, quality: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> None:
+    def __init__(self, T_object_tcp: numpy.typing.ArrayLike, width: float, quality: float = 1.0) -> None:
         ...
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def T_object_tcp(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1356,7 +1395,7 @@ class ToolRegion:
     """
     A box of tool poses around a pose.
     """
-    def __init__(self, pose: numpy.typing.ArrayLike, position: typing.Any = None, rotation: typing.Any = None) -> None:
+    def __init__(self, pose: numpy.typing.ArrayLike, position: numpy.typing.ArrayLike | None = None, rotation: numpy.typing.ArrayLike | None = None) -> None:
         """
         pose (4, 4) times a translation within +-position [m] times a rotation rpy within +-rotation [rad].
         """
@@ -1366,7 +1405,7 @@ class ToolCone:
     """
     Path constraint: an axis of the tool stays near an axis of the world.
     """
-    def __init__(self, tool_axis: numpy.typing.ArrayLike, world_axis: numpy.typing.ArrayLike, half_angle: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __init__(self, tool_axis: numpy.typing.ArrayLike, world_axis: numpy.typing.ArrayLike, half_angle: float) -> None:
         """
         tool_axis in the tip's frame; half_angle: the largest angle between the two [rad].
         """
@@ -1375,7 +1414,7 @@ class ToolCone:
 class MotionStats:
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def collision_queries(self) -> int:
@@ -1392,7 +1431,7 @@ class MotionResult:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def beyond_limits(self) -> str:
@@ -1416,7 +1455,7 @@ class MotionResult:
     def outcome(self) -> Outcome:
         ...
     @property
-    def path(self) -> typing.Any:
+    def path(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         """
         Waypoints (k, n), joined by straight lines; None unless solved.
         """
@@ -1434,7 +1473,7 @@ class StraightLineResult:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def beyond_limits(self) -> str:
@@ -1460,7 +1499,7 @@ class StraightLineResult:
     def outcome(self) -> Outcome:
         ...
     @property
-    def path(self) -> typing.Any:
+    def path(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         """
         (k, n) or None.
         """
@@ -1470,7 +1509,7 @@ class CartesianResult:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def beyond_limits(self) -> str:
@@ -1506,7 +1545,7 @@ class CartesianResult:
     def outcome(self) -> Outcome:
         ...
     @property
-    def path(self) -> typing.Any:
+    def path(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         """
         (k, n) or None.
         """
@@ -1525,18 +1564,18 @@ class Roadmap:
     Configurations of a group drawn from its joint box and joined when near, without any collision check: it serves every grasp, object and scene (P2 4.3.2.1). Immutable.
     """
     @staticmethod
-    def build(group: JointGroup, *, progress: typing.Any = None, **kwargs) -> Roadmap:
+    def build(group: JointGroup, *, progress: collections.abc.Callable[[str, float], object] | None = None, vertices: int = 5000, gamma: float = 4.0, neighbours: int = 0, seed: int = 1) -> Roadmap:
         """
         Draws and joins; a larger roadmap of the same seed holds a smaller one's vertices.
         
         Keyword options:
-            vertices = 5000: configurations drawn
-            gamma = 4.0: vertices nearer than gamma (log n / n)^(1/d) are joined [rad or m]
-            neighbours = 0: > 0: join that many nearest ones instead
-            seed = 1: same seed, same roadmap
+            vertices: int = 5000  # configurations drawn
+            gamma: float = 4.0  # vertices nearer than gamma (log n / n)^(1/d) are joined [rad or m]
+            neighbours: int = 0  # > 0: join that many nearest ones instead
+            seed: int = 1  # same seed, same roadmap
         """
     @staticmethod
-    def load(path: typing.Any, group: JointGroup) -> Roadmap:
+    def load(path: str | os.PathLike[str], group: JointGroup) -> Roadmap:
         """
         Raises IoError on a damaged file or one made for another robot, joints or limits.
         """
@@ -1548,11 +1587,11 @@ class Roadmap:
         """
         Vertices a new configuration would be joined with, ascending.
         """
-    def save(self, path: typing.Any) -> None:
+    def save(self, path: str | os.PathLike[str]) -> None:
         """
         To a temporary name first, then renamed.
         """
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def edges(self) -> numpy.typing.NDArray[numpy.int32]:
@@ -1560,12 +1599,12 @@ class Roadmap:
         Pairs of vertices (m, 2), the smaller number first.
         """
     @property
-    def figures(self) -> dict:
+    def figures(self) -> mmgrasp._records.RoadmapFigures:
         """
         Mean degree, connected parts, the largest one's vertices, connection radius, the joint box's volume, and the gamma that PRM* asks for.
         """
     @property
-    def vertices(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    def vertices(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n, joints)
         """
@@ -1573,13 +1612,13 @@ class CandidateGrasp:
     """
     One way to hold the object while it is carried.
     """
-    def __init__(self, T_object_tool: numpy.typing.ArrayLike, opening: typing.SupportsFloat | typing.SupportsIndex = 0.0, cost: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> None:
+    def __init__(self, T_object_tool: numpy.typing.ArrayLike, opening: float = 0.0, cost: float = 0.0) -> None:
         """
         Pose of the group's tip in the object's frame (4, 4); opening of the fingers while holding [m], used when the problem has a gripper; cost added to the path's length.
         """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def T_object_tool(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1594,7 +1633,7 @@ class ManipulationProblem:
     """
     Moves an object from one pose to another with any of many grasps (P2 4.2).
     """
-    def __init__(self, group: JointGroup, world: World, object: typing.Any, T_world_start: numpy.typing.ArrayLike, T_world_goal: numpy.typing.ArrayLike, grasps: typing.Any, *, gripper: Gripper | None = None, touch_links: collections.abc.Sequence[str] = [], object_name: str = 'object', **kwargs) -> None:
+    def __init__(self, group: JointGroup, world: World, object: LinkShape | collections.abc.Sequence[LinkShape], T_world_start: numpy.typing.ArrayLike, T_world_goal: numpy.typing.ArrayLike, grasps: collections.abc.Sequence[CandidateGrasp] | numpy.typing.ArrayLike, *, gripper: Gripper | None = None, touch_links: collections.abc.Sequence[str] = [], object_name: str = 'object') -> None:
         """
         `object` is a LinkShape or a list of them, in its own frame; `world` is without it. `grasps` are CandidateGrasp, or poses of the tool in the object's frame as (m, 4, 4). With `gripper` the fingers are set to each grasp's opening. Links in `touch_links` may touch the object; none given: those of the end effector. The group may be an arm or an arm on an omni base; a diff_drive base is refused, since it could not drive the paths.
         """
@@ -1627,10 +1666,10 @@ class SearchTree:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
-    def costs(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def costs(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Length of the way from the root, (n,).
         """
@@ -1646,7 +1685,7 @@ class SearchTree:
         Of each vertex: another one, or -1 for the grasp's arm configurations.
         """
     @property
-    def vertices(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    def vertices(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n, joints)
         """
@@ -1656,7 +1695,7 @@ class Improvement:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def cost(self) -> float:
@@ -1680,7 +1719,7 @@ class GraspReport:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def goal(self) -> Rejections:
@@ -1709,7 +1748,7 @@ class ManipulationResult:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def contacts(self) -> list[Contact]:
@@ -1743,7 +1782,7 @@ class ManipulationResult:
     def outcome(self) -> Outcome:
         ...
     @property
-    def path(self) -> typing.Any:
+    def path(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         """
         Waypoints (k, n), joined by straight lines; None unless solved.
         """
@@ -1753,7 +1792,7 @@ class ManipulationResult:
         Sum over all grasps and both ends.
         """
     @property
-    def stats(self) -> dict:
+    def stats(self) -> mmgrasp._records.ManipulationStats:
         ...
     @property
     def trees(self) -> list[SearchTree]:
@@ -1766,7 +1805,7 @@ class BaseTrackingResult:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def actual(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1822,19 +1861,19 @@ class BaseTracker:
     """
     The feedback law that keeps a base on its plan (P1 4.12 to 4.15), one command a period.
     """
-    def __init__(self, robot: Robot, **kwargs) -> None:
+    def __init__(self, robot: Robot, *, kp: float = 2.0, ki: float = 0.1, kd: float = 0.3, offset: float = 0.2, period: float = 0.02, feed_forward: bool = True, feedback: bool = True, settle: float = 0.0) -> None:
         """
         Keyword options:
-            kp = 2.0: proportional gain [1/s]
-            ki = 0.1: integral gain [1/s^2]
-            kd = 0.3: derivative gain
-            offset = 0.2: distance of the tracked point from the wheel axis [m]
-            period = 0.02: a command is held this long [s]
-            feed_forward = True: adds the planned velocity
-            feedback = True: False: open loop, the planned velocities only
-            settle = 0.0: goes on this long after the plan's end [s]
+            kp: float = 2.0  # proportional gain [1/s]
+            ki: float = 0.1  # integral gain [1/s^2]
+            kd: float = 0.3  # derivative gain
+            offset: float = 0.2  # distance of the tracked point from the wheel axis [m]
+            period: float = 0.02  # a command is held this long [s]
+            feed_forward: bool = True  # adds the planned velocity
+            feedback: bool = True  # False: open loop, the planned velocities only
+            settle: float = 0.0  # goes on this long after the plan's end [s]
         """
-    def command(self, desired: numpy.typing.ArrayLike, desired_next: numpy.typing.ArrayLike, measured: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def command(self, desired: numpy.typing.ArrayLike, desired_next: numpy.typing.ArrayLike, measured: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
         """
         Platform velocity (v_x, v_y, omega) to hold until the plan is at desired_next, one period on; poses are (x, y, theta).
         """
@@ -1854,7 +1893,7 @@ class ClosingOutcome:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def both_touch(self) -> float:
@@ -1907,7 +1946,7 @@ class PushGrasp:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def closing_time(self) -> float:
@@ -1951,7 +1990,7 @@ class Part:
     """
     One part in a tray.
     """
-    def __init__(self, name: str, shapes: collections.abc.Sequence[LinkShape], T_world_part: numpy.typing.ArrayLike, grasps: collections.abc.Sequence[Grasp] = [], *, target: bool = True, grasps_too_wide: typing.SupportsInt | typing.SupportsIndex = 0) -> None:
+    def __init__(self, name: str, shapes: collections.abc.Sequence[LinkShape], T_world_part: numpy.typing.ArrayLike, grasps: collections.abc.Sequence[Grasp] = [], *, target: bool = True, grasps_too_wide: int = 0) -> None:
         ...
     def __repr__(self) -> str:
         ...
@@ -1977,7 +2016,7 @@ class Tray:
     """
     A tray and the parts in it; its walls are scene objects.
     """
-    def __init__(self, name: str, T_world_tray: numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, parts: collections.abc.Sequence[Part], headings: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = []) -> None:
+    def __init__(self, name: str, T_world_tray: numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, parts: collections.abc.Sequence[Part], headings: collections.abc.Sequence[float] = []) -> None:
         ...
     def __repr__(self) -> str:
         ...
@@ -1994,7 +2033,7 @@ class Tray:
     def parts(self) -> list[Part]:
         ...
     @property
-    def size(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def size(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Depth, width, height [m].
         """
@@ -2002,7 +2041,7 @@ class CarryPlace:
     """
     Where picked parts go: a bin fixed to the robot.
     """
-    def __init__(self, T_base_bin: numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, drop_gap: typing.SupportsFloat | typing.SupportsIndex = 0.03) -> None:
+    def __init__(self, T_base_bin: numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, drop_gap: float = 0.03) -> None:
         ...
     @property
     def T_base_bin(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -2011,26 +2050,26 @@ class CarryPlace:
     def drop_gap(self) -> float:
         ...
     @property
-    def size(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"]:
+    def size(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
 class PartSupplyProblem:
     """
     Everything the part-supply planner needs.
     """
-    def __init__(self, robot: Robot, arm: JointGroup, gripper: Gripper, scene: World, trays: collections.abc.Sequence[Tray], home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, carry: CarryPlace, **kwargs) -> None:
+    def __init__(self, robot: Robot, arm: JointGroup, gripper: Gripper, scene: World, trays: collections.abc.Sequence[Tray], home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, carry: CarryPlace, *, grid_resolution: float = 0.05, grid_max_distance: float = 0.0, ik_seeds: int = 8, positioning_uncertainty: float = 0.1, approach_distance: float = 0.08, lift_height: float = 0.12, motion_time_limit: float = 5.0, route_resolution: float = 0.1, robustness_samples: int = 2000, seed: int = 1, threads: int = 0) -> None:
         """
         Keyword options:
-            grid_resolution = 0.05: cell edge of the base grid [m]
-            grid_max_distance = 0.0: cells farther from the tray's middle are not tried [m]; 0: the arm's reach
-            ik_seeds = 8: database configurations refined for each grasp and base pose; arms with closed-form IK take all branches
-            positioning_uncertainty = 0.1: radius of the disc in which the base may come to stand [m]
-            approach_distance = 0.08: straight move from pre-grasp to grasp [m]
-            lift_height = 0.12: straight upward move after closing [m]
-            motion_time_limit = 5.0: for each planned motion [s]
-            route_resolution = 0.1: cell edge of the base route's search [m]
-            robustness_samples = 2000: base poses drawn at each stop for the check before returning
-            seed = 1: same seed, same plan
-            threads = 0: 0: all; does not change the answer
+            grid_resolution: float = 0.05  # cell edge of the base grid [m]
+            grid_max_distance: float = 0.0  # cells farther from the tray's middle are not tried [m]; 0: the arm's reach
+            ik_seeds: int = 8  # database configurations refined for each grasp and base pose; arms with closed-form IK take all branches
+            positioning_uncertainty: float = 0.1  # radius of the disc in which the base may come to stand [m]
+            approach_distance: float = 0.08  # straight move from pre-grasp to grasp [m]
+            lift_height: float = 0.12  # straight upward move after closing [m]
+            motion_time_limit: float = 5.0  # for each planned motion [s]
+            route_resolution: float = 0.1  # cell edge of the base route's search [m]
+            robustness_samples: int = 2000  # base poses drawn at each stop for the check before returning
+            seed: int = 1  # same seed, same plan
+            threads: int = 0  # 0: all; does not change the answer
         """
     @property
     def arm(self) -> JointGroup:
@@ -2039,16 +2078,16 @@ class PartSupplyProblem:
     def carry(self) -> CarryPlace:
         ...
     @property
-    def goal(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def goal(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
     def gripper(self) -> Gripper:
         ...
     @property
-    def home(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def home(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
-    def options(self) -> dict:
+    def options(self) -> dict[str, bool | int | float | str]:
         ...
     @property
     def robot(self) -> Robot:
@@ -2057,7 +2096,7 @@ class PartSupplyProblem:
     def scene(self) -> World:
         ...
     @property
-    def start(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def start(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
     def trays(self) -> list[Tray]:
@@ -2066,15 +2105,15 @@ class BaseGrid:
     """
     Square cells over the floor, one layer for each heading.
     """
-    def __getstate__(self) -> tuple:
+    def __getstate__(self) -> tuple[typing.Any, ...]:
         ...
-    def __init__(self, origin: numpy.typing.ArrayLike, resolution: typing.SupportsFloat | typing.SupportsIndex, nx: typing.SupportsInt | typing.SupportsIndex, ny: typing.SupportsInt | typing.SupportsIndex, headings: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [0.0]) -> None:
+    def __init__(self, origin: numpy.typing.ArrayLike, resolution: float, nx: int, ny: int, headings: collections.abc.Sequence[float] = [0.0]) -> None:
         ...
     def __repr__(self) -> str:
         ...
-    def __setstate__(self, arg0: tuple) -> None:
+    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
-    def centre(self, heading: typing.SupportsInt | typing.SupportsIndex, ix: typing.SupportsInt | typing.SupportsIndex, iy: typing.SupportsInt | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def centre(self, heading: int, ix: int, iy: int) -> numpy.typing.NDArray[numpy.float64]:
         """
         x, y, theta of a cell's middle.
         """
@@ -2088,7 +2127,7 @@ class BaseGrid:
     def ny(self) -> int:
         ...
     @property
-    def origin(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"]:
+    def origin(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Lower corner of cell (0, 0) [m].
         """
@@ -2099,13 +2138,13 @@ class PartExplanation:
     """
     What became of the candidates for one part over all base poses tried.
     """
-    def __getstate__(self) -> tuple:
+    def __getstate__(self) -> tuple[typing.Any, ...]:
         ...
     def __repr__(self) -> str:
         ...
-    def __setstate__(self, arg0: tuple) -> None:
+    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def base_poses_feasible(self) -> int:
@@ -2126,7 +2165,7 @@ class BaseRegion:
     """
     Base poses from which every target part of a tray can be grasped.
     """
-    def __getstate__(self) -> tuple:
+    def __getstate__(self) -> tuple[typing.Any, ...]:
         ...
     def __init__(self, tray: str, cells: numpy.typing.ArrayLike, grid: BaseGrid) -> None:
         """
@@ -2134,13 +2173,13 @@ class BaseRegion:
         """
     def __repr__(self) -> str:
         ...
-    def __setstate__(self, arg0: tuple) -> None:
+    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
     def cells(self, grid: BaseGrid) -> numpy.typing.NDArray[numpy.uint8]:
         """
         (headings, ny, nx) array of 0 and 1.
         """
-    def part_cells(self, grid: BaseGrid) -> list:
+    def part_cells(self, grid: BaseGrid) -> list[numpy.typing.NDArray[numpy.uint8]]:
         """
         The same for each target part alone.
         """
@@ -2163,25 +2202,25 @@ class ObjectRegions:
     The region of every target part alone, kept and updated when parts leave.
     """
     @staticmethod
-    def compute(problem: PartSupplyProblem, database: ReachDatabase, grid: BaseGrid, *, progress: typing.Any = None) -> ObjectRegions:
+    def compute(problem: PartSupplyProblem, database: ReachDatabase, grid: BaseGrid, *, progress: collections.abc.Callable[[str, float], object] | None = None) -> ObjectRegions:
         """
         The same as compute_base_regions, kept part by part.
         """
     def __repr__(self) -> str:
         ...
-    def base_region(self, tray: typing.SupportsInt | typing.SupportsIndex) -> BaseRegion:
+    def base_region(self, tray: int) -> BaseRegion:
         """
         The region of all target parts in place, with what became of the candidates.
         """
-    def parts(self, tray: typing.SupportsInt | typing.SupportsIndex) -> list[int]:
+    def parts(self, tray: int) -> list[int]:
         """
         Indices of a tray's target parts that are in place, ascending.
         """
-    def region(self, tray: typing.SupportsInt | typing.SupportsIndex, parts: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]) -> numpy.typing.NDArray[numpy.uint8]:
+    def region(self, tray: int, parts: collections.abc.Sequence[int]) -> numpy.typing.NDArray[numpy.uint8]:
         """
         (headings, ny, nx) array of 0 and 1: cells from which every one of these parts can be grasped.
         """
-    def remove(self, tray_and_part: collections.abc.Sequence[tuple[typing.SupportsInt | typing.SupportsIndex, typing.SupportsInt | typing.SupportsIndex]], *, progress: typing.Any = None) -> bool:
+    def remove(self, tray_and_part: collections.abc.Sequence[tuple[int, int]], *, progress: collections.abc.Callable[[str, float], object] | None = None) -> bool:
         """
         Parts (tray, part) leave: they stand in nobody's way any more. False when stopped: nothing has changed.
         """
@@ -2199,13 +2238,13 @@ class Intersection:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def cells(self) -> int:
         ...
     @property
-    def centre(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"]:
+    def centre(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
     def heading(self) -> int:
@@ -2248,7 +2287,7 @@ class Stop:
     def intersection(self) -> int:
         ...
     @property
-    def pose(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def pose(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         x, y, theta.
         """
@@ -2361,7 +2400,7 @@ class PolicyResult:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def feasible(self) -> bool:
@@ -2452,10 +2491,10 @@ class Obstruction:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
-    def advised_move(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"]:
+    def advised_move(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Translation of the tray in the world's x and y [m].
         """
@@ -2554,7 +2593,7 @@ class DriveByTask:
     the tip's frame, and free_length [m], the straight way before the finger tips reach the object. T_world_tip is then
     the planned grasp; tolerance, free, max_tool_speed and dwell are left out.
     """
-    def __init__(self, T_world_tip: numpy.typing.ArrayLike, *, tolerance: typing.Any = None, free: collections.abc.Sequence[str] = [], max_tool_speed: typing.Any = None, dwell: typing.SupportsFloat | typing.SupportsIndex = 0.0, object: str = '', push: dict | None = None, touching: typing.SupportsInt | typing.SupportsIndex = 2) -> None:
+    def __init__(self, T_world_tip: numpy.typing.ArrayLike, *, tolerance: numpy.typing.ArrayLike | None = None, free: collections.abc.Sequence[str] = [], max_tool_speed: float | None = None, dwell: float = 0.0, object: str = '', push: dict[str, typing.Any] | None = None, touching: int = 2) -> None:
         ...
     def __repr__(self) -> str:
         ...
@@ -2573,7 +2612,7 @@ class DriveByTask:
     def object(self) -> str:
         ...
     @property
-    def push(self) -> typing.Any:
+    def push(self) -> PushGrasp | typing.Any:
         """
         What push_grasp says: closing time, window, tolerance to the object's position; None without one.
         """
@@ -2589,23 +2628,23 @@ class WholeBodyTrajectory:
         ...
     def __repr__(self) -> str:
         ...
-    def at(self, time: typing.SupportsFloat | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def at(self, time: float) -> numpy.typing.NDArray[numpy.float64]:
         """
         Configuration (n,) at a time [s], clamped at the ends.
         """
-    def drive_at(self, time: typing.SupportsFloat | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def drive_at(self, time: float) -> numpy.typing.NDArray[numpy.float64]:
         """
         Drive velocities (d,) at a time [s].
         """
-    def rolled_out(self, steps: typing.SupportsInt | typing.SupportsIndex = 64) -> numpy.typing.NDArray[numpy.float64]:
+    def rolled_out(self, steps: int = 64) -> numpy.typing.NDArray[numpy.float64]:
         """
         (k, n): where the robot is at the waypoints when only the drive velocities are followed from the first one.
         """
-    def sampled(self, between: typing.SupportsInt | typing.SupportsIndex = 0) -> JointTrajectory:
+    def sampled(self, between: int = 0) -> JointTrajectory:
         """
         A JointTrajectory of all waypoints and of `between` samples after each; x, y, theta first, with their velocities.
         """
-    def to_csv(self, between: typing.SupportsInt | typing.SupportsIndex = 0) -> str:
+    def to_csv(self, between: int = 0) -> str:
         """
         Header time, names, name.velocity, name.acceleration, base.v, base.vy, base.omega, wheel.left, wheel.right.
         """
@@ -2641,11 +2680,11 @@ class DriveByResult:
     """
     def __repr__(self) -> str:
         ...
-    def to_csv(self, between: typing.SupportsInt | typing.SupportsIndex = 0) -> str:
+    def to_csv(self, between: int = 0) -> str:
         """
         The trajectory's to_csv with two columns more: task, its index in the row of a task's waypoint, and held, the object in the hand.
         """
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def attempts(self) -> int:
@@ -2661,7 +2700,7 @@ class DriveByResult:
         [s]
         """
     @property
-    def events(self) -> list:
+    def events(self) -> list[mmgrasp._records.DriveByEventRow]:
         """
         One dict per task: waypoint, time and close_time [s], object (what is held then), held_time [s] and T_tip_object, candidate, base_speed and
         tool_speed [m/s].
@@ -2681,12 +2720,12 @@ class DriveByResult:
     def seconds(self) -> float:
         ...
     @property
-    def trajectory(self) -> WholeBodyTrajectory:
+    def trajectory(self) -> WholeBodyTrajectory | typing.Any:
         """
         The answer or, when not solved, the best iterate; None when there was not even a guess.
         """
     @property
-    def violations(self) -> dict:
+    def violations(self) -> dict[str, mmgrasp._records.ViolationRow]:
         """
         By kind of constraint: value (0 when kept), tolerance, unit, time [s], waypoint, what, kept; measured on a roll-out ten times
         finer than the waypoints.
@@ -2695,13 +2734,13 @@ class PinholeCamera:
     """
     Pinhole camera without distortion: looks along +z, x to the right of the image, y down.
     """
-    def __init__(self, width: typing.SupportsInt | typing.SupportsIndex = 640, height: typing.SupportsInt | typing.SupportsIndex = 480, fx: typing.SupportsFloat | typing.SupportsIndex = 525.0, fy: typing.SupportsFloat | typing.SupportsIndex = 525.0, cx: typing.SupportsFloat | typing.SupportsIndex = 319.5, cy: typing.SupportsFloat | typing.SupportsIndex = 239.5, nearest: typing.SupportsFloat | typing.SupportsIndex = 0.1, farthest: typing.SupportsFloat | typing.SupportsIndex = 5.0) -> None:
+    def __init__(self, width: int = 640, height: int = 480, fx: float = 525.0, fy: float = 525.0, cx: float = 319.5, cy: float = 239.5, nearest: float = 0.1, farthest: float = 5.0) -> None:
         """
         Sizes, focal lengths and principal point in pixels, depths seen in [nearest, farthest] [m].
         """
     def __repr__(self) -> str:
         ...
-    def project(self, point: numpy.typing.ArrayLike) -> typing.Any:
+    def project(self, point: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         """
         Pixel (u, v) of a point in the camera's frame, or None when it is not seen.
         """
@@ -2735,7 +2774,7 @@ class PlatformLocations:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def cost(self) -> float:
@@ -2746,20 +2785,20 @@ class PlatformLocations:
     def outcome(self) -> Outcome:
         ...
     @property
-    def pick(self) -> dict:
+    def pick(self) -> mmgrasp._records.SearchCounts:
         """
         Draws, what they fell at, and iterations of the first pose.
         """
     @property
-    def place(self) -> dict:
+    def place(self) -> mmgrasp._records.SearchCounts:
         ...
     @property
-    def q_pick(self) -> typing.Any:
+    def q_pick(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         """
         Base and arm at the first pose; None unless solved.
         """
     @property
-    def q_place(self) -> typing.Any:
+    def q_place(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         ...
     @property
     def travel(self) -> float:
@@ -2776,19 +2815,19 @@ class IkSeedDatabase:
     Past solutions that start the next searches; grows with use.
     """
     @staticmethod
-    def load(path: typing.Any, group: JointGroup, capacity: typing.SupportsInt | typing.SupportsIndex = 10000) -> IkSeedDatabase:
+    def load(path: str | os.PathLike[str], group: JointGroup, capacity: int = 10000) -> IkSeedDatabase:
         """
         Raises IoError on a damaged file or one made for another robot.
         """
-    def __init__(self, group: JointGroup, capacity: typing.SupportsInt | typing.SupportsIndex = 10000) -> None:
+    def __init__(self, group: JointGroup, capacity: int = 10000) -> None:
         ...
     def __len__(self) -> int:
         ...
     def add(self, q: numpy.typing.ArrayLike) -> None:
         ...
-    def save(self, path: typing.Any) -> None:
+    def save(self, path: str | os.PathLike[str]) -> None:
         ...
-    def seeds(self, T_world_tip: numpy.typing.ArrayLike, count: typing.SupportsInt | typing.SupportsIndex = 8) -> numpy.typing.NDArray[numpy.float64]:
+    def seeds(self, T_world_tip: numpy.typing.ArrayLike, count: int = 8) -> numpy.typing.NDArray[numpy.float64]:
         """
         (k, n): remembered arm postures with the base put where they reach the pose, best match first.
         """
@@ -2828,7 +2867,7 @@ class DepthImage:
     """
     What a depth camera saw: depth along the camera's axis [m], 0 where nothing was measured.
     """
-    def __init__(self, depth: typing.Any, camera: PinholeCamera, T_world_camera: typing.Any = None) -> None:
+    def __init__(self, depth: numpy.typing.ArrayLike, camera: PinholeCamera, T_world_camera: numpy.typing.ArrayLike | None = None) -> None:
         ...
     def __repr__(self) -> str:
         ...
@@ -2851,7 +2890,7 @@ class HeightMap:
     """
     Heights over square cells, seen along -z of the map's frame [m].
     """
-    def __init__(self, height: typing.Any, resolution: typing.SupportsFloat | typing.SupportsIndex, T_world_map: typing.Any = None) -> None:
+    def __init__(self, height: numpy.typing.ArrayLike, resolution: float, T_world_map: numpy.typing.ArrayLike | None = None) -> None:
         """
         From heights (ny, nx) [m], NaN where nothing is known; the frame lies in the middle of the rectangle.
         """
@@ -2900,7 +2939,7 @@ class FittedCuboid:
     def points(self) -> int:
         ...
     @property
-    def size(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def size(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Full lengths, the longer side of the top first [m].
         """
@@ -2922,7 +2961,7 @@ class CuboidFit:
     def plane_found(self) -> bool:
         ...
     @property
-    def plane_normal(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def plane_normal(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
     def plane_offset(self) -> float:
@@ -2957,7 +2996,7 @@ class ScoredGrasp:
         Of the fingers while moving in [m].
         """
     @property
-    def pixel(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"]:
+    def pixel(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (u, v) in the depth image; (-1, -1) without one.
         """
@@ -2978,7 +3017,7 @@ class Graspability:
     def __repr__(self) -> str:
         ...
     @property
-    def counts(self) -> dict:
+    def counts(self) -> dict[str, int]:
         ...
     @property
     def grasps(self) -> list[ScoredGrasp]:
@@ -3034,7 +3073,7 @@ class PipeGrasp:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def T_object_tool(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -3071,36 +3110,43 @@ class Pipe:
     """
     A pipe structure: straight round sections between nodes in the object's frame (P2 3.2.2).
     """
-    def __init__(self, nodes: numpy.typing.ArrayLike, sections: collections.abc.Sequence[typing.Annotated[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], "FixedSize(2)"]], diameters: typing.SupportsFloat | typing.SupportsIndex | collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]) -> None:
+    def __init__(self, nodes: numpy.typing.ArrayLike, sections: collections.abc.Sequence[typing.Annotated[collections.abc.Sequence[int], "FixedSize(2)"]], diameters: float | collections.abc.Sequence[float]) -> None:
         """
         (n, 3) nodes [m], pairs of node indices from 0, and outer diameters [m]: one for all or one a section.
         """
     def __repr__(self) -> str:
         ...
-    def grasp(self, section: typing.SupportsInt | typing.SupportsIndex, length: typing.SupportsFloat | typing.SupportsIndex, angle: typing.SupportsFloat | typing.SupportsIndex, flipped: bool = False, *, gripper: Gripper | None = None, **kwargs) -> PipeGrasp:
+    def grasp(self, section: int, length: float, angle: float, flipped: bool = False, *, gripper: Gripper | None = None, max_opening: float = 0.1, end_margin: float = 0.02, length_spacing: float = 0.01, angle_spacing: float = 0.08726646259971647, cost_per_metre: float = 0.0, draws: int = 200, seed: int = 1) -> PipeGrasp:
         """
         The grasp with these four variables (P2 3.2.3.1).
+            max_opening: float = 0.1  # thicker sections get no grasps [m]
+            end_margin: float = 0.02  # kept from either node of a section [m]
+            length_spacing: float = 0.01  # grasps are this far apart along a section [m], or
+            angle_spacing: float = 0.08726646259971647  # this far apart in angle [rad]
+            cost_per_metre: float = 0.0  # cost for the distance from the centre of mass [1/m]
+            draws: int = 200  # fruitless draws in a row that end the sampling
+            seed: int = 1  # same seed, same grasps
         """
-    def sample_grasps(self, count: typing.SupportsInt | typing.SupportsIndex, *, gripper: Gripper | None = None, **kwargs) -> list[PipeGrasp]:
+    def sample_grasps(self, count: int, *, gripper: Gripper | None = None, max_opening: float = 0.1, end_margin: float = 0.02, length_spacing: float = 0.01, angle_spacing: float = 0.08726646259971647, cost_per_metre: float = 0.0, draws: int = 200, seed: int = 1) -> list[PipeGrasp]:
         """
         Grasps drawn over the whole pipe, at most `count`, none nearer to another than the spacings. Axes are the gripper's,
         or approach x and closing y; so are opening and margin where no keyword gives them.
         
         Keyword options:
-            max_opening = 0.1: thicker sections get no grasps [m]
-            end_margin = 0.02: kept from either node of a section [m]
-            length_spacing = 0.01: grasps are this far apart along a section [m], or
-            angle_spacing = 0.08726646259971647: this far apart in angle [rad]
-            cost_per_metre = 0.0: cost for the distance from the centre of mass [1/m]
-            draws = 200: fruitless draws in a row that end the sampling
-            seed = 1: same seed, same grasps
+            max_opening: float = 0.1  # thicker sections get no grasps [m]
+            end_margin: float = 0.02  # kept from either node of a section [m]
+            length_spacing: float = 0.01  # grasps are this far apart along a section [m], or
+            angle_spacing: float = 0.08726646259971647  # this far apart in angle [rad]
+            cost_per_metre: float = 0.0  # cost for the distance from the centre of mass [1/m]
+            draws: int = 200  # fruitless draws in a row that end the sampling
+            seed: int = 1  # same seed, same grasps
         """
     def shapes(self, *, flat_ends: bool = False) -> list[LinkShape]:
         """
         LinkShapes in the object's frame: a capsule a section; with flat_ends cylinders and balls at the bends.
         """
     @property
-    def centre_of_mass(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def centre_of_mass(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Of tubes with equal walls [m].
         """
@@ -3116,63 +3162,63 @@ class Pipe:
     def nodes(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
-    def sections(self) -> list:
+    def sections(self) -> list[tuple[int, int]]:
         ...
-def _capability_option_table() -> dict:
+def _capability_option_table() -> dict[str, typing.Any]:
     ...
-def _cartesian_option_table() -> dict:
+def _cartesian_option_table() -> dict[str, typing.Any]:
     ...
-def _check_options(section: str, **kwargs) -> None:
+def _check_options(section: str, **kwargs: typing.Any) -> None:
     """
     Raises InvalidInput when an option of a scenario's section is out of range.
     """
-def _checker_option_table() -> dict:
+def _checker_option_table() -> dict[str, typing.Any]:
     ...
-def _cuboid_option_table() -> dict:
+def _cuboid_option_table() -> dict[str, typing.Any]:
     ...
-def _drive_by_option_table() -> dict:
+def _drive_by_option_table() -> dict[str, typing.Any]:
     ...
-def _edge_option_table() -> dict:
+def _edge_option_table() -> dict[str, typing.Any]:
     ...
-def _first_drive_by_guess(group: JointGroup, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, waypoints: typing.SupportsInt | typing.SupportsIndex = 35) -> typing.Any:
+def _first_drive_by_guess(group: JointGroup, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, waypoints: int = 35) -> typing.Any:
     """
     Where the first attempt begins, for benchmarks against other optimisers; None when a task is out of reach. solve() takes it from there, judging included: whether it is solved, and the duration.
     """
-def _grasp_option_table() -> dict:
+def _grasp_option_table() -> dict[str, typing.Any]:
     ...
-def _graspability_option_table() -> dict:
+def _graspability_option_table() -> dict[str, typing.Any]:
     ...
-def _ik_option_table() -> dict:
+def _ik_option_table() -> dict[str, typing.Any]:
     ...
-def _manipulation_option_table() -> dict:
+def _manipulation_option_table() -> dict[str, typing.Any]:
     ...
-def _motion_option_table() -> dict:
+def _motion_option_table() -> dict[str, typing.Any]:
     ...
-def _pipe_grasp_option_table() -> dict:
+def _pipe_grasp_option_table() -> dict[str, typing.Any]:
     ...
-def _platform_option_table() -> dict:
+def _platform_option_table() -> dict[str, typing.Any]:
     ...
-def _push_option_table() -> dict:
+def _push_option_table() -> dict[str, typing.Any]:
     ...
-def _reach_option_table() -> dict:
+def _reach_option_table() -> dict[str, typing.Any]:
     ...
-def _roadmap_option_table() -> dict:
+def _roadmap_option_table() -> dict[str, typing.Any]:
     ...
-def _sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Gripper, **kwargs) -> tuple[list[Grasp], int]:
+def _sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Gripper, **kwargs: typing.Any) -> tuple[list[Grasp], int]:
     """
     (grasps, too_wide): as sample_grasps, with the number dropped as too wide.
     """
-def _supply_option_table() -> dict:
+def _supply_option_table() -> dict[str, typing.Any]:
     ...
-def _timing_option_table() -> dict:
+def _timing_option_table() -> dict[str, typing.Any]:
     ...
-def _tracking_option_table() -> dict:
+def _tracking_option_table() -> dict[str, typing.Any]:
     ...
 def cache_folder() -> str:
     """
     $XDG_CACHE_HOME/mmgrasp, or ~/.cache/mmgrasp.
     """
-def camera_view_objective(group: JointGroup, camera_link: str, point: numpy.typing.ArrayLike, T_link_camera: typing.Any = None, weight: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> IkObjective:
+def camera_view_objective(group: JointGroup, camera_link: str, point: numpy.typing.ArrayLike, T_link_camera: numpy.typing.ArrayLike | None = None, weight: float = 1.0) -> IkObjective:
     """
     Weight times the squared distance [m] of a world point from the optical axis (+z) of a camera on a link, plus the
     squared depth by which it lies behind the camera.
@@ -3181,96 +3227,136 @@ def cheapest_assignment(costs: numpy.typing.ArrayLike) -> list[int]:
     """
     A column of its own for each row of (n, n) so that the sum of costs is least.
     """
-def closing_outcome(start: typing.SupportsFloat | typing.SupportsIndex, **kwargs) -> ClosingOutcome:
+def closing_outcome(start: float, *, opening: float = 0.1, closing_speed: float = 0.1, tool_speed: float = 0.3, finger_length: float = 0.12, object_width: float = 0.05, grip_depth: float = 0.02, planned_depth: float = 0.06, clearance: float = 0.0, max_push: float = 0.1, along_error: float = 0.0, lateral_error: float = 0.0) -> ClosingOutcome:
     """
     What beginning to close at an engagement [m] comes to; keywords as of push_grasp.
+    Keyword options:
+        opening: float = 0.1  # between the fingers before they close [m]
+        closing_speed: float = 0.1  # how fast the opening shrinks [m/s]
+        tool_speed: float = 0.3  # along the approach [m/s]
+        finger_length: float = 0.12  # from the palm to the tips [m]
+        object_width: float = 0.05  # along the closing direction [m]
+        grip_depth: float = 0.02  # least engagement that holds [m]
+        planned_depth: float = 0.06  # engagement at the planned grasp pose [m]
+        clearance: float = 0.0  # kept on either side while the fingers pass the object [m]
+        max_push: float = 0.1  # how far the object may slide before the palm [m]
+        along_error: float = 0.0  # the object may stand this much nearer or farther [m]
+        lateral_error: float = 0.0  # and this much to either side [m]
     """
-def compute_base_regions(problem: PartSupplyProblem, database: ReachDatabase, grid: BaseGrid, *, progress: typing.Any = None) -> list[BaseRegion]:
+def compute_base_regions(problem: PartSupplyProblem, database: ReachDatabase, grid: BaseGrid, *, progress: collections.abc.Callable[[str, float], object] | None = None) -> list[BaseRegion]:
     """
     P1 Algorithm 2 with exact inverse kinematics: one region for each tray with target parts.
     """
-def compute_disabled_pairs(robot: Robot, *, progress: typing.Any = None, **kwargs) -> Robot:
+def compute_disabled_pairs(robot: Robot, *, progress: collections.abc.Callable[[str, float], object] | None = None, samples: int = 10000, always_fraction: float = 0.95, seed: int = 1, threads: int = 0) -> Robot:
     """
     The robot with the link pairs that always or never touch found by sampling; those of an SRDF are kept.
     
     Keyword options:
-        samples = 10000: random configurations
-        always_fraction = 0.95: a pair in collision at least this often is called always
-        seed = 1: same seed, same pairs
-        threads = 0: 0: all
+        samples: int = 10000  # random configurations
+        always_fraction: float = 0.95  # a pair in collision at least this often is called always
+        seed: int = 1  # same seed, same pairs
+        threads: int = 0  # 0: all
     """
-def derivative_free_solver_names() -> list[str]:
-    """
-    Names that minimize_derivative_free's `solver` takes.
-    """
-def drive_arc(pose: numpy.typing.ArrayLike, platform_velocity: numpy.typing.ArrayLike, time: typing.SupportsFloat | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+def drive_arc(pose: numpy.typing.ArrayLike, platform_velocity: numpy.typing.ArrayLike, time: float) -> numpy.typing.NDArray[numpy.float64]:
     """
     Base pose (x, y, theta) after `time` [s] at a constant platform velocity (v_x, v_y, omega): the exact arc.
     """
-def evaluate_graspability(map: HeightMap, gripper: Gripper, *, image: DepthImage | None = None, **kwargs) -> Graspability:
+def evaluate_graspability(map: HeightMap, gripper: Gripper, *, image: DepthImage | None = None, finger_thickness: float = 0.012, finger_length: float = 0.12, palm_length: float = 0.13, palm_width: float = 0.065, margin: float = 0.001, orientations: int = 16, openings: int = 2, layer_step: float = 0.01, lowest: float = 0.003, insertion: float = 0.01, smoothing: float = 0.01, min_contact: float = 0.4, min_distance: float = 0.015, max_grasps: int = 100, threads: int = 0) -> Graspability:
     """
     Fast graspability evaluation (P1 3.7.2): contact and collision masks of the hand convolved with a height map over
     closing directions, openings and heights; grasps at the local maxima, straight along -z of the map. With the
     `image` that the map was made of each grasp gets its pixel.
     
     Keyword options:
-        finger_thickness = 0.012: of a finger along the closing axis [m]
-        finger_length = 0.12: from the fingertip back to the palm [m]
-        palm_length = 0.13: of the palm along the closing axis [m]
-        palm_width = 0.065: of the palm across it [m]
-        margin = 0.001: air kept around the hand [m]
-        orientations = 16: closing directions over half a turn
-        openings = 2: openings tried: max_opening and equal parts of it
-        layer_step = 0.01: between the heights at which fingertips are tried [m]
-        lowest = 0.003: height of the lowest fingertips above the map's frame [m]
-        insertion = 0.01: how far a part must rise above the fingertips to count as held [m]
-        smoothing = 0.01: radius over which graspability is averaged [m]
-        min_contact = 0.4: share of the pads' width that must meet the part
-        min_distance = 0.015: between returned grasps of about one direction [m]
-        max_grasps = 100: best kept
-        threads = 0: 0: all
+        finger_thickness: float = 0.012  # of a finger along the closing axis [m]
+        finger_length: float = 0.12  # from the fingertip back to the palm [m]
+        palm_length: float = 0.13  # of the palm along the closing axis [m]
+        palm_width: float = 0.065  # of the palm across it [m]
+        margin: float = 0.001  # air kept around the hand [m]
+        orientations: int = 16  # closing directions over half a turn
+        openings: int = 2  # openings tried: max_opening and equal parts of it
+        layer_step: float = 0.01  # between the heights at which fingertips are tried [m]
+        lowest: float = 0.003  # height of the lowest fingertips above the map's frame [m]
+        insertion: float = 0.01  # how far a part must rise above the fingertips to count as held [m]
+        smoothing: float = 0.01  # radius over which graspability is averaged [m]
+        min_contact: float = 0.4  # share of the pads' width that must meet the part
+        min_distance: float = 0.015  # between returned grasps of about one direction [m]
+        max_grasps: int = 100  # best kept
+        threads: int = 0  # 0: all
     """
-def find_package(name: str, folder: typing.Any, package_dirs: typing.Any = None) -> str:
+def find_package(name: str, folder: str | os.PathLike[str], package_dirs: collections.abc.Mapping[str, str | os.PathLike[str]] | None = None) -> str:
     """
     Folder of the ROS package that a file in `folder` means by package://NAME or $(find NAME); empty if none.
     """
-def fit_cuboids(points: typing.Any, *, T_world_tray: typing.Any = None, tray_size: typing.Any = None, wall: typing.SupportsFloat | typing.SupportsIndex = 0.005, up: typing.Any = None, eye: typing.Any = None, **kwargs) -> CuboidFit:
+def fit_cuboids(points: numpy.typing.ArrayLike, *, T_world_tray: numpy.typing.ArrayLike | None = None, tray_size: numpy.typing.ArrayLike | None = None, wall: float = 0.005, up: numpy.typing.ArrayLike | None = None, eye: numpy.typing.ArrayLike | None = None, plane_tolerance: float = 0.008, wall_margin: float = 0.006, up_angle: float = 0.35, max_height: float = 0.5, cluster_tolerance: float = 0.01, leaf: float = 0.003, min_points: int = 60, plane_iterations: int = 1000) -> CuboidFit:
     """
     Box-shaped parts in a cloud (n, 3) (P1 3.7.1): the supporting plane and the tray are taken out, every cluster above
     gets an upright cuboid. With a tray (outer `tray_size`, frame at the middle of its floor) the floor carries the parts;
     without, the dominant plane does whose normal is near `up` (z; zeros: any plane, `eye` is above it).
     
     Keyword options:
-        plane_tolerance = 0.008: points no farther from the plane belong to it [m]
-        wall_margin = 0.006: points no farther from a tray's wall are left out [m]
-        up_angle = 0.35: the plane's normal lies within this of `up` [rad]
-        max_height = 0.5: points higher above the plane are left out [m]
-        cluster_tolerance = 0.01: points farther from each other are different parts [m]
-        leaf = 0.003: cell to which points are thinned for the search [m]
-        min_points = 60: smaller clusters are left out
-        plane_iterations = 1000: random planes tried
+        plane_tolerance: float = 0.008  # points no farther from the plane belong to it [m]
+        wall_margin: float = 0.006  # points no farther from a tray's wall are left out [m]
+        up_angle: float = 0.35  # the plane's normal lies within this of `up` [rad]
+        max_height: float = 0.5  # points higher above the plane are left out [m]
+        cluster_tolerance: float = 0.01  # points farther from each other are different parts [m]
+        leaf: float = 0.003  # cell to which points are thinned for the search [m]
+        min_points: int = 60  # smaller clusters are left out
+        plane_iterations: int = 1000  # random planes tried
     """
-def graspability_map(map: HeightMap, gripper: Gripper, angle: typing.SupportsFloat | typing.SupportsIndex, opening: typing.SupportsFloat | typing.SupportsIndex, tip_height: typing.SupportsFloat | typing.SupportsIndex, **kwargs) -> numpy.typing.NDArray[numpy.float32]:
+def graspability_map(map: HeightMap, gripper: Gripper, angle: float, opening: float, tip_height: float, *, finger_thickness: float = 0.012, finger_length: float = 0.12, palm_length: float = 0.13, palm_width: float = 0.065, margin: float = 0.001, orientations: int = 16, openings: int = 2, layer_step: float = 0.01, lowest: float = 0.003, insertion: float = 0.01, smoothing: float = 0.01, min_contact: float = 0.4, min_distance: float = 0.015, max_grasps: int = 100, threads: int = 0) -> numpy.typing.NDArray[numpy.float32]:
     """
     (ny, nx) smoothed graspability in [0, 1] of one closing direction, opening and height of the fingertips.
+    Keyword options:
+        finger_thickness: float = 0.012  # of a finger along the closing axis [m]
+        finger_length: float = 0.12  # from the fingertip back to the palm [m]
+        palm_length: float = 0.13  # of the palm along the closing axis [m]
+        palm_width: float = 0.065  # of the palm across it [m]
+        margin: float = 0.001  # air kept around the hand [m]
+        orientations: int = 16  # closing directions over half a turn
+        openings: int = 2  # openings tried: max_opening and equal parts of it
+        layer_step: float = 0.01  # between the heights at which fingertips are tried [m]
+        lowest: float = 0.003  # height of the lowest fingertips above the map's frame [m]
+        insertion: float = 0.01  # how far a part must rise above the fingertips to count as held [m]
+        smoothing: float = 0.01  # radius over which graspability is averaged [m]
+        min_contact: float = 0.4  # share of the pads' width that must meet the part
+        min_distance: float = 0.015  # between returned grasps of about one direction [m]
+        max_grasps: int = 100  # best kept
+        threads: int = 0  # 0: all
     """
-def hand_masks(gripper: Gripper, opening: typing.SupportsFloat | typing.SupportsIndex, angle: typing.SupportsFloat | typing.SupportsIndex, resolution: typing.SupportsFloat | typing.SupportsIndex, **kwargs) -> dict:
+def hand_masks(gripper: Gripper, opening: float, angle: float, resolution: float, *, finger_thickness: float = 0.012, finger_length: float = 0.12, palm_length: float = 0.13, palm_width: float = 0.065, margin: float = 0.001, orientations: int = 16, openings: int = 2, layer_step: float = 0.01, lowest: float = 0.003, insertion: float = 0.01, smoothing: float = 0.01, min_contact: float = 0.4, min_distance: float = 0.015, max_grasps: int = 100, threads: int = 0) -> dict[str, numpy.typing.NDArray[numpy.uint8]]:
     """
     The masks `contact`, `fingers` and `palm` as images of zeros and ones with the hand in the middle.
+    Keyword options:
+        finger_thickness: float = 0.012  # of a finger along the closing axis [m]
+        finger_length: float = 0.12  # from the fingertip back to the palm [m]
+        palm_length: float = 0.13  # of the palm along the closing axis [m]
+        palm_width: float = 0.065  # of the palm across it [m]
+        margin: float = 0.001  # air kept around the hand [m]
+        orientations: int = 16  # closing directions over half a turn
+        openings: int = 2  # openings tried: max_opening and equal parts of it
+        layer_step: float = 0.01  # between the heights at which fingertips are tried [m]
+        lowest: float = 0.003  # height of the lowest fingertips above the map's frame [m]
+        insertion: float = 0.01  # how far a part must rise above the fingertips to count as held [m]
+        smoothing: float = 0.01  # radius over which graspability is averaged [m]
+        min_contact: float = 0.4  # share of the pads' width that must meet the part
+        min_distance: float = 0.015  # between returned grasps of about one direction [m]
+        max_grasps: int = 100  # best kept
+        threads: int = 0  # 0: all
     """
-def inscribed_circle(grid: BaseGrid, cells: numpy.typing.ArrayLike, heading: typing.SupportsInt | typing.SupportsIndex = 0) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"], float]:
+def inscribed_circle(grid: BaseGrid, cells: numpy.typing.ArrayLike, heading: int = 0) -> tuple[numpy.typing.NDArray[numpy.float64], float]:
     """
     Centre (2,) and radius [m] of the largest disc inside the union of cells of one layer.
     """
-def joint_limit_objective(group: JointGroup, soft_fraction: typing.SupportsFloat | typing.SupportsIndex = 0.1, weight: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> IkObjective:
+def joint_limit_objective(group: JointGroup, soft_fraction: float = 0.1, weight: float = 1.0) -> IkObjective:
     """
     Weight times the squared depth inside the outer `soft_fraction` of each joint's range, at both ends.
     """
-def joint_velocity(theta: typing.SupportsFloat | typing.SupportsIndex, platform_velocity: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+def joint_velocity(theta: float, platform_velocity: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """
     Velocities of the virtual joints x, y, theta for a platform velocity: the inverse of platform_velocity().
     """
-def least_stops(grid: BaseGrid, regions: collections.abc.Sequence, min_radius: typing.SupportsFloat | typing.SupportsIndex = 0.1, *, time_limit: typing.SupportsFloat | typing.SupportsIndex = 60.0, tie_time_limit: typing.SupportsFloat | typing.SupportsIndex = 10.0, start: typing.Any = None, goal: typing.Any = None, progress: typing.Any = None) -> StopSet:
+def least_stops(grid: BaseGrid, regions: collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike], min_radius: float = 0.1, *, time_limit: float = 60.0, tie_time_limit: float = 10.0, start: numpy.typing.ArrayLike | None = None, goal: numpy.typing.ArrayLike | None = None, progress: collections.abc.Callable[[str, float], object] | None = None) -> StopSet:
     """
     The least number of stops over regions (or masks), with proof; among equally few the widest discs, then, with `start` and `goal` (x, y), the shortest route as the crow flies.
     """
@@ -3282,24 +3368,24 @@ def make_base_grid(problem: PartSupplyProblem, database: ReachDatabase) -> BaseG
     """
     The grid that covers all base poses from which any tray could be reached.
     """
-def make_height_map(image: DepthImage, T_world_map: numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, **kwargs) -> HeightMap:
+def make_height_map(image: DepthImage, T_world_map: numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, *, resolution: float = 0.002, hole_radius: int = 2, jump: float = 0.01) -> HeightMap:
     """
     Resamples a depth image over a rectangle of `size` (x, y) [m] around a frame whose z points up.
     
     Keyword options:
-        resolution = 0.002: edge of a cell [m]
-        hole_radius = 2: holes up to so many pixels from a measurement are filled
-        jump = 0.01: neighbouring pixels that differ by more show different surfaces [m]
+        resolution: float = 0.002  # edge of a cell [m]
+        hole_radius: int = 2  # holes up to so many pixels from a measurement are filled
+        jump: float = 0.01  # neighbouring pixels that differ by more show different surfaces [m]
     """
 def manipulation_planner_names() -> list[str]:
     """
     Names that plan_manipulation's `planner` takes.
     """
-def maximal_intersections(grid: BaseGrid, regions: collections.abc.Sequence, min_radius: typing.SupportsFloat | typing.SupportsIndex, *, max_boxes: typing.SupportsInt | typing.SupportsIndex = 50000000, progress: typing.Any = None) -> Intersections:
+def maximal_intersections(grid: BaseGrid, regions: collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike], min_radius: float, *, max_boxes: int = 50000000, progress: collections.abc.Callable[[str, float], object] | None = None) -> Intersections:
     """
     Those of the robust sets that are part of no other one: enough to prove a least number of stops.
     """
-def minimal_stops(grid: BaseGrid, intersections: collections.abc.Sequence[Intersection], trays: typing.SupportsInt | typing.SupportsIndex) -> StopSet:
+def minimal_stops(grid: BaseGrid, intersections: collections.abc.Sequence[Intersection], trays: int) -> StopSet:
     """
     The least number of intersections that cover all trays (P1 equation 3.1), with proof.
     """
@@ -3318,92 +3404,92 @@ def nlp_solver_names() -> list[str]:
     """
     Names that plan_drive_by's `solver` takes.
     """
-def optimised_order(grid: BaseGrid, cells: collections.abc.Sequence, groups: collections.abc.Sequence[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]], order: collections.abc.Sequence[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]], *, smallest_first: bool = False, restarts: typing.SupportsInt | typing.SupportsIndex = 20, rng_seed: typing.SupportsInt | typing.SupportsIndex = 1) -> OptimisedOrder:
+def optimised_order(grid: BaseGrid, cells: collections.abc.Sequence[collections.abc.Sequence[numpy.typing.ArrayLike]], groups: collections.abc.Sequence[collections.abc.Sequence[int]], order: collections.abc.Sequence[collections.abc.Sequence[int]], *, smallest_first: bool = False, restarts: int = 20, rng_seed: int = 1) -> OptimisedOrder:
     """
     The order in which parts are best picked when the trays of each group share a stop, never worse than `order`. `cells` is [tray][part], bitmaps (headings, ny, nx).
     """
-def paired_order(places: collections.abc.Sequence) -> list[list[int]]:
+def paired_order(places: collections.abc.Sequence[numpy.typing.ArrayLike]) -> list[list[int]]:
     """
     P1's heuristic (figure 3.11): parts of neighbouring trays at nearly constant distances go together. `places` is one (m, 2) array of positions a tray; the answer is [tray][round].
     """
-def plan_base_route(arm: JointGroup, world: World, *, home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, resolution: typing.SupportsFloat | typing.SupportsIndex = 0.1) -> BasePath:
+def plan_base_route(arm: JointGroup, world: World, *, home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, resolution: float = 0.1) -> BasePath:
     """
     A driveable, collision-free way of the whole robot with its arm at `home`; poses are x, y, theta.
     """
-def plan_cartesian(checker: CollisionChecker, tool_poses: numpy.typing.ArrayLike, near: typing.Any = None, *, progress: typing.Any = None, **kwargs) -> CartesianResult:
+def plan_cartesian(checker: CollisionChecker, tool_poses: numpy.typing.ArrayLike, near: numpy.typing.ArrayLike | None = None, *, progress: collections.abc.Callable[[str, float], object] | None = None, position_step: float = 0.005, rotation_step: float = 0.02, max_joint_step: float = 0.2, edge_step: float = 0.02, max_branches: int = 64) -> CartesianResult:
     """
     The tip follows straight lines from pose to pose, from the inverse kinematics branch of the first pose that completes
     them with the shortest way, counted from `near` (n,) when that is given. A group that moves a diff_drive base is
     refused: it could not follow such a path.
     
     Keyword options:
-        position_step = 0.005: largest tool translation between two waypoints [m]
-        rotation_step = 0.02: largest tool rotation between two waypoints [rad]
-        max_joint_step = 0.2: a larger joint motion between waypoints is a jump
-        edge_step = 0.02: largest joint motion between two checks [rad or m]
-        max_branches = 64: configurations of the first pose that are followed at most
+        position_step: float = 0.005  # largest tool translation between two waypoints [m]
+        rotation_step: float = 0.02  # largest tool rotation between two waypoints [rad]
+        max_joint_step: float = 0.2  # a larger joint motion between waypoints is a jump
+        edge_step: float = 0.02  # largest joint motion between two checks [rad or m]
+        max_branches: int = 64  # configurations of the first pose that are followed at most
     """
-def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, progress: typing.Any = None, **kwargs) -> DriveByResult:
+def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, progress: collections.abc.Callable[[str, float], object] | None = None, waypoints: int = 35, attempts: int = 8, solutions: int = 1, choices: int = 8, stands: int = 64, iterations: int = 1500, time_limit: float = 600.0, jerk_time: float = 0.0, collisions: bool = True, seed: int = 1, threads: int = 1, solver: str = 'ipopt', tolerance: float = 0.0001, max_iterations: int = 150, attempt_time_limit: float = 600.0, smoothing: float = 0.01, margin: float = 0.005, look_out: float = 0.15, refinements: int = 6) -> DriveByResult:
     """
     The fastest motion of base and arm from `start` (n,), at rest, through the tasks in order to `goal`, at rest, without
     stopping for them (P1 chapter 4). goal: a configuration (n,), or (2, n) with lower and upper bounds, infinite where it
     does not matter. The world's objects and the robot itself are obstacles.
     
     Keyword options:
-        waypoints = 35: waypoints of the whole motion
-        attempts = 8: guesses tried until one leads to a solution
-        solutions = 1: solutions compared of one choice of candidates
-        choices = 8: choices of candidates planned; the fastest motion is returned; 1: the choice that looks quickest
-        stands = 64: configurations sought per candidate
-        iterations = 1500: of all attempts; after so many no other begins
-        time_limit = 600.0: wall-clock cap [s]
-        jerk_time = 0.0: accelerations may go from 0 to their limit in no less [s]; 0: no limit
-        collisions = True: the robot keeps clear of the world and of itself
-        seed = 1: same seed, same answer
-        threads = 1: 0: all; does not change the answer
-        solver = 'ipopt': a name of nlp_solver_names()
-        tolerance = 0.0001: relative optimality
-        max_iterations = 150: of one solve; an attempt has at most 1 + refinements
-        attempt_time_limit = 600.0: wall-clock cap of one attempt [s]
-        smoothing = 0.01: weight of the mean square of accelerations over their limits [s]
-        margin = 0.005: distance to keep from obstacles and from oneself [m]
-        look_out = 0.15: pairs of bodies nearer than this are constrained [m]
-        refinements = 6: times that collision constraints may be added
+        waypoints: int = 35  # waypoints of the whole motion
+        attempts: int = 8  # guesses tried until one leads to a solution
+        solutions: int = 1  # solutions compared of one choice of candidates
+        choices: int = 8  # choices of candidates planned; the fastest motion is returned; 1: the choice that looks quickest
+        stands: int = 64  # configurations sought per candidate
+        iterations: int = 1500  # of all attempts; after so many no other begins
+        time_limit: float = 600.0  # wall-clock cap [s]
+        jerk_time: float = 0.0  # accelerations may go from 0 to their limit in no less [s]; 0: no limit
+        collisions: bool = True  # the robot keeps clear of the world and of itself
+        seed: int = 1  # same seed, same answer
+        threads: int = 1  # 0: all; does not change the answer
+        solver: str = 'ipopt'  # a name of nlp_solver_names()
+        tolerance: float = 0.0001  # relative optimality
+        max_iterations: int = 150  # of one solve; an attempt has at most 1 + refinements
+        attempt_time_limit: float = 600.0  # wall-clock cap of one attempt [s]
+        smoothing: float = 0.01  # weight of the mean square of accelerations over their limits [s]
+        margin: float = 0.005  # distance to keep from obstacles and from oneself [m]
+        look_out: float = 0.15  # pairs of bodies nearer than this are constrained [m]
+        refinements: int = 6  # times that collision constraints may be added
     """
-def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, progress: typing.Any = None, improved: typing.Any = None, **kwargs) -> ManipulationResult:
+def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, progress: collections.abc.Callable[[str, float], object] | None = None, improved: collections.abc.Callable[[Improvement], object] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 4, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 4.0, neighbours: int = 0, roadmap_seed: int = 1, max_samples: int = 1000, step: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
     """
     Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 chapters 4 and 5). Every grasp is looked at. `improved` is called with every better solution (an Improvement); what it raises ends the call.
     
     Keyword options:
-        planner = 'prm_star_mg': a name of manipulation_planner_names()
-        ik_solutions = 4: arm configurations tried for each grasp at each end
-        first_grasps = 4: grasps looked at, one by one, before those without a first path are searched again, then twice as many; 0: all before any search
-        straight = True: try straight joint lines from start to goal
-        ik_restarts = 30: random starts of arms without a closed form
-        joint_step = 0.02: no joint moves more between two checks of an edge [rad or m]
-        workspace_step = 0.005: no point of the robot or the object moves more between two checks [m]
-        time_limit = 15.0: wall-clock cap on IK and search, without the roadmap's building [s]
-        seed = 1: same seed, same path
-        threads = 0: 0: all; does not change the answer
-        batch = 0: prm_star_mg: grasps searched together before paths are checked; 1: naive, 0: all
-        lazy_grasps = True: prm_star_mg: search a grasp only when its straight line could still win
-        max_vertices = 0: prm_star_mg: once the roadmap's best path is found, double its vertices up to this; 0: never
-        shorten = True: prm_star_mg: shorten the roadmap's best path at the end
-        refinements = 4: prm_star_mg: then search so many small roadmaps drawn where a cheaper path can pass
-        vertices = 5000: prm_star_mg without a roadmap given: configurations drawn
-        gamma = 4.0: likewise: vertices nearer than gamma (log n / n)^(1/d) are joined [rad or m]
-        neighbours = 0: likewise: > 0: join that many nearest ones instead
-        roadmap_seed = 1: likewise: same seed, same roadmap
-        max_samples = 1000: rrt_star_mg: budget in samples
-        step = 1.5: rrt_star_mg: longest edge grown towards a sample [rad or m]
-        rrt_gamma = 0.0: rrt_star_mg: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined; 0: about 4 (1 + 1/d) n^(1/(d+1)) log n of n
-        exploration = 0.5: rrt_star_mg: once solved, chance to grow the drawn grasp's own tree (P2's p_blt)
-        bidirectional = True: rrt_star_mg: trees from both ends
-        informed = True: rrt_star_mg: draw only where a better path can pass
-        goal_cost = 0.0: rrt_star_mg: ends with the first path that costs no more; inf: the first at all
-        keep_trees = False: rrt_star_mg: hand over the trees with the result
+        planner: str = 'prm_star_mg'  # a name of manipulation_planner_names()
+        ik_solutions: int = 4  # arm configurations tried for each grasp at each end
+        first_grasps: int = 4  # grasps looked at, one by one, before those without a first path are searched again, then twice as many; 0: all before any search
+        straight: bool = True  # try straight joint lines from start to goal
+        ik_restarts: int = 30  # random starts of arms without a closed form
+        joint_step: float = 0.02  # no joint moves more between two checks of an edge [rad or m]
+        workspace_step: float = 0.005  # no point of the robot or the object moves more between two checks [m]
+        time_limit: float = 15.0  # wall-clock cap on IK and search, without the roadmap's building [s]
+        seed: int = 1  # same seed, same path
+        threads: int = 0  # 0: all; does not change the answer
+        batch: int = 0  # prm_star_mg: grasps searched together before paths are checked; 1: naive, 0: all
+        lazy_grasps: bool = True  # prm_star_mg: search a grasp only when its straight line could still win
+        max_vertices: int = 0  # prm_star_mg: once the roadmap's best path is found, double its vertices up to this; 0: never
+        shorten: bool = True  # prm_star_mg: shorten the roadmap's best path at the end
+        refinements: int = 4  # prm_star_mg: then search so many small roadmaps drawn where a cheaper path can pass
+        vertices: int = 5000  # prm_star_mg without a roadmap given: configurations drawn
+        gamma: float = 4.0  # likewise: vertices nearer than gamma (log n / n)^(1/d) are joined [rad or m]
+        neighbours: int = 0  # likewise: > 0: join that many nearest ones instead
+        roadmap_seed: int = 1  # likewise: same seed, same roadmap
+        max_samples: int = 1000  # rrt_star_mg: budget in samples
+        step: float = 1.5  # rrt_star_mg: longest edge grown towards a sample [rad or m]
+        rrt_gamma: float = 0.0  # rrt_star_mg: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined; 0: about 4 (1 + 1/d) n^(1/(d+1)) log n of n
+        exploration: float = 0.5  # rrt_star_mg: once solved, chance to grow the drawn grasp's own tree (P2's p_blt)
+        bidirectional: bool = True  # rrt_star_mg: trees from both ends
+        informed: bool = True  # rrt_star_mg: draw only where a better path can pass
+        goal_cost: float = 0.0  # rrt_star_mg: ends with the first path that costs no more; inf: the first at all
+        keep_trees: bool = False  # rrt_star_mg: hand over the trees with the result
     """
-def plan_motion(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, goal: typing.Any = None, tool_poses: typing.Any = None, regions: collections.abc.Sequence[ToolRegion] = [], tool_cone: ToolCone | None = None, on_solution: typing.Any = None, progress: typing.Any = None, **kwargs) -> MotionResult:
+def plan_motion(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike | None = None, tool_poses: numpy.typing.ArrayLike | None = None, regions: collections.abc.Sequence[ToolRegion] = [], tool_cone: ToolCone | None = None, on_solution: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64], float], object] | None = None, progress: collections.abc.Callable[[str, float], object] | None = None, planner: str = 'rrt_connect', time_limit: float = 5.0, max_iterations: int = 20000, range: float = 0.0, base_margin: float = 2.0, edge_step: float = 0.02, workspace_step: float = ..., shorten: bool = True, shorten_iterations: int = 200, ik_solutions: int = 8, region_samples: int = 16, seed: int = 1) -> MotionResult:
     """
     A collision-free path of the group from `start` (n,) to any of its goals: `goal` (n,) or several as (m, n),
     `tool_poses` of the tip, (4, 4) or (m, 4, 4), and `regions` of them, reached by inverse kinematics. `tool_cone`
@@ -3411,242 +3497,262 @@ def plan_motion(robot: Robot, group: JointGroup, world: World, *, start: numpy.t
     the spot and drives straight.
     
     Keyword options:
-        planner = 'rrt_connect': a name of planner_names()
-        time_limit = 5.0: wall-clock cap [s]
-        max_iterations = 20000: budget in states drawn
-        range = 0.0: longest tree edge [rad]; 0: a share of the joint box's diagonal
-        base_margin = 2.0: the base is drawn this far around start and goals [m]
-        edge_step = 0.02: largest joint motion between two checks [rad or m]
-        workspace_step = inf: largest motion of any robot point between two checks [m]
-        shorten = True: shortcut the path
-        shorten_iterations = 200: tries of the shortening
-        ik_solutions = 8: IK solutions looked for at each tool pose
-        region_samples = 16: tool poses drawn in each region
-        seed = 1: same seed, same path
+        planner: str = 'rrt_connect'  # a name of planner_names()
+        time_limit: float = 5.0  # wall-clock cap [s]
+        max_iterations: int = 20000  # budget in states drawn
+        range: float = 0.0  # longest tree edge [rad]; 0: a share of the joint box's diagonal
+        base_margin: float = 2.0  # the base is drawn this far around start and goals [m]
+        edge_step: float = 0.02  # largest joint motion between two checks [rad or m]
+        workspace_step: float = inf  # largest motion of any robot point between two checks [m]
+        shorten: bool = True  # shortcut the path
+        shorten_iterations: int = 200  # tries of the shortening
+        ik_solutions: int = 8  # IK solutions looked for at each tool pose
+        region_samples: int = 16  # tool poses drawn in each region
+        seed: int = 1  # same seed, same path
     """
-def plan_part_supply(problem: PartSupplyProblem, database: ReachDatabase, *, progress: typing.Any = None) -> PartSupplyPlan:
+def plan_part_supply(problem: PartSupplyProblem, database: ReachDatabase, *, progress: collections.abc.Callable[[str, float], object] | None = None) -> PartSupplyPlan:
     """
     The whole of P1's Algorithm 1 and the motions around it, for a problem given as objects.
     """
-def plan_pick(problem: PartSupplyProblem, database: ReachDatabase, base_pose: numpy.typing.ArrayLike, tray: typing.SupportsInt | typing.SupportsIndex, part: typing.SupportsInt | typing.SupportsIndex, remaining: collections.abc.Sequence[tuple[typing.SupportsInt | typing.SupportsIndex, typing.SupportsInt | typing.SupportsIndex]]) -> Pick:
+def plan_pick(problem: PartSupplyProblem, database: ReachDatabase, base_pose: numpy.typing.ArrayLike, tray: int, part: int, remaining: collections.abc.Sequence[tuple[int, int]]) -> Pick:
     """
     One pick from a base pose; `remaining` are the (tray, part) still in place, the picked one among them.
     """
-def plan_platform_locations(checker: CollisionChecker, T_world_pick: numpy.typing.ArrayLike, T_world_place: numpy.typing.ArrayLike, *, pick_point: typing.Any = None, place_point: typing.Any = None, camera_link: typing.Any = None, T_link_camera: typing.Any = None, camera: PinholeCamera = None, database: IkSeedDatabase = None, **kwargs) -> PlatformLocations:
+def plan_platform_locations(checker: CollisionChecker, T_world_pick: numpy.typing.ArrayLike, T_world_place: numpy.typing.ArrayLike, *, pick_point: numpy.typing.ArrayLike | None = None, place_point: numpy.typing.ArrayLike | None = None, camera_link: str | None = None, T_link_camera: numpy.typing.ArrayLike | None = None, camera: PinholeCamera | None = None, database: IkSeedDatabase | None = None, samples: int = 100, max_draws: int = 2000, least_manipulability: float = 0.02, turn_weight: float = 0.3, seed: int = 1, time_limit: float = 10.0) -> PlatformLocations:
     """
     Two base + arm configurations for two tool poses with the least base travel (P3 3.6, Algorithm 2). The checker's group
     must have the base. With a `camera_link` the points (default: the tool positions) are in view of
     `camera` (default: PinholeCamera()), whose frame looks along +z. A database starts the searches and learns from them.
     
     Keyword options:
-        samples = 100: valid configurations drawn for each pose
-        max_draws = 2000: searches for each pose, valid or not
-        least_manipulability = 0.02: over the arm's joints
-        turn_weight = 0.3: what one radian of base turn counts as [m]
-        seed = 1: same seed, same answer
-        time_limit = 10.0: wall-clock cap [s]
+        samples: int = 100  # valid configurations drawn for each pose
+        max_draws: int = 2000  # searches for each pose, valid or not
+        least_manipulability: float = 0.02  # over the arm's joints
+        turn_weight: float = 0.3  # what one radian of base turn counts as [m]
+        seed: int = 1  # same seed, same answer
+        time_limit: float = 10.0  # wall-clock cap [s]
     """
-def plan_straight_line(checker: CollisionChecker, start: numpy.typing.ArrayLike, T_world_to: numpy.typing.ArrayLike, *, progress: typing.Any = None, **kwargs) -> StraightLineResult:
+def plan_straight_line(checker: CollisionChecker, start: numpy.typing.ArrayLike, T_world_to: numpy.typing.ArrayLike, *, progress: collections.abc.Callable[[str, float], object] | None = None, position_step: float = 0.005, rotation_step: float = 0.02, max_joint_step: float = 0.2, edge_step: float = 0.02) -> StraightLineResult:
     """
     The tool moves on a straight line from the pose of `start` to T_world_to. A group that moves a diff_drive base is
     refused: it could not follow such a path.
     
     Keyword options:
-        position_step = 0.005: largest tool translation between two waypoints [m]
-        rotation_step = 0.02: largest tool rotation between two waypoints [rad]
-        max_joint_step = 0.2: a larger joint motion between two waypoints is a jump
-        edge_step = 0.02: largest joint motion between two checks [rad or m]
+        position_step: float = 0.005  # largest tool translation between two waypoints [m]
+        rotation_step: float = 0.02  # largest tool rotation between two waypoints [rad]
+        max_joint_step: float = 0.2  # a larger joint motion between two waypoints is a jump
+        edge_step: float = 0.02  # largest joint motion between two checks [rad or m]
     """
 def planner_names() -> list[str]:
     """
     Names that plan_motion's `planner` takes.
     """
 @typing.overload
-def platform_velocity(theta: typing.SupportsFloat | typing.SupportsIndex, joint_velocity: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+def platform_velocity(theta: float, joint_velocity: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """
     Velocity command (v_x, v_y, omega) in the platform's own frame for velocities of the virtual joints x, y, theta
     standing at heading theta (P3 3.12) [m/s, rad/s].
     """
 @typing.overload
-def platform_velocity(*, left: typing.SupportsFloat | typing.SupportsIndex, right: typing.SupportsFloat | typing.SupportsIndex, wheel_separation: typing.SupportsFloat | typing.SupportsIndex) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+def platform_velocity(*, left: float, right: float, wheel_separation: float) -> numpy.typing.NDArray[numpy.float64]:
     """
     The same of a diff-drive whose wheel rims move at `left` and `right` [m/s]: v = (left + right) / 2,
     omega = (right - left) / wheel_separation (P1 4.11).
     """
-def pose(xyz: numpy.typing.ArrayLike, rpy: typing.Any = None, quat_xyzw: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+def pose(xyz: numpy.typing.ArrayLike, rpy: numpy.typing.ArrayLike | None = None, quat_xyzw: numpy.typing.ArrayLike | None = None) -> numpy.typing.NDArray[numpy.float64]:
     """
     A (4, 4) pose from a position [m] and roll-pitch-yaw (URDF's convention) [rad] or a quaternion (x, y, z, w).
     """
-def pose_to_xyz_quat(T: numpy.typing.ArrayLike) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"], typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 1]"]]:
+def pose_to_xyz_quat(T: numpy.typing.ArrayLike) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """
     Position (3,) and quaternion (x, y, z, w) of a (4, 4) pose.
     """
-def pose_to_xyz_rpy(T: numpy.typing.ArrayLike) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"], typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]]:
+def pose_to_xyz_rpy(T: numpy.typing.ArrayLike) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """
     Position (3,) and roll-pitch-yaw (3,) of a (4, 4) pose.
     """
-def push_grasp(**kwargs) -> PushGrasp:
+def push_grasp(*, opening: float = 0.1, closing_speed: float = 0.1, tool_speed: float = 0.3, finger_length: float = 0.12, object_width: float = 0.05, grip_depth: float = 0.02, planned_depth: float = 0.06, clearance: float = 0.0, max_push: float = 0.1, along_error: float = 0.0, lateral_error: float = 0.0) -> PushGrasp:
     """
     When a gripper that moves on may begin to close, and what error of the object's position it forgives (P1 4.3).
     
     Keyword options:
-        opening = 0.1: between the fingers before they close [m]
-        closing_speed = 0.1: how fast the opening shrinks [m/s]
-        tool_speed = 0.3: along the approach [m/s]
-        finger_length = 0.12: from the palm to the tips [m]
-        object_width = 0.05: along the closing direction [m]
-        grip_depth = 0.02: least engagement that holds [m]
-        planned_depth = 0.06: engagement at the planned grasp pose [m]
-        clearance = 0.0: kept on either side while the fingers pass the object [m]
-        max_push = 0.1: how far the object may slide before the palm [m]
-        along_error = 0.0: the object may stand this much nearer or farther [m]
-        lateral_error = 0.0: and this much to either side [m]
+        opening: float = 0.1  # between the fingers before they close [m]
+        closing_speed: float = 0.1  # how fast the opening shrinks [m/s]
+        tool_speed: float = 0.3  # along the approach [m/s]
+        finger_length: float = 0.12  # from the palm to the tips [m]
+        object_width: float = 0.05  # along the closing direction [m]
+        grip_depth: float = 0.02  # least engagement that holds [m]
+        planned_depth: float = 0.06  # engagement at the planned grasp pose [m]
+        clearance: float = 0.0  # kept on either side while the fingers pass the object [m]
+        max_push: float = 0.1  # how far the object may slide before the palm [m]
+        along_error: float = 0.0  # the object may stand this much nearer or farther [m]
+        lateral_error: float = 0.0  # and this much to either side [m]
     """
-def push_speed_limit(*, length: typing.SupportsFloat | typing.SupportsIndex, friction: typing.SupportsFloat | typing.SupportsIndex, restitution: typing.SupportsFloat | typing.SupportsIndex) -> float:
+def push_speed_limit(*, length: float, friction: float, restitution: float) -> float:
     """
     Fastest tool [m/s] before whose palm a hit object does not leap more than `length` [m].
     """
-def quat_xyzw_from_rotation(R: numpy.typing.ArrayLike) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 1]"]:
+def quat_xyzw_from_rotation(R: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """
     Quaternion (x, y, z, w) of a (3, 3) rotation.
     """
-def random_placement(part: collections.abc.Sequence[LinkShape], tray_size: numpy.typing.ArrayLike, *, count: typing.SupportsInt | typing.SupportsIndex = 12, fill: typing.SupportsFloat | typing.SupportsIndex = 1.0, wall: typing.SupportsFloat | typing.SupportsIndex = 0.005, **kwargs) -> RandomPlacement:
+def random_placement(part: collections.abc.Sequence[LinkShape], tray_size: numpy.typing.ArrayLike, *, count: int = 12, fill: float = 1.0, wall: float = 0.005, attempts: int = 100, stack: bool = True, gap: float = 0.0005, seed: int = 1) -> RandomPlacement:
     """
     Alike parts lying in a tray at random (P1 3.5.2), let down one after another without touching; `fill` is the share
     of `count` that is there. The tray's frame is the middle of its floor, `tray_size` are outer lengths.
     
     Keyword options:
-        attempts = 100: random places tried for each part
-        stack = True: a part without a place on the floor may lie on others
-        gap = 0.0005: air left between bodies [m]
-        seed = 1: same seed, same places
+        attempts: int = 100  # random places tried for each part
+        stack: bool = True  # a part without a place on the floor may lie on others
+        gap: float = 0.0005  # air left between bodies [m]
+        seed: int = 1  # same seed, same places
     """
-def read_pcd(path: typing.Any) -> PointCloud:
+def read_pcd(path: str | os.PathLike[str]) -> PointCloud:
     """
     Reads a PCD file: ascii, binary or binary_compressed. Raises IoError naming file and rule.
     """
-def render_depth(scene: collections.abc.Sequence[LinkShape], camera: PinholeCamera, T_world_camera: numpy.typing.ArrayLike, **kwargs) -> DepthImage:
+def render_depth(scene: collections.abc.Sequence[LinkShape], camera: PinholeCamera, T_world_camera: numpy.typing.ArrayLike, *, noise: float = 0.0, missing: float = 0.0, seed: int = 1, threads: int = 0) -> DepthImage:
     """
     The depth image of shapes whose poses are in the world: one ray a pixel, first surface in front of the camera.
     
     Keyword options:
-        noise = 0.0: standard deviation of the depth at 1 m; grows with the square of the distance [m]
-        missing = 0.0: share of pixels without a measurement, in [0, 1]
-        seed = 1: same seed, same image
-        threads = 0: 0: all
+        noise: float = 0.0  # standard deviation of the depth at 1 m; grows with the square of the distance [m]
+        missing: float = 0.0  # share of pixels without a measurement, in [0, 1]
+        seed: int = 1  # same seed, same image
+        threads: int = 0  # 0: all
     """
 def resting_poses(part: collections.abc.Sequence[LinkShape]) -> list[RestingPose]:
     """
     Faces of a part's convex hull on which it does not tip over, most probable first.
     """
-def robust_intersections(grid: BaseGrid, regions: collections.abc.Sequence, min_radius: typing.SupportsFloat | typing.SupportsIndex, max_sets: typing.SupportsInt | typing.SupportsIndex = 200000) -> Intersections:
+def robust_intersections(grid: BaseGrid, regions: collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike], min_radius: float, max_sets: int = 200000) -> Intersections:
     """
     Every set of trays whose shared cells hold a disc of at least `min_radius` [m] (P1 3.4.2).
     """
-def route_lengths(arm: JointGroup, world: World, *, home: numpy.typing.ArrayLike, positions: numpy.typing.ArrayLike, resolution: typing.SupportsFloat | typing.SupportsIndex = 0.1, threads: typing.SupportsInt | typing.SupportsIndex = 0, progress: typing.Any = None) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+def route_lengths(arm: JointGroup, world: World, *, home: numpy.typing.ArrayLike, positions: numpy.typing.ArrayLike, resolution: float = 0.1, threads: int = 0, progress: collections.abc.Callable[[str, float], object] | None = None) -> numpy.typing.NDArray[numpy.float64]:
     """
     (m, m): how far it is to drive between base poses (m, 3), around what stands in the way; infinite: no way found.
     """
-def run_policy(grid: BaseGrid, cells: collections.abc.Sequence, order: collections.abc.Sequence[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]], policy: str = 'all', *, min_radius: typing.SupportsFloat | typing.SupportsIndex = 0.1, online_limit: typing.SupportsFloat | typing.SupportsIndex = 1.0, time_limit: typing.SupportsFloat | typing.SupportsIndex = 60.0, tie_time_limit: typing.SupportsFloat | typing.SupportsIndex = 10.0, planned: typing.Any = None, progress: typing.Any = None) -> PolicyResult:
+def run_policy(grid: BaseGrid, cells: collections.abc.Sequence[collections.abc.Sequence[numpy.typing.ArrayLike]], order: collections.abc.Sequence[collections.abc.Sequence[int]], policy: str = 'all', *, min_radius: float = 0.1, online_limit: float = 1.0, time_limit: float = 60.0, tie_time_limit: float = 10.0, planned: collections.abc.Callable[[int], collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike]] | None = None, progress: collections.abc.Callable[[str, float], object] | None = None) -> PolicyResult:
     """
     Plans the stops of every round for all parts, the `remaining` or the `targets` and holds them against the parts' bitmaps `cells` [tray][part]. `planned(round)` gives other regions to plan with, one a tray: what they cost counts as time between the rounds.
     """
-def sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Gripper, **kwargs) -> list[Grasp]:
+def sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Gripper, *, approaches: int = 8, positions: int = 3, mesh_samples: int = 400, max_grasps: int = 200, friction: float = 0.5, standoff: float = 0.0, seed: int = 1) -> list[Grasp]:
     """
     Antipodal grasps of a body given as a list of LinkShape (P1 3.4.1), best first.
     
     Keyword options:
-        approaches = 8: approach directions around each closing axis
-        positions = 3: pad positions along each free direction
-        mesh_samples = 400: surface points tried on a mesh
-        max_grasps = 200: best kept, spread over approach directions
-        friction = 0.5: Coulomb coefficient
-        standoff = 0.0: how far the tool centre point stays outside the object's middle [m]
-        seed = 1: same seed, same grasps
+        approaches: int = 8  # approach directions around each closing axis
+        positions: int = 3  # pad positions along each free direction
+        mesh_samples: int = 400  # surface points tried on a mesh
+        max_grasps: int = 200  # best kept, spread over approach directions
+        friction: float = 0.5  # Coulomb coefficient
+        standoff: float = 0.0  # how far the tool centre point stays outside the object's middle [m]
+        seed: int = 1  # same seed, same grasps
     """
-def self_distance_objective(checker: CollisionChecker, margin: typing.SupportsFloat | typing.SupportsIndex = 0.05, weight: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> IkObjective:
+def self_distance_objective(checker: CollisionChecker, margin: float = 0.05, weight: float = 1.0) -> IkObjective:
     """
     Weight times the sum of (1 - distance / margin)^2 over pairs of the robot's own links nearer than `margin` [m].
     """
-def share_stops(drive_times: numpy.typing.ArrayLike, stop_times: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], robots: typing.SupportsInt | typing.SupportsIndex) -> SharedTours:
+def share_stops(drive_times: numpy.typing.ArrayLike, stop_times: collections.abc.Sequence[float], robots: int) -> SharedTours:
     """
     Shares stops among robots so that the last is done as early as can be. `drive_times` is (n + 2 k, n + 2 k): stops, k starts, k goals; infinite: no way.
     """
-def shorten_drive_by(group: JointGroup, world: World, *, tasks: collections.abc.Sequence[DriveByTask], times: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], positions: numpy.typing.ArrayLike, task_times: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], progress: typing.Any = None, **kwargs) -> DriveByResult:
+def shorten_drive_by(group: JointGroup, world: World, *, tasks: collections.abc.Sequence[DriveByTask], times: collections.abc.Sequence[float], positions: numpy.typing.ArrayLike, task_times: collections.abc.Sequence[float], progress: collections.abc.Callable[[str, float], object] | None = None, waypoints: int = 35, attempts: int = 8, solutions: int = 1, choices: int = 8, stands: int = 64, iterations: int = 1500, time_limit: float = 600.0, jerk_time: float = 0.0, collisions: bool = True, seed: int = 1, threads: int = 1, solver: str = 'ipopt', tolerance: float = 0.0001, max_iterations: int = 150, attempt_time_limit: float = 600.0, smoothing: float = 0.01, margin: float = 0.005, look_out: float = 0.15, refinements: int = 6) -> DriveByResult:
     """
     plan_drive_by from a motion that is known instead of guesses: positions (m, n) at times [s], straight between them, free of
     collisions, from rest to rest, at each task at its time; e.g. a drive and a pick one after the other. The answer is near that
     motion. Tasks have one pose and no push. Keywords are those of plan_drive_by.
+    Keyword options:
+        waypoints: int = 35  # waypoints of the whole motion
+        attempts: int = 8  # guesses tried until one leads to a solution
+        solutions: int = 1  # solutions compared of one choice of candidates
+        choices: int = 8  # choices of candidates planned; the fastest motion is returned; 1: the choice that looks quickest
+        stands: int = 64  # configurations sought per candidate
+        iterations: int = 1500  # of all attempts; after so many no other begins
+        time_limit: float = 600.0  # wall-clock cap [s]
+        jerk_time: float = 0.0  # accelerations may go from 0 to their limit in no less [s]; 0: no limit
+        collisions: bool = True  # the robot keeps clear of the world and of itself
+        seed: int = 1  # same seed, same answer
+        threads: int = 1  # 0: all; does not change the answer
+        solver: str = 'ipopt'  # a name of nlp_solver_names()
+        tolerance: float = 0.0001  # relative optimality
+        max_iterations: int = 150  # of one solve; an attempt has at most 1 + refinements
+        attempt_time_limit: float = 600.0  # wall-clock cap of one attempt [s]
+        smoothing: float = 0.01  # weight of the mean square of accelerations over their limits [s]
+        margin: float = 0.005  # distance to keep from obstacles and from oneself [m]
+        look_out: float = 0.15  # pairs of bodies nearer than this are constrained [m]
+        refinements: int = 6  # times that collision constraints may be added
     """
 def shortest_visiting_tour(lengths: numpy.typing.ArrayLike) -> TourResult:
     """
     Shortest way from start over all n stops to goal. `lengths` is (n + 2, n + 2): stops, start, goal; infinite: no way.
     """
-def simplify_mesh(mesh: Mesh, tolerance: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> dict:
+def simplify_mesh(mesh: Mesh, tolerance: float = 0.0) -> mmgrasp._records.MeshStandIn:
     """
     The simplest solid that contains a mesh and has no point farther than `tolerance` [m] from it, as a dict:
     `shape` (a LinkShape in the mesh's frame), `chosen` (mesh, hull, box, sphere or cylinder), `triangles_saved` and
     the proven `deviation` [m]. With 0 the solid stays the same.
     """
-def singularity_objective(group: JointGroup, threshold: typing.SupportsFloat | typing.SupportsIndex, weight: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> IkObjective:
+def singularity_objective(group: JointGroup, threshold: float, weight: float = 1.0) -> IkObjective:
     """
     Weight times max(0, 1 - M / threshold)^2, M the manipulability of the arm's joints (without the base).
     """
-def solve_set_cover(elements: typing.SupportsInt | typing.SupportsIndex, sets: collections.abc.Sequence[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]], costs: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [], *, time_limit: typing.SupportsFloat | typing.SupportsIndex = 60.0, progress: typing.Any = None) -> SetCoverResult:
+def solve_set_cover(elements: int, sets: collections.abc.Sequence[collections.abc.Sequence[int]], costs: collections.abc.Sequence[float] = [], *, time_limit: float = 60.0, progress: collections.abc.Callable[[str, float], object] | None = None) -> SetCoverResult:
     """
     Fewest (or cheapest) sets that cover all of 0..elements-1, with a proof (P1, equation 3.1).
     """
-def time_parameterize(path: numpy.typing.ArrayLike, velocity_limits: numpy.typing.ArrayLike, acceleration_limits: numpy.typing.ArrayLike, *, names: collections.abc.Sequence[str] = [], progress: typing.Any = None, **kwargs) -> JointTrajectory:
+def time_parameterize(path: numpy.typing.ArrayLike, velocity_limits: numpy.typing.ArrayLike, acceleration_limits: numpy.typing.ArrayLike, *, names: collections.abc.Sequence[str] = [], progress: collections.abc.Callable[[str, float], object] | None = None, max_deviation: float = 0.01, sample_period: float = 0.02, jerk_limits: numpy.typing.ArrayLike | None = None) -> JointTrajectory:
     """
     Near time-optimal timing of waypoints (k, n), at rest at both ends; corners are blended, which may leave the path
     by max_deviation.
     
     Keyword options:
-        max_deviation = 0.01: corners are blended within this joint distance [rad]
-        sample_period = 0.02: spacing of the samples [s]
-        jerk_limits = None: of each joint [rad/s^3]; None: no such limits
+        max_deviation: float = 0.01  # corners are blended within this joint distance [rad]
+        sample_period: float = 0.02  # spacing of the samples [s]
+        jerk_limits: numpy.typing.ArrayLike | None = None  # of each joint [rad/s^3]; None: no such limits
     """
-def time_parameterize_free(checker: CollisionChecker, path: numpy.typing.ArrayLike, *, edge_step: typing.SupportsFloat | typing.SupportsIndex = 0.01, progress: typing.Any = None, **kwargs) -> JointTrajectory:
+def time_parameterize_free(checker: CollisionChecker, path: numpy.typing.ArrayLike, *, edge_step: float = 0.01, progress: collections.abc.Callable[[str, float], object] | None = None, max_deviation: float = 0.01, sample_period: float = 0.02, jerk_limits: numpy.typing.ArrayLike | None = None) -> JointTrajectory:
     """
     time_parameterize under the limits of the checker's group, the blended corners checked for collisions too, no joint moving
     more than edge_step between two checks [rad or m]. Without any times when the straight edges of the path are not free.
     
     Keyword options:
-        max_deviation = 0.01: corners are blended within this joint distance [rad]
-        sample_period = 0.02: spacing of the samples [s]
-        jerk_limits = None: of each joint [rad/s^3]; None: no such limits
+        max_deviation: float = 0.01  # corners are blended within this joint distance [rad]
+        sample_period: float = 0.02  # spacing of the samples [s]
+        jerk_limits: numpy.typing.ArrayLike | None = None  # of each joint [rad/s^3]; None: no such limits
     """
-def track_base(robot: Robot, trajectory: JointTrajectory, **kwargs) -> BaseTrackingResult:
+def track_base(robot: Robot, trajectory: JointTrajectory, *, kp: float = 2.0, ki: float = 0.1, kd: float = 0.3, offset: float = 0.2, period: float = 0.02, feed_forward: bool = True, feedback: bool = True, settle: float = 0.0, slip_left: float = 0.0, slip_right: float = 0.0, drift: numpy.typing.ArrayLike = (0.0, 0.0, 0.0), travel_noise: float = 0.0, position_noise: float = 0.0, heading_noise: float = 0.0, start_error: numpy.typing.ArrayLike = (0.0, 0.0, 0.0), seed: int = 1) -> BaseTrackingResult:
     """
     Drives the robot's base along the columns x, y, theta of a trajectory, with slip and noise (P1 4.4.2, figure 4.9).
     
     Keyword options:
-        kp = 2.0: proportional gain [1/s]
-        ki = 0.1: integral gain [1/s^2]
-        kd = 0.3: derivative gain
-        offset = 0.2: distance of the tracked point from the wheel axis [m]
-        period = 0.02: a command is held this long [s]
-        feed_forward = True: adds the planned velocity
-        feedback = True: False: open loop, the planned velocities only
-        settle = 0.0: goes on this long after the plan's end [s]
-        slip_left = 0.0: share of the left wheel's travel lost
-        slip_right = 0.0: the same of the right wheel
-        drift = (0.0, 0.0, 0.0): platform velocity added [m/s, m/s, rad/s]
-        travel_noise = 0.0: deviation of a wheel's travel after 1 m [m], growing with the root of the travel
-        position_noise = 0.0: deviation of a measured x or y [m]
-        heading_noise = 0.0: deviation of a measured heading [rad]
-        start_error = (0.0, 0.0, 0.0): where the base stands at first, less the plan
-        seed = 1: same seed, same run
+        kp: float = 2.0  # proportional gain [1/s]
+        ki: float = 0.1  # integral gain [1/s^2]
+        kd: float = 0.3  # derivative gain
+        offset: float = 0.2  # distance of the tracked point from the wheel axis [m]
+        period: float = 0.02  # a command is held this long [s]
+        feed_forward: bool = True  # adds the planned velocity
+        feedback: bool = True  # False: open loop, the planned velocities only
+        settle: float = 0.0  # goes on this long after the plan's end [s]
+        slip_left: float = 0.0  # share of the left wheel's travel lost
+        slip_right: float = 0.0  # the same of the right wheel
+        drift: numpy.typing.ArrayLike = (0.0, 0.0, 0.0)  # platform velocity added [m/s, m/s, rad/s]
+        travel_noise: float = 0.0  # deviation of a wheel's travel after 1 m [m], growing with the root of the travel
+        position_noise: float = 0.0  # deviation of a measured x or y [m]
+        heading_noise: float = 0.0  # deviation of a measured heading [rad]
+        start_error: numpy.typing.ArrayLike = (0.0, 0.0, 0.0)  # where the base stands at first, less the plan
+        seed: int = 1  # same seed, same run
     """
-def tray_shapes(size: numpy.typing.ArrayLike, wall: typing.SupportsFloat | typing.SupportsIndex = 0.005) -> list[LinkShape]:
+def tray_shapes(size: numpy.typing.ArrayLike, wall: float = 0.005) -> list[LinkShape]:
     """
     Floor and four walls of a tray (outer lengths) in its frame.
     """
-def wheel_speeds(v: typing.SupportsFloat | typing.SupportsIndex, omega: typing.SupportsFloat | typing.SupportsIndex, wheel_separation: typing.SupportsFloat | typing.SupportsIndex) -> tuple[float, float]:
+def wheel_speeds(v: float, omega: float, wheel_separation: float) -> tuple[float, float]:
     """
     Rim speeds (left, right) of a diff-drive's wheels [m/s].
     """
-def with_sampled_pairs(robot: Robot, *, progress: typing.Any = None) -> Robot:
+def with_sampled_pairs(robot: Robot, *, progress: collections.abc.Callable[[str, float], object] | None = None) -> Robot:
     """
     compute_disabled_pairs with default options, its result cached on disk under the robot's hash.
     """

@@ -12,37 +12,37 @@ class CheckedBody:
     def __init__(self, name: str, shapes: collections.abc.Sequence[mmgrasp._core.LinkShape], pose: numpy.typing.ArrayLike) -> None:
         ...
 class CheckedGrasp:
-    def __init__(self, pose: numpy.typing.ArrayLike, width: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __init__(self, pose: numpy.typing.ArrayLike, width: float) -> None:
         ...
 class CheckedPart:
     def __init__(self, body: CheckedBody, tray: str, target: bool, grasps: collections.abc.Sequence[CheckedGrasp]) -> None:
         ...
 class CheckedFinger:
-    def __init__(self, joint: str, closed: typing.SupportsFloat | typing.SupportsIndex, open: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __init__(self, joint: str, closed: float, open: float) -> None:
         ...
 class CheckedMotion:
-    def __init__(self, kind: str, opening: typing.SupportsFloat | typing.SupportsIndex, holding: bool, times: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], positions: numpy.typing.ArrayLike, velocities: numpy.typing.ArrayLike, accelerations: typing.Any = None) -> None:
+    def __init__(self, kind: str, opening: float, holding: bool, times: collections.abc.Sequence[float], positions: numpy.typing.ArrayLike, velocities: numpy.typing.ArrayLike, accelerations: numpy.typing.ArrayLike | None = None) -> None:
         ...
 class CheckedPick:
-    def __init__(self, stop: typing.SupportsInt | typing.SupportsIndex, tray: str, part: str, grasp: typing.SupportsInt | typing.SupportsIndex, motions: collections.abc.Sequence[CheckedMotion]) -> None:
+    def __init__(self, stop: int, tray: str, part: str, grasp: int, motions: collections.abc.Sequence[CheckedMotion]) -> None:
         ...
 class CheckedDriveBy:
-    def __init__(self, pick: typing.SupportsInt | typing.SupportsIndex, close_at: typing.SupportsFloat | typing.SupportsIndex, closed_at: typing.SupportsFloat | typing.SupportsIndex, motion: CheckedMotion) -> None:
+    def __init__(self, pick: int, close_at: float, closed_at: float, motion: CheckedMotion) -> None:
         ...
 class CheckedStop:
-    def __init__(self, pose: numpy.typing.ArrayLike, radius: typing.SupportsFloat | typing.SupportsIndex, trays: collections.abc.Sequence[str]) -> None:
+    def __init__(self, pose: numpy.typing.ArrayLike, radius: float, trays: collections.abc.Sequence[str]) -> None:
         ...
 class CheckedRegion:
     def __init__(self, tray: str, cells: numpy.typing.ArrayLike) -> None:
         ...
 class CheckedLegFigures:
-    def __init__(self, length: typing.SupportsFloat | typing.SupportsIndex, turning: typing.SupportsFloat | typing.SupportsIndex, duration: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __init__(self, length: float, turning: float, duration: float) -> None:
         ...
 class CheckedIntersection:
-    def __init__(self, trays: collections.abc.Sequence[str], heading: typing.SupportsFloat | typing.SupportsIndex, centre: numpy.typing.ArrayLike, radius: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __init__(self, trays: collections.abc.Sequence[str], heading: float, centre: numpy.typing.ArrayLike, radius: float) -> None:
         ...
 class CheckedGrid:
-    def __init__(self, origin: numpy.typing.ArrayLike, resolution: typing.SupportsFloat | typing.SupportsIndex, nx: typing.SupportsInt | typing.SupportsIndex, ny: typing.SupportsInt | typing.SupportsIndex, headings: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]) -> None:
+    def __init__(self, origin: numpy.typing.ArrayLike, resolution: float, nx: int, ny: int, headings: collections.abc.Sequence[float]) -> None:
         ...
 class PlanToCheck:
     """
@@ -62,13 +62,13 @@ class PlanToCheck:
     def acceleration_limits(self) -> list[float]:
         ...
     @acceleration_limits.setter
-    def acceleration_limits(self, arg0: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]) -> None:
+    def acceleration_limits(self, arg0: collections.abc.Sequence[float]) -> None:
         ...
     @property
-    def approach(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def approach(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @approach.setter
-    def approach(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None:
+    def approach(self, arg0: numpy.typing.ArrayLike) -> None:
         ...
     @property
     def arm_joints(self) -> list[str]:
@@ -77,22 +77,22 @@ class PlanToCheck:
     def arm_joints(self, arg0: collections.abc.Sequence[str]) -> None:
         ...
     @property
-    def bin_size(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"]:
+    def bin_size(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @bin_size.setter
-    def bin_size(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[2, 1]"]) -> None:
+    def bin_size(self, arg0: numpy.typing.ArrayLike) -> None:
         ...
     @property
     def clearance(self) -> float:
         ...
     @clearance.setter
-    def clearance(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def clearance(self, arg0: float) -> None:
         ...
     @property
     def closing_speed(self) -> float:
         ...
     @closing_speed.setter
-    def closing_speed(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def closing_speed(self, arg0: float) -> None:
         ...
     @property
     def drive_by(self) -> list[CheckedDriveBy]:
@@ -104,7 +104,7 @@ class PlanToCheck:
     def drop_gap(self) -> float:
         ...
     @drop_gap.setter
-    def drop_gap(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def drop_gap(self, arg0: float) -> None:
         ...
     @property
     def finger_links(self) -> list[str]:
@@ -119,16 +119,16 @@ class PlanToCheck:
     def fingers(self, arg0: collections.abc.Sequence[CheckedFinger]) -> None:
         ...
     @property
-    def goal(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def goal(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @goal.setter
-    def goal(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None:
+    def goal(self, arg0: numpy.typing.ArrayLike) -> None:
         ...
     @property
-    def home(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def home(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @home.setter
-    def home(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None:
+    def home(self, arg0: numpy.typing.ArrayLike) -> None:
         ...
     @property
     def intersections(self) -> list[CheckedIntersection]:
@@ -140,13 +140,13 @@ class PlanToCheck:
     def lower_bound(self) -> int:
         ...
     @lower_bound.setter
-    def lower_bound(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None:
+    def lower_bound(self, arg0: int) -> None:
         ...
     @property
     def max_opening(self) -> float:
         ...
     @max_opening.setter
-    def max_opening(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def max_opening(self, arg0: float) -> None:
         ...
     @property
     def obstacles(self) -> list[CheckedBody]:
@@ -158,7 +158,7 @@ class PlanToCheck:
     def other_joints(self) -> dict[str, float]:
         ...
     @other_joints.setter
-    def other_joints(self, arg0: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex]) -> None:
+    def other_joints(self, arg0: collections.abc.Mapping[str, float]) -> None:
         ...
     @property
     def parts(self) -> list[CheckedPart]:
@@ -184,7 +184,7 @@ class PlanToCheck:
     def positioning_uncertainty(self) -> float:
         ...
     @positioning_uncertainty.setter
-    def positioning_uncertainty(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def positioning_uncertainty(self, arg0: float) -> None:
         ...
     @property
     def regions(self) -> list[CheckedRegion]:
@@ -204,13 +204,13 @@ class PlanToCheck:
     def robustness_rate(self) -> float:
         ...
     @robustness_rate.setter
-    def robustness_rate(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def robustness_rate(self, arg0: float) -> None:
         ...
     @property
-    def route(self) -> list[list[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]]]:
+    def route(self) -> list[list[numpy.typing.NDArray[numpy.float64]]]:
         ...
     @route.setter
-    def route(self, arg0: collections.abc.Sequence[collections.abc.Sequence[typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]]]) -> None:
+    def route(self, arg0: collections.abc.Sequence[collections.abc.Sequence[numpy.typing.ArrayLike]]) -> None:
         ...
     @property
     def route_figures(self) -> list[CheckedLegFigures]:
@@ -219,10 +219,10 @@ class PlanToCheck:
     def route_figures(self, arg0: collections.abc.Sequence[CheckedLegFigures]) -> None:
         ...
     @property
-    def start(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    def start(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @start.setter
-    def start(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None:
+    def start(self, arg0: numpy.typing.ArrayLike) -> None:
         ...
     @property
     def stops(self) -> list[CheckedStop]:
@@ -240,7 +240,7 @@ class PlanToCheck:
     def velocity_limits(self) -> list[float]:
         ...
     @velocity_limits.setter
-    def velocity_limits(self, arg0: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]) -> None:
+    def velocity_limits(self, arg0: collections.abc.Sequence[float]) -> None:
         ...
 class PathCheckResult:
     """
@@ -248,7 +248,7 @@ class PathCheckResult:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def configurations_checked(self) -> int:
@@ -269,7 +269,7 @@ class Fault:
         ...
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def code(self) -> str:
@@ -286,7 +286,7 @@ class StopRate:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def good(self) -> int:
@@ -306,7 +306,7 @@ class PlanCheckResult:
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         ...
     @property
     def configurations_checked(self) -> int:
@@ -325,22 +325,22 @@ class PlanCheckResult:
     @property
     def rates(self) -> list[StopRate]:
         ...
-def check_path(robot: mmgrasp._core.Robot, joints: collections.abc.Sequence[str], path: numpy.typing.ArrayLike, bodies: collections.abc.Sequence[CheckedBody], *, other_joints: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}, joint_step: typing.SupportsFloat | typing.SupportsIndex = 0.005) -> PathCheckResult:
+def check_path(robot: mmgrasp._core.Robot, joints: collections.abc.Sequence[str], path: numpy.typing.ArrayLike, bodies: collections.abc.Sequence[CheckedBody], *, other_joints: collections.abc.Mapping[str, float] = {}, joint_step: float = 0.005) -> PathCheckResult:
     """
     Looks at waypoints (k, n) joined by straight lines, in steps of joint_step [rad or m]: limits, self-collisions and
     collisions with the bodies, by KDL and FCL called directly.
     """
-def check_plan(plan: PlanToCheck, *, progress: typing.Any = None, **kwargs) -> PlanCheckResult:
+def check_plan(plan: PlanToCheck, *, progress: collections.abc.Callable[[str, float], object] | None = None, joint_step: float = 0.01, base_step: float = 0.01, position_tolerance: float = 0.0001, rotation_tolerance: float = 0.001, samples: int = 1000, required_rate: float = 0.999, seed: int = 20240607, threads: int = 0) -> PlanCheckResult:
     """
     Checks a finished plan against its scenario.
     
     Keyword options:
-        joint_step = 0.01: arm paths are checked at least this finely [rad or m]
-        base_step = 0.01: the route [m, and rad x 2]
-        position_tolerance = 0.0001: of a grasp [m]
-        rotation_tolerance = 0.001: of a grasp [rad]
-        samples = 1000: base poses drawn in the uncertainty disc of each stop
-        required_rate = 0.999: share of them from which every target part has a grasp
-        seed = 20240607: of the base poses drawn
-        threads = 0: 0: all
+        joint_step: float = 0.01  # arm paths are checked at least this finely [rad or m]
+        base_step: float = 0.01  # the route [m, and rad x 2]
+        position_tolerance: float = 0.0001  # of a grasp [m]
+        rotation_tolerance: float = 0.001  # of a grasp [rad]
+        samples: int = 1000  # base poses drawn in the uncertainty disc of each stop
+        required_rate: float = 0.999  # share of them from which every target part has a grasp
+        seed: int = 20240607  # of the base poses drawn
+        threads: int = 0  # 0: all
     """

@@ -194,7 +194,9 @@ def _in_passing(
     before = plan.route[leg].duration(problem.robot) + sum(m.trajectory.duration for m in merged) + closing
     T_grasp = part.T_world_part @ part.grasps[pick.grasp].T_object_hand
     T_before = T_grasp.copy()
-    T_before[:3, 3] -= problem.options["approach_distance"] * T_grasp[:3, :3] @ np.asarray(problem.gripper.approach)
+    T_before[:3, 3] -= (
+        float(problem.options["approach_distance"]) * T_grasp[:3, :3] @ np.asarray(problem.gripper.approach)
+    )
     dwell = closing + SETTLING
     tasks = [
         _core.DriveByTask(T_before, tolerance=[0.003] * 3 + [0.02] * 3, max_tool_speed=APPROACH_SPEED),

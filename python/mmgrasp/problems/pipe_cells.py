@@ -12,6 +12,7 @@ from collections import Counter
 from dataclasses import dataclass, replace
 from functools import cache
 from math import pi
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -310,7 +311,7 @@ def _first_carries(cell: PipeCell) -> bool:
 
 
 @cache
-def _roadmap(robot: str, index: int, **graph: int) -> Roadmap:
+def _roadmap(robot: str, index: int, **graph: Any) -> Roadmap:
     return Roadmap.build(pipe_robot(robot)[1], seed=_CHECKS + index, **graph)
 
 

@@ -222,7 +222,12 @@ def _read_gripper(node: Node, robot: Robot, tcp: str) -> Hand:
     if abs(axes["approach"] @ axes["closing"]) > 1e-6:
         node["closing"].fail("must be orthogonal to approach")
     return Hand(
-        tcp, joints=joints, finger_links=[link.raw for link in node["finger_links"].elements()], **axes, **sizes
+        tcp,
+        approach=axes["approach"],
+        closing=axes["closing"],
+        joints=joints,
+        finger_links=[link.raw for link in node["finger_links"].elements()],
+        **sizes,
     )
 
 

@@ -1,0 +1,131 @@
+"""The dicts that results of the C++ library hold, as types: what keys there are, and what they mean."""
+
+from __future__ import annotations
+
+from typing import TypedDict
+
+from . import _core
+
+
+class MeshRow(TypedDict):
+    """What reading one collision mesh found, in `RobotReport.meshes`."""
+
+    path: str
+    vertices_read: int
+    vertices_merged: int
+    degenerate_triangles: int
+    triangles: int
+    closed: bool
+    convex: bool
+    chosen: str  # the shape that stands in for the mesh
+    triangles_saved: int
+    deviation: float  # how far that shape sticks out [m]
+
+
+class RobotReport(TypedDict):
+    """What loading a robot found: `Robot.report`."""
+
+    warnings: list[str]
+    meshes: list[MeshRow]
+    missing: list[str]  # mesh files that were not there
+
+
+class JointRow(TypedDict):
+    """One joint of `Robot.joint_table`."""
+
+    name: str
+    type: str
+    parent: str  # link
+    child: str  # link
+    lower: float  # [rad or m]
+    upper: float
+    velocity: float  # [rad/s or m/s]
+    mimic: str | None  # the joint it follows
+
+
+class GroupRow(TypedDict):
+    """One SRDF group of `Robot.groups`."""
+
+    joints: list[str]
+    base_link: str
+    tip_link: str
+
+
+class EndEffectorRow(TypedDict):
+    """One SRDF end effector of `Robot.end_effectors`."""
+
+    name: str
+    group: str
+    parent_link: str
+
+
+class MeshStandIn(TypedDict):
+    """A simpler shape for a mesh: `simplify_mesh`."""
+
+    shape: _core.LinkShape
+    chosen: str
+    triangles_saved: int
+    deviation: float  # how far it sticks out of the mesh [m]
+
+
+class RoadmapFigures(TypedDict):
+    """What a roadmap looks like: `Roadmap.figures`."""
+
+    mean_degree: float
+    components: int  # connected parts
+    largest_component: int  # its vertices
+    radius: float  # of connection [rad or m]
+    volume: float  # of the joint box
+    gamma_star: float  # the gamma that PRM* asks for
+
+
+class ManipulationStats(TypedDict):
+    """What a search took: `ManipulationResult.stats`."""
+
+    ik_seconds: float
+    roadmap_seconds: float
+    search_seconds: float
+    graph_searches: int
+    ways_opened: int
+    grasps_searched: int
+    roadmap_cost: float
+    edges_checked_robot: int
+    edges_checked_held: int
+    samples: int
+    vertices: int
+
+
+class DriveByEventRow(TypedDict):
+    """When and how one task of a drive-by is done: `DriveByResult.events`."""
+
+    waypoint: int
+    time: float  # [s]
+    close_time: float  # [s]
+    object: str  # what is held then; empty: nothing
+    held_time: float  # [s]
+    T_tip_object: list[list[float]] | None  # (4, 4) of what is held
+    candidate: int
+    base_speed: float  # [m/s]
+    tool_speed: float  # [m/s]
+
+
+class ViolationRow(TypedDict):
+    """How far one kind of constraint is broken: `DriveByResult.violations`."""
+
+    value: float  # 0 when kept
+    tolerance: float
+    unit: str
+    time: float  # where it is worst [s]
+    waypoint: int
+    what: str
+    kept: bool
+
+
+class SearchCounts(TypedDict):
+    """What one pose's search of `plan_platform_locations` took."""
+
+    draws: int
+    rejections: dict[str, int]
+    view: int  # turned down because the camera does not see the point
+    singular: int  # turned down for their manipulability
+    iterations: int

@@ -1,0 +1,95 @@
+"""The dicts inside results have exactly the keys, and values of the types, that mmgrasp._records says."""
+
+from __future__ import annotations
+
+import types
+import typing
+from typing import Any
+
+import numpy as np
+import pytest
+
+import mmgrasp as mg
+from mmgrasp import _core, _records
+from mmgrasp._files import shipped
+
+
+def check(value: object, annotation: Any, place: str) -> None:
+    """Fails where the value is not what the annotation says."""
+    origin, arguments = typing.get_origin(annotation), typing.get_args(annotation)
+    if typing.is_typeddict(annotation):
+        assert isinstance(value, dict), place
+        fields = typing.get_type_hints(annotation)
+        assert value.keys() == fields.keys(), place
+        for key, kind in fields.items():
+            check(value[key], kind, f"{place}.{key}")
+    elif origin is list:
+        assert isinstance(value, list), place
+        for entry in value:
+            check(entry, arguments[0], place)
+    elif origin is dict:
+        assert isinstance(value, dict), place
+        for key, entry in value.items():
+            check(key, arguments[0], place)
+            check(entry, arguments[1], f"{place}[{key!r}]")
+    elif origin is types.UnionType:
+        if value is not None:
+            check(value, arguments[0], place)
+    else:
+        assert type(value) is annotation, f"{place} = {value!r}"
+
+
+@pytest.fixture(scope="module")
+def robot() -> mg.Robot:
+    folder = shipped("asset:robots/tm14like")
+    return mg.Robot.load(folder / "tm14like.urdf", folder / "tm14like.srdf", base="omni")
+
+
+def test_robot(robot: mg.Robot) -> None:
+    check(robot.report, _records.RobotReport, "report")
+    check(robot.joint_table, list[_records.JointRow], "joint_table")
+    check(robot.groups, dict[str, _records.GroupRow], "groups")
+    check(robot.end_effectors, list[_records.EndEffectorRow], "end_effectors")
+    assert robot.joint_table and robot.groups and robot.end_effectors
+
+
+def test_mesh(tmp_path: typing.Any) -> None:
+    file = tmp_path / "one.obj"
+    file.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+    check(_core.simplify_mesh(mg.Mesh.load(file), 0.5), _records.MeshStandIn, "simplify_mesh")
+    urdf = f'<robot name="r"><link name="l"><collision><geometry><mesh filename="{file}"/></geometry></collision></link></robot>'
+    report = mg.Robot.from_strings(urdf).report
+    check(report, _records.RobotReport, "report")
+    assert len(report["meshes"]) == 1
+
+
+def test_planning(robot: mg.Robot) -> None:
+    arm = robot.group(next(iter(robot.groups)))
+    roadmap = _core.Roadmap.build(arm, vertices=50)
+    check(roadmap.figures, _records.RoadmapFigures, "figures")
+    q = 0.5 * (arm.sample_lower + arm.sample_upper)
+    problem = mg.ManipulationProblem(
+        arm, mg.World(), mg.LinkShape(mg.Box([0.02, 0.02, 0.02])), arm.fk(q), arm.fk(q), [np.eye(4)]
+    )
+    result = mg.plan_manipulation(problem, time_limit=0.2, vertices=50, max_vertices=0)
+    check(result.stats, _records.ManipulationStats, "stats")
+
+
+def test_platform_locations(robot: mg.Robot) -> None:
+    arm = robot.group(next(iter(robot.groups)), with_base=True)
+    checker = mg.CollisionChecker(robot, mg.World(), arm)
+    far = mg.pose((100, 0, 100))
+    found = _core.plan_platform_locations(checker, far, far, samples=1, max_draws=2)
+    check(found.pick, _records.SearchCounts, "pick")
+
+
+def test_drive_by(robot: mg.Robot) -> None:
+    arm = robot.group(next(iter(robot.groups)), with_base=True)
+    q = np.concatenate([[0, 0, 0], 0.5 * (arm.sample_lower + arm.sample_upper)[3:]])
+    task = mg.DriveByTask(arm.fk(q))
+    result = mg.plan_drive_by(
+        robot, arm, mg.World(), start=q, tasks=[task], goal=q, attempts=1, iterations=30, collisions=False
+    )
+    assert result.events and result.violations
+    check(result.events, list[_records.DriveByEventRow], "events")
+    check(result.violations, dict[str, _records.ViolationRow], "violations")

@@ -16,7 +16,7 @@ for region in regions:
 
 shared = mg.base.robust_intersections(grid, regions, scenario.positioning_uncertainty)
 print(shared)
-stops = mg.base.minimal_stops(grid, shared.robust, len(regions))
+stops = mg.base.cover_from_intersections(grid, shared.robust, len(regions))
 print(stops, "- at least", stops.lower_bound, "are needed")
 for stop in stops.stops:
     print(

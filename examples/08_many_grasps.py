@@ -57,7 +57,7 @@ def blocked(grasp: mg.Grasp, configurations: np.ndarray) -> tuple[np.ndarray, np
     held.add("bar", [bar])
     held.attach("bar", "hand", np.linalg.inv(grasp.T_object_hand))
     alone = mg.CollisionChecker(gantry.robot, world, gantry)
-    bar_only = mg.CollisionChecker(gantry.robot, held, gantry, held_only=True)
+    bar_only = mg.CollisionChecker(gantry.robot, held, gantry, attached_only=True)
     by_hand = np.array([not alone.is_free(q) for q in configurations])
     return by_hand, ~by_hand & np.array([not bar_only.is_free(q) for q in configurations])
 

@@ -2,7 +2,7 @@
 
 import mmgrasp as mg
 from mmgrasp.problems.pipe_cells import pipe_cell
-from mmgrasp.viz.carry import write_carry
+from mmgrasp.viz.transfer import write_transfer
 
 cell = pipe_cell(5, seed=1)
 print(f"{cell.pipe} between a partition and a roof; cells turned down before this one: {cell.rejected or 'none'}")
@@ -17,4 +17,4 @@ if found.path is not None:
     print(
         f"taken: {grasp}; {found.stats['graph_searches']} searches of the roadmap in {found.stats['search_seconds']:.2f} s"
     )
-    print("picture:", write_carry(cell, grasp, found.path, "carry_pipe.png"))
+    print("picture:", write_transfer(cell, grasp, found.path, "carry_pipe.png"))

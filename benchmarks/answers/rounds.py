@@ -147,7 +147,7 @@ def drive_by_past_a_table() -> Answer:
     options = {"waypoints": 45, "time_limit": PATIENT, "attempt_time_limit": PATIENT, "threads": threads()}
     found = find("plan_drive_by")(arm.robot, arm, scene, tasks=tasks, **ends, **options)
     way = found.trajectory
-    parts = {"outcome": [found.outcome, found.iterations, found.attempts]}
+    parts = {"outcome": [found.outcome, found.iterations, get(found, "solves", "attempts")]}
     parts["trajectory"] = [way.times, way.positions, way.drive]
     return parts, {"outcome": found.outcome.name, "seconds": found.duration, "iterations": found.iterations}
 

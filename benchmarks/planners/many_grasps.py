@@ -67,7 +67,7 @@ def ours(planner: str):
 
         begin = time.process_time()
         try:
-            result = mg.plan_manipulation(problem, improved=improved, **options)
+            result = mg.plan_manipulation(problem, on_solution=improved, **options)
         except Enough:
             return {**NONE, "first": told[0]}
         return {"first": told[0], "cost": result.cost} if result.outcome == mg.Outcome.solved else NONE

@@ -53,7 +53,7 @@ void run(const mmgrasp::test::Layout& layout) {
     mmgrasp::StopOptions options;
     options.min_radius = kUncertainty;
     options.tie_time_limit = kTies;
-    const mmgrasp::StopSet stops = mmgrasp::least_stops(layout.grid, layout.regions, options);
+    const mmgrasp::StopSet stops = mmgrasp::plan_stops_exact(layout.grid, layout.regions, options);
     double least = 1e3, sum = 0;
     for (const mmgrasp::Stop& stop : stops.stops) {
       least = std::min(least, stop.radius);

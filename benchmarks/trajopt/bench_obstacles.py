@@ -49,7 +49,7 @@ def main() -> None:
             f"{given.count} poses, {given.waypoints} waypoints",
             paths_exist=len(counted),
             solved=len(solved) / len(counted),
-            at_once=sum(r.attempts == 1 for _, r in solved) / len(counted),
+            at_once=sum(r.solves == 1 for _, r in solved) / len(counted),
             base_above=sum(r.events[0]["base_speed"] > 0.1 for _, r in solved) / max(1, len(solved)),
             duration=statistics.median(r.duration for _, r in solved),
         )  # fmt: skip

@@ -51,7 +51,7 @@ def main() -> None:
         line(
             "random grasps", on, "mmgrasp", [t for t, _ in ours], settings,
             solved=len(solved) / len(ours),
-            at_once=sum(r.attempts == 1 for r in solved) / len(ours),
+            at_once=sum(r.solves == 1 for r in solved) / len(ours),
             base_above=sum(r.events[0]["base_speed"] > 0.1 for r in solved) / max(1, len(solved)),
             duration=statistics.median(r.duration for r in solved),
         )  # fmt: skip

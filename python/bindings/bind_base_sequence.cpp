@@ -115,15 +115,16 @@ void bind_stops(py::module_& m) {
       .def_readonly("lower_bound", &StopSet::lower_bound, "Proven least number of stops.")
       .def_readonly("unreachable_trays", &StopSet::unreachable_trays,
                     "Indices of trays that no disc of the asked radius serves.")
-      .def_readonly("candidates", &StopSet::candidates, "What least_stops chose from.")
+      .def_readonly("candidates", &StopSet::candidates, "What plan_stops_exact chose from.")
       .def("__repr__", [](const StopSet& s) {
         return std::string("StopSet(") + to_string(s.outcome) + ", " + std::to_string(s.stops.size()) + " stops)";
       });
-  m.def("minimal_stops", py::overload_cast<const BaseGrid&, const std::vector<Intersection>&, int>(&minimal_stops),
+  m.def("cover_from_intersections",
+        py::overload_cast<const BaseGrid&, const std::vector<Intersection>&, int>(&cover_from_intersections),
         py::arg("grid"), py::arg("intersections"), py::arg("trays"),
         "The least number of intersections that cover all trays (P1 equation 3.1), with proof.");
   m.def(
-      "least_stops",
+      "plan_stops_exact",
       [](const BaseGrid& grid, const OneRegionATray& given, double min_radius, double time_limit, double tie_time_limit,
          const OptionalArray& start, const OptionalArray& goal, const Progress& progress) {
         const std::vector<BaseRegion> regions = regions_argument(grid, given);
@@ -138,7 +139,7 @@ void bind_stops(py::module_& m) {
                                      const std::vector<Stop>& stops) { return straight_route_length(stops, from, to); };
         }
         return LongCall(progress).run(
-            [&](const Monitor& monitor) { return least_stops(grid, regions, options, monitor); });
+            [&](const Monitor& monitor) { return plan_stops_exact(grid, regions, options, monitor); });
       },
       py::arg("grid"), py::arg("regions"), py::arg("min_radius") = StopOptions{}.min_radius, py::kw_only(),
       py::arg("time_limit") = StopOptions{}.time_limit, py::arg("tie_time_limit") = StopOptions{}.tie_time_limit,

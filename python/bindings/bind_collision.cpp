@@ -15,7 +15,7 @@ const std::vector<OptionField<CheckerOptions>>& checker_fields() {
       option<O>("padding", &O::padding, "robot shapes are grown by this against the scene [m]"),
       option<O>("check_self", &O::check_self, "robot (and what it holds) against itself"),
       option<O>("check_scene", &O::check_scene, "robot (and what it holds) against the scene"),
-      option<O>("held_only", &O::held_only, "only what it holds, against the robot and the scene")};
+      option<O>("attached_only", &O::attached_only, "only what it holds, against the robot and the scene")};
   return fields;
 }
 

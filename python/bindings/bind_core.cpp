@@ -59,14 +59,14 @@ void bind_outcomes(py::module_& m) {
       .finalize();
   py::native_enum<Rejection>(m, "Rejection", "enum.Enum", "Why one candidate was turned down.")
       .value("none", Rejection::none, "It was not turned down.")
-      .value("reach", Rejection::reach, "No arm configuration reaches the pose.")
+      .value("unreachable", Rejection::unreachable, "No arm configuration reaches the pose.")
       .value("limits", Rejection::limits, "Reached only outside joint limits.")
       .value("self_collision", Rejection::self_collision, "Robot hits robot or what it holds.")
       .value("scene", Rejection::scene, "Robot (or what it holds) hits the scene.")
       .value("grasp_filter", Rejection::grasp_filter, "Turned down before inverse kinematics.")
       .finalize();
   py::class_<Rejections>(m, "Rejections", "How many candidates fell at which filter.")
-      .def_readonly("reach", &Rejections::reach, "No arm configuration reaches the pose.")
+      .def_readonly("unreachable", &Rejections::unreachable, "No arm configuration reaches the pose.")
       .def_readonly("limits", &Rejections::limits, "Reached only outside joint limits.")
       .def_readonly("self_collision", &Rejections::self_collision, "Reached, but robot hits robot or what it holds.")
       .def_readonly("scene", &Rejections::scene, "Reached, but robot (or what it holds) hits the scene.")
@@ -124,7 +124,7 @@ void bind_poses(py::module_& m) {
 
 py::dict to_dict(const Rejections& r) {
   using namespace py::literals;
-  return py::dict("reach"_a = r.reach, "limits"_a = r.limits, "self_collision"_a = r.self_collision,
+  return py::dict("unreachable"_a = r.unreachable, "limits"_a = r.limits, "self_collision"_a = r.self_collision,
                   "scene"_a = r.scene, "grasp_filter"_a = r.grasp_filter);
 }
 

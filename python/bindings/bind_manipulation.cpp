@@ -111,7 +111,7 @@ void refuse_options_of_others(const py::kwargs& given, bool with_roadmap, const 
   if (with_roadmap && !prm) throw InvalidInput("roadmap:" + rule);
 }
 
-/// Calls Python's `improved` from the planning thread; what it raises ends the run and is raised again.
+/// Calls Python's `on_solution` from the planning thread; what it raises ends the run and is raised again.
 class Improved {
  public:
   explicit Improved(py::object callback) : callback_(std::move(callback)) {}
@@ -141,28 +141,29 @@ class Improved {
 
 void bind_manipulation(py::module_& m) {
   bind_roadmap(m);
-  bind_carry_problem(m);
-  bind_carry_result(m);
+  bind_manipulation_problem(m);
+  bind_manipulation_result(m);
   m.def("_manipulation_option_table", [] { return option_table(manipulation_fields()); });
   m.def("manipulation_planner_names", &manipulation_planner_names, "Names that plan_manipulation's `planner` takes.");
   m.def(
       "plan_manipulation",
       [](const Given<ManipulationProblem>& given_problem, const std::optional<Given<Roadmap>>& given_roadmap,
-         const Progress& progress, const OnImproved& improved, const py::kwargs& options) {
+         const Progress& progress, const OnImproved\& on_solution, const py::kwargs& options) {
         const ManipulationProblem& problem = taken(given_problem, "problem");
         const Roadmap* roadmap = given_roadmap ? &taken(*given_roadmap, "roadmap") : nullptr;
         const ManipulationOptions read = read_options(manipulation_fields(), options, "plan_manipulation");
         refuse_options_of_others(options, roadmap != nullptr, read.planner);
-        Improved callback(function_argument(improved, "improved"));
+        Improved callback(function_argument(on_solution, "on_solution"));
         ManipulationResult result = LongCall(progress).run([&](const Monitor& monitor) {
           return plan_manipulation(problem, read, roadmap, monitor, callback.function(monitor));
         });
         callback.raise();
         return result;
       },
-      "problem"_a, py::kw_only(), "roadmap"_a = py::none(), "progress"_a = py::none(), "improved"_a = py::none(),
+      "problem"_a, py::kw_only(), "roadmap"_a = py::none(), "progress"_a = py::none(), "on_solution"_a = py::none(),
       ("Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 "
-       "chapters 4 and 5). Every grasp is looked at. `improved` is called with every better solution (an Improvement); "
+       "chapters 4 and 5). Every grasp is looked at. `on_solution` is called with every better solution (an "
+       "Improvement); "
        "what "
        "it raises ends the call." +
        option_help(manipulation_fields()))

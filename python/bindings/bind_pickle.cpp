@@ -26,7 +26,7 @@ BaseGrid grid_of(const py::tuple& s) {
 
 py::tuple explanation_state(const PartExplanation& e) {
   const Rejections& r = e.rejections;
-  return py::make_tuple(e.part, e.grasps, e.base_poses_tried, e.base_poses_feasible, r.reach, r.limits,
+  return py::make_tuple(e.part, e.grasps, e.base_poses_tried, e.base_poses_feasible, r.unreachable, r.limits,
                         r.self_collision, r.scene, r.grasp_filter);
 }
 

@@ -40,12 +40,13 @@ std::vector<Eigen::VectorXd> goals_argument(const ArrayLike& goal, Eigen::Index 
 
 MotionResult motion(const Given<Robot>& given_robot, const Given<JointGroup>& given_group, const Given<World>& world,
                     const ArrayLike& start, const OptionalArray& goal, const OptionalArray& tool_poses,
-                    const Given<std::vector<ToolRegion>>& regions, const std::optional<Given<ToolCone>>& tool_cone,
+                    const Given<std::vector<ToolRegion>>& regions,
+                    const std::optional<Given<OrientationConstraint>>& orientation_constraint,
                     const OnSolution& on_solution, const Progress& progress, const py::kwargs& options) {
   const JointGroup& group = taken(given_group, "group");
   check_same_robot(taken(given_robot, "robot"), group);
   MotionOptions read = read_options(motion_fields(), options, "plan_motion");
-  if (tool_cone) read.tool_cone = taken(*tool_cone, "tool_cone");
+  if (orientation_constraint) read.orientation_constraint = taken(*orientation_constraint, "orientation_constraint");
   if (!function_argument(on_solution, "on_solution").is_none()) {
     read.on_improvement = [&](const Improvement& better) {
       const py::gil_scoped_acquire gil;
@@ -81,17 +82,18 @@ void bind_goals(py::module_& m) {
         return "ToolRegion(position=" + std::string(py::repr(py::cast(r.position))) +
                ", rotation=" + std::string(py::repr(py::cast(r.rotation))) + ")";
       });
-  py::class_<ToolCone>(m, "ToolCone", "Path constraint: an axis of the tool stays near an axis of the world.")
+  py::class_<OrientationConstraint>(m, "OrientationConstraint",
+                                    "Path constraint: an axis of the tool stays near an axis of the world.")
       .def(py::init([](const ArrayLike& tool_axis, const ArrayLike& world_axis, const Given<double>& half_angle) {
-             ToolCone cone{vector3_argument(tool_axis, "tool_axis"), vector3_argument(world_axis, "world_axis"),
-                           taken(half_angle, "half_angle")};
+             OrientationConstraint cone{vector3_argument(tool_axis, "tool_axis"),
+                                        vector3_argument(world_axis, "world_axis"), taken(half_angle, "half_angle")};
              cone.check();
              return cone;
            }),
            py::arg("tool_axis"), py::arg("world_axis"), py::arg("half_angle"),
            "tool_axis in the tip's frame; half_angle: the largest angle between the two [rad].")
-      .def("__repr__", [](const ToolCone& c) {
-        return "ToolCone(half_angle=" + std::string(py::repr(py::float_(c.half_angle))) + ")";
+      .def("__repr__", [](const OrientationConstraint& c) {
+        return "OrientationConstraint(half_angle=" + std::string(py::repr(py::float_(c.half_angle))) + ")";
       });
 }
 
@@ -151,10 +153,11 @@ void bind_motion(py::module_& m) {
   m.def(
       "plan_motion", &motion, py::arg("robot"), py::arg("group"), py::arg("world"), py::kw_only(), py::arg("start"),
       py::arg("goal") = py::none(), py::arg("tool_poses") = py::none(), py::arg("regions") = std::vector<ToolRegion>{},
-      py::arg("tool_cone") = py::none(), py::arg("on_solution") = py::none(), py::arg("progress") = py::none(),
+      py::arg("orientation_constraint") = py::none(), py::arg("on_solution") = py::none(),
+      py::arg("progress") = py::none(),
       ("A collision-free path of the group from `start` (n,) to any of its goals: `goal` (n,) or several as (m, n),\n"
        "`tool_poses` of the tip, (4, 4) or (m, 4, 4), and `regions` of them, reached by inverse kinematics. "
-       "`tool_cone`\n"
+       "`orientation_constraint`\n"
        "holds on the whole path. on_solution(path, cost) is called with each better path. A diff-drive base turns on\n"
        "the spot and drives straight." +
        option_help(motion_fields()))

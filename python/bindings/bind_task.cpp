@@ -103,24 +103,24 @@ void bind_problem(py::module_& m) {
                     "Headings of the base that are tried [rad]; empty: the one that faces the tray.")
       .def("__repr__",
            [](const Tray& t) { return "Tray('" + t.name + "', " + std::to_string(t.parts.size()) + " parts)"; });
-  py::class_<CarryPlace>(m, "CarryPlace", "Where picked parts go: a bin fixed to the robot.")
+  py::class_<PlaceRegion>(m, "PlaceRegion", "Where picked parts go: a bin fixed to the robot.")
       .def(py::init([](const ArrayLike& T_base_bin, const ArrayLike& size, double drop_gap) {
-             return CarryPlace{pose_argument(T_base_bin, "T_base_bin"), vector2_argument(size, "size"),
-                               finite_argument(drop_gap, "drop_gap")};
+             return PlaceRegion{pose_argument(T_base_bin, "T_base_bin"), vector2_argument(size, "size"),
+                                finite_argument(drop_gap, "drop_gap")};
            }),
-           py::arg("T_base_bin"), py::arg("size"), py::arg("drop_gap") = CarryPlace{}.drop_gap,
+           py::arg("T_base_bin"), py::arg("size"), py::arg("drop_gap") = PlaceRegion{}.drop_gap,
            "`T_base_bin` (4, 4): middle of the bin's top plane in the robot's root frame, z up; `size` (2,): inner x "
            "and y\n[m], > 0; `drop_gap`: how far above the top plane a part is released [m], >= 0.")
       .def_property_readonly(
-          "T_base_bin", [](const CarryPlace& c) { return to_array(c.T_base_bin); },
+          "T_base_bin", [](const PlaceRegion& c) { return to_array(c.T_base_bin); },
           "Middle of the bin's top plane in the robot's root frame (4, 4), z up.")
-      .def_readonly("size", &CarryPlace::size, "Inner x and y (2,) [m].")
-      .def_readonly("drop_gap", &CarryPlace::drop_gap,
+      .def_readonly("size", &PlaceRegion::size, "Inner x and y (2,) [m].")
+      .def_readonly("drop_gap", &PlaceRegion::drop_gap,
                     "A part is released with its lowest point so far above the bin's top plane [m].");
   py::class_<PartSupplyProblem>(m, "PartSupplyProblem", "Everything the part-supply planner needs.")
       .def(py::init([](const Robot& robot, const JointGroup& arm, const Hand& gripper, const World& scene,
                        std::vector<Tray> trays, const ArrayLike& home, const ArrayLike& start, const ArrayLike& goal,
-                       const CarryPlace& carry, const py::kwargs& options) {
+                       const PlaceRegion& place_region, const py::kwargs& options) {
              PartSupplyProblem problem{robot,
                                        arm,
                                        gripper,
@@ -129,13 +129,13 @@ void bind_problem(py::module_& m) {
                                        vector_argument(home, "home", arm.size()),
                                        vector3_argument(start, "start"),
                                        vector3_argument(goal, "goal"),
-                                       carry,
+                                       place_region,
                                        read_options(supply_fields(), options, "PartSupplyProblem")};
              problem.check();
              return problem;
            }),
            py::arg("robot"), py::arg("arm"), py::arg("gripper"), py::arg("scene"), py::arg("trays"), py::arg("home"),
-           py::arg("start"), py::arg("goal"), py::arg("carry"),
+           py::arg("start"), py::arg("goal"), py::arg("place_region"),
            ("`scene` is without the parts; `home` (n,) is the arm's configuration while driving; `start` and `goal` "
             "(3,) are base\nposes x, y, theta [m, m, rad]. Raises InvalidInput naming the field that breaks its rule." +
             option_help(supply_fields()))
@@ -148,7 +148,7 @@ void bind_problem(py::module_& m) {
       .def_readonly("home", &PartSupplyProblem::home, "Arm configuration while driving (n,), fingers closed.")
       .def_readonly("start", &PartSupplyProblem::start, "Base pose at the beginning (3,): x, y, theta [m, m, rad].")
       .def_readonly("goal", &PartSupplyProblem::goal, "Base pose at the end (3,): x, y, theta [m, m, rad].")
-      .def_readonly("carry", &PartSupplyProblem::carry, "Where picked parts go.")
+      .def_readonly("place_region", &PartSupplyProblem::place_region, "Where picked parts go.")
       .def_property_readonly(
           "options",
           [](const PartSupplyProblem& p) -> NamedOptions {
@@ -162,7 +162,8 @@ void bind_problem(py::module_& m) {
 void bind_picks(py::module_& m) {
   py::class_<PickMotion>(m, "PickMotion", "One timed arm motion at a stop.")
       .def_property_readonly(
-          "kind", [](const PickMotion& p) { return to_string(p.kind); }, "reach, approach, lift, carry or retreat.")
+          "kind", [](const PickMotion& p) { return to_string(p.kind); },
+          "transit, approach, lift, transfer or retreat.")
       .def_readonly("opening", &PickMotion::opening, "Opening of the fingers during the motion [m].")
       .def_readonly("holding", &PickMotion::holding, "The part is attached during the motion.")
       .def_readonly("trajectory", &PickMotion::trajectory, "The arm on its clock, from 0.")
@@ -170,7 +171,7 @@ void bind_picks(py::module_& m) {
         return std::string("PickMotion(") + to_string(p.kind) + ", " +
                std::string(py::repr(py::float_(p.trajectory.duration()))) + " s)";
       });
-  py::class_<Pick>(m, "Pick", "Home, pre-grasp, grasp, lift, carry, home.")
+  py::class_<Pick>(m, "Pick", "Home, pre-grasp, grasp, lift, transfer, home.")
       .def_readonly("outcome", &Pick::outcome, "How it ended; `solved` alone comes with an answer.")
       .def_readonly("stop", &Pick::stop, "Index of the stop.")
       .def_property_readonly(
@@ -178,7 +179,7 @@ void bind_picks(py::module_& m) {
       .def_property_readonly(
           "part", [](const Pick& p) { return p.part.part; }, "Index into the tray's parts.")
       .def_readonly("grasp", &Pick::grasp, "Index into the part's grasps.")
-      .def_readonly("motions", &Pick::motions, "reach, approach, lift, carry, retreat.")
+      .def_readonly("motions", &Pick::motions, "transit, approach, lift, transfer, retreat.")
       .def_readonly("rejections", &Pick::rejections,
                     "Grasps and their configurations turned down on the way, by cause.")
       .def_readonly("failed_at", &Pick::failed_at, "Without a solution: the stage at which most candidates fell.")
@@ -264,7 +265,7 @@ void bind_plan_result(py::module_& m) {
       .def_readonly("message", &Obstruction::message, "One sentence that a person can act on.")
       .def_readonly("largest_uncertainty", &Obstruction::largest_uncertainty,
                     "Largest positioning uncertainty that still works [m]; < 0: none does.")
-      .def_readonly("missing_reach", &Obstruction::missing_reach,
+      .def_readonly("reach_deficit", &Obstruction::reach_deficit,
                     "How far the nearest base pose falls short of the part [m]; 0: reach is not it. `advised_move` is "
                     "what suffices.")
       .def_readonly("advised_move", &Obstruction::advised_move, "Translation of the tray in the world's x and y [m].")
@@ -275,7 +276,7 @@ void bind_plan_result(py::module_& m) {
           "to_dict",
           [](const Obstruction& o) {
             return py::dict("tray"_a = o.tray, "part"_a = o.part, "stage"_a = o.stage, "message"_a = o.message,
-                            "largest_uncertainty"_a = o.largest_uncertainty, "missing_reach"_a = o.missing_reach,
+                            "largest_uncertainty"_a = o.largest_uncertainty, "reach_deficit"_a = o.reach_deficit,
                             "advised_move"_a = std::vector<double>{o.advised_move.x(), o.advised_move.y()},
                             "move_trays"_a = o.move_trays, "move_objects"_a = o.move_objects,
                             "needed_opening"_a = o.needed_opening);

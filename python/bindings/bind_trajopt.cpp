@@ -27,12 +27,13 @@ const std::vector<OptionField<DriveByOptions>>& drive_by_fields() {
   using W = WholeBodyOptions;
   static const std::vector<OptionField<O>> fields{
       option<O>("waypoints", &O::waypoints, "waypoints of the whole motion"),
-      option<O>("attempts", &O::attempts, "guesses tried until one leads to a solution"),
+      option<O>("seeds", &O::seeds, "guesses tried until one leads to a solution"),
       option<O>("solutions", &O::solutions, "solutions compared of one choice of candidates"),
-      option<O>("choices", &O::choices,
-                "choices of candidates planned; the fastest motion is returned; 1: the choice that looks quickest"),
-      option<O>("stands", &O::stands, "configurations sought per candidate"),
-      option<O>("iterations", &O::iterations, "of all attempts; after so many no other begins"),
+      option<O>(
+          "grasp_assignments", &O::grasp_assignments,
+          "grasp_assignments of candidates planned; the fastest motion is returned; 1: the choice that looks quickest"),
+      option<O>("goal_configurations", &O::goal_configurations, "configurations sought per candidate"),
+      option<O>("iterations", &O::iterations, "of all solves; after so many no other begins"),
       option<O>("time_limit", &O::time_limit, "wall-clock cap [s]"),
       option<O>("jerk_time", &O::jerk_time, "accelerations may go from 0 to their limit in no less [s]; 0: no limit"),
       option<O>("collisions", &O::collisions, "the robot keeps clear of the world and of itself"),
@@ -42,7 +43,7 @@ const std::vector<OptionField<DriveByOptions>>& drive_by_fields() {
       option<O>("tolerance", &O::trajectory, &W::tolerance, "relative optimality"),
       option<O>("max_iterations", &O::trajectory, &W::max_iterations,
                 "of one solve; an attempt has at most 1 + refinements"),
-      option<O>("attempt_time_limit", &O::trajectory, &W::time_limit, "wall-clock cap of one attempt [s]"),
+      option<O>("solve_time_limit", &O::trajectory, &W::time_limit, "wall-clock cap of one attempt [s]"),
       option<O>("smoothing", &O::trajectory, &W::smoothing,
                 "weight of the mean square of accelerations over their limits [s]"),
       option<O>("margin", &O::trajectory, &W::margin, "distance to keep from obstacles and from oneself [m]"),
@@ -248,9 +249,9 @@ void bind_drive_by_result(py::module_& m) {
           "violations", [](const DriveByResult& r) { return violations_dict(r.violations); },
           "By kind of constraint: value (0 when kept), tolerance, unit, time [s], waypoint, what, kept; measured on a "
           "roll-out ten times\nfiner than the waypoints.")
-      .def_readonly("choices", &DriveByResult::choices, "Choices of candidates planned.")
-      .def_readonly("attempts", &DriveByResult::attempts, "Guesses from which the optimiser began.")
-      .def_readonly("iterations", &DriveByResult::iterations, "Of the optimiser, over all attempts.")
+      .def_readonly("grasp_assignments", &DriveByResult::grasp_assignments, "Choices of candidates planned.")
+      .def_readonly("seeds", &DriveByResult::solves, "Guesses from which the optimiser began.")
+      .def_readonly("iterations", &DriveByResult::iterations, "Of the optimiser, over all solves.")
       .def_readonly("seconds", &DriveByResult::seconds, "Wall-clock time of the call [s].")
       .def_readonly("report", &DriveByResult::report, "What was tried, and what is broken where, by how much.")
       .def("to_csv", &drive_by_csv, py::arg("between") = 0,
@@ -272,15 +273,15 @@ void bind_drive_by_result(py::module_& m) {
             for (const DriveByEvent& e : r.events) events.append(event_dict(e));
             return py::dict("outcome"_a = to_string(r.outcome), "duration"_a = r.duration(),
                             "trajectory"_a = trajectory, "events"_a = events,
-                            "violations"_a = violations_dict(r.violations), "choices"_a = r.choices,
-                            "attempts"_a = r.attempts, "iterations"_a = r.iterations, "seconds"_a = r.seconds,
+                            "violations"_a = violations_dict(r.violations), "grasp_assignments"_a = r.grasp_assignments,
+                            "seeds"_a = r.solves, "iterations"_a = r.iterations, "seconds"_a = r.seconds,
                             "report"_a = r.report);
           },
           "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const DriveByResult& r) {
         return std::string("DriveByResult(") + to_string(r.outcome) +
                (r.trajectory ? ", " + std::string(py::repr(py::float_(r.duration()))) + " s" : "") + ", " +
-               std::to_string(r.attempts) + " attempts)";
+               std::to_string(r.solves) + " solves)";
       });
 }
 

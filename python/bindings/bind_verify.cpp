@@ -63,7 +63,8 @@ void bind_checked_parts(py::module_& m) {
            }),
            py::arg("kind"), py::arg("opening"), py::arg("holding"), py::arg("times"), py::arg("positions"),
            py::arg("velocities"), py::arg("accelerations") = py::none(),
-           "`kind`: reach, approach, lift, carry or retreat; `opening` of the fingers [m]; `holding` the part; `times` "
+           "`kind`: transit, approach, lift, transfer or retreat; `opening` of the fingers [m]; `holding` the part; "
+           "`times` "
            "(k,) [s];\n`positions`, `velocities` and, where given, `accelerations` (k, n) of the arm's joints.");
   py::class_<CheckedPick>(m, "CheckedPick", "One pick of a plan.")
       .def(py::init([](int stop, std::string tray, std::string part, int grasp, std::vector<CheckedMotion> motions) {

@@ -1,15 +1,29 @@
 #include "options.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace mmgrasp::python {
 namespace {
 
 constexpr std::size_t kLongest = 200;  // Characters of a value in a message.
 
+// Keywords of earlier versions by what they are called now.
+const std::map<std::string, std::string> kRenamed = {{"attempt_time_limit", "solve_time_limit"},
+                                                     {"attempts", "seeds"},
+                                                     {"choices", "grasp_assignments"},
+                                                     {"held_only", "attached_only"},
+                                                     {"improved", "on_solution"},
+                                                     {"stands", "goal_configurations"},
+                                                     {"tool_cone", "orientation_constraint"}};
+
 }  // namespace
 
 std::string nearest_name(const std::string& wrong, const std::vector<std::string>& known) {
+  const auto renamed = kRenamed.find(wrong);
+  if (renamed != kRenamed.end() && std::find(known.begin(), known.end(), renamed->second) != known.end())
+    return "; it is called " + renamed->second + " now";
   const py::list matches = py::module_::import("difflib").attr("get_close_matches")(wrong, known, 1, 0.5);
   if (!matches.empty()) return "; did you mean " + py::cast<std::string>(matches[0]) + "?";
   std::string all = "; known are ";

@@ -19,7 +19,7 @@ py::object path_list(const std::optional<JointPath>& path);
 void bind_tool_lines(py::module_& m);
 void bind_timing(py::module_& m);
 void bind_roadmap(py::module_& m);
-void bind_carry_problem(py::module_& m);
-void bind_carry_result(py::module_& m);
+void bind_manipulation_problem(py::module_& m);
+void bind_manipulation_result(py::module_& m);
 
 }  // namespace mmgrasp::python

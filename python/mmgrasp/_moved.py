@@ -8,12 +8,16 @@ ROOMS = (robot, collision, planning, grasping, base, mapping, optim, part_supply
 
 RENAMED = {
     "CandidateGrasp": "mmgrasp.Grasp",
+    "CarryPlace": "mmgrasp.base.PlaceRegion",
     "FingerJoint": "mmgrasp.grasping.HandJoint",
     "Gripper": "mmgrasp.Hand",
     "PipeGrasp": "mmgrasp.Grasp",
     "ScoredGrasp": "mmgrasp.Grasp",
     "PartSupplyPlan": "mmgrasp.part_supply.ScenarioPlan",
     "PartSupplyResult": "mmgrasp.base.PartSupplyPlan",
+    "ToolCone": "mmgrasp.planning.OrientationConstraint",
+    "least_stops": "mmgrasp.base.plan_stops_exact",
+    "minimal_stops": "mmgrasp.base.cover_from_intersections",
     "solve_part_supply": "mmgrasp.plan_part_supply",
     "drive_by": "mmgrasp.part_supply.drive_by",
     "plan_file": "mmgrasp.part_supply.plan_file",

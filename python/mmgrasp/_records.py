@@ -86,11 +86,11 @@ class ManipulationStats(TypedDict):
     roadmap_seconds: float
     search_seconds: float
     graph_searches: int
-    ways_opened: int
+    nodes_opened: int
     grasps_searched: int
     roadmap_cost: float
     edges_checked_robot: int
-    edges_checked_held: int
+    edges_checked_attached: int
     samples: int
     vertices: int
 

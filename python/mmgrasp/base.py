@@ -36,8 +36,8 @@ from ._core import (
 
 # Stops and routes
 from ._core import (
-    minimal_stops as minimal_stops,
-    least_stops as least_stops,
+    cover_from_intersections as cover_from_intersections,
+    plan_stops_exact as plan_stops_exact,
     Stop as Stop,
     StopSet as StopSet,
     plan_base_route as plan_base_route,
@@ -60,7 +60,7 @@ from ._core import (
     Part as Part,
     Tray as Tray,
     tray_shapes as tray_shapes,
-    CarryPlace as CarryPlace,
+    PlaceRegion as PlaceRegion,
     PartSupplyProblem as PartSupplyProblem,
     PartSupplyPlan as PartSupplyPlan,
     PickMotion as PickMotion,

@@ -18,7 +18,7 @@ from ._core import (
     MotionStats as MotionStats,
     Roadmap as Roadmap,
     ToolRegion as ToolRegion,
-    ToolCone as ToolCone,
+    OrientationConstraint as OrientationConstraint,
 )
 
 # Cartesian paths

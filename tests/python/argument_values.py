@@ -45,7 +45,7 @@ def gripper() -> mg.Hand:
 BOX = mg.LinkShape(mg.Box([0.05, 0.05, 0.05]))
 PART = mg.base.Part("part", [BOX], POSE, [mg.Grasp(np.eye(4), 0.05)])
 TRAY = mg.base.Tray("tray", np.eye(4), [0.3, 0.3, 0.1], [PART])
-CARRY = mg.base.CarryPlace(np.eye(4), [0.3, 0.3])
+PLACE_REGION = mg.base.PlaceRegion(np.eye(4), [0.3, 0.3])
 X_Y_THETA = np.array([0.5, 0.25, 0.75])
 
 # Good arrays by the argument's name, and by class or function where the name means something else there.
@@ -109,11 +109,11 @@ VALUES: dict[str, Any] = {
     "tool_axis": np.array([0.0, 0, 1]),
     "world_axis": np.array([0.0, 0, 1]),
     "T_base_tips": np.array([POSE, POSE]),
-    "CarryPlace.size": np.array([0.1, 0.2]),
+    "PlaceRegion.size": np.array([0.1, 0.2]),
     "PartSupplyProblem.start": X_Y_THETA,
     "PartSupplyProblem.goal": X_Y_THETA,
-    "least_stops.start": np.array([0.5, 0.25]),
-    "least_stops.goal": np.array([0.25, 0.5]),
+    "plan_stops_exact.start": np.array([0.5, 0.25]),
+    "plan_stops_exact.goal": np.array([0.25, 0.5]),
     "plan_base_route.start": X_Y_THETA,
     "plan_base_route.goal": X_Y_THETA,
     "platform_velocity": X_Y_THETA,
@@ -151,7 +151,7 @@ OBJECTS: dict[str, Any] = {
     "Roadmap": lambda: mg.planning.Roadmap.build(ARM, vertices=10),
     "JointTrajectory": lambda: mg.time_parameterize([Q, Q / 2], np.ones(3), np.ones(3), names=["i", "j", "k"]),
     "PartSupplyProblem": lambda: mg.base.PartSupplyProblem(
-        ROBOT, ARM, gripper(), world(), [TRAY], Q, X_Y_THETA, X_Y_THETA, CARRY
+        ROBOT, ARM, gripper(), world(), [TRAY], Q, X_Y_THETA, X_Y_THETA, PLACE_REGION
     ),
 }
 
@@ -160,7 +160,7 @@ OBJECTS: dict[str, Any] = {
 COMPANIONS: dict[str, dict[str, Any]] = {
     "plan_platform_locations.T_link_camera": {"camera_link": "tip"},
     "plan_motion.start": {"goal": Q},
-    "least_stops.goal": {"start": np.array([0.5, 0.25])},
+    "plan_stops_exact.goal": {"start": np.array([0.5, 0.25])},
     "fit_cuboids.T_world_tray": {"tray_size": [0.3, 0.4, 0.1]},
     "JointTrajectory.accelerations": {"velocities": np.zeros((2, 3))},
 }
@@ -182,13 +182,13 @@ OTHERS: dict[str, Any] = {
     "problem": OBJECTS["PartSupplyProblem"],
     "gripper": gripper,
     "grid": lambda: GRID,
-    "carry": lambda: CARRY,
+    "place_region": lambda: PLACE_REGION,
     "camera": mg.mapping.PinholeCamera,
     "render_depth.scene": lambda: [BOX],
     "random_placement.part": lambda: [BOX],
     "make_height_map.image": lambda: mg.mapping.render_depth([BOX], mg.mapping.PinholeCamera(width=8, height=6), POSE),
     "sections": lambda: [(0, 1)],
-    "least_stops.regions": lambda: [mg.base.BaseRegion("tray", np.ones((1, 3, 4), np.uint8), GRID)],
+    "plan_stops_exact.regions": lambda: [mg.base.BaseRegion("tray", np.ones((1, 3, 4), np.uint8), GRID)],
     "_first_drive_by_guess.tasks": lambda: [mg.DriveByTask(POSE)],
     "diameters": lambda: 0.02,
     "shape": lambda: mg.Box([0.1, 0.1, 0.1]),

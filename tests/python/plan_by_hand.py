@@ -39,7 +39,7 @@ def motion(kind: str, start: list[float], end: list[float], holding: bool, secon
 
 def region(tray: str, iy: range, start: int, end: int) -> dict[str, Any]:
     """A rectangular region of layer 0 with one explanation."""
-    causes = {"reach": 40, "limits": 3, "self_collision": 2, "scene": 15, "grasp_filter": 7}
+    causes = {"unreachable": 40, "limits": 3, "self_collision": 2, "scene": 15, "grasp_filter": 7}
     explanation = {
         "part": f"{tray}/brick_0",
         "grasps": 6,
@@ -59,14 +59,14 @@ def plan_by_hand() -> dict[str, Any]:
         for tray, y in (("A", 1.0), ("B & C", 1.4))
     ]  # fmt: skip
     home, high, low = [0.0, 0.0], [0.4, 0.5], [0.2, 0.5]
-    motions = [motion("reach", home, high, False, 2.0), motion("approach", high, low, False, 1.0),
-               motion("lift", low, high, True, 1.0), motion("carry", high, [0.4, -1.0], True, 2.0),
+    motions = [motion("transit", home, high, False, 2.0), motion("approach", high, low, False, 1.0),
+               motion("lift", low, high, True, 1.0), motion("transfer", high, [0.4, -1.0], True, 2.0),
                motion("retreat", [0.4, -1.0], home, False, 1.5)]  # fmt: skip
     picks = [
         {"stop": 0, "tray": p["tray"], "part": p["name"], "grasp": 0, "motions": copy.deepcopy(motions)} for p in parts
     ]
     return {
-        "format": "mmgrasp-plan", "version": 1, "mmgrasp": "0.0.0", "outcome": "solved",
+        "format": "mmgrasp-plan", "version": 2, "mmgrasp": "0.0.0", "outcome": "solved",
         "scenario": {
             "name": "by hand", "source": "",
             "robot": {"urdf": URDF, "srdf": "", "base": "diff_drive", "base_limits": {}, "meshes": []},
@@ -75,7 +75,7 @@ def plan_by_hand() -> dict[str, Any]:
                         "finger_width": 0.02, "clearance": 0.005, "joints": [], "finger_links": []},
             "other_joints": {}, "home": home, "start": [0.3, 0.3, 0.0], "goal": [2.5, 0.3, 0.0],
             "positioning_uncertainty": 0.1,
-            "carry": {"pose": pose(0, 0, 0.3), "size": [0.2, 0.2], "drop_gap": 0.03},
+            "place_region": {"pose": pose(0, 0, 0.3), "size": [0.2, 0.2], "drop_gap": 0.03},
             "obstacles": [{"name": "table", "pose": pose(1.7, 1.2, 0.4), "shapes": box(0.4, 1.0, 0.8)},
                           {"name": "tray A", "pose": pose(1.7, 1.0, 0.85), "shapes": box(0.3, 0.3, 0.1)}],
             "trays": [{"name": "A", "pose": pose(1.7, 1.0, 0.8), "size": [0.3, 0.3, 0.1]},

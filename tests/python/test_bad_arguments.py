@@ -228,7 +228,7 @@ def test_numbers_that_are_none(number: Any) -> None:
         lambda: mg.collision.Voxels([[1.0, 2, 3]], number),
         lambda: mg.base.BaseGrid([0, 0], number, 4, 3),
         lambda: mg.base.BaseGrid([0, 0], 0.1, 4, 3, [number]),
-        lambda: mg.base.CarryPlace(np.eye(4), [0.3, 0.3], number),
+        lambda: mg.base.PlaceRegion(np.eye(4), [0.3, 0.3], number),
         lambda: mg.Grasp(np.eye(4), number),
         lambda: mg.CollisionChecker(ROBOT, world, ARM, padding=number),
         lambda: OBJECTS["CollisionChecker"]().edge_is_free(Q, Q, number),

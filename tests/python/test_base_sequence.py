@@ -23,7 +23,7 @@ def squares(count: int, width: int = 12, step: int = 8) -> tuple[mg.base.BaseGri
 
 def test_least_stops_of_a_row() -> None:
     grid, masks = squares(7)
-    found = mg.base.least_stops(grid, masks, 0.1, start=[0, 0], goal=[3, 0])
+    found = mg.base.plan_stops_exact(grid, masks, 0.1, start=[0, 0], goal=[3, 0])
     assert found.outcome == mg.Outcome.solved
     assert len(found.stops) == found.lower_bound == 4  # two to a stop: neighbours share 0.2 m
     assert sorted(tray for stop in found.stops for tray in stop.trays) == list(range(7))
@@ -34,9 +34,9 @@ def test_least_stops_of_a_row() -> None:
         (i, i + 1) for i in range(6)
     ]
     with pytest.raises(mg.Error, match="both or neither"):
-        mg.base.least_stops(grid, masks, 0.1, start=[0, 0])
+        mg.base.plan_stops_exact(grid, masks, 0.1, start=[0, 0])
     with pytest.raises(mg.Error, match="cells"):
-        mg.base.least_stops(grid, [masks[0][:, 1:]], 0.1)
+        mg.base.plan_stops_exact(grid, [masks[0][:, 1:]], 0.1)
 
 
 def test_share_stops_among_robots() -> None:

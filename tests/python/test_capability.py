@@ -40,9 +40,9 @@ def test_arrays_agree(made: mg.base.CapabilityMap, arm: mg.robot.JointGroup) -> 
     np.testing.assert_allclose((made.classes == 0).mean(axis=-1), made.index, atol=1e-6)
     assert made.configurations.shape == (made.reached, len(arm.names))
     assert made.maximum == pytest.approx(made.index.max())
-    assert made.reached + sum(getattr(made.rejections, c) for c in ("reach", "limits", "self_collision", "scene")) == (
-        made.classes.size
-    )
+    assert made.reached + sum(
+        getattr(made.rejections, c) for c in ("unreachable", "limits", "self_collision", "scene")
+    ) == (made.classes.size)
     with pytest.raises(ValueError):
         made.index[0, 0, 0] = 1
 

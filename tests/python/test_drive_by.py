@@ -157,7 +157,7 @@ def test_best_iterate_when_time_ends(robot: mg.Robot, group: mg.robot.JointGroup
         tasks=[mg.DriveByTask(TASK)],
         goal=GOAL,
         max_iterations=2,
-        attempts=1,
+        seeds=1,
         **PATIENT,
     )
     assert found.outcome == mg.Outcome.timeout
@@ -178,7 +178,7 @@ def test_best_iterate_when_time_ends(robot: mg.Robot, group: mg.robot.JointGroup
         ({"smooting": 1}, "smoothing"),
         ({"tolerance": 0}, "tolerance"),
         ({"iterations": 0}, "iterations"),
-        ({"choices": 0}, "choices"),
+        ({"grasp_assignments": 0}, "grasp_assignments"),
         ({"tasks": [mg.DriveByTask(np.eye(4), object="ghost")]}, "ghost"),
     ],
 )
@@ -271,7 +271,7 @@ def test_both_solvers_drive_the_same_way(robot: mg.Robot, group: mg.robot.JointG
     found = {
         solver: mg.plan_drive_by(
             robot, group, mg.World(), start=START, tasks=[mg.DriveByTask(TASK)], goal=GOAL, waypoints=8, solver=solver,
-            collisions=False, attempts=1, max_iterations=1000, **PATIENT,
+            collisions=False, seeds=1, max_iterations=1000, **PATIENT,
         )
         for solver in ("ipopt", "slsqp")
     }  # fmt: skip

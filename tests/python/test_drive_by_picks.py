@@ -50,16 +50,16 @@ def test_the_first_pick_is_done_in_passing(
     assert done.part == problem.trays[pick.tray].parts[pick.part].name
     assert done.drive_by == done.result.duration < done.stop_and_pick
     motions = {m.kind: m for m in pick.motions}
-    arm = sum(motions[kind].trajectory.duration for kind in ("reach", "approach", "lift"))
+    arm = sum(motions[kind].trajectory.duration for kind in ("transit", "approach", "lift"))
     width = problem.trays[pick.tray].parts[pick.part].grasps[pick.grasp].opening
-    closing = (motions["reach"].opening - width) / 0.1
+    closing = (motions["transit"].opening - width) / 0.1
     drive = small_plan.route[0].duration(small_plan.scenario.setup.robot)
     assert done.stop_and_pick == pytest.approx(drive + arm + closing)
     assert passing.saved == pytest.approx(done.stop_and_pick - done.drive_by)
     assert passing.drive_by == pytest.approx(passing.stop_and_pick - passing.saved)
     q = done.result.trajectory.positions
-    assert q[0] == pytest.approx([*problem.start, *motions["reach"].trajectory.positions[0]], abs=1e-6)
-    assert q[-1][3:] == pytest.approx(motions["carry"].trajectory.positions[0], abs=1e-6)
+    assert q[0] == pytest.approx([*problem.start, *motions["transit"].trajectory.positions[0]], abs=1e-6)
+    assert q[-1][3:] == pytest.approx(motions["transfer"].trajectory.positions[0], abs=1e-6)
     assert done.result.events[-1]["base_speed"] > 0.02
 
 

@@ -76,7 +76,7 @@ def plan(**changes: Any) -> mg.planning.ManipulationResult:
 
 def test_the_bar_is_carried_from_start_to_goal() -> None:
     improvements: list[mg.planning.Improvement] = []
-    result = mg.plan_manipulation(problem(), improved=improvements.append, **OPTIONS)
+    result = mg.plan_manipulation(problem(), on_solution=improvements.append, **OPTIONS)
     assert result.outcome == mg.Outcome.solved
     grasp = GRASPS[result.grasp_index]
     assert result.cost == pytest.approx(np.linalg.norm(np.diff(result.path, axis=0), axis=1).sum(), abs=1e-12)
@@ -141,8 +141,8 @@ def test_results_convert_and_print() -> None:
 def test_out_of_reach_with_every_grasp() -> None:
     result = plan(T_world_start=flat(5, 0, 0))
     assert result.outcome == mg.Outcome.invalid_start and result.path is None
-    assert [report.start.reach for report in result.grasps] == [1] * 20
-    assert result.rejections.reach == 20 and result.contacts == []
+    assert [report.start.unreachable for report in result.grasps] == [1] * 20
+    assert result.rejections.unreachable == 20 and result.contacts == []
 
 
 def test_start_in_collision_with_every_grasp_names_the_pair() -> None:
@@ -166,7 +166,7 @@ def test_only_one_of_many_grasps_leads_there() -> None:
     result = plan(grasps=[*far, GRASPS[good.grasp_index], *far])
     assert result.outcome == mg.Outcome.solved and result.grasp_index == 300
     assert result.cost == pytest.approx(good.cost, abs=1e-3)  # descents start elsewhere for another index
-    assert sum(report.start.reach for report in result.grasps) == 600
+    assert sum(report.start.unreachable for report in result.grasps) == 600
 
 
 @pytest.mark.parametrize(
@@ -219,8 +219,8 @@ def test_what_is_no_problem_and_no_roadmap_is_refused_by_name() -> None:
         mg.planning.Roadmap.build(group=three)
     with pytest.raises(mg.InvalidInput, match="group = 3: must be a JointGroup"):
         mg.planning.Roadmap.load("some.roadmap", group=three)
-    with pytest.raises(mg.InvalidInput, match="improved = 3: must be a function, or None"):
-        mg.plan_manipulation(problem(), improved=three)
+    with pytest.raises(mg.InvalidInput, match="on_solution = 3: must be a function, or None"):
+        mg.plan_manipulation(problem(), on_solution=three)
     with pytest.raises(mg.InvalidInput, match="roadmap = 'x': must be a Roadmap"):
         mg.plan_manipulation(problem(), roadmap=word)
 
@@ -320,7 +320,7 @@ def test_what_improved_raises_ends_the_call() -> None:
         raise RuntimeError("good enough")
 
     with pytest.raises(RuntimeError, match="good enough"):
-        mg.plan_manipulation(problem(), improved=fail, **OPTIONS)
+        mg.plan_manipulation(problem(), on_solution=fail, **OPTIONS)
 
 
 def test_ctrl_c_ends_it() -> None:
@@ -353,7 +353,7 @@ def test_other_threads_run_meanwhile() -> None:
 def test_goal_cost_may_be_infinite() -> None:
     told: list[mg.planning.Improvement] = []
     first = mg.plan_manipulation(
-        problem(), planner="rrt_star_mg", goal_cost=float("inf"), seed=3, time_limit=100.0, improved=told.append
+        problem(), planner="rrt_star_mg", goal_cost=float("inf"), seed=3, time_limit=100.0, on_solution=told.append
     )
     assert first.outcome == mg.Outcome.solved
     assert len(told) == 1

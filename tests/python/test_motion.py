@@ -72,8 +72,8 @@ def test_goals_may_be_poses_and_regions(robot: mg.Robot, arm: mg.robot.JointGrou
 
 
 def test_a_cone_holds_and_better_paths_are_reported(robot: mg.Robot, arm: mg.robot.JointGroup, world: mg.World) -> None:
-    cone = mg.planning.ToolCone(tool_axis=[1, 0, 0], world_axis=[1, 0, 0], half_angle=0.3)
-    found = mg.plan_motion(robot, arm, world, start=START, goal=GOAL, tool_cone=cone)
+    cone = mg.planning.OrientationConstraint(tool_axis=[1, 0, 0], world_axis=[1, 0, 0], half_angle=0.3)
+    found = mg.plan_motion(robot, arm, world, start=START, goal=GOAL, orientation_constraint=cone)
     for a, b in zip(found.path[:-1], found.path[1:], strict=True):
         for s in np.linspace(0, 1, 20):
             assert abs((a + s * (b - a)).sum()) <= 0.3 + 1e-9
@@ -186,7 +186,7 @@ def test_a_start_beyond_limits_is_told_by_joint_value_and_limits(
         ({"world": None}, ["world = None", "a World"]),
         ({"robot": "planar"}, ["robot = 'planar'", "a Robot"]),
         ({"group": 3}, ["group = 3", "a JointGroup"]),
-        ({"tool_cone": "up"}, ["tool_cone = 'up'", "a ToolCone"]),
+        ({"orientation_constraint": "up"}, ["orientation_constraint = 'up'", "a OrientationConstraint"]),
         ({"regions": 7}, ["regions = 7", "ToolRegion"]),
         ({"tool_poses": [np.eye(4), 2 * np.eye(4)]}, ["tool_poses[1]"]),
         ({"progress": "yes"}, ["progress = 'yes'", "a function, or None"]),

@@ -72,7 +72,7 @@ def test_any_object_is_picked_like_a_part(
     place[2, 3] += 0.01
     for places, kinds in (
         (None, ["reach", "approach", "lift"]),
-        ([place], ["reach", "approach", "lift", "carry", "retreat"]),
+        ([place], ["transit", "approach", "lift", "transfer", "retreat"]),
     ):
         pick = mg.base.plan_object_pick(
             problem.arm,

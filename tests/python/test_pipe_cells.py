@@ -13,7 +13,7 @@ import pytest
 import mmgrasp as mg
 from mmgrasp.problems.pipe_cells import FINGERS, ROBOTS, PipeCell, pipe_cell, pipe_robot, pipe_structures
 from mmgrasp.verify import CheckedBody, check_path
-from mmgrasp.viz.carry import along, carry_scene, write_carry
+from mmgrasp.viz.transfer import along, transfer_scene, write_transfer
 
 
 def distance_of_segments(a: Any, b: Any, c: Any, d: Any) -> float:
@@ -192,7 +192,7 @@ def test_trees_of_good_paths_join_few_of_the_vertices_within_a_step() -> None:
             )
             for seed in range(1, 6)
         ]
-        edges.append(sum(run.stats["edges_checked_held"] for run in runs))
+        edges.append(sum(run.stats["edges_checked_attached"] for run in runs))
         excess.append(np.mean([run.cost / run.lower_bound - 1 for run in runs]))
     assert edges[0] < edges[1] / 2
     assert excess[0] < excess[1] + 0.002, excess
@@ -303,7 +303,7 @@ def test_a_picture_shows_the_pipe_from_start_to_goal(tmp_path: Path) -> None:
     path = np.array([starts[0], (starts[0] + goals[0]) / 2, goals[0]])
     moments = along(path, 5)
     np.testing.assert_allclose(moments, starts[0] + np.linspace(0, 1, 5)[:, None] * (goals[0] - starts[0]), atol=1e-12)
-    scene = carry_scene(cell, grasp, path, pipes=3)
+    scene = transfer_scene(cell, grasp, path, pipes=3)
     sections = len(cell.pipe.sections)
     fixtures = sum(len(cell.world.shapes_of(n)) for n in cell.world.objects if not n.startswith("wall"))
     links = sum(len(cell.robot.collisions(link)) for link in cell.robot.links)
@@ -314,6 +314,6 @@ def test_a_picture_shows_the_pipe_from_start_to_goal(tmp_path: Path) -> None:
         radius = max(cell.pipe.diameters) / 2
         np.testing.assert_allclose(drawn.min(axis=0), placed.min(axis=0) - radius, atol=2e-3)
         np.testing.assert_allclose(drawn.max(axis=0), placed.max(axis=0) + radius, atol=2e-3)
-    file = write_carry(cell, grasp, path, tmp_path / "carry.png", width=160, height=120)
+    file = write_transfer(cell, grasp, path, tmp_path / "carry.png", width=160, height=120)
     assert file.read_bytes().startswith(b"\x89PNG")
     assert file.stat().st_size > 2000

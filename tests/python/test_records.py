@@ -88,7 +88,7 @@ def test_drive_by(robot: mg.Robot) -> None:
     q = np.concatenate([[0, 0, 0], 0.5 * (arm.sample_lower + arm.sample_upper)[3:]])
     task = mg.DriveByTask(arm.fk(q))
     result = mg.plan_drive_by(
-        robot, arm, mg.World(), start=q, tasks=[task], goal=q, attempts=1, iterations=30, collisions=False
+        robot, arm, mg.World(), start=q, tasks=[task], goal=q, seeds=1, iterations=30, collisions=False
     )
     assert result.events and result.violations
     check(result.events, list[_records.DriveByEventRow], "events")

@@ -24,7 +24,7 @@ def motion(plan: dict[str, Any], kind: str, pick: Any = 0) -> Any:
 
 
 def joint_moved(plan: dict[str, Any]) -> None:
-    m = motion(plan, "reach")
+    m = motion(plan, "transit")
     m["positions"][len(m["positions"]) // 2][1] += 0.3
 
 
@@ -33,7 +33,7 @@ def end_moved(plan: dict[str, Any]) -> None:
 
 
 def joint_beyond_limit(plan: dict[str, Any]) -> None:
-    m = motion(plan, "carry")
+    m = motion(plan, "transfer")
     m["positions"][len(m["positions"]) // 2][2] += 7.0
 
 
@@ -131,15 +131,15 @@ def start_elsewhere(plan: dict[str, Any]) -> None:
 
 def fingers_closed_too_early(plan: dict[str, Any]) -> None:
     motion(plan, "approach")["opening"] = 0.0
-    motion(plan, "reach")["opening"] = 0.0
+    motion(plan, "transit")["opening"] = 0.0
 
 
 def fingers_open_while_holding(plan: dict[str, Any]) -> None:
-    motion(plan, "carry")["opening"] = plan["scenario"]["gripper"]["max_opening"]
+    motion(plan, "transfer")["opening"] = plan["scenario"]["gripper"]["max_opening"]
 
 
 def not_holding(plan: dict[str, Any]) -> None:
-    motion(plan, "carry")["holding"] = False
+    motion(plan, "transfer")["holding"] = False
 
 
 def time_runs_backwards(plan: dict[str, Any]) -> None:
@@ -148,7 +148,7 @@ def time_runs_backwards(plan: dict[str, Any]) -> None:
 
 
 def time_stands(plan: dict[str, Any]) -> None:
-    times = motion(plan, "reach")["times"]
+    times = motion(plan, "transit")["times"]
     times[3] = times[2]
 
 
@@ -171,7 +171,7 @@ def region_emptied(plan: dict[str, Any]) -> None:
 
 
 def wrist_jumps(plan: dict[str, Any]) -> None:
-    m = motion(plan, "carry")
+    m = motion(plan, "transfer")
     for row in m["positions"][len(m["positions"]) // 2 :]:
         row[-1] += 0.5
 
@@ -181,7 +181,7 @@ def robot_shrunk_arm_limits(plan: dict[str, Any]) -> None:
 
 
 def bin_moved(plan: dict[str, Any]) -> None:
-    plan["scenario"]["carry"]["pose"]["xyz"][0] -= 0.5
+    plan["scenario"]["place_region"]["pose"]["xyz"][0] -= 0.5
 
 
 BREAKS = [

@@ -158,7 +158,7 @@ def test_report_of_no_plan_names_the_tray_and_the_advice() -> None:
     plan = plan_by_hand()
     plan.update(outcome="infeasible", stops=[], route=[], picks=[])
     plan["obstructions"] = [{"tray": "A", "part": "A/brick_0", "stage": "robustness", "message": "no disc of 0.500 m fits",
-                             "largest_uncertainty": 0.21, "missing_reach": 0.0}]  # fmt: skip
+                             "largest_uncertainty": 0.21, "reach_deficit": 0.0}]  # fmt: skip
     page = report.report_html(plan)
     assert "Tray A, part A/brick_0" in page and "no disc of 0.500 m fits" in page and "0.210 m" in page
 

@@ -26,8 +26,8 @@ const char* to_string(Rejection cause) {
   switch (cause) {
     case Rejection::none:
       return "none";
-    case Rejection::reach:
-      return "reach";
+    case Rejection::unreachable:
+      return "unreachable";
     case Rejection::limits:
       return "limits";
     case Rejection::self_collision:
@@ -44,8 +44,8 @@ void Rejections::add(Rejection cause, std::size_t count) {
   switch (cause) {
     case Rejection::none:
       break;
-    case Rejection::reach:
-      reach += count;
+    case Rejection::unreachable:
+      unreachable += count;
       break;
     case Rejection::limits:
       limits += count;
@@ -63,7 +63,7 @@ void Rejections::add(Rejection cause, std::size_t count) {
 }
 
 Rejections& Rejections::operator+=(const Rejections& other) {
-  reach += other.reach;
+  unreachable += other.unreachable;
   limits += other.limits;
   self_collision += other.self_collision;
   scene += other.scene;
@@ -72,7 +72,7 @@ Rejections& Rejections::operator+=(const Rejections& other) {
 }
 
 std::size_t Rejections::total() const {
-  return reach + limits + self_collision + scene + grasp_filter;
+  return unreachable + limits + self_collision + scene + grasp_filter;
 }
 
 std::string Rejections::summary() const {
@@ -82,7 +82,7 @@ std::string Rejections::summary() const {
     if (!text.empty()) text += ", ";
     text += std::string(to_string(cause)) + " " + std::to_string(count);
   };
-  append(Rejection::reach, reach);
+  append(Rejection::unreachable, unreachable);
   append(Rejection::limits, limits);
   append(Rejection::self_collision, self_collision);
   append(Rejection::scene, scene);
@@ -91,7 +91,7 @@ std::string Rejections::summary() const {
 }
 
 bool Rejections::operator==(const Rejections& other) const {
-  return reach == other.reach && limits == other.limits && self_collision == other.self_collision &&
+  return unreachable == other.unreachable && limits == other.limits && self_collision == other.self_collision &&
          scene == other.scene && grasp_filter == other.grasp_filter;
 }
 

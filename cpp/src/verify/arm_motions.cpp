@@ -13,12 +13,12 @@
 namespace mmgrasp::verify {
 namespace {
 
-enum Kind { kReach, kApproach, kLift, kCarry, kRetreat, kKinds };
-constexpr std::array<const char*, kKinds> kKindNames = {"reach", "approach", "lift", "carry", "retreat"};
+enum Kind { kTransit, kApproach, kLift, kTransfer, kRetreat, kKinds };
+constexpr std::array<const char*, kKinds> kKindNames = {"transit", "approach", "lift", "transfer", "retreat"};
 constexpr double kOpening = 1e-6;  // [m]
 
 bool is_holding(int kind) {
-  return kind == kLift || kind == kCarry;
+  return kind == kLift || kind == kTransfer;
 }
 
 void check_follows(const CheckedMotion& before, const CheckedMotion& after, const std::string& where, Faults& faults) {
@@ -109,7 +109,7 @@ class PickCheck {
               m.holding ? "says the part is held, it is not" : "says nothing is held, the part is");
       }
     }
-    if (std::abs(motion(kReach).opening - motion(kApproach).opening) > kOpening) {
+    if (std::abs(motion(kTransit).opening - motion(kApproach).opening) > kOpening) {
       fault("opening", name(kApproach), "the opening jumps between reach and approach");
     }
   }
@@ -129,7 +129,7 @@ class PickCheck {
       const double by = gap_to_home(q);
       if (by > kJoin) fault("discontinuous", name(kind), std::string(what) + ": a joint is off by " + text(by));
     };
-    at_home(motion(kReach).positions.front(), kReach, "does not start at home");
+    at_home(motion(kTransit).positions.front(), kTransit, "does not start at home");
     at_home(motion(kRetreat).positions.back(), kRetreat, "does not end at home");
     for (int kind = 1; kind < kKinds; ++kind) {
       check_follows(motion(kind - 1), motion(kind), name(kind), faults_);
@@ -139,9 +139,9 @@ class PickCheck {
     const auto rest = [this](const Eigen::VectorXd& v, int kind, const char* end) {
       check_rest(v, name(kind), end, faults_);
     };
-    rest(motion(kReach).velocities.front(), kReach, "start");
+    rest(motion(kTransit).velocities.front(), kTransit, "start");
     rest(motion(kApproach).velocities.back(), kApproach, "end");
-    rest(motion(kCarry).velocities.back(), kCarry, "end");
+    rest(motion(kTransfer).velocities.back(), kTransfer, "end");
     rest(motion(kRetreat).velocities.back(), kRetreat, "end");
   }
 
@@ -152,14 +152,14 @@ class PickCheck {
     check_grasp_reached(context_, T_world_part * grasp_->T_object_tcp, T_world_grasp, name(kApproach), faults_);
     check_lift(judge_.tip(motion(kLift).positions.front()), judge_.tip(motion(kLift).positions.back()), name(kLift),
                faults_);
-    const Pose T_world_released = judge_.tip(motion(kCarry).positions.back()) * T_tip_part_;
-    check_release(context_, *part_, judge_.T_world_root(), T_world_released, name(kCarry), faults_);
+    const Pose T_world_released = judge_.tip(motion(kTransfer).positions.back()) * T_tip_part_;
+    check_release(context_, *part_, judge_.T_world_root(), T_world_released, name(kTransfer), faults_);
   }
 
   void check_collisions() {
-    hand_.check_fingers(plan_.home, 0, motion(kReach).opening,
+    hand_.check_fingers(plan_.home, 0, motion(kTransit).opening,
                         context_.pick_name(index_) + ", fingers opening at home");
-    walk(kReach);
+    walk(kTransit);
     walk(kApproach);
     const Eigen::VectorXd& at_grasp = motion(kApproach).positions.back();
     judge_.hold(body_, T_tip_part_);
@@ -167,9 +167,9 @@ class PickCheck {
     hand_.check_fingers(at_grasp, motion(kApproach).opening, grasp_->width,
                         context_.pick_name(index_) + ", fingers closing");
     walk(kLift);
-    walk(kCarry);
+    walk(kTransfer);
     judge_.drop();
-    hand_.check_fingers(motion(kCarry).positions.back(), grasp_->width, motion(kRetreat).opening,
+    hand_.check_fingers(motion(kTransfer).positions.back(), grasp_->width, motion(kRetreat).opening,
                         context_.pick_name(index_) + ", fingers opening over the bin");
     walk(kRetreat);
     hand_.check_fingers(plan_.home, motion(kRetreat).opening, 0,

@@ -130,10 +130,10 @@ void Structure::scalars() {
   need(finite(Eigen::VectorXd(plan.goal)), "goal", "must be finite");
   need(finite(plan.positioning_uncertainty) && plan.positioning_uncertainty >= 0, "positioning_uncertainty",
        text(plan.positioning_uncertainty) + ": must be finite and not negative");
-  need(is_pose(plan.T_base_bin), "carry", "the bin's pose is not a finite rigid transform");
-  need(finite(Eigen::VectorXd(plan.bin_size)) && plan.bin_size.minCoeff() > 0, "carry",
+  need(is_pose(plan.T_base_bin), "place_region", "the bin's pose is not a finite rigid transform");
+  need(finite(Eigen::VectorXd(plan.bin_size)) && plan.bin_size.minCoeff() > 0, "place_region",
        "the bin's size must be positive");
-  need(finite(plan.drop_gap) && plan.drop_gap >= 0, "carry", "drop_gap must not be negative");
+  need(finite(plan.drop_gap) && plan.drop_gap >= 0, "place_region", "drop_gap must not be negative");
   need(finite(plan.closing_speed) && plan.closing_speed > 0, "closing_speed", "must be positive");
   for (std::size_t i = 0; i < plan.stops.size(); ++i) {
     need(finite(Eigen::VectorXd(plan.stops[i].pose)) && finite(plan.stops[i].radius), "stop " + std::to_string(i),

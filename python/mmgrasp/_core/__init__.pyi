@@ -10,7 +10,7 @@ import numpy
 import numpy.typing
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CandidateGrasp', 'CapabilityMap', 'Capsule', 'CarryPlace', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'CuboidFit', 'Cylinder', 'DepthImage', 'DerivativeFreeResult', 'DistanceResult', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FingerJoint', 'FittedCuboid', 'Grasp', 'GraspReport', 'Graspability', 'Gripper', 'HeightMap', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeGrasp', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'ScoredGrasp', 'SearchTree', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'ToolCone', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'derivative_free_solver_names', 'drive_arc', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'least_stops', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_stops', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CandidateGrasp', 'CapabilityMap', 'Capsule', 'PlaceRegion', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'CuboidFit', 'Cylinder', 'DepthImage', 'DerivativeFreeResult', 'DistanceResult', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FingerJoint', 'FittedCuboid', 'Grasp', 'GraspReport', 'Graspability', 'Gripper', 'HeightMap', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeGrasp', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'ScoredGrasp', 'SearchTree', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'OrientationConstraint', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'derivative_free_solver_names', 'drive_arc', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'plan_stops_exact', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_stops', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -906,13 +906,13 @@ class CollisionChecker:
     Collision questions about one group in a snapshot of the world: later changes of the world
     are not seen. Links pairs are sampled (and cached) when no SRDF says which never touch.
     """
-    def __init__(self, robot: Robot, world: World, group: JointGroup, *, padding: float = 0.0, check_self: bool = True, check_scene: bool = True, held_only: bool = False) -> None:
+    def __init__(self, robot: Robot, world: World, group: JointGroup, *, padding: float = 0.0, check_self: bool = True, check_scene: bool = True, attached_only: bool = False) -> None:
         """
         Keyword options:
             padding: float = 0.0  # robot shapes are grown by this against the scene [m]
             check_self: bool = True  # robot (and what it holds) against itself
             check_scene: bool = True  # robot (and what it holds) against the scene
-            held_only: bool = False  # only what it holds, against the robot and the scene
+            attached_only: bool = False  # only what it holds, against the robot and the scene
         """
     def __repr__(self) -> str:
         ...
@@ -1401,7 +1401,7 @@ class ToolRegion:
         """
     def __repr__(self) -> str:
         ...
-class ToolCone:
+class OrientationConstraint:
     """
     Path constraint: an axis of the tool stays near an axis of the world.
     """
@@ -2037,7 +2037,7 @@ class Tray:
         """
         Depth, width, height [m].
         """
-class CarryPlace:
+class PlaceRegion:
     """
     Where picked parts go: a bin fixed to the robot.
     """
@@ -2056,7 +2056,7 @@ class PartSupplyProblem:
     """
     Everything the part-supply planner needs.
     """
-    def __init__(self, robot: Robot, arm: JointGroup, gripper: Gripper, scene: World, trays: collections.abc.Sequence[Tray], home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, carry: CarryPlace, *, grid_resolution: float = 0.05, grid_max_distance: float = 0.0, ik_seeds: int = 8, positioning_uncertainty: float = 0.1, approach_distance: float = 0.08, lift_height: float = 0.12, motion_time_limit: float = 5.0, route_resolution: float = 0.1, robustness_samples: int = 2000, seed: int = 1, threads: int = 0) -> None:
+    def __init__(self, robot: Robot, arm: JointGroup, gripper: Gripper, scene: World, trays: collections.abc.Sequence[Tray], home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, carry: PlaceRegion, *, grid_resolution: float = 0.05, grid_max_distance: float = 0.0, ik_seeds: int = 8, positioning_uncertainty: float = 0.1, approach_distance: float = 0.08, lift_height: float = 0.12, motion_time_limit: float = 5.0, route_resolution: float = 0.1, robustness_samples: int = 2000, seed: int = 1, threads: int = 0) -> None:
         """
         Keyword options:
             grid_resolution: float = 0.05  # cell edge of the base grid [m]
@@ -2075,7 +2075,7 @@ class PartSupplyProblem:
     def arm(self) -> JointGroup:
         ...
     @property
-    def carry(self) -> CarryPlace:
+    def carry(self) -> PlaceRegion:
         ...
     @property
     def goal(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -2305,7 +2305,7 @@ class StopSet:
     @property
     def candidates(self) -> Intersections:
         """
-        What least_stops chose from.
+        What plan_stops_exact chose from.
         """
     @property
     def lower_bound(self) -> int:
@@ -2505,7 +2505,7 @@ class Obstruction:
     def message(self) -> str:
         ...
     @property
-    def missing_reach(self) -> float:
+    def reach_deficit(self) -> float:
         ...
     @property
     def move_objects(self) -> list[str]:
@@ -3356,7 +3356,7 @@ def joint_velocity(theta: float, platform_velocity: numpy.typing.ArrayLike) -> n
     """
     Velocities of the virtual joints x, y, theta for a platform velocity: the inverse of platform_velocity().
     """
-def least_stops(grid: BaseGrid, regions: collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike], min_radius: float = 0.1, *, time_limit: float = 60.0, tie_time_limit: float = 10.0, start: numpy.typing.ArrayLike | None = None, goal: numpy.typing.ArrayLike | None = None, progress: collections.abc.Callable[[str, float], object] | None = None) -> StopSet:
+def plan_stops_exact(grid: BaseGrid, regions: collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike], min_radius: float = 0.1, *, time_limit: float = 60.0, tie_time_limit: float = 10.0, start: numpy.typing.ArrayLike | None = None, goal: numpy.typing.ArrayLike | None = None, progress: collections.abc.Callable[[str, float], object] | None = None) -> StopSet:
     """
     The least number of stops over regions (or masks), with proof; among equally few the widest discs, then, with `start` and `goal` (x, y), the shortest route as the crow flies.
     """
@@ -3385,7 +3385,7 @@ def maximal_intersections(grid: BaseGrid, regions: collections.abc.Sequence[Base
     """
     Those of the robust sets that are part of no other one: enough to prove a least number of stops.
     """
-def minimal_stops(grid: BaseGrid, intersections: collections.abc.Sequence[Intersection], trays: int) -> StopSet:
+def cover_from_intersections(grid: BaseGrid, intersections: collections.abc.Sequence[Intersection], trays: int) -> StopSet:
     """
     The least number of intersections that cover all trays (P1 equation 3.1), with proof.
     """
@@ -3429,7 +3429,7 @@ def plan_cartesian(checker: CollisionChecker, tool_poses: numpy.typing.ArrayLike
         edge_step: float = 0.02  # largest joint motion between two checks [rad or m]
         max_branches: int = 64  # configurations of the first pose that are followed at most
     """
-def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, progress: collections.abc.Callable[[str, float], object] | None = None, waypoints: int = 35, attempts: int = 8, solutions: int = 1, choices: int = 8, stands: int = 64, iterations: int = 1500, time_limit: float = 600.0, jerk_time: float = 0.0, collisions: bool = True, seed: int = 1, threads: int = 1, solver: str = 'ipopt', tolerance: float = 0.0001, max_iterations: int = 150, attempt_time_limit: float = 600.0, smoothing: float = 0.01, margin: float = 0.005, look_out: float = 0.15, refinements: int = 6) -> DriveByResult:
+def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, progress: collections.abc.Callable[[str, float], object] | None = None, waypoints: int = 35, attempts: int = 8, solutions: int = 1, choices: int = 8, stands: int = 64, iterations: int = 1500, time_limit: float = 600.0, jerk_time: float = 0.0, collisions: bool = True, seed: int = 1, threads: int = 1, solver: str = 'ipopt', tolerance: float = 0.0001, max_iterations: int = 150, solve_time_limit: float = 600.0, smoothing: float = 0.01, margin: float = 0.005, look_out: float = 0.15, refinements: int = 6) -> DriveByResult:
     """
     The fastest motion of base and arm from `start` (n,), at rest, through the tasks in order to `goal`, at rest, without
     stopping for them (P1 chapter 4). goal: a configuration (n,), or (2, n) with lower and upper bounds, infinite where it
@@ -3450,7 +3450,7 @@ def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy
         solver: str = 'ipopt'  # a name of nlp_solver_names()
         tolerance: float = 0.0001  # relative optimality
         max_iterations: int = 150  # of one solve; an attempt has at most 1 + refinements
-        attempt_time_limit: float = 600.0  # wall-clock cap of one attempt [s]
+        solve_time_limit: float = 600.0  # wall-clock cap of one attempt [s]
         smoothing: float = 0.01  # weight of the mean square of accelerations over their limits [s]
         margin: float = 0.005  # distance to keep from obstacles and from oneself [m]
         look_out: float = 0.15  # pairs of bodies nearer than this are constrained [m]
@@ -3489,10 +3489,10 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         goal_cost: float = 0.0  # rrt_star_mg: ends with the first path that costs no more; inf: the first at all
         keep_trees: bool = False  # rrt_star_mg: hand over the trees with the result
     """
-def plan_motion(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike | None = None, tool_poses: numpy.typing.ArrayLike | None = None, regions: collections.abc.Sequence[ToolRegion] = [], tool_cone: ToolCone | None = None, on_solution: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64], float], object] | None = None, progress: collections.abc.Callable[[str, float], object] | None = None, planner: str = 'rrt_connect', time_limit: float = 5.0, max_iterations: int = 20000, range: float = 0.0, base_margin: float = 2.0, edge_step: float = 0.02, workspace_step: float = ..., shorten: bool = True, shorten_iterations: int = 200, ik_solutions: int = 8, region_samples: int = 16, seed: int = 1) -> MotionResult:
+def plan_motion(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike | None = None, tool_poses: numpy.typing.ArrayLike | None = None, regions: collections.abc.Sequence[ToolRegion] = [], orientation_constraint: OrientationConstraint | None = None, on_solution: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64], float], object] | None = None, progress: collections.abc.Callable[[str, float], object] | None = None, planner: str = 'rrt_connect', time_limit: float = 5.0, max_iterations: int = 20000, range: float = 0.0, base_margin: float = 2.0, edge_step: float = 0.02, workspace_step: float = ..., shorten: bool = True, shorten_iterations: int = 200, ik_solutions: int = 8, region_samples: int = 16, seed: int = 1) -> MotionResult:
     """
     A collision-free path of the group from `start` (n,) to any of its goals: `goal` (n,) or several as (m, n),
-    `tool_poses` of the tip, (4, 4) or (m, 4, 4), and `regions` of them, reached by inverse kinematics. `tool_cone`
+    `tool_poses` of the tip, (4, 4) or (m, 4, 4), and `regions` of them, reached by inverse kinematics. `orientation_constraint`
     holds on the whole path. on_solution(path, cost) is called with each better path. A diff-drive base turns on
     the spot and drives straight.
     
@@ -3658,7 +3658,7 @@ def share_stops(drive_times: numpy.typing.ArrayLike, stop_times: collections.abc
     """
     Shares stops among robots so that the last is done as early as can be. `drive_times` is (n + 2 k, n + 2 k): stops, k starts, k goals; infinite: no way.
     """
-def shorten_drive_by(group: JointGroup, world: World, *, tasks: collections.abc.Sequence[DriveByTask], times: collections.abc.Sequence[float], positions: numpy.typing.ArrayLike, task_times: collections.abc.Sequence[float], progress: collections.abc.Callable[[str, float], object] | None = None, waypoints: int = 35, attempts: int = 8, solutions: int = 1, choices: int = 8, stands: int = 64, iterations: int = 1500, time_limit: float = 600.0, jerk_time: float = 0.0, collisions: bool = True, seed: int = 1, threads: int = 1, solver: str = 'ipopt', tolerance: float = 0.0001, max_iterations: int = 150, attempt_time_limit: float = 600.0, smoothing: float = 0.01, margin: float = 0.005, look_out: float = 0.15, refinements: int = 6) -> DriveByResult:
+def shorten_drive_by(group: JointGroup, world: World, *, tasks: collections.abc.Sequence[DriveByTask], times: collections.abc.Sequence[float], positions: numpy.typing.ArrayLike, task_times: collections.abc.Sequence[float], progress: collections.abc.Callable[[str, float], object] | None = None, waypoints: int = 35, attempts: int = 8, solutions: int = 1, choices: int = 8, stands: int = 64, iterations: int = 1500, time_limit: float = 600.0, jerk_time: float = 0.0, collisions: bool = True, seed: int = 1, threads: int = 1, solver: str = 'ipopt', tolerance: float = 0.0001, max_iterations: int = 150, solve_time_limit: float = 600.0, smoothing: float = 0.01, margin: float = 0.005, look_out: float = 0.15, refinements: int = 6) -> DriveByResult:
     """
     plan_drive_by from a motion that is known instead of guesses: positions (m, n) at times [s], straight between them, free of
     collisions, from rest to rest, at each task at its time; e.g. a drive and a pick one after the other. The answer is near that
@@ -3678,7 +3678,7 @@ def shorten_drive_by(group: JointGroup, world: World, *, tasks: collections.abc.
         solver: str = 'ipopt'  # a name of nlp_solver_names()
         tolerance: float = 0.0001  # relative optimality
         max_iterations: int = 150  # of one solve; an attempt has at most 1 + refinements
-        attempt_time_limit: float = 600.0  # wall-clock cap of one attempt [s]
+        solve_time_limit: float = 600.0  # wall-clock cap of one attempt [s]
         smoothing: float = 0.01  # weight of the mean square of accelerations over their limits [s]
         margin: float = 0.005  # distance to keep from obstacles and from oneself [m]
         look_out: float = 0.15  # pairs of bodies nearer than this are constrained [m]

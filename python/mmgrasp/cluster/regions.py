@@ -69,7 +69,7 @@ def alone(problem: PartSupplyProblem, tray: int) -> PartSupplyProblem:
         problem.home,
         problem.start,
         problem.goal,
-        problem.carry,
+        problem.place_region,
         **problem.options,
     )
 

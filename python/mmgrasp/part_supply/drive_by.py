@@ -31,7 +31,7 @@ PLANNED_SHARE = 5 / 6  # of the base's speed; what is left corrects its way
 WAYPOINTS = (35, 45)  # tried one after the other
 WITHIN = 1e-7  # of the goal [rad]
 BETWEEN = 9  # samples written between waypoints
-MERGED = ("reach", "approach", "lift")  # motions of a pick that the drive takes in
+MERGED = ("transit", "approach", "lift")  # motions of a pick that the drive takes in
 
 
 @dataclass
@@ -224,7 +224,7 @@ def _in_passing(
         reports.append(result.report)
     made = DriveByPick(leg, leg, index, part.name, before, opening, dwell, result, "".join(reports))
     if result.outcome != Outcome.solved:
-        made.why = f"{result.attempts} attempts, {result.outcome.name}: {_broken(result)}"
+        made.why = f"{result.solves} solves, {result.outcome.name}: {_broken(result)}"
     elif result.duration >= before:
         made.why = f"in passing it would take {result.duration:.1f} s"
     else:
@@ -250,7 +250,7 @@ def _one_after_the_other(
         begin = times[-1]
         times += [begin + t for t in trajectory.times[1:]]
         rows += [np.concatenate([poses[-1], q]) for q in trajectory.positions[1:]]
-        if motion.kind in ("reach", "approach"):
+        if motion.kind in ("transit", "approach"):
             reached.append(times[-1])
         if motion.kind == "approach":
             times.append(times[-1] + dwell)

@@ -18,7 +18,7 @@ from ..scenario import Scenario
 from ..scenario.reading import Node, read_json
 from ..scenario.shapes import pose_to_dict, shape_from_node, shape_to_dict
 
-VERSION = 1
+VERSION = 2
 
 
 # --- writing ----------------------------------------------------------------------------------------------------------
@@ -65,7 +65,7 @@ def plan_to_dict(scenario: Scenario, plan: PartSupplyPlan, timings: list[tuple[s
 def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
     """The part of the plan that the scenario alone decides."""
     setup = scenario.setup
-    gripper, arm, robot, carry = setup.gripper, setup.arm, setup.robot, setup.carry
+    gripper, arm, robot, place = setup.gripper, setup.arm, setup.robot, setup.place_region
     return {
         "name": scenario.name,
         "source": scenario.source,
@@ -100,7 +100,11 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
         "start": scenario.start.tolist(),
         "goal": scenario.goal.tolist(),
         "positioning_uncertainty": scenario.positioning_uncertainty,
-        "carry": {"pose": pose_to_dict(carry.T_base_bin), "size": carry.size.tolist(), "drop_gap": carry.drop_gap},
+        "place_region": {
+            "pose": pose_to_dict(place.T_base_bin),
+            "size": place.size.tolist(),
+            "drop_gap": place.drop_gap,
+        },
         "obstacles": [
             {"name": o.name, "pose": pose_to_dict(o.pose), "shapes": [shape_to_dict(s) for s in o.shapes]}
             for o in scenario.obstacles
@@ -227,8 +231,7 @@ def check_header(root: Node) -> None:
     if not isinstance(root.raw, dict) or "format" not in root.raw:
         raise InvalidInput(f"{root.document.source}: is no plan: the key format: mmgrasp-plan is missing")
     root["format"].choice("mmgrasp-plan")
-    if root["version"].integer() != VERSION:
-        root["version"].fail(f"this version of mmgrasp reads version {VERSION}")
+    root.read_version(VERSION)
 
 
 def plan_schema() -> dict[str, Any]:
@@ -307,10 +310,10 @@ def _read_body(node: Node) -> checks.CheckedBody:
 def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
     plan.start, plan.goal = (np.array(scenario[key].numbers(3)) for key in ("start", "goal"))
     plan.positioning_uncertainty = scenario["positioning_uncertainty"].number(least=0)
-    carry = scenario["carry"]
-    plan.T_base_bin = carry["pose"].pose()
-    plan.bin_size = np.array(carry["size"].numbers(2, above=0))
-    plan.drop_gap = carry["drop_gap"].number(least=0)
+    place = scenario["place_region"]
+    plan.T_base_bin = place["pose"].pose()
+    plan.bin_size = np.array(place["size"].numbers(2, above=0))
+    plan.drop_gap = place["drop_gap"].number(least=0)
     plan.obstacles = [_read_body(node) for node in scenario["obstacles"].elements()]
     plan.trays = [tray["name"].string() for tray in scenario["trays"].elements()]
     parts = []

@@ -82,7 +82,7 @@ def _free(context: Context) -> Result:
         row["poses reached"] = (None, made.reached)
         row["time [s]"] = (1800, seconds)
         row["us a pose"] = (1e6 * 1800 / 2080000, 1e6 * seconds / made.classes.size)
-        for cause in ("reach", "limits", "self_collision"):
+        for cause in ("unreachable", "limits", "self_collision"):
             row[f"refused: {cause.replace('_', '-')}"] = (None, getattr(made.rejections, cause))
         if not context.quick:
             result.trend(f"{name}: at least 30 times faster than the paper's 30 minutes", seconds < 60, clock=True)

@@ -71,7 +71,7 @@ def plan(place: tuple[float, float, float], waypoints: int = WAYPOINTS, **option
 def measure(waypoints: int, solver: str, time_limit: float) -> dict[str, Any]:
     """One point of figure 4.5."""
     found = plan(
-        GRASPS["G2 (y = -2)"], waypoints, solver=solver, collisions=False, attempts=1, time_limit=time_limit,
+        GRASPS["G2 (y = -2)"], waypoints, solver=solver, collisions=False, seeds=1, time_limit=time_limit,
         max_iterations=1000,
     )  # fmt: skip
     return {

@@ -109,7 +109,7 @@ class Row:
             setup.home,
             [-1.5, min(middles) - 1.0, 0.0],
             [-1.5, away - 2.0, 0.0],
-            setup.carry,
+            setup.place_region,
             positioning_uncertainty=UNCERTAINTY,
             grid_resolution=RESOLUTION,
             ik_seeds=self.ik_seeds,

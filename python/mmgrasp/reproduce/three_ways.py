@@ -51,7 +51,7 @@ def stopping(samples: int, minimal: bool) -> dict[str, Any]:
             width = problem.trays[tray].parts[0].grasps[pick.grasp].opening
             closing = (pick.motions[0].opening - width) / CLOSING_SPEED + SETTLING
             # From home into the grasp, and back home; the way to the bin is left out in every row.
-            picking += times["reach"] + times["approach"] + closing + times["lift"] + times["reach"]
+            picking += times["transit"] + times["approach"] + closing + times["lift"] + times["transit"]
         here = pose
     return {"solved": True, "stops": len(stops), "driving": driving, "picking": picking}
 

@@ -22,6 +22,10 @@ _EXPONENT = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)[eE][-+]?\d+")
 Key = str | int
 
 
+RENAMED = {"carry": "place_region"}
+"""Keys of version 1 of the files by what they are called since version 2."""
+
+
 def near_miss(wrong: str, known: list[str]) -> str:
     """ "; did you mean x?", or the list of what is known."""
     close = difflib.get_close_matches(wrong, known, 1, 0.5)
@@ -102,7 +106,16 @@ class Node:
         return self
 
     def refuse_key(self, known: list[str]) -> NoReturn:
-        raise InvalidInput(f"{self.place}: {self.name}: unknown key{near_miss(str(self.path[-1]), known)}")
+        key = str(self.path[-1])
+        new = RENAMED.get(key)
+        hint = f"; it is called {new} now" if new in known else near_miss(key, known)
+        raise InvalidInput(f"{self.place}: {self.name}: unknown key{hint}")
+
+    def read_version(self, current: int) -> None:
+        """Of a file: its key `version` must be the current one."""
+        if self["version"].integer() != current:
+            old = ", ".join(f"{old} is {new}" for old, new in RENAMED.items() if old in self.raw)
+            self["version"].fail(f"this version of mmgrasp reads version {current}" + (f": {old} now" if old else ""))
 
     def __contains__(self, key: str) -> bool:
         return isinstance(self.raw, Mapping) and key in self.raw

@@ -1,4 +1,4 @@
-"""The sections `robot`, `gripper` and `carry` of a scenario: one robot composed of files, mounts, frames and a bin."""
+"""The sections `robot`, `gripper` and `place_region` of a scenario: one robot composed of files, mounts, frames and a bin."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import Box, CarryPlace, Hand, HandJoint, InvalidInput, JointGroup, LinkShape, Robot
+from .._core import Box, Hand, HandJoint, InvalidInput, JointGroup, LinkShape, PlaceRegion, Robot
 from .._files import ASSETS, shipped
 from .._progress import Progress
 from .reading import Node, near_miss, read_yaml
@@ -18,7 +18,7 @@ from .shapes import read_shapes
 
 BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation"
 ROBOT_KEYS = "urdf srdf packages xacro_args base base_limits mount frames group tcp joints home"
-CARRY_LINK = "carry_bin"
+BIN_LINK = "place_bin"
 
 
 @dataclass
@@ -28,7 +28,7 @@ class RobotSetup:
     robot: Robot
     arm: JointGroup
     gripper: Hand
-    carry: CarryPlace
+    place_region: PlaceRegion
     home: np.ndarray
     other_joints: dict[str, float]
 
@@ -39,7 +39,7 @@ class RobotSections:
 
     robot: Node
     gripper: Node
-    carry: Node
+    place_region: Node
 
 
 def find_file(node: Node) -> Path:
@@ -85,13 +85,13 @@ def choose_sections(root: Node, robot_name: str | None) -> RobotSections:
         own.mapping("name")
         robot_name = own["name"].string()
     if robot_name is None:
-        return RobotSections(own, root["gripper"], root["carry"])
-    profile = read_yaml(profile_path(robot_name)).root.mapping("format version robot gripper carry")
+        return RobotSections(own, root["gripper"], root["place_region"])
+    profile = read_yaml(profile_path(robot_name)).root
     profile["format"].choice("mmgrasp-robot")
-    if profile["version"].integer() != 1:
-        profile["version"].fail("this version of mmgrasp reads version 1")
-    pick = {key: root[key] if key in root and not replaced else profile[key] for key in ("gripper", "carry")}
-    return RobotSections(profile["robot"], pick["gripper"], pick["carry"])
+    profile.read_version(2)
+    profile.mapping("format version robot gripper place_region")
+    pick = {key: root[key] if key in root and not replaced else profile[key] for key in ("gripper", "place_region")}
+    return RobotSections(profile["robot"], pick["gripper"], pick["place_region"])
 
 
 def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup:
@@ -101,15 +101,15 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
     tcp = node["tcp"].string()
     _link(robot, node["tcp"])
     gripper = _read_gripper(sections.gripper, robot, tcp)
-    robot, carry_pose = _add_bin(robot, sections.carry)
+    robot, bin_pose = _add_bin(robot, sections.place_region)
     robot = _core.with_sampled_pairs(robot, progress=progress)
 
     other = {name: _joint_value(robot, name, value) for name, value in _named_numbers(node, "joints")}
     closed = gripper.joint_values(0.0)
     arm = _read_group(robot, node["group"], tcp).with_reference({**other, **closed})
     home = _read_home(node["home"], arm)
-    _fixed_to_root(arm, sections.carry["parent"], home)
-    return RobotSetup(robot, arm, gripper, _read_carry(sections.carry, carry_pose), home, other)
+    _fixed_to_root(arm, sections.place_region["parent"], home)
+    return RobotSetup(robot, arm, gripper, _read_place_region(sections.place_region, bin_pose), home, other)
 
 
 def _compose(node: Node) -> Robot:
@@ -238,17 +238,17 @@ def _add_bin(robot: Robot, node: Node) -> tuple[Robot, np.ndarray]:
     size = node["size"].numbers(3, above=0)
     parent, T_parent_bin = node["parent"].string(), node["pose"].pose()
     box = LinkShape(Box(size), _core.pose([0, 0, -size[2] / 2]))
-    robot = robot.with_link(CARRY_LINK, parent, T_parent_bin, [box])
-    T_root_bin = robot.link_poses()[CARRY_LINK]
+    robot = robot.with_link(BIN_LINK, parent, T_parent_bin, [box])
+    T_root_bin = robot.link_poses()[BIN_LINK]
     if T_root_bin[2, 2] < 1 - 1e-9:
         node["pose"].fail("the bin's top face must be level")
     return robot, T_root_bin
 
 
-def _read_carry(node: Node, T_root_bin: np.ndarray) -> CarryPlace:
+def _read_place_region(node: Node, T_root_bin: np.ndarray) -> PlaceRegion:
     size = node["size"].numbers(3, above=0)
     options = {"drop_gap": node["drop_gap"].number(least=0)} if "drop_gap" in node else {}
-    return CarryPlace(T_root_bin, size[:2], **options)
+    return PlaceRegion(T_root_bin, size[:2], **options)
 
 
 def _fixed_to_root(arm: JointGroup, node: Node, home: np.ndarray) -> None:

@@ -19,7 +19,7 @@ from .shapes import read_shapes
 from .tray_section import PartType, TraySetup, read_part_types, read_tray
 
 TOP_KEYS = "format version name robot start goal positioning_uncertainty trays part_types"
-TOP_OPTIONAL = "gripper carry obstacles options reach"
+TOP_OPTIONAL = "gripper place_region obstacles options reach"
 SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
 
 
@@ -73,7 +73,7 @@ class Scenario:
             setup.home,
             self.start,
             self.goal,
-            setup.carry,
+            setup.place_region,
             positioning_uncertainty=self.positioning_uncertainty,
             **self.options,
         )
@@ -141,10 +141,9 @@ def load_scenario(
 def _check_header(root: Node) -> None:
     if not isinstance(root.raw, dict) or "format" not in root.raw:
         raise InvalidInput(f"{root.document.source}: is no scenario: the key format: mmgrasp-scenario is missing")
-    root.mapping(TOP_KEYS, TOP_OPTIONAL)
     root["format"].choice("mmgrasp-scenario")
-    if root["version"].integer() != 1:
-        root["version"].fail("this version of mmgrasp reads version 1")
+    root.read_version(2)
+    root.mapping(TOP_KEYS, TOP_OPTIONAL)
 
 
 def _read_options(root: Node, section: str, table: dict[str, tuple[Any, str]], elsewhere: set[str]) -> dict[str, Any]:

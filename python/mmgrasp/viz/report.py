@@ -13,7 +13,7 @@ from .timeline import Timeline
 from .topview import TOPVIEW_CSS, TopView
 
 CAUSES = [
-    ("reach", "out of reach"),
+    ("unreachable", "out of reach"),
     ("limits", "joint limits"),
     ("self_collision", "robot hits itself"),
     ("scene", "robot hits the scene"),
@@ -146,8 +146,8 @@ def _obstructions(plan) -> str:
         advice = ""
         if item["largest_uncertainty"] >= 0 and item["stage"] == "robustness":
             advice = f" The largest positioning uncertainty that works is {item['largest_uncertainty']:.3f} m."
-        if item["missing_reach"] > 0:
-            advice += f" The reach falls short by {item['missing_reach']:.3f} m."
+        if item["reach_deficit"] > 0:
+            advice += f" The reach falls short by {item['reach_deficit']:.3f} m."
         items.append(f'<div class="bad"><b>{escape(where)}</b>: {escape(item["message"])}{escape(advice)}</div>')
     return "<h2>What stands in the way</h2>" + "".join(items) if items else ""
 
@@ -183,7 +183,7 @@ def _stops(plan) -> str:
 
 
 def _picks(plan) -> str:
-    kinds = ["reach", "approach", "lift", "carry", "retreat"]
+    kinds = ["transit", "approach", "lift", "transfer", "retreat"]
     rows = []
     for number, pick in enumerate(plan["picks"], start=1):
         times = {m["kind"]: m["times"][-1] for m in pick["motions"]}
@@ -205,7 +205,7 @@ def _in_passing(plan) -> str:
         pick = plan["picks"][motion["pick"]]
         part = next(p for p in plan["scenario"]["parts"] if p["name"] == pick["part"])
         closing = (motion["opening"] - part["grasps"][pick["grasp"]]["width"]) / speed
-        arm = sum(m["times"][-1] for m in pick["motions"] if m["kind"] in ("reach", "approach", "lift"))
+        arm = sum(m["times"][-1] for m in pick["motions"] if m["kind"] in ("transit", "approach", "lift"))
         stopping = plan["route"][pick["stop"]]["duration"] + arm + closing
         now = motion["times"][-1]
         cells = [str(pick["stop"] + 1), _tray(plan, pick["tray"]), escape(pick["part"])]

@@ -79,7 +79,7 @@ class Timeline:
             leaving.after = held
             clock = self._add(coming)
             clock = self._add(leaving)
-            motions = [m for m in motions if m["kind"] in ("carry", "retreat")]
+            motions = [m for m in motions if m["kind"] in ("transfer", "retreat")]
         for motion in motions:
             held = in_hand if motion["holding"] else None
             binned = gone | {name} if motion["kind"] == "retreat" else gone
@@ -87,7 +87,7 @@ class Timeline:
             segment = Segment(label, clock, float(motion["times"][-1]), "motion", motion, held, binned, base)
             segment.opening = float(motion["opening"])
             clock = self._add(segment)
-            if motion["kind"] in ("approach", "carry"):
+            if motion["kind"] in ("approach", "transfer"):
                 word = "grasp" if motion["kind"] == "approach" else "release"
                 grip = Segment(f"{word} {name}", clock, GRIP_TIME, "grip", motion, None, gone, base)
                 grip.held = in_hand if word == "release" else None

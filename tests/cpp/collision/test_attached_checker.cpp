@@ -43,10 +43,10 @@ TEST(AttachedChecker, SaysWhatACheckerMadeForThePoseSays) {
   // On the last link, on one in the middle (constant pairs differ), and on the one that never moves.
   for (const std::size_t link : {cell.robot.links().size() - 1, std::size_t{3}, std::size_t{0}}) {
     const std::string& name = cell.robot.links()[link].name;
-    for (const bool held_only : {true, false}) {
+    for (const bool attached_only : {true, false}) {
       Rng rng(7);
       CheckerOptions options;
-      options.held_only = held_only;
+      options.attached_only = attached_only;
       AttachedChecker turned(cell.group, cell.world(random_pose(rng), name), options);
       EdgeOptions edge;
       edge.workspace_step = 0.01;
@@ -63,7 +63,7 @@ TEST(AttachedChecker, SaysWhatACheckerMadeForThePoseSays) {
           ++(made.is_free(a) ? free : blocked);
           // Steps need not be the same ones: the attached object's motion bounds them alone, not the robot's.
           const bool expected = check_edge(made, a, b, edge).free;
-          if (!held_only) {
+          if (!attached_only) {
             EXPECT_EQ(turned.edge_is_free(a, b, edge), expected);
           }
           edge.joint_step = 0.02;

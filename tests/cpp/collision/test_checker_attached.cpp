@@ -27,15 +27,15 @@ struct AttachedBox {
   }
 };
 
-CheckerOptions held_only() {
+CheckerOptions attached_only() {
   CheckerOptions options;
-  options.held_only = true;
+  options.attached_only = true;
   return options;
 }
 
 TEST(AttachedOnly, ContactsAreThoseOfTheAttachedObject) {
   const AttachedBox scene;
-  CollisionChecker whole(scene.group, scene.world), attached(scene.group, scene.world, held_only());
+  CollisionChecker whole(scene.group, scene.world), attached(scene.group, scene.world, attached_only());
   Rng rng(3);
   int touching = 0, robot_alone = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -57,7 +57,7 @@ TEST(AttachedOnly, ContactsAreThoseOfTheAttachedObject) {
 
 TEST(AttachedOnly, DistanceIsThatOfTheAttachedObject) {
   const AttachedBox scene;
-  CollisionChecker whole(scene.group, scene.world), attached(scene.group, scene.world, held_only());
+  CollisionChecker whole(scene.group, scene.world), attached(scene.group, scene.world, attached_only());
   Rng rng(4);
   for (int i = 0; i < 200; ++i) {
     const Eigen::VectorXd q = rng.uniform(scene.group.sample_lower(), scene.group.sample_upper());
@@ -70,7 +70,7 @@ TEST(AttachedOnly, DistanceIsThatOfTheAttachedObject) {
 
 TEST(AttachedOnly, EdgesAreStoppedByTheAttachedObjectAlone) {
   const AttachedBox scene;
-  CollisionChecker whole(scene.group, scene.world), attached(scene.group, scene.world, held_only());
+  CollisionChecker whole(scene.group, scene.world), attached(scene.group, scene.world, attached_only());
   Rng rng(5);
   int blocked = 0;
   for (int i = 0; i < 300; ++i) {

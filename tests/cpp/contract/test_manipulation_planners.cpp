@@ -152,7 +152,7 @@ TEST_P(ManipulationPlanner, OneGraspOfManyLeadsThere) {
     EXPECT_EQ(result.grasps.size(), problem.grasps.size());
     if (!in_the_post) {
       EXPECT_EQ(result.grasp_index, 137);
-      EXPECT_EQ(result.rejections.reach, 300u);
+      EXPECT_EQ(result.rejections.unreachable, 300u);
     }
   }
 }
@@ -371,7 +371,7 @@ TEST_P(ManipulationPlanner, AnInvalidStartSaysWhy) {
   problem.T_world_start = flat_pose(9, 0, 0);
   result = plan_manipulation(problem, options());
   EXPECT_EQ(result.outcome, Outcome::invalid_start);
-  EXPECT_EQ(result.rejections.reach, problem.grasps.size());
+  EXPECT_EQ(result.rejections.unreachable, problem.grasps.size());
   EXPECT_TRUE(result.contacts.empty());
 }
 

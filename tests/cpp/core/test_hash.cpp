@@ -37,7 +37,7 @@ TEST(Error, RequireNamesFieldValueAndRule) {
 TEST(Rejections, CountsAndSummary) {
   Rejections a;
   EXPECT_EQ(a.summary(), "none");
-  a.add(Rejection::reach, 12);
+  a.add(Rejection::unreachable, 12);
   a.add(Rejection::scene);
   a.add(Rejection::none, 5);
   Rejections b;

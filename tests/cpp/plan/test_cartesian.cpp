@@ -119,7 +119,7 @@ TEST(Cartesian, SaysHowFarItCame) {
   const CartesianResult nowhere = plan_cartesian(checker, poses);
   EXPECT_EQ(nowhere.outcome, Outcome::infeasible);
   EXPECT_EQ(nowhere.branches, 0);
-  EXPECT_EQ(nowhere.cause, Rejection::reach);
+  EXPECT_EQ(nowhere.cause, Rejection::unreachable);
 }
 
 TEST(Cartesian, AStartInCollisionNamesThePair) {
@@ -179,7 +179,7 @@ TEST(Cartesian, ANearThatIsThereIsJudgedWhenNoBranchIsFound) {
     Poses poses{arm.group().fk(near), arm.group().fk(near)};
     poses[1].translation() *= 0.9;
     const CartesianResult unknown = plan_cartesian(checker, poses, std::nullopt, options);
-    ASSERT_EQ(unknown.cause, Rejection::reach);
+    ASSERT_EQ(unknown.cause, Rejection::unreachable);
     EXPECT_EQ(unknown.outcome, Outcome::infeasible);
     const CartesianResult result = plan_cartesian(checker, poses, near, options);
     EXPECT_EQ(result.outcome, Outcome::invalid_start);

@@ -312,7 +312,7 @@ TEST(PrmStarMg, SaysWhyThereIsNoPlan) {
   problem.T_world_start = test::flat_pose(5, 0, 0);
   ManipulationResult result = plan_manipulation(problem, options);
   EXPECT_EQ(result.outcome, Outcome::invalid_start);
-  EXPECT_EQ(result.rejections.reach, 20u);
+  EXPECT_EQ(result.rejections.unreachable, 20u);
   problem = test::bar_transfer();
   problem.T_world_goal = test::flat_pose(0.85, 0, 0);  // within the post
   result = plan_manipulation(problem, options);

@@ -66,7 +66,7 @@ TEST(MotionGoals, IndicesCountThroughTheLists) {
   ASSERT_EQ(result.outcome, Outcome::solved);
   EXPECT_EQ(result.goal_index, 2);
   EXPECT_EQ(result.rejections.limits, 1u);
-  EXPECT_EQ(result.rejections.reach, 1u);
+  EXPECT_EQ(result.rejections.unreachable, 1u);
 }
 
 TEST(MotionGoals, NothingInReachIsAnInvalidGoal) {
@@ -76,7 +76,7 @@ TEST(MotionGoals, NothingInReachIsAnInvalidGoal) {
   goals.tool_poses = {planar_pose(5, 0, 0)};
   const MotionResult result = plan_motion_to(checker, vec({0, 0, 0}), goals);
   EXPECT_EQ(result.outcome, Outcome::invalid_goal);
-  EXPECT_EQ(result.rejections.reach, 1u);
+  EXPECT_EQ(result.rejections.unreachable, 1u);
   EXPECT_THROW(plan_motion_to(checker, vec({0, 0, 0}), MotionGoals{}), InvalidInput);
   goals.tool_poses[0].linear()(0, 0) = 2;
   EXPECT_THROW(plan_motion_to(checker, vec({0, 0, 0}), goals), InvalidInput);
@@ -86,7 +86,7 @@ TEST(MotionGoals, NothingInReachIsAnInvalidGoal) {
 }
 
 /// The tool's axis is the sum of a planar arm's angles away from x.
-TEST(ToolCone, HoldsAlongThePath) {
+TEST(OrientationConstraint, HoldsAlongThePath) {
   const test::PlanarArm arm(4, kLength, 0.02);
   const std::vector<SceneBox> wall{{{1.2, 0, 0}, {0.7, 0.1, 0.2}}};
   CollisionChecker checker(arm.group(), test::make_world(wall));
@@ -98,7 +98,7 @@ TEST(ToolCone, HoldsAlongThePath) {
       options.seed = seed;
       options.time_limit = 100;
       options.max_iterations = 100000;
-      options.tool_cone = ToolCone{{2, 0, 0}, {1, 0, 0}, 0.3};
+      options.orientation_constraint = OrientationConstraint{{2, 0, 0}, {1, 0, 0}, 0.3};
       const MotionResult result = plan_motion(checker, start, {goal}, options);
       ASSERT_EQ(result.outcome, Outcome::solved) << planner;
       EXPECT_GT(test::fcl_path_clearance(arm, kLength, *result.path, wall, options.edge_step / 8), 0);
@@ -109,7 +109,7 @@ TEST(ToolCone, HoldsAlongThePath) {
           EXPECT_LE(std::abs(std::remainder(q.sum(), 2 * M_PI)), 0.3 + 1e-9);
         }
       }
-      options.tool_cone.reset();
+      options.orientation_constraint.reset();
       const MotionResult without = plan_motion(checker, start, {goal}, options);
       ASSERT_TRUE(without.path);
       EXPECT_LE(without.cost, result.cost * 1.5);
@@ -117,19 +117,19 @@ TEST(ToolCone, HoldsAlongThePath) {
   }
 }
 
-TEST(ToolCone, StartAndGoalsOutsideItAreRefused) {
+TEST(OrientationConstraint, StartAndGoalsOutsideItAreRefused) {
   const test::PlanarArm arm(3, kLength);
   CollisionChecker checker(arm.group(), World{});
   MotionOptions options;
-  options.tool_cone = ToolCone{{1, 0, 0}, {1, 0, 0}, 0.2};
+  options.orientation_constraint = OrientationConstraint{{1, 0, 0}, {1, 0, 0}, 0.2};
   const VectorXd inside = vec({0.3, -0.3, 0}), outside = vec({0.3, 0, 0});
   EXPECT_EQ(plan_motion(checker, outside, {inside}, options).outcome, Outcome::invalid_start);
   const MotionResult result = plan_motion(checker, inside, {outside}, options);
   EXPECT_EQ(result.outcome, Outcome::invalid_goal);
   EXPECT_EQ(result.rejections.grasp_filter, 1u);
-  options.tool_cone->half_angle = 0;
+  options.orientation_constraint->half_angle = 0;
   EXPECT_THROW(plan_motion(checker, inside, {inside}, options), InvalidInput);
-  options.tool_cone = ToolCone{{0, 0, 0}, {1, 0, 0}, 0.2};
+  options.orientation_constraint = OrientationConstraint{{0, 0, 0}, {1, 0, 0}, 0.2};
   EXPECT_THROW(plan_motion(checker, inside, {inside}, options), InvalidInput);
 }
 

@@ -93,7 +93,7 @@ TEST(StraightLine, OutOfReachNamesReachAndHowFarItGot) {
   const Pose from = arm.group().fk(q);
   const StraightLineResult result = plan_straight_line(checker, q, moved(from, {3.0, 0, 0}));
   EXPECT_EQ(result.outcome, Outcome::infeasible);
-  EXPECT_EQ(result.cause, Rejection::reach);
+  EXPECT_EQ(result.cause, Rejection::unreachable);
   EXPECT_FALSE(result.path);
   // The arm's own length bounds how far it can have gone.
   EXPECT_GT(result.fraction, 0.0);

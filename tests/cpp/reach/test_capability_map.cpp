@@ -120,7 +120,7 @@ TEST(CapabilityMap, ReachesExactlyTheShellThatTwoLinksSpan) {
     const double wrist = (T * Vector3d(-0.1, 0, 0) - Vector3d(0, 0, 0.8)).norm();
     if (std::abs(wrist - 0.8) < 1e-3 || std::abs(wrist - 0.2) < 1e-3) return;  // within tolerance of the border
     const bool inside = wrist < 0.8 && wrist > 0.2;
-    EXPECT_EQ(map.classified(voxel, pose), inside ? Rejection::none : Rejection::reach);
+    EXPECT_EQ(map.classified(voxel, pose), inside ? Rejection::none : Rejection::unreachable);
     (inside ? reached : refused) += 1;
   });
   EXPECT_GT(reached, 3000);
@@ -288,7 +288,7 @@ TEST(CapabilityMap, WhatTheHandHoldsCounts) {
   const auto with = CapabilityMap::build(arm, holding, options);
   EXPECT_LT(with.reached(), without.reached());
   for (std::size_t i = 0; i < with.classes().size(); ++i) {
-    if (without.classes()[i] != static_cast<std::uint8_t>(Rejection::reach)) continue;
+    if (without.classes()[i] != static_cast<std::uint8_t>(Rejection::unreachable)) continue;
     EXPECT_NE(with.classes()[i], static_cast<std::uint8_t>(Rejection::none));
   }
 }

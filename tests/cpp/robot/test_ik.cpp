@@ -107,8 +107,8 @@ TEST(Ik, OutOfReachIsAValueAndCounted) {
     EXPECT_EQ(result.outcome, Outcome::infeasible);
     EXPECT_EQ(result.q.size(), 0);
     EXPECT_GT(result.position_error, 1e-3);
-    EXPECT_GT(result.rejections.reach, 0u);
-    EXPECT_EQ(result.rejections.total(), result.rejections.reach);
+    EXPECT_GT(result.rejections.unreachable, 0u);
+    EXPECT_EQ(result.rejections.total(), result.rejections.unreachable);
   }
 }
 
@@ -126,9 +126,9 @@ TEST(Ik, LimitsAreToldFromReach) {
   const IkResult outside = solve(std::cos(1.0), std::sin(1.0), 1.0);
   EXPECT_EQ(outside.outcome, Outcome::infeasible);
   EXPECT_EQ(outside.rejections.limits, 31u);  // the seed and every restart
-  EXPECT_EQ(outside.rejections.reach, 0u);
+  EXPECT_EQ(outside.rejections.unreachable, 0u);
   const IkResult twisted = solve(1, 0, 0.4);  // right place, wrong angle
-  EXPECT_EQ(twisted.rejections.reach, 31u);
+  EXPECT_EQ(twisted.rejections.unreachable, 31u);
 }
 
 TEST(Ik, FilterDecidesAndIsCounted) {

@@ -263,7 +263,7 @@ TEST(IkBranches, FilterAndLimitsAreCounted) {
   const IkBranches none = solve_ik_branches(group, far);
   EXPECT_TRUE(none.solutions.empty());
   EXPECT_TRUE(none.complete);
-  EXPECT_GT(none.rejections.reach, 0u);
+  EXPECT_GT(none.rejections.unreachable, 0u);
 }
 
 TEST(IkBranches, SingularWristStillGivesSolutions) {
@@ -341,9 +341,9 @@ TEST(IkBranches, SearchTellsLimitsFromReachAndStops) {
   const Pose outside = pose_from_xyz_rpy({std::cos(1.0), std::sin(1.0), 0}, {0, 0, 1});
   const IkBranches limits = solve_ik_branches(group, outside);
   EXPECT_GT(limits.rejections.limits, 0u);
-  EXPECT_EQ(limits.rejections.reach, 0u);
+  EXPECT_EQ(limits.rejections.unreachable, 0u);
   const IkBranches reach = solve_ik_branches(group, pose_from_xyz_rpy({1, 0, 0}, {0, 0, 0.4}));
-  EXPECT_GT(reach.rejections.reach, 0u);
+  EXPECT_GT(reach.rejections.unreachable, 0u);
   EXPECT_EQ(reach.rejections.limits, 0u);
   Monitor monitor;
   monitor.stop.stop();

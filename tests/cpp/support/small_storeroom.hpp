@@ -64,8 +64,8 @@ inline std::vector<Grasp> grasps_from_above(double width) {
       Grasp grasp;
       grasp.opening = width;
       grasp.T_object_hand.linear() = (Eigen::AngleAxisd(0.5 * M_PI * quarter, Eigen::Vector3d::UnitZ()) *
-                                     Eigen::AngleAxisd(M_PI + tilt, Eigen::Vector3d::UnitY()))
-                                        .toRotationMatrix();
+                                      Eigen::AngleAxisd(M_PI + tilt, Eigen::Vector3d::UnitY()))
+                                         .toRotationMatrix();
       grasp.T_object_hand.translation().z() = 0.01;
       grasp.quality = tilt == 0 ? 1 : 0.5;
       grasps.push_back(grasp);
@@ -114,14 +114,14 @@ inline PartSupplyProblem small_storeroom(int parts_per_tray = 2) {
                             home,
                             Eigen::Vector3d::Zero(),
                             Eigen::Vector3d::Zero(),
-                            CarryPlace(),
+                            PlaceRegion(),
                             PartSupplyOptions()};
   problem.scene.add("table", box_shape(0.30, 1.2, 0.04), at(0.9, 0.0, 0.42));
   problem.trays = {small_tray("A", 0.88, -0.15, parts_per_tray), small_tray("B", 0.88, 0.15, parts_per_tray)};
   problem.start = Eigen::Vector3d(-0.8, 0.5, 0);
   problem.goal = Eigen::Vector3d(-0.8, -0.5, 3.0);
-  problem.carry.T_base_bin = at(-0.10, 0, 0.46);
-  problem.carry.size = Eigen::Vector2d(0.18, 0.22);
+  problem.place_region.T_base_bin = at(-0.10, 0, 0.46);
+  problem.place_region.size = Eigen::Vector2d(0.18, 0.22);
   problem.options.grid.resolution = 0.05;
   problem.options.positioning_uncertainty = 0.04;
   problem.options.approach_distance = 0.05;

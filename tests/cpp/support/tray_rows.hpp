@@ -125,8 +125,8 @@ inline PartSupplyProblem tray_row(const MobileManipulator& robot, const RowOptio
     return T;
   };
   PartSupplyProblem problem{
-      robot.arm.robot(),         robot.arm,    robot.gripper,      World(), {}, robot.home, Eigen::Vector3d(-3, 0, 0),
-      Eigen::Vector3d(-3, 0, 0), CarryPlace(), PartSupplyOptions()};
+      robot.arm.robot(),         robot.arm,     robot.gripper,      World(), {}, robot.home, Eigen::Vector3d(-3, 0, 0),
+      Eigen::Vector3d(-3, 0, 0), PlaceRegion(), PartSupplyOptions()};
   const double length = (row.trays - 1) * row.spacing;
   problem.scene.add("table", Box{Eigen::Vector3d(0.40, length + 0.60, 0.03)}, at(1.0, 0.5 * length, row.floor - 0.021));
   Eigen::Matrix3d tool, world;

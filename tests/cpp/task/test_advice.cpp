@@ -176,7 +176,7 @@ TEST(Advice, HalfTheMoveIsNotEnough) {
   ASSERT_FALSE(failed.obstructions.empty());
   for (Obstruction& told : failed.obstructions) {
     ASSERT_GT(told.advised_move.norm(), 2 * problem.options.grid.resolution);
-    EXPECT_GE(told.advised_move.norm(), told.missing_reach - problem.options.grid.resolution);
+    EXPECT_GE(told.advised_move.norm(), told.reach_deficit - problem.options.grid.resolution);
     told.advised_move *= 0.5;
   }
   EXPECT_EQ(plan_part_supply(with_advice_applied(problem, failed.obstructions), database()).outcome,

@@ -167,7 +167,7 @@ TEST(RobustIntersections, ChainOfFiveTrays) {
   EXPECT_NEAR(found.lost[0].radius, 0.075, 0.05);
   EXPECT_TRUE(found.complete);
 
-  const StopSet stops = minimal_stops(grid, found.robust, 5);
+  const StopSet stops = cover_from_intersections(grid, found.robust, 5);
   EXPECT_EQ(stops.outcome, Outcome::solved);
   EXPECT_EQ(stops.lower_bound, 3);
   ASSERT_EQ(stops.stops.size(), 3u);
@@ -231,7 +231,7 @@ TEST(MinimalStops, TraysWithoutAPlaceAreNamed) {
   Intersection only;
   only.trays = {TrayId(0), TrayId(2)};
   only.radius = 1;
-  const StopSet stops = minimal_stops(grid, {only}, 4);
+  const StopSet stops = cover_from_intersections(grid, {only}, 4);
   EXPECT_EQ(stops.outcome, Outcome::infeasible);
   EXPECT_EQ(numbers(stops.unreachable_trays), (std::vector<int>{1, 3}));
 }
@@ -241,16 +241,16 @@ TEST(MinimalStops, AnIncompleteSearchIsNoProof) {
   const BaseGrid grid = make_grid(10, 10);
   std::vector<BaseRegion> regions(2);
   for (BaseRegion& region : regions) region.cells.assign(grid.size(), 1);
-  const StopSet all = minimal_stops(grid, robust_intersections(grid, regions, 0.0), 2);
+  const StopSet all = cover_from_intersections(grid, robust_intersections(grid, regions, 0.0), 2);
   EXPECT_EQ(all.outcome, Outcome::solved);
   EXPECT_EQ(all.stops.size(), 1u);
   const Intersections some = robust_intersections(grid, regions, 0.0, 2);
   ASSERT_FALSE(some.complete);
-  const StopSet stops = minimal_stops(grid, some, 2);
+  const StopSet stops = cover_from_intersections(grid, some, 2);
   EXPECT_EQ(stops.outcome, Outcome::approximate);
   EXPECT_EQ(stops.stops.size(), 2u);
   EXPECT_EQ(stops.lower_bound, 1);
-  const StopSet single = minimal_stops(grid, robust_intersections(grid, {regions[0]}, 0.0, 1), 1);
+  const StopSet single = cover_from_intersections(grid, robust_intersections(grid, {regions[0]}, 0.0, 1), 1);
   EXPECT_EQ(single.outcome, Outcome::solved);  // one stop is needed anyway
 }
 
@@ -287,7 +287,7 @@ TEST(MinimalStops, TwoHundredRandomInstancesAgainstEnumeration) {
         best_radii = radii;
       }
     }
-    const StopSet stops = minimal_stops(grid, places, trays);
+    const StopSet stops = cover_from_intersections(grid, places, trays);
     if (least < 0) {
       EXPECT_EQ(stops.outcome, Outcome::infeasible);
       continue;

@@ -241,7 +241,7 @@ TEST(DriveBy, ReturnsTheFastestOfThePlansOfEachCandidate) {
   expect_sound(r, {any});
   EXPECT_EQ(r.duration(), best);
   EXPECT_EQ(r.events[0].candidate, fastest);
-  EXPECT_EQ(r.choices, 3);
+  EXPECT_EQ(r.grasp_assignments, 3);
 }
 
 TEST(DriveBy, LeavesOutCandidatesThatCannotBeFaster) {
@@ -252,7 +252,7 @@ TEST(DriveBy, LeavesOutCandidatesThatCannotBeFaster) {
   const DriveByResult r = plan_drive_by(group, World(), kStart, {task}, {kGoal, kGoal});
   expect_sound(r, {task});
   EXPECT_EQ(r.events[0].candidate, 1);
-  EXPECT_EQ(r.choices, 1);
+  EXPECT_EQ(r.grasp_assignments, 1);
   EXPECT_NE(r.report.find("left out"), std::string::npos) << r.report;
   const DriveByResult aside = plan_drive_by(group, World(), kStart, {grasp_at(task.candidates[0])}, {kGoal, kGoal});
   ASSERT_TRUE(aside.usable()) << aside.report;
@@ -268,7 +268,7 @@ TEST(DriveBy, ClockDoesNotDecideWhenItDoesNotEndThePlan) {
   const DriveByResult r = plan_drive_by(group, World(), kStart, tasks, {kGoal, kGoal}, few);
   EXPECT_EQ(r.outcome, Outcome::timeout) << r.report;
   EXPECT_EQ(r.iterations, 12);  // no attempt begins after ten
-  EXPECT_EQ(r.attempts, 4);
+  EXPECT_EQ(r.solves, 4);
 }
 
 TEST(DriveBy, ClosesWhileTheHandMovesOn) {

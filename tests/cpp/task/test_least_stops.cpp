@@ -92,7 +92,7 @@ TEST(LeastStops, EveryPartitionOfSevenTrays) {
     });
     StopOptions options;
     options.min_radius = min_radius;
-    const StopSet set = least_stops(layout.grid, layout.regions, options);
+    const StopSet set = plan_stops_exact(layout.grid, layout.regions, options);
     ASSERT_EQ(set.outcome, Outcome::solved) << seed;
     EXPECT_EQ(set.stops.size(), best.groups) << seed;
     EXPECT_EQ(set.lower_bound, static_cast<int>(best.groups)) << seed;
@@ -111,7 +111,7 @@ TEST(LeastStops, TheSumOfRadiiIsTheLargest) {
     const test::Layout layout = test::overhead_layout(6, seed, 0.15);
     StopOptions options;
     options.min_radius = 0.08;
-    const StopSet set = least_stops(layout.grid, layout.regions, options);
+    const StopSet set = plan_stops_exact(layout.grid, layout.regions, options);
     double sum = 0, smallest = 1e9;
     for (const Stop& stop : set.stops) {
       sum += stop.radius;
@@ -128,7 +128,7 @@ TEST(LeastStops, TheSumOfRadiiIsTheLargest) {
       }
       if (parts.size() == set.stops.size() && least >= smallest - 1e-5) best = std::max(best, total);
     });
-    const double step = 0.25 * layout.grid.resolution + 1e-3;  // what least_stops() promises for each stop
+    const double step = 0.25 * layout.grid.resolution + 1e-3;  // what plan_stops_exact() promises for each stop
     EXPECT_GE(sum, best - step * static_cast<double>(set.stops.size())) << seed;
     EXPECT_LE(sum, best + 1e-5) << seed;
   }
@@ -160,7 +160,7 @@ TEST(LeastStops, EquallyGoodSequencesAreToldApartByTheRoute) {
       }
       return least;
     };
-    const StopSet set = least_stops(grid, regions, options);
+    const StopSet set = plan_stops_exact(grid, regions, options);
     ASSERT_EQ(set.stops.size(), 3u);
     const int lone = wanted == 0.0 ? 0 : 4;
     EXPECT_TRUE(std::any_of(set.stops.begin(), set.stops.end(), [&](const Stop& stop) {
@@ -177,7 +177,7 @@ TEST(LeastStops, HundredsOfTraysAreProven) {
         test::random_layout(120, 4), test::overhead_layout(120, 5)}) {
     StopOptions options;
     options.tie_time_limit = 0;
-    const StopSet set = least_stops(layout.grid, layout.regions, options);
+    const StopSet set = plan_stops_exact(layout.grid, layout.regions, options);
     EXPECT_EQ(set.outcome, Outcome::solved) << layout.name;
     EXPECT_EQ(set.lower_bound, static_cast<int>(set.stops.size())) << layout.name;
     expect_sound(layout.grid, layout.regions, set, options.min_radius);
@@ -187,18 +187,18 @@ TEST(LeastStops, HundredsOfTraysAreProven) {
 TEST(LeastStops, TraysWithoutRoomAreNamedAndStopsAreEnded) {
   test::Layout layout = test::row_layout(4, 0.45);
   std::fill(layout.regions[2].cells.begin(), layout.regions[2].cells.end(), std::uint8_t{0});
-  const StopSet set = least_stops(layout.grid, layout.regions);
+  const StopSet set = plan_stops_exact(layout.grid, layout.regions);
   EXPECT_EQ(set.outcome, Outcome::infeasible);
   EXPECT_EQ(numbers(set.unreachable_trays), (std::vector<int>{2}));
   Monitor stopped;
   stopped.stop.stop();
-  EXPECT_EQ(least_stops(layout.grid, layout.regions, {}, stopped).outcome, Outcome::stopped);
-  const StopSet none = least_stops(layout.grid, {});
+  EXPECT_EQ(plan_stops_exact(layout.grid, layout.regions, {}, stopped).outcome, Outcome::stopped);
+  const StopSet none = plan_stops_exact(layout.grid, {});
   EXPECT_EQ(none.outcome, Outcome::solved);
   EXPECT_TRUE(none.stops.empty());
   StopOptions wrong;
   wrong.min_radius = -1;
-  EXPECT_THROW(least_stops(layout.grid, layout.regions, wrong), InvalidInput);
+  EXPECT_THROW(plan_stops_exact(layout.grid, layout.regions, wrong), InvalidInput);
 }
 
 }  // namespace

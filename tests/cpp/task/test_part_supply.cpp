@@ -37,9 +37,9 @@ verify::PlanToCheck to_check(const PartSupplyProblem& problem, const PartSupplyP
   check.start = problem.start;
   check.goal = problem.goal;
   check.positioning_uncertainty = problem.options.positioning_uncertainty;
-  check.T_base_bin = problem.carry.T_base_bin;
-  check.bin_size = problem.carry.size;
-  check.drop_gap = problem.carry.drop_gap;
+  check.T_base_bin = problem.place_region.T_base_bin;
+  check.bin_size = problem.place_region.size;
+  check.drop_gap = problem.place_region.drop_gap;
   for (const auto& [name, object] : problem.scene.objects())
     check.obstacles.push_back({name, object.shapes, object.T_world_object});
   for (const Tray& tray : problem.trays) {
@@ -93,7 +93,7 @@ TEST(PartSupply, SmallStoreroomIsSolvedAndHoldsForTheIndependentChecker) {
   const verify::PlanCheckResult result = verify::check_plan(to_check(problem, plan), options);
   for (const verify::Fault& fault : result.faults)
     ADD_FAILURE() << fault.code << ", " << fault.where << ": " << fault.message;
-  EXPECT_EQ(result.minimal_stops, 1);
+  EXPECT_EQ(result.cover_from_intersections, 1);
 }
 
 /// `twist` has no limits: its numbers run on from motion to motion and from pick to pick. Home is reached up to its
@@ -196,8 +196,8 @@ TEST(PartSupply, MissingReachSaysHowFarToMove) {
   ASSERT_EQ(failed.obstructions.size(), 1u);
   const Obstruction& told = failed.obstructions[0];
   EXPECT_EQ(told.stage, "region");
-  ASSERT_GT(told.missing_reach, 0.0);
-  const double nearer = told.missing_reach + 0.45;
+  ASSERT_GT(told.reach_deficit, 0.0);
+  const double nearer = told.reach_deficit + 0.45;
   Tray& tray = problem.trays[0];
   tray.T_world_tray.translation().x() -= nearer;
   tray.parts[0].T_world_part.translation().x() -= nearer;
@@ -246,7 +246,8 @@ TEST(PartSupply, BadOptionsAreRefusedByName) {
   EXPECT_NE(message([](auto& p) { p.home[2] = 9; }).find("elbow"), std::string::npos);
   EXPECT_NE(message([](auto& p) { p.trays[1].name = "A"; }).find("tray name"), std::string::npos);
   EXPECT_NE(message([](auto& p) { p.trays[1].parts[0].name = "table"; }).find("table"), std::string::npos);
-  EXPECT_NE(message([](auto& p) { p.trays[0].parts[0].grasps[0].opening = 0.2; }).find("max_opening"), std::string::npos);
+  EXPECT_NE(message([](auto& p) { p.trays[0].parts[0].grasps[0].opening = 0.2; }).find("max_opening"),
+            std::string::npos);
   EXPECT_EQ(message([](auto&) {}), "");
 }
 

@@ -205,7 +205,7 @@ TEST(PlatformLocations, WhyThereIsNone) {
   const PlatformLocations unreachable = plan_platform_locations(setup.checker, high, options);
   EXPECT_EQ(unreachable.outcome, Outcome::infeasible);
   EXPECT_EQ(unreachable.q_pick.size(), 0);
-  EXPECT_EQ(unreachable.place.rejections.reach + unreachable.place.rejections.limits, 60u);
+  EXPECT_EQ(unreachable.place.rejections.unreachable + unreachable.place.rejections.limits, 60u);
   PlatformLocationsProblem unseen = problem_of(setup.robot, 0.3);
   unseen.camera->T_link_camera.linear() = Eigen::Matrix3d::Identity();  // looks at the ceiling
   const PlatformLocations blind = plan_platform_locations(setup.checker, unseen, options);

@@ -73,7 +73,7 @@ TEST(RegionTruth, ClosedFormNeedsNoDatabase) {
     EXPECT_EQ(a.base_poses_tried, b.base_poses_tried);
     EXPECT_EQ(a.base_poses_feasible, b.base_poses_feasible);
     EXPECT_EQ(a.rejections.total(), b.rejections.total());
-    EXPECT_EQ(a.rejections.reach, b.rejections.reach);
+    EXPECT_EQ(a.rejections.unreachable, b.rejections.unreachable);
     EXPECT_EQ(a.rejections.limits, b.rejections.limits);
   }
 }

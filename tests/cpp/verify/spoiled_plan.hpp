@@ -7,7 +7,7 @@
 /// Ways to spoil the good plan of tiny_world.hpp and to read what the check says about it.
 namespace tiny {
 
-enum { kReach, kApproach, kLift, kCarry, kRetreat };
+enum { kTransit, kApproach, kLift, kTransfer, kRetreat };
 
 inline CheckedMotion& motion(PlanToCheck& plan, int pick, int kind) {
   return plan.picks[pick].motions[kind];

@@ -237,10 +237,10 @@ TEST(PlanCheck, ReleaseTilted) {
 
 TEST(PlanCheck, Openings) {
   PlanToCheck plan = good_plan();
-  motion(plan, 0, kApproach).opening = motion(plan, 0, kReach).opening = 0.035;  // does not pass 0.04
+  motion(plan, 0, kApproach).opening = motion(plan, 0, kTransit).opening = 0.035;  // does not pass 0.04
   EXPECT_TRUE(codes_of(plan).count("opening"));
   plan = good_plan();
-  motion(plan, 0, kCarry).opening = 0.05;  // would let go
+  motion(plan, 0, kTransfer).opening = 0.05;  // would let go
   EXPECT_TRUE(codes_of(plan).count("opening"));
   plan = good_plan();
   motion(plan, 0, kRetreat).opening = 0.11;  // the gripper ends at 0.10
@@ -304,7 +304,7 @@ TEST(PlanCheck, EmptyPlanForgetsEverything) {
 
 TEST(PlanCheck, EndlessMotionIsRefused) {
   PlanToCheck plan = good_plan();
-  for (Eigen::VectorXd& v : motion(plan, 0, kReach).velocities) v *= 1e5;
+  for (Eigen::VectorXd& v : motion(plan, 0, kTransit).velocities) v *= 1e5;
   EXPECT_TRUE(codes_of(plan).count("too-long"));
 }
 

@@ -163,7 +163,7 @@ bool share_disc(const std::vector<Rectangle>& rectangles, unsigned members, doub
 }
 
 /// Least number of groups that share a disc each, over all ways to cover the trays (subset by subset).
-int least_stops(const std::vector<Rectangle>& rectangles, double radius, double resolution) {
+int plan_stops_exact(const std::vector<Rectangle>& rectangles, double radius, double resolution) {
   const unsigned all = (1u << rectangles.size()) - 1;
   std::vector<int> least(all + 1, 1000);
   least[0] = 0;
@@ -205,7 +205,7 @@ TEST(PlanCheckStops, LeastNumberAgreesWithBruteForceOnRectangles) {
       plan.trays.push_back(name);
       plan.parts.push_back(make_part(name + "/cube", name, 0.9, 0.2 * tray, true, 0));
     }
-    const int expected = least_stops(rectangles, radius, resolution);
+    const int expected = plan_stops_exact(rectangles, radius, resolution);
     EXPECT_EQ(check_plan(plan, quick()).minimal_stops, expected) << "trial " << trial;
     several += expected > 1 && expected < 5;
   }

@@ -9,20 +9,20 @@ namespace {
 
 TEST(PlanCheck, MovedJointBreaksLimits) {
   PlanToCheck plan = good_plan();
-  motion(plan, 0, kReach).positions[10][1] += 0.02;
+  motion(plan, 0, kTransit).positions[10][1] += 0.02;
   EXPECT_TRUE(codes_of(plan).count("acceleration-limit"));
 }
 
 TEST(PlanCheck, PositionLimit) {
   PlanToCheck plan = good_plan();
-  for (Eigen::VectorXd& q : motion(plan, 1, kCarry).positions) q[4] += 3.2;
+  for (Eigen::VectorXd& q : motion(plan, 1, kTransfer).positions) q[4] += 3.2;
   EXPECT_TRUE(codes_of(plan).count("position-limit"));
 }
 
 TEST(PlanCheck, PositionLimitBetweenSamples) {
   // Both samples are inside, the cubic between them swings to 0.5 + 0.25 * v * h: out of the z joint's 0.5.
   PlanToCheck plan = good_plan();
-  CheckedMotion& m = motion(plan, 0, kReach);
+  CheckedMotion& m = motion(plan, 0, kTransit);
   m.times = {0, 1};
   m.positions = {joints(0.49, 0, 0), joints(0.49, 0, 0)};
   m.velocities = {joints(0.5, 0, 0), joints(-0.5, 0, 0)};
@@ -31,7 +31,7 @@ TEST(PlanCheck, PositionLimitBetweenSamples) {
 
 TEST(PlanCheck, VelocityLimit) {
   PlanToCheck plan = good_plan();
-  CheckedMotion& m = motion(plan, 0, kReach);
+  CheckedMotion& m = motion(plan, 0, kTransit);
   for (double& t : m.times) t *= 0.5;
   for (Eigen::VectorXd& v : m.velocities) v *= 2;
   EXPECT_TRUE(codes_of(plan).count("velocity-limit"));
@@ -72,7 +72,7 @@ TEST(PlanCheck, TimesMustIncrease) {
 TEST(PlanCheck, DiscontinuousMotion) {
   PlanToCheck plan = good_plan();
   const Eigen::VectorXd shifted = joints(0.3, 0.001, 0);
-  motion(plan, 0, kReach) = straight("reach", shifted, motion(plan, 0, kReach).positions.back(), 0.06, false);
+  motion(plan, 0, kTransit) = straight("transit", shifted, motion(plan, 0, kTransit).positions.back(), 0.06, false);
   EXPECT_EQ(codes_of(plan), Codes{"discontinuous"});
   plan = good_plan();
   motion(plan, 2, kRetreat) = straight("retreat", motion(plan, 2, kRetreat).positions.front(), shifted, 0.06, false);
@@ -92,7 +92,7 @@ void turn_yaw(CheckedMotion& motion, double by) {
 TEST(PlanCheck, WholeTurnsBetweenMotionsAreSteps) {
   EXPECT_EQ(codes_of(endless_yaw_plan()), Codes{});
   for (int pick = 0; pick < 3; ++pick) {
-    for (const int kind : {kReach, kApproach, kLift, kCarry, kRetreat}) {
+    for (const int kind : {kTransit, kApproach, kLift, kTransfer, kRetreat}) {
       PlanToCheck plan = endless_yaw_plan();
       turn_yaw(motion(plan, pick, kind), 2 * M_PI);
       EXPECT_EQ(codes_of(plan), Codes{"discontinuous"}) << pick << " " << kind;

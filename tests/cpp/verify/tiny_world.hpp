@@ -123,8 +123,8 @@ inline CheckedPick make_pick(const PlanToCheck& plan, int stop, int part_index, 
           part.tray,
           part.body.name,
           0,
-          {straight("reach", plan.home, above, wide, false), straight("approach", above, at_grasp, wide, false),
-           straight("lift", at_grasp, lifted, width, true), straight("carry", lifted, release, width, true),
+          {straight("transit", plan.home, above, wide, false), straight("approach", above, at_grasp, wide, false),
+           straight("lift", at_grasp, lifted, width, true), straight("transfer", lifted, release, width, true),
            straight("retreat", release, plan.home, wide, false)}};
 }
 

@@ -27,7 +27,7 @@ struct MMGRASP_EXPORT CheckerOptions {
   bool check_scene = true;  ///< Check the robot and what is attached to it against the scene.
   /// Check only what is attached, against the robot and the scene: the robot alone is taken to be free (many grasps of
   /// one object share what is known of the robot, P2 4.3.2.4).
-  bool held_only = false;
+  bool attached_only = false;
   void check() const;
 };
 

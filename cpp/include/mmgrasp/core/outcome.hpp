@@ -21,13 +21,13 @@ enum class Outcome {
 MMGRASP_EXPORT const char* to_string(Outcome outcome);
 
 /// Why one candidate (a configuration, a grasp, a base pose) was turned down.
-enum class Rejection { none, reach, limits, self_collision, scene, grasp_filter };
+enum class Rejection { none, unreachable, limits, self_collision, scene, grasp_filter };
 
 MMGRASP_EXPORT const char* to_string(Rejection cause);
 
 /// How many candidates fell at which filter.
 struct MMGRASP_EXPORT Rejections {
-  std::size_t reach = 0;           ///< No arm configuration reaches the pose.
+  std::size_t unreachable = 0;     ///< No arm configuration reaches the pose.
   std::size_t limits = 0;          ///< Reached only outside joint limits.
   std::size_t self_collision = 0;  ///< Reached, but robot hits robot (or what it holds).
   std::size_t scene = 0;           ///< Reached, but robot (or what it holds) hits the scene.

@@ -16,7 +16,7 @@
 namespace mmgrasp {
 
 /// Path constraint: an axis of the tool stays within an angle of an axis of the world (a cup that is carried upright).
-struct MMGRASP_EXPORT ToolCone {
+struct MMGRASP_EXPORT OrientationConstraint {
   Eigen::Vector3d tool_axis = Eigen::Vector3d::UnitZ();   ///< In the tip's frame; any length > 0.
   Eigen::Vector3d world_axis = Eigen::Vector3d::UnitZ();  ///< Any length > 0.
   double half_angle = 0.2;                                ///< Largest angle between the two [rad], in (0, pi].
@@ -35,9 +35,9 @@ struct MMGRASP_EXPORT MotionOptions {
   /// Largest motion of any point of the robot (and of what is attached) between two checks of an edge [m]; > 0,
   /// infinite: no such bound.
   double workspace_step = std::numeric_limits<double>::infinity();
-  std::optional<ToolCone> tool_cone;  ///< Kept along the whole path, start and goal included.
-  bool shorten = true;                ///< Shortcut the path (never leaves free space).
-  int shorten_iterations = 200;       ///< Shortcuts tried at most; >= 0.
+  std::optional<OrientationConstraint> orientation_constraint;  ///< Kept along the whole path, start and goal included.
+  bool shorten = true;                                          ///< Shortcut the path (never leaves free space).
+  int shorten_iterations = 200;                                 ///< Shortcuts tried at most; >= 0.
   /// IK solutions wanted at each tool pose (and at each pose drawn in a region); > 0.
   int ik_solutions = 8;
   int region_samples = 16;  ///< Tool poses drawn in each region; > 0.

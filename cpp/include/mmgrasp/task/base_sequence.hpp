@@ -71,10 +71,10 @@ struct MMGRASP_EXPORT StopSet {
   std::vector<Stop> stops;                ///< Not ordered yet.
   int lower_bound = 0;                    ///< Proven least number of stops.
   std::vector<TrayId> unreachable_trays;  ///< Trays that no stop can serve.
-  Intersections candidates;               ///< The maximal intersections that least_stops() chose from.
+  Intersections candidates;               ///< The maximal intersections that plan_stops_exact() chose from.
 };
 
-/// Options of least_stops(): requirements, and the effort spent on choosing among equally few stops.
+/// Options of plan_stops_exact(): requirements, and the effort spent on choosing among equally few stops.
 struct MMGRASP_EXPORT StopOptions {
   double min_radius = 0.10;      ///< Positioning uncertainty: the least disc at every stop [m]; >= 0.
   double time_limit = 60.0;      ///< Time for the proof that fewer stops do not suffice [s]; > 0.
@@ -98,10 +98,10 @@ struct MMGRASP_EXPORT StopOptions {
 /// @code
 ///   StopOptions options;
 ///   options.min_radius = 0.08;  // the base may stand 8 cm off
-///   const StopSet set = least_stops(grid, compute_base_regions(problem, database, grid), options);
+///   const StopSet set = plan_stops_exact(grid, compute_base_regions(problem, database, grid), options);
 /// @endcode
-MMGRASP_EXPORT StopSet least_stops(const BaseGrid& grid, const std::vector<BaseRegion>& regions,
-                                   const StopOptions& options = {}, const Monitor& monitor = {});
+MMGRASP_EXPORT StopSet plan_stops_exact(const BaseGrid& grid, const std::vector<BaseRegion>& regions,
+                                        const StopOptions& options = {}, const Monitor& monitor = {});
 
 /// Length of the shortest route from `start` over all stops to `goal` as the crow flies [m]; for
 /// StopOptions::route_length.
@@ -110,11 +110,12 @@ MMGRASP_EXPORT double straight_route_length(const std::vector<Stop>& stops, cons
 
 /// The least number of robust intersections that cover all trays (P1 equation 3.1), by 0-1 programming with proof;
 /// among equally few, larger discs are preferred. Each tray goes to the chosen stop with the largest disc.
-MMGRASP_EXPORT StopSet minimal_stops(const BaseGrid& grid, const std::vector<Intersection>& intersections, int trays);
+MMGRASP_EXPORT StopSet cover_from_intersections(const BaseGrid& grid, const std::vector<Intersection>& intersections,
+                                                int trays);
 
 /// The same over what robust_intersections() found. When that is not complete, sets of trays that were never tried
 /// could save stops: all that is proven then is that one stop is needed, and more than one stop is an approximate
 /// answer.
-MMGRASP_EXPORT StopSet minimal_stops(const BaseGrid& grid, const Intersections& intersections, int trays);
+MMGRASP_EXPORT StopSet cover_from_intersections(const BaseGrid& grid, const Intersections& intersections, int trays);
 
 }  // namespace mmgrasp

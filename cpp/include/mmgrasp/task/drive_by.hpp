@@ -49,18 +49,18 @@ struct MMGRASP_EXPORT DriveByGoal {
 
 struct MMGRASP_EXPORT DriveByOptions {
   int waypoints = 35;  ///< >= 2 + 2 per task, 2 + 6 per push-grasp.
-  int attempts = 8;    ///< Guesses tried until one leads to a solution; > 0.
+  int seeds = 8;       ///< Guesses tried until one leads to a solution; > 0.
   int solutions = 1;   ///< Solutions compared for one grasp assignment; > 0.
   /// Grasp assignments (one candidate for each task) planned, the fastest motion is returned; those that a lower bound
   /// shows to be slower are left out. 1: the one that looks quickest and leads to a solution. > 0.
-  int choices = 8;
-  int stands = 64;            ///< Goal configurations sought per candidate; > 0.
-  int iterations = 1500;      ///< Iteration budget of all solves; none begins when it is spent; > 0.
-  double time_limit = 600.0;  ///< Wall-clock cap [s], for plans that are not to end by their iterations; > 0.
-  double jerk_time = 0;       ///< See WholeBodyProblem [s], >= 0; 0: no limit on jerk.
-  bool collisions = true;     ///< The robot keeps clear of the world and of itself.
-  unsigned seed = 1;          ///< Same seed, same answer.
-  int threads = 1;            ///< For the search of configurations; 0: all.
+  int grasp_assignments = 8;
+  int goal_configurations = 64;  ///< Goal configurations sought per candidate; > 0.
+  int iterations = 1500;         ///< Iteration budget of all solves; none begins when it is spent; > 0.
+  double time_limit = 600.0;     ///< Wall-clock cap [s], for plans that are not to end by their iterations; > 0.
+  double jerk_time = 0;          ///< See WholeBodyProblem [s], >= 0; 0: no limit on jerk.
+  bool collisions = true;        ///< The robot keeps clear of the world and of itself.
+  unsigned seed = 1;             ///< Same seed, same answer.
+  int threads = 1;               ///< For the search of configurations; 0: all.
   WholeBodyOptions trajectory;
   void check() const;
 };
@@ -83,8 +83,8 @@ struct MMGRASP_EXPORT DriveByResult {
   std::shared_ptr<const WholeBodyTrajectory> trajectory;  ///< Null when there was not even a guess.
   std::vector<DriveByEvent> events;                       ///< One per task.
   std::vector<Violation> violations;                      ///< The trajectory's, one per kind.
-  int choices = 0;                                        ///< Grasp assignments planned.
-  int attempts = 0;                                       ///< Solves, each from a seed of its own.
+  int grasp_assignments = 0;                              ///< Grasp assignments planned.
+  int seeds = 0;                                          ///< Solves, each from a seed of its own.
   int iterations = 0;                                     ///< Iterations of all solves.
   double seconds = 0;                                     ///< Wall-clock time [s].
   std::string report;                                     ///< What was tried, and what is broken where, by how much.

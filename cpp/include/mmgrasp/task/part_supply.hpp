@@ -29,7 +29,7 @@ struct MMGRASP_EXPORT Obstruction {
   double largest_uncertainty = -1;  ///< Largest positioning uncertainty that still works [m]; < 0: none does.
   /// How far the nearest base pose at which the robot may stand falls short of the part at a single grasp [m]; 0: reach
   /// is not it. It only brings that grasp to the edge of the reach: the move that suffices is `advised_move`.
-  double missing_reach = 0;
+  double reach_deficit = 0;
   /// Shortest translation found, in the world's x and y [m], after which a disc of the positioning uncertainty has
   /// room: `move_trays` (this tray first) with their parts and `move_objects` of the scene move together by it. It was
   /// checked in the moved scene for base poses, start and goal; not for arm motions and the drive. Zero: moving does
@@ -65,7 +65,8 @@ struct MMGRASP_EXPORT PartSupplyPlan {
 /// every target part of every tray into the bin on the robot, robustly against errors in the base's position.
 ///
 /// 1. Base regions: from where can all parts of a tray be grasped (compute_base_regions())?
-/// 2. Stops: the fewest whose discs of `positioning_uncertainty` lie in shared regions (least_stops()). Base poses are
+/// 2. Stops: the fewest whose discs of `positioning_uncertainty` lie in shared regions (plan_stops_exact()). Base poses
+/// are
 ///    drawn in the discs and checked; regions lose the cells that fail, and the stops are solved again.
 /// 3. Picks at every stop (plan_pick()), and the drives between the stops (plan_base_route()).
 ///

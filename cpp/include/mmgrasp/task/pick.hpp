@@ -14,7 +14,7 @@
 
 namespace mmgrasp {
 
-/// What the arm does in one motion of a pick; to_string() gives "reach" for transit and "carry" for transfer.
+/// What the arm does in one motion of a pick.
 enum class MotionKind { transit, approach, lift, transfer, retreat };
 MMGRASP_EXPORT const char* to_string(MotionKind kind);
 

@@ -35,7 +35,7 @@ struct MMGRASP_EXPORT Tray {
 
 /// Where picked parts go: a bin fixed to the robot. A part is released level (as it lay in the tray, turned about the
 /// vertical only) with its lowest point `drop_gap` above the bin's top plane and its origin inside the bin's rectangle.
-struct MMGRASP_EXPORT CarryPlace {
+struct MMGRASP_EXPORT PlaceRegion {
   Pose T_base_bin = Pose::Identity();                ///< Middle of the bin's top plane in the root frame, z up.
   Eigen::Vector2d size = Eigen::Vector2d(0.3, 0.3);  ///< Inner x and y [m], > 0.
   double drop_gap = 0.03;                            ///< [m], >= 0
@@ -75,7 +75,7 @@ struct MMGRASP_EXPORT PartSupplyProblem {
   Eigen::VectorXd home;                             ///< Arm configuration while driving, fingers closed.
   Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< Base pose x, y, theta [m, m, rad].
   Eigen::Vector3d goal = Eigen::Vector3d::Zero();
-  CarryPlace carry;
+  PlaceRegion place_region;
   PartSupplyOptions options;
   /// Throws InvalidInput naming the field, the value and the rule.
   void check() const;

@@ -72,7 +72,7 @@ void PairPlan::sort_shapes(const Snapshot& snapshot, const JointGroup& group) {
     (link_moves[shape.link] ? moving : fixed).push_back(static_cast<int>(s));
   }
   const auto in_scene = [&](int s) {
-    return !snapshot.options.held_only || snapshot.bodies[snapshot.shapes[s].body].attached;
+    return !snapshot.options.attached_only || snapshot.bodies[snapshot.shapes[s].body].attached;
   };
   const auto scene_first = [&](std::vector<int>& shapes) {
     return static_cast<int>(std::stable_partition(shapes.begin(), shapes.end(), in_scene) - shapes.begin());
@@ -109,7 +109,7 @@ void PairPlan::list_pairs(const Snapshot& snapshot, const JointGroup& group) {
       const BodyShape &a = snapshot.shapes[i], &b = snapshot.shapes[j];
       const Body &body_a = snapshot.bodies[a.body], &body_b = snapshot.bodies[b.body];
       if (a.body == b.body || a.solid->never_collides() || b.solid->never_collides()) continue;
-      if (snapshot.options.held_only && !body_a.attached && !body_b.attached) continue;
+      if (snapshot.options.attached_only && !body_a.attached && !body_b.attached) continue;
       if (never_needs_check(snapshot, body_a, body_b, assembly)) continue;
       ShapePair pair;
       pair.a = static_cast<int>(i);

@@ -67,7 +67,7 @@ class BranchSearch {
   void refuse_start() {
     if (near_ && near_reaches_first_pose()) return refuse_near();
     result_.cause = most(result_.rejections);
-    if (result_.cause != Rejection::reach) result_.outcome = Outcome::invalid_start;
+    if (result_.cause != Rejection::unreachable) result_.outcome = Outcome::invalid_start;
     if (result_.cause == Rejection::scene) result_.contact = scene_contact_;
     if (result_.cause == Rejection::self_collision) result_.contact = self_contact_;
   }
@@ -120,7 +120,7 @@ class BranchSearch {
   static Rejection most(const Rejections& r) {
     if (r.scene > 0) return Rejection::scene;
     if (r.self_collision > 0) return Rejection::self_collision;
-    return r.limits > 0 ? Rejection::limits : Rejection::reach;
+    return r.limits > 0 ? Rejection::limits : Rejection::unreachable;
   }
 
   CollisionChecker& checker_;

@@ -89,10 +89,10 @@ class LineFollower {
       if (!refine_ik(group_, line_.at(fraction), next, options_.ik, workspace_)) return fail(reach_or_limits(next));
     }
     const Eigen::VectorXd& previous = path_.waypoints.back();
-    if ((next - previous).cwiseAbs().maxCoeff() > options_.max_joint_step) return fail(Rejection::reach);
+    if ((next - previous).cwiseAbs().maxCoeff() > options_.max_joint_step) return fail(Rejection::unreachable);
     const double middle = 0.5 * (result_.fraction + fraction);
     if (off_line(0.5 * (previous + next), middle) > std::max(kLineTolerance, 2 * options_.ik.position_tolerance)) {
-      if (fraction - result_.fraction < 1.5 * smallest_step_) return fail(Rejection::reach);
+      if (fraction - result_.fraction < 1.5 * smallest_step_) return fail(Rejection::unreachable);
       return advance(middle) && advance(fraction);
     }
     if (!edge_is_free(previous, next)) return false;
@@ -118,7 +118,7 @@ class LineFollower {
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       if (q[i] <= group_.lower()[i] + kAtLimit || q[i] >= group_.upper()[i] - kAtLimit) return Rejection::limits;
     }
-    return Rejection::reach;
+    return Rejection::unreachable;
   }
 
   /// Records the cause when the edge is not free. False when stopped, too.

@@ -20,7 +20,7 @@ std::vector<Eigen::VectorXd> arm_configurations(const JointGroup& group, const P
   std::vector<Eigen::VectorXd> solutions;
   Rejections seen;
   if (!maybe_in_reach(group, T_world_tip.translation())) {
-    rejections.add(Rejection::reach);
+    rejections.add(Rejection::unreachable);
     return solutions;
   }
   IkOptions numerical = options;
@@ -34,7 +34,7 @@ std::vector<Eigen::VectorXd> arm_configurations(const JointGroup& group, const P
       if (!group.within_limits(q))
         seen.add(Rejection::limits);
       else if (!confirm(group, T_world_tip, q, options, position_error, rotation_error))
-        seen.add(Rejection::reach);
+        seen.add(Rejection::unreachable);
       else
         reaching.push_back(q);
     }
@@ -49,7 +49,7 @@ std::vector<Eigen::VectorXd> arm_configurations(const JointGroup& group, const P
     }
     const bool all_seen = final || (candidates.redundant_joint < 0 && !candidates.free);
     if (all_seen || !solutions.empty()) {
-      if (candidates.q.empty()) seen.add(Rejection::reach);
+      if (candidates.q.empty()) seen.add(Rejection::unreachable);
       rejections += seen;
       return solutions;
     }
@@ -64,7 +64,7 @@ std::vector<Eigen::VectorXd> arm_configurations(const JointGroup& group, const P
     final = verdict.final;
     return verdict.cause;
   });
-  if (!any && solutions.empty()) seen.add(Rejection::reach);
+  if (!any && solutions.empty()) seen.add(Rejection::unreachable);
   rejections += seen;
   return solutions;
 }

@@ -27,7 +27,7 @@ MotionEdges::MotionEdges(CollisionChecker& checker, const MotionOptions& options
       joint_step_(options.edge_step),
       workspace_step_(options.workspace_step),
       steered_(has_steered_base(group_)),
-      cone_(options.tool_cone) {
+      cone_(options.orientation_constraint) {
   if (std::isfinite(workspace_step_)) bounds_ = motion_bounds(checker);
   if (cone_) {
     cone_->tool_axis.normalize();

@@ -47,7 +47,7 @@ class MotionEdges {
   const double joint_step_, workspace_step_;
   Eigen::VectorXd bounds_;  ///< Workspace motion per joint motion; empty without `workspace_step`.
   const bool steered_;
-  std::optional<ToolCone> cone_;
+  std::optional<OrientationConstraint> cone_;
   Waypoints path_;
   Eigen::VectorXd delta_, target_;
 };

@@ -33,7 +33,7 @@ class GoalSearch {
     IkOptions ik;
     ik.seed = options_.seed;
     ik.time_limit = std::min(ik.time_limit, options_.time_limit);
-    Rejection cause = Rejection::reach;
+    Rejection cause = Rejection::unreachable;
     const std::vector<Eigen::VectorXd> all =
         solve_ik_all(edges_.checker().group(), T_world_tip, options_.ik_solutions, ik, [&](const Eigen::VectorXd& q) {
           const Rejection why = edges_.rejection(q);

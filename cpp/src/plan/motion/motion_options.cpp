@@ -7,12 +7,13 @@
 
 namespace mmgrasp {
 
-void ToolCone::check() const {
-  require(tool_axis.allFinite() && tool_axis.norm() > 1e-9, "tool_cone.tool_axis", tool_axis.norm(),
+void OrientationConstraint::check() const {
+  require(tool_axis.allFinite() && tool_axis.norm() > 1e-9, "orientation_constraint.tool_axis", tool_axis.norm(),
           "must be finite and longer than 0");
-  require(world_axis.allFinite() && world_axis.norm() > 1e-9, "tool_cone.world_axis", world_axis.norm(),
+  require(world_axis.allFinite() && world_axis.norm() > 1e-9, "orientation_constraint.world_axis", world_axis.norm(),
           "must be finite and longer than 0");
-  require(half_angle > 0 && half_angle <= detail::kPi, "tool_cone.half_angle", half_angle, "must be in (0, pi] [rad]");
+  require(half_angle > 0 && half_angle <= detail::kPi, "orientation_constraint.half_angle", half_angle,
+          "must be in (0, pi] [rad]");
 }
 
 void ToolRegion::check(const std::string& field) const {
@@ -33,7 +34,7 @@ void MotionOptions::check() const {
   require(shorten_iterations >= 0, "shorten_iterations", shorten_iterations, "must be >= 0");
   require(ik_solutions > 0, "ik_solutions", ik_solutions, "must be > 0");
   require(region_samples > 0, "region_samples", region_samples, "must be > 0");
-  if (tool_cone) tool_cone->check();
+  if (orientation_constraint) orientation_constraint->check();
 }
 
 }  // namespace mmgrasp

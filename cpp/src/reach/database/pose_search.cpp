@@ -41,7 +41,7 @@ bool PoseSearch::start(const Pose& T_world_tip, std::uint64_t number) {
   target_ = T_world_tip;
   motion_ = Rigid(T_world_tip);
   number_ = number;
-  cause_ = Rejection::reach;
+  cause_ = Rejection::unreachable;
   hopeless_ = hand_asked_ = false;
   sample_ = -1;
   outside_.fill(kInfinity);

@@ -57,7 +57,7 @@ class PoseSearch {
   Pose target_ = Pose::Identity();
   Rigid motion_;
   std::uint64_t number_ = 0;
-  Rejection cause_ = Rejection::reach;
+  Rejection cause_ = Rejection::unreachable;
   bool hopeless_ = false, hand_asked_ = false;
   int sample_ = -1;
   std::array<double, 3> outside_{};        ///< How far the nearest branches outside stuck out [rad] ...

@@ -99,7 +99,7 @@ class Search {
     }
     double position_error = 0, rotation_error = 0;
     if (!detail::confirm(group_, target_, q, options_, position_error, rotation_error)) {
-      result_.rejections.add(Rejection::reach);
+      result_.rejections.add(Rejection::unreachable);
       return false;
     }
     if (!options_.objectives.empty()) {
@@ -187,7 +187,7 @@ IkResult solve_ik(const JointGroup& group, const Pose& T_world_tip, const Eigen:
   Search search(group, T_world_tip, seed, options, valid);
   IkResult& result = search.result();
   if (!detail::maybe_in_reach(group, T_world_tip.translation())) {
-    result.rejections.add(Rejection::reach);
+    result.rejections.add(Rejection::unreachable);
     return result;
   }
   // Six joints: every branch, for less than a descent takes. Seven: two descents solve nearly every pose that has room,

@@ -53,13 +53,13 @@ bool enumerate(const JointGroup& group, const Pose& T_world_tip, int redundant_v
   if (!candidates.known_form) return false;
   branches.complete = !candidates.free;
   branches.redundant_joint = candidates.redundant_joint;
-  branches.rejections.add(Rejection::reach, static_cast<std::size_t>(candidates.without));
+  branches.rejections.add(Rejection::unreachable, static_cast<std::size_t>(candidates.without));
   for (const Eigen::VectorXd& q : candidates.q) {
     double position_error = 0, rotation_error = 0;
     Rejection verdict = group.within_limits(q) ? Rejection::none : Rejection::limits;
     if (verdict == Rejection::none && valid) verdict = valid(q);
     if (verdict == Rejection::none && !detail::confirm(group, T_world_tip, q, options, position_error, rotation_error))
-      verdict = Rejection::reach;
+      verdict = Rejection::unreachable;
     if (verdict == Rejection::none)
       branches.solutions.push_back(q);
     else
@@ -74,7 +74,7 @@ IkBranches branches_of(const JointGroup& group, const Pose& T_world_tip, int cou
   IkBranches branches;
   if (!detail::maybe_in_reach(group, T_world_tip.translation())) {
     branches.complete = true;
-    branches.rejections.add(Rejection::reach);
+    branches.rejections.add(Rejection::unreachable);
     return branches;
   }
   const bool enumerated = enumerate(group, T_world_tip, redundant_values, options, valid, branches);

@@ -103,7 +103,7 @@ std::optional<Eigen::VectorXd> PlatformEnd::solve(const Eigen::VectorXd& start, 
     result.q.head<3>() = start.head<3>();
     const Vector6d error = pose_difference(group_.fk(result.q), T_world_tip_);
     if (error.head<3>().norm() > descent_.position_tolerance || error.tail<3>().norm() > descent_.rotation_tolerance) {
-      counts.rejections.add(Rejection::reach);
+      counts.rejections.add(Rejection::unreachable);
       return std::nullopt;
     }
   }

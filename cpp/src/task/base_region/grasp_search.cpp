@@ -99,9 +99,9 @@ Rejection GraspSearch::try_grasp(const Eigen::Vector3d& base_pose, const Part& p
   const IkSeedGrid& seeds = *tables_->seeds;
   std::array<int, 2> cell;
   IkSeedGrid::Node* node = at_heading.slice->find(x, y, cell);
-  if (node == nullptr && !seeds.closed_form()) return Rejection::reach;
+  if (node == nullptr && !seeds.closed_form()) return Rejection::unreachable;
   CollisionChecker& checker = checker_at(tables_->grasps.opening(grasp), base_pose);
-  Rejection worst = Rejection::reach;
+  Rejection worst = Rejection::unreachable;
   bool arrived = false;
   rejected_count_ = 0;
   const auto tried = [&](const double* seed) {
@@ -130,7 +130,7 @@ Rejection GraspSearch::try_grasp(const Eigen::Vector3d& base_pose, const Part& p
   if (arrived) return worst;
   if (try_neighbours(*at_heading.slice, cell, x, y, tried)) return Rejection::none;
   if (arrived) return worst;
-  return k == 0 ? node->cause() : Rejection::reach;
+  return k == 0 ? node->cause() : Rejection::unreachable;
 }
 
 /// The same posture, whole turns aside: all joints of an arm with a closed form turn.
@@ -147,7 +147,7 @@ bool GraspSearch::was_rejected(const Eigen::VectorXd& q) const {
 /// Every branch of the pose itself but those that were rejected already: after this nothing is left to find.
 Rejection GraspSearch::try_branches(const Pose& T_base_tcp, CollisionChecker& checker, Rejection worst) {
   const IkBranches branches = tables_->seeds->branches(T_base_tcp);
-  if (worst == Rejection::reach && branches.rejections.limits > 0) worst = Rejection::limits;
+  if (worst == Rejection::unreachable && branches.rejections.limits > 0) worst = Rejection::limits;
   for (const Eigen::VectorXd& branch : branches.solutions) {
     if (was_rejected(branch)) continue;
     const Rejection cause = checker.rejection(branch);

@@ -44,7 +44,7 @@ class IkSeedGrid {
     bool started_ = false;
     int next_ = 0, seeds_count_ = 0, fruitless_ = 0;
     Eigen::MatrixXd configurations_;  ///< Found ones first; seeds not yet used from `next_` on.
-    Rejection cause_ = Rejection::reach;
+    Rejection cause_ = Rejection::unreachable;
   };
 
   /// The nodes of one orientation of the tool and one height above the root.

@@ -156,8 +156,8 @@ void RegionSearch::check_row(TrayWindow& window, int iy, bool corner, RowResult&
                                 ix,
                                 iy,
                                 corner,
-                                {narrow(sum.reach), narrow(sum.limits), narrow(sum.self_collision), narrow(sum.scene),
-                                 narrow(sum.grasp_filter)}});
+                                {narrow(sum.unreachable), narrow(sum.limits), narrow(sum.self_collision),
+                                 narrow(sum.scene), narrow(sum.grasp_filter)}});
     }
   }
 }

@@ -114,7 +114,7 @@ void TrayWindow::resume_without(const std::vector<std::uint8_t>& removed) {
     (pose.corner ? corners_ : centres_)[slot][at(pose.ix, pose.iy)] = 0;
     PartExplanation& total = totals_[slot];
     --total.base_poses_tried;
-    total.rejections.reach -= pose.causes[0];
+    total.rejections.unreachable -= pose.causes[0];
     total.rejections.limits -= pose.causes[1];
     total.rejections.self_collision -= pose.causes[2];
     total.rejections.scene -= pose.causes[3];

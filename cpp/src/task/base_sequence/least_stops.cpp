@@ -1,4 +1,4 @@
-// least_stops(): the least number of stops, and the best among equally few.
+// plan_stops_exact(): the least number of stops, and the best among equally few.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -252,8 +252,8 @@ void StopOptions::check() const {
   require(tie_time_limit >= 0, "tie_time_limit", tie_time_limit, "must be 0 or more");
 }
 
-StopSet least_stops(const BaseGrid& grid, const std::vector<BaseRegion>& regions, const StopOptions& options,
-                    const Monitor& monitor) {
+StopSet plan_stops_exact(const BaseGrid& grid, const std::vector<BaseRegion>& regions, const StopOptions& options,
+                         const Monitor& monitor) {
   options.check();
   return LeastStops(grid, regions, options, monitor).run();
 }

@@ -1,4 +1,4 @@
-// minimal_stops(): the least number of robust intersections that cover all trays.
+// cover_from_intersections(): the least number of robust intersections that cover all trays.
 #include <algorithm>
 #include <cmath>
 
@@ -34,7 +34,7 @@ int widest_for(const std::vector<Intersection>& intersections, const std::vector
 
 }  // namespace
 
-StopSet minimal_stops(const BaseGrid& grid, const std::vector<Intersection>& intersections, int trays) {
+StopSet cover_from_intersections(const BaseGrid& grid, const std::vector<Intersection>& intersections, int trays) {
   require(trays >= 0, "trays", trays, "must not be negative");
   StopSet result;
   SetCoverProblem problem;
@@ -72,8 +72,8 @@ StopSet minimal_stops(const BaseGrid& grid, const std::vector<Intersection>& int
   return result;
 }
 
-StopSet minimal_stops(const BaseGrid& grid, const Intersections& intersections, int trays) {
-  StopSet result = minimal_stops(grid, intersections.robust, trays);
+StopSet cover_from_intersections(const BaseGrid& grid, const Intersections& intersections, int trays) {
+  StopSet result = cover_from_intersections(grid, intersections.robust, trays);
   if (!intersections.complete) result.lower_bound = std::min(result.lower_bound, 1);
   if (result.outcome == Outcome::solved || result.outcome == Outcome::approximate) {
     const bool proven = static_cast<int>(result.stops.size()) <= result.lower_bound;

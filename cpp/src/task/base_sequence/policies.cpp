@@ -97,7 +97,7 @@ class PolicyRun {
     for (int tray = 0; tray < static_cast<int>(regions.size()); ++tray)
       regions[tray].has_targets = pick_of(order_, tray, round) >= 0;
     if (!same_as_last(regions)) {
-      last_ = least_stops(actual_.grid, regions, options_.stops, monitor_);
+      last_ = plan_stops_exact(actual_.grid, regions, options_.stops, monitor_);
       last_regions_ = std::move(regions);
     }
     PolicyRound result;

@@ -59,15 +59,16 @@ class DriveBy {
       return result;
     }
     for (const GraspAssignment& assignment : assignments) {
-      if (result.choices > 0 && over(result)) break;
+      if (result.grasp_assignments > 0 && over(result)) break;
       if (result.usable() && assignment.bound >= result.duration()) {
         result.report +=
             "candidates " + name(assignment) + ": left out, not below " + detail::number(assignment.bound) + " s\n";
         continue;
       }
-      monitor_.report("choices", static_cast<double>(result.choices) / static_cast<double>(assignments.size()));
+      monitor_.report("grasp_assignments",
+                      static_cast<double>(result.grasp_assignments) / static_cast<double>(assignments.size()));
       solve_all(assignment, result);
-      if (++result.choices == options_.choices) break;
+      if (++result.grasp_assignments == options_.grasp_assignments) break;
     }
     if (!result.usable()) {
       if (monitor_.stopped())
@@ -107,7 +108,7 @@ class DriveBy {
       if (!goals.back().empty()) continue;
       missing = "task " + std::to_string(steps_[i].task) + ": no configuration within the limits" +
                 (scene_states_ ? " and free of collisions" : "") + " brings the tool there (" +
-                std::to_string(options_.stands) + " tries at a time)";
+                std::to_string(options_.goal_configurations) + " tries at a time)";
       return {};
     }
     const auto collisions = [&](const ConfigurationSequence& sequence) { return solver_->collisions(sequence); };
@@ -152,9 +153,9 @@ class DriveBy {
     const ConfigurationSequence& sequence = assignment.sequences[index];
     std::vector<int> waypoints;
     const WholeBodyResult r = solver_->solve(sequence, settings, waypoints);
-    ++result.attempts;
+    ++result.solves;
     result.iterations += r.iterations;
-    result.report += "attempt " + std::to_string(result.attempts) + ", candidates " + name(assignment) + ": " +
+    result.report += "attempt " + std::to_string(result.solves) + ", candidates " + name(assignment) + ": " +
                      detail::describe(r) + (r.usable() ? ", " + detail::number(r.trajectory->duration()) + " s" : "") +
                      "\n";
     const bool better = r.usable() ? !result.usable() || r.trajectory->duration() < result.duration()
@@ -185,10 +186,10 @@ class DriveBy {
 
 void DriveByOptions::check() const {
   require(waypoints >= 2, "waypoints", waypoints, "must be at least 2");
-  require(attempts > 0, "attempts", attempts, "must be positive");
+  require(attempts > 0, "seeds", attempts, "must be positive");
   require(solutions > 0, "solutions", solutions, "must be positive");
-  require(choices > 0, "choices", choices, "must be positive");
-  require(stands > 0, "stands", stands, "must be positive");
+  require(choices > 0, "grasp_assignments", choices, "must be positive");
+  require(stands > 0, "goal_configurations", stands, "must be positive");
   require(iterations > 0, "iterations", iterations, "must be positive");
   require(time_limit > 0, "time_limit", time_limit, "must be positive");
   require(jerk_time >= 0 && std::isfinite(jerk_time), "jerk_time", jerk_time, "must be at least 0");

@@ -96,7 +96,7 @@ std::vector<GraspAssignment> drive_by_assignments(const JointGroup& group, const
   std::vector<GraspAssignment> assignments;
   std::set<std::vector<int>> seen;
   const auto add = [&](const std::vector<GoalConfigurations>& among) {
-    GraspAssignment assignment{choose_sequences(group, steps, among, start, end, kSpare * options.attempts)};
+    GraspAssignment assignment{choose_sequences(group, steps, among, start, end, kSpare * options.seeds)};
     if (assignment.sequences.empty()) return;
     std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t i = 0; i < assignment.sequences.size(); ++i)
@@ -104,7 +104,7 @@ std::vector<GraspAssignment> drive_by_assignments(const JointGroup& group, const
           {sequence_time(group, assignment.sequences[i], start, end) + kCollision * collisions(assignment.sequences[i]),
            i});
     std::sort(order.begin(), order.end());
-    order.resize(std::min(order.size(), static_cast<std::size_t>(options.attempts)));
+    order.resize(std::min(order.size(), static_cast<std::size_t>(options.seeds)));
     std::vector<ConfigurationSequence> sequences;
     for (const auto& [cost, i] : order) sequences.push_back(std::move(assignment.sequences[i]));
     assignment.sequences = std::move(sequences);
@@ -121,7 +121,7 @@ std::vector<GraspAssignment> drive_by_assignments(const JointGroup& group, const
   };
   const bool several = std::any_of(steps.begin(), steps.end(), [](const auto& s) { return s.candidates.size() > 1; });
   if (steps.empty()) return {{{{}}}};
-  if (!several || options.choices == 1) {
+  if (!several || options.grasp_assignments == 1) {
     add(goals);
     return assignments;
   }

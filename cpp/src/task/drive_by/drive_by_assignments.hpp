@@ -17,7 +17,7 @@ struct GraspAssignment {
 
 /// Every candidate of every task that goal configurations were found for is in one of the assignments, beside the
 /// candidates of the other tasks that go with it best. Least bound first, then the shortest estimated duration. When
-/// options.choices is 1 or no task has two candidates there is a single assignment, of sequences through any
+/// options.grasp_assignments is 1 or no task has two candidates there is a single assignment, of sequences through any
 /// candidates. `collisions` counts the waypoints of a sequence's first guess that collide: such sequences come later.
 std::vector<GraspAssignment> drive_by_assignments(const JointGroup& group, const std::vector<DriveByStep>& steps,
                                                   const std::vector<GoalConfigurations>& goals,

@@ -97,14 +97,14 @@ DriveByResult shorten_drive_by(const JointGroup& group, const World& world, cons
   a.guess = guess_along(known, tasks, a.intervals);
   monitor.report("shortening", 0);
   DriveByResult result;
-  result.choices = 1;
+  result.grasp_assignments = 1;
   WholeBodyResult r;
   // Separating bodies as they lie in the known motion keeps that motion feasible, but holds the new one back where it
   // is elsewhere at the same waypoint.
   for (const bool parts_bodies : {false, true}) {
     a.guess.parts_bodies = parts_bodies;
     r = optimize_whole_body(a.problem, a.guess, options.trajectory, a.checkers, monitor);
-    ++result.attempts;
+    ++result.solves;
     result.iterations += r.iterations;
     result.report += "from a known motion: " + detail::describe(r) +
                      (r.usable() ? ", " + detail::number(r.trajectory->duration()) + " s" : "") + "\n";

@@ -37,10 +37,10 @@ int blocking_part(const BaseRegion& region) {
 }
 
 const char* main_cause(const Rejections& r) {
-  const std::size_t most = std::max({r.reach, r.limits, r.self_collision, r.scene, r.grasp_filter});
+  const std::size_t most = std::max({r.unreachable, r.limits, r.self_collision, r.scene, r.grasp_filter});
   if (most == 0) return "nothing";
   if (most == r.grasp_filter) return "the open hand touching the scene or a neighbour";
-  if (most == r.reach) return "reach";
+  if (most == r.unreachable) return "reach";
   if (most == r.limits) return "joint limits";
   if (most == r.self_collision) return "self-collision";
   return "collisions with the scene";
@@ -92,8 +92,8 @@ std::string advice(const PartExplanation& part, const Obstruction& o, std::size_
   const Rejections& r = part.rejections;
   const std::size_t collisions = r.scene + r.self_collision;
   if (!o.move_trays.empty()) return move_advice(o);
-  if (o.missing_reach > 0) {
-    return "the nearest base pose at which the robot may stand falls " + metres(o.missing_reach) +
+  if (o.reach_deficit > 0) {
+    return "the nearest base pose at which the robot may stand falls " + metres(o.reach_deficit) +
            " short and no move of the tray alone was found that helps: lower obstacles under it or clear more floor";
   }
   if (part.base_poses_tried == 0) {
@@ -107,7 +107,7 @@ std::string advice(const PartExplanation& part, const Obstruction& o, std::size_
            metres(problem.gripper.max_opening) +
            (too_wide > 0 ? ", " + std::to_string(too_wide) + " grasps were too wide)" : ")");
   }
-  if (r.reach + r.limits >= collisions) {
+  if (r.unreachable + r.limits >= collisions) {
     return "bring the part nearer to where the robot can stand, allow other base headings, or give grasps from other "
            "directions";
   }
@@ -200,7 +200,7 @@ Obstruction explain_region(const PartSupplyProblem& problem, const ReachDatabase
   bool all_blocked = true;
   for (int g = 0; g < explanation.grasps; ++g) all_blocked = all_blocked && evaluator.hand_blocked({tray, index}, g);
   obstruction.stage = all_blocked ? "grasp" : "region";
-  if (!all_blocked) obstruction.missing_reach = reach_deficit(problem, database, evaluator, grid, {tray, index});
+  if (!all_blocked) obstruction.reach_deficit = reach_deficit(problem, database, evaluator, grid, {tray, index});
   add_advised_move(obstruction, problem, database, grid, tray, earlier);
   const std::string fix =
       advice(explanation, obstruction, region.base_poses_in_collision, problem, part.grasps_too_wide);

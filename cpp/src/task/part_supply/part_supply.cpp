@@ -119,7 +119,7 @@ class PartSupply {
     options.route_length = [this](const std::vector<Stop>& stops) {
       return straight_route_length(stops, problem_.start.head<2>(), problem_.goal.head<2>());
     };
-    StopSet set = least_stops(plan_.grid, plan_.regions, options, monitor_);
+    StopSet set = plan_stops_exact(plan_.grid, plan_.regions, options, monitor_);
     plan_.stops = std::move(set.stops);
     plan_.lower_bound = set.lower_bound;
     plan_.proven_minimal = set.outcome == Outcome::solved;

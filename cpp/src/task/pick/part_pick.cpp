@@ -32,7 +32,7 @@ PickProblem pick_of(const PartSupplyProblem& problem, const Eigen::Vector3d& bas
           part.name,
           part.grasps,
           problem.home,
-          detail::places_over_bin(problem.carry, T_world_root, part),
+          detail::places_over_bin(problem.place_region, T_world_root, part),
           {options.approach_distance, options.lift_height, options.motion_time_limit, options.grid.ik_seeds, seed}};
 }
 

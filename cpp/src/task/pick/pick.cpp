@@ -17,13 +17,13 @@ void require_positive(double value, const char* field) {
 const char* to_string(MotionKind kind) {
   switch (kind) {
     case MotionKind::transit:
-      return "reach";
+      return "transit";
     case MotionKind::approach:
       return "approach";
     case MotionKind::lift:
       return "lift";
     case MotionKind::transfer:
-      return "carry";
+      return "transfer";
     case MotionKind::retreat:
       return "retreat";
   }
@@ -48,15 +48,15 @@ void PickProblem::check() const {
   gripper.check();
   require(!arm.has_base(), "arm", "'" + arm.name() + "'", "must be a group without base joints");
   arm.check_configuration(home, "home");
-  require(arm.robot().link_index(gripper.tool_link) == arm.tip_link(), "gripper.tool_link", "'" + gripper.tool_link + "'",
-          "must be the arm's tip");
+  require(arm.robot().link_index(gripper.tool_link) == arm.tip_link(), "gripper.tool_link",
+          "'" + gripper.tool_link + "'", "must be the arm's tip");
   require(world.objects().count(object) > 0, "object", "'" + object + "'",
           "must be an object of the world that nothing holds");
   for (std::size_t i = 0; i < grasps.size(); ++i) {
     const std::string field = "grasps[" + std::to_string(i) + "]";
     checked_pose(grasps[i].T_object_hand.matrix(), field + " pose");
-    require(grasps[i].opening >= 0 && grasps[i].opening <= gripper.max_opening + 1e-9, field + " opening", grasps[i].opening,
-            "must lie in [0, gripper.max_opening = " + std::to_string(gripper.max_opening) + "]");
+    require(grasps[i].opening >= 0 && grasps[i].opening <= gripper.max_opening + 1e-9, field + " opening",
+            grasps[i].opening, "must lie in [0, gripper.max_opening = " + std::to_string(gripper.max_opening) + "]");
   }
   for (std::size_t i = 0; i < places.size(); ++i) checked_pose(places[i].matrix(), "places[" + std::to_string(i) + "]");
 }

@@ -23,7 +23,7 @@ double lowest(const Part& part, const Pose& T) {
 
 }  // namespace
 
-std::vector<Pose> places_over_bin(const CarryPlace& bin, const Pose& T_world_root, const Part& part) {
+std::vector<Pose> places_over_bin(const PlaceRegion& bin, const Pose& T_world_root, const Part& part) {
   const Pose T_world_bin = T_world_root * bin.T_base_bin;
   std::vector<Pose> places;
   for (const auto& [x, y] : {std::pair{0, 0}, {0, 1}, {0, -1}, {1, 0}, {-1, 0}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}) {
@@ -55,10 +55,11 @@ std::vector<Eigen::VectorXd> release_configurations(const ReachDatabase& databas
     if (found.size() >= count) break;
     const Pose T_world_tcp = T_world_object * T_object_tcp;
     const int near = database.nearest(T_root_world * T_world_tcp, kSeeds, seeds);
-    if (near == 0) rejections.add(Rejection::reach);
+    if (near == 0) rejections.add(Rejection::unreachable);
     for (int i = 0; i < near; ++i) {
       Eigen::VectorXd q = seeds.col(i).head(arm.size());
-      const Rejection cause = refine_ik(arm, T_world_tcp, q, ik, workspace) ? holding.rejection(q) : Rejection::reach;
+      const Rejection cause =
+          refine_ik(arm, T_world_tcp, q, ik, workspace) ? holding.rejection(q) : Rejection::unreachable;
       if (cause == Rejection::none) {
         turn_towards(arm, from, q);
         found.push_back(q);

@@ -11,7 +11,7 @@ namespace mmgrasp::detail {
 /// World poses of a part at which it hangs level over the bin: turned about the vertical by any of several yaws, its
 /// origin at several places inside the bin's rectangle, its lowest point `drop_gap` over the bin's top. The bin's
 /// middle comes first.
-std::vector<Pose> places_over_bin(const CarryPlace& bin, const Pose& T_world_root, const Part& part);
+std::vector<Pose> places_over_bin(const PlaceRegion& bin, const Pose& T_world_root, const Part& part);
 
 /// Collision-free configurations that hold an object at some of these world poses, up to `count`, those nearest to
 /// `from` first; `rejections` counts why others fell.

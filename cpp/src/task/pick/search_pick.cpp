@@ -30,8 +30,8 @@ constexpr double kTimedStep = 0.01;
 
 /// Stages at which candidates fall, in the order in which they are planned.
 enum Stage { kGrasp, kApproach, kClose, kLift, kRelease, kTransit, kTransfer, kRetreat, kStages };
-constexpr std::array<const char*, kStages> kStageNames = {"grasp",   "approach", "close", "lift",
-                                                          "release", "reach",    "carry", "retreat"};
+constexpr std::array<const char*, kStages> kStageNames = {"grasp",   "approach", "close",    "lift",
+                                                          "release", "transit",  "transfer", "retreat"};
 
 JointPath reversed(const JointPath& path) {
   JointPath back = path;
@@ -93,13 +93,13 @@ class PickPlanner {
     const Pose T_base_tcp = problem_.arm.T_world_root().inverse() * T;
     if (round == 0) {
       const int count = database_.nearest(T_base_tcp, std::max(kConfigurations, problem_.options.ik_seeds), seeds_);
-      if (count == 0) pick_.rejections.add(Rejection::reach);
+      if (count == 0) pick_.rejections.add(Rejection::unreachable);
       for (int i = 0; i < count; ++i) {
         Eigen::VectorXd q = seeds_.col(i).head(problem_.arm.size());
         if (refine_ik(checker.group(), T, q, ik_, workspace_)) {
           judge(q);
         } else {
-          pick_.rejections.add(Rejection::reach);
+          pick_.rejections.add(Rejection::unreachable);
         }
       }
     } else {

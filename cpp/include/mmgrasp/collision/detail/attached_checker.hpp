@@ -24,8 +24,8 @@ class MMGRASP_EXPORT AttachedChecker {
 
   bool is_free(const Eigen::VectorXd& q);
   Rejection rejection(const Eigen::VectorXd& q);
-  /// check_edge(...).free. No point of what is checked (with CheckerOptions::held_only: of the object) moves more than
-  /// the workspace step.
+  /// check_edge(...).free. No point of what is checked (with CheckerOptions::attached_only: of the object) moves more
+  /// than the workspace step.
   bool edge_is_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, const EdgeOptions& options);
 
  private:

@@ -14,7 +14,7 @@ class FailureCause {
       ++tries_;
       reached_ = descend(group, T_world_tip, q, options, workspace, false).converged;
     }
-    return reached_ ? Rejection::limits : Rejection::reach;
+    return reached_ ? Rejection::limits : Rejection::unreachable;
   }
 
  private:

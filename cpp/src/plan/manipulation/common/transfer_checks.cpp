@@ -91,10 +91,10 @@ CollisionChecker TransferChecks::whole(int grasp) const {
   return CollisionChecker(group(opening_of(grasp)), world_with(grasp));
 }
 
-AttachedChecker& TransferChecks::holding(std::optional<WithObject>& slot, int grasp, bool held_only) {
+AttachedChecker& TransferChecks::holding(std::optional<WithObject>& slot, int grasp, bool attached_only) {
   if (!slot) {
     CheckerOptions options;
-    options.held_only = held_only;
+    options.attached_only = attached_only;
     slot.emplace(WithObject{AttachedChecker(group(opening_of(grasp)), world_with(grasp), options), grasp});
   } else if (slot->grasp != grasp) {
     slot->checker.place_attached(T_tool_object(grasp));

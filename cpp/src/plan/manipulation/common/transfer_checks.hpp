@@ -62,7 +62,7 @@ class MMGRASP_EXPORT TransferChecks {
   RobotAlone& robot(int worker, int opening);
   AttachedChecker& attached(int worker, int grasp);
   /// The checker of `slot` with the object in this grasp.
-  AttachedChecker& holding(std::optional<WithObject>& slot, int grasp, bool held_only);
+  AttachedChecker& holding(std::optional<WithObject>& slot, int grasp, bool attached_only);
   Pose T_tool_object(int grasp) const;
   World world_with(int grasp) const;
 

@@ -13,9 +13,9 @@ using namespace py::literals;
 StatsDict stats_dict(const ManipulationStats& s) {
   return py::dict(
       "ik_seconds"_a = s.ik_seconds, "roadmap_seconds"_a = s.roadmap_seconds, "search_seconds"_a = s.search_seconds,
-      "graph_searches"_a = s.graph_searches, "ways_opened"_a = s.nodes_opened, "grasps_searched"_a = s.grasps_searched,
+      "graph_searches"_a = s.graph_searches, "nodes_opened"_a = s.nodes_opened, "grasps_searched"_a = s.grasps_searched,
       "roadmap_cost"_a = s.roadmap_cost, "edges_checked_robot"_a = s.edges_checked_robot,
-      "edges_checked_held"_a = s.edges_checked_attached, "samples"_a = s.samples, "vertices"_a = s.vertices);
+      "edges_checked_attached"_a = s.edges_checked_attached, "samples"_a = s.samples, "vertices"_a = s.vertices);
 }
 
 py::dict report_dict(const GraspReport& r) {
@@ -102,7 +102,7 @@ void bind_result_parts(py::module_& m) {
 
 }  // namespace
 
-void bind_carry_result(py::module_& m) {
+void bind_manipulation_result(py::module_& m) {
   bind_tree(m);
   bind_result_parts(m);
   py::class_<ManipulationResult>(m, "ManipulationResult", "What plan_manipulation found.")

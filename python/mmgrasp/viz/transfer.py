@@ -29,7 +29,7 @@ def along(path: ArrayLike, count: int) -> NDArray[np.float64]:
     return np.stack([np.interp(np.linspace(0, at[-1], count), at, column) for column in waypoints.T], axis=1)
 
 
-def carry_scene(cell: PipeCell, grasp: Grasp, path: ArrayLike, *, pipes: int = 9, arm_at: float = 0.5) -> Scene:
+def transfer_scene(cell: PipeCell, grasp: Grasp, path: ArrayLike, *, pipes: int = 9, arm_at: float = 0.5) -> Scene:
     """The cell with the pipe at `pipes` moments from green to red; `arm_at` says where on the way the arm is, in [0, 1]."""
     scene = Scene()
     bodies = SceneBodies.of_world(cell.robot, cell.world)
@@ -51,13 +51,13 @@ def carry_scene(cell: PipeCell, grasp: Grasp, path: ArrayLike, *, pipes: int = 9
     return scene
 
 
-def write_carry(
+def write_transfer(
     cell: PipeCell, grasp: Grasp, path: ArrayLike, file: str | Path, *, width: int = 1100, height: int = 800
 ) -> Path:
-    """Renders carry_scene from in front of the arm, a little above it."""
+    """Renders transfer_scene from in front of the arm, a little above it."""
     start, goal = cell.T_world_start[:3, 3], cell.T_world_goal[:3, 3]
     towards = (start + goal)[:2] / max(np.linalg.norm((start + goal)[:2]), 1e-6)
     camera = Camera(
         np.array([*(2.7 * towards), 2.0]), np.array([*(0.2 * towards), 0.22]), width=width, height=height, fov=36.0
     )
-    return png.write_png(Path(file), render(carry_scene(cell, grasp, path), camera, background="#F7F7F5"))
+    return png.write_png(Path(file), render(transfer_scene(cell, grasp, path), camera, background="#F7F7F5"))

@@ -12,7 +12,7 @@ namespace {
 using NoMoreKeywords = py::KWArgs<py::typing::Never>;
 constexpr char kShapeOrShapes[] = "LinkShape | collections.abc.Sequence[LinkShape]";
 using ShapeOrShapes = Shown<kShapeOrShapes>;
-constexpr char kGraspsOrPoses[] = "collections.abc.Sequence[CandidateGrasp] | numpy.typing.ArrayLike";
+constexpr char kGraspsOrPoses[] = "collections.abc.Sequence[Grasp] | numpy.typing.ArrayLike";
 using GraspsOrPoses = Shown<kGraspsOrPoses>;
 
 using namespace py::literals;
@@ -67,7 +67,7 @@ void refuse_unknown(const py::kwargs& unknown, const Strings& known) {
 
 }  // namespace
 
-void bind_carry_problem(py::module_& m) {
+void bind_manipulation_problem(py::module_& m) {
   py::class_<ManipulationProblem>(m, "ManipulationProblem",
                                   "Moves an object from one pose to another with any of many grasps (P2 4.2).")
       .def(py::init([](const Given<JointGroup>& group, const Given<World>& world, const ShapeOrShapes& object,

@@ -41,6 +41,7 @@ BAD = [
     ("format", "mmgrasp-plan", ["format", "mmgrasp-scenario"]),
     ("format", REMOVE, ["format"]),
     ("version", 1, ["version", "1", "reads version 2"]),
+    ("carry", {}, ["unknown key; it is called place_region now"]),
     ("traays", [], ["traays", "did you mean trays?"]),
     ("start", REMOVE, ["start is missing"]),
     ("start", [0, 0], ["start", "3 numbers"]),
@@ -227,3 +228,10 @@ def test_listed_parts_and_own_grasps(small: dict[str, Any], write: Callable[...,
 def test_shipped_scenarios_keep_the_schema(name: str) -> None:
     schema = json.loads((ASSETS.parent / "schemas" / "scenario.schema.json").read_text())
     jsonschema.validate(yaml.safe_load((ASSETS / "scenarios" / name).read_text()), schema)
+
+
+def test_a_file_of_version_1_says_what_its_keys_are_called_now(small: dict[str, Any], write: Callable[..., Path]) -> None:
+    old = {**small, "version": 1}
+    old["carry"] = old.pop("place_region")
+    with pytest.raises(mg.InvalidInput, match="reads version 2: carry is place_region now"):
+        mg.load_scenario(write(old))

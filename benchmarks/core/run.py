@@ -22,7 +22,7 @@ from goals import GOALS, Goal
 from programs import build_programs, full_table, lines_of, packages_of, peers_environment
 from tables import ROOT, markdown, show
 
-SLOW = {"exactness"}  # 100,000 queries against FCL: run when asked for
+SLOW = {"exactness", "stages"}  # 100,000 queries against FCL; the program of run_stages.py: run when asked for
 
 
 def matching(goal: Goal, lines: list[dict]) -> list[tuple[dict, dict | None]]:

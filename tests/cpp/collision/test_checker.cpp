@@ -276,7 +276,7 @@ TEST(Checker, EdgesSeeThinWallsBetweenFreeEnds) {
   EXPECT_FALSE(checker.edge_is_free(at(-1, 0, 0), at(1, 0, 0)));
   EXPECT_TRUE(checker.edge_is_free(at(-1, 0, 0), at(0.34, 0.5, 0)));
   EXPECT_FALSE(checker.edge_is_free(at(0.37, 0, 0), at(0.37, 0, 0)));
-  // Every step is looked at: 100 of them with both ends make 101 configurations.
+  // Every step is checked: 100 of them with both ends make 101 configurations.
   const std::size_t before = checker.queries();
   EXPECT_TRUE(checker.edge_is_free(at(-1, 0, 0), at(-1, 2, 0), 0.02));
   EXPECT_EQ(checker.queries() - before, 101u);

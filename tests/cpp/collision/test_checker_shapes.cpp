@@ -128,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(Kernels, CheckerShapesOnKernels, ::testing::ValuesIn(de
 
 }  // namespace
 
-// Capsules have few spheres and no finer ones, next to bodies that look at three levels of them.
+// Capsules have few spheres and no finer ones, next to bodies with three levels of them.
 TEST_P(CheckerShapesOnKernels, LongCapsulesAgreeWithFcl) {
   Rng rng(21);
   int free = 0, hit = 0, unjudged = 0;

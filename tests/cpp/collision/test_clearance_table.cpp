@@ -31,7 +31,7 @@ TriangleMesh angle_iron(double length) {
 }
 
 struct Elbows {
-  // The tables' bodies look for their meshes when they are first asked closely.
+  // The bodies need their meshes when their grids are made.
   std::shared_ptr<const TriangleMesh> long_mesh = std::make_shared<const TriangleMesh>(angle_iron(0.3));
   std::shared_ptr<const TriangleMesh> short_mesh = std::make_shared<const TriangleMesh>(angle_iron(0.12));
   TableBody a = made(long_mesh), b = made(short_mesh);

@@ -30,7 +30,7 @@ JointGroup panda_arm() {
       .group("panda_arm");
 }
 
-// Boxes, a sphere, a sheet of voxels and a floor, so that every way a body is looked at along an edge has its turn.
+// Boxes, a sphere, a sheet of voxels and a floor, so that every way of checking a body along an edge has its turn.
 World clutter(unsigned seed, int boxes) {
   Rng rng(seed);
   World world;

@@ -18,7 +18,7 @@ struct MMGRASP_EXPORT WorldObject {
   Pose T_world_object = Pose::Identity();
 };
 
-/// A body attached by the robot.
+/// A body that moves with a link of the robot.
 struct MMGRASP_EXPORT AttachedObject {
   std::vector<LinkShape> shapes;
   std::string link;  ///< It moves with this robot link.

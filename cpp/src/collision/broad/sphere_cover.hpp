@@ -13,6 +13,9 @@ namespace mmgrasp::detail {
 
 struct Solid;
 
+/// Rounding of the construction of covers itself, far above that of double precision.
+constexpr double kCoverGrowth = 1 + 1e-6;
+
 /// Spheres that cover a body, and spheres within it: what misses the former is apart, what meets the latter overlaps.
 class SphereCover {
  public:

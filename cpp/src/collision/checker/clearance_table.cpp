@@ -16,7 +16,7 @@ constexpr int kFinest = 512;                      // Cells around.
 constexpr int kCoarser = 4;                       // Cells of one level in one of the level above, each way.
 constexpr double kQuantum = 2.5e-4;               // Resolution of the clearances kept [m].
 constexpr double kMaxClearance = 254 * kQuantum;  // Wider clearances are kept as this one.
-constexpr double kMaxExactClearance = 0.01;       // Triangles are only asked for clearances up to this [m].
+constexpr double kMaxExactClearance = 0.01;       // Triangles are only tested for clearances up to this [m].
 constexpr double kRounding = 1e-6;                // Poses here and in the checker are rounded differently.
 constexpr std::size_t kMaxTables = 256;
 
@@ -60,7 +60,7 @@ double ClearanceTable::at_least(double first, double second, double wanted) cons
   second -= static_cast<double>(j - in_j) / kPerRadian;
   double best = 0;
   for (int level = 0, shift = kFinest / cells_around(0); level < kLevels; ++level, shift /= kCoarser) {
-    // Cells that cannot say enough are not asked.
+    // Cells that cannot prove enough are not read.
     if (best > 0 && widest(level) < wanted) break;
     const long ci = in_i / shift, cj = in_j / shift;
     const double off = joints_.rates[0] * std::abs(first - middle(level, ci)) +
@@ -129,7 +129,7 @@ std::shared_ptr<const ClearanceTable> shared_clearance_table(const TableBody& a,
   const auto it = known.find(key);
   if (it != known.end()) return it->second.table;
   if (known.size() >= kMaxTables) known.erase(known.begin());
-  // Whoever uses the table holds the solids, but perhaps bounds that another thread made of them.
+  // A user of the table owns the solids, but perhaps other bounds of them, which another thread made.
   std::shared_ptr<const ClearanceTable> table(
       new ClearanceTable(a, b, joints),
       [kept = std::pair(a.bounds, b.bounds)](const ClearanceTable* old) { delete old; });

@@ -13,27 +13,30 @@
 
 namespace mmgrasp::detail {
 
-/// Pose of b in a: before * turn by the first angle about z * between * turn by the second about z * after.
+/// The pose of b in a when two revolute joints part them: before * rotation by the first joint's angle about z *
+/// between
+/// * rotation by the second's about z * after.
 struct RevolutePair {
   Rigid before, between, after;
-  std::array<double, 2> rates{};  ///< How fast each turn can close a clearance between the two [m/rad].
+  std::array<double, 2> rates{};  ///< How fast each joint can close a clearance between the two [m/rad].
 };
 
+/// One of the two bodies of a table.
 struct TableBody {
   std::shared_ptr<const Solid> solid;
   std::shared_ptr<const BoundingVolumes> bounds;
 };
 
-/// Clearances between two bodies of a robot that two turning joints part, from below, over both angles: cells in three
-/// sizes, the clearance in the middle of each measured when first asked for. What a cell says depends on nothing else,
-/// so answers do not depend on what was asked before. Safe from several threads.
+/// Lower bounds of the clearance between two bodies of a robot that two revolute joints part, over both angles: cells
+/// in three sizes, the clearance in the middle of each measured when first needed. A cell depends on nothing else, so
+/// answers do not depend on earlier queries. Safe from several threads.
 class MMGRASP_EXPORT ClearanceTable {
  public:
   /// The bodies must outlive it.
   ClearanceTable(const TableBody& a, const TableBody& b, const RevolutePair& joints);
   ~ClearanceTable();
 
-  /// A lower bound of the clearance [m], not above 0 where none is known. Coarse cells are asked first, finer ones
+  /// A lower bound of the clearance [m], not above 0 where none is known. Coarse cells are read first, then finer ones
   /// until the bound exceeds `wanted` [m] or cannot.
   double at_least(double first, double second, double wanted) const;
 
@@ -49,12 +52,12 @@ class MMGRASP_EXPORT ClearanceTable {
   const Solid &a_, &b_;
   const BoundingVolumes &bounds_a_, &bounds_b_;
   const RevolutePair joints_;
-  std::array<double, kLevels> within_cell_{};  ///< What the clearance may be less at a cell's corner [m].
+  std::array<double, kLevels> within_cell_{};  ///< How much less the clearance may be at a cell's corner [m].
   mutable std::once_flag made_[kLevels];
   mutable std::unique_ptr<Code[]> cells_[kLevels];
 };
 
-/// The table of two bodies, shared by all that ask and kept as long as they live.
+/// The table of two bodies, shared by all checkers and kept as long as the bodies live.
 MMGRASP_EXPORT std::shared_ptr<const ClearanceTable> shared_clearance_table(const TableBody& a, const TableBody& b,
                                                                             const RevolutePair& joints);
 

@@ -7,7 +7,7 @@
 namespace mmgrasp::detail {
 
 /// The loops that decide how quick a check is. They exchange plain arrays and are compiled twice: for every machine of
-/// the platform and for AVX2 with FMA; which one runs is decided once at run time. Everything in single precision takes
+/// the platform and for AVX2 with FMA; which one runs is decided at run time. Everything in single precision takes
 /// a slack that covers its rounding, so that it may only err towards "not proven".
 
 constexpr int kLanes = 8;

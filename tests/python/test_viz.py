@@ -8,10 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import mmgrasp as mg
 from plan_by_hand import plan_by_hand
 
 pytest.importorskip("mmgrasp")
 
+from mmgrasp.bodies import SceneBodies, stored_pose
 from mmgrasp.viz import png, raster, report, topview
 from mmgrasp.viz.scene import PlanScene
 from mmgrasp.viz.timeline import GRIP_TIME, State, Timeline, along_route
@@ -98,6 +100,28 @@ def test_scene_places_the_tool_by_closed_form_and_the_held_part_in_it() -> None:
     held = State(state.base, state.arm, 0.0, ("A/brick_0", np.eye(4)))
     assert scene.part_pose("A/brick_0", held, scene.robot_poses(held)) == pytest.approx(T)
     assert scene.arm_links == {"arm", "tcp"}
+
+
+def test_bodies_stand_where_world_and_plan_have_them() -> None:
+    world = mg.World()
+    world.add_box("shelf", [0.4, 0.2, 0.6], mg.pose([1.0, 2.0, 0.3], rpy=[0, 0, np.pi / 2]))
+    plan = plan_by_hand()
+    stored = SceneBodies.of_plan(plan)
+    (shelf,) = SceneBodies.of_world(stored.robot, world).obstacles
+    at = shelf.vertices_at()
+    assert at.min(axis=0) == pytest.approx([0.9, 1.8, 0.0]) and at.max(axis=0) == pytest.approx([1.1, 2.2, 0.6])
+    assert [body.name for body in stored.obstacles] == [o["name"] for o in plan["scenario"]["obstacles"]]
+    for part in plan["scenario"]["parts"]:
+        assert stored.parts[part["name"]].pose[:3, 3] == pytest.approx(part["pose"]["xyz"])
+    assert [link.name for link in stored.links] == stored.robot.links
+
+
+def test_poses_of_plan_files_may_be_given_either_way() -> None:
+    turned = mg.pose([1, 2, 3], rpy=[0.1, 0.2, 0.3])
+    quaternion = mg.robot.quat_xyzw_from_rotation(turned[:3, :3])
+    assert stored_pose({"xyz": [1, 2, 3], "quat_xyzw": quaternion}) == pytest.approx(turned)
+    assert stored_pose({"xyz": [1, 2, 3], "rpy": [0.1, 0.2, 0.3]}) == pytest.approx(turned)
+    assert stored_pose({"xyz": [1, 2, 3]}) == pytest.approx(mg.pose([1, 2, 3]))
 
 
 def test_top_view_draws_every_cell_stop_and_name() -> None:

@@ -5,9 +5,13 @@
     run = sim.Simulation(robot, scene, [sim.SimPart("box", shapes, T_world_box)], gripper=gripper).run(trajectory, arm=arm)
     run.grasped, run.parts["box"].cause, run.contacts
 
-Needs the extra `sim` (docs/methods/sim.md). Pictures of a run need nothing more: see `frames`.
+Closed loops: give `SimScene.drive` a controller of your own (see `sim.control`). Needs the extra `sim` (docs/methods/sim.md). Pictures of a run need nothing more: see `frames`.
 """
 
+from .control import Command as Command
+from .control import Controller as Controller
+from .control import Observer as Observer
+from .control import Recorder as Recorder
 from .execution import Execution as Execution
 from .model import Physics as Physics
 from .model import SimPart as SimPart
@@ -15,4 +19,5 @@ from .model import build as build
 from .result import ContactEvent as ContactEvent
 from .result import PartMotion as PartMotion
 from .result import SimResult as SimResult
+from .scene import SimScene as SimScene
 from .simulation import Simulation as Simulation

@@ -14,6 +14,7 @@ import numpy as np
 
 from .. import _core
 from .._core import Gripper, InvalidInput, LinkShape, Robot, World
+from ..bodies import SceneBodies
 
 ROBOT, SCENE, PART, FLOOR = 1, 2, 4, 8
 COLLIDES = {ROBOT: SCENE | PART, SCENE: ROBOT | PART, PART: ROBOT | SCENE | PART | FLOOR, FLOOR: PART}
@@ -106,15 +107,16 @@ def build(
     """
     physics = physics or Physics()
     physics.check()
-    return _Builder(robot, scene, list(parts), gripper, physics).built
+    loose = {part.name: part for part in parts}
+    return _Builder(SceneBodies.of_world(robot, scene, loose.values()), loose, gripper, physics).built
 
 
 class _Builder:
-    def __init__(self, robot: Robot, scene: World, parts: list[SimPart], gripper: Gripper | None, physics: Physics):
-        self.robot, self.physics = robot, physics
+    def __init__(self, bodies: SceneBodies, loose: dict[str, SimPart], gripper: Gripper | None, physics: Physics):
+        self.bodies, self.robot, self.physics = bodies, bodies.robot, physics
         self.built = Built("")
         self.meshes = 0
-        self.root = ET.Element("mujoco", model=robot.name or "robot")
+        self.root = ET.Element("mujoco", model=self.robot.name or "robot")
         ET.SubElement(self.root, "compiler", angle="radian", autolimits="true", inertiafromgeom="auto")
         option = ET.SubElement(
             self.root, "option", timestep=_text(physics.time_step), gravity=_text(physics.gravity), cone="elliptic",
@@ -129,17 +131,17 @@ class _Builder:
         finger_links = set(gripper.finger_links) if gripper else set()
         self.fingers = [j.name for j in gripper.joints] if gripper else []
         self.coupled = _coupling(gripper) if gripper else {}
-        for name in scene.objects:
-            body = ET.SubElement(world, "body", name=f"scene/{name}", **_placed(scene.pose_of(name)))
-            for shape in scene.shapes_of(name):
-                self._shape(body, shape, name, SCENE, physics.scene_friction)
+        for obstacle in bodies.obstacles:
+            element = ET.SubElement(world, "body", name=f"scene/{obstacle.name}", **_placed(obstacle.pose))
+            for shape in obstacle.shapes:
+                self._shape(element, shape, obstacle.name, SCENE, physics.scene_friction)
         self._robot(world, finger_links)
-        for part in parts:
-            part.check()
-            body = ET.SubElement(world, "body", name=f"part/{part.name}", **_placed(np.asarray(part.pose, float)))
-            ET.SubElement(body, "freejoint", name=f"part/{part.name}")
+        for part in bodies.parts.values():
+            loose[part.name].check()
+            element = ET.SubElement(world, "body", name=f"part/{part.name}", **_placed(part.pose))
+            ET.SubElement(element, "freejoint", name=f"part/{part.name}")
             for shape in part.shapes:
-                self._shape(body, shape, part.name, PART, part.friction)
+                self._shape(element, shape, part.name, PART, loose[part.name].friction)
         self.built.xml = ET.tostring(self.root, encoding="unicode")
 
     def _robot(self, world: ET.Element, finger_links: set[str]) -> None:

@@ -16,54 +16,40 @@ import numpy as np
 from .. import _core
 from .._core import Gripper, InvalidInput, JointTrajectory, Robot, World
 from .._files import write_file
+from ..bodies import SceneBodies, floor_tiles
 from ..viz.png import write_png
 from ..viz.raster import Camera, Scene, render
-from ..viz.scene import placed_triangles, transformed
 from ..viz.style import FLOOR, OBSTACLE, PART, ROBOT, ROBOT_ARM
 from .model import BASE_JOINTS, SimPart
 from .result import SimResult
 from .simulation import Simulation
 
-FLOOR_TILE = 0.5
+FLOOR_REACH = 4.0  # of the floor drawn round what the camera looks at [m]
 
 
 class Painter:
     """Draws recorded states of a robot, a scene and parts with the software renderer. Needs no MuJoCo."""
 
     def __init__(self, robot: Robot, gripper: Gripper | None, scene: World, parts: Iterable[SimPart]):
-        self.robot = robot
-        fingers = set(gripper.finger_links) if gripper else set()
+        self.bodies = SceneBodies.of_world(robot, scene, parts)
+        self.fingers = set(gripper.finger_links) if gripper else set()
         self.limits = {j["name"]: (j["lower"], j["upper"]) for j in robot.joint_table}
-        self.links = [
-            (link, *placed_triangles(shape), ROBOT_ARM if link in fingers else ROBOT)
-            for link in robot.links
-            for shape in robot.collisions(link)
-        ]
-        self.scene = [
-            (transformed(scene.pose_of(name), V), F)
-            for name in scene.objects
-            for V, F in (placed_triangles(shape) for shape in scene.shapes_of(name))
-        ]
-        self.parts = {part.name: [placed_triangles(s) for s in part.shapes] for part in parts}
 
     def picture(self, state: dict[str, Any], camera: Camera) -> np.ndarray:
         """uint8 (height, width, 3)."""
         scene = Scene()
-        scene.add(*_floor(camera.target), FLOOR)
-        for V, F in self.scene:
-            scene.add(V, F, OBSTACLE)
-        x, y, theta = state["base"]
-        T = np.eye(4)
-        T[:2, :2] = [[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]]
-        T[:2, 3] = x, y
+        middle = np.asarray(camera.target, float)[:2]
+        scene.add(*floor_tiles(middle - FLOOR_REACH, middle + FLOOR_REACH), FLOOR)
+        for body in self.bodies.obstacles:
+            scene.add(body.vertices_at(), body.faces, OBSTACLE)
         # Physics may stand a hair beyond a limit, which the model refuses.
         joints = {n: float(np.clip(v, *self.limits[n])) for n, v in state["joints"].items()}
-        poses = self.robot.link_poses(joints, T)
-        for link, V, F, colour in self.links:
-            scene.add(transformed(poses[link], V), F, colour)
-        for name, shapes in self.parts.items():
-            for V, F in shapes:
-                scene.add(transformed(state["parts"][name], V), F, PART)
+        poses = self.bodies.link_poses(joints, state["base"])
+        for link in self.bodies.links:
+            colour = ROBOT_ARM if link.name in self.fingers else ROBOT
+            scene.add(link.vertices_at(poses[link.name]), link.faces, colour)
+        for part in self.bodies.parts.values():
+            scene.add(part.vertices_at(state["parts"][part.name]), part.faces, PART)
         return render(scene, camera)
 
 
@@ -100,14 +86,6 @@ def planned_states(
             now["parts"][part.name] = T
         states.append(now)
     return states
-
-
-def _floor(middle: np.ndarray, reach: float = 4.0) -> tuple[np.ndarray, np.ndarray]:
-    ticks = np.arange(-reach, reach + FLOOR_TILE / 2, FLOOR_TILE)
-    vertices = np.array([[middle[0] + x, middle[1] + y, -0.002] for y in ticks for x in ticks])
-    n = len(ticks)
-    corners = [j * n + i for j in range(n - 1) for i in range(n - 1)]
-    return vertices, np.array([f for a in corners for f in ([a, a + 1, a + n + 1], [a, a + n + 1, a + n])])
 
 
 def frames(

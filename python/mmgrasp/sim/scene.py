@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 
 from .._core import Gripper, InvalidInput, Robot, World
+from .control import Command, Controller, Observer, body_to_world
 from .model import BASE_JOINTS, Physics, SimPart, build
 
 GIVE = 0.005  # a finger this far from where it should be presses with all its force [m]
@@ -81,6 +82,10 @@ class SimScene:
         """(x, y, theta) now."""
         return self.data.qpos[self.base_address].copy() if self.moves else np.zeros(3)
 
+    def joint(self, name: str) -> float:
+        """Where a driven joint stands now [rad or m]."""
+        return float(self.data.qpos[self.address[name]])
+
     def reset(self, base: np.ndarray, joints: dict[str, float]) -> None:
         """Robot and parts back to a start, at rest."""
         self.mujoco.mj_resetData(self.model, self.data)
@@ -90,6 +95,53 @@ class SimScene:
             self.data.qpos[self.base_address] = base
         self.mujoco.mj_forward(self.model, self.data)
         self._tune()
+
+    def drive(
+        self,
+        controller: Controller,
+        observers: Sequence[Observer] = (),
+        *,
+        time_limit: float = np.inf,
+    ) -> float:
+        """Steps the physics under a controller, from the state of reset(), until it has finished; returns the time that took [s].
+
+        Ends at `time_limit` [s] of the scene's own clock, too. Raises InvalidInput for a period that is no multiple of the time
+        step, for joints the robot does not drive and for commands of the wrong size.
+        """
+        h = self.physics.time_step
+        every = max(1, round(controller.period / h)) if 0 < controller.period < np.inf else 0
+        if not abs(every * h - controller.period) <= 1e-9:
+            raise InvalidInput(f"period = {controller.period!r}: must be a multiple of the time step {h} s")
+        for name in controller.joints:
+            if name not in self.actuator:
+                raise InvalidInput(f"joints: '{name}' is no driven joint of the robot")
+        actuators = [self.actuator[name] for name in controller.joints]
+        step, time, velocity = 0, 0.0, np.zeros(3)
+        while time < time_limit and not controller.finished(time, self):
+            if step % every == 0:
+                velocity = self._apply(controller.command(time, self), actuators)
+            for observer in observers:
+                observer.before(step, time, self)
+            if self.moves:
+                self.data.ctrl[self.base_actuator] = body_to_world(velocity, self.data.qpos[self.base_address[2]])
+            self.mujoco.mj_step(self.model, self.data)
+            for observer in observers:
+                observer.after(step, time, self)
+            step += 1
+            time = step * h
+        return time
+
+    def _apply(self, command: Command, actuators: list[int]) -> np.ndarray:
+        joints = np.asarray(command.joints, float)
+        if joints.shape != (len(actuators),) or not np.isfinite(joints).all():
+            raise InvalidInput(
+                f"command.joints: must be {len(actuators)} finite numbers, one for each of the controller's joints"
+            )
+        base = np.asarray(command.base, float)
+        if base.shape != (3,) or not np.isfinite(base).all() or (not self.moves and base.any()):
+            raise InvalidInput("command.base: must be three finite numbers vx, vy, omega, all 0 for a fixed base")
+        self.data.ctrl[actuators] = joints
+        return base
 
     def _tune(self) -> None:
         """Gains from the inertia each joint carries: critically damped, the base's wheels following within 20 ms."""

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..bodies import Body, SceneBodies
 from . import png
 from .raster import Camera, Scene, render
-from .scene import placed_triangles, transformed
 
 if TYPE_CHECKING:
     from .._core import PipeGrasp
@@ -32,26 +32,22 @@ def along(path: ArrayLike, count: int) -> NDArray[np.float64]:
 def carry_scene(cell: PipeCell, grasp: PipeGrasp, path: ArrayLike, *, pipes: int = 9, arm_at: float = 0.5) -> Scene:
     """The cell with the pipe at `pipes` moments from green to red; `arm_at` says where on the way the arm is, in [0, 1]."""
     scene = Scene()
-    for name in cell.world.objects:
-        if name.startswith(HIDDEN):
-            continue
-        colour = TABLE if name == "table" else FIXTURE if "post" in name else OBSTACLE
-        for shape in cell.world.shapes_of(name):
-            vertices, faces = placed_triangles(shape)
-            scene.add(transformed(cell.world.pose_of(name), vertices), faces, colour)
+    bodies = SceneBodies.of_world(cell.robot, cell.world)
+    for body in bodies.obstacles:
+        if not body.name.startswith(HIDDEN):
+            colour = TABLE if body.name == "table" else FIXTURE if "post" in body.name else OBSTACLE
+            scene.add(body.vertices_at(), body.faces, colour)
+    pipe = Body("pipe", tuple(cell.pipe.shapes()), np.eye(4))
     arm, T_tool_object = cell.arm_holding(grasp), np.linalg.inv(grasp.T_object_tool)
     moments = along(path, pipes)
     for i, q in enumerate(moments):
         share = i / max(pipes - 1, 1)
         colour = "#" + "".join(f"{round(v):02X}" for v in (1 - share) * START + share * GOAL)
-        for shape in cell.pipe.shapes():
-            vertices, faces = placed_triangles(shape)
-            scene.add(transformed(arm.fk(q) @ T_tool_object, vertices), faces, colour)
+        scene.add(pipe.vertices_at(arm.fk(q) @ T_tool_object), pipe.faces, colour)
     poses = arm.link_poses(moments[round(arm_at * (pipes - 1))])
-    for link in cell.robot.links:
-        for shape in cell.robot.collisions(link):
-            vertices, faces = placed_triangles(shape)
-            scene.add(transformed(poses[link], vertices), faces, HAND if "gripper" in link or "finger" in link else ARM)
+    for link in bodies.links:
+        hand = "gripper" in link.name or "finger" in link.name
+        scene.add(link.vertices_at(poses[link.name]), link.faces, HAND if hand else ARM)
     return scene
 
 

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from ..bodies import stored_pose
+
 GRIP_TIME = 0.5  # Shown for closing and for opening the fingers [s].
 
 
@@ -35,19 +37,6 @@ class Segment:
     base: np.ndarray = field(default_factory=lambda: np.zeros(3))
     opening: float = 0.0
     after: float = 0.0  # of the motion's own clock, where the segment begins [s]
-
-
-def pose_matrix(pose: dict[str, Any]) -> np.ndarray:
-    """(4, 4) from {"xyz", "quat_xyzw"}."""
-    x, y, z, w = np.asarray(pose["quat_xyzw"], float) / np.linalg.norm(pose["quat_xyzw"])
-    T = np.eye(4)
-    T[:3, :3] = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ]
-    T[:3, 3] = pose["xyz"]
-    return T
 
 
 class Timeline:
@@ -81,7 +70,7 @@ class Timeline:
     def _add_pick(self, pick, base, parts, gone, clock, passing=None):
         name = pick["part"]
         grasp = parts[name]["grasps"][pick["grasp"]]
-        in_hand = (name, np.linalg.inv(pose_matrix(grasp["pose"])))
+        in_hand = (name, np.linalg.inv(stored_pose(grasp["pose"])))
         motions = pick["motions"]
         if passing is not None:
             held, end = float(passing["closed_at"]), float(passing["times"][-1])

@@ -7,18 +7,18 @@ from typing import Any
 
 import numpy as np
 
+from ..bodies import Body, stored_pose, stored_shape
 from .style import OBSTACLE, PART, ROUTE, STOP, TRAY_BODY, tray_colour
-from .timeline import pose_matrix
 
 SCALE = 120.0  # pixels a metre
 
 
 def footprint(shapes: list[dict[str, Any]], pose: dict[str, Any]) -> list[np.ndarray]:
     """Outlines (n, 2) of a body's shapes seen from above."""
-    T_body = pose_matrix(pose)
+    T_body = stored_pose(pose)
     outlines = []
     for shape in shapes:
-        T = T_body @ pose_matrix(shape["pose"])
+        T = T_body @ stored_pose(shape["pose"])
         kind = shape["type"]
         if kind == "box":
             half = np.asarray(shape["size"], float) / 2
@@ -34,9 +34,7 @@ def footprint(shapes: list[dict[str, Any]], pose: dict[str, Any]) -> list[np.nda
             T = T.copy()
             T[:3, :3] = np.eye(3)
         else:
-            from .scene import body_mesh
-
-            corners, _ = body_mesh([{**shape, "pose": {"xyz": [0, 0, 0], "quat_xyzw": [0, 0, 0, 1]}}])
+            corners = Body("", (stored_shape({**shape, "pose": {"xyz": [0, 0, 0]}}),), np.eye(4)).vertices
         outlines.append(convex_outline((corners @ T[:3, :3].T + T[:3, 3])[:, :2]))
     return outlines
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from .._core import quat_xyzw_from_rotation
 from .pictures import write_scene as write_png
-from .scene import PlanScene
-from .style import OBSTACLE, PART, ROBOT, ROBOT_ARM, STOP, TRAY_BODY, rgb, tray_colour
+from .scene import PlanScene, obstacle_colour
+from .style import PART, STOP, rgb, tray_colour
 
 __all__ = ["PlanViewer", "view", "write_png"]
 
@@ -48,13 +48,15 @@ class PlanViewer:
 
     def _add_scene(self) -> None:
         self.server.scene.add_grid("/floor", width=20, height=20, cell_size=0.5, section_size=1.0)
-        for name, T, (V, F) in self.scene.obstacles:
-            self._mesh(f"/scene/{name}", V, F, TRAY_BODY if name.startswith("tray ") else OBSTACLE, T)
-        for name, (T, (V, F)) in self.scene.parts.items():
-            self.parts[name] = self._mesh(f"/parts/{name}", V, F, PART, T)
-        for index, (name, V, F) in enumerate(self.scene.link_meshes):
-            colour = ROBOT_ARM if name in self.scene.arm_links else ROBOT
-            self.links.setdefault(name, []).append(self._mesh(f"/robot/{name}_{index}", V, F, colour))
+        bodies = self.scene.bodies
+        for body in bodies.obstacles:
+            self._mesh(f"/scene/{body.name}", body.vertices, body.faces, obstacle_colour(body.name), body.pose)
+        for part in bodies.parts.values():
+            self.parts[part.name] = self._mesh(f"/parts/{part.name}", part.vertices, part.faces, PART, part.pose)
+        for link in bodies.links:
+            if link.shapes:
+                colour = self.scene.link_colour(link.name)
+                self.links[link.name] = self._mesh(f"/robot/{link.name}", link.vertices, link.faces, colour)
 
     def _add_regions(self) -> None:
         grid = self.plan["grid"]
@@ -113,9 +115,8 @@ class PlanViewer:
         """Moves everything to where it is at this time [s]."""
         state = self.scene.timeline.state_at(when)
         poses = self.scene.robot_poses(state)
-        for name, handles in self.links.items():
-            for handle in handles:
-                handle.position, handle.wxyz = poses[name][:3, 3], _wxyz(poses[name])
+        for name, handle in self.links.items():
+            handle.position, handle.wxyz = poses[name][:3, 3], _wxyz(poses[name])
         for name, handle in self.parts.items():
             T = self.scene.part_pose(name, state, poses)
             handle.visible = T is not None

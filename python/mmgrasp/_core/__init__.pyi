@@ -8,7 +8,7 @@ import numpy
 import numpy.typing
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CandidateGrasp', 'CapabilityMap', 'Capsule', 'CarryPlace', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'CuboidFit', 'Cylinder', 'DepthImage', 'DistanceResult', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FingerJoint', 'FittedCuboid', 'Grasp', 'GraspReport', 'Graspability', 'Gripper', 'HeightMap', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeGrasp', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'ScoredGrasp', 'SearchTree', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'ToolCone', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'drive_arc', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'least_stops', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_stops', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CapabilityMap', 'Capsule', 'CarryPlace', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'CuboidFit', 'Cylinder', 'DepthImage', 'DistanceResult', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FittedCuboid', 'Grasp', 'GraspReport', 'Graspability', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'SearchTree', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'ToolCone', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'drive_arc', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'least_stops', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_stops', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -1228,84 +1228,292 @@ class CapabilityMap:
         """
         Edge of a voxel [m].
         """
-class FingerJoint:
+class ContactPairProvenance:
     """
-    A finger joint, linear in the opening.
+    Of sample_grasps: two opposed contacts and a direction of approach.
     """
-    def __init__(self, name: str, closed: typing.SupportsFloat | typing.SupportsIndex, open: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __repr__(self) -> str:
+        ...
+    @property
+    def approach(self) -> int:
+        """
+        Index among the approach directions around the closing axis.
+        """
+    @property
+    def flipped(self) -> bool:
+        """
+        The hand is turned by half a turn about the approach.
+        """
+    @property
+    def pair(self) -> int:
+        """
+        Index among the object's contact pairs, those that are too wide included.
+        """
+class PipeProvenance:
+    """
+    Of Pipe.grasp and Pipe.sample_grasps: P2's four variables (P2 3.2.3.1).
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def angle(self) -> float:
+        """
+        From the section's y axis to the approach about its x axis [rad].
+        """
+    @property
+    def flipped(self) -> bool:
+        """
+        The hand is turned by half a turn about the approach.
+        """
+    @property
+    def length(self) -> float:
+        """
+        From the section's first node to the tool frame [m].
+        """
+    @property
+    def section(self) -> int:
+        ...
+class HeightMapProvenance:
+    """
+    Of evaluate_graspability: a place of a height map and of a depth image.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def angle(self) -> float:
+        """
+        Direction of the closing axis in the map's frame, in [0, pi) [rad].
+        """
+    @property
+    def cell(self) -> tuple[int, int]:
+        ...
+    @property
+    def height(self) -> float:
+        """
+        Height of the finger tips above the map's frame [m].
+        """
+    @property
+    def pixel(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"]:
+        """
+        (u, v) in the depth image; (-1, -1) without one.
+        """
+class Grasp:
+    """
+    One way to hold an object: where the hand stands, how far it is open, what it costs and how good it is.
+    """
+    def __init__(self, T_object_hand: numpy.typing.ArrayLike, opening: typing.SupportsFloat | typing.SupportsIndex = 0.0, *, cost: typing.SupportsFloat | typing.SupportsIndex = 0.0, quality: typing.SupportsFloat | typing.SupportsIndex = 1.0, posture: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = []) -> None:
+        """
+        Pose of the hand's tool frame in the object's frame (4, 4); distance between the fingers while holding [m]; cost that
+        planners add to their path's length; quality in [0, 1]; for a hand with several joint groups how far each is open, in [0, 1].
+        """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict:
+        ...
+    @property
+    def T_object_hand(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Pose of the hand's tool frame in the object's frame; in the world where no object is known.
+        """
+    @property
+    def cost(self) -> float:
+        """
+        Added by planners to their path's length.
+        """
+    @property
+    def opening(self) -> float:
+        """
+        Distance between the fingers while holding [m].
+        """
+    @property
+    def parts(self) -> dict[str, tuple[float, float]]:
+        """
+        Parts of the quality by name: (value, weight); each is a factor 1 - weight + weight * value.
+        """
+    @property
+    def posture(self) -> list[float]:
+        """
+        How far each joint group of the hand is open; []: as `opening` says.
+        """
+    @property
+    def provenance(self) -> None | ContactPairProvenance | PipeProvenance | HeightMapProvenance:
+        """
+        Which sampler it came from, with which numbers; None: it was given.
+        """
+    @property
+    def quality(self) -> float:
+        """
+        Larger is better, in [0, 1].
+        """
+class HandJoint:
+    """
+    A driven joint of a hand: how far it goes between closed and open [rad] or [m]. Joints of one group move together.
+    """
+    def __init__(self, name: str, closed: typing.SupportsFloat | typing.SupportsIndex, open: typing.SupportsFloat | typing.SupportsIndex, group: str = 'fingers') -> None:
         ...
     def __repr__(self) -> str:
         ...
     @property
     def closed(self) -> float:
+        """
+        Value while the fingers are closed.
+        """
+    @property
+    def group(self) -> str:
         ...
     @property
     def name(self) -> str:
         ...
     @property
     def open(self) -> float:
-        ...
-class Gripper:
+        """
+        Value while they are open.
+        """
+class HandBody:
     """
-    A parallel-jaw gripper; the tool centre point lies midway between the pads' centres.
+    Boxes around the fingers and the palm of a hand [m].
     """
-    def __init__(self, tcp_link: str, *, approach: numpy.typing.ArrayLike, closing: numpy.typing.ArrayLike, max_opening: typing.SupportsFloat | typing.SupportsIndex, finger_depth: typing.SupportsFloat | typing.SupportsIndex, finger_width: typing.SupportsFloat | typing.SupportsIndex, clearance: typing.SupportsFloat | typing.SupportsIndex = 0.01, joints: collections.abc.Sequence[FingerJoint] = [], finger_links: collections.abc.Sequence[str] = []) -> None:
+    def __init__(self, *, finger_thickness: typing.SupportsFloat | typing.SupportsIndex = 0.012, finger_length: typing.SupportsFloat | typing.SupportsIndex = 0.12, palm_length: typing.SupportsFloat | typing.SupportsIndex = 0.13, palm_width: typing.SupportsFloat | typing.SupportsIndex = 0.065) -> None:
         ...
     def __repr__(self) -> str:
         ...
+    @property
+    def finger_length(self) -> float:
+        """
+        From the finger tips back to the palm.
+        """
+    @property
+    def finger_thickness(self) -> float:
+        """
+        Of a finger along the closing axis.
+        """
+    @property
+    def palm_length(self) -> float:
+        """
+        Of the palm along the closing axis.
+        """
+    @property
+    def palm_width(self) -> float:
+        """
+        Of the palm across it.
+        """
+class Hand:
+    """
+    The hand at the end of an arm: tool frame, approach and closing axis, and how its joints follow from the opening.
+    The tool frame's origin (tool centre point) lies midway between the pads' centres; a parallel gripper has one group
+    of joints, linear in the opening.
+    """
+    @staticmethod
+    def from_robot(robot: Robot, tool_link: str, *, group: str = '', approach: numpy.typing.ArrayLike | None = None, closing: numpy.typing.ArrayLike | None = None, clearance: typing.SupportsFloat | typing.SupportsIndex = 0.01, postures: typing.SupportsInt | typing.SupportsIndex = 32) -> Hand:
+        """
+        A hand read from a robot that was loaded with its meshes: axes, ends of the joints, openings and body are measured
+        by forward kinematics between the collision shapes of the finger tips. `group` is an SRDF end effector or group; ''
+        takes every joint below the tool link's body.
+        """
+    def __init__(self, tool_link: str, *, approach: numpy.typing.ArrayLike, closing: numpy.typing.ArrayLike, max_opening: typing.SupportsFloat | typing.SupportsIndex, finger_depth: typing.SupportsFloat | typing.SupportsIndex, finger_width: typing.SupportsFloat | typing.SupportsIndex, clearance: typing.SupportsFloat | typing.SupportsIndex = 0.01, joints: collections.abc.Sequence[HandJoint] = [], finger_links: collections.abc.Sequence[str] = [], kind: str = 'parallel', min_opening: typing.SupportsFloat | typing.SupportsIndex = 0.0, openings: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [], preshape: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}, body: HandBody | None = None) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @typing.overload
     def joint_values(self, opening: typing.SupportsFloat | typing.SupportsIndex) -> dict[str, float]:
         """
-        Finger joint values at an opening [m].
+        Joint values at an opening [m].
+        """
+    @typing.overload
+    def joint_values(self, grasp: Grasp) -> dict[str, float]:
+        """
+        Joint values while holding: those of the grasp's posture if it has one, else of its opening.
+        """
+    def opening_at(self, share_open: typing.SupportsFloat | typing.SupportsIndex) -> float:
+        """
+        The opening at which they are so far open [m].
+        """
+    def posture_values(self, posture: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]) -> dict[str, float]:
+        """
+        Joint values of a posture: for each of `groups` how far it is open, in [0, 1].
         """
     def pregrasp_opening(self, width: typing.SupportsFloat | typing.SupportsIndex) -> float:
-        ...
+        """
+        Opening while moving in on a part of this width: with clearance on both sides, at most max_opening [m].
+        """
+    def shapes(self, opening: typing.SupportsFloat | typing.SupportsIndex) -> list[LinkShape]:
+        """
+        Left and right finger and palm as boxes in the tool frame.
+        """
+    def share_open(self, opening: typing.SupportsFloat | typing.SupportsIndex) -> float:
+        """
+        How far open the fingers are at an opening, in [0, 1].
+        """
     @property
     def approach(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        Unit axis of the tool frame along which the hand moves in.
+        """
+    @property
+    def body(self) -> HandBody:
         ...
     @property
     def clearance(self) -> float:
-        ...
+        """
+        Kept free on each side of the part while moving in [m].
+        """
     @property
     def closing(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
-        ...
+        """
+        Unit axis of the tool frame along which the pads close.
+        """
     @property
     def finger_depth(self) -> float:
-        ...
+        """
+        Pad length along the approach axis [m].
+        """
     @property
     def finger_links(self) -> list[str]:
-        ...
+        """
+        Links that may touch the held part.
+        """
     @property
     def finger_width(self) -> float:
+        """
+        Pad size across approach and closing [m].
+        """
+    @property
+    def groups(self) -> list[str]:
+        """
+        Names of the joint groups.
+        """
+    @property
+    def joints(self) -> list[HandJoint]:
         ...
     @property
-    def joints(self) -> list[FingerJoint]:
-        ...
+    def kind(self) -> str:
+        """
+        'parallel', 'angular' or 'adaptive'.
+        """
     @property
     def max_opening(self) -> float:
-        ...
-    @property
-    def tcp_link(self) -> str:
-        ...
-class Grasp:
-    """
-    One way to hold an object.
-    """
-    def __init__(self, T_object_tcp: numpy.typing.ArrayLike, width: typing.SupportsFloat | typing.SupportsIndex, quality: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> None:
-        ...
-    def __repr__(self) -> str:
-        ...
-    def to_dict(self) -> dict:
-        ...
-    @property
-    def T_object_tcp(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
-    @property
-    def quality(self) -> float:
-        ...
-    @property
-    def width(self) -> float:
         """
-        Opening of the fingers while holding [m].
+        Widest part that fits [m].
+        """
+    @property
+    def min_opening(self) -> float:
+        """
+        Thinnest part that is held [m].
+        """
+    @property
+    def openings(self) -> list[float]:
+        """
+        Openings at equal steps of the joints [m]; empty: linear in them.
+        """
+    @property
+    def preshape(self) -> dict[str, float]:
+        """
+        Groups that the opening does not move, and how far open they stay.
+        """
+    @property
+    def tool_link(self) -> str:
+        """
+        Link whose frame is the tool frame.
         """
 class ToolRegion:
     """
@@ -1524,34 +1732,13 @@ class Roadmap:
         """
         (n, joints)
         """
-class CandidateGrasp:
-    """
-    One way to hold the object while it is carried.
-    """
-    def __init__(self, T_object_tool: numpy.typing.ArrayLike, opening: typing.SupportsFloat | typing.SupportsIndex = 0.0, cost: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> None:
-        """
-        Pose of the group's tip in the object's frame (4, 4); opening of the fingers while holding [m], used when the problem has a gripper; cost added to the path's length.
-        """
-    def __repr__(self) -> str:
-        ...
-    def to_dict(self) -> dict:
-        ...
-    @property
-    def T_object_tool(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
-    @property
-    def cost(self) -> float:
-        ...
-    @property
-    def opening(self) -> float:
-        ...
 class ManipulationProblem:
     """
-    Carry an object from one pose to another with any of many grasps (P2 4.2).
+    TransferPath an object from one pose to another with any of many grasps (P2 4.2).
     """
-    def __init__(self, group: JointGroup, world: World, object: typing.Any, T_world_start: numpy.typing.ArrayLike, T_world_goal: numpy.typing.ArrayLike, grasps: typing.Any, *, gripper: Gripper | None = None, touch_links: collections.abc.Sequence[str] = [], object_name: str = 'object', **kwargs) -> None:
+    def __init__(self, group: JointGroup, world: World, object: typing.Any, T_world_start: numpy.typing.ArrayLike, T_world_goal: numpy.typing.ArrayLike, grasps: typing.Any, *, gripper: Hand | None = None, touch_links: collections.abc.Sequence[str] = [], object_name: str = 'object', **kwargs) -> None:
         """
-        `object` is a LinkShape or a list of them, in its own frame; `world` is without it. `grasps` are CandidateGrasp, or poses of the tool in the object's frame as (m, 4, 4). With `gripper` the fingers are set to each grasp's opening. Links in `touch_links` may touch the object; none given: those of the end effector. The group may be an arm or an arm on an omni base; a diff_drive base is refused, since it could not drive the paths.
+        `object` is a LinkShape or a list of them, in its own frame; `world` is without it. `grasps` are Grasp, or poses of the hand in the object's frame as (m, 4, 4). With `gripper` the fingers are set to each grasp's opening. Links in `touch_links` may touch the object; none given: those of the end effector. The group may be an arm or an arm on an omni base; a diff_drive base is refused, since it could not drive the paths.
         """
     def __repr__(self) -> str:
         ...
@@ -1562,7 +1749,7 @@ class ManipulationProblem:
     def T_world_start(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
-    def grasps(self) -> list[CandidateGrasp]:
+    def grasps(self) -> list[Grasp]:
         ...
     @property
     def group(self) -> JointGroup:
@@ -1972,7 +2159,7 @@ class PartSupplyProblem:
     """
     Everything the part-supply planner needs.
     """
-    def __init__(self, robot: Robot, arm: JointGroup, gripper: Gripper, scene: World, trays: collections.abc.Sequence[Tray], home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, carry: CarryPlace, **kwargs) -> None:
+    def __init__(self, robot: Robot, arm: JointGroup, gripper: Hand, scene: World, trays: collections.abc.Sequence[Tray], home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, carry: CarryPlace, **kwargs) -> None:
         """
         Keyword options:
             grid_resolution = 0.05: cell edge of the base grid [m]
@@ -1997,7 +2184,7 @@ class PartSupplyProblem:
     def goal(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         ...
     @property
-    def gripper(self) -> Gripper:
+    def gripper(self) -> Hand:
         ...
     @property
     def home(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
@@ -2884,48 +3071,6 @@ class CuboidFit:
         """
         plane_normal . x = plane_offset [m]
         """
-class ScoredGrasp:
-    """
-    A way to grasp something that a depth image shows.
-    """
-    def __repr__(self) -> str:
-        ...
-    @property
-    def T_world_tcp(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
-    @property
-    def angle(self) -> float:
-        """
-        Of the closing axis in the map's frame, in [0, pi) [rad].
-        """
-    @property
-    def cell(self) -> tuple[int, int]:
-        ...
-    @property
-    def height(self) -> float:
-        """
-        Of the fingertips above the map's frame [m].
-        """
-    @property
-    def opening(self) -> float:
-        """
-        Of the fingers while moving in [m].
-        """
-    @property
-    def pixel(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[2, 1]"]:
-        """
-        (u, v) in the depth image; (-1, -1) without one.
-        """
-    @property
-    def score(self) -> float:
-        """
-        In (0, 1].
-        """
-    @property
-    def width(self) -> float:
-        """
-        Of the part between the fingers [m].
-        """
 class Graspability:
     """
     Grasps, best first, and what became of the other places looked at.
@@ -2936,7 +3081,7 @@ class Graspability:
     def counts(self) -> dict:
         ...
     @property
-    def grasps(self) -> list[ScoredGrasp]:
+    def grasps(self) -> list[Grasp]:
         ...
 class RestingPose:
     """
@@ -2983,45 +3128,6 @@ class RandomPlacement:
     @property
     def parts(self) -> list[PlacedPart]:
         ...
-class PipeGrasp:
-    """
-    A parallel-jaw grasp of a pipe by P2's four variables (P2 3.2.3.1).
-    """
-    def __repr__(self) -> str:
-        ...
-    def to_dict(self) -> dict:
-        ...
-    @property
-    def T_object_tool(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
-    @property
-    def angle(self) -> float:
-        """
-        Of the approach about the section, from its y axis [rad].
-        """
-    @property
-    def cost(self) -> float:
-        """
-        What a planner adds to its path's length.
-        """
-    @property
-    def flipped(self) -> bool:
-        """
-        By half a turn about the approach.
-        """
-    @property
-    def length(self) -> float:
-        """
-        Of the tool from the section's first node [m].
-        """
-    @property
-    def opening(self) -> float:
-        """
-        Of the fingers while holding [m].
-        """
-    @property
-    def section(self) -> int:
-        ...
 class Pipe:
     """
     A pipe structure: straight round sections between nodes in the object's frame (P2 3.2.2).
@@ -3032,11 +3138,11 @@ class Pipe:
         """
     def __repr__(self) -> str:
         ...
-    def grasp(self, section: typing.SupportsInt | typing.SupportsIndex, length: typing.SupportsFloat | typing.SupportsIndex, angle: typing.SupportsFloat | typing.SupportsIndex, flipped: bool = False, *, gripper: Gripper | None = None, **kwargs) -> PipeGrasp:
+    def grasp(self, section: typing.SupportsInt | typing.SupportsIndex, length: typing.SupportsFloat | typing.SupportsIndex, angle: typing.SupportsFloat | typing.SupportsIndex, flipped: bool = False, *, gripper: Hand | None = None, **kwargs) -> Grasp:
         """
         The grasp with these four variables (P2 3.2.3.1).
         """
-    def sample_grasps(self, count: typing.SupportsInt | typing.SupportsIndex, *, gripper: Gripper | None = None, **kwargs) -> list[PipeGrasp]:
+    def sample_grasps(self, count: typing.SupportsInt | typing.SupportsIndex, *, gripper: Hand | None = None, **kwargs) -> list[Grasp]:
         """
         Grasps drawn over the whole pipe, at most `count`, none nearer to another than the spacings. Axes are the gripper's,
         or approach x and closing y; so are opening and margin where no keyword gives them.
@@ -3113,7 +3219,7 @@ def _reach_option_table() -> dict:
     ...
 def _roadmap_option_table() -> dict:
     ...
-def _sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Gripper, **kwargs) -> tuple[list[Grasp], int]:
+def _sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, **kwargs) -> tuple[list[Grasp], int]:
     """
     (grasps, too_wide): as sample_grasps, with the number dropped as too wide.
     """
@@ -3158,18 +3264,14 @@ def drive_arc(pose: numpy.typing.ArrayLike, platform_velocity: numpy.typing.Arra
     """
     Base pose (x, y, theta) after `time` [s] at a constant platform velocity (v_x, v_y, omega): the exact arc.
     """
-def evaluate_graspability(map: HeightMap, gripper: Gripper, *, image: DepthImage | None = None, **kwargs) -> Graspability:
+def evaluate_graspability(map: HeightMap, gripper: Hand, *, image: DepthImage | None = None, **kwargs) -> Graspability:
     """
     Fast graspability evaluation (P1 3.7.2): contact and collision masks of the hand convolved with a height map over
     closing directions, openings and heights; grasps at the local maxima, straight along -z of the map. With the
     `image` that the map was made of each grasp gets its pixel.
     
     Keyword options:
-        finger_thickness = 0.012: of a finger along the closing axis [m]
-        finger_length = 0.12: from the fingertip back to the palm [m]
-        palm_length = 0.13: of the palm along the closing axis [m]
-        palm_width = 0.065: of the palm across it [m]
-        margin = 0.001: air kept around the hand [m]
+        margin = 0.001: kept free around the hand [m]
         orientations = 16: closing directions over half a turn
         openings = 2: openings tried: max_opening and equal parts of it
         layer_step = 0.01: between the heights at which fingertips are tried [m]
@@ -3201,11 +3303,11 @@ def fit_cuboids(points: typing.Any, *, T_world_tray: typing.Any = None, tray_siz
         min_points = 60: smaller clusters are left out
         plane_iterations = 1000: random planes tried
     """
-def graspability_map(map: HeightMap, gripper: Gripper, angle: typing.SupportsFloat | typing.SupportsIndex, opening: typing.SupportsFloat | typing.SupportsIndex, tip_height: typing.SupportsFloat | typing.SupportsIndex, **kwargs) -> numpy.typing.NDArray[numpy.float32]:
+def graspability_map(map: HeightMap, gripper: Hand, angle: typing.SupportsFloat | typing.SupportsIndex, opening: typing.SupportsFloat | typing.SupportsIndex, tip_height: typing.SupportsFloat | typing.SupportsIndex, **kwargs) -> numpy.typing.NDArray[numpy.float32]:
     """
     (ny, nx) smoothed graspability in [0, 1] of one closing direction, opening and height of the fingertips.
     """
-def hand_masks(gripper: Gripper, opening: typing.SupportsFloat | typing.SupportsIndex, angle: typing.SupportsFloat | typing.SupportsIndex, resolution: typing.SupportsFloat | typing.SupportsIndex, **kwargs) -> dict:
+def hand_masks(gripper: Hand, opening: typing.SupportsFloat | typing.SupportsIndex, angle: typing.SupportsFloat | typing.SupportsIndex, resolution: typing.SupportsFloat | typing.SupportsIndex, **kwargs) -> dict:
     """
     The masks `contact`, `fingers` and `palm` as images of zeros and ones with the hand in the middle.
     """
@@ -3425,9 +3527,10 @@ def pose_to_xyz_rpy(T: numpy.typing.ArrayLike) -> tuple[typing.Annotated[numpy.t
     """
     Position (3,) and roll-pitch-yaw (3,) of a (4, 4) pose.
     """
-def push_grasp(**kwargs) -> PushGrasp:
+def push_grasp(*, hand: Hand | None = None, **kwargs) -> PushGrasp:
     """
-    When a gripper that moves on may begin to close, and what error of the object's position it forgives (P1 4.3).
+    When a hand that moves on may begin to close, and what error of the object's position it forgives (P1 4.3).
+    Lengths are those of `hand` where no keyword gives them.
     
     Keyword options:
         opening = 0.1: between the fingers before they close [m]
@@ -3491,7 +3594,7 @@ def run_policy(grid: BaseGrid, cells: collections.abc.Sequence, order: collectio
     """
     Plans the stops of every round for all parts, the `remaining` or the `targets` and holds them against the parts' bitmaps `cells` [tray][part]. `planned(round)` gives other regions to plan with, one a tray: what they cost counts as time between the rounds.
     """
-def sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Gripper, **kwargs) -> list[Grasp]:
+def sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, **kwargs) -> list[Grasp]:
     """
     Antipodal grasps of a body given as a list of LinkShape (P1 3.4.1), best first.
     
@@ -3501,7 +3604,7 @@ def sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Gripper,
         mesh_samples = 400: surface points tried on a mesh
         max_grasps = 200: best kept, spread over approach directions
         friction = 0.5: Coulomb coefficient
-        standoff = 0.0: how far the tool centre point stays outside the object's middle [m]
+        standoff = 0.0: how far the tool frame stays outside the object's middle [m]
         seed = 1: same seed, same grasps
     """
 def self_distance_objective(checker: CollisionChecker, margin: typing.SupportsFloat | typing.SupportsIndex = 0.05, weight: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> IkObjective:

@@ -1272,7 +1272,9 @@ class PipeProvenance:
         """
     @property
     def section(self) -> int:
-        ...
+        """
+        Index of the pipe's section.
+        """
 class HeightMapProvenance:
     """
     Of evaluate_graspability: a place of a height map and of a depth image.
@@ -1286,7 +1288,9 @@ class HeightMapProvenance:
         """
     @property
     def cell(self) -> tuple[int, int]:
-        ...
+        """
+        (ix, iy) of the height map.
+        """
     @property
     def height(self) -> float:
         """
@@ -1309,7 +1313,9 @@ class Grasp:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict:
-        ...
+        """
+        All of it as numbers, strings, lists and dicts; parts by their values.
+        """
     @property
     def T_object_hand(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -1360,10 +1366,14 @@ class HandJoint:
         """
     @property
     def group(self) -> str:
-        ...
+        """
+        Joints of one group move together.
+        """
     @property
     def name(self) -> str:
-        ...
+        """
+        The robot's joint.
+        """
     @property
     def open(self) -> float:
         """
@@ -1411,7 +1421,9 @@ class Hand:
         takes every joint below the tool link's body.
         """
     def __init__(self, tool_link: str, *, approach: numpy.typing.ArrayLike, closing: numpy.typing.ArrayLike, max_opening: typing.SupportsFloat | typing.SupportsIndex, finger_depth: typing.SupportsFloat | typing.SupportsIndex, finger_width: typing.SupportsFloat | typing.SupportsIndex, clearance: typing.SupportsFloat | typing.SupportsIndex = 0.01, joints: collections.abc.Sequence[HandJoint] = [], finger_links: collections.abc.Sequence[str] = [], kind: str = 'parallel', min_opening: typing.SupportsFloat | typing.SupportsIndex = 0.0, openings: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [], preshape: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex] = {}, body: HandBody | None = None) -> None:
-        ...
+        """
+        A hand by its numbers, each described at the property of its name; `body` None: fingers of 12 cm before a palm of 13 x 6.5 cm.
+        """
     def __repr__(self) -> str:
         ...
     @typing.overload
@@ -1451,7 +1463,9 @@ class Hand:
         """
     @property
     def body(self) -> HandBody:
-        ...
+        """
+        Boxes around fingers and palm.
+        """
     @property
     def clearance(self) -> float:
         """
@@ -1484,7 +1498,9 @@ class Hand:
         """
     @property
     def joints(self) -> list[HandJoint]:
-        ...
+        """
+        The driven joints with their values closed and open.
+        """
     @property
     def kind(self) -> str:
         """

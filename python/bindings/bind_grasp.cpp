@@ -48,7 +48,7 @@ void bind_provenance(py::module_& m) {
       .def_readonly("flipped", &C::flipped, "The hand is turned by half a turn about the approach.")
       .def("__repr__", [](const C& p) { return "ContactPairProvenance(pair=" + std::to_string(p.pair) + ")"; });
   py::class_<P>(m, "PipeProvenance", "Of Pipe.grasp and Pipe.sample_grasps: P2's four variables (P2 3.2.3.1).")
-      .def_readonly("section", &P::section)
+      .def_readonly("section", &P::section, "Index of the pipe's section.")
       .def_readonly("length", &P::length, "From the section's first node to the tool frame [m].")
       .def_readonly("angle", &P::angle, "From the section's y axis to the approach about its x axis [rad].")
       .def_readonly("flipped", &P::flipped, "The hand is turned by half a turn about the approach.")
@@ -61,7 +61,8 @@ void bind_provenance(py::module_& m) {
   py::class_<H>(m, "HeightMapProvenance", "Of evaluate_graspability: a place of a height map and of a depth image.")
       .def_readonly("angle", &H::angle, "Direction of the closing axis in the map's frame, in [0, pi) [rad].")
       .def_readonly("height", &H::height, "Height of the finger tips above the map's frame [m].")
-      .def_property_readonly("cell", [](const H& p) { return py::make_tuple(p.ix, p.iy); })
+      .def_property_readonly(
+          "cell", [](const H& p) { return py::make_tuple(p.ix, p.iy); }, "(ix, iy) of the height map.")
       .def_readonly("pixel", &H::pixel, "(u, v) in the depth image; (-1, -1) without one.")
       .def("__repr__", [](const H& p) {
         return "HeightMapProvenance(cell=(" + std::to_string(p.ix) + ", " + std::to_string(p.iy) + "))";
@@ -107,14 +108,16 @@ void bind_record(py::module_& m) {
       .def_property_readonly(
           "provenance", [](const Grasp& g) { return g.provenance; },
           "Which sampler it came from, with which numbers; None: it was given.")
-      .def("to_dict",
-           [](const Grasp& g) {
-             py::dict parts;
-             for (const QualityPart& part : g.parts) parts[py::str(part.name)] = part.value;
-             return py::dict("T_object_hand"_a = to_array(g.T_object_hand).attr("tolist")(), "opening"_a = g.opening,
-                             "cost"_a = g.cost, "quality"_a = g.quality, "parts"_a = parts, "posture"_a = g.posture,
-                             "provenance"_a = provenance_dict(g.provenance));
-           })
+      .def(
+          "to_dict",
+          [](const Grasp& g) {
+            py::dict parts;
+            for (const QualityPart& part : g.parts) parts[py::str(part.name)] = part.value;
+            return py::dict("T_object_hand"_a = to_array(g.T_object_hand).attr("tolist")(), "opening"_a = g.opening,
+                            "cost"_a = g.cost, "quality"_a = g.quality, "parts"_a = parts, "posture"_a = g.posture,
+                            "provenance"_a = provenance_dict(g.provenance));
+          },
+          "All of it as numbers, strings, lists and dicts; parts by their values.")
       .def("__repr__", [](const Grasp& g) {
         return "Grasp(at " + text(g.T_object_hand.translation()) +
                ", opening=" + std::string(py::repr(py::float_(g.opening))) +

@@ -26,10 +26,10 @@ void bind_hand_joint(py::module_& m) {
              return HandJoint{std::move(name), closed, open, std::move(group)};
            }),
            py::arg("name"), py::arg("closed"), py::arg("open"), py::arg("group") = HandJoint{}.group)
-      .def_readonly("name", &HandJoint::name)
+      .def_readonly("name", &HandJoint::name, "The robot's joint.")
       .def_readonly("closed", &HandJoint::closed, "Value while the fingers are closed.")
       .def_readonly("open", &HandJoint::open, "Value while they are open.")
-      .def_readonly("group", &HandJoint::group)
+      .def_readonly("group", &HandJoint::group, "Joints of one group move together.")
       .def("__repr__", [](const HandJoint& j) { return "HandJoint('" + j.name + "')"; });
 }
 
@@ -104,7 +104,10 @@ void bind_hand(py::module_& m) {
            py::arg("finger_depth"), py::arg("finger_width"), py::arg("clearance") = own.clearance,
            py::arg("joints") = std::vector<HandJoint>{}, py::arg("finger_links") = Names{},
            py::arg("kind") = to_string(own.kind), py::arg("min_opening") = own.min_opening,
-           py::arg("openings") = std::vector<double>{}, py::arg("preshape") = Shares{}, py::arg("body") = py::none())
+           py::arg("openings") = std::vector<double>{}, py::arg("preshape") = Shares{}, py::arg("body") = py::none(),
+           "A hand by its numbers, each described at the property of its name; `body` None: fingers of 12 cm before a "
+           "palm "
+           "of 13 x 6.5 cm.")
       .def_static(
           "from_robot", &read_hand, py::arg("robot"), py::arg("tool_link"), py::kw_only(), py::arg("group") = "",
           py::arg("approach") = py::none(), py::arg("closing") = py::none(), py::arg("clearance") = reading.clearance,
@@ -122,11 +125,11 @@ void bind_hand(py::module_& m) {
       .def_readonly("finger_depth", &Hand::finger_depth, "Pad length along the approach axis [m].")
       .def_readonly("finger_width", &Hand::finger_width, "Pad size across approach and closing [m].")
       .def_readonly("clearance", &Hand::clearance, "Kept free on each side of the part while moving in [m].")
-      .def_readonly("joints", &Hand::joints)
+      .def_readonly("joints", &Hand::joints, "The driven joints with their values closed and open.")
       .def_readonly("openings", &Hand::openings, "Openings at equal steps of the joints [m]; empty: linear in them.")
       .def_readonly("preshape", &Hand::preshape, "Groups that the opening does not move, and how far open they stay.")
       .def_readonly("finger_links", &Hand::finger_links, "Links that may touch the held part.")
-      .def_readonly("body", &Hand::body)
+      .def_readonly("body", &Hand::body, "Boxes around fingers and palm.")
       .def_property_readonly("groups", &Hand::groups, "Names of the joint groups.")
       .def("joint_values", py::overload_cast<double>(&Hand::joint_values, py::const_), py::arg("opening"),
            "Joint values at an opening [m].")

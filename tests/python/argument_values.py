@@ -9,6 +9,7 @@ import numpy as np
 
 import mmgrasp as mg
 from conftest import REPOSITORY
+from mmgrasp.problems.pipe_cells import pipe_robot
 
 CORPUS = REPOSITORY / "tests" / "fuzz" / "corpus"
 URDF = """<robot name="r"><link name="o"/>
@@ -202,6 +203,8 @@ OTHERS: dict[str, Any] = {
     "parent_link": lambda: "tip",
     "tool_link": lambda: "tip",
     "Hand.kind": lambda: "parallel",
+    "Hand.from_robot.robot": lambda: pipe_robot("tm14like")[0],
+    "Hand.from_robot.tool_link": lambda: "gripper_tcp",
     "link": lambda: "tip",
     "headings": lambda: [0.0],
     "distances": lambda: [0.5, 1.0],

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -118,7 +120,13 @@ def test_quality_is_the_product_of_its_parts() -> None:
 
 def test_a_push_grasp_takes_its_lengths_from_the_hand() -> None:
     _, _, gripper = pipe_robot("tm14like")
-    given = {"opening": 0.06, "finger_length": 0.12, "grip_depth": 0.015, "planned_depth": 0.06, "clearance": 0.008}
+    given: Any = {
+        "opening": 0.06,
+        "finger_length": 0.12,
+        "grip_depth": 0.015,
+        "planned_depth": 0.06,
+        "clearance": 0.008,
+    }
     found = mg.grasping.push_grasp(hand=gripper, object_width=0.03, tool_speed=0.2)
     assert found.to_dict() == mg.grasping.push_grasp(object_width=0.03, tool_speed=0.2, **given).to_dict()
     narrow = mg.grasping.push_grasp(hand=gripper, object_width=0.03, opening=0.05)

@@ -210,10 +210,10 @@ def _read_gripper(node: Node, robot: Robot, tcp: str) -> Hand:
         )
     for link in node["finger_links"].elements():
         _link(robot, link)
-    sizes = {key: node[key].number(above=0) for key in ("max_opening", "finger_depth", "finger_width")}
+    sizes: dict[str, Any] = {key: node[key].number(above=0) for key in ("max_opening", "finger_depth", "finger_width")}
     if "clearance" in node:
         sizes["clearance"] = node["clearance"].number(least=0)
-    axes = {}
+    axes: dict[str, Any] = {}
     for key in ("approach", "closing"):
         axis = np.array(node[key].numbers(3))
         if abs(np.linalg.norm(axis) - 1) > 1e-6:

@@ -301,6 +301,11 @@ TEST(HandFromRobot, WhatIsNoHandIsRefused) {
   HandReading reading;
   reading.group = "hand";
   EXPECT_THROW(Hand::from_robot(robot, "tool", reading), InvalidInput) << "no SRDF, no such group";
+  reading.group = "";
+  reading.closing = Eigen::Vector3d(2, 0, 0);
+  EXPECT_THROW(Hand::from_robot(robot, "tool", reading), InvalidInput) << "no unit vector";
+  reading.closing = Eigen::Vector3d::UnitY();
+  EXPECT_THROW(Hand::from_robot(robot, "tool", reading), InvalidInput) << "its fingers close along x";
   EXPECT_THROW(Hand::from_robot(hand_robot(urdf, folder, "base_link", along_z(0.5)), "tool"), InvalidInput)
       << "the tool frame lies beyond the tips";
   RobotOptions bare;

@@ -272,6 +272,8 @@ class Reader {
 }  // namespace
 
 void HandReading::check() const {
+  for (const auto& [name, axis] : {std::pair("approach", approach), std::pair("closing", closing)})
+    require(!axis || std::abs(axis->norm() - 1) <= 1e-6, name, axis ? axis->norm() : 1, "must be a unit vector");
   require(std::isfinite(clearance) && clearance >= 0, "clearance", clearance, "must be zero or positive [m]");
   require(postures >= 2 && postures <= 1000, "postures", postures, "must be from 2 to 1000");
 }

@@ -74,7 +74,7 @@ class PickCheck {
     }
     if (!good) {
       fault("motion-order", context_.pick_name(index_),
-            "motions are [" + found + "], must be [reach, approach, lift, carry, retreat]");
+            "motions are [" + found + "], must be [transit, approach, lift, transfer, retreat]");
     }
     return good;
   }

@@ -110,7 +110,7 @@ class MMGRASP_EXPORT Robot {
   /// mounting pair.
   Robot mount(const Robot& other, const std::string& parent_link, const Pose& T_parent_other,
               const std::string& prefix = "") const;
-  /// Adds a fixed link (a tool centre point, a carry bin): with or without shapes.
+  /// Adds a fixed link (a tool centre point, a bin): with or without shapes.
   Robot with_link(const std::string& name, const std::string& parent_link, const Pose& T_parent_link,
                   const std::vector<LinkShape>& collisions = {}) const;
 

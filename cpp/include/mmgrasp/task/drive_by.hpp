@@ -84,7 +84,7 @@ struct MMGRASP_EXPORT DriveByResult {
   std::vector<DriveByEvent> events;                       ///< One per task.
   std::vector<Violation> violations;                      ///< The trajectory's, one per kind.
   int grasp_assignments = 0;                              ///< Grasp assignments planned.
-  int seeds = 0;                                          ///< Solves, each from a seed of its own.
+  int solves = 0;                                         ///< Solves, each from a seed of its own.
   int iterations = 0;                                     ///< Iterations of all solves.
   double seconds = 0;                                     ///< Wall-clock time [s].
   std::string report;                                     ///< What was tried, and what is broken where, by how much.

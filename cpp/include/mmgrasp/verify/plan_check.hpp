@@ -40,7 +40,7 @@ struct MMGRASP_EXPORT CheckedFinger {
 };
 
 struct MMGRASP_EXPORT CheckedMotion {
-  std::string kind;  ///< reach, approach, lift, carry, retreat
+  std::string kind;  ///< transit, approach, lift, transfer, retreat
   double opening = 0;
   bool holding = false;
   std::vector<double> times;

@@ -155,7 +155,7 @@ class DriveBy {
     const WholeBodyResult r = solver_->solve(sequence, settings, waypoints);
     ++result.solves;
     result.iterations += r.iterations;
-    result.report += "attempt " + std::to_string(result.solves) + ", candidates " + name(assignment) + ": " +
+    result.report += "solve " + std::to_string(result.solves) + ", candidates " + name(assignment) + ": " +
                      detail::describe(r) + (r.usable() ? ", " + detail::number(r.trajectory->duration()) + " s" : "") +
                      "\n";
     const bool better = r.usable() ? !result.usable() || r.trajectory->duration() < result.duration()
@@ -186,10 +186,10 @@ class DriveBy {
 
 void DriveByOptions::check() const {
   require(waypoints >= 2, "waypoints", waypoints, "must be at least 2");
-  require(attempts > 0, "seeds", attempts, "must be positive");
+  require(seeds > 0, "seeds", seeds, "must be positive");
   require(solutions > 0, "solutions", solutions, "must be positive");
-  require(choices > 0, "grasp_assignments", choices, "must be positive");
-  require(stands > 0, "goal_configurations", stands, "must be positive");
+  require(grasp_assignments > 0, "grasp_assignments", grasp_assignments, "must be positive");
+  require(goal_configurations > 0, "goal_configurations", goal_configurations, "must be positive");
   require(iterations > 0, "iterations", iterations, "must be positive");
   require(time_limit > 0, "time_limit", time_limit, "must be positive");
   require(jerk_time >= 0 && std::isfinite(jerk_time), "jerk_time", jerk_time, "must be at least 0");

@@ -11,7 +11,7 @@ namespace {
 std::string motion_advice(const std::string& stage) {
   if (stage == "approach") return "shorten approach_distance or make room in front of the part";
   if (stage == "lift") return "lower lift_height or make room above the part";
-  if (stage == "release") return "move the bin (carry) to where the arm can hold a part level over it";
+  if (stage == "release") return "move the bin (place_region) to where the arm can hold a part level over it";
   if (stage == "close") return "leave room for the fingers beside the part";
   return "raise motion_time_limit, or choose another home configuration";
 }

@@ -30,6 +30,12 @@ PLACES = (
 KEYWORDS: dict[str, tuple[str, ...]] = {
     "neighbours": ("neighbors",),
     "tool_cone": ("orientation_constraint",),
+    "attempts": ("seeds",),
+    "choices": ("grasp_assignments",),
+    "stands": ("goal_configurations",),
+    "held_only": ("attached_only",),
+    "improved": ("on_solution",),
+    "carry": ("place_region",),
 }
 SETTINGS = {"threads": 0}
 

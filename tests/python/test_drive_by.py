@@ -116,7 +116,7 @@ def test_results_print_and_convert(plan: mg.planning.DriveByResult) -> None:
     assert plain["outcome"] == "solved"
     assert len(plain["trajectory"]["positions"]) == 35
     assert plain["violations"]["dynamics"]["kept"] is True
-    assert "attempt 1" in plan.report
+    assert "solve 1" in plan.report
 
 
 def test_goal_as_a_box(robot: mg.Robot, group: mg.robot.JointGroup) -> None:

@@ -31,7 +31,7 @@ TEST(World, NamesAreUniqueOverSceneAndHands) {
   EXPECT_TRUE(world.objects().empty());
   EXPECT_NE(message_of([&] { world.add("a", Sphere{1}, Pose::Identity()); }), "");
   EXPECT_NE(message_of([&] { world.attach("a", "hand", Pose::Identity()); }).find("held already"), std::string::npos);
-  EXPECT_NE(message_of([&] { world.move("a", Pose::Identity()); }).find("is held"), std::string::npos);
+  EXPECT_NE(message_of([&] { world.move("a", Pose::Identity()); }).find("is attached"), std::string::npos);
   const World snapshot = world;
   const Pose T = pose_from_xyz_rpy({1, 2, 3}, {0.1, 0.2, 0.3});
   world.detach("a", T);
@@ -62,7 +62,7 @@ TEST(World, BadInputIsNamed) {
   EXPECT_NE(message_of([&] { world.remove("box"); }).find("box"), std::string::npos);
   EXPECT_NE(message_of([&] { world.attach("box", "hand", Pose::Identity()); }).find("box"), std::string::npos);
   EXPECT_NE(message_of([&] { world.attach("ball", "hand", lost); }).find("ball"), std::string::npos);
-  EXPECT_NE(message_of([&] { world.detach("ball", Pose::Identity()); }).find("not held"), std::string::npos);
+  EXPECT_NE(message_of([&] { world.detach("ball", Pose::Identity()); }).find("not attached"), std::string::npos);
   world.add("floor", Plane{}, Pose::Identity());
   EXPECT_NE(message_of([&] { world.attach("floor", "hand", Pose::Identity()); }).find("plane"), std::string::npos);
   EXPECT_TRUE(world.has("floor"));

@@ -121,7 +121,7 @@ void Snapshot::add_robot() {
 void Snapshot::add_attached() {
   for (const auto& [name, object] : world.attached()) {
     if (!robot.has_link(object.link)) {
-      throw InvalidInput("held object '" + name + "': link = " + object.link + ": is no link of robot '" +
+      throw InvalidInput("attached object '" + name + "': link = " + object.link + ": is no link of robot '" +
                          robot.name() + "'");
     }
     Body body;

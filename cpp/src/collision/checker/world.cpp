@@ -41,7 +41,7 @@ void World::add(const std::string& name, WorldObject object) {
 void World::move(const std::string& name, const Pose& T_world_object) {
   const auto it = objects_.find(name);
   require(it != objects_.end(), "object name", name,
-          attached_.count(name) != 0 ? "is held; detach it first" : "is not in the world");
+          attached_.count(name) != 0 ? "is attached; detach it first" : "is not in the world");
   check_pose(T_world_object, "object '" + name + "' pose");
   it->second.T_world_object = T_world_object;
 }
@@ -54,7 +54,7 @@ void World::attach(const std::string& name, const std::string& link, const Pose&
                    std::set<std::string> touch_links) {
   const auto it = objects_.find(name);
   require(it != objects_.end(), "object name", name,
-          attached_.count(name) != 0 ? "is held already" : "is not in the world");
+          attached_.count(name) != 0 ? "is attached already" : "is not in the world");
   require(!link.empty(), "link", "\"\"", "must name the robot link that holds '" + name + "'");
   check_pose(T_link_object, "object '" + name + "' pose on link '" + link + "'");
   AttachedObject attached;
@@ -64,7 +64,7 @@ void World::attach(const std::string& name, const std::string& link, const Pose&
   attached.touch_links = std::move(touch_links);
   for (const LinkShape& shape : attached.shapes) {
     require(!std::holds_alternative<Plane>(shape.shape), "object '" + name + "'", "plane",
-            "cannot be held: it has no end");
+            "cannot be attached: it has no end");
   }
   attached_.emplace(name, std::move(attached));
   objects_.erase(it);
@@ -73,7 +73,7 @@ void World::attach(const std::string& name, const std::string& link, const Pose&
 void World::detach(const std::string& name, const Pose& T_world_object) {
   const auto it = attached_.find(name);
   require(it != attached_.end(), "object name", name,
-          objects_.count(name) != 0 ? "is not held" : "is not in the world");
+          objects_.count(name) != 0 ? "is not attached" : "is not in the world");
   check_pose(T_world_object, "object '" + name + "' pose");
   WorldObject object;
   object.shapes = it->second.shapes;

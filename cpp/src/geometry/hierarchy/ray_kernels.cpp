@@ -11,7 +11,7 @@ namespace mmgrasp::detail {
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define MMGRASP_HAS_AVX2
 #pragma GCC push_options
-#pragma GCC target("avx2,fma,bmi")
+#pragma GCC target("avx2,bmi")
 namespace avx2 {
 #define MMGRASP_KERNEL_NAME "avx2"
 #define MMGRASP_KERNEL_AVX2  // g++ does not set __AVX2__ for the pragma
@@ -32,8 +32,7 @@ namespace {
 
 const RayKernels& quickest() {
 #ifdef MMGRASP_HAS_AVX2
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi"))
-    return avx2::kTable;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi")) return avx2::kTable;
 #endif
   return portable::kTable;
 }

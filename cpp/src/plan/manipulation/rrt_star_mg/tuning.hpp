@@ -2,9 +2,8 @@
 
 namespace mmgrasp::detail {
 
-/// Constants of RRT*-MG that were found by trial and that no user sets.
-/// benchmarks/planners/bench_rrt_star_mg_tuning.cpp measures what each is worth (table in docs/methods/plan.md). All
-/// are beyond P2.
+/// Constants of RRT*-MG that were found by trial and that no user sets; all are beyond P2.
+/// benchmarks/planners/bench_rrt_star_mg_tuning.cpp changes them one by one and measures what each is worth.
 struct RrtStarMgTuning {
   // Until there is a path.
   int straight_line_grasps = 32;       ///< Grasps, cheapest first, whose straight lines are checked before any sample.

@@ -188,7 +188,7 @@ OTHERS: dict[str, Any] = {
     "render_depth.scene": lambda: [BOX],
     "random_placement.part": lambda: [BOX],
     "make_height_map.image": lambda: mg.mapping.render_depth([BOX], mg.mapping.PinholeCamera(width=8, height=6), POSE),
-    "trajectory": lambda: mg.robot.JointTrajectory(["x", "y", "theta"], [0.0, 1.0], np.zeros((2, 3))),
+    "trajectory": lambda: mg.planning.JointTrajectory(["x", "y", "theta"], [0.0, 1.0], np.zeros((2, 3))),
     "sections": lambda: [(0, 1)],
     "least_stops.regions": lambda: [mg.base.BaseRegion("tray", np.ones((1, 3, 4), np.uint8), GRID)],
     "_first_drive_by_guess.tasks": lambda: [mg.DriveByTask(POSE)],

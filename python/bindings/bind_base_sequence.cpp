@@ -8,14 +8,15 @@
 namespace mmgrasp::python {
 namespace {
 
-constexpr char kOneRegionATray[] = "collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike]";
+constexpr char kOneRegionATray[] = "collections.abc.Sequence[mmgrasp._core.BaseRegion | numpy.typing.ArrayLike]";
 using OneRegionATray = ShownSequence<kOneRegionATray>;
 constexpr char kPlacesOfTrays[] = "collections.abc.Sequence[numpy.typing.ArrayLike]";
 using PlacesOfTrays = ShownSequence<kPlacesOfTrays>;
 constexpr char kPartMasks[] = "collections.abc.Sequence[collections.abc.Sequence[numpy.typing.ArrayLike]]";
 using PartMasks = ShownSequence<kPartMasks>;
 constexpr char kRegionsOfRound[] =
-    "collections.abc.Callable[[int], collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike]] | None";
+    "collections.abc.Callable[[int], collections.abc.Sequence[mmgrasp._core.BaseRegion | numpy.typing.ArrayLike]] | "
+    "None";
 using RegionsOfRound = Shown<kRegionsOfRound>;
 
 using namespace py::literals;

@@ -9,7 +9,7 @@
 namespace mmgrasp::python {
 namespace {
 
-constexpr char kOnImproved[] = "collections.abc.Callable[[Improvement], object] | None";
+constexpr char kOnImproved[] = "collections.abc.Callable[[mmgrasp._core.Improvement], object] | None";
 using OnImproved = Shown<kOnImproved>;
 
 using namespace py::literals;

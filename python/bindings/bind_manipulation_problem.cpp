@@ -10,9 +10,9 @@ namespace {
 
 /// Others than those named are refused with the near miss.
 using NoMoreKeywords = py::KWArgs<py::typing::Never>;
-constexpr char kShapeOrShapes[] = "LinkShape | collections.abc.Sequence[LinkShape]";
+constexpr char kShapeOrShapes[] = "mmgrasp._core.LinkShape | collections.abc.Sequence[mmgrasp._core.LinkShape]";
 using ShapeOrShapes = Shown<kShapeOrShapes>;
-constexpr char kGraspsOrPoses[] = "collections.abc.Sequence[Grasp] | numpy.typing.ArrayLike";
+constexpr char kGraspsOrPoses[] = "collections.abc.Sequence[mmgrasp._core.Grasp] | numpy.typing.ArrayLike";
 using GraspsOrPoses = Shown<kGraspsOrPoses>;
 
 using namespace py::literals;

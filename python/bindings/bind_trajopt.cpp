@@ -15,9 +15,9 @@ constexpr char kViolationRows[] = "dict[str, mmgrasp._records.ViolationRow]";
 using ViolationRows = Shown<kViolationRows>;
 constexpr char kPushKeywords[] = "dict[str, typing.Any]";
 using PushKeywords = ShownDict<kPushKeywords>;
-constexpr char kOptionalPush[] = "PushGrasp | typing.Any";
+constexpr char kOptionalPush[] = "mmgrasp._core.PushGrasp | typing.Any";
 using OptionalPush = Shown<kOptionalPush>;
-constexpr char kOptionalTrajectory[] = "WholeBodyTrajectory | typing.Any";
+constexpr char kOptionalTrajectory[] = "mmgrasp._core.WholeBodyTrajectory | typing.Any";
 using OptionalTrajectory = Shown<kOptionalTrajectory>;
 
 using namespace py::literals;

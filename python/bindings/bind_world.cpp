@@ -11,7 +11,8 @@ namespace mmgrasp::python {
 namespace {
 
 constexpr char kBodyShape[] =
-    "Box | Sphere | Cylinder | Capsule | Plane | Mesh | Voxels | collections.abc.Sequence[LinkShape]";
+    "mmgrasp._core.Box | mmgrasp._core.Sphere | mmgrasp._core.Cylinder | mmgrasp._core.Capsule | mmgrasp._core.Plane | "
+    "mmgrasp._core.Mesh | mmgrasp._core.Voxels | collections.abc.Sequence[mmgrasp._core.LinkShape]";
 using BodyShape = Shown<kBodyShape>;
 
 /// Occupied leaves of an OctoMap file: one Voxels shape for each leaf size, so that pruned leaves keep their size.

@@ -162,6 +162,7 @@ COMPANIONS: dict[str, dict[str, Any]] = {
     "plan_platform_locations.T_link_camera": {"camera_link": "tip"},
     "plan_motion.start": {"goal": Q},
     "plan_stops_exact.goal": {"start": np.array([0.5, 0.25])},
+    "plan_stops_exact.start": {"goal": np.array([0.25, 0.5])},
     "fit_cuboids.T_world_tray": {"tray_size": [0.3, 0.4, 0.1]},
     "JointTrajectory.accelerations": {"velocities": np.zeros((2, 3))},
 }
@@ -188,6 +189,7 @@ OTHERS: dict[str, Any] = {
     "render_depth.scene": lambda: [BOX],
     "random_placement.part": lambda: [BOX],
     "make_height_map.image": lambda: mg.mapping.render_depth([BOX], mg.mapping.PinholeCamera(width=8, height=6), POSE),
+    "trajectory": lambda: mg.planning.JointTrajectory(["x", "y", "theta"], [0.0, 1.0], np.zeros((2, 3))),
     "sections": lambda: [(0, 1)],
     "plan_stops_exact.regions": lambda: [mg.base.BaseRegion("tray", np.ones((1, 3, 4), np.uint8), GRID)],
     "_first_drive_by_guess.tasks": lambda: [mg.DriveByTask(POSE)],

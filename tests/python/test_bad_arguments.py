@@ -139,8 +139,8 @@ def bad_values(argument: Argument) -> dict[str, Any]:
     bad["one column more"] = np.concatenate([good, good[..., :1]], axis=-1)
     if argument.function in ("verify.CheckedMotion", "verify.CheckedRegion"):
         del bad["one column more"]  # parts of a plan that do not fit together are faults that the check reports
-    if argument.function == "verify.CheckedRegion":
-        del bad["no entries"]
+    if argument.function == "verify.CheckedRegion" or argument.name in ("joint_weights", "jerk_limits"):
+        del bad["no entries"]  # weights and limits of no joint are those that were left out
     if not argument.optional:
         bad["None"] = None
     if argument.name in ("lengths", "drive_times"):

@@ -9,9 +9,6 @@ from types import ModuleType
 
 from mmgrasp import _core
 
-_BEING_REPLACED = ("CandidateGrasp", "FingerJoint", "Grasp", "Gripper", "PipeGrasp", "ScoredGrasp")
-
-
 def described(doc: str | None) -> bool:
     """Has text beyond the signatures that pybind11 writes."""
     text = [line.strip() for line in (doc or "").splitlines() if line.strip()]
@@ -30,7 +27,7 @@ def members(name: str, kind: type) -> Iterator[tuple[str, str | None]]:
 def entries(module: ModuleType) -> Iterator[tuple[str, str | None]]:
     """Name and docstring of every public class, method, property, function and value of an enumeration."""
     for name, entry in vars(module).items():
-        if name.startswith("_") or name in _BEING_REPLACED:
+        if name.startswith("_"):
             continue
         if isinstance(entry, ModuleType):
             yield from entries(entry)

@@ -42,7 +42,7 @@ def plan(placement: str, samples: int, seed: int) -> dict[str, Any]:
     grid = _core.make_base_grid(problem, reach)
     regions = _core.compute_base_regions(problem, reach, grid)
     sets = _core.robust_intersections(grid, regions, UNCERTAINTY)
-    stops = _core.minimal_stops(grid, sets.robust, len(TRAYS))
+    stops = _core.cover_from_intersections(grid, sets.robust, len(TRAYS))
     circles = [_core.inscribed_circle(grid, r.cells(grid)) for r in regions]
     return {
         "grid": grid_values(grid),

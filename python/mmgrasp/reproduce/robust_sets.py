@@ -35,7 +35,7 @@ def regions() -> tuple[_core.BaseGrid, list[_core.BaseRegion]]:
 def run(context: Context) -> Result:
     grid, found = regions()
     sets = _core.robust_intersections(grid, found, UNCERTAINTY)
-    stops = _core.minimal_stops(grid, sets.robust, len(found))
+    stops = _core.cover_from_intersections(grid, sets.robust, len(found))
     result = Result(
         setup={"regions": len(found), "middles [m]": MIDDLES, "radius [m]": RADIUS, "uncertainty [m]": UNCERTAINTY}
     )

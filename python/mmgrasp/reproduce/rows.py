@@ -44,7 +44,7 @@ def plan(row: Row, samples: int) -> dict[str, Any]:
     marks.append(time.perf_counter())
     sets = _core.robust_intersections(grid, regions, UNCERTAINTY)
     marks.append(time.perf_counter())
-    stops = _core.minimal_stops(grid, sets.robust, count)
+    stops = _core.cover_from_intersections(grid, sets.robust, count)
     marks.append(time.perf_counter())
     order = _core.shortest_visiting_tour(_straight_lengths(problem, stops.stops)).order
     marks.append(time.perf_counter())

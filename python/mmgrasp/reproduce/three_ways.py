@@ -30,7 +30,7 @@ def stopping(samples: int, minimal: bool) -> dict[str, Any]:
     regions = _core.compute_base_regions(problem, reach, grid)
     if minimal:
         sets = _core.robust_intersections(grid, regions, UNCERTAINTY)
-        found = _core.minimal_stops(grid, sets.robust, len(regions)).stops
+        found = _core.cover_from_intersections(grid, sets.robust, len(regions)).stops
         stops = [(np.asarray(s.pose), list(s.trays)) for s in found]
     else:
         circles = [_core.inscribed_circle(grid, r.cells(grid))[0] for r in regions]

@@ -51,8 +51,8 @@ using GraspProvenance = std::variant<std::monostate, ContactPairProvenance, Pipe
 /// (Hand::tool_link); a robot holds the object when T_world_hand = T_world_object * T_object_hand.
 ///
 ///     Grasp grasp;
-///     grasp.T_object_hand = pose_from_xyz_rpy({0, 0, 0.01}, {0, kPi / 2, 0});  // from above, a hand that approaches
-///     along x grasp.opening = 0.04; problem.grasps = {grasp};
+///     grasp.T_object_hand = pose_from_xyz_rpy({0, 0, 0.01}, {0, 1.5708, 0});  // from above, if it approaches along x
+///     grasp.opening = 0.04;                                                   // [m]
 struct MMGRASP_EXPORT Grasp {
   /// Pose of the hand's tool frame in the object's frame. Where no object is known (evaluate_graspability) the object's
   /// frame is the world's.

@@ -148,7 +148,7 @@ void bind_manipulation(py::module_& m) {
   m.def(
       "plan_manipulation",
       [](const Given<ManipulationProblem>& given_problem, const std::optional<Given<Roadmap>>& given_roadmap,
-         const Progress& progress, const OnImproved\& on_solution, const py::kwargs& options) {
+         const Progress& progress, const OnImproved& on_solution, const py::kwargs& options) {
         const ManipulationProblem& problem = taken(given_problem, "problem");
         const Roadmap* roadmap = given_roadmap ? &taken(*given_roadmap, "roadmap") : nullptr;
         const ManipulationOptions read = read_options(manipulation_fields(), options, "plan_manipulation");

@@ -32,8 +32,8 @@ class MMGRASP_EXPORT TreeGrowth {
   int extend_tree(int tree, int configuration);
   /// ExtendAndRewire-MG (P2 5.3.1): the cheapest tree by equation (5.1) among those near. Exploitation.
   Extension extend_cheapest_tree(int side, int configuration);
-  /// Beyond the paper, until there is a path: grows the tree of vertex `from` along the first half of a blocked edge to a
-  /// configuration, when that half is free. Returns the new vertex, or -1.
+  /// Beyond the paper, until there is a path: grows the tree of vertex `from` along the first half of a blocked edge to
+  /// a configuration, when that half is free. Returns the new vertex, or -1.
   int extend_half(int from, int target);
 
  private:

@@ -30,6 +30,7 @@ PLACES = (
 KEYWORDS: dict[str, tuple[str, ...]] = {
     "neighbours": ("neighbors",),
     "tool_cone": ("orientation_constraint",),
+    "attempt_time_limit": ("solve_time_limit",),
     "attempts": ("seeds",),
     "choices": ("grasp_assignments",),
     "stands": ("goal_configurations",),

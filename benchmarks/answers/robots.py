@@ -114,7 +114,7 @@ def attached_and_padded() -> Answer:
     scene.attach("part", link="gripper_link", pose=pose(0.15, 0, 0))
     Q, answers = drawn(arm, 300), []
     for options in ({}, {"padding": 0.03}, {"held_only": True}, {"check_self": False}):
-        answers.append(find("CollisionChecker")(arm.robot, scene, arm, **options).are_free(Q, threads=threads()))
+        answers.append(ask(find("CollisionChecker"), arm.robot, scene, arm, **options).are_free(Q, threads=threads()))
     return {"free": answers}, {"free": [int(a.sum()) for a in answers]}
 
 

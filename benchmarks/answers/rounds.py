@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from .lookup import PATIENT, Answer, call, find, get, threads
+from .lookup import PATIENT, Answer, ask, call, find, get, threads
 from .results import rejections, shared_cells, stop, timed
 from .setups import asset, group, pose, tucked
 
@@ -115,7 +115,7 @@ def drive_by() -> Answer:
     whole = moving.group("arm", tip="gripper_link", with_base=True).with_reference({"torso_lift_joint": 0.2})
     goal = [10, 0, -1, 1.13, 0.3, 1.9, 1.1, 2.1, 0.5, 2.5]
     task = find("DriveByTask")(pose(5.5, -2, 0.5, rpy=[1, 1, 0]))
-    found = find("plan_drive_by")(moving, whole, find("World")(), start=[0.0] * 10, tasks=[task], goal=goal,
+    found = ask(find("plan_drive_by"), moving, whole, find("World")(), start=[0.0] * 10, tasks=[task], goal=goal,
                                   time_limit=PATIENT, attempt_time_limit=PATIENT, threads=threads())  # fmt: skip
     way = found.trajectory
     parts = {
@@ -145,7 +145,7 @@ def drive_by_past_a_table() -> Answer:
     ]
     ends = {"start": [0, 0, 0, *home], "goal": [4, 0, 0, *home]}
     options = {"waypoints": 45, "time_limit": PATIENT, "attempt_time_limit": PATIENT, "threads": threads()}
-    found = find("plan_drive_by")(arm.robot, arm, scene, tasks=tasks, **ends, **options)
+    found = ask(find("plan_drive_by"), arm.robot, arm, scene, tasks=tasks, **ends, **options)
     way = found.trajectory
     parts = {"outcome": [found.outcome, found.iterations, get(found, "solves", "attempts")]}
     parts["trajectory"] = [way.times, way.positions, way.drive]

@@ -291,7 +291,8 @@ void bind_plan_result(py::module_& m) {
           [](const py::object& self) {
             const auto& plan = self.cast<const PartSupplyPlan&>();
             py::typing::List<BaseRegion> regions;
-            for (int tray : ListedRegions(plan).trays())
+            const ListedRegions listed(plan);
+            for (int tray : listed.trays())
               regions.append(py::cast(&plan.regions[tray], py::return_value_policy::reference_internal, self));
             return regions;
           },

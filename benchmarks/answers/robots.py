@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from pathlib import Path
 
-from .lookup import PATIENT, Answer, Skipped, call, find, threads
+from .lookup import PATIENT, Answer, Skipped, ask, call, find, threads
 from .results import rejections
 from .setups import ROBOTS, asset, drawn, group, pose, world
 

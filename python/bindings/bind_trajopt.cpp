@@ -250,7 +250,7 @@ void bind_drive_by_result(py::module_& m) {
           "By kind of constraint: value (0 when kept), tolerance, unit, time [s], waypoint, what, kept; measured on a "
           "roll-out ten times\nfiner than the waypoints.")
       .def_readonly("grasp_assignments", &DriveByResult::grasp_assignments, "Choices of candidates planned.")
-      .def_readonly("seeds", &DriveByResult::solves, "Guesses from which the optimiser began.")
+      .def_readonly("solves", &DriveByResult::solves, "Guesses from which the optimiser began.")
       .def_readonly("iterations", &DriveByResult::iterations, "Of the optimiser, over all solves.")
       .def_readonly("seconds", &DriveByResult::seconds, "Wall-clock time of the call [s].")
       .def_readonly("report", &DriveByResult::report, "What was tried, and what is broken where, by how much.")
@@ -274,7 +274,7 @@ void bind_drive_by_result(py::module_& m) {
             return py::dict("outcome"_a = to_string(r.outcome), "duration"_a = r.duration(),
                             "trajectory"_a = trajectory, "events"_a = events,
                             "violations"_a = violations_dict(r.violations), "grasp_assignments"_a = r.grasp_assignments,
-                            "seeds"_a = r.solves, "iterations"_a = r.iterations, "seconds"_a = r.seconds,
+                            "solves"_a = r.solves, "iterations"_a = r.iterations, "seconds"_a = r.seconds,
                             "report"_a = r.report);
           },
           "As a dict of plain numbers, strings and lists, e.g. for JSON.")

@@ -93,7 +93,7 @@ TEST(PartSupply, SmallStoreroomIsSolvedAndHoldsForTheIndependentChecker) {
   const verify::PlanCheckResult result = verify::check_plan(to_check(problem, plan), options);
   for (const verify::Fault& fault : result.faults)
     ADD_FAILURE() << fault.code << ", " << fault.where << ": " << fault.message;
-  EXPECT_EQ(result.cover_from_intersections, 1);
+  EXPECT_EQ(result.minimal_stops, 1);
 }
 
 /// `twist` has no limits: its numbers run on from motion to motion and from pick to pick. Home is reached up to its

@@ -46,7 +46,7 @@ TEST(Pick, AnObjectInNoTrayIsGraspedLiftedAndPutDown) {
   const auto& lift = pick.motions[2].trajectory.positions;
   const auto& transfer = pick.motions[3].trajectory.positions;
   EXPECT_EQ(pick.motions[0].trajectory.positions.front(), problem.home);
-  EXPECT_LT(distance(problem.arm.fk(approach.back()), T_world_pin * problem.grasps[pick.grasp].T_object_tcp), 2e-3);
+  EXPECT_LT(distance(problem.arm.fk(approach.back()), T_world_pin * problem.grasps[pick.grasp].T_object_hand), 2e-3);
   const Pose T_tcp_pin = problem.arm.fk(lift.front()).inverse() * T_world_pin;
   const Pose T_world_lifted = problem.arm.fk(lift.back()) * T_tcp_pin;
   EXPECT_LT(distance(T_world_lifted, Pose(Eigen::Translation3d(0, 0, 0.08) * T_world_pin)), 2e-3);

@@ -43,7 +43,7 @@ TEST(Rejections, CountsAndSummary) {
   Rejections b;
   b.add(Rejection::scene, 2);
   a += b;
-  EXPECT_EQ(a.summary(), "reach 12, scene 3");
+  EXPECT_EQ(a.summary(), "unreachable 12, scene 3");
   EXPECT_EQ(a.total(), 15u);
   EXPECT_STREQ(to_string(Outcome::invalid_goal), "invalid_goal");
 }

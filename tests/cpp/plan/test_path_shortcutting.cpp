@@ -55,7 +55,8 @@ TEST_F(Shortcutting, CuttingCornersOnlyMakesThePathShorter) {
   }
   EXPECT_GT(cuts, 200);
   EXPECT_GE(last, 2 - 1e-12);
-  EXPECT_LT(last, 0.9 * before);
+  // Cutting corners ends in a smooth curve between the middles of the first edges, not in the straight line.
+  EXPECT_LT(last, 0.96 * before);
   EXPECT_NO_THROW(setting_.trees.check_invariants());
 }
 

@@ -25,7 +25,8 @@ void bind_hand_joint(py::module_& m) {
       .def(py::init([](std::string name, double closed, double open, std::string group) {
              return HandJoint{std::move(name), closed, open, std::move(group)};
            }),
-           py::arg("name"), py::arg("closed"), py::arg("open"), py::arg("group") = HandJoint{}.group)
+           py::arg("name"), py::arg("closed"), py::arg("open"), py::arg("group") = HandJoint{}.group,
+           "See the properties of the same names.")
       .def_readonly("name", &HandJoint::name, "The robot's joint.")
       .def_readonly("closed", &HandJoint::closed, "Value while the fingers are closed.")
       .def_readonly("open", &HandJoint::open, "Value while they are open.")
@@ -43,7 +44,7 @@ void bind_hand_body(py::module_& m) {
            }),
            py::kw_only(), py::arg("finger_thickness") = own.finger_thickness,
            py::arg("finger_length") = own.finger_length, py::arg("palm_length") = own.palm_length,
-           py::arg("palm_width") = own.palm_width)
+           py::arg("palm_width") = own.palm_width, "Sizes [m], > 0; see the properties of the same names.")
       .def_readonly("finger_thickness", &HandBody::finger_thickness, "Of a finger along the closing axis.")
       .def_readonly("finger_length", &HandBody::finger_length, "From the finger tips back to the palm.")
       .def_readonly("palm_length", &HandBody::palm_length, "Of the palm along the closing axis.")

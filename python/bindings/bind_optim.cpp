@@ -10,6 +10,12 @@ namespace mmgrasp::python {
 using namespace py::literals;
 namespace {
 
+constexpr char kObjective[] = "collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], float]";
+using Objective = Shown<kObjective>;
+constexpr char kConstraints[] =
+    "collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], numpy.typing.ArrayLike] | None";
+using Constraints = Shown<kConstraints>;
+
 const std::vector<OptionField<DerivativeFreeOptions>>& derivative_free_fields() {
   using O = DerivativeFreeOptions;
   static const std::vector<OptionField<O>> fields{
@@ -22,22 +28,29 @@ const std::vector<OptionField<DerivativeFreeOptions>>& derivative_free_fields() 
 }
 
 /// (n,), also infinite or NaN; size < 0 takes any length.
-Eigen::VectorXd any_numbers(const py::handle& value, const std::string& name, Eigen::Index size) {
-  const auto array = py::array_t<double, py::array::forcecast>::ensure(value);
-  if (!array || array.ndim() != 1 || (size >= 0 && array.shape(0) != size)) {
+Eigen::VectorXd any_numbers(const py::handle& value, const std::string& name, Eigen::Index size,
+                            const std::string& like = "") {
+  const py::array given = py::array::ensure(value);
+  if (!given || std::string("fiub").find(given.dtype().kind()) == std::string::npos) {
     PyErr_Clear();
-    throw InvalidInput(name + ": must be an array of " + (size >= 0 ? std::to_string(size) + " " : "") + "numbers");
+    throw InvalidInput(name + ": must be an array of numbers");
   }
-  return py::cast<Eigen::VectorXd>(array);
+  if (given.ndim() != 1 || (size >= 0 && given.shape(0) != size)) {
+    throw InvalidInput(name + " has shape " + std::string(py::str(given.attr("shape"))) + ": must be (" +
+                       (size >= 0 ? std::to_string(size) : "n") + ",)" + like);
+  }
+  return py::cast<Eigen::VectorXd>(py::array_t<double, py::array::forcecast>(given));
 }
 
-DerivativeFreeResult minimize(const py::object& objective, const ArrayLike& given_guess, const ArrayLike& given_lower,
-                              const ArrayLike& given_upper, const std::string& solver, const py::object& constraints,
-                              int constraint_count, const py::object& progress, const py::kwargs& options) {
+DerivativeFreeResult minimize(const Objective& objective, const ArrayLike& given_guess, const ArrayLike& given_lower,
+                              const ArrayLike& given_upper, const std::string& solver, const Constraints& constraints,
+                              int constraint_count, const Progress& progress, const py::kwargs& options) {
   const DerivativeFreeOptions read = read_options(derivative_free_fields(), options, "minimize_derivative_free");
   const Eigen::VectorXd guess = vector_argument(given_guess, "guess");
+  if (guess.size() == 0) throw InvalidInput("guess has shape (0,): must be (n,) with n > 0");
   DerivativeFreeProblem problem;
-  problem.bounds = {any_numbers(given_lower, "lower", guess.size()), any_numbers(given_upper, "upper", guess.size())};
+  problem.bounds = {any_numbers(given_lower, "lower", guess.size(), ", as guess"),
+                    any_numbers(given_upper, "upper", guess.size(), ", as guess")};
   if (function_argument(objective, "objective").is_none()) throw InvalidInput("objective = None: must be a function");
   problem.objective = [&](const Eigen::VectorXd& x) {
     const py::gil_scoped_acquire gil;

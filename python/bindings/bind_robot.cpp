@@ -160,7 +160,10 @@ JointGroup make_group(const Robot& robot, const OptionalText& name, const Option
   return robot.chain(py::cast<std::string>(base_link), tip_name, with_base);
 }
 
-py::list urdf_dicts(const RobotSource& source) {
+constexpr char kDicts[] = "list[dict[str, typing.Any]]";
+using Dicts = Shown<kDicts>;
+
+Dicts urdf_dicts(const RobotSource& source) {
   py::list out;
   for (const UrdfSource& u : source.urdfs) {
     out.append(py::dict("urdf"_a = u.urdf, "origin"_a = u.origin, "prefix"_a = u.prefix,
@@ -170,7 +173,7 @@ py::list urdf_dicts(const RobotSource& source) {
   return out;
 }
 
-py::list added_link_dicts(const RobotSource& source) {
+Dicts added_link_dicts(const RobotSource& source) {
   py::list out;
   for (const AddedLink& link : source.added_links) {
     out.append(py::dict("name"_a = link.name, "parent_link"_a = link.parent_link, "T"_a = to_array(link.T_parent_link),
@@ -183,18 +186,19 @@ void bind_robot_source(py::module_& m) {
   py::class_<RobotSource>(m, "RobotSource",
                           "What a robot was made of, unread: its URDFs as they were given, for those who read them by\n"
                           "other means than Robot does (verify).")
-      .def(py::init([](const std::string& base, const py::object& base_limits, const std::string& srdf) {
+      .def(py::init([](const std::string& base, const BaseLimitsDict& base_limits, const std::string& srdf) {
              RobotSource source;
              source.base = base_kind_from_string(base);
              source.base_limits = base_limits_argument(base_limits);
              source.srdf = srdf;
              return source;
            }),
-           py::arg("base") = "fixed", py::kw_only(), py::arg("base_limits") = py::none(), py::arg("srdf") = "")
+           py::arg("base") = "fixed", py::kw_only(), py::arg("base_limits") = py::none(), py::arg("srdf") = "",
+           "Empty; add_urdf() adds what it was made of.")
       .def(
           "add_urdf",
           [](RobotSource& source, const std::string& urdf, const std::string& origin, const std::string& prefix,
-             const std::string& parent_link, const py::object& T,
+             const std::string& parent_link, const OptionalArray& T,
              const std::map<std::string, std::string>& mesh_files) {
             source.urdfs.push_back({urdf, origin, prefix, parent_link, pose_argument(T, "T"), mesh_files});
           },
@@ -206,7 +210,7 @@ void bind_robot_source(py::module_& m) {
           "robot's root). `mesh_files` maps the URDF's mesh filenames to files; an empty one leaves the mesh out.")
       .def(
           "add_link",
-          [](RobotSource& source, const std::string& name, const std::string& parent_link, const py::object& T,
+          [](RobotSource& source, const std::string& name, const std::string& parent_link, const OptionalArray& T,
              const std::vector<LinkShape>& shapes) {
             source.added_links.push_back({name, parent_link, pose_argument(T, "T"), shapes});
           },

@@ -205,7 +205,7 @@ void bind_picks(py::module_& m) {
       "plan_object_pick",
       [](const JointGroup& arm, const Hand& gripper, const World& world, const std::string& object,
          std::vector<Grasp> grasps, const ReachDatabase& database, const ArrayLike& home, const ArrayLike& base_pose,
-         const py::object& places, const py::kwargs& options) {
+         const OptionalArray& places, const py::kwargs& options) {
         const Pose T_world_root = pose_from_planar(vector3_argument(base_pose, "base_pose"));
         PickProblem problem{arm.at(T_world_root),
                             gripper,
@@ -217,7 +217,9 @@ void bind_picks(py::module_& m) {
                             read_options(pick_fields(), options, "plan_object_pick")};
         if (!places.is_none()) problem.places = poses_argument(py::reinterpret_borrow<ArrayLike>(places), "places");
         problem.check();
-        return LongCall(py::none()).run([&](const Monitor& monitor) { return plan_pick(problem, database, monitor); });
+        return LongCall(py::none()).run([&](const Monitor& monitor) {
+          return plan_object_pick(problem, database, monitor);
+        });
       },
       py::arg("arm"), py::arg("gripper"), py::arg("world"), py::arg("object"), py::arg("grasps"), py::kw_only(),
       py::arg("database"), py::arg("home"), py::arg("base_pose"), py::arg("places") = py::none(),

@@ -7,6 +7,7 @@ lower a cost with the freedom that a pose leaves. `compute_disabled_pairs` finds
 # The model
 from ._core import (
     Robot as Robot,
+    RobotSource as RobotSource,
     JointGroup as JointGroup,
     find_package as find_package,
     compute_disabled_pairs as compute_disabled_pairs,

@@ -3,7 +3,6 @@
 `mmgrasp.verify_plan` reads a plan.json and calls `check_plan`; `check_path` checks a joint path.
 """
 
-from ._core import RobotSource as RobotSource
 from ._core.verify import (
     CheckedBody as CheckedBody,
     CheckedDriveBy as CheckedDriveBy,

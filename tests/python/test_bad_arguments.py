@@ -143,6 +143,9 @@ def bad_values(argument: Argument) -> dict[str, Any]:
         del bad["no entries"]  # weights and limits of no joint are those that were left out
     if not argument.optional:
         bad["None"] = None
+    if argument.function == "minimize_derivative_free":
+        for infinite in {"lower": ["-inf"], "upper": ["inf"]}.get(argument.name, []):
+            del bad[infinite]  # no bound
     if argument.name in ("lengths", "drive_times"):
         del bad["inf"]  # no way between two stops
     return bad

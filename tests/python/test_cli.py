@@ -42,7 +42,7 @@ def test_plan_writes_everything(out: Path) -> None:
 
 def test_csv_holds_the_plans_numbers(out: Path) -> None:
     plan = read_plan(out / "plan.json")
-    first = sorted((out / "trajectories").glob("pick_00_*_0_reach.csv"))[0]
+    first = sorted((out / "trajectories").glob("pick_00_*_0_transit.csv"))[0]
     rows = list(csv.reader(first.read_text().splitlines()))
     motion = plan["picks"][0]["motions"][0]
     assert rows[0][:4] == ["time", "base.x", "base.y", "base.theta"]

@@ -71,7 +71,7 @@ def test_any_object_is_picked_like_a_part(
     place = part.T_world_part.copy()
     place[2, 3] += 0.01
     for places, kinds in (
-        (None, ["reach", "approach", "lift"]),
+        (None, ["transit", "approach", "lift"]),
         ([place], ["transit", "approach", "lift", "transfer", "retreat"]),
     ):
         pick = mg.base.plan_object_pick(

@@ -9,6 +9,7 @@ from types import ModuleType
 
 from mmgrasp import _core
 
+
 def described(doc: str | None) -> bool:
     """Has text beyond the signatures that pybind11 writes."""
     text = [line.strip() for line in (doc or "").splitlines() if line.strip()]

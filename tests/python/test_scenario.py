@@ -230,7 +230,9 @@ def test_shipped_scenarios_keep_the_schema(name: str) -> None:
     jsonschema.validate(yaml.safe_load((ASSETS / "scenarios" / name).read_text()), schema)
 
 
-def test_a_file_of_version_1_says_what_its_keys_are_called_now(small: dict[str, Any], write: Callable[..., Path]) -> None:
+def test_a_file_of_version_1_says_what_its_keys_are_called_now(
+    small: dict[str, Any], write: Callable[..., Path]
+) -> None:
     old = {**small, "version": 1}
     old["carry"] = old.pop("place_region")
     with pytest.raises(mg.InvalidInput, match="reads version 2: carry is place_region now"):

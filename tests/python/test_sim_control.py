@@ -24,18 +24,18 @@ class DriveTo:
     period: float = 0.02
     asked: list[float] = field(default_factory=list)
 
-    def error(self, scene: sim.SimScene) -> tuple[float, float]:
+    def error(self, scene: sim.SceneState) -> tuple[float, float]:
         """Distance [m] and heading [rad] still to go."""
         x, y, theta = scene.base_pose()
         d = np.array(self.goal) - (x, y)
         return float(np.hypot(*d)), float(np.remainder(np.arctan2(d[1], d[0]) - theta + np.pi, 2 * np.pi) - np.pi)
 
-    def command(self, time: float, scene: sim.SimScene) -> sim.Command:
+    def command(self, time: float, scene: sim.SceneState) -> sim.Command:
         self.asked.append(time)
         distance, heading = self.error(scene)
         return sim.Command(base=(min(0.4, distance) * (abs(heading) < 0.1), 0.0, 2 * heading))
 
-    def finished(self, time: float, scene: sim.SimScene) -> bool:
+    def finished(self, time: float, scene: sim.SceneState) -> bool:
         return self.error(scene)[0] < 0.02
 
 
@@ -48,10 +48,10 @@ class Still:
     base: tuple[float, float, float] = (0.0, 0.0, 0.0)
     period: float = 0.01
 
-    def command(self, time: float, scene: sim.SimScene) -> sim.Command:
+    def command(self, time: float, scene: sim.SceneState) -> sim.Command:
         return sim.Command(self.values, self.base)
 
-    def finished(self, time: float, scene: sim.SimScene) -> bool:
+    def finished(self, time: float, scene: sim.SceneState) -> bool:
         return False
 
 

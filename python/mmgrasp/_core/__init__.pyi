@@ -2,15 +2,15 @@
 The C++ library behind mmgrasp. Import names from mmgrasp itself.
 """
 from __future__ import annotations
-import mmgrasp._records
-import os
 import collections.abc
 import enum
+import mmgrasp._records
 import numpy
 import numpy.typing
+import os
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CandidateGrasp', 'CapabilityMap', 'Capsule', 'PlaceRegion', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'CuboidFit', 'Cylinder', 'DepthImage', 'DerivativeFreeResult', 'DistanceResult', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FingerJoint', 'FittedCuboid', 'Grasp', 'GraspReport', 'Graspability', 'Gripper', 'HeightMap', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeGrasp', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'ScoredGrasp', 'SearchTree', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'OrientationConstraint', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'derivative_free_solver_names', 'drive_arc', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'plan_stops_exact', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_stops', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'CuboidFit', 'Cylinder', 'DepthImage', 'DerivativeFreeResult', 'DistanceResult', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FittedCuboid', 'Grasp', 'GraspReport', 'Graspability', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotSource', 'SearchTree', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -79,7 +79,10 @@ class Robot:
         turning, wheels. 0 for what this base cannot do at all (sideways, or fixed).
         """
     def with_disabled_pairs(self, pairs: collections.abc.Sequence[tuple[str, str, str]]) -> Robot:
-        ...
+        """
+        This robot with these pairs (link, link, reason) left out of collision checks instead of its own; reason is adjacent,
+        never, always, user or default. Raises InvalidInput on an unknown link or reason.
+        """
     def with_link(self, name: str, parent_link: str, T: numpy.typing.ArrayLike | None = None, shapes: collections.abc.Sequence[LinkShape] = []) -> Robot:
         """
         This robot with one more fixed link.
@@ -91,7 +94,9 @@ class Robot:
         """
     @property
     def base_limits(self) -> dict[str, float]:
-        ...
+        """
+        Speed and acceleration limits of the base, its workspace and its wheels, by keyword of `load`'s base_limits.
+        """
     @property
     def disabled_pairs(self) -> list[tuple[str, str, str]]:
         """
@@ -99,7 +104,9 @@ class Robot:
         """
     @property
     def end_effectors(self) -> list[mmgrasp._records.EndEffectorRow]:
-        ...
+        """
+        SRDF end effectors: name, group and parent_link.
+        """
     @property
     def group_states(self) -> dict[str, dict[str, dict[str, float]]]:
         """
@@ -112,7 +119,9 @@ class Robot:
         """
     @property
     def has_srdf(self) -> bool:
-        ...
+        """
+        An SRDF was given.
+        """
     @property
     def hash(self) -> str:
         """
@@ -135,7 +144,9 @@ class Robot:
         """
     @property
     def name(self) -> str:
-        ...
+        """
+        As the URDF says.
+        """
     @property
     def passive_joints(self) -> list[str]:
         """
@@ -145,6 +156,11 @@ class Robot:
     def report(self) -> mmgrasp._records.RobotReport:
         """
         What loading found.
+        """
+    @property
+    def source(self) -> RobotSource:
+        """
+        The URDFs and links that it was made of.
         """
 class JointGroup:
     """
@@ -245,22 +261,32 @@ class JointGroup:
         0 where the tool cannot move along it.
         """
     def with_acceleration_limits(self, limits: numpy.typing.ArrayLike) -> JointGroup:
-        ...
+        """
+        The same group with these limits (n,) [rad/s^2 or m/s^2], > 0.
+        """
     def with_reference(self, joints: collections.abc.Mapping[str, float]) -> JointGroup:
         """
         The same group with the named other joints held at these values, the rest at default.
         """
     def within_limits(self, q: numpy.typing.ArrayLike, slack: float = 0.0) -> bool:
-        ...
+        """
+        Whether a configuration (n,) lies inside the limits, each widened by `slack` [rad or m].
+        """
     @property
     def T_world_root(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Pose of the robot's root (4, 4); with the base in the group its joints come on top.
+        """
     @property
     def acceleration_limits(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        (n,) [rad/s^2 or m/s^2]; URDF has none: 4 times the velocity limit per second unless set.
+        """
     @property
     def has_base(self) -> bool:
-        ...
+        """
+        x, y, theta come first.
+        """
     @property
     def lower(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -268,7 +294,9 @@ class JointGroup:
         """
     @property
     def name(self) -> str:
-        ...
+        """
+        Name of the SRDF group, or of the chain.
+        """
     @property
     def names(self) -> list[str]:
         """
@@ -276,7 +304,9 @@ class JointGroup:
         """
     @property
     def robot(self) -> Robot:
-        ...
+        """
+        The robot it belongs to.
+        """
     @property
     def sample_lower(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -284,19 +314,29 @@ class JointGroup:
         """
     @property
     def sample_upper(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Upper end of the finite bounds to sample from (n,).
+        """
     @property
     def size(self) -> int:
-        ...
+        """
+        Number of columns of a configuration.
+        """
     @property
     def tip(self) -> str:
-        ...
+        """
+        Link whose pose fk() and ik() are about.
+        """
     @property
     def upper(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        [rad or m], inf for continuous joints.
+        """
     @property
     def velocity_limits(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        (n,) [rad/s or m/s].
+        """
 class World:
     """
     Named rigid bodies around the robot, and what it holds. Poses are T_world_object, (4, 4).
@@ -304,7 +344,9 @@ class World:
     def __contains__(self, arg0: str) -> bool:
         ...
     def __init__(self) -> None:
-        ...
+        """
+        An empty world.
+        """
     def __repr__(self) -> str:
         ...
     def add(self, name: str, shape: Box | Sphere | Cylinder | Capsule | Plane | Mesh | Voxels | collections.abc.Sequence[LinkShape], pose: numpy.typing.ArrayLike | None = None) -> None:
@@ -332,27 +374,37 @@ class World:
         Points (m, 3) as the solid cells of edge `resolution` [m] that hold one.
         """
     def add_sphere(self, name: str, radius: float, pose: numpy.typing.ArrayLike | None = None) -> None:
-        ...
+        """
+        Centred; `radius` [m].
+        """
     def attach(self, name: str, link: str, pose: numpy.typing.ArrayLike | None = None, touch_links: collections.abc.Set[str] = set()) -> None:
         """
         From the scene to a link, at T_link_object. Empty touch_links: the link, all below it, and its gripper's fingers.
         """
     def copy(self) -> World:
-        ...
+        """
+        A world of its own with the same bodies.
+        """
     def detach(self, name: str, pose: numpy.typing.ArrayLike | None = None) -> None:
         """
         Puts a held object back into the scene at T_world_object; without a pose it leaves the world.
         """
     def move(self, name: str, pose: numpy.typing.ArrayLike) -> None:
-        ...
+        """
+        Puts an object of the scene at T_world_object (4, 4).
+        """
     def pose_of(self, name: str) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        T_world_object (4, 4) of an object of the scene. Raises InvalidInput on any other name.
+        """
     def remove(self, name: str) -> None:
         """
         Takes an object, held or not, out of the world.
         """
     def shapes_of(self, name: str) -> list[LinkShape]:
-        ...
+        """
+        Shapes of an object, attached or not, in its own frame.
+        """
     @property
     def attached(self) -> list[str]:
         """
@@ -381,9 +433,9 @@ class Rejection(enum.Enum):
     grasp_filter = 5
     limits = 2
     none = 0
-    reach = 1
     scene = 4
     self_collision = 3
+    unreachable = 1
 class Rejections:
     """
     How many candidates fell at which filter.
@@ -391,7 +443,9 @@ class Rejections:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def grasp_filter(self) -> int:
         """
@@ -401,11 +455,6 @@ class Rejections:
     def limits(self) -> int:
         """
         Reached only outside joint limits.
-        """
-    @property
-    def reach(self) -> int:
-        """
-        No arm configuration reaches the pose.
         """
     @property
     def scene(self) -> int:
@@ -419,85 +468,124 @@ class Rejections:
         """
     @property
     def total(self) -> int:
-        ...
+        """
+        Over all filters.
+        """
+    @property
+    def unreachable(self) -> int:
+        """
+        No arm configuration reaches the pose.
+        """
 class Box:
     """
     A box, centred; full lengths [m].
     """
     def __init__(self, size: numpy.typing.ArrayLike) -> None:
-        ...
+        """
+        `size` (3,): full lengths along x, y, z [m], > 0.
+        """
     def __repr__(self) -> str:
         ...
     @property
     def size(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Full lengths (3,) [m].
+        """
 class Sphere:
     """
     A sphere [m].
     """
     def __init__(self, radius: float) -> None:
-        ...
+        """
+        `radius` [m], > 0.
+        """
     def __repr__(self) -> str:
         ...
     @property
     def radius(self) -> float:
-        ...
+        """
+        [m]
+        """
 class Cylinder:
     """
     A cylinder along z, centred [m].
     """
     def __init__(self, radius: float, length: float) -> None:
-        ...
+        """
+        `radius` and `length` along z [m], > 0.
+        """
     def __repr__(self) -> str:
         ...
     @property
     def length(self) -> float:
-        ...
+        """
+        Along z [m].
+        """
     @property
     def radius(self) -> float:
-        ...
+        """
+        [m]
+        """
 class Capsule:
     """
     A capsule along z, centred; `length` without the caps [m].
     """
     def __init__(self, radius: float, length: float) -> None:
-        ...
+        """
+        `radius` and `length` (without the caps) [m], > 0.
+        """
     def __repr__(self) -> str:
         ...
     @property
     def length(self) -> float:
-        ...
+        """
+        Length without the caps [m].
+        """
     @property
     def radius(self) -> float:
-        ...
+        """
+        [m]
+        """
 class Plane:
     """
     A half space: solid where normal . x <= offset.
     """
     def __init__(self, normal: numpy.typing.ArrayLike, offset: float) -> None:
-        ...
+        """
+        Solid where normal . x <= offset; `normal` (3,) is a unit vector, `offset` [m].
+        """
     def __repr__(self) -> str:
         ...
     @property
     def normal(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Unit normal (3,), out of the solid.
+        """
     @property
     def offset(self) -> float:
-        ...
+        """
+        normal . x = offset on the surface [m].
+        """
 class Voxels:
     """
     Axis-aligned solid voxels of one edge length [m].
     """
     def __init__(self, centres: numpy.typing.ArrayLike, resolution: float) -> None:
-        ...
+        """
+        `centres` (m, 3) of cubes with edge `resolution` [m], > 0.
+        """
     def __repr__(self) -> str:
         ...
     @property
     def centres(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        (m, 3) [m].
+        """
     @property
     def resolution(self) -> float:
-        ...
+        """
+        Edge of a voxel [m].
+        """
 class Mesh:
     """
     A triangle mesh [m]; closed ones are solids, open ones surfaces.
@@ -511,13 +599,19 @@ class Mesh:
         ...
     @property
     def closed(self) -> bool:
-        ...
+        """
+        A solid; open meshes are surfaces.
+        """
     @property
     def convex(self) -> bool:
-        ...
+        """
+        Closed and convex.
+        """
     @property
     def source(self) -> str:
-        ...
+        """
+        File it was read from.
+        """
     @property
     def triangles(self) -> numpy.typing.NDArray[numpy.int32]:
         """
@@ -543,7 +637,9 @@ class LinkShape:
         A mesh read from a file, which is remembered so that robots and plans can be written out.
         """
     def __init__(self, shape: Box | Sphere | Cylinder | Capsule | Plane | Mesh | Voxels, pose: numpy.typing.ArrayLike | None = None) -> None:
-        ...
+        """
+        `shape` at `pose` (4, 4) in the body's frame, default: the identity.
+        """
     def __repr__(self) -> str:
         ...
     def surface(self, segments: int = 24) -> Mesh:
@@ -557,26 +653,36 @@ class LinkShape:
         """
     @property
     def kind(self) -> str:
-        ...
+        """
+        box, sphere, cylinder, capsule, plane, mesh or voxels.
+        """
     @property
     def mesh_path(self) -> str:
-        ...
+        """
+        File of a mesh; empty for other shapes.
+        """
     @property
     def mesh_scale(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Scale of the file along its axes (3,).
+        """
     @property
     def pose(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Pose of the shape in the body's frame (4, 4).
+        """
     @property
     def shape(self) -> Box | Sphere | Cylinder | Capsule | Plane | Mesh | Voxels:
-        ...
+        """
+        The shape itself.
+        """
 class DerivativeFreeResult:
     """
     What a search by values alone found.
     """
     def __repr__(self) -> str:
         ...
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, typing.Any]:
         """
         All fields by name.
         """
@@ -611,15 +717,20 @@ class DerivativeFreeResult:
         Largest c_i(x), or 0.
         """
     @property
-    def x(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def x(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         The best point seen: the least violated, then the cheapest; inside the bounds.
         """
 class SetCoverResult:
+    """
+    What solve_set_cover found.
+    """
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def chosen(self) -> list[int]:
         """
@@ -627,7 +738,9 @@ class SetCoverResult:
         """
     @property
     def cost(self) -> float:
-        ...
+        """
+        Sum over the chosen sets.
+        """
     @property
     def lower_bound(self) -> float:
         """
@@ -644,13 +757,20 @@ class SetCoverResult:
         Elements in no set.
         """
 class TourResult:
+    """
+    What shortest_visiting_tour found.
+    """
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def length(self) -> float:
-        ...
+        """
+        Of the tour from start over all stops to the goal.
+        """
     @property
     def lower_bound(self) -> float:
         """
@@ -663,7 +783,9 @@ class TourResult:
         """
     @property
     def outcome(self) -> Outcome:
-        ...
+        """
+        `solved` with a proof of the shortest, `approximate` without.
+        """
     @property
     def proven(self) -> bool:
         """
@@ -676,10 +798,14 @@ class SharedTours:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def durations(self) -> list[float]:
-        ...
+        """
+        One a robot; 0 when it stays.
+        """
     @property
     def lower_bound(self) -> float:
         """
@@ -697,7 +823,37 @@ class SharedTours:
         """
     @property
     def outcome(self) -> Outcome:
-        ...
+        """
+        `solved`: proven least; `approximate`: a good one with a bound.
+        """
+class RobotSource:
+    """
+    What a robot was made of, unread: its URDFs as they were given, for those who read them by
+    other means than Robot does (verify).
+    """
+    def __init__(self, base: str = 'fixed', *, base_limits: collections.abc.Mapping[str, float | None] | None = None, srdf: str = '') -> None:
+        """
+        Empty; add_urdf() adds what it was made of.
+        """
+    def add_link(self, name: str, parent_link: str, T: numpy.typing.ArrayLike | None = None, shapes: collections.abc.Sequence[LinkShape] = []) -> None:
+        """
+        A fixed link that comes from no URDF.
+        """
+    def add_urdf(self, urdf: str, *, origin: str = '<string>', prefix: str = '', parent_link: str = '', T: numpy.typing.ArrayLike | None = None, mesh_files: collections.abc.Mapping[str, str] = {}) -> None:
+        """
+        A URDF's text. Every name in it gets the prefix; its root link hangs at T on `parent_link` (empty: it is the
+        robot's root). `mesh_files` maps the URDF's mesh filenames to files; an empty one leaves the mesh out.
+        """
+    @property
+    def added_links(self) -> list[dict[str, typing.Any]]:
+        """
+        As dicts with the arguments of add_link.
+        """
+    @property
+    def urdfs(self) -> list[dict[str, typing.Any]]:
+        """
+        As dicts with the arguments of add_urdf.
+        """
 class IkResult:
     """
     Answer of inverse kinematics.
@@ -705,10 +861,14 @@ class IkResult:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def iterations(self) -> int:
-        ...
+        """
+        Steps of all descents.
+        """
     @property
     def objective(self) -> float:
         """
@@ -716,7 +876,9 @@ class IkResult:
         """
     @property
     def outcome(self) -> Outcome:
-        ...
+        """
+        How it ended; `solved` alone comes with an answer.
+        """
     @property
     def position_error(self) -> float:
         """
@@ -729,7 +891,9 @@ class IkResult:
         """
     @property
     def rejections(self) -> Rejections:
-        ...
+        """
+        What the descents ended at: reach, limits or collisions.
+        """
     @property
     def rotation_error(self) -> float:
         """
@@ -744,7 +908,9 @@ class IkBranches:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def complete(self) -> bool:
         """
@@ -788,14 +954,18 @@ class JointTrajectory:
         pose and twist follow the time.
         """
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     def to_joint_trajectory(self, base_pose: numpy.typing.ArrayLike | None = None) -> dict[str, typing.Any]:
         """
         A dict shaped like a ROS trajectory_msgs/JointTrajectory, with base_pose and base_twist at every point.
         """
     @property
     def accelerations(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        (k, n) [rad/s^2 or m/s^2]; (0, 0) when not known.
+        """
     @property
     def duration(self) -> float:
         """
@@ -803,7 +973,9 @@ class JointTrajectory:
         """
     @property
     def names(self) -> list[str]:
-        ...
+        """
+        One a column.
+        """
     @property
     def positions(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -816,7 +988,9 @@ class JointTrajectory:
         """
     @property
     def velocities(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        (k, n) [rad/s or m/s]; (0, 0) when not known.
+        """
 class Contact:
     """
     Two bodies that touch.
@@ -824,16 +998,24 @@ class Contact:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def a(self) -> str:
-        ...
+        """
+        A robot link or an attached object.
+        """
     @property
     def b(self) -> str:
-        ...
+        """
+        A robot link, an attached object or an object of the scene.
+        """
     @property
     def with_scene(self) -> bool:
-        ...
+        """
+        `b` is an object of the scene.
+        """
 class DistanceResult:
     """
     The smallest distance and where it is.
@@ -843,13 +1025,19 @@ class DistanceResult:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def a(self) -> str:
-        ...
+        """
+        One body of the closest pair: a robot link or an attached object.
+        """
     @property
     def b(self) -> str:
-        ...
+        """
+        The other body: a robot link, an attached object or an object of the scene.
+        """
     @property
     def gradient(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         """
@@ -862,7 +1050,9 @@ class DistanceResult:
         """
     @property
     def point_b(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        The closest point on `b` (3,) in the world frame [m].
+        """
     @property
     def value(self) -> float:
         """
@@ -882,7 +1072,9 @@ class EdgeResult:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def checks(self) -> int:
         """
@@ -900,7 +1092,9 @@ class EdgeResult:
         """
     @property
     def free(self) -> bool:
-        ...
+        """
+        The whole edge is free.
+        """
 class CollisionChecker:
     """
     Collision questions about one group in a snapshot of the world: later changes of the world
@@ -908,6 +1102,8 @@ class CollisionChecker:
     """
     def __init__(self, robot: Robot, world: World, group: JointGroup, *, padding: float = 0.0, check_self: bool = True, check_scene: bool = True, attached_only: bool = False) -> None:
         """
+        For configurations of `group` of `robot` in `world` as it is now.
+        
         Keyword options:
             padding: float = 0.0  # robot shapes are grown by this against the scene [m]
             check_self: bool = True  # robot (and what it holds) against itself
@@ -965,7 +1161,9 @@ class CollisionChecker:
         """
     @property
     def group(self) -> JointGroup:
-        ...
+        """
+        The group whose configurations it checks.
+        """
     @property
     def motion_bounds(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -983,13 +1181,15 @@ class IkObjective:
         """
     @property
     def name(self) -> str:
-        ...
+        """
+        Which objective it is.
+        """
 class ReachDatabase:
     """
     Sampled arm configurations free of self-collision, in cells of the tool pose (P1 3.2.1).
     """
     @staticmethod
-    def build(arm: JointGroup, *, progress: collections.abc.Callable[[str, float], object] | None = None, samples: int = 2000000, position_cell: float = 0.1, rotation_cell: float = 0.55, max_per_cell: int = 16, min_manipulability: float = 0.02, thinning: float = 0.0, seed: int = 1, threads: int = 0) -> ReachDatabase:
+    def build(arm: JointGroup, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, samples: int = 2000000, position_cell: float = 0.1, rotation_cell: float = 0.55, max_per_cell: int = 16, min_manipulability: float = 0.02, thinning: float = 0.0, seed: int = 1, threads: int = 0) -> ReachDatabase:
         """
         Samples the arm. `progress` is called with (stage, fraction).
         
@@ -1004,9 +1204,10 @@ class ReachDatabase:
             threads: int = 0  # 0: all; does not change the answer
         """
     @staticmethod
-    def build_parts(folder: str | os.PathLike[str], arm: JointGroup, parts: collections.abc.Sequence[int], *, progress: collections.abc.Callable[[str, float], object] | None = None, samples: int = 2000000, position_cell: float = 0.1, rotation_cell: float = 0.55, max_per_cell: int = 16, min_manipulability: float = 0.02, thinning: float = 0.0, seed: int = 1, threads: int = 0) -> bool:
+    def build_parts(folder: str | os.PathLike[str], arm: JointGroup, parts: collections.abc.Sequence[int], *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, samples: int = 2000000, position_cell: float = 0.1, rotation_cell: float = 0.55, max_per_cell: int = 16, min_manipulability: float = 0.02, thinning: float = 0.0, seed: int = 1, threads: int = 0) -> bool:
         """
         Draws single parts into a folder; in `path`.partial they are what build_to(path, ...) goes on from.
+        
         Keyword options:
             samples: int = 2000000  # arm configurations drawn
             position_cell: float = 0.1  # edge of a position cell [m]
@@ -1018,9 +1219,10 @@ class ReachDatabase:
             threads: int = 0  # 0: all; does not change the answer
         """
     @staticmethod
-    def build_to(path: str | os.PathLike[str], arm: JointGroup, *, progress: collections.abc.Callable[[str, float], object] | None = None, samples: int = 2000000, position_cell: float = 0.1, rotation_cell: float = 0.55, max_per_cell: int = 16, min_manipulability: float = 0.02, thinning: float = 0.0, seed: int = 1, threads: int = 0) -> ReachDatabase:
+    def build_to(path: str | os.PathLike[str], arm: JointGroup, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, samples: int = 2000000, position_cell: float = 0.1, rotation_cell: float = 0.55, max_per_cell: int = 16, min_manipulability: float = 0.02, thinning: float = 0.0, seed: int = 1, threads: int = 0) -> ReachDatabase:
         """
         Builds through files into a folder; interrupted and called again, it goes on where it was.
+        
         Keyword options:
             samples: int = 2000000  # arm configurations drawn
             position_cell: float = 0.1  # edge of a position cell [m]
@@ -1037,9 +1239,10 @@ class ReachDatabase:
         Raises IoError on a truncated, foreign or corrupt database, and on one built for another arm than `arm`.
         """
     @staticmethod
-    def load_or_build(arm: JointGroup, cache_dir: str | os.PathLike[str], *, progress: collections.abc.Callable[[str, float], object] | None = None, samples: int = 2000000, position_cell: float = 0.1, rotation_cell: float = 0.55, max_per_cell: int = 16, min_manipulability: float = 0.02, thinning: float = 0.0, seed: int = 1, threads: int = 0) -> ReachDatabase:
+    def load_or_build(arm: JointGroup, cache_dir: str | os.PathLike[str], *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, samples: int = 2000000, position_cell: float = 0.1, rotation_cell: float = 0.55, max_per_cell: int = 16, min_manipulability: float = 0.02, thinning: float = 0.0, seed: int = 1, threads: int = 0) -> ReachDatabase:
         """
         The database of this arm and these options from the cache folder; built and stored when it is not there.
+        
         Keyword options:
             samples: int = 2000000  # arm configurations drawn
             position_cell: float = 0.1  # edge of a position cell [m]
@@ -1054,6 +1257,7 @@ class ReachDatabase:
     def part_count(arm: JointGroup, *, samples: int = 2000000, position_cell: float = 0.1, rotation_cell: float = 0.55, max_per_cell: int = 16, min_manipulability: float = 0.02, thinning: float = 0.0, seed: int = 1, threads: int = 0) -> int:
         """
         Into how many parts build_to divides a build with these options.
+        
         Keyword options:
             samples: int = 2000000  # arm configurations drawn
             position_cell: float = 0.1  # edge of a position cell [m]
@@ -1086,7 +1290,7 @@ class ReachDatabase:
         """
         What of the arm has changed since the build, in words; empty when nothing.
         """
-    def find_base_placement(self, arm: JointGroup, T_world_tips: numpy.typing.ArrayLike, *, checker: CollisionChecker | None = None, progress: collections.abc.Callable[[str, float], object] | None = None, step: float = 0.05, headings: int = 24, candidates: int = 64, seeds: int = 8, refinements: int = 4, position_tolerance: float = 1e-05, rotation_tolerance: float = 0.0001, threads: int = 0) -> BasePlacement:
+    def find_base_placement(self, arm: JointGroup, T_world_tips: numpy.typing.ArrayLike, *, checker: CollisionChecker | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, step: float = 0.05, headings: int = 24, candidates: int = 64, seeds: int = 8, refinements: int = 4, position_tolerance: float = 1e-05, rotation_tolerance: float = 0.0001, threads: int = 0) -> BasePlacement:
         """
         One base pose from which as many tool poses (m, 4, 4) in the world as possible are reached.
         
@@ -1109,7 +1313,9 @@ class ReachDatabase:
         Stored configurations (k, n) whose tool pose lies in the pose's cell; k may be 0.
         """
     def save(self, path: str | os.PathLike[str]) -> None:
-        ...
+        """
+        Writes a folder to a temporary name and renames it; raises IoError where something other than a database stands.
+        """
     def solve(self, arm: JointGroup, T_base_tip: numpy.typing.ArrayLike, *, checker: CollisionChecker | None = None, count: int = 8, candidates: int = 64, distinct: float = 0.1, position_tolerance: float = 1e-05, rotation_tolerance: float = 0.0001, threads: int = 0) -> numpy.typing.NDArray[numpy.float64]:
         """
         Exact configurations (k, n) for a pose relative to the root, from stored ones near it; the most different ones first, with a checker the free ones.
@@ -1124,7 +1330,8 @@ class ReachDatabase:
         """
     def solve_batch(self, arm: JointGroup, T_base_tips: numpy.typing.ArrayLike, *, checker: CollisionChecker | None = None, count: int = 8, candidates: int = 64, distinct: float = 0.1, position_tolerance: float = 1e-05, rotation_tolerance: float = 0.0001, threads: int = 0) -> list[numpy.typing.NDArray[numpy.float64]]:
         """
-        solve() for many poses (m, 4, 4) at a time: a list of arrays. The same keywords.
+        solve() for many poses (m, 4, 4) at a time: a list of arrays (k, n).
+        
         Keyword options:
             count: int = 8  # solutions at most
             candidates: int = 64  # stored configurations tried
@@ -1134,7 +1341,9 @@ class ReachDatabase:
             threads: int = 0  # of batches; 0: all
         """
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     def verify(self) -> None:
         """
         Compares every file with its checksums; raises IoError where they differ.
@@ -1151,10 +1360,14 @@ class ReachDatabase:
         """
     @property
     def joint_count(self) -> int:
-        ...
+        """
+        Columns of a stored configuration.
+        """
     @property
     def joint_lower(self) -> list[float]:
-        ...
+        """
+        Least value of each joint [rad or m].
+        """
     @property
     def joint_step(self) -> list[float]:
         """
@@ -1162,7 +1375,9 @@ class ReachDatabase:
         """
     @property
     def key(self) -> str:
-        ...
+        """
+        Hash of robot, group and options: databases of one key are the same.
+        """
     @property
     def path(self) -> str:
         """
@@ -1180,7 +1395,9 @@ class BasePlacement:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def base_pose(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -1202,7 +1419,7 @@ class CapabilityMap:
     (P3 3.9.2, equation 3.13). Everything is in the robot's root frame. Immutable.
     """
     @staticmethod
-    def build(arm: JointGroup, world: World | None = None, *, progress: collections.abc.Callable[[str, float], object] | None = None, lower: numpy.typing.ArrayLike = (-1.0, -1.0, 0.0), upper: numpy.typing.ArrayLike = (1.0, 1.0, 2.6), voxel: float = 0.1, poses: int = 200, rolls: int = 1, approach: numpy.typing.ArrayLike = (0.0, 0.0, 1.0), samples: int = 0, sweeps: int = 4, restarts: int = 0, padding: float = 0.0, seed: int = 1, threads: int = 0) -> CapabilityMap:
+    def build(arm: JointGroup, world: World | None = None, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, lower: numpy.typing.ArrayLike = (-1.0, -1.0, 0.0), upper: numpy.typing.ArrayLike = (1.0, 1.0, 2.6), voxel: float = 0.1, poses: int = 200, rolls: int = 1, approach: numpy.typing.ArrayLike = (0.0, 0.0, 1.0), samples: int = 0, sweeps: int = 4, restarts: int = 0, padding: float = 0.0, seed: int = 1, threads: int = 0) -> CapabilityMap:
         """
         Tries every tool pose of every voxel. `progress` is called with (stage, fraction).
         
@@ -1240,7 +1457,7 @@ class CapabilityMap:
         """
         Index of the voxel that holds a point of the root frame; 0 outside.
         """
-    def restricted(self, arm: JointGroup, world: World, *, progress: collections.abc.Callable[[str, float], object] | None = None) -> CapabilityMap:
+    def restricted(self, arm: JointGroup, world: World, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> CapabilityMap:
         """
         The map of the same arm in a world with more in it: only what is reached here is looked at again.
         """
@@ -1263,7 +1480,7 @@ class CapabilityMap:
         Centres of the voxels (nx, ny, nz, 3) [m].
         """
     @property
-    def classes(self) -> numpy.typing.NDArray[numpy.float32]:
+    def classes(self) -> numpy.typing.NDArray[numpy.uint8]:
         """
         What became of each pose (nx, ny, nz, poses), uint8: 0 reached, 1 out of reach, 2 limits, 3 self-collision,
         4 scene.
@@ -1280,7 +1497,9 @@ class CapabilityMap:
         """
     @property
     def lower(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Lower corner of the grid (3,) in the robot's root frame [m].
+        """
     @property
     def maximum(self) -> float:
         """
@@ -1298,7 +1517,9 @@ class CapabilityMap:
         """
     @property
     def shape(self) -> tuple[int, int, int]:
-        ...
+        """
+        Voxels along x, y, z.
+        """
     @property
     def tool_poses(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -1306,90 +1527,320 @@ class CapabilityMap:
         """
     @property
     def upper(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Upper corner of the grid (3,) in the robot's root frame [m].
+        """
     @property
     def voxel(self) -> float:
         """
         Edge of a voxel [m].
         """
-class FingerJoint:
+class ContactPairProvenance:
     """
-    A finger joint, linear in the opening.
+    Of sample_grasps: two opposed contacts and a direction of approach.
     """
-    def __init__(self, name: str, closed: float, open: float) -> None:
+    def __repr__(self) -> str:
         ...
+    @property
+    def approach(self) -> int:
+        """
+        Index among the approach directions around the closing axis.
+        """
+    @property
+    def flipped(self) -> bool:
+        """
+        The hand is turned by half a turn about the approach.
+        """
+    @property
+    def pair(self) -> int:
+        """
+        Index among the object's contact pairs, those that are too wide included.
+        """
+class PipeProvenance:
+    """
+    Of Pipe.grasp and Pipe.sample_grasps: P2's four variables (P2 3.2.3.1).
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def angle(self) -> float:
+        """
+        From the section's y axis to the approach about its x axis [rad].
+        """
+    @property
+    def flipped(self) -> bool:
+        """
+        The hand is turned by half a turn about the approach.
+        """
+    @property
+    def length(self) -> float:
+        """
+        From the section's first node to the tool frame [m].
+        """
+    @property
+    def section(self) -> int:
+        """
+        Index of the pipe's section.
+        """
+class HeightMapProvenance:
+    """
+    Of evaluate_graspability: a place of a height map and of a depth image.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def angle(self) -> float:
+        """
+        Direction of the closing axis in the map's frame, in [0, pi) [rad].
+        """
+    @property
+    def cell(self) -> tuple[int, int]:
+        """
+        (ix, iy) of the height map.
+        """
+    @property
+    def height(self) -> float:
+        """
+        Height of the finger tips above the map's frame [m].
+        """
+    @property
+    def pixel(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (u, v) in the depth image; (-1, -1) without one.
+        """
+class Grasp:
+    """
+    One way to hold an object: where the hand stands, how far it is open, what it costs and how good it is.
+    """
+    def __init__(self, T_object_hand: numpy.typing.ArrayLike, opening: float = 0.0, *, cost: float = 0.0, quality: float = 1.0, posture: collections.abc.Sequence[float] = []) -> None:
+        """
+        Pose of the hand's tool frame in the object's frame (4, 4); distance between the fingers while holding [m]; cost that
+        planners add to their path's length; quality in [0, 1]; for a hand with several joint groups how far each is open, in [0, 1].
+        """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict[str, typing.Any]:
+        """
+        All of it as numbers, strings, lists and dicts; parts by their values.
+        """
+    @property
+    def T_object_hand(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Pose of the hand's tool frame in the object's frame; in the world where no object is known.
+        """
+    @property
+    def cost(self) -> float:
+        """
+        Added by planners to their path's length.
+        """
+    @property
+    def opening(self) -> float:
+        """
+        Distance between the fingers while holding [m].
+        """
+    @property
+    def parts(self) -> dict[str, tuple[float, float]]:
+        """
+        Parts of the quality by name: (value, weight); each is a factor 1 - weight + weight * value.
+        """
+    @property
+    def posture(self) -> list[float]:
+        """
+        How far each joint group of the hand is open; []: as `opening` says.
+        """
+    @property
+    def provenance(self) -> None | ContactPairProvenance | PipeProvenance | HeightMapProvenance:
+        """
+        Which sampler it came from, with which numbers; None: it was given.
+        """
+    @property
+    def quality(self) -> float:
+        """
+        Larger is better, in [0, 1].
+        """
+class HandJoint:
+    """
+    A driven joint of a hand: how far it goes between closed and open [rad] or [m]. Joints of one group move together.
+    """
+    def __init__(self, name: str, closed: float, open: float, group: str = 'fingers') -> None:
+        """
+        See the properties of the same names.
+        """
     def __repr__(self) -> str:
         ...
     @property
     def closed(self) -> float:
-        ...
+        """
+        Value while the fingers are closed.
+        """
+    @property
+    def group(self) -> str:
+        """
+        Joints of one group move together.
+        """
     @property
     def name(self) -> str:
-        ...
+        """
+        The robot's joint.
+        """
     @property
     def open(self) -> float:
-        ...
-class Gripper:
+        """
+        Value while they are open.
+        """
+class HandBody:
     """
-    A parallel-jaw gripper; the tool centre point lies midway between the pads' centres.
+    Boxes around the fingers and the palm of a hand [m].
     """
-    def __init__(self, tcp_link: str, *, approach: numpy.typing.ArrayLike, closing: numpy.typing.ArrayLike, max_opening: float, finger_depth: float, finger_width: float, clearance: float = 0.01, joints: collections.abc.Sequence[FingerJoint] = [], finger_links: collections.abc.Sequence[str] = []) -> None:
-        ...
+    def __init__(self, *, finger_thickness: float = 0.012, finger_length: float = 0.12, palm_length: float = 0.13, palm_width: float = 0.065) -> None:
+        """
+        Sizes [m], > 0; see the properties of the same names.
+        """
     def __repr__(self) -> str:
         ...
+    @property
+    def finger_length(self) -> float:
+        """
+        From the finger tips back to the palm.
+        """
+    @property
+    def finger_thickness(self) -> float:
+        """
+        Of a finger along the closing axis.
+        """
+    @property
+    def palm_length(self) -> float:
+        """
+        Of the palm along the closing axis.
+        """
+    @property
+    def palm_width(self) -> float:
+        """
+        Of the palm across it.
+        """
+class Hand:
+    """
+    The hand at the end of an arm: tool frame, approach and closing axis, and how its joints follow from the opening.
+    The tool frame's origin (tool centre point) lies midway between the pads' centres; a parallel gripper has one group
+    of joints, linear in the opening.
+    """
+    @staticmethod
+    def from_robot(robot: Robot, tool_link: str, *, group: str = '', approach: numpy.typing.ArrayLike | None = None, closing: numpy.typing.ArrayLike | None = None, clearance: float = 0.01, postures: int = 32) -> Hand:
+        """
+        A hand read from a robot that was loaded with its meshes: axes, ends of the joints, openings and body are measured
+        by forward kinematics between the collision shapes of the finger tips. `group` is an SRDF end effector or group; ''
+        takes every joint below the tool link's body.
+        """
+    def __init__(self, tool_link: str, *, approach: numpy.typing.ArrayLike, closing: numpy.typing.ArrayLike, max_opening: float, finger_depth: float, finger_width: float, clearance: float = 0.01, joints: collections.abc.Sequence[HandJoint] = [], finger_links: collections.abc.Sequence[str] = [], kind: str = 'parallel', min_opening: float = 0.0, openings: collections.abc.Sequence[float] = [], preshape: collections.abc.Mapping[str, float] = {}, body: HandBody | None = None) -> None:
+        """
+        A hand by its numbers, each described at the property of its name; `body` None: fingers of 12 cm before a palm of 13 x 6.5 cm.
+        """
+    def __repr__(self) -> str:
+        ...
+    @typing.overload
     def joint_values(self, opening: float) -> dict[str, float]:
         """
-        Finger joint values at an opening [m].
+        Joint values at an opening [m].
+        """
+    @typing.overload
+    def joint_values(self, grasp: Grasp) -> dict[str, float]:
+        """
+        Joint values while holding: those of the grasp's posture if it has one, else of its opening.
+        """
+    def opening_at(self, share_open: float) -> float:
+        """
+        The opening at which they are so far open [m].
+        """
+    def posture_values(self, posture: collections.abc.Sequence[float]) -> dict[str, float]:
+        """
+        Joint values of a posture: for each of `groups` how far it is open, in [0, 1].
         """
     def pregrasp_opening(self, width: float) -> float:
-        ...
+        """
+        Opening while moving in on a part of this width: with clearance on both sides, at most max_opening [m].
+        """
+    def shapes(self, opening: float) -> list[LinkShape]:
+        """
+        Left and right finger and palm as boxes in the tool frame.
+        """
+    def share_open(self, opening: float) -> float:
+        """
+        How far open the fingers are at an opening, in [0, 1].
+        """
     @property
     def approach(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Unit axis of the tool frame along which the hand moves in.
+        """
+    @property
+    def body(self) -> HandBody:
+        """
+        Boxes around fingers and palm.
+        """
     @property
     def clearance(self) -> float:
-        ...
+        """
+        Kept free on each side of the part while moving in [m].
+        """
     @property
     def closing(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Unit axis of the tool frame along which the pads close.
+        """
     @property
     def finger_depth(self) -> float:
-        ...
+        """
+        Pad length along the approach axis [m].
+        """
     @property
     def finger_links(self) -> list[str]:
-        ...
+        """
+        Links that may touch the held part.
+        """
     @property
     def finger_width(self) -> float:
-        ...
+        """
+        Pad size across approach and closing [m].
+        """
     @property
-    def joints(self) -> list[FingerJoint]:
-        ...
+    def groups(self) -> list[str]:
+        """
+        Names of the joint groups.
+        """
+    @property
+    def joints(self) -> list[HandJoint]:
+        """
+        The driven joints with their values closed and open.
+        """
+    @property
+    def kind(self) -> str:
+        """
+        'parallel', 'angular' or 'adaptive'.
+        """
     @property
     def max_opening(self) -> float:
-        ...
-    @property
-    def tcp_link(self) -> str:
-        ...
-class Grasp:
-    """
-    One way to hold an object.
-    """
-    def __init__(self, T_object_tcp: numpy.typing.ArrayLike, width: float, quality: float = 1.0) -> None:
-        ...
-    def __repr__(self) -> str:
-        ...
-    def to_dict(self) -> dict[str, typing.Any]:
-        ...
-    @property
-    def T_object_tcp(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
-    @property
-    def quality(self) -> float:
-        ...
-    @property
-    def width(self) -> float:
         """
-        Opening of the fingers while holding [m].
+        Widest part that fits [m].
+        """
+    @property
+    def min_opening(self) -> float:
+        """
+        Thinnest part that is held [m].
+        """
+    @property
+    def openings(self) -> list[float]:
+        """
+        Openings at equal steps of the joints [m]; empty: linear in them.
+        """
+    @property
+    def preshape(self) -> dict[str, float]:
+        """
+        Groups that the opening does not move, and how far open they stay.
+        """
+    @property
+    def tool_link(self) -> str:
+        """
+        Link whose frame is the tool frame.
         """
 class ToolRegion:
     """
@@ -1412,19 +1863,30 @@ class OrientationConstraint:
     def __repr__(self) -> str:
         ...
 class MotionStats:
+    """
+    What a search of plan_motion took.
+    """
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def collision_queries(self) -> int:
-        ...
+        """
+        Configurations checked.
+        """
     @property
     def length_before_shortening(self) -> float:
-        ...
+        """
+        Length of the first path in joint space.
+        """
     @property
     def seconds(self) -> float:
-        ...
+        """
+        Wall-clock time [s].
+        """
 class MotionResult:
     """
     What plan_motion found.
@@ -1432,7 +1894,9 @@ class MotionResult:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def beyond_limits(self) -> str:
         """
@@ -1450,10 +1914,14 @@ class MotionResult:
         """
     @property
     def goal_index(self) -> int:
-        ...
+        """
+        Which of the goals the path reaches; -1 unless solved.
+        """
     @property
     def outcome(self) -> Outcome:
-        ...
+        """
+        How it ended; `solved` alone comes with an answer.
+        """
     @property
     def path(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         """
@@ -1466,7 +1934,9 @@ class MotionResult:
         """
     @property
     def stats(self) -> MotionStats:
-        ...
+        """
+        What the search took.
+        """
 class StraightLineResult:
     """
     What plan_straight_line found.
@@ -1474,7 +1944,9 @@ class StraightLineResult:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def beyond_limits(self) -> str:
         """
@@ -1497,7 +1969,9 @@ class StraightLineResult:
         """
     @property
     def outcome(self) -> Outcome:
-        ...
+        """
+        `solved` when the whole line is followed.
+        """
     @property
     def path(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         """
@@ -1510,7 +1984,9 @@ class CartesianResult:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def beyond_limits(self) -> str:
         """
@@ -1543,7 +2019,9 @@ class CartesianResult:
         """
     @property
     def outcome(self) -> Outcome:
-        ...
+        """
+        `solved` when every pose is reached in order.
+        """
     @property
     def path(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         """
@@ -1564,7 +2042,7 @@ class Roadmap:
     Configurations of a group drawn from its joint box and joined when near, without any collision check: it serves every grasp, object and scene (P2 4.3.2.1). Immutable.
     """
     @staticmethod
-    def build(group: JointGroup, *, progress: collections.abc.Callable[[str, float], object] | None = None, vertices: int = 5000, gamma: float = 4.0, neighbours: int = 0, seed: int = 1) -> Roadmap:
+    def build(group: JointGroup, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, vertices: int = 5000, gamma: float = 4.0, neighbours: int = 0, seed: int = 1) -> Roadmap:
         """
         Draws and joins; a larger roadmap of the same seed holds a smaller one's vertices.
         
@@ -1592,7 +2070,9 @@ class Roadmap:
         To a temporary name first, then renamed.
         """
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def edges(self) -> numpy.typing.NDArray[numpy.int32]:
         """
@@ -1608,58 +2088,51 @@ class Roadmap:
         """
         (n, joints)
         """
-class CandidateGrasp:
-    """
-    One way to hold the object while it is carried.
-    """
-    def __init__(self, T_object_tool: numpy.typing.ArrayLike, opening: float = 0.0, cost: float = 0.0) -> None:
-        """
-        Pose of the group's tip in the object's frame (4, 4); opening of the fingers while holding [m], used when the problem has a gripper; cost added to the path's length.
-        """
-    def __repr__(self) -> str:
-        ...
-    def to_dict(self) -> dict[str, typing.Any]:
-        ...
-    @property
-    def T_object_tool(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
-    @property
-    def cost(self) -> float:
-        ...
-    @property
-    def opening(self) -> float:
-        ...
 class ManipulationProblem:
     """
     Moves an object from one pose to another with any of many grasps (P2 4.2).
     """
-    def __init__(self, group: JointGroup, world: World, object: LinkShape | collections.abc.Sequence[LinkShape], T_world_start: numpy.typing.ArrayLike, T_world_goal: numpy.typing.ArrayLike, grasps: collections.abc.Sequence[CandidateGrasp] | numpy.typing.ArrayLike, *, gripper: Gripper | None = None, touch_links: collections.abc.Sequence[str] = [], object_name: str = 'object') -> None:
+    def __init__(self, group: JointGroup, world: World, object: LinkShape | collections.abc.Sequence[LinkShape], T_world_start: numpy.typing.ArrayLike, T_world_goal: numpy.typing.ArrayLike, grasps: collections.abc.Sequence[Grasp] | numpy.typing.ArrayLike, *, gripper: Hand | None = None, touch_links: collections.abc.Sequence[str] = [], object_name: str = 'object') -> None:
         """
-        `object` is a LinkShape or a list of them, in its own frame; `world` is without it. `grasps` are CandidateGrasp, or poses of the tool in the object's frame as (m, 4, 4). With `gripper` the fingers are set to each grasp's opening. Links in `touch_links` may touch the object; none given: those of the end effector. The group may be an arm or an arm on an omni base; a diff_drive base is refused, since it could not drive the paths.
+        `object` is a LinkShape or a list of them, in its own frame; `world` is without it. `grasps` are Grasp, or poses of the hand in the object's frame as (m, 4, 4). With `gripper` the fingers are set to each grasp's opening. Links in `touch_links` may touch the object; none given: those of the end effector. The group may be an arm or an arm on an omni base; a diff_drive base is refused, since it could not drive the paths.
         """
     def __repr__(self) -> str:
         ...
     @property
     def T_world_goal(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Pose of the object at the end (4, 4).
+        """
     @property
     def T_world_start(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Pose of the object at the beginning (4, 4).
+        """
     @property
-    def grasps(self) -> list[CandidateGrasp]:
-        ...
+    def grasps(self) -> list[Grasp]:
+        """
+        The grasps to choose from.
+        """
     @property
     def group(self) -> JointGroup:
-        ...
+        """
+        Arm, or arm and omni base; its tip is the tool.
+        """
     @property
     def object(self) -> list[LinkShape]:
-        ...
+        """
+        Shapes of the object in its own frame.
+        """
     @property
     def object_name(self) -> str:
-        ...
+        """
+        Name under which it is attached.
+        """
     @property
     def world(self) -> World:
-        ...
+        """
+        The world without the object.
+        """
 class SearchTree:
     """
     One tree of RRT*-MG as it stood at the end: of one grasp, from its starts or its goals.
@@ -1667,7 +2140,9 @@ class SearchTree:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def costs(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -1675,10 +2150,14 @@ class SearchTree:
         """
     @property
     def from_goal(self) -> bool:
-        ...
+        """
+        It grew from the goals; otherwise from the starts.
+        """
     @property
     def grasp(self) -> int:
-        ...
+        """
+        Index of its grasp.
+        """
     @property
     def parents(self) -> list[int]:
         """
@@ -1696,13 +2175,19 @@ class Improvement:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def cost(self) -> float:
-        ...
+        """
+        Length of the path in joint space plus the grasp's cost.
+        """
     @property
     def grasp(self) -> int:
-        ...
+        """
+        Index of its grasp.
+        """
     @property
     def path(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -1720,7 +2205,9 @@ class GraspReport:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def goal(self) -> Rejections:
         """
@@ -1728,7 +2215,9 @@ class GraspReport:
         """
     @property
     def goal_solutions(self) -> int:
-        ...
+        """
+        Arm configurations left at the goal.
+        """
     @property
     def searched(self) -> bool:
         """
@@ -1741,7 +2230,9 @@ class GraspReport:
         """
     @property
     def start_solutions(self) -> int:
-        ...
+        """
+        Arm configurations left at the start.
+        """
 class ManipulationResult:
     """
     What plan_manipulation found.
@@ -1749,7 +2240,9 @@ class ManipulationResult:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def contacts(self) -> list[Contact]:
         """
@@ -1772,7 +2265,9 @@ class ManipulationResult:
         """
     @property
     def improvements(self) -> list[Improvement]:
-        ...
+        """
+        Every better solution on the way, in order.
+        """
     @property
     def lower_bound(self) -> float:
         """
@@ -1780,7 +2275,9 @@ class ManipulationResult:
         """
     @property
     def outcome(self) -> Outcome:
-        ...
+        """
+        How it ended; `solved` alone comes with an answer.
+        """
     @property
     def path(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         """
@@ -1793,7 +2290,9 @@ class ManipulationResult:
         """
     @property
     def stats(self) -> mmgrasp._records.ManipulationStats:
-        ...
+        """
+        What the search took: seconds, searches, edges checked.
+        """
     @property
     def trees(self) -> list[SearchTree]:
         """
@@ -1806,7 +2305,9 @@ class BaseTrackingResult:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def actual(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -1863,6 +2364,8 @@ class BaseTracker:
     """
     def __init__(self, robot: Robot, *, kp: float = 2.0, ki: float = 0.1, kd: float = 0.3, offset: float = 0.2, period: float = 0.02, feed_forward: bool = True, feedback: bool = True, settle: float = 0.0) -> None:
         """
+        For a robot on a diff_drive or omni base.
+        
         Keyword options:
             kp: float = 2.0  # proportional gain [1/s]
             ki: float = 0.1  # integral gain [1/s^2]
@@ -1878,7 +2381,9 @@ class BaseTracker:
         Platform velocity (v_x, v_y, omega) to hold until the plan is at desired_next, one period on; poses are (x, y, theta).
         """
     def reset(self) -> None:
-        ...
+        """
+        Forgets the integral of the errors, to begin another plan.
+        """
     @property
     def limited(self) -> bool:
         """
@@ -1886,7 +2391,9 @@ class BaseTracker:
         """
     @property
     def period(self) -> float:
-        ...
+        """
+        Time for which a command is held [s].
+        """
 class ClosingOutcome:
     """
     What one moment to begin closing comes to. Engagement: how far the finger tips are beyond the object's near face.
@@ -1894,7 +2401,9 @@ class ClosingOutcome:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def both_touch(self) -> float:
         """
@@ -1947,7 +2456,9 @@ class PushGrasp:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def closing_time(self) -> float:
         """
@@ -1960,7 +2471,9 @@ class PushGrasp:
         """
     @property
     def feasible(self) -> bool:
-        ...
+        """
+        There is a moment at which closing may begin.
+        """
     @property
     def latest(self) -> float:
         """
@@ -1991,47 +2504,73 @@ class Part:
     One part in a tray.
     """
     def __init__(self, name: str, shapes: collections.abc.Sequence[LinkShape], T_world_part: numpy.typing.ArrayLike, grasps: collections.abc.Sequence[Grasp] = [], *, target: bool = True, grasps_too_wide: int = 0) -> None:
-        ...
+        """
+        `shapes` in the part's frame, `T_world_part` (4, 4), candidate `grasps` best first. A part that is no `target`
+        stays where it is; `grasps_too_wide` says how many candidates were left out because the gripper does not open so far.
+        """
     def __repr__(self) -> str:
         ...
     @property
     def T_world_part(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Pose of the part (4, 4).
+        """
     @property
     def grasps(self) -> list[Grasp]:
-        ...
+        """
+        Candidates, best first.
+        """
     @property
     def grasps_too_wide(self) -> int:
-        ...
+        """
+        Candidates left out because the gripper does not open so far.
+        """
     @property
     def name(self) -> str:
-        ...
+        """
+        Unique over the problem.
+        """
     @property
     def shapes(self) -> list[LinkShape]:
-        ...
+        """
+        In the part's frame.
+        """
     @property
     def target(self) -> bool:
-        ...
+        """
+        To be picked; otherwise an obstacle that stays.
+        """
 class Tray:
     """
     A tray and the parts in it; its walls are scene objects.
     """
     def __init__(self, name: str, T_world_tray: numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, parts: collections.abc.Sequence[Part], headings: collections.abc.Sequence[float] = []) -> None:
-        ...
+        """
+        `T_world_tray` (4, 4): middle of the tray's floor, a robot in front of it looks along its +x; `size` (3,): depth,
+        width, height [m]; `headings` of the base that are tried [rad], none given: the one that faces the tray.
+        """
     def __repr__(self) -> str:
         ...
     @property
     def T_world_tray(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Middle of the tray's floor (4, 4); a robot in front of it looks along its +x.
+        """
     @property
     def headings(self) -> list[float]:
-        ...
+        """
+        Headings of the base that are tried [rad]; empty: the one that faces the tray.
+        """
     @property
     def name(self) -> str:
-        ...
+        """
+        Unique over the problem.
+        """
     @property
     def parts(self) -> list[Part]:
-        ...
+        """
+        The parts in it.
+        """
     @property
     def size(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -2042,22 +2581,34 @@ class PlaceRegion:
     Where picked parts go: a bin fixed to the robot.
     """
     def __init__(self, T_base_bin: numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, drop_gap: float = 0.03) -> None:
-        ...
+        """
+        `T_base_bin` (4, 4): middle of the bin's top plane in the robot's root frame, z up; `size` (2,): inner x and y
+        [m], > 0; `drop_gap`: how far above the top plane a part is released [m], >= 0.
+        """
     @property
     def T_base_bin(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Middle of the bin's top plane in the robot's root frame (4, 4), z up.
+        """
     @property
     def drop_gap(self) -> float:
-        ...
+        """
+        A part is released with its lowest point so far above the bin's top plane [m].
+        """
     @property
     def size(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Inner x and y (2,) [m].
+        """
 class PartSupplyProblem:
     """
     Everything the part-supply planner needs.
     """
-    def __init__(self, robot: Robot, arm: JointGroup, gripper: Gripper, scene: World, trays: collections.abc.Sequence[Tray], home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, carry: PlaceRegion, *, grid_resolution: float = 0.05, grid_max_distance: float = 0.0, ik_seeds: int = 8, positioning_uncertainty: float = 0.1, approach_distance: float = 0.08, lift_height: float = 0.12, motion_time_limit: float = 5.0, route_resolution: float = 0.1, robustness_samples: int = 2000, seed: int = 1, threads: int = 0) -> None:
+    def __init__(self, robot: Robot, arm: JointGroup, gripper: Hand, scene: World, trays: collections.abc.Sequence[Tray], home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, place_region: PlaceRegion, *, grid_resolution: float = 0.05, grid_max_distance: float = 0.0, ik_seeds: int = 8, positioning_uncertainty: float = 0.1, approach_distance: float = 0.08, lift_height: float = 0.12, motion_time_limit: float = 5.0, route_resolution: float = 0.1, robustness_samples: int = 2000, seed: int = 1, threads: int = 0) -> None:
         """
+        `scene` is without the parts; `home` (n,) is the arm's configuration while driving; `start` and `goal` (3,) are base
+        poses x, y, theta [m, m, rad]. Raises InvalidInput naming the field that breaks its rule.
+        
         Keyword options:
             grid_resolution: float = 0.05  # cell edge of the base grid [m]
             grid_max_distance: float = 0.0  # cells farther from the tray's middle are not tried [m]; 0: the arm's reach
@@ -2073,34 +2624,54 @@ class PartSupplyProblem:
         """
     @property
     def arm(self) -> JointGroup:
-        ...
-    @property
-    def carry(self) -> PlaceRegion:
-        ...
+        """
+        The arm, without base joints.
+        """
     @property
     def goal(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Base pose at the end (3,): x, y, theta [m, m, rad].
+        """
     @property
-    def gripper(self) -> Gripper:
-        ...
+    def gripper(self) -> Hand:
+        """
+        The gripper of the arm.
+        """
     @property
     def home(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Arm configuration while driving (n,), fingers closed.
+        """
     @property
     def options(self) -> dict[str, bool | int | float | str]:
-        ...
+        """
+        Every keyword option with its value.
+        """
+    @property
+    def place_region(self) -> PlaceRegion:
+        """
+        Where picked parts go.
+        """
     @property
     def robot(self) -> Robot:
-        ...
+        """
+        The robot.
+        """
     @property
     def scene(self) -> World:
-        ...
+        """
+        Obstacles, tables and trays, without the parts.
+        """
     @property
     def start(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Base pose at the beginning (3,): x, y, theta [m, m, rad].
+        """
     @property
     def trays(self) -> list[Tray]:
-        ...
+        """
+        The trays with their parts.
+        """
 class BaseGrid:
     """
     Square cells over the floor, one layer for each heading.
@@ -2108,7 +2679,10 @@ class BaseGrid:
     def __getstate__(self) -> tuple[typing.Any, ...]:
         ...
     def __init__(self, origin: numpy.typing.ArrayLike, resolution: float, nx: int, ny: int, headings: collections.abc.Sequence[float] = [0.0]) -> None:
-        ...
+        """
+        `origin` (2,) is the lower corner of cell (0, 0) [m], `resolution` the edge of a cell [m], nx and ny the
+        cells along x and y, `headings` one layer each [rad], distinct.
+        """
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
@@ -2119,13 +2693,19 @@ class BaseGrid:
         """
     @property
     def headings(self) -> list[float]:
-        ...
+        """
+        Heading of each layer [rad].
+        """
     @property
     def nx(self) -> int:
-        ...
+        """
+        Cells along x.
+        """
     @property
     def ny(self) -> int:
-        ...
+        """
+        Cells along y.
+        """
     @property
     def origin(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -2133,7 +2713,9 @@ class BaseGrid:
         """
     @property
     def resolution(self) -> float:
-        ...
+        """
+        Edge of a cell [m].
+        """
 class PartExplanation:
     """
     What became of the candidates for one part over all base poses tried.
@@ -2145,22 +2727,34 @@ class PartExplanation:
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def base_poses_feasible(self) -> int:
-        ...
+        """
+        Base poses from which the part has a collision-free grasp.
+        """
     @property
     def base_poses_tried(self) -> int:
-        ...
+        """
+        Base poses tried, without those where the robot at home touches the scene.
+        """
     @property
     def grasps(self) -> int:
-        ...
+        """
+        Candidates.
+        """
     @property
     def part(self) -> str:
-        ...
+        """
+        Name of the part.
+        """
     @property
     def rejections(self) -> Rejections:
-        ...
+        """
+        Pairs of grasp and base pose by the cause that turned them down.
+        """
 class BaseRegion:
     """
     Base poses from which every target part of a tray can be grasped.
@@ -2185,7 +2779,9 @@ class BaseRegion:
         """
     @property
     def base_poses_in_collision(self) -> int:
-        ...
+        """
+        Base poses left out because the robot at home touches the scene there.
+        """
     @property
     def count(self) -> int:
         """
@@ -2193,16 +2789,20 @@ class BaseRegion:
         """
     @property
     def explanations(self) -> list[PartExplanation]:
-        ...
+        """
+        One PartExplanation for each target part.
+        """
     @property
     def tray(self) -> str:
-        ...
+        """
+        Name of the tray.
+        """
 class ObjectRegions:
     """
     The region of every target part alone, kept and updated when parts leave.
     """
     @staticmethod
-    def compute(problem: PartSupplyProblem, database: ReachDatabase, grid: BaseGrid, *, progress: collections.abc.Callable[[str, float], object] | None = None) -> ObjectRegions:
+    def compute(problem: PartSupplyProblem, database: ReachDatabase, grid: BaseGrid, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> ObjectRegions:
         """
         The same as compute_base_regions, kept part by part.
         """
@@ -2220,13 +2820,15 @@ class ObjectRegions:
         """
         (headings, ny, nx) array of 0 and 1: cells from which every one of these parts can be grasped.
         """
-    def remove(self, tray_and_part: collections.abc.Sequence[tuple[int, int]], *, progress: collections.abc.Callable[[str, float], object] | None = None) -> bool:
+    def remove(self, tray_and_part: collections.abc.Sequence[tuple[int, int]], *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> bool:
         """
         Parts (tray, part) leave: they stand in nobody's way any more. False when stopped: nothing has changed.
         """
     @property
     def grid(self) -> BaseGrid:
-        ...
+        """
+        The grid that all regions share.
+        """
     @property
     def trays(self) -> int:
         """
@@ -2239,23 +2841,38 @@ class Intersection:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def cells(self) -> int:
-        ...
+        """
+        How many cells are shared.
+        """
     @property
     def centre(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Centre of the largest disc (2,) [m].
+        """
     @property
     def heading(self) -> int:
-        ...
+        """
+        Index of the heading's layer.
+        """
     @property
     def radius(self) -> float:
-        ...
+        """
+        Radius of the largest disc of shared cells [m].
+        """
     @property
     def trays(self) -> list[int]:
-        ...
+        """
+        Indices of the regions that share them, ascending.
+        """
 class Intersections:
+    """
+    Sets of regions whose shared cells hold a disc that is large enough (P1 3.4.2).
+    """
     def __repr__(self) -> str:
         ...
     @property
@@ -2270,13 +2887,19 @@ class Intersections:
         """
     @property
     def robust(self) -> list[Intersection]:
-        ...
+        """
+        The sets whose disc is large enough.
+        """
     @property
     def sets_too_small(self) -> int:
-        ...
+        """
+        Sets that share cells, but with too small a disc.
+        """
     @property
     def sets_tried(self) -> int:
-        ...
+        """
+        Sets looked at.
+        """
 class Stop:
     """
     Where the base stops and which trays it serves there.
@@ -2285,7 +2908,9 @@ class Stop:
         ...
     @property
     def intersection(self) -> int:
-        ...
+        """
+        Index into the robust intersections.
+        """
     @property
     def pose(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -2298,8 +2923,13 @@ class Stop:
         """
     @property
     def trays(self) -> list[int]:
-        ...
+        """
+        Indices of the trays picked here; each tray has one stop.
+        """
 class StopSet:
+    """
+    Stops that serve all trays.
+    """
     def __repr__(self) -> str:
         ...
     @property
@@ -2314,13 +2944,19 @@ class StopSet:
         """
     @property
     def outcome(self) -> Outcome:
-        ...
+        """
+        `solved`: proven least; `approximate`: a cover that may have too many stops.
+        """
     @property
     def stops(self) -> list[Stop]:
-        ...
+        """
+        In no order yet.
+        """
     @property
     def unreachable_trays(self) -> list[int]:
-        ...
+        """
+        Indices of trays that no disc of the asked radius serves.
+        """
 class BasePath:
     """
     A drive of the base.
@@ -2328,13 +2964,19 @@ class BasePath:
     def __repr__(self) -> str:
         ...
     def duration(self, robot: Robot) -> float:
-        ...
+        """
+        Time the robot's base takes for it within its speed and acceleration limits [s].
+        """
     @property
     def length(self) -> float:
-        ...
+        """
+        Driven distance [m].
+        """
     @property
     def outcome(self) -> Outcome:
-        ...
+        """
+        How it ended; `solved` alone comes with an answer.
+        """
     @property
     def poses(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -2342,7 +2984,9 @@ class BasePath:
         """
     @property
     def turning(self) -> float:
-        ...
+        """
+        Sum of absolute heading changes [rad].
+        """
 class OptimisedOrder:
     """
     In which order parts are best picked.
@@ -2366,7 +3010,9 @@ class OptimisedOrder:
         """
     @property
     def smallest_radius(self) -> float:
-        ...
+        """
+        Least radius over rounds and groups [m].
+        """
 class PolicyRound:
     """
     One round of pick and place.
@@ -2380,7 +3026,9 @@ class PolicyRound:
         """
     @property
     def outcome(self) -> Outcome:
-        ...
+        """
+        Of the choice of stops.
+        """
     @property
     def reliable(self) -> bool:
         """
@@ -2393,7 +3041,9 @@ class PolicyRound:
         """
     @property
     def stops(self) -> list[Stop]:
-        ...
+        """
+        The stops of the round; their trays are indices into the picking order.
+        """
 class PolicyResult:
     """
     A row of P1 table 3.4.
@@ -2401,7 +3051,9 @@ class PolicyResult:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def feasible(self) -> bool:
         """
@@ -2414,7 +3066,9 @@ class PolicyResult:
         """
     @property
     def mean_stops(self) -> float:
-        ...
+        """
+        Stops a round.
+        """
     @property
     def online(self) -> bool:
         """
@@ -2422,13 +3076,19 @@ class PolicyResult:
         """
     @property
     def reliable(self) -> bool:
-        ...
+        """
+        Every round is.
+        """
     @property
     def rounds(self) -> list[PolicyRound]:
-        ...
+        """
+        In order.
+        """
     @property
     def smallest_radius(self) -> float:
-        ...
+        """
+        Over all stops of all rounds [m].
+        """
     @property
     def solved(self) -> bool:
         """
@@ -2442,49 +3102,75 @@ class PickMotion:
         ...
     @property
     def holding(self) -> bool:
-        ...
+        """
+        The part is attached during the motion.
+        """
     @property
     def kind(self) -> str:
-        ...
+        """
+        transit, approach, lift, transfer or retreat.
+        """
     @property
     def opening(self) -> float:
-        ...
+        """
+        Opening of the fingers during the motion [m].
+        """
     @property
     def trajectory(self) -> JointTrajectory:
-        ...
+        """
+        The arm on its clock, from 0.
+        """
 class Pick:
     """
-    Home, pre-grasp, grasp, lift, carry, home.
+    Home, pre-grasp, grasp, lift, transfer, home.
     """
     def __repr__(self) -> str:
         ...
     @property
     def duration(self) -> float:
-        ...
+        """
+        Of all its motions [s].
+        """
     @property
     def failed_at(self) -> str:
-        ...
+        """
+        Without a solution: the stage at which most candidates fell.
+        """
     @property
     def grasp(self) -> int:
-        ...
+        """
+        Index into the part's grasps.
+        """
     @property
     def motions(self) -> list[PickMotion]:
-        ...
+        """
+        transit, approach, lift, transfer, retreat.
+        """
     @property
     def outcome(self) -> Outcome:
-        ...
+        """
+        How it ended; `solved` alone comes with an answer.
+        """
     @property
     def part(self) -> int:
-        ...
+        """
+        Index into the tray's parts.
+        """
     @property
     def rejections(self) -> Rejections:
-        ...
+        """
+        Grasps and their configurations turned down on the way, by cause.
+        """
     @property
     def stop(self) -> int:
-        ...
+        """
+        Index of the stop.
+        """
     @property
     def tray(self) -> int:
-        ...
+        """
+        Index of the tray.
+        """
 class Obstruction:
     """
     Why there is no plan, and what would help.
@@ -2492,7 +3178,9 @@ class Obstruction:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def advised_move(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -2500,13 +3188,14 @@ class Obstruction:
         """
     @property
     def largest_uncertainty(self) -> float:
-        ...
+        """
+        Largest positioning uncertainty that still works [m]; < 0: none does.
+        """
     @property
     def message(self) -> str:
-        ...
-    @property
-    def reach_deficit(self) -> float:
-        ...
+        """
+        One sentence that a person can act on.
+        """
     @property
     def move_objects(self) -> list[str]:
         """
@@ -2524,13 +3213,24 @@ class Obstruction:
         """
     @property
     def part(self) -> str:
-        ...
+        """
+        Name of the part that blocks; empty when the whole tray does.
+        """
+    @property
+    def reach_deficit(self) -> float:
+        """
+        How far the nearest base pose falls short of the part [m]; 0: reach is not it. `advised_move` is what suffices.
+        """
     @property
     def stage(self) -> str:
-        ...
+        """
+        grasp, region, robustness, motion or route.
+        """
     @property
     def tray(self) -> str:
-        ...
+        """
+        Name of the tray.
+        """
 class PartSupplyPlan:
     """
     The planner's answer; a ScenarioPlan joins it with its scenario.
@@ -2539,22 +3239,34 @@ class PartSupplyPlan:
         ...
     @property
     def grid(self) -> BaseGrid:
-        ...
+        """
+        The grid that all regions share.
+        """
     @property
     def intersections(self) -> Intersections:
-        ...
+        """
+        What the stops were chosen from.
+        """
     @property
     def lower_bound(self) -> int:
-        ...
+        """
+        Proven least number of stops over the regions.
+        """
     @property
     def obstructions(self) -> list[Obstruction]:
-        ...
+        """
+        Why there is no plan, and what would help; empty with a plan.
+        """
     @property
     def outcome(self) -> Outcome:
-        ...
+        """
+        How it ended; `solved` alone comes with an answer.
+        """
     @property
     def picks(self) -> list[Pick]:
-        ...
+        """
+        In the order in which they are done.
+        """
     @property
     def proven_minimal(self) -> bool:
         """
@@ -2567,19 +3279,29 @@ class PartSupplyPlan:
         """
     @property
     def regions(self) -> list[BaseRegion]:
-        ...
+        """
+        One a tray that has target parts.
+        """
     @property
     def robustness_rate(self) -> float:
-        ...
+        """
+        Least share over the stops of base poses drawn in the disc from which every part can be grasped.
+        """
     @property
     def route(self) -> list[BasePath]:
-        ...
+        """
+        Drives from start over the stops to the goal: one more than stops.
+        """
     @property
     def stops(self) -> list[Stop]:
-        ...
+        """
+        In the order in which they are visited.
+        """
     @property
     def timings(self) -> list[tuple[str, float]]:
-        ...
+        """
+        Seconds of each stage, by name.
+        """
 class DriveByTask:
     """
     Something the tool does on the way: T_world_tip, (4, 4), or candidates (m, 4, 4) of which any will do.
@@ -2594,7 +3316,9 @@ class DriveByTask:
     the planned grasp; tolerance, free, max_tool_speed and dwell are left out.
     """
     def __init__(self, T_world_tip: numpy.typing.ArrayLike, *, tolerance: numpy.typing.ArrayLike | None = None, free: collections.abc.Sequence[str] = [], max_tool_speed: float | None = None, dwell: float = 0.0, object: str = '', push: dict[str, typing.Any] | None = None, touching: int = 2) -> None:
-        ...
+        """
+        The class says what the arguments mean; raises InvalidInput naming one that breaks its rule.
+        """
     def __repr__(self) -> str:
         ...
     @property
@@ -2604,13 +3328,19 @@ class DriveByTask:
         """
     @property
     def dwell(self) -> float:
-        ...
+        """
+        Time for which the tool's pose is kept [s].
+        """
     @property
     def max_tool_speed(self) -> float:
-        ...
+        """
+        Fastest tool at the task [m/s]; infinite: no limit.
+        """
     @property
     def object(self) -> str:
-        ...
+        """
+        Name of the world's object that is held afterwards; empty: none.
+        """
     @property
     def push(self) -> PushGrasp | typing.Any:
         """
@@ -2618,7 +3348,9 @@ class DriveByTask:
         """
     @property
     def touching(self) -> int:
-        ...
+        """
+        Intervals before and after the task in which hand and object may touch what they must.
+        """
 class WholeBodyTrajectory:
     """
     Base and arm on one clock. Between waypoints the drive velocities are linear in time; for a diff-drive base they are
@@ -2655,7 +3387,9 @@ class WholeBodyTrajectory:
         """
     @property
     def drive_names(self) -> list[str]:
-        ...
+        """
+        Columns of `drive`: v [m/s] and omega [rad/s] of a diff-drive base, x, y, theta of an omni base; then the joints.
+        """
     @property
     def duration(self) -> float:
         """
@@ -2663,7 +3397,9 @@ class WholeBodyTrajectory:
         """
     @property
     def names(self) -> list[str]:
-        ...
+        """
+        One a column of `positions`: x, y, theta first.
+        """
     @property
     def positions(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -2685,14 +3421,8 @@ class DriveByResult:
         The trajectory's to_csv with two columns more: task, its index in the row of a task's waypoint, and held, the object in the hand.
         """
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
-    @property
-    def attempts(self) -> int:
-        ...
-    @property
-    def choices(self) -> int:
         """
-        Choices of candidates planned.
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
         """
     @property
     def duration(self) -> float:
@@ -2706,11 +3436,20 @@ class DriveByResult:
         tool_speed [m/s].
         """
     @property
+    def grasp_assignments(self) -> int:
+        """
+        Choices of candidates planned.
+        """
+    @property
     def iterations(self) -> int:
-        ...
+        """
+        Of the optimiser, over all solves.
+        """
     @property
     def outcome(self) -> Outcome:
-        ...
+        """
+        `solved`: every constraint is kept on a finer roll-out; `approximate`: the best iterate, with its violations.
+        """
     @property
     def report(self) -> str:
         """
@@ -2718,7 +3457,14 @@ class DriveByResult:
         """
     @property
     def seconds(self) -> float:
-        ...
+        """
+        Wall-clock time of the call [s].
+        """
+    @property
+    def solves(self) -> int:
+        """
+        Guesses from which the optimiser began.
+        """
     @property
     def trajectory(self) -> WholeBodyTrajectory | typing.Any:
         """
@@ -2746,28 +3492,44 @@ class PinholeCamera:
         """
     @property
     def cx(self) -> float:
-        ...
+        """
+        Principal point along x [pixels].
+        """
     @property
     def cy(self) -> float:
-        ...
+        """
+        Principal point along y [pixels].
+        """
     @property
     def farthest(self) -> float:
-        ...
+        """
+        What lies farther along the axis is not seen [m].
+        """
     @property
     def fx(self) -> float:
-        ...
+        """
+        Focal length along x [pixels].
+        """
     @property
     def fy(self) -> float:
-        ...
+        """
+        Focal length along y [pixels].
+        """
     @property
     def height(self) -> int:
-        ...
+        """
+        [pixels]
+        """
     @property
     def nearest(self) -> float:
-        ...
+        """
+        What lies closer along the axis is not seen [m].
+        """
     @property
     def width(self) -> int:
-        ...
+        """
+        [pixels]
+        """
 class PlatformLocations:
     """
     Two base + arm configurations for two tool poses.
@@ -2775,7 +3537,9 @@ class PlatformLocations:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def cost(self) -> float:
         """
@@ -2783,7 +3547,9 @@ class PlatformLocations:
         """
     @property
     def outcome(self) -> Outcome:
-        ...
+        """
+        How it ended; `solved` alone comes with an answer.
+        """
     @property
     def pick(self) -> mmgrasp._records.SearchCounts:
         """
@@ -2791,7 +3557,9 @@ class PlatformLocations:
         """
     @property
     def place(self) -> mmgrasp._records.SearchCounts:
-        ...
+        """
+        The same of the second pose.
+        """
     @property
     def q_pick(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         """
@@ -2799,7 +3567,9 @@ class PlatformLocations:
         """
     @property
     def q_place(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
-        ...
+        """
+        Base and arm at the second pose; None unless solved.
+        """
     @property
     def travel(self) -> float:
         """
@@ -2820,13 +3590,19 @@ class IkSeedDatabase:
         Raises IoError on a damaged file or one made for another robot.
         """
     def __init__(self, group: JointGroup, capacity: int = 10000) -> None:
-        ...
+        """
+        Empty, for configurations of `group`; beyond `capacity` the oldest are forgotten.
+        """
     def __len__(self) -> int:
         ...
     def add(self, q: numpy.typing.ArrayLike) -> None:
-        ...
+        """
+        Remembers a configuration (n,) with the base taken out: where the tool stood relative to the root, and the arm's joints.
+        """
     def save(self, path: str | os.PathLike[str]) -> None:
-        ...
+        """
+        Writes a text file. Raises IoError.
+        """
     def seeds(self, T_world_tip: numpy.typing.ArrayLike, count: int = 8) -> numpy.typing.NDArray[numpy.float64]:
         """
         (k, n): remembered arm postures with the base put where they reach the pose, best match first.
@@ -2839,7 +3615,9 @@ class PointCloud:
         ...
     @property
     def T_world_sensor(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Pose of the sensor that the file gives (4, 4).
+        """
     @property
     def height(self) -> int:
         """
@@ -2862,13 +3640,18 @@ class PointCloud:
         """
     @property
     def width(self) -> int:
-        ...
+        """
+        Points in a row.
+        """
 class DepthImage:
     """
     What a depth camera saw: depth along the camera's axis [m], 0 where nothing was measured.
     """
     def __init__(self, depth: numpy.typing.ArrayLike, camera: PinholeCamera, T_world_camera: numpy.typing.ArrayLike | None = None) -> None:
-        ...
+        """
+        `depth` (height, width) along the camera's axis [m], 0 where nothing was measured; `T_world_camera` (4, 4),
+        default: the identity. Raises InvalidInput where the size is not the camera's.
+        """
     def __repr__(self) -> str:
         ...
     def points(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -2877,10 +3660,14 @@ class DepthImage:
         """
     @property
     def T_world_camera(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Pose of the camera (4, 4); it looks along its +z.
+        """
     @property
     def camera(self) -> PinholeCamera:
-        ...
+        """
+        The camera that took it.
+        """
     @property
     def depth(self) -> numpy.typing.NDArray[numpy.float32]:
         """
@@ -2898,7 +3685,9 @@ class HeightMap:
         ...
     @property
     def T_world_map(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Frame in the middle of the rectangle (4, 4), z up.
+        """
     @property
     def height(self) -> numpy.typing.NDArray[numpy.float32]:
         """
@@ -2911,7 +3700,9 @@ class HeightMap:
         """
     @property
     def resolution(self) -> float:
-        ...
+        """
+        Edge of a cell [m].
+        """
     @property
     def upper(self) -> numpy.typing.NDArray[numpy.float32]:
         """
@@ -2929,7 +3720,9 @@ class FittedCuboid:
         """
     @property
     def T_world_box(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Pose of its centre (4, 4): z along the plane's normal, x along the longer side.
+        """
     @property
     def fill(self) -> float:
         """
@@ -2937,7 +3730,9 @@ class FittedCuboid:
         """
     @property
     def points(self) -> int:
-        ...
+        """
+        Number of points it was fitted to.
+        """
     @property
     def size(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -2951,7 +3746,9 @@ class CuboidFit:
         ...
     @property
     def cuboids(self) -> list[FittedCuboid]:
-        ...
+        """
+        Those with most points first.
+        """
     @property
     def labels(self) -> list[int]:
         """
@@ -2959,56 +3756,18 @@ class CuboidFit:
         """
     @property
     def plane_found(self) -> bool:
-        ...
+        """
+        A supporting plane was found, or given.
+        """
     @property
     def plane_normal(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Unit normal of the plane (3,), upwards, in the points' frame.
+        """
     @property
     def plane_offset(self) -> float:
         """
         plane_normal . x = plane_offset [m]
-        """
-class ScoredGrasp:
-    """
-    A way to grasp something that a depth image shows.
-    """
-    def __repr__(self) -> str:
-        ...
-    @property
-    def T_world_tcp(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
-    @property
-    def angle(self) -> float:
-        """
-        Of the closing axis in the map's frame, in [0, pi) [rad].
-        """
-    @property
-    def cell(self) -> tuple[int, int]:
-        ...
-    @property
-    def height(self) -> float:
-        """
-        Of the fingertips above the map's frame [m].
-        """
-    @property
-    def opening(self) -> float:
-        """
-        Of the fingers while moving in [m].
-        """
-    @property
-    def pixel(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (u, v) in the depth image; (-1, -1) without one.
-        """
-    @property
-    def score(self) -> float:
-        """
-        In (0, 1].
-        """
-    @property
-    def width(self) -> float:
-        """
-        Of the part between the fingers [m].
         """
 class Graspability:
     """
@@ -3018,10 +3777,14 @@ class Graspability:
         ...
     @property
     def counts(self) -> dict[str, int]:
-        ...
+        """
+        Places looked at (tried) and turned down: too_wide, poor, collision, near_better.
+        """
     @property
-    def grasps(self) -> list[ScoredGrasp]:
-        ...
+    def grasps(self) -> list[Grasp]:
+        """
+        Best first.
+        """
 class RestingPose:
     """
     How a part may lie on a level floor.
@@ -3030,10 +3793,14 @@ class RestingPose:
         ...
     @property
     def T_floor_part(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Pose (4, 4): centre of mass above the origin, lowest point at height 0.
+        """
     @property
     def probability(self) -> float:
-        ...
+        """
+        All of a part's sum to 1.
+        """
 class PlacedPart:
     """
     A part lying in a tray.
@@ -3042,7 +3809,9 @@ class PlacedPart:
         ...
     @property
     def T_tray_part(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Pose of the part in the tray's frame (4, 4).
+        """
     @property
     def on_floor(self) -> bool:
         """
@@ -3066,46 +3835,9 @@ class RandomPlacement:
         """
     @property
     def parts(self) -> list[PlacedPart]:
-        ...
-class PipeGrasp:
-    """
-    A parallel-jaw grasp of a pipe by P2's four variables (P2 3.2.3.1).
-    """
-    def __repr__(self) -> str:
-        ...
-    def to_dict(self) -> dict[str, typing.Any]:
-        ...
-    @property
-    def T_object_tool(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
-    @property
-    def angle(self) -> float:
         """
-        Of the approach about the section, from its y axis [rad].
+        In the order in which they were placed.
         """
-    @property
-    def cost(self) -> float:
-        """
-        What a planner adds to its path's length.
-        """
-    @property
-    def flipped(self) -> bool:
-        """
-        By half a turn about the approach.
-        """
-    @property
-    def length(self) -> float:
-        """
-        Of the tool from the section's first node [m].
-        """
-    @property
-    def opening(self) -> float:
-        """
-        Of the fingers while holding [m].
-        """
-    @property
-    def section(self) -> int:
-        ...
 class Pipe:
     """
     A pipe structure: straight round sections between nodes in the object's frame (P2 3.2.2).
@@ -3116,9 +3848,11 @@ class Pipe:
         """
     def __repr__(self) -> str:
         ...
-    def grasp(self, section: int, length: float, angle: float, flipped: bool = False, *, gripper: Gripper | None = None, max_opening: float = 0.1, end_margin: float = 0.02, length_spacing: float = 0.01, angle_spacing: float = 0.08726646259971647, cost_per_metre: float = 0.0, draws: int = 200, seed: int = 1) -> PipeGrasp:
+    def grasp(self, section: int, length: float, angle: float, flipped: bool = False, *, gripper: Hand | None = None, max_opening: float = 0.1, end_margin: float = 0.02, length_spacing: float = 0.01, angle_spacing: float = 0.08726646259971647, cost_per_metre: float = 0.0, draws: int = 200, seed: int = 1) -> Grasp:
         """
         The grasp with these four variables (P2 3.2.3.1).
+        
+        Keyword options:
             max_opening: float = 0.1  # thicker sections get no grasps [m]
             end_margin: float = 0.02  # kept from either node of a section [m]
             length_spacing: float = 0.01  # grasps are this far apart along a section [m], or
@@ -3127,7 +3861,7 @@ class Pipe:
             draws: int = 200  # fruitless draws in a row that end the sampling
             seed: int = 1  # same seed, same grasps
         """
-    def sample_grasps(self, count: int, *, gripper: Gripper | None = None, max_opening: float = 0.1, end_margin: float = 0.02, length_spacing: float = 0.01, angle_spacing: float = 0.08726646259971647, cost_per_metre: float = 0.0, draws: int = 200, seed: int = 1) -> list[PipeGrasp]:
+    def sample_grasps(self, count: int, *, gripper: Hand | None = None, max_opening: float = 0.1, end_margin: float = 0.02, length_spacing: float = 0.01, angle_spacing: float = 0.08726646259971647, cost_per_metre: float = 0.0, draws: int = 200, seed: int = 1) -> list[Grasp]:
         """
         Grasps drawn over the whole pipe, at most `count`, none nearer to another than the spacings. Axes are the gripper's,
         or approach x and closing y; so are opening and margin where no keyword gives them.
@@ -3152,7 +3886,9 @@ class Pipe:
         """
     @property
     def diameters(self) -> list[float]:
-        ...
+        """
+        Outer diameter of each section [m].
+        """
     @property
     def lengths(self) -> list[float]:
         """
@@ -3160,10 +3896,14 @@ class Pipe:
         """
     @property
     def nodes(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        (n, 3) in the object's frame [m].
+        """
     @property
     def sections(self) -> list[tuple[int, int]]:
-        ...
+        """
+        First and second node of each section, counted from 0.
+        """
 def _capability_option_table() -> dict[str, typing.Any]:
     ...
 def _cartesian_option_table() -> dict[str, typing.Any]:
@@ -3204,9 +3944,18 @@ def _reach_option_table() -> dict[str, typing.Any]:
     ...
 def _roadmap_option_table() -> dict[str, typing.Any]:
     ...
-def _sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Gripper, **kwargs: typing.Any) -> tuple[list[Grasp], int]:
+def _sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, *, approaches: int = 8, positions: int = 3, mesh_samples: int = 400, max_grasps: int = 200, friction: float = 0.5, standoff: float = 0.0, seed: int = 1) -> tuple[list[Grasp], int]:
     """
     (grasps, too_wide): as sample_grasps, with the number dropped as too wide.
+    
+    Keyword options:
+        approaches: int = 8  # approach directions around each closing axis
+        positions: int = 3  # pad positions along each free direction
+        mesh_samples: int = 400  # surface points tried on a mesh
+        max_grasps: int = 200  # best kept, spread over approach directions
+        friction: float = 0.5  # Coulomb coefficient
+        standoff: float = 0.0  # how far the tool frame stays outside the object's middle [m]
+        seed: int = 1  # same seed, same grasps
     """
 def _supply_option_table() -> dict[str, typing.Any]:
     ...
@@ -3229,7 +3978,8 @@ def cheapest_assignment(costs: numpy.typing.ArrayLike) -> list[int]:
     """
 def closing_outcome(start: float, *, opening: float = 0.1, closing_speed: float = 0.1, tool_speed: float = 0.3, finger_length: float = 0.12, object_width: float = 0.05, grip_depth: float = 0.02, planned_depth: float = 0.06, clearance: float = 0.0, max_push: float = 0.1, along_error: float = 0.0, lateral_error: float = 0.0) -> ClosingOutcome:
     """
-    What beginning to close at an engagement [m] comes to; keywords as of push_grasp.
+    What beginning to close at an engagement [m] comes to.
+    
     Keyword options:
         opening: float = 0.1  # between the fingers before they close [m]
         closing_speed: float = 0.1  # how fast the opening shrinks [m/s]
@@ -3243,11 +3993,11 @@ def closing_outcome(start: float, *, opening: float = 0.1, closing_speed: float 
         along_error: float = 0.0  # the object may stand this much nearer or farther [m]
         lateral_error: float = 0.0  # and this much to either side [m]
     """
-def compute_base_regions(problem: PartSupplyProblem, database: ReachDatabase, grid: BaseGrid, *, progress: collections.abc.Callable[[str, float], object] | None = None) -> list[BaseRegion]:
+def compute_base_regions(problem: PartSupplyProblem, database: ReachDatabase, grid: BaseGrid, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> list[BaseRegion]:
     """
     P1 Algorithm 2 with exact inverse kinematics: one region for each tray with target parts.
     """
-def compute_disabled_pairs(robot: Robot, *, progress: collections.abc.Callable[[str, float], object] | None = None, samples: int = 10000, always_fraction: float = 0.95, seed: int = 1, threads: int = 0) -> Robot:
+def compute_disabled_pairs(robot: Robot, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, samples: int = 10000, always_fraction: float = 0.95, seed: int = 1, threads: int = 0) -> Robot:
     """
     The robot with the link pairs that always or never touch found by sampling; those of an SRDF are kept.
     
@@ -3257,22 +4007,26 @@ def compute_disabled_pairs(robot: Robot, *, progress: collections.abc.Callable[[
         seed: int = 1  # same seed, same pairs
         threads: int = 0  # 0: all
     """
+def cover_from_intersections(grid: BaseGrid, intersections: collections.abc.Sequence[Intersection], trays: int) -> StopSet:
+    """
+    The least number of intersections that cover all trays (P1 equation 3.1), with proof.
+    """
+def derivative_free_solver_names() -> list[str]:
+    """
+    Names that minimize_derivative_free's `solver` takes.
+    """
 def drive_arc(pose: numpy.typing.ArrayLike, platform_velocity: numpy.typing.ArrayLike, time: float) -> numpy.typing.NDArray[numpy.float64]:
     """
     Base pose (x, y, theta) after `time` [s] at a constant platform velocity (v_x, v_y, omega): the exact arc.
     """
-def evaluate_graspability(map: HeightMap, gripper: Gripper, *, image: DepthImage | None = None, finger_thickness: float = 0.012, finger_length: float = 0.12, palm_length: float = 0.13, palm_width: float = 0.065, margin: float = 0.001, orientations: int = 16, openings: int = 2, layer_step: float = 0.01, lowest: float = 0.003, insertion: float = 0.01, smoothing: float = 0.01, min_contact: float = 0.4, min_distance: float = 0.015, max_grasps: int = 100, threads: int = 0) -> Graspability:
+def evaluate_graspability(map: HeightMap, gripper: Hand, *, image: DepthImage | None = None, margin: float = 0.001, orientations: int = 16, openings: int = 2, layer_step: float = 0.01, lowest: float = 0.003, insertion: float = 0.01, smoothing: float = 0.01, min_contact: float = 0.4, min_distance: float = 0.015, max_grasps: int = 100, threads: int = 0) -> Graspability:
     """
     Fast graspability evaluation (P1 3.7.2): contact and collision masks of the hand convolved with a height map over
     closing directions, openings and heights; grasps at the local maxima, straight along -z of the map. With the
     `image` that the map was made of each grasp gets its pixel.
     
     Keyword options:
-        finger_thickness: float = 0.012  # of a finger along the closing axis [m]
-        finger_length: float = 0.12  # from the fingertip back to the palm [m]
-        palm_length: float = 0.13  # of the palm along the closing axis [m]
-        palm_width: float = 0.065  # of the palm across it [m]
-        margin: float = 0.001  # air kept around the hand [m]
+        margin: float = 0.001  # kept free around the hand [m]
         orientations: int = 16  # closing directions over half a turn
         openings: int = 2  # openings tried: max_opening and equal parts of it
         layer_step: float = 0.01  # between the heights at which fingertips are tried [m]
@@ -3304,15 +4058,12 @@ def fit_cuboids(points: numpy.typing.ArrayLike, *, T_world_tray: numpy.typing.Ar
         min_points: int = 60  # smaller clusters are left out
         plane_iterations: int = 1000  # random planes tried
     """
-def graspability_map(map: HeightMap, gripper: Gripper, angle: float, opening: float, tip_height: float, *, finger_thickness: float = 0.012, finger_length: float = 0.12, palm_length: float = 0.13, palm_width: float = 0.065, margin: float = 0.001, orientations: int = 16, openings: int = 2, layer_step: float = 0.01, lowest: float = 0.003, insertion: float = 0.01, smoothing: float = 0.01, min_contact: float = 0.4, min_distance: float = 0.015, max_grasps: int = 100, threads: int = 0) -> numpy.typing.NDArray[numpy.float32]:
+def graspability_map(map: HeightMap, gripper: Hand, angle: float, opening: float, tip_height: float, *, margin: float = 0.001, orientations: int = 16, openings: int = 2, layer_step: float = 0.01, lowest: float = 0.003, insertion: float = 0.01, smoothing: float = 0.01, min_contact: float = 0.4, min_distance: float = 0.015, max_grasps: int = 100, threads: int = 0) -> numpy.typing.NDArray[numpy.float32]:
     """
     (ny, nx) smoothed graspability in [0, 1] of one closing direction, opening and height of the fingertips.
+    
     Keyword options:
-        finger_thickness: float = 0.012  # of a finger along the closing axis [m]
-        finger_length: float = 0.12  # from the fingertip back to the palm [m]
-        palm_length: float = 0.13  # of the palm along the closing axis [m]
-        palm_width: float = 0.065  # of the palm across it [m]
-        margin: float = 0.001  # air kept around the hand [m]
+        margin: float = 0.001  # kept free around the hand [m]
         orientations: int = 16  # closing directions over half a turn
         openings: int = 2  # openings tried: max_opening and equal parts of it
         layer_step: float = 0.01  # between the heights at which fingertips are tried [m]
@@ -3324,15 +4075,12 @@ def graspability_map(map: HeightMap, gripper: Gripper, angle: float, opening: fl
         max_grasps: int = 100  # best kept
         threads: int = 0  # 0: all
     """
-def hand_masks(gripper: Gripper, opening: float, angle: float, resolution: float, *, finger_thickness: float = 0.012, finger_length: float = 0.12, palm_length: float = 0.13, palm_width: float = 0.065, margin: float = 0.001, orientations: int = 16, openings: int = 2, layer_step: float = 0.01, lowest: float = 0.003, insertion: float = 0.01, smoothing: float = 0.01, min_contact: float = 0.4, min_distance: float = 0.015, max_grasps: int = 100, threads: int = 0) -> dict[str, numpy.typing.NDArray[numpy.uint8]]:
+def hand_masks(gripper: Hand, opening: float, angle: float, resolution: float, *, margin: float = 0.001, orientations: int = 16, openings: int = 2, layer_step: float = 0.01, lowest: float = 0.003, insertion: float = 0.01, smoothing: float = 0.01, min_contact: float = 0.4, min_distance: float = 0.015, max_grasps: int = 100, threads: int = 0) -> dict[str, numpy.typing.NDArray[numpy.uint8]]:
     """
     The masks `contact`, `fingers` and `palm` as images of zeros and ones with the hand in the middle.
+    
     Keyword options:
-        finger_thickness: float = 0.012  # of a finger along the closing axis [m]
-        finger_length: float = 0.12  # from the fingertip back to the palm [m]
-        palm_length: float = 0.13  # of the palm along the closing axis [m]
-        palm_width: float = 0.065  # of the palm across it [m]
-        margin: float = 0.001  # air kept around the hand [m]
+        margin: float = 0.001  # kept free around the hand [m]
         orientations: int = 16  # closing directions over half a turn
         openings: int = 2  # openings tried: max_opening and equal parts of it
         layer_step: float = 0.01  # between the heights at which fingertips are tried [m]
@@ -3356,10 +4104,6 @@ def joint_velocity(theta: float, platform_velocity: numpy.typing.ArrayLike) -> n
     """
     Velocities of the virtual joints x, y, theta for a platform velocity: the inverse of platform_velocity().
     """
-def plan_stops_exact(grid: BaseGrid, regions: collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike], min_radius: float = 0.1, *, time_limit: float = 60.0, tie_time_limit: float = 10.0, start: numpy.typing.ArrayLike | None = None, goal: numpy.typing.ArrayLike | None = None, progress: collections.abc.Callable[[str, float], object] | None = None) -> StopSet:
-    """
-    The least number of stops over regions (or masks), with proof; among equally few the widest discs, then, with `start` and `goal` (x, y), the shortest route as the crow flies.
-    """
 def look_down(eye: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """
     T_world_camera of a camera at `eye` [m] that looks straight down, image x along the world's x.
@@ -3381,24 +4125,20 @@ def manipulation_planner_names() -> list[str]:
     """
     Names that plan_manipulation's `planner` takes.
     """
-def maximal_intersections(grid: BaseGrid, regions: collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike], min_radius: float, *, max_boxes: int = 50000000, progress: collections.abc.Callable[[str, float], object] | None = None) -> Intersections:
+def maximal_intersections(grid: BaseGrid, regions: collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike], min_radius: float, *, max_boxes: int = 50000000, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> Intersections:
     """
     Those of the robust sets that are part of no other one: enough to prove a least number of stops.
     """
-def cover_from_intersections(grid: BaseGrid, intersections: collections.abc.Sequence[Intersection], trays: int) -> StopSet:
-    """
-    The least number of intersections that cover all trays (P1 equation 3.1), with proof.
-    """
-def minimize_derivative_free(objective: typing.Any, guess: numpy.typing.ArrayLike, lower: numpy.typing.ArrayLike, upper: numpy.typing.ArrayLike, *, solver: str = 'bobyqa', constraints: typing.Any = None, constraint_count: typing.SupportsInt | typing.SupportsIndex = 0, progress: typing.Any = None, **kwargs) -> DerivativeFreeResult:
+def minimize_derivative_free(objective: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], float], guess: numpy.typing.ArrayLike, lower: numpy.typing.ArrayLike, upper: numpy.typing.ArrayLike, *, solver: str = 'bobyqa', constraints: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], numpy.typing.ArrayLike] | None = None, constraint_count: int = 0, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, tolerance: float = 1e-06, constraint_tolerance: float = 1e-08, max_evaluations: int = 10000, time_limit: float = 30.0, seed: int = 1) -> DerivativeFreeResult:
     """
     Least value of `objective(x)` for lower <= x <= upper, found by values alone. `x` is a (n,) array; bounds may be infinite for the local solvers (bobyqa, cobyla, nelder_mead, sbplx), not for the global ones (crs2, isres, direct_l, esch). `constraints(x)` gives `constraint_count` numbers that must be at most 0 (cobyla, isres). Values that are not finite are avoided. What a function raises ends the search and is raised here.
     
     Keyword options:
-        tolerance = 1e-06: converged when steps fall below this share of a variable's range
-        constraint_tolerance = 1e-08: largest c_i(x) that still counts as kept
-        max_evaluations = 10000: budget in points
-        time_limit = 30.0: wall-clock cap [s]
-        seed = 1: same seed, same answer
+        tolerance: float = 1e-06  # converged when steps fall below this share of a variable's range
+        constraint_tolerance: float = 1e-08  # largest c_i(x) that still counts as kept
+        max_evaluations: int = 10000  # budget in points
+        time_limit: float = 30.0  # wall-clock cap [s]
+        seed: int = 1  # same seed, same answer
     """
 def nlp_solver_names() -> list[str]:
     """
@@ -3416,7 +4156,7 @@ def plan_base_route(arm: JointGroup, world: World, *, home: numpy.typing.ArrayLi
     """
     A driveable, collision-free way of the whole robot with its arm at `home`; poses are x, y, theta.
     """
-def plan_cartesian(checker: CollisionChecker, tool_poses: numpy.typing.ArrayLike, near: numpy.typing.ArrayLike | None = None, *, progress: collections.abc.Callable[[str, float], object] | None = None, position_step: float = 0.005, rotation_step: float = 0.02, max_joint_step: float = 0.2, edge_step: float = 0.02, max_branches: int = 64) -> CartesianResult:
+def plan_cartesian(checker: CollisionChecker, tool_poses: numpy.typing.ArrayLike, near: numpy.typing.ArrayLike | None = None, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, position_step: float = 0.005, rotation_step: float = 0.02, max_joint_step: float = 0.2, edge_step: float = 0.02, max_branches: int = 64) -> CartesianResult:
     """
     The tip follows straight lines from pose to pose, from the inverse kinematics branch of the first pose that completes
     them with the shortest way, counted from `near` (n,) when that is given. A group that moves a diff_drive base is
@@ -3429,7 +4169,7 @@ def plan_cartesian(checker: CollisionChecker, tool_poses: numpy.typing.ArrayLike
         edge_step: float = 0.02  # largest joint motion between two checks [rad or m]
         max_branches: int = 64  # configurations of the first pose that are followed at most
     """
-def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, progress: collections.abc.Callable[[str, float], object] | None = None, waypoints: int = 35, attempts: int = 8, solutions: int = 1, choices: int = 8, stands: int = 64, iterations: int = 1500, time_limit: float = 600.0, jerk_time: float = 0.0, collisions: bool = True, seed: int = 1, threads: int = 1, solver: str = 'ipopt', tolerance: float = 0.0001, max_iterations: int = 150, solve_time_limit: float = 600.0, smoothing: float = 0.01, margin: float = 0.005, look_out: float = 0.15, refinements: int = 6) -> DriveByResult:
+def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, waypoints: int = 35, seeds: int = 8, solutions: int = 1, grasp_assignments: int = 8, goal_configurations: int = 64, iterations: int = 1500, time_limit: float = 600.0, jerk_time: float = 0.0, collisions: bool = True, seed: int = 1, threads: int = 1, solver: str = 'ipopt', tolerance: float = 0.0001, max_iterations: int = 150, solve_time_limit: float = 600.0, smoothing: float = 0.01, margin: float = 0.005, look_out: float = 0.15, refinements: int = 6) -> DriveByResult:
     """
     The fastest motion of base and arm from `start` (n,), at rest, through the tasks in order to `goal`, at rest, without
     stopping for them (P1 chapter 4). goal: a configuration (n,), or (2, n) with lower and upper bounds, infinite where it
@@ -3437,11 +4177,11 @@ def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy
     
     Keyword options:
         waypoints: int = 35  # waypoints of the whole motion
-        attempts: int = 8  # guesses tried until one leads to a solution
+        seeds: int = 8  # guesses tried until one leads to a solution
         solutions: int = 1  # solutions compared of one choice of candidates
-        choices: int = 8  # choices of candidates planned; the fastest motion is returned; 1: the choice that looks quickest
-        stands: int = 64  # configurations sought per candidate
-        iterations: int = 1500  # of all attempts; after so many no other begins
+        grasp_assignments: int = 8  # grasp_assignments of candidates planned; the fastest motion is returned; 1: the choice that looks quickest
+        goal_configurations: int = 64  # configurations sought per candidate
+        iterations: int = 1500  # of all solves; after so many no other begins
         time_limit: float = 600.0  # wall-clock cap [s]
         jerk_time: float = 0.0  # accelerations may go from 0 to their limit in no less [s]; 0: no limit
         collisions: bool = True  # the robot keeps clear of the world and of itself
@@ -3456,9 +4196,9 @@ def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy
         look_out: float = 0.15  # pairs of bodies nearer than this are constrained [m]
         refinements: int = 6  # times that collision constraints may be added
     """
-def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, progress: collections.abc.Callable[[str, float], object] | None = None, improved: collections.abc.Callable[[Improvement], object] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 4, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 4.0, neighbours: int = 0, roadmap_seed: int = 1, max_samples: int = 1000, step: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
+def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 4, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 4.0, neighbours: int = 0, roadmap_seed: int = 1, max_samples: int = 1000, step: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
     """
-    Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 chapters 4 and 5). Every grasp is looked at. `improved` is called with every better solution (an Improvement); what it raises ends the call.
+    Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 chapters 4 and 5). Every grasp is looked at. `on_solution` is called with every better solution (an Improvement); what it raises ends the call.
     
     Keyword options:
         planner: str = 'prm_star_mg'  # a name of manipulation_planner_names()
@@ -3489,7 +4229,7 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         goal_cost: float = 0.0  # rrt_star_mg: ends with the first path that costs no more; inf: the first at all
         keep_trees: bool = False  # rrt_star_mg: hand over the trees with the result
     """
-def plan_motion(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike | None = None, tool_poses: numpy.typing.ArrayLike | None = None, regions: collections.abc.Sequence[ToolRegion] = [], orientation_constraint: OrientationConstraint | None = None, on_solution: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64], float], object] | None = None, progress: collections.abc.Callable[[str, float], object] | None = None, planner: str = 'rrt_connect', time_limit: float = 5.0, max_iterations: int = 20000, range: float = 0.0, base_margin: float = 2.0, edge_step: float = 0.02, workspace_step: float = ..., shorten: bool = True, shorten_iterations: int = 200, ik_solutions: int = 8, region_samples: int = 16, seed: int = 1) -> MotionResult:
+def plan_motion(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike | None = None, tool_poses: numpy.typing.ArrayLike | None = None, regions: collections.abc.Sequence[ToolRegion] = [], orientation_constraint: OrientationConstraint | None = None, on_solution: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64], float], typing.Any] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, planner: str = 'rrt_connect', time_limit: float = 5.0, max_iterations: int = 20000, range: float = 0.0, base_margin: float = 2.0, edge_step: float = 0.02, workspace_step: float = ..., shorten: bool = True, shorten_iterations: int = 200, ik_solutions: int = 8, region_samples: int = 16, seed: int = 1) -> MotionResult:
     """
     A collision-free path of the group from `start` (n,) to any of its goals: `goal` (n,) or several as (m, n),
     `tool_poses` of the tip, (4, 4) or (m, 4, 4), and `regions` of them, reached by inverse kinematics. `orientation_constraint`
@@ -3510,7 +4250,22 @@ def plan_motion(robot: Robot, group: JointGroup, world: World, *, start: numpy.t
         region_samples: int = 16  # tool poses drawn in each region
         seed: int = 1  # same seed, same path
     """
-def plan_part_supply(problem: PartSupplyProblem, database: ReachDatabase, *, progress: collections.abc.Callable[[str, float], object] | None = None) -> PartSupplyPlan:
+def plan_object_pick(arm: JointGroup, gripper: Hand, world: World, object: str, grasps: collections.abc.Sequence[Grasp], *, database: ReachDatabase, home: numpy.typing.ArrayLike, base_pose: numpy.typing.ArrayLike, places: numpy.typing.ArrayLike | None = None, approach_distance: float = 0.08, lift_height: float = 0.12, motion_time_limit: float = 5.0, ik_seeds: int = 8, seed: int = 1) -> Pick:
+    """
+    Picks any object of a world: the first of the grasps with a collision-free configuration, straight approach and
+    lift, and motions from `home` (m,) and to one of `places`, (k, 4, 4) world poses of the object; without places
+    the object stays in the hand. The robot stands at `base_pose` (x, y, theta).
+    
+    
+    
+    Keyword options:
+        approach_distance: float = 0.08  # straight move from pre-grasp to grasp [m]
+        lift_height: float = 0.12  # straight upward move after closing [m]
+        motion_time_limit: float = 5.0  # for each planned motion [s]
+        ik_seeds: int = 8  # database configurations refined for each grasp
+        seed: int = 1  # same seed, same pick
+    """
+def plan_part_supply(problem: PartSupplyProblem, database: ReachDatabase, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> PartSupplyPlan:
     """
     The whole of P1's Algorithm 1 and the motions around it, for a problem given as objects.
     """
@@ -3532,7 +4287,11 @@ def plan_platform_locations(checker: CollisionChecker, T_world_pick: numpy.typin
         seed: int = 1  # same seed, same answer
         time_limit: float = 10.0  # wall-clock cap [s]
     """
-def plan_straight_line(checker: CollisionChecker, start: numpy.typing.ArrayLike, T_world_to: numpy.typing.ArrayLike, *, progress: collections.abc.Callable[[str, float], object] | None = None, position_step: float = 0.005, rotation_step: float = 0.02, max_joint_step: float = 0.2, edge_step: float = 0.02) -> StraightLineResult:
+def plan_stops_exact(grid: BaseGrid, regions: collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike], min_radius: float = 0.1, *, time_limit: float = 60.0, tie_time_limit: float = 10.0, start: numpy.typing.ArrayLike | None = None, goal: numpy.typing.ArrayLike | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> StopSet:
+    """
+    The least number of stops over regions (or masks), with proof; among equally few the widest discs, then, with `start` and `goal` (x, y), the shortest route as the crow flies.
+    """
+def plan_straight_line(checker: CollisionChecker, start: numpy.typing.ArrayLike, T_world_to: numpy.typing.ArrayLike, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, position_step: float = 0.005, rotation_step: float = 0.02, max_joint_step: float = 0.2, edge_step: float = 0.02) -> StraightLineResult:
     """
     The tool moves on a straight line from the pose of `start` to T_world_to. A group that moves a diff_drive base is
     refused: it could not follow such a path.
@@ -3571,9 +4330,10 @@ def pose_to_xyz_rpy(T: numpy.typing.ArrayLike) -> tuple[numpy.typing.NDArray[num
     """
     Position (3,) and roll-pitch-yaw (3,) of a (4, 4) pose.
     """
-def push_grasp(*, opening: float = 0.1, closing_speed: float = 0.1, tool_speed: float = 0.3, finger_length: float = 0.12, object_width: float = 0.05, grip_depth: float = 0.02, planned_depth: float = 0.06, clearance: float = 0.0, max_push: float = 0.1, along_error: float = 0.0, lateral_error: float = 0.0) -> PushGrasp:
+def push_grasp(*, hand: Hand | None = None, opening: float = 0.1, closing_speed: float = 0.1, tool_speed: float = 0.3, finger_length: float = 0.12, object_width: float = 0.05, grip_depth: float = 0.02, planned_depth: float = 0.06, clearance: float = 0.0, max_push: float = 0.1, along_error: float = 0.0, lateral_error: float = 0.0) -> PushGrasp:
     """
-    When a gripper that moves on may begin to close, and what error of the object's position it forgives (P1 4.3).
+    When a hand that moves on may begin to close, and what error of the object's position it forgives (P1 4.3).
+    Lengths are those of `hand` where no keyword gives them.
     
     Keyword options:
         opening: float = 0.1  # between the fingers before they close [m]
@@ -3629,15 +4389,15 @@ def robust_intersections(grid: BaseGrid, regions: collections.abc.Sequence[BaseR
     """
     Every set of trays whose shared cells hold a disc of at least `min_radius` [m] (P1 3.4.2).
     """
-def route_lengths(arm: JointGroup, world: World, *, home: numpy.typing.ArrayLike, positions: numpy.typing.ArrayLike, resolution: float = 0.1, threads: int = 0, progress: collections.abc.Callable[[str, float], object] | None = None) -> numpy.typing.NDArray[numpy.float64]:
+def route_lengths(arm: JointGroup, world: World, *, home: numpy.typing.ArrayLike, positions: numpy.typing.ArrayLike, resolution: float = 0.1, threads: int = 0, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> numpy.typing.NDArray[numpy.float64]:
     """
     (m, m): how far it is to drive between base poses (m, 3), around what stands in the way; infinite: no way found.
     """
-def run_policy(grid: BaseGrid, cells: collections.abc.Sequence[collections.abc.Sequence[numpy.typing.ArrayLike]], order: collections.abc.Sequence[collections.abc.Sequence[int]], policy: str = 'all', *, min_radius: float = 0.1, online_limit: float = 1.0, time_limit: float = 60.0, tie_time_limit: float = 10.0, planned: collections.abc.Callable[[int], collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike]] | None = None, progress: collections.abc.Callable[[str, float], object] | None = None) -> PolicyResult:
+def run_policy(grid: BaseGrid, cells: collections.abc.Sequence[collections.abc.Sequence[numpy.typing.ArrayLike]], order: collections.abc.Sequence[collections.abc.Sequence[int]], policy: str = 'all', *, min_radius: float = 0.1, online_limit: float = 1.0, time_limit: float = 60.0, tie_time_limit: float = 10.0, planned: collections.abc.Callable[[int], collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> PolicyResult:
     """
     Plans the stops of every round for all parts, the `remaining` or the `targets` and holds them against the parts' bitmaps `cells` [tray][part]. `planned(round)` gives other regions to plan with, one a tray: what they cost counts as time between the rounds.
     """
-def sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Gripper, *, approaches: int = 8, positions: int = 3, mesh_samples: int = 400, max_grasps: int = 200, friction: float = 0.5, standoff: float = 0.0, seed: int = 1) -> list[Grasp]:
+def sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, *, approaches: int = 8, positions: int = 3, mesh_samples: int = 400, max_grasps: int = 200, friction: float = 0.5, standoff: float = 0.0, seed: int = 1) -> list[Grasp]:
     """
     Antipodal grasps of a body given as a list of LinkShape (P1 3.4.1), best first.
     
@@ -3647,7 +4407,7 @@ def sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Gripper,
         mesh_samples: int = 400  # surface points tried on a mesh
         max_grasps: int = 200  # best kept, spread over approach directions
         friction: float = 0.5  # Coulomb coefficient
-        standoff: float = 0.0  # how far the tool centre point stays outside the object's middle [m]
+        standoff: float = 0.0  # how far the tool frame stays outside the object's middle [m]
         seed: int = 1  # same seed, same grasps
     """
 def self_distance_objective(checker: CollisionChecker, margin: float = 0.05, weight: float = 1.0) -> IkObjective:
@@ -3658,18 +4418,19 @@ def share_stops(drive_times: numpy.typing.ArrayLike, stop_times: collections.abc
     """
     Shares stops among robots so that the last is done as early as can be. `drive_times` is (n + 2 k, n + 2 k): stops, k starts, k goals; infinite: no way.
     """
-def shorten_drive_by(group: JointGroup, world: World, *, tasks: collections.abc.Sequence[DriveByTask], times: collections.abc.Sequence[float], positions: numpy.typing.ArrayLike, task_times: collections.abc.Sequence[float], progress: collections.abc.Callable[[str, float], object] | None = None, waypoints: int = 35, attempts: int = 8, solutions: int = 1, choices: int = 8, stands: int = 64, iterations: int = 1500, time_limit: float = 600.0, jerk_time: float = 0.0, collisions: bool = True, seed: int = 1, threads: int = 1, solver: str = 'ipopt', tolerance: float = 0.0001, max_iterations: int = 150, solve_time_limit: float = 600.0, smoothing: float = 0.01, margin: float = 0.005, look_out: float = 0.15, refinements: int = 6) -> DriveByResult:
+def shorten_drive_by(group: JointGroup, world: World, *, tasks: collections.abc.Sequence[DriveByTask], times: collections.abc.Sequence[float], positions: numpy.typing.ArrayLike, task_times: collections.abc.Sequence[float], progress: collections.abc.Callable[[str, float], typing.Any] | None = None, waypoints: int = 35, seeds: int = 8, solutions: int = 1, grasp_assignments: int = 8, goal_configurations: int = 64, iterations: int = 1500, time_limit: float = 600.0, jerk_time: float = 0.0, collisions: bool = True, seed: int = 1, threads: int = 1, solver: str = 'ipopt', tolerance: float = 0.0001, max_iterations: int = 150, solve_time_limit: float = 600.0, smoothing: float = 0.01, margin: float = 0.005, look_out: float = 0.15, refinements: int = 6) -> DriveByResult:
     """
     plan_drive_by from a motion that is known instead of guesses: positions (m, n) at times [s], straight between them, free of
     collisions, from rest to rest, at each task at its time; e.g. a drive and a pick one after the other. The answer is near that
-    motion. Tasks have one pose and no push. Keywords are those of plan_drive_by.
+    motion. Tasks have one pose and no push.
+    
     Keyword options:
         waypoints: int = 35  # waypoints of the whole motion
-        attempts: int = 8  # guesses tried until one leads to a solution
+        seeds: int = 8  # guesses tried until one leads to a solution
         solutions: int = 1  # solutions compared of one choice of candidates
-        choices: int = 8  # choices of candidates planned; the fastest motion is returned; 1: the choice that looks quickest
-        stands: int = 64  # configurations sought per candidate
-        iterations: int = 1500  # of all attempts; after so many no other begins
+        grasp_assignments: int = 8  # grasp_assignments of candidates planned; the fastest motion is returned; 1: the choice that looks quickest
+        goal_configurations: int = 64  # configurations sought per candidate
+        iterations: int = 1500  # of all solves; after so many no other begins
         time_limit: float = 600.0  # wall-clock cap [s]
         jerk_time: float = 0.0  # accelerations may go from 0 to their limit in no less [s]; 0: no limit
         collisions: bool = True  # the robot keeps clear of the world and of itself
@@ -3698,11 +4459,11 @@ def singularity_objective(group: JointGroup, threshold: float, weight: float = 1
     """
     Weight times max(0, 1 - M / threshold)^2, M the manipulability of the arm's joints (without the base).
     """
-def solve_set_cover(elements: int, sets: collections.abc.Sequence[collections.abc.Sequence[int]], costs: collections.abc.Sequence[float] = [], *, time_limit: float = 60.0, progress: collections.abc.Callable[[str, float], object] | None = None) -> SetCoverResult:
+def solve_set_cover(elements: int, sets: collections.abc.Sequence[collections.abc.Sequence[int]], costs: collections.abc.Sequence[float] = [], *, time_limit: float = 60.0, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> SetCoverResult:
     """
     Fewest (or cheapest) sets that cover all of 0..elements-1, with a proof (P1, equation 3.1).
     """
-def time_parameterize(path: numpy.typing.ArrayLike, velocity_limits: numpy.typing.ArrayLike, acceleration_limits: numpy.typing.ArrayLike, *, names: collections.abc.Sequence[str] = [], progress: collections.abc.Callable[[str, float], object] | None = None, max_deviation: float = 0.01, sample_period: float = 0.02, jerk_limits: numpy.typing.ArrayLike | None = None) -> JointTrajectory:
+def time_parameterize(path: numpy.typing.ArrayLike, velocity_limits: numpy.typing.ArrayLike, acceleration_limits: numpy.typing.ArrayLike, *, names: collections.abc.Sequence[str] = [], progress: collections.abc.Callable[[str, float], typing.Any] | None = None, max_deviation: float = 0.01, sample_period: float = 0.02, jerk_limits: numpy.typing.ArrayLike | None = None) -> JointTrajectory:
     """
     Near time-optimal timing of waypoints (k, n), at rest at both ends; corners are blended, which may leave the path
     by max_deviation.
@@ -3712,7 +4473,7 @@ def time_parameterize(path: numpy.typing.ArrayLike, velocity_limits: numpy.typin
         sample_period: float = 0.02  # spacing of the samples [s]
         jerk_limits: numpy.typing.ArrayLike | None = None  # of each joint [rad/s^3]; None: no such limits
     """
-def time_parameterize_free(checker: CollisionChecker, path: numpy.typing.ArrayLike, *, edge_step: float = 0.01, progress: collections.abc.Callable[[str, float], object] | None = None, max_deviation: float = 0.01, sample_period: float = 0.02, jerk_limits: numpy.typing.ArrayLike | None = None) -> JointTrajectory:
+def time_parameterize_free(checker: CollisionChecker, path: numpy.typing.ArrayLike, *, edge_step: float = 0.01, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, max_deviation: float = 0.01, sample_period: float = 0.02, jerk_limits: numpy.typing.ArrayLike | None = None) -> JointTrajectory:
     """
     time_parameterize under the limits of the checker's group, the blended corners checked for collisions too, no joint moving
     more than edge_step between two checks [rad or m]. Without any times when the straight edges of the path are not free.
@@ -3752,7 +4513,7 @@ def wheel_speeds(v: float, omega: float, wheel_separation: float) -> tuple[float
     """
     Rim speeds (left, right) of a diff-drive's wheels [m/s].
     """
-def with_sampled_pairs(robot: Robot, *, progress: collections.abc.Callable[[str, float], object] | None = None) -> Robot:
+def with_sampled_pairs(robot: Robot, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> Robot:
     """
     compute_disabled_pairs with default options, its result cached on disk under the robot's hash.
     """

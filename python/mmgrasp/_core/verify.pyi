@@ -9,166 +9,277 @@ import numpy.typing
 import typing
 __all__: list[str] = ['CheckedBody', 'CheckedDriveBy', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegFigures', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'Fault', 'PathCheckResult', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'check_path', 'check_plan']
 class CheckedBody:
+    """
+    A body of the scene as the plan file describes it.
+    """
     def __init__(self, name: str, shapes: collections.abc.Sequence[mmgrasp._core.LinkShape], pose: numpy.typing.ArrayLike) -> None:
-        ...
+        """
+        `pose` (4, 4): T_world_body; `shapes` in its frame.
+        """
 class CheckedGrasp:
+    """
+    A grasp of a part as the plan file describes it.
+    """
     def __init__(self, pose: numpy.typing.ArrayLike, width: float) -> None:
-        ...
+        """
+        `pose` (4, 4): T_object_tcp; `width`: opening of the fingers while holding [m].
+        """
 class CheckedPart:
+    """
+    A part and the grasps that a plan may use.
+    """
     def __init__(self, body: CheckedBody, tray: str, target: bool, grasps: collections.abc.Sequence[CheckedGrasp]) -> None:
-        ...
+        """
+        `tray`: name of the tray it lies in; a part that is no `target` stays.
+        """
 class CheckedFinger:
+    """
+    A finger joint, linear in the opening.
+    """
     def __init__(self, joint: str, closed: float, open: float) -> None:
-        ...
+        """
+        Values of the joint with the fingers `closed` and fully `open` [rad or m].
+        """
 class CheckedMotion:
+    """
+    One timed arm motion of a pick.
+    """
     def __init__(self, kind: str, opening: float, holding: bool, times: collections.abc.Sequence[float], positions: numpy.typing.ArrayLike, velocities: numpy.typing.ArrayLike, accelerations: numpy.typing.ArrayLike | None = None) -> None:
-        ...
+        """
+        `kind`: transit, approach, lift, transfer or retreat; `opening` of the fingers [m]; `holding` the part; `times` (k,) [s];
+        `positions`, `velocities` and, where given, `accelerations` (k, n) of the arm's joints.
+        """
 class CheckedPick:
+    """
+    One pick of a plan.
+    """
     def __init__(self, stop: int, tray: str, part: str, grasp: int, motions: collections.abc.Sequence[CheckedMotion]) -> None:
-        ...
+        """
+        Index of its stop, names of tray and part, index into the part's grasps, motions in order.
+        """
 class CheckedDriveBy:
+    """
+    A drive to a stop and the first pick there up to its lift, in one motion of base and arm.
+    """
     def __init__(self, pick: int, close_at: float, closed_at: float, motion: CheckedMotion) -> None:
-        ...
+        """
+        `pick`: index into the plan's picks; the fingers begin to close at `close_at` [s] and hold the part from `closed_at`
+        [s] on; rows of `motion` hold x, y, theta, then the arm's joints.
+        """
 class CheckedStop:
+    """
+    A stop of the base.
+    """
     def __init__(self, pose: numpy.typing.ArrayLike, radius: float, trays: collections.abc.Sequence[str]) -> None:
-        ...
+        """
+        `pose` (3,): x, y, theta [m, m, rad]; `radius` of the disc in which every target part stays graspable [m]; names of
+        the trays served.
+        """
 class CheckedRegion:
+    """
+    Base poses that a plan says serve a tray.
+    """
     def __init__(self, tray: str, cells: numpy.typing.ArrayLike) -> None:
-        ...
+        """
+        `cells`: zeros and ones, (headings, ny, nx) flattened.
+        """
 class CheckedLegFigures:
+    """
+    What a plan says about a leg of its route.
+    """
     def __init__(self, length: float, turning: float, duration: float) -> None:
-        ...
+        """
+        Length [m], sum of absolute heading changes [rad], duration [s].
+        """
 class CheckedIntersection:
+    """
+    A place that a plan says lies in the regions of several trays.
+    """
     def __init__(self, trays: collections.abc.Sequence[str], heading: float, centre: numpy.typing.ArrayLike, radius: float) -> None:
-        ...
+        """
+        Names of the trays, heading [rad], centre (2,) and radius of the disc [m].
+        """
 class CheckedGrid:
+    """
+    The grid of a plan's regions.
+    """
     def __init__(self, origin: numpy.typing.ArrayLike, resolution: float, nx: int, ny: int, headings: collections.abc.Sequence[float]) -> None:
-        ...
+        """
+        Lower corner of cell (0, 0) (2,) [m], edge of a cell [m], cells along x and y, headings [rad].
+        """
 class PlanToCheck:
     """
     A whole plan as read from plan.json.
     """
-    grid: CheckedGrid
-    tip_link: str
     def __init__(self, robot: mmgrasp._core.RobotSource) -> None:
-        ...
+        """
+        Of this robot; everything else is set afterwards.
+        """
     @property
     def T_base_bin(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Middle of the bin's top plane in the robot's root frame (4, 4), z up.
+        """
     @T_base_bin.setter
     def T_base_bin(self, arg1: numpy.typing.ArrayLike) -> None:
         ...
     @property
     def acceleration_limits(self) -> list[float]:
-        ...
+        """
+        One an arm joint [rad/s^2 or m/s^2].
+        """
     @acceleration_limits.setter
     def acceleration_limits(self, arg0: collections.abc.Sequence[float]) -> None:
         ...
     @property
     def approach(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Unit vector (3,) in the tip's frame along which the hand comes.
+        """
     @approach.setter
     def approach(self, arg0: numpy.typing.ArrayLike) -> None:
         ...
     @property
     def arm_joints(self) -> list[str]:
-        ...
+        """
+        Names of the columns of the motions.
+        """
     @arm_joints.setter
     def arm_joints(self, arg0: collections.abc.Sequence[str]) -> None:
         ...
     @property
     def bin_size(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Inner x and y (2,) [m].
+        """
     @bin_size.setter
     def bin_size(self, arg0: numpy.typing.ArrayLike) -> None:
         ...
     @property
     def clearance(self) -> float:
-        ...
+        """
+        Opening beyond the part's width before grasping [m].
+        """
     @clearance.setter
     def clearance(self, arg0: float) -> None:
         ...
     @property
     def closing_speed(self) -> float:
-        ...
+        """
+        Of the opening [m/s], for drive_by.
+        """
     @closing_speed.setter
     def closing_speed(self, arg0: float) -> None:
         ...
     @property
     def drive_by(self) -> list[CheckedDriveBy]:
-        ...
+        """
+        What of route and picks is done in passing.
+        """
     @drive_by.setter
     def drive_by(self, arg0: collections.abc.Sequence[CheckedDriveBy]) -> None:
         ...
     @property
     def drop_gap(self) -> float:
-        ...
+        """
+        Height above the bin's top plane at which parts are released [m].
+        """
     @drop_gap.setter
     def drop_gap(self, arg0: float) -> None:
         ...
     @property
     def finger_links(self) -> list[str]:
-        ...
+        """
+        Links that may touch the part that is held.
+        """
     @finger_links.setter
     def finger_links(self, arg0: collections.abc.Sequence[str]) -> None:
         ...
     @property
     def fingers(self) -> list[CheckedFinger]:
-        ...
+        """
+        Finger joints.
+        """
     @fingers.setter
     def fingers(self, arg0: collections.abc.Sequence[CheckedFinger]) -> None:
         ...
     @property
     def goal(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Base pose at the end (3,): x, y, theta [m, m, rad].
+        """
     @goal.setter
     def goal(self, arg0: numpy.typing.ArrayLike) -> None:
         ...
     @property
-    def home(self) -> numpy.typing.NDArray[numpy.float64]:
+    def grid(self) -> CheckedGrid:
+        """
+        Grid of the regions.
+        """
+    @grid.setter
+    def grid(self, arg0: CheckedGrid) -> None:
         ...
+    @property
+    def home(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Arm configuration while driving (n,).
+        """
     @home.setter
     def home(self, arg0: numpy.typing.ArrayLike) -> None:
         ...
     @property
     def intersections(self) -> list[CheckedIntersection]:
-        ...
+        """
+        Places that the plan says lie in several regions.
+        """
     @intersections.setter
     def intersections(self, arg0: collections.abc.Sequence[CheckedIntersection]) -> None:
         ...
     @property
     def lower_bound(self) -> int:
-        ...
+        """
+        Least number of stops, as the plan says.
+        """
     @lower_bound.setter
     def lower_bound(self, arg0: int) -> None:
         ...
     @property
     def max_opening(self) -> float:
-        ...
+        """
+        Of the gripper [m].
+        """
     @max_opening.setter
     def max_opening(self, arg0: float) -> None:
         ...
     @property
     def obstacles(self) -> list[CheckedBody]:
-        ...
+        """
+        Bodies of the scene.
+        """
     @obstacles.setter
     def obstacles(self, arg0: collections.abc.Sequence[CheckedBody]) -> None:
         ...
     @property
     def other_joints(self) -> dict[str, float]:
-        ...
+        """
+        Values of joints outside the arm [rad or m].
+        """
     @other_joints.setter
     def other_joints(self, arg0: collections.abc.Mapping[str, float]) -> None:
         ...
     @property
     def parts(self) -> list[CheckedPart]:
-        ...
+        """
+        All parts, targets and others.
+        """
     @parts.setter
     def parts(self, arg0: collections.abc.Sequence[CheckedPart]) -> None:
         ...
     @property
     def picks(self) -> list[CheckedPick]:
-        ...
+        """
+        In order.
+        """
     @picks.setter
     def picks(self, arg0: collections.abc.Sequence[CheckedPick]) -> None:
         ...
@@ -182,13 +293,17 @@ class PlanToCheck:
         ...
     @property
     def positioning_uncertainty(self) -> float:
-        ...
+        """
+        Radius of the disc in which the base may come to stand [m].
+        """
     @positioning_uncertainty.setter
     def positioning_uncertainty(self, arg0: float) -> None:
         ...
     @property
     def regions(self) -> list[CheckedRegion]:
-        ...
+        """
+        One a tray.
+        """
     @regions.setter
     def regions(self, arg0: collections.abc.Sequence[CheckedRegion]) -> None:
         ...
@@ -202,43 +317,65 @@ class PlanToCheck:
         ...
     @property
     def robustness_rate(self) -> float:
-        ...
+        """
+        As the plan says; NaN: not given.
+        """
     @robustness_rate.setter
     def robustness_rate(self, arg0: float) -> None:
         ...
     @property
     def route(self) -> list[list[numpy.typing.NDArray[numpy.float64]]]:
-        ...
+        """
+        Legs of base poses (3,), one more than stops.
+        """
     @route.setter
     def route(self, arg0: collections.abc.Sequence[collections.abc.Sequence[numpy.typing.ArrayLike]]) -> None:
         ...
     @property
     def route_figures(self) -> list[CheckedLegFigures]:
-        ...
+        """
+        One a leg; empty: not given.
+        """
     @route_figures.setter
     def route_figures(self, arg0: collections.abc.Sequence[CheckedLegFigures]) -> None:
         ...
     @property
     def start(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
+        """
+        Base pose at the beginning (3,): x, y, theta [m, m, rad].
+        """
     @start.setter
     def start(self, arg0: numpy.typing.ArrayLike) -> None:
         ...
     @property
     def stops(self) -> list[CheckedStop]:
-        ...
+        """
+        In the order in which they are visited.
+        """
     @stops.setter
     def stops(self, arg0: collections.abc.Sequence[CheckedStop]) -> None:
         ...
     @property
-    def trays(self) -> list[str]:
+    def tip_link(self) -> str:
+        """
+        Link of the tool centre point.
+        """
+    @tip_link.setter
+    def tip_link(self, arg0: str) -> None:
         ...
+    @property
+    def trays(self) -> list[str]:
+        """
+        Names of the trays.
+        """
     @trays.setter
     def trays(self, arg0: collections.abc.Sequence[str]) -> None:
         ...
     @property
     def velocity_limits(self) -> list[float]:
-        ...
+        """
+        One an arm joint [rad/s or m/s].
+        """
     @velocity_limits.setter
     def velocity_limits(self, arg0: collections.abc.Sequence[float]) -> None:
         ...
@@ -249,13 +386,19 @@ class PathCheckResult:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def configurations_checked(self) -> int:
-        ...
+        """
+        How many were looked at.
+        """
     @property
     def free(self) -> bool:
-        ...
+        """
+        Nothing is wrong.
+        """
     @property
     def where(self) -> str:
         """
@@ -266,20 +409,30 @@ class Fault:
     One thing that is physically wrong with a plan.
     """
     def __init__(self, code: str, where: str, message: str) -> None:
-        ...
+        """
+        A fault found elsewhere, e.g. while reading the plan.
+        """
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def code(self) -> str:
-        ...
+        """
+        Which rule is broken.
+        """
     @property
     def message(self) -> str:
-        ...
+        """
+        What is wrong, with the value and the bound.
+        """
     @property
     def where(self) -> str:
-        ...
+        """
+        E.g. pick, motion and time.
+        """
 class StopRate:
     """
     How often every target part stayed graspable around a stop.
@@ -287,19 +440,29 @@ class StopRate:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def good(self) -> int:
-        ...
+        """
+        Draws from which every target part could be grasped.
+        """
     @property
     def samples(self) -> int:
-        ...
+        """
+        Draws looked at; fewer than asked when the verdict was clear before.
+        """
     @property
     def stop(self) -> int:
-        ...
+        """
+        Index of the stop.
+        """
     @property
     def worst_part(self) -> str:
-        ...
+        """
+        The part that was lost most often; empty: none.
+        """
 class PlanCheckResult:
     """
     What the check of a plan found.
@@ -307,10 +470,14 @@ class PlanCheckResult:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
     @property
     def configurations_checked(self) -> int:
-        ...
+        """
+        How many were looked at.
+        """
     @property
     def faults(self) -> list[Fault]:
         """
@@ -318,19 +485,25 @@ class PlanCheckResult:
         """
     @property
     def minimal_stops(self) -> int:
-        ...
+        """
+        Least number of stops, found again from the regions.
+        """
     @property
     def ok(self) -> bool:
-        ...
+        """
+        There are no faults.
+        """
     @property
     def rates(self) -> list[StopRate]:
-        ...
+        """
+        One a stop.
+        """
 def check_path(robot: mmgrasp._core.Robot, joints: collections.abc.Sequence[str], path: numpy.typing.ArrayLike, bodies: collections.abc.Sequence[CheckedBody], *, other_joints: collections.abc.Mapping[str, float] = {}, joint_step: float = 0.005) -> PathCheckResult:
     """
     Looks at waypoints (k, n) joined by straight lines, in steps of joint_step [rad or m]: limits, self-collisions and
     collisions with the bodies, by KDL and FCL called directly.
     """
-def check_plan(plan: PlanToCheck, *, progress: collections.abc.Callable[[str, float], object] | None = None, joint_step: float = 0.01, base_step: float = 0.01, position_tolerance: float = 0.0001, rotation_tolerance: float = 0.001, samples: int = 1000, required_rate: float = 0.999, seed: int = 20240607, threads: int = 0) -> PlanCheckResult:
+def check_plan(plan: PlanToCheck, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, joint_step: float = 0.01, base_step: float = 0.01, position_tolerance: float = 0.0001, rotation_tolerance: float = 0.001, samples: int = 1000, required_rate: float = 0.999, seed: int = 20240607, threads: int = 0) -> PlanCheckResult:
     """
     Checks a finished plan against its scenario.
     

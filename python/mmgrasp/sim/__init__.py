@@ -12,6 +12,7 @@ from .control import Command as Command
 from .control import Controller as Controller
 from .control import Observer as Observer
 from .control import Recorder as Recorder
+from .control import SceneState as SceneState
 from .execution import Execution as Execution
 from .model import Physics as Physics
 from .model import SimPart as SimPart

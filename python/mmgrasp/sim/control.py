@@ -21,15 +21,39 @@ A closed loop is a controller that looks at the scene before it commands:
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-if TYPE_CHECKING:
-    from .scene import SimScene
+
+class SceneState(Protocol):
+    """What a controller and an observer may look at: the state of physics now."""
+
+    @property
+    def address(self) -> Mapping[str, int]:
+        """Driven joints by name."""
+
+    @property
+    def parts(self) -> Mapping[str, Any]:
+        """Loose parts by name."""
+
+    def base_pose(self) -> NDArray[np.float64]:
+        """(x, y, theta)."""
+
+    def joint(self, name: str) -> float:
+        """Value of a driven joint [rad or m]."""
+
+    def part_pose(self, name: str) -> NDArray[np.float64]:
+        """T_world_part (4, 4)."""
+
+    def body_pose(self, body: str) -> NDArray[np.float64]:
+        """T_world_body (4, 4); bodies are called link/NAME and part/NAME."""
+
+    def contact_forces(self) -> Mapping[tuple[str, str], float]:
+        """Normal force [N] by pair of bodies that touch."""
 
 
 @dataclass
@@ -43,7 +67,7 @@ class Command:
 
 
 class Controller(Protocol):
-    """Commands the robot. It may look at the scene (`base_pose`, `joint`, `part_pose`, `contact_forces`) and at nothing else."""
+    """Commands the robot; of the scene it sees SceneState."""
 
     @property
     def joints(self) -> Sequence[str]:
@@ -53,20 +77,20 @@ class Controller(Protocol):
     def period(self) -> float:
         """Between two commands [s]; a multiple of the time step."""
 
-    def command(self, time: float, scene: SimScene) -> Command:
+    def command(self, time: float, scene: SceneState) -> Command:
         """Called at 0, period, 2 period, ..., before the physics step that begins at `time` [s]."""
 
-    def finished(self, time: float, scene: SimScene) -> bool:
+    def finished(self, time: float, scene: SceneState) -> bool:
         """Asked before every physics step; true ends the run."""
 
 
 class Observer(Protocol):
     """Watches a run without changing it."""
 
-    def before(self, step: int, time: float, scene: SimScene) -> None:
+    def before(self, step: int, time: float, scene: SceneState) -> None:
         """Before the physics step that begins at `time`, the command known."""
 
-    def after(self, step: int, time: float, scene: SimScene) -> None:
+    def after(self, step: int, time: float, scene: SceneState) -> None:
         """After that step."""
 
 
@@ -78,15 +102,15 @@ class Recorder:
         self.states: list[dict[str, Any]] = []
         self._next = 0.0
 
-    def before(self, step: int, time: float, scene: SimScene) -> None:
+    def before(self, step: int, time: float, scene: SceneState) -> None:
         if time >= self._next - 1e-9:
             self.record(time, scene)
             self._next += self.period
 
-    def after(self, step: int, time: float, scene: SimScene) -> None:
+    def after(self, step: int, time: float, scene: SceneState) -> None:
         pass
 
-    def record(self, time: float, scene: SimScene) -> None:
+    def record(self, time: float, scene: SceneState) -> None:
         self.states.append(
             {
                 "time": float(time),

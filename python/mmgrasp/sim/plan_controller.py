@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import _core
 from .._core import InvalidInput, JointGroup, JointTrajectory
-from .control import Command
+from .control import Command, SceneState
 from .execution import Execution
 from .scene import SimScene
 
@@ -39,7 +39,7 @@ class PlanController:
         """Every driven joint."""
         return list(self.reference)
 
-    def command(self, time: float, scene: SimScene) -> Command:
+    def command(self, time: float, scene: SceneState) -> Command:
         """The references' next row; the base's velocity anew every tracking period."""
         if self._step % self._base_every == 0:
             self._command_base(time)
@@ -47,7 +47,7 @@ class PlanController:
         self._step += 1
         return Command(row, self._platform)
 
-    def finished(self, time: float, scene: SimScene) -> bool:
+    def finished(self, time: float, scene: SceneState) -> bool:
         """After the last row."""
         return self._step >= len(self.times)
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .._core import InvalidInput, JointGroup, JointTrajectory
-from .control import Recorder
+from .control import Recorder, SceneState
 from .execution import Execution
 from .plan_controller import PlanController
 from .result import ContactLog, PartWatch, SimResult
@@ -58,10 +58,10 @@ class RunWatch:
         self.log = ContactLog()
         self.base_error = self.arm_error = 0.0
 
-    def before(self, step: int, time: float, scene: SimScene) -> None:
+    def before(self, step: int, time: float, scene: SceneState) -> None:
         """Nothing: what counts is where a step leads."""
 
-    def after(self, step: int, time: float, scene: SimScene) -> None:
+    def after(self, step: int, time: float, scene: SceneState) -> None:
         """Every WATCHED steps."""
         if step % WATCHED:
             return
@@ -70,7 +70,7 @@ class RunWatch:
         self.log.step(float(time), forces)
         k = min(round(time / plan.h) + 1, len(plan.times) - 1)
         if plan.arm_address:
-            error = np.abs(scene.data.qpos[plan.arm_address] - plan.arm_wanted[k])
+            error = np.abs(self.scene.data.qpos[plan.arm_address] - plan.arm_wanted[k])
             self.arm_error = max(self.arm_error, float(error.max()))
         if plan.tracker is not None:
             off = scene.base_pose()[:2] - plan.planned_base(time + plan.h)[:2]

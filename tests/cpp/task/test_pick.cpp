@@ -36,7 +36,7 @@ double distance(const Pose& a, const Pose& b) {
 
 TEST(Pick, AnObjectInNoTrayIsGraspedLiftedAndPutDown) {
   const PickProblem problem = pin_on_table();
-  const Pick pick = plan_pick(problem, database());
+  const Pick pick = plan_object_pick(problem, database());
   ASSERT_EQ(pick.outcome, Outcome::solved) << pick.failed_at << ", " << pick.rejections.summary();
   EXPECT_EQ(pick.part, PartRef{});
   EXPECT_EQ(pick.stop, -1);
@@ -58,9 +58,9 @@ TEST(Pick, AnObjectInNoTrayIsGraspedLiftedAndPutDown) {
 
 TEST(Pick, WithoutAPlaceTheObjectStaysInTheHand) {
   PickProblem problem = pin_on_table();
-  const Pick whole = plan_pick(problem, database());
+  const Pick whole = plan_object_pick(problem, database());
   problem.places.clear();
-  const Pick pick = plan_pick(problem, database());
+  const Pick pick = plan_object_pick(problem, database());
   ASSERT_EQ(pick.outcome, Outcome::solved);
   ASSERT_EQ(pick.motions.size(), 3u);
   EXPECT_TRUE(pick.motions.back().holding);
@@ -71,7 +71,7 @@ TEST(Pick, WithoutAPlaceTheObjectStaysInTheHand) {
 TEST(Pick, AnUnreachablePlaceIsNamed) {
   PickProblem problem = pin_on_table();
   problem.places = {test::at(3, 3, 0.5)};
-  const Pick pick = plan_pick(problem, database());
+  const Pick pick = plan_object_pick(problem, database());
   EXPECT_EQ(pick.outcome, Outcome::infeasible);
   EXPECT_EQ(pick.failed_at, "release");
   EXPECT_TRUE(pick.motions.empty());
@@ -80,13 +80,13 @@ TEST(Pick, AnUnreachablePlaceIsNamed) {
 TEST(Pick, BadInputIsRefused) {
   PickProblem problem = pin_on_table();
   problem.object = "mug";
-  EXPECT_THROW(plan_pick(problem, database()), InvalidInput);
+  EXPECT_THROW(plan_object_pick(problem, database()), InvalidInput);
   problem = pin_on_table();
   problem.grasps[1].opening = 0.2;
-  EXPECT_THROW(plan_pick(problem, database()), InvalidInput);
+  EXPECT_THROW(plan_object_pick(problem, database()), InvalidInput);
   problem = pin_on_table();
   problem.options.lift_height = 0;
-  EXPECT_THROW(plan_pick(problem, database()), InvalidInput);
+  EXPECT_THROW(plan_object_pick(problem, database()), InvalidInput);
   EXPECT_THROW(plan_pick(test::small_storeroom(), database(), {0.35, -0.1, 0}, {TrayId(2), 0}, {}), InvalidInput);
 }
 
@@ -105,7 +105,7 @@ TEST(Pick, APartOfATrayIsAnObjectLikeAnother) {
     alone.world.add(tray.parts[0].name, WorldObject{tray.parts[0].shapes, tray.parts[0].T_world_part});
   alone.options = {room.options.approach_distance, room.options.lift_height, room.options.motion_time_limit,
                    room.options.grid.ik_seeds, room.options.seed * 1000003u};
-  const Pick kept = plan_pick(alone, database());
+  const Pick kept = plan_object_pick(alone, database());
   ASSERT_EQ(kept.outcome, Outcome::solved);
   ASSERT_EQ(kept.grasp, from_tray.grasp);
   EXPECT_EQ(kept.motions[1].trajectory.positions.back(), from_tray.motions[1].trajectory.positions.back());

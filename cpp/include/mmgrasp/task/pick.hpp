@@ -68,10 +68,11 @@ struct MMGRASP_EXPORT PickProblem {
 /// candidates fell.
 /// @code
 ///   PickProblem mug{arm.at(T_world_robot), gripper, world, "mug", grasps, home, {T_world_shelf}, {}};
-///   const Pick pick = plan_pick(mug, database);
+///   const Pick pick = plan_object_pick(mug, database);
 ///   for (const PickMotion& motion : pick.motions) run(motion.trajectory);
 /// @endcode
-MMGRASP_EXPORT Pick plan_pick(const PickProblem& problem, const ReachDatabase& database, const Monitor& monitor = {});
+MMGRASP_EXPORT Pick plan_object_pick(const PickProblem& problem, const ReachDatabase& database,
+                                     const Monitor& monitor = {});
 
 /// Picks a part of a part-supply problem from a base pose and puts it into the bin on the robot. `remaining` are the
 /// parts still in place, the picked one among them.

@@ -61,7 +61,7 @@ void PickProblem::check() const {
   for (std::size_t i = 0; i < places.size(); ++i) checked_pose(places[i].matrix(), "places[" + std::to_string(i) + "]");
 }
 
-Pick plan_pick(const PickProblem& problem, const ReachDatabase& database, const Monitor& monitor) {
+Pick plan_object_pick(const PickProblem& problem, const ReachDatabase& database, const Monitor& monitor) {
   problem.check();
   const std::string difference = database.difference(problem.arm.at(Pose::Identity()));
   if (!difference.empty()) throw InvalidInput("database: was built for another arm than the problem's: " + difference);

@@ -1,5 +1,5 @@
-// How long calls run on after their cancel token was set: a Panda whose goal lies behind walls that it cannot pass, every
-// planner by name, stopped at times drawn from 20 ms on. Prints one JSON line per call, value: the slowest.
+// How long calls run on after their cancel token was set: a Panda whose goal lies behind walls that it cannot pass,
+// every planner by name, stopped at times drawn from 20 ms on. Prints one JSON line per call, value: the slowest.
 //
 //     bench_stop [runs of each, default 20] [latest stop in seconds, default 1] [name of the only one]
 

@@ -30,7 +30,8 @@ TEST(World, NamesAreUniqueOverSceneAndHands) {
   EXPECT_TRUE(world.has("a"));
   EXPECT_TRUE(world.objects().empty());
   EXPECT_NE(message_of([&] { world.add("a", Sphere{1}, Pose::Identity()); }), "");
-  EXPECT_NE(message_of([&] { world.attach("a", "hand", Pose::Identity()); }).find("attached already"), std::string::npos);
+  EXPECT_NE(message_of([&] { world.attach("a", "hand", Pose::Identity()); }).find("attached already"),
+            std::string::npos);
   EXPECT_NE(message_of([&] { world.move("a", Pose::Identity()); }).find("is attached"), std::string::npos);
   const World snapshot = world;
   const Pose T = pose_from_xyz_rpy({1, 2, 3}, {0.1, 0.2, 0.3});

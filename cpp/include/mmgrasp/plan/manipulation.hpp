@@ -126,8 +126,8 @@ struct MMGRASP_EXPORT ManipulationResult {
 ///     const ManipulationResult result = plan_manipulation(problem);
 ///     if (result.path) execute(problem.grasps[result.grasp_index], result.path->waypoints);
 ///
-/// Every grasp is checked, unless the time limit, the cancel token or `goal_cost` ends the run. No grasp reachable at the
-/// start: invalid_start; at the goal: invalid_goal; `rejections` and `grasps` say why. With `roadmap` no other is
+/// Every grasp is checked, unless the time limit, the cancel token or `goal_cost` ends the run. No grasp reachable at
+/// the start: invalid_start; at the goal: invalid_goal; `rejections` and `grasps` say why. With `roadmap` no other is
 /// built; it must be of the same robot and joints. `on_improvement` is called with every better solution.
 MMGRASP_EXPORT ManipulationResult plan_manipulation(const ManipulationProblem& problem,
                                                     const ManipulationOptions& options = {},

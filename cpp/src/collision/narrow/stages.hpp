@@ -3,8 +3,8 @@
 namespace mmgrasp::detail {
 
 /// The ladder of checks (docs/methods/collision.md): each stage decides what it can prove and leaves the rest to the
-/// next one, so that the answer is the same without it. The library runs them all; benchmarks/core/run_stages.py compiles
-/// the checker again without one, to find out what it is worth.
+/// next one, so that the answer is the same without it. The library runs them all; benchmarks/core/run_stages.py
+/// compiles the checker again without one, to find out what it is worth.
 enum Stage : unsigned {
   kSphereStage = 1,          ///< One bounding sphere per shape, eight at a time.
   kCoverStage = 2,           ///< Up to 64 spheres per shape against a bounding box.

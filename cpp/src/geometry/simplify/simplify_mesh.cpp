@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "geometry/simplify/decimate_outwards.hpp"
 #include "geometry/hierarchy/triangle_tree.hpp"
+#include "geometry/simplify/decimate_outwards.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 

@@ -169,6 +169,7 @@ def test_a_scenario_gives_what_one_process_gives(small_path: Path, tmp_path: Pat
     assert [state(r) for r in regions] == [state(r) for r in alone]
 
 
+@pytest.mark.slow
 def test_the_command_spreads_its_work(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     """Everything but times is what one process computes."""
     arguments = ["reproduce", "p1-random-placement", "--quick", "--json"]

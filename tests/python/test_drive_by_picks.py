@@ -63,6 +63,7 @@ def test_the_first_pick_is_done_in_passing(
     assert done.result.events[-1]["base_speed"] > 0.02
 
 
+@pytest.mark.slow
 def test_the_storeroom_is_shortened_from_its_own_plan() -> None:
     """Its three stops need no motion guessed from nothing, and the base drives on at each."""
     found = mg.part_supply.plan_drive_by_picks(mg.plan_part_supply(ASSETS / "scenarios" / "storeroom.yaml"))

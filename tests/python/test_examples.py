@@ -12,6 +12,8 @@ import pytest
 
 from conftest import ASSETS, REPOSITORY
 
+pytestmark = pytest.mark.slow
+
 EXAMPLES = REPOSITORY / "examples"
 BUILD = REPOSITORY / "build" / "dev"
 

@@ -172,6 +172,7 @@ def test_fcl_finds_a_pipe_that_is_carried_through_a_post() -> None:
     assert any("'pipe' touches" in fault for fault in faults)
 
 
+@pytest.mark.slow
 def test_trees_of_good_paths_join_few_of_the_vertices_within_a_step() -> None:
     """Nearly all are within one in the ellipsoids of good paths, and most edges to them are blocked."""
     cell = pipe_cell(8, style="open")
@@ -198,6 +199,7 @@ def test_trees_of_good_paths_join_few_of_the_vertices_within_a_step() -> None:
     assert excess[0] < excess[1] + 0.002, excess
 
 
+@pytest.mark.slow
 def test_not_every_grasp_that_reaches_both_ends_can_carry() -> None:
     """P2's reason to plan over many grasps: in cell 8 the first reachable grasp fails where another one carries the pipe."""
     assert pipe_cell(8, seed=2).rejected["the first grasp within reach will do"] >= 1
@@ -244,6 +246,7 @@ def test_straight_lines_do_not_carry_through_narrow_cells(number: int) -> None:
     assert free == 0
 
 
+@pytest.mark.slow
 def test_open_cells_are_solved_over_roadmaps_as_sparse_as_in_p2() -> None:
     """With other roadmaps than the generator's, and no edge that the roadmap would not have."""
     cell = pipe_cell(2, style="open")

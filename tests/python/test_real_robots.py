@@ -7,6 +7,8 @@ import pytest
 
 import mmgrasp as mg
 
+pytestmark = pytest.mark.slow
+
 SCENARIOS = Path(__file__).parents[1] / "scenarios"
 DATA = Path(__file__).parents[2].parent / "shared" / "data"
 

@@ -23,6 +23,8 @@ from mmgrasp.reproduce.page import markdown, store
 from mmgrasp.reproduce.rows import PAPER_ROWS
 from mmgrasp.reproduce.setup import Row, database, robot_setup
 
+pytestmark = pytest.mark.slow
+
 SIDE = {"type": ["number", "string", "boolean", "null", "array"]}
 SCHEMA = {
     "type": "object",

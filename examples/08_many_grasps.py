@@ -1,7 +1,7 @@
 """A gantry carries a bar past two posts: the planner chooses where along the bar to hold it (P2 chapter 4).
 
-One roadmap serves all grasps; each keeps a small overlay of what it blocks. With a file name as argument it draws two
-overlays, with a second one the forest that RRT*-MG grows for five of the grasps (P2 chapter 5): the plane is the
+One roadmap serves all grasps; each keeps a small graph of its own with what it blocks. With a file name as argument it draws two
+of these graphs, with a second one the trees that RRT*-MG grows for five of the grasps (P2 chapter 5): the plane is the
 configuration space of the gantry.
 """
 
@@ -30,7 +30,7 @@ grasps = [mg.Grasp(mg.pose([place, 0, 0]), cost=0.5 * abs(place)) for place in p
 problem = mg.ManipulationProblem(gantry, world, bar, mg.pose([0.33, 0.3, 0]), mg.pose([1.65, 0.9, 0]), grasps)
 
 roadmap = mg.planning.Roadmap.build(gantry, vertices=1500, gamma=1.5)
-print(roadmap, roadmap.figures)
+print(roadmap, roadmap.statistics)
 result = mg.plan_manipulation(problem, roadmap=roadmap, shorten=False)
 print(result)
 print(f"held {places[result.grasp_index]:+.2f} m from the bar's middle; nothing over the roadmap costs less")
@@ -45,10 +45,10 @@ other = mg.plan_manipulation(with_grasps([grasps[worst]]), roadmap=roadmap, shor
 print(f"held {places[worst]:+.2f} m from it alone: {other}")
 
 five = list(range(0, 25, 6))
-forest = mg.plan_manipulation(
+by_trees = mg.plan_manipulation(
     with_grasps([grasps[i] for i in five]), planner="rrt_star_mg", max_samples=200, step=0.3, keep_trees=True
 )
-print(f"by trees, with {len(five)} of the grasps: {forest}, {len(forest.trees)} trees in the race")
+print(f"by trees, with {len(five)} of the grasps: {by_trees}, {len(by_trees.trees)} trees")
 
 
 def blocked(grasp: mg.Grasp, configurations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -62,7 +62,7 @@ def blocked(grasp: mg.Grasp, configurations: np.ndarray) -> tuple[np.ndarray, np
     return by_hand, ~by_hand & np.array([not bar_only.is_free(q) for q in configurations])
 
 
-def draw_overlays(file: str) -> None:
+def draw_grasp_graphs(file: str) -> None:
     from matplotlib import pyplot as plt
     from matplotlib.collections import LineCollection
 
@@ -83,16 +83,16 @@ def draw_overlays(file: str) -> None:
     figure.savefig(file, dpi=80, bbox_inches="tight")
 
 
-def draw_forest(file: str) -> None:
+def draw_trees(file: str) -> None:
     from matplotlib import pyplot as plt
     from matplotlib.collections import LineCollection
 
     figure, axis = plt.subplots(figsize=(9, 5.6))
     x, y = np.meshgrid(np.linspace(0, 2, 201), np.linspace(0, 1.2, 121))
-    by_hand, by_bar = blocked(grasps[five[forest.grasp_index]], np.column_stack([x.ravel(), y.ravel()]))
+    by_hand, by_bar = blocked(grasps[five[by_trees.grasp_index]], np.column_stack([x.ravel(), y.ravel()]))
     shade = np.where(by_hand, 0.75, np.where(by_bar, 0.9, 1.0)).reshape(x.shape)
     axis.imshow(shade, origin="lower", extent=(0, 2, 0, 1.2), cmap="gray", vmin=0, vmax=1)
-    for tree in sorted(forest.trees, key=lambda tree: tree.grasp):
+    for tree in sorted(by_trees.trees, key=lambda tree: tree.grasp):
         colour, grown = f"C{tree.grasp}", np.array(tree.parents) >= 0
         ways = np.stack([tree.vertices[grown], tree.vertices[np.array(tree.parents)[grown]]], axis=1)
         axis.add_collection(
@@ -101,7 +101,7 @@ def draw_forest(file: str) -> None:
         place = f"held {places[five[tree.grasp]]:+.2f} m from the middle"
         roots = tree.vertices[~grown].T
         axis.plot(*roots, "s" if tree.from_goal else "o", color=colour, label=None if tree.from_goal else place)
-    axis.plot(*forest.path.T, "k", lw=2.5, label=f"best path, cost {forest.cost:.2f} m")
+    axis.plot(*by_trees.path.T, "k", lw=2.5, label=f"best path, cost {by_trees.cost:.2f} m")
     axis.set(xlim=(0, 2), ylim=(0, 1.2), aspect="equal", xlabel="x [m]", ylabel="y [m]")
     axis.legend(loc="lower center", bbox_to_anchor=(0.5, -0.36), ncol=3, frameon=False)
     figure.savefig(file, dpi=80, bbox_inches="tight")
@@ -111,6 +111,6 @@ if len(sys.argv) > 1:
     import matplotlib
 
     matplotlib.use("Agg")
-    draw_overlays(sys.argv[1])
+    draw_grasp_graphs(sys.argv[1])
 if len(sys.argv) > 2:
-    draw_forest(sys.argv[2])
+    draw_trees(sys.argv[2])

@@ -32,7 +32,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from carry_text import write_carries
+from transfer_text import write_carries
 
 import mmgrasp as mg
 from mmgrasp.problems.pipe_cells import ROBOTS, PipeCell, pipe_cell
@@ -208,7 +208,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=5.0, help="total time of the anytime programs [s]")
     parser.add_argument("--each", type=float, default=1.0, help="time for one grasp of `one by one` [s]")
     parser.add_argument("--cap", type=float, default=60.0, help="after which a program without a path gives up [s]")
-    parser.add_argument("--fcl", help="the program bench_carry_fcl")
+    parser.add_argument("--fcl", help="the program bench_transfer_fcl")
     parser.add_argument("--programs", nargs="+", choices=list(PROGRAMS), default=list(PROGRAMS))
     given = parser.parse_args()
     if given.fcl is None and "today" in given.programs:

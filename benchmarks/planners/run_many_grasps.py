@@ -118,8 +118,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--write", action="store_true", help="update benchmarks/README.md")
     given, rest = parser.parse_known_args()
-    build_programs([], ["bench_many_grasps", "bench_carry_fcl"])
-    fcl = BUILD / "benchmarks/bench_carry_fcl"
+    build_programs([], ["bench_many_grasps", "bench_transfer_fcl"])
+    fcl = BUILD / "benchmarks/bench_transfer_fcl"
     settings, *lines = lines_of([sys.executable, HERE / "many_grasps.py", "--fcl", fcl, *rest])
     odds = []
     for planner in ("prm_star_mg", "rrt_star_mg"):

@@ -74,7 +74,7 @@ void bind_stops(py::module_& m) {
                             "Sets of regions whose shared cells hold a disc that is large enough (P1 3.4.2).")
       .def_readonly("robust", &Intersections::robust, "The sets whose disc is large enough.")
       .def_readonly("lost", &Intersections::lost, "Shared cells whose disc is too small, largest first.")
-      .def_readonly("sets_tried", &Intersections::sets_tried, "Sets looked at.")
+      .def_readonly("sets_tried", &Intersections::sets_tried, "Sets checked.")
       .def_readonly("complete", &Intersections::complete, "False when the search ended early.")
       .def_readonly("sets_too_small", &Intersections::sets_too_small,
                     "Sets that share cells, but with too small a disc.")

@@ -100,7 +100,7 @@ void bind_map(py::module_& m) {
                 [&](const Monitor& monitor) { return map.restricted(group, world, monitor); });
           },
           "arm"_a, "world"_a, py::kw_only(), "progress"_a = py::none(),
-          "The map of the same arm in a world with more in it: only what is reached here is looked at again.")
+          "The map of the same arm in a world with more in it: only what is reached here is checked again.")
       .def(
           "save",
           [](const CapabilityMap& map, const PathLike& path) {

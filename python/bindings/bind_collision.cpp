@@ -74,7 +74,7 @@ void bind_answers(py::module_& m) {
       .def_readonly("fraction", &EdgeResult::fraction,
                     "Where along the edge the first refused check was, in [0, 1]; 1 when free.")
       .def_readonly("contact", &EdgeResult::contact, "What touches there; None when limits refuse it or all is free.")
-      .def_readonly("checks", &EdgeResult::checks, "Configurations looked at.")
+      .def_readonly("checks", &EdgeResult::checks, "Configurations checked.")
       .def("__bool__", [](const EdgeResult& r) { return r.free; })
       .def(
           "to_dict",
@@ -122,11 +122,11 @@ void bind_checker(py::module_& m) {
           py::arg("q"), "The first cause found (limits, self_collision, scene), or Rejection.none.")
       .def(
           "contacts", [](CollisionChecker& c, const ArrayLike& q) { return c.contacts(configuration(c, q, "q")); },
-          py::arg("q"), "Every touching pair; limits are not looked at.")
+          py::arg("q"), "Every touching pair; limits are not checked.")
       .def(
           "first_contact",
           [](CollisionChecker& c, const ArrayLike& q) { return c.first_contact(configuration(c, q, "q")); },
-          py::arg("q"), "One touching pair, self before scene, or None; limits are not looked at.")
+          py::arg("q"), "One touching pair, self before scene, or None; limits are not checked.")
       .def(
           "distance",
           [](CollisionChecker& c, const ArrayLike& q, bool gradient) {

@@ -57,20 +57,20 @@ void bind_outcomes(py::module_& m) {
       .value("invalid_start", Outcome::invalid_start, "The start violates limits or is in collision.")
       .value("invalid_goal", Outcome::invalid_goal, "No goal is inside limits and collision-free.")
       .finalize();
-  py::native_enum<Rejection>(m, "Rejection", "enum.Enum", "Why one candidate was turned down.")
-      .value("none", Rejection::none, "It was not turned down.")
+  py::native_enum<Rejection>(m, "Rejection", "enum.Enum", "Why one candidate was rejected.")
+      .value("none", Rejection::none, "It was not rejected.")
       .value("unreachable", Rejection::unreachable, "No arm configuration reaches the pose.")
       .value("limits", Rejection::limits, "Reached only outside joint limits.")
       .value("self_collision", Rejection::self_collision, "Robot hits robot or what it holds.")
       .value("scene", Rejection::scene, "Robot (or what it holds) hits the scene.")
-      .value("grasp_filter", Rejection::grasp_filter, "Turned down before inverse kinematics.")
+      .value("grasp_filter", Rejection::grasp_filter, "Rejected before inverse kinematics.")
       .finalize();
   py::class_<Rejections>(m, "Rejections", "How many candidates fell at which filter.")
       .def_readonly("unreachable", &Rejections::unreachable, "No arm configuration reaches the pose.")
       .def_readonly("limits", &Rejections::limits, "Reached only outside joint limits.")
       .def_readonly("self_collision", &Rejections::self_collision, "Reached, but robot hits robot or what it holds.")
       .def_readonly("scene", &Rejections::scene, "Reached, but robot (or what it holds) hits the scene.")
-      .def_readonly("grasp_filter", &Rejections::grasp_filter, "Turned down before inverse kinematics.")
+      .def_readonly("grasp_filter", &Rejections::grasp_filter, "Rejected before inverse kinematics.")
       .def_property_readonly("total", &Rejections::total, "Over all filters.")
       .def(
           "to_dict", [](const Rejections& r) { return to_dict(r); },

@@ -37,7 +37,7 @@ const std::vector<OptionField<PlacementOptions>>& placement_fields() {
 }
 
 void bind_evaluation(py::module_& m) {
-  py::class_<Graspability>(m, "Graspability", "Grasps, best first, and what became of the other places looked at.")
+  py::class_<Graspability>(m, "Graspability", "Grasps, best first, and what became of the other places checked.")
       .def_readonly("grasps", &Graspability::grasps, "Best first.")
       .def_property_readonly(
           "counts",
@@ -45,7 +45,7 @@ void bind_evaluation(py::module_& m) {
             return py::dict("tried"_a = g.counts.tried, "too_wide"_a = g.counts.too_wide, "poor"_a = g.counts.poor,
                             "collision"_a = g.counts.collision, "near_better"_a = g.counts.near_better);
           },
-          "Places looked at (tried) and turned down: too_wide, poor, collision, near_better.")
+          "Places checked (tried) and rejected: too_wide, poor, collision, near_better.")
       .def("__repr__",
            [](const Graspability& g) { return "Graspability(" + std::to_string(g.grasps.size()) + " grasps)"; });
   m.def(

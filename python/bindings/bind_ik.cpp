@@ -103,13 +103,13 @@ IkBranches branches(const JointGroup& group, const Pose& T, const World* world, 
 }
 
 void bind_branches(py::module_& m) {
-  py::class_<IkBranches>(m, "IkBranches", "Every arm configuration found for a pose, and why others were turned down.")
+  py::class_<IkBranches>(m, "IkBranches", "Every arm configuration found for a pose, and why others were rejected.")
       .def_property_readonly(
           "solutions", [](const IkBranches& b) { return rows_to_array(b.solutions); },
           "(k, n), inside limits and checked; the first ones as different from each other as can be.")
       .def_readonly("complete", &IkBranches::complete, "True when every branch was computed, none searched.")
       .def_readonly("redundant_joint", &IkBranches::redundant_joint, "Joint that was sampled; -1 for none.")
-      .def_readonly("rejections", &IkBranches::rejections, "Branches turned down, by cause.")
+      .def_readonly("rejections", &IkBranches::rejections, "Branches rejected, by cause.")
       .def("__len__", [](const IkBranches& b) { return b.solutions.size(); })
       .def(
           "to_dict",
@@ -140,7 +140,7 @@ void bind_group_methods(py::module_& m) {
           py::arg("T_world_tip"), py::arg("seed") = py::none(), py::arg("world") = py::none(),
           ("Inverse kinematics from `seed` (default: middle of the limits), then random restarts. With a world the "
            "answer is\n"
-           "free of collisions with it and of self-collision; without one, collisions are not looked at." +
+           "free of collisions with it and of self-collision; without one, collisions are not checked." +
            option_help(ik_fields()))
               .c_str())
       .def(

@@ -84,7 +84,7 @@ const Fields& manipulation_fields() {
         option<O>("planner", &O::planner, "a name of manipulation_planner_names()"),
         option<O>("ik_solutions", &O::ik_solutions, "arm configurations tried for each grasp at each end"),
         option<O>("first_grasps", &O::first_grasps,
-                  "grasps looked at, one by one, before those without a first path are searched again, then twice as "
+                  "grasps checked, one by one, before those without a first path are searched again, then twice as "
                   "many; 0: all before any search"),
         option<O>("straight", &O::straight, "try straight joint lines from start to goal"),
         option<O>("ik_restarts", &O::ik, &IkOptions::restarts, "random starts of arms without a closed form"),
@@ -162,7 +162,7 @@ void bind_manipulation(py::module_& m) {
       },
       "problem"_a, py::kw_only(), "roadmap"_a = py::none(), "progress"_a = py::none(), "on_solution"_a = py::none(),
       ("Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 "
-       "chapters 4 and 5). Every grasp is looked at. `on_solution` is called with every better solution (an "
+       "chapters 4 and 5). Every grasp is checked. `on_solution` is called with every better solution (an "
        "Improvement); "
        "what "
        "it raises ends the call." +

@@ -45,7 +45,7 @@ std::string result_text(const ManipulationResult& r) {
     out += ", grasp " + std::to_string(r.grasp_index) + " of " + std::to_string(r.grasps.size()) + ", " +
            std::to_string(r.path->waypoints.size()) + " waypoints, cost " + std::string(py::repr(py::float_(r.cost)));
   } else {
-    out += ", turned down: " + r.rejections.summary();
+    out += ", rejected: " + r.rejections.summary();
   }
   for (const Contact& c : r.contacts) out += ", '" + c.a + "' touches '" + c.b + "'";
   return out + ")";
@@ -88,15 +88,15 @@ void bind_result_parts(py::module_& m) {
                ", after " + std::string(py::repr(py::float_(i.seconds))) + " s)";
       });
   py::class_<GraspReport>(m, "GraspReport", "What became of one grasp.")
-      .def_readonly("start", &GraspReport::start, "Arm configurations turned down at the start, by cause.")
-      .def_readonly("goal", &GraspReport::goal, "Likewise at the goal; not looked at when none is left at the start.")
+      .def_readonly("start", &GraspReport::start, "Arm configurations rejected at the start, by cause.")
+      .def_readonly("goal", &GraspReport::goal, "Likewise at the goal; not checked when none is left at the start.")
       .def_readonly("start_solutions", &GraspReport::start_solutions, "Arm configurations left at the start.")
       .def_readonly("goal_solutions", &GraspReport::goal_solutions, "Arm configurations left at the goal.")
       .def_readonly("searched", &GraspReport::searched, "Its paths were looked for over a roadmap.")
       .def("to_dict", &report_dict, "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const GraspReport& r) {
-        return "GraspReport(start: " + std::to_string(r.start_solutions) + " left, turned down " + r.start.summary() +
-               "; goal: " + std::to_string(r.goal_solutions) + " left, turned down " + r.goal.summary() + ")";
+        return "GraspReport(start: " + std::to_string(r.start_solutions) + " left, rejected " + r.start.summary() +
+               "; goal: " + std::to_string(r.goal_solutions) + " left, rejected " + r.goal.summary() + ")";
       });
 }
 
@@ -120,7 +120,7 @@ void bind_manipulation_result(py::module_& m) {
       .def_readonly("contacts", &ManipulationResult::contacts,
                     "With invalid_start or invalid_goal: what touches there with the first grasp in collision.")
       .def_readonly("trees", &ManipulationResult::trees,
-                    "With keep_trees: a SearchTree for each grasp still in the race and each end.")
+                    "With keep_trees: a SearchTree for each grasp still still a candidate and each end.")
       .def_property_readonly(
           "stats", [](const ManipulationResult& r) { return stats_dict(r.stats); },
           "What the search took: seconds, searches, edges checked.")

@@ -18,7 +18,7 @@ const std::vector<OptionField<MotionOptions>>& motion_fields() {
       option<O>("planner", &O::planner, "a name of planner_names()"),
       option<O>("time_limit", &O::time_limit, "wall-clock cap [s]"),
       option<O>("max_iterations", &O::max_iterations, "budget in states drawn"),
-      option<O>("range", &O::range, "longest tree edge [rad]; 0: a share of the joint box's diagonal"),
+      option<O>("range", &O::range, "longest tree edge [rad]; 0: a share of the joint limits's diagonal"),
       option<O>("base_margin", &O::base_margin, "the base is drawn this far around start and goals [m]"),
       option<O>("edge_step", &O::edge_step, "largest joint motion between two checks [rad or m]"),
       option<O>("workspace_step", &O::workspace_step, "largest motion of any robot point between two checks [m]"),
@@ -122,7 +122,7 @@ void bind_motion(py::module_& m) {
       .def_readonly("cost", &MotionResult::cost, "Length of the path in joint space.")
       .def_readonly("goal_index", &MotionResult::goal_index, "Which of the goals the path reaches; -1 unless solved.")
       .def_readonly("contacts", &MotionResult::contacts, "With invalid_start or invalid_goal: what touches.")
-      .def_readonly("rejections", &MotionResult::rejections, "Of the start, or of goals, turned down.")
+      .def_readonly("rejections", &MotionResult::rejections, "Of the start, or of goals, rejected.")
       .def_readonly("beyond_limits", &MotionResult::beyond_limits,
                     "With invalid_start or invalid_goal: which joint is outside of its limits, its value and these.")
       .def_readonly("stats", &MotionResult::stats, "What the search took.")
@@ -143,7 +143,7 @@ void bind_motion(py::module_& m) {
           out += ", " + std::to_string(r.path->waypoints.size()) + " waypoints, cost " +
                  std::string(py::repr(py::float_(r.cost)));
         }
-        if (!r.path && r.rejections.total() > 0) out += ", turned down: " + r.rejections.summary();
+        if (!r.path && r.rejections.total() > 0) out += ", rejected: " + r.rejections.summary();
         for (const Contact& c : r.contacts) out += ", '" + c.a + "' touches '" + c.b + "'";
         if (!r.beyond_limits.empty()) out += ", " + r.beyond_limits;
         return out + ")";

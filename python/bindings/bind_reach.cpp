@@ -52,7 +52,7 @@ const std::vector<OptionField<BasePlacementOptions>>& base_placement_fields() {
   static const std::vector<OptionField<Options>> fields{
       option<Options>("step", &Options::step, "grid of base positions [m]"),
       option<Options>("headings", &Options::headings, "of the base, evenly over the circle"),
-      option<Options>("candidates", &Options::candidates, "best base poses of the grid looked at exactly"),
+      option<Options>("candidates", &Options::candidates, "best base poses of the grid checked exactly"),
       option<Options>("seeds", &Options::seeds, "stored configurations tried for a target"),
       option<Options>("refinements", &Options::refinements, "rounds of smaller steps about the best"),
       option<Options>("position_tolerance", &Options::ik, &IkOptions::position_tolerance, "[m]"),

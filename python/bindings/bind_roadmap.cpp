@@ -5,8 +5,8 @@
 namespace mmgrasp::python {
 namespace {
 
-constexpr char kRoadmapFigures[] = "mmgrasp._records.RoadmapFigures";
-using RoadmapFigures = Shown<kRoadmapFigures>;
+constexpr char kRoadmapStatistics[] = "mmgrasp._records.RoadmapStatistics";
+using RoadmapStatisticsDict = Shown<kRoadmapStatistics>;
 
 using namespace py::literals;
 
@@ -20,7 +20,7 @@ const std::vector<OptionField<RoadmapOptions>>& roadmap_fields() {
   return fields;
 }
 
-RoadmapFigures figures_dict(const Roadmap& roadmap) {
+RoadmapStatisticsDict statistics_dict(const Roadmap& roadmap) {
   const RoadmapStatistics f = roadmap.statistics();
   return py::dict("mean_degree"_a = f.mean_degree, "components"_a = f.components,
                   "largest_component"_a = f.largest_component, "radius"_a = f.radius, "volume"_a = f.volume,
@@ -42,16 +42,17 @@ py::dict roadmap_dict(const Roadmap& roadmap) {
   py::dict options;
   for (const auto& field : roadmap_fields()) options[field.name.c_str()] = field.get(roadmap.options());
   return py::dict("joints"_a = roadmap.group().names(), "size"_a = roadmap.size(), "edges"_a = roadmap.edge_count(),
-                  "options"_a = options, "figures"_a = figures_dict(roadmap));
+                  "options"_a = options, "statistics"_a = statistics_dict(roadmap));
 }
 
 }  // namespace
 
 void bind_roadmap(py::module_& m) {
   m.def("_roadmap_option_table", [] { return option_table(roadmap_fields()); });
-  py::class_<Roadmap>(m, "Roadmap",
-                      "Configurations of a group drawn from its joint box and joined when near, without any collision "
-                      "check: it serves every grasp, object and scene (P2 4.3.2.1). Immutable.")
+  py::class_<Roadmap>(
+      m, "Roadmap",
+      "Configurations of a group drawn from its joint limits and joined when near, without any collision "
+      "check: it serves every grasp, object and scene (P2 4.3.2.1). Immutable.")
       .def_static(
           "build",
           [](const Given<JointGroup>& given_group, const Progress& progress, const py::kwargs& options) {
@@ -92,7 +93,7 @@ void bind_roadmap(py::module_& m) {
             return out;
           },
           "q"_a, "Vertices a new configuration would be joined with, ascending.")
-      .def_property_readonly("figures", &figures_dict,
+      .def_property_readonly("statistics", &statistics_dict,
                              "Mean degree, connected parts, the largest one's vertices, connection radius, the joint "
                              "box's volume, and the gamma that PRM* asks for.")
       .def("to_dict", &roadmap_dict, "As a dict of plain numbers, strings and lists, e.g. for JSON.")

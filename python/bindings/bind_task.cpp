@@ -180,8 +180,7 @@ void bind_picks(py::module_& m) {
           "part", [](const Pick& p) { return p.part.part; }, "Index into the tray's parts.")
       .def_readonly("grasp", &Pick::grasp, "Index into the part's grasps.")
       .def_readonly("motions", &Pick::motions, "transit, approach, lift, transfer, retreat.")
-      .def_readonly("rejections", &Pick::rejections,
-                    "Grasps and their configurations turned down on the way, by cause.")
+      .def_readonly("rejections", &Pick::rejections, "Grasps and their configurations rejected on the way, by cause.")
       .def_readonly("failed_at", &Pick::failed_at, "Without a solution: the stage at which most candidates fell.")
       .def_property_readonly("duration", &Pick::duration, "Of all its motions [s].")
       .def("__repr__", [](const Pick& p) {

@@ -108,7 +108,7 @@ void bind_cartesian(py::module_& m) {
         return std::string("CartesianResult(") + to_string(r.outcome) + ", fraction " +
                std::string(py::repr(py::float_(r.fraction))) + ", " + std::to_string(r.tried) + " of " +
                std::to_string(r.branches) + " branches tried" + why(r.cause, r.contact, r.beyond_limits) +
-               (r.branches == 0 ? ", turned down: " + r.rejections.summary() : "") + ")";
+               (r.branches == 0 ? ", rejected: " + r.rejections.summary() : "") + ")";
       });
   m.def(
       "plan_cartesian",

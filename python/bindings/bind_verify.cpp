@@ -162,7 +162,7 @@ void bind_path_check(py::module_& m) {
   py::class_<PathCheckResult>(m, "PathCheckResult", "What check_path found.")
       .def_readonly("free", &PathCheckResult::free, "Nothing is wrong.")
       .def_readonly("where", &PathCheckResult::where, "Where and what is wrong; empty when free.")
-      .def_readonly("configurations_checked", &PathCheckResult::configurations_checked, "How many were looked at.")
+      .def_readonly("configurations_checked", &PathCheckResult::configurations_checked, "How many were checked.")
       .def(
           "to_dict",
           [](const PathCheckResult& r) {
@@ -214,8 +214,7 @@ void bind_verify(py::module_& top) {
       .def("__repr__", [](const Fault& f) { return "Fault(" + f.code + " at " + f.where + ": " + f.message + ")"; });
   py::class_<StopRate>(m, "StopRate", "How often every target part stayed graspable around a stop.")
       .def_readonly("stop", &StopRate::stop, "Index of the stop.")
-      .def_readonly("samples", &StopRate::samples,
-                    "Draws looked at; fewer than asked when the verdict was clear before.")
+      .def_readonly("samples", &StopRate::samples, "Draws checked; fewer than asked when the verdict was clear before.")
       .def_readonly("good", &StopRate::good, "Draws from which every target part could be grasped.")
       .def_readonly("worst_part", &StopRate::worst_part, "The part that was lost most often; empty: none.")
       .def(
@@ -234,7 +233,7 @@ void bind_verify(py::module_& top) {
       .def_readonly("rates", &PlanCheckResult::rates, "One a stop.")
       .def_readonly("minimal_stops", &PlanCheckResult::minimal_stops,
                     "Least number of stops, found again from the regions.")
-      .def_readonly("configurations_checked", &PlanCheckResult::configurations_checked, "How many were looked at.")
+      .def_readonly("configurations_checked", &PlanCheckResult::configurations_checked, "How many were checked.")
       .def_property_readonly(
           "ok", [](const PlanCheckResult& r) { return r.faults.empty(); }, "There are no faults.")
       .def(

@@ -68,14 +68,14 @@ class MeshStandIn(TypedDict):
     deviation: float  # how far it sticks out of the mesh [m]
 
 
-class RoadmapFigures(TypedDict):
-    """What a roadmap looks like: `Roadmap.figures`."""
+class RoadmapStatistics(TypedDict):
+    """What a roadmap looks like: `Roadmap.statistics`."""
 
     mean_degree: float
     components: int  # connected parts
     largest_component: int  # its vertices
     radius: float  # of connection [rad or m]
-    volume: float  # of the joint box
+    volume: float  # of the joint limits
     gamma_star: float  # the gamma that PRM* asks for
 
 
@@ -126,6 +126,6 @@ class SearchCounts(TypedDict):
 
     draws: int
     rejections: dict[str, int]
-    view: int  # turned down because the camera does not see the point
-    singular: int  # turned down for their manipulability
+    view: int  # rejected because the camera does not see the point
+    singular: int  # rejected for their manipulability
     iterations: int

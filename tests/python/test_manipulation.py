@@ -121,7 +121,7 @@ def test_a_roadmap_tells_of_itself() -> None:
     roadmap = mg.planning.Roadmap.build(ARM, vertices=200, neighbours=5, seed=3)
     assert len(roadmap) == 200 and roadmap.vertices.shape == (200, 3)
     degree = np.bincount(roadmap.edges.ravel(), minlength=200)
-    assert degree.min() >= 5 and roadmap.figures["mean_degree"] == pytest.approx(degree.mean())
+    assert degree.min() >= 5 and roadmap.statistics["mean_degree"] == pytest.approx(degree.mean())
     q = np.array([0.1, 0.2, 0.3])
     nearest = np.argsort(np.linalg.norm(roadmap.vertices - q, axis=1))[:5]
     assert roadmap.near(q) == sorted(nearest.tolist())

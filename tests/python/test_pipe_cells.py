@@ -254,11 +254,11 @@ def test_open_cells_are_solved_over_roadmaps_as_sparse_as_in_p2() -> None:
     problem, solved = cell.problem(cell.grasps(500)), 0
     for seed in range(1, 6):
         roadmap = mg.planning.Roadmap.build(cell.arm, vertices=5000, gamma=4.0, seed=seed)
-        assert roadmap.figures["mean_degree"] < 3
+        assert roadmap.statistics["mean_degree"] < 3
         found = mg.plan_manipulation(problem, roadmap=roadmap, straight=False, shorten=False)
         if found.outcome == mg.Outcome.solved:
             solved += 1
-            assert max(np.linalg.norm(np.diff(found.path, axis=0), axis=1)) <= roadmap.figures["radius"] + 1e-9
+            assert max(np.linalg.norm(np.diff(found.path, axis=0), axis=1)) <= roadmap.statistics["radius"] + 1e-9
     assert solved >= 3
 
 

@@ -66,7 +66,7 @@ def test_mesh(tmp_path: typing.Any) -> None:
 def test_planning(robot: mg.Robot) -> None:
     arm = robot.group(next(iter(robot.groups)))
     roadmap = _core.Roadmap.build(arm, vertices=50)
-    check(roadmap.figures, _records.RoadmapFigures, "figures")
+    check(roadmap.statistics, _records.RoadmapStatistics, "figures")
     q = 0.5 * (arm.sample_lower + arm.sample_upper)
     problem = mg.ManipulationProblem(
         arm, mg.World(), mg.LinkShape(mg.Box([0.02, 0.02, 0.02])), arm.fk(q), arm.fk(q), [np.eye(4)]

@@ -75,9 +75,9 @@ class DriveByCheck {
       if (wanted.size() == q.size() - 3)  // else said at the pick
         check_join(arm(q), wanted, where_, "does not meet '" + other.kind + "'", faults_);
     };
-    const CheckedMotion &reach = pick.motions[0], &carry = pick.motions[3];
-    if (!reach.positions.empty()) joins(first, reach, reach.positions.front());
-    if (!carry.positions.empty()) joins(last, carry, carry.positions.front());
+    const CheckedMotion &transit = pick.motions[0], &transfer = pick.motions[3];
+    if (!transit.positions.empty()) joins(first, transit, transit.positions.front());
+    if (!transfer.positions.empty()) joins(last, transfer, transfer.positions.front());
     check_rest(motion_.velocities.front(), where_, "start", faults_);
     check_rest(motion_.velocities.back(), where_, "end", faults_);
   }
@@ -111,7 +111,7 @@ class DriveByCheck {
     StepBudget budget;
     for (std::size_t i = 0; i + 1 < motion_.times.size(); ++i) {
       const HermiteSegment segment(motion_, i);
-      // The moments of closing are looked at as they stand.
+      // The moments of closing are checked as they stand.
       std::vector<double> shares{0, 1};
       for (const double t : {drive_by_.close_at, drive_by_.closed_at}) {
         const double s = (t - motion_.times[i]) / segment.duration();

@@ -21,7 +21,7 @@ class Floor {
   /// Layer with this heading (modulo a full turn, to 1e-6 rad); -1: none.
   int layer(double heading) const;
   /// Distance from a point in the region to the nearest place that is not in it; for a point outside, minus the
-  /// distance to the region. Not looked at beyond `cap`.
+  /// distance to the region. Not checked beyond `cap`.
   double clearance(int region, int layer, const Eigen::Vector2d& point, double cap) const;
   /// Whether a cell is in a region; false outside the grid.
   bool inside(int region, int layer, int ix, int iy) const;

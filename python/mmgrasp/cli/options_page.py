@@ -25,7 +25,7 @@ SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
     ("plan_motion", "Motions of arm and base, keywords (`MotionOptions`)", _core._motion_option_table, set()),
     (
         "plan_cartesian",
-        "Straight tool lines, keywords; those of `plan_straight_line` are all but `max_branches` (`CartesianOptions`)",
+        "Straight Cartesian paths, keywords; those of `plan_straight_line` are all but `max_branches` (`CartesianOptions`)",
         _core._cartesian_option_table,
         set(),
     ),

@@ -77,7 +77,7 @@ def print_verdict(verdict: PlanVerdict, console: Console) -> None:
 
 def bench_table(rows: list[dict[str, Any]]) -> Table:
     """The problem sets of `mmgrasp bench mbm`."""
-    table = Table(title="MotionBenchMaker: edges at 5 mm of any link point, paths looked at again by FCL at 0.005 rad")
+    table = Table(title="MotionBenchMaker: edges at 5 mm of any link point, paths checked again by FCL at 0.005 rad")
     for title in ("robot", "set", "solved", "verified", "median [ms]", "p95 [ms]", "call median [ms]"):
         table.add_column(title, justify="left" if title in ("robot", "set") else "right")
     for row in rows:

@@ -133,7 +133,7 @@ class PipeCell:
     drawn: int = 1
     """Cells drawn until this one was accepted."""
     rejected: dict[str, int] = field(default_factory=dict)
-    """Cells turned down, by cause."""
+    """Cells rejected, by cause."""
 
     @property
     def robot(self) -> Robot:

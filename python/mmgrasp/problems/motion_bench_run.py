@@ -1,4 +1,4 @@
-"""MotionBenchMaker's problems solved and looked at again: what `mmgrasp bench mbm` prints."""
+"""MotionBenchMaker's problems solved and checked again: what `mmgrasp bench mbm` prints."""
 
 from __future__ import annotations
 

@@ -99,11 +99,11 @@ _PICKY_BUDGETS = (2_000, 4_000, 8_000, 16_000, 32_000, 64_000)  # iterations of 
 def pipe_cell(number: int, seed: int = 1, robot: str = "tm14like", style: str = "narrow") -> PipeCell:
     """The cell of one structure (1 to 8), drawn with a seed: the same every time.
 
-    Turned down and counted are cells without room for pipe or posts, those in which fewer than 3 % of 500 grasps are
+    Rejected and counted are cells without room for pipe or posts, those in which fewer than 3 % of 500 grasps are
     within reach at both ends, and those in which PRM*-MG without straight lines fails for one of six lists of 500
     grasps, each with a roadmap of 5000 vertices of its own. "open" cells are for P2's setting: roadmaps have its gamma
     of 4, and there are nine lists. "narrow" ones take more than luck: in none of them does a straight joint line carry
-    the pipe by one of 500 grasps; roadmaps join 12 nearest vertices. For some structures cells are turned down in which
+    the pipe by one of 500 grasps; roadmaps join 12 nearest vertices. For some structures cells are rejected in which
     30 % of the grasps or more are within reach, for structure 8, "narrow" and the TM14-like arm also those whose first
     grasp within reach would do. Raises InvalidInput on a number, robot or style that does not exist and on a negative
     seed.

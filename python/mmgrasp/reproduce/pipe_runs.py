@@ -121,7 +121,7 @@ def describe(context: Context, runs: int, problems: Sequence[int], **more: Any) 
         "problems": ", ".join(map(str, problems)),
         "runs a problem": runs,
         "seed of the cells": context.seed,
-        "cells turned down by the generator": ", ".join(f"{c}: {n}" for c, n in turned_down.items()) or "none",
+        "cells rejected by the generator": ", ".join(f"{c}: {n}" for c, n in turned_down.items()) or "none",
         "arm configurations a grasp and end": 4,
         "threads": 1,
         "edge step": "0.02 rad and 5 mm",
@@ -131,7 +131,7 @@ def describe(context: Context, runs: int, problems: Sequence[int], **more: Any) 
 
 def describe_roadmap(vertices: int) -> dict[str, Any]:
     """What P2 leaves open about its graph (errata.md): the box, the degree, gamma*."""
-    figures = roadmap_of("tm14like", vertices, 0).figures
+    figures = roadmap_of("tm14like", vertices, 0).statistics
     return {
         "roadmap": f"{vertices} vertices, gamma {GAMMA:g}, joints within half a turn either way",
         "mean degree": figures["mean_degree"],

@@ -120,7 +120,7 @@ COLUMNS = ("success rate [%]", "initial time [ms]", "optimal time [ms]", "initia
 
 
 def versions(number: int, seed: int, run: int, counts: tuple[int, ...], samples: int) -> dict[str, Any]:
-    """V1: trees from the start alone, samples from the whole joint box. V2: from both ends, informed."""
+    """V1: trees from the start alone, samples from the whole joint limits. V2: from both ends, informed."""
     cell = p2_cell(number, seed)
     found = {}
     for name, on in (("V1", False), ("V2", True)):

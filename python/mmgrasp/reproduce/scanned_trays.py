@@ -1,4 +1,4 @@
-"""Trays of parts thrown in at random and looked at from above: what their base regions are planned for (P1 3.5.2, 3.7.2)."""
+"""Trays of parts thrown in at random and checked from above: what their base regions are planned for (P1 3.5.2, 3.7.2)."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ class ManipulationPlanner : public ::testing::TestWithParam<std::string> {
     ASSERT_TRUE(result.path);
     ASSERT_GE(result.grasp_index, 0);
     const Grasp& grasp = problem.grasps[result.grasp_index];
-    EXPECT_TRUE(test::FclCarry(problem, result.grasp_index, 0.4, 0.02).is_free(*result.path, 0.005));
+    EXPECT_TRUE(test::FclTransfer(problem, result.grasp_index, 0.4, 0.02).is_free(*result.path, 0.005));
     const auto object_at = [&](const Eigen::VectorXd& q) {
       Pose T = Pose::Identity();
       for (Eigen::Index i = 0; i < q.size(); ++i) T = T * flat_pose(0, 0, q[i]) * flat_pose(0.4, 0, 0);

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "geometry/hierarchy/ray_kernels.hpp"
+#include "mmgrasp/core/detail/instruction_set.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/geometry/shape.hpp"
@@ -311,11 +311,11 @@ TEST(RayCaster, SameAnswersAtAnyThreadCountAndInstructionSet) {
   EXPECT_TRUE(same(caster.closest_hits(rays, 0), single));
   const std::vector<char> any = caster.any_hits(rays, 2);
   for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_EQ(any[i] != 0, static_cast<bool>(single[i]));
-  detail::use_ray_kernels("portable");
+  const std::string best = detail::instruction_sets().front();
+  detail::use_instruction_set("portable");
   EXPECT_TRUE(same(caster.closest_hits(rays, 1), single));
   EXPECT_EQ(caster.any_hits(rays), any);
-  detail::use_ray_kernels("");
-  EXPECT_THROW(detail::use_ray_kernels("avx1024"), InvalidInput);
+  detail::use_instruction_set(best);
 }
 
 TEST(RayCaster, RefusesRaysThatAreNone) {

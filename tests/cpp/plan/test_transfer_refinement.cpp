@@ -33,7 +33,7 @@ TEST(TransferRefinement, RoundsOnlyMakeItCheaperAndFclFindsItFree) {
       // More rounds begin with those of fewer.
       EXPECT_LE(result.cost, last) << count;
       EXPECT_NEAR(result.cost, result.path->length(), 1e-9);
-      EXPECT_TRUE(test::FclCarry(problem, result.grasp_index, 0.4, 0.02).is_free(*result.path, 0.005));
+      EXPECT_TRUE(test::FclTransfer(problem, result.grasp_index, 0.4, 0.02).is_free(*result.path, 0.005));
       for (std::size_t i = 1; i < result.improvements.size(); ++i)
         EXPECT_LT(result.improvements[i].cost, result.improvements[i - 1].cost);
       // What is known of the roadmap before stays known, and no more.

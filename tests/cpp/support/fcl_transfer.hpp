@@ -14,9 +14,9 @@ namespace mmgrasp::test {
 
 /// Whether a planar arm of links of `length` and the bar it holds are free of the scene's boxes, and the bar of the
 /// links but the last: kinematics by trigonometry and FCL called directly, nothing of mmgrasp's checker.
-class FclCarry {
+class FclTransfer {
  public:
-  FclCarry(const ManipulationProblem& problem, int grasp, double length, double width) : length_(length) {
+  FclTransfer(const ManipulationProblem& problem, int grasp, double length, double width) : length_(length) {
     T_tip_bar_ = problem.grasps[grasp].T_object_hand.inverse();
     for (const auto& [name, object] : problem.world.objects())
       for (const LinkShape& shape : object.shapes)

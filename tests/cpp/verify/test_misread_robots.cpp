@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
@@ -29,7 +30,7 @@ std::ostream& operator<<(std::ostream& out, const Misreading& m) {
 /// The hand's box as a mesh file, twelve triangles.
 std::string hand_mesh() {
   static const std::string path = [] {
-    const std::string file = ::testing::TempDir() + "mmgrasp_hand.obj";
+    const std::string file = ::testing::TempDir() + "mmgrasp_hand_" + std::to_string(::getpid()) + ".obj";
     std::ofstream out(file);
     for (double x : {-0.04, 0.04})
       for (double y : {-0.06, 0.06})

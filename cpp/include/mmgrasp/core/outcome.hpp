@@ -20,7 +20,7 @@ enum class Outcome {
 
 MMGRASP_EXPORT const char* to_string(Outcome outcome);
 
-/// Why one candidate (a configuration, a grasp, a base pose) was turned down.
+/// Why one candidate (a configuration, a grasp, a base pose) was rejected.
 enum class Rejection { none, unreachable, limits, self_collision, scene, grasp_filter };
 
 MMGRASP_EXPORT const char* to_string(Rejection cause);
@@ -31,7 +31,7 @@ struct MMGRASP_EXPORT Rejections {
   std::size_t limits = 0;          ///< Reached only outside joint limits.
   std::size_t self_collision = 0;  ///< Reached, but robot hits robot (or what it holds).
   std::size_t scene = 0;           ///< Reached, but robot (or what it holds) hits the scene.
-  std::size_t grasp_filter = 0;    ///< Turned down before IK (gripper too small, hand hits its part, ...).
+  std::size_t grasp_filter = 0;    ///< Rejected before IK (gripper too small, hand hits its part, ...).
 
   void add(Rejection cause, std::size_t count = 1);
   Rejections& operator+=(const Rejections& other);

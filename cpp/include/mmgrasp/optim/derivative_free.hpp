@@ -50,8 +50,8 @@ struct MMGRASP_EXPORT DerivativeFreeResult {
 ///     DerivativeFreeProblem problem{{lower, upper}, [&](const Eigen::VectorXd& x) { return cost(x); }};
 ///     const auto result = minimize_derivative_free("bobyqa", problem, guess);
 ///
-/// An exception thrown by a function ends the solve and reaches the caller. The stop token and the clock end it at the
-/// next evaluation. Solvers may be called from several threads; those that draw random numbers wait for each other,
+/// An exception thrown by a function ends the solve and reaches the caller. The cancel token and the clock end it at
+/// the next evaluation. Solvers may be called from several threads; those that draw random numbers wait for each other,
 /// because NLopt has one generator.
 class MMGRASP_EXPORT DerivativeFreeSolver {
  public:

@@ -21,7 +21,7 @@ struct MMGRASP_EXPORT SharedTours {
 /// drives from its start over its stops to its goal and spends `stop_times` there. `drive_times` is (n + 2k) x (n +
 /// 2k): n stops, then k starts, then k goals; may be asymmetric, infinite means "no way". Exact up to 12 stops (dynamic
 /// programme over subsets); beyond, one tour is cut up and stops change robots while that helps. Waiting for each other
-/// is not looked at. Throws InvalidInput on sizes that do not fit, negative or undefined times.
+/// is not checked. Throws InvalidInput on sizes that do not fit, negative or undefined times.
 MMGRASP_EXPORT SharedTours share_stops(const Eigen::MatrixXd& drive_times, const std::vector<double>& stop_times,
                                        int robots);
 

@@ -62,7 +62,7 @@ struct MMGRASP_EXPORT MotionResult {
   double cost = 0;                ///< The path's length.
   int goal_index = -1;            ///< Which of the goals the path reaches.
   std::vector<Contact> contacts;  ///< With invalid_start or invalid_goal: what touches.
-  /// Why the start, or goals, were rejected; grasp_filter counts those outside the tool cone.
+  /// Why the start, or goals, were rejected; grasp_filter counts those outside the orientation constraint.
   Rejections rejections;
   /// With invalid_start or invalid_goal: which joint is outside of its limits, its value and these; empty: none is.
   std::string beyond_limits;

@@ -15,7 +15,7 @@ namespace mmgrasp {
 struct MMGRASP_EXPORT BasePlacementOptions {
   double step = 0.05;   ///< Grid of base positions [m]; > 0.
   int headings = 24;    ///< Of the base, evenly over the circle; > 0.
-  int candidates = 64;  ///< Best base poses of the grid that are looked at exactly; > 0.
+  int candidates = 64;  ///< Best base poses of the grid that are checked exactly; > 0.
   int seeds = 8;        ///< Stored configurations tried for a target; > 0.
   int refinements = 4;  ///< Rounds of smaller steps about the best base pose; >= 0.
   IkOptions ik;         ///< Tolerances and iterations of the descents; restarts are not used.
@@ -47,7 +47,7 @@ struct MMGRASP_EXPORT BasePlacement {
 };
 
 /// One base pose from which as many of the targets (tool poses in the world) as possible are reached, each on its own.
-/// The database votes for base poses on a grid; the best are looked at exactly, and smaller steps are tried about the
+/// The database votes for base poses on a grid; the best are checked exactly, and smaller steps are tried about the
 /// best of those. Found by search: more may be possible. Confirmed as base_poses_for() does. Nothing reached: base_pose
 /// is zero.
 MMGRASP_EXPORT BasePlacement find_base_placement(const ReachDatabase& database, const JointGroup& arm,

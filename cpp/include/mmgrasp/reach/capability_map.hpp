@@ -53,7 +53,7 @@ class MMGRASP_EXPORT CapabilityMap {
   static CapabilityMap build(const JointGroup& arm, const World& world = {}, const CapabilityOptions& options = {},
                              const Monitor& monitor = {});
   /// The map of the same arm in a world that has more in it than the one of this map: only what is reached here is
-  /// looked at again, so that nothing is reached that is not reached here, for a fraction of the time. `padding` grows
+  /// checked again, so that nothing is reached that is not reached here, for a fraction of the time. `padding` grows
   /// the links. Throws InvalidInput when the map was made for another arm.
   CapabilityMap restricted(const JointGroup& arm, const World& world, const Monitor& monitor = {}) const;
 

@@ -36,12 +36,12 @@ struct MMGRASP_EXPORT IkResult {
   Eigen::VectorXd q;          ///< Set if and only if solved; inside limits, verified by forward kinematics.
   double position_error = 0;  ///< [m] of q, or of the best attempt.
   double rotation_error = 0;  ///< [rad]
-  Rejections rejections;      ///< Descents that ended: reach, limits, or what `valid` said.
+  Rejections rejections;      ///< Descents that ended: unreachable, limits, or what `valid` said.
   double objective = 0;       ///< Sum of the objectives' costs at q; 0 without objectives.
   int iterations = 0;
 };
 
-/// Says why a configuration is turned down, or Rejection::none. Kept as a callback so that `robot` knows no collisions.
+/// Says why a configuration is rejected, or Rejection::none. Kept as a callback so that `robot` knows no collisions.
 using ConfigurationFilter = std::function<Rejection(const Eigen::VectorXd& q)>;
 
 /// Scratch of one descent, reusable: no allocation after the first use. One per thread.

@@ -17,8 +17,8 @@ struct MMGRASP_EXPORT IkBranches {
   /// singularity that leaves a joint free: of infinitely many configurations one is kept.
   bool complete = false;
   int redundant_joint = -1;  ///< Configuration entry that was sampled; -1 for none.
-  Rejections
-      rejections;  ///< Branches turned down and descents that failed; `reach` counts sampled values without any, too.
+  Rejections rejections;  ///< Rejected branches and descents that failed; `unreachable` counts sampled values without
+                          ///< any, too.
 };
 
 /// Every inverse kinematics branch of an arm of six turning joints in closed form, and of one of seven joints for

@@ -18,7 +18,7 @@ namespace mmgrasp {
 struct MMGRASP_EXPORT RobotOptions {
   BaseKind base = BaseKind::fixed;
   BaseLimits base_limits;
-  std::map<std::string, std::string> package_dirs;  ///< package://NAME/... -> folder. Looked at first.
+  std::map<std::string, std::string> package_dirs;  ///< package://NAME/... -> folder. Checked first.
   std::string mesh_dir;                             ///< Folder that relative mesh paths refer to; default: the URDF's.
   bool load_meshes = true;                          ///< false: kinematics only, links with meshes get no shape.
   double mesh_tolerance = 0;  ///< A primitive, hull or decimated mesh that contains a collision mesh and sticks out by

@@ -18,7 +18,7 @@ namespace mmgrasp {
 /// grasp was rejected, each for one cause, so that their total is grasps x (base_poses_tried - base_poses_feasible).
 /// Where one grasp works the others are not tried. The cause of a pair is the last filter that any of its arm
 /// configurations got to:
-/// - reach, limits, self-collision, scene: in this order;
+/// - unreachable, limits, self-collision, scene: in this order;
 /// - `grasp_filter`: the open hand alone touches the scene or a part at the grasp, whatever the arm does.
 struct MMGRASP_EXPORT PartExplanation {
   std::string part;

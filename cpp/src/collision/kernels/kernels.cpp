@@ -10,7 +10,9 @@ namespace mmgrasp::detail {
 #pragma GCC push_options
 #pragma GCC target("avx2,fma")
 namespace avx2 {
+#define MMGRASP_LANES_AVX2  // g++ does not set __AVX2__ for the pragma
 #include "collision/kernels/kernels_body.inc"
+#undef MMGRASP_LANES_AVX2
 }  // namespace avx2
 #pragma GCC pop_options
 #endif

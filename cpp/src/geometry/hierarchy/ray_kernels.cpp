@@ -1,14 +1,12 @@
 #include "geometry/hierarchy/ray_kernels.hpp"
 
-#include <atomic>
-
-#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/detail/instruction_set.hpp"
 
 // Compiled with -ffp-contract=off (CMakeLists.txt): a fused product would judge an edge otherwise than its neighbour
 // does, and the sets of instructions would differ.
 namespace mmgrasp::detail {
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#if defined(MMGRASP_X86_KERNELS) && !defined(__clang__)
 #define MMGRASP_HAS_AVX2
 #pragma GCC push_options
 #pragma GCC target("avx2,bmi")
@@ -28,29 +26,12 @@ namespace portable {
 #undef MMGRASP_KERNEL_NAME
 }  // namespace portable
 
-namespace {
-
-const RayKernels& quickest() {
+const RayKernels& ray_kernels() {
 #ifdef MMGRASP_HAS_AVX2
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi")) return avx2::kTable;
+  static const bool has_bmi = __builtin_cpu_supports("bmi");
+  if (has_bmi && instruction_set() != InstructionSet::portable) return avx2::kTable;
 #endif
   return portable::kTable;
-}
-
-std::atomic<const RayKernels*>& chosen() {
-  static std::atomic<const RayKernels*> table{&quickest()};
-  return table;
-}
-
-}  // namespace
-
-const RayKernels& ray_kernels() {
-  return *chosen().load(std::memory_order_relaxed);
-}
-
-void use_ray_kernels(const std::string& name) {
-  if (!name.empty() && name != "portable") throw InvalidInput("name = " + name + ": must be portable or empty");
-  chosen().store(name.empty() ? &quickest() : &portable::kTable);
 }
 
 }  // namespace mmgrasp::detail

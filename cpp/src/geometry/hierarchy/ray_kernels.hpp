@@ -57,9 +57,7 @@ struct RayKernels {
   void (*leaves)(const TreeView& tree, const PreparedRay& ray, void (*visit)(void* data, int packet), void* data);
 };
 
-/// Those of the best instruction set that the machine has.
+/// Those of instruction_set(). Every set gives the same answers.
 const RayKernels& ray_kernels();
-/// For tests: "portable", or "" for the best. Every set gives the same answers.
-MMGRASP_EXPORT void use_ray_kernels(const std::string& name);
 
 }  // namespace mmgrasp::detail

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMaxCells = 1'000'000;  // looked at before a bound counts as not reached
+constexpr int kMaxCells = 1'000'000;  // checked before a bound counts as not reached
 constexpr int kPolishCells = 50'000;  // once the limit is kept: spent on a tighter figure
 constexpr double kClose = 1.1;        // a bound this close to the truth is good enough
 

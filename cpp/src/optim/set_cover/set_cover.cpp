@@ -15,7 +15,7 @@ namespace mmgrasp {
 namespace {
 
 constexpr int kPriceSteps = 3000;
-constexpr double kSearchWork = 5e6;     // Entries of the problem looked at in search of a better cover.
+constexpr double kSearchWork = 5e6;     // Entries of the problem checked in search of a better cover.
 constexpr double kShrunk = 0.8;         // Prices are sought again when no more than this share of the sets is left.
 constexpr double kLeastSeconds = 1e-3;  // For CBC, however late it is.
 

@@ -251,7 +251,7 @@ class Sharing {
   const Eigen::MatrixXd& drive_;
   const std::vector<double>& stop_;
   int n_, robots_;
-  mutable int triangle_ = -1;  // not looked at yet
+  mutable int triangle_ = -1;  // not checked yet
 };
 
 }  // namespace

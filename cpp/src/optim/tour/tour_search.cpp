@@ -10,12 +10,12 @@ namespace {
 
 constexpr std::uint64_t kSeed = 1;
 constexpr int kLongestRun = 3;  // Stops moved together.
-constexpr double kWork = 4e7;   // Moves looked at, about.
+constexpr double kWork = 4e7;   // Moves checked, about.
 constexpr int kMaxRestarts = 2000;
 constexpr double kGain = 1e-10;  // Relative: less is rounding.
 
 std::vector<int> cheapest_insertion(const Eigen::MatrixXd& lengths, int n) {
-  // Each stop knows its cheapest gap; only gaps that changed are looked at again.
+  // Each stop knows its cheapest gap; only gaps that changed are checked again.
   struct Gap {
     double extra = kInfinity;
     int before = -1;

@@ -188,7 +188,7 @@ ReachDatabase ReachDatabase::load(const std::string& path) {
   for (int i = 0; i < detail::kArrayCount; ++i)
     data->files.push_back(std::make_unique<detail::CheckedFile>(file_in(path, detail::kArrayFiles[i]), layouts[i],
                                                                 std::move(meta.checksums[i])));
-  // The tables are small and are checked now; the configurations when they are first looked at.
+  // The tables are small and are checked now; the configurations when they are first checked.
   for (int i = 0; i + 1 < detail::kArrayCount; ++i)
     if (layouts[i].payload_bytes() > 0) data->files[i]->ensure(0, layouts[i].payload_bytes());
   data->positions = view<std::int32_t>(*data->files[0], 3 * meta.positions);

@@ -308,7 +308,7 @@ class PlacementSearch {
   const Monitor& monitor_;
   std::vector<Examiner> examiners_;
   std::vector<int> misses_;         // of each target so far
-  std::vector<std::size_t> order_;  // in which targets are looked at
+  std::vector<std::size_t> order_;  // in which targets are checked
   BasePlacement best_;
 };
 

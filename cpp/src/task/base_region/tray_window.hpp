@@ -14,7 +14,8 @@ namespace mmgrasp::detail {
 struct BlockedPose {
   int slot, ix, iy;
   bool corner;
-  std::array<std::uint32_t, 5> causes;  ///< Grasps rejected for reach, limits, self-collision, scene, grasp filter.
+  std::array<std::uint32_t, 5>
+      causes;  ///< Grasps rejected as unreachable, for limits, self-collision, scene, grasp filter.
 };
 
 /// The base poses around one tray with one of its headings: a window of the grid's cells, for each target part marks

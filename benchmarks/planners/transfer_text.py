@@ -1,4 +1,4 @@
-"""Carries by one grasp each as the plain text that bench_carry_fcl.cpp reads: the pipe is a link of the robot."""
+"""Carries by one grasp each as the plain text that bench_transfer_fcl.cpp reads: the pipe is a link of the robot."""
 
 from __future__ import annotations
 

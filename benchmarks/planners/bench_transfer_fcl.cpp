@@ -2,7 +2,7 @@
 // a list of grasps as people plan it today. Prints one JSON line: processor time of the planning, what is loaded and
 // set up apart.
 //
-//     bench_carry_fcl <problems.txt> <seed> <seconds for each>
+//     bench_transfer_fcl <problems.txt> <seed> <seconds for each>
 
 #include <cstdio>
 #include <cstdlib>

@@ -190,7 +190,7 @@ class JointGroup:
     def ik(self, T_world_tip: numpy.typing.ArrayLike, seed: numpy.typing.ArrayLike | None = None, world: World | None = None, *, position_tolerance: float = 1e-05, rotation_tolerance: float = 0.0001, max_iterations: int = 60, restarts: int = 30, time_limit: float = 1.0, rng_seed: int = 1, joint_weights: numpy.typing.ArrayLike | None = [], objectives: collections.abc.Sequence[IkObjective] = [], objective_iterations: int = 50) -> IkResult:
         """
         Inverse kinematics from `seed` (default: middle of the limits), then random restarts. With a world the answer is
-        free of collisions with it and of self-collision; without one, collisions are not looked at.
+        free of collisions with it and of self-collision; without one, collisions are not checked.
         
         Keyword options:
             position_tolerance: float = 1e-05  # [m]
@@ -428,7 +428,7 @@ class Outcome(enum.Enum):
     timeout = 3
 class Rejection(enum.Enum):
     """
-    Why one candidate was turned down.
+    Why one candidate was rejected.
     """
     grasp_filter = 5
     limits = 2
@@ -449,7 +449,7 @@ class Rejections:
     @property
     def grasp_filter(self) -> int:
         """
-        Turned down before inverse kinematics.
+        Rejected before inverse kinematics.
         """
     @property
     def limits(self) -> int:
@@ -901,7 +901,7 @@ class IkResult:
         """
 class IkBranches:
     """
-    Every arm configuration found for a pose, and why others were turned down.
+    Every arm configuration found for a pose, and why others were rejected.
     """
     def __len__(self) -> int:
         ...
@@ -924,7 +924,7 @@ class IkBranches:
     @property
     def rejections(self) -> Rejections:
         """
-        Branches turned down, by cause.
+        Branches rejected, by cause.
         """
     @property
     def solutions(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1078,7 +1078,7 @@ class EdgeResult:
     @property
     def checks(self) -> int:
         """
-        Configurations looked at.
+        Configurations checked.
         """
     @property
     def contact(self) -> Contact | None:
@@ -1132,7 +1132,7 @@ class CollisionChecker:
         """
     def contacts(self, q: numpy.typing.ArrayLike) -> list[Contact]:
         """
-        Every touching pair; limits are not looked at.
+        Every touching pair; limits are not checked.
         """
     def distance(self, q: numpy.typing.ArrayLike, gradient: bool = False) -> DistanceResult:
         """
@@ -1149,7 +1149,7 @@ class CollisionChecker:
         """
     def first_contact(self, q: numpy.typing.ArrayLike) -> Contact | None:
         """
-        One touching pair, self before scene, or None; limits are not looked at.
+        One touching pair, self before scene, or None; limits are not checked.
         """
     def is_free(self, q: numpy.typing.ArrayLike) -> bool:
         """
@@ -1279,7 +1279,7 @@ class ReachDatabase:
         Keyword options:
             step: float = 0.05  # grid of base positions [m]
             headings: int = 24  # of the base, evenly over the circle
-            candidates: int = 64  # best base poses of the grid looked at exactly
+            candidates: int = 64  # best base poses of the grid checked exactly
             seeds: int = 8  # stored configurations tried for a target
             refinements: int = 4  # rounds of smaller steps about the best
             position_tolerance: float = 1e-05  # [m]
@@ -1297,7 +1297,7 @@ class ReachDatabase:
         Keyword options:
             step: float = 0.05  # grid of base positions [m]
             headings: int = 24  # of the base, evenly over the circle
-            candidates: int = 64  # best base poses of the grid looked at exactly
+            candidates: int = 64  # best base poses of the grid checked exactly
             seeds: int = 8  # stored configurations tried for a target
             refinements: int = 4  # rounds of smaller steps about the best
             position_tolerance: float = 1e-05  # [m]
@@ -1459,7 +1459,7 @@ class CapabilityMap:
         """
     def restricted(self, arm: JointGroup, world: World, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> CapabilityMap:
         """
-        The map of the same arm in a world with more in it: only what is reached here is looked at again.
+        The map of the same arm in a world with more in it: only what is reached here is checked again.
         """
     def save(self, path: str | os.PathLike[str]) -> None:
         """
@@ -1930,7 +1930,7 @@ class MotionResult:
     @property
     def rejections(self) -> Rejections:
         """
-        Of the start, or of goals, turned down.
+        Of the start, or of goals, rejected.
         """
     @property
     def stats(self) -> MotionStats:
@@ -2039,7 +2039,7 @@ class CartesianResult:
         """
 class Roadmap:
     """
-    Configurations of a group drawn from its joint box and joined when near, without any collision check: it serves every grasp, object and scene (P2 4.3.2.1). Immutable.
+    Configurations of a group drawn from its joint limits and joined when near, without any collision check: it serves every grasp, object and scene (P2 4.3.2.1). Immutable.
     """
     @staticmethod
     def build(group: JointGroup, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, vertices: int = 5000, gamma: float = 4.0, neighbours: int = 0, seed: int = 1) -> Roadmap:
@@ -2079,7 +2079,7 @@ class Roadmap:
         Pairs of vertices (m, 2), the smaller number first.
         """
     @property
-    def figures(self) -> mmgrasp._records.RoadmapFigures:
+    def statistics(self) -> mmgrasp._records.RoadmapStatistics:
         """
         Mean degree, connected parts, the largest one's vertices, connection radius, the joint box's volume, and the gamma that PRM* asks for.
         """
@@ -2211,7 +2211,7 @@ class GraspReport:
     @property
     def goal(self) -> Rejections:
         """
-        Likewise at the goal; not looked at when none is left at the start.
+        Likewise at the goal; not checked when none is left at the start.
         """
     @property
     def goal_solutions(self) -> int:
@@ -2226,7 +2226,7 @@ class GraspReport:
     @property
     def start(self) -> Rejections:
         """
-        Arm configurations turned down at the start, by cause.
+        Arm configurations rejected at the start, by cause.
         """
     @property
     def start_solutions(self) -> int:
@@ -2296,7 +2296,7 @@ class ManipulationResult:
     @property
     def trees(self) -> list[SearchTree]:
         """
-        With keep_trees: a SearchTree for each grasp still in the race and each end.
+        With keep_trees: a SearchTree for each grasp still still a candidate and each end.
         """
 class BaseTrackingResult:
     """
@@ -2898,7 +2898,7 @@ class Intersections:
     @property
     def sets_tried(self) -> int:
         """
-        Sets looked at.
+        Sets checked.
         """
 class Stop:
     """
@@ -3159,7 +3159,7 @@ class Pick:
     @property
     def rejections(self) -> Rejections:
         """
-        Grasps and their configurations turned down on the way, by cause.
+        Grasps and their configurations rejected on the way, by cause.
         """
     @property
     def stop(self) -> int:
@@ -3771,14 +3771,14 @@ class CuboidFit:
         """
 class Graspability:
     """
-    Grasps, best first, and what became of the other places looked at.
+    Grasps, best first, and what became of the other places checked.
     """
     def __repr__(self) -> str:
         ...
     @property
     def counts(self) -> dict[str, int]:
         """
-        Places looked at (tried) and turned down: too_wide, poor, collision, near_better.
+        Places checked (tried) and rejected: too_wide, poor, collision, near_better.
         """
     @property
     def grasps(self) -> list[Grasp]:
@@ -4198,12 +4198,12 @@ def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy
     """
 def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 4, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 4.0, neighbours: int = 0, roadmap_seed: int = 1, max_samples: int = 1000, step: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
     """
-    Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 chapters 4 and 5). Every grasp is looked at. `on_solution` is called with every better solution (an Improvement); what it raises ends the call.
+    Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 chapters 4 and 5). Every grasp is checked. `on_solution` is called with every better solution (an Improvement); what it raises ends the call.
     
     Keyword options:
         planner: str = 'prm_star_mg'  # a name of manipulation_planner_names()
         ik_solutions: int = 4  # arm configurations tried for each grasp at each end
-        first_grasps: int = 4  # grasps looked at, one by one, before those without a first path are searched again, then twice as many; 0: all before any search
+        first_grasps: int = 4  # grasps checked, one by one, before those without a first path are searched again, then twice as many; 0: all before any search
         straight: bool = True  # try straight joint lines from start to goal
         ik_restarts: int = 30  # random starts of arms without a closed form
         joint_step: float = 0.02  # no joint moves more between two checks of an edge [rad or m]
@@ -4240,7 +4240,7 @@ def plan_motion(robot: Robot, group: JointGroup, world: World, *, start: numpy.t
         planner: str = 'rrt_connect'  # a name of planner_names()
         time_limit: float = 5.0  # wall-clock cap [s]
         max_iterations: int = 20000  # budget in states drawn
-        range: float = 0.0  # longest tree edge [rad]; 0: a share of the joint box's diagonal
+        range: float = 0.0  # longest tree edge [rad]; 0: a share of the joint limits's diagonal
         base_margin: float = 2.0  # the base is drawn this far around start and goals [m]
         edge_step: float = 0.02  # largest joint motion between two checks [rad or m]
         workspace_step: float = inf  # largest motion of any robot point between two checks [m]

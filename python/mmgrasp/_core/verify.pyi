@@ -392,7 +392,7 @@ class PathCheckResult:
     @property
     def configurations_checked(self) -> int:
         """
-        How many were looked at.
+        How many were checked.
         """
     @property
     def free(self) -> bool:
@@ -451,7 +451,7 @@ class StopRate:
     @property
     def samples(self) -> int:
         """
-        Draws looked at; fewer than asked when the verdict was clear before.
+        Draws checked; fewer than asked when the verdict was clear before.
         """
     @property
     def stop(self) -> int:
@@ -476,7 +476,7 @@ class PlanCheckResult:
     @property
     def configurations_checked(self) -> int:
         """
-        How many were looked at.
+        How many were checked.
         """
     @property
     def faults(self) -> list[Fault]:

@@ -4,9 +4,7 @@
 // are compiled once for each instruction set.
 
 #include <cstddef>
-#include <string>
 
-#include "mmgrasp/core/export.hpp"
 
 namespace mmgrasp::detail {
 

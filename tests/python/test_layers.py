@@ -103,6 +103,20 @@ def test_public_headers_need_std_and_eigen_only() -> None:
     assert not wrong
 
 
+def test_a_source_without_a_header_says_what_it_is() -> None:
+    silent = []
+    for path in sorted(SOURCE.rglob("*.cpp")):
+        module = module_of(path)
+        headers = (
+            path.with_suffix(".hpp"),
+            PUBLIC / module / f"{path.stem}.hpp",
+            PUBLIC / module / "detail" / f"{path.stem}.hpp",
+        )
+        if not any(header.is_file() for header in headers) and not path.read_text().startswith("// "):
+            silent.append(relative(path))
+    assert not silent
+
+
 def test_ompl_stays_in_its_plugin() -> None:
     wrong = [
         relative(path)

@@ -18,6 +18,7 @@ import yaml
 import mmgrasp as mg
 from conftest import ASSETS
 from mmgrasp.cli import main
+from mmgrasp.part_supply import plan_schema
 
 REMOVE = object()
 
@@ -184,6 +185,7 @@ def test_no_plan_is_explained(
     plan = json.loads((tmp_path / "plan.json").read_text())
     assert plan["outcome"] != "solved"
     assert plan["obstructions"]
+    jsonschema.validate(plan, plan_schema())
     assert main(["verify", str(tmp_path / "plan.json")]) == 1
 
 

@@ -1,3 +1,4 @@
+// Convex hulls of points (Quickhull).
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// Surfaces of shapes as triangles, for drawing.
 #include <cmath>
 #include <set>
 

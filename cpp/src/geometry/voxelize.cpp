@@ -1,3 +1,4 @@
+// Occupied cells of a set of points.
 #include <algorithm>
 #include <array>
 #include <cmath>

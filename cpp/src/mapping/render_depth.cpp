@@ -1,3 +1,4 @@
+// render_depth(): what a depth camera sees of placed shapes.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,3 +1,4 @@
+// Checks the motions of one pick: joints, collisions, grasp, lift, release.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,3 +1,4 @@
+// Checks the motions in passing: base and arm together, grasp and closing.
 #include <algorithm>
 #include <cmath>
 #include <set>

@@ -1,3 +1,4 @@
+// Finds the least number of stops again from the regions of the plan.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,3 +1,4 @@
+// Checks the list of picks: every target once, nothing that is not there.
 #include <algorithm>
 #include <set>
 

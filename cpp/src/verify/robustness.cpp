@@ -1,3 +1,4 @@
+// Checks the stops with the base displaced: parts stay graspable from drawn poses.
 #include <algorithm>
 #include <cmath>
 #include <deque>

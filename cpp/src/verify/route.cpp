@@ -1,3 +1,4 @@
+// Checks the drives between the stops.
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// Checks the form of a plan before anything is computed from it.
 #include <algorithm>
 #include <cmath>
 #include <set>

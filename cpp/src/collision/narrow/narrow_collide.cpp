@@ -1,3 +1,4 @@
+// collide(): whether two placed solids overlap, by pair of kinds.
 #include <algorithm>
 
 #include "collision/narrow/distance_grid.hpp"

@@ -1,3 +1,4 @@
+// distance(): signed distance and witness points of two placed solids, by pair of kinds.
 #include <algorithm>
 
 #include "collision/narrow/narrow.hpp"

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 
-
 namespace mmgrasp::detail {
 
 constexpr int kTreeWidth = 8;    // children of a node

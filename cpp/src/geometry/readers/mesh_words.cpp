@@ -1,3 +1,4 @@
+// WordReader and numbers: what the readers of mesh files in text share.
 #include <charconv>
 
 #include "geometry/readers/mesh_readers.hpp"

@@ -1,3 +1,4 @@
+// COLLADA files, read by assimp.
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>

@@ -1,3 +1,4 @@
+// Wavefront OBJ files.
 #include <algorithm>
 
 #include "geometry/readers/mesh_readers.hpp"

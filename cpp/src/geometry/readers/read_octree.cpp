@@ -1,3 +1,4 @@
+// load_octree(): OctoMap files, binary (.bt) and full (.ot).
 #include "mmgrasp/geometry/octree.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// read_pcd(): point clouds of PCL, ascii, binary and compressed.
 #include <cmath>
 #include <cstdint>
 #include <cstring>

@@ -1,3 +1,4 @@
+// PLY files, ascii and binary.
 #include <algorithm>
 #include <cstdint>
 #include <cstring>

@@ -1,3 +1,4 @@
+// STL files, ascii and binary.
 #include <cstdint>
 #include <cstring>
 

@@ -1,3 +1,4 @@
+// write_pcd(): point clouds as PCL reads them.
 #include <cstdint>
 #include <cstring>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// bound_deviation(): how far a solid reaches beyond a mesh, proven by splitting cubes.
 #include <algorithm>
 #include <cmath>
 #include <queue>

@@ -1,3 +1,4 @@
+// Refiner: a place of the height map made an exact grasp, or rejected.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,3 +1,4 @@
+// Contact pairs of boxes, cylinders, capsules and spheres in closed form.
 #include <algorithm>
 #include <cmath>
 

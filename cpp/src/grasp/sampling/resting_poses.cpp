@@ -1,3 +1,4 @@
+// resting_poses(): the faces of the hull on which a part lies still.
 #include <algorithm>
 #include <cmath>
 #include <numeric>

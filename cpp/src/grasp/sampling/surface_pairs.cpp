@@ -1,3 +1,4 @@
+// Contact pairs of meshes, by rays along the inward normals.
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// Ipopt behind the interface of nonlinear solvers.
 #include <dlfcn.h>
 
 #include <IpIpoptApplication.hpp>

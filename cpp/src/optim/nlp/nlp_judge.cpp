@@ -1,3 +1,4 @@
+// How a point is judged: objective and largest violation, found again without the solver.
 #include <algorithm>
 
 #include "optim/nlp/nlp_backends.hpp"

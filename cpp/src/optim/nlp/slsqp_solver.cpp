@@ -1,3 +1,4 @@
+// NLopt's SLSQP behind the interface of nonlinear solvers.
 #include <nlopt.hpp>
 
 #include <algorithm>

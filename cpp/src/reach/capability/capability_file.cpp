@@ -1,3 +1,4 @@
+// CapabilityMap::save and load: a folder of arrays with checksums.
 #include <algorithm>
 #include <cstring>
 #include <filesystem>

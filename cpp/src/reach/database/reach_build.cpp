@@ -1,3 +1,4 @@
+// ReachDatabase::build and build_to: sampling in shards, resumed after an interruption.
 #include <sys/file.h>
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// ReachDatabase::load_or_build: databases kept by what they depend on.
 #include <filesystem>
 #include <system_error>
 

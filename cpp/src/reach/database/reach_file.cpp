@@ -1,3 +1,4 @@
+// ReachDatabase::save and load: a folder of memory-mapped arrays with checksums.
 #include <unistd.h>
 
 #include <atomic>

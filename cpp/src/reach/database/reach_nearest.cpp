@@ -1,3 +1,4 @@
+// ReachDatabase::nearest: the stored configurations whose tool is nearest to a pose.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,3 +1,4 @@
+// Robot::group: a chain of joints, checked and flattened.
 #include <algorithm>
 #include <cmath>
 

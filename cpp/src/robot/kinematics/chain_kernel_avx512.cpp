@@ -1,3 +1,4 @@
+// The kernels of chains for AVX-512.
 #include "mmgrasp/robot/detail/chain_kernel.hpp"
 
 #ifdef MMGRASP_X86_KERNELS

@@ -1,3 +1,4 @@
+// The kernels of chains for any machine, and the choice among the sets.
 #include <cmath>
 
 #include "mmgrasp/robot/detail/chain_kernel.hpp"

@@ -1,3 +1,4 @@
+// A chain as motions about and along z, which is what the kernels run on.
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// JointGroup: forward kinematics and Jacobians.
 #include <array>
 #include <cmath>
 

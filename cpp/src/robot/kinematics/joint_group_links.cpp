@@ -1,3 +1,4 @@
+// Poses of all links of a group: each as one step from its parent.
 #include <algorithm>
 
 #include "mmgrasp/core/error.hpp"

@@ -1,3 +1,4 @@
+// From what URDF and SRDF say to a checked tree of links and joints.
 #include <algorithm>
 #include <cmath>
 #include <deque>

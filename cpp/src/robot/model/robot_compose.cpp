@@ -1,3 +1,4 @@
+// Robots mounted on robots, added links, and shapes replaced.
 #include <cmath>
 
 #include "mmgrasp/core/error.hpp"

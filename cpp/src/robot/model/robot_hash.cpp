@@ -1,3 +1,4 @@
+// What tells one robot from another in caches.
 #include "mmgrasp/core/hash.hpp"
 #include "robot/model/robot_data.hpp"
 

@@ -1,3 +1,4 @@
+// Robot::load and from_strings: files, packages, meshes.
 #include <cmath>
 #include <filesystem>
 #include <fstream>

@@ -1,3 +1,4 @@
+// Robot::to_urdf and to_srdf.
 #include <algorithm>
 #include <cmath>
 #include <set>

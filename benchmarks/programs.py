@@ -1,4 +1,4 @@
-"""What the benchmark drivers share: the peers' environment, building and running the programs."""
+"""What the benchmark drivers share: the baselines' environment, building and running the programs."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from tables import ROOT, markdown
 BUILD = ROOT / "build/bench"
 
 
-def peers_environment(folder: Path, requirements: Path) -> Path:
-    """A virtual environment with the peers; made when it is not there. Returns its python."""
+def baselines_environment(folder: Path, requirements: Path) -> Path:
+    """A virtual environment with the baselines; made when it is not there. Returns its python."""
     python = folder / "bin/python"
     if not python.exists():
         print(f"making {folder}", file=sys.stderr)

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "collision_case.hpp"
-#include "fcl_peer.hpp"
+#include "fcl_baseline.hpp"
 #include "mmgrasp/geometry/octree.hpp"
 #include "report.hpp"
 
@@ -64,7 +64,7 @@ bool run(const bench::Arm& arm, int count, int rounds) {
   for (const Eigen::Vector3d& p : points) tree->updateNode(p[0], p[1], p[2], true, true);
   tree->updateInnerOccupancy();
   tree->prune();
-  bench::FclPeer fcl(arm.group, mmgrasp::World(), false);
+  bench::FclBaseline fcl(arm.group, mmgrasp::World(), false);
   fcl.add(std::make_shared<fcl::OcTreed>(tree));
   const double their_build = bench::now() - start;
 

@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <functional>
 
-#include "coal_distance_peer.hpp"
+#include "coal_distance_baseline.hpp"
 #include "collision_case.hpp"
-#include "fcl_distance_peer.hpp"
+#include "fcl_distance_baseline.hpp"
 #include "report.hpp"
 
 namespace {
@@ -45,7 +45,7 @@ bool run(const bench::Arm& arm, bool self, int count, int rounds) {
   options.check_self = self;
   mmgrasp::CollisionChecker checker(arm.group, world, options);
   const Configurations draws = bench::planner_draws(checker, count, 5);
-  bench::FclDistancePeer fcl_convex(arm.group, world, true, self), fcl_trees(arm.group, world, false, self);
+  bench::FclDistanceBaseline fcl_convex(arm.group, world, true, self), fcl_trees(arm.group, world, false, self);
   std::vector<Program> programs;
   const auto add = [&](const std::string& who, const std::string& settings, auto distance) {
     programs.push_back({who, settings, distance, {}, {}, {}, 0});
@@ -62,7 +62,7 @@ bool run(const bench::Arm& arm, bool self, int count, int rounds) {
       "DynamicAABBTree manager for the scene, OBBRSS, running minimum, tolerance 1e-9, value only",
       [&](const Eigen::VectorXd& q) { return fcl_trees.distance(q); });
 #ifdef MMGRASP_WITH_COAL
-  bench::CoalDistancePeer coal(arm.group, world, self);
+  bench::CoalDistanceBaseline coal(arm.group, world, self);
   add("coal", "DynamicAABBTree manager for the scene, Convex or OBBRSS, running minimum, value only",
       [&](const Eigen::VectorXd& q) { return coal.distance(q); });
 #endif

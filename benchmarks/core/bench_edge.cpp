@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "collision_case.hpp"
-#include "fcl_peer.hpp"
+#include "fcl_baseline.hpp"
 #include "report.hpp"
 
 namespace {
@@ -37,11 +37,11 @@ bool run(const bench::Arm& arm, int count, int rounds) {
   const mmgrasp::World world = bench::twenty_boxes(arm, 3);
   mmgrasp::CollisionChecker checker(arm.group, world);
   const Edges edges = bench::planner_edges(checker, count, 0.5, 5);
-  bench::FclPeer as_trees(arm.group, world, false), as_convex(arm.group, world, true);
+  bench::FclBaseline as_trees(arm.group, world, false), as_convex(arm.group, world, true);
   const auto ours = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
     return checker.edge_is_free(a, b, kStep);
   };
-  const auto with = [](bench::FclPeer& fcl) {
+  const auto with = [](bench::FclBaseline& fcl) {
     return [&fcl](const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return fcl.edge_is_free(a, b, kStep); };
   };
   const auto trees = with(as_trees), convex = with(as_convex);

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "coal_peer.hpp"
+#include "coal_baseline.hpp"
 #include "collision_case.hpp"
-#include "fcl_peer.hpp"
+#include "fcl_baseline.hpp"
 #include "report.hpp"
 
 namespace {
@@ -55,7 +55,7 @@ bool run(const bench::Arm& arm, int count, int rounds) {
   const mmgrasp::World world = bench::twenty_boxes(arm, 3);
   mmgrasp::CollisionChecker checker(arm.group, world);
   const Configurations draws = bench::planner_draws(checker, count, 5);
-  bench::FclPeer fcl_convex(arm.group, world, true), fcl_trees(arm.group, world, false);
+  bench::FclBaseline fcl_convex(arm.group, world, true), fcl_trees(arm.group, world, false);
   std::vector<Program> programs;
   programs.push_back({"mmgrasp", "defaults", [&](const Eigen::VectorXd& q) { return checker.is_free(q); }, {}, {}, {}});
   programs.push_back({"FCL, convex meshes as Convex",
@@ -71,7 +71,7 @@ bool run(const bench::Arm& arm, int count, int rounds) {
                       {},
                       {}});
 #ifdef MMGRASP_WITH_COAL
-  bench::CoalPeer coal(arm.group, world);
+  bench::CoalBaseline coal(arm.group, world);
   programs.push_back({"coal",
                       "DynamicAABBTree manager for the scene, Convex or OBBRSS, first contact only",
                       [&](const Eigen::VectorXd& q) { return coal.is_free(q); },

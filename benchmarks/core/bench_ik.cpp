@@ -2,9 +2,10 @@
 // judged by KDL's forward kinematics and the joint limits.
 //
 //   bench_ik                    mmgrasp and KDL's LMA, in this process
-//   bench_ik --poses FOLDER     writes <robot>.poses for peers_ik.py (one line a pose: 16 entries row by row, the seed)
-//   bench_ik --answers FOLDER   judges the <robot>.<peer>.answers that peers_ik.py wrote (a line: time [us], q)
-//   bench_ik --branches FOLDER  judges <robot>.<peer>.branches, found on FOLDER/<robot>.urdf: every branch a peer finds
+//   bench_ik --poses FOLDER     writes <robot>.poses for baselines_ik.py (one line a pose: 16 entries row by row, the
+//   seed) bench_ik --answers FOLDER   judges the <robot>.<baseline>.answers that baselines_ik.py wrote (a line: time
+//   [us], q) bench_ik --branches FOLDER  judges <robot>.<baseline>.branches, found on FOLDER/<robot>.urdf: every branch
+//   a baseline finds
 //                               must be among ours
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainiksolverpos_lma.hpp>
@@ -36,7 +37,7 @@ constexpr double kPositionTolerance = 1e-5, kRotationTolerance = 1e-4;  // [m], 
 struct Case {
   std::string name;
   JointGroup group;
-  Pose T_world_base;  // peers are asked in the frame of the chain's base link
+  Pose T_world_base;  // baselines are asked in the frame of the chain's base link
   std::vector<Eigen::VectorXd> seeds;
   Poses poses;
 };

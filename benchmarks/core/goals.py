@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Goal:
-    """Ours over the peer's at most the bound, or the peer's over ours at least the bound (times, so: how often as fast).
+    """Ours over the baseline's at most the bound, or the baseline's over ours at least the bound (times, so: how often as fast).
 
-    Of several peers whose names begin with `peer` the best counts. Without a peer, our own `field` is held against the bound.
+    Of several baselines whose names begin with `baseline` the best counts. Without a baseline, our own `field` is held against the bound.
     """
 
     row: str
     ours: str
-    peer: str
+    baseline: str
     bound: float
     at_most: bool = True
     field: str = "value"

@@ -2,7 +2,7 @@
 // edge resolution and one range. Times are of the processor (one thread); the wall's stand beside them. Every path of
 // ours is looked at again by FCL at 0.005 rad.
 //
-//     bench_mbm <problems.txt> [seeds] [peer: 0 or 1] [only this set]
+//     bench_mbm <problems.txt> [seeds] [baseline: 0 or 1] [only this set]
 
 #include <algorithm>
 #include <map>
@@ -11,7 +11,7 @@
 #include "mbm_problem.hpp"
 #include "mmgrasp/collision/edge.hpp"
 #include "mmgrasp/plan/motion.hpp"
-#include "ompl_peer.hpp"
+#include "ompl_baseline.hpp"
 
 namespace {
 
@@ -44,7 +44,7 @@ struct Runs {
   }
 };
 
-bool verified(bench::FclPeer& fcl, const std::vector<Eigen::VectorXd>& path) {
+bool verified(bench::FclBaseline& fcl, const std::vector<Eigen::VectorXd>& path) {
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
     if (!fcl.edge_is_free(path[i], path[i + 1], kVerifyStep)) return false;
   }
@@ -56,15 +56,15 @@ bool verified(bench::FclPeer& fcl, const std::vector<Eigen::VectorXd>& path) {
 int main(int argc, char** argv) {
   if (argc < 2) return 2;
   const int seeds = argc > 2 ? std::atoi(argv[2]) : 1;
-  const bool with_peer = argc > 3 ? std::atoi(argv[3]) != 0 : true;
+  const bool with_baseline = argc > 3 ? std::atoi(argv[3]) != 0 : true;
   const std::string only = argc > 4 ? argv[4] : "";
   std::map<std::string, std::map<std::string, Runs>> sets;
   for (const bench::MbmProblem& problem : bench::MbmReader(argv[1]).read()) {
     if (!only.empty() && problem.set.find(only) == std::string::npos) continue;
     mmgrasp::CollisionChecker checker(problem.group, problem.world);
-    bench::FclPeer judge(problem.group, problem.world, false);
+    bench::FclBaseline judge(problem.group, problem.world, false);
     const bench::EdgeSteps steps{mmgrasp::motion_bounds(checker), 0.02, kWorkspaceStep};
-    bench::OmplPeer peer(problem.group, problem.world, steps);
+    bench::OmplBaseline baseline(problem.group, problem.world, steps);
     const double range = 0.05 * (problem.group.sample_upper() - problem.group.sample_lower()).norm();
     auto& runs = sets[problem.set];
     for (int seed = 1; seed <= seeds; ++seed) {
@@ -91,9 +91,9 @@ int main(int argc, char** argv) {
           std::fprintf(stderr, "%s seed %d: FCL finds a collision\n", problem.name.c_str(), seed);
         }
       }
-      if (!with_peer) continue;
+      if (!with_baseline) continue;
       const double begin = bench::processor_seconds();
-      const auto answer = peer.solve(problem.start, problem.goals, range, static_cast<unsigned>(seed), kLimit);
+      const auto answer = baseline.solve(problem.start, problem.goals, range, static_cast<unsigned>(seed), kLimit);
       Runs& run = runs["OMPL RRTConnect + FCL"];
       run.milliseconds.push_back(1e3 * (bench::processor_seconds() - begin));
       run.wall.push_back(1e3 * answer.seconds);

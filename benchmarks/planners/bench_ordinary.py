@@ -1,6 +1,6 @@
 """Ordinary planning beside what Python users have today: RoboPlan and sscbirrt on MotionBenchMaker's Panda problems.
 
-    python benchmarks/planners/bench_ordinary.py --peer PYTHON [--limit N] [--seeds N] [--data FOLDER]
+    python benchmarks/planners/bench_ordinary.py --baseline PYTHON [--limit N] [--seeds N] [--data FOLDER]
 
 Every program plans and shortens the same problems in its recommended set-up; each path is then looked at by FCL and KDL called
 directly, at 0.01 rad and at 0.005 rad. Times are those of planning, the scene being loaded. One JSON line a program.
@@ -62,10 +62,10 @@ def ours(robot: mg.Robot, problems: list[MotionProblem], seeds: int) -> Iterator
         yield time.process_time() - begin, found.path
 
 
-def peer(
+def baseline(
     python: str, script: str, robot: dict, problems: list[MotionProblem], seeds: int
 ) -> list[tuple[float, np.ndarray | None]]:
-    """The same from a program in the peers' environment; it answers one line for each run."""
+    """The same from a program in the baselines' environment; it answers one line for each run."""
     asked = {
         "robot": robot,
         "seeds": seeds,
@@ -114,7 +114,7 @@ def row(who: str, settings: str, robot: mg.Robot, runs: list[tuple[MotionProblem
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--peer", required=True, help="python of an environment with peers.txt")
+    parser.add_argument("--baseline", required=True, help="python of an environment with baselines.txt")
     parser.add_argument("--data", type=Path, default=HERE.parents[2] / "shared/data")
     parser.add_argument("--limit", type=int, default=10, help="problems of each set")
     parser.add_argument("--seeds", type=int, default=3)
@@ -134,11 +134,11 @@ def main() -> None:
         ("mmgrasp", "RRT-Connect, edges at 5 mm of any link point, shortened, looked at again"): ours(
             robot, problems, arguments.seeds
         ),
-        ("RoboPlan 0.7", "RRT-Connect, steps of 0.05 rad by bisection, shortcuts as by default"): peer(
-            arguments.peer, "roboplan_peer.py", files, problems, arguments.seeds
+        ("RoboPlan 0.7", "RRT-Connect, steps of 0.05 rad by bisection, shortcuts as by default"): baseline(
+            arguments.baseline, "roboplan_baseline.py", files, problems, arguments.seeds
         ),
-        ("sscbirrt 3.15", "CBiRRT, native MuJoCo scene, edge_resolution 0.05 rad, smoothed as by default"): peer(
-            arguments.peer, "sscbirrt_peer.py", files, problems, arguments.seeds
+        ("sscbirrt 3.15", "CBiRRT, native MuJoCo scene, edge_resolution 0.05 rad, smoothed as by default"): baseline(
+            arguments.baseline, "sscbirrt_baseline.py", files, problems, arguments.seeds
         ),
     }
     for (who, settings), runs in programs.items():

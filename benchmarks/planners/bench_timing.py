@@ -1,9 +1,9 @@
 """Durations beside toppra on the same paths, and with jerk limits beside Ruckig on moves from rest to rest.
 
-    python benchmarks/planners/bench_timing.py --peer PYTHON [--paths N] [--no-jerk]
+    python benchmarks/planners/bench_timing.py --baseline PYTHON [--paths N] [--no-jerk]
 
 The path that toppra gets is the one our trajectory takes (corners blended), as 2,000 points by arc length. Prints one JSON
-line per program, value: our duration over the peer's, its median; with the least and the greatest beside it.
+line per program, value: our duration over the baseline's, its median; with the least and the greatest beside it.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ def dense(trajectory) -> np.ndarray:
     return np.stack([np.interp(at, s[kept], column) for column in fine[kept].T], axis=1)
 
 
-def row(who: str, on: str, ours: list[float], peer: list[float], seconds: float) -> str:
-    ratios = np.array(ours) / np.array(peer)
+def row(who: str, on: str, ours: list[float], baseline: list[float], seconds: float) -> str:
+    ratios = np.array(ours) / np.array(baseline)
     ratios = ratios[np.isfinite(ratios)]
     return json.dumps(
         {
@@ -44,7 +44,7 @@ def row(who: str, on: str, ours: list[float], peer: list[float], seconds: float)
             "on": on,
             "who": who,
             "value": float(np.median(ratios)),
-            "unit": "of the peer's duration",
+            "unit": "of the baseline's duration",
             "least": float(ratios.min()),
             "greatest": float(ratios.max()),
             "paths": len(ratios),
@@ -56,7 +56,7 @@ def row(who: str, on: str, ours: list[float], peer: list[float], seconds: float)
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--peer", required=True, help="python of an environment with peers.txt")
+    parser.add_argument("--baseline", required=True, help="python of an environment with baselines.txt")
     parser.add_argument("--paths", type=int, default=50)
     parser.add_argument("--no-jerk", action="store_true")
     arguments = parser.parse_args()
@@ -77,7 +77,7 @@ def main() -> None:
         "moves": [[q.tolist() for q in move] for move in moves],
     }
     answer = subprocess.run(
-        [arguments.peer, HERE / "timing_peer.py"],
+        [arguments.baseline, HERE / "timing_baseline.py"],
         input=json.dumps(problem),
         stdout=subprocess.PIPE,
         text=True,

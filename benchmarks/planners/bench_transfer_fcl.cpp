@@ -10,7 +10,7 @@
 #include "core/report.hpp"
 #include "mbm_problem.hpp"
 #include "mmgrasp/collision/edge.hpp"
-#include "ompl_peer.hpp"
+#include "ompl_baseline.hpp"
 
 int main(int argc, char** argv) {
   if (argc < 4) return 2;
@@ -19,11 +19,12 @@ int main(int argc, char** argv) {
   for (const bench::MbmProblem& problem : bench::MbmReader(argv[1]).read()) {
     const bench::EdgeSteps steps{mmgrasp::motion_bounds(mmgrasp::CollisionChecker(problem.group, problem.world)), 0.02,
                                  0.005};
-    bench::OmplPeer peer(problem.group, problem.world, steps);
+    bench::OmplBaseline baseline(problem.group, problem.world, steps);
     const double begin = bench::processor_seconds();
     // Range 0: OMPL's own choice.
-    solved = peer.solve(problem.start, problem.goals, 0, static_cast<unsigned>(std::atoi(argv[2])), std::atof(argv[3]))
-                 .solved;
+    solved =
+        baseline.solve(problem.start, problem.goals, 0, static_cast<unsigned>(std::atoi(argv[2])), std::atof(argv[3]))
+            .solved;
     seconds += bench::processor_seconds() - begin;
     if (solved) break;
   }

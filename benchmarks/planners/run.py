@@ -1,10 +1,10 @@
 """MotionBenchMaker's problems beside OMPL's RRT-Connect with FCL, in one process, and beside RoboPlan and sscbirrt;
 durations beside toppra and Ruckig.
 
-    python benchmarks/planners/run.py [--limit N] [--seeds N] [--no-peer] [--write]
+    python benchmarks/planners/run.py [--limit N] [--seeds N] [--no-baseline] [--write]
 
 Writes the problems as text, builds and runs bench_mbm for both robots, and holds every set against its goals: at most a tenth
-of the peer's median, all paths free, and below 5 ms on bookshelf_* and table_pick. --write puts the table into
+of the baseline's median, all paths free, and below 5 ms on bookshelf_* and table_pick. --write puts the table into
 benchmarks/README.md.
 """
 
@@ -19,10 +19,10 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from programs import BUILD, build_programs, lines_of, peers_environment
+from programs import BUILD, baselines_environment, build_programs, lines_of
 from tables import ROOT, markdown, show
 
-OURS, PEER = "mmgrasp, shortened", "OMPL RRTConnect + FCL"
+OURS, BASELINE = "mmgrasp, shortened", "OMPL RRTConnect + FCL"
 QUICK = ("bookshelf", "table_pick")
 
 
@@ -31,8 +31,8 @@ def table(lines: list[dict]) -> str:
     runs = {(line["on"], line["who"]): line for line in lines}
     rows = []
     for on in dict.fromkeys(line["on"] for line in lines):
-        ours, first, peer = (runs.get((on, who)) for who in (OURS, "mmgrasp", PEER))
-        ratio = ours["value"] / peer["value"] if peer else None
+        ours, first, baseline = (runs.get((on, who)) for who in (OURS, "mmgrasp", BASELINE))
+        ratio = ours["value"] / baseline["value"] if baseline else None
         met = ours["verified"] >= 0.995 * ours["runs"] and ours["solved"] == ours["verified"]
         met = met and (ratio is None or ratio <= 0.1) and (not on.startswith(QUICK) or ours["value"] < 5)
         rows.append(
@@ -42,10 +42,10 @@ def table(lines: list[dict]) -> str:
                 f"{first['value']:.2f}",
                 f"{ours['value']:.2f}",
                 f"{ours['p95']:.1f}",
-                f"{peer['value']:.1f}" if peer else "",
-                f"{peer['p95']:.0f}" if peer else "",
-                f"{peer['verified']}/{peer['runs']}" if peer else "",
-                f"{ratio:.3f}" if peer else "",
+                f"{baseline['value']:.1f}" if baseline else "",
+                f"{baseline['p95']:.0f}" if baseline else "",
+                f"{baseline['verified']}/{baseline['runs']}" if baseline else "",
+                f"{ratio:.3f}" if baseline else "",
                 "yes" if met else "**no**",
             ]
         )
@@ -54,14 +54,14 @@ def table(lines: list[dict]) -> str:
 
 
 def timing_table(lines: list[dict]) -> str:
-    """Our durations over the peers'."""
+    """Our durations over the baselines'."""
     keys = ("value", "least", "greatest")
     rows = [[line["who"], line["on"], *(f"{line[k]:.4f}" for k in keys), f"{line['ms']:.1f}"] for line in lines]
     return markdown(["durations", "on", "median ratio", "least", "greatest", "ms a path"], rows)
 
 
 def ordinary_table(lines: list[dict]) -> str:
-    """Programs that plan and shorten the same problems; the goal is half the median of the fastest peer, all paths free."""
+    """Programs that plan and shorten the same problems; the goal is half the median of the fastest baseline, all paths free."""
     fastest = min(line["value"] for line in lines[1:])
     rows = []
     for line in lines:
@@ -76,7 +76,7 @@ def ordinary_table(lines: list[dict]) -> str:
         ]
         rows.append([*row, f"{line['value'] / fastest:.2f}"])
     head = ["program", "settings", "median [ms]", "p95", "solved", "free at 0.01 rad", "at 0.005 rad", "length [rad]"]
-    return markdown([*head, "of the fastest peer's median"], rows)
+    return markdown([*head, "of the fastest baseline's median"], rows)
 
 
 def main() -> None:
@@ -84,8 +84,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--limit", type=int, default=50, help="problems of each set")
     parser.add_argument("--seeds", type=int, default=1)
-    parser.add_argument("--no-peer", action="store_true")
-    parser.add_argument("--peers", type=Path, default=ROOT / "build/peers_planners")
+    parser.add_argument("--no-baseline", action="store_true")
+    parser.add_argument("--baselines", type=Path, default=ROOT / "build/baselines_planners")
     parser.add_argument("--write", action="store_true", help="update benchmarks/README.md")
     arguments = parser.parse_args()
     build_programs([], ["bench_mbm"])
@@ -93,11 +93,11 @@ def main() -> None:
     for robot in ("panda", "ur5"):
         text = BUILD / f"mbm_{robot}.txt"
         subprocess.run([sys.executable, HERE / "mbm_text.py", robot, text, "--limit", str(arguments.limit)], check=True)
-        peer = "0" if arguments.no_peer else "1"
-        lines += lines_of([BUILD / "benchmarks/bench_mbm", text, str(arguments.seeds), peer])
-    python = peers_environment(arguments.peers.absolute(), HERE / "peers.txt")
-    timing = lines_of([sys.executable, HERE / "bench_timing.py", "--peer", python])
-    ordinary = lines_of([sys.executable, HERE / "bench_ordinary.py", "--peer", python])
+        baseline = "0" if arguments.no_baseline else "1"
+        lines += lines_of([BUILD / "benchmarks/bench_mbm", text, str(arguments.seeds), baseline])
+    python = baselines_environment(arguments.baselines.absolute(), HERE / "baselines.txt")
+    timing = lines_of([sys.executable, HERE / "bench_timing.py", "--baseline", python])
+    ordinary = lines_of([sys.executable, HERE / "bench_ordinary.py", "--baseline", python])
     head = f"{os.cpu_count()} cores, {platform.machine()}; {lines[0]['settings']}."
     text = "\n\n".join([head, table(lines), ordinary_table(ordinary), timing_table(timing)])
     show("planners", text, arguments.write)

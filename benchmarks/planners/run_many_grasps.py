@@ -64,7 +64,7 @@ def many_table(lines: list[dict]) -> str:
     programs: dict[str, Runs] = {}
     for line in lines:
         programs.setdefault(line["program"], {})[line["robot"], line["cell"], line["run"]] = line
-    peers = [name for name in programs if name not in OURS]
+    baselines = [name for name in programs if name not in OURS]
     ended = {name: runs for name, runs in programs.items() if name != TODAY}
     solved_by_all = set.intersection(
         *({key for key, line in runs.items() if line["cost"] is not None} for runs in ended.values())
@@ -81,10 +81,16 @@ def many_table(lines: list[dict]) -> str:
             f"{statistics.mean(costs):.3f}" if costs else "",
         ]
         if name in OURS and TODAY in programs:
-            won, equal = counts(programs, name, peers)
+            won, equal = counts(programs, name, baselines)
             sooner = ratio(programs, name, [TODAY])
             met = bool(sooner) and float(sooner) >= SOONER and won >= CHEAPER * len(runs)
-            row += [sooner, ratio(programs, name, peers), f"{won}/{len(runs)}", f"{equal}", "yes" if met else "**no**"]
+            row += [
+                sooner,
+                ratio(programs, name, baselines),
+                f"{won}/{len(runs)}",
+                f"{equal}",
+                "yes" if met else "**no**",
+            ]
         else:
             row += [""] * 5
         rows.append(row)

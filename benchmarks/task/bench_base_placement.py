@@ -1,13 +1,13 @@
 """One base pose for many tool poses: mmgrasp (collisions checked) beside scikit-robot (they are not).
 
-    python benchmarks/task/bench_base_placement.py [--peer PYTHON] [--targets 20 100]
+    python benchmarks/task/bench_base_placement.py [--baseline PYTHON] [--targets 20 100]
 
 Both get the shipped Fetch-like robot (scikit-robot reads the same URDF), the arm's seven joints, and the same targets:
 tool poses over a table, hands pointing down or forward with some turn. scikit-robot runs in PYTHON's process, as its
 documentation recommends: with its inverse reachability map of default size (built beforehand, as ours has its database),
 once from a working posture and once from four, and without the map from starts around the table. Its tolerances are its
-defaults, 1 mm and 1 degree; ours are 0.01 mm and 0.0001 rad. Every answer, the peer's too, is judged here: forward
-kinematics within the peer's tolerances and limits, then collisions with robot and table. One JSON line per case and
+defaults, 1 mm and 1 degree; ours are 0.01 mm and 0.0001 rad. Every answer, the baseline's too, is judged here: forward
+kinematics within the baseline's tolerances and limits, then collisions with robot and table. One JSON line per case and
 program.
 """
 
@@ -26,7 +26,7 @@ import mmgrasp as mg
 
 HERE = Path(__file__).resolve().parent
 ROBOT = HERE.parents[1] / "python/mmgrasp/assets/robots/fetchlike"
-POSITION, ROTATION = 1e-3, np.deg2rad(1.0)  # what counts as reached: the peer's defaults
+POSITION, ROTATION = 1e-3, np.deg2rad(1.0)  # what counts as reached: the baseline's defaults
 
 
 def make_targets(count: int) -> np.ndarray:
@@ -67,7 +67,7 @@ def line(count: int, who: str, value: float, settings: str, **more) -> None:
     print(json.dumps({**row, **more, "settings": settings}), flush=True)
 
 
-def peers(options, arm, targets: dict[int, np.ndarray], start_postures: list) -> list[dict]:
+def baselines(options, arm, targets: dict[int, np.ndarray], start_postures: list) -> list[dict]:
     """The answers of scikit-robot."""
     angles = np.linspace(-np.pi, np.pi, 4, endpoint=False)
     starts = [[1.6 + 0.9 * np.cos(a), 0.9 * np.sin(a), a + np.pi] for a in angles]
@@ -80,7 +80,7 @@ def peers(options, arm, targets: dict[int, np.ndarray], start_postures: list) ->
         "targets": {str(count): array.tolist() for count, array in targets.items()},
         "starts": starts,
         "postures": start_postures,
-        "rounds": options.peer_rounds,
+        "rounds": options.baseline_rounds,
         "position_tolerance": POSITION,
         "rotation_tolerance": ROTATION,
     }
@@ -88,7 +88,7 @@ def peers(options, arm, targets: dict[int, np.ndarray], start_postures: list) ->
         path = Path(folder) / "task.json"
         path.write_text(json.dumps(task))
         run = subprocess.run(
-            [options.peer, HERE / "base_placement_peer.py", path], check=True, stdout=subprocess.PIPE, text=True
+            [options.baseline, HERE / "base_placement_baseline.py", path], check=True, stdout=subprocess.PIPE, text=True
         )
     return [json.loads(text) for text in run.stdout.splitlines() if text.startswith("{")]
 
@@ -96,11 +96,11 @@ def peers(options, arm, targets: dict[int, np.ndarray], start_postures: list) ->
 def main() -> None:
     """Measures and prints."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--peer", help="python with scikit-robot")
+    parser.add_argument("--baseline", help="python with scikit-robot")
     parser.add_argument("--targets", type=int, nargs="+", default=[20, 100])
     parser.add_argument("--samples", type=int, default=2_000_000)
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--peer-rounds", type=int, default=1)
+    parser.add_argument("--baseline-rounds", type=int, default=1)
     options = parser.parse_args()
 
     robot = mg.Robot.load(ROBOT / "fetchlike.urdf", ROBOT / "fetchlike.srdf")
@@ -123,8 +123,8 @@ def main() -> None:
             verdict = judge(robot, world, arm, poses, found.base_pose, found.configurations)
             more = {"processor_s": min(processor), "claimed": found.reached, **verdict, "build_s": built}
             line(count, who, min(times), f"{options.samples} samples; tolerances 1e-5 m, 1e-4 rad", **more)
-    if options.peer:
-        for answer in peers(options, arm, targets, postures(database, arm)):
+    if options.baseline:
+        for answer in baselines(options, arm, targets, postures(database, arm)):
             count = answer["count"]
             configurations = [
                 np.array(q) if ok else None for q, ok in zip(answer["angles"], answer["reached"], strict=True)

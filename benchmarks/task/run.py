@@ -1,6 +1,6 @@
 """Reachability, base regions and base sequences against their goals, in one run.
 
-    python benchmarks/task/run.py [--only regions ...] [--full] [--peers FOLDER] [--write]
+    python benchmarks/task/run.py [--only regions ...] [--full] [--baselines FOLDER] [--write]
 
 Builds the programs benchmarks/task/bench_*.cpp, runs them and the Python one one after another and holds what they print
 against goals.py. --full takes the reference sizes: the database of 92 million poses (2 GB in a temporary folder), 20,000
@@ -22,7 +22,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from goals import GOALS, Goal
-from programs import BUILD, build_programs, full_table, lines_of, peers_environment
+from programs import BUILD, baselines_environment, build_programs, full_table, lines_of
 from tables import ROOT, markdown, show
 
 KEPT = BUILD / "task_lines.json"
@@ -30,7 +30,7 @@ CACHE = BUILD / "reach-cache"
 MAPS = ("fetchlike arm", "fetchlike arm, table", "fetchlike arm and lift")
 
 
-def commands(full: bool, folder: str, peer: Path) -> dict[str, list[list]]:
+def commands(full: bool, folder: str, baseline: Path) -> dict[str, list[list]]:
     """What is run for each program."""
     programs = BUILD / "benchmarks"
     build, coverage = programs / "bench_reach_build", programs / "bench_reach_coverage"
@@ -39,7 +39,7 @@ def commands(full: bool, folder: str, peer: Path) -> dict[str, list[list]]:
     return {
         "reach_build": [[build, "fetchlike", samples, folder] for samples in ["4000000", *["119000000"] * full]],
         "reach_coverage": [[coverage, "fetchlike", *(["16384000", "10000"] if full else ["1024000", "2000"])]],
-        "base_placement": [[sys.executable, HERE / "bench_base_placement.py", "--peer", peer]],
+        "base_placement": [[sys.executable, HERE / "bench_base_placement.py", "--baseline", baseline]],
         "capability": [[capability, "--case", name, "--truth", truth] for name in MAPS],
         "regions": [[programs / "bench_regions", CACHE, "3", "500" if full else "100"]],
         "regions_truth": [[programs / "bench_regions_truth", CACHE, *(["2000", "200"] if full else ["100", "50"])]],
@@ -71,12 +71,12 @@ def compared(lines: list[dict]) -> list[dict]:
             line["wall_of_92_million"] = line["wall_s"] * 92e6 / line["stored"]
         if line["row"] == "set cover":
             line["gap"] = line["cost"] - line["bound"]
-        peers = [other for other in lines if (other["row"], other["on"]) == (line["row"], line["on"])]
-        peers = [other for other in peers if other["who"].startswith("scikit-robot")]
-        if peers and line["who"].startswith("mmgrasp"):
+        baselines = [other for other in lines if (other["row"], other["on"]) == (line["row"], line["on"])]
+        baselines = [other for other in baselines if other["who"].startswith("scikit-robot")]
+        if baselines and line["who"].startswith("mmgrasp"):
             counted = "reached" if "ignored" in line["who"] else "free"
-            line["times_as_fast"] = min(other["value"] for other in peers) / line["value"]
-            line["more"] = line[counted] - max(other[counted] for other in peers)
+            line["times_as_fast"] = min(other["value"] for other in baselines) / line["value"]
+            line["more"] = line[counted] - max(other[counted] for other in baselines)
         out.append(line)
     return out
 
@@ -111,21 +111,21 @@ def main() -> None:
     parser.add_argument("--only", nargs="*", help="programs to run: regions, sequence, ...; none: keep the last lines")
     parser.add_argument("--full", action="store_true", help="the reference sizes: tens of minutes, 2 GB of disk")
     parser.add_argument(
-        "--peers", type=Path, default=ROOT / "build/peers_task", help="virtual environment of the peers"
+        "--baselines", type=Path, default=ROOT / "build/baselines_task", help="virtual environment of the baselines"
     )
     parser.add_argument("--write", action="store_true", help="update benchmarks/README.md")
     arguments = parser.parse_args()
-    peer = peers_environment(arguments.peers.absolute(), HERE / "peers.txt")
+    baseline = baselines_environment(arguments.baselines.absolute(), HERE / "baselines.txt")
     build_programs([], [source.stem for source in sorted(HERE.glob("bench_*.cpp"))])
     kept = json.loads(KEPT.read_text()) if KEPT.exists() else {}
     with tempfile.TemporaryDirectory() as folder:
-        for name, runs in commands(arguments.full, folder, peer).items():
+        for name, runs in commands(arguments.full, folder, baseline).items():
             if arguments.only is not None and name not in arguments.only:
                 continue
             lines = [line for run in runs for line in lines_of(run)]
             kept.setdefault(name, {})["full" if arguments.full else "quick"] = {"when": time.time(), "lines": lines}
             KEPT.write_text(json.dumps(kept))
-    lines = compared([line for name in commands(False, "", peer) for line in newest(kept.get(name, {}))])
+    lines = compared([line for name in commands(False, "", baseline) for line in newest(kept.get(name, {}))])
     cores = f"{os.cpu_count()} cores, {platform.machine()}"
     text = f"{cores}.\n\n{goal_table(lines)}\n\nAll measurements:\n\n{full_table(lines)}"
     show("task", text, arguments.write)

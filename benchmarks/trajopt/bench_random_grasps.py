@@ -3,9 +3,9 @@
 "random grasps" is the whole call: search of configurations, first guess, solves, judging. "solve alone" is one solve from the first
 guess by either, ours with setting up the problem and judging its roll-out, casadi's with a problem built beforehand.
 
-    python benchmarks/trajopt/bench_random_grasps.py [--count 200] [--seeds 1 2 3] [--waypoints 35] [--peer FOLDER]
+    python benchmarks/trajopt/bench_random_grasps.py [--count 200] [--seeds 1 2 3] [--waypoints 35] [--baseline FOLDER]
 
---peer names the site-packages folder of casadi; its runs alternate with ours. Solved means for ours: judged on the roll-out.
+--baseline names the site-packages folder of casadi; its runs alternate with ours. Solved means for ours: judged on the roll-out.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ import mmgrasp as mg
 
 def main() -> None:
     parser = arguments(__doc__, count=200, waypoints=35)
-    parser.add_argument("--peer", help="site-packages folder with casadi")
+    parser.add_argument("--baseline", help="site-packages folder with casadi")
     given = parser.parse_args()
     _, group = whole_body()
-    peer = None
-    if given.peer:
-        sys.path.append(given.peer)
-        from casadi_peer import Peer
+    baseline = None
+    if given.baseline:
+        sys.path.append(given.baseline)
+        from casadi_baseline import Baseline
 
-        peer = Peer(group)
+        baseline = Baseline(group)
     for seed in given.seeds:
         ours: list[tuple[float, mg.planning.DriveByResult]] = []
         alone: list[tuple[float, tuple[bool, float]]] = []
@@ -42,10 +42,10 @@ def main() -> None:
             if guess is None:
                 continue
             alone.append(timed(guess["solve"]))
-            if peer is None:
+            if baseline is None:
                 continue
-            peer.prepare(guess["intervals"])
-            theirs.append(timed(lambda: peer.solve(guess, pose)))  # noqa: B023
+            baseline.prepare(guess["intervals"])
+            theirs.append(timed(lambda: baseline.solve(guess, pose)))  # noqa: B023
         on, settings = f"seed {seed}", f"{given.count} poses, {given.waypoints} waypoints"
         solved = [r for _, r in ours if r.outcome == mg.Outcome.solved]
         line(

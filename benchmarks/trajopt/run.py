@@ -1,6 +1,6 @@
 """Grasping while driving at scale: random grasps beside casadi, tables and walls, waypoints, several tasks.
 
-    python benchmarks/trajopt/run.py [--only random_grasps ...] [--count N] [--seeds 1 2 3] [--peers FOLDER] [--write]
+    python benchmarks/trajopt/run.py [--only random_grasps ...] [--count N] [--seeds 1 2 3] [--baselines FOLDER] [--write]
 
 Runs the programs benchmarks/trajopt/bench_*.py one after another and holds what they print against the goals. --count replaces
 each program's number of poses. --write puts the tables into benchmarks/README.md.
@@ -16,7 +16,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from programs import BUILD, full_table, lines_of, packages_of, peers_environment
+from programs import BUILD, baselines_environment, full_table, lines_of, packages_of
 from tables import ROOT, markdown, show
 
 PROGRAMS = ("random_grasps", "obstacles", "waypoints", "tasks")
@@ -52,10 +52,14 @@ def goal_table(lines: list[dict]) -> str:
             if line["row"] == name and line["on"].startswith(on) and field in line:
                 row(line, field, bound, at_most, "")
     for line in ours:
-        for peer in lines:
-            if (peer["row"], peer["on"]) == (line["row"], line["on"]) and peer is not line and peer["who"] != "mmgrasp":
-                row(line, "value", peer["value"], True, f" ({peer['who']})")
-                row(line, "solved", peer["solved"], False, f" ({peer['who']})")
+        for baseline in lines:
+            if (
+                (baseline["row"], baseline["on"]) == (line["row"], line["on"])
+                and baseline is not line
+                and baseline["who"] != "mmgrasp"
+            ):
+                row(line, "value", baseline["value"], True, f" ({baseline['who']})")
+                row(line, "solved", baseline["solved"], False, f" ({baseline['who']})")
     return markdown(["work", "on", "what", "ours", "goal", "reached"], rows)
 
 
@@ -65,9 +69,9 @@ def main() -> None:
     parser.add_argument("--only", nargs="*", choices=PROGRAMS, default=PROGRAMS)
     parser.add_argument("--count", type=int, help="poses of each program")
     parser.add_argument("--seeds", nargs="+", help="seeds of each program")
-    parser.add_argument("--no-peer", action="store_true")
+    parser.add_argument("--no-baseline", action="store_true")
     parser.add_argument(
-        "--peers", type=Path, default=ROOT / "build/peers_trajopt", help="virtual environment of casadi"
+        "--baselines", type=Path, default=ROOT / "build/baselines_trajopt", help="virtual environment of casadi"
     )
     parser.add_argument("--write", action="store_true", help="update benchmarks/README.md")
     given = parser.parse_args()
@@ -79,8 +83,11 @@ def main() -> None:
             command += ["--count", str(given.count)]
         if given.seeds:
             command += ["--seeds", *given.seeds]
-        if name == "random_grasps" and not given.no_peer:
-            command += ["--peer", packages_of(peers_environment(given.peers.absolute(), HERE / "peers.txt"))]
+        if name == "random_grasps" and not given.no_baseline:
+            command += [
+                "--baseline",
+                packages_of(baselines_environment(given.baselines.absolute(), HERE / "baselines.txt")),
+            ]
         lines += lines_of(command)
     cores = f"{os.cpu_count()} cores, {platform.machine()}; processor time of one thread."
     show("trajopt", f"{cores}\n\n{goal_table(lines)}\n\nAll measurements:\n\n{full_table(lines)}", given.write)

@@ -10,6 +10,8 @@ namespace mmgrasp::python {
 using namespace py::literals;
 namespace {
 
+constexpr int kMaxConstraints = 1000000;
+
 constexpr char kObjective[] = "collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], float]";
 using Objective = Shown<kObjective>;
 constexpr char kConstraints[] =
@@ -56,6 +58,9 @@ DerivativeFreeResult minimize(const Objective& objective, const ArrayLike& given
     const py::gil_scoped_acquire gil;
     return py::cast<double>(objective(x));
   };
+  if (constraints.is_none() != (constraint_count == 0) || constraint_count < 0 || constraint_count > kMaxConstraints)
+    throw InvalidInput("constraint_count = " + std::to_string(constraint_count) +
+                       ": must be how many numbers `constraints` gives, up to 1000000; 0 without constraints");
   problem.constraint_count = constraint_count;
   if (!function_argument(constraints, "constraints").is_none()) {
     problem.constraints = [&](const Eigen::VectorXd& x) {

@@ -22,7 +22,9 @@ const std::map<std::string, std::string> kRenamed = {{"attempt_time_limit", "sol
 
 std::string nearest_name(const std::string& wrong, const std::vector<std::string>& known) {
   const auto renamed = kRenamed.find(wrong);
-  if (renamed != kRenamed.end() && std::find(known.begin(), known.end(), renamed->second) != known.end())
+  // These two are arguments of their own and not among the options.
+  const bool argument = wrong == "improved" || wrong == "tool_cone";
+  if (renamed != kRenamed.end() && (argument || std::find(known.begin(), known.end(), renamed->second) != known.end()))
     return "; it is called " + renamed->second + " now";
   const py::list matches = py::module_::import("difflib").attr("get_close_matches")(wrong, known, 1, 0.5);
   if (!matches.empty()) return "; did you mean " + py::cast<std::string>(matches[0]) + "?";

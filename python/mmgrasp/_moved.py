@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from . import base, collision, grasping, mapping, optim, part_supply, planning, robot, scenario
+from . import base, collision, grasping, mapping, optim, part_supply, planning, robot, scenario, verify
 
-ROOMS = (robot, collision, planning, grasping, base, mapping, optim, part_supply, scenario)
+ROOMS = (robot, collision, planning, grasping, base, mapping, optim, part_supply, scenario, verify)
 
 RENAMED = {
     "CandidateGrasp": "mmgrasp.Grasp",

@@ -309,3 +309,9 @@ def test_a_diff_drive_base_is_not_moved_sideways() -> None:
         with pytest.raises(mg.InvalidInput, match="diff_drive") as refused:
             call()
         assert name in str(refused.value) and "group = " in str(refused.value)
+
+
+def test_keywords_of_earlier_versions_say_what_they_are_called_now() -> None:
+    robot = mg.Robot.from_strings('<robot name="r"><link name="a"/></robot>')
+    with pytest.raises(mg.InvalidInput, match="attached_only now"):
+        mg.CollisionChecker(robot, mg.World(), robot.group(base_link="a", tip="a"), held_only=True)  # type: ignore[call-arg]

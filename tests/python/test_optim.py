@@ -58,10 +58,17 @@ def test_mistakes_are_named() -> None:
     with pytest.raises(mg.InvalidInput, match="bobyqa, cobyla"):
         mg.optim.minimize_derivative_free(bowl, [0, 0], LOWER, UPPER, solver="powell")
     with pytest.raises(mg.InvalidInput, match="max_evaluations"):
-        mg.optim.minimize_derivative_free(bowl, [0, 0], LOWER, UPPER, max_evaluation=10)
+        mg.optim.minimize_derivative_free(bowl, [0, 0], LOWER, UPPER, max_evaluation=10)  # type: ignore[call-arg]
     with pytest.raises(mg.InvalidInput, match="lower"):
         mg.optim.minimize_derivative_free(bowl, [0, 0], [0], UPPER)
     with pytest.raises(mg.InvalidInput, match="cobyla, isres"):
         mg.optim.minimize_derivative_free(
             bowl, [0, 0], LOWER, UPPER, constraints=lambda x: [x[0]], constraint_count=1, solver="crs2"
+        )
+
+
+def test_constraints_need_their_number() -> None:
+    with pytest.raises(mg.InvalidInput, match="constraint_count = 0: must be how many numbers"):
+        mg.optim.minimize_derivative_free(
+            bowl, [0, 0], LOWER, UPPER, solver="cobyla", constraints=lambda x: np.array([x[0]])
         )

@@ -123,6 +123,7 @@ def test_runs_repeat_bit_for_bit() -> None:
     [
         (Still(period=0.003), "period = 0.003: must be a multiple of the time step"),
         (Still(period=float("nan")), "period = nan"),
+        (Still(period=0.0), "period = 0.0: must be a multiple of the time step"),
         (Still(["no_such_joint"], [0.0]), "'no_such_joint' is no driven joint"),
         (Still(["wrist_flex_joint"], []), "must be 1 finite numbers"),
         (Still(base=(np.inf, 0, 0)), "command.base: must be three finite numbers"),
@@ -133,3 +134,24 @@ def test_wrong_controllers_are_refused(controller: Still, message: str) -> None:
     world.reset(np.zeros(3), home())
     with pytest.raises(mg.InvalidInput, match=message):
         world.drive(controller, time_limit=0.1)
+
+
+def test_physics_that_diverges_is_told() -> None:
+    world = scene()
+    world.reset(np.array([-1.5, 0.0, 0.0]), home())
+    with pytest.raises(mg.Error, match="the physics diverged after"):
+        world.drive(Still(base=(1e30, 0.0, 0.0)), time_limit=1.0)
+
+
+@pytest.mark.parametrize(
+    ("base", "joints", "message"),
+    [
+        ([0.0, 0.0], {}, "base = .*must be three finite numbers"),
+        ([np.nan] * 3, {}, "base = .*must be three finite numbers"),
+        ([0.0] * 3, {"q": 1.0}, r"joints\['q'\]"),
+        ([0.0] * 3, {"wrist_flex_joint": np.inf}, r"joints\['wrist_flex_joint'\] = inf"),
+    ],
+)
+def test_wrong_starts_are_refused(base: list[float], joints: dict[str, float], message: str) -> None:
+    with pytest.raises(mg.InvalidInput, match=message):
+        scene().reset(np.array(base), joints)

@@ -246,7 +246,7 @@ def urdf_changed(plan: dict[str, Any], old: str, new: str) -> None:
 
 
 def joint_text(plan: dict[str, Any], joint: str) -> str:
-    text = next(u["urdf"] for u in plan["scenario"]["robot"]["urdfs"] if f'joint name="{joint}"' in u["urdf"])
+    text: str = next(u["urdf"] for u in plan["scenario"]["robot"]["urdfs"] if f'joint name="{joint}"' in u["urdf"])
     start = text.index(f'<joint name="{joint}"')
     return text[start : text.index("</joint>", start)]
 
@@ -258,7 +258,7 @@ def test_a_robot_that_was_read_wrongly_is_named(small_plan_dict: dict[str, Any],
     plan = copy.deepcopy(small_plan_dict)
     joint = plan["scenario"]["arm"]["joints"][1]
     text = joint_text(plan, joint)
-    before = re.search(f"<{tag} [^>]*>", text)[0]
+    (before, *_) = re.findall(f"<{tag} [^>]*>", text)
     after = {
         "origin": before.replace('xyz="', 'xyz="1'),
         "axis": re.sub('xyz="[^"]*"', 'xyz="0.6 0.8 0"', before),

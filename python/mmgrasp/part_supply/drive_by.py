@@ -67,6 +67,7 @@ class DriveByPick:
         return float(self.result.events[-1]["close_time"])
 
     def to_dict(self) -> dict[str, Any]:
+        """Times of stop-and-pick and in passing, and what came of it, as plain values."""
         out: dict[str, Any] = {
             "leg": self.leg,
             "stop": self.stop,

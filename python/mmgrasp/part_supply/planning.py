@@ -36,18 +36,22 @@ class ScenarioPlan:
 
     @property
     def stops(self) -> list[_core.Stop]:
+        """Base poses in the order in which they are visited."""
         return self.plan.stops
 
     @property
     def picks(self) -> list[_core.Pick]:
+        """Every pick with its timed motions, in order."""
         return self.plan.picks
 
     @property
     def route(self) -> list[_core.BasePath]:
+        """Drives from the start over the stops to the goal."""
         return self.plan.route
 
     @property
     def obstructions(self) -> list[_core.Obstruction]:
+        """Why there is no plan and what would help; empty when solved."""
         return self.plan.obstructions
 
     def to_dict(self) -> dict[str, Any]:

@@ -26,9 +26,11 @@ class PlanVerdict:
 
     @property
     def ok(self) -> bool:
+        """No fault was found."""
         return not self.faults
 
     def to_dict(self) -> dict[str, Any]:
+        """Plain values, as `mmgrasp verify --json` prints them."""
         return {
             "ok": self.ok,
             "faults": [f.to_dict() for f in self.faults],

@@ -55,6 +55,7 @@ class Scenario:
 
     @property
     def world_with_parts(self) -> World:
+        """The obstacles and every part where it lies."""
         world = self.world
         for tray in self.trays:
             for part in tray.tray.parts:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -44,7 +45,7 @@ def read_part_types(node: Node, gripper: Hand) -> dict[str, PartType]:
     return types
 
 
-def _grasp_options(entry: Node) -> dict[str, float | int]:
+def _grasp_options(entry: Node) -> dict[str, Any]:
     if "grasp_options" not in entry:
         return {}
     options = {}

@@ -103,14 +103,16 @@ class Recorder:
         self._next = 0.0
 
     def before(self, step: int, time: float, scene: SceneState) -> None:
+        """A state, when it is time."""
         if time >= self._next - 1e-9:
             self.record(time, scene)
             self._next += self.period
 
     def after(self, step: int, time: float, scene: SceneState) -> None:
-        pass
+        """Nothing: states are taken before steps."""
 
     def record(self, time: float, scene: SceneState) -> None:
+        """A state at this time [s]."""
         self.states.append(
             {
                 "time": float(time),

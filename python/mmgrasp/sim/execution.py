@@ -44,6 +44,8 @@ class Execution:
     """Same seed, same run."""
 
     def check(self) -> None:
+        """Raises InvalidInput naming field, value and rule."""
+
         def rule(name: str, holds: bool, text: str) -> None:
             if not holds:
                 raise InvalidInput(f"{name} = {getattr(self, name)!r}: must {text}")

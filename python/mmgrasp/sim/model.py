@@ -36,6 +36,7 @@ class SimPart:
     """Coefficient on everything that grips no better; the larger one of two surfaces counts."""
 
     def check(self) -> None:
+        """Raises InvalidInput naming field, value and rule."""
         for name in ("mass", "friction"):
             value = float(getattr(self, name))
             if not (np.isfinite(value) and value > 0):
@@ -66,6 +67,7 @@ class Physics:
     """Natural frequency of the arm's joint controllers, critically damped [rad/s]."""
 
     def check(self) -> None:
+        """Raises InvalidInput naming field, value and rule."""
         for name in (
             "time_step",
             "finger_friction",

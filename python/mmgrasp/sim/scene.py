@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .._core import Hand, InvalidInput, Robot, World
+from .._core import Error, Hand, InvalidInput, Robot, World
 from .control import Command, Controller, Observer, body_to_world
 from .model import BASE_JOINTS, Physics, SimPart, build
 
@@ -68,6 +68,8 @@ class SimScene:
 
     def part_pose(self, name: str) -> np.ndarray:
         """T_world_part now, (4, 4)."""
+        if name not in self.parts:
+            raise InvalidInput(f"part '{name}': is none of {', '.join(self.parts) or 'no part'}")
         return self.body_pose(f"part/{name}")
 
     def body_pose(self, body: str) -> np.ndarray:
@@ -88,11 +90,17 @@ class SimScene:
 
     def reset(self, base: np.ndarray, joints: dict[str, float]) -> None:
         """Robot and parts back to a start, at rest."""
+        at = np.asarray(base, float)
+        if at.shape != (3,) or not np.isfinite(at).all():
+            raise InvalidInput(f"base = {base!r}: must be three finite numbers x, y, theta")
+        for name, value in joints.items():
+            if name not in self.address or not np.isfinite(value):
+                raise InvalidInput(f"joints['{name}'] = {value!r}: must be a finite number of a driven joint")
         self.mujoco.mj_resetData(self.model, self.data)
         for name, value in joints.items():
             self.data.qpos[self.address[name]] = value
         if self.moves:
-            self.data.qpos[self.base_address] = base
+            self.data.qpos[self.base_address] = at
         self.mujoco.mj_forward(self.model, self.data)
         self._tune()
 
@@ -109,14 +117,17 @@ class SimScene:
         step, for joints the robot does not drive and for commands of the wrong size.
         """
         h = self.physics.time_step
-        every = max(1, round(controller.period / h)) if 0 < controller.period < np.inf else 0
-        if not abs(every * h - controller.period) <= 1e-9:
+        every = round(controller.period / h) if 0 < controller.period < np.inf else 0
+        if every < 1 or abs(every * h - controller.period) > 1e-9:
             raise InvalidInput(f"period = {controller.period!r}: must be a multiple of the time step {h} s")
         for name in controller.joints:
             if name not in self.actuator:
                 raise InvalidInput(f"joints: '{name}' is no driven joint of the robot")
         actuators = [self.actuator[name] for name in controller.joints]
+        if not time_limit >= 0:
+            raise InvalidInput(f"time_limit = {time_limit!r}: must be a time [s], >= 0")
         step, time, velocity = 0, 0.0, np.zeros(3)
+        begun = self.data.time
         while time < time_limit and not controller.finished(time, self):
             if step % every == 0:
                 velocity = self._apply(controller.command(time, self), actuators)
@@ -125,6 +136,8 @@ class SimScene:
             if self.moves:
                 self.data.ctrl[self.base_actuator] = body_to_world(velocity, self.data.qpos[self.base_address[2]])
             self.mujoco.mj_step(self.model, self.data)
+            if self.data.time < begun + time:  # MuJoCo begins again when numbers grow beyond bounds
+                raise Error(f"the physics diverged after {time:.3f} s: commands beyond what the robot can do?")
             for observer in observers:
                 observer.after(step, time, self)
             step += 1
@@ -132,12 +145,16 @@ class SimScene:
         return time
 
     def _apply(self, command: Command, actuators: list[int]) -> np.ndarray:
-        joints = np.asarray(command.joints, float)
+        if not isinstance(command, Command):
+            raise InvalidInput(f"controller.command() gave {command!r}: must give a Command")
+        try:
+            joints, base = np.asarray(command.joints, float), np.asarray(command.base, float)
+        except (TypeError, ValueError):
+            raise InvalidInput(f"{command!r}: joints and base must be numbers") from None
         if joints.shape != (len(actuators),) or not np.isfinite(joints).all():
             raise InvalidInput(
                 f"command.joints: must be {len(actuators)} finite numbers, one for each of the controller's joints"
             )
-        base = np.asarray(command.base, float)
         if base.shape != (3,) or not np.isfinite(base).all() or (not self.moves and base.any()):
             raise InvalidInput("command.base: must be three finite numbers vx, vy, omega, all 0 for a fixed base")
         self.data.ctrl[actuators] = joints

@@ -1,4 +1,4 @@
-"""sscbirrt on what bench_ordinary.py asks, the robot and the scene as a MuJoCo model; runs in the peers' environment.
+"""sscbirrt on what bench_ordinary.py asks, the robot and the scene as a MuJoCo model; runs in the baselines' environment.
 
 Reads the problems as JSON and prints {"seconds": s, "path": [[...]] or null} for each problem and seed.
 """

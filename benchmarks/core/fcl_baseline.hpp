@@ -36,10 +36,11 @@ inline std::vector<std::pair<int, int>> self_pairs(const mmgrasp::JointGroup& gr
 /// FCL as its users set it up for one moving robot in a scene that stands still: the scene in a dynamic AABB tree
 /// manager, made once; the links' objects moved for every configuration; pairs of links listed once and looked at when
 /// their boxes overlap; stop at the first contact.
-class FclPeer {
+class FclBaseline {
  public:
   /// Convex meshes become fcl::Convex with `convex`, else triangle trees (OBBRSS) like all other meshes.
-  FclPeer(const mmgrasp::JointGroup& group, const mmgrasp::World& world, bool convex) : group_(group), convex_(convex) {
+  FclBaseline(const mmgrasp::JointGroup& group, const mmgrasp::World& world, bool convex)
+      : group_(group), convex_(convex) {
     using namespace mmgrasp;
     request_ = fcl::CollisionRequestd(1, false);
     const Robot& robot = group.robot();

@@ -13,15 +13,15 @@
 #include <vector>
 
 #include "coal_shapes.hpp"
-#include "fcl_peer.hpp"
+#include "fcl_baseline.hpp"
 
 namespace bench {
 
-/// The same set-up as FclPeer with coal: dynamic AABB tree manager, convex meshes as coal::Convex, others as
+/// The same set-up as FclBaseline with coal: dynamic AABB tree manager, convex meshes as coal::Convex, others as
 /// BVHModel<OBBRSS>, bounding volumes updated with the links, guess of each pair cached by ComputeCollision.
-class CoalPeer {
+class CoalBaseline {
  public:
-  CoalPeer(const mmgrasp::JointGroup& group, const mmgrasp::World& world) : group_(group) {
+  CoalBaseline(const mmgrasp::JointGroup& group, const mmgrasp::World& world) : group_(group) {
     using namespace mmgrasp;
     const Robot& robot = group.robot();
     std::vector<std::vector<int>> objects_of(robot.links().size());

@@ -15,7 +15,7 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 NODES, WEIGHTS = (NODES + 1) / 2, WEIGHTS / 2
 
 
-class Peer:
+class Baseline:
     def __init__(self, group: mg.robot.JointGroup):
         self.group = group
         self.n = len(group.names)

@@ -1,4 +1,4 @@
-"""RoboPlan's RRT-Connect with shortcuts on what bench_ordinary.py asks; runs in the peers' environment.
+"""RoboPlan's RRT-Connect with shortcuts on what bench_ordinary.py asks; runs in the baselines' environment.
 
 Reads the problems as JSON and prints {"seconds": s, "path": [[...]] or null} for each problem and seed.
 """

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "fcl_peer.hpp"
+#include "fcl_baseline.hpp"
 #include "plan/ompl_plugin/plugin_api.hpp"
 
 namespace bench {
@@ -27,9 +27,9 @@ struct EdgeSteps {
 
 /// A planner of OMPL through the plugin's own boundary, with FCL for collisions, as people put the two together:
 /// edges are looked at in the order of OMPL's DiscreteMotionValidator (the end, then ever finer halves).
-class OmplPeer {
+class OmplBaseline {
  public:
-  OmplPeer(const mmgrasp::JointGroup& group, const mmgrasp::World& world, const EdgeSteps& steps)
+  OmplBaseline(const mmgrasp::JointGroup& group, const mmgrasp::World& world, const EdgeSteps& steps)
       : group_(group), fcl_(group, world, true), steps_(steps) {}
 
   struct Answer {
@@ -75,7 +75,7 @@ class OmplPeer {
   }
 
  private:
-  static OmplPeer& self(void* user) { return *static_cast<OmplPeer*>(user); }
+  static OmplBaseline& self(void* user) { return *static_cast<OmplBaseline*>(user); }
 
   static const MmgraspOmplApi& plugin() {
     static const MmgraspOmplApi* const api = [] {
@@ -107,7 +107,7 @@ class OmplPeer {
   }
 
   mmgrasp::JointGroup group_;
-  FclPeer fcl_;
+  FclBaseline fcl_;
   EdgeSteps steps_;
   std::vector<std::pair<long, long>> queue_;
   Answer answer_;

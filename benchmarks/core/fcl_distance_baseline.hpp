@@ -18,11 +18,11 @@ namespace bench {
 /// FCL's smallest distance of a robot as its users set it up: the scene in a dynamic AABB tree manager made once, one
 /// running minimum over all links (manager) and over the listed pairs of links (passed over when their boxes are
 /// farther apart). What no configuration changes is measured once and starts the minimum, as it does in mmgrasp.
-class FclDistancePeer {
+class FclDistanceBaseline {
  public:
   /// Convex meshes become fcl::Convex with `convex`, else triangle trees like all others; `self`: links among
   /// themselves.
-  FclDistancePeer(const mmgrasp::JointGroup& group, const mmgrasp::World& world, bool convex, bool self)
+  FclDistanceBaseline(const mmgrasp::JointGroup& group, const mmgrasp::World& world, bool convex, bool self)
       : group_(group), convex_(convex) {
     using namespace mmgrasp;
     const Robot& robot = group.robot();

@@ -1,8 +1,8 @@
-"""Inverse kinematics by peers that are Python packages, on the poses and seeds of bench_ik.
+"""Inverse kinematics by baselines that are Python packages, on the poses and seeds of bench_ik.
 
-    python benchmarks/core/peers_ik.py [BENCH_IK [POSES]]
+    python benchmarks/core/baselines_ik.py [BENCH_IK [POSES]]
 
-bench_ik (default: benchmarks/bench_ik below the working directory) writes the poses, the peers answer them through their
+bench_ik (default: benchmarks/bench_ik below the working directory) writes the poses, the baselines answer them through their
 compiled solvers (only the first POSES of the 10,000 when given), one call a pose, and bench_ik judges the answers with KDL and prints the lines. The time of a call
 contains Python's call into the solver, about 1 us.
 """

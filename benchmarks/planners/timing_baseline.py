@@ -1,4 +1,4 @@
-"""toppra's and Ruckig's durations for what bench_timing.py asks; runs in the peers' environment.
+"""toppra's and Ruckig's durations for what bench_timing.py asks; runs in the baselines' environment.
 
 Reads {"velocity": [...], "acceleration": [...], "jerk": [...], "paths": [[[...]]], "moves": [[from, to]]} and prints
 {"toppra": [...], "ruckig": [...]} in seconds.

@@ -1,6 +1,6 @@
-"""find_base_placement of scikit-robot on targets from a file; run by bench_base_placement.py with the peer's python.
+"""find_base_placement of scikit-robot on targets from a file; run by bench_base_placement.py with the baseline's python.
 
-base_placement_peer.py TASK.json prints one JSON line for each number of targets and set-up.
+base_placement_baseline.py TASK.json prints one JSON line for each number of targets and set-up.
 """
 
 from __future__ import annotations

@@ -19,11 +19,11 @@
 
 namespace bench {
 
-/// The same set-up as FclDistancePeer with coal: convex meshes as coal::Convex, others as BVHModel<OBBRSS>; depths are
-/// not asked for (enable_signed_distance off).
-class CoalDistancePeer {
+/// The same set-up as FclDistanceBaseline with coal: convex meshes as coal::Convex, others as BVHModel<OBBRSS>; depths
+/// are not asked for (enable_signed_distance off).
+class CoalDistanceBaseline {
  public:
-  CoalDistancePeer(const mmgrasp::JointGroup& group, const mmgrasp::World& world, bool self) : group_(group) {
+  CoalDistanceBaseline(const mmgrasp::JointGroup& group, const mmgrasp::World& world, bool self) : group_(group) {
     using namespace mmgrasp;
     const Robot& robot = group.robot();
     std::vector<char> moves(robot.links().size(), 0);

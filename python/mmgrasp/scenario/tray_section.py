@@ -48,7 +48,7 @@ def read_part_types(node: Node, gripper: Hand) -> dict[str, PartType]:
 def _grasp_options(entry: Node) -> dict[str, Any]:
     if "grasp_options" not in entry:
         return {}
-    options = {}
+    options: dict[str, Any] = {}
     known = _core._grasp_option_table()
     for key, value in entry["grasp_options"].items():
         if key not in known:

@@ -311,7 +311,9 @@ def test_a_diff_drive_base_is_not_moved_sideways() -> None:
         assert name in str(refused.value) and "group = " in str(refused.value)
 
 
-def test_keywords_of_earlier_versions_say_what_they_are_called_now() -> None:
-    robot = mg.Robot.from_strings('<robot name="r"><link name="a"/></robot>')
+def test_keywords_of_earlier_versions_say_what_they_are_called_now(arm: mg.robot.JointGroup) -> None:
+    q = np.zeros(len(arm.names))
     with pytest.raises(mg.InvalidInput, match="attached_only now"):
-        mg.CollisionChecker(robot, mg.World(), robot.group(base_link="a", tip="a"), held_only=True)  # type: ignore[call-arg]
+        mg.CollisionChecker(arm.robot, mg.World(), arm, held_only=True)  # type: ignore[call-arg]
+    with pytest.raises(mg.InvalidInput, match="orientation_constraint now"):
+        mg.plan_motion(arm.robot, arm, mg.World(), start=q, goal=q + 0.1, tool_cone=1)  # type: ignore[call-arg]

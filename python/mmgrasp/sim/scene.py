@@ -127,7 +127,8 @@ class SimScene:
         if not time_limit >= 0:
             raise InvalidInput(f"time_limit = {time_limit!r}: must be a time [s], >= 0")
         step, time, velocity = 0, 0.0, np.zeros(3)
-        begun = self.data.time
+        kinds = self.mujoco.mjtWarning
+        bad = [int(k) for k in (kinds.mjWARN_BADQPOS, kinds.mjWARN_BADQVEL, kinds.mjWARN_BADQACC, kinds.mjWARN_BADCTRL)]
         while time < time_limit and not controller.finished(time, self):
             if step % every == 0:
                 velocity = self._apply(controller.command(time, self), actuators)
@@ -136,7 +137,7 @@ class SimScene:
             if self.moves:
                 self.data.ctrl[self.base_actuator] = body_to_world(velocity, self.data.qpos[self.base_address[2]])
             self.mujoco.mj_step(self.model, self.data)
-            if self.data.time < begun + time:  # MuJoCo begins again when numbers grow beyond bounds
+            if self.data.warning.number[bad].any():  # MuJoCo then goes on with zeros, or begins again
                 raise Error(f"the physics diverged after {time:.3f} s: commands beyond what the robot can do?")
             for observer in observers:
                 observer.after(step, time, self)

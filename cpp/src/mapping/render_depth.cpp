@@ -47,7 +47,8 @@ Pixels pixels_around(const PinholeCamera& camera, const std::vector<Vector3d>& p
 
 struct Body {
   Shape shape;
-  std::shared_ptr<const RayCaster> caster;  ///< Of meshes and voxels; the other shapes are met in closed form.
+  std::shared_ptr<const RayCaster>
+      caster;  ///< Casts rays on meshes and voxels; the other shapes are met in closed form.
   Pose T_shape_camera;
   Pixels pixels;
 

@@ -13,7 +13,7 @@ struct FacePoints {
 
 struct Rectangle {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
-  double angle = 0;                                ///< Of the first side [rad].
+  double angle = 0;                                ///< Direction of the first side [rad].
   Eigen::Vector2d size = Eigen::Vector2d::Zero();  ///< Along that side and across.
   double fill = 0;                                 ///< Share of its cells of edge `cell` that hold a point.
 };

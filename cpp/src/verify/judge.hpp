@@ -26,9 +26,9 @@ PlacedBody place_body(const std::string& name, const std::vector<LinkShape>& sha
 struct Stage {
   std::shared_ptr<const RobotModel> robot;
   ArmSetup setup;
-  std::vector<std::vector<Solid>> link_solids;  ///< By link index.
+  std::vector<std::vector<Solid>> link_solids;  ///< Solids of each link, by index.
   std::vector<std::pair<int, int>> self_pairs;
-  std::vector<bool> is_finger;     ///< By link index.
+  std::vector<bool> is_finger;     ///< Whether a link is a finger, by index.
   std::vector<PlacedBody> bodies;  ///< Obstacles, then parts.
   std::size_t first_part = 0;
   double reach = 0;  ///< No point of the robot is farther than this from its root [m].

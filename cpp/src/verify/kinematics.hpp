@@ -56,10 +56,10 @@ class Kinematics {
   double value(const Element& element) const;
 
   ArmSetup setup_;
-  std::vector<Element> elements_;   ///< By joint index, parents first.
+  std::vector<Element> elements_;   ///< Elements by joint index, parents first.
   std::vector<int> chain_;          ///< Elements from the root to the tip.
-  std::vector<double> values_;      ///< By joint index.
-  std::vector<KDL::Frame> frames_;  ///< By link index.
+  std::vector<double> values_;      ///< Values by joint index.
+  std::vector<KDL::Frame> frames_;  ///< Frames by link index.
   Poses poses_;
   Eigen::VectorXd lower_, upper_;
   std::vector<bool> continuous_;

@@ -46,8 +46,8 @@ struct RobotModel {
   std::vector<ModelJoint> joints;    ///< Joint i carries link i + 1.
   KDL::Tree tree;                    ///< One segment a link, called like it.
   using Pair = std::pair<int, int>;  ///< Link indices, the smaller one first.
-  std::map<Pair, bool> disabled;     ///< By the SRDF; true: because the links can never touch.
-  std::set<Pair> enabled;            ///< By the SRDF, against the rule for neighbours.
+  std::map<Pair, bool> disabled;     ///< Pairs that the SRDF disables; true: because the links can never touch.
+  std::set<Pair> enabled;            ///< Pairs that the SRDF enables, against the rule for neighbours.
 
   int link_index(const std::string& name) const;   ///< -1: none.
   int joint_index(const std::string& name) const;  ///< -1: none.

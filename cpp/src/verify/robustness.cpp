@@ -28,7 +28,7 @@ using Pools = std::vector<std::deque<Hold>>;
 /// What one piece of one stop's samples gave.
 struct ChunkResult {
   int samples = 0, good = 0;
-  std::vector<int> lost;  ///< By wanted part: at how many samples it was the one that failed.
+  std::vector<int> lost;  ///< At how many samples a wanted part was the one that failed, by part.
   int home_blocked = 0;
 };
 

@@ -17,7 +17,7 @@ using Bounds = Eigen::AlignedBox3d;
 struct Solid {
   std::shared_ptr<const fcl::CollisionGeometryd> geometry;
   Pose T_body_shape = Pose::Identity();
-  Bounds local;                                     ///< In the shape's frame.
+  Bounds local;                                     ///< Bounds in the shape's frame.
   bool unbounded = false;                           ///< A plane.
   std::shared_ptr<const TriangleMesh> closed_mesh;  ///< Set for closed meshes, which are solid inside.
   std::vector<Eigen::Vector3d> probes;              ///< One point on or in each connected piece, shape frame.

@@ -15,9 +15,9 @@ class MMGRASP_EXPORT Rng {
   explicit Rng(std::uint64_t seed, std::uint64_t stream = 0);
 
   std::uint64_t next();
-  double uniform();                            ///< In [0, 1).
-  double uniform(double lower, double upper);  ///< In [lower, upper).
-  std::size_t index(std::size_t size);         ///< In [0, size); size > 0.
+  double uniform();                            ///< Uniform in [0, 1).
+  double uniform(double lower, double upper);  ///< Uniform in [lower, upper).
+  std::size_t index(std::size_t size);         ///< Uniform in [0, size); size > 0.
   double normal();                             ///< Standard normal.
   Eigen::VectorXd uniform(const Eigen::VectorXd& lower, const Eigen::VectorXd& upper);
   Eigen::Quaterniond rotation();           ///< Uniform over rotations.

@@ -27,9 +27,10 @@ struct MMGRASP_EXPORT Ray {
 struct MMGRASP_EXPORT RayHit {
   int triangle = -1;   ///< Index in the mesh; -1: the ray meets nothing, and the other fields mean nothing.
   bool front = false;  ///< Met on the side that the normal points to: of a closed mesh the ray enters the solid.
-  double distance = std::numeric_limits<double>::infinity();  ///< In multiples of the direction's length.
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();            ///< origin + distance * direction [m].
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();           ///< Of the triangle, a unit vector (by the winding).
+  double distance =
+      std::numeric_limits<double>::infinity();      ///< Distance along the ray, in multiples of the direction's length.
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< origin + distance * direction [m].
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< The triangle's unit normal, by its winding.
   explicit operator bool() const { return triangle >= 0; }
 };
 

@@ -22,7 +22,7 @@ struct MMGRASP_EXPORT HeightMap {
 
   void check() const;  ///< Throws InvalidInput on sizes that do not fit or a bad frame.
   std::size_t index(int ix, int iy) const { return static_cast<std::size_t>(iy) * nx + ix; }
-  Eigen::Vector2d centre(int ix, int iy) const {  ///< In the map's frame [m].
+  Eigen::Vector2d centre(int ix, int iy) const {  ///< The cell's centre in the map's frame [m].
     return {(ix + 0.5 - 0.5 * nx) * resolution, (iy + 0.5 - 0.5 * ny) * resolution};
   }
 };

@@ -16,7 +16,7 @@ namespace mmgrasp {
 /// min f(x) subject to lower <= x <= upper and c(x) <= 0, known by its values alone. Functions are called from the
 /// thread that solves, with x inside the bounds. A value that is not finite means "undefined here" and is avoided.
 struct MMGRASP_EXPORT DerivativeFreeProblem {
-  Bounds bounds;  ///< Of x; infinite where there is none, equal where a value is prescribed.
+  Bounds bounds;  ///< Bounds of x; infinite where there is none, equal where a value is prescribed.
   std::function<double(const Eigen::VectorXd& x)> objective;
   /// c(x), always of length constraint_count; may be empty when that is 0.
   std::function<Eigen::VectorXd(const Eigen::VectorXd& x)> constraints;

@@ -30,7 +30,7 @@ struct MMGRASP_EXPORT NlpResult {
   Eigen::VectorXd x;       ///< The answer, or the best iterate: the least violated, then the cheapest. Always finite.
   double objective = 0;    ///< At x.
   NlpViolations violated;  ///< At x.
-  int iterations = 0;      ///< Of Ipopt; evaluations of SLSQP.
+  int iterations = 0;      ///< Iterations of Ipopt, or evaluations of SLSQP.
   double seconds = 0;
   std::string message;  ///< How the solver itself put it.
 };

@@ -45,7 +45,7 @@ struct MMGRASP_EXPORT PrmStarMgOptions {
   int batch = 0;
   /// Search a grasp only when its straight-line cost could still win (beyond P2); off: as in the paper.
   bool lazy_grasps = true;
-  RoadmapOptions roadmap;  ///< Of the roadmap that is built when none is given.
+  RoadmapOptions roadmap;  ///< How a roadmap is built when none is given.
   /// Once the best path over the roadmap is found, the roadmap's vertices are doubled and the search goes on, up to
   /// this many vertices; 0: never. Building denser roadmaps counts as search.
   int max_vertices = 0;
@@ -114,7 +114,7 @@ struct MMGRASP_EXPORT ManipulationResult {
   std::vector<Improvement> improvements;
   std::vector<GraspReport> grasps;  ///< One per grasp; empty for those not checked when the run ended early.
   std::vector<Contact> contacts;    ///< With invalid_start or invalid_goal: what touches there with the first grasp.
-  Rejections rejections;            ///< Of arm configurations, summed over all grasps and both ends.
+  Rejections rejections;            ///< Rejected arm configurations, summed over all grasps and both ends.
   std::vector<SearchTree> trees;    ///< With RrtStarMgOptions::keep_trees: those of grasps that are still candidates.
   ManipulationStats stats;
 };

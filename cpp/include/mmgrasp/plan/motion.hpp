@@ -17,7 +17,7 @@ namespace mmgrasp {
 
 /// Path constraint: an axis of the tool stays within an angle of an axis of the world (a cup that is carried upright).
 struct MMGRASP_EXPORT OrientationConstraint {
-  Eigen::Vector3d tool_axis = Eigen::Vector3d::UnitZ();   ///< In the tip's frame; any length > 0.
+  Eigen::Vector3d tool_axis = Eigen::Vector3d::UnitZ();   ///< Direction in the tip's frame; any length > 0.
   Eigen::Vector3d world_axis = Eigen::Vector3d::UnitZ();  ///< Any length > 0.
   double half_angle = 0.2;                                ///< Largest angle between the two [rad], in (0, pi].
   void check() const;

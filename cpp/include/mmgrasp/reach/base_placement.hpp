@@ -14,7 +14,7 @@ namespace mmgrasp {
 
 struct MMGRASP_EXPORT BasePlacementOptions {
   double step = 0.05;   ///< Grid of base positions [m]; > 0.
-  int headings = 24;    ///< Of the base, evenly over the circle; > 0.
+  int headings = 24;    ///< Headings of the base tried, evenly over the circle; > 0.
   int candidates = 64;  ///< Best base poses of the grid that are checked exactly; > 0.
   int seeds = 8;        ///< Stored configurations tried for a target; > 0.
   int refinements = 4;  ///< Rounds of smaller steps about the best base pose; >= 0.

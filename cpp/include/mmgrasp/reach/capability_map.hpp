@@ -73,7 +73,7 @@ class MMGRASP_EXPORT CapabilityMap {
   std::int64_t voxel(int x, int y, int z) const;
   /// Number of the voxel that contains a point in the root frame (lower faces belong to it), or -1 outside.
   std::int64_t voxel_at(const Eigen::Vector3d& p_root_point) const;
-  Eigen::Vector3d centre(std::int64_t voxel) const;          ///< In the root frame [m].
+  Eigen::Vector3d centre(std::int64_t voxel) const;          ///< A voxel's centre in the root frame [m].
   Pose tool_pose(std::int64_t voxel, int pose) const;        ///< T_root_tip.
   Rejection classified(std::int64_t voxel, int pose) const;  ///< none: reached.
   /// The configuration that reaches the pose, within limits and free; empty when it is not reached.
@@ -103,7 +103,7 @@ class MMGRASP_EXPORT CapabilityMap {
 struct MMGRASP_EXPORT BaseDistance {
   double distance = 0;         ///< The best [m]; of equal ones the shortest.
   double score = 0;            ///< CapabilityMap::score there.
-  std::vector<double> scores;  ///< Of all candidates.
+  std::vector<double> scores;  ///< The score of every candidate.
 };
 
 /// Which of `distances` [m] to stand behind the poses' middle, facing along `heading` [rad], on the floor (P3 3.9.3:

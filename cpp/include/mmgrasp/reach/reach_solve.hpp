@@ -17,7 +17,7 @@ struct MMGRASP_EXPORT ReachSolveOptions {
   int candidates = 64;    ///< Stored configurations that descents start from; > 0.
   double distinct = 0.1;  ///< Solutions differ by more than this in some joint [rad or m]; >= 0.
   IkOptions ik;           ///< Tolerances and iterations of the descents; restarts are not used.
-  int threads = 0;        ///< Of batches; 0: all. Does not change the answer.
+  int threads = 0;        ///< Threads that share a batch; 0: all. Does not change the answer.
   void check() const;
 };
 

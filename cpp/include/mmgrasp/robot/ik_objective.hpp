@@ -19,7 +19,7 @@ class MMGRASP_EXPORT IkObjective {
   virtual std::string name() const = 0;
   /// Cost at q (its unit times a weight); `gradient` is set to d cost / d q. q must have size() entries.
   virtual double evaluate(const Eigen::VectorXd& q, Eigen::VectorXd& gradient) const = 0;
-  int size() const { return size_; }  ///< Of the group it was made for.
+  int size() const { return size_; }  ///< Size of the group it was made for.
 
  private:
   int size_;

@@ -20,7 +20,7 @@ struct MMGRASP_EXPORT UrdfSource {
   std::string prefix;                     ///< Stands in front of every name in it.
   std::string parent_link;                ///< Carries its root link by the fixed joint "<prefix>mount_joint"; empty for
                                           ///< the robot's own root.
-  Pose T_parent_root = Pose::Identity();  ///< Of its root link in the parent link.
+  Pose T_parent_root = Pose::Identity();  ///< Pose of its root link in the parent link.
   /// Mesh file for each `filename` in the URDF; empty: the robot was loaded without this mesh.
   std::map<std::string, std::string> mesh_files = {};
 };
@@ -37,7 +37,7 @@ struct MMGRASP_EXPORT AddedLink {
 struct MMGRASP_EXPORT RobotSource {
   BaseKind base = BaseKind::fixed;
   BaseLimits base_limits;
-  std::vector<UrdfSource> urdfs;  ///< In the order of mounting.
+  std::vector<UrdfSource> urdfs;  ///< URDFs in the order of mounting.
   std::vector<AddedLink> added_links;
   std::string srdf;  ///< Robot::to_srdf(): pairs of links that need no check, computed ones among them.
 };

@@ -106,7 +106,7 @@ struct MMGRASP_EXPORT PlanToCheck {
   std::string tip_link;
   std::map<std::string, double> other_joints;
   double max_opening = 0.1, clearance = 0.01;
-  Eigen::Vector3d approach = Eigen::Vector3d::UnitX();  ///< In the tip frame.
+  Eigen::Vector3d approach = Eigen::Vector3d::UnitX();  ///< Unit axis in the tip frame.
   std::vector<CheckedFinger> fingers;
   std::vector<std::string> finger_links;
   Eigen::VectorXd home;
@@ -124,7 +124,7 @@ struct MMGRASP_EXPORT PlanToCheck {
   std::vector<std::vector<Eigen::Vector3d>> route;  ///< stops.size() + 1 legs of base poses.
   std::vector<CheckedPick> picks;
   std::vector<CheckedDriveBy> drive_by;  ///< What of route and picks is done in passing.
-  double closing_speed = 0.1;            ///< Of the opening [m/s], for drive_by.
+  double closing_speed = 0.1;            ///< How fast the opening shrinks [m/s], for drive_by.
   int lower_bound = 0;
   std::vector<CheckedLegFigures> route_figures;  ///< One a leg; empty: not given.
   std::vector<CheckedIntersection> intersections;
@@ -134,8 +134,8 @@ struct MMGRASP_EXPORT PlanToCheck {
 struct MMGRASP_EXPORT PlanCheckOptions {
   double joint_step = 0.01;          ///< Arm paths are checked at least this finely [rad or m]; > 0.
   double base_step = 0.01;           ///< The route [m, and rad x 2]; > 0.
-  double position_tolerance = 1e-4;  ///< Of a grasp [m]; > 0.
-  double rotation_tolerance = 1e-3;  ///< Of a grasp [rad]; > 0.
+  double position_tolerance = 1e-4;  ///< How far a grasp may be off [m]; > 0.
+  double rotation_tolerance = 1e-3;  ///< How far a grasp may be turned [rad]; > 0.
   int samples = 1000;                ///< Base poses drawn in the uncertainty disc of each stop; > 0.
   double required_rate = 0.999;      ///< Share of them from which every target part has a grasp; in (0, 1].
   unsigned seed = 20240607;

@@ -124,7 +124,7 @@ std::vector<double> list(const VectorXd& v) {
 struct Run {
   Handoff handoff;
   Dense* dense;
-  std::vector<double> lower, upper, at, equal, below;  ///< Of the latter two the tolerances.
+  std::vector<double> lower, upper, at, equal, below;  ///< equal, below: tolerances of the constraints.
   double ftol = 0;
   int evaluations = 0;
   nlopt::result code = nlopt::FAILURE;

@@ -128,7 +128,7 @@ class BranchSearch {
   const std::optional<Eigen::VectorXd>& near_;
   const CartesianOptions& options_;
   const Monitor& monitor_;
-  std::optional<Contact> scene_contact_, self_contact_;  ///< Of the first pose's configurations.
+  std::optional<Contact> scene_contact_, self_contact_;  ///< Contacts of the first pose's configurations.
   std::vector<Eigen::VectorXd> branches_;
   double best_cost_ = detail::kInfinity;
   CartesianResult result_;

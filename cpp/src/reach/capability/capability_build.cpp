@@ -65,7 +65,7 @@ class Builder {
  private:
   struct State {
     std::uint8_t cause = static_cast<std::uint8_t>(Rejection::unreachable);
-    std::uint8_t sweep = 0;  ///< In which it was reached.
+    std::uint8_t sweep = 0;  ///< The sweep in which it was reached.
     bool settled = false;    ///< No search will help.
     bool searched = false;   ///< All that the border gets.
     bool reached() const { return cause == static_cast<std::uint8_t>(Rejection::none); }

@@ -23,7 +23,7 @@ struct CapabilityMap::Data {
   std::array<int, 3> shape{0, 0, 0};
   Poses tool_poses;                   ///< Around a voxel's centre.
   std::vector<std::uint8_t> classes;  ///< Rejection of each pose of each voxel.
-  std::vector<float> configurations;  ///< Of reached poses, in order.
+  std::vector<float> configurations;  ///< Configurations of the reached poses, in order.
 
   // Derived by complete().
   std::vector<float> index;

@@ -10,7 +10,7 @@ namespace mmgrasp::detail {
 
 /// The closed form of an arm for one set of values of the joints that a tool pose leaves free ("locked" here).
 struct LockedArm {
-  Screws six;  ///< Of the other six, at these values and all else zero.
+  Screws six;  ///< Screws of the other six, at these values and all else zero.
   ClosedForm form;
   Rigid tip_inverse;   ///< T_world_tip^-1 there: a target times this is what the six turns multiply to.
   Eigen::VectorXd at;  ///< The configuration: locked values, zeros.

@@ -28,7 +28,7 @@ class ShardMerge {
  private:
   struct Record {
     std::uint64_t cell;   ///< Position cell within the part, and rotation cell.
-    std::uint32_t index;  ///< In the order of sampling.
+    std::uint32_t index;  ///< Place in the order of sampling.
   };
   void append_cell(const std::vector<Record>& records, std::size_t begin, std::size_t end,
                    const std::vector<std::uint16_t>& configurations, MergedCells& out) const;
@@ -38,10 +38,10 @@ class ShardMerge {
   std::uint64_t rotation_count_;
   std::size_t joints_;
   std::size_t max_per_cell_;
-  std::vector<std::uint64_t> keys_;                ///< Of all non-empty position cells, ascending.
+  std::vector<std::uint64_t> keys_;                ///< Keys of all non-empty position cells, ascending.
   std::vector<std::size_t> first_of_part_;         ///< Indices into keys_, and the end.
-  std::vector<std::vector<std::size_t>> starts_;   ///< By part: each shard's first position cell.
-  std::vector<std::vector<std::size_t>> records_;  ///< By part: each shard's first record.
+  std::vector<std::vector<std::size_t>> starts_;   ///< Each shard's first position cell, by part.
+  std::vector<std::vector<std::size_t>> records_;  ///< Each shard's first record, by part.
   std::uint64_t total_ = 0;
 };
 

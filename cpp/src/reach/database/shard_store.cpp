@@ -23,7 +23,7 @@ struct ShardHeader {
   std::int64_t shard;
   std::uint64_t positions, records;
   std::uint32_t joints;
-  std::uint32_t sum;  ///< Of the arrays.
+  std::uint32_t sum;  ///< Checksum of the arrays.
   std::uint32_t header_sum, unused;
 };
 static_assert(sizeof(ShardHeader) == 64, "written byte for byte: no padding");

@@ -29,7 +29,7 @@ class JsonValue {
 
   Kind kind_ = Kind::null;
   std::string path_;  ///< File and member, for messages.
-  std::string text_;  ///< Of a string; of a number as written.
+  std::string text_;  ///< The text of a string, or a number as written.
   std::vector<JsonValue> array_;
   std::map<std::string, JsonValue> members_;
 };

@@ -6,7 +6,7 @@
 /// here: wider registers would change the alignment that Eigen's types were given elsewhere.
 namespace mmgrasp::detail {
 
-constexpr int kMaxColumns = 64;    ///< Of a group, so that Jacobians live on the stack.
+constexpr int kMaxColumns = 64;    ///< Most columns of a group: Jacobians live on the stack.
 constexpr int kMaxSegments = 128;  ///< Moving joints on the way from the root to a tip; lets scratch live on the stack.
 constexpr int kMaxTurns = 1024;    ///< Turning joints a group moves anywhere in the robot.
 constexpr int kMaxBalls = 16;      ///< Floating joints on the way to a tip.
@@ -27,7 +27,7 @@ enum class Motion { turn, slide, ball };
 /// In its own frame a motion goes about or along z.
 struct Segment {
   double p[3] = {0, 0, 0};            ///< From the frame before, in that frame, before the turn about x.
-  double turn_cos = 1, turn_sin = 0;  ///< Of the turn about x.
+  double turn_cos = 1, turn_sin = 0;  ///< Cosine and sine of the turn about x.
   double multiplier = 1, offset = 0;  ///< Slides: value = multiplier * q[column] + offset. Of turns: see TurnTable.
   int column = 0;
   int ball = 0;  ///< Which of the caller's balls.

@@ -92,7 +92,7 @@ struct MMGRASP_EXPORT GraspGraph {
   std::vector<Link> links;
   std::vector<std::vector<int>> from_start;          ///< Links of each start.
   std::vector<int> into_goals;                       ///< Links from roadmap vertices to goals, ascending by vertex.
-  std::vector<int> blocked_vertices, blocked_edges;  ///< Of the roadmap, for the object in hand.
+  std::vector<int> blocked_vertices, blocked_edges;  ///< Parts of the roadmap that the object in hand blocks.
   std::unordered_set<int> free_vertices, free_edges;
 
   /// The path found last: its nodes, and the steps between them.

@@ -37,9 +37,9 @@ class MMGRASP_EXPORT TreeChecks {
   const GraspTrees& trees_;
   TransferChecks& checks_;
   ManipulationStats& stats_;
-  CollisionCache robot_;              ///< By opening: configurations and edges of the robot alone.
-  CollisionCache verified_;           ///< By grasp: edges that passed the final check.
-  CollisionCache blocked_shortcuts_;  ///< By grasp.
+  CollisionCache robot_;              ///< Configurations and edges of the robot alone, by opening.
+  CollisionCache verified_;           ///< Edges that passed the final check, by grasp.
+  CollisionCache blocked_shortcuts_;  ///< Shortcuts that are blocked, by grasp.
 };
 
 }  // namespace mmgrasp::detail

@@ -15,7 +15,7 @@ namespace mmgrasp::detail {
 class MMGRASP_EXPORT TreeConnections {
  public:
   struct Connection {
-    int start_vertex, goal_vertex;  ///< In the start's tree and in the goal's tree.
+    int start_vertex, goal_vertex;  ///< Vertices in the start's tree and in the goal's tree.
     double length;
     int next;  ///< Another connection of the same grasp, or -1.
   };

@@ -20,6 +20,10 @@ def mujoco_module() -> Any:
         import mujoco
     except ImportError:
         raise InvalidInput("the simulation needs MuJoCo: pip install 'mmgrasp[sim]'") from None
+    if (
+        mujoco.get_mju_user_warning() is None
+    ):  # by itself it writes a file into the working folder; drive() raises instead
+        mujoco.set_mju_user_warning(lambda message: None)
     return mujoco
 
 

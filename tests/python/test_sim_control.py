@@ -10,6 +10,7 @@ import pytest
 
 import mmgrasp as mg
 from mmgrasp import sim
+from mmgrasp.sim.control import body_to_world
 from sim_scenes import arm, box, gripper, robot, table
 
 pytest.importorskip("mujoco", reason="MuJoCo is not installed (pip install 'mmgrasp[sim]')")
@@ -93,6 +94,13 @@ def test_the_base_drives_in_its_own_frame() -> None:
     rising = 0.3 / rate - lag
     lost = (0.3 + rate * lag) / 2 * rising + rate * lag**2
     assert (x, y) == (pytest.approx(-1.5, abs=1e-3), pytest.approx(0.3 - lost, abs=0.002))
+
+
+def test_velocities_turn_with_the_base() -> None:
+    """A quarter turn to the left takes ahead to the left, and left to behind."""
+    assert body_to_world(np.array([1.0, 0.0, 0.3]), np.pi / 2) == pytest.approx((0.0, 1.0, 0.3))
+    assert body_to_world(np.array([0.0, 1.0, 0.3]), np.pi / 2) == pytest.approx((-1.0, 0.0, 0.3))
+    assert body_to_world(np.array([0.3, 0.4, 0.0]), 0.0) == pytest.approx((0.3, 0.4, 0.0))
 
 
 def test_joints_follow_and_the_others_stay() -> None:

@@ -39,6 +39,17 @@ class SolveClock {
   bool stopped() const { return monitor_.stopped(); }
   bool late() const { return seconds() > limit_; }
   bool over() const { return stopped() || late() || error; }
+  /// Calls back unless the solve is over; false when it is, or when the callback throws, which ends the solve.
+  template <typename Function>
+  bool guarded(Function&& function) {
+    if (over()) return false;
+    try {
+      return function();
+    } catch (...) {
+      error = std::current_exception();
+      return false;
+    }
+  }
   std::exception_ptr error;  ///< Thrown by a callback.
 
  private:

@@ -88,20 +88,20 @@ class Adapter : public Ipopt::TNLP {
   }
 
   bool eval_f(Index n, const Number* x, bool, Number& value) override {
-    return guarded([&] {
+    return clock_.guarded([&] {
       value = problem_.objective(at(n, x));
       return std::isfinite(value);
     });
   }
   bool eval_grad_f(Index n, const Number* x, bool, Number* out) override {
-    return guarded([&] {
+    return clock_.guarded([&] {
       Map gradient(out, n);
       problem_.gradient(at(n, x), gradient);
       return gradient.allFinite();
     });
   }
   bool eval_g(Index n, const Number* x, bool, Index m, Number* out) override {
-    return guarded([&] {
+    return clock_.guarded([&] {
       Map values(out, m);
       problem_.constraints(at(n, x), values);
       return values.allFinite();
@@ -110,7 +110,7 @@ class Adapter : public Ipopt::TNLP {
   bool eval_jac_g(Index n, const Number* x, bool, Index, Index count, Index* rows, Index* columns,
                   Number* out) override {
     if (!out) return write(problem_.jacobian_pattern(), rows, columns);
-    return guarded([&] {
+    return clock_.guarded([&] {
       Map values(out, count);
       problem_.jacobian(at(n, x), values);
       return values.allFinite();
@@ -119,7 +119,7 @@ class Adapter : public Ipopt::TNLP {
   bool eval_h(Index n, const Number* x, bool, Number factor, Index m, const Number* multipliers, bool, Index count,
               Index* rows, Index* columns, Number* out) override {
     if (!out) return write(problem_.hessian_pattern(), rows, columns);
-    return guarded([&] {
+    return clock_.guarded([&] {
       Map values(out, count);
       problem_.hessian(at(n, x), factor, VectorXd(ConstMap(multipliers, m)), values);
       return values.allFinite();
@@ -141,17 +141,6 @@ class Adapter : public Ipopt::TNLP {
   }
 
  private:
-  template <typename Function>
-  bool guarded(Function&& function) {
-    if (clock_.over()) return false;
-    try {
-      return function();
-    } catch (...) {
-      clock_.error = std::current_exception();
-      return false;
-    }
-  }
-
   const VectorXd& at(Index n, const Number* x) { return x_ = ConstMap(x, n); }
 
   static void write(const Bounds& bounds, Index n, Number* lower, Number* upper) {

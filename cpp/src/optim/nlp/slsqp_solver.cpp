@@ -47,7 +47,7 @@ class Dense {
 
   /// False: the run has to end.
   bool objective(unsigned n, const double* x, double& value, double* gradient) {
-    return guarded([&] {
+    return clock_.guarded([&] {
       if (!move(n, x)) return false;
       value = value_;
       if (gradient) problem_.gradient(x_, Eigen::Map<VectorXd>(gradient, n));
@@ -55,7 +55,7 @@ class Dense {
     });
   }
   bool sides(const std::vector<Side>& which, unsigned n, const double* x, double* out, double* gradient) {
-    return guarded([&] {
+    return clock_.guarded([&] {
       if (!move(n, x)) return false;
       for (std::size_t i = 0; i < which.size(); ++i) out[i] = which[i].factor * (c_[which[i].row] - which[i].bound);
       if (gradient) rows(which, n, gradient);
@@ -64,17 +64,6 @@ class Dense {
   }
 
  private:
-  template <typename Function>
-  bool guarded(Function&& function) {
-    if (clock_.over()) return false;
-    try {
-      return function();
-    } catch (...) {
-      clock_.error = std::current_exception();
-      return false;
-    }
-  }
-
   /// SLSQP turns in circles on numbers that are not finite, so they end it.
   bool move(unsigned n, const double* x) {
     const Eigen::Map<const VectorXd> to(x, n);

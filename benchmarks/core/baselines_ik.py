@@ -143,22 +143,26 @@ def write_urdf(path: Path, module) -> None:
     path.write_text("\n".join(lines))
 
 
-def branches(folder: Path, name: str, module, poses: int) -> None:
+def branches(folder: Path, name: str, module, poses: int, windings: bool) -> None:
     """ssik: one line a branch: number of the pose, the pose, time of the call [us], configuration."""
-    write_urdf(folder / f"{name}.urdf", module)
     rng = np.random.default_rng(2026)
     lower, upper = np.array(module._JOINT_LIMITS).T
     lines = [
-        "# ssik|prebuilt arm, native solver, limits respected, one representative a branch (enumerate_windings off)"
+        "# ssik|prebuilt arm, native solver, limits respected, "
+        + (
+            "every winding (enumerate_windings on)"
+            if windings
+            else "one representative a branch (enumerate_windings off)"
+        )
     ]
     for i in range(poses):
         T = np.asarray(module.fk(rng.uniform(lower, upper)))
         start = time.perf_counter()
-        found = module.solve(T, enumerate_windings=False)
+        found = module.solve(T, enumerate_windings=windings)
         elapsed = 1e6 * (time.perf_counter() - start)
         for q in [s.q for s in found] or [[]]:
             lines.append(" ".join(f"{v:.17g}" for v in [i, *T.ravel(), elapsed, *q]))
-    (folder / f"{name}.ssik.branches").write_text("\n".join(lines) + "\n")
+    (folder / f"{name}.ssik.{'windings' if windings else 'branches'}").write_text("\n".join(lines) + "\n")
 
 
 def main() -> None:
@@ -174,8 +178,11 @@ def main() -> None:
         from ssik.prebuilt import franka_panda_ik
         from ssik.prebuilt.universal_robots import ur5_ik
 
-        branches(folder, "panda", franka_panda_ik, min(poses, BRANCH_POSES))
-        branches(folder, "ur5", ur5_ik, min(poses, BRANCH_POSES))
+        for robot, module in {"panda": franka_panda_ik, "ur5": ur5_ik}.items():
+            write_urdf(folder / f"{robot}.urdf", module)
+            branches(folder, robot, module, min(poses, BRANCH_POSES), windings=False)
+        # The only one of the two whose limits leave room for a second turn.
+        branches(folder, "ur5", ur5_ik, min(poses, BRANCH_POSES), windings=True)
         sys.stdout.flush()
         subprocess.run([program, "--answers", folder], check=True)
         subprocess.run([program, "--branches", folder], check=True)

@@ -203,10 +203,11 @@ void judge_answers(const Case& c, const std::filesystem::path& folder) {
   }
 }
 
-double branch_distance(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+/// With `all_turns` whole turns tell configurations apart.
+double branch_distance(const Eigen::VectorXd& a, const Eigen::VectorXd& b, bool all_turns) {
   double largest = 0;
   for (Eigen::Index i = 0; i < a.size(); ++i)
-    largest = std::max(largest, std::abs(std::remainder(a[i] - b[i], 2 * M_PI)));
+    largest = std::max(largest, std::abs(all_turns ? a[i] - b[i] : std::remainder(a[i] - b[i], 2 * M_PI)));
   return largest;
 }
 
@@ -217,8 +218,9 @@ double median(std::vector<double> values) {
 
 /// Lines of a branches file: number of the pose, the pose row by row, time of the call [us], q (or nothing). For arms
 /// of seven joints only times and counts are compared: both programs choose the redundant joint's values themselves.
-void judge_branches(const std::string& robot, const std::filesystem::path& folder) {
-  const std::vector<std::filesystem::path> files = files_of(robot, folder, ".branches");
+void judge_branches(const std::string& robot, const std::filesystem::path& folder, bool all_turns) {
+  const std::vector<std::filesystem::path> files = files_of(robot, folder, all_turns ? ".windings" : ".branches");
+  const char* task = all_turns ? "ik, all branches in all turns" : "ik, all branches";
   if (files.empty()) return;
   RobotOptions options;
   options.load_meshes = false;
@@ -244,7 +246,7 @@ void judge_branches(const std::string& robot, const std::filesystem::path& folde
     std::vector<double> our_times, their_times;
     for (const auto& [i, call] : calls) {
       const double start = bench::now();
-      const IkBranches answer = solve_ik_branches(group, call.target);
+      const IkBranches answer = solve_ik_branches(group, call.target, {}, {}, 0, {}, all_turns);
       our_times.push_back(1e6 * (bench::now() - start));
       their_times.push_back(call.time);
       found += call.branches.size();
@@ -253,17 +255,18 @@ void judge_branches(const std::string& robot, const std::filesystem::path& folde
       if (group.size() > 6) continue;
       for (const Eigen::VectorXd& q : call.branches) {
         bool known = false;
-        for (const Eigen::VectorXd& other : answer.solutions) known = known || branch_distance(q, other) < 1e-3;
+        for (const Eigen::VectorXd& other : answer.solutions)
+          known = known || branch_distance(q, other, all_turns) < 1e-3;
         missed += !known;
       }
     }
     const double poses = static_cast<double>(calls.size());
-    bench::print({"ik, all branches", robot, rows.who, "us", median(their_times),
-                  "\"branches\": " + std::to_string(found / poses), rows.settings});
-    bench::print({"ik, all branches", robot, "mmgrasp", "us", median(our_times),
+    bench::print({task, robot, rows.who, "us", median(their_times), "\"branches\": " + std::to_string(found / poses),
+                  rows.settings});
+    bench::print({task, robot, "mmgrasp", "us", median(our_times),
                   "\"branches\": " + std::to_string(ours / poses) + ", \"missed\": " + std::to_string(missed) +
                       ", \"wrong\": " + std::to_string(wrong),
-                  "defaults, on the arm of " + rows.who});
+                  (all_turns ? "all_turns, on the arm of " : "defaults, on the arm of ") + rows.who});
   }
 }
 
@@ -276,7 +279,7 @@ int main(int argc, char** argv) {
     } else if (argc == 3 && !std::strcmp(argv[1], "--answers")) {
       judge_answers(c, argv[2]);
     } else if (argc == 3 && !std::strcmp(argv[1], "--branches")) {
-      judge_branches(c.name, argv[2]);
+      for (const bool all_turns : {false, true}) judge_branches(c.name, argv[2], all_turns);
     } else {
       run_ours(c);
       run_kdl(c);

@@ -130,17 +130,25 @@ int main() {
     std::vector<double> truth, distances(kRays);
     for (std::size_t i = 0; i < kChecked; ++i) truth.push_back(brute_force(*mesh, each.rays[i]));
 
-    const std::vector<RayHit> hits = caster.closest_hits(each.rays);
-    for (int i = 0; i < kRays; ++i) distances[i] = hits[i].distance;
     double seconds = median_processor_time(kRounds, [&] {
       for (int i = 0; i < kRays; ++i) distances[i] = caster.closest_hit(each.rays[i]).distance;
     });
-    report(each.name, "mmgrasp", kRays / seconds, accuracy(truth, distances), kChecked, "closest_hit with normal");
+    report(each.name, "mmgrasp, one ray", kRays / seconds, accuracy(truth, distances), kChecked,
+           "closest_hit with normal");
+    std::vector<RayHit> all;
+    seconds = median_processor_time(kRounds, [&] {
+      caster.closest_hits(each.rays, all);
+      for (int i = 0; i < kRays; ++i) distances[i] = all[i].distance;
+    });
+    report(each.name, "mmgrasp, batch", kRays / seconds, accuracy(truth, distances), kChecked,
+           "closest_hits with normals");
     std::size_t any = 0;
     seconds = median_processor_time(kRounds, [&] {
       for (const Ray& ray : each.rays) any += caster.any_hit(ray);
     });
-    bench::print({"rays, any hit", each.name, "mmgrasp", "us", 1e6 * seconds / kRays, "", "any_hit"});
+    bench::print({"rays, any hit", each.name, "mmgrasp, one ray", "us", 1e6 * seconds / kRays, "", "any_hit"});
+    seconds = median_processor_time(kRounds, [&] { any += caster.any_hits(each.rays).back(); });
+    bench::print({"rays, any hit", each.name, "mmgrasp, batch", "us", 1e6 * seconds / kRays, "", "any_hits"});
 #ifdef MMGRASP_WITH_EMBREE
     seconds = median_processor_time(kRounds, [&] { embree.one_by_one(each.rays, distances); });
     report(each.name, "Embree, one ray", kRays / seconds, accuracy(truth, distances), kChecked,

@@ -19,6 +19,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
+import left_out
 from programs import BUILD, build_programs
 from tables import ROOT, markdown
 
@@ -32,30 +33,11 @@ def stages() -> dict[str, int]:
 
 def library_without(stage: str, bit: int, build: Path) -> Path:
     """libmmgrasp without a stage."""
-    folder = build / "stages" / stage
-    folder.mkdir(parents=True, exist_ok=True)
-    replaced = {}
-    for entry in json.loads((build / "compile_commands.json").read_text()):
-        source = Path(entry["file"])
-        if not source.is_relative_to(ROOT / "cpp/src/collision") or "stages.hpp" not in source.read_text():
-            continue
-        old = entry["command"].split(" -o ")[1].split()[0]
-        replaced[old] = str(folder / (source.name + ".o"))
-        command = entry["command"].replace(old, replaced[old]) + f" -DMMGRASP_STAGES_LEFT_OUT={bit}"
-        subprocess.run(command, shell=True, cwd=build, check=True)
-    link = subprocess.run(["ninja", "-t", "commands", "mmgrasp"], cwd=build, check=True, capture_output=True, text=True)
-    command = next(
-        line for line in reversed(link.stdout.splitlines()) if " -shared " in line and "libmmgrasp.so" in line
-    )
-    library = re.search(r"-o (\S*libmmgrasp\.so\S*)", command)
-    assert library is not None
-    out = folder / Path(library[1]).name
-    command = command.replace(library[0], f"-o {out}").split(" && ")
-    command = next(part for part in command if " -shared " in part)
-    for old, new in replaced.items():
-        command = command.replace(f" {old} ", f" {new} ")
-    subprocess.run(command, shell=True, cwd=build, check=True)
-    return out
+
+    def knows_stages(source: Path) -> bool:
+        return source.is_relative_to(ROOT / "cpp/src/collision") and "stages.hpp" in source.read_text()
+
+    return left_out.library_without(stage, f"MMGRASP_STAGES_LEFT_OUT={bit}", knows_stages, build)
 
 
 def measured(build: Path, rounds: int, library: Path | None) -> dict[tuple[str, str], dict]:

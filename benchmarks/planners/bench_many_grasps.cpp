@@ -52,8 +52,6 @@ int main(int argc, char** argv) {
   ManipulationOptions options;
   if (argc > 1) options.threads = std::atoi(argv[1]);
   if (argc > 2) options.planner = argv[2];
-  RoadmapOptions wanted;
-  wanted.neighbours = 12;
-  const Roadmap roadmap = Roadmap::build(bench::arms().front().group, wanted);
+  const Roadmap roadmap = Roadmap::build(bench::arms().front().group);
   for (const char* kind : {"499 in the table", "499 out of reach", "all good"}) measure(roadmap, kind, options);
 }

@@ -52,7 +52,7 @@ def ours(robot: mg.Robot, problems: list[MotionProblem], seeds: int) -> Iterator
         found = mg.plan_motion(
             of_problem,
             group,
-            problem.world,
+            problem.world_of(robot),
             start=problem.start_of(group),
             goal=problem.goal_of(group),
             seed=seed,

@@ -24,8 +24,7 @@ detail::RrtStarMgTuning tuning;  // Of the planner below.
 const detail::ManipulationPlanner kTunedPlanner{"rrt_star_mg",
                                                 [](detail::ManipulationInput& input, ManipulationResult& result) {
                                                   return detail::run_rrt_star_mg(input, result, tuning);
-                                                },
-                                                8};
+                                                }};
 
 struct Variant {
   std::string name;
@@ -40,12 +39,13 @@ const std::vector<Variant> kVariants = {
     {"min_detour 1", [](detail::RrtStarMgTuning& t) { t.min_detour = 1; }},
     {"detour_range 1", [](detail::RrtStarMgTuning& t) { t.detour_range = 1; }},
     {"min_near_vertices 0", [](detail::RrtStarMgTuning& t) { t.min_near_vertices = 0; }},
+    {"max_connections 1000", [](detail::RrtStarMgTuning& t) { t.max_connections = 1000; }},
     {"max_duplicates 0", [](detail::RrtStarMgTuning& t) { t.max_duplicates = 0; }},
     {"first_connection_bound 1", [](detail::RrtStarMgTuning& t) { t.first_connection_bound = 1; }},
     {"shortcut_probability 0", [](detail::RrtStarMgTuning& t) { t.shortcut_probability = 0; }},
     {"other_grasp_probability 0", [](detail::RrtStarMgTuning& t) { t.other_grasp_probability = 0; }},
-    {"near_corner_probability 0", [](detail::RrtStarMgTuning& t) { t.near_corner_probability = 0; }},
-    {"near_corner_probability 1", [](detail::RrtStarMgTuning& t) { t.near_corner_probability = 1; }},
+    {"joint_shortcut_probability 0", [](detail::RrtStarMgTuning& t) { t.joint_shortcut_probability = 0; }},
+    {"joint_shortcut_probability 1", [](detail::RrtStarMgTuning& t) { t.joint_shortcut_probability = 1; }},
 };
 
 struct Case {

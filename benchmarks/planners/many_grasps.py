@@ -6,18 +6,23 @@ Prints one JSON line with the settings, then one for each cell, run and program.
 thread, over the same cells, grasps and edge step, and but for `today` with our collision checker; inverse kinematics counts for all, building
 the roadmap does not. Times are processor time. Programs:
 
-    ours, prm_star_mg   over a roadmap of 5000 vertices built beforehand, then refined until the time is over
+    ours, prm_star_mg   over the default roadmap, built beforehand, then refined until the time is over
     ours, rrt_star_mg   until the time is over
+    prm_star_mg alone, rrt_star_mg alone    the same without `first_grasps`: all ends first, then the planner by itself
     today               one by one with FCL for collisions, as people put OMPL and FCL together; no cost of its own
     one by one          OMPL's RRT-Connect for each grasp in turn, `--each` seconds for it, until one succeeds
     one by one, ours    the same with our RRT-Connect
     all goals           OMPL's RRT-Connect from one start of every grasp to all its goals, budgets doubled from round to round
     informed            OMPL's Informed RRT* for each grasp in turn, the same total time shared out evenly
+    restarts            our RRT-Connect for all grasps in turn, again and again from other seeds and starts, each path
+                        shortened, until the time is over; a grasp whose ends are farther apart than the best path is
+                        long is left out
 
 All of them are given up to eight arm configurations of a grasp at each end. First paths are timed `--repeats` times, before
 they are shortened, and the median counts. Costs are joint-space lengths of the best path after `--seconds`, for programs that
 end with their first path of that one. All final paths are shortened, each by plan_motion's own shortening: `informed` one
-of every grasp, those that end with their first path that one, ours the first and the roadmap's, and in refinement each round's.
+of every grasp, `restarts` every path, those that end with their first path that one, ours the first and the roadmap's, and in refinement each round's. Our
+planners say which stage found the first path and which the one that was shortened last.
 """
 
 from __future__ import annotations
@@ -32,14 +37,15 @@ import tempfile
 import time
 from pathlib import Path
 
+import numpy as np
 from transfer_text import write_carries
 
 import mmgrasp as mg
 from mmgrasp.problems.pipe_cells import ROBOTS, PipeCell, pipe_cell
 
 UNLIMITED = 10_000_000
-VERTICES, NEIGHBOURS = 5000, 12
 CONFIGURATIONS = 8  # of the arm, for a grasp at each end
+FIRST_BUDGET, LARGEST_BUDGET = 100, 100_000  # iterations of RRT-Connect in `restarts`
 NONE = {"first": None, "cost": None}
 
 
@@ -47,14 +53,12 @@ class Enough(Exception):  # noqa: N818 - it is no error
     """Ends a call with its first path."""
 
 
-def ours(planner: str):
+def ours(planner: str, **settings):
     def run(cell: PipeCell, grasps: list[mg.Grasp], seed: int, given: argparse.Namespace, only_first: bool) -> dict:
-        options: dict = {"planner": planner, "seed": seed, "threads": 1, "time_limit": given.seconds}
+        options: dict = {"planner": planner, "seed": seed, "threads": 1, "time_limit": given.seconds, **settings}
         options["ik_solutions"] = CONFIGURATIONS
         if planner == "prm_star_mg":
-            options["roadmap"] = mg.planning.Roadmap.build(
-                cell.arm, vertices=VERTICES, neighbours=NEIGHBOURS, seed=seed
-            )
+            options["roadmap"] = mg.planning.Roadmap.build(cell.arm, seed=seed)
             options["refinements"] = UNLIMITED
         else:
             options["max_samples"] = UNLIMITED
@@ -70,7 +74,11 @@ def ours(planner: str):
             result = mg.plan_manipulation(problem, on_solution=improved, **options)
         except Enough:
             return {**NONE, "first": told[0]}
-        return {"first": told[0], "cost": result.cost} if result.outcome == mg.Outcome.solved else NONE
+        if result.outcome != mg.Outcome.solved:
+            return NONE
+        stages = [better.stage for better in result.improvements]
+        final = next((stage for stage in reversed(stages) if stage != "shortening"), stages[-1])
+        return {"first": told[0], "cost": result.cost, "stages": [stages[0], final]}
 
     return run
 
@@ -186,14 +194,48 @@ def informed(cell: PipeCell, grasps: list[mg.Grasp], seed: int, given: argparse.
     return {"first": told[0], "cost": best} if best < math.inf else NONE
 
 
+def restarts(cell: PipeCell, grasps: list[mg.Grasp], seed: int, given: argparse.Namespace, only_first: bool) -> dict:
+    begin, ends, held = time.process_time(), Ends(cell, grasps), {}
+    best, first = math.inf, None
+    for round_ in itertools.count():
+        budget, planned = min(FIRST_BUDGET * 2**round_, LARGEST_BUDGET), 0
+        for i in ends.usable():
+            left = given.seconds - (time.process_time() - begin)
+            if left <= 0:
+                return {"first": first, "cost": best} if first is not None else NONE
+            starts, goals = ends[i]
+            start = starts[round_ % len(starts)]
+            if np.linalg.norm(goals - start, axis=1).min() >= best:
+                continue
+            if i not in held:
+                held[i] = cell.arm_holding(grasps[i]), cell.world_holding(grasps[i])
+            planned += 1
+            found = mg.plan_motion(
+                cell.robot, *held[i], start=start, goal=goals, edge_step=0.02, workspace_step=0.005, seed=seed + 7919 * round_ + i,
+                time_limit=left, max_iterations=budget, shorten=first is not None,
+            )  # fmt: skip
+            if found.outcome != mg.Outcome.solved:
+                continue
+            best = min(best, found.cost)
+            if first is None:
+                first = time.process_time() - begin
+                if only_first:
+                    return {**NONE, "first": first}
+        if not planned:  # Nothing can be cheaper, or no grasp is within reach.
+            return {"first": first, "cost": best} if first is not None else NONE
+
+
 PROGRAMS = {
     "ours, prm_star_mg": ours("prm_star_mg"),
     "ours, rrt_star_mg": ours("rrt_star_mg"),
+    "prm_star_mg alone": ours("prm_star_mg", first_grasps=0),
+    "rrt_star_mg alone": ours("rrt_star_mg", first_grasps=0),
     "today": today,
     "one by one": one_by_one("ompl_rrt_connect"),
     "one by one, ours": one_by_one("rrt_connect"),
     "all goals": all_goals,
     "informed": informed,
+    "restarts": restarts,
 }
 
 
@@ -213,8 +255,7 @@ def main() -> None:
     given = parser.parse_args()
     if given.fcl is None and "today" in given.programs:
         given.programs.remove("today")
-    fixed = {"vertices": VERTICES, "neighbours": NEIGHBOURS, "configurations": CONFIGURATIONS}
-    print(json.dumps({"settings": {**vars(given), **fixed}}), flush=True)
+    print(json.dumps({"settings": {**vars(given), "configurations": CONFIGURATIONS}}), flush=True)
     for robot, number in itertools.product(given.robots, given.cells):
         cell = pipe_cell(number, seed=given.seed, robot=robot)
         for run in range(given.runs):

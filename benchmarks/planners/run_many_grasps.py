@@ -1,18 +1,21 @@
 """Carries with any of 500 grasps beside one planner and a list of grasps.
 
-    python benchmarks/planners/run_many_grasps.py [--write] [options of many_grasps.py]
+    python benchmarks/planners/run_many_grasps.py [--write] [--keep FILE] [options of many_grasps.py]
 
---write puts the tables into benchmarks/README.md.
+--write puts the tables into benchmarks/README.md. --keep adds the measured lines to a file of JSON lines and takes the
+table from all that it holds: parts measured one by one, by cell or robot, make one table.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import math
 import os
 import platform
 import statistics
 import sys
+from collections import Counter
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -20,8 +23,8 @@ sys.path.insert(0, str(HERE.parent))
 from programs import BUILD, build_programs, lines_of
 from tables import markdown, show
 
-OURS = ("ours, prm_star_mg", "ours, rrt_star_mg")
-TODAY = "today"  # the others have our collision checker, which is not what people use: told apart
+OURS = ("ours, prm_star_mg", "ours, rrt_star_mg", "prm_star_mg alone", "rrt_star_mg alone")
+TODAY = "today"  # the others have our collision checker
 SOONER, CHEAPER = 5, 0.9  # goals
 SAME = 1e-6  # relative, of costs that are equal
 
@@ -60,6 +63,12 @@ def counts(programs: dict[str, Runs], name: str, others: list[str]) -> tuple[int
     return won, equal
 
 
+def stages(runs: Runs, which: int) -> str:
+    """How many first (0) or final (1) paths each stage found."""
+    found = Counter(line["stages"][which] for line in runs.values() if line.get("stages"))
+    return ", ".join(f"{stage} {count}" for stage, count in found.most_common())
+
+
 def many_table(lines: list[dict]) -> str:
     programs: dict[str, Runs] = {}
     for line in lines:
@@ -82,21 +91,32 @@ def many_table(lines: list[dict]) -> str:
         ]
         if name in OURS and TODAY in programs:
             won, equal = counts(programs, name, baselines)
-            sooner = ratio(programs, name, [TODAY])
+            sooner = ratio(programs, name, baselines)
             met = bool(sooner) and float(sooner) >= SOONER and won >= CHEAPER * len(runs)
             row += [
+                ratio(programs, name, [TODAY]),
                 sooner,
-                ratio(programs, name, baselines),
                 f"{won}/{len(runs)}",
                 f"{equal}",
+                *(stages(runs, which) for which in (0, 1)),
                 "yes" if met else "**no**",
             ]
         else:
-            row += [""] * 5
+            row += [""] * 7
         rows.append(row)
     head = ["program", "solved", "first path, median [ms]", "slowest", f"cost, mean over {len(solved_by_all)}"]
     return markdown(
-        [*head, "sooner than today", "than any, with our checker too", "cheaper than all", "equal", "goals"], rows
+        [
+            *head,
+            "sooner than today",
+            "than the best of all ways",
+            "cheaper than all",
+            "equal",
+            "first path by",
+            "final path by",
+            "goals",
+        ],
+        rows,
     )
 
 
@@ -123,10 +143,17 @@ def odds_table(lines: list[dict]) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--write", action="store_true", help="update benchmarks/README.md")
+    parser.add_argument("--keep", type=Path, help="file of JSON lines")
     given, rest = parser.parse_known_args()
     build_programs([], ["bench_many_grasps", "bench_transfer_fcl"])
     fcl = BUILD / "benchmarks/bench_transfer_fcl"
     settings, *lines = lines_of([sys.executable, HERE / "many_grasps.py", "--fcl", fcl, *rest])
+    if given.keep:
+        with given.keep.open("a") as file:
+            file.writelines(json.dumps(line) + "\n" for line in lines)
+        lines = [json.loads(line) for line in given.keep.read_text().splitlines()]
+        for key, name in (("cell", "cells"), ("robot", "robots")):
+            settings["settings"][name] = sorted({line[key] for line in lines})
     odds = []
     for planner in ("prm_star_mg", "rrt_star_mg"):
         odds += lines_of([BUILD / "benchmarks/bench_many_grasps", "0", planner])

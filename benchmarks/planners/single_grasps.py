@@ -10,6 +10,7 @@ table into benchmarks/README.md.
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import sys
 import time
@@ -55,42 +56,41 @@ def table(lines: list[dict]) -> str:
             f"{line['within reach']:.1%}",
             f"{line['admit a motion']:.1%}",
             line["first within reach"] or "",
-            ", ".join(f"{cause}: {count}" for cause, count in line["cells turned down"].items()),
+            ", ".join(f"{cause}: {count}" for cause, count in line["cells rejected"].items()),
         ]
         for line in lines
     ]
     head = ["cell", "seed", "arm", "grasps", "within reach", f"admit a motion in {lines[0]['seconds']:g} s"]
-    return markdown([*head, "the first within reach", "cells turned down"], rows)
+    return markdown([*head, "the first within reach", "cells rejected"], rows)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--cells", type=int, nargs="+", default=list(range(1, 9)))
     parser.add_argument("--seeds", type=int, nargs="+", default=[1])
-    parser.add_argument("--robot", choices=ROBOTS, default=ROBOTS[0])
+    parser.add_argument("--robots", nargs="+", choices=ROBOTS, default=list(ROBOTS))
     parser.add_argument("--grasps", type=int, default=500)
     parser.add_argument("--seconds", type=float, default=10.0)
     parser.add_argument("--write", action="store_true", help="update benchmarks/README.md")
     given = parser.parse_args()
     lines = []
-    for seed in given.seeds:
-        for number in given.cells:
-            cell = pipe_cell(number, seed=seed, robot=given.robot)
-            outcomes = [carries(cell, grasp, given.seconds) for grasp in cell.grasps(given.grasps)]
-            reached = [o for o in outcomes if o != "out of reach"]
-            line = {
-                "cell": number,
-                "seed": seed,
-                "robot": given.robot,
-                "grasps": len(outcomes),
-                "within reach": len(reached) / len(outcomes),
-                "admit a motion": outcomes.count("solved") / len(outcomes),
-                "first within reach": reached[0] if reached else None,
-                "seconds": given.seconds,
-                "cells turned down": cell.rejected,
-            }
-            lines.append(line)
-            print(json.dumps(line), flush=True)
+    for robot, seed, number in itertools.product(given.robots, given.seeds, given.cells):
+        cell = pipe_cell(number, seed=seed, robot=robot)
+        outcomes = [carries(cell, grasp, given.seconds) for grasp in cell.grasps(given.grasps)]
+        reached = [o for o in outcomes if o != "out of reach"]
+        line = {
+            "cell": number,
+            "seed": seed,
+            "robot": robot,
+            "grasps": len(outcomes),
+            "within reach": len(reached) / len(outcomes),
+            "admit a motion": outcomes.count("solved") / len(outcomes),
+            "first within reach": reached[0] if reached else None,
+            "seconds": given.seconds,
+            "cells rejected": cell.rejected,
+        }
+        lines.append(line)
+        print(json.dumps(line), flush=True)
     show("single grasps", table(lines), given.write)
 
 

@@ -12,7 +12,8 @@ using namespace py::literals;
 const std::vector<OptionField<CheckerOptions>>& checker_fields() {
   using O = CheckerOptions;
   static const std::vector<OptionField<O>> fields{
-      option<O>("padding", &O::padding, "robot shapes are grown by this against the scene [m]"),
+      option<O>("padding", &O::padding,
+                "links are padded by at least this against the scene, whatever the world's padding [m]"),
       option<O>("check_self", &O::check_self, "robot (and what it holds) against itself"),
       option<O>("check_scene", &O::check_scene, "robot (and what it holds) against the scene"),
       option<O>("attached_only", &O::attached_only, "only what it holds, against the robot and the scene")};
@@ -34,10 +35,16 @@ void bind_answers(py::module_& m) {
       .def_readonly("a", &Contact::a, "A robot link or an attached object.")
       .def_readonly("b", &Contact::b, "A robot link, an attached object or an object of the scene.")
       .def_readonly("with_scene", &Contact::with_scene, "`b` is an object of the scene.")
+      .def_readonly("by_padding", &Contact::by_padding, "The bodies stay apart: only their padding meets.")
       .def(
-          "to_dict", [](const Contact& c) { return py::dict("a"_a = c.a, "b"_a = c.b, "with_scene"_a = c.with_scene); },
+          "to_dict",
+          [](const Contact& c) {
+            return py::dict("a"_a = c.a, "b"_a = c.b, "with_scene"_a = c.with_scene, "by_padding"_a = c.by_padding);
+          },
           "As a dict of plain numbers, strings and lists, e.g. for JSON.")
-      .def("__repr__", [](const Contact& c) { return "Contact('" + c.a + "', '" + c.b + "')"; });
+      .def("__repr__", [](const Contact& c) {
+        return "Contact('" + c.a + "', '" + c.b + (c.by_padding ? "', by padding)" : "')");
+      });
   py::class_<DistanceResult>(m, "DistanceResult", "The smallest distance and where it is.")
       .def_readonly("value", &DistanceResult::value,
                     "[m]; negative: depth, exact for convex bodies (see docs/methods/collision.md for others).")
@@ -86,8 +93,7 @@ void bind_answers(py::module_& m) {
           "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const EdgeResult& r) {
         if (r.free) return std::string("EdgeResult(free)");
-        const std::string why =
-            r.contact ? "'" + r.contact->a + "' touches '" + r.contact->b + "'" : std::string("joint limits");
+        const std::string why = r.contact ? describe(*r.contact) : std::string("joint limits");
         return "EdgeResult(refused at " + std::string(py::repr(py::float_(r.fraction))) + ": " + why + ")";
       });
 }

@@ -51,11 +51,14 @@ void bind_outcomes(py::module_& m) {
       .value("solved", Outcome::solved, "The answer is there and passed its check.")
       .value("approximate", Outcome::approximate,
              "The best that was found; misses its tolerance or bound. Never a path in collision.")
-      .value("infeasible", Outcome::infeasible, "Proven or exhausted: there is no answer.")
-      .value("timeout", Outcome::timeout, "The budget (samples, iterations or clock) ended first.")
+      .value("infeasible", Outcome::infeasible, "Proven: there is no answer.")
+      .value("not_found", Outcome::not_found,
+             "The method came to its end without an answer (samples, a roadmap, a local optimum): no proof.")
+      .value("timeout", Outcome::timeout, "The budget (samples, iterations or clock) ended first: no proof either.")
       .value("stopped", Outcome::stopped, "The caller ended it.")
-      .value("invalid_start", Outcome::invalid_start, "The start violates limits or is in collision.")
-      .value("invalid_goal", Outcome::invalid_goal, "No goal is inside limits and collision-free.")
+      .value("invalid_start", Outcome::invalid_start,
+             "The start violates limits or is in collision, or no such start was found.")
+      .value("invalid_goal", Outcome::invalid_goal, "No goal given or found is inside limits and collision-free.")
       .finalize();
   py::native_enum<Rejection>(m, "Rejection", "enum.Enum", "Why one candidate was rejected.")
       .value("none", Rejection::none, "It was not rejected.")

@@ -21,9 +21,10 @@ const std::vector<OptionField<DisabledPairsOptions>>& pair_fields() {
 }
 
 std::filesystem::path cache_folder() {
-  if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && *folder)
-    return std::filesystem::path(folder) / "mmgrasp";
-  if (const char* home = std::getenv("HOME"); home && *home) return std::filesystem::path(home) / ".cache" / "mmgrasp";
+  // The XDG base directory specification: paths that are not absolute are to be ignored.
+  const char *folder = std::getenv("XDG_CACHE_HOME"), *home = std::getenv("HOME");
+  if (folder && *folder == '/') return std::filesystem::path(folder) / "mmgrasp";
+  if (home && *home == '/') return std::filesystem::path(home) / ".cache" / "mmgrasp";
   return std::filesystem::temp_directory_path() / "mmgrasp-cache";
 }
 
@@ -55,7 +56,11 @@ void write_pairs(const std::filesystem::path& file, const Robot& before, const R
           << static_cast<int>(reason) << "\n";
     }
     out << "end\tend\t0\n";
-    if (!out) return;
+    out.close();
+    if (!out) {
+      std::filesystem::remove(draft, ignored);
+      return;
+    }
   }
   std::filesystem::rename(draft, file, ignored);
 }

@@ -5,12 +5,17 @@
 #include "mmgrasp/robot/joint_group.hpp"
 #include "mmgrasp/robot/kinematics_batch.hpp"
 #include "mmgrasp/robot/manipulability.hpp"
+#include "mmgrasp/robot/named_configuration.hpp"
 
 namespace mmgrasp::python {
 namespace {
 
 Eigen::VectorXd configuration(const JointGroup& g, const ArrayLike& q, const char* name = "q") {
   return vector_argument(q, name, g.size());
+}
+
+Eigen::VectorXd base_configuration(const JointGroup& g, const OptionalArray& base) {
+  return base.is_none() ? Eigen::VectorXd() : vector_argument(base, "base", g.size());
 }
 
 /// The digits that fk_batch gives, which may differ from JointGroup::fk in the last one.
@@ -99,6 +104,24 @@ void bind_group_class(py::module_& m) {
           "fk",
           [](const JointGroup& g, const ArrayLike& q) { return to_array(fk_as_in_batches(g, configuration(g, q))); },
           py::arg("q"), "T_world_tip, (4, 4), of a configuration (n,).")
+      .def(
+          "q",
+          [](const JointGroup& g, const std::map<std::string, double>& values, const OptionalArray& base) {
+            return named_configuration(g, values, base_configuration(g, base));
+          },
+          py::arg("values"), py::arg("base") = py::none(),
+          "A configuration (n,) from values by joint name [rad or m]. What is not named is as in `base` (n,), or as "
+          "the "
+          "group\nholds its robot (0 for base joints). Raises InvalidInput for names it does not have, with the "
+          "nearest.")
+      .def(
+          "state",
+          [](const JointGroup& g, const std::string& name, const OptionalArray& base) {
+            return state_configuration(g, name, base_configuration(g, base));
+          },
+          py::arg("name"), py::arg("base") = py::none(),
+          "The SRDF's group state of this name as a configuration (n,); `base` as in q(). Raises InvalidInput, listing "
+          "the\nstates there are, for others.")
       .def(
           "fk_batch",
           [](const JointGroup& g, const ArrayLike& Q) {

@@ -4,6 +4,7 @@
 
 #include "bindings.hpp"
 #include "mmgrasp/collision/collision_ik.hpp"
+#include "mmgrasp/robot/detail/whole_turns.hpp"
 #include "mmgrasp/robot/ik.hpp"
 #include "mmgrasp/robot/ik_branches.hpp"
 #include "mmgrasp/robot/ik_objective.hpp"
@@ -92,13 +93,13 @@ void bind_ik_result(py::module_& m) {
 }
 
 IkBranches branches(const JointGroup& group, const Pose& T, const World* world, const IkOptions& options,
-                    int redundant_values) {
+                    int redundant_values, bool all_turns) {
   std::optional<CollisionChecker> checker;
   if (world) checker.emplace(with_sampled_pairs(group), *world);
   const auto valid = [&](const Eigen::VectorXd& q) { return checker->rejection(q); };
   return LongCall(py::none()).run([&](const Monitor& monitor) {
     return solve_ik_branches(group, T, options, checker ? ConfigurationFilter(valid) : ConfigurationFilter(),
-                             redundant_values, monitor);
+                             redundant_values, monitor, all_turns);
   });
 }
 
@@ -146,28 +147,35 @@ void bind_group_methods(py::module_& m) {
       .def(
           "ik_branches",
           [](const JointGroup& g, const ArrayLike& T_world_tip, const World* world, int redundant_values,
-             const py::kwargs& options) {
+             bool all_turns, const py::kwargs& options) {
             return branches(g, pose_argument(T_world_tip, "T_world_tip"), world,
-                            read_options(ik_fields(), options, "ik_branches"), redundant_values);
+                            read_options(ik_fields(), options, "ik_branches"), redundant_values, all_turns);
           },
           py::arg("T_world_tip"), py::arg("world") = py::none(), py::arg("redundant_values") = 0,
+          py::arg("all_turns") = false,
           ("Every branch of an arm of six turning joints, and of one of seven for `redundant_values` values of its\n"
-           "redundant joint (0: 24); random descents search where no closed form fits. With a world, free ones only." +
+           "redundant joint (0: 24); random descents search where no closed form fits. With a world, free ones only.\n"
+           "A branch is an arm posture: joints whose limits leave more than one turn stand in the one nearest to the\n"
+           "middle. `all_turns` lists every whole turn within limits, one branch after the other, of each the turns\n"
+           "nearest to the middle first; up to 64 a branch where six joints have two turns." +
            option_help(ik_fields()))
               .c_str())
       .def(
           "ik_all",
-          [](const JointGroup& g, const ArrayLike& T_world_tip, int count, const World* world,
+          [](const JointGroup& g, const ArrayLike& T_world_tip, int count, const World* world, bool all_turns,
              const py::kwargs& options) {
             if (count <= 0) throw InvalidInput("count = " + std::to_string(count) + ": must be > 0");
-            const IkBranches all = branches(g, pose_argument(T_world_tip, "T_world_tip"), world,
-                                            read_options(ik_fields(), options, "ik_all"), std::clamp(count, 8, 48));
+            const IkBranches all =
+                branches(g, pose_argument(T_world_tip, "T_world_tip"), world,
+                         read_options(ik_fields(), options, "ik_all"), std::clamp(count, 8, 48), false);
             std::vector<Eigen::VectorXd> first = all.solutions;
             if (first.size() > static_cast<std::size_t>(count)) first.resize(count);
-            return rows_to_array(first);
+            return rows_to_array(all_turns ? detail::all_whole_turns(g, first) : first);
           },
-          py::arg("T_world_tip"), py::arg("count") = 16, py::arg("world") = py::none(),
-          ("Up to `count` solutions (k, n), the first ones farthest apart; ik_branches tells why others fell." +
+          py::arg("T_world_tip"), py::arg("count") = 16, py::arg("world") = py::none(), py::arg("all_turns") = false,
+          ("Up to `count` solutions (k, n), the first ones farthest apart; ik_branches tells why others fell. They "
+           "are\n"
+           "arm postures, in one turn each; `all_turns` gives each of them in every whole turn within limits." +
            option_help(ik_fields()))
               .c_str());
 }

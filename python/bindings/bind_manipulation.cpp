@@ -4,6 +4,7 @@
 #include "bindings.hpp"
 #include "given.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
+#include "padding.hpp"
 #include "plan_arguments.hpp"
 
 namespace mmgrasp::python {
@@ -55,8 +56,9 @@ const Fields& prm_fields() {
              "prm_star_mg: then search so many small roadmaps drawn where a cheaper path can pass"),
       of_roadmap("vertices", &RoadmapOptions::vertices, "prm_star_mg without a roadmap given: configurations drawn"),
       of_roadmap("gamma", &RoadmapOptions::gamma,
-                 "likewise: vertices nearer than gamma (log n / n)^(1/d) are joined [rad or m]"),
-      of_roadmap("neighbours", &RoadmapOptions::neighbours, "likewise: > 0: join that many nearest ones instead"),
+                 "likewise: > 0: vertices nearer than gamma (log n / n)^(1/d) are joined (P2: 4) [rad or m]; 0: the "
+                 "e (1 + 1/d) log n nearest ones"),
+      of_roadmap("neighbours", &RoadmapOptions::neighbours, "likewise: > 0: that many nearest ones are joined instead"),
       of_roadmap("roadmap_seed", &RoadmapOptions::seed, "likewise: same seed, same roadmap")};
   return fields;
 }
@@ -66,7 +68,7 @@ const Fields& rrt_fields() {
       of_rrt("max_samples", &RrtStarMgOptions::max_samples, "rrt_star_mg: budget in samples"),
       of_rrt("step", &RrtStarMgOptions::step, "rrt_star_mg: longest edge grown towards a sample [rad or m]"),
       of_rrt("rrt_gamma", &RrtStarMgOptions::gamma,
-             "rrt_star_mg: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined; 0: about 4 (1 + 1/d) "
+             "rrt_star_mg: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined; 0: about (d + 1) / 2 "
              "n^(1/(d+1)) log n of n"),
       of_rrt("exploration", &RrtStarMgOptions::exploration,
              "rrt_star_mg: once solved, chance to grow the drawn grasp's own tree (P2's p_blt)"),
@@ -82,7 +84,8 @@ const Fields& manipulation_fields() {
   static const Fields fields = [] {
     Fields all{
         option<O>("planner", &O::planner, "a name of manipulation_planner_names()"),
-        option<O>("ik_solutions", &O::ik_solutions, "arm configurations tried for each grasp at each end"),
+        option<O>("ik_solutions", &O::ik_solutions,
+                  "arm postures tried for each grasp at each end, in all whole turns"),
         option<O>("first_grasps", &O::first_grasps,
                   "grasps checked, one by one, before those without a first path are searched again, then twice as "
                   "many; 0: all before any search"),
@@ -148,8 +151,10 @@ void bind_manipulation(py::module_& m) {
   m.def(
       "plan_manipulation",
       [](const Given<ManipulationProblem>& given_problem, const std::optional<Given<Roadmap>>& given_roadmap,
-         const Progress& progress, const OnImproved& on_solution, const py::kwargs& options) {
-        const ManipulationProblem& problem = taken(given_problem, "problem");
+         const OptionalPadding& padding, const Progress& progress, const OnImproved& on_solution,
+         const py::kwargs& options) {
+        ManipulationProblem problem = taken(given_problem, "problem");
+        problem.world = padded(problem.world, padding);
         const Roadmap* roadmap = given_roadmap ? &taken(*given_roadmap, "roadmap") : nullptr;
         const ManipulationOptions read = read_options(manipulation_fields(), options, "plan_manipulation");
         refuse_options_of_others(options, roadmap != nullptr, read.planner);
@@ -160,9 +165,12 @@ void bind_manipulation(py::module_& m) {
         callback.raise();
         return result;
       },
-      "problem"_a, py::kw_only(), "roadmap"_a = py::none(), "progress"_a = py::none(), "on_solution"_a = py::none(),
+      "problem"_a, py::kw_only(), "roadmap"_a = py::none(), "padding"_a = py::none(), "progress"_a = py::none(),
+      "on_solution"_a = py::none(),
       ("Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 "
-       "chapters 4 and 5). Every grasp is checked. `on_solution` is called with every better solution (an "
+       "chapters 4 and 5). Every grasp is checked. `padding`: in place of that of the problem's world, see "
+       "World.padding. "
+       "`on_solution` is called with every better solution (an "
        "Improvement); "
        "what "
        "it raises ends the call." +

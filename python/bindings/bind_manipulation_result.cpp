@@ -10,12 +10,22 @@ using StatsDict = Shown<kStatsDict>;
 
 using namespace py::literals;
 
+py::dict stages_dict(const std::vector<StageReport>& stages) {
+  py::dict out;
+  for (const StageReport& r : stages) {
+    out[to_string(r.stage)] = py::dict("improvements"_a = r.improvements, "first_seconds"_a = r.first_seconds,
+                                       "last_seconds"_a = r.last_seconds, "cost"_a = r.cost);
+  }
+  return out;
+}
+
 StatsDict stats_dict(const ManipulationStats& s) {
   return py::dict(
       "ik_seconds"_a = s.ik_seconds, "roadmap_seconds"_a = s.roadmap_seconds, "search_seconds"_a = s.search_seconds,
       "graph_searches"_a = s.graph_searches, "nodes_opened"_a = s.nodes_opened, "grasps_searched"_a = s.grasps_searched,
-      "roadmap_cost"_a = s.roadmap_cost, "edges_checked_robot"_a = s.edges_checked_robot,
-      "edges_checked_attached"_a = s.edges_checked_attached, "samples"_a = s.samples, "vertices"_a = s.vertices);
+      "roadmap_cost"_a = s.roadmap_cost, "roadmap_bound"_a = s.roadmap_bound,
+      "edges_checked_robot"_a = s.edges_checked_robot, "edges_checked_attached"_a = s.edges_checked_attached,
+      "samples"_a = s.samples, "vertices"_a = s.vertices, "stages"_a = stages_dict(s.stages));
 }
 
 py::dict report_dict(const GraspReport& r) {
@@ -24,7 +34,7 @@ py::dict report_dict(const GraspReport& r) {
 }
 
 py::dict improvement_dict(const Improvement& i) {
-  return py::dict("seconds"_a = i.seconds, "cost"_a = i.cost, "grasp"_a = i.grasp,
+  return py::dict("seconds"_a = i.seconds, "cost"_a = i.cost, "grasp"_a = i.grasp, "stage"_a = to_string(i.stage),
                   "path"_a = rows_to_array(i.path.waypoints).attr("tolist")());
 }
 
@@ -36,7 +46,7 @@ py::dict result_dict(const ManipulationResult& r) {
   return py::dict("outcome"_a = to_string(r.outcome), "grasp_index"_a = r.grasp_index, "path"_a = path_list(r.path),
                   "cost"_a = r.cost, "lower_bound"_a = r.lower_bound, "improvements"_a = improvements,
                   "grasps"_a = grasps, "rejections"_a = to_dict(r.rejections), "contacts"_a = contacts,
-                  "stats"_a = stats_dict(r.stats));
+                  "warnings"_a = r.warnings, "stats"_a = stats_dict(r.stats));
 }
 
 std::string result_text(const ManipulationResult& r) {
@@ -47,7 +57,8 @@ std::string result_text(const ManipulationResult& r) {
   } else {
     out += ", rejected: " + r.rejections.summary();
   }
-  for (const Contact& c : r.contacts) out += ", '" + c.a + "' touches '" + c.b + "'";
+  for (const Contact& c : r.contacts) out += ", " + describe(c);
+  for (const std::string& warning : r.warnings) out += ", warning: " + warning;
   return out + ")";
 }
 
@@ -81,11 +92,14 @@ void bind_result_parts(py::module_& m) {
       .def_readonly("cost", &Improvement::cost, "Length of the path in joint space plus the grasp's cost.")
       .def_readonly("grasp", &Improvement::grasp, "Index of its grasp.")
       .def_property_readonly(
+          "stage", [](const Improvement& i) { return to_string(i.stage); },
+          "What found it: first_grasps, straight_lines, roadmap, refinement, trees or shortening.")
+      .def_property_readonly(
           "path", [](const Improvement& i) { return rows_to_array(i.path.waypoints); }, "Waypoints (k, n).")
       .def("to_dict", &improvement_dict, "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const Improvement& i) {
         return "Improvement(cost " + std::string(py::repr(py::float_(i.cost))) + ", grasp " + std::to_string(i.grasp) +
-               ", after " + std::string(py::repr(py::float_(i.seconds))) + " s)";
+               ", by " + to_string(i.stage) + " after " + std::string(py::repr(py::float_(i.seconds))) + " s)";
       });
   py::class_<GraspReport>(m, "GraspReport", "What became of one grasp.")
       .def_readonly("start", &GraspReport::start, "Arm configurations rejected at the start, by cause.")
@@ -113,17 +127,19 @@ void bind_manipulation_result(py::module_& m) {
           "Waypoints (k, n), joined by straight lines; None unless solved.")
       .def_readonly("cost", &ManipulationResult::cost, "Length of the path in joint space plus the grasp's cost.")
       .def_readonly("lower_bound", &ManipulationResult::lower_bound,
-                    "No path costs less: with prm_star_mg none over this roadmap and these arm configurations.")
+                    "No path with any grasp between these arm postures costs less: the least straight line.")
       .def_readonly("improvements", &ManipulationResult::improvements, "Every better solution on the way, in order.")
       .def_readonly("grasps", &ManipulationResult::grasps, "A GraspReport for each grasp.")
       .def_readonly("rejections", &ManipulationResult::rejections, "Sum over all grasps and both ends.")
       .def_readonly("contacts", &ManipulationResult::contacts,
                     "With invalid_start or invalid_goal: what touches there with the first grasp in collision.")
+      .def_readonly("warnings", &ManipulationResult::warnings,
+                    "What may have kept paths from being found: a roadmap in pieces.")
       .def_readonly("trees", &ManipulationResult::trees,
                     "With keep_trees: a SearchTree for each grasp still still a candidate and each end.")
       .def_property_readonly(
           "stats", [](const ManipulationResult& r) { return stats_dict(r.stats); },
-          "What the search took: seconds, searches, edges checked.")
+          "What the search took: seconds, searches, edges checked; what each stage found and when.")
       .def("to_dict", &result_dict, "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", &result_text);
 }

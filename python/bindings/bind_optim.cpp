@@ -138,7 +138,8 @@ void bind_optim(py::module_& m) {
          const Progress& progress) {
         SetCoverProblem problem{elements, sets, costs};
         problem.check();
-        return LongCall(progress).run([&](const Monitor&) { return solve_set_cover(problem, time_limit); });
+        return LongCall(progress).run(
+            [&](const Monitor& monitor) { return solve_set_cover(problem, time_limit, monitor); });
       },
       py::arg("elements"), py::arg("sets"), py::arg("costs") = std::vector<double>{}, py::kw_only(),
       py::arg("time_limit") = 60.0, py::arg("progress") = py::none(),

@@ -1,6 +1,7 @@
 #include "bindings.hpp"
 #include "given.hpp"
 #include "mmgrasp/plan/motion.hpp"
+#include "padding.hpp"
 #include "plan_arguments.hpp"
 #include "same_robot.hpp"
 
@@ -9,6 +10,12 @@ namespace {
 
 constexpr char kOnSolution[] = "collections.abc.Callable[[numpy.typing.NDArray[numpy.float64], float], object] | None";
 using OnSolution = Shown<kOnSolution>;
+constexpr char kRobotOrChecker[] = "mmgrasp._core.Robot | mmgrasp._core.CollisionChecker";
+using RobotOrChecker = Shown<kRobotOrChecker>;
+constexpr char kOptionalGroup[] = "mmgrasp._core.JointGroup | None";
+using OptionalGroup = Shown<kOptionalGroup>;
+constexpr char kOptionalWorld[] = "mmgrasp._core.World | None";
+using OptionalWorld = Shown<kOptionalWorld>;
 
 using namespace py::literals;
 
@@ -19,12 +26,15 @@ const std::vector<OptionField<MotionOptions>>& motion_fields() {
       option<O>("time_limit", &O::time_limit, "wall-clock cap [s]"),
       option<O>("max_iterations", &O::max_iterations, "budget in states drawn"),
       option<O>("range", &O::range, "longest tree edge [rad]; 0: a share of the joint limits's diagonal"),
+      option<O>("near_end_probability", &O::near_end_probability,
+                "roadmap planners: chance to draw around the start or a goal; 0: uniform draws alone"),
       option<O>("base_margin", &O::base_margin, "the base is drawn this far around start and goals [m]"),
       option<O>("edge_step", &O::edge_step, "largest joint motion between two checks [rad or m]"),
       option<O>("workspace_step", &O::workspace_step, "largest motion of any robot point between two checks [m]"),
       option<O>("shorten", &O::shorten, "shortcut the path"),
       option<O>("shorten_iterations", &O::shorten_iterations, "tries of the shortening"),
-      option<O>("ik_solutions", &O::ik_solutions, "IK solutions looked for at each tool pose"),
+      option<O>("ik_solutions", &O::ik_solutions,
+                "arm postures looked for at each tool pose, each in all its whole turns"),
       option<O>("region_samples", &O::region_samples, "tool poses drawn in each region"),
       option<O>("seed", &O::seed, "same seed, same path")};
   return fields;
@@ -38,13 +48,28 @@ std::vector<Eigen::VectorXd> goals_argument(const ArrayLike& goal, Eigen::Index 
   return {vector_argument(goal, "goal", size)};
 }
 
-MotionResult motion(const Given<Robot>& given_robot, const Given<JointGroup>& given_group, const Given<World>& world,
+/// The checker itself (its clone), or one made for group and world.
+CollisionChecker checker_argument(const RobotOrChecker& robot, const OptionalGroup& given_group,
+                                  const OptionalWorld& given_world, const OptionalPadding& padding) {
+  if (py::isinstance<CollisionChecker>(robot)) {
+    if (!given_group.is_none() || !given_world.is_none() || !padding.is_none())
+      throw InvalidInput("robot: is a CollisionChecker, which has its own group, world and padding: leave those out");
+    return py::cast<const CollisionChecker&>(robot).clone();
+  }
+  const JointGroup& group = taken(py::reinterpret_borrow<Given<JointGroup>>(given_group), "group");
+  check_same_robot(taken(py::reinterpret_borrow<Given<Robot>>(robot), "robot"), group);
+  const World& world = taken(py::reinterpret_borrow<Given<World>>(given_world), "world");
+  return CollisionChecker(with_sampled_pairs(group), padded(world, padding));
+}
+
+MotionResult motion(const RobotOrChecker& robot, const OptionalGroup& given_group, const OptionalWorld& world,
                     const ArrayLike& start, const OptionalArray& goal, const OptionalArray& tool_poses,
-                    const Given<std::vector<ToolRegion>>& regions,
+                    const Given<std::vector<ToolRegion>>& regions, const OptionalArray& via,
                     const std::optional<Given<OrientationConstraint>>& orientation_constraint,
-                    const OnSolution& on_solution, const Progress& progress, const py::kwargs& options) {
-  const JointGroup& group = taken(given_group, "group");
-  check_same_robot(taken(given_robot, "robot"), group);
+                    const OptionalPadding& padding, const OnSolution& on_solution, const Progress& progress,
+                    const py::kwargs& options) {
+  CollisionChecker checker = checker_argument(robot, given_group, world, padding);
+  const JointGroup group = checker.group();
   MotionOptions read = read_options(motion_fields(), options, "plan_motion");
   if (orientation_constraint) read.orientation_constraint = taken(*orientation_constraint, "orientation_constraint");
   if (!function_argument(on_solution, "on_solution").is_none()) {
@@ -61,9 +86,10 @@ MotionResult motion(const Given<Robot>& given_robot, const Given<JointGroup>& gi
   goals.regions = taken(regions, "regions", "ToolRegion");
   if (goal.is_none() && tool_poses.is_none() && goals.regions.empty())
     throw InvalidInput("goal = None: give goal, tool_poses or regions");
-  CollisionChecker checker(with_sampled_pairs(group), taken(world, "world"));
+  std::vector<Eigen::VectorXd> waypoints;
+  if (!via.is_none()) waypoints = rows_argument(py::reinterpret_borrow<ArrayLike>(via), "via", group.size());
   return LongCall(progress).run(
-      [&](const Monitor& monitor) { return plan_motion_to(checker, from, goals, read, monitor); });
+      [&](const Monitor& monitor) { return plan_motion_via(checker, from, waypoints, goals, read, monitor); });
 }
 
 void bind_goals(py::module_& m) {
@@ -125,6 +151,8 @@ void bind_motion(py::module_& m) {
       .def_readonly("rejections", &MotionResult::rejections, "Of the start, or of goals, rejected.")
       .def_readonly("beyond_limits", &MotionResult::beyond_limits,
                     "With invalid_start or invalid_goal: which joint is outside of its limits, its value and these.")
+      .def_readonly("via_reached", &MotionResult::via_reached,
+                    "With `via`: how many of them a path was found to; all when solved.")
       .def_readonly("stats", &MotionResult::stats, "What the search took.")
       .def(
           "to_dict",
@@ -134,7 +162,7 @@ void bind_motion(py::module_& m) {
             return py::dict("outcome"_a = to_string(r.outcome), "path"_a = path_list(r.path), "cost"_a = r.cost,
                             "goal_index"_a = r.goal_index, "contacts"_a = contacts,
                             "rejections"_a = to_dict(r.rejections), "beyond_limits"_a = r.beyond_limits,
-                            "stats"_a = py::cast(r.stats).attr("to_dict")());
+                            "via_reached"_a = r.via_reached, "stats"_a = py::cast(r.stats).attr("to_dict")());
           },
           "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const MotionResult& r) {
@@ -144,22 +172,24 @@ void bind_motion(py::module_& m) {
                  std::string(py::repr(py::float_(r.cost)));
         }
         if (!r.path && r.rejections.total() > 0) out += ", rejected: " + r.rejections.summary();
-        for (const Contact& c : r.contacts) out += ", '" + c.a + "' touches '" + c.b + "'";
+        for (const Contact& c : r.contacts) out += ", " + describe(c);
         if (!r.beyond_limits.empty()) out += ", " + r.beyond_limits;
         return out + ")";
       });
   m.def("_motion_option_table", [] { return option_table(motion_fields()); });
   m.def("planner_names", &planner_names, "Names that plan_motion's `planner` takes.");
   m.def(
-      "plan_motion", &motion, py::arg("robot"), py::arg("group"), py::arg("world"), py::kw_only(), py::arg("start"),
-      py::arg("goal") = py::none(), py::arg("tool_poses") = py::none(), py::arg("regions") = std::vector<ToolRegion>{},
-      py::arg("orientation_constraint") = py::none(), py::arg("on_solution") = py::none(),
-      py::arg("progress") = py::none(),
+      "plan_motion", &motion, py::arg("robot"), py::arg("group") = py::none(), py::arg("world") = py::none(),
+      py::kw_only(), py::arg("start"), py::arg("goal") = py::none(), py::arg("tool_poses") = py::none(),
+      py::arg("regions") = std::vector<ToolRegion>{}, py::arg("via") = py::none(),
+      py::arg("orientation_constraint") = py::none(), py::arg("padding") = py::none(),
+      py::arg("on_solution") = py::none(), py::arg("progress") = py::none(),
       ("A collision-free path of the group from `start` (n,) to any of its goals: `goal` (n,) or several as (m, n),\n"
-       "`tool_poses` of the tip, (4, 4) or (m, 4, 4), and `regions` of them, reached by inverse kinematics. "
-       "`orientation_constraint`\n"
-       "holds on the whole path. on_solution(path, cost) is called with each better path. A diff-drive base turns on\n"
-       "the spot and drives straight." +
+       "`tool_poses` of the tip, (4, 4) or (m, 4, 4), and `regions` of them, reached by inverse kinematics; by way of "
+       "the\nconfigurations `via` (k, n), one after the other. A prepared CollisionChecker may stand in place of "
+       "robot, group\nand world. `orientation_constraint` holds on the whole path. `padding`: in place of the world's "
+       "own, see\nWorld.padding. on_solution(path, cost) is called with each better path. A diff-drive base turns on "
+       "the spot and\ndrives straight." +
        option_help(motion_fields()))
           .c_str());
 }

@@ -14,8 +14,10 @@ const std::vector<OptionField<RoadmapOptions>>& roadmap_fields() {
   using O = RoadmapOptions;
   static const std::vector<OptionField<O>> fields{
       option<O>("vertices", &O::vertices, "configurations drawn"),
-      option<O>("gamma", &O::gamma, "vertices nearer than gamma (log n / n)^(1/d) are joined [rad or m]"),
-      option<O>("neighbours", &O::neighbours, "> 0: join that many nearest ones instead"),
+      option<O>("gamma", &O::gamma,
+                "> 0: vertices nearer than gamma (log n / n)^(1/d) are joined (P2: 4) [rad or m]; 0: the "
+                "e (1 + 1/d) log n nearest ones"),
+      option<O>("neighbours", &O::neighbours, "> 0: that many nearest ones are joined instead"),
       option<O>("seed", &O::seed, "same seed, same roadmap")};
   return fields;
 }
@@ -23,8 +25,8 @@ const std::vector<OptionField<RoadmapOptions>>& roadmap_fields() {
 RoadmapStatisticsDict statistics_dict(const Roadmap& roadmap) {
   const RoadmapStatistics f = roadmap.statistics();
   return py::dict("mean_degree"_a = f.mean_degree, "components"_a = f.components,
-                  "largest_component"_a = f.largest_component, "radius"_a = f.radius, "volume"_a = f.volume,
-                  "gamma_star"_a = f.gamma_star);
+                  "largest_component"_a = f.largest_component, "neighbours"_a = f.neighbours, "radius"_a = f.radius,
+                  "volume"_a = f.volume, "gamma_star"_a = f.gamma_star);
 }
 
 py::array_t<std::int32_t> edges_array(const Roadmap& roadmap) {
@@ -93,13 +95,17 @@ void bind_roadmap(py::module_& m) {
             return out;
           },
           "q"_a, "Vertices a new configuration would be joined with, ascending.")
-      .def_property_readonly("statistics", &statistics_dict,
-                             "Mean degree, connected parts, the largest one's vertices, connection radius, the joint "
-                             "box's volume, and the gamma that PRM* asks for.")
+      .def_property_readonly(
+          "statistics", &statistics_dict,
+          "Mean degree, connected parts, the largest one's vertices, nearest ones joined, connection "
+          "radius, the joint box's volume, and the gamma that PRM* asks for.")
+      .def_property_readonly("warning", &Roadmap::warning,
+                             "What to set when less than 99 % of the vertices hang together; empty otherwise.")
       .def("to_dict", &roadmap_dict, "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const Roadmap& r) {
-        return "Roadmap(" + std::to_string(r.size()) + " vertices, " + std::to_string(r.edge_count()) + " edges, '" +
-               r.group().name() + "')";
+        const std::string text = "Roadmap(" + std::to_string(r.size()) + " vertices, " +
+                                 std::to_string(r.edge_count()) + " edges, '" + r.group().name() + "'";
+        return text + (r.warning().empty() ? ")" : ", warning: " + r.warning() + ")");
       });
 }
 

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "bindings.hpp"
+#include "mmgrasp/collision/detail/named_bodies.hpp"
 #include "mmgrasp/robot/base_motion.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
 #include "mmgrasp/robot/packages.hpp"
@@ -315,6 +316,14 @@ void bind_robot_class(py::module_& m) {
             return out;
           },
           "SRDF groups: name to joints, base_link, tip_link.")
+      .def_property_readonly(
+          "group_links",
+          [](const Robot& r) {
+            std::map<std::string, std::vector<std::string>> links;
+            for (const GroupDescription& group : r.groups()) links[group.name] = detail::links_of(r, group);
+            return links;
+          },
+          "SRDF group to its links: those that its joints, fixed ones too, and the joints that mimic them carry.")
       .def_property_readonly(
           "group_states", &Robot::group_states,
           "SRDF states: group, state, joint to value. Joints with several values appear as joint/x, joint/y, ...")

@@ -23,8 +23,7 @@ const std::vector<OptionField<StraightLineOptions>>& line_fields() {
 
 std::string why(Rejection cause, const std::optional<Contact>& contact, const std::string& beyond_limits) {
   return (cause == Rejection::none ? "" : std::string(", cause ") + to_string(cause)) +
-         (contact ? ", '" + contact->a + "' touches '" + contact->b + "'" : "") +
-         (beyond_limits.empty() ? "" : ", " + beyond_limits);
+         (contact ? ", " + describe(*contact) : "") + (beyond_limits.empty() ? "" : ", " + beyond_limits);
 }
 
 void bind_line(py::module_& m) {

@@ -17,6 +17,8 @@ const std::vector<OptionField<PlanCheckOptions>>& check_fields() {
       option<O>("rotation_tolerance", &O::rotation_tolerance, "of a grasp [rad]"),
       option<O>("samples", &O::samples, "base poses drawn in the uncertainty disc of each stop"),
       option<O>("required_rate", &O::required_rate, "share of them from which every target part has a grasp"),
+      option<O>("region_samples", &O::region_samples,
+                "base poses drawn in each region, cells drawn beside it, and poses in the radius a stop claims"),
       option<O>("seed", &O::seed, "of the base poses drawn"),
       option<O>("threads", &O::threads, "0: all")};
   return fields;
@@ -113,6 +115,16 @@ void bind_checked_parts(py::module_& m) {
            "Lower corner of cell (0, 0) (2,) [m], edge of a cell [m], cells along x and y, headings [rad].");
 }
 
+void bind_checked_tray(py::module_& m) {
+  py::class_<CheckedTray>(m, "CheckedTray", "How base poses for a tray were searched.")
+      .def(py::init([](std::vector<double> headings, const ArrayLike& middle, double max_distance) {
+             return CheckedTray{std::move(headings), vector2_argument(middle, "middle"), max_distance};
+           }),
+           py::arg("headings"), py::arg("middle"), py::arg("max_distance"),
+           "Base headings tried [rad], the tray's middle (2,) and the distance from it beyond which none were tried "
+           "[m].");
+}
+
 void bind_plan_to_check(py::module_& m) {
   py::class_<PlanToCheck>(m, "PlanToCheck", "A whole plan as read from plan.json.")
       .def(py::init<RobotSource>(), py::arg("robot"), "Of this robot; everything else is set afterwards.")
@@ -128,7 +140,17 @@ void bind_plan_to_check(py::module_& m) {
       .def_readwrite("clearance", &PlanToCheck::clearance, "Opening beyond the part's width before grasping [m].")
       .def_readwrite("approach", &PlanToCheck::approach,
                      "Unit vector (3,) in the tip's frame along which the hand comes.")
+      .def_readwrite("closing", &PlanToCheck::closing,
+                     "Unit vector (3,) in the tip's frame along which the pads close.")
+      .def_readwrite("finger_depth", &PlanToCheck::finger_depth,
+                     "Size of a pad along the approach [m]; 0: widths are not compared with the parts.")
+      .def_readwrite("finger_width", &PlanToCheck::finger_width, "Size of a pad across approach and closing [m].")
+      .def_readwrite("approach_distance", &PlanToCheck::approach_distance, "Least straight way to a grasp [m].")
+      .def_readwrite("lift_height", &PlanToCheck::lift_height, "Least straight way up after closing [m].")
+      .def_readwrite("searched", &PlanToCheck::searched, "How base poses for each tray were searched, by its name.")
       .def_readwrite("fingers", &PlanToCheck::fingers, "Finger joints.")
+      .def_readwrite("openings", &PlanToCheck::openings,
+                     "Openings at equal steps of the finger joints from closed to open [m]; empty: linear from 0.")
       .def_readwrite("finger_links", &PlanToCheck::finger_links, "Links that may touch the part that is held.")
       .def_readwrite("home", &PlanToCheck::home, "Arm configuration while driving (n,).")
       .def_readwrite("start", &PlanToCheck::start, "Base pose at the beginning (3,): x, y, theta [m, m, rad].")
@@ -144,6 +166,10 @@ void bind_plan_to_check(py::module_& m) {
                      "Height above the bin's top plane at which parts are released [m].")
       .def_readwrite("obstacles", &PlanToCheck::obstacles, "Bodies of the scene.")
       .def_readwrite("parts", &PlanToCheck::parts, "All parts, targets and others.")
+      .def_readwrite("padded", &PlanToCheck::padded,
+                     "Bodies were kept apart by more than touching: cells beside a region prove nothing.")
+      .def_readwrite("allowed_collisions", &PlanToCheck::allowed_collisions,
+                     "Pairs of names (links, obstacles, parts) that may touch.")
       .def_readwrite("trays", &PlanToCheck::trays, "Names of the trays.")
       .def_readwrite("grid", &PlanToCheck::grid, "Grid of the regions.")
       .def_readwrite("regions", &PlanToCheck::regions, "One a tray.")
@@ -176,19 +202,23 @@ void bind_path_check(py::module_& m) {
   m.def(
       "check_path",
       [](const Robot& robot, const std::vector<std::string>& joints, const ArrayLike& path,
-         const std::vector<CheckedBody>& bodies, const std::map<std::string, double>& other_joints, double joint_step) {
+         const std::vector<CheckedBody>& bodies, const std::map<std::string, double>& other_joints,
+         const std::vector<CheckedPair>& allowed_collisions, double joint_step) {
         PathToCheck check{source_of(robot)};
         check.joints = joints;
         check.waypoints = rows_argument(path, "path", static_cast<Eigen::Index>(joints.size()));
         check.bodies = bodies;
         check.other_joints = other_joints;
+        check.allowed_collisions = allowed_collisions;
         py::gil_scoped_release release;
         return verify::check_path(check, joint_step);
       },
       py::arg("robot"), py::arg("joints"), py::arg("path"), py::arg("bodies"), py::kw_only(),
-      py::arg("other_joints") = std::map<std::string, double>{}, py::arg("joint_step") = 0.005,
+      py::arg("other_joints") = std::map<std::string, double>{},
+      py::arg("allowed_collisions") = std::vector<CheckedPair>{}, py::arg("joint_step") = 0.005,
       "Looks at waypoints (k, n) joined by straight lines, in steps of joint_step [rad or m]: limits, self-collisions "
-      "and\ncollisions with the bodies, by KDL and FCL called directly.");
+      "and\ncollisions with the bodies, by KDL and FCL called directly. Pairs of links or bodies in "
+      "`allowed_collisions` may touch.");
 }
 
 }  // namespace
@@ -196,6 +226,7 @@ void bind_path_check(py::module_& m) {
 void bind_verify(py::module_& top) {
   py::module_ m = top.def_submodule("verify", "Checks finished plans; shares no code with the planners.");
   bind_checked_parts(m);
+  bind_checked_tray(m);
   bind_plan_to_check(m);
   bind_path_check(m);
   py::class_<Fault>(m, "Fault", "One thing that is physically wrong with a plan.")
@@ -250,6 +281,8 @@ void bind_verify(py::module_& top) {
         return "PlanCheckResult(" + std::to_string(r.faults.size()) + " faults, " +
                std::to_string(r.configurations_checked) + " configurations)";
       });
+  m.def("overlapping_bodies", &overlapping_bodies, py::arg("bodies"),
+        "Index pairs of the bodies that overlap by more than 1e-4 m; those that just touch do not.");
   m.def(
       "check_plan",
       [](const PlanToCheck& plan, const Progress& progress, const py::kwargs& options) {

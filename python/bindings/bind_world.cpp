@@ -4,8 +4,10 @@
 #include <set>
 
 #include "bindings.hpp"
+#include "mmgrasp/collision/detail/named_bodies.hpp"
 #include "mmgrasp/collision/world.hpp"
 #include "mmgrasp/geometry/octree.hpp"
+#include "padding.hpp"
 
 namespace mmgrasp::python {
 namespace {
@@ -73,6 +75,13 @@ std::vector<std::string> attached_keys(const World& world) {
 }  // namespace
 
 void bind_world(py::module_& m) {
+  m.def(
+      "_allowed_bodies",
+      [](const Robot& robot, const World& world) {
+        const detail::AllowedPairs allowed(robot, world);
+        return std::vector<World::NamePair>(allowed.pairs().begin(), allowed.pairs().end());
+      },
+      py::arg("robot"), py::arg("world"));
   declared<World>(m, "World")
       .def(py::init<>(), "An empty world.")
       .def(
@@ -131,10 +140,21 @@ void bind_world(py::module_& m) {
           py::arg("name"), py::arg("points"), py::arg("resolution"), py::arg("pose") = py::none(),
           "Points (m, 3) as the solid cells of edge `resolution` [m] that hold one.")
       .def(
+          "add_field",
+          [](World& w, const std::string& name, const std::shared_ptr<DistanceField>& field, const OptionalArray& pose,
+             double resolution, bool unknown_is_free) {
+            w.add_field(name, {field, pose_argument(pose, "pose"), resolution, unknown_is_free});
+          },
+          py::arg("name"), py::arg("field").none(false), py::arg("pose") = py::none(), py::kw_only(),
+          py::arg("resolution") = FieldObstacle().resolution,
+          py::arg("unknown_is_free") = FieldObstacle().unknown_is_free,
+          "What a distance field holds, at T_world_field (4, 4). A body is free only where the field proves it, and is "
+          "called\nso when it is farther away than twice the field's error and `resolution` [m].")
+      .def(
           "move",
           [](World& w, const std::string& name, const ArrayLike& pose) { w.move(name, pose_argument(pose, "pose")); },
-          py::arg("name"), py::arg("pose"), "Puts an object of the scene at T_world_object (4, 4).")
-      .def("remove", &World::remove, py::arg("name"), "Takes an object, held or not, out of the world.")
+          py::arg("name"), py::arg("pose"), "Puts an object or a field of the scene at T_world_object (4, 4).")
+      .def("remove", &World::remove, py::arg("name"), "Takes an object, held or not, or a field out of the world.")
       .def(
           "attach",
           [](World& w, const std::string& name, const std::string& link, const OptionalArray& pose,
@@ -158,8 +178,35 @@ void bind_world(py::module_& m) {
           },
           py::arg("name"), py::arg("pose") = py::none(),
           "Puts a held object back into the scene at T_world_object; without a pose it leaves the world.")
+      .def(
+          "allow", &World::allow, py::arg("a"), py::arg("b"),
+          "The two may touch: they are not checked against each other. Each is a link of the robot, an SRDF group (all "
+          "its\nlinks) or an object, held or not. The pair may come before its objects; a checker raises InvalidInput "
+          "for names\nthat robot and world lack. remove() takes the pairs of its object back.")
+      .def("disallow", &World::disallow, py::arg("a"), py::arg("b"),
+           "Takes a pair of allow() back. Raises InvalidInput unless it is there.")
+      .def("forget", &World::forget, py::arg("name"), "Takes back what allow() and padding said about a name.")
+      .def_property_readonly(
+          "allowed",
+          [](const World& w) { return std::vector<World::NamePair>(w.allowed().begin(), w.allowed().end()); },
+          "The pairs that may touch, as given to allow(), sorted.")
+      .def_property(
+          "padding", [](const World& w) { return padding_dict(w.padding()); },
+          [](World& w, const PaddingLike& padding) { w.set_padding(padding_argument(padding)); },
+          "How far bodies are grown where the robot (with what it holds) meets the scene [m]; never within the robot. "
+          "A\n"
+          "number is for all links; a dict has the keys `links`, `attached`, `objects` and `by_name` (link, object or\n"
+          "SRDF group to its own padding, in place of the others).")
       .def("__contains__", &World::has)
       .def_property_readonly("objects", &keys, "Names of the scene's objects.")
+      .def_property_readonly(
+          "fields",
+          [](const World& w) {
+            std::vector<std::string> names;
+            for (const auto& [name, obstacle] : w.fields()) names.push_back(name);
+            return names;
+          },
+          "Names of the distance fields.")
       .def_property_readonly("attached", &attached_keys, "Names of the held objects.")
       .def(
           "pose_of",

@@ -1,16 +1,55 @@
 #include "long_call.hpp"
 
+#include <atomic>
 #include <chrono>
+#include <thread>
 
 namespace mmgrasp::python {
+namespace {
+
+// When the interpreter ends, threads of Python's own that come back from a long call are killed by unwinding their
+// stacks, which no C++ frame survives. So the calls of other threads are ended before, and their threads go to sleep.
+std::atomic<bool> g_closing{false};
+std::atomic<int> g_waiting{0};  // calls of any thread that have not gone to sleep
+
+struct Waiting {
+  Waiting() { ++g_waiting; }
+  ~Waiting() { --g_waiting; }
+  Waiting(const Waiting&) = delete;
+  Waiting& operator=(const Waiting&) = delete;
+};
+
+constexpr std::chrono::milliseconds kPoll(30);
+constexpr int kMostPolls = 100;  // The interpreter waits this often for calls that do not end.
+
+void end_calls() {
+  g_closing = true;
+  const py::gil_scoped_release release;
+  for (int i = 0; i < kMostPolls && g_waiting > 0; ++i) std::this_thread::sleep_for(kPoll);
+}
+
+/// Threads that Python knows as its main one never sleep: they are what ends the interpreter.
+bool is_main_thread() {
+  const py::module_ threading = py::module_::import("threading");
+  return threading.attr("current_thread")().is(threading.attr("main_thread")());
+}
+
+}  // namespace
+
+void end_calls_at_exit() {
+  py::module_::import("atexit").attr("register")(py::cpp_function(&end_calls));
+}
 
 bool LongCall::wait() {
+  const Waiting waiting;
+  const bool may_sleep = !is_main_thread();
   while (true) {
     bool done = false;
     {
       py::gil_scoped_release release;
+      if (may_sleep && g_closing) sleep_for_ever();
       std::unique_lock lock(mutex_);
-      changed_.wait_for(lock, std::chrono::milliseconds(30), [this] { return done_; });
+      changed_.wait_for(lock, kPoll, [this] { return done_; });
       done = done_;
     }
     if (done) return true;
@@ -24,6 +63,16 @@ bool LongCall::wait() {
   }
   monitor_.stop.stop();
   return false;
+}
+
+void LongCall::sleep_for_ever() {
+  monitor_.stop.stop();
+  {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return done_; });
+  }
+  --g_waiting;
+  while (true) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
 void LongCall::hand_over_progress() {

@@ -59,6 +59,8 @@ class LongCall {
   /// False when a signal handler or the progress callback raised; the Python error is then set and the call told to
   /// stop.
   bool wait();
+  /// For a thread that the interpreter's end would kill: without the GIL.
+  [[noreturn]] void sleep_for_ever();
   void hand_over_progress();
 
   py::object progress_;
@@ -68,5 +70,8 @@ class LongCall {
   bool done_ = false;
   std::optional<std::pair<std::string, double>> latest_;
 };
+
+/// Registers with Python's atexit that long calls of other threads end before the interpreter does.
+void end_calls_at_exit();
 
 }  // namespace mmgrasp::python

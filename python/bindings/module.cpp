@@ -1,10 +1,14 @@
+#include "bare_objects.hpp"
 #include "bindings.hpp"
+#include "long_call.hpp"
 #include "mmgrasp/collision/world.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
 
 namespace mmgrasp::python {
 
+void bind_distance_fields(py::module_& m);
 void bind_mapping(py::module_& m);
+void bind_sdf(py::module_& m);
 void bind_graspability(py::module_& m);
 void bind_capability(py::module_& m);
 void bind_trajopt(py::module_& m);
@@ -29,6 +33,7 @@ PYBIND11_MODULE(_core, m) {
   declare_classes(m);
   bind_core(m);
   bind_geometry(m);
+  bind_distance_fields(m);
   bind_optim(m);
   bind_robot(m);
   bind_collision(m);
@@ -45,7 +50,10 @@ PYBIND11_MODULE(_core, m) {
   bind_pickle(m);
   bind_platform_locations(m);
   bind_mapping(m);
+  bind_sdf(m);
   bind_graspability(m);
   bind_structure(m);
   bind_verify(m);
+  refuse_bare_objects(m);
+  end_calls_at_exit();
 }

@@ -51,6 +51,9 @@ from ._core import (
     time_parameterize as time_parameterize,
 )
 
+# What depth cameras saw
+from ._core import ProbabilisticSdf as ProbabilisticSdf
+
 # Grasps: an object carried, or taken while the base drives
 from ._core import (
     Grasp as Grasp,
@@ -69,8 +72,10 @@ from .scenario import load_scenario as load_scenario
 if not _typing.TYPE_CHECKING:  # type checkers know what is there; this is for what is not
 
     def __getattr__(name: str) -> _typing.NoReturn:
-        from ._moved import place_of
+        from ._moved import is_import, place_of
 
         place = place_of(name)
+        if place and is_import():  # the import statement would say only that there is no such name
+            raise ImportError(f"mmgrasp.{name} moved: {place}", name="mmgrasp")
         message = f"mmgrasp.{name} moved: {place}" if place else f"module 'mmgrasp' has no attribute '{name}'"
         raise AttributeError(message, name=name)

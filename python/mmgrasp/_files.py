@@ -1,9 +1,11 @@
-"""Files: written under a temporary name and renamed, found relative to the file that names them."""
+"""Files: read and written with care, found relative to the file that names them."""
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
+import stat
 import tempfile
 from pathlib import Path
 
@@ -20,36 +22,109 @@ def shipped(path: str | os.PathLike[str]) -> Path:
 
 
 def check_folder(path: Path) -> None:
-    """Raises IoError unless the folder is there or can be made: for calls that work long before they write."""
-    there = path
-    while not there.exists() and there != there.parent:
-        there = there.parent
-    if not there.is_dir():
-        raise IoError(f"{path}: cannot be written: {there} is no folder")
-    if not os.access(there, os.W_OK | os.X_OK):
-        raise IoError(f"{path}: cannot be written: no permission to write into {there}")
+    """Raises IoError unless files can be written into the folder, which is made for the trial and removed again: for calls that work long before they write."""
+    made: list[Path] = []
+    try:
+        for folder in reversed([path, *path.parents]):
+            if not folder.exists():
+                folder.mkdir()
+                made.append(folder)
+            elif not folder.is_dir():
+                raise IoError(f"{printable(os.fspath(path))}: cannot be written: {folder} is no folder")
+        handle, trial = tempfile.mkstemp(dir=path, prefix=".trial.")
+        os.close(handle)
+        os.unlink(trial)
+    except IoError:
+        raise
+    except (OSError, ValueError) as error:
+        raise _cannot_write(path, error) from None
+    finally:
+        for folder in reversed(made):
+            with contextlib.suppress(OSError):
+                folder.rmdir()
+
+
+def check_file(path: Path) -> None:
+    """Raises IoError unless a file can be written there: see check_folder."""
+    check_folder(_target(path).parent)
+
+
+def _cannot_write(path: Path, error: Exception) -> IoError:
+    reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return IoError(f"{printable(os.fspath(path))}: cannot be written: {reason}")
+
+
+def _target(path: Path) -> Path:
+    """Where a file is really written: links are followed, and nothing but a regular file is replaced."""
+    try:
+        target = Path(os.path.realpath(path))
+        kind = os.lstat(target).st_mode
+    except FileNotFoundError:
+        return target
+    except (OSError, ValueError) as error:
+        raise _cannot_write(path, error) from None
+    if not stat.S_ISREG(kind):
+        what = "is a folder" if stat.S_ISDIR(kind) else "is no regular file"
+        raise IoError(f"{printable(os.fspath(path))}: cannot be written: {what}")
+    return target
 
 
 def write_file(path: Path, content: str | bytes) -> None:
-    """Writes all or nothing: a reader never sees half a file."""
+    """Writes all or nothing: a reader never sees half a file. Of a link the file is replaced that it leads to."""
     data = content.encode() if isinstance(content, str) else content
+    target = _target(path)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, draft = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    except OSError as error:
-        raise IoError(f"{path}: cannot be written: {error.strerror or error}") from None
+        target.parent.mkdir(parents=True, exist_ok=True)
+        handle, draft = tempfile.mkstemp(dir=target.parent, prefix=".draft.")
+    except (OSError, ValueError) as error:
+        raise _cannot_write(path, error) from None
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(data)
         umask = os.umask(0)
         os.umask(umask)
         os.chmod(draft, 0o666 & ~umask)
-        os.replace(draft, path)
+        os.replace(draft, target)
     except OSError as error:
-        raise IoError(f"{path}: cannot be written: {error.strerror or error}") from None
+        raise _cannot_write(path, error) from None
     finally:
         if os.path.exists(draft):
             os.unlink(draft)
+
+
+def read_text(path: Path, most: int) -> str:
+    """The text of a regular file of at most `most` bytes; raises IoError otherwise."""
+    shown = printable(os.fspath(path))
+    try:
+        with open(path, "rb", opener=_open_now) as file:
+            found = os.fstat(file.fileno())
+            if stat.S_ISDIR(found.st_mode):
+                raise IoError(f"{shown}: cannot be read: is a folder")
+            if not stat.S_ISREG(found.st_mode):
+                raise IoError(f"{shown}: cannot be read: is no regular file")
+            data = file.read(most + 1)
+        if len(data) > most:
+            raise IoError(f"{shown}: cannot be read: is larger than {most} bytes")
+        return data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise IoError(f"{shown}: is no UTF-8 text (byte {error.start})") from None
+    except OSError as error:
+        if isinstance(error, IoError):
+            raise
+        raise IoError(f"{shown}: cannot be read: {error.strerror or error}") from None
+    except ValueError as error:
+        raise IoError(f"{shown}: cannot be read: {error}") from None
+
+
+def _open_now(path: str, flags: int) -> int:
+    return os.open(path, flags | os.O_NONBLOCK)  # a pipe without a writer does not block
+
+
+def printable(text: str) -> str:
+    """The text with what would move a terminal's cursor, or cannot be encoded, written as escapes."""
+    return "".join(
+        c if c.isprintable() or c == "\n" else c.encode("unicode_escape", "surrogatepass").decode() for c in text
+    )
 
 
 def sha256_of(path: str | Path) -> str:

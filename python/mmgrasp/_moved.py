@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import dis
+import sys
+
 from . import base, collision, grasping, mapping, optim, part_supply, planning, robot, scenario, verify
 
 ROOMS = (robot, collision, planning, grasping, base, mapping, optim, part_supply, scenario, verify)
@@ -30,6 +33,12 @@ PROBLEMS = {
     "motion_bench": (),
     "motion_bench_run": (),
 }
+
+
+def is_import() -> bool:
+    """Whether the caller's caller asks by `from mmgrasp import ...`."""
+    frame = sys._getframe(2)
+    return dis.opname[frame.f_code.co_code[frame.f_lasti]] == "IMPORT_FROM"
 
 
 def place_of(name: str) -> str | None:

@@ -74,9 +74,19 @@ class RoadmapStatistics(TypedDict):
     mean_degree: float
     components: int  # connected parts
     largest_component: int  # its vertices
-    radius: float  # of connection [rad or m]
+    neighbours: int  # nearest vertices that each is joined with; 0: all within the radius
+    radius: float  # of connection, with nearest vertices the longest edge [rad or m]
     volume: float  # of the joint limits
     gamma_star: float  # the gamma that PRM* asks for
+
+
+class StageRow(TypedDict):
+    """What one stage of a planner over many grasps contributed, in `ManipulationStats.stages`."""
+
+    improvements: int
+    first_seconds: float  # of its first better path, since the call began
+    last_seconds: float
+    cost: float  # of its last one
 
 
 class ManipulationStats(TypedDict):
@@ -89,10 +99,12 @@ class ManipulationStats(TypedDict):
     nodes_opened: int
     grasps_searched: int
     roadmap_cost: float
+    roadmap_bound: float
     edges_checked_robot: int
     edges_checked_attached: int
     samples: int
     vertices: int
+    stages: dict[str, StageRow]  # by name, in the order of their first improvement
 
 
 class DriveByEventRow(TypedDict):

@@ -16,6 +16,13 @@ from ._core import (
     simplify_mesh as simplify_mesh,
 )
 
+# Signed distances as obstacles
+from ._core import (
+    DistanceField as DistanceField,
+    GridDistanceField as GridDistanceField,
+    MeshDistanceField as MeshDistanceField,
+)
+
 # The world and its checker
 from ._core import (
     World as World,

@@ -1,4 +1,4 @@
-"""What a camera sees: depth images, height maps, point clouds, box-shaped parts, and parts that lie at random."""
+"""What a camera sees: depth images, height maps, maps of surfaces, point clouds, box-shaped parts, parts that lie at random."""
 
 # Cameras and their images
 from ._core import (
@@ -8,6 +8,15 @@ from ._core import (
     DepthImage as DepthImage,
     make_height_map as make_height_map,
     HeightMap as HeightMap,
+)
+
+# Depth cameras and the map that their frames make
+from ._core import (
+    DepthCamera as DepthCamera,
+    DepthNoise as DepthNoise,
+    ProbabilisticSdf as ProbabilisticSdf,
+    IntegrationReport as IntegrationReport,
+    SdfHits as SdfHits,
 )
 
 # Point clouds

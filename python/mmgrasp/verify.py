@@ -16,6 +16,7 @@ from ._core.verify import (
     CheckedPick as CheckedPick,
     CheckedRegion as CheckedRegion,
     CheckedStop as CheckedStop,
+    CheckedTray as CheckedTray,
     Fault as Fault,
     PathCheckResult as PathCheckResult,
     PlanCheckResult as PlanCheckResult,
@@ -23,4 +24,5 @@ from ._core.verify import (
     StopRate as StopRate,
     check_path as check_path,
     check_plan as check_plan,
+    overlapping_bodies as overlapping_bodies,
 )

@@ -19,7 +19,10 @@ URDF = """<robot name="r"><link name="o"/>
 <joint name="k" type="prismatic"><parent link="b"/><child link="tip"/><origin xyz="0.2 0 0"/><axis xyz="1 0 0"/><limit lower="0" upper="1" velocity="1"/></joint>
 </robot>"""
 
-ROBOT = mg.Robot.from_strings(URDF, base="omni")
+SRDF = """<robot name="r"><group name="arm"><chain base_link="o" tip_link="tip"/></group>
+<group_state name="ready" group="arm"><joint name="i" value="0.1"/><joint name="j" value="0.2"/><joint name="k" value="0.3"/></group_state>
+</robot>"""
+ROBOT = mg.Robot.from_strings(URDF, SRDF, base="omni")
 ARM = ROBOT.group(base_link="o", tip="tip").with_acceleration_limits([1, 1, 1])
 Q = np.array([0.25, 0.5, 0.5])
 POSE = ARM.fk(Q)
@@ -39,6 +42,16 @@ def held() -> mg.World:
     return held
 
 
+def depth_camera() -> mg.mapping.DepthCamera:
+    pinhole = mg.mapping.PinholeCamera(width=40, height=30, fx=60.0, fy=60.0, cx=19.5, cy=14.5)
+    return mg.mapping.DepthCamera(pinhole, mg.mapping.DepthNoise(constant=0.001))
+
+
+def depth_frame() -> mg.mapping.DepthImage:
+    """A wall 0.3 m in front of the camera."""
+    return mg.mapping.DepthImage(np.full((30, 40), 0.3, np.float32), depth_camera().intrinsics)
+
+
 def gripper() -> mg.Hand:
     return mg.Hand("tip", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.05, finger_width=0.02)
 
@@ -51,6 +64,7 @@ X_Y_THETA = np.array([0.5, 0.25, 0.75])
 
 # Good arrays by the argument's name, and by class or function where the name means something else there.
 VALUES: dict[str, Any] = {
+    "GridDistanceField.origin": [0.0, 0.0, 0.0],
     "q": Q,
     "q0": Q,
     "q1": Q,
@@ -59,6 +73,8 @@ VALUES: dict[str, Any] = {
     "path": np.array([Q, Q / 2]),
     "start": Q,
     "goal": Q,
+    "base": Q,
+    "via": np.array([Q, Q]),
     "home": Q,
     "limits": np.ones(3),
     "velocity_limits": np.ones(3),
@@ -77,6 +93,10 @@ VALUES: dict[str, Any] = {
     "rotation": np.full(3, 0.25),
     "joint_weights": np.ones(3),
     "jerk_limits": np.ones(3),
+    "origins": np.array([[0.0, 0.0, 1.0], [0.25, 0.0, 1.0]]),
+    "directions": np.array([[0.0, 0.0, -1.0], [0.0, 0.5, -1.0]]),
+    "pose_covariance": 1e-6 * np.eye(6),
+    "ProbabilisticSdf.sigma": np.full((30, 40), 0.001),
     "lower": np.array([-1.0, -1.0, 0.0]),
     "plan_object_pick.places": POSE,
     "minimize_derivative_free.guess": np.array([0.5, 0.25]),
@@ -102,6 +122,7 @@ VALUES: dict[str, Any] = {
     "accelerations": np.ones((2, 3)),
     "centre": np.array([0.5, 0.5]),
     "origin": np.array([0.5, 0.5]),
+    "middle": np.array([0.5, 0.5]),
     "pose": POSE,
     "T": POSE,
     "eye": np.array([0.1, 0.2, 0.3]),
@@ -140,16 +161,22 @@ def capability_map() -> mg.base.CapabilityMap:
     return mg.base.CapabilityMap.build(ARM, upper=(1, 1, 2), voxel=1, poses=2, threads=1)
 
 
+def distance_field() -> mg.collision.GridDistanceField:
+    return mg.collision.GridDistanceField(np.ones((3, 3, 3)), [0.0, 0.0, 0.0], 0.5)
+
+
 OBJECTS: dict[str, Any] = {
     "Robot": lambda: ROBOT,
     "RobotSource": lambda: ROBOT.source,
     "JointGroup": lambda: ARM,
     "World": world,
+    "DistanceField": distance_field,
     "World.detach": held,
     "CollisionChecker": lambda: mg.CollisionChecker(ROBOT, world(), ARM),
     "ReachDatabase": lambda: mg.ReachDatabase.build(ARM, samples=1000, threads=1),
     "CapabilityMap": capability_map,
     "PinholeCamera": mg.mapping.PinholeCamera,
+    "ProbabilisticSdf": mg.ProbabilisticSdf,
     "BaseTracker": lambda: mg.base.BaseTracker(ROBOT),
     "IkObjective": lambda: mg.robot.joint_limit_objective(ARM),
     "IkSeedDatabase": lambda: mg.base.IkSeedDatabase(WHOLE_BODY),
@@ -164,7 +191,8 @@ OBJECTS: dict[str, Any] = {
 # Optional arguments that mean nothing without another one.
 COMPANIONS: dict[str, dict[str, Any]] = {
     "plan_platform_locations.T_link_camera": {"camera_link": "tip"},
-    "plan_motion.start": {"goal": Q},
+    **{f"plan_motion.{name}": {"group": ARM, "world": world()} for name in ("goal", "tool_poses")},
+    **{f"plan_motion.{name}": {"group": ARM, "world": world(), "goal": Q} for name in ("start", "via")},
     "plan_stops_exact.goal": {"start": np.array([0.5, 0.25])},
     "plan_stops_exact.start": {"goal": np.array([0.25, 0.5])},
     "fit_cuboids.T_world_tray": {"tray_size": [0.3, 0.4, 0.1]},
@@ -173,6 +201,11 @@ COMPANIONS: dict[str, dict[str, Any]] = {
 OTHERS: dict[str, Any] = {
     "robot": lambda: ROBOT,
     "urdf": lambda: URDF,
+    "World.add_field.name": lambda: "field",
+    "World.add_field.field": distance_field,
+    "GridDistanceField.values": lambda: np.ones((3, 3, 3)),
+    "JointGroup.q.values": lambda: {"i": 0.5},
+    "JointGroup.state.name": lambda: "ready",
     "JointTrajectory.names": lambda: ["i", "j", "k"],
     "depth": lambda: np.ones((480, 640), np.float32),
     "height": lambda: np.ones((3, 4)),
@@ -190,6 +223,8 @@ OTHERS: dict[str, Any] = {
     "grid": lambda: GRID,
     "place_region": lambda: PLACE_REGION,
     "camera": mg.mapping.PinholeCamera,
+    "ProbabilisticSdf.integrate.camera": depth_camera,
+    "ProbabilisticSdf.integrate.image": depth_frame,
     "render_depth.scene": lambda: [BOX],
     "random_placement.part": lambda: [BOX],
     "make_height_map.image": lambda: mg.mapping.render_depth([BOX], mg.mapping.PinholeCamera(width=8, height=6), POSE),
@@ -241,4 +276,5 @@ OTHERS: dict[str, Any] = {
     "verify.CheckedStop.trays": lambda: ["tray"],
     "verify.CheckedIntersection.trays": lambda: ["tray"],
     "verify.CheckedRegion.tray": lambda: "tray",
+    "verify.CheckedTray.max_distance": lambda: 1.0,
 }

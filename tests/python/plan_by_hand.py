@@ -47,7 +47,12 @@ def region(tray: str, iy: range, start: int, end: int) -> dict[str, Any]:
         "base_poses_feasible": 24,
         "rejections": causes,
     }
-    return {"tray": tray, "cells": {"0": [[y, start, end] for y in iy]}, "explanations": [explanation]}
+    return {
+        "tray": tray,
+        "cells": {"0": [[y, start, end] for y in iy]},
+        "base_poses_in_collision": 0,
+        "explanations": [explanation],
+    }
 
 
 def plan_by_hand() -> dict[str, Any]:
@@ -72,15 +77,15 @@ def plan_by_hand() -> dict[str, Any]:
             "robot": {"urdf": URDF, "srdf": "", "base": "diff_drive", "base_limits": {}, "meshes": []},
             "arm": {"joints": ["lift", "turn"], "tip_link": "tcp", "velocity_limits": [0.2, 1.0], "acceleration_limits": [1, 4]},
             "gripper": {"tcp_link": "tcp", "approach": [1, 0, 0], "closing": [0, 1, 0], "max_opening": 0.1, "finger_depth": 0.03,
-                        "finger_width": 0.02, "clearance": 0.005, "joints": [], "finger_links": []},
+                        "finger_width": 0.02, "clearance": 0.005, "closing_speed": 0.1, "joints": [], "finger_links": []},
             "other_joints": {}, "home": home, "start": [0.3, 0.3, 0.0], "goal": [2.5, 0.3, 0.0],
             "positioning_uncertainty": 0.1,
             "place_region": {"pose": pose(0, 0, 0.3), "size": [0.2, 0.2], "drop_gap": 0.03},
             "obstacles": [{"name": "table", "pose": pose(1.7, 1.2, 0.4), "shapes": box(0.4, 1.0, 0.8)},
                           {"name": "tray A", "pose": pose(1.7, 1.0, 0.85), "shapes": box(0.3, 0.3, 0.1)}],
-            "trays": [{"name": "A", "pose": pose(1.7, 1.0, 0.8), "size": [0.3, 0.3, 0.1]},
-                      {"name": "B & C", "pose": pose(1.7, 1.4, 0.8), "size": [0.3, 0.3, 0.1]}],
-            "parts": parts, "options": {},
+            "trays": [{"name": "A", "pose": pose(1.7, 1.0, 0.8), "size": [0.3, 0.3, 0.1], "headings": [0.0]},
+                      {"name": "B & C", "pose": pose(1.7, 1.4, 0.8), "size": [0.3, 0.3, 0.1], "headings": [0.0]}],
+            "parts": parts, "options": {}, "reach": {},
         },
         "grid": grid,
         "regions": [region("A", range(6, 14), 5, 15), region("B & C", range(8, 16), 6, 14)],
@@ -88,7 +93,7 @@ def plan_by_hand() -> dict[str, Any]:
                           {"trays": ["A", "B & C"], "heading": 0, "centre": [1.0, 1.1], "radius": 0.3, "cells": 48}],
         "lost_intersections": [],
         "stops": [{"pose": [1.0, 1.0, 0.0], "radius": 0.2, "trays": ["A", "B & C"], "intersection": 1}],
-        "lower_bound": 1,
+        "lower_bound": 1, "proven_minimal": True,
         "route": [{"poses": [[0.3, 0.3, 0.0], [0.3, 0.3, 0.7854], [1.0, 1.0, 0.7854], [1.0, 1.0, 0.0]], "length": 0.99,
                    "turning": 1.571, "duration": 4.0},
                   {"poses": [[1.0, 1.0, 0.0], [1.0, 1.0, -0.4373], [2.5, 0.3, -0.4373], [2.5, 0.3, 0.0]], "length": 1.655,

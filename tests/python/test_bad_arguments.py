@@ -23,6 +23,7 @@ STUBS = Path(mg.__file__).parent / "_core"
 # Images and points of scans may hold NaN; a scale may be a number.
 OTHER_RULES = (
     "DepthImage.depth",
+    "GridDistanceField.values",
     "HeightMap.height",
     "fit_cuboids.points",
     "LinkShape.mesh.scale",

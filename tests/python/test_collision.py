@@ -243,3 +243,46 @@ def test_wrong_batches_are_refused(checker: mg.CollisionChecker, draws: np.ndarr
     for scan in (np.array([[0.0, np.nan, 0.0]]), np.array([[0.0, np.inf, 0.0]])):
         with pytest.raises(mg.InvalidInput, match=r"points holds (nan|inf) at entry \(0, 1\)"):
             mg.World().add_points("scan", scan, resolution=0.1)
+
+
+def box_grid(half: tuple[float, float, float], spacing: float) -> mg.collision.GridDistanceField:
+    """Signed distances from a box, at grid points within 0.5 m."""
+    at = np.arange(-0.5, 0.5 + spacing / 2, spacing)
+    points = np.stack(np.meshgrid(at, at, at, indexing="ij"), axis=-1)
+    off = np.abs(points) - half
+    values = np.linalg.norm(np.maximum(off, 0), axis=-1) + np.minimum(off.max(axis=-1), 0)
+    return mg.collision.GridDistanceField(values, [-0.5] * 3, spacing)
+
+
+def test_a_grid_of_distances_is_an_obstacle() -> None:
+    half = (0.1, 0.2, 0.05)
+    field = box_grid(half, 0.02)
+    assert field.error == pytest.approx(0.02 * 3**0.5 / 2)
+    np.testing.assert_allclose(field.domain, [[-0.5] * 3, [0.5] * 3])
+    np.testing.assert_allclose(field.distances(np.array([[0.3, 0, 0], [0, 0, 0]])), [0.2, -0.05], atol=1e-9)
+    distances, gradients = field.distances_and_gradients(np.array([[0.3, 0, 0], [2, 0, 0]]))
+    np.testing.assert_allclose(gradients, [[1, 0, 0], [0, 0, 0]], atol=1e-9)
+    assert np.isnan(distances[1])
+
+    urdf = """<robot name="slide"><link name="base"/><link name="ball"><collision><geometry><sphere radius="0.05"/>
+      </geometry></collision></link><joint name="x" type="prismatic"><parent link="base"/><child link="ball"/>
+      <axis xyz="1 0 0"/><limit lower="-2" upper="2" velocity="1" effort="1"/></joint></robot>"""
+    robot = mg.Robot.from_strings(urdf)
+    world = mg.World()
+    world.add_field("map", field, unknown_is_free=True)
+    assert world.fields == ["map"] and "map" in world
+    checker = mg.CollisionChecker(robot, world, group=robot.group(base_link="base", tip="ball"))
+    assert not checker.is_free([0.0])
+    assert not checker.is_free([0.149])
+    assert checker.is_free([0.15 + 2 * field.error + 0.0011])
+    found = checker.distance([0.4])
+    assert found.b == "map"
+    assert 0.25 - 2 * field.error - 0.002 <= found.value <= 0.25
+    assert checker.is_free([1.5])
+    world.remove("map")
+    world.add_field("map", field)  # what the grid does not know is an obstacle
+    assert not mg.CollisionChecker(robot, world, group=checker.group).is_free([1.5])
+    with pytest.raises(mg.InvalidInput, match="values"):
+        mg.collision.GridDistanceField(np.zeros((3, 3)), [0, 0, 0], 0.1)
+    with pytest.raises(mg.InvalidInput, match="spacing"):
+        mg.collision.GridDistanceField(np.zeros((3, 3, 3)), [0, 0, 0], -0.1)

@@ -134,7 +134,7 @@ def test_out_of_reach_is_told(robot: mg.Robot, group: mg.robot.JointGroup) -> No
     found = mg.plan_drive_by(
         robot, group, mg.World(), start=START, tasks=[mg.DriveByTask(mg.pose([5, 0, 4]))], goal=GOAL
     )
-    assert found.outcome == mg.Outcome.infeasible
+    assert found.outcome == mg.Outcome.not_found
     assert "task 0" in found.report
     assert found.trajectory is None
     assert found.duration == 0

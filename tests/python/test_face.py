@@ -103,6 +103,8 @@ def test_the_new_place_is_named_in_full() -> None:
         getattr(mg, "Gripper")  # noqa: B009
     with pytest.raises(AttributeError, match=r"moved: mmgrasp\.part_supply\.ScenarioPlan$"):
         getattr(mg, "PartSupplyPlan")  # noqa: B009
+    with pytest.raises(ImportError, match=r"^mmgrasp\.Gripper moved: mmgrasp\.Hand$"):
+        from mmgrasp import Gripper  # type: ignore[attr-defined] # noqa: F401
     with pytest.raises(AttributeError, match=r"^module 'mmgrasp' has no attribute 'plan_holiday'$"):
         getattr(mg, "plan_holiday")  # noqa: B009
 

@@ -68,6 +68,23 @@ def test_ik_all_is_diverse_and_free(robot: mg.Robot, arm: mg.robot.JointGroup) -
         arm.ik_all(TARGET, count=0)
 
 
+def test_all_turns_are_listed_on_request(tmp_path: Path) -> None:
+    urdf = "<robot name='turns'><link name='l0'/>"
+    for i in (1, 2):
+        urdf += (
+            f"<link name='l{i}'/><joint name='j{i}' type='revolute'><parent link='l{i - 1}'/><child link='l{i}'/>"
+            "<origin xyz='0.4 0 0'/><axis xyz='0 0 1'/><limit lower='-3.5' upper='3.5' velocity='1' effort='1'/></joint>"
+        )
+    (tmp_path / "turns.urdf").write_text(urdf + "</robot>")
+    arm = mg.Robot.load(tmp_path / "turns.urdf").group(base_link="l0", tip="l2")
+    pose = arm.fk([3.0, 0.5])
+    one = arm.ik_all(pose)
+    both = arm.ik_all(pose, all_turns=True)
+    assert one.shape == (1, 2)
+    assert sorted(both[:, 0]) == pytest.approx([3.0 - 2 * np.pi, 3.0], abs=1e-4)
+    assert len(arm.ik_branches(pose, all_turns=True)) == 2
+
+
 def test_platform_locations(robot: mg.Robot, tmp_path: Path) -> None:
     whole = robot.group("arm_with_torso", tip="gripper_tcp", with_base=True)
     checker = mg.CollisionChecker(robot, mg.World(), group=whole)

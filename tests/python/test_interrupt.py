@@ -45,10 +45,12 @@ def test_building_a_database_can_be_interrupted(small_path: Path, tmp_path: Path
     assert [p.name for p in tmp_path.iterdir() if not p.name.endswith(".partial")] == [], "finished parts at most"
 
 
+HARD_COVER = [[i % 300, *np.random.default_rng(i).integers(0, 300, 11).tolist()] for i in range(900)]
 CHECKER = OBJECTS["CollisionChecker"]()
 AHEAD = ARM.fk(Q + [0, 0, 0.2])
 LONG_PATH = np.cumsum(np.random.default_rng(1).normal(size=(20_000, 3)) / 10, axis=0)
 ENDLESS: dict[str, Callable[..., Any]] = {
+    "solve_set_cover": lambda **k: mg.optim.solve_set_cover(300, HARD_COVER, time_limit=1000, **k),
     "plan_straight_line": lambda **k: mg.planning.plan_straight_line(CHECKER, Q, AHEAD, position_step=1e-12, **k),
     "plan_cartesian": lambda **k: mg.plan_cartesian(CHECKER, [POSE, AHEAD], near=Q, position_step=1e-12, **k),
     "time_parameterize": lambda **k: mg.time_parameterize(LONG_PATH, [1] * 3, [1] * 3, jerk_limits=[1] * 3, **k),

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import copy
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -101,3 +103,23 @@ def test_any_object_is_picked_like_a_part(
         mg.base.plan_object_pick(
             problem.arm, problem.gripper, world, "stone", [], database=database, home=problem.home, base_pose=stop
         )
+
+
+@pytest.mark.slow
+def test_the_base_stays_in_its_workspace(small: dict[str, Any], write: Callable[..., Path]) -> None:
+    robot = small["robot"]
+
+    def within(workspace: float) -> dict[str, Any]:
+        limits = {**robot.get("base_limits", {}), "workspace": workspace}
+        return {**small, "robot": {**robot, "base_limits": limits}}
+
+    plan = mg.plan_part_supply(write(within(2.0)))  # without it the stop is at x = 2.06
+    assert plan.outcome == mg.Outcome.solved
+    for stop in plan.stops:
+        assert np.abs(stop.pose[:2]).max() + 0.1 <= 2.0 + 1e-6
+    assert max(np.abs(leg.poses[:, :2]).max() for leg in plan.route) <= 2.0 + 1e-9
+    assert mg.verify_plan(plan.to_dict(), samples=50).ok
+    near = {**within(0.5), "start": [-0.4, -0.4, 0.0], "goal": [-0.4, 0.4, 0.0]}
+    nothing = mg.plan_part_supply(write(near))
+    assert nothing.outcome == mg.Outcome.not_found
+    assert "base_limits.workspace (0.5 m)" in nothing.obstructions[0].message

@@ -143,7 +143,7 @@ def fault_by_fcl(cell: PipeCell, grasp: mg.Grasp, path: np.ndarray) -> str:
 @pytest.mark.parametrize("robot", ROBOTS)
 @pytest.mark.parametrize("number", range(1, 9))
 def test_both_arms_carry_every_structure(number: int, robot: str) -> None:
-    """With another planner than the one the generator asks, over other grasps."""
+    """Over other grasps than those that decide on the cell; nothing made sure that any of them would do."""
     cell = pipe_cell(number, robot=robot)
     grasps = cell.grasps(500)
     found = mg.plan_manipulation(
@@ -201,16 +201,15 @@ def test_trees_of_good_paths_join_few_of_the_vertices_within_a_step() -> None:
 
 @pytest.mark.slow
 def test_not_every_grasp_that_reaches_both_ends_can_carry() -> None:
-    """P2's reason to plan over many grasps: in cell 8 the first reachable grasp fails where another one carries the pipe."""
-    assert pipe_cell(8, seed=2).rejected["the first grasp within reach will do"] >= 1
-    cell = pipe_cell(8)
+    """P2's reason to plan over many grasps: in cell 7 the first reachable grasp fails where another one carries the pipe."""
+    cell = pipe_cell(7)
     grasps = cell.grasps(500)
     found = mg.plan_manipulation(cell.problem(grasps), vertices=5000, time_limit=100.0)
     assert found.outcome == mg.Outcome.solved
     assert fault_by_fcl(cell, grasps[found.grasp_index], found.path) == ""
     first = next(grasp for grasp in grasps if all(map(len, cell.ends(grasp))))
     starts, goals = cell.ends(first)
-    for start in starts:  # another planner than the generator's
+    for start in starts:
         tried = mg.plan_motion(
             cell.robot, cell.arm_holding(first), cell.world_holding(first), start=start, goal=goals, planner="bi_est",
             max_iterations=20_000, time_limit=600.0, shorten=False,
@@ -246,24 +245,56 @@ def test_straight_lines_do_not_carry_through_narrow_cells(number: int) -> None:
     assert free == 0
 
 
+@pytest.mark.parametrize("style", ["narrow", "open"])
+def test_cells_are_drawn_by_geometry_ends_and_straight_lines(style: str) -> None:
+    """Counted here one by one: over the grasps that decide, by inverse kinematics of each and checks of each line."""
+    causes = {
+        "no room for the pipe at its start",
+        "no room for the pipe at its goal",
+        "a post stands in the pipe at its start",
+        "a post stands in the pipe at its goal",
+        "fewer than 3 % of the grasps within reach",
+        "30 % of the grasps within reach, or more",
+        "a straight line will do",
+    }
+    for number in (2, 7):
+        cell = pipe_cell(number, seed=3, style=style)
+        assert causes >= set(cell.rejected)
+        reached = free = 0
+        for grasp in cell.grasps(500, seed=1_000_000):
+            starts, goals = cell.ends(grasp, 4)
+            if len(starts) == 0 or len(goals) == 0:
+                continue
+            reached += 1
+            if style == "narrow":
+                checker = mg.CollisionChecker(cell.robot, cell.world_holding(grasp), cell.arm_holding(grasp))
+                free += sum(checker.edge_is_free(a, b, 0.005) for a, b in itertools.product(starts, goals))
+        assert reached >= 0.03 * 500 and (number != 7 or style == "open" or reached < 0.3 * 500)
+        assert free == 0
+
+
 @pytest.mark.slow
-def test_open_cells_are_solved_over_roadmaps_as_sparse_as_in_p2() -> None:
-    """With other roadmaps than the generator's, and no edge that the roadmap would not have."""
-    cell = pipe_cell(2, style="open")
-    assert cell.style == "open"
-    problem, solved = cell.problem(cell.grasps(500)), 0
-    for seed in range(1, 6):
-        roadmap = mg.planning.Roadmap.build(cell.arm, vertices=5000, gamma=4.0, seed=seed)
-        assert roadmap.statistics["mean_degree"] < 3
-        found = mg.plan_manipulation(problem, roadmap=roadmap, straight=False, shorten=False)
-        if found.outcome == mg.Outcome.solved:
-            solved += 1
-            assert max(np.linalg.norm(np.diff(found.path, axis=0), axis=1)) <= roadmap.statistics["radius"] + 1e-9
-    assert solved >= 3
+def test_roadmaps_as_sparse_as_in_p2_solve_some_open_cells_and_the_default_all() -> None:
+    """Each with roadmaps of its own; no edge is longer than the sparse one's radius."""
+    solved = {4.0: 0, 0.0: 0}
+    for number, seed in itertools.product((2, 3, 4, 8), (1, 2)):
+        cell = pipe_cell(number, seed=seed, style="open")
+        problem = cell.problem(cell.grasps(500))
+        for gamma in solved:
+            roadmap = mg.planning.Roadmap.build(cell.arm, vertices=5000, gamma=gamma, seed=seed)
+            found = mg.plan_manipulation(problem, roadmap=roadmap, straight=False, shorten=False, time_limit=100.0)
+            assert bool(found.warnings) == (gamma > 0)
+            if found.outcome != mg.Outcome.solved:
+                continue
+            solved[gamma] += 1
+            if gamma > 0:
+                longest = max(np.linalg.norm(np.diff(found.path, axis=0), axis=1))
+                assert longest <= roadmap.statistics["radius"] + 1e-9
+    assert 0 < solved[4.0] < solved[0.0] == 8
 
 
 def test_cells_with_too_many_grasps_within_reach_are_turned_down() -> None:
-    cell = pipe_cell(8, seed=2)
+    cell = pipe_cell(8, seed=1)
     assert cell.rejected["30 % of the grasps within reach, or more"] >= 1
     assert cell.drawn == 1 + sum(cell.rejected.values())
 

@@ -22,6 +22,7 @@ from mmgrasp.reproduce import ENTRIES, entry, reproduce
 from mmgrasp.reproduce.page import markdown, store
 from mmgrasp.reproduce.rows import PAPER_ROWS
 from mmgrasp.reproduce.setup import Row, database, robot_setup
+from mmgrasp.reproduce.statements import ANSWERS
 
 pytestmark = pytest.mark.slow
 
@@ -53,7 +54,10 @@ SCHEMA = {
                 },
             },
         },
-        "checks": {"type": "array", "items": {"properties": {"kind": {"enum": ["E", "T"]}}}},
+        "checks": {
+            "type": "array",
+            "items": {"properties": {"kind": {"enum": ["E", "T", "S"]}, "answer": {"enum": list(ANSWERS)}}},
+        },
     },
 }
 

@@ -66,6 +66,10 @@ BAD = [
     ("robot.base_limits.linear_velocity", 0, ["linear_velocity", "> 0"]),
     ("robot.mount", [{"urdf": "none.urdf", "parent_link": "x"}], ["robot.mount[0].urdf", "no such file"]),
     ("robot.frames", [{"name": "tip2", "parent": "nope"}], ["robot.frames[0].parent", "nope"]),
+    ("gripper", {"from_robot": "thumb"}, ["gripper", "thumb"]),
+    ("gripper", {"from_robot": 3}, ["gripper.from_robot", "SRDF"]),
+    ("gripper", {"from_robot": True, "max_opening": 0.1}, ["gripper.max_opening", "unknown key"]),
+    ("gripper", {"from_robot": True, "closing": [0, 0, 2]}, ["gripper.closing", "unit"]),
     ("gripper.approach", [1, 1, 0], ["gripper.approach", "unit"]),
     ("gripper.closing", [1, 0, 0], ["gripper.closing", "orthogonal"]),
     ("gripper.max_opening", 0, ["gripper.max_opening", "> 0"]),
@@ -104,6 +108,36 @@ BAD = [
     ("options.seed", 1.5, ["options.seed", "1.5", "whole number"]),
     ("reach.samples", 0, ["reach", "samples", "0"]),
     ("reach.sample", 10, ["reach.sample", "did you mean samples?"]),
+    ("options.lift_height", 0.001, ["options.lift_height", "0.001", "[0.01, 10] m"]),
+    ("options.route_resolution", 1e-4, ["options.route_resolution", "[0.001, 100] m"]),
+    ("options.robustness_samples", 2_000_000_000, ["options.robustness_samples", "base poses"]),
+    ("options.threads", 1_000_000_000, ["options.threads", "1024"]),
+    ("options.motion_time_limit", 1e6, ["options.motion_time_limit", "86400 s"]),
+    ("part_types.bracket.grasp_options", {"approaches": 1_000_000_000}, ["approaches", "360"]),
+    ("part_types.bracket.grasp_options", {"positions": 1_000_000_000}, ["positions", "100"]),
+    ("part_types.bracket.grasp_options", {"mesh_samples": 1_000_000_000}, ["mesh_samples", "100000"]),
+    ("robot.urdf", "~nosuchuser/x.urdf", ["robot.urdf", "no such file"]),
+    ("robot.urdf", "x" * 5000, ["robot.urdf", "no such file"]),
+    ("robot.xacro_args", {"a": 1}, ["robot.xacro_args", "only a .xacro file"]),
+    ("robot.base_limits.linear_velocity", 1e-300, ["linear_velocity", "at least 1e-06"]),
+    ("robot.base_limits.workspace", 0.5, ["start", "base_limits.workspace"]),
+    ("robot.frames", [{"name": "base_link", "parent": "base_link"}], ["robot.frames[0].name", "already"]),
+    ("robot.frames", [{"name": "place_bin", "parent": "base_link"}], ["robot.frames[0].name", "already"]),
+    ("robot.joints.elbow_flex_joint", 0.0, ["elbow_flex_joint", "a joint of the arm"]),
+    ("gripper.joints.0.name", "elbow_flex_joint", ["gripper.joints[0].name", "a joint of the arm"]),
+    ("gripper.finger_links", [], ["gripper.finger_links", "at least two"]),
+    ("gripper.finger_links", ["left_gripper_finger_link"], ["gripper.finger_links", "at least two"]),
+    ("gripper.finger_links", ["left_gripper_finger_link"] * 2, ["gripper.finger_links", "each once"]),
+    (
+        "gripper.finger_links",
+        ["left_gripper_finger_link", "base_link"],
+        ["gripper.finger_links[1]", "no part of the hand"],
+    ),
+    ("gripper.closing_speed", 0, ["gripper.closing_speed", "> 0"]),
+    ("place_region.size", [0.3, 1e-300, 0.1], ["place_region.size[1]", "at least 1e-06"]),
+    ("name", "\x1b[31mred", ["name", "control characters"]),
+    ("trays.0.name", "x" * 5000, ["trays[0].name", "at most 200 characters"]),
+    ("trays.0.parts.spacing", [0.02, 0.08], ["trays[0].parts", "overlaps part"]),
     ("start", [2.8, -0.7, 0], ["start", "in collision", "touches"]),
     ("goal", [2.8, -0.7, 0], ["goal", "in collision", "touches"]),
 ]
@@ -224,6 +258,21 @@ def test_listed_parts_and_own_grasps(small: dict[str, Any], write: Callable[...,
     assert [p.name for p in parts] == ["A/left", "A/bracket_01"]
     assert [p.target for p in parts] == [True, False]
     assert [g.opening for g in parts[0].grasps] == [0.03]
+
+
+def test_a_hand_may_be_read_from_the_robot(small: dict[str, Any], write: Callable[..., Path]) -> None:
+    by_hand = mg.load_scenario(write(small)).setup.gripper
+    read = {**small, "gripper": {"from_robot": True, "clearance": 0.007}}
+    schema = json.loads((ASSETS.parent / "schemas" / "scenario.schema.json").read_text())
+    jsonschema.validate(read, schema)
+    hand = mg.load_scenario(write(read)).setup.gripper
+    assert hand.tool_link == by_hand.tool_link
+    assert hand.clearance == 0.007
+    np.testing.assert_array_equal(hand.approach, by_hand.approach)
+    np.testing.assert_array_equal(hand.closing, by_hand.closing)
+    assert sorted(hand.finger_links) == sorted(by_hand.finger_links)
+    assert hand.max_opening == pytest.approx(by_hand.max_opening, abs=0.005)
+    assert {j.name for j in hand.joints} == {j.name for j in by_hand.joints}
 
 
 @pytest.mark.parametrize("name", sorted(p.name for p in (ASSETS / "scenarios").glob("*.yaml")))

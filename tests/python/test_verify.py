@@ -184,7 +184,132 @@ def bin_moved(plan: dict[str, Any]) -> None:
     plan["scenario"]["place_region"]["pose"]["xyz"][0] -= 0.5
 
 
+def approach_cut(plan: dict[str, Any]) -> None:
+    """All but the last third is done in the transit."""
+    transit, approach = plan["picks"][0]["motions"][:2]
+    cut = 2 * len(approach["times"]) // 3
+    for key in ("positions", "velocities", "accelerations"):
+        transit[key] += approach[key][1 : cut + 1]
+        approach[key] = approach[key][cut:]
+    end, begin = transit["times"][-1], approach["times"][cut]
+    transit["times"] += [end + t for t in approach["times"][1 : cut + 1]]
+    approach["times"] = [t - begin for t in approach["times"][cut:]]
+
+
+def lift_cut(plan: dict[str, Any]) -> None:
+    lift, transfer = plan["picks"][0]["motions"][2:4]
+    cut = len(lift["times"]) // 3
+    begin, rest = lift["times"][cut], len(lift["times"]) - 1 - cut
+    for key in ("positions", "velocities", "accelerations"):
+        transfer[key] = lift[key][cut:-1] + transfer[key]
+        lift[key] = lift[key][: cut + 1]
+    ends = [t - begin for t in lift["times"][cut:]]
+    transfer["times"] = ends[:rest] + [ends[-1] + t for t in transfer["times"]]
+    lift["times"] = lift["times"][: cut + 1]
+
+
+def accelerations_zeroed(plan: dict[str, Any]) -> None:
+    for pick in plan["picks"]:
+        for m in pick["motions"]:
+            m["accelerations"] = [[0.0] * len(row) for row in m["accelerations"]]
+
+
+def widths_scaled(plan: dict[str, Any], factor: float) -> None:
+    for part in plan["scenario"]["parts"]:
+        for grasp in part["grasps"]:
+            grasp["width"] *= factor
+    for pick in plan["picks"]:
+        for m in pick["motions"]:
+            if m["holding"]:
+                m["opening"] *= factor
+
+
+def fingers_press_into_the_part(plan: dict[str, Any]) -> None:
+    widths_scaled(plan, 0.5)
+
+
+def fingers_stand_clear_of_the_part(plan: dict[str, Any]) -> None:
+    widths_scaled(plan, 1.2)
+
+
+def region_and_radius_inflated(plan: dict[str, Any]) -> None:
+    cells = plan["regions"][0]["cells"]
+    rows = {iy: (a, b) for iy, a, b in cells["0"]}
+    wide = min(a for a, _ in rows.values()) - 2, max(b for _, b in rows.values()) + 2
+    cells["0"] = [[iy, *wide] for iy in range(min(rows) - 2, max(rows) + 3)]
+    plan["stops"][0]["radius"] *= 1.3
+
+
+def rate_halved(plan: dict[str, Any]) -> None:
+    plan["robustness_rate"] = 0.5
+
+
+def obstructed_and_solved(plan: dict[str, Any]) -> None:
+    nothing = {"reach_deficit": 0, "advised_move": [0, 0], "move_trays": [], "move_objects": [], "needed_opening": 0}
+    plan["obstructions"] = [
+        {"tray": "A", "part": "", "stage": "region", "message": "x", "largest_uncertainty": -1, **nothing}
+    ]
+
+
+def called_not_minimal(plan: dict[str, Any]) -> None:
+    plan["proven_minimal"] = False
+
+
+def tcp_elsewhere(plan: dict[str, Any]) -> None:
+    plan["scenario"]["gripper"]["tcp_link"] = "base_link"
+
+
+def closing_along_the_approach(plan: dict[str, Any]) -> None:
+    plan["scenario"]["gripper"]["closing"] = plan["scenario"]["gripper"]["approach"]
+
+
+def other_intersection(plan: dict[str, Any]) -> None:
+    plan["stops"][0]["intersection"] = 999
+
+
+def cells_miscounted(plan: dict[str, Any]) -> None:
+    plan["intersections"][0]["cells"] += 1
+
+
+def tray_moved(plan: dict[str, Any]) -> None:
+    plan["scenario"]["trays"][0]["pose"]["xyz"][0] += 0.05
+
+
+def tray_flattened(plan: dict[str, Any]) -> None:
+    plan["scenario"]["trays"][0]["size"][2] *= 0.5
+
+
+def other_headings(plan: dict[str, Any]) -> None:
+    plan["scenario"]["trays"][0]["headings"] = [0.3]
+
+
+def causes_miscounted(plan: dict[str, Any]) -> None:
+    plan["regions"][0]["explanations"][0]["rejections"]["scene"] += 1
+
+
+def workspace_shrunk(plan: dict[str, Any]) -> None:
+    plan["scenario"]["robot"]["base_limits"]["workspace"] = 0.5
+
+
 BREAKS = [
+    approach_cut,
+    lift_cut,
+    accelerations_zeroed,
+    fingers_press_into_the_part,
+    fingers_stand_clear_of_the_part,
+    region_and_radius_inflated,
+    rate_halved,
+    obstructed_and_solved,
+    called_not_minimal,
+    tcp_elsewhere,
+    closing_along_the_approach,
+    other_intersection,
+    cells_miscounted,
+    tray_moved,
+    tray_flattened,
+    other_headings,
+    causes_miscounted,
+    workspace_shrunk,
     joint_moved,
     end_moved,
     joint_beyond_limit,
@@ -237,6 +362,85 @@ def test_broken_plans_are_refused(small_plan_dict: dict[str, Any], breaking: Any
     verdict = mg.verify_plan(plan, samples=200)
     assert not verdict.ok
     assert all(fault.code and fault.message for fault in verdict.faults)
+
+
+@pytest.mark.parametrize(
+    ("breaking", "code"),
+    [
+        (approach_cut, "short-approach"),
+        (lift_cut, "no-lift"),
+        (accelerations_zeroed, "acceleration"),
+        (fingers_press_into_the_part, "grasp-width"),
+        (fingers_stand_clear_of_the_part, "grasp-width"),
+        (region_and_radius_inflated, "stop-radius"),
+        (workspace_shrunk, "base-workspace"),
+    ],
+    ids=lambda f: getattr(f, "__name__", f),
+)
+def test_broken_plans_are_refused_for_what_is_broken(small_plan_dict: dict[str, Any], breaking: Any, code: str) -> None:
+    plan = copy.deepcopy(small_plan_dict)
+    breaking(plan)
+    assert code in {fault.code for fault in mg.verify_plan(plan, samples=50).faults}
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("proven_minimal", "banana"),
+        ("regions.0.cells.0.0", 3),
+        ("scenario.obstacles.0.pose", {"xyz": [0, 0, 0], "rpy": [0, 0, 0]}),
+        ("scenario.obstacles.0.shapes", []),
+        ("scenario.gripper.finger_depth", "x"),
+        ("scenario.options.seed", None),
+        ("scenario.extra", 1),
+        ("timings", 3),
+        ("stops.0.intersection", 1.5),
+        ("robustness_rate", 1e400),
+        ("lost_intersections", {}),
+    ],
+)
+def test_values_of_another_form_are_named(small_plan_dict: dict[str, Any], path: str, value: Any) -> None:
+    plan = copy.deepcopy(small_plan_dict)
+    here: Any = plan
+    *parents, last = [int(key) if key.isdigit() and not parent == "cells" else key
+                      for parent, key in itertools.pairwise(["", *path.split(".")])]  # fmt: skip
+    for key in parents:
+        here = here[key]
+    here[last] = value
+    with pytest.raises(mg.InvalidInput, match=path.split(".")[0]):
+        mg.verify_plan(plan)
+
+
+@pytest.mark.parametrize(
+    ("text", "piece"),
+    [
+        ('{"format": "mmgrasp-plan", "format": "mmgrasp-plan"}', "'format' is given twice"),
+        ('{"format": "mmgrasp-plan", "version": ' + "9" * 5000 + "}", "5000 digits"),
+        ('{"format": "mmgrasp-plan", "version": NaN}', "no number in JSON"),
+        ('{"format": ' + "[" * 900 + "]" * 900 + "}", "nested"),
+        ("[" * 100000, "nested"),
+        ('{"format": "mmgrasp-plan", "version": 2', "is no valid JSON"),
+        ("[]", "is no plan"),
+        ('"\\ud800"', "is no plan"),
+    ],
+)
+def test_texts_that_are_no_plan(tmp_path: Path, text: str, piece: str) -> None:
+    (tmp_path / "plan.json").write_text(text)
+    with pytest.raises(mg.InvalidInput, match=re.escape(piece)):
+        mg.verify_plan(tmp_path / "plan.json")
+
+
+def test_a_scenario_that_defines_another_problem_is_named(
+    small_plan_dict: dict[str, Any], small: dict[str, Any], write: Callable[..., Path]
+) -> None:
+    tray = {**small["trays"][0], "headings": [0.0, 0.3]}
+    for changed, where in (
+        ({**small, "trays": [tray]}, "trays[0].headings"),
+        ({**small, "reach": {"samples": 400_000}}, "reach.samples"),
+        ({**small, "gripper": {**small["gripper"], "closing_speed": 0.2}}, "gripper.closing_speed"),
+    ):
+        verdict = mg.verify_plan(small_plan_dict, scenario=write(changed), samples=20)
+        assert [f.where for f in verdict.faults if f.code == "scenario-changed"] == [f"scenario.{where}"]
 
 
 def urdf_changed(plan: dict[str, Any], old: str, new: str) -> None:

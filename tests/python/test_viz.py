@@ -3,7 +3,9 @@
 import re
 import struct
 import zlib
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,6 +16,9 @@ from plan_by_hand import plan_by_hand
 pytest.importorskip("mmgrasp")
 
 from mmgrasp.bodies import SceneBodies, stored_pose
+from mmgrasp.part_supply.plan_file import check_form, check_names, plan_schema
+from mmgrasp.scenario.reading import Document
+from mmgrasp.scenario.schema import NOTES, WORDS
 from mmgrasp.viz import png, raster, report, topview
 from mmgrasp.viz.scene import PlanScene
 from mmgrasp.viz.timeline import GRIP_TIME, State, Timeline, along_route
@@ -156,7 +161,7 @@ def test_report_tells_the_plan_and_needs_nothing_from_outside(tmp_path: Path) ->
 
 def test_report_of_no_plan_names_the_tray_and_the_advice() -> None:
     plan = plan_by_hand()
-    plan.update(outcome="infeasible", stops=[], route=[], picks=[])
+    plan.update(outcome="not_found", stops=[], route=[], picks=[])
     plan["obstructions"] = [{"tray": "A", "part": "A/brick_0", "stage": "robustness", "message": "no disc of 0.500 m fits",
                              "largest_uncertainty": 0.21, "reach_deficit": 0.0}]  # fmt: skip
     page = report.report_html(plan)
@@ -177,3 +182,33 @@ def test_pictures_show_regions_in_the_tray_colours(tmp_path: Path) -> None:
     robot = decode_png((tmp_path / "stop_1.png").read_bytes()).astype(int)
     arm_like = (robot[..., 2] - robot[..., 0] > 30).mean()
     assert arm_like > 0.002
+
+
+def test_the_plan_by_hand_has_the_schemas_form() -> None:
+    root = Document("plan", plan_by_hand(), {}).root
+    check_form(root)
+    check_names(root)
+    breakings: list[tuple[Callable[[dict[str, Any]], None], str]] = [
+        (lambda p: p["picks"][0].update(part="C/block_00"), "no such part"),
+        (lambda p: p["picks"][0].update(stop=7), "no such stop"),
+        (lambda p: p["stops"][0].update(intersection=7), "no such intersection"),
+        (lambda p: p["regions"][0].update(tray="X"), "no such tray"),
+        (lambda p: p["stops"][0].update(trays=["X"]), "no such tray"),
+    ]
+    for breaking, piece in breakings:
+        plan = plan_by_hand()
+        breaking(plan)
+        with pytest.raises(mg.InvalidInput, match=piece):
+            check_names(Document("plan", plan, {}).root)
+
+
+def words_of(schema: dict[str, Any]) -> set[str]:
+    """The words of a schema and of all schemas in it."""
+    below = [s for key in ("properties", "patternProperties", "$defs") for s in schema.get(key, {}).values()]
+    below += schema.get("oneOf", [])
+    below += [schema[key] for key in ("items", "additionalProperties") if isinstance(schema.get(key), dict)]
+    return set(schema).union(*(words_of(s) for s in below))
+
+
+def test_every_word_of_the_plans_schema_is_applied() -> None:
+    assert words_of(plan_schema()) <= WORDS | NOTES

@@ -10,6 +10,8 @@ const char* to_string(Outcome outcome) {
       return "approximate";
     case Outcome::infeasible:
       return "infeasible";
+    case Outcome::not_found:
+      return "not_found";
     case Outcome::timeout:
       return "timeout";
     case Outcome::stopped:

@@ -18,7 +18,7 @@ constexpr int kFiner = 10;           // when looking for collisions
 constexpr double kLeastRoom = 2e-4;  // the check takes gaps below 1e-4 m for contact
 
 VectorXd at_sample(const WholeBodyTrajectory& t, int interval, double s) {
-  const std::size_t i = static_cast<std::size_t>(interval);
+  const std::size_t i = interval;
   return s == 0 ? t.positions()[i] : t.at(t.times()[i] + s * (t.times()[i + 1] - t.times()[i]));
 }
 
@@ -192,7 +192,7 @@ std::set<CollisionRows::Sample> CollisionRows::regular_samples() const {
 
 VectorXd CollisionRows::reference(const Sample& sample) const {
   const auto& [i, s] = sample;
-  const std::size_t at = static_cast<std::size_t>(i);
+  const std::size_t at = i;
   return (1 - s) * reference_[at] + s * reference_[at + 1];
 }
 

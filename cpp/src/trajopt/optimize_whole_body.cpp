@@ -80,7 +80,7 @@ WholeBodyResult optimize_whole_body(const WholeBodyProblem& problem, const Whole
   result.violations = check_whole_body(problem, *result.trajectory, checkers);
   const bool kept =
       std::all_of(result.violations.begin(), result.violations.end(), [](const Violation& v) { return v.kept(); });
-  if (result.usable() && !kept) result.outcome = Outcome::infeasible;
+  if (result.usable() && !kept) result.outcome = Outcome::not_found;
   result.seconds = stopwatch.seconds();
   return result;
 }

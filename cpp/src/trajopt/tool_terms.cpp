@@ -76,7 +76,7 @@ void ToolPoseTerm::hessian(const double* x, const double* multipliers, double* o
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j <= i; ++j) {
       // Step j lies nearer to the base.
-      const std::size_t a = static_cast<std::size_t>(j), b = static_cast<std::size_t>(i);
+      const std::size_t a = j, b = i;
       const Quaterniond turned = pure(s.w[a]) * (pure(s.w[b]) * s.rotation);
       *out++ = d.dot(ToolChain::second(s, a, b)) + 0.5 * about.dot((target_world_ * turned).vec());
     }
@@ -175,7 +175,7 @@ MatrixXd ToolVelocityTerm::curvature(const double* x, const Motion& m, const Vec
       H(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) += sum;
       if (a != b) H(static_cast<Eigen::Index>(b), static_cast<Eigen::Index>(a)) += sum;
     }
-    for (std::size_t b = static_cast<std::size_t>(first); b < n; ++b) {
+    for (std::size_t b = first; b < n; ++b) {
       const Eigen::Index row = N + static_cast<Eigen::Index>(b) - (diff_drive_ ? 1 : 0),
                          col = static_cast<Eigen::Index>(a);
       const double cross = d.dot(ToolChain::second(m.s, std::min(a, b), std::max(a, b)));

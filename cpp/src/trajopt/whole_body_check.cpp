@@ -104,7 +104,7 @@ void check_limits(Ledger& ledger, const WholeBodyProblem& problem, const WholeBo
   const BaseKind base = moving_base(group);
   const BaseLimits& limits = group.robot().base_limits();
   const std::vector<std::string> drives = drive_names(group);
-  ledger.open("position", "rad or m", 1e-6);
+  ledger.open("position", "rad or m", 1e-5);  // what limits printed to five digits lose, as in collision checks
   for (const Sample& s : samples) {
     for (int c = 0; c < group.size(); ++c) {
       if (group.wraps()[c]) continue;
@@ -171,7 +171,7 @@ void check_tool(Ledger& ledger, const WholeBodyProblem& problem, const WholeBody
   std::vector<Vector6d> errors;
   std::vector<Eigen::Vector3d> speeds;
   for (const ToolConstraint& tool : problem.tool) {
-    const std::size_t at = static_cast<std::size_t>(tool.waypoint);
+    const std::size_t at = tool.waypoint;
     const VectorXd& q = t.positions()[at];
     const Pose T_target_tip = tool.T_world_tip.inverse() * problem.group.fk(q);
     const Eigen::Vector3d turn = rotation_vector(T_target_tip.linear());

@@ -176,7 +176,7 @@ void WholeBodyNlp::add_limits() {
     const int h = layout_.h(layout_.segment(i));
     for (int c = 0; c < layout_.columns(); ++c) {
       // x and y of a base have a workspace of many metres.
-      const std::size_t at = static_cast<std::size_t>(c);
+      const std::size_t at = c;
       if (group.wraps()[at] || (group.has_base() && c < 3)) continue;
       if (!std::isfinite(group.lower()[c]) && !std::isfinite(group.upper()[c])) continue;
       make(std::make_unique<BulgeTerm>(), i,

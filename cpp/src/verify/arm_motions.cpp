@@ -11,7 +11,7 @@
 #include "verify/motion_limits.hpp"
 #include "verify/tool_path.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 namespace {
 
 enum Kind { kTransit, kApproach, kLift, kTransfer, kRetreat, kKinds };
@@ -151,8 +151,9 @@ class PickCheck {
     const Pose T_world_grasp = judge_.tip(motion(kApproach).positions.back());
     T_tip_part_ = T_world_grasp.inverse() * T_world_part;
     check_grasp_reached(context_, T_world_part * grasp_->T_object_tcp, T_world_grasp, name(kApproach), faults_);
-    check_lift(judge_.tip(motion(kLift).positions.front()), judge_.tip(motion(kLift).positions.back()), name(kLift),
-               faults_);
+    check_approach(context_, judge_.tip(motion(kApproach).positions.front()), T_world_grasp, name(kApproach), faults_);
+    check_lift(context_, judge_.tip(motion(kLift).positions.front()), judge_.tip(motion(kLift).positions.back()),
+               name(kLift), faults_);
     const Pose T_world_released = judge_.tip(motion(kTransfer).positions.back()) * T_tip_part_;
     check_release(context_, *part_, judge_.T_world_root(), T_world_released, name(kTransfer), faults_);
   }
@@ -180,7 +181,10 @@ class PickCheck {
   void walk(int kind) {
     const CheckedMotion& m = motion(kind);
     const double opening = std::min(std::max(m.opening, 0.0), plan_.max_opening);
-    StraightnessCheck straight(plan_.approach, judge_.tip(motion(kApproach).positions.back()));
+    const Pose T_world_end = judge_.tip(m.positions.back());
+    const Eigen::Vector3d axis = kind == kLift ? Eigen::Vector3d(Eigen::Vector3d::UnitZ())
+                                               : Eigen::Vector3d(T_world_end.linear() * plan_.approach);
+    StraightnessCheck straight(axis, T_world_end);
     StepBudget budget;
     bool free = true, is_straight = true;
     for (std::size_t i = 0; i + 1 < m.times.size() && free; ++i) {
@@ -194,7 +198,8 @@ class PickCheck {
         const Eigen::VectorXd q = segment.at(s);
         const std::string where = name(kind) + ", t = " + text(m.times[i] + s * segment.duration()) + " s";
         free = !hand_.collides(q, opening, where);
-        if (kind == kApproach && is_straight) is_straight = straight.check(judge_.tip(q), where, faults_);
+        if ((kind == kApproach || kind == kLift) && is_straight)
+          is_straight = straight.check(judge_.tip(q), where, faults_);
       }
     }
   }
@@ -238,4 +243,4 @@ void check_arm_motions(const Context& context, Faults& faults, std::size_t& conf
   for (const Judge& judge : judges) configurations += judge.queries();
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

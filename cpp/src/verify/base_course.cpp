@@ -6,12 +6,15 @@
 #include <utility>
 #include <vector>
 
-namespace mmgrasp::verify {
+#include "verify/motion_limits.hpp"
+
+namespace mmgrasp::verify::detail {
 namespace {
 
 using Eigen::Vector3d;
 
 constexpr double kSlack = 0.01;      // Relative, of limits.
+constexpr double kFitSlack = 0.05;   // Of the limit: stored accelerations of x, y, theta against the velocities.
 constexpr double kOffCourse = 1e-3;  // After the whole motion [m], [rad].
 constexpr double kSideways = 1e-3;   // [m/s]
 
@@ -91,9 +94,17 @@ void check_base_course(const PlanToCheck& plan, const CheckedMotion& motion, con
   for (std::size_t i = 0; i < motion.times.size(); ++i)
     drive.push_back(drive_of(base, motion.positions[i], motion.velocities[i]));
   check_limits(plan, motion, drive, where, faults);
+  if (!motion.accelerations.empty()) {
+    const BaseLimits& limits = plan.robot.base_limits;
+    // Along x and y a turning platform's acceleration has a share of speed times turning rate.
+    const double most = limits.linear_acceleration + limits.linear_velocity * limits.angular_velocity;
+    check_accelerations_fit(motion, Vector3d(most, most, limits.angular_acceleration), {"x", "y", "theta"}, where,
+                            faults);
+  }
   Vector3d pose = motion.positions.front().head<3>();
   for (std::size_t i = 0; i < drive.size(); ++i) {
     const double t = motion.times[i];
+    if (!check_workspace(plan, motion.positions[i].head<3>(), 0, where + ", t = " + text(t) + " s", faults)) return;
     if (i > 0) pose = driven(base, pose, drive[i - 1], drive[i], t - motion.times[i - 1]);
     const Vector3d off = motion.positions[i].head<3>() - pose;
     const double aside = base == BaseKind::diff_drive ? std::abs(drive[i].y()) : 0;
@@ -106,4 +117,4 @@ void check_base_course(const PlanToCheck& plan, const CheckedMotion& motion, con
   }
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -6,7 +6,7 @@
 #include "verify/context.hpp"
 #include "verify/kdl_pose.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 namespace {
 
 // Roll, pitch and yaw written out and read again lose about 1e-8 rad where the pitch is a right angle.
@@ -161,4 +161,4 @@ void compare_robots(const RobotModel& read, const RobotModel& planned, Faults& f
   Comparison(read, planned, faults).run();
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

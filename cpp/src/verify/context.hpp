@@ -9,7 +9,7 @@
 #include "mmgrasp/verify/plan_check.hpp"
 #include "verify/judge.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 
 using Faults = std::vector<Fault>;
 
@@ -39,18 +39,25 @@ struct Context {
 bool check_structure(const PlanToCheck& plan, const RobotModel& robot, Faults& faults, ArmSetup& setup,
                      std::vector<int>& finger_links);
 
+/// Used grasps whose widths are those of their parts between the pads (grasp_width.cpp).
+void check_grasp_widths(const Context& context, Faults& faults);
 /// Which part is picked when and where (picks.cpp).
 void check_pick_list(Context& context, Faults& faults);
 /// The five motions of each pick (arm_motions.cpp).
 void check_arm_motions(const Context& context, Faults& faults, std::size_t& configurations);
 /// Drive and pick in one (drive_by.cpp).
 void check_drive_by(const Context& context, Faults& faults, std::size_t& configurations);
+/// "base-workspace": x and y of a base pose, off by up to `radius`, stay in the base's workspace (route.cpp).
+bool check_workspace(const PlanToCheck& plan, const Eigen::Vector3d& pose, double radius, const std::string& where,
+                     Faults& faults);
 /// Base route, home and start (route.cpp).
 void check_route(const Context& context, Faults& faults, std::size_t& configurations);
 /// Every target part graspable from everywhere in the uncertainty discs (robustness.cpp).
 void check_robustness(const Context& context, Faults& faults, std::vector<StopRate>& rates,
                       std::size_t& configurations);
+/// Base poses drawn in the regions and beside them (region_samples.cpp).
+void check_regions(const Context& context, Faults& faults, std::size_t& configurations);
 /// Stops inside their regions, and no smaller cover (minimality.cpp).
 void check_stops(const Context& context, Faults& faults, int& minimal_stops);
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -12,7 +12,7 @@
 #include "verify/motion_limits.hpp"
 #include "verify/tool_path.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 namespace {
 
 using Eigen::Vector3d;
@@ -63,7 +63,7 @@ class DriveByCheck {
 
   void check_ends(const CheckedPick& pick) {
     const VectorXd &first = motion_.positions.front(), &last = motion_.positions.back();
-    const std::size_t stop = static_cast<std::size_t>(pick.stop);
+    const std::size_t stop = pick.stop;
     const auto stands = [this](const VectorXd& q, const Vector3d& wanted, const char* verb) {
       const bool there =
           (base(q) - wanted).head<2>().norm() <= kJoin && std::abs(wrap_angle(q[2] - wanted.z())) <= kJoin;
@@ -104,7 +104,7 @@ class DriveByCheck {
   }
 
   void walk() {
-    const std::size_t pick = static_cast<std::size_t>(drive_by_.pick);
+    const std::size_t pick = drive_by_.pick;
     judge_.drop();
     context_.set_parts_before(judge_, pick);
     judge_.set_base(base(motion_.positions.front()));
@@ -211,7 +211,7 @@ std::vector<std::size_t> known_picks(const Context& context, Faults& faults) {
 
 void check_drive_by(const Context& context, Faults& faults, std::size_t& configurations) {
   const std::vector<std::size_t> known = known_picks(context, faults);
-  std::vector<Judge> judges(static_cast<std::size_t>(resolve_threads(context.options.threads)), Judge(context.stage));
+  std::vector<Judge> judges(resolve_threads(context.options.threads), Judge(context.stage));
   std::vector<Faults> found(known.size());
   parallel_for(
       known.size(), context.options.threads,
@@ -221,4 +221,4 @@ void check_drive_by(const Context& context, Faults& faults, std::size_t& configu
   for (const Judge& judge : judges) configurations += judge.queries();
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

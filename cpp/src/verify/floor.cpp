@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 namespace {
 
 constexpr int kHalvings = 8;
@@ -184,6 +184,12 @@ bool Floor::inside(int region, int layer, int ix, int iy) const {
   return regions_[region]->cells[index] != 0;
 }
 
+bool Floor::any(int region, int layer) const {
+  const std::size_t size = static_cast<std::size_t>(grid_.nx) * static_cast<std::size_t>(grid_.ny);
+  const auto first = regions_[region]->cells.begin() + static_cast<std::ptrdiff_t>(layer * size);
+  return std::any_of(first, first + static_cast<std::ptrdiff_t>(size), [](std::uint8_t cell) { return cell != 0; });
+}
+
 double Floor::clearance(int region, int layer, const Eigen::Vector2d& point, double cap) const {
   const Eigen::Vector2d cell = (point - grid_.origin) / grid_.resolution;  // in cells
   const double reach = cap / grid_.resolution;
@@ -245,4 +251,4 @@ int smallest_cover(const std::vector<RegionSet>& sets, const RegionSet& wanted) 
   return model.isProvenOptimal() ? static_cast<int>(std::lround(model.getObjValue())) : -1;
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -5,7 +5,7 @@
 
 #include "verify/context.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 
 /// Indices of regions (trays).
 using RegionSet = std::set<int>;
@@ -25,6 +25,8 @@ class Floor {
   double clearance(int region, int layer, const Eigen::Vector2d& point, double cap) const;
   /// Whether a cell is in a region; false outside the grid.
   bool inside(int region, int layer, int ix, int iy) const;
+  /// Whether any cell of a layer is in a region.
+  bool any(int region, int layer) const;
 
  private:
   const CheckedGrid& grid_;
@@ -43,4 +45,4 @@ void add_maximal(std::vector<RegionSet>& sets, const RegionSet& set);
 /// Least number of sets that cover all of `wanted`, by CBC; -1 when they cannot.
 int smallest_cover(const std::vector<RegionSet>& sets, const RegionSet& wanted);
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 namespace {
 
 constexpr double kGripPlay = 0.01;   // Fingers may close this far below a grasp's width to meet the part [m],
@@ -22,10 +22,11 @@ bool HandCheck::collides(const Eigen::VectorXd& arm, double opening, const std::
 }
 
 void HandCheck::check_fingers(const Eigen::VectorXd& arm, double from, double to, const std::string& where) {
+  const ArmSetup& setup = judge_.stage().setup;
+  const double share = setup.share_open(to) - setup.share_open(from);
   double travel = 0;
-  for (const CheckedFinger& finger : context_.plan.fingers) {
-    travel = std::max(travel, std::abs((finger.open - finger.closed) * (to - from) / context_.plan.max_opening));
-  }
+  for (const CheckedFinger& finger : context_.plan.fingers)
+    travel = std::max(travel, std::abs((finger.open - finger.closed) * share));
   const int steps = static_cast<int>(std::min(std::ceil(travel / context_.options.joint_step), 1000.0));
   for (int i = 0; i <= steps; ++i) {
     const double opening = steps ? from + (to - from) * i / steps : from;
@@ -46,4 +47,4 @@ void HandCheck::check_grip(const Eigen::VectorXd& arm, double width, const std::
                          (most == 0 ? "no finger touches the part" : "only one finger link touches the part")});
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

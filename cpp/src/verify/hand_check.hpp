@@ -4,7 +4,7 @@
 
 #include "verify/context.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 
 /// What robot, hand and held part meet, for motions of the arm alone and of base and arm.
 class HandCheck {
@@ -25,4 +25,4 @@ class HandCheck {
   Faults& faults_;
 };
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 namespace {
 
 void include(Range& range, double value) {
@@ -66,4 +66,4 @@ double HermiteSegment::needed_acceleration(int j) const {
   return (2 * miss + std::sqrt(4 * miss * miss + h_ * h_ * dv * dv)) / (h_ * h_);
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

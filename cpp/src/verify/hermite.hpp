@@ -5,7 +5,7 @@
 
 #include "mmgrasp/verify/plan_check.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 
 /// Lowest and highest value of something over a stretch of time.
 struct Range {
@@ -37,4 +37,4 @@ class HermiteSegment {
   double position(int j, double s) const;
 };
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -3,7 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 namespace {
 
 constexpr double kLeastDamping = 1e-9;
@@ -57,4 +57,4 @@ bool solve_tip_pose(Kinematics& kinematics, const Pose& T_root_tip, const IkTole
   return false;
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

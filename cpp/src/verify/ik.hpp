@@ -2,7 +2,7 @@
 
 #include "verify/kinematics.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 
 struct IkTolerance {
   double position = 1e-4;  ///< [m]
@@ -14,4 +14,4 @@ struct IkTolerance {
 /// Turns `arm` into a configuration whose tip is at T_root_tip; false when it ends elsewhere.
 bool solve_tip_pose(Kinematics& kinematics, const Pose& T_root_tip, const IkTolerance& tolerance, Eigen::VectorXd& arm);
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 namespace {
 
 void place_solids(PlacedBody& body, const Pose& T_world_body) {
@@ -82,14 +82,17 @@ PlacedBody place_body(const std::string& name, const std::vector<LinkShape>& sha
   return body;
 }
 
-Stage make_stage(std::shared_ptr<const RobotModel> robot, const ArmSetup& setup, const std::vector<int>& finger_links) {
-  Stage stage{std::move(robot), setup, {}, {}, {}, {}, 0, 0};
+Stage make_stage(std::shared_ptr<const RobotModel> robot, const ArmSetup& setup, const std::vector<int>& finger_links,
+                 const std::vector<CheckedPair>& allowed) {
+  Stage stage{std::move(robot), setup, {}, {}, {}, {}, 0, 0, {}};
+  for (const auto& [a, b] : allowed) stage.allowed.insert({{a, b}, {b, a}});
   for (const ModelLink& link : stage.robot->links) stage.link_solids.push_back(make_solids(link.shapes));
   const int links = static_cast<int>(stage.robot->links.size());
   for (int a = 0; a < links; ++a) {
     for (int b = a + 1; b < links; ++b) {
       const bool solid = !stage.link_solids[a].empty() && !stage.link_solids[b].empty();
-      if (solid && needs_test(*stage.robot, a, b)) stage.self_pairs.emplace_back(a, b);
+      const bool allowed_pair = stage.may_touch(stage.robot->links[a].name, stage.robot->links[b].name);
+      if (solid && !allowed_pair && needs_test(*stage.robot, a, b)) stage.self_pairs.emplace_back(a, b);
     }
   }
   stage.is_finger.assign(links, false);
@@ -190,6 +193,7 @@ Touch Judge::scene_touch() const {
     for (std::size_t i = 0; i < body.solids.size(); ++i) {
       if (!all.intersects(body.bounds[i])) continue;
       for (const int link : solid_links_) {
+        if (stage_->may_touch(stage_->robot->links[link].name, body.name)) continue;
         if (link_touches(link, body.solids[i], body.T_world_shape[i], body.bounds[i])) {
           return {TouchKind::scene, stage_->robot->links[link].name, body.name};
         }
@@ -203,13 +207,15 @@ Touch Judge::held_touch() const {
   for (std::size_t i = 0; i < held_body_.solids.size(); ++i) {
     const Solid& solid = held_body_.solids[i];
     for (const int link : solid_links_) {
-      if (!stage_->is_finger[link] && link_touches(link, solid, held_body_.T_world_shape[i], held_body_.bounds[i])) {
+      if (stage_->is_finger[link] || stage_->may_touch(stage_->robot->links[link].name, held_body_.name)) continue;
+      if (link_touches(link, solid, held_body_.T_world_shape[i], held_body_.bounds[i])) {
         return {TouchKind::held, held_body_.name, stage_->robot->links[link].name};
       }
     }
     for (std::size_t index = 0; index < stage_->bodies.size(); ++index) {
       const PlacedBody& body = stage_->bodies[index];
       if (!present_[index] || !held_body_.bounds[i].intersects(body.total)) continue;
+      if (stage_->may_touch(held_body_.name, body.name)) continue;
       for (std::size_t j = 0; j < body.solids.size(); ++j) {
         if (held_body_.bounds[i].intersects(body.bounds[j]) &&
             touches(solid, held_body_.T_world_shape[i], body.solids[j], body.T_world_shape[j])) {
@@ -243,4 +249,4 @@ int Judge::fingers_touching_held(const Eigen::VectorXd& arm, double opening) {
   return touching;
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -1,15 +1,17 @@
 #pragma once
 
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "mmgrasp/verify/plan_check.hpp"
 #include "verify/kinematics.hpp"
 #include "verify/robot_model.hpp"
 #include "verify/solid.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 
 /// A scene body placed once and for all.
 struct PlacedBody {
@@ -31,11 +33,17 @@ struct Stage {
   std::vector<bool> is_finger;     ///< Whether a link is a finger, by index.
   std::vector<PlacedBody> bodies;  ///< Obstacles, then parts.
   std::size_t first_part = 0;
-  double reach = 0;  ///< No point of the robot is farther than this from its root [m].
+  double reach = 0;               ///< No point of the robot is farther than this from its root [m].
+  std::set<CheckedPair> allowed;  ///< Names that may touch, each pair in both orders.
+
+  bool may_touch(const std::string& a, const std::string& b) const {
+    return !allowed.empty() && allowed.count({a, b}) > 0;
+  }
 };
 
-/// Solids of the links, pairs and reach. Bodies are added by the caller.
-Stage make_stage(std::shared_ptr<const RobotModel> robot, const ArmSetup& setup, const std::vector<int>& finger_links);
+/// Solids of the links, pairs but the allowed ones, and reach. Bodies are added by the caller.
+Stage make_stage(std::shared_ptr<const RobotModel> robot, const ArmSetup& setup, const std::vector<int>& finger_links,
+                 const std::vector<CheckedPair>& allowed);
 
 enum class TouchKind { none, self, scene, held };
 
@@ -90,4 +98,4 @@ class Judge {
   std::size_t queries_ = 0;
 };
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -4,7 +4,7 @@
 
 #include "mmgrasp/core/pose.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 
 inline KDL::Frame to_kdl(const Pose& T) {
   const Eigen::Matrix3d R = T.linear();
@@ -22,4 +22,4 @@ inline Pose from_kdl(const KDL::Frame& frame) {
   return T;
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -5,7 +5,7 @@
 
 #include "verify/kdl_pose.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 namespace {
 
 /// Zero, moved into limits where zero is outside.
@@ -50,6 +50,14 @@ Kinematics::Element Kinematics::make_element(const RobotModel& robot, const Mode
   return element;
 }
 
+double ArmSetup::share_open(double opening) const {
+  const std::size_t steps = openings.size() - 1;
+  std::size_t i = 1;
+  while (i < steps && openings[i] < opening) ++i;
+  const double share = (opening - openings[i - 1]) / (openings[i] - openings[i - 1]);
+  return (static_cast<double>(i - 1) + std::max(0.0, share)) / static_cast<double>(steps);
+}
+
 void Kinematics::set_arm(const Eigen::VectorXd& arm) {
   for (int i = 0; i < arm_size(); ++i) values_[setup_.arm[i]] = arm[i];
 }
@@ -60,8 +68,9 @@ double Kinematics::value(const Element& element) const {
 
 const Poses& Kinematics::place(const Eigen::VectorXd& arm, double opening) {
   set_arm(arm);
+  const double share = setup_.share_open(opening);
   for (const FingerMap& finger : setup_.fingers) {
-    values_[finger.joint] = finger.closed + (finger.open - finger.closed) * opening / setup_.max_opening;
+    values_[finger.joint] = finger.closed + (finger.open - finger.closed) * share;
   }
   for (const Element& element : elements_) {
     frames_[element.link] = frames_[element.parent] * element.segment.pose(value(element));
@@ -99,4 +108,4 @@ void Kinematics::tip_and_jacobian(const Eigen::VectorXd& arm, Pose& T_root_tip, 
   T_root_tip = from_kdl(frame);
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -8,7 +8,7 @@
 #include "mmgrasp/core/pose.hpp"
 #include "verify/robot_model.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 
 /// A finger joint as a linear function of the opening.
 struct FingerMap {
@@ -22,7 +22,11 @@ struct ArmSetup {
   int tip_link = -1;
   std::map<int, double> others;  ///< Joint index -> value held.
   std::vector<FingerMap> fingers;
-  double max_opening = 0.1;
+  std::vector<double> openings = {0.0,
+                                  0.1};  ///< At equal steps of the finger joints from closed to open; at least two [m].
+
+  /// How far the fingers are open, in [0, 1].
+  double share_open(double opening) const;
 };
 
 /// Forward kinematics and Jacobian by the segments of the KDL tree, all in the root link's frame. One a thread: KDL's
@@ -65,4 +69,4 @@ class Kinematics {
   std::vector<bool> continuous_;
 };
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -11,7 +11,7 @@
 
 #include "mmgrasp/core/error.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 namespace {
 
 struct Triangles {
@@ -63,4 +63,4 @@ std::shared_ptr<const TriangleMesh> MeshFiles::read(const std::string& path, con
   return mesh;
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -8,7 +8,7 @@
 
 #include "mmgrasp/geometry/mesh.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 
 /// Mesh files read by assimp, each once a scale. Vertices are rounded to float, as assimp keeps them.
 class MeshFiles {
@@ -20,4 +20,4 @@ class MeshFiles {
   std::map<std::tuple<std::string, double, double, double>, std::shared_ptr<const TriangleMesh>> meshes_;
 };
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

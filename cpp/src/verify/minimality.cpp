@@ -6,7 +6,7 @@
 #include "verify/context.hpp"
 #include "verify/floor.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 namespace {
 
 // Inscribed radii are known to 1e-6 m: a disc that fits within this may be used by the plan, but need not be.
@@ -65,9 +65,12 @@ class StopsCheck {
     std::vector<RegionSet> own;
     for (std::size_t i = 0; i < plan_.stops.size(); ++i) check_stop(i, own);
     for (std::size_t i = 0; i < plan_.intersections.size(); ++i) check_intersection(i);
-    if (plan_.robustness_rate < 0 || plan_.robustness_rate > 1) {
-      faults_.push_back({"bad-figures", "robustness_rate", text(plan_.robustness_rate) + ": must be in [0, 1]"});
+    if (plan_.robustness_rate < context_.options.required_rate || plan_.robustness_rate > 1) {
+      faults_.push_back({"bad-figures", "robustness_rate",
+                         text(plan_.robustness_rate) + ": must be in [" + text(context_.options.required_rate) +
+                             ", 1], or the stops would not be robust"});
     }
+    check_headings();
     if (!missing_.empty()) return 0;
     std::vector<RegionSet> sets = common_discs(floor_, plan_.positioning_uncertainty + kRadiusBand, context_.monitor);
     for (const RegionSet& set : own) add_maximal(sets, set);
@@ -107,6 +110,28 @@ class StopsCheck {
                              "', there is room for " + text(room) + " m"});
     }
     own.push_back(holding);
+  }
+
+  /// Every tray was searched at each of its headings and at no other.
+  void check_headings() {
+    for (const auto& [tray, searched] : plan_.searched) {
+      const auto known = region_of_tray_.find(tray);
+      if (known == region_of_tray_.end() || !wanted_.count(known->second)) continue;
+      std::set<int> layers;
+      for (const double heading : searched.headings) {
+        const int layer = floor_.layer(heading);
+        if (layer >= 0) layers.insert(layer);
+        if (layer < 0)
+          faults_.push_back({"region-malformed", "grid",
+                             "has no layer for heading " + text(heading) + ", which tray '" + tray + "' lists"});
+      }
+      for (int layer = 0; layer < static_cast<int>(plan_.grid.headings.size()); ++layer) {
+        if (layers.count(layer) || !floor_.any(known->second, layer)) continue;
+        faults_.push_back(
+            {"region-malformed", "region of tray '" + tray + "'",
+             "has cells at heading " + text(plan_.grid.headings[layer]) + ", which its tray does not list"});
+      }
+    }
   }
 
   /// A disc that is said to lie in the regions of some trays.
@@ -168,4 +193,4 @@ void check_stops(const Context& context, Faults& faults, int& minimal_stops) {
   minimal_stops = StopsCheck(context, usable_regions(context.plan, faults), faults).run();
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

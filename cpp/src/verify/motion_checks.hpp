@@ -4,7 +4,7 @@
 
 #include "verify/context.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 
 // What motions of the arm alone and of base and arm are asked for.
 
@@ -45,4 +45,4 @@ class StepBudget {
   double taken_ = 0;
 };
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -5,7 +5,7 @@
 #include "verify/context.hpp"
 #include "verify/kinematics.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 
 /// Lengths and finite numbers ("motion-shape") and the clock ("times"); false when the motion cannot be evaluated.
 bool check_motion_shape(const CheckedMotion& motion, int joints, const std::string& where, Faults& faults);
@@ -14,4 +14,8 @@ bool check_motion_shape(const CheckedMotion& motion, int joints, const std::stri
 void check_motion_limits(const Context& context, const Kinematics& kinematics, const CheckedMotion& motion,
                          const std::string& where, Faults& faults);
 
-}  // namespace mmgrasp::verify
+/// "acceleration": what the velocities change by between samples lies between the stored accelerations there.
+void check_accelerations_fit(const CheckedMotion& motion, const Eigen::VectorXd& limits,
+                             const std::vector<std::string>& names, const std::string& where, Faults& faults);
+
+}  // namespace mmgrasp::verify::detail

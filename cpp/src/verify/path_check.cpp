@@ -9,7 +9,9 @@
 namespace mmgrasp::verify {
 namespace {
 
-constexpr double kLimitSlack = 1e-6;
+using namespace detail;
+
+constexpr double kLimitSlack = 1e-5;  // What limits and values printed to five digits lose.
 
 int known_joint(const RobotModel& robot, const std::string& name) {
   const int joint = robot.joint_index(name);
@@ -82,7 +84,15 @@ PathCheckResult check_path(const PathToCheck& path, double joint_step) {
     require(q.size() == static_cast<Eigen::Index>(setup.arm.size()) && q.allFinite(), "waypoints",
             static_cast<double>(q.size()), "must have a finite value for each of the joints");
   }
-  auto stage = std::make_shared<Stage>(make_stage(robot, setup, {}));
+  auto stage = std::make_shared<Stage>(make_stage(robot, setup, {}, path.allowed_collisions));
+  for (const auto& [a, b] : path.allowed_collisions) {
+    for (const std::string& name : {a, b}) {
+      const bool is_body = std::any_of(path.bodies.begin(), path.bodies.end(),
+                                       [&name](const CheckedBody& body) { return body.name == name; });
+      require(is_body || robot->link_index(name) >= 0, "allowed_collisions", "'" + name + "'",
+              "must name a link of the robot or a body");
+    }
+  }
   for (const CheckedBody& body : path.bodies) {
     stage->bodies.push_back(place_body(body.name, body.shapes, body.T_world_body));
   }

@@ -4,7 +4,7 @@
 
 #include "verify/context.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 namespace {
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
@@ -111,4 +111,4 @@ void check_pick_list(Context& context, Faults& faults) {
   check_trays(context, faults);
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -7,6 +7,8 @@
 namespace mmgrasp::verify {
 namespace {
 
+using namespace detail;
+
 /// Null, with a fault, when the robot cannot be read.
 std::shared_ptr<const RobotModel> model_of(const PlanToCheck& plan, Faults& faults) {
   try {
@@ -21,7 +23,7 @@ std::shared_ptr<const RobotModel> model_of(const PlanToCheck& plan, Faults& faul
 
 std::shared_ptr<const Stage> build_stage(const PlanToCheck& plan, std::shared_ptr<const RobotModel> robot,
                                          const ArmSetup& setup, const std::vector<int>& finger_links) {
-  auto stage = std::make_shared<Stage>(make_stage(std::move(robot), setup, finger_links));
+  auto stage = std::make_shared<Stage>(make_stage(std::move(robot), setup, finger_links, plan.allowed_collisions));
   const auto add = [&](const CheckedBody& body) {
     stage->bodies.push_back(place_body(body.name, body.shapes, body.T_world_body));
   };
@@ -57,18 +59,32 @@ bool bodies_overlap(const PlacedBody& a, const PlacedBody& b) {
   return true;
 }
 
+/// Pairs of bodies that overlap, the second at least `first`.
+std::vector<std::pair<std::size_t, std::size_t>> overlapping(const std::vector<PlacedBody>& bodies, std::size_t first) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t j = first; j < bodies.size(); ++j) {
+    for (std::size_t i = 0; i < j; ++i) {
+      if (bodies_overlap(bodies[i], bodies[j])) pairs.emplace_back(i, j);
+    }
+  }
+  return pairs;
+}
+
 /// Parts stand where nothing else is.
 void check_scene_at_rest(const Stage& stage, Faults& faults) {
-  for (std::size_t part = stage.first_part; part < stage.bodies.size(); ++part) {
-    for (std::size_t other = 0; other < part; ++other) {
-      const PlacedBody &a = stage.bodies[part], &b = stage.bodies[other];
-      if (!bodies_overlap(a, b)) continue;
-      faults.push_back({"part-overlap", "part '" + a.name + "'", "overlaps '" + b.name + "' by more than 1e-4 m"});
-    }
+  for (const auto& [other, part] : overlapping(stage.bodies, stage.first_part)) {
+    faults.push_back({"part-overlap", "part '" + stage.bodies[part].name + "'",
+                      "overlaps '" + stage.bodies[other].name + "' by more than 1e-4 m"});
   }
 }
 
 }  // namespace
+
+std::vector<std::pair<std::size_t, std::size_t>> overlapping_bodies(const std::vector<CheckedBody>& bodies) {
+  std::vector<PlacedBody> placed;
+  for (const CheckedBody& body : bodies) placed.push_back(place_body(body.name, body.shapes, body.T_world_body));
+  return overlapping(placed, 0);
+}
 
 void PlanCheckOptions::check() const {
   require(joint_step > 0 && joint_step < 1e3, "joint_step", joint_step, "must be positive");
@@ -77,6 +93,8 @@ void PlanCheckOptions::check() const {
   require(rotation_tolerance > 0, "rotation_tolerance", rotation_tolerance, "must be positive");
   require(samples > 0, "samples", samples, "must be positive");
   require(required_rate > 0 && required_rate <= 1, "required_rate", required_rate, "must be in (0, 1]");
+  require(samples <= 1000000, "samples", samples, "must be at most 1000000");
+  require(region_samples >= 0 && region_samples <= 100000, "region_samples", region_samples, "must be in [0, 100000]");
   require(threads >= 0, "threads", threads, "must be 0 (all) or positive");
 }
 
@@ -92,11 +110,13 @@ PlanCheckResult check_plan(const PlanToCheck& plan, const PlanCheckOptions& opti
   for (std::size_t i = 0; i < plan.parts.size(); ++i) context.part_index[plan.parts[i].body.name] = static_cast<int>(i);
   check_scene_at_rest(*context.stage, result.faults);
   check_pick_list(context, result.faults);
+  check_grasp_widths(context, result.faults);
   check_stops(context, result.faults, result.minimal_stops);
   check_route(context, result.faults, result.configurations_checked);
   check_arm_motions(context, result.faults, result.configurations_checked);
   check_drive_by(context, result.faults, result.configurations_checked);
   check_robustness(context, result.faults, result.rates, result.configurations_checked);
+  check_regions(context, result.faults, result.configurations_checked);
   // An answer that was not finished must not look like a good one.
   if (monitor.stopped()) result.faults.push_back({"stopped", "check", "was ended before everything was checked"});
   return result;

@@ -12,7 +12,7 @@
 #include "verify/srdf_pairs.hpp"
 #include "verify/urdf_document.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 namespace {
 
 constexpr double kLargest = 1e12;         // [m] or [rad]: sums and products of what is read stay finite
@@ -185,8 +185,8 @@ NamedJoint Assembly::read_joint(const UrdfSource& source, const urdf::Joint& rea
   if (!(length > 1e-9 && length < kLargest)) throw InvalidInput(where + "its axis has no direction");
   const bool limited = joint.kind == JointKind::revolute || joint.kind == JointKind::prismatic;
   if (limited && !read.limits) throw InvalidInput(where + "has no limits");
-  joint.lower = limited ? read.limits->lower : -detail::kInfinity;
-  joint.upper = limited ? read.limits->upper : detail::kInfinity;
+  joint.lower = limited ? read.limits->lower : -mmgrasp::detail::kInfinity;
+  joint.upper = limited ? read.limits->upper : mmgrasp::detail::kInfinity;
   if (joint.lower > joint.upper) throw InvalidInput(where + "its lower limit exceeds its upper one");
   joint.velocity = read.limits && read.limits->velocity > 0 ? read.limits->velocity : kUnknownVelocity;
   if (!read.mimic) return named;
@@ -287,4 +287,4 @@ RobotModel read_robot(const RobotSource& source, bool load_meshes) {
   return model;
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -9,7 +9,7 @@
 
 #include "mmgrasp/robot/robot_source.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 
 enum class JointKind { fixed, revolute, continuous, prismatic, planar, floating };
 const char* to_string(JointKind kind);
@@ -57,4 +57,4 @@ struct RobotModel {
 /// paths and scales only.
 RobotModel read_robot(const RobotSource& source, bool load_meshes = true);
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -1,29 +1,17 @@
 // Checks the stops with the base displaced: parts stay graspable from drawn poses.
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <utility>
 
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "verify/context.hpp"
-#include "verify/ik.hpp"
+#include "verify/grasp_search.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 namespace {
 
-constexpr int kChunks = 20;        // Pieces of a stop's samples that are worked on independently.
-constexpr std::size_t kPool = 24;  // Configurations remembered for a part.
-constexpr int kTries = 1500;       // IK solutions tried from other seeds before a part counts as lost.
-
-/// A grasp with an arm configuration that once reached it.
-struct Hold {
-  int grasp = -1;
-  Eigen::VectorXd arm;
-};
-
-/// Holds by part, the last successful in front.
-using Pools = std::vector<std::deque<Hold>>;
+constexpr int kChunks = 20;  // Pieces of a stop's samples that are worked on independently.
 
 /// What one piece of one stop's samples gave.
 struct ChunkResult {
@@ -50,101 +38,6 @@ std::vector<Eigen::Vector3d> sorted_samples(const Context& context, std::size_t 
   for (const Eigen::Vector2d& offset : offsets)
     poses.emplace_back(pose.x() + offset.x(), pose.y() + offset.y(), pose.z());
   return poses;
-}
-
-/// Target parts of the trays that the stop serves.
-std::vector<int> wanted_parts(const PlanToCheck& plan, const CheckedStop& stop) {
-  std::vector<int> wanted;
-  for (std::size_t part = 0; part < plan.parts.size(); ++part) {
-    const bool here = std::find(stop.trays.begin(), stop.trays.end(), plan.parts[part].tray) != stop.trays.end();
-    if (here && plan.parts[part].target) wanted.push_back(static_cast<int>(part));
-  }
-  return wanted;
-}
-
-/// Finds grasps from one base pose after another.
-class GraspSearch {
- public:
-  GraspSearch(const Context& context, Judge& judge, Pools pools, Rng rng)
-      : context_(context), judge_(judge), pools_(std::move(pools)), rng_(rng) {
-    tolerance_.position = context.options.position_tolerance;
-    tolerance_.rotation = context.options.rotation_tolerance;
-  }
-
-  bool find(int part) {
-    std::deque<Hold>& pool = pools_[part];
-    for (std::size_t i = 0; i < pool.size(); ++i) {
-      Hold hold = pool[i];
-      if (!try_hold(part, hold)) continue;
-      pool.erase(pool.begin() + static_cast<std::ptrdiff_t>(i));
-      pool.push_front(std::move(hold));
-      return true;
-    }
-    return search(part);
-  }
-
- private:
-  /// Moves the hold's configuration onto its grasp from the present base pose, and checks it.
-  bool try_hold(int part, Hold& hold) {
-    const CheckedPart& p = context_.plan.parts[part];
-    const CheckedGrasp& grasp = p.grasps[hold.grasp];
-    if (grasp.width > context_.plan.max_opening + 1e-6) return false;
-    const Pose T_root_tip = judge_.T_world_root().inverse() * p.body.T_world_body * grasp.T_object_tcp;
-    if (!solve_tip_pose(judge_.kinematics(), T_root_tip, tolerance_, hold.arm)) return false;
-    return !judge_.touch(hold.arm, context_.pregrasp_opening(grasp.width));
-  }
-
-  /// Other grasps from what the pools know, then from anywhere.
-  bool search(int part) {
-    const int grasps = static_cast<int>(context_.plan.parts[part].grasps.size());
-    for (int i = 0; grasps > 0 && i < std::max(kTries, 3 * grasps); ++i) {
-      Hold hold{i < grasps ? i : static_cast<int>(rng_.index(grasps)), i % 2 ? random_arm() : known_arm(part)};
-      if (!try_hold(part, hold)) continue;
-      pools_[part].push_front(std::move(hold));
-      if (pools_[part].size() > kPool) pools_[part].pop_back();
-      return true;
-    }
-    return false;
-  }
-
-  Eigen::VectorXd known_arm(int part) {
-    const std::deque<Hold>* pool = &pools_[part];
-    if (pool->empty()) pool = &pools_[rng_.index(pools_.size())];
-    return pool->empty() ? random_arm() : (*pool)[rng_.index(pool->size())].arm;
-  }
-
-  Eigen::VectorXd random_arm() {
-    const Kinematics& kinematics = judge_.kinematics();
-    Eigen::VectorXd arm(kinematics.arm_size());
-    for (Eigen::Index j = 0; j < arm.size(); ++j) {
-      const bool bounded = std::isfinite(kinematics.lower()[j]) && std::isfinite(kinematics.upper()[j]);
-      arm[j] = bounded ? rng_.uniform(kinematics.lower()[j], kinematics.upper()[j]) : rng_.uniform(-M_PI, M_PI);
-    }
-    return arm;
-  }
-
-  const Context& context_;
-  Judge& judge_;
-  Pools pools_;
-  Rng rng_;
-  IkTolerance tolerance_;
-};
-
-/// The plan's own configurations are the first seeds.
-Pools planned_holds(const Context& context) {
-  Pools pools(context.plan.parts.size());
-  const Eigen::Index joints = context.plan.home.size();
-  for (std::size_t i = 0; i < context.plan.picks.size(); ++i) {
-    const CheckedPick& pick = context.plan.picks[i];
-    const int part = context.pick_part[i];
-    if (part < 0 || pick.grasp < 0 || pick.grasp >= static_cast<int>(context.plan.parts[part].grasps.size())) continue;
-    for (const CheckedMotion& motion : pick.motions) {
-      if (motion.kind != "approach" || motion.positions.empty()) continue;
-      const Eigen::VectorXd& arm = motion.positions.back();
-      if (arm.size() == joints && arm.allFinite()) pools[part].push_front({pick.grasp, arm});
-    }
-  }
-  return pools;
 }
 
 /// One piece of a stop. It ends early once it alone has lost more samples than the whole stop may lose.
@@ -208,7 +101,7 @@ void check_robustness(const Context& context, Faults& faults, std::vector<StopRa
   std::vector<std::vector<int>> wanted;
   for (std::size_t stop = 0; stop < stops; ++stop) {
     poses.push_back(sorted_samples(context, stop));
-    wanted.push_back(wanted_parts(context.plan, context.plan.stops[stop]));
+    wanted.push_back(wanted_parts(context.plan, context.plan.stops[stop].trays));
   }
   const Pools pools = planned_holds(context);
   std::vector<Judge> judges(resolve_threads(context.options.threads), Judge(context.stage));
@@ -226,4 +119,4 @@ void check_robustness(const Context& context, Faults& faults, std::vector<StopRa
   for (const Judge& judge : judges) configurations += judge.queries();
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

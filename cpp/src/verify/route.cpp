@@ -4,10 +4,11 @@
 
 #include "verify/context.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 namespace {
 
 constexpr double kJoin = 1e-6;         // [m, rad]
+constexpr double kLimitSlack = 1e-5;   // [rad or m]; what limits and values printed to five digits lose
 constexpr double kLargest = 1e6;       // Beyond this a pose is no number to compute with [m, rad].
 constexpr double kMaxSteps = 1000000;  // Base poses of one leg.
 
@@ -104,6 +105,9 @@ class RouteCheck {
       faults_.push_back({"route-figures", name(leg),
                          "length or turning are not those of its poses, or the duration is below what the base needs"});
     }
+    for (const Eigen::Vector3d& pose : poses) {
+      if (!check_workspace(plan_, pose, 0, name(leg), faults_)) break;
+    }
     set_parts_on_leg(leg);
     check_free(poses, name(leg));
   }
@@ -161,10 +165,16 @@ void check_home(const Context& context, Judge& judge, Faults& faults) {
   const Kinematics& kinematics = judge.kinematics();
   for (int j = 0; j < kinematics.arm_size(); ++j) {
     const double q = context.plan.home[j];
-    if (q >= kinematics.lower()[j] - kJoin && q <= kinematics.upper()[j] + kJoin) continue;
+    if (q >= kinematics.lower()[j] - kLimitSlack && q <= kinematics.upper()[j] + kLimitSlack) continue;
     faults.push_back({"home-limit", "home",
                       "'" + context.plan.arm_joints[j] + "' at " + text(q) + " is outside [" +
                           text(kinematics.lower()[j]) + ", " + text(kinematics.upper()[j]) + "]"});
+  }
+  check_workspace(context.plan, context.plan.start, 0, "start", faults);
+  check_workspace(context.plan, context.plan.goal, 0, "goal", faults);
+  for (std::size_t i = 0; i < context.plan.stops.size(); ++i) {
+    check_workspace(context.plan, context.plan.stops[i].pose, context.plan.positioning_uncertainty,
+                    "stop " + std::to_string(i), faults);
   }
   judge.set_base(context.plan.start);
   const Touch touch = judge.touch(context.plan.home, 0);
@@ -176,6 +186,16 @@ void check_home(const Context& context, Judge& judge, Faults& faults) {
 
 }  // namespace
 
+bool check_workspace(const PlanToCheck& plan, const Eigen::Vector3d& pose, double radius, const std::string& where,
+                     Faults& faults) {
+  const double farthest = pose.head<2>().cwiseAbs().maxCoeff() + radius, most = plan.robot.base_limits.workspace;
+  if (farthest <= most + kJoin) return true;
+  faults.push_back({"base-workspace", where,
+                    "the base at " + text(pose) + (radius > 0 ? ", off by up to " + text(radius) + " m," : "") +
+                        " leaves its workspace of " + text(most) + " m"});
+  return false;
+}
+
 void check_route(const Context& context, Faults& faults, std::size_t& configurations) {
   Judge judge(context.stage);
   check_home(context, judge, faults);
@@ -183,4 +203,4 @@ void check_route(const Context& context, Faults& faults, std::size_t& configurat
   configurations += judge.queries();
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -18,7 +18,7 @@
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/geometry/shape.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 namespace {
 
 using BvhModel = fcl::BVHModel<fcl::OBBRSSd>;
@@ -215,4 +215,4 @@ double lowest_z(const std::vector<LinkShape>& shapes, const Pose& T_world_body) 
   return lowest;
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

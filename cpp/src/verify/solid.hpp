@@ -9,7 +9,7 @@
 #include "mmgrasp/geometry/mesh.hpp"
 #include "mmgrasp/robot/robot_source.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 
 using Bounds = Eigen::AlignedBox3d;
 
@@ -38,4 +38,4 @@ double radius_of(const std::vector<Solid>& solids);
 /// Smallest z over all points of the shapes with the body at T; minus infinity for planes.
 double lowest_z(const std::vector<LinkShape>& shapes, const Pose& T_world_body);
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

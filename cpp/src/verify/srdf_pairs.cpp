@@ -6,7 +6,7 @@
 
 #include "verify/urdf_document.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 
 void read_srdf_pairs(const std::string& srdf, RobotModel& model) {
   if (srdf.empty()) return;
@@ -26,4 +26,4 @@ void read_srdf_pairs(const std::string& srdf, RobotModel& model) {
                 [&](const RobotModel::Pair& pair, const std::string&) { model.enabled.insert(pair); });
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -7,7 +7,7 @@
 #include "mmgrasp/core/error.hpp"
 #include "verify/context.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 namespace {
 
 // Lengths and angles beyond this are no part of a room; they would only break the arithmetic.
@@ -102,7 +102,18 @@ void Structure::gripper(ArmSetup& setup, std::vector<int>& finger_links) {
   need(finite(plan.max_opening) && plan.max_opening > 0, "max_opening", text(plan.max_opening) + ": must be positive");
   need(finite(plan.clearance) && plan.clearance >= 0, "clearance", text(plan.clearance) + ": must not be negative");
   need(std::abs(plan.approach.norm() - 1) < 1e-6, "approach", "must be a unit vector");
-  setup.max_opening = plan.max_opening;
+  const std::vector<double>& openings = plan.openings;
+  bool rising = openings.empty() ||
+                (openings.size() > 1 && openings.front() >= 0 && std::abs(openings.back() - plan.max_opening) < 1e-9);
+  for (std::size_t i = 1; i < openings.size(); ++i) rising = rising && openings[i] > openings[i - 1];
+  need(rising, "openings", "must rise from 0 or more to max_opening");
+  setup.openings = rising && !openings.empty() ? openings : std::vector<double>{0.0, plan.max_opening};
+  need(std::abs(plan.closing.norm() - 1) < 1e-6 && std::abs(plan.closing.dot(plan.approach)) < 1e-6, "closing",
+       "must be a unit vector orthogonal to approach");
+  need(finite(plan.finger_depth) && plan.finger_depth >= 0 && finite(plan.finger_width) && plan.finger_width >= 0,
+       "finger_depth, finger_width", "must not be negative");
+  need(finite(plan.approach_distance) && plan.approach_distance >= 0, "approach_distance", "must not be negative");
+  need(finite(plan.lift_height) && plan.lift_height > 0, "lift_height", "must be positive");
   for (const CheckedFinger& finger : plan.fingers) {
     const int index = joint(finger.joint, "fingers");
     const bool finite_ends = need(finite(finger.closed) && finite(finger.open), "fingers",
@@ -169,6 +180,11 @@ void Structure::scene() {
            "grasp " + std::to_string(i) + ": its pose is not rigid or its width is not a number >= 0");
     }
   }
+  for (const auto& [a, b] : plan.allowed_collisions) {
+    for (const std::string& name : {a, b})
+      need(names.count(name) > 0 || robot.link_index(name) >= 0, "allowed_collisions",
+           "'" + name + "' is no link, obstacle or part");
+  }
 }
 
 }  // namespace
@@ -194,4 +210,4 @@ bool check_structure(const PlanToCheck& plan, const RobotModel& robot, Faults& f
   return structure.ok;
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

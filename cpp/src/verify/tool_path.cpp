@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 namespace {
 
-constexpr double kStraight = 1e-3;   // Deviation from the approach line [m].
-constexpr double kTurn = 0.01;       // And from the final orientation [rad].
-constexpr double kLeastLift = 0.01;  // [m]
-constexpr double kLevel = 0.01;      // Tilt of a released part [rad].
-constexpr double kBelowGap = 1e-3;   // A released part may be this far below the bin's top [m] ...
-constexpr double kAboveGap = 0.05;   // ... and this far above the drop gap [m].
+constexpr double kStraight = 1e-3;  // Deviation from the line, and missing length [m].
+constexpr double kTurn = 0.01;      // And from the final orientation [rad].
+constexpr double kLevel = 0.01;     // Tilt of a released part [rad].
+constexpr double kBelowGap = 1e-3;  // A released part may be this far below the bin's top [m] ...
+constexpr double kAboveGap = 0.05;  // ... and this far above the drop gap [m].
 
 }  // namespace
 
@@ -21,9 +20,9 @@ bool StraightnessCheck::check(const Pose& T_world_tip, const std::string& where,
   const double aside = (offset - along * axis_).norm();
   const double turned = rotation_distance(T_world_tip, T_world_end_);
   std::string message;
-  if (aside > kStraight) message = "the tool is " + text(aside) + " m off the approach line";
-  if (turned > kTurn) message = "the tool is turned by " + text(turned) + " rad from its pose at the grasp";
-  if (along > kStraight) message = "the tool is " + text(along) + " m past the grasp";
+  if (aside > kStraight) message = "the tool is " + text(aside) + " m off the line";
+  if (turned > kTurn) message = "the tool is turned by " + text(turned) + " rad from its pose at the end";
+  if (along > kStraight) message = "the tool is " + text(along) + " m past the end";
   if (along < farthest_ - kStraight) message = "the tool goes back by " + text(farthest_ - along) + " m";
   farthest_ = std::max(farthest_, along);
   if (!message.empty()) faults.push_back({"not-straight", where, message});
@@ -41,12 +40,22 @@ void check_grasp_reached(const Context& context, const Pose& T_world_wanted, con
                         text(context.options.rotation_tolerance) + " rad"});
 }
 
-void check_lift(const Pose& T_world_start, const Pose& T_world_end, const std::string& where, Faults& faults) {
+void check_approach(const Context& context, const Pose& T_world_start, const Pose& T_world_end,
+                    const std::string& where, Faults& faults) {
+  const Eigen::Vector3d way = T_world_end.translation() - T_world_start.translation();
+  const double length = way.dot(T_world_end.linear() * context.plan.approach);
+  if (length >= context.plan.approach_distance - kStraight) return;
+  faults.push_back({"short-approach", where,
+                    "the tool begins " + text(length) + " m before the grasp, must be " +
+                        text(context.plan.approach_distance) + " m"});
+}
+
+void check_lift(const Context& context, const Pose& T_world_start, const Pose& T_world_end, const std::string& where,
+                Faults& faults) {
   const double rise = T_world_end.translation().z() - T_world_start.translation().z();
-  if (rise < kLeastLift) {
-    faults.push_back(
-        {"no-lift", where, "the tool rises by " + text(rise) + " m, must be at least " + text(kLeastLift)});
-  }
+  if (rise >= context.plan.lift_height - kStraight) return;
+  faults.push_back(
+      {"no-lift", where, "the tool rises by " + text(rise) + " m, must be " + text(context.plan.lift_height) + " m"});
 }
 
 void check_release(const Context& context, const CheckedPart& part, const Pose& T_world_root,
@@ -74,4 +83,4 @@ void check_release(const Context& context, const CheckedPart& part, const Pose& 
   }
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

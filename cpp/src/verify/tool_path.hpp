@@ -4,13 +4,12 @@
 
 #include "verify/context.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 
-/// "not-straight": the tool comes in along the approach axis of its final pose, without turning or going back.
+/// "not-straight": the tool comes to its final pose along an axis of the world, without turning or going back.
 class StraightnessCheck {
  public:
-  StraightnessCheck(const Eigen::Vector3d& approach_in_tip, const Pose& T_world_end)
-      : axis_(T_world_end.linear() * approach_in_tip), T_world_end_(T_world_end) {}
+  StraightnessCheck(const Eigen::Vector3d& axis, const Pose& T_world_end) : axis_(axis), T_world_end_(T_world_end) {}
   /// The next pose of the tool, in order; false when a fault was added.
   bool check(const Pose& T_world_tip, const std::string& where, Faults& faults);
 
@@ -24,11 +23,16 @@ class StraightnessCheck {
 void check_grasp_reached(const Context& context, const Pose& T_world_wanted, const Pose& T_world_tip,
                          const std::string& where, Faults& faults);
 
+/// "short-approach": the tool begins as far before the grasp as the approach is long.
+void check_approach(const Context& context, const Pose& T_world_start, const Pose& T_world_end,
+                    const std::string& where, Faults& faults);
+
 /// "no-lift".
-void check_lift(const Pose& T_world_start, const Pose& T_world_end, const std::string& where, Faults& faults);
+void check_lift(const Context& context, const Pose& T_world_start, const Pose& T_world_end, const std::string& where,
+                Faults& faults);
 
 /// "release-outside", "release-tilted", "release-height".
 void check_release(const Context& context, const CheckedPart& part, const Pose& T_world_root,
                    const Pose& T_world_released, const std::string& where, Faults& faults);
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -11,7 +11,7 @@
 #include "mmgrasp/core/detail/xml_markup.hpp"
 #include "mmgrasp/core/error.hpp"
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 namespace {
 
 /// Collects what urdfdom would print, which is the only place where it says why it refuses a file.
@@ -82,7 +82,7 @@ void prepare_joint(TiXmlElement& joint) {
 }  // namespace
 
 void parse_robot_xml(const std::string& text, const std::string& origin, TiXmlDocument& document) {
-  if (const auto fault = detail::find_markup_fault(text))
+  if (const auto fault = mmgrasp::detail::find_markup_fault(text))
     throw InvalidInput(origin + ":" + std::to_string(fault->line) + ": not well-formed XML: " + fault->reason);
   document.Parse(text.c_str(), nullptr, TIXML_ENCODING_UTF8);
   if (document.Error())
@@ -119,4 +119,4 @@ UrdfDocument read_urdf(const std::string& urdf, const std::string& origin) {
   return out;
 }
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-namespace mmgrasp::verify {
+namespace mmgrasp::verify::detail {
 
 /// A URDF as urdfdom reads it. This urdfdom knows no capsules: they stand here as cylinders and are named.
 struct UrdfDocument {
@@ -24,4 +24,4 @@ UrdfDocument read_urdf(const std::string& urdf, const std::string& origin);
 /// Parses a text whose root element is <robot>; throws InvalidInput naming the origin and the line.
 void parse_robot_xml(const std::string& text, const std::string& origin, TiXmlDocument& document);
 
-}  // namespace mmgrasp::verify
+}  // namespace mmgrasp::verify::detail

@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'CuboidFit', 'Cylinder', 'DepthImage', 'DerivativeFreeResult', 'DistanceResult', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FittedCuboid', 'Grasp', 'GraspReport', 'Graspability', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotSource', 'SearchTree', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FittedCuboid', 'Grasp', 'GraspReport', 'Graspability', 'GridDistanceField', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotSource', 'SdfHits', 'SearchTree', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -108,6 +108,11 @@ class Robot:
         SRDF end effectors: name, group and parent_link.
         """
     @property
+    def group_links(self) -> dict[str, list[str]]:
+        """
+        SRDF group to its links: those that its joints, fixed ones too, and the joints that mimic them carry.
+        """
+    @property
     def group_states(self) -> dict[str, dict[str, dict[str, float]]]:
         """
         SRDF states: group, state, joint to value. Joints with several values appear as joint/x, joint/y, ...
@@ -203,9 +208,10 @@ class JointGroup:
             objectives: collections.abc.Sequence[IkObjective] = []  # costs (IkObjective) that the redundancy lowers once the pose is reached
             objective_iterations: int = 50  # steps along the solutions
         """
-    def ik_all(self, T_world_tip: numpy.typing.ArrayLike, count: int = 16, world: World | None = None, *, position_tolerance: float = 1e-05, rotation_tolerance: float = 0.0001, max_iterations: int = 60, restarts: int = 30, time_limit: float = 1.0, rng_seed: int = 1, joint_weights: numpy.typing.ArrayLike | None = [], objectives: collections.abc.Sequence[IkObjective] = [], objective_iterations: int = 50) -> numpy.typing.NDArray[numpy.float64]:
+    def ik_all(self, T_world_tip: numpy.typing.ArrayLike, count: int = 16, world: World | None = None, all_turns: bool = False, *, position_tolerance: float = 1e-05, rotation_tolerance: float = 0.0001, max_iterations: int = 60, restarts: int = 30, time_limit: float = 1.0, rng_seed: int = 1, joint_weights: numpy.typing.ArrayLike | None = [], objectives: collections.abc.Sequence[IkObjective] = [], objective_iterations: int = 50) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Up to `count` solutions (k, n), the first ones farthest apart; ik_branches tells why others fell.
+        Up to `count` solutions (k, n), the first ones farthest apart; ik_branches tells why others fell. They are
+        arm postures, in one turn each; `all_turns` gives each of them in every whole turn within limits.
         
         Keyword options:
             position_tolerance: float = 1e-05  # [m]
@@ -218,10 +224,13 @@ class JointGroup:
             objectives: collections.abc.Sequence[IkObjective] = []  # costs (IkObjective) that the redundancy lowers once the pose is reached
             objective_iterations: int = 50  # steps along the solutions
         """
-    def ik_branches(self, T_world_tip: numpy.typing.ArrayLike, world: World | None = None, redundant_values: int = 0, *, position_tolerance: float = 1e-05, rotation_tolerance: float = 0.0001, max_iterations: int = 60, restarts: int = 30, time_limit: float = 1.0, rng_seed: int = 1, joint_weights: numpy.typing.ArrayLike | None = [], objectives: collections.abc.Sequence[IkObjective] = [], objective_iterations: int = 50) -> IkBranches:
+    def ik_branches(self, T_world_tip: numpy.typing.ArrayLike, world: World | None = None, redundant_values: int = 0, all_turns: bool = False, *, position_tolerance: float = 1e-05, rotation_tolerance: float = 0.0001, max_iterations: int = 60, restarts: int = 30, time_limit: float = 1.0, rng_seed: int = 1, joint_weights: numpy.typing.ArrayLike | None = [], objectives: collections.abc.Sequence[IkObjective] = [], objective_iterations: int = 50) -> IkBranches:
         """
         Every branch of an arm of six turning joints, and of one of seven for `redundant_values` values of its
         redundant joint (0: 24); random descents search where no closed form fits. With a world, free ones only.
+        A branch is an arm posture: joints whose limits leave more than one turn stand in the one nearest to the
+        middle. `all_turns` lists every whole turn within limits, one branch after the other, of each the turns
+        nearest to the middle first; up to 64 a branch where six joints have two turns.
         
         Keyword options:
             position_tolerance: float = 1e-05  # [m]
@@ -254,6 +263,16 @@ class JointGroup:
     def manipulability_batch(self, Q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
         """
         (m,) for configurations (m, n).
+        """
+    def q(self, values: collections.abc.Mapping[str, float], base: numpy.typing.ArrayLike | None = None) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        A configuration (n,) from values by joint name [rad or m]. What is not named is as in `base` (n,), or as the group
+        holds its robot (0 for base joints). Raises InvalidInput for names it does not have, with the nearest.
+        """
+    def state(self, name: str, base: numpy.typing.ArrayLike | None = None) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The SRDF's group state of this name as a configuration (n,); `base` as in q(). Raises InvalidInput, listing the
+        states there are, for others.
         """
     def velocity_manipulability(self, q: numpy.typing.ArrayLike, direction: numpy.typing.ArrayLike) -> float:
         """
@@ -361,6 +380,11 @@ class World:
         """
         Along z, centred [m].
         """
+    def add_field(self, name: str, field: DistanceField, pose: numpy.typing.ArrayLike | None = None, *, resolution: float = 0.001, unknown_is_free: bool = False) -> None:
+        """
+        What a distance field holds, at T_world_field (4, 4). A body is free only where the field proves it, and is called
+        so when it is farther away than twice the field's error and `resolution` [m].
+        """
     def add_mesh(self, name: str, path: str | os.PathLike[str], pose: numpy.typing.ArrayLike | None = None, scale: numpy.typing.ArrayLike = 1.0) -> None:
         """
         STL, OBJ, DAE or PLY; closed meshes are solids, open ones surfaces.
@@ -377,6 +401,12 @@ class World:
         """
         Centred; `radius` [m].
         """
+    def allow(self, a: str, b: str) -> None:
+        """
+        The two may touch: they are not checked against each other. Each is a link of the robot, an SRDF group (all its
+        links) or an object, held or not. The pair may come before its objects; a checker raises InvalidInput for names
+        that robot and world lack. remove() takes the pairs of its object back.
+        """
     def attach(self, name: str, link: str, pose: numpy.typing.ArrayLike | None = None, touch_links: collections.abc.Set[str] = set()) -> None:
         """
         From the scene to a link, at T_link_object. Empty touch_links: the link, all below it, and its gripper's fingers.
@@ -389,9 +419,17 @@ class World:
         """
         Puts a held object back into the scene at T_world_object; without a pose it leaves the world.
         """
+    def disallow(self, a: str, b: str) -> None:
+        """
+        Takes a pair of allow() back. Raises InvalidInput unless it is there.
+        """
+    def forget(self, name: str) -> None:
+        """
+        Takes back what allow() and padding said about a name.
+        """
     def move(self, name: str, pose: numpy.typing.ArrayLike) -> None:
         """
-        Puts an object of the scene at T_world_object (4, 4).
+        Puts an object or a field of the scene at T_world_object (4, 4).
         """
     def pose_of(self, name: str) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -399,11 +437,16 @@ class World:
         """
     def remove(self, name: str) -> None:
         """
-        Takes an object, held or not, out of the world.
+        Takes an object, held or not, or a field out of the world.
         """
     def shapes_of(self, name: str) -> list[LinkShape]:
         """
         Shapes of an object, attached or not, in its own frame.
+        """
+    @property
+    def allowed(self) -> list[tuple[str, str]]:
+        """
+        The pairs that may touch, as given to allow(), sorted.
         """
     @property
     def attached(self) -> list[str]:
@@ -411,21 +454,37 @@ class World:
         Names of the held objects.
         """
     @property
+    def fields(self) -> list[str]:
+        """
+        Names of the distance fields.
+        """
+    @property
     def objects(self) -> list[str]:
         """
         Names of the scene's objects.
         """
+    @property
+    def padding(self) -> dict[str, typing.Any]:
+        """
+        How far bodies are grown where the robot (with what it holds) meets the scene [m]; never within the robot. A
+        number is for all links; a dict has the keys `links`, `attached`, `objects` and `by_name` (link, object or
+        SRDF group to its own padding, in place of the others).
+        """
+    @padding.setter
+    def padding(self, arg1: float | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]]) -> None:
+        ...
 class Outcome(enum.Enum):
     """
     How a query ended. "No solution" is a value, not an exception.
     """
     approximate = 1
     infeasible = 2
-    invalid_goal = 6
-    invalid_start = 5
+    invalid_goal = 7
+    invalid_start = 6
+    not_found = 3
     solved = 0
-    stopped = 4
-    timeout = 3
+    stopped = 5
+    timeout = 4
 class Rejection(enum.Enum):
     """
     Why one candidate was rejected.
@@ -675,6 +734,51 @@ class LinkShape:
     def shape(self) -> Box | Sphere | Cylinder | Capsule | Plane | Mesh | Voxels:
         """
         The shape itself.
+        """
+class DistanceField:
+    """
+    Signed distance from the surface of a body, in the field's own frame: negative inside, NaN where unknown [m].
+    """
+    def distances(self, points: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Signed distances (m,) of `points` (m, 3) [m].
+        """
+    def distances_and_gradients(self, points: numpy.typing.ArrayLike) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        The same with the unit directions (m, 3) along which they grow fastest; zero where unknown.
+        """
+    @property
+    def domain(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Least and largest corner (2, 3) of the box in which it knows anything [m]; infinite: everywhere.
+        """
+    @property
+    def error(self) -> float:
+        """
+        How far a distance may be off [m].
+        """
+    @property
+    def truncation(self) -> float:
+        """
+        Distances are clipped to this [m].
+        """
+class MeshDistanceField(DistanceField):
+    """
+    The exact distance from a closed mesh.
+    """
+    def __init__(self, mesh: Mesh) -> None:
+        """
+        Raises InvalidInput for a mesh that is not closed.
+        """
+class GridDistanceField(DistanceField):
+    """
+    Signed distances at the points of a regular grid, interpolated linearly along each axis between them.
+    """
+    def __init__(self, values: numpy.typing.ArrayLike, origin: numpy.typing.ArrayLike, spacing: float, *, error: float = 0.0, truncation: float = ...) -> None:
+        """
+        `values` (nx, ny, nz) [m], NaN where unknown: [i, j, k] is the distance at origin + spacing (i, j, k). `error`
+        of the values [m]; the field's own error adds sqrt(3) / 2 of the spacing, the most by which what lies between can
+        be off.
         """
 class DerivativeFreeResult:
     """
@@ -1012,6 +1116,11 @@ class Contact:
         A robot link, an attached object or an object of the scene.
         """
     @property
+    def by_padding(self) -> bool:
+        """
+        The bodies stay apart: only their padding meets.
+        """
+    @property
     def with_scene(self) -> bool:
         """
         `b` is an object of the scene.
@@ -1105,7 +1214,7 @@ class CollisionChecker:
         For configurations of `group` of `robot` in `world` as it is now.
         
         Keyword options:
-            padding: float = 0.0  # robot shapes are grown by this against the scene [m]
+            padding: float = 0.0  # links are padded by at least this against the scene, whatever the world's padding [m]
             check_self: bool = True  # robot (and what it holds) against itself
             check_scene: bool = True  # robot (and what it holds) against the scene
             attached_only: bool = False  # only what it holds, against the robot and the scene
@@ -1937,6 +2046,11 @@ class MotionResult:
         """
         What the search took.
         """
+    @property
+    def via_reached(self) -> int:
+        """
+        With `via`: how many of them a path was found to; all when solved.
+        """
 class StraightLineResult:
     """
     What plan_straight_line found.
@@ -2042,14 +2156,14 @@ class Roadmap:
     Configurations of a group drawn from its joint limits and joined when near, without any collision check: it serves every grasp, object and scene (P2 4.3.2.1). Immutable.
     """
     @staticmethod
-    def build(group: JointGroup, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, vertices: int = 5000, gamma: float = 4.0, neighbours: int = 0, seed: int = 1) -> Roadmap:
+    def build(group: JointGroup, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, seed: int = 1) -> Roadmap:
         """
         Draws and joins; a larger roadmap of the same seed holds a smaller one's vertices.
         
         Keyword options:
             vertices: int = 5000  # configurations drawn
-            gamma: float = 4.0  # vertices nearer than gamma (log n / n)^(1/d) are joined [rad or m]
-            neighbours: int = 0  # > 0: join that many nearest ones instead
+            gamma: float = 0.0  # > 0: vertices nearer than gamma (log n / n)^(1/d) are joined (P2: 4) [rad or m]; 0: the e (1 + 1/d) log n nearest ones
+            neighbours: int = 0  # > 0: that many nearest ones are joined instead
             seed: int = 1  # same seed, same roadmap
         """
     @staticmethod
@@ -2081,12 +2195,17 @@ class Roadmap:
     @property
     def statistics(self) -> mmgrasp._records.RoadmapStatistics:
         """
-        Mean degree, connected parts, the largest one's vertices, connection radius, the joint box's volume, and the gamma that PRM* asks for.
+        Mean degree, connected parts, the largest one's vertices, nearest ones joined, connection radius, the joint box's volume, and the gamma that PRM* asks for.
         """
     @property
     def vertices(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n, joints)
+        """
+    @property
+    def warning(self) -> str:
+        """
+        What to set when less than 99 % of the vertices hang together; empty otherwise.
         """
 class ManipulationProblem:
     """
@@ -2198,6 +2317,11 @@ class Improvement:
         """
         Since the call began, the first roadmap's building left out.
         """
+    @property
+    def stage(self) -> str:
+        """
+        What found it: first_grasps, straight_lines, roadmap, refinement, trees or shortening.
+        """
 class GraspReport:
     """
     What became of one grasp.
@@ -2271,7 +2395,7 @@ class ManipulationResult:
     @property
     def lower_bound(self) -> float:
         """
-        No path costs less: with prm_star_mg none over this roadmap and these arm configurations.
+        No path with any grasp between these arm postures costs less: the least straight line.
         """
     @property
     def outcome(self) -> Outcome:
@@ -2291,12 +2415,17 @@ class ManipulationResult:
     @property
     def stats(self) -> mmgrasp._records.ManipulationStats:
         """
-        What the search took: seconds, searches, edges checked.
+        What the search took: seconds, searches, edges checked; what each stage found and when.
         """
     @property
     def trees(self) -> list[SearchTree]:
         """
         With keep_trees: a SearchTree for each grasp still still a candidate and each end.
+        """
+    @property
+    def warnings(self) -> list[str]:
+        """
+        What may have kept paths from being found: a roadmap in pieces.
         """
 class BaseTrackingResult:
     """
@@ -3769,6 +3898,268 @@ class CuboidFit:
         """
         plane_normal . x = plane_offset [m]
         """
+class DepthNoise:
+    """
+    Standard deviation of a depth along the camera's axis [m]:
+    
+        constant + linear z + quadratic z^2 + slant z^slant_power theta^2 / (pi/2 - theta)^2
+    
+    with z the depth [m] and theta the angle of incidence [rad].
+    """
+    @staticmethod
+    def stereo(focal: float, baseline: float, disparity_sigma: float) -> DepthNoise:
+        """
+        z^2 disparity_sigma / (focal baseline): `focal` and `disparity_sigma` in pixels, `baseline` [m], as
+        in Khoshelham and Elberink, Sensors 12(2), 2012.
+        """
+    @staticmethod
+    def structured_light() -> DepthNoise:
+        """
+        The first Kinect: Nguyen, Izadi, Lovell, 3DIMPVT 2012.
+        """
+    @staticmethod
+    def time_of_flight() -> DepthNoise:
+        """
+        The second Kinect: Fankhauser et al., ICAR 2015.
+        """
+    def __init__(self, constant: float = 0.001, linear: float = 0.0, quadratic: float = 0.0, slant: float = 0.0, slant_power: float = 0.0) -> None:
+        """
+        The coefficients; the camera checks them.
+        """
+    def __repr__(self) -> str:
+        ...
+    def sigma(self, depth: float, incidence: float = 0.0) -> float:
+        """
+        Standard deviation [m] at a depth [m] and an angle of incidence in [0, pi/2) [rad].
+        """
+    @property
+    def constant(self) -> float:
+        """
+        [m]
+        """
+    @property
+    def linear(self) -> float:
+        """
+        Per metre of depth.
+        """
+    @property
+    def quadratic(self) -> float:
+        """
+        [1/m]
+        """
+    @property
+    def slant(self) -> float:
+        """
+        Part of the slant at a depth of 1 m [m].
+        """
+    @property
+    def slant_power(self) -> float:
+        """
+        How the slant's part grows with the depth.
+        """
+class DepthCamera:
+    """
+    A depth camera: what it sees and how well it measures.
+    """
+    def __init__(self, intrinsics: PinholeCamera, noise: DepthNoise = ..., name: str = 'camera', systematic: float = 0.0, systematic_scale: float = 0.0) -> None:
+        """
+        Frames of one `name` share their systematic error: an offset of all depths whose standard deviation is
+        `systematic` [m], with `systematic_scale` times the depth beside it; it never averages away. Raises
+        InvalidInput on values out of range.
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def intrinsics(self) -> PinholeCamera:
+        """
+        Image size, focal lengths, principal point, range.
+        """
+    @property
+    def name(self) -> str:
+        """
+        Frames of one name share their systematic error.
+        """
+    @property
+    def noise(self) -> DepthNoise:
+        """
+        Standard deviation of each pixel.
+        """
+    @property
+    def systematic(self) -> float:
+        """
+        Standard deviation of the offset of all depths [m].
+        """
+    @property
+    def systematic_scale(self) -> float:
+        """
+        The same in proportion to the depth.
+        """
+class IntegrationReport:
+    """
+    What became of a frame; counts are of pixels.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def agreement(self) -> float:
+        """
+        Share of pixels that confirm an earlier frame where both see the same place; NaN when they have too little in common.
+        """
+    @property
+    def measured(self) -> int:
+        """
+        Pixels with a depth.
+        """
+    @property
+    def new_blocks(self) -> int:
+        """
+        Blocks of 8 x 8 x 8 voxels that the map got.
+        """
+    @property
+    def out_of_range(self) -> int:
+        """
+        Nearer or farther than the camera sees.
+        """
+    @property
+    def too_noisy(self) -> int:
+        """
+        Standard deviation above a third of the truncation.
+        """
+    @property
+    def too_slanted(self) -> int:
+        """
+        Incidence above max_incidence.
+        """
+    @property
+    def used(self) -> int:
+        """
+        Pixels whose surface went into the map.
+        """
+    @property
+    def warning(self) -> str:
+        """
+        What looks wrong but was integrated, or empty.
+        """
+    @property
+    def without_normal(self) -> int:
+        """
+        Too few neighbours on the same surface.
+        """
+class SdfHits:
+    """
+    Where rays meet the surface of a ProbabilisticSdf; NaN where they do not.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def distance(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) along the ray, in multiples of the direction's length.
+        """
+    @property
+    def hit(self) -> numpy.typing.NDArray[numpy.bool_]:
+        """
+        (n,) whether the ray meets a seen surface.
+        """
+    @property
+    def normal(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) unit normals, away from the solid.
+        """
+    @property
+    def point(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) [m]
+        """
+    @property
+    def sigma(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) standard deviation of the surface along its normal [m].
+        """
+class ProbabilisticSdf:
+    """
+    A map of surfaces seen by depth cameras: the signed distance of every voxel near a surface as a normal
+    distribution (P3 4.5.2, 4.5.3), positive in front. The order of frames does not matter beyond the rounding of
+    floats; what lies deeper than the truncation behind a surface stays unknown.
+    """
+    @staticmethod
+    def load(path: str | os.PathLike[str], threads: int = 0) -> ProbabilisticSdf:
+        """
+        Reads what save() wrote. Raises IoError when it is no map, of another version, truncated or damaged.
+        """
+    def __init__(self, *, voxel: float = 0.002, truncation: float = 0.01, distance: typing.Literal['to_plane', 'along_ray'] = 'to_plane', max_incidence: float = 1.05, max_memory: float = 2000000000.0, threads: int = 0) -> None:
+        """
+        An empty map.
+        
+        Keyword options:
+            voxel: float = 0.002  # distance of neighbouring voxels [m]
+            truncation: float = 0.01  # voxels farther from a depth are not updated by it [m]; at least 3 voxels
+            distance: typing.Literal['to_plane', 'along_ray'] = 'to_plane'  # to the plane through the measured point, or along the ray as in P3 (4.12)
+            max_incidence: float = 1.05  # what is seen more slanted is not used [rad]
+            max_memory: float = 2000000000.0  # a frame that would need more is refused [bytes]
+            threads: int = 0  # 0: all
+        """
+    def __repr__(self) -> str:
+        ...
+    def cast_rays(self, origins: numpy.typing.ArrayLike, directions: numpy.typing.ArrayLike, threads: int = 0) -> SdfHits:
+        """
+        The first surface from the front along each ray, (n, 3) both. Unknown space does not stop a ray.
+        """
+    def distances(self, points: numpy.typing.ArrayLike, sigmas: float = 2.0, unknown: typing.Literal['unknown', 'free', 'occupied'] = 'unknown') -> numpy.typing.NDArray[numpy.float64]:
+        """
+        mean - sigmas * sigma at `points` (n, 3), clipped to the truncation, as collision checks read it [m]. Where
+        no camera saw: NaN, or free or occupied as deep as the truncation.
+        """
+    def integrate(self, image: DepthImage, camera: DepthCamera, *, pose_covariance: numpy.typing.ArrayLike | None = None, sigma: numpy.typing.ArrayLike | None = None) -> IntegrationReport:
+        """
+        Adds a frame. `pose_covariance` (6, 6): of the error of T_world_camera, displacement [m] first, then
+        rotation vector about the camera's origin [rad], along the world's axes, independent from frame to frame.
+        `sigma` (height, width): standard deviation of each depth [m] in place of the camera's noise.
+        Raises InvalidInput, with the map as it was, for an image of another size or other intrinsics than the
+        camera's, nothing measured, a wrong depth scale, poses that are no rigid motions or the wrong way round,
+        another camera of a known name, depths all too noisy for the truncation, a map above max_memory.
+        """
+    def mesh(self) -> tuple[Mesh, numpy.typing.NDArray[numpy.float64]]:
+        """
+        (mesh, sigma): the zero level by marching cubes and the standard deviation at each vertex [m].
+        """
+    def points(self) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        (points, normals, sigma) of the surface: (n, 3), (n, 3), (n,).
+        """
+    def query(self, points: numpy.typing.ArrayLike, threads: int = 0) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.bool_]]:
+        """
+        (mean, sigma, known) at `points` (n, 3): signed distance and its standard deviation [m], NaN where unknown.
+        """
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """
+        Writes a file of its own format. Raises IoError naming it.
+        """
+    @property
+    def blocks(self) -> int:
+        """
+        Blocks of 8 x 8 x 8 voxels.
+        """
+    @property
+    def frames(self) -> int:
+        """
+        Integrated so far.
+        """
+    @property
+    def memory(self) -> int:
+        """
+        Of the blocks and their index [bytes].
+        """
+    @property
+    def truncation(self) -> float:
+        """
+        Voxels farther from a depth are not updated by it [m].
+        """
+    @property
+    def voxel(self) -> float:
+        """
+        Distance of neighbouring voxels [m].
+        """
 class Graspability:
     """
     Grasps, best first, and what became of the other places checked.
@@ -3904,6 +4295,8 @@ class Pipe:
         """
         First and second node of each section, counted from 0.
         """
+def _allowed_bodies(robot: Robot, world: World) -> list[tuple[str, str]]:
+    ...
 def _capability_option_table() -> dict[str, typing.Any]:
     ...
 def _cartesian_option_table() -> dict[str, typing.Any]:
@@ -3957,6 +4350,8 @@ def _sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, *
         standoff: float = 0.0  # how far the tool frame stays outside the object's middle [m]
         seed: int = 1  # same seed, same grasps
     """
+def _sdf_option_table() -> dict[str, typing.Any]:
+    ...
 def _supply_option_table() -> dict[str, typing.Any]:
     ...
 def _timing_option_table() -> dict[str, typing.Any]:
@@ -4196,13 +4591,13 @@ def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy
         look_out: float = 0.15  # pairs of bodies nearer than this are constrained [m]
         refinements: int = 6  # times that collision constraints may be added
     """
-def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 4, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 4.0, neighbours: int = 0, roadmap_seed: int = 1, max_samples: int = 1000, step: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
+def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, padding: float | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 4, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_samples: int = 1000, step: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
     """
-    Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 chapters 4 and 5). Every grasp is checked. `on_solution` is called with every better solution (an Improvement); what it raises ends the call.
+    Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 chapters 4 and 5). Every grasp is checked. `padding`: in place of that of the problem's world, see World.padding. `on_solution` is called with every better solution (an Improvement); what it raises ends the call.
     
     Keyword options:
         planner: str = 'prm_star_mg'  # a name of manipulation_planner_names()
-        ik_solutions: int = 4  # arm configurations tried for each grasp at each end
+        ik_solutions: int = 4  # arm postures tried for each grasp at each end, in all whole turns
         first_grasps: int = 4  # grasps checked, one by one, before those without a first path are searched again, then twice as many; 0: all before any search
         straight: bool = True  # try straight joint lines from start to goal
         ik_restarts: int = 30  # random starts of arms without a closed form
@@ -4217,36 +4612,39 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         shorten: bool = True  # prm_star_mg: shorten the roadmap's best path at the end
         refinements: int = 4  # prm_star_mg: then search so many small roadmaps drawn where a cheaper path can pass
         vertices: int = 5000  # prm_star_mg without a roadmap given: configurations drawn
-        gamma: float = 4.0  # likewise: vertices nearer than gamma (log n / n)^(1/d) are joined [rad or m]
-        neighbours: int = 0  # likewise: > 0: join that many nearest ones instead
+        gamma: float = 0.0  # likewise: > 0: vertices nearer than gamma (log n / n)^(1/d) are joined (P2: 4) [rad or m]; 0: the e (1 + 1/d) log n nearest ones
+        neighbours: int = 0  # likewise: > 0: that many nearest ones are joined instead
         roadmap_seed: int = 1  # likewise: same seed, same roadmap
         max_samples: int = 1000  # rrt_star_mg: budget in samples
         step: float = 1.5  # rrt_star_mg: longest edge grown towards a sample [rad or m]
-        rrt_gamma: float = 0.0  # rrt_star_mg: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined; 0: about 4 (1 + 1/d) n^(1/(d+1)) log n of n
+        rrt_gamma: float = 0.0  # rrt_star_mg: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined; 0: about (d + 1) / 2 n^(1/(d+1)) log n of n
         exploration: float = 0.5  # rrt_star_mg: once solved, chance to grow the drawn grasp's own tree (P2's p_blt)
         bidirectional: bool = True  # rrt_star_mg: trees from both ends
         informed: bool = True  # rrt_star_mg: draw only where a better path can pass
         goal_cost: float = 0.0  # rrt_star_mg: ends with the first path that costs no more; inf: the first at all
         keep_trees: bool = False  # rrt_star_mg: hand over the trees with the result
     """
-def plan_motion(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike | None = None, tool_poses: numpy.typing.ArrayLike | None = None, regions: collections.abc.Sequence[ToolRegion] = [], orientation_constraint: OrientationConstraint | None = None, on_solution: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64], float], typing.Any] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, planner: str = 'rrt_connect', time_limit: float = 5.0, max_iterations: int = 20000, range: float = 0.0, base_margin: float = 2.0, edge_step: float = 0.02, workspace_step: float = ..., shorten: bool = True, shorten_iterations: int = 200, ik_solutions: int = 8, region_samples: int = 16, seed: int = 1) -> MotionResult:
+def plan_motion(robot: Robot | CollisionChecker, group: JointGroup | None = None, world: World | None = None, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike | None = None, tool_poses: numpy.typing.ArrayLike | None = None, regions: collections.abc.Sequence[ToolRegion] = [], via: numpy.typing.ArrayLike | None = None, orientation_constraint: OrientationConstraint | None = None, padding: float | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, on_solution: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64], float], typing.Any] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, planner: str = 'rrt_connect', time_limit: float = 5.0, max_iterations: int = 20000, range: float = 0.0, near_end_probability: float = 0.2, base_margin: float = 2.0, edge_step: float = 0.02, workspace_step: float = ..., shorten: bool = True, shorten_iterations: int = 200, ik_solutions: int = 8, region_samples: int = 16, seed: int = 1) -> MotionResult:
     """
     A collision-free path of the group from `start` (n,) to any of its goals: `goal` (n,) or several as (m, n),
-    `tool_poses` of the tip, (4, 4) or (m, 4, 4), and `regions` of them, reached by inverse kinematics. `orientation_constraint`
-    holds on the whole path. on_solution(path, cost) is called with each better path. A diff-drive base turns on
-    the spot and drives straight.
+    `tool_poses` of the tip, (4, 4) or (m, 4, 4), and `regions` of them, reached by inverse kinematics; by way of the
+    configurations `via` (k, n), one after the other. A prepared CollisionChecker may stand in place of robot, group
+    and world. `orientation_constraint` holds on the whole path. `padding`: in place of the world's own, see
+    World.padding. on_solution(path, cost) is called with each better path. A diff-drive base turns on the spot and
+    drives straight.
     
     Keyword options:
         planner: str = 'rrt_connect'  # a name of planner_names()
         time_limit: float = 5.0  # wall-clock cap [s]
         max_iterations: int = 20000  # budget in states drawn
         range: float = 0.0  # longest tree edge [rad]; 0: a share of the joint limits's diagonal
+        near_end_probability: float = 0.2  # roadmap planners: chance to draw around the start or a goal; 0: uniform draws alone
         base_margin: float = 2.0  # the base is drawn this far around start and goals [m]
         edge_step: float = 0.02  # largest joint motion between two checks [rad or m]
         workspace_step: float = inf  # largest motion of any robot point between two checks [m]
         shorten: bool = True  # shortcut the path
         shorten_iterations: int = 200  # tries of the shortening
-        ik_solutions: int = 8  # IK solutions looked for at each tool pose
+        ik_solutions: int = 8  # arm postures looked for at each tool pose, each in all its whole turns
         region_samples: int = 16  # tool poses drawn in each region
         seed: int = 1  # same seed, same path
     """

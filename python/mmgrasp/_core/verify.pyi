@@ -7,7 +7,7 @@ import mmgrasp._core
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['CheckedBody', 'CheckedDriveBy', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegFigures', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'Fault', 'PathCheckResult', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'check_path', 'check_plan']
+__all__: list[str] = ['CheckedBody', 'CheckedDriveBy', 'CheckedFinger', 'CheckedGrasp', 'CheckedGrid', 'CheckedIntersection', 'CheckedLegFigures', 'CheckedMotion', 'CheckedPart', 'CheckedPick', 'CheckedRegion', 'CheckedStop', 'CheckedTray', 'Fault', 'PathCheckResult', 'PlanCheckResult', 'PlanToCheck', 'StopRate', 'check_path', 'check_plan', 'overlapping_bodies']
 class CheckedBody:
     """
     A body of the scene as the plan file describes it.
@@ -107,6 +107,14 @@ class CheckedGrid:
         """
         Lower corner of cell (0, 0) (2,) [m], edge of a cell [m], cells along x and y, headings [rad].
         """
+class CheckedTray:
+    """
+    How base poses for a tray were searched.
+    """
+    def __init__(self, headings: collections.abc.Sequence[float], middle: numpy.typing.ArrayLike, max_distance: float) -> None:
+        """
+        Base headings tried [rad], the tray's middle (2,) and the distance from it beyond which none were tried [m].
+        """
 class PlanToCheck:
     """
     A whole plan as read from plan.json.
@@ -132,12 +140,28 @@ class PlanToCheck:
     def acceleration_limits(self, arg0: collections.abc.Sequence[float]) -> None:
         ...
     @property
+    def allowed_collisions(self) -> list[tuple[str, str]]:
+        """
+        Pairs of names (links, obstacles, parts) that may touch.
+        """
+    @allowed_collisions.setter
+    def allowed_collisions(self, arg0: collections.abc.Sequence[tuple[str, str]]) -> None:
+        ...
+    @property
     def approach(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Unit vector (3,) in the tip's frame along which the hand comes.
         """
     @approach.setter
     def approach(self, arg0: numpy.typing.ArrayLike) -> None:
+        ...
+    @property
+    def approach_distance(self) -> float:
+        """
+        Least straight way to a grasp [m].
+        """
+    @approach_distance.setter
+    def approach_distance(self, arg0: float) -> None:
         ...
     @property
     def arm_joints(self) -> list[str]:
@@ -164,6 +188,14 @@ class PlanToCheck:
     def clearance(self, arg0: float) -> None:
         ...
     @property
+    def closing(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Unit vector (3,) in the tip's frame along which the pads close.
+        """
+    @closing.setter
+    def closing(self, arg0: numpy.typing.ArrayLike) -> None:
+        ...
+    @property
     def closing_speed(self) -> float:
         """
         Of the opening [m/s], for drive_by.
@@ -188,12 +220,28 @@ class PlanToCheck:
     def drop_gap(self, arg0: float) -> None:
         ...
     @property
+    def finger_depth(self) -> float:
+        """
+        Size of a pad along the approach [m]; 0: widths are not compared with the parts.
+        """
+    @finger_depth.setter
+    def finger_depth(self, arg0: float) -> None:
+        ...
+    @property
     def finger_links(self) -> list[str]:
         """
         Links that may touch the part that is held.
         """
     @finger_links.setter
     def finger_links(self, arg0: collections.abc.Sequence[str]) -> None:
+        ...
+    @property
+    def finger_width(self) -> float:
+        """
+        Size of a pad across approach and closing [m].
+        """
+    @finger_width.setter
+    def finger_width(self, arg0: float) -> None:
         ...
     @property
     def fingers(self) -> list[CheckedFinger]:
@@ -236,6 +284,14 @@ class PlanToCheck:
     def intersections(self, arg0: collections.abc.Sequence[CheckedIntersection]) -> None:
         ...
     @property
+    def lift_height(self) -> float:
+        """
+        Least straight way up after closing [m].
+        """
+    @lift_height.setter
+    def lift_height(self, arg0: float) -> None:
+        ...
+    @property
     def lower_bound(self) -> int:
         """
         Least number of stops, as the plan says.
@@ -260,12 +316,28 @@ class PlanToCheck:
     def obstacles(self, arg0: collections.abc.Sequence[CheckedBody]) -> None:
         ...
     @property
+    def openings(self) -> list[float]:
+        """
+        Openings at equal steps of the finger joints from closed to open [m]; empty: linear from 0.
+        """
+    @openings.setter
+    def openings(self, arg0: collections.abc.Sequence[float]) -> None:
+        ...
+    @property
     def other_joints(self) -> dict[str, float]:
         """
         Values of joints outside the arm [rad or m].
         """
     @other_joints.setter
     def other_joints(self, arg0: collections.abc.Mapping[str, float]) -> None:
+        ...
+    @property
+    def padded(self) -> bool:
+        """
+        Bodies were kept apart by more than touching: cells beside a region prove nothing.
+        """
+    @padded.setter
+    def padded(self, arg0: bool) -> None:
         ...
     @property
     def parts(self) -> list[CheckedPart]:
@@ -338,6 +410,14 @@ class PlanToCheck:
         """
     @route_figures.setter
     def route_figures(self, arg0: collections.abc.Sequence[CheckedLegFigures]) -> None:
+        ...
+    @property
+    def searched(self) -> dict[str, CheckedTray]:
+        """
+        How base poses for each tray were searched, by its name.
+        """
+    @searched.setter
+    def searched(self, arg0: collections.abc.Mapping[str, CheckedTray]) -> None:
         ...
     @property
     def start(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -498,12 +578,12 @@ class PlanCheckResult:
         """
         One a stop.
         """
-def check_path(robot: mmgrasp._core.Robot, joints: collections.abc.Sequence[str], path: numpy.typing.ArrayLike, bodies: collections.abc.Sequence[CheckedBody], *, other_joints: collections.abc.Mapping[str, float] = {}, joint_step: float = 0.005) -> PathCheckResult:
+def check_path(robot: mmgrasp._core.Robot, joints: collections.abc.Sequence[str], path: numpy.typing.ArrayLike, bodies: collections.abc.Sequence[CheckedBody], *, other_joints: collections.abc.Mapping[str, float] = {}, allowed_collisions: collections.abc.Sequence[tuple[str, str]] = [], joint_step: float = 0.005) -> PathCheckResult:
     """
     Looks at waypoints (k, n) joined by straight lines, in steps of joint_step [rad or m]: limits, self-collisions and
-    collisions with the bodies, by KDL and FCL called directly.
+    collisions with the bodies, by KDL and FCL called directly. Pairs of links or bodies in `allowed_collisions` may touch.
     """
-def check_plan(plan: PlanToCheck, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, joint_step: float = 0.01, base_step: float = 0.01, position_tolerance: float = 0.0001, rotation_tolerance: float = 0.001, samples: int = 1000, required_rate: float = 0.999, seed: int = 20240607, threads: int = 0) -> PlanCheckResult:
+def check_plan(plan: PlanToCheck, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, joint_step: float = 0.01, base_step: float = 0.01, position_tolerance: float = 0.0001, rotation_tolerance: float = 0.001, samples: int = 1000, required_rate: float = 0.999, region_samples: int = 20, seed: int = 20240607, threads: int = 0) -> PlanCheckResult:
     """
     Checks a finished plan against its scenario.
     
@@ -514,6 +594,11 @@ def check_plan(plan: PlanToCheck, *, progress: collections.abc.Callable[[str, fl
         rotation_tolerance: float = 0.001  # of a grasp [rad]
         samples: int = 1000  # base poses drawn in the uncertainty disc of each stop
         required_rate: float = 0.999  # share of them from which every target part has a grasp
+        region_samples: int = 20  # base poses drawn in each region, cells drawn beside it, and poses in the radius a stop claims
         seed: int = 20240607  # of the base poses drawn
         threads: int = 0  # 0: all
+    """
+def overlapping_bodies(bodies: collections.abc.Sequence[CheckedBody]) -> list[tuple[int, int]]:
+    """
+    Index pairs of the bodies that overlap by more than 1e-4 m; those that just touch do not.
     """

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,8 +12,6 @@ from .. import _core
 
 if TYPE_CHECKING:  # argparse has no public name for what add_subparsers gives
     Commands = argparse._SubParsersAction["_Parser"]
-
-_LARGEST = 2**31 - 1
 
 
 class _Parser(argparse.ArgumentParser):
@@ -35,13 +35,15 @@ def _add_plan(commands: Commands) -> None:
     parser = commands.add_parser(
         "plan", help="plan a part-supply round and write plan, report, pictures and trajectories"
     )
-    parser.add_argument("scenario", type=Path, help="scenario file (YAML)")
-    parser.add_argument("-o", "--out", type=Path, required=True, metavar="DIR", help="folder to write into")
+    parser.add_argument("scenario", type=_path, help="scenario file (YAML)")
+    parser.add_argument("-o", "--out", type=_path, required=True, metavar="DIR", help="folder to write into")
     parser.add_argument(
         "--robot", metavar="NAME", help="another robot: a shipped profile (tiago, ...) or a profile file"
     )
-    parser.add_argument("--threads", type=_count, metavar="N", help="0: all (default); the plan does not depend on it")
-    parser.add_argument("--seed", type=_count, metavar="N", help="same seed, same plan")
+    parser.add_argument(
+        "--threads", type=_threads, metavar="N", help="0: all (default); the plan does not depend on it"
+    )
+    parser.add_argument("--seed", type=_seed, metavar="N", help="same seed, same plan")
     parser.add_argument(
         "--drive-by", action="store_true", help="take the first part at each stop without stopping for it"
     )
@@ -50,18 +52,23 @@ def _add_plan(commands: Commands) -> None:
 
 def _add_verify(commands: Commands) -> None:
     parser = commands.add_parser("verify", help="check a finished plan without the planner")
-    parser.add_argument("plan", type=Path, help="plan.json")
-    parser.add_argument("--scenario", type=Path, metavar="FILE", help="compare with this scenario, read anew")
+    parser.add_argument("plan", type=_path, help="plan.json")
+    parser.add_argument("--scenario", type=_path, metavar="FILE", help="compare with this scenario, read anew")
     parser.add_argument("--robot", metavar="NAME", help="the robot profile the plan was made with")
-    parser.add_argument("--samples", type=_count, metavar="N", help="base poses drawn at each stop (default 1000)")
-    parser.add_argument("--threads", type=_count, metavar="N", help="0: all (default)")
+    parser.add_argument(
+        "--samples",
+        type=_count(1, 1_000_000, "base poses"),
+        metavar="N",
+        help="base poses drawn at each stop (default 1000)",
+    )
+    parser.add_argument("--threads", type=_threads, metavar="N", help="0: all (default)")
     parser.add_argument("--json", action="store_true", help="print the verdict as JSON")
 
 
 def _add_check(commands: Commands) -> None:
     parser = commands.add_parser("check", help="tell what mmgrasp understands of a robot")
-    parser.add_argument("urdf", type=Path, help="a URDF, or a .xacro file that expands to one")
-    parser.add_argument("--srdf", type=Path, metavar="FILE")
+    parser.add_argument("urdf", type=_path, help="a URDF, or a .xacro file that expands to one")
+    parser.add_argument("--srdf", type=_path, metavar="FILE")
     parser.add_argument(
         "--xacro-arg",
         action="append",
@@ -81,12 +88,12 @@ def _add_check(commands: Commands) -> None:
     parser.add_argument("--base", choices=["fixed", "diff_drive", "omni"], default="fixed")
     parser.add_argument(
         "--mesh-tolerance",
-        type=float,
+        type=_length,
         default=0.0,
         metavar="M",
         help="how far simpler solids may stick out of collision meshes [m] (default 0: only the same solid)",
     )
-    parser.add_argument("--write-srdf", type=Path, metavar="FILE", help="write an SRDF with the computed link pairs")
+    parser.add_argument("--write-srdf", type=_path, metavar="FILE", help="write an SRDF with the computed link pairs")
     parser.add_argument("--json", action="store_true")
 
 
@@ -100,9 +107,9 @@ def _add_reproduce(commands: Commands) -> None:
         "--json", action="store_true", help="print JSON instead of Markdown: an object for one name, else a list"
     )
     parser.add_argument(
-        "--out", type=Path, metavar="DIR", help="also write JSON and pictures there, and a page of all of them"
+        "--out", type=_path, metavar="DIR", help="also write JSON and pictures there, and a page of all of them"
     )
-    parser.add_argument("--seed", type=_count, default=1, metavar="N", help="of whatever is random (default 1)")
+    parser.add_argument("--seed", type=_seed, default=1, metavar="N", help="of whatever is random (default 1)")
     _add_cluster_options(parser)
 
 
@@ -111,7 +118,7 @@ def _add_bench(commands: Commands) -> None:
     parser.add_argument("name", choices=["mbm"], help="mbm: MotionBenchMaker's problems for Panda and UR5")
     parser.add_argument(
         "--data",
-        type=Path,
+        type=_path,
         default=Path("../shared/data"),
         metavar="DIR",
         help="folder with robots/ and planning/ (default ../shared/data)",
@@ -119,44 +126,72 @@ def _add_bench(commands: Commands) -> None:
     parser.add_argument("--robot", nargs="+", default=["panda", "ur5"], metavar="NAME")
     parser.add_argument("--set", nargs="+", metavar="NAME", help="bookshelf_small, ...; default: all seven")
     parser.add_argument(
-        "--limit", type=_at_least_one, default=50, metavar="N", help="problems of each set (default 50)"
+        "--limit",
+        type=_count(1, 1_000_000, "problems"),
+        default=50,
+        metavar="N",
+        help="problems of each set (default 50)",
     )
-    parser.add_argument("--seeds", type=_at_least_one, default=1, metavar="N", help="runs of each problem (default 1)")
+    parser.add_argument(
+        "--seeds", type=_count(1, 1_000_000, "runs"), default=1, metavar="N", help="runs of each problem (default 1)"
+    )
     parser.add_argument("--planner", default="rrt_connect", help="a name of planner_names()")
     parser.add_argument("--json", action="store_true")
 
 
 def _add_view(commands: Commands) -> None:
     parser = commands.add_parser("view", help="show a plan in the browser, or draw it")
-    parser.add_argument("plan", type=Path, help="plan.json")
-    parser.add_argument("--png", type=Path, metavar="FILE", help="write a picture instead of opening the browser")
-    parser.add_argument("--port", type=_count, default=8080, metavar="N")
+    parser.add_argument("plan", type=_path, help="plan.json")
+    parser.add_argument("--png", type=_path, metavar="FILE", help="write a picture instead of opening the browser")
+    parser.add_argument("--port", type=_count(0, 65535, ""), default=8080, metavar="N")
 
 
 def _add_cluster_options(parser: argparse.ArgumentParser) -> None:
     where = parser.add_mutually_exclusive_group()
     where.add_argument(
-        "--workers", type=_count, metavar="N", help="spread the work over N local processes (0: one a core)"
+        "--workers",
+        type=_count(0, 1024, "processes"),
+        metavar="N",
+        help="spread the work over N local processes (0: one a core)",
     )
     where.add_argument("--scheduler", metavar="ADDRESS", help="spread the work over a Dask cluster, tcp://host:port")
     parser.add_argument(
-        "--shards", type=Path, metavar="DIR", help="where --workers and --scheduler keep finished shards"
+        "--shards", type=_path, metavar="DIR", help="where --workers and --scheduler keep finished shards"
     )
 
 
-def _count(text: str, least: int = 0) -> int:
+def _path(text: str) -> Path:
+    if not text or "\0" in text:
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a path that is not empty")
+    return Path(text)
+
+
+def _count(least: int, most: int, unit: str) -> Callable[[str], int]:
+    """A whole number in plain digits, with its bounds."""
+
+    def read(text: str) -> int:
+        plain = text.isascii() and text.isdigit() and len(text) < 20
+        if not plain or not least <= int(text) <= most:
+            raise argparse.ArgumentTypeError(
+                f"{text!r}: must be a whole number, at least {least} and at most {most} {unit}"
+            )
+        return int(text)
+
+    return read
+
+
+_threads = _count(0, 1024, "threads")
+_seed = _count(0, 2**31 - 1, "(any)")
+
+
+def _length(text: str) -> float:
     try:
-        value = int(text)
+        value = float(text) if text.isascii() and "_" not in text else math.nan
     except ValueError:
-        value = -1
-    if not least <= value <= _LARGEST:
-        rule = f"at most {_LARGEST}" if value > _LARGEST else f"at least {least}"
-        raise argparse.ArgumentTypeError(f"{text!r}: must be a whole number, {rule}")
+        value = math.nan
+    if not 0 <= value <= 1:
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a number from 0 to 1 m")
     return value
-
-
-def _at_least_one(text: str) -> int:
-    return _count(text, least=1)
 
 
 def _package(text: str) -> tuple[str, str]:

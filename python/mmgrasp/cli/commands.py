@@ -1,6 +1,6 @@
 """The command `mmgrasp`.
 
-Exit codes: 0 done, 1 a plan has faults, a robot cannot be planned for or an exact value of a paper is missed, 2 bad input, 3 there is no plan, 130 Ctrl-C.
+Exit codes: 0 done, 1 a plan has faults, a robot cannot be planned for or an exact value of a paper is missed, 2 bad input, 3 no plan was found, 130 Ctrl-C.
 """
 
 from __future__ import annotations
@@ -8,21 +8,31 @@ from __future__ import annotations
 import argparse
 import contextlib
 import json
+import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 
 from .._core import Error, InvalidInput, Outcome
-from .._files import check_folder, write_file
-from ..part_supply import ScenarioPlan, plan_drive_by_picks, plan_part_supply, plan_to_check, read_plan, verify_plan
+from .._files import check_file, check_folder, printable, write_file
+from ..part_supply import (
+    ScenarioPlan,
+    plan_drive_by_picks,
+    plan_part_supply,
+    plan_to_check,
+    read_plan,
+    verify_plan,
+)
+from ..part_supply.plan_file import check_names
 from ..scenario import load_scenario
-from ..scenario.reading import read_json
+from ..scenario.reading import Document
 from .arguments import build_parser
 from .check import check_robot, describe
-from .console import Reporter
+from .console import Reporter, open_streams
+from .output_folder import OutputFolder
 from .tables import bench_table, drive_by_summary, print_verdict, summary
 
 if TYPE_CHECKING:
@@ -32,30 +42,30 @@ DONE, FAULTY, BAD_INPUT, NO_PLAN, INTERRUPTED = 0, 1, 2, 3, 130
 
 
 def run_plan(arguments: argparse.Namespace, console: Console) -> int:
-    check_folder(arguments.out)
+    folder = OutputFolder(arguments.out)
     with Reporter(console) as report:
         scenario = load_scenario(
             arguments.scenario, robot=arguments.robot, seed=arguments.seed, threads=arguments.threads, progress=report
         )
         plan = plan_part_supply(scenario, progress=report)
-        written = write_outputs(plan, arguments.out, report, pictures=not arguments.no_pictures)
+        with folder.filled() as draft:  # a plan of its own, whatever becomes of the motions in passing
+            page = write_outputs(plan, draft, report, pictures=not arguments.no_pictures)
         passing = None
         if arguments.drive_by and plan.outcome == Outcome.solved:
             passing = plan_drive_by_picks(plan, progress=report)
-            passing.save(arguments.out)
-            if not arguments.no_pictures:
-                from ..viz.report import write_report
-
-                write_report(passing.plan_to_dict(), arguments.out)
+            with folder.filled(added=True) as draft:
+                passing.save(draft)
+                if not arguments.no_pictures:
+                    write_file(draft / "report.html", report_page(passing.plan_to_dict(), folder.path))
     if plan.outcome != Outcome.solved:
-        console.print(f"no plan: {plan.outcome.name}", style="bold red", markup=False)
+        console.print(f"no plan: {plan.outcome.name.replace('_', ' ')}", style="bold red", markup=False)
         for obstruction in plan.obstructions:
             console.print(f"- {obstruction.message}", markup=False, soft_wrap=True)
     else:
         console.print(summary(plan))
     if passing is not None:
         console.print(drive_by_summary(passing))
-    console.print(f"report: {written}", markup=False, soft_wrap=True)
+    console.print(f"report: {printable(str(arguments.out / page))}", markup=False, soft_wrap=True)
     return exit_code(plan.outcome)
 
 
@@ -68,22 +78,28 @@ def exit_code(outcome: Outcome) -> int:
     }.get(outcome, NO_PLAN)
 
 
-def write_outputs(plan: ScenarioPlan, out: Path, report: Callable[[str, float], None], pictures: bool) -> Path:
-    """Writes everything into the folder and returns the page to look at."""
+def write_outputs(plan: ScenarioPlan, out: Path, report: Callable[[str, float], None], pictures: bool) -> str:
+    """Writes everything into the folder and returns the name of the page to look at."""
     report("writing", 0.0)
     path = plan.save(out / "plan.json")
     plan.save_trajectories(out / "trajectories")
     if pictures:
         from ..viz.pictures import write_pictures
-        from ..viz.report import write_report
 
         content = plan.to_dict()
         report("writing", 0.3)
         write_pictures(content, out)
         report("writing", 0.9)
-        path = Path(write_report(content, out) or out / "report.html")
+        path = out / "report.html"
+        write_file(path, report_page(content, out))
     report("writing", 1.0)
-    return path
+    return path.name
+
+
+def report_page(content: dict[str, Any], pictures: Path) -> str:
+    from ..viz.report import report_html
+
+    return str(report_html(content, pictures))
 
 
 def run_verify(arguments: argparse.Namespace, console: Console) -> int:
@@ -100,6 +116,8 @@ def run_verify(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def run_check(arguments: argparse.Namespace, console: Console) -> int:
+    if arguments.write_srdf is not None:
+        check_file(arguments.write_srdf)
     with Reporter(console) as report:
         found = check_robot(
             arguments.urdf,
@@ -110,7 +128,7 @@ def run_check(arguments: argparse.Namespace, console: Console) -> int:
             arguments.mesh_tolerance,
             dict(arguments.xacro_arg) or None,
         )
-    if arguments.write_srdf:
+    if arguments.write_srdf is not None:
         write_file(arguments.write_srdf, found.srdf())
     print(json.dumps(found.to_dict(), indent=1, default=str) if arguments.json else describe(found))
     return DONE if found.ok else FAULTY
@@ -118,13 +136,16 @@ def run_check(arguments: argparse.Namespace, console: Console) -> int:
 
 def run_view(arguments: argparse.Namespace, console: Console) -> int:
     content = read_plan(arguments.plan)
-    if content.get("outcome") == "solved":
-        plan_to_check(read_json(arguments.plan).root)  # says what is wrong with a damaged plan before anything is drawn
-    if arguments.png:
+    root = Document(str(arguments.plan), content, {}).root  # says what is wrong with a damaged plan before it is drawn
+    check_names(root)
+    if content["outcome"] == "solved":
+        plan_to_check(root)
+    if arguments.png is not None:
+        check_file(arguments.png)
         from ..viz.viewer import write_png
 
         write_png(content, arguments.png)
-        console.print(str(arguments.png), markup=False)
+        console.print(printable(str(arguments.png)), markup=False)
         return DONE
     from ..viz.viewer import view
 
@@ -168,14 +189,14 @@ def run_reproduce(arguments: argparse.Namespace, console: Console) -> int:
             print(f"{entry.name:<24}{entry.title}")
         return DONE
     names = [e for name in arguments.name for e in (again.ENTRIES if name == "all" else [again.entry(name).name])]
-    if arguments.out:
+    if arguments.out is not None:
         check_folder(arguments.out)
     results = []
     with Reporter(console) as report, _sweep(arguments) as sweep:
         for name in dict.fromkeys(names):
             result = again.reproduce(name, quick=arguments.quick, seed=arguments.seed, progress=report, sweep=sweep)
             results.append(result)
-            if arguments.out:
+            if arguments.out is not None:
                 store(result, arguments.out)
             if not arguments.json:
                 print(markdown(result), flush=True)
@@ -209,12 +230,19 @@ COMMANDS = {
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
+    open_streams()
     parsed = build_parser().parse_args(arguments)
     console = Console(highlight=False)
     try:
         return COMMANDS[parsed.command](parsed, console)
+    except BrokenPipeError:  # nobody reads on: what is still in the buffer is not for the interpreter's end either
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        return INTERRUPTED
     except (Error, OSError) as error:
-        print(f"mmgrasp: {error}", file=sys.stderr)
+        print(f"mmgrasp: {printable(str(error))}", file=sys.stderr)
+        return BAD_INPUT
+    except RecursionError:
+        print("mmgrasp: the input is nested too deeply", file=sys.stderr)
         return BAD_INPUT
     except MemoryError:
         print("mmgrasp: out of memory: use a coarser grid, fewer samples or fewer parts", file=sys.stderr)

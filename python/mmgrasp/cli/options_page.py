@@ -73,6 +73,7 @@ SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
         _core._drive_by_option_table,
         set(),
     ),
+    ("ProbabilisticSdf", "A map of surfaces, keywords (`SdfOptions`)", _core._sdf_option_table, set()),
     ("fit_cuboids", "Box-shaped parts of a cloud, keywords (`CuboidFitOptions`)", _core._cuboid_option_table, set()),
 )
 

@@ -5,15 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
+from .._files import printable
 from ..part_supply import DriveByPlan, PlanVerdict, ScenarioPlan
 
 
 def summary(plan: ScenarioPlan) -> Table:
     """Stops of a plan."""
     table = Table(
-        title=f"{plan.scenario.name}: {len(plan.stops)} stops (proven least {plan.plan.lower_bound}), "
+        title=f"{escape(plan.scenario.name)}: {len(plan.stops)} stops (proven least {plan.plan.lower_bound}), "
         f"{len(plan.picks)} picks"
     )
     for title in ("stop", "x [m]", "y [m]", "heading [deg]", "free disc [m]", "trays", "picks", "arm time [s]"):
@@ -28,7 +30,7 @@ def summary(plan: ScenarioPlan) -> Table:
             f"{y:.2f}",
             f"{theta * 57.29578:.0f}",
             f"{stop.radius:.3f}",
-            ", ".join(names[t] for t in stop.trays),
+            escape(", ".join(names[t] for t in stop.trays)),
             str(len(picks)),
             f"{sum(p.duration for p in picks):.1f}",
         )
@@ -46,7 +48,7 @@ def drive_by_summary(passing: DriveByPlan) -> Table:
         table.add_column(title, justify="left" if title in ("part", "") else "right")
     for pick in passing.picks:
         now = f"{pick.drive_by:.1f}" if pick.used else "-"
-        table.add_row(str(pick.stop + 1), pick.part, f"{pick.stop_and_pick:.1f}", now, pick.why)
+        table.add_row(str(pick.stop + 1), escape(pick.part), f"{pick.stop_and_pick:.1f}", now, escape(pick.why))
     share = 100 * passing.saved / passing.stop_and_pick
     table.caption = f"whole round {passing.stop_and_pick:.1f} s, in passing {passing.drive_by:.1f} s: {passing.saved:.1f} s or {share:.1f} % saved"
     return table
@@ -55,7 +57,7 @@ def drive_by_summary(passing: DriveByPlan) -> Table:
 def print_verdict(verdict: PlanVerdict, console: Console) -> None:
     """Faults, rates of success, and whether the plan holds."""
     for fault in verdict.faults:
-        console.print(f"FAULT {fault.code}: {fault.where}: {fault.message}", markup=False, soft_wrap=True)
+        console.print(printable(f"FAULT {fault.code}: {fault.where}: {fault.message}"), markup=False, soft_wrap=True)
     for rate in verdict.rates:
         share = 100 * rate.good / max(rate.samples, 1)
         worst = f" (worst: {rate.worst_part})" if rate.good < rate.samples else ""
@@ -64,15 +66,28 @@ def print_verdict(verdict: PlanVerdict, console: Console) -> None:
             f"{share:.2f} %{worst}",
             markup=False,
         )
+    if verdict.allowed_collisions:
+        pairs = ", ".join(f"{a} and {b}" for a, b in verdict.allowed_collisions)
+        console.print(f"not checked, since the scenario lets them touch: {pairs}", markup=False, soft_wrap=True)
     if verdict.ok:
         console.print(
             f"the plan holds: {verdict.configurations_checked} configurations checked, "
-            f"{verdict.minimal_stops} stops are the least",
+            f"{verdict.minimal_stops} stops are the least{_compared(verdict)}",
             markup=False,
+            soft_wrap=True,
         )
     else:
         count = len(verdict.faults)
-        console.print(f"the plan does not hold: {count} fault{'s' if count > 1 else ''}", markup=False)
+        console.print(
+            f"the plan does not hold: {count} fault{'s' if count > 1 else ''}{_compared(verdict)}",
+            markup=False,
+            soft_wrap=True,
+        )
+
+
+def _compared(verdict: PlanVerdict) -> str:
+    stored = verdict.compared_with == PlanVerdict([]).compared_with
+    return f"; checked against {printable(verdict.compared_with)}" + (" (not compared with a file)" if stored else "")
 
 
 def bench_table(rows: list[dict[str, Any]]) -> Table:

@@ -20,9 +20,8 @@ from .. import _core
 from .._core import InvalidInput, JointGroup, Outcome, Pick, World
 from .._files import write_file
 from .._progress import Progress
-from .planning import ScenarioPlan
+from .planning import ScenarioPlan, file_name
 
-CLOSING_SPEED = 0.1  # of the gripper's opening [m/s] (P1 4.4.1)
 SETTLING = 0.1  # fingers press before the part is lifted [s]
 APPROACH_SPEED = (
     0.25  # of the tool as it comes to the part [m/s]; arms that brake from more in so short a way overshoot
@@ -113,7 +112,7 @@ class DriveByPlan:
         seconds = sum(leg.duration(problem.robot) for leg in self.plan.route)
         for pick in self.plan.picks:
             opening, width = _openings(problem, pick)
-            seconds += pick.duration + (opening - width) / CLOSING_SPEED * 2
+            seconds += pick.duration + (opening - width) / self.plan.scenario.setup.closing_speed * 2
         return seconds
 
     @property
@@ -129,7 +128,7 @@ class DriveByPlan:
     def plan_to_dict(self) -> dict[str, Any]:
         """The content of plan.json with what is done in passing, so that `mmgrasp verify` checks it as well."""
         motions = [pick.motion() for pick in self.picks if pick.used]
-        return self.plan.to_dict() | {"drive_by": {"closing_speed": CLOSING_SPEED, "motions": motions}}
+        return self.plan.to_dict() | {"drive_by": {"motions": motions}}
 
     def to_dict(self) -> dict[str, Any]:
         """Times and reports, as in drive_by.json."""
@@ -149,7 +148,7 @@ class DriveByPlan:
             write_file(path, json.dumps(content, allow_nan=False) + "\n")
         for pick in self.picks:
             if pick.used:
-                name = "".join(c if c.isalnum() or c in "_.-" else "_" for c in pick.part)
+                name = file_name(pick.part)
                 written.append(Path(folder) / "trajectories" / f"drive_by_{pick.leg:02d}_{name}.csv")
                 write_file(written[-1], pick.result.to_csv(between=BETWEEN))
         return written
@@ -191,7 +190,7 @@ def _in_passing(
     part = problem.trays[pick.tray].parts[pick.part]
     opening, width = _openings(problem, pick)
     merged = [m for m in pick.motions if m.kind in MERGED]
-    closing = (opening - width) / CLOSING_SPEED
+    closing = (opening - width) / plan.scenario.setup.closing_speed
     before = plan.route[leg].duration(problem.robot) + sum(m.trajectory.duration for m in merged) + closing
     T_grasp = part.T_world_part @ part.grasps[pick.grasp].T_object_hand
     T_before = T_grasp.copy()
@@ -304,6 +303,8 @@ def _world(problem: _core.PartSupplyProblem, gone: set[tuple[int, int]]) -> Worl
     world = problem.scene.copy()
     for t, tray in enumerate(problem.trays):
         for p, part in enumerate(tray.parts):
-            if (t, p) not in gone:
+            if (t, p) in gone:
+                world.forget(part.name)
+            else:
                 world.add(part.name, part.shapes, part.T_world_part)
     return world

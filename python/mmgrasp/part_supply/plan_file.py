@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import InvalidInput, PartSupplyPlan, Robot, RobotSource
+from .._core import Hand, InvalidInput, PartSupplyPlan, Robot, RobotSource
 from .._core import verify as checks
 from .._files import SCHEMAS, sha256_of
 from ..scenario import Scenario
 from ..scenario.reading import Node, read_json
+from ..scenario.schema import check_schema
 from ..scenario.shapes import pose_to_dict, shape_from_node, shape_to_dict
 
 VERSION = 2
@@ -92,8 +93,10 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
             "finger_depth": gripper.finger_depth,
             "finger_width": gripper.finger_width,
             "clearance": gripper.clearance,
-            "joints": [{"name": j.name, "closed": j.closed, "open": j.open} for j in gripper.joints],
+            "closing_speed": setup.closing_speed,
+            "joints": _finger_ends(gripper),
             "finger_links": gripper.finger_links,
+            **_openings(gripper),
         },
         "other_joints": setup.other_joints,
         "home": setup.home.tolist(),
@@ -110,12 +113,47 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
             for o in scenario.obstacles
         ],
         "trays": [
-            {"name": t.tray.name, "pose": pose_to_dict(t.tray.T_world_tray), "size": t.tray.size.tolist()}
+            {
+                "name": t.tray.name,
+                "pose": pose_to_dict(t.tray.T_world_tray),
+                "size": t.tray.size.tolist(),
+                "headings": _headings(t.tray),
+            }
             for t in scenario.trays
         ],
         "parts": [_part(part, t.tray.name) for t in scenario.trays for part in t.tray.parts],
         "options": dict(scenario.problem().options),
+        **scenario.rules.to_dict(),
+        "reach": {key: scenario.reach.get(key, default) for key, (default, _) in _reach_options().items()},
     }
+
+
+def _finger_ends(gripper: Hand) -> list[dict[str, Any]]:
+    """Joint values with the fingers closed and open; joints that the opening does not move have the same twice."""
+    ends = []
+    for joint in gripper.joints:
+        closed, opened = joint.closed, joint.open
+        if joint.group in gripper.preshape:
+            closed = opened = closed + gripper.preshape[joint.group] * (opened - closed)
+        ends.append({"name": joint.name, "closed": closed, "open": opened})
+    return ends
+
+
+def _openings(gripper: Hand) -> dict[str, list[float]]:
+    """Openings at equal steps of the joints; nothing where they are linear from 0."""
+    if gripper.openings:
+        return {"openings": list(gripper.openings)}
+    return {"openings": [gripper.min_opening, gripper.max_opening]} if gripper.min_opening > 0 else {}
+
+
+def _reach_options() -> dict[str, tuple[Any, str]]:
+    return {key: value for key, value in _core._reach_option_table().items() if key != "threads"}
+
+
+def _headings(tray: _core.Tray) -> list[float]:
+    """The base headings tried at a tray: those it lists, or the one that faces it."""
+    front = tray.T_world_tray[:3, 0]
+    return [float(h) for h in tray.headings] or [math.atan2(front[1], front[0])]
 
 
 def _urdf(source: dict[str, Any]) -> dict[str, Any]:
@@ -220,9 +258,9 @@ def _pick(pick: _core.Pick, scenario: Scenario) -> dict[str, Any]:
 
 # --- reading ----------------------------------------------------------------------------------------------------------
 def read_plan(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """The content of a plan.json; raises IoError or InvalidInput when it is not one."""
+    """The content of a plan.json; raises IoError or InvalidInput when it is not one, or not of its schema."""
     root = read_json(Path(path)).root
-    check_header(root)
+    check_form(root)
     content: dict[str, Any] = root.raw
     return content
 
@@ -232,6 +270,37 @@ def check_header(root: Node) -> None:
         raise InvalidInput(f"{root.document.source}: is no plan: the key format: mmgrasp-plan is missing")
     root["format"].choice("mmgrasp-plan")
     root.read_version(VERSION)
+
+
+def check_form(root: Node) -> None:
+    """Raises InvalidInput unless every value has its place and form (plan.schema.json)."""
+    check_header(root)
+    check_schema(root, plan_schema())
+
+
+def check_names(root: Node) -> None:
+    """Raises InvalidInput when an index or a name in the answer leads nowhere: for those who draw a plan."""
+    plan = root.raw
+    parts = {part["name"]: part for part in plan["scenario"]["parts"]}
+    trays = {tray["name"] for tray in plan["scenario"]["trays"]}
+    for key in ("regions", "intersections", "lost_intersections", "stops"):
+        for node in root[key].elements():
+            for tray in [node["tray"]] if key == "regions" else node["trays"].elements():
+                if tray.raw not in trays:
+                    tray.fail("no such tray")
+    for stop in root["stops"].elements():
+        if stop["intersection"].raw >= len(plan["intersections"]):
+            stop["intersection"].fail("no such intersection")
+    for pick in root["picks"].elements():
+        if pick["part"].raw not in parts:
+            pick["part"].fail("no such part")
+        if pick["stop"].raw >= len(plan["stops"]):
+            pick["stop"].fail("no such stop")
+        if pick["grasp"].raw >= len(parts[pick["part"].raw]["grasps"]):
+            pick["grasp"].fail("the part has no such grasp")
+    for motion in root["drive_by"]["motions"].elements() if "drive_by" in root else []:
+        if motion["pick"].raw >= len(plan["picks"]):
+            motion["pick"].fail("no such pick")
 
 
 def plan_schema() -> dict[str, Any]:
@@ -298,6 +367,15 @@ def _read_arm(plan: checks.PlanToCheck, scenario: Node) -> None:
         checks.CheckedFinger(j["name"].string(), j["closed"].number(), j["open"].number())
         for j in gripper["joints"].elements()
     ]
+    if "openings" in gripper:
+        plan.openings = gripper["openings"].numbers()
+    plan.closing = np.array(gripper["closing"].numbers(3))
+    plan.finger_depth = gripper["finger_depth"].number(above=0)
+    plan.finger_width = gripper["finger_width"].number(above=0)
+    plan.closing_speed = gripper["closing_speed"].number(above=0)
+    options = scenario["options"]
+    plan.approach_distance = options["approach_distance"].number(above=0)
+    plan.lift_height = options["lift_height"].number(above=0)
     plan.finger_links = [link.string() for link in gripper["finger_links"].elements()]
     plan.home = np.array(scenario["home"].numbers(count))
 
@@ -316,6 +394,11 @@ def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
     plan.drop_gap = place["drop_gap"].number(least=0)
     plan.obstacles = [_read_body(node) for node in scenario["obstacles"].elements()]
     plan.trays = [tray["name"].string() for tray in scenario["trays"].elements()]
+    farthest = scenario["options"]["grid_max_distance"].number(least=0) or math.inf
+    plan.searched = {
+        tray["name"].raw: checks.CheckedTray(tray["headings"].numbers(), tray["pose"].pose()[:2, 3], farthest)
+        for tray in scenario["trays"].elements()
+    }
     parts = []
     for node in scenario["parts"].elements():
         grasps = [checks.CheckedGrasp(g["pose"].pose(), g["width"].number(least=0)) for g in node["grasps"].elements()]
@@ -324,6 +407,19 @@ def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
             tray.fail("no such tray")
         parts.append(checks.CheckedPart(_read_body(node), tray.raw, node["target"].boolean(), grasps))
     plan.parts = parts
+    plan.allowed_collisions = allowed_collisions(scenario)
+    plan.padded = "padding" in scenario
+
+
+def allowed_collisions(scenario: Node) -> list[tuple[str, str]]:
+    """The pairs that may touch, as the section `scenario` of a plan says."""
+    pairs = []
+    for node in scenario["allowed_collisions"].elements() if "allowed_collisions" in scenario else []:
+        names = [name.string() for name in node.elements()]
+        if len(names) != 2:
+            node.fail("must be a pair of names")
+        pairs.append((names[0], names[1]))
+    return pairs
 
 
 def _read_answer(plan: checks.PlanToCheck, root: Node) -> None:
@@ -341,7 +437,6 @@ def _read_answer(plan: checks.PlanToCheck, root: Node) -> None:
     plan.route = [list(leg["poses"].array(3)) for leg in root["route"].elements()]
     plan.picks = [_read_pick(node, len(plan.arm_joints)) for node in root["picks"].elements()]
     if "drive_by" in root.raw:
-        plan.closing_speed = root["drive_by"]["closing_speed"].number(above=0)
         plan.drive_by = [
             checks.CheckedDriveBy(
                 node["pick"].integer(),

@@ -18,6 +18,11 @@ from ..scenario import Scenario, load_scenario
 from .plan_file import plan_to_dict
 
 
+def file_name(name: str) -> str:
+    """A name as a piece of a file's name."""
+    return re.sub(r"[^A-Za-z0-9_.-]+", "_", name)[:80]
+
+
 class ScenarioPlan:
     """A scenario and the plan made for it: where the base stops, which grasps it takes, how base and arm move, and why alternatives lost.
 
@@ -69,7 +74,7 @@ class ScenarioPlan:
         written = []
         for i, pick in enumerate(self.picks):
             tray = self.scenario.trays[pick.tray].tray
-            part = re.sub(r"[^A-Za-z0-9_.-]+", "_", tray.parts[pick.part].name)
+            part = file_name(tray.parts[pick.part].name)
             for j, motion in enumerate(pick.motions):
                 path = Path(folder) / f"pick_{i:02d}_{part}_{j}_{motion.kind}.csv"
                 write_file(path, motion.trajectory.to_csv(base_pose=self.stops[pick.stop].pose))

@@ -8,11 +8,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from .._core import InvalidInput
 from .._core import verify as checks
 from .._progress import Progress
 from ..scenario import load_scenario
 from ..scenario.reading import Document, read_json
-from .plan_file import check_header, plan_to_check, scenario_to_dict
+from .figures import check_figures
+from .plan_file import allowed_collisions, check_form, plan_to_check, scenario_to_dict
 
 
 @dataclass
@@ -23,6 +25,10 @@ class PlanVerdict:
     rates: list[checks.StopRate] = field(default_factory=list)
     minimal_stops: int = 0
     configurations_checked: int = 0
+    allowed_collisions: list[tuple[str, str]] = field(default_factory=list)
+    """Pairs that the plan's scenario lets touch, so that nobody looked at them."""
+    compared_with: str = "the scenario stored in it"
+    """The scenario file, or the one stored in the plan when none was given."""
 
     @property
     def ok(self) -> bool:
@@ -37,6 +43,8 @@ class PlanVerdict:
             "rates": [r.to_dict() for r in self.rates],
             "minimal_stops": self.minimal_stops,
             "configurations_checked": self.configurations_checked,
+            "allowed_collisions": [list(pair) for pair in self.allowed_collisions],
+            "compared_with": self.compared_with,
         }
 
 
@@ -51,22 +59,33 @@ def verify_plan(
     """Checks a plan given as plan.json or as its content, against the scenario stored in it.
 
     With `scenario` the stored one is first compared with that file, read anew (`robot` as in load_scenario). Options are
-    those of the C++ PlanCheckOptions (joint_step, samples, ...). Raises InvalidInput when the plan cannot be read at all.
+    those of the C++ PlanCheckOptions (joint_step, samples, ...). Raises InvalidInput when the plan cannot be read at all,
+    and for a robot without a scenario.
     """
+    if robot is not None and scenario is None:
+        raise InvalidInput(f"robot = {robot!r}: needs scenario: it takes the place of that file's robot")
     document = Document("plan", plan, {}) if isinstance(plan, dict) else read_json(Path(plan))
     root = document.root
-    check_header(root)
+    check_form(root)
     outcome = root["outcome"].string()
     if outcome != "solved":
         return PlanVerdict([checks.Fault("no-plan", "outcome", f"the file holds no plan: its outcome is {outcome}")])
-    faults = []
+    to_check = plan_to_check(root)
+    faults = check_figures(root.raw)
     if scenario is not None:
         expected = scenario_to_dict(load_scenario(scenario, robot=robot, progress=progress))
         if "urdfs" not in root["scenario"]["robot"]:  # a plan from before these were kept
             del expected["robot"]["urdfs"], expected["robot"]["links"]
-        faults = [_changed(path, was, now) for path, was, now in differences(root["scenario"].raw, expected)]
-    checked = checks.check_plan(plan_to_check(root), progress=progress, **options)
-    return PlanVerdict(faults + checked.faults, checked.rates, checked.minimal_stops, checked.configurations_checked)
+        faults += [_changed(path, was, now) for path, was, now in differences(root["scenario"].raw, expected)]
+    checked = checks.check_plan(to_check, progress=progress, **options)
+    return PlanVerdict(
+        faults + checked.faults,
+        checked.rates,
+        checked.minimal_stops,
+        checked.configurations_checked,
+        allowed_collisions(root["scenario"]),
+        "the scenario stored in it" if scenario is None else os.fspath(scenario),
+    )
 
 
 def _changed(path: str, was: Any, now: Any) -> checks.Fault:

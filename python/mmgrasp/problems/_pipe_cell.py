@@ -131,7 +131,7 @@ class PipeCell:
     T_world_start: Pose
     T_world_goal: Pose
     drawn: int = 1
-    """Cells drawn until this one was accepted."""
+    """Cells drawn until this one was taken."""
     rejected: dict[str, int] = field(default_factory=dict)
     """Cells rejected, by cause."""
 

@@ -1,12 +1,13 @@
 """Motion planning problems of the MotionBenchMaker kind: a MoveIt planning scene and a motion plan request, two YAML files.
 
-Read are the scene's objects, its allowed collision matrix, and the request's group, start state and joint goal.
+Read are the scene's objects, its allowed collision matrix, the padding of its links, and the request's group, start
+state and joint goal.
 Cylinders are [height, radius], boxes full lengths; an object's pose times its primitive's is where the primitive stands.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -48,14 +49,27 @@ class MotionProblem:
     bodies: dict[str, tuple[list[LinkShape], np.ndarray | None]] = field(repr=False)
     """Name to shapes and pose (None: the world's origin) of each object of the scene."""
     allowed: frozenset[frozenset[str]] = field(repr=False)
-    """Pairs of links that may touch."""
+    """Pairs of links and objects that may touch."""
+    padding: dict[str, float] = field(default_factory=dict, repr=False)
+    """Link to its padding against the scene [m]."""
 
     @property
     def world(self) -> World:
-        """The scene."""
+        """The scene, without what it says of links; see world_of()."""
         world = World()
         for name, (shapes, at) in self.bodies.items():
             world.add(name, shapes, at)
+        return world
+
+    def world_of(self, robot: Robot) -> World:
+        """The scene with its allowed pairs and its padding. Names that neither robot nor scene has are passed over."""
+        world = self.world
+        links = set(robot.links)
+        for pair in self.allowed:
+            a, b = min(pair), max(pair)
+            if {a, b} <= links | self.bodies.keys() and not {a, b} <= links:  # setting() has pairs of links
+                world.allow(a, b)
+        world.padding = {"by_name": {link: value for link, value in self.padding.items() if link in links}}
         return world
 
     def setting(self, robot: Robot) -> tuple[Robot, JointGroup]:
@@ -77,7 +91,7 @@ class MotionProblem:
     def checker(self, robot: Robot, **options: Any) -> CollisionChecker:
         """Checks the problem's group (see setting()) in its scene; options as CollisionChecker's."""
         robot, group = self.setting(robot)
-        return CollisionChecker(robot, self.world, group=group, **options)
+        return CollisionChecker(robot, self.world_of(robot), group=group, **options)
 
     def start_of(self, group: JointGroup) -> np.ndarray:
         """The start as a configuration of the group."""
@@ -105,6 +119,7 @@ def read_motion_problem(scene: str | Path, request: str | Path) -> MotionProblem
     if len(names) != len(positions):
         raise InvalidInput(f"{request}: start_state: {len(names)} names but {len(positions)} positions")
     path = Path(scene)
+    bodies = _bodies(scene_file)
     return MotionProblem(
         name=f"{path.parent.name}/{path.stem}",
         group=request_file.of(request_file.root, "group_name"),
@@ -113,8 +128,9 @@ def read_motion_problem(scene: str | Path, request: str | Path) -> MotionProblem
             request_file.of(constraint, "joint_name"): request_file.number(request_file.of(constraint, "position"))
             for constraint in request_file.of(goals[0], "joint_constraints")
         },
-        bodies=_bodies(scene_file),
-        allowed=_allowed(scene_file),
+        bodies=bodies,
+        allowed=_allowed(scene_file, bodies),
+        padding=_padding(scene_file),
     )
 
 
@@ -195,12 +211,32 @@ def _bodies(file: _File) -> dict[str, tuple[list[LinkShape], np.ndarray | None]]
     return bodies
 
 
-def _allowed(file: _File) -> frozenset[frozenset[str]]:
+def _allowed(file: _File, objects: Collection[str]) -> frozenset[frozenset[str]]:
     matrix = file.of(file.root, "allowed_collision_matrix")
     names, rows = file.of(matrix, "entry_names"), file.of(matrix, "entry_values")
+    defaults, values = matrix.get("default_entry_names") or [], matrix.get("default_entry_values") or []
+    if len(defaults) != len(values):
+        raise InvalidInput(f"{file.path}: default_entry_names: must be as many as default_entry_values")
     if len(rows) != len(names) or any(len(row) != len(names) for row in rows):
         raise InvalidInput(f"{file.path}: allowed_collision_matrix: must have a row and a column for each of its names")
     pairs = set()
     for i, row in enumerate(rows):
         pairs |= {frozenset((names[i], names[k])) for k in range(i) if row[k]}
+    # A name's default holds for whatever has no entry of its own with it.
+    everything = {*names, *defaults, *objects}
+    for name, value in zip(defaults, values, strict=True):
+        own = set(names) if name in names else set()
+        pairs |= {frozenset((name, other)) for other in everything - own - {name} if value}
     return frozenset(pairs)
+
+
+def _padding(file: _File) -> dict[str, float]:
+    """The entries of link_padding, a list of {link_name, padding}; MoveIt leaves it out when there is none."""
+    padding = {}
+    for entry in file.root.get("link_padding") or []:
+        link, value = file.of(entry, "link_name"), file.number(file.of(entry, "padding"))
+        if value < 0:
+            raise InvalidInput(f"{file.path}: link_padding of '{link}' = {value}: must be >= 0 [m]")
+        if value > 0:
+            padding[link] = value
+    return padding

@@ -65,7 +65,10 @@ def verify_motion(problem: MotionProblem, robot: Robot, path: np.ndarray, joint_
     for what, wanted, q in (("start", problem.start, path[0]), ("goal", problem.goal, path[-1])):
         if any(abs(wanted[name] - value) > 1e-9 for name, value in zip(group.names, q, strict=True)):
             return f"the path does not have the problem's {what}"
-    return check_path(robot, group.names, path, bodies, other_joints=others, joint_step=joint_step).where
+    allowed = problem.world_of(robot).allowed
+    return check_path(
+        robot, group.names, path, bodies, other_joints=others, allowed_collisions=allowed, joint_step=joint_step
+    ).where
 
 
 def run_set(
@@ -81,7 +84,7 @@ def run_set(
         of_problem, group = problem.setting(robot)
         start, goal = problem.start_of(group), problem.goal_of(group)
         begin = time.perf_counter()
-        found = plan_motion(of_problem, group, problem.world, start=start, goal=goal, seed=seed, **options)
+        found = plan_motion(of_problem, group, problem.world_of(robot), start=start, goal=goal, seed=seed, **options)
         result.calls.append(time.perf_counter() - begin)
         result.seconds.append(found.stats.seconds)
         if found.path is None:

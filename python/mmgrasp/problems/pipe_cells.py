@@ -2,8 +2,9 @@
 
 The structures go from a single bend to a branched frame of eight sections; lengths of the larger ones are those of P2
 table 3.3. A cell has an arm on a table, posts under the pipe where it lies and where it belongs, and what stands between:
-columns, a partition to lift it over, or a gate to pass it through. P2 prints no measures of its cells, so a seeded
-generator draws them; what it turns down is counted by cause.
+columns, a partition to lift it over, a roof above that, or bays around start and goal. P2 prints no measures of its cells, so a
+seeded generator draws them; what it rejects is counted by cause. No planner decides on a cell: geometry, inverse
+kinematics at both ends and straight joint lines do.
 """
 
 from __future__ import annotations
@@ -12,7 +13,6 @@ from collections import Counter
 from dataclasses import dataclass, replace
 from functools import cache
 from math import pi
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,14 +20,11 @@ from numpy.typing import NDArray
 from .._core import (
     CollisionChecker,
     InvalidInput,
-    ManipulationResult,
-    Outcome,
     Pipe,
     Roadmap,
     Robot,
     World,
     plan_manipulation,
-    plan_motion,
     pose,
 )
 from ..scenario.reading import check_name
@@ -47,8 +44,6 @@ class _Style:
     """A roof over the cell leaves this much above the partition [m]; 0: no roof."""
     low: tuple[str, ...] = ()
     """Which of start and goal lie close to the table: most grasps would need a hand below it."""
-    picky: bool = False
-    """The first grasp within reach of the larger arm must not do: RRT-Connect finds no motion for it."""
     far: bool = False
     """Near the end of the arm's reach."""
     bays: tuple[str, ...] = ()
@@ -66,7 +61,7 @@ _STYLES = {
         _Style(partition=0.30, gap=0.60),
         _Style(bays=("start", "goal")),
         _Style(bays=("start", "goal"), scarce=True),
-        _Style(bays=("goal",), partition=0.50, scarce=True, picky=True),
+        _Style(bays=("goal",), partition=0.50, scarce=True),
     ),
     "open": (
         _Style(columns=1),
@@ -90,29 +85,23 @@ _POST_GAP = 0.005  # between a post and the pipe above it [m]
 _CLEARANCE = 0.02  # between the pipe at rest and whatever else stands there [m]
 _TRIES = 500
 _FEWEST, _SCARCE = 0.03, 0.3  # of single grasps
-_LISTS = {"narrow": 6, "open": 9}  # of 500 grasps, each of which must do over a roadmap of its own
-_VERTICES, _NEIGHBOURS = 5000, 12
-_CHECKS = 1_000_000  # the first seed of roadmaps and grasps that decide on a cell
-_PICKY_BUDGETS = (2_000, 4_000, 8_000, 16_000, 32_000, 64_000)  # iterations of RRT-Connect, each from all starts
+_GRASPS = 500
+_GRASP_SEED = 1_000_000  # of the grasps that decide on a cell
 
 
 def pipe_cell(number: int, seed: int = 1, robot: str = "tm14like", style: str = "narrow") -> PipeCell:
     """The cell of one structure (1 to 8), drawn with a seed: the same every time.
 
-    Rejected and counted are cells without room for pipe or posts, those in which fewer than 3 % of 500 grasps are
-    within reach at both ends, and those in which PRM*-MG without straight lines fails for one of six lists of 500
-    grasps, each with a roadmap of 5000 vertices of its own. "open" cells are for P2's setting: roadmaps have its gamma
-    of 4, and there are nine lists. "narrow" ones take more than luck: in none of them does a straight joint line carry
-    the pipe by one of 500 grasps; roadmaps join 12 nearest vertices. For some structures cells are rejected in which
-    30 % of the grasps or more are within reach, for structure 8, "narrow" and the TM14-like arm also those whose first
-    grasp within reach would do. Raises InvalidInput on a number, robot or style that does not exist and on a negative
-    seed.
+    Rejected and counted are cells without room for pipe or posts and those in which fewer than 3 % of 500 grasps have
+    collision-free arm configurations at both ends (for some structures also 30 % or more). "narrow" cells have bays,
+    partitions and roofs, and those are rejected in which one of the 500 grasps carries the pipe along a straight joint
+    line; "open" ones have little between start and goal. Whether a path exists is not asked: no planner has a say.
+    Raises InvalidInput on a number, robot or style that does not exist and on a negative seed.
     """
     check_name("style", style, _STYLES)
     check_name("robot", robot, ROBOTS)
-    most = len(_STYLES[style])
-    if not _is_whole(number) or not 1 <= number <= most:
-        raise InvalidInput(f"number = {number!r}: must be from 1 to {most}")
+    if not _is_whole(number) or not 1 <= number <= len(_STYLES[style]):
+        raise InvalidInput(f"number = {number!r}: must be from 1 to {len(_STYLES[style])}")
     if not _is_whole(seed) or seed < 0:
         raise InvalidInput(f"seed = {seed!r}: must be a whole number >= 0")
     return _pipe_cell(int(number), int(seed), robot, style)
@@ -257,62 +246,20 @@ def _fault(cell: PipeCell) -> str:
             return f"no room for the pipe at its {name}"
         if _nearest(cell.pipe, cell.world, T) < 0.8 * _POST_GAP:
             return f"a post stands in the pipe at its {name}"
-    return _fault_of_motion(cell)
+    return _fault_of_ends(cell)
 
 
-def _fault_of_motion(cell: PipeCell) -> str:
-    style, narrow = _STYLES[cell.style][cell.number - 1], cell.style == "narrow"
-    straight = _carried(cell, 0, _roadmap(cell.robot_name, 0, vertices=2), straight=True)
-    within_reach = sum(g.start_solutions > 0 and g.goal_solutions > 0 for g in straight.grasps) / len(straight.grasps)
+def _fault_of_ends(cell: PipeCell) -> str:
+    """By inverse kinematics of all grasps, and by all straight joint lines between their ends."""
+    problem = cell.problem(cell.grasps(_GRASPS, seed=_GRASP_SEED))
+    nothing_joined = Roadmap.build(cell.arm, vertices=2, gamma=1e-9)
+    lines = plan_manipulation(problem, roadmap=nothing_joined, first_grasps=0, shorten=False, time_limit=600.0)
+    within_reach = sum(g.start_solutions > 0 and g.goal_solutions > 0 for g in lines.grasps) / len(lines.grasps)
     if within_reach < _FEWEST:
         return "fewer than 3 % of the grasps within reach"
-    if style.scarce and within_reach >= _SCARCE:
+    if _STYLES[cell.style][cell.number - 1].scarce and within_reach >= _SCARCE:
         return "30 % of the grasps within reach, or more"
-    if narrow and straight.outcome == Outcome.solved:
-        return "a straight line will do"
-    graph = {"neighbours": _NEIGHBOURS} if narrow else {}
-    for i in range(_LISTS[cell.style]):
-        if _carried(cell, i, _roadmap(cell.robot_name, i, vertices=_VERTICES, **graph)).outcome != Outcome.solved:
-            return f"no motion over a roadmap of {_VERTICES} vertices"
-    picky = style.picky and cell.robot_name == "tm14like"
-    return "the first grasp within reach will do" if picky and _first_carries(cell) else ""
-
-
-def _carried(cell: PipeCell, index: int, roadmap: Roadmap, straight: bool = False) -> ManipulationResult:
-    """Over the roadmap alone: another way to a first path would make other cells."""
-    problem = cell.problem(cell.grasps(500, seed=_CHECKS + index))
-    return plan_manipulation(
-        problem,
-        planner="prm_star_mg",
-        roadmap=roadmap,
-        straight=straight,
-        first_grasps=0,
-        shorten=False,
-        time_limit=600.0,
-    )
-
-
-def _first_carries(cell: PipeCell) -> bool:
-    """Whether RRT-Connect finds a motion between arm configurations of the first grasp that reaches both ends."""
-    for grasp in cell.grasps(500):
-        starts, goals = cell.ends(grasp)
-        if len(starts) and len(goals):
-            break
-    arm, world = cell.arm_holding(grasp), cell.world_holding(grasp)
-    return any(
-        plan_motion(
-            cell.robot, arm, world, start=start, goal=goals, max_iterations=budget, time_limit=600.0, shorten=False,
-            seed=budget,
-        ).outcome
-        == Outcome.solved
-        for budget in _PICKY_BUDGETS
-        for start in starts
-    )  # fmt: skip
-
-
-@cache
-def _roadmap(robot: str, index: int, **graph: Any) -> Roadmap:
-    return Roadmap.build(pipe_robot(robot)[1], seed=_CHECKS + index, **graph)
+    return "a straight line will do" if cell.style == "narrow" and lines.path is not None else ""
 
 
 def _nearest(pipe: Pipe, world: World, T_world_pipe: Pose, ignored: str | None = None) -> float:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from .._progress import Progress
+from .statements import REVERSED, Pair, difference
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,13 +45,15 @@ class Context:
 
 @dataclass
 class Check:
-    """A statement about the outcome. kind "E": the paper's exact value; "T": its trend."""
+    """A statement about the outcome. kind "E": the paper's exact value; "T": its trend; "S": a comparison of the paper's."""
 
     kind: str
     what: str
     holds: bool
     clock: bool = False
     """About seconds on the clock: how busy the machine is decides with."""
+    answer: str = ""
+    """To a statement of kind "S": confirmed, no difference or reversed."""
 
 
 @dataclass
@@ -75,6 +78,12 @@ class Result:
     def trend(self, what: str, holds: bool, *, clock: bool = False) -> None:
         self.checks.append(Check("T", what, bool(holds), clock))
 
+    def statement(self, what: str, pairs: Iterable[Pair], *, clock: bool = False) -> None:
+        """Of the paper, that one way gives more than another; left out when there is nothing to compare."""
+        found = difference(pairs)
+        if found is not None:
+            self.checks.append(Check("S", f"{what}: {found}", found.answer != REVERSED, clock, found.answer))
+
     def to_dict(self) -> dict[str, Any]:
         return {
             "rows": [
@@ -85,7 +94,11 @@ class Result:
                 for key, values in self.rows
             ],
             "setup": {key: _plain(value) for key, value in self.setup.items()},
-            "checks": [{"kind": c.kind, "what": c.what, "holds": c.holds, "clock": c.clock} for c in self.checks],
+            "checks": [
+                {"kind": c.kind, "what": c.what, "holds": c.holds, "clock": c.clock}
+                | ({"answer": c.answer} if c.answer else {})
+                for c in self.checks
+            ],
             "notes": self.notes,
             "drawing": self.drawing,
         }

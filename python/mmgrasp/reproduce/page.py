@@ -15,7 +15,9 @@ FOLDER = "reproduction"
 HEAD = """# What the papers print, and what mmgrasp computes
 
 Written by `mmgrasp reproduce` (or `./dev reproduce`) from the results in `{folder}/*.json`; do not edit. Each table has the paper's value
-(p) and ours (o) in every column; a dash stands where the paper prints nothing. **E** marks statements that must hold exactly, **T** trends.
+(p) and ours (o) in every column; a dash stands where the paper prints nothing. **E** marks statements that must hold exactly, **T** trends. **S** marks
+comparisons that a paper makes, asked again over paired runs: *confirmed* or *reversed* when the 95 % interval of the mean difference leaves zero out,
+*no difference* otherwise.
 P1 ran on a laptop at 2.5 GHz. Times start from a loaded reachability database, with nothing kept from before.
 """
 
@@ -40,7 +42,8 @@ def markdown(result: dict[str, Any], picture: str | None = None) -> str:
     if picture:
         lines += [f"![{result['title']}]({picture})", ""]
     for check in result["checks"]:
-        lines.append(f"- **{check['kind']}** {'holds' if check['holds'] else 'DOES NOT HOLD'}: {check['what']}")
+        answer = check.get("answer") or ("holds" if check["holds"] else "DOES NOT HOLD")
+        lines.append(f"- **{check['kind']}** {answer}: {check['what']}")
     if result["checks"]:
         lines.append("")
     for note in result["notes"]:

@@ -1,15 +1,15 @@
 """What the tables and figures of P2 chapters 4 and 5 share: runs of planners over many grasps, and paired comparisons.
 
 A run is one pipe cell with its own roadmap and its own list of grasps (P2 4.5.1: "each time the grasps and graph are
-regenerated"); a shorter list is the beginning of the longer one. Times are those of the search: building the roadmap and
-inverse kinematics come before it, as in P2, and are told apart.
+regenerated"); a shorter list is the beginning of the longer one. Cells come from three seeds. Times are those of the
+search: building the roadmap and inverse kinematics come before it, as in P2, and are told apart.
 """
 
 from __future__ import annotations
 
 import functools
-import math
-from collections.abc import Iterable, Sequence
+import itertools
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,15 +17,13 @@ import numpy as np
 from .._core import Outcome, Roadmap, plan_manipulation
 from ..problems.pipe_cells import PipeCell, pipe_cell, pipe_robot
 from .entry import Context
+from .statements import Pair
 
 PROBLEMS = 8
+SEEDS = 3  # of the cells
+RUNS = 3  # of a cell, in tables 4.1 and 4.2; one elsewhere: the pairs that are compared are cells
 GAMMA = 4.0  # P2 4.5.1
 TIME_LIMIT = 15.0  # P2 4.5.1 [s]
-
-
-def p2_cell(number: int, seed: int) -> PipeCell:
-    """Open enough for roadmaps of P2's density, over which start and goal are not joined directly."""
-    return pipe_cell(number, seed=seed, style="open")
 
 
 @functools.lru_cache(maxsize=4)
@@ -34,17 +32,18 @@ def grasps_of(cell: PipeCell, run: int) -> list[Any]:
     return cell.grasps(2000, seed=1000 * cell.seed + run)
 
 
-@functools.lru_cache(maxsize=20)  # ten runs, two of each
-def roadmap_of(robot: str, vertices: int, run: int, neighbours: int = 0) -> Roadmap:
-    return Roadmap.build(pipe_robot(robot)[1], vertices=vertices, gamma=GAMMA, neighbours=neighbours, seed=run + 1)
+@functools.lru_cache(maxsize=4)
+def roadmap_of(robot: str, vertices: int, seed: int, gamma: float) -> Roadmap:
+    """With gamma 0 as it ships."""
+    return Roadmap.build(pipe_robot(robot)[1], vertices=vertices, gamma=gamma, seed=seed)
 
 
 def carry(
-    cell: PipeCell, count: int, run: int, *, vertices: int = 0, neighbours: int = 0, **options: Any
+    cell: PipeCell, count: int, run: int, *, vertices: int = 0, gamma: float = 0.0, **options: Any
 ) -> dict[str, Any]:
     """One call of plan_manipulation as plain values; with `vertices` over the run's roadmap of that size."""
     if vertices:
-        options.update(roadmap=roadmap_of(cell.robot_name, vertices, run, neighbours), shorten=False)
+        options.update(roadmap=roadmap_of(cell.robot_name, vertices, 100 * cell.seed + run, gamma), shorten=False)
     result = plan_manipulation(
         cell.problem(grasps_of(cell, run)[:count]),
         seed=run + 1,
@@ -69,7 +68,30 @@ def carry(
 
 
 def items_of(context: Context, problems: Iterable[int], runs: int) -> list[dict[str, int]]:
-    return [{"number": n, "seed": context.seed, "run": run} for n in problems for run in range(runs)]
+    return [
+        {"number": number, "seed": seed, "run": run}
+        for seed in seeds_of(context)
+        for number in problems
+        for run in range(runs)
+    ]
+
+
+def seeds_of(context: Context) -> range:
+    """Of the cells: 1 to 3 with the first seed, 4 to 6 with the second."""
+    return range(SEEDS * (context.seed - 1) + 1, SEEDS * context.seed + 1)
+
+
+def paired(done: Iterable[dict[str, Any]], values: Callable[[Any], tuple[float | None, float | None]]) -> list[Pair]:
+    """Of each run, which says where it belongs, two values: first the one that is to be larger."""
+    return [Pair(d["seed"], d["number"], *values(d)) for d in done]
+
+
+def by_seed(done: Iterable[dict[str, Any]], value: Callable[[Any], float]) -> str:
+    """Means over the runs of each seed, in words."""
+    found: dict[int, list[float]] = {}
+    for d in done:
+        found.setdefault(d["seed"], []).append(value(d))
+    return ", ".join(f"{np.mean(values):.3g}" for values in found.values())
 
 
 def mean(values: Iterable[float | None]) -> float | None:
@@ -78,50 +100,20 @@ def mean(values: Iterable[float | None]) -> float | None:
     return float(np.mean(found)) if found else None
 
 
-def difference(first: Sequence[float | None], second: Sequence[float | None]) -> tuple[float, float, int] | None:
-    """Mean of first - second over the pairs that have both, half the width of its 95 % interval, and their number."""
-    pairs = np.array([(a, b) for a, b in zip(first, second, strict=True) if a is not None and b is not None])
-    if len(pairs) < 2:
-        return None
-    deltas = pairs[:, 0] - pairs[:, 1]
-    return (
-        float(deltas.mean()),
-        float(_student(len(deltas) - 1) * deltas.std(ddof=1) / math.sqrt(len(deltas))),
-        len(deltas),
-    )
-
-
-def not_reversed(smaller: Sequence[float | None], larger: Sequence[float | None]) -> bool:
-    """That `smaller` is the smaller one on average, or not the larger one beyond the interval."""
-    found = difference(smaller, larger)
-    return found is None or found[0] - found[1] <= 0
-
-
-def told(found: tuple[float, float, int] | None, unit: str = "") -> str:
-    return "-" if found is None else f"{found[0]:+.3g} +- {found[1]:.2g}{unit} ({found[2]} pairs)"
-
-
-def _student(freedom: int) -> float:
-    """The two-sided 95 % point of Student's t, to 0.3 % (Cornish-Fisher)."""
-    z = 1.959964
-    g1 = (z**3 + z) / 4
-    g2 = (5 * z**5 + 16 * z**3 + 3 * z) / 96
-    g3 = (3 * z**7 + 19 * z**5 + 17 * z**3 - 15 * z) / 384
-    return z + g1 / freedom + g2 / freedom**2 + g3 / freedom**3
-
-
-def describe(context: Context, runs: int, problems: Sequence[int], **more: Any) -> dict[str, Any]:
-    cells = [p2_cell(n, context.seed) for n in problems]
-    turned_down: dict[str, int] = {}
-    for cell in cells:
-        for cause, count in cell.rejected.items():
-            turned_down[cause] = turned_down.get(cause, 0) + count
+def describe(
+    context: Context, runs: int, problems: Sequence[int], styles: Sequence[str] = ("narrow",), **more: Any
+) -> dict[str, Any]:
+    rejected: dict[str, int] = {}
+    for style, seed, number in itertools.product(styles, seeds_of(context), problems):
+        for cause, count in pipe_cell(number, seed, style=style).rejected.items():
+            rejected[cause] = rejected.get(cause, 0) + count
     return {
         "arm": "the shipped TM14-like one with its gripper for pipes",
         "problems": ", ".join(map(str, problems)),
-        "runs a problem": runs,
-        "seed of the cells": context.seed,
-        "cells rejected by the generator": ", ".join(f"{c}: {n}" for c, n in turned_down.items()) or "none",
+        "cells": f"{' and '.join(styles)}, one a problem and seed; drawn by geometry, inverse kinematics and straight lines, no planner asked",
+        "seeds of the cells": ", ".join(map(str, seeds_of(context))),
+        "runs a cell": runs,
+        "cells rejected by the generator": ", ".join(f"{c}: {n}" for c, n in rejected.items()) or "none",
         "arm configurations a grasp and end": 4,
         "threads": 1,
         "edge step": "0.02 rad and 5 mm",
@@ -129,11 +121,12 @@ def describe(context: Context, runs: int, problems: Sequence[int], **more: Any) 
     }
 
 
-def describe_roadmap(vertices: int) -> dict[str, Any]:
+def describe_roadmap(context: Context, vertices: int, gamma: float = 0.0) -> dict[str, Any]:
     """What P2 leaves open about its graph (errata.md): the box, the degree, gamma*."""
-    figures = roadmap_of("tm14like", vertices, 0).statistics
+    figures = roadmap_of("tm14like", vertices, 100 * seeds_of(context)[0], gamma).statistics
+    joined = f"gamma {gamma:g}" if gamma > 0 else f"each joined with its {figures['neighbours']} nearest"
     return {
-        "roadmap": f"{vertices} vertices, gamma {GAMMA:g}, joints within half a turn either way",
+        "roadmap": f"{vertices} vertices, {joined}, joints within half a turn either way",
         "mean degree": figures["mean_degree"],
         "vertices in the largest component": figures["largest_component"],
         "gamma*": figures["gamma_star"],

@@ -7,28 +7,29 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..problems.pipe_cells import pipe_cell
 from .drawing import figure
 from .entry import Context, Entry, Result
-from .pipe_runs import (
-    PROBLEMS,
-    carry,
-    describe,
-    describe_roadmap,
-    difference,
-    items_of,
-    mean,
-    not_reversed,
-    p2_cell,
-    told,
-)
+from .pipe_runs import GAMMA, PROBLEMS, RUNS, by_seed, carry, describe, describe_roadmap, items_of, mean, paired
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 COUNTS = (25, 50, 100, 500, 1000, 2000)
 VERTICES = 5000
-NEIGHBOURS = 12  # beyond P2: what a roadmap that does not fall to pieces reaches
-NEAREST = f"success rate, {NEIGHBOURS} nearest joined"
+# Beyond P2: narrow cells, and the roadmap that ships, which does not fall to pieces.
+WAYS = {
+    "open": ("open", GAMMA),
+    "open, shipped": ("open", 0.0),
+    "narrow": ("narrow", GAMMA),
+    "narrow, shipped": ("narrow", 0.0),
+}
+COLUMNS = {
+    "open": "success rate",
+    "open, shipped": "roadmap as it ships",
+    "narrow": "narrow cells, gamma 4",
+    "narrow, shipped": "narrow cells, roadmap as it ships",
+}
 SUCCESS = {25: 0.85, 50: 0.9125, 100: 0.9625, 500: 1.0, 1000: 1.0, 2000: 1.0}
 VARIANTS = ("naive", "standard", "batch")
 # Time to the first solution, in all [s], cost of the first solution; of naive, standard, batch.
@@ -49,22 +50,20 @@ FIRST, TOTAL, FIRST_COST = "time to first solution [s]", "total time [s]", "cost
 def _scale(context: Context) -> tuple[list[int], int, tuple[int, ...], int]:
     """Problems, runs of each, numbers of grasps, vertices."""
     if context.quick:
-        return [1, 3], 2, (25, 100), 1000
-    return list(range(1, PROBLEMS + 1)), 10, COUNTS, VERTICES
+        return [1, 3], 1, (25, 100), 1000
+    return list(range(1, PROBLEMS + 1)), RUNS, COUNTS, VERTICES
 
 
 # --- table 4.1 --------------------------------------------------------------------------------------------------------
 def successes(number: int, seed: int, run: int, counts: tuple[int, ...], vertices: int) -> dict[str, Any]:
     """Of one run, whether each number of grasps suffices over the run's roadmap. More grasps never lose a solution."""
-    cell = p2_cell(number, seed)
-    found = []
-    for count in counts:
-        one = carry(cell, count, run, vertices=vertices)
-        nearest = carry(cell, count, run, vertices=vertices, neighbours=NEIGHBOURS)
-        found.append(
-            {key: one[key] for key in ("solved", "reachable", "cost")} | {"solved, nearest": nearest["solved"]}
-        )
-    return {"number": number, "found": found}
+    found: dict[str, list[dict[str, Any]]] = {}
+    for way, (style, gamma) in WAYS.items():
+        cell = pipe_cell(number, seed, style=style)
+        for count in counts:
+            one = carry(cell, count, run, vertices=vertices, gamma=gamma)
+            found.setdefault(way, []).append({key: one[key] for key in ("solved", "reachable", "cost")})
+    return {"number": number, "seed": seed, "found": found}
 
 
 def run_success(context: Context) -> Result:
@@ -75,35 +74,51 @@ def run_success(context: Context) -> Result:
     rates = []
     for k, count in enumerate(counts):
         values = result.row({"grasps": count})
-        solved = [d["found"][k]["solved"] for d in done]
-        rates.append(float(np.mean(solved)))
-        values["success rate"] = (SUCCESS[count], rates[-1])
-        values[NEAREST] = (None, float(np.mean([d["found"][k]["solved, nearest"] for d in done])))
-        values["grasps within reach at both ends"] = (None, mean(d["found"][k]["reachable"] for d in done))
+        for way, column in COLUMNS.items():
+            rate = float(np.mean([d["found"][way][k]["solved"] for d in done]))
+            values[column] = (SUCCESS[count] if way == "open" else None, rate)
+            if way == "open":
+                rates.append(rate)
+                values["of each seed"] = (None, by_seed(done, lambda d, k=k: d["found"]["open"][k]["solved"]))
+        values["grasps within reach at both ends"] = (None, mean(d["found"]["open"][k]["reachable"] for d in done))
     for number in problems:
         values = result.row({"grasps": f"problem {number}"})
         mine = [d for d in done if d["number"] == number]
-        values["success rate"] = (None, mean(float(f["solved"]) for d in mine for f in d["found"]))
-        values[NEAREST] = (None, mean(float(f["solved, nearest"]) for d in mine for f in d["found"]))
-        values["grasps within reach at both ends"] = (None, mean(d["found"][-1]["reachable"] for d in mine))
-    result.trend("more grasps, more success", all(a <= b for a, b in itertools.pairwise(rates)))
+        for way, column in COLUMNS.items():
+            values[column] = (None, mean(float(f["solved"]) for d in mine for f in d["found"][way]))
+        values["of each seed"] = (None, by_seed(mine, lambda d: np.mean([f["solved"] for f in d["found"]["open"]])))
+        values["grasps within reach at both ends"] = (None, mean(d["found"]["open"][-1]["reachable"] for d in mine))
     result.exact(
         "a solution stays one when grasps are added, and never gets dearer",
         all(
             b["solved"] and b["cost"] <= a["cost"] + 1e-9
             for d in done
-            for a, b in itertools.pairwise(d["found"])
+            for way in WAYS
+            for a, b in itertools.pairwise(d["found"][way])
             if a["solved"]
         ),
     )
+    for way, column in COLUMNS.items():
+        result.statement(
+            f"{column}: {counts[-1]} grasps less {counts[0]}",
+            paired(done, lambda d, way=way: (d["found"][way][-1]["solved"], d["found"][way][0]["solved"])),
+        )
+    for style in ("open", "narrow"):
+        result.statement(
+            f"{style} cells, {counts[-1]} grasps: roadmap as it ships less gamma 4",
+            paired(done, lambda d, s=style: (d["found"][f"{s}, shipped"][-1]["solved"], d["found"][s][-1]["solved"])),
+        )
     if not context.quick:
         result.trend(
-            "every run succeeds from 500 grasps on", all(r == 1 for c, r in zip(counts, rates, strict=True) if c >= 500)
+            "every run succeeds from 500 grasps on, as P2's do",
+            all(r == 1 for c, r in zip(counts, rates, strict=True) if c >= 500),
         )
-    result.setup = describe(context, runs, problems, **describe_roadmap(vertices))
+    result.setup = describe(
+        context, runs, problems, ("open", "narrow"), **describe_roadmap(context, vertices, gamma=GAMMA)
+    )
     result.notes.append(
         "With gamma 4 the roadmap falls into pieces (mean degree and largest component below), and a run fails when its start"
-        " and goal lie in different ones, whatever the grasps."
+        " and goal lie in different ones, whatever the grasps. Cells are not chosen by whether they can be solved."
     )
     return result
 
@@ -122,7 +137,7 @@ def draw_success(stored: dict[str, Any]) -> Figure:
 # --- table 4.2 and figure 4.5 -----------------------------------------------------------------------------------------
 def variants(number: int, seed: int, run: int, counts: tuple[int, ...], vertices: int) -> dict[str, Any]:
     """The paper's three variants and ours, which searches a grasp only when it may still win, over one roadmap."""
-    cell = p2_cell(number, seed)
+    cell = pipe_cell(number, seed)
     found: dict[str, list[dict[str, Any]]] = {}
     for count in counts:
         for name, batch, lazy in (
@@ -133,7 +148,7 @@ def variants(number: int, seed: int, run: int, counts: tuple[int, ...], vertices
         ):
             one = carry(cell, count, run, vertices=vertices, batch=batch, lazy_grasps=lazy)
             found.setdefault(name, []).append(one)
-    return {"number": number, "found": found}
+    return {"number": number, "seed": seed, "found": found}
 
 
 def run_variants(context: Context) -> Result:
@@ -144,7 +159,7 @@ def run_variants(context: Context) -> Result:
     names = (*VARIANTS, "ours")
     # Averages are over what all variants solved; a capped run has no path to compare.
     kept = [
-        {name: d["found"][name][k] for name in names} | {"number": d["number"], "count": count}
+        {name: d["found"][name][k] for name in names} | {"number": d["number"], "seed": d["seed"], "count": count}
         for d in done
         for k, count in enumerate(counts)
         if all(d["found"][name][k]["solved"] for name in names)
@@ -164,33 +179,31 @@ def run_variants(context: Context) -> Result:
     result.exact(
         "all variants find the same optimum on the same roadmap", all(max(c) - min(c) < 1e-9 * max(c) for c in costs)
     )
-    pick = {
-        name: {key: [d[name][key] for d in kept] for key in ("first time", "total time", "first cost")}
-        for name in names
-    }
-    for key, smaller, larger in (
-        ("first cost", "batch", "standard"),
-        ("first cost", "standard", "naive"),
-        ("total time", "batch", "naive"),
-        ("total time", "standard", "naive"),
-        ("total time", "ours", "batch"),
+    for key, larger, smaller in (
+        ("first cost", "naive", "standard"),
+        ("first cost", "standard", "batch"),
+        ("total time", "naive", "standard"),
+        ("total time", "naive", "batch"),
     ):
-        result.trend(
-            f"{key}, {larger} less {smaller}: {told(difference(pick[larger][key], pick[smaller][key]))}; not reversed",
-            not_reversed(pick[smaller][key], pick[larger][key]),
+        result.statement(
+            f"{key}, {larger} less {smaller}",
+            paired(kept, lambda d, key=key, a=larger, b=smaller: (d[a][key], d[b][key])),
             clock=key != "first cost",
         )
+    result.trend(
+        "total time: lazy over grasps is the quickest",
+        mean(d["ours"]["total time"] for d in kept) == min(mean(d[n]["total time"] for d in kept) or 0 for n in names),
+        clock=True,
+    )
     if not context.quick:
-        batch = mean(pick["batch"]["total time"])
+        batch = mean(d["batch"]["total time"] for d in kept)
         result.trend("batch: at most a tenth of the paper's 1.13 s", batch is not None and batch <= 0.113, clock=True)
     extra = [d["found"]["batch"][-1]["ik time"] for d in done]
-    result.setup = describe(context, runs, problems, grasps=", ".join(map(str, counts)), **describe_roadmap(vertices))
-    result.notes.append(
-        f"Not in these times, as in P2: inverse kinematics of all grasps, {mean(extra):.3g} s for {counts[-1]} of them, and the roadmap."
+    result.setup = describe(
+        context, runs, problems, grasps=", ".join(map(str, counts)), **describe_roadmap(context, vertices)
     )
     result.notes.append(
-        "P2's order of total times comes from the collision checks that batches save. Checks cost little here, and searching"
-        " the paths of all grasps before any of them is checked costs more than it saves."
+        f"Not in these times, as in P2: inverse kinematics of all grasps, {mean(extra):.3g} s for {counts[-1]} of them, and the roadmap."
     )
     result.drawing = {
         "counts": list(counts),
@@ -253,13 +266,14 @@ BATCHES = (1, 5, 20, 50, 100, 200, 500, 1000, 2000)
 
 
 def batches(number: int, seed: int, run: int, count: int, sizes: tuple[int, ...], vertices: int) -> dict[str, Any]:
-    cell = p2_cell(number, seed)
+    cell = pipe_cell(number, seed)
     found = [carry(cell, count, run, vertices=vertices, batch=size, lazy_grasps=False) for size in sizes]
-    return {"number": number, "found": found}
+    return {"number": number, "seed": seed, "found": found}
 
 
 def run_batches(context: Context) -> Result:
-    problems, runs, counts, vertices = _scale(context)
+    problems, _, counts, vertices = _scale(context)
+    runs = 1
     count = 100 if context.quick else counts[-1]
     sizes = (1, 10, 100) if context.quick else BATCHES
     items = [i | {"count": count, "sizes": sizes, "vertices": vertices} for i in items_of(context, problems, runs)]
@@ -274,11 +288,10 @@ def run_batches(context: Context) -> Result:
             ("cost of best solution", "cost"),
         ):
             values[column] = (None, mean(d["found"][k][key] for d in done))
-    first = [[d["found"][k]["first cost"] for d in done] for k in range(len(sizes))]
     total = [[d["found"][k]["total time"] for d in done] for k in range(len(sizes))]
-    result.trend(
-        f"the first solution is cheaper with the largest batch than with the smallest: {told(difference(first[0], first[-1]))}",
-        not_reversed(first[-1], first[0]),
+    result.statement(
+        "cost of the first solution, smallest batch less largest",
+        paired(done, lambda d: (d["found"][0]["first cost"], d["found"][-1]["first cost"])),
     )
     result.exact(
         "every batch size finds the same optimum",
@@ -292,7 +305,7 @@ def run_batches(context: Context) -> Result:
             clock=True,
         )
     result.setup = describe(
-        context, runs, problems, grasps=count, **{"runs solved": len(done)}, **describe_roadmap(vertices)
+        context, runs, problems, grasps=count, **{"runs solved": len(done)}, **describe_roadmap(context, vertices)
     )
     return result
 

@@ -1,26 +1,31 @@
-"""Strict reading of YAML and JSON: every message names file, line (YAML), key, value and rule."""
+"""Strict reading of scenarios and plans: every message names file, line (YAML), key, value and rule."""
 
 from __future__ import annotations
 
 import difflib
 import json
 import math
-import re
+import reprlib
+import unicodedata
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
-import yaml
 
-from .._core import InvalidInput, IoError, pose
+from .._core import InvalidInput, pose
+from .._files import read_text
+from .yaml_text import Key as Key
+from .yaml_text import bad_yaml as bad_yaml
+from .yaml_text import parse_yaml
 
 LARGEST = 1e6  # no length, angle or time in a file is larger [SI]
+SMALLEST = 1e-6  # nor, where it must be positive, smaller
 LARGEST_INTEGER = 2**31 - 1
-_EXPONENT = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)[eE][-+]?\d+")
-
-Key = str | int
-
+LONGEST_NAME = 200  # names become file names, and lines on a terminal
+DEEPEST = 50  # levels of a file
+LARGEST_SCENARIO = 4_000_000  # [bytes]
+LARGEST_PLAN = 1_000_000_000  # [bytes]
 
 RENAMED = {"carry": "place_region"}
 """Keys of version 1 of the files by what they are called since version 2."""
@@ -41,12 +46,9 @@ def check_name(field: str, value: Any, known: Collection[str]) -> None:
     raise InvalidInput(f"{field} = {value!r}: must be one of {', '.join(known)}{meant}")
 
 
-def bad_yaml(path: str | Path, error: yaml.YAMLError) -> InvalidInput:
-    """What the parser said, in one line with the file's."""
-    mark = getattr(error, "problem_mark", None)
-    where = f"{path}:{mark.line + 1}" if mark else str(path)
-    problem = getattr(error, "problem", None) or str(error).splitlines()[0]
-    return InvalidInput(f"{where}: is no valid YAML: {problem}")
+_SHORT = reprlib.Repr()
+_SHORT.maxlevel, _SHORT.maxstring, _SHORT.maxother, _SHORT.maxlong = 3, 80, 80, 80
+_SHORT.maxlist, _SHORT.maxdict = 8, 8
 
 
 class Document:
@@ -86,9 +88,7 @@ class Node:
         return f"{self.document.source}:{line}" if line else self.document.source
 
     def fail(self, rule: str) -> NoReturn:
-        shown = repr(self.raw)
-        if len(shown) > 80:
-            shown = shown[:77] + "..."
+        shown = _SHORT.repr(self.raw)
         raise InvalidInput(f"{self.place}: {self.name} = {shown}: {rule}")
 
     # --- mappings -------------------------------------------------------------------------------------------------
@@ -147,8 +147,6 @@ class Node:
     # --- scalars --------------------------------------------------------------------------------------------------
     def number(self, *, above: float | None = None, least: float | None = None) -> float:
         value = self.raw
-        if isinstance(value, str) and _EXPONENT.fullmatch(value):
-            value = float(value)  # YAML 1.1 takes 1e-3 for a string
         if isinstance(value, bool) or not isinstance(value, int | float):
             self.fail("must be a number")
         if isinstance(value, float) and not math.isfinite(value):
@@ -157,6 +155,8 @@ class Node:
             self.fail(f"must lie between -{LARGEST:g} and {LARGEST:g}")
         if above is not None and not value > above:
             self.fail(f"must be > {above:g}")
+        if above == 0 and value < SMALLEST:
+            self.fail(f"must be at least {SMALLEST:g}")
         if least is not None and not value >= least:
             self.fail(f"must be >= {least:g}")
         return float(value)
@@ -180,6 +180,15 @@ class Node:
         if not isinstance(self.raw, str) or not self.raw:
             self.fail("must be a text that is not empty")
         return self.raw
+
+    def label(self) -> str:
+        """A name that people read and that files are called by."""
+        value = self.string()
+        if len(value) > LONGEST_NAME:
+            self.fail(f"must have at most {LONGEST_NAME} characters")
+        if any(unicodedata.category(c) in ("Cc", "Cs") for c in value):
+            self.fail("must not hold control characters")
+        return value
 
     def choice(self, *known: str) -> str:
         value = self.string()
@@ -219,70 +228,53 @@ class Node:
         return pose(xyz, rpy=self["rpy"].numbers(3) if "rpy" in self else [0, 0, 0])
 
 
-class _Lines(yaml.SafeLoader):
-    """Builds plain values and remembers the line of every key."""
-
-
-def _plain(
-    loader: _Lines,
-    node: yaml.Node,
-    path: tuple[Key, ...],
-    lines: dict[tuple[Key, ...], int],
-    source: str,
-    depth: int = 0,
-) -> Any:
-    if depth > 50:
-        raise InvalidInput(f"{source}:{node.start_mark.line + 1}: nested more than 50 deep")
-    lines.setdefault(path, node.start_mark.line + 1)
-    if isinstance(node, yaml.MappingNode):
-        out: dict[str, Any] = {}
-        for key_node, value_node in node.value:
-            line = key_node.start_mark.line + 1
-            key = loader.construct_object(key_node) if isinstance(key_node, yaml.ScalarNode) else None
-            if not isinstance(key, str):
-                raise InvalidInput(f"{source}:{line}: a key must be a name, not {key_node.value!r}")
-            if key in out:
-                raise InvalidInput(f"{source}:{line}: {key}: is given twice")
-            lines[(*path, key)] = line
-            out[key] = _plain(loader, value_node, (*path, key), lines, source, depth + 1)
-        return out
-    if isinstance(node, yaml.SequenceNode):
-        return [_plain(loader, child, (*path, i), lines, source, depth + 1) for i, child in enumerate(node.value)]
-    return loader.construct_object(node)
-
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except UnicodeDecodeError as error:
-        raise IoError(f"{path}: is no UTF-8 text (byte {error.start})") from None
-    except OSError as error:
-        raise IoError(f"{path}: cannot be read: {error.strerror or error}") from None
-
-
 def read_yaml(path: Path) -> Document:
     """Parses a YAML file; syntax errors name the line."""
-    text = _text(path)
-    lines: dict[tuple[Key, ...], int] = {}
-    try:
-        loader = _Lines(text)
-        node = loader.get_single_node()
-        raw = {} if node is None else _plain(loader, node, (), lines, str(path))
-    except yaml.YAMLError as error:
-        raise bad_yaml(path, error) from None
-    except ValueError as error:
-        if isinstance(error, InvalidInput):
-            raise
-        raise InvalidInput(f"{path}: is no valid YAML: {error}") from None
+    raw, lines = parse_yaml(read_text(path, LARGEST_SCENARIO), str(path))
     return Document(str(path), raw, lines)
 
 
 def read_json(path: Path) -> Document:
-    """Parses a JSON file; syntax errors name the line."""
+    """Parses a JSON file; syntax errors name the line. Keys given twice, NaN and infinity are refused."""
+    text = read_text(path, LARGEST_PLAN)
+
+    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        out = dict(pairs)
+        if len(out) < len(pairs):
+            keys = [key for key, _ in pairs]
+            twice = next(key for key in out if keys.count(key) > 1)
+            raise InvalidInput(f"{path}: the key {twice!r} is given twice")
+        return out
+
+    def no_number(word: str) -> NoReturn:
+        raise InvalidInput(f"{path}: {word} is no number in JSON")
+
+    def integer(digits: str) -> int:
+        if len(digits) > 300:
+            raise InvalidInput(f"{path}: a number has {len(digits)} digits")
+        return int(digits)
+
     try:
-        raw = json.loads(_text(path))
+        raw = json.loads(text, object_pairs_hook=once, parse_constant=no_number, parse_int=integer)
     except json.JSONDecodeError as error:
         raise InvalidInput(f"{path}:{error.lineno}: is no valid JSON: {error.msg}") from None
     except RecursionError:
         raise InvalidInput(f"{path}: is nested too deeply") from None
+    check_depth(raw, str(path))
     return Document(str(path), raw, {})
+
+
+def check_depth(raw: Any, source: str) -> None:
+    """Raises InvalidInput for values that are nested more than DEEPEST deep."""
+    level = [raw]
+    for _ in range(DEEPEST):
+        level = [
+            value
+            for outer in level
+            if isinstance(outer, list | dict)
+            for value in (outer.values() if isinstance(outer, dict) else outer)
+            if isinstance(value, list | dict)
+        ]
+        if not level:
+            return
+    raise InvalidInput(f"{source}: is nested more than {DEEPEST} deep")

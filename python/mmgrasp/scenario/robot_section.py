@@ -31,6 +31,8 @@ class RobotSetup:
     place_region: PlaceRegion
     home: np.ndarray
     other_joints: dict[str, float]
+    closing_speed: float = 0.1
+    """How fast the gripper's opening shrinks [m/s] (P1 4.4.1)."""
 
 
 @dataclass
@@ -50,8 +52,15 @@ def find_file(node: Node) -> Path:
     elif text.startswith("robot-data:"):
         path = robot_data_folder(node) / text.removeprefix("robot-data:")
     else:
-        path = Path(node.document.source).parent / Path(text).expanduser()
-    if not path.exists():
+        try:
+            path = Path(node.document.source).parent / Path(text).expanduser()
+        except RuntimeError:
+            node.fail("no such file: the user's home folder is not known")
+    try:
+        found = path.exists()
+    except (OSError, ValueError):  # too long, or no name at all
+        found = False
+    if not found:
         node.fail(f"no such file ({path})")
     return path
 
@@ -106,10 +115,16 @@ def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup
 
     other = {name: _joint_value(robot, name, value) for name, value in _named_numbers(node, "joints")}
     closed = gripper.joint_values(0.0)
-    arm = _read_group(robot, node["group"], tcp).with_reference({**other, **closed})
+    arm = _read_group(robot, node["group"], tcp)
+    _check_joint_owners(sections, arm)
+    arm = arm.with_reference({**other, **closed})
     home = _read_home(node["home"], arm)
     _fixed_to_root(arm, sections.place_region["parent"], home)
-    return RobotSetup(robot, arm, gripper, _read_place_region(sections.place_region, bin_pose), home, other)
+    if "finger_links" in sections.gripper:
+        _check_finger_links(sections.gripper["finger_links"], arm, tcp, home)
+    speed = sections.gripper["closing_speed"].number(above=0) if "closing_speed" in sections.gripper else 0.1
+    place_region = _read_place_region(sections.place_region, bin_pose)
+    return RobotSetup(robot, arm, gripper, place_region, home, other, speed)
 
 
 def _compose(node: Node) -> Robot:
@@ -129,6 +144,8 @@ def _compose(node: Node) -> Robot:
     for frame in node["frames"].elements() if "frames" in node else []:
         frame.mapping("name parent", "pose box cylinder sphere mesh shapes scale")
         _link(robot, frame["parent"])
+        if frame["name"].label() in (*robot.links, BIN_LINK):
+            frame["name"].fail("the robot has a link of this name already")
         T = frame["pose"].pose() if "pose" in frame else np.eye(4)
         robot = robot.with_link(
             frame["name"].string(), frame["parent"].string(), T, read_shapes(frame, find_file, required=False)
@@ -142,6 +159,8 @@ def _load(node: Node, base: str, limits: dict[str, float]) -> Robot:
     packages = {}
     for name, folder in node["packages"].items() if "packages" in node else []:
         packages[name] = str(find_file(folder))
+    if "xacro_args" in node and urdf.suffix != ".xacro":
+        node["xacro_args"].fail("only a .xacro file takes arguments")
     arguments = {name: value.raw for name, value in node["xacro_args"].items()} if "xacro_args" in node else None
     return Robot.load(urdf, srdf, packages, base, base_limits=limits, xacro_args=arguments)
 
@@ -200,27 +219,29 @@ def _read_home(node: Node, arm: JointGroup) -> np.ndarray:
 
 
 def _read_gripper(node: Node, robot: Robot, tcp: str) -> Hand:
-    node.mapping("approach closing max_opening finger_depth finger_width joints finger_links", "clearance")
-    joints = []
+    if "from_robot" in node:
+        return _gripper_from_robot(node, robot, tcp)
+    node.mapping(
+        "approach closing max_opening finger_depth finger_width joints finger_links", "clearance closing_speed"
+    )
+    joints: list[HandJoint] = []
     for joint in node["joints"].elements():
         joint.mapping("name closed open")
         name = joint["name"].string()
+        if name in [other.name for other in joints]:
+            joint["name"].fail("is listed twice")
         joints.append(
             HandJoint(name, _joint_value(robot, name, joint["closed"]), _joint_value(robot, name, joint["open"]))
         )
-    for link in node["finger_links"].elements():
+    links = node["finger_links"].elements()
+    for link in links:
         _link(robot, link)
+    if len({link.raw for link in links}) < max(2, len(links)):
+        node["finger_links"].fail("must be at least two links, each once: parts are held between them")
     sizes: dict[str, Any] = {key: node[key].number(above=0) for key in ("max_opening", "finger_depth", "finger_width")}
     if "clearance" in node:
         sizes["clearance"] = node["clearance"].number(least=0)
-    axes: dict[str, Any] = {}
-    for key in ("approach", "closing"):
-        axis = np.array(node[key].numbers(3))
-        if abs(np.linalg.norm(axis) - 1) > 1e-6:
-            node[key].fail("must be a unit axis of the tcp frame")
-        axes[key] = axis
-    if abs(axes["approach"] @ axes["closing"]) > 1e-6:
-        node["closing"].fail("must be orthogonal to approach")
+    axes = _axes(node)
     return Hand(
         tcp,
         approach=axes["approach"],
@@ -229,6 +250,36 @@ def _read_gripper(node: Node, robot: Robot, tcp: str) -> Hand:
         finger_links=[link.raw for link in node["finger_links"].elements()],
         **sizes,
     )
+
+
+def _axes(node: Node) -> dict[str, Any]:
+    """The axes `approach` and `closing` of the tcp frame, as far as they are given."""
+    axes: dict[str, Any] = {}
+    for key in ("approach", "closing"):
+        if key not in node:
+            continue
+        axis = np.array(node[key].numbers(3))
+        if abs(np.linalg.norm(axis) - 1) > 1e-6:
+            node[key].fail("must be a unit axis of the tcp frame")
+        axes[key] = axis
+    if len(axes) == 2 and abs(axes["approach"] @ axes["closing"]) > 1e-6:
+        node["closing"].fail("must be orthogonal to approach")
+    return axes
+
+
+def _gripper_from_robot(node: Node, robot: Robot, tcp: str) -> Hand:
+    """A hand measured on the robot's own shapes; what the section states goes first."""
+    node.mapping("from_robot", "approach closing clearance closing_speed")
+    source = node["from_robot"]
+    if source.raw is not True and not isinstance(source.raw, str):
+        source.fail("must be an SRDF end effector or group, or true: every joint below the tcp's body")
+    stated = _axes(node)
+    if "clearance" in node:
+        stated["clearance"] = node["clearance"].number(least=0)
+    try:
+        return Hand.from_robot(robot, tcp, group="" if source.raw is True else source.string(), **stated)
+    except InvalidInput as error:
+        node.fail(str(error))
 
 
 def _add_bin(robot: Robot, node: Node) -> tuple[Robot, np.ndarray]:
@@ -251,8 +302,35 @@ def _read_place_region(node: Node, T_root_bin: np.ndarray) -> PlaceRegion:
     return PlaceRegion(T_root_bin, size[:2], **options)
 
 
+def _check_joint_owners(sections: RobotSections, arm: JointGroup) -> None:
+    """A joint is moved by the arm or by the gripper, or keeps the value of the section `joints`."""
+    owners = dict.fromkeys(arm.names, "the arm")
+    for joint in sections.gripper["joints"].elements() if "joints" in sections.gripper else []:
+        name = joint["name"].string()
+        if name in owners:
+            joint["name"].fail(f"is a joint of {owners[name]}")
+        owners[name] = "the gripper"
+    for name, value in _named_numbers(sections.robot, "joints"):
+        if name in owners:
+            value.fail(f"{name} is a joint of {owners[name]}, which moves it")
+
+
+def _moved(arm: JointGroup, home: np.ndarray) -> np.ndarray:
+    """A configuration in which every joint is a little off home."""
+    moved: np.ndarray = home + 0.05 * np.where(home + 0.05 <= arm.upper, 1.0, -1.0)
+    return moved
+
+
+def _check_finger_links(node: Node, arm: JointGroup, tcp: str, home: np.ndarray) -> None:
+    """Fingers belong to the hand: they keep their place beside the tool frame whatever the arm does."""
+    before, after = arm.link_poses(home), arm.link_poses(_moved(arm, home))
+    for link in node.elements():
+        beside = [np.linalg.inv(poses[tcp]) @ poses[link.raw] for poses in (before, after)]
+        if np.abs(beside[0] - beside[1]).max() > 1e-9:
+            link.fail("is no part of the hand: it does not move with the tcp")
+
+
 def _fixed_to_root(arm: JointGroup, node: Node, home: np.ndarray) -> None:
-    moved = home + 0.05 * np.where(home + 0.05 <= arm.upper, 1.0, -1.0)
-    before, after = arm.link_poses(home)[node.raw], arm.link_poses(moved)[node.raw]
+    before, after = arm.link_poses(home)[node.raw], arm.link_poses(_moved(arm, home))[node.raw]
     if np.abs(before - after).max() > 1e-9:
         node.fail("the bin's parent must not move with the arm")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,16 +11,18 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import CollisionChecker, InvalidInput, LinkShape, PartSupplyProblem, ReachDatabase, World
-from .._files import shipped
+from .._core import CollisionChecker, InvalidInput, IoError, LinkShape, PartSupplyProblem, ReachDatabase, World
+from .._core import verify as checks
+from .._files import check_folder, shipped
 from .._progress import Progress
+from .contact_rules import ContactRules, read_contact_rules
 from .reading import Node, read_yaml
 from .robot_section import RobotSetup, choose_sections, find_file, read_setup
 from .shapes import read_shapes
 from .tray_section import PartType, TraySetup, read_part_types, read_tray
 
 TOP_KEYS = "format version name robot start goal positioning_uncertainty trays part_types"
-TOP_OPTIONAL = "gripper place_region obstacles options reach"
+TOP_OPTIONAL = "gripper place_region obstacles allowed_collisions padding options reach"
 SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
 
 
@@ -44,32 +47,41 @@ class Scenario:
     positioning_uncertainty: float
     options: dict[str, Any] = field(default_factory=dict)
     reach: dict[str, Any] = field(default_factory=dict)
+    rules: ContactRules = field(default_factory=ContactRules)
 
     @property
     def world(self) -> World:
-        """Obstacles and trays, without the parts."""
-        world = World()
-        for obstacle in self.obstacles:
-            world.add(obstacle.name, obstacle.shapes, obstacle.pose)
+        """Obstacles and trays, without the parts and what is said of these."""
+        world = self._obstacles()
+        self.rules.apply(world, without={part.name for tray in self.trays for part in tray.tray.parts})
         return world
 
     @property
     def world_with_parts(self) -> World:
         """The obstacles and every part where it lies."""
-        world = self.world
+        world = self._obstacles()
         for tray in self.trays:
             for part in tray.tray.parts:
                 world.add(part.name, part.shapes, part.T_world_part)
+        self.rules.apply(world)
+        return world
+
+    def _obstacles(self) -> World:
+        world = World()
+        for obstacle in self.obstacles:
+            world.add(obstacle.name, obstacle.shapes, obstacle.pose)
         return world
 
     def problem(self) -> PartSupplyProblem:
         """The same as objects for the planner."""
         setup = self.setup
+        scene = self._obstacles()
+        self.rules.apply(scene)
         return PartSupplyProblem(
             setup.robot,
             setup.arm,
             setup.gripper,
-            self.world,
+            scene,
             [t.tray for t in self.trays],
             setup.home,
             self.start,
@@ -80,9 +92,16 @@ class Scenario:
         )
 
     def reach_database(self, progress: Progress = None) -> ReachDatabase:
-        """The arm's reachability database, from the cache or built now."""
+        """The arm's reachability database, from the cache or built now; without a usable cache it is built each time."""
         options = {"threads": self.options.get("threads", 0)} | self.reach
-        return ReachDatabase.load_or_build(self.setup.arm, _core.cache_folder(), progress=progress, **options)
+        try:
+            check_folder(Path(_core.cache_folder()))
+            return ReachDatabase.load_or_build(self.setup.arm, _core.cache_folder(), progress=progress, **options)
+        except IoError as error:
+            logging.getLogger("mmgrasp").warning(
+                "%s; planning goes on without the cache: set XDG_CACHE_HOME to a folder that can be written", error
+            )
+            return ReachDatabase.build(self.setup.arm, progress=progress, **options)
 
     def __repr__(self) -> str:
         parts = sum(len(t.targets) for t in self.trays)
@@ -118,12 +137,16 @@ def load_scenario(
     for tray in trays:
         obstacles.append(Obstacle(f"tray {tray.tray.name}", tray.tray.T_world_tray, tray.walls))
     _check_names(root, obstacles, trays)
+    rules = read_contact_rules(
+        root, setup.robot, [o.name for o in obstacles], [p.name for t in trays for p in t.tray.parts]
+    )
+    _check_apart(root["trays"], trays)
     if seed is not None:
         options["seed"] = seed
     if threads is not None:
         options["threads"] = threads
     scenario = Scenario(
-        root["name"].string(),
+        root["name"].label(),
         str(Path(path).resolve()),
         setup,
         obstacles,
@@ -133,6 +156,7 @@ def load_scenario(
         uncertainty,
         options,
         reach,
+        rules,
     )
     for key in ("start", "goal"):
         _check_stands_free(root[key], scenario)
@@ -156,10 +180,11 @@ def _read_options(root: Node, section: str, table: dict[str, tuple[Any, str]], e
         if key not in known:
             node.refuse_key(known)
         options[key] = node.integer() if isinstance(table[key][0], int) else node.number()
-    try:
-        _core._check_options(section, **options)
-    except InvalidInput as error:
-        root[section].fail(str(error))
+    for key in options:  # one by one: the message then has the line of the option
+        try:
+            _core._check_options(section, **{key: options[key]})
+        except InvalidInput as error:
+            root[section][key].fail(str(error))
     return options
 
 
@@ -168,7 +193,7 @@ def _read_obstacles(root: Node) -> list[Obstacle]:
     for node in root["obstacles"].elements() if "obstacles" in root else []:
         node.mapping("name", "pose " + SHAPE_KEYS)
         pose = node["pose"].pose() if "pose" in node else np.eye(4)
-        out.append(Obstacle(node["name"].string(), pose, read_shapes(node, find_file)))
+        out.append(Obstacle(node["name"].label(), pose, read_shapes(node, find_file)))
     return out
 
 
@@ -189,12 +214,29 @@ def _check_names(root: Node, obstacles: list[Obstacle], trays: list[TraySetup]) 
         seen.add(name)
 
 
+def _check_apart(node: Node, trays: list[TraySetup]) -> None:
+    """No two trays in one place, and no two parts."""
+    walls = [checks.CheckedBody(f"tray {t.tray.name}", t.walls, t.tray.T_world_tray) for t in trays]
+    for i, j in checks.overlapping_bodies(walls):
+        node.elements()[j].fail(f"overlaps tray {trays[i].tray.name}")
+    owners = [k for k, t in enumerate(trays) for _ in t.tray.parts]
+    parts = [part for t in trays for part in t.tray.parts]
+    for i, j in checks.overlapping_bodies([checks.CheckedBody(p.name, p.shapes, p.T_world_part) for p in parts]):
+        node.elements()[owners[j]]["parts"].fail(f"part {parts[j].name} overlaps part {parts[i].name}")
+
+
 def _check_stands_free(node: Node, scenario: Scenario) -> None:
     x, y, theta = node.numbers(3)
     setup = scenario.setup
+    workspace = setup.robot.base_limits["workspace"]
+    if max(abs(x), abs(y)) > workspace:
+        node.fail(f"must lie within base_limits.workspace, {workspace:g} m along x and y")
     arm = setup.arm.at(_core.pose([x, y, 0], rpy=[0, 0, theta]))
     contacts = CollisionChecker(setup.robot, scenario.world_with_parts, arm).contacts(setup.home)
     if contacts:
-        pairs = ", ".join(f"{c.a} touches {c.b}" for c in contacts[:3])
+        pairs = ", ".join(
+            f"{c.a} comes closer to {c.b} than their padding" if c.by_padding else f"{c.a} touches {c.b}"
+            for c in contacts[:3]
+        )
         more = f" and {len(contacts) - 3} more" if len(contacts) > 3 else ""
         node.fail(f"the robot at home is in collision there: {pairs}{more}")

@@ -53,8 +53,9 @@ def _one(node: Node, find_file: Callable[[Node], Path], placed: bool) -> LinkSha
         scale = (
             node["scale"].numbers(3, above=0) if isinstance(node["scale"].raw, list) else node["scale"].number(above=0)
         )
+    path = find_file(value).resolve()
     try:
-        return LinkShape.mesh(find_file(value).resolve(), scale, pose)
+        return LinkShape.mesh(path, scale, pose)
     except _core.Error as error:
         value.fail(str(error))
 

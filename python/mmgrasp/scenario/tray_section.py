@@ -80,7 +80,7 @@ def _listed_grasps(node: Node, gripper: Hand) -> tuple[list[Grasp], int]:
 
 def read_tray(node: Node, types: dict[str, PartType], gripper: Hand) -> TraySetup:
     node.mapping("name pose size parts", "headings targets")
-    name, T_world_tray, size = node["name"].string(), node["pose"].pose(), node["size"].numbers(3, above=0)
+    name, T_world_tray, size = node["name"].label(), node["pose"].pose(), node["size"].numbers(3, above=0)
     if T_world_tray[2, 2] < 1 - 1e-9:
         node["pose"].fail("a tray must stand level (roll and pitch 0)")
     if min(size[:2]) <= 2 * WALL:
@@ -153,7 +153,7 @@ def _list(node: Node, types: dict[str, PartType]) -> list[Placed]:
     for entry in node.elements():
         entry.mapping("type xyz", "name rpy")
         kind = _kind(entry["type"], types)
-        name = entry["name"].string() if "name" in entry else f"{kind}_{len(placed):02d}"
+        name = entry["name"].label() if "name" in entry else f"{kind}_{len(placed):02d}"
         if name in [other for other, _, _ in placed]:
             entry.fail(f"the name {name} is used twice in this tray")
         rpy = entry["rpy"].numbers(3) if "rpy" in entry else [0.0, 0.0, 0.0]

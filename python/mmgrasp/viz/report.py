@@ -199,7 +199,7 @@ def _picks(plan) -> str:
 def _in_passing(plan) -> str:
     if "drive_by" not in plan:
         return ""
-    speed = plan["drive_by"]["closing_speed"]
+    speed = plan["scenario"]["gripper"]["closing_speed"]
     rows = []
     for motion in plan["drive_by"]["motions"]:
         pick = plan["picks"][motion["pick"]]

@@ -7,6 +7,7 @@
 
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "support/concave_box.hpp"
 #include "support/fcl_reference.hpp"
 #include "support/free_body.hpp"
 
@@ -22,28 +23,6 @@ Eigen::VectorXd at(double x, double y, double z, double yaw = 0) {
 
 Pose shifted(double x, double y, double z) {
   return pose_from_xyz_rpy({x, y, z}, {0, 0, 0});
-}
-
-// A box mesh with one vertex pushed in: closed, concave, so that it is no convex body.
-MeshShape concave_box(const Eigen::Vector3d& size) {
-  std::vector<Eigen::Vector3d> v;
-  for (int i = 0; i < 8; ++i)
-    v.push_back(0.5 * size.cwiseProduct(Eigen::Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
-  v.push_back({0, 0, 0.3 * size.z()});
-  return {make_mesh(v, {{0, 2, 3},
-                        {0, 3, 1},
-                        {0, 1, 5},
-                        {0, 5, 4},
-                        {2, 6, 7},
-                        {2, 7, 3},
-                        {0, 4, 6},
-                        {0, 6, 2},
-                        {1, 3, 7},
-                        {1, 7, 5},
-                        {4, 5, 8},
-                        {5, 7, 8},
-                        {7, 6, 8},
-                        {6, 4, 8}})};
 }
 
 MeshShape opened(const MeshShape& shape) {
@@ -84,7 +63,7 @@ const char* kGripperSrdf = R"(<robot name="r">
 }  // namespace
 
 TEST(Checker, ClosedMeshesAreSolids) {
-  const MeshShape big = concave_box({2, 2, 2}), small = concave_box({0.1, 0.1, 0.1});
+  const MeshShape big = test::concave_box({2, 2, 2}), small = test::concave_box({0.1, 0.1, 0.1});
   ASSERT_TRUE(big.mesh->closed);
   ASSERT_FALSE(big.mesh->convex);
   const Shape inner[] = {Box{{0.1, 0.1, 0.1}}, Sphere{0.1}, Cylinder{0.1, 0.1},
@@ -127,7 +106,7 @@ TEST(Checker, BoxesTouchWhereTheirFacesMeet) {
 TEST(Checker, FclAgreesJustBeforeAndAfterContact) {
   // Bisects to where the answer changes and asks FCL on both sides of it, well outside the band.
   const Shape shapes[] = {Box{{0.3, 0.2, 0.5}}, Sphere{0.2}, Cylinder{0.15, 0.4}, Capsule{0.1, 0.4},
-                          concave_box({0.4, 0.3, 0.5})};
+                          test::concave_box({0.4, 0.3, 0.5})};
   Rng rng(3);
   int judged = 0;
   for (const Shape& body : shapes) {
@@ -163,7 +142,7 @@ TEST(Checker, PaddingGrowsTheRobotOnly) {
   CheckerOptions options;
   options.padding = 0.1;
   const Shape bodies[] = {Box{{1, 1, 1}}, Cylinder{0.5, 1}, MeshShape{shape_mesh(Box{{1, 1, 1}})},
-                          concave_box({1, 1, 1})};
+                          test::concave_box({1, 1, 1})};
   for (const Shape& body : bodies) {
     CollisionChecker checker = make_checker(body, Box{{1, 1, 1}}, shifted(0, 0, 0), options);
     EXPECT_TRUE(checker.is_free(at(0, 0, -1.1 - 1e-6))) << shape_kind(body);

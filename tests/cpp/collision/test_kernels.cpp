@@ -81,6 +81,36 @@ struct Cover {
   Vector3d centre(int i) const { return {x[i], y[i], z[i]}; }
 };
 
+TEST_P(CollisionKernels, TheFarthestPointIsTheFirstOfTheFarthest) {
+  Rng random(12);
+  for (int round = 0; round < 500; ++round) {
+    const int count = kLanes * (1 + static_cast<int>(random.index(20)));
+    std::vector<double> points;
+    // Few values, so that points are equally far now and then.
+    for (int i = 0; i < 3 * count; ++i) points.push_back(std::round(random.uniform(-4, 4)) / 8);
+    const std::vector<float> rough(points.begin(), points.end());
+    Vector3d d = point_within(random, 1);
+    if (round % 2 == 0) d = Vector3d(std::round(4 * d[0]), std::round(4 * d[1]), 1);
+    const auto along = [&](int i) {
+      return d[0] * points[i] + d[1] * points[count + i] + d[2] * points[2 * count + i];
+    };
+    int best = 0;
+    for (int i = 1; i < count; ++i) {
+      if (along(i) > along(best)) best = i;
+    }
+    const Eigen::Vector3f rough_d = d.cast<float>();
+    const int nearly = kernels().nearly_farthest(rough.data(), count, rough_d.data());
+    ASSERT_LE(along(best) - along(nearly), 1e-6);
+    // Sums of such numbers are exact.
+    if (round % 2 == 0) {
+      ASSERT_EQ(nearly, best);
+      ASSERT_EQ(kernels().farthest(points.data(), count, d.data()), best);
+    } else {
+      ASSERT_LE(along(best) - along(kernels().farthest(points.data(), count, d.data())), 1e-14);
+    }
+  }
+}
+
 TEST_P(CollisionKernels, FramesEqualProductsOfTransforms) {
   Rng random(3);
   for (int round = 0; round < 200; ++round) {

@@ -50,13 +50,57 @@ TEST(Narrow, SaysWhetherTheClearanceExceedsABound) {
         const double clearance = share * distance;
         const bool within = solids_collide(*a, T_a, *other, T_b, clearance);
         EXPECT_EQ(within, share > 1) << "distance " << distance << ", asked for " << clearance;
-        if (other == b.get()) EXPECT_EQ(meshes_collide(*b, T_b, grid, *a, T_a, clearance), within) << distance;
+        Closing closing;
+        closing.most = clearance;
+        if (other == b.get()) EXPECT_EQ(meshes_collide(*b, T_b, grid, *a, T_a, closing), within) << distance;
         ++(within ? narrower : wider);
       }
     }
   }
   EXPECT_GT(wider, 2000);
   EXPECT_GT(narrower, 2000);
+}
+
+// A ring that slides and turns beside another one: what is said to stay apart does, at every point of the way.
+TEST(Narrow, WhatStaysApartOnTheWayDoesNotMeet) {
+  const auto large = std::make_shared<const TriangleMesh>(ring(12, 0.2));
+  const auto small = std::make_shared<const TriangleMesh>(ring(5, 0.06));
+  const auto a = make_solid(MeshShape{large}), b = make_solid(MeshShape{small});
+  const DistanceGrid grid(*small, *b);
+  Rng rng(6);
+  int proven = 0, only_directed = 0, meet = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Rigid T_a = random_pose(rng), T_b = random_pose(rng);
+    const bool a_moves = i % 2 == 0;
+    const Rigid& start = a_moves ? T_a : T_b;
+    Closing closing;
+    closing.directed = true;
+    closing.first_moves = !a_moves;  // b comes first below
+    closing.centre = start.t;
+    closing.radius = a_moves ? a->sphere_radius : b->sphere_radius;
+    const Eigen::Vector3d axis = rng.rotation() * Eigen::Vector3d::UnitZ();
+    const double angle = rng.uniform(0, 0.08);
+    closing.turn = angle * axis;
+    closing.shift = rng.uniform(0, 0.02) * (rng.rotation() * Eigen::Vector3d::UnitX());
+    closing.bend = 0.5 * angle * angle * closing.radius;
+    closing.most = closing.shift.norm() + angle * closing.radius + closing.bend;
+    const bool apart = !meshes_collide(*b, T_b, grid, *a, T_a, closing);
+    Closing plain;
+    plain.most = closing.most;
+    only_directed += apart && meshes_collide(*b, T_b, grid, *a, T_a, plain);
+    proven += apart;
+    for (int k = -10; k <= 10; ++k) {
+      Rigid moved = start;
+      moved.R = Eigen::AngleAxisd(0.1 * k * angle, axis).toRotationMatrix() * start.R;
+      moved.t += 0.1 * k * closing.shift;
+      const bool hit = a_moves ? solids_collide(*a, moved, *b, T_b) : solids_collide(*a, T_a, *b, moved);
+      meet += hit;
+      ASSERT_FALSE(apart && hit) << i << " " << k;
+    }
+  }
+  EXPECT_GT(proven, 500);
+  EXPECT_GT(only_directed, 50);
+  EXPECT_GT(meet, 500);
 }
 
 }  // namespace

@@ -309,6 +309,9 @@ TEST(RayCaster, SameAnswersAtAnyThreadCountAndInstructionSet) {
   EXPECT_TRUE(same(caster.closest_hits(rays, 1), single));
   EXPECT_TRUE(same(caster.closest_hits(rays, 3), single));
   EXPECT_TRUE(same(caster.closest_hits(rays, 0), single));
+  std::vector<RayHit> kept(rays.size() + 7, single.front());  // of another batch
+  caster.closest_hits(rays, kept, 2);
+  EXPECT_TRUE(same(kept, single));
   const std::vector<char> any = caster.any_hits(rays, 2);
   for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_EQ(any[i] != 0, static_cast<bool>(single[i]));
   const std::string best = detail::instruction_sets().front();

@@ -254,6 +254,42 @@ TEST(HandFromRobot, PandaHandFollowsItsMimicJoint) {
   expect_opening_follows_tips(robot, hand, "panda_leftfinger", "panda_rightfinger", 1e-9);
 }
 
+/// The flange's frame is turned by 45 degrees against the fingers.
+TEST(HandFromRobot, FramesTurnedAgainstTheFingers) {
+  MMGRASP_NEEDS_SHARED_DATA();
+  const std::string urdf = "robots/panda/expanded/panda.urdf",
+                    folder = "robots/panda/moveit_resources_panda_description";
+  const Hand straight = Hand::from_robot(hand_robot(urdf, folder, "panda_hand", along_z(0.1034)), "tool");
+  const Robot robot = hand_robot(urdf, folder, "panda_link8", along_z(0.1034));
+  const Hand hand = Hand::from_robot(robot, "tool");
+  EXPECT_TRUE(hand.approach.isApprox(Eigen::Vector3d::UnitZ()));
+  EXPECT_TRUE(hand.closing.isApprox(Eigen::Vector3d(1, 1, 0).normalized(), 1e-6)) << hand.closing.transpose();
+  EXPECT_NEAR(hand.max_opening, straight.max_opening, 1e-6);
+  EXPECT_NEAR(hand.min_opening, straight.min_opening, 1e-6);
+  EXPECT_DOUBLE_EQ(hand.joints[0].open, 0.04);
+  EXPECT_EQ(hand.finger_links, straight.finger_links);
+  const Pose tilted = Pose(Eigen::Translation3d(0, 0, 0.1034)) * pose_from_xyz_rpy({0, 0, 0}, {0.6, 0, 0});
+  EXPECT_THROW(Hand::from_robot(hand_robot(urdf, folder, "panda_hand", tilted), "tool"), InvalidInput)
+      << "no axis of the frame lies along the fingers";
+}
+
+/// The maker's own file lets every joint turn by 180 degrees: the fingers curl past the palm.
+TEST(HandFromRobot, LimitsThatAreNoneAreNamed) {
+  MMGRASP_NEEDS_SHARED_DATA();
+  const std::string folder = "robots/robotiq/robotiq_3f_gripper_visualization";
+  const std::string urdf = folder + "/cfg/robotiq-3f-gripper_articulated.urdf";
+  const Robot robot = hand_robot(urdf, folder, "palm", Pose(Eigen::Translation3d(0, 0.11, 0)));
+  try {
+    Hand::from_robot(robot, "tool");
+    ADD_FAILURE() << "read";
+  } catch (const InvalidInput& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("_joint_"), std::string::npos) << message;
+    EXPECT_NE(message.find("3.141"), std::string::npos) << message;
+    EXPECT_NE(message.find("SRDF"), std::string::npos) << message;
+  }
+}
+
 TEST(HandFromRobot, Robotiq2F85IsParallelButNotLinear) {
   MMGRASP_NEEDS_SHARED_DATA();
   const std::string folder = "robots/robotiq_2f85/robotiq_arg85_description";

@@ -1,8 +1,11 @@
 #include "mmgrasp/optim/set_cover.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <functional>
@@ -244,6 +247,49 @@ TEST(SetCover, SameAnswerFromSeveralThreads) {
   for (auto& result : results) threads.emplace_back([&] { result = solve_set_cover(problem); });
   for (auto& thread : threads) thread.join();
   for (const auto& result : results) EXPECT_EQ(result.chosen, expected.chosen);
+}
+
+/// 300 elements in 900 sets of 12: no proof within minutes.
+SetCoverProblem hard_problem() {
+  Rng rng(5);
+  SetCoverProblem problem;
+  problem.elements = 300;
+  for (int s = 0; s < 900; ++s) {
+    problem.sets.push_back({s % 300});
+    for (int k = 0; k < 11; ++k) problem.sets.back().push_back(static_cast<int>(rng.index(300)));
+  }
+  return problem;
+}
+
+TEST(SetCover, CanBeEndedWithinCbc) {
+  const SetCoverProblem problem = hard_problem();
+  Monitor monitor;
+  std::thread ender([&monitor] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    monitor.stop.stop();
+  });
+  const SetCoverResult result = solve_set_cover(problem, 1000, monitor);
+  ender.join();
+  EXPECT_EQ(result.outcome, Outcome::stopped);
+  EXPECT_FALSE(result.chosen.empty());
+  EXPECT_LE(result.lower_bound, result.cost);
+}
+
+TEST(SetCover, AForkedChildIsNotHeldUpByARunThatItDoesNotHave) {
+  const SetCoverProblem problem = hard_problem();
+  Monitor monitor;
+  std::thread busy([&] { solve_set_cover(problem, 1000, monitor); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const ::pid_t child = ::fork();
+  if (child == 0) {
+    ::alarm(20);
+    ::_exit(solve_set_cover(problem, 0.05).chosen.empty() ? 1 : 0);
+  }
+  int status = -1;
+  ::waitpid(child, &status, 0);
+  monitor.stop.stop();
+  busy.join();
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
 }
 
 TEST(SetCover, RefusesBadInput) {

@@ -201,6 +201,16 @@ TEST(Tour, NoStops) {
   EXPECT_EQ(shortest_visiting_tour(lengths).outcome, Outcome::infeasible);
 }
 
+/// Beyond the exact method's size nothing proves that there is no tour, even where a way to a stop is missing.
+TEST(Tour, BeyondTheExactMethodNoTourIsNoProof) {
+  Eigen::MatrixXd lengths = Eigen::MatrixXd::Constant(22, 22, 1.0);
+  lengths.col(3).setConstant(kInfinity);
+  const TourResult result = shortest_visiting_tour(lengths);
+  EXPECT_EQ(result.outcome, Outcome::not_found);
+  EXPECT_FALSE(result.proven);
+  EXPECT_TRUE(result.order.empty());
+}
+
 TEST(Tour, RefusesBadInput) {
   EXPECT_THROW(shortest_visiting_tour(Eigen::MatrixXd::Zero(1, 1)), InvalidInput);
   EXPECT_THROW(shortest_visiting_tour(Eigen::MatrixXd::Zero(3, 4)), InvalidInput);

@@ -111,13 +111,13 @@ TEST(Cartesian, SaysHowFarItCame) {
   poses[1].translation() += Eigen::Vector3d(0, 0.05, 0.05);
   poses[2].translation() += Eigen::Vector3d(0, 5, 0);
   const CartesianResult result = plan_cartesian(checker, poses, q);
-  EXPECT_EQ(result.outcome, Outcome::infeasible);
+  EXPECT_EQ(result.outcome, Outcome::not_found);
   EXPECT_FALSE(result.path);
   EXPECT_GE(result.fraction, 0.5);
   EXPECT_LT(result.fraction, 1);
   poses[0].translation() += Eigen::Vector3d(9, 0, 0);
   const CartesianResult nowhere = plan_cartesian(checker, poses);
-  EXPECT_EQ(nowhere.outcome, Outcome::infeasible);
+  EXPECT_EQ(nowhere.outcome, Outcome::not_found);
   EXPECT_EQ(nowhere.branches, 0);
   EXPECT_EQ(nowhere.cause, Rejection::unreachable);
 }
@@ -180,7 +180,7 @@ TEST(Cartesian, ANearThatIsThereIsJudgedWhenNoBranchIsFound) {
     poses[1].translation() *= 0.9;
     const CartesianResult unknown = plan_cartesian(checker, poses, std::nullopt, options);
     ASSERT_EQ(unknown.cause, Rejection::unreachable);
-    EXPECT_EQ(unknown.outcome, Outcome::infeasible);
+    EXPECT_EQ(unknown.outcome, Outcome::not_found);
     const CartesianResult result = plan_cartesian(checker, poses, near, options);
     EXPECT_EQ(result.outcome, Outcome::invalid_start);
     const bool is_beyond = near == beyond;

@@ -79,7 +79,7 @@ TEST_F(OneVertex, IsNotClosedToAllGraspsByWhatOneOfThemHolds) {
   options.ik_solutions = 2;
   options.time_limit = 100;
   problem_.grasps = {gate.blocked};
-  EXPECT_EQ(plan_manipulation(problem_, options, &roadmap).outcome, Outcome::infeasible);
+  EXPECT_EQ(plan_manipulation(problem_, options, &roadmap).outcome, Outcome::not_found);
   // The other grasp costs more than any path, so that it is searched last.
   Grasp passing = gate.passing;
   passing.cost = 100;
@@ -113,7 +113,7 @@ TEST_F(OneVertex, IsClosedToAllGraspsByTheRobotItself) {
   for (const int count : {1, 20}) {
     problem_.grasps.assign(static_cast<std::size_t>(count), gate.passing);
     const ManipulationResult result = plan_manipulation(problem_, options, &roadmap);
-    EXPECT_EQ(result.outcome, Outcome::infeasible);
+    EXPECT_EQ(result.outcome, Outcome::not_found);
     EXPECT_EQ(result.stats.grasps_searched, static_cast<std::size_t>(count));
     EXPECT_EQ(result.stats.edges_checked_robot + result.stats.edges_checked_attached, 0u);
   }

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "support/around.hpp"
 #include "support/random_ends.hpp"
 
 namespace mmgrasp::detail {
@@ -17,14 +18,18 @@ using test::random_ends;
 /// Random growing, rewiring and pruning: the invariants must hold all the time, and every tree must answer as a plain
 /// list of its vertices does.
 TEST(GraspTrees, InvariantsHoldThroughGrowingRewiringAndPruning) {
-  for (const int grasps : {2, 60}) {
+  const std::vector<bool> straight(4, false), around{false, true, true, false};
+  for (const auto& [grasps, wraps] : {std::pair(2, straight), std::pair(60, straight), std::pair(2, around)}) {
     Rng rng(static_cast<unsigned>(grasps));
     const int d = 4;
-    const GraspEnds ends = random_ends(grasps, d, rng);
+    const GraspEnds ends = random_ends(grasps, d, rng, wraps);
     GraspTrees trees(ends);
     EXPECT_NO_THROW(trees.check_invariants());
     const VectorXd lower = VectorXd::Constant(d, -3), upper = VectorXd::Constant(d, 3);
-    const auto apart = [&](int a, int b) { return std::sqrt(squared_distance(trees.at(a), trees.at(b), d)); };
+    const auto away = [&, &wraps = wraps](int v, const VectorXd& q) {
+      return test::distance_around(wraps, Eigen::Map<const VectorXd>(trees.at(v), d), q);
+    };
+    const auto apart = [&](int a, int b) { return away(a, Eigen::Map<const VectorXd>(trees.at(b), d)); };
     std::vector<GraspTrees::Near> near;
     int rewired = 0, removed = 0, copied = 0;
     for (int round = 0; round < 1200; ++round) {
@@ -36,13 +41,13 @@ TEST(GraspTrees, InvariantsHoldThroughGrowingRewiringAndPruning) {
       int members = 0, close = 0;
       for (int v = 0; v < trees.vertex_count(); ++v) {
         if (!trees.vertex(v).alive || trees.vertex(v).tree != tree) continue;
-        const double distance = std::sqrt(squared_distance(trees.at(v), q.data(), d));
+        const double distance = away(v, q);
         ++members;
         close += distance < 1.5;
         least = std::min(least, distance);
       }
       EXPECT_EQ(members, trees.tree_size(tree));
-      EXPECT_NEAR(std::sqrt(squared_distance(trees.at(nearest), q.data(), d)), least, 1e-12);
+      EXPECT_NEAR(away(nearest, q), least, 1e-12);
       trees.near_in_tree(tree, q.data(), 1.5, near);
       EXPECT_EQ(near.size(), static_cast<std::size_t>(close));
       const int configuration = trees.add_configuration(q.data());

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <map>
 
+#include "mmgrasp/core/detail/numbers.hpp"
+#include "support/around.hpp"
+
 namespace mmgrasp::detail {
 namespace {
 
@@ -36,7 +39,7 @@ GraspEnds crossing_ellipses() {
 
 struct Cells {
   static constexpr int kSide = 24;
-  const Vector2d lower{-2, -2}, upper{2, 2};
+  Vector2d lower{-2, -2}, upper{2, 2};
   int cell(const double* q) const {
     const int x = static_cast<int>((q[0] - lower[0]) / (upper[0] - lower[0]) * kSide);
     const int y = static_cast<int>((q[1] - lower[1]) / (upper[1] - lower[1]) * kSide);
@@ -141,6 +144,61 @@ TEST_P(UnionOf, EllipsesIsDrawnUniformly) {
 
 // Few overlaps; many; and wider than the box, which is then drawn from directly.
 INSTANTIATE_TEST_SUITE_P(Costs, UnionOf, ::testing::Values(2.15, 2.6, 4.5, 30.0));
+
+/// The first value is an angle: a pair across the seam, one half a turn apart, overlapping ones, and equal ends.
+GraspEnds ellipses_around() {
+  std::vector<GraspCandidate> all{candidate({Vector2d(2.8, 0.2)}, {Vector2d(-2.6, -0.1)}),
+                                  candidate({Vector2d(-1.4, -1)}, {Vector2d(1.8, -1)}),
+                                  candidate({Vector2d(2.5, 0), Vector2d(3, 0.8)}, {Vector2d(-2.9, 0.3)}, 0.2),
+                                  candidate({Vector2d(0.3, 1.2)}, {Vector2d(0.3, 1.2)}, 1.0)};
+  for (GraspCandidate& each : all) each.metric = JointMetric({true, false});
+  return GraspEnds(all);
+}
+
+bool in_ellipses_around(const Vector2d& q, double c) {
+  const auto through = [&](const Vector2d& a, const Vector2d& b) {
+    const std::vector<bool> wraps{true, false};
+    return test::distance_around(wraps, a, q) + test::distance_around(wraps, q, b);
+  };
+  return through({2.8, 0.2}, {-2.6, -0.1}) < c || through({-1.4, -1}, {1.8, -1}) < c ||
+         through({2.5, 0}, {-2.9, 0.3}) + 0.2 < c || through({3, 0.8}, {-2.9, 0.3}) + 0.2 < c ||
+         through({0.3, 1.2}, {0.3, 1.2}) + 1 < c;
+}
+
+class UnionAround : public ::testing::TestWithParam<double> {};
+
+TEST_P(UnionAround, TheSeamIsDrawnUniformly) {
+  const double c = GetParam();
+  const GraspEnds ends = ellipses_around();
+  Cells cells;
+  cells.lower = Vector2d(-kPi, -2);
+  cells.upper = Vector2d(kPi, 2);
+  InformedUnion drawn(ends, cells.lower, cells.upper);
+  drawn.set_cost(c);
+  Rng rng(5);
+  std::vector<int> counts(Cells::kSide * Cells::kSide, 0);
+  int beyond[2] = {0, 0};
+  for (int i = 0; i < 200000; ++i) {
+    Vector2d q;
+    const int grasp = drawn.draw(rng, q.data());
+    ASSERT_GE(grasp, 0);
+    ASSERT_TRUE((q.array() >= cells.lower.array()).all() && (q.array() <= cells.upper.array()).all());
+    ASSERT_TRUE(drawn.contains(grasp, q.data()));
+    ++counts[std::min(cells.cell(q.data()), Cells::kSide * Cells::kSide - 1)];
+    if (std::abs(q[0]) > 2.9) ++beyond[q[0] > 0];
+  }
+  const auto shares = cells.shares([&](const Vector2d& q) { return in_ellipses_around(q, c); });
+  const auto [statistic, bound] = chi_squared(shares, counts);
+  EXPECT_LT(statistic, bound);
+  EXPECT_GT(std::min(beyond[0], beyond[1]), 1000);
+  double area = 0, all = 0;
+  for (const double share : shares) area += share, all += 1600;
+  // The sum over the images of the ellipses, or the whole of the bounds: never less than the union.
+  EXPECT_GE(drawn.volume() * (1 + 1e-3), area / all * 8 * kPi);
+}
+
+// Below half a turn; where both ways round to the goal have an ellipse (they overlap); nearly everything.
+INSTANTIATE_TEST_SUITE_P(Costs, UnionAround, ::testing::Values(1.2, 3.4, 4.6, 6.4));
 
 TEST(InformedUnion, ThePrintedCrossRadiusWouldBeWrong) {
   // One ellipse: mean square across the long axis is (c^2 - c_min^2) / 4 / (d + 2) in d dimensions; with the printed

@@ -4,15 +4,15 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdio>
 #include <fstream>
 #include <limits>
-#include <queue>
 
 #include "mmgrasp/core/error.hpp"
 #include "plan/roadmap/roadmap_data.hpp"
 #include "support/bar_transfer.hpp"
+#include "support/exhaustive_transfer.hpp"
 #include "support/planar_arm.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -25,57 +25,6 @@ ManipulationOptions bar_options() {
   options.time_limit = 100;
   options.prm.shorten = false;
   return options;
-}
-
-/// The cheapest path of one grasp over the roadmap by Dijkstra's algorithm, every edge checked beforehand with the bar
-/// in hand.
-double exhaustive_cost(const ManipulationProblem& problem, const ManipulationOptions& options, const Roadmap& roadmap,
-                       int index) {
-  const Grasp& grasp = problem.grasps[index];
-  CollisionChecker checker(problem.group, test::carrying(problem, grasp));
-  IkOptions ik = options.ik;
-  ik.seed = options.ik.seed + static_cast<unsigned>(index);
-  const auto solve = [&](const Pose& T) {
-    return solve_ik_all(problem.group, T * grasp.T_object_hand, options.ik_solutions, ik,
-                        [&](const Eigen::VectorXd& q) { return checker.rejection(q); });
-  };
-  std::vector<Eigen::VectorXd> nodes;
-  for (int v = 0; v < roadmap.size(); ++v) nodes.push_back(roadmap.vertices().col(v));
-  const auto first_start = nodes.size();
-  for (const auto& q : solve(problem.T_world_start)) nodes.push_back(q);
-  const auto first_goal = nodes.size();
-  for (const auto& q : solve(problem.T_world_goal)) nodes.push_back(q);
-  if (first_goal == first_start || nodes.size() == first_goal) return std::numeric_limits<double>::infinity();
-
-  std::vector<std::vector<std::pair<std::size_t, double>>> arcs(nodes.size());
-  const auto join = [&](std::size_t a, std::size_t b) {
-    if (!checker.is_free(nodes[a]) || !checker.is_free(nodes[b])) return;
-    if (!check_edge(checker, nodes[a], nodes[b], options.edge).free) return;
-    arcs[a].push_back({b, (nodes[b] - nodes[a]).norm()});
-    arcs[b].push_back({a, (nodes[b] - nodes[a]).norm()});
-  };
-  const double radius = options.prm.roadmap.gamma * std::pow(std::log(double(roadmap.size())) / roadmap.size(),
-                                                             1.0 / static_cast<double>(problem.group.size()));
-  for (std::size_t a = 0; a < nodes.size(); ++a)
-    for (std::size_t b = a + 1; b < nodes.size(); ++b) {
-      const bool ends = a >= first_start && a < first_goal && b >= first_goal;
-      const bool same_end = a >= first_start && !ends;
-      const bool near = !same_end && (nodes[b] - nodes[a]).norm() < radius;
-      if (near || (ends && options.straight)) join(a, b);
-    }
-  std::vector<double> cost(nodes.size(), std::numeric_limits<double>::infinity());
-  using Entry = std::pair<double, std::size_t>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  for (std::size_t s = first_start; s < first_goal; ++s) queue.push({cost[s] = 0, s});
-  while (!queue.empty()) {
-    const auto [at, node] = queue.top();
-    queue.pop();
-    if (at > cost[node]) continue;
-    if (node >= first_goal) return at + grasp.cost;
-    for (const auto& [next, length] : arcs[node])
-      if (at + length < cost[next]) queue.push({cost[next] = at + length, next});
-  }
-  return std::numeric_limits<double>::infinity();
 }
 
 TEST(Roadmap, JoinsExactlyTheNearOnes) {
@@ -159,7 +108,8 @@ TEST(Roadmap, FileHoldsAllOfItAndNothingElseIsTaken) {
   options.vertices = 100;
   options.neighbours = 6;
   const Roadmap roadmap = Roadmap::build(arm.group(), options);
-  const std::string path = testing::TempDir() + "mmgrasp_test.roadmap";
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("test.roadmap");
   roadmap.save(path);
   const Roadmap back = Roadmap::load(path, arm.group());
   EXPECT_EQ(back.vertices(), roadmap.vertices());
@@ -181,7 +131,6 @@ TEST(Roadmap, FileHoldsAllOfItAndNothingElseIsTaken) {
     std::ofstream(path, std::ios::binary) << bytes.substr(0, at);
     EXPECT_THROW(Roadmap::load(path, arm.group()), IoError) << at;
   }
-  std::remove(path.c_str());
   EXPECT_THROW(Roadmap::load(path, arm.group()), IoError);
 }
 
@@ -192,7 +141,7 @@ TEST(PrmStarMg, EveryVariantFindsTheExhaustiveOptimum) {
   double best = std::numeric_limits<double>::infinity();
   int feasible = 0;
   for (std::size_t g = 0; g < problem.grasps.size(); ++g) {
-    const double cost = exhaustive_cost(problem, options, roadmap, static_cast<int>(g));
+    const double cost = test::exhaustive_cost(problem, options, roadmap, static_cast<int>(g));
     feasible += std::isfinite(cost) ? 1 : 0;
     best = std::min(best, cost);
   }
@@ -210,7 +159,8 @@ TEST(PrmStarMg, EveryVariantFindsTheExhaustiveOptimum) {
           ASSERT_EQ(result.outcome, Outcome::solved) << batch << lazy << first_grasps;
           EXPECT_NEAR(result.cost, best, 1e-9) << batch << lazy << first_grasps;
           EXPECT_NEAR(result.path->length(), best, 1e-9);
-          EXPECT_NEAR(result.lower_bound, best, 1e-9);
+          EXPECT_NEAR(result.stats.roadmap_bound, best, 1e-9);
+          EXPECT_LT(result.lower_bound, best);  // A path off the roadmap may cost less.
           EXPECT_EQ(result.stats.roadmap_cost, result.cost);
           // With everything in one batch the first solution is the best.
           EXPECT_TRUE(batch != 0 || first_grasps != 0 || result.improvements.size() == 1u);
@@ -224,7 +174,7 @@ TEST(PrmStarMg, WithoutStraightEdgesTheRoadmapIsAllThereIs) {
   const Roadmap roadmap = Roadmap::build(problem.group, options.prm.roadmap);
   double best = std::numeric_limits<double>::infinity();
   for (std::size_t g = 0; g < problem.grasps.size(); ++g)
-    best = std::min(best, exhaustive_cost(problem, options, roadmap, static_cast<int>(g)));
+    best = std::min(best, test::exhaustive_cost(problem, options, roadmap, static_cast<int>(g)));
   ASSERT_TRUE(std::isfinite(best));
   for (const int batch : {1, 7, 0})
     for (const bool lazy : {false, true}) {
@@ -258,6 +208,55 @@ TEST(PrmStarMg, DensifyingEndsWithTheBestOfAllRoadmaps) {
   EXPECT_TRUE(std::is_sorted(reported.rbegin(), reported.rend()));
   options.prm.max_vertices = 0;
   EXPECT_NEAR(plan_manipulation(problem, options).cost, costs.front(), 1e-9);
+}
+
+TEST(PrmStarMg, ARoadmapInPiecesIsAWarning) {
+  ManipulationOptions options = bar_options();
+  EXPECT_TRUE(plan_manipulation(test::bar_transfer(), options).warnings.empty());
+  options.prm.roadmap.gamma = 0.5;
+  const Roadmap roadmap = Roadmap::build(test::bar_transfer().group, options.prm.roadmap);
+  EXPECT_EQ(plan_manipulation(test::bar_transfer(), options).warnings, std::vector<std::string>{roadmap.warning()});
+}
+
+/// The stages of each planner, in turn: each better path says which of them found it, and the statistics sum it up.
+TEST(ManipulationStages, SayWhatTheyFoundAndWhen) {
+  ManipulationOptions options = bar_options();
+  ManipulationProblem problem = test::bar_transfer();
+  const auto stages_of = [&] {
+    const ManipulationResult result = plan_manipulation(problem, options);
+    std::vector<PlanStage> stages;
+    std::size_t counted = 0;
+    for (const StageReport& report : result.stats.stages) {
+      stages.push_back(report.stage);
+      counted += static_cast<std::size_t>(report.improvements);
+      const auto own = [&](const Improvement& better) { return better.stage == report.stage; };
+      const auto first = std::find_if(result.improvements.begin(), result.improvements.end(), own);
+      const auto last = std::find_if(result.improvements.rbegin(), result.improvements.rend(), own);
+      EXPECT_EQ(report.first_seconds, first->seconds);
+      EXPECT_EQ(report.last_seconds, last->seconds);
+      EXPECT_EQ(report.cost, last->cost);
+    }
+    EXPECT_EQ(counted, result.improvements.size());
+    return stages;
+  };
+  options.straight = false;
+  EXPECT_EQ(stages_of(), std::vector<PlanStage>{PlanStage::roadmap});
+  options.prm.shorten = true;
+  options.prm.refinements = 0;
+  EXPECT_EQ(stages_of(), (std::vector<PlanStage>{PlanStage::roadmap, PlanStage::shortening}));
+  options.prm.refinements = 8;
+  const std::vector<PlanStage> refined = stages_of();
+  EXPECT_EQ(std::count(refined.begin(), refined.end(), PlanStage::refinement), 1);
+  options.straight = true;
+  EXPECT_EQ(stages_of().front(), PlanStage::first_grasps);
+  options.planner = "rrt_star_mg";
+  options.first_grasps = 0;
+  EXPECT_EQ(stages_of(), std::vector<PlanStage>{PlanStage::trees});
+  problem.world = World{};
+  for (const std::string& planner : manipulation_planner_names()) {
+    options.planner = planner;
+    EXPECT_EQ(stages_of().front(), PlanStage::straight_lines) << planner;
+  }
 }
 
 TEST(PrmStarMg, DensifyingHeedsTheClock) {
@@ -326,7 +325,7 @@ TEST(PrmStarMg, SaysWhyThereIsNoPlan) {
   options.prm.roadmap.gamma = 0.01;
   problem.world.add("wall", Shape(Box{{1.6, 0.02, 0.2}}), test::flat_pose(1.0, 0.05, 0));
   result = plan_manipulation(problem, options);
-  EXPECT_EQ(result.outcome, Outcome::infeasible);
+  EXPECT_EQ(result.outcome, Outcome::not_found);
   EXPECT_FALSE(result.path.has_value());
 }
 

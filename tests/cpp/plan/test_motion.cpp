@@ -74,6 +74,27 @@ TEST(PlanMotion, AnInvalidStartSaysWhatTouches) {
   EXPECT_EQ(plan_motion(checker, vec({2.9, 0, 0}), {vec({1, 0, 0})}).outcome, Outcome::invalid_start);
 }
 
+/// Robots and recorded configurations are printed to five digits.
+TEST(PlanMotion, EndsThatLostDigitsAreOnTheirLimits) {
+  const test::PlanarArm arm(3, kLength);
+  CollisionChecker checker(arm.group(), test::make_world({{{0.7, 0, 0}, {0.1, 0.1, 0.4}}}));
+  const double limit = arm.group().upper()[0];
+  const VectorXd start = vec({limit + 3e-6, 0.1, 0.1}), goal = vec({-limit - 3e-6, -0.1, -0.1});
+  for (const std::string& planner : planner_names()) {
+    MotionOptions options;
+    options.planner = planner;
+    options.max_iterations = 3000;
+    const MotionResult result = plan_motion(checker, start, {goal}, options);
+    ASSERT_EQ(result.outcome, Outcome::solved) << planner;
+    EXPECT_EQ(result.path->waypoints.front(), start) << planner;
+    EXPECT_EQ(result.path->waypoints.back(), goal) << planner;
+  }
+  const MotionResult beyond = plan_motion(checker, vec({limit + 3e-5, 0.1, 0.1}), {goal});
+  EXPECT_EQ(beyond.outcome, Outcome::invalid_start);
+  EXPECT_NE(beyond.beyond_limits.find("2.80003 is outside of its limits [-2.8, 2.8]"), std::string::npos)
+      << beyond.beyond_limits;
+}
+
 TEST(PlanMotion, InvalidGoalsAreCountedByCause) {
   const test::PlanarArm arm(3, kLength);
   CollisionChecker checker(arm.group(), test::make_world({{{1.0, 0, 0}, {0.1, 0.1, 0.1}}}));
@@ -234,6 +255,26 @@ TEST(PlanMotion, WaitingForAnotherPlannerEndsByClockAndStop) {
     EXPECT_EQ(plan(planner, 100, {}), Outcome::solved) << planner;
 }
 
+/// Draws around the ends change what a roadmap planner finds, and nothing of a planner that grows trees.
+TEST(PlanMotion, RoadmapsDrawAroundTheEndsAsOftenAsAsked) {
+  const test::PlanarArm arm(3, kLength);
+  CollisionChecker checker(arm.group(), test::make_world({{{0.7, 0, 0}, {0.1, 0.1, 0.2}}}));
+  const auto path_of = [&](const std::string& planner, double probability) {
+    MotionOptions options;
+    options.planner = planner;
+    options.near_end_probability = probability;
+    options.max_iterations = 500;
+    options.time_limit = 100;
+    options.shorten = false;
+    const MotionResult result = plan_motion(checker, vec({0.9, 0.2, 0.2}), {vec({-0.9, -0.2, -0.2})}, options);
+    EXPECT_EQ(result.outcome, Outcome::solved) << planner << probability;
+    return result.path ? result.path->waypoints : std::vector<VectorXd>{};
+  };
+  EXPECT_EQ(path_of("prm_star", 0.2), path_of("prm_star", MotionOptions{}.near_end_probability));
+  EXPECT_NE(path_of("prm_star", 0), path_of("prm_star", 0.2));
+  EXPECT_EQ(path_of("ompl_rrt_connect", 0), path_of("ompl_rrt_connect", 0.2));
+}
+
 TEST(PlanMotion, RefusesBadInput) {
   const test::PlanarArm arm(2, kLength);
   CollisionChecker checker(arm.group(), World{});
@@ -255,6 +296,11 @@ TEST(PlanMotion, RefusesBadInput) {
   options = {};
   options.base_margin = -1;
   EXPECT_THROW(plan_motion(checker, q, {q}, options), InvalidInput);
+  for (const double chance : {-0.1, 1.0, std::nan("")}) {
+    options = {};
+    options.near_end_probability = chance;
+    EXPECT_THROW(plan_motion(checker, q, {q}, options), InvalidInput) << chance;
+  }
   options = {};
   options.edge_step = 0;
   EXPECT_THROW(plan_motion(checker, q, {q}, options), InvalidInput);

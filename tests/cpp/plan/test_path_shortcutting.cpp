@@ -38,14 +38,14 @@ TEST_F(Shortcutting, SkippingVerticesFindsAFreeStraightLine) {
   EXPECT_NO_THROW(setting_.trees.check_invariants());
 }
 
-TEST_F(Shortcutting, CuttingCornersOnlyMakesThePathShorter) {
+TEST_F(Shortcutting, RandomShortcutsOnlyMakeThePathShorter) {
   PathShortcutting shortcutting = this->shortcutting();
   Rng rng(1);
   const double before = setting_.incumbent.cost;
   double last = before;
   int cuts = 0;
   for (int i = 0; i < 300; ++i) {
-    const int grasp = shortcutting.cut_random_corner(rng, 3);
+    const int grasp = shortcutting.improve_randomly(rng, 3);
     if (grasp < 0) continue;
     ASSERT_EQ(grasp, 0);
     ++cuts;
@@ -53,10 +53,29 @@ TEST_F(Shortcutting, CuttingCornersOnlyMakesThePathShorter) {
     EXPECT_LE(cost, last + 1e-9);
     last = setting_.incumbent.cost = std::min(last, cost);
   }
-  EXPECT_GT(cuts, 200);
+  EXPECT_GT(cuts, 10);
   EXPECT_GE(last, 2 - 1e-12);
-  // Cutting corners ends in a smooth curve between the middles of the first edges, not in the straight line.
-  EXPECT_LT(last, 0.96 * before);
+  // Nothing is in the way: it ends at the straight line.
+  EXPECT_LT(last, 2.001);
+  EXPECT_NO_THROW(setting_.trees.check_invariants());
+}
+
+/// On an edge that bends nowhere vertices cost nothing, and would be drawn as corners again and again.
+TEST_F(Shortcutting, SkippingVerticesLeavesNoneOnStraightLines) {
+  const std::size_t corners = 3;
+  ASSERT_NE(connections_.best(0).connection, -1);
+  int a = setting_.root(1, GraspEnds::kStart);
+  const Eigen::Vector3d from(-1.1, 0.3, 0), to(1.1, 0.3, 0);
+  for (int i = 1; i < 20; ++i) a = setting_.add(a, from + (to - from) * (i / 20.0));
+  connections_.add(a, setting_.root(1, GraspEnds::kGoal));
+  connections_.list_grasp(1);
+  connections_.update(1);
+  shortcutting().skip_vertices(1);
+  connections_.update(1);
+  TreeConnections::Branches path;
+  ASSERT_TRUE(connections_.trace_path(1, path));
+  EXPECT_LE(path[0].size() + path[1].size(), corners);
+  EXPECT_NEAR(connections_.best(1).cost, 2.2, 1e-12);
   EXPECT_NO_THROW(setting_.trees.check_invariants());
 }
 
@@ -78,7 +97,7 @@ TEST_F(ShortcuttingAtAPost, NoShortcutLeadsThroughIt) {
   connections_.update(0);
   Rng rng(2);
   for (int i = 0; i < 100; ++i)
-    if (shortcutting.cut_random_corner(rng, 3) >= 0) setting_.incumbent.cost = connections_.update(0).cost;
+    if (shortcutting.improve_randomly(rng, 3) >= 0) setting_.incumbent.cost = connections_.update(0).cost;
   EXPECT_LT(connections_.best(0).cost, before);
   EXPECT_GT(connections_.best(0).cost, 2 + 1e-3);
   EXPECT_NO_THROW(setting_.trees.check_invariants());

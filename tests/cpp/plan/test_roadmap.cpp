@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "mmgrasp/core/parallel.hpp"
+#include "mmgrasp/core/random.hpp"
 #include "plan/roadmap/roadmap_data.hpp"
+#include "support/around.hpp"
 #include "support/planar_arm.hpp"
 
 namespace mmgrasp {
@@ -25,11 +27,13 @@ RoadmapOptions with(int vertices, int neighbours) {
 
 /// Pairs by enumeration.
 std::set<std::pair<int, int>> all_pairs(const Roadmap& roadmap, int neighbours, double radius) {
+  const std::vector<bool>& wraps = roadmap.group().wraps();
   std::set<std::pair<int, int>> pairs;
   for (int a = 0; a < roadmap.size(); ++a) {
     std::vector<std::pair<double, int>> others;
     for (int b = 0; b < roadmap.size(); ++b)
-      if (b != a) others.emplace_back((roadmap.vertices().col(b) - roadmap.vertices().col(a)).norm(), b);
+      if (b != a)
+        others.emplace_back(test::distance_around(wraps, roadmap.vertices().col(a), roadmap.vertices().col(b)), b);
     std::sort(others.begin(), others.end());
     for (std::size_t i = 0; i < others.size(); ++i)
       if (neighbours > 0 ? i < static_cast<std::size_t>(neighbours) : others[i].first <= radius)
@@ -39,14 +43,63 @@ std::set<std::pair<int, int>> all_pairs(const Roadmap& roadmap, int neighbours, 
 }
 
 TEST(Roadmap, JoinsEachPairOnceAndInOrder) {
-  const JointGroup group = test::PlanarArm(3).group();
-  for (const int neighbours : {0, 5}) {
-    const Roadmap roadmap = Roadmap::build(group, with(300, neighbours));
-    const std::set<std::pair<int, int>> expected = all_pairs(roadmap, neighbours, roadmap.radius());
-    ASSERT_EQ(roadmap.edge_count(), static_cast<int>(expected.size()));
-    int edge = 0;
-    for (const auto& pair : expected) EXPECT_EQ(roadmap.ends(edge++), pair);
+  // Angles that wrap: none, one, all.
+  for (const int continuous : {0, 1, 3}) {
+    const JointGroup group = test::PlanarArm(3, 0.5, 0.02, continuous == 3, 2.8, continuous).group();
+    RoadmapOptions within_radius = with(300, 0);
+    within_radius.gamma = 5;
+    const int by_theory = 21;  // e (1 + 1/3) log 300 = 20.67
+    for (const auto& [options, neighbours] :
+         {std::pair(within_radius, 0), std::pair(with(300, 5), 5), std::pair(with(300, 0), by_theory)}) {
+      const Roadmap roadmap = Roadmap::build(group, options);
+      EXPECT_EQ(roadmap.statistics().neighbours, neighbours);
+      const std::set<std::pair<int, int>> expected = all_pairs(roadmap, neighbours, roadmap.radius());
+      ASSERT_EQ(roadmap.edge_count(), static_cast<int>(expected.size()));
+      int edge = 0;
+      for (const auto& pair : expected) EXPECT_EQ(roadmap.ends(edge++), pair);
+      for (int v = 0; v < roadmap.size(); ++v)
+        for (const Roadmap::Arc* arc = roadmap.begin(v); arc != roadmap.end(v); ++arc)
+          EXPECT_NEAR(arc->length,
+                      test::distance_around(group.wraps(), roadmap.vertices().col(v), roadmap.vertices().col(arc->to)),
+                      1e-12);
+    }
   }
+}
+
+TEST(Roadmap, FindsVerticesBeyondTheSeam) {
+  const JointGroup group = test::PlanarArm(3, 0.5, 0.02, false, 2.8, 1).group();
+  const Roadmap roadmap = Roadmap::build(group, with(400, 6));
+  Rng rng(2);
+  std::vector<int> near;
+  for (int i = 0; i < 100; ++i) {
+    // In any turn, near the seam.
+    const Eigen::Vector3d q(M_PI * (2 * static_cast<int>(rng.index(4)) - 3) + rng.uniform(-0.3, 0.3),
+                            rng.uniform(-2.0, 2.0), rng.uniform(-2.0, 2.0));
+    std::vector<std::pair<double, int>> others;
+    for (int v = 0; v < roadmap.size(); ++v)
+      others.emplace_back(test::distance_around(group.wraps(), q, roadmap.vertices().col(v)), v);
+    std::sort(others.begin(), others.end());
+    std::vector<int> expected;
+    for (int k = 0; k < 6; ++k) expected.push_back(others[k].second);
+    std::sort(expected.begin(), expected.end());
+    roadmap.near(q, near);
+    EXPECT_EQ(near, expected);
+  }
+}
+
+TEST(Roadmap, SaysWhenItIsInPieces) {
+  const JointGroup group = test::PlanarArm(3).group();
+  EXPECT_EQ(Roadmap::build(group).warning(), "");
+  RoadmapOptions sparse;
+  sparse.vertices = 300;
+  sparse.gamma = 1;
+  const Roadmap roadmap = Roadmap::build(group, sparse);
+  const RoadmapStatistics statistics = roadmap.statistics();
+  ASSERT_LT(statistics.largest_component, 297);
+  EXPECT_EQ(roadmap.warning(), "the roadmap is in " + std::to_string(statistics.components) +
+                                   " pieces, the largest of " + std::to_string(statistics.largest_component) +
+                                   " of 300 vertices: between pieces no path is found; set gamma = 0 and neighbours = "
+                                   "0 (the defaults), or more neighbours");
 }
 
 /// Work is counted in all_checks whether to go on.

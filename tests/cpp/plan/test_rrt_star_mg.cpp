@@ -111,7 +111,7 @@ Growth growth_with(const std::function<void(RrtStarMgOptions&)>& change) {
         out.outside += through >= result.cost;
       }
   }
-  EXPECT_GT(out.all, 1000);
+  EXPECT_GT(out.all, 500);
   return out;
 }
 
@@ -127,7 +127,8 @@ TEST(RrtStarMg, InformedTreesGrowWhereABetterPathCanPass) {
     o.informed = false;
   });
   EXPECT_LT(informed.outside, 0.2 * informed.all);
-  EXPECT_GT(anywhere.outside, 0.5 * anywhere.all);
+  // Trees drop what cannot lie on a cheaper path, so this share depends on how soon paths get short.
+  EXPECT_GT(anywhere.outside / anywhere.all, 2 * informed.outside / informed.all);
   EXPECT_LT(informed.cost, anywhere.cost);
 }
 
@@ -236,7 +237,7 @@ TEST(RrtStarMg, TreesAreWholeAndFree) {
         const Eigen::VectorXd p = tree.vertices.col(tree.parents[i]);
         EXPECT_NEAR(tree.costs[col], tree.costs[tree.parents[i]] + (q - p).norm(), 1e-9);
         // At the steps in which the trees' edges are checked.
-        EXPECT_TRUE(checker.edge_is_free(p, q, 0.16));
+        EXPECT_TRUE(checker.edge_is_free(p, q, options.edge.joint_step));
         std::size_t steps = 0;
         for (int v = static_cast<int>(i); v >= 0; v = tree.parents[v]) ASSERT_LE(++steps, tree.parents.size());
       }
@@ -297,7 +298,7 @@ TEST(RrtStarMg, OneReachableGraspOfManyIsFound) {
     const ManipulationResult result = plan_manipulation(problem, options);
     expect_sound(problem, result);
     EXPECT_EQ(result.grasp_index, 317);
-    EXPECT_EQ(result.improvements.size(), 1u);
+    EXPECT_LE(result.improvements.size(), 2u);  // Once more when waypoints could go.
   }
 }
 

@@ -189,7 +189,6 @@ TEST(RrtStarMgOptimal, ConvergesToTheBestOfAllGrasps) {
       ManipulationOptions options = options_of(1, seed);
       options.planner = "prm_star_mg";
       options.prm.roadmap.vertices = 300;
-      options.prm.roadmap.gamma = 5;
       options.prm.refinements = 150;
       const ManipulationResult result = plan_manipulation(problem, options);
       EXPECT_GT(result.cost, 0.97 * best);

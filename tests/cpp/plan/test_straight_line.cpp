@@ -92,7 +92,7 @@ TEST(StraightLine, OutOfReachNamesReachAndHowFarItGot) {
   q << 0.1, -1.0, 1.5, 0.0, 0.8, 0.0;
   const Pose from = arm.group().fk(q);
   const StraightLineResult result = plan_straight_line(checker, q, moved(from, {3.0, 0, 0}));
-  EXPECT_EQ(result.outcome, Outcome::infeasible);
+  EXPECT_EQ(result.outcome, Outcome::not_found);
   EXPECT_EQ(result.cause, Rejection::unreachable);
   EXPECT_FALSE(result.path);
   // The arm's own length bounds how far it can have gone.
@@ -113,7 +113,7 @@ TEST(StraightLine, StopsAtASceneObstacle) {
   CollisionChecker checker(arm.group(), world);
   ASSERT_TRUE(checker.is_free(q));
   const StraightLineResult result = plan_straight_line(checker, q, moved(from, 0.2 * ahead));
-  EXPECT_EQ(result.outcome, Outcome::infeasible);
+  EXPECT_EQ(result.outcome, Outcome::not_found);
   EXPECT_EQ(result.cause, Rejection::scene);
   ASSERT_TRUE(result.contact);
   EXPECT_EQ(result.contact->b, "ball");
@@ -130,7 +130,7 @@ TEST(StraightLine, StopsAtAJointLimit) {
   const Pose from = arm.group().fk(q);
   const StraightLineResult result =
       plan_straight_line(checker, q, moved(from, 0.2 * (Eigen::Vector3d(0, 0, 0.3) - from.translation()).normalized()));
-  EXPECT_EQ(result.outcome, Outcome::infeasible);
+  EXPECT_EQ(result.outcome, Outcome::not_found);
   EXPECT_EQ(result.cause, Rejection::limits);
 }
 

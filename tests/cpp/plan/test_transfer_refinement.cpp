@@ -12,7 +12,6 @@ namespace {
 ManipulationOptions with_refinements(int count, unsigned seed = 1) {
   ManipulationOptions options;
   options.prm.roadmap.vertices = 300;
-  options.prm.roadmap.gamma = 5;
   options.prm.refinements = count;
   options.ik_solutions = 2;
   options.time_limit = 100;
@@ -37,7 +36,7 @@ TEST(TransferRefinement, RoundsOnlyMakeItCheaperAndFclFindsItFree) {
       for (std::size_t i = 1; i < result.improvements.size(); ++i)
         EXPECT_LT(result.improvements[i].cost, result.improvements[i - 1].cost);
       // What is known of the roadmap before stays known, and no more.
-      EXPECT_EQ(result.lower_bound, std::min(none.lower_bound, result.cost));
+      EXPECT_EQ(result.stats.roadmap_bound, std::min(none.stats.roadmap_bound, result.cost));
       EXPECT_EQ(result.stats.roadmap_cost, none.stats.roadmap_cost);
       last = result.cost;
     }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mmgrasp/core/random.hpp"
+#include "support/around.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -63,6 +64,50 @@ TEST(TreeIndex, AnswersAsAScanOfAllPointsDoes) {
       EXPECT_EQ(found, expected);
     }
     EXPECT_EQ(index.size(), static_cast<std::size_t>(std::count(there.begin(), there.end(), 1)));
+  }
+}
+
+TEST(TreeIndex, FindsWhatLiesBeyondTheSeamOfAnAngle) {
+  for (const std::vector<bool>& wraps :
+       {std::vector<bool>{true}, {true, true}, {true, false, true}, {true, true, true, true, false, true}}) {
+    const auto d = static_cast<Eigen::Index>(wraps.size());
+    Rng rng(static_cast<unsigned>(d));
+    TreeIndex index(static_cast<int>(d), JointMetric(wraps));
+    std::vector<VectorXd> points;
+    // In any turn.
+    const VectorXd lower = VectorXd::Constant(d, -9), upper = -lower;
+    for (int i = 0; i < 4000; ++i) {
+      points.push_back(rng.uniform(lower, upper));
+      // Half of them in a crowd at the seam.
+      if (i % 2 == 0) points.back() = (M_PI + 0.02 * points.back().array()).matrix();
+      index.insert(i, points.back().data());
+    }
+    int beyond = 0;
+    for (int i = 0; i < 300; ++i) {
+      VectorXd at = rng.uniform(lower, upper);
+      if (i % 2 == 0) at = (M_PI + 0.02 * at.array()).matrix();
+      double least = 1e9, straight = 1e9;
+      std::set<int> expected, found;
+      for (std::size_t p = 0; p < points.size(); ++p) {
+        const double distance = test::distance_around(wraps, points[p], at);
+        least = std::min(least, distance);
+        straight = std::min(straight, (points[p] - at).norm());
+        if (distance < 0.3) expected.insert(static_cast<int>(p));
+      }
+      double squared;
+      const int nearest = index.nearest(
+          at.data(), [](int) { return true; }, squared);
+      ASSERT_GE(nearest, 0);
+      EXPECT_NEAR(std::sqrt(squared), least, 1e-12);
+      EXPECT_NEAR(test::distance_around(wraps, points[nearest], at), least, 1e-12);
+      beyond += least < straight - 1e-9;
+      index.within(at.data(), 0.3, [&](int id, double found_squared) {
+        EXPECT_NEAR(test::distance_around(wraps, points[id], at), std::sqrt(found_squared), 1e-12);
+        EXPECT_TRUE(found.insert(id).second);
+      });
+      EXPECT_EQ(found, expected);
+    }
+    EXPECT_GT(beyond, 50);
   }
 }
 

@@ -6,6 +6,7 @@
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/reach/capability_map.hpp"
 #include "support/reach_arms.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -18,8 +19,8 @@ TEST(CapabilityMapFile, ComesBackAsItWasAndRefusesWhatIsCorrupt) {
   options.voxel = 0.4;
   options.poses = 12;
   const auto map = CapabilityMap::build(test::seven_joints(), World{}, options);
-  const std::string folder = (fs::temp_directory_path() / "mmgrasp_test_capability_map").string();
-  fs::remove_all(folder);
+  const test::TemporaryFolder temporary;
+  const std::string folder = temporary.file("map");
   map.save(folder);
   map.save(folder);  // in place of the first
   const auto back = CapabilityMap::load(folder);

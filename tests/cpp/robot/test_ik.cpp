@@ -104,12 +104,27 @@ TEST(Ik, OutOfReachIsAValueAndCounted) {
   const Eigen::VectorXd seed = (group.lower() + group.upper()) / 2;
   for (const double x : {0.95, 1.2, 5.0}) {  // the arm ends before 0.9 m in front of joint 1 at this height
     const IkResult result = solve_ik(group, pose_from_xyz_rpy({x, 0, 0.333}, {0, M_PI / 2, 0}), seed);
-    EXPECT_EQ(result.outcome, Outcome::infeasible);
+    EXPECT_EQ(result.outcome, x > 1 ? Outcome::infeasible : Outcome::not_found) << x;  // the links end before 1.2 m
     EXPECT_EQ(result.q.size(), 0);
     EXPECT_GT(result.position_error, 1e-3);
     EXPECT_GT(result.rejections.unreachable, 0u);
     EXPECT_EQ(result.rejections.total(), result.rejections.unreachable);
   }
+}
+
+TEST(Ik, OutOfReachIsProvenOnlyBeyondTheTolerance) {
+  const Robot robot = Robot::from_strings(R"(<robot name="r"><link name="a"/><link name="b"/><link name="c"/>
+    <joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
+      <limit lower="-0.5" upper="0.5" velocity="1"/></joint>
+    <joint name="f" type="fixed"><parent link="b"/><child link="c"/><origin xyz="1 0 0"/></joint></robot>)");
+  const JointGroup group = robot.chain("a", "c");
+  IkOptions options;
+  options.position_tolerance = 0.01;
+  const auto solve = [&](double x) {
+    return solve_ik(group, pose_from_xyz_rpy({x, 0, 0}, {0, 0, 0}), Eigen::VectorXd::Constant(1, 0.2), options).outcome;
+  };
+  EXPECT_EQ(solve(1.005), Outcome::solved);
+  EXPECT_EQ(solve(1.011), Outcome::infeasible);
 }
 
 TEST(Ik, LimitsAreToldFromReach) {
@@ -124,7 +139,7 @@ TEST(Ik, LimitsAreToldFromReach) {
   };
   EXPECT_EQ(solve(std::cos(0.5), std::sin(0.5), 0.5).outcome, Outcome::solved);
   const IkResult outside = solve(std::cos(1.0), std::sin(1.0), 1.0);
-  EXPECT_EQ(outside.outcome, Outcome::infeasible);
+  EXPECT_EQ(outside.outcome, Outcome::not_found);
   EXPECT_EQ(outside.rejections.limits, 31u);  // the seed and every restart
   EXPECT_EQ(outside.rejections.unreachable, 0u);
   const IkResult twisted = solve(1, 0, 0.4);  // right place, wrong angle

@@ -2,16 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <regex>
 
 #include "mmgrasp/core/error.hpp"
 #include "support/robot_support.hpp"
+#include "support/temporary_folder.hpp"
 
 using namespace mmgrasp;
 using namespace mmgrasp::testing_support;
+using mmgrasp::test::TemporaryFolder;
 
 namespace {
 
@@ -52,26 +53,6 @@ std::string failure(const std::string& urdf, const RobotOptions& options, const 
   }
   return "";
 }
-
-/// A folder of its own that goes away.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "mmgrasp_robot_XXXXXX").string();
-    path_ = mkdtemp(pattern.data());
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  const std::filesystem::path& path() const { return path_; }
-  std::string write(const std::string& name, const std::string& text) const {
-    const std::filesystem::path file = path_ / name;
-    std::filesystem::create_directories(file.parent_path());
-    std::ofstream(file) << text;
-    return file.string();
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 const char* kTetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 

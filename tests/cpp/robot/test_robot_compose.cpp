@@ -57,6 +57,7 @@ void expect_same_robot(const Robot& a, const Robot& b) {
   for (std::size_t g = 0; g < a.groups().size(); ++g) {
     EXPECT_EQ(a.groups()[g].name, b.groups()[g].name);
     EXPECT_EQ(a.groups()[g].joints, b.groups()[g].joints);
+    EXPECT_EQ(a.groups()[g].links, b.groups()[g].links) << a.groups()[g].name;
     EXPECT_EQ(a.groups()[g].tip_link, b.groups()[g].tip_link);
   }
   EXPECT_EQ(a.group_states(), b.group_states());

@@ -10,10 +10,12 @@
 namespace mmgrasp::test {
 
 /// An arm of equal links in the plane z = 0, built from text: thin capsule-like boxes of `length` along x, joints about
-/// z. Kinematics have a closed form, and what its links touch can be worked out with rulers.
+/// z; all of them, or the first `continuous_joints`, without limits. Kinematics have a closed form, and what its links
+/// touch can be worked out with rulers.
 class PlanarArm {
  public:
-  explicit PlanarArm(int joints, double length = 0.5, double width = 0.02, bool continuous = false, double limit = 2.8)
+  explicit PlanarArm(int joints, double length = 0.5, double width = 0.02, bool continuous = false, double limit = 2.8,
+                     int continuous_joints = 0)
       : joints_(joints), length_(length), width_(width) {
     std::string urdf = "<robot name=\"planar\"><link name=\"l0\"/>\n", srdf = "<robot name=\"planar\">\n";
     for (int i = 1; i <= joints; ++i) {
@@ -23,10 +25,11 @@ class PlanarArm {
       urdf += "<link name=\"" + link + "\"><collision><origin xyz=\"" + std::to_string(length / 2) +
               " 0 0\"/><geometry><box size=\"" + std::to_string(length) + " " + std::to_string(width) + " " +
               std::to_string(width) + "\"/></geometry></collision></link>\n";
-      urdf += "<joint name=\"j" + std::to_string(i) + "\" type=\"" + (continuous ? "continuous" : "revolute") +
-              "\"><parent link=\"" + parent + "\"/><child link=\"" + link + "\"/><origin xyz=\"" +
-              std::to_string(origin) + " 0 0\"/><axis xyz=\"0 0 1\"/><limit effort=\"1\" velocity=\"2\" lower=\"" +
-              std::to_string(-limit) + "\" upper=\"" + std::to_string(limit) + "\"/></joint>\n";
+      urdf += "<joint name=\"j" + std::to_string(i) + "\" type=\"" +
+              (continuous || i <= continuous_joints ? "continuous" : "revolute") + "\"><parent link=\"" + parent +
+              "\"/><child link=\"" + link + "\"/><origin xyz=\"" + std::to_string(origin) +
+              " 0 0\"/><axis xyz=\"0 0 1\"/><limit effort=\"1\" velocity=\"2\" lower=\"" + std::to_string(-limit) +
+              "\" upper=\"" + std::to_string(limit) + "\"/></joint>\n";
       for (int k = 0; k < i; ++k) {
         srdf += "<disable_collisions link1=\"l" + std::to_string(k) + "\" link2=\"" + link + "\" reason=\"User\"/>\n";
       }

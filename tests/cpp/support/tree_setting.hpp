@@ -20,7 +20,7 @@ struct TreeSetting {
         ends(candidates),
         informed(ends, problem.group.sample_lower(), problem.group.sample_upper()),
         trees(ends),
-        transfer_checks(problem, EdgeOptions{0.02, 0.005, false, 1e-4}, 1, 1),
+        transfer_checks(problem, EdgeOptions{0.02, 0.005, false, 1e-4}, 1),
         checks(trees, transfer_checks, stats),
         near(trees, informed, options, tuning) {}
 

@@ -151,7 +151,7 @@ TEST(Advice, AppliedItSolvesNineOfTenSeededFailures) {
     SCOPED_TRACE("failure " + std::to_string(number));
     const PartSupplyProblem problem = seeded_failure(number);
     const PartSupplyPlan failed = plan_part_supply(problem, database());
-    ASSERT_EQ(failed.outcome, Outcome::infeasible);
+    ASSERT_EQ(failed.outcome, Outcome::not_found);
     ASSERT_FALSE(failed.obstructions.empty());
     for (const Obstruction& told : failed.obstructions) {
       EXPECT_FALSE(told.tray.empty());
@@ -180,7 +180,7 @@ TEST(Advice, HalfTheMoveIsNotEnough) {
     told.advised_move *= 0.5;
   }
   EXPECT_EQ(plan_part_supply(with_advice_applied(problem, failed.obstructions), database()).outcome,
-            Outcome::infeasible);
+            Outcome::not_found);
 }
 
 /// The failed plan's counters again from single base poses: no rows, no threads, no grasp tried first.

@@ -101,7 +101,45 @@ TEST(BaseRoute, WalledInHasNoRoute) {
     room.world.add("x " + std::to_string(s), test::box_shape(0.1, 2.1, 1.0), test::at(s, 0, 0.5));
     room.world.add("y " + std::to_string(s), test::box_shape(2.1, 0.1, 1.0), test::at(0, s, 0.5));
   }
-  EXPECT_EQ(room.plan({0, 0, 0}, {3, 0, 0}).outcome, Outcome::infeasible);
+  EXPECT_EQ(room.plan({0, 0, 0}, {3, 0, 0}).outcome, Outcome::not_found);  // a search over a grid proves nothing
+}
+
+TEST(BaseRoute, AFixedBaseProvablyStays) {
+  Room room;
+  EXPECT_EQ(room.plan({0, 0, 0}, {3, 0, 0}, BaseKind::fixed).outcome, Outcome::infeasible);
+  EXPECT_EQ(room.plan({0, 0, 0}, {0, 0, 0}, BaseKind::fixed).outcome, Outcome::solved);
+}
+
+TEST(BaseRoute, WalledInIsFoundFromTheOtherEndToo) {
+  Room room;
+  for (double s : {-1.0, 1.0}) {
+    room.world.add("x " + std::to_string(s), test::box_shape(0.1, 2.1, 1.0), test::at(3 + s, 0, 0.5));
+    room.world.add("y " + std::to_string(s), test::box_shape(2.1, 0.1, 1.0), test::at(3, s, 0.5));
+  }
+  CollisionChecker checker(room.problem.arm, room.world);
+  BaseRouteOptions options;
+  options.resolution = 0.05;
+  options.bounds = {Eigen::Vector2d(-8, -8), Eigen::Vector2d(8, 8)};  // more base poses than a search looks at
+  EXPECT_EQ(plan_base_route(checker, room.problem.home, {0, 0, 0}, {3, 0, 0}, options).outcome,
+            Outcome::not_found);  // by a grid, no proof
+}
+
+TEST(BaseRoute, ASearchThatRanOutSaysSo) {
+  Room room;  // a ring of walls with too small a gap for the robot, around both ends of a long way
+  room.world.add("wall", test::box_shape(0.1, 60, 1.0), test::at(5, 0, 0.5));
+  CollisionChecker checker(room.problem.arm, room.world);
+  BaseRouteOptions options;
+  options.resolution = 0.04;
+  options.bounds = {Eigen::Vector2d(-12, -12), Eigen::Vector2d(22, 12)};
+  EXPECT_EQ(plan_base_route(checker, room.problem.home, {0, 0, 0}, {10, 0, 0}, options).outcome, Outcome::timeout);
+}
+
+TEST(BaseRoute, TheBaseStaysInItsWorkspace) {
+  Room room;
+  BaseLimits limits = room.problem.robot.base_limits();
+  EXPECT_GT(limits.workspace, 10);
+  EXPECT_EQ(room.plan({0, 0, 0}, {limits.workspace + 1, 0, 0}).outcome, Outcome::invalid_goal);
+  EXPECT_EQ(room.plan({0, -limits.workspace - 1, 0}, {0, 0, 0}).outcome, Outcome::invalid_start);
 }
 
 TEST(BaseRoute, EndsInCollisionAreNamed) {

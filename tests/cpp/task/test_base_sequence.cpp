@@ -252,6 +252,11 @@ TEST(MinimalStops, AnIncompleteSearchIsNoProof) {
   EXPECT_EQ(stops.lower_bound, 1);
   const StopSet single = cover_from_intersections(grid, robust_intersections(grid, {regions[0]}, 0.0, 1), 1);
   EXPECT_EQ(single.outcome, Outcome::solved);  // one stop is needed anyway
+  Intersections none;
+  none.complete = false;
+  EXPECT_EQ(cover_from_intersections(grid, none, 1).outcome, Outcome::timeout);
+  none.complete = true;
+  EXPECT_EQ(cover_from_intersections(grid, none, 1).outcome, Outcome::infeasible);
 }
 
 /// Least count, and of those the largest sum of radii, by trying all subsets of intersections.

@@ -382,7 +382,7 @@ TEST(DriveBy, ReportsWhatCannotBe) {
   const JointGroup group = test::fetchlike_whole_body();
   const std::vector<DriveByTask> tasks{grasp_at(pose_from_xyz_rpy({5, 0, 4}, {0, 0, 0}))};
   const DriveByResult r = plan_drive_by(group, World(), kStart, tasks, {kGoal, kGoal});
-  EXPECT_EQ(r.outcome, Outcome::infeasible);
+  EXPECT_EQ(r.outcome, Outcome::not_found);
   EXPECT_NE(r.report.find("task 0"), std::string::npos) << r.report;
   EXPECT_FALSE(r.trajectory);
 }

@@ -153,7 +153,7 @@ TEST(PartSupply, TooLargeAnUncertaintyAdvisesOneThatWorks) {
   problem.options.robustness_samples = 40;
   problem.options.positioning_uncertainty = 0.5;
   const PartSupplyPlan failed = plan_part_supply(problem, database());
-  ASSERT_EQ(failed.outcome, Outcome::infeasible);
+  ASSERT_EQ(failed.outcome, Outcome::not_found);
   EXPECT_FALSE(failed.proven_minimal);
   ASSERT_FALSE(failed.obstructions.empty());
   double advised = 1;
@@ -167,7 +167,7 @@ TEST(PartSupply, TooLargeAnUncertaintyAdvisesOneThatWorks) {
   const PartSupplyPlan fixed = plan_part_supply(problem, database());
   EXPECT_EQ(fixed.outcome, Outcome::solved) << all_messages(fixed);
   problem.options.positioning_uncertainty = advised + 1e-4;
-  EXPECT_EQ(plan_part_supply(problem, database()).outcome, Outcome::infeasible);
+  EXPECT_EQ(plan_part_supply(problem, database()).outcome, Outcome::not_found);
 }
 
 TEST(PartSupply, APartWithoutGraspsIsNamed) {
@@ -176,7 +176,7 @@ TEST(PartSupply, APartWithoutGraspsIsNamed) {
   problem.trays[1].parts[0].grasps.clear();
   problem.trays[1].parts[0].grasps_too_wide = 7;
   const PartSupplyPlan plan = plan_part_supply(problem, database());
-  EXPECT_EQ(plan.outcome, Outcome::infeasible);
+  EXPECT_EQ(plan.outcome, Outcome::not_found);
   ASSERT_EQ(plan.obstructions.size(), 1u);
   EXPECT_EQ(plan.obstructions[0].tray, "B");
   EXPECT_EQ(plan.obstructions[0].part, "B/block_0");
@@ -192,7 +192,7 @@ TEST(PartSupply, MissingReachSaysHowFarToMove) {
   problem.trays.pop_back();
   problem.scene.add("step", test::box_shape(2.0, 4.0, 0.10), test::at(0.75, 0, 0.05));
   const PartSupplyPlan failed = plan_part_supply(problem, database());
-  ASSERT_EQ(failed.outcome, Outcome::infeasible);
+  ASSERT_EQ(failed.outcome, Outcome::not_found);
   ASSERT_EQ(failed.obstructions.size(), 1u);
   const Obstruction& told = failed.obstructions[0];
   EXPECT_EQ(told.stage, "region");

@@ -72,7 +72,7 @@ TEST(Pick, AnUnreachablePlaceIsNamed) {
   PickProblem problem = pin_on_table();
   problem.places = {test::at(3, 3, 0.5)};
   const Pick pick = plan_object_pick(problem, database());
-  EXPECT_EQ(pick.outcome, Outcome::infeasible);
+  EXPECT_EQ(pick.outcome, Outcome::not_found);
   EXPECT_EQ(pick.failed_at, "release");
   EXPECT_TRUE(pick.motions.empty());
 }

@@ -4,7 +4,6 @@
 
 #include <atomic>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <thread>
@@ -13,6 +12,7 @@
 #include "mmgrasp/core/random.hpp"
 #include "support/robot_support.hpp"
 #include "support/small_storeroom.hpp"
+#include "support/temporary_folder.hpp"
 
 using namespace mmgrasp;
 using namespace mmgrasp::test;
@@ -203,18 +203,18 @@ TEST(PlatformLocations, WhyThereIsNone) {
   PlatformLocationsProblem high = problem_of(setup.robot, 0.3);
   high.T_world_place.translation().z() = 4;
   const PlatformLocations unreachable = plan_platform_locations(setup.checker, high, options);
-  EXPECT_EQ(unreachable.outcome, Outcome::infeasible);
+  EXPECT_EQ(unreachable.outcome, Outcome::not_found);
   EXPECT_EQ(unreachable.q_pick.size(), 0);
   EXPECT_EQ(unreachable.place.rejections.unreachable + unreachable.place.rejections.limits, 60u);
   PlatformLocationsProblem unseen = problem_of(setup.robot, 0.3);
   unseen.camera->T_link_camera.linear() = Eigen::Matrix3d::Identity();  // looks at the ceiling
   const PlatformLocations blind = plan_platform_locations(setup.checker, unseen, options);
-  EXPECT_EQ(blind.outcome, Outcome::infeasible);
+  EXPECT_EQ(blind.outcome, Outcome::not_found);
   EXPECT_GT(blind.pick.view, 0u);
   PlatformLocationsOptions strict = options;
   strict.least_manipulability = 10;
   const PlatformLocations singular = plan_platform_locations(setup.checker, problem_of(setup.robot, 0.3), strict);
-  EXPECT_EQ(singular.outcome, Outcome::infeasible);
+  EXPECT_EQ(singular.outcome, Outcome::not_found);
   EXPECT_GT(singular.pick.singular, 0u);
   Monitor monitor;
   monitor.stop.stop();
@@ -281,9 +281,10 @@ TEST(IkSeedDatabase, FileComesBackAndIsChecked) {
   IkSeedDatabase database(setup.group);
   Rng rng(62);
   for (int i = 0; i < 20; ++i) database.add(rng.uniform(setup.group.sample_lower(), setup.group.sample_upper()));
-  const std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / "mmgrasp_ik_seeds.txt";
-  database.save(path.string());
-  const IkSeedDatabase back = IkSeedDatabase::load(path.string(), setup.group);
+  const TemporaryFolder folder;
+  const std::string path = folder.file("ik_seeds.txt");
+  database.save(path);
+  const IkSeedDatabase back = IkSeedDatabase::load(path, setup.group);
   ASSERT_EQ(back.size(), 20u);
   const Pose target = above(0.9, 0.2, 0.1);
   const auto a = database.seeds(target, 20), b = back.seeds(target, 20);
@@ -291,10 +292,10 @@ TEST(IkSeedDatabase, FileComesBackAndIsChecked) {
   const auto refused = [&](const std::string& content, const std::string& why) {
     std::ofstream(path, std::ios::binary) << content;
     try {
-      IkSeedDatabase::load(path.string(), setup.group);
+      IkSeedDatabase::load(path, setup.group);
     } catch (const IoError& error) {
       EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
-      EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
       return;
     }
     ADD_FAILURE() << "taken: " << why;
@@ -305,14 +306,13 @@ TEST(IkSeedDatabase, FileComesBackAndIsChecked) {
   std::string changed = content;
   changed[content.size() / 2] = changed[content.size() / 2] == '1' ? '2' : '1';
   refused(changed, "damaged");
-  database.save(path.string());
+  database.save(path);
   const JointGroup hand = setup.robot.chain("base_link", "hand", true);
-  EXPECT_THROW(IkSeedDatabase::load(path.string(), hand), IoError);
-  EXPECT_THROW(IkSeedDatabase::load(path.string() + ".none", setup.group), IoError);
+  EXPECT_THROW(IkSeedDatabase::load(path, hand), IoError);
+  EXPECT_THROW(IkSeedDatabase::load(path + ".none", setup.group), IoError);
   EXPECT_THROW(database.save("/nowhere/at/all"), IoError);
   EXPECT_THROW(IkSeedDatabase(setup.robot.chain("base_link", "tcp")), InvalidInput);
   EXPECT_THROW(IkSeedDatabase(setup.group, 0), InvalidInput);
-  std::filesystem::remove(path);
 }
 
 TEST(IkSeedDatabase, ThreadsMayShareOne) {

@@ -43,6 +43,21 @@ TEST(PathCheck, FindsWhereTheArmMeetsABox) {
   EXPECT_TRUE(check_path(path).free);
 }
 
+TEST(PathCheck, LeavesOutWhatMayTouch) {
+  const test::PlanarArm arm(2, 0.5, 0.02);
+  PathToCheck path = two_links(arm, {-1, 0}, {1, 0});
+  path.bodies = {box({0.8, 0, 0}, 0.1)};
+  path.allowed_collisions = {{"box", "l2"}};
+  EXPECT_TRUE(check_path(path).free) << check_path(path).where;
+  path.bodies.push_back(box({0.3, 0, 0}, 0.1));
+  path.bodies.back().name = "near";  // in the way of the first link
+  EXPECT_NE(check_path(path).where.find("'l1' touches 'near'"), std::string::npos);
+  path.allowed_collisions.emplace_back("l1", "near");
+  EXPECT_TRUE(check_path(path).free) << check_path(path).where;
+  path.allowed_collisions.emplace_back("l1", "far");
+  EXPECT_THROW(check_path(path), InvalidInput);
+}
+
 TEST(PathCheck, FindsLimits) {
   const test::PlanarArm arm(2, 0.5, 0.02);
   const PathCheckResult result = check_path(two_links(arm, {2.5, 0}, {2.9, 0}));

@@ -216,6 +216,38 @@ TEST(PlanCheck, LiftTooSmall) {
   EXPECT_TRUE(codes_of(good_plan({0.8, 0, 0.008, 0, 0, 0, 0})).count("no-lift"));
 }
 
+TEST(PlanCheck, ApproachAndLiftAreAsLongAsAsked) {
+  PlanToCheck plan = good_plan();  // 0.08 m down to the grasp, 0.12 m up
+  plan.approach_distance = 0.08;
+  plan.lift_height = 0.12;
+  EXPECT_EQ(codes_of(plan), Codes{});
+  plan.approach_distance = 0.085;
+  EXPECT_EQ(codes_of(plan), Codes{"short-approach"});
+  plan.approach_distance = 0.08;
+  plan.lift_height = 0.125;
+  EXPECT_EQ(codes_of(plan), Codes{"no-lift"});
+}
+
+TEST(PlanCheck, WidthsAreThoseOfTheParts) {
+  PlanToCheck plan = good_plan();
+  plan.closing = Eigen::Vector3d::UnitX();
+  plan.finger_depth = plan.finger_width = 0.02;
+  EXPECT_EQ(codes_of(plan), Codes{});
+  for (const double factor : {0.5, 0.85, 1.2}) {
+    plan = good_plan();
+    plan.closing = Eigen::Vector3d::UnitX();
+    plan.finger_depth = plan.finger_width = 0.02;
+    plan.parts[0].grasps[0].width *= factor;
+    EXPECT_TRUE(codes_of(plan).count("grasp-width")) << factor;
+  }
+}
+
+TEST(PlanCheck, BodiesThatOverlap) {
+  const std::vector<CheckedBody> bodies = {box("a", {1, 1, 1}, at(0, 0, 0)), box("b", {1, 1, 1}, at(1, 0, 0)),
+                                           box("c", {1, 1, 1}, at(0.5, 0.2, 0))};
+  EXPECT_EQ(overlapping_bodies(bodies), (std::vector<std::pair<std::size_t, std::size_t>>{{0, 2}, {1, 2}}));
+}
+
 TEST(PlanCheck, ReleaseOutsideBin) {
   EXPECT_TRUE(codes_of(good_plan({0.8, 0, 0.12, 0.155, 0, 0, 0})).count("release-outside"));
   EXPECT_FALSE(codes_of(good_plan({0.8, 0, 0.12, 0.145, 0, 0, 0})).count("release-outside"));
@@ -370,6 +402,9 @@ TEST(PlanCheckOptions, RefusesNonsense) {
   EXPECT_THROW(check_plan(good_plan(), options), mmgrasp::InvalidInput);
   options = {};
   options.required_rate = 1.1;
+  EXPECT_THROW(check_plan(good_plan(), options), mmgrasp::InvalidInput);
+  options = {};
+  options.samples = 2000000000;
   EXPECT_THROW(check_plan(good_plan(), options), mmgrasp::InvalidInput);
 }
 

@@ -297,7 +297,11 @@ TEST(PlanCheckFigures, WhatDescribesMustNotLie) {
   good.intersections = {{{"A"}, 0, Eigen::Vector2d(0.4, 0), 0.2}, {{"B"}, 0, Eigen::Vector2d(0.4, 3), 0.1}};
   good.robustness_rate = 1;
   for (CheckedPick& pick : good.picks) {
-    for (CheckedMotion& m : pick.motions) m.accelerations.assign(m.times.size(), Eigen::VectorXd::Constant(5, 2.0));
+    for (CheckedMotion& m : pick.motions) {
+      m.accelerations.assign(m.times.size(), Eigen::VectorXd::Zero(5));
+      for (std::size_t i = 0; i + 1 < m.times.size(); ++i)
+        m.accelerations[i] = (m.velocities[i + 1] - m.velocities[i]) / (m.times[i + 1] - m.times[i]);
+    }
   }
   EXPECT_EQ(codes_of(good), Codes{});
   std::vector<PlanToCheck> lies(6, good);
@@ -316,11 +320,55 @@ TEST(PlanCheckFigures, WhatDescribesMustNotLie) {
   lies[4].robustness_rate = 1.1;
   lies[5].robustness_rate = -0.1;
   for (const PlanToCheck& lie : lies) EXPECT_EQ(codes_of(lie), Codes{"bad-figures"}) << &lie - lies.data();
-  lies.assign(3, good);
-  lies[0].picks[1].motions[2].accelerations[3][4] = 2.1;  // the limit is 2
+  lies.assign(4, good);
+  for (Eigen::VectorXd& a : lies[3].picks[1].motions[2].accelerations) a.setZero();  // it moves
+  lies[0].picks[1].motions[2].accelerations[3][4] = 2.1;                             // the limit is 2
   lies[1].picks[1].motions[2].accelerations.pop_back();
   lies[2].picks[1].motions[2].accelerations[3][4] = std::nan("");
   for (const PlanToCheck& lie : lies) EXPECT_EQ(codes_of(lie), Codes{"acceleration"}) << &lie - lies.data();
+}
+
+TEST(PlanCheckStops, TheBaseStaysInItsWorkspace) {
+  PlanToCheck plan = good_plan();  // start and goal at x = -1, the second stop and the goal at y = 3
+  plan.robot.base_limits.workspace = 3.2;
+  EXPECT_EQ(codes_of(plan), Codes{});
+  plan.robot.base_limits.workspace = 3.05;  // less than the stop's y and its uncertainty
+  EXPECT_EQ(codes_of(plan), Codes{"base-workspace"});
+  plan.robot.base_limits.workspace = 0.9;
+  const PlanCheckResult result = check_plan(plan, quick());
+  std::set<std::string> places;
+  for (const Fault& fault : result.faults) places.insert(fault.where);
+  for (const char* where : {"start", "goal", "stop 1", "route leg 0", "route leg 1"}) EXPECT_TRUE(places.count(where));
+}
+
+TEST(PlanCheckStops, HeadingsAreThoseOfTheTrays) {
+  PlanToCheck plan = good_plan();
+  plan.searched["A"] = {{0.0}, {0.9, 0}, 10};
+  plan.searched["B"] = {{0.0}, {0.9, 3}, 10};
+  EXPECT_EQ(codes_of(plan), Codes{});
+  plan.searched["B"].headings = {0.0, 0.3};  // the plan did not look at one of them
+  EXPECT_EQ(codes_of(plan), Codes{"region-malformed"});
+  plan.searched["B"].headings = {2 * M_PI};
+  EXPECT_EQ(codes_of(plan), Codes{});
+  plan.grid.headings = {0.3};
+  plan.searched["B"].headings = {0.3};
+  EXPECT_TRUE(codes_of(plan).count("region-malformed"));  // cells at a heading that tray A does not list
+}
+
+TEST(PlanCheckStops, BasePosesAreDrawnInRegionsAndBesideThem) {
+  PlanCheckOptions options = quick();
+  options.region_samples = 20;
+  PlanToCheck plan = good_plan();
+  EXPECT_EQ(codes(check_plan(plan, options)), Codes{});  // nothing is known about how trays were searched
+  plan.searched["A"] = {{0.0}, {0.9, 0}, 10};
+  EXPECT_EQ(codes(check_plan(plan, options)), Codes{"region-incomplete"});  // the arm reaches farther than its square
+  plan.searched["A"] = {{0.0}, {0.4, 0}, 0.2};  // what lies beside the square was not to be tried
+  EXPECT_EQ(codes(check_plan(plan, options)), Codes{});
+  plan.searched.clear();
+  plan.regions[0].cells.assign(plan.regions[0].cells.size(), 1);
+  EXPECT_TRUE(codes(check_plan(plan, options)).count("region-inflated"));
+  plan.stops[0].radius = 0.39;  // within the cells
+  EXPECT_TRUE(codes(check_plan(plan, options)).count("region-inflated"));
 }
 
 TEST(PlanCheckRoute, SidewaysDrive) {

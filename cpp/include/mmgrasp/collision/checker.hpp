@@ -22,7 +22,7 @@ MMGRASP_EXPORT EdgeResult check_edge(CollisionChecker& checker, const Eigen::Vec
 MMGRASP_EXPORT Eigen::VectorXd motion_bounds(const CollisionChecker& checker);
 
 struct MMGRASP_EXPORT CheckerOptions {
-  double padding = 0;  ///< Robot links (not what is attached to them) are grown by this [m] against the scene; >= 0.
+  double padding = 0;       ///< Links are padded by at least this, whatever World::padding() says [m]; >= 0.
   bool check_self = true;   ///< Check the robot and what is attached to it against itself.
   bool check_scene = true;  ///< Check the robot and what is attached to it against the scene.
   /// Check only what is attached, against the robot and the scene: the robot alone is taken to be free (many grasps of
@@ -35,7 +35,11 @@ struct MMGRASP_EXPORT CheckerOptions {
 struct MMGRASP_EXPORT Contact {
   std::string a, b;
   bool with_scene = false;
+  bool by_padding = false;  ///< The bodies themselves stay apart: only their padding meets.
 };
+
+/// "'hand' touches 'table'", or, by padding, "'hand' comes closer to 'table' than their padding".
+MMGRASP_EXPORT std::string describe(const Contact& contact);
 
 struct MMGRASP_EXPORT DistanceResult {
   double value = std::numeric_limits<double>::infinity();  ///< [m]; negative: depth.
@@ -68,6 +72,7 @@ class MMGRASP_EXPORT CollisionChecker {
 
   const JointGroup& group() const;
   const World& world() const;
+  const CheckerOptions& options() const;
 
   /// The same checker with the group re-referenced (base stands elsewhere, fingers opened) or another group of the same
   /// robot: geometry is not rebuilt. Throws InvalidInput for a group of another robot.
@@ -96,6 +101,9 @@ class MMGRASP_EXPORT CollisionChecker {
   /// Straight joint-space edge (angles are not wrapped), checked at steps in which no joint moves more than `step` (rad
   /// or m), ends included.
   bool edge_is_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double step = 0.02);
+  /// The same where q0 is known to be free, or both ends are: they are not checked again.
+  bool edge_stays_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double step = 0.02,
+                       bool end_is_free = false);
 
   std::size_t queries() const;  ///< Configurations checked so far.
 

@@ -7,15 +7,18 @@
 
 namespace mmgrasp {
 
-/// How a query ended. "No solution" is a value, not an exception.
+/// How a query ended. "No solution" is a value, not an exception. Whoever gets `infeasible` may rely on it: other
+/// seeds, more samples or more time cannot find an answer to the same question. `not_found` and `timeout` promise
+/// nothing of the kind (docs/concepts.md says which functions prove what).
 enum class Outcome {
   solved,         ///< The answer is there and passed its check.
   approximate,    ///< The best that was found; misses its tolerance or bound. Never used for a path in collision.
-  infeasible,     ///< Proven or exhausted: there is no answer.
-  timeout,        ///< The budget (samples, iterations or clock) ended first.
+  infeasible,     ///< Proven: there is no answer.
+  not_found,      ///< The method came to its end without an answer (samples, a roadmap, a local optimum): no proof.
+  timeout,        ///< The budget (samples, iterations or clock) ended first: no proof either.
   stopped,        ///< The caller's cancel token ended it.
-  invalid_start,  ///< The start violates limits or is in collision.
-  invalid_goal,   ///< No goal is inside limits and collision-free.
+  invalid_start,  ///< The start violates limits or is in collision, or no such start was found.
+  invalid_goal,   ///< No goal given or found is inside limits and collision-free.
 };
 
 MMGRASP_EXPORT const char* to_string(Outcome outcome);

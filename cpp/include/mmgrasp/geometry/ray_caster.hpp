@@ -63,6 +63,8 @@ class MMGRASP_EXPORT RayCaster {
 
   /// closest_hit() of each ray; `threads` = 0 means all.
   std::vector<RayHit> closest_hits(const std::vector<Ray>& rays, int threads = 1) const;
+  /// The same into a vector that may be kept from one batch to the next, which saves its memory's first touch.
+  void closest_hits(const std::vector<Ray>& rays, std::vector<RayHit>& hits, int threads = 1) const;
   /// any_hit() of each ray, 1 or 0.
   std::vector<char> any_hits(const std::vector<Ray>& rays, int threads = 1) const;
 

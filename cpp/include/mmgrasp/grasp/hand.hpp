@@ -44,8 +44,9 @@ struct MMGRASP_EXPORT HandReading {
   /// SRDF end effector, or SRDF group, that holds the hand's joints; empty: the joints of all links below the body
   /// that carries the tool link.
   std::string group;
-  /// Axes of the tool frame; none: the frame's axis next to the way from palm to finger tips, and the one along which
-  /// the tips move most.
+  /// Unit vectors of the tool frame; none: the frame's axis next to the way from palm to finger tips, and the direction
+  /// across it in which the tips move most (need not be an axis of the frame: Panda's fingers close half way between x
+  /// and y of panda_link8).
   std::optional<Eigen::Vector3d> approach, closing;
   double clearance = 0.01;  ///< See Hand::clearance [m]; >= 0.
   int postures = 32;        ///< Intervals from closed to open at which the opening is measured; from 2 to 1000.

@@ -35,8 +35,8 @@ struct MMGRASP_EXPORT DerivativeFreeOptions {
 
 struct MMGRASP_EXPORT DerivativeFreeResult {
   /// solved: converged, constraints kept (a global solver proves nothing beyond that). timeout: the budget or the clock
-  /// ended it. stopped. infeasible: converged where constraints are broken. approximate: rounding ended it early.
-  Outcome outcome = Outcome::infeasible;
+  /// ended it. stopped. not_found: converged where constraints are broken. approximate: rounding ended it early.
+  Outcome outcome = Outcome::not_found;
   Eigen::VectorXd x;     ///< The best point seen: the least violated, then the cheapest. Inside the bounds.
   double value = 0;      ///< f(x); infinite when f was defined nowhere.
   double violation = 0;  ///< Largest c_i(x), or 0; infinite when f was defined nowhere.

@@ -25,8 +25,8 @@ struct MMGRASP_EXPORT NlpOptions {
 
 struct MMGRASP_EXPORT NlpResult {
   /// solved: locally optimal and every constraint kept. approximate: every constraint kept, optimality not shown.
-  /// infeasible: the solver ended at a point that breaks constraints. timeout: iterations or clock. stopped.
-  Outcome outcome = Outcome::infeasible;
+  /// not_found: the solver ended at a point that breaks constraints. timeout: iterations or clock. stopped.
+  Outcome outcome = Outcome::not_found;
   Eigen::VectorXd x;       ///< The answer, or the best iterate: the least violated, then the cheapest. Always finite.
   double objective = 0;    ///< At x.
   NlpViolations violated;  ///< At x.

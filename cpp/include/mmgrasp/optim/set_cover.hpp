@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/core/outcome.hpp"
 
 namespace mmgrasp {
@@ -20,8 +21,9 @@ struct MMGRASP_EXPORT SetCoverProblem {
 };
 
 struct MMGRASP_EXPORT SetCoverResult {
-  Outcome outcome =
-      Outcome::timeout;     ///< `solved` only with a proof of optimality; `approximate` with a cover but no proof.
+  /// `solved` only with a proof of optimality; `approximate` with a cover but no proof; `stopped` by the monitor, with
+  /// a cover and the bound known by then.
+  Outcome outcome = Outcome::timeout;
   std::vector<int> chosen;  ///< Set indices, ascending.
   double cost = 0;
   double lower_bound = 0;        ///< Proven: no cover costs less.
@@ -30,8 +32,9 @@ struct MMGRASP_EXPORT SetCoverResult {
 
 /// Reduces by dominance, then branch and bound with CBC. Deterministic; among equal optima the lexicographically
 /// smallest is not promised, but the same problem always gives the same answer (unless the time limit ends the search).
-/// Calls from several threads wait for each other: CBC keeps process-wide state. Throws InvalidInput on bad indices,
-/// costs or time_limit <= 0.
-MMGRASP_EXPORT SetCoverResult solve_set_cover(const SetCoverProblem& problem, double time_limit = 60.0);
+/// Calls from several threads wait for each other, within their time limits: CBC keeps process-wide state. Throws
+/// InvalidInput on bad indices, costs or time_limit <= 0.
+MMGRASP_EXPORT SetCoverResult solve_set_cover(const SetCoverProblem& problem, double time_limit = 60.0,
+                                              const Monitor& monitor = {});
 
 }  // namespace mmgrasp

@@ -10,10 +10,11 @@ namespace mmgrasp {
 
 /// Stops shared among several robots.
 struct MMGRASP_EXPORT SharedTours {
-  Outcome outcome = Outcome::infeasible;  ///< Solved: proven least; approximate: a good one with a bound.
-  std::vector<std::vector<int>> orders;   ///< The stops of each robot in visiting order; empty: it stays where it is.
-  std::vector<double> durations;          ///< One a robot; 0 when it stays.
-  double makespan = 0;                    ///< The longest.
+  /// solved: proven least; approximate: a good one with a bound; infeasible: proven that none ends; else not_found.
+  Outcome outcome = Outcome::not_found;
+  std::vector<std::vector<int>> orders;  ///< The stops of each robot in visiting order; empty: it stays where it is.
+  std::vector<double> durations;         ///< One a robot; 0 when it stays.
+  double makespan = 0;                   ///< The longest.
   double lower_bound = 0;  ///< Proven: no sharing ends earlier. Infinite when it is proven that none ends.
 };
 

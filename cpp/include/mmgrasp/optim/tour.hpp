@@ -9,7 +9,8 @@
 namespace mmgrasp {
 
 struct MMGRASP_EXPORT TourResult {
-  Outcome outcome = Outcome::infeasible;
+  /// infeasible: proven, up to 15 stops; not_found: the local search met no tour beyond.
+  Outcome outcome = Outcome::not_found;
   std::vector<int> order;  ///< Visiting order of the stops, indices into 0..n-1.
   double length = 0;
   double lower_bound = 0;  ///< Proven: no way is shorter. Infinite when it is proven that there is none.

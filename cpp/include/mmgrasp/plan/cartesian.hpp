@@ -16,7 +16,7 @@ struct MMGRASP_EXPORT CartesianOptions {
 };
 
 struct MMGRASP_EXPORT CartesianResult {
-  Outcome outcome = Outcome::infeasible;
+  Outcome outcome = Outcome::not_found;
   std::optional<JointPath> path;  ///< Begins at the first pose, ends at the last; set if and only if solved.
   std::vector<int> corners;       ///< Waypoint at which each pose is reached.
   double fraction = 0;            ///< How far the branch that came farthest got, in [0, 1]; every line counts the same.
@@ -36,7 +36,7 @@ struct MMGRASP_EXPORT CartesianResult {
 ///
 /// Every inverse kinematics branch of the first pose is tried, a redundant joint being sampled. Of the complete ones
 /// the shortest is returned, counted from `near` when that is given. A `near` that puts the tool at the first pose is
-/// itself the first branch. The outcome is solved, infeasible, stopped, or invalid_start when the arm reaches the first
+/// itself the first branch. The outcome is solved, not_found, stopped, or invalid_start when the arm reaches the first
 /// pose, but only beyond its limits or in collision. Throws InvalidInput on fewer than two poses, poses that are no
 /// rigid transforms, bad options, and a group with a diff-drive base, which cannot follow such a path.
 MMGRASP_EXPORT CartesianResult plan_cartesian(CollisionChecker& checker, const Poses& T_world_tip,

@@ -59,7 +59,7 @@ struct MMGRASP_EXPORT PrmStarMgOptions {
 
 struct MMGRASP_EXPORT ManipulationOptions {
   std::string planner = "prm_star_mg";  ///< A name of manipulation_planner_names().
-  int ik_solutions = 4;                 ///< Arm configurations of each grasp at each end at most; > 0.
+  int ik_solutions = 4;                 ///< Arm postures of each grasp at each end at most, in all turns; > 0.
   /// A first path is searched for while arm configurations are found, grasp by grasp: after this many grasps the
   /// earlier ones are searched again, then twice as many follow, and so on. 0: all arm configurations before any
   /// search, as in the paper (also for "prm_star_mg" with `straight` or `shorten` off). >= 0.
@@ -88,10 +88,21 @@ struct MMGRASP_EXPORT GraspReport {
   bool searched = false;                        ///< Whether prm_star_mg searched a roadmap for it.
 };
 
+/// What a stage contributed to a result's improvements.
+struct MMGRASP_EXPORT StageReport {
+  PlanStage stage = PlanStage::search;
+  int improvements = 0;
+  double first_seconds = 0, last_seconds = 0;  ///< Of its first and its last improvement, as Improvement::seconds.
+  double cost = 0;                             ///< Of its last improvement.
+};
+
 struct MMGRASP_EXPORT ManipulationStats {
   double ik_seconds = 0, roadmap_seconds = 0, search_seconds = 0;
   /// Cost of prm_star_mg's best path over the roadmap before shortening; 0: none costs less than the first path.
   double roadmap_cost = 0;
+  /// prm_star_mg: no path over the roadmap, or straight, costs less; at most the result's cost. Infinite: there is
+  /// none.
+  double roadmap_bound = 0;
   std::size_t graph_searches = 0;
   /// Nodes pushed to the open lists of graph searches that ran before any path was checked (prm_star_mg, `lazy_grasps`
   /// off). Bounds spliced from the paths of other grasps keep it small (P2 4.3.2.5).
@@ -101,6 +112,7 @@ struct MMGRASP_EXPORT ManipulationStats {
   std::size_t edges_checked_attached = 0;  ///< Edges checked for the object in hand.
   std::size_t samples = 0;                 ///< Samples that rrt_star_mg drew or reassigned.
   std::size_t vertices = 0;                ///< Vertices of rrt_star_mg's trees, removed ones included.
+  std::vector<StageReport> stages;         ///< Those that improved the path, in the order of their first improvement.
 };
 
 struct MMGRASP_EXPORT ManipulationResult {
@@ -108,14 +120,15 @@ struct MMGRASP_EXPORT ManipulationResult {
   int grasp_index = -1;
   std::optional<JointPath> path;  ///< Set if and only if solved; checked again at 0.005 rad with the object in hand.
   double cost = 0;                ///< Path length plus the grasp's cost.
-  /// No path costs less: with prm_star_mg none over this roadmap and these arm configurations, otherwise the least
-  /// straight line of any grasp. At most `cost`: a path that was shortened has left the roadmap.
+  /// No path with any grasp between these arm postures, in any of their whole turns, costs less: the least straight
+  /// line, angles without limits the short way round. At most `cost`.
   double lower_bound = 0;
   std::vector<Improvement> improvements;
-  std::vector<GraspReport> grasps;  ///< One per grasp; empty for those not checked when the run ended early.
-  std::vector<Contact> contacts;    ///< With invalid_start or invalid_goal: what touches there with the first grasp.
-  Rejections rejections;            ///< Rejected arm configurations, summed over all grasps and both ends.
-  std::vector<SearchTree> trees;    ///< With RrtStarMgOptions::keep_trees: those of grasps that are still candidates.
+  std::vector<std::string> warnings;  ///< What may have kept paths from being found: a roadmap in pieces.
+  std::vector<GraspReport> grasps;    ///< One per grasp; empty for those not checked when the run ended early.
+  std::vector<Contact> contacts;      ///< With invalid_start or invalid_goal: what touches there with the first grasp.
+  Rejections rejections;              ///< Rejected arm configurations, summed over all grasps and both ends.
+  std::vector<SearchTree> trees;      ///< With RrtStarMgOptions::keep_trees: those of grasps that are still candidates.
   ManipulationStats stats;
 };
 

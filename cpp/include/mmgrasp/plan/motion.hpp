@@ -30,6 +30,9 @@ struct MMGRASP_EXPORT MotionOptions {
   int max_iterations = 20000;
   /// Longest tree edge [rad]; 0: a share of the diagonal of the sampling bounds (RRT-Connect 1/20, others 1/5).
   double range = 0.0;
+  /// Chance that a roadmap planner (prm, prm_star, lazy_prm_star) draws a state around the start or a goal, which are
+  /// hardly joined otherwise; 0: uniform draws alone, as OMPL has them; in [0, 1).
+  double near_end_probability = 0.2;
   double base_margin = 2.0;  ///< With base joints: x and y are drawn this far around start and goals [m]; > 0.
   double edge_step = 0.02;   ///< Largest joint motion between two checks of an edge [rad or m]; > 0.
   /// Largest motion of any point of the robot (and of what is attached) between two checks of an edge [m]; > 0,
@@ -38,11 +41,11 @@ struct MMGRASP_EXPORT MotionOptions {
   std::optional<OrientationConstraint> orientation_constraint;  ///< Kept along the whole path, start and goal included.
   bool shorten = true;                                          ///< Shortcut the path (never leaves free space).
   int shorten_iterations = 200;                                 ///< Shortcuts tried at most; >= 0.
-  /// IK solutions wanted at each tool pose (and at each pose drawn in a region); > 0.
+  /// Arm postures wanted at each tool pose (and at each pose drawn in a region), each in all its turns; > 0.
   int ik_solutions = 8;
   int region_samples = 16;  ///< Tool poses drawn in each region; > 0.
   /// Called with each better path while a planner that keeps improving runs, and with the final one. All of them are
-  /// free at an eighth of the edge steps.
+  /// free at the finer steps of the last check.
   ImprovementCallback on_improvement;
   unsigned seed = 1;  ///< Same seed, same path, as long as the time limit does not end the run.
   void check() const;
@@ -56,8 +59,9 @@ struct MMGRASP_EXPORT MotionStats {
 
 struct MMGRASP_EXPORT MotionResult {
   Outcome outcome = Outcome::timeout;
-  /// Set if and only if solved; re-checked at an eighth of the edge steps. Has at least two waypoints, the first is the
-  /// start. Values that wrap run on continuously, so that the last waypoint equals its goal up to full turns of these.
+  /// Set if and only if solved; re-checked at a 64th of the edge steps, at an eighth when the planner is one that keeps
+  /// improving (PRM*, RRT* and their like). Has at least two waypoints, the first is the start. Values that wrap run on
+  /// continuously, so that the last waypoint equals its goal up to full turns of these.
   std::optional<JointPath> path;
   double cost = 0;                ///< The path's length.
   int goal_index = -1;            ///< Which of the goals the path reaches.
@@ -66,6 +70,7 @@ struct MMGRASP_EXPORT MotionResult {
   Rejections rejections;
   /// With invalid_start or invalid_goal: which joint is outside of its limits, its value and these; empty: none is.
   std::string beyond_limits;
+  int via_reached = 0;  ///< plan_motion_via(): waypoints that a path was found to; all of them when solved.
   MotionStats stats;
 };
 
@@ -111,5 +116,11 @@ MMGRASP_EXPORT MotionResult plan_motion(CollisionChecker& checker, const Eigen::
 MMGRASP_EXPORT MotionResult plan_motion_to(CollisionChecker& checker, const Eigen::VectorXd& start,
                                            const MotionGoals& goals, const MotionOptions& options = {},
                                            const Monitor& monitor = {});
+/// plan_motion_to() by way of `via`: to each of them in turn, then from the last one to a goal. The segments share the
+/// time limit, each has the iterations; each begins where the one before ended, so that values that wrap run on.
+/// Without a path the result is that of the segment that failed (invalid_goal: the waypoint itself is not allowed).
+MMGRASP_EXPORT MotionResult plan_motion_via(CollisionChecker& checker, const Eigen::VectorXd& start,
+                                            const std::vector<Eigen::VectorXd>& via, const MotionGoals& goals,
+                                            const MotionOptions& options = {}, const Monitor& monitor = {});
 
 }  // namespace mmgrasp

@@ -13,20 +13,23 @@ namespace mmgrasp {
 
 struct MMGRASP_EXPORT RoadmapOptions {
   int vertices = 5000;  ///< Configurations drawn; in [2, 10 million].
-  /// Vertices nearer than gamma (log n / n)^(1/d) are joined (P2 4.3.2.1) [rad or m]; > 0.
-  double gamma = 4;
-  /// > 0: each vertex is joined with that many nearest ones instead, and gamma does not count.
+  /// > 0: vertices nearer than gamma (log n / n)^(1/d) are joined (P2 4.3.2.1, which takes 4) [rad or m]. 0: each
+  /// vertex is joined with its k nearest ones, k = e (1 + 1/d) log n rounded up (k-nearest PRM*, Karaman and Frazzoli
+  /// 2011), which needs no scale and holds together on every robot; >= 0.
+  double gamma = 0;
+  /// > 0: each vertex is joined with that many nearest ones, and gamma does not count.
   int neighbours = 0;
   unsigned seed = 1;  ///< Same seed, same roadmap.
   void check() const;
 };
 
-/// Size and connectivity of a roadmap; shows whether gamma is large enough for PRM*'s optimality.
+/// Size and connectivity of a roadmap; shows whether a gamma is large enough for PRM*'s optimality.
 struct MMGRASP_EXPORT RoadmapStatistics {
   double mean_degree = 0;
   int components = 0;         ///< Connected components.
   int largest_component = 0;  ///< Vertices in the largest one.
-  double radius = 0;          ///< Connection radius; the longest edge with `neighbours`.
+  int neighbours = 0;         ///< Nearest vertices that each is joined with; 0: all within the radius.
+  double radius = 0;          ///< Connection radius; with nearest neighbours the longest edge.
   double volume = 0;          ///< Volume of the sampling bounds.
   double gamma_star = 0;      ///< PRM* asks for gamma > 2 (1 + 1/d)^(1/d) (volume / unit ball)^(1/d).
 };
@@ -68,9 +71,11 @@ class MMGRASP_EXPORT Roadmap {
   std::pair<int, int> ends(int edge) const;
   /// Vertices a new configuration would be joined with, ascending; `out` is overwritten.
   void near(const Eigen::VectorXd& q, std::vector<int>& out) const;
-  /// Longest edge a new configuration would get; 0 with `neighbours`, where there is no such bound.
+  /// Longest edge a new configuration would get; 0 with nearest neighbours, where there is no such bound.
   double radius() const;
   RoadmapStatistics statistics() const;
+  /// Says so when less than 99 % of the vertices hang together, and what to set; empty otherwise.
+  std::string warning() const;
 
   struct Data;
   explicit Roadmap(std::shared_ptr<const Data> data);

@@ -14,7 +14,7 @@ struct MMGRASP_EXPORT RrtStarMgOptions {
   /// Longest edge grown towards a sample (P2's eta), and longest connection radius [rad or m]; > 0.
   double step = 1.5;
   /// > 0: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined, at most `step`. 0: all within the radius that
-  /// would hold k = 4 (1 + 1/d) n^(1/(d+1)) log n of n vertices spread evenly in the informed set, and the k nearest at
+  /// would hold k = (d + 1) / 2 n^(1/(d+1)) log n of n vertices spread evenly in the informed set, and the k nearest at
   /// least.
   double gamma = 0;
   /// Once a path is known: chance to grow the tree of the grasp that was drawn with the sample (exploration) and not

@@ -21,7 +21,7 @@ struct MMGRASP_EXPORT StraightLineOptions {
 };
 
 struct MMGRASP_EXPORT StraightLineResult {
-  Outcome outcome = Outcome::infeasible;
+  Outcome outcome = Outcome::not_found;
   std::optional<JointPath> path;  ///< From q_start to T_world_to; set if and only if solved.
   double fraction = 0;            ///< How far along the line the last good waypoint lies, in [0, 1].
   Rejection cause =
@@ -32,7 +32,7 @@ struct MMGRASP_EXPORT StraightLineResult {
 
 /// The tool moves on a straight line (rotation by slerp) from the pose of q_start to T_world_to, by dense IK in small
 /// steps. Between waypoints, too, it stays within 1e-4 m of the line (with the default IK tolerance), and edges are
-/// free at an eighth of edge_step. The outcome is solved, infeasible, invalid_start or stopped. Throws InvalidInput on
+/// free at an eighth of edge_step. The outcome is solved, not_found, invalid_start or stopped. Throws InvalidInput on
 /// bad lengths, poses or options, and on a group with a diff-drive base, which cannot follow such a path.
 MMGRASP_EXPORT StraightLineResult plan_straight_line(CollisionChecker& checker, const Eigen::VectorXd& q_start,
                                                      const Pose& T_world_to, const StraightLineOptions& options = {},

@@ -32,7 +32,9 @@ struct MMGRASP_EXPORT IkOptions {
 };
 
 struct MMGRASP_EXPORT IkResult {
-  Outcome outcome = Outcome::infeasible;
+  /// infeasible only when the pose is farther away than all links stretched; not_found, also when every branch of a
+  /// closed form was refused.
+  Outcome outcome = Outcome::not_found;
   Eigen::VectorXd q;          ///< Set if and only if solved; inside limits, verified by forward kinematics.
   double position_error = 0;  ///< [m] of q, or of the best attempt.
   double rotation_error = 0;  ///< [rad]
@@ -62,9 +64,12 @@ MMGRASP_EXPORT IkResult solve_ik(const JointGroup& group, const Pose& T_world_ti
 
 /// Up to `count` distinct solutions, farthest-apart first. For chains of six joints whose wrist allows it (and for
 /// seven with one joint sampled) every branch is computed in closed form, polished and confirmed, so the set is
-/// complete; otherwise random restarts search for solutions that differ by more than 0.1 rad.
+/// complete; otherwise random restarts search for solutions that differ by more than 0.1 rad. Solutions are arm
+/// postures: where limits leave a joint more than one turn, each comes in the turns nearest to the middle of the limits
+/// alone, and with `all_turns` in every whole turn of its joints within limits, one posture after the other; `count`
+/// counts postures.
 MMGRASP_EXPORT std::vector<Eigen::VectorXd> solve_ik_all(const JointGroup& group, const Pose& T_world_tip, int count,
                                                          const IkOptions& options = {},
-                                                         const ConfigurationFilter& valid = {});
+                                                         const ConfigurationFilter& valid = {}, bool all_turns = false);
 
 }  // namespace mmgrasp

@@ -41,6 +41,7 @@ struct MMGRASP_EXPORT GroupDescription {
   std::vector<std::string> joints;  ///< Movable, non-mimic joints in order from base to tip.
   std::string base_link;
   std::string tip_link;
+  std::vector<std::string> links = {};  ///< Carried by the joints that the SRDF names, fixed and mimic ones too.
 };
 
 struct MMGRASP_EXPORT EndEffectorDescription {

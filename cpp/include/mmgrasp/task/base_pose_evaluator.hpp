@@ -41,7 +41,8 @@ class MMGRASP_EXPORT BasePoseEvaluator {
   /// a new one. Throws InvalidInput for a part that is removed already.
   BasePoseEvaluator without(const std::vector<PartRef>& removed) const;
 
-  /// What the robot at home with fingers at rest collides with when its base is at this pose (x, y, theta).
+  /// What the robot at home with fingers at rest collides with when its base is at this pose (x, y, theta); `limits`
+  /// outside the workspace of the base.
   Rejection home(const Eigen::Vector3d& base_pose);
   /// Grasps are tried in order, `first_grasp` (when >= 0) before the others: that saves time and changes only which
   /// grasp is named. The robot at home is not checked.

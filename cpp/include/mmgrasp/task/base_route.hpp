@@ -13,7 +13,8 @@ namespace mmgrasp {
 
 struct MMGRASP_EXPORT BaseRouteOptions {
   BaseKind base = BaseKind::diff_drive;
-  double resolution = 0.10;  ///< Cell edge of the search [m]; > 0.
+  /// Cell edge of the search [m]; > 0. Made coarser where the floor would have more than 500,000 cells.
+  double resolution = 0.10;
   double check_step = 0.02;  ///< Largest motion of the base between two collision checks [m]; > 0.
   Eigen::AlignedBox2d
       bounds;  ///< The search stays in here [m]; empty: the scene's bounds plus start and goal, grown by 2 m.
@@ -23,15 +24,17 @@ struct MMGRASP_EXPORT BaseRouteOptions {
 /// A drive of the base as poses joined by primitive motions: for diff_drive either a straight drive along the heading
 /// (forwards or backwards) or a turn on the spot; for omni any straight line in (x, y, theta).
 struct MMGRASP_EXPORT BasePath {
-  Outcome outcome = Outcome::infeasible;
+  Outcome outcome = Outcome::not_found;
   std::vector<Eigen::Vector3d> poses;  ///< x, y, theta; theta is continuous (not wrapped) along the path.
   double length = 0;                   ///< Driven distance [m].
   double turning = 0;                  ///< Sum of absolute heading changes [rad].
 };
 
 /// Plans a drive of the whole robot with its arm at `home`, collision-checked in 3-D: A* over a grid of base poses,
-/// then shortened and checked again at half the step. The checker's group is the arm, without base joints. No way is a
-/// value: invalid_start, invalid_goal or infeasible. Throws InvalidInput for options out of range.
+/// then shortened and checked again at half the step. The base stays in its workspace (BaseLimits). The checker's group
+/// is the arm, without base joints. No way is a value: invalid_start, invalid_goal, not_found (the search has a finite
+/// resolution), infeasible for a fixed base that should drive, or timeout when 400,000 base poses were tried and others
+/// are left. Throws InvalidInput for options out of range.
 /// @code
 ///   CollisionChecker checker(arm, world);
 ///   const BasePath path = plan_base_route(checker, home, {0, 0, 0}, {4, 2, 1.57}, {});

@@ -67,7 +67,9 @@ struct MMGRASP_EXPORT Stop {
 };
 
 struct MMGRASP_EXPORT StopSet {
-  Outcome outcome = Outcome::infeasible;  ///< Solved: proven least; approximate: a cover that may have too many stops.
+  /// solved: proven least; approximate: a cover that may have too many stops; infeasible: proven that a tray is in no
+  /// stop, for the regions as given.
+  Outcome outcome = Outcome::not_found;
   std::vector<Stop> stops;                ///< Not ordered yet.
   int lower_bound = 0;                    ///< Proven least number of stops.
   std::vector<TrayId> unreachable_trays;  ///< Trays that no stop can serve.

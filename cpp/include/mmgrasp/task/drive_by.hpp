@@ -79,7 +79,7 @@ struct MMGRASP_EXPORT DriveByEvent {
 };
 
 struct MMGRASP_EXPORT DriveByResult {
-  Outcome outcome = Outcome::infeasible;
+  Outcome outcome = Outcome::not_found;
   std::shared_ptr<const WholeBodyTrajectory> trajectory;  ///< Null when there was not even a guess.
   std::vector<DriveByEvent> events;                       ///< One per task.
   std::vector<Violation> violations;                      ///< The trajectory's, one per kind.

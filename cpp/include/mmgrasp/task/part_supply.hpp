@@ -45,7 +45,7 @@ struct MMGRASP_EXPORT Obstruction {
 
 /// A whole plan: where the base stops, how it drives there, and every pick.
 struct MMGRASP_EXPORT PartSupplyPlan {
-  Outcome outcome = Outcome::infeasible;
+  Outcome outcome = Outcome::not_found;
   BaseGrid grid;
   std::vector<BaseRegion> regions;  ///< One a tray, in the problem's order.
   Intersections intersections;      ///< Robust sets of trays: all when there are not too many, else the maximal ones.

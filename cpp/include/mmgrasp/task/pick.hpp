@@ -29,7 +29,7 @@ struct MMGRASP_EXPORT PickMotion {
 /// Home - transit to the pre-grasp - approach straight - (close) - lift straight - transfer to where the object goes -
 /// (open) - retreat to home.
 struct MMGRASP_EXPORT Pick {
-  Outcome outcome = Outcome::infeasible;
+  Outcome outcome = Outcome::not_found;
   int stop = -1;                    ///< Index of the plan's stop; -1: of no plan.
   PartRef part;                     ///< The part of a part-supply problem; no tray for other objects.
   int grasp = -1;                   ///< Index into the object's grasps.

@@ -82,7 +82,7 @@ struct MMGRASP_EXPORT PlatformLocationsCounts {
 };
 
 struct MMGRASP_EXPORT PlatformLocations {
-  Outcome outcome = Outcome::infeasible;
+  Outcome outcome = Outcome::not_found;
   Eigen::VectorXd q_pick, q_place;  ///< Base and arm; set if and only if solved, every constraint checked again.
   double cost = 0;                  ///< Base travel [m] + turn_weight x turn [rad].
   double travel = 0, turn = 0;      ///< [m], [rad]

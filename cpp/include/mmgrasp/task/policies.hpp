@@ -63,10 +63,10 @@ MMGRASP_EXPORT OptimisedOrder optimised_order(const PartRegions& parts, const st
 
 /// One round of pick and place.
 struct MMGRASP_EXPORT PolicyRound {
-  Outcome outcome = Outcome::infeasible;  ///< The outcome of plan_stops_exact().
-  std::vector<Stop> stops;                ///< Their trays are indices into the picking order.
-  double mean_radius = 0;                 ///< Mean over the stops: P1's robustness_i [m].
-  double seconds = 0;                     ///< Spent between the rounds: regions and stops.
+  Outcome outcome = Outcome::not_found;  ///< The outcome of plan_stops_exact().
+  std::vector<Stop> stops;               ///< Their trays are indices into the picking order.
+  double mean_radius = 0;                ///< Mean over the stops: P1's robustness_i [m].
+  double seconds = 0;                    ///< Spent between the rounds: regions and stops.
   /// The parts picked in this round can be grasped from everywhere in the discs of their stops, as `actual` tells.
   bool reliable = false;
 };

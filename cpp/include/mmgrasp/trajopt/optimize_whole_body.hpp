@@ -55,7 +55,7 @@ struct MMGRASP_EXPORT Violation {
 /// A trajectory, how sure it is, and which constraints it breaks by how much.
 struct MMGRASP_EXPORT WholeBodyResult {
   /// solved only after check_whole_body found every constraint kept; approximate: kept, optimality not shown.
-  Outcome outcome = Outcome::infeasible;
+  Outcome outcome = Outcome::not_found;
   std::shared_ptr<const WholeBodyTrajectory> trajectory;  ///< The answer or, not solved, the best iterate.
   std::vector<Violation> violations;                      ///< The trajectory's, one per kind.
   int iterations = 0;

@@ -19,7 +19,8 @@ struct MMGRASP_EXPORT PathToCheck {
   std::vector<std::string> joints;             ///< One a value of a waypoint.
   std::map<std::string, double> other_joints;  ///< Where the others stand; those not named at zero.
   std::vector<CheckedBody> bodies;
-  std::vector<Eigen::VectorXd> waypoints;  ///< Joined by straight lines in joint space.
+  std::vector<CheckedPair> allowed_collisions;  ///< Links or bodies that may touch.
+  std::vector<Eigen::VectorXd> waypoints;       ///< Joined by straight lines in joint space.
 };
 
 struct MMGRASP_EXPORT PathCheckResult {

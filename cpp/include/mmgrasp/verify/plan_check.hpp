@@ -82,6 +82,13 @@ struct MMGRASP_EXPORT CheckedGrid {
   std::vector<double> headings;
 };
 
+/// How base poses for a tray were searched.
+struct MMGRASP_EXPORT CheckedTray {
+  std::vector<double> headings;                                   ///< Base headings tried [rad].
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();               ///< Of the tray, in the world [m].
+  double max_distance = std::numeric_limits<double>::infinity();  ///< Base poses farther from it were left out [m].
+};
+
 /// What a plan says about a leg of its route.
 struct MMGRASP_EXPORT CheckedLegFigures {
   double length = 0, turning = 0, duration = 0;
@@ -95,6 +102,9 @@ struct MMGRASP_EXPORT CheckedIntersection {
   double radius = 0;
 };
 
+/// Two that may touch: links, obstacles or parts by their names.
+using CheckedPair = std::pair<std::string, std::string>;
+
 /// A whole plan, as read from plan.json. Knows nothing of how it was made.
 struct MMGRASP_EXPORT PlanToCheck {
   explicit PlanToCheck(RobotSource checked_robot) : robot(std::move(checked_robot)) {}
@@ -107,7 +117,14 @@ struct MMGRASP_EXPORT PlanToCheck {
   std::map<std::string, double> other_joints;
   double max_opening = 0.1, clearance = 0.01;
   Eigen::Vector3d approach = Eigen::Vector3d::UnitX();  ///< Unit axis in the tip frame.
+  Eigen::Vector3d closing = Eigen::Vector3d::UnitY();   ///< Unit axis in the tip frame along which the pads close.
+  double finger_depth = 0;       ///< Size of a pad along the approach axis [m]; 0: widths are not compared with parts.
+  double finger_width = 0;       ///< Size of a pad across approach and closing [m]; 0: likewise.
+  double approach_distance = 0;  ///< Least straight way to a grasp [m]; >= 0.
+  double lift_height = 0.01;     ///< Least straight way up after closing [m]; > 0.
   std::vector<CheckedFinger> fingers;
+  /// Openings at equal steps of the finger joints from closed to open [m], rising; empty: linear from 0 to max_opening.
+  std::vector<double> openings;
   std::vector<std::string> finger_links;
   Eigen::VectorXd home;
   Eigen::Vector3d start = Eigen::Vector3d::Zero(), goal = Eigen::Vector3d::Zero();
@@ -117,14 +134,19 @@ struct MMGRASP_EXPORT PlanToCheck {
   double drop_gap = 0.03;
   std::vector<CheckedBody> obstacles;
   std::vector<CheckedPart> parts;
+  std::vector<CheckedPair> allowed_collisions;  ///< Not looked at: what else these touch is.
+  /// The planner kept bodies apart by more than touching: cells beside a region, which serve without that, prove
+  /// nothing.
+  bool padded = false;
   std::vector<std::string> trays;
+  std::map<std::string, CheckedTray> searched;  ///< By tray; one that is not named may have any region.
   CheckedGrid grid;
   std::vector<CheckedRegion> regions;
   std::vector<CheckedStop> stops;
   std::vector<std::vector<Eigen::Vector3d>> route;  ///< stops.size() + 1 legs of base poses.
   std::vector<CheckedPick> picks;
   std::vector<CheckedDriveBy> drive_by;  ///< What of route and picks is done in passing.
-  double closing_speed = 0.1;            ///< How fast the opening shrinks [m/s], for drive_by.
+  double closing_speed = 0.1;            ///< How fast the gripper's opening shrinks [m/s], for drive_by.
   int lower_bound = 0;
   std::vector<CheckedLegFigures> route_figures;  ///< One a leg; empty: not given.
   std::vector<CheckedIntersection> intersections;
@@ -138,6 +160,9 @@ struct MMGRASP_EXPORT PlanCheckOptions {
   double rotation_tolerance = 1e-3;  ///< How far a grasp may be turned [rad]; > 0.
   int samples = 1000;                ///< Base poses drawn in the uncertainty disc of each stop; > 0.
   double required_rate = 0.999;      ///< Share of them from which every target part has a grasp; in (0, 1].
+  /// Base poses drawn in each region, and cells drawn beside it; also poses drawn between the uncertainty disc of a
+  /// stop and the radius that the plan claims. 0: none.
+  int region_samples = 20;
   unsigned seed = 20240607;
   int threads = 0;
   void check() const;
@@ -149,22 +174,27 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 ///   `robot-differs` (a link or joint that was planned for is not the one of the URDF);
 /// - the scene: `part-overlap` (a part in another one or in an obstacle, deeper than 1e-4 m);
 /// - home: `home-limit`, `home-collision` (robot with itself), `start-collision`, `finger-limit`,
-///   `finger-links` (fewer than two), `limit-exceeds-robot` (velocity limits above the URDF's);
+///   `finger-links` (fewer than two), `limit-exceeds-robot` (velocity limits above the URDF's), `base-workspace`
+///   (start, goal, a stop with its uncertainty or a drive outside the base's workspace);
 /// - which part is picked: `part-unknown`, `part-forgotten`, `part-repeated`, `part-not-target`, `wrong-tray`,
 ///   `wrong-stop`, `stop-order`, `grasp-invalid` (no such index), `tray-unknown`, `tray-forgotten`, `tray-repeated`;
 /// - one arm motion: `motion-order`, `motion-shape` (lengths, NaN), `times`, `too-long`, `position-limit`,
 ///   `velocity-limit`, `acceleration-limit`, `discontinuous`, `not-at-rest`, `opening`, `holding`, `self-collision`,
 ///   `scene-collision`, `held-collision`;
-/// - what it is for: `not-straight` (approach), `grasp-missed`, `grasp-empty` (fewer than two fingers close on it),
-///   `no-lift`, `release-outside`, `release-tilted`, `release-height`;
+/// - what it is for: `not-straight` (approach, lift), `short-approach`, `grasp-missed`, `grasp-empty` (fewer than two
+///   fingers close on it), `grasp-width` (pads at this width would stand in the part, or clear of it), `no-lift` (or
+///   one that is too low), `release-outside`, `release-tilted`, `release-height`;
 /// - a motion in passing, besides those of arm motions: `drive-by-pick` (not the first of its stop, twice, unknown),
 ///   `closing-time` (outside the motion, or faster than the fingers), `base-limit` (velocity or acceleration of base or
 ///   wheels), `base-off-course` (where its velocities do not lead);
 /// - the route: `route-legs` (their number), `route-ends`, `route-not-driveable`, `route-collision`, `too-long`;
 /// - stops: `region-malformed`, `region-missing`, `region-too-small`, `stop-heading`, `stop-radius`,
-///   `stop-outside-region`, `not-minimal`, `lower-bound`, `not-robust`;
-/// - what only describes: `route-figures` (length, turning, duration), `acceleration` (stored ones above the limits),
-///   `bad-figures` (robustness rate outside [0, 1], intersections that lie elsewhere).
+///   `stop-outside-region`, `not-minimal`, `lower-bound`, `not-robust`, `region-inflated` (base poses in it that serve
+///   nothing), `region-incomplete` (cells left out that serve everything: the least number of stops is then not
+///   proven);
+/// - what only describes: `route-figures` (length, turning, duration), `acceleration` (stored ones above the limits or
+///   not those of the velocities), `bad-figures` (robustness rate below what is required or above 1, intersections that
+///   lie elsewhere).
 struct MMGRASP_EXPORT Fault {
   std::string code;
   std::string where;    ///< E.g. "pick 3 (A/bracket_02), lift, t = 1.24 s".
@@ -200,5 +230,10 @@ struct MMGRASP_EXPORT PlanCheckResult {
 /// those said to touch never.
 MMGRASP_EXPORT PlanCheckResult check_plan(const PlanToCheck& plan, const PlanCheckOptions& options = {},
                                           const Monitor& monitor = {});
+
+/// Indices of the pairs of bodies that overlap by more than 1e-4 m, each pair once and in ascending order: bodies that
+/// just touch do not. Throws InvalidInput for an unusable shape.
+MMGRASP_EXPORT std::vector<std::pair<std::size_t, std::size_t>> overlapping_bodies(
+    const std::vector<CheckedBody>& bodies);
 
 }  // namespace mmgrasp::verify

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 
+#include "collision/narrow/field_query.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp::detail {
 
 namespace {
+
+// Padding pushes out the corners of a box by up to sqrt(3) of it.
+constexpr double kCornerGrowth = 1.75;
 
 BodyShape place_on_link(const LinkShape& shape, const Rigid& in_link, int body, int link, double padding) {
   BodyShape out;
@@ -14,6 +18,7 @@ BodyShape place_on_link(const LinkShape& shape, const Rigid& in_link, int body, 
   out.link = link;
   out.solid = shared_solid(shape.shape, 0);
   out.padded = padding > 0 ? shared_solid(shape.shape, padding) : out.solid;
+  out.growth = kCornerGrowth * padding;
   out.bounds = shared_bounds(*out.solid, shape.shape);
   out.place(in_link);
   return out;
@@ -96,14 +101,16 @@ std::vector<int> default_touch_links(const Robot& robot, int link) {
 }
 
 Snapshot::Snapshot(const Robot& robot_in, const World& world_in, const CheckerOptions& options_in)
-    : robot(robot_in), world(world_in), options(options_in) {
-  add_robot();
+    : robot(robot_in), world(world_in), options(options_in), allowed_pairs(robot, world) {
+  const BodyPadding padding(robot, world);
+  add_robot(padding);
   first_attached = static_cast<int>(shapes.size());
-  add_attached();
-  add_scene();
+  add_attached(padding);
+  add_scene(padding);
+  mark_allowed();
 }
 
-void Snapshot::add_robot() {
+void Snapshot::add_robot(const BodyPadding& padding) {
   for (std::size_t link = 0; link < robot.links().size(); ++link) {
     const Link& description = robot.links()[link];
     if (description.collisions.empty()) continue;
@@ -113,12 +120,12 @@ void Snapshot::add_robot() {
     bodies.push_back(body);
     for (const LinkShape& shape : description.collisions) {
       shapes.push_back(place_on_link(shape, Rigid(shape.T_link_shape), static_cast<int>(bodies.size()) - 1,
-                                     static_cast<int>(link), options.padding));
+                                     static_cast<int>(link), std::max(options.padding, padding.link(body.name))));
     }
   }
 }
 
-void Snapshot::add_attached() {
+void Snapshot::add_attached(const BodyPadding& padding) {
   for (const auto& [name, object] : world.attached()) {
     if (!robot.has_link(object.link)) {
       throw InvalidInput("attached object '" + name + "': link = " + object.link + ": is no link of robot '" +
@@ -133,9 +140,8 @@ void Snapshot::add_attached() {
     std::sort(body.touch_links.begin(), body.touch_links.end());
     bodies.push_back(body);
     for (const LinkShape& shape : object.shapes) {
-      // Padding is a safety margin of the robot; a part it carries may stand closer to the tray it came from.
       shapes.push_back(place_on_link(shape, in_link(object.T_link_object, shape), static_cast<int>(bodies.size()) - 1,
-                                     body.link, 0));
+                                     body.link, padding.attached(name)));
     }
   }
 }
@@ -145,7 +151,7 @@ void Snapshot::place_attached(const Pose& T_link_object) {
   for (const LinkShape& part : world.attached().begin()->second.shapes) (shape++)->place(in_link(T_link_object, part));
 }
 
-void Snapshot::add_scene() {
+void Snapshot::add_scene(const BodyPadding& padding) {
   std::vector<SceneShape> others;
   std::vector<ScenePacks::Item> items;
   for (const auto& [name, object] : world.objects()) {
@@ -154,20 +160,43 @@ void Snapshot::add_scene() {
       SceneShape out;
       out.object = static_cast<int>(object_names.size()) - 1;
       out.T_world = Rigid(object.T_world_object) * Rigid(shape.T_link_shape);
-      out.solid = shared_solid(shape.shape, 0);
+      out.bare = shared_solid(shape.shape, 0);
+      const double growth = padding.object(name);
+      out.solid = growth > 0 ? shared_solid(shape.shape, growth) : out.bare;
       if (out.solid->never_collides()) continue;
       out.sphere_centre = out.T_world * out.solid->sphere_centre;
       if (out.solid->kind == SolidKind::plane || out.solid->kind == SolidKind::voxels) {
         others.push_back(out);
         continue;
       }
-      items.push_back({{out.T_world.R, out.T_world * out.solid->box_centre}, out.solid->box_half});
+      items.push_back(
+          {{out.T_world.R, out.T_world * out.solid->box_centre}, out.solid->box_half.array() + out.solid->margin});
       scene.push_back(out);
     }
+  }
+  for (const auto& [name, obstacle] : world.fields()) {
+    SceneShape out;
+    out.object = static_cast<int>(object_names.size());
+    object_names.push_back(name);
+    out.T_world = Rigid(obstacle.T_world_field);
+    out.bare = make_field_solid(obstacle, 0);
+    out.solid = make_field_solid(obstacle, padding.object(name));
+    others.push_back(out);
   }
   packed = static_cast<int>(scene.size());
   packs = ScenePacks(items);
   scene.insert(scene.end(), others.begin(), others.end());
+}
+
+void Snapshot::mark_allowed() {
+  if (allowed_pairs.empty()) return;
+  for (BodyShape& shape : shapes) {
+    for (std::size_t i = 0; i < scene.size(); ++i) {
+      if (!allowed_pairs(bodies[shape.body].name, object_names[scene[i].object])) continue;
+      shape.may_touch.resize(scene.size(), 0);
+      shape.may_touch[i] = 1;
+    }
+  }
 }
 
 }  // namespace mmgrasp::detail

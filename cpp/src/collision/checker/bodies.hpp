@@ -9,6 +9,7 @@
 #include "collision/broad/sphere_cover.hpp"
 #include "collision/narrow/solid.hpp"
 #include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/collision/detail/named_bodies.hpp"
 #include "mmgrasp/core/detail/rigid.hpp"
 #include "mmgrasp/robot/robot.hpp"
 
@@ -19,9 +20,11 @@ struct BodyShape {
   int body = 0;
   int link = 0;
   Rigid in_link;
-  std::shared_ptr<const Solid> solid;                       ///< Against the robot itself.
-  std::shared_ptr<const Solid> padded;                      ///< Against the scene.
-  std::shared_ptr<const BoundingVolumes> bounds;            ///< Cover of the solid without padding, in its frame.
+  std::shared_ptr<const Solid> solid;             ///< Against the robot itself.
+  std::shared_ptr<const Solid> padded;            ///< Against the scene.
+  double growth = 0;                              ///< No point of `padded` is farther from `solid` [m].
+  std::vector<char> may_touch;                    ///< Per shape of the scene: the two are not checked. Empty: all are.
+  std::shared_ptr<const BoundingVolumes> bounds;  ///< Cover of the solid without padding, in its frame.
   Eigen::Vector3d sphere_centre = Eigen::Vector3d::Zero();  ///< Centre of the bounding sphere in the link.
 
   /// Sets the pose in the link and what follows from it.
@@ -40,7 +43,8 @@ struct Body {
 struct SceneShape {
   int object = 0;
   Rigid T_world;
-  std::shared_ptr<const Solid> solid;
+  std::shared_ptr<const Solid> solid;                       ///< With its padding: whether it collides.
+  std::shared_ptr<const Solid> bare;                        ///< Without: how far away it is.
   Eigen::Vector3d sphere_centre = Eigen::Vector3d::Zero();  ///< Centre of the bounding sphere, world frame.
 };
 
@@ -53,9 +57,15 @@ struct MMGRASP_EXPORT Snapshot {
   /// of the snapshot must follow (PairPlan::place_attached). `world` keeps the pose it came with.
   void place_attached(const Pose& T_link_object);
 
+  /// A shape and one of the scene that World::allow() takes out of all checks.
+  bool allowed(int shape, int scene_shape) const {
+    return !shapes[shape].may_touch.empty() && shapes[shape].may_touch[scene_shape] != 0;
+  }
+
   Robot robot;
   World world;
   CheckerOptions options;
+  AllowedPairs allowed_pairs;
   std::vector<Body> bodies;
   std::vector<BodyShape> shapes;
   int first_attached = 0;  ///< Shapes from here on belong to attached objects.
@@ -65,9 +75,10 @@ struct MMGRASP_EXPORT Snapshot {
   ScenePacks packs;
 
  private:
-  void add_robot();
-  void add_attached();
-  void add_scene();
+  void add_robot(const BodyPadding& padding);
+  void add_attached(const BodyPadding& padding);
+  void add_scene(const BodyPadding& padding);
+  void mark_allowed();
 };
 
 /// Links that an attached object may touch unless it names its own: its link, all links below it, and the whole end

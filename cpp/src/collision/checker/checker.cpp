@@ -9,8 +9,23 @@ namespace mmgrasp {
 
 using detail::check_configuration;
 
+namespace {
+
+void check_edge_input(const JointGroup& group, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double step) {
+  check_configuration(group, q0, "q0");
+  check_configuration(group, q1, "q1");
+  require(std::isfinite(step) && step > 0, "step", step, "must be finite and > 0 [rad or m]");
+}
+
+}  // namespace
+
 void CheckerOptions::check() const {
   require(std::isfinite(padding) && padding >= 0, "padding", padding, "must be finite and >= 0 [m]");
+}
+
+std::string describe(const Contact& contact) {
+  const std::string a = "'" + contact.a + "'", b = "'" + contact.b + "'";
+  return contact.by_padding ? a + " comes closer to " + b + " than their padding" : a + " touches " + b;
 }
 
 CollisionChecker::CollisionChecker(const JointGroup& group, const World& world, const CheckerOptions& options) {
@@ -33,6 +48,9 @@ const JointGroup& CollisionChecker::group() const {
 }
 const World& CollisionChecker::world() const {
   return impl_->engine.placement().snapshot().world;
+}
+const CheckerOptions& CollisionChecker::options() const {
+  return impl_->engine.options();
 }
 std::size_t CollisionChecker::queries() const {
   return impl_->engine.queries();
@@ -87,10 +105,14 @@ std::vector<DistanceResult> CollisionChecker::distances(const Eigen::VectorXd& q
 }
 
 bool CollisionChecker::edge_is_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double step) {
-  check_configuration(group(), q0, "q0");
-  check_configuration(group(), q1, "q1");
-  require(std::isfinite(step) && step > 0, "step", step, "must be finite and > 0 [rad or m]");
-  return impl_->engine.edge_is_free(q0, q1, step);
+  check_edge_input(group(), q0, q1, step);
+  return impl_->engine.is_free(q0) && impl_->engine.edge_stays_free(q0, q1, step);
+}
+
+bool CollisionChecker::edge_stays_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double step,
+                                       bool end_is_free) {
+  check_edge_input(group(), q0, q1, step);
+  return impl_->engine.edge_stays_free(q0, q1, step, end_is_free);
 }
 
 }  // namespace mmgrasp

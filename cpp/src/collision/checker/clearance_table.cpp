@@ -103,8 +103,11 @@ double ClearanceTable::measured(int level, int i, int j) const {
 
 bool ClearanceTable::collide(const Rigid& b_in_a, double more) const {
   const Rigid T_a;
-  if (a_.sphere_radius < b_.sphere_radius) return meshes_collide(a_, T_a, *bounds_a_.fine(a_).grid, b_, b_in_a, more);
-  return meshes_collide(b_, b_in_a, *bounds_b_.fine(b_).grid, a_, T_a, more);
+  Closing closing;
+  closing.most = more;
+  if (a_.sphere_radius < b_.sphere_radius)
+    return meshes_collide(a_, T_a, *bounds_a_.fine(a_).grid, b_, b_in_a, closing);
+  return meshes_collide(b_, b_in_a, *bounds_b_.fine(b_).grid, a_, T_a, closing);
 }
 
 std::shared_ptr<const ClearanceTable> shared_clearance_table(const TableBody& a, const TableBody& b,

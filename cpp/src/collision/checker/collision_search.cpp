@@ -2,10 +2,10 @@
 
 #include "collision/checker/collision_search.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "collision/checker/pair_tests.hpp"
 #include "collision/narrow/stages.hpp"
 
 namespace mmgrasp::detail {
@@ -44,7 +44,8 @@ void CollisionSearch::gather_near(const Placement& placement, int first, int las
   }
 }
 
-bool CollisionSearch::body_is_free(Placement& placement, int body, double motion, bool& proven) {
+bool CollisionSearch::body_is_free(Placement& placement, int body, const Closing& closing, bool& proven) {
+  const double motion = closing.most;
   const ScenePacks& packs = placement.snapshot().packs;
   const SphereRows sphere = placement.spheres().from(body);
   const int s = placement.plan().moving[body];
@@ -59,7 +60,7 @@ bool CollisionSearch::body_is_free(Placement& placement, int body, double motion
       if (far) {
         if (!detail::scene_collides(placement, s, other)) continue;
       } else {
-        const CoverAnswer answer = scene_within(placement, s, other, motion);
+        const CoverAnswer answer = scene_within(placement, s, other, closing);
         if (answer == kApart) continue;
         proven = false;
         if (answer == kMaybe) continue;
@@ -134,7 +135,12 @@ bool CollisionSearch::moving_hits_scene(Placement& placement) {
 }
 
 bool CollisionSearch::self_collides(Placement& placement) {
+  return self_collides_for_certain(placement) || unsure_pairs_collide(placement);
+}
+
+bool CollisionSearch::self_collides_for_certain(Placement& placement) {
   const PairPlan& plan = placement.plan();
+  unsure_pairs_.clear();
   if (!constant_self_) {
     constant_self_ = false;
     for (const ShapePair& pair : plan.constant) {
@@ -142,8 +148,6 @@ bool CollisionSearch::self_collides(Placement& placement) {
     }
   }
   if (*constant_self_) return true;
-  if (runs(kLastCollisionStage) && last_pair_ >= 0 && pair_collides(placement, plan.varying[last_pair_])) return true;
-  unsure_.clear();
   kernels().sphere_pairs_meet(plan.blocks.data(), static_cast<int>(plan.blocks.size()), placement.spheres(),
                               pair_masks_.data());
   for (std::size_t block = 0; block < plan.blocks.size(); ++block) {
@@ -153,16 +157,24 @@ bool CollisionSearch::self_collides(Placement& placement) {
       const CoverAnswer answer = pair_by_covers(placement, plan.varying[i]);
       if (answer == kApart) continue;
       if (answer == kMaybe) {
-        unsure_.push_back({0, i});
+        unsure_pairs_.push_back(i);
         continue;
       }
       last_pair_ = i;
       return true;
     }
   }
-  for (const Near& entry : unsure_) {
-    if (!pair_collides_exactly(placement, plan.varying[entry.other])) continue;
-    last_pair_ = entry.other;
+  return false;
+}
+
+bool CollisionSearch::unsure_pairs_collide(Placement& placement) {
+  if (runs(kLastCollisionStage)) {
+    const auto last = std::find(unsure_pairs_.begin(), unsure_pairs_.end(), last_pair_);
+    if (last != unsure_pairs_.end()) std::iter_swap(unsure_pairs_.begin(), last);
+  }
+  for (const int pair : unsure_pairs_) {
+    if (!pair_collides_exactly(placement, placement.plan().varying[pair])) continue;
+    last_pair_ = pair;
     return true;
   }
   return false;
@@ -178,8 +190,10 @@ bool CollisionSearch::is_free(Placement& placement) {
   if (runs(kLastCollisionStage) && options.check_scene && last_shape_ >= 0 &&
       detail::scene_collides(placement, last_shape_, last_scene_))
     return false;
-  if (options.check_self && self_collides(placement)) return false;
-  return !(options.check_scene && scene_collides(placement));
+  // What costs most, meshes that come close, is left for last.
+  if (options.check_self && self_collides_for_certain(placement)) return false;
+  if (options.check_scene && scene_collides(placement)) return false;
+  return !(options.check_self && unsure_pairs_collide(placement));
 }
 
 std::optional<Contact> CollisionSearch::first_contact(Placement& placement) {
@@ -194,7 +208,8 @@ std::optional<Contact> CollisionSearch::first_contact(Placement& placement) {
   }
   if (!snapshot.options.check_scene) return std::nullopt;
   if (!fixed_hits_scene(placement) && !moving_hits_scene(placement)) return std::nullopt;
-  return Contact{body(last_shape_), snapshot.object_names[snapshot.scene[last_scene_].object], true};
+  return Contact{body(last_shape_), snapshot.object_names[snapshot.scene[last_scene_].object], true,
+                 only_padding_meets(placement, last_shape_, last_scene_)};
 }
 
 }  // namespace mmgrasp::detail

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "collision/checker/placement.hpp"
+#include "collision/checker/pair_tests.hpp"
 
 namespace mmgrasp::detail {
 
@@ -20,9 +20,9 @@ class CollisionSearch {
   /// The first contact in the order of the plan, self before scene.
   std::optional<Contact> first_contact(Placement& placement);
 
-  /// False when plan().moving[body] hits a bounded shape of the scene. Clears `proven` unless it stays free while none
-  /// of its points moves more than `motion` [m].
-  bool body_is_free(Placement& placement, int body, double motion, bool& proven);
+  /// False when plan().moving[body] hits a bounded shape of the scene. Clears `proven` unless it stays free while it
+  /// moves as said.
+  bool body_is_free(Placement& placement, int body, const Closing& closing, bool& proven);
   void remember_pair(int varying) { last_pair_ = varying; }
 
   /// Forgets what depends on where the root stands.
@@ -32,7 +32,7 @@ class CollisionSearch {
 
  private:
   struct Near {
-    int shape, other;  ///< `other`: a shape of the scene, or the number of a varying pair.
+    int shape, other;  ///< `other`: a shape of the scene.
   };
 
   /// Fills `near_` with the bounded scene shapes whose boxes meet the spheres first .. last of the plan.
@@ -42,7 +42,12 @@ class CollisionSearch {
   bool fixed_hits_scene(Placement& placement);
   bool moving_hits_scene(Placement& placement);
 
+  /// What the covers can tell; pairs that they cannot are left in `unsure_pairs_`.
+  bool self_collides_for_certain(Placement& placement);
+  bool unsure_pairs_collide(Placement& placement);
+
   std::vector<Near> near_, unsure_;
+  std::vector<int> unsure_pairs_;
   std::vector<std::uint8_t> masks_, pair_masks_;
   std::optional<bool> constant_self_;  ///< Whether pairs collide whose relative pose no configuration changes.
   std::optional<bool> fixed_scene_;    ///< Whether links that no configuration moves hit the scene.

@@ -3,17 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collision/checker/pair_tests.hpp"
+#include "collision/narrow/field_query.hpp"
 #include "collision/narrow/stages.hpp"
 
 namespace mmgrasp::detail {
 
 namespace {
-
-// Clearances and rates are in single precision; the spheres' radii carry the slack of their own coordinates.
-double with_slack(double motion) {
-  return motion * (1 + 1e-5) + 1e-7;
-}
 
 // Far checks first finds collisions early; once this many intervals wait, one is finished after the other, which keeps
 // memory independent of the number of pieces.
@@ -22,7 +17,10 @@ constexpr std::size_t kMaxWaitingIntervals = 256;
 // A lower bound of the clearance of a sphere and an unbounded shape.
 double clearance_to(const SceneShape& other, const Eigen::Vector3d& centre, double radius) {
   const Eigen::Vector3d in_other = other.T_world.R.transpose() * (centre - other.T_world.t);
-  if (other.solid->kind == SolidKind::voxels) return other.solid->grid->distance(in_other) - radius;
+  if (other.solid->kind == SolidKind::voxels)
+    return other.solid->grid->distance(in_other) - other.solid->margin - radius;
+  if (other.solid->kind == SolidKind::field)
+    return field_clearance(*other.solid->field, in_other, radius) - other.solid->margin;
   return other.solid->normal.dot(in_other) - other.solid->offset - radius;
 }
 
@@ -30,16 +28,14 @@ double clearance_to(const SceneShape& other, const Eigen::Vector3d& centre, doub
 
 EdgeWalk::EdgeWalk(Placement& placement, CollisionSearch& search, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
                    long pieces)
-    : placement_(placement), search_(search), q0_(q0), delta_(q1 - q0), q_(q0.size()), pieces_(pieces) {
-  if (pieces < 2) return;
-  const PairPlan& plan = placement.plan();
-  const Eigen::VectorXd step = delta_.cwiseAbs() / static_cast<double>(pieces);
-  const MotionRates along_edge = plan.rates_along(q0, q1);
-  const MotionRates& rates = plan.rates.finite ? plan.rates : along_edge;
-  body_motion_ = rates.shapes.transpose() * step;
-  pair_motion_ = rates.pairs.transpose() * step;
-  hulls_meet_.assign(plan.varying.size(), 0);
-}
+    : placement_(placement),
+      search_(search),
+      q0_(q0),
+      delta_(q1 - q0),
+      q_(q0.size()),
+      pieces_(pieces),
+      motion_(placement, q0, q1, delta_ / static_cast<double>(std::max(1L, pieces))),
+      memory_(placement.plan().varying.size()) {}
 
 bool EdgeWalk::all_free() {
   if (pieces_ < 2) return true;
@@ -48,7 +44,8 @@ bool EdgeWalk::all_free() {
   const PairPlan& plan = placement_.plan();
   open_.clear();
   if (snapshot.options.check_scene && !snapshot.scene.empty()) {
-    for (int i = 0; i < plan.moving_in_scene; ++i) open_.push_back(i);
+    // The outer links are the ones that hit something.
+    for (int i = plan.moving_in_scene; i-- > 0;) open_.push_back(i);
   }
   const std::size_t bodies = open_.size();
   if (snapshot.options.check_self) {
@@ -96,6 +93,7 @@ bool EdgeWalk::check(const Interval& interval, long at, double reach, Interval& 
   q_ = q0_ + delta_ * (static_cast<double>(at) / static_cast<double>(pieces_));
   ++checks_;
   placement_.place(q_.data());
+  motion_.placed();
   rest.bodies = open_.size();
   if (!bodies_free(interval, reach)) return false;
   rest.pairs = open_.size();
@@ -108,12 +106,13 @@ bool EdgeWalk::bodies_free(const Interval& interval, double reach) {
   const Snapshot& snapshot = placement_.snapshot();
   for (std::size_t n = interval.bodies; n < interval.pairs; ++n) {
     const int body = open_[n];
-    const double motion = with_slack(body_motion_[body] * reach);
+    const Closing motion = motion_.of_body(body, reach);
     bool proven = true;
     if (!search_.body_is_free(placement_, body, motion, proven)) return false;
     for (int i = snapshot.packed; i < static_cast<int>(snapshot.scene.size()); ++i) {
+      if (snapshot.allowed(placement_.plan().moving[body], i)) continue;
       const double radius = placement_.spheres().radius[body];
-      if (clearance_to(snapshot.scene[i], placement_.sphere_centre(body), radius) > motion) continue;
+      if (clearance_to(snapshot.scene[i], placement_.sphere_centre(body), radius) > motion.most) continue;
       proven = false;
       if (scene_collides(placement_, placement_.plan().moving[body], i)) return false;
     }
@@ -130,19 +129,20 @@ bool EdgeWalk::pairs_free(const Interval& interval, double reach) {
     const double clearance =
         (placement_.sphere_centre(pair.sphere_a) - placement_.sphere_centre(pair.sphere_b)).norm() -
         radius[pair.sphere_a] - radius[pair.sphere_b];
-    const double motion = with_slack(pair_motion_[index] * reach);
-    if (runs(kSphereStage) && clearance > motion) continue;
+    if (runs(kSphereStage) && clearance > motion_.of_pair_anywhere(index, reach)) continue;
+    // The last check within an interval proves nothing about others.
+    Closing motion;
+    if (reach > 0) motion = motion_.of_pair(index, reach);
+    if (runs(kSphereStage) && clearance > motion.most) continue;
     if (runs(kTableStage) && pair.clearances) {
-      const double wanted = reach > 0 ? motion : 0;
-      const double apart = pair.clearances->at_least(q_[pair.columns[0]], q_[pair.columns[1]], wanted);
-      if (apart > wanted) continue;
+      const double apart = pair.clearances->at_least(q_[pair.columns[0]], q_[pair.columns[1]], motion.most);
+      if (apart > motion.most) continue;
       if (apart > 0) {
         open_.push_back(index);
         continue;
       }
     }
-    // The last check within an interval proves nothing about others.
-    const CoverAnswer answer = pair_within(placement_, pair, reach > 0 ? motion : 0, hulls_meet_[index]);
+    const CoverAnswer answer = pair_within(placement_, pair, motion, memory_[index]);
     if (answer == kApart) continue;
     if (answer == kOverlap) {
       search_.remember_pair(index);

@@ -3,6 +3,8 @@
 #include <vector>
 
 #include "collision/checker/collision_search.hpp"
+#include "collision/checker/edge_motion.hpp"
+#include "collision/checker/pair_tests.hpp"
 #include "collision/checker/placement.hpp"
 
 namespace mmgrasp::detail {
@@ -39,9 +41,9 @@ class EdgeWalk {
   Eigen::VectorXd q0_, delta_, q_;
   long pieces_;
   std::size_t checks_ = 0;
-  Eigen::VectorXd body_motion_, pair_motion_;  ///< Motion per piece [m].
-  std::vector<int> open_;                      ///< Bodies and varying pairs of the waiting intervals.
-  std::vector<char> hulls_meet_;               ///< Per varying pair; see pair_within.
+  EdgeMotion motion_;
+  std::vector<int> open_;           ///< Bodies and varying pairs of the waiting intervals.
+  std::vector<PairMemory> memory_;  ///< Per varying pair.
 };
 
 }  // namespace mmgrasp::detail

@@ -1,7 +1,7 @@
 #include "collision/checker/engine.hpp"
 
 #include <algorithm>
-#include <set>
+#include <map>
 
 #include "collision/checker/edge_walk.hpp"
 #include "collision/checker/pair_tests.hpp"
@@ -63,12 +63,12 @@ std::vector<Contact> CheckerEngine::contacts(const Eigen::VectorXd& q) {
   placement_.place(q.data());
   const Snapshot& snapshot = placement_.snapshot();
   const PairPlan& plan = placement_.plan();
-  std::set<std::tuple<bool, int, int>> found;  // one entry per pair of bodies, self contacts first
+  std::map<std::tuple<bool, int, int>, bool> found;  // whether only padding meets, by pair of bodies; self first
   if (options().check_self) {
     for (const auto* pairs : {&plan.constant, &plan.varying}) {
       for (const ShapePair& pair : *pairs) {
         const int a = snapshot.shapes[pair.a].body, b = snapshot.shapes[pair.b].body;
-        if (found.count({false, a, b}) == 0 && pair_collides(placement_, pair)) found.insert({false, a, b});
+        if (found.count({false, a, b}) == 0 && pair_collides(placement_, pair)) found[{false, a, b}] = false;
       }
     }
   }
@@ -78,15 +78,19 @@ std::vector<Contact> CheckerEngine::contacts(const Eigen::VectorXd& q) {
       for (int k = 0; k < count; ++k) {
         const int s = (*shapes)[k];
         for (int i = 0; i < static_cast<int>(snapshot.scene.size()); ++i) {
-          if (scene_collides(placement_, s, i)) found.insert({true, snapshot.shapes[s].body, snapshot.scene[i].object});
+          if (!scene_collides(placement_, s, i)) continue;
+          const bool padding = only_padding_meets(placement_, s, i);
+          bool& all = found.try_emplace({true, snapshot.shapes[s].body, snapshot.scene[i].object}, true).first->second;
+          all = all && padding;
         }
       }
     }
   }
   std::vector<Contact> out;
-  for (const auto& [with_scene, a, b] : found) {
-    out.push_back(
-        {snapshot.bodies[a].name, with_scene ? snapshot.object_names[b] : snapshot.bodies[b].name, with_scene});
+  for (const auto& [pair, padding] : found) {
+    const auto& [with_scene, a, b] = pair;
+    out.push_back({snapshot.bodies[a].name, with_scene ? snapshot.object_names[b] : snapshot.bodies[b].name, with_scene,
+                   padding});
   }
   return out;
 }
@@ -113,8 +117,9 @@ std::vector<DistanceResult> CheckerEngine::distances(const Eigen::VectorXd& q, d
   return out;
 }
 
-bool CheckerEngine::edge_is_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double step) {
-  if (!is_free(q0) || !is_free(q1)) return false;
+bool CheckerEngine::edge_stays_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double step,
+                                    bool end_is_free) {
+  if (!end_is_free && !is_free(q1)) return false;
   const double pieces = edge_pieces((q1 - q0).cwiseAbs().maxCoeff(), step);
   require(pieces < kMaxPieces, "step", step, "must not cut the edge into more than 1e9 pieces");
   EdgeWalk walk(placement_, search_, q0, q1, static_cast<long>(pieces));

@@ -5,13 +5,11 @@
 #include <vector>
 
 #include "collision/checker/collision_search.hpp"
+#include "collision/checker/limit_slack.hpp"
 #include "collision/checker/nearest_pair.hpp"
 #include "collision/checker/placement.hpp"
 
 namespace mmgrasp::detail {
-
-/// Solvers and interpolation leave rounding at the limits.
-constexpr double kLimitSlack = 1e-9;
 
 /// No edge is cut into more pieces.
 constexpr double kMaxPieces = 1e9;
@@ -47,7 +45,8 @@ class CheckerEngine {
   std::vector<Contact> contacts(const Eigen::VectorXd& q);
   DistanceResult distance(const Eigen::VectorXd& q, bool with_gradient);
   std::vector<DistanceResult> distances(const Eigen::VectorXd& q, double within);
-  bool edge_is_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double step);
+  /// The edge without its start, which is known to be free, or without its end either.
+  bool edge_stays_free(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1, double step, bool end_is_free = false);
 
  private:
   Placement placement_;

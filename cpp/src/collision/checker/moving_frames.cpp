@@ -146,6 +146,7 @@ MovingFrames::MovingFrames(const JointGroup& group)
       step.parent = frame;
       step.column = at++;
       step.motion = motion.kind;
+      bends_ = bends_ && motion.kind != FrameMotion::spherical;
       steps_.push_back(step);
       frame = static_cast<int>(steps_.size());
       rest = Rigid(motion.align.transpose(), Eigen::Vector3d::Zero());
@@ -186,51 +187,111 @@ void MovingFrames::place(const double* q, double* frames) const {
   kernels().place_frames(steps_.data(), static_cast<int>(steps_.size()), q, frames);
 }
 
-Eigen::VectorXd MovingFrames::point_rates(const FrameSphere& sphere, const Eigen::VectorXd& largest) const {
-  Eigen::VectorXd rates = Eigen::VectorXd::Zero(columns_);
+std::vector<MovingFrames::JointReach> MovingFrames::joints_above(const FrameSphere& sphere,
+                                                                 const Eigen::VectorXd& largest) const {
+  std::vector<JointReach> joints;
   // Walking up: `radius` always bounds the distance from the points to the origin of the frame at hand.
   double radius = Eigen::Vector3d(sphere.p).norm() + sphere.radius;
   for (int frame = sphere.frame; frame > 0;) {
     const FrameStep& step = steps_[frame - 1];
     const double factor = std::abs(step.multiplier);
     const bool slides = step.motion == FrameMotion::prismatic;
-    rates[step.column] += slides ? factor : factor * radius;
+    joints.push_back({step.column, slides ? 0 : factor, slides ? factor : factor * radius});
     if (step.motion == FrameMotion::spherical) {
       // A rotation vector's rate is never less than the angular velocity it makes.
-      rates[step.column + 1] += radius;
-      rates[step.column + 2] += radius;
+      for (const int k : {1, 2}) joints.push_back({step.column + k, 1, radius});
     }
     if (slides) radius += std::abs(step.offset) + (factor > 0 ? factor * largest[step.column] : 0);
     radius += Eigen::Vector3d(step.p[0], step.p[1], step.p[2]).norm();
     frame = step.parent;
   }
   if (has_base_) {
-    rates[0] += 1;
-    rates[1] += 1;
-    rates[2] += radius;
+    joints.push_back({2, 1, radius});
+    for (const int k : {0, 1}) joints.push_back({k, 0, 1});
   }
-  return rates;
+  return joints;
 }
 
-Eigen::VectorXd MovingFrames::closing_rates(const FrameSphere& a, const FrameSphere& b,
-                                            const Eigen::VectorXd& largest) const {
-  Eigen::VectorXd rates = Eigen::VectorXd::Zero(columns_);
+void MovingFrames::joints_between(const FrameSphere& a, const FrameSphere& b, const Eigen::VectorXd& largest,
+                                  std::vector<JointReach>& of_a, std::vector<JointReach>& of_b) const {
   const int common = common_frame(a.frame, b.frame);
   std::vector<const FrameStep*> path, down;
   for (int frame = a.frame; frame != common; frame = path.back()->parent) path.push_back(&steps_[frame - 1]);
   for (int frame = b.frame; frame != common; frame = down.back()->parent) down.push_back(&steps_[frame - 1]);
   const std::size_t up = path.size();
   path.insert(path.end(), down.rbegin(), down.rend());
-  const std::vector<double> of_a = rates_on_path(path, up, a, largest);
+  const auto reaches = [&](std::size_t top, const FrameSphere& sphere, std::vector<JointReach>& out) {
+    const std::vector<double> rates = rates_on_path(path, top, sphere, largest);
+    out.clear();
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      const FrameStep& step = *path[i];
+      const bool slides = step.motion == FrameMotion::prismatic;
+      out.push_back({step.column, slides ? 0 : std::abs(step.multiplier), rates[i]});
+    }
+  };
+  reaches(up, a, of_a);
   std::reverse(path.begin(), path.end());
-  const std::vector<double> of_b = rates_on_path(path, path.size() - up, b, largest);
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    const FrameStep& step = *path[i];
-    const double rate = std::min(of_a[path.size() - 1 - i], of_b[i]);
+  reaches(path.size() - up, b, of_b);
+}
+
+Eigen::VectorXd MovingFrames::point_rates(const FrameSphere& sphere, const Eigen::VectorXd& largest) const {
+  Eigen::VectorXd rates = Eigen::VectorXd::Zero(columns_);
+  for (const JointReach& joint : joints_above(sphere, largest)) rates[joint.column] += joint.rate;
+  return rates;
+}
+
+Eigen::VectorXd MovingFrames::closing_rates(const FrameSphere& a, const FrameSphere& b,
+                                            const Eigen::VectorXd& largest) const {
+  Eigen::VectorXd rates = Eigen::VectorXd::Zero(columns_);
+  std::vector<JointReach> of_a, of_b;
+  joints_between(a, b, largest, of_a, of_b);
+  const auto spherical = [&](int column) {
+    return std::any_of(steps_.begin(), steps_.end(), [&](const FrameStep& step) {
+      return step.motion == FrameMotion::spherical && step.column == column;
+    });
+  };
+  for (std::size_t i = 0; i < of_a.size(); ++i) {
+    const JointReach& joint = of_a[i];
+    const double rate = std::min(joint.rate, of_b[of_b.size() - 1 - i].rate);
     // A rotation vector's rate is never less than the angular velocity it makes.
-    for (int k = 0; k < (step.motion == FrameMotion::spherical ? 3 : 1); ++k) rates[step.column + k] += rate;
+    for (int k = 0; k < (spherical(joint.column) ? 3 : 1); ++k) rates[joint.column + k] += rate;
   }
   return rates;
+}
+
+// With the angular velocities w_k of the joints from the root outwards and u_k from joint k to the point, the
+// acceleration is the sum over k of w_k x (w_k x u_k) + 2 w_j x (w_k x u_k) for all j before k.
+Eigen::VectorXd MovingFrames::bends_of(const std::vector<JointReach>& joints) const {
+  Eigen::VectorXd bends = Eigen::VectorXd::Zero(columns_ * (columns_ + 1) / 2);
+  const auto entry = [&](int i, int j) -> double& {
+    if (i > j) std::swap(i, j);
+    return bends[i * columns_ - i * (i - 1) / 2 + j - i];
+  };
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    entry(joints[k].column, joints[k].column) += joints[k].rate * joints[k].turning;
+    for (std::size_t j = k + 1; j < joints.size(); ++j)
+      entry(joints[j].column, joints[k].column) += 2 * joints[j].turning * joints[k].rate;
+  }
+  return bends;
+}
+
+Eigen::VectorXd MovingFrames::point_bends(const FrameSphere& sphere, const Eigen::VectorXd& largest) const {
+  return bends_of(joints_above(sphere, largest));
+}
+
+Eigen::VectorXd MovingFrames::closing_bends(const FrameSphere& a, const FrameSphere& b, const Eigen::VectorXd& largest,
+                                            bool& b_moves) const {
+  std::vector<JointReach> of_a, of_b;
+  joints_between(a, b, largest, of_a, of_b);
+  const Eigen::VectorXd bends_a = bends_of(of_a), bends_b = bends_of(of_b);
+  b_moves = bends_b.sum() < bends_a.sum();
+  return b_moves ? bends_b : bends_a;
+}
+
+void MovingFrames::squares(const Eigen::VectorXd& values, Eigen::VectorXd& out) {
+  const Eigen::Index n = values.size();
+  out.resize(n * (n + 1) / 2);
+  for (Eigen::Index i = 0, at = 0; i < n; at += n - i++) out.segment(at, n - i) = values[i] * values.tail(n - i);
 }
 
 int MovingFrames::common_frame(int a, int b) const {

@@ -30,9 +30,10 @@ void each_pair(const Placement& placement, bool constant, const Visit& visit) {
     const int s = shapes[k];
     const double radius = snapshot.shapes[s].solid->sphere_radius;
     for (int i = 0; i < count; ++i) {
+      if (snapshot.allowed(s, i)) continue;
       const SceneShape& other = snapshot.scene[i];
       const double between = (placement.shape_centre(s) - other.sphere_centre).norm();
-      visit(CandidatePair{between - radius - other.solid->sphere_radius, s, i, true});
+      visit(CandidatePair{between - radius - other.bare->sphere_radius, s, i, true});
     }
   }
 }
@@ -42,7 +43,7 @@ void each_pair(const Placement& placement, bool constant, const Visit& visit) {
 struct PlacedPair {
   PlacedPair(Placement& placement, const CandidatePair& pair, bool constant)
       : a(*placement.snapshot().shapes[pair.shape].solid),
-        b(pair.with_scene ? *placement.snapshot().scene[pair.other].solid
+        b(pair.with_scene ? *placement.snapshot().scene[pair.other].bare
                           : *placement.snapshot().shapes[pair.other].solid),
         T_a(constant && !pair.with_scene ? placement.plan().placed[pair.shape].in_frame : placement.pose(pair.shape)),
         T_b(pair.with_scene ? placement.snapshot().scene[pair.other].T_world

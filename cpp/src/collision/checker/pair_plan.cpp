@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "collision/checker/limit_slack.hpp"
+
 namespace mmgrasp::detail {
 
 namespace {
@@ -33,7 +35,7 @@ std::vector<char> active_joints(const Robot& robot, const JointGroup& group) {
 }
 
 bool never_needs_check(const Snapshot& snapshot, const Body& a, const Body& b, const std::vector<int>& assembly) {
-  if (assembly[a.link] == assembly[b.link]) return true;
+  if (assembly[a.link] == assembly[b.link] || snapshot.allowed_pairs(a.name, b.name)) return true;
   const auto may_touch = [](const Body& attached, const Body& link) {
     return std::binary_search(attached.touch_links.begin(), attached.touch_links.end(), link.link);
   };
@@ -51,9 +53,9 @@ std::vector<int> rigid_assemblies(const Robot& robot) {
 
 PairPlan::PairPlan(const Snapshot& snapshot, const JointGroup& group)
     : frames(group),
-      // Limits are kept up to rounding.
+      // Limits are kept up to kLimitSlack.
       largest_(group.lower().cwiseAbs().cwiseMax(group.upper().cwiseAbs()) +
-               Eigen::VectorXd::Constant(group.size(), 1e-6)) {
+               Eigen::VectorXd::Constant(group.size(), kLimitSlack)) {
   sort_shapes(snapshot, group);
   placed.resize(snapshot.shapes.size());
   for (std::size_t s = 0; s < snapshot.shapes.size(); ++s) place_shape(snapshot, static_cast<int>(s));
@@ -181,21 +183,40 @@ Eigen::VectorXd PairPlan::pair_rates(const ShapePair& pair, const Eigen::VectorX
 
 MotionRates PairPlan::bound_motion(const Eigen::VectorXd& largest) const {
   MotionRates out;
-  out.shapes.resize(largest.size(), static_cast<Eigen::Index>(moving.size()));
-  for (Eigen::Index i = 0; i < out.shapes.cols(); ++i) out.shapes.col(i) = frames.point_rates(spheres[i], largest);
-  out.pairs.resize(largest.size(), static_cast<Eigen::Index>(varying.size()));
-  for (Eigen::Index i = 0; i < out.pairs.cols(); ++i) out.pairs.col(i) = pair_rates(varying[i], largest);
-  out.finite = out.shapes.allFinite() && out.pairs.allFinite();
+  const Eigen::Index columns = largest.size(), squares = frames.bends() ? columns * (columns + 1) / 2 : 0;
+  out.shapes.resize(columns, static_cast<Eigen::Index>(moving.size()));
+  out.shape_bends.resize(squares, out.shapes.cols());
+  out.pairs.resize(columns, static_cast<Eigen::Index>(varying.size()));
+  out.pair_bends.resize(squares, out.pairs.cols());
+  out.b_moves.resize(varying.size());
+  for (Eigen::Index i = 0; i < out.shapes.cols(); ++i) bound_shape(out, i, largest);
+  for (Eigen::Index i = 0; i < out.pairs.cols(); ++i) bound_pair(out, i, largest);
+  out.finite =
+      out.shapes.allFinite() && out.pairs.allFinite() && out.shape_bends.allFinite() && out.pair_bends.allFinite();
   return out;
+}
+
+void PairPlan::bound_shape(MotionRates& out, Eigen::Index i, const Eigen::VectorXd& largest) const {
+  out.shapes.col(i) = frames.point_rates(spheres[i], largest);
+  if (frames.bends()) out.shape_bends.col(i) = frames.point_bends(spheres[i], largest);
+}
+
+void PairPlan::bound_pair(MotionRates& out, Eigen::Index i, const Eigen::VectorXd& largest) const {
+  const ShapePair& pair = varying[i];
+  out.pairs.col(i) = pair_rates(pair, largest);
+  if (!frames.bends()) return;
+  bool b_moves = false;
+  out.pair_bends.col(i) = frames.closing_bends(spheres[pair.sphere_a], spheres[pair.sphere_b], largest, b_moves);
+  out.b_moves[i] = b_moves;
 }
 
 void PairPlan::bound_attached(const Snapshot& snapshot) {
   const auto attached = [&](int s) { return s >= snapshot.first_attached; };
   for (Eigen::Index i = 0; i < rates.shapes.cols(); ++i) {
-    if (attached(moving[i])) rates.shapes.col(i) = frames.point_rates(spheres[i], largest_);
+    if (attached(moving[i])) bound_shape(rates, i, largest_);
   }
   for (Eigen::Index i = 0; i < rates.pairs.cols(); ++i) {
-    if (attached(varying[i].a) || attached(varying[i].b)) rates.pairs.col(i) = pair_rates(varying[i], largest_);
+    if (attached(varying[i].a) || attached(varying[i].b)) bound_pair(rates, i, largest_);
   }
 }
 

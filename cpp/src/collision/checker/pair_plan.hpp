@@ -30,6 +30,8 @@ struct PlacedShape {
 /// other, per unit of each column (rows) [m/rad or m/m].
 struct MotionRates {
   Eigen::MatrixXd shapes, pairs;
+  Eigen::MatrixXd shape_bends, pair_bends;  ///< See MovingFrames::point_bends(); empty where there are none.
+  std::vector<char> b_moves;                ///< Per varying pair; see MovingFrames::closing_bends().
   bool finite = true;
 };
 
@@ -67,6 +69,8 @@ struct MMGRASP_EXPORT PairPlan {
   void block_pairs();
   void find_clearance_tables(const Snapshot& snapshot);
   MotionRates bound_motion(const Eigen::VectorXd& largest) const;
+  void bound_shape(MotionRates& out, Eigen::Index i, const Eigen::VectorXd& largest) const;
+  void bound_pair(MotionRates& out, Eigen::Index i, const Eigen::VectorXd& largest) const;
   Eigen::VectorXd pair_rates(const ShapePair& pair, const Eigen::VectorXd& largest) const;
 
   Eigen::VectorXd largest_;  ///< Magnitude of each column within its limits.

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "collision/narrow/convex_clearance.hpp"
 #include "collision/narrow/narrow.hpp"
 #include "collision/narrow/stages.hpp"
 
@@ -24,7 +23,7 @@ FloatRigid to_float(const Rigid& T) {
 constexpr double kMaxGridMotion = 0.02;
 
 // The exact shapes are only tested for clearances up to this [m]: spheres and hulls have proven most wider ones.
-constexpr double kMaxExactMotion = 0.01;
+constexpr double kMaxExactMotion = 0.005;
 
 // Hulls this close are left to the exact answer [m].
 constexpr double kHullTouch = 1e-7;
@@ -82,16 +81,12 @@ CoverAnswer cover_in_grid(const DistanceGrid& grid, const Rigid& T_grid, const C
 }
 
 // How near two solids, or the hulls around them, come to each other; `touching` also where there is no such hull.
-Nearness hull_nearness(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double motion) {
+Nearness hull_nearness(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, const Closing& closing,
+                       Eigen::Vector3d& axis) {
   const auto bounded = [](const Solid& s) { return s.kind == SolidKind::convex || s.has_hull; };
   if (!bounded(a) || !bounded(b)) return Nearness::touching;
   const double margin = a.margin + b.margin;
-  return convex_nearness(a.core, b.core, T_a.to(T_b), motion + margin + kHullTouch, margin + kHullTouch);
-}
-
-// Padding pushes out the corners of a box by up to sqrt(3) of it.
-double padding_of(const Snapshot& snapshot, const BodyShape& shape) {
-  return shape.padded != shape.solid ? 1.75 * snapshot.options.padding : 0;
+  return convex_nearness(a.core, b.core, T_a.to(T_b), closing.seen_from(T_a), margin + kHullTouch, axis);
 }
 
 bool spheres_apart(const SphereRows& spheres, int a, int b) {
@@ -100,9 +95,8 @@ bool spheres_apart(const SphereRows& spheres, int a, int b) {
   return dx * dx + dy * dy + dz * dz > reach * reach;
 }
 
-// With `motion` > 0 [m] false proves a clearance wider than that, and true nothing. `hulls_meet`: their hulls are known
-// to.
-bool pair_meets_exactly(Placement& placement, const ShapePair& pair, double motion, bool hulls_meet) {
+// Where one of them moves, false proves that they stay apart, and true nothing. `hulls_meet`: their hulls are known to.
+bool pair_meets_exactly(Placement& placement, const ShapePair& pair, const Closing& closing, bool hulls_meet) {
   const Snapshot& snapshot = placement.snapshot();
   const BodyShape &a = snapshot.shapes[pair.a], &b = snapshot.shapes[pair.b];
   if (runs(kFineStage) && a.solid->kind == SolidKind::mesh && b.solid->kind == SolidKind::mesh) {
@@ -111,15 +105,26 @@ bool pair_meets_exactly(Placement& placement, const ShapePair& pair, double moti
     const BodyShape &first = grid_of_a ? a : b, &second = grid_of_a ? b : a;
     return meshes_collide(*first.solid, placement.pose(grid_of_a ? pair.a : pair.b),
                           *first.bounds->fine(*first.solid).grid, *second.solid,
-                          placement.pose(grid_of_a ? pair.b : pair.a), motion, hulls_meet);
+                          placement.pose(grid_of_a ? pair.b : pair.a), grid_of_a ? closing : closing.swapped(),
+                          hulls_meet);
   }
-  return solids_collide(*a.solid, placement.pose(pair.a), *b.solid, placement.pose(pair.b), motion);
+  return solids_collide(*a.solid, placement.pose(pair.a), *b.solid, placement.pose(pair.b), closing.most);
 }
 
+// Their hulls are known to meet.
 bool scene_meets_exactly(Placement& placement, int shape, int scene_shape, double motion) {
   const Snapshot& snapshot = placement.snapshot();
   const SceneShape& other = snapshot.scene[scene_shape];
-  return solids_collide(*snapshot.shapes[shape].padded, placement.pose(shape), *other.solid, other.T_world, motion);
+  return solids_collide(*snapshot.shapes[shape].padded, placement.pose(shape), *other.solid, other.T_world, motion,
+                        true);
+}
+
+// Seen from the scene's shape, which stands still, the direction between them lasts longest.
+Nearness hulls_in_scene(Placement& placement, int shape, int scene_shape, const Closing& closing) {
+  const Snapshot& snapshot = placement.snapshot();
+  const SceneShape& other = snapshot.scene[scene_shape];
+  return hull_nearness(*other.solid, other.T_world, *snapshot.shapes[shape].padded, placement.pose(shape), closing,
+                       placement.axis(shape, scene_shape));
 }
 
 }  // namespace
@@ -161,12 +166,15 @@ CoverAnswer scene_by_covers(Placement& placement, int s, int scene_shape, double
   const Snapshot& snapshot = placement.snapshot();
   const BodyShape& shape = snapshot.shapes[s];
   const SceneShape& other = snapshot.scene[scene_shape];
-  if (shape.bounds->cover().empty() || other.solid->kind == SolidKind::plane) return kMaybe;
-  const double grow = padding_of(snapshot, shape) + motion;
+  if (snapshot.allowed(s, scene_shape)) return kApart;
+  const bool unbounded = other.solid->kind == SolidKind::plane || other.solid->kind == SolidKind::field;
+  if (shape.bounds->cover().empty() || unbounded) return kMaybe;
+  const double grow = shape.growth + other.solid->margin + motion;
   if (other.solid->kind == SolidKind::voxels) {
     const int sphere = placement.plan().sphere_of[s];
     const Eigen::Vector3d centre = other.T_world.R.transpose() * (placement.sphere_centre(sphere) - other.T_world.t);
-    if (other.solid->grid->distance(centre) > placement.spheres().radius[sphere] + motion) return kApart;
+    if (other.solid->grid->distance(centre) > placement.spheres().radius[sphere] + other.solid->margin + motion)
+      return kApart;
     return cover_in_grid(*other.solid->grid, other.T_world, shape.bounds->fine(*shape.solid).covers, placement.pose(s),
                          grow, motion == 0);
   }
@@ -177,11 +185,12 @@ CoverAnswer scene_by_covers(Placement& placement, int s, int scene_shape, double
 }
 
 bool pair_collides_exactly(Placement& placement, const ShapePair& pair) {
-  return pair_meets_exactly(placement, pair, 0, false);
+  return pair_meets_exactly(placement, pair, {}, false);
 }
 
 bool scene_collides_exactly(Placement& placement, int shape, int scene_shape) {
-  return scene_meets_exactly(placement, shape, scene_shape, 0);
+  return hulls_in_scene(placement, shape, scene_shape, {}) == Nearness::touching &&
+         scene_meets_exactly(placement, shape, scene_shape, 0);
 }
 
 bool pair_collides(Placement& placement, const ShapePair& pair) {
@@ -195,29 +204,36 @@ bool scene_collides(Placement& placement, int shape, int scene_shape) {
   return answer == kMaybe ? scene_collides_exactly(placement, shape, scene_shape) : answer == kOverlap;
 }
 
-CoverAnswer pair_within(Placement& placement, const ShapePair& pair, double motion, char& hulls_meet) {
+bool only_padding_meets(Placement& placement, int shape, int scene_shape) {
+  const BodyShape& a = placement.snapshot().shapes[shape];
+  const SceneShape& b = placement.snapshot().scene[scene_shape];
+  if (a.padded == a.solid && b.solid == b.bare) return false;
+  return !solids_collide(*a.solid, placement.pose(shape), *b.bare, b.T_world);
+}
+
+CoverAnswer pair_within(Placement& placement, const ShapePair& pair, const Closing& closing, PairMemory& memory) {
+  const double motion = closing.most;
   if (motion > 0 && motion <= kMaxProvenMotion) {
     const CoverAnswer covers = pair_by_covers(placement, pair, motion);
     if (covers != kMaybe) return covers;
-    if (!hulls_meet) {
+    if (!memory.hulls_meet) {
       const Snapshot& snapshot = placement.snapshot();
       const Solid &a = *snapshot.shapes[pair.a].solid, &b = *snapshot.shapes[pair.b].solid;
-      const Nearness hulls = hull_nearness(a, placement.pose(pair.a), b, placement.pose(pair.b), motion);
+      const Nearness hulls = hull_nearness(a, placement.pose(pair.a), b, placement.pose(pair.b), closing, memory.axis);
       if (hulls == Nearness::beyond) return kApart;
       if (hulls == Nearness::near) return kMaybe;
-      hulls_meet = 1;
+      memory.hulls_meet = true;
     }
-    if (motion <= kMaxExactMotion && !pair_meets_exactly(placement, pair, motion, true)) return kApart;
+    if (motion <= kMaxExactMotion && !pair_meets_exactly(placement, pair, closing, true)) return kApart;
   }
   return pair_collides(placement, pair) ? kOverlap : kMaybe;
 }
 
-CoverAnswer scene_within(Placement& placement, int s, int scene_shape, double motion) {
+CoverAnswer scene_within(Placement& placement, int s, int scene_shape, const Closing& closing) {
+  const double motion = closing.most;
   const CoverAnswer covers = scene_by_covers(placement, s, scene_shape, motion);
   if (covers != kMaybe) return covers;
-  const Snapshot& snapshot = placement.snapshot();
-  const SceneShape& other = snapshot.scene[scene_shape];
-  switch (hull_nearness(*snapshot.shapes[s].padded, placement.pose(s), *other.solid, other.T_world, motion)) {
+  switch (hulls_in_scene(placement, s, scene_shape, closing)) {
     case Nearness::beyond:
       return kApart;
     case Nearness::near:
@@ -226,7 +242,9 @@ CoverAnswer scene_within(Placement& placement, int s, int scene_shape, double mo
       break;
   }
   if (motion <= kMaxExactMotion && !scene_meets_exactly(placement, s, scene_shape, motion)) return kApart;
-  return scene_collides(placement, s, scene_shape) ? kOverlap : kMaybe;
+  const CoverAnswer here = scene_by_covers(placement, s, scene_shape);
+  if (here != kMaybe) return here == kOverlap ? kOverlap : kMaybe;
+  return scene_meets_exactly(placement, s, scene_shape, 0) ? kOverlap : kMaybe;
 }
 
 }  // namespace mmgrasp::detail

@@ -1,16 +1,20 @@
 #pragma once
 
 #include "collision/checker/placement.hpp"
+#include "collision/narrow/convex_clearance.hpp"
 
 /// Do two placed shapes touch? Two of the robot's own, or one of them and one of the scene. The answers are exact; what
 /// sphere covers can prove, they prove.
 namespace mmgrasp::detail {
 
 /// Clearances are not proven for bodies that move farther than this: hardly any would be as wide [m].
-constexpr double kMaxProvenMotion = 0.1;
+constexpr double kMaxProvenMotion = 0.05;
 
 bool pair_collides(Placement& placement, const ShapePair& pair);
 bool scene_collides(Placement& placement, int shape, int scene_shape);
+
+/// The two collide (as known already), but only because they are padded.
+bool only_padding_meets(Placement& placement, int shape, int scene_shape);
 
 /// What the covers of the two prove. With `motion` > 0 [m] kApart means that they stay apart while they come no more
 /// than that closer, and kMaybe proves nothing.
@@ -21,10 +25,15 @@ CoverAnswer scene_by_covers(Placement& placement, int shape, int scene_shape, do
 bool pair_collides_exactly(Placement& placement, const ShapePair& pair);
 bool scene_collides_exactly(Placement& placement, int shape, int scene_shape);
 
-/// Whether the two touch (kOverlap), stay apart while they come no more than `motion` [m] closer (kApart), or neither
-/// is proven. Without motion only the first is decided. `hulls_meet`: whether their hulls did lately, so that those are
-/// not tested; set when they do.
-CoverAnswer pair_within(Placement& placement, const ShapePair& pair, double motion, char& hulls_meet);
-CoverAnswer scene_within(Placement& placement, int shape, int scene_shape, double motion);
+/// What is remembered of two shapes from one configuration to the next.
+struct PairMemory {
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< Direction that parted their hulls last: any is a valid start.
+  bool hulls_meet = false;                         ///< Their hulls did lately: they are not tested again.
+};
+
+/// Whether the two touch (kOverlap), stay apart while they come closer as said (kApart), or neither is proven. Where
+/// they come no closer only the first is decided.
+CoverAnswer pair_within(Placement& placement, const ShapePair& pair, const Closing& closing, PairMemory& memory);
+CoverAnswer scene_within(Placement& placement, int shape, int scene_shape, const Closing& closing);
 
 }  // namespace mmgrasp::detail

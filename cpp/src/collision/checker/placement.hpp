@@ -12,7 +12,7 @@ namespace mmgrasp::detail {
 /// Where the robot of a snapshot stands: the frames of its group and the bounding spheres of its shapes in one
 /// configuration, and the poses of shapes and links once they are needed. What the group does not move is placed
 /// once.
-class Placement {
+class MMGRASP_EXPORT Placement {
  public:
   Placement(std::shared_ptr<const Snapshot> snapshot, std::shared_ptr<const PairPlan> plan, const JointGroup& group);
 
@@ -38,11 +38,19 @@ class Placement {
     const SphereRows rows = spheres();
     return {rows.x[sphere], rows.y[sphere], rows.z[sphere]};
   }
-  Rigid frame(int i) const { return MovingFrames::get(frames_.data() + 16 * i); }
+  Rigid frame(int i) const { return MovingFrames::get(frame_numbers(i)); }
+  /// Columns of its rotation, then its origin, four numbers each.
+  const double* frame_numbers(int i) const { return frames_.data() + 16 * i; }
   /// T_world_shape.
   const Rigid& pose(int shape) {
     if (pose_stamp_[shape] != (moves_[shape] ? stamp_ : fixed_stamp_)) compute_pose(shape);
     return poses_[shape];
+  }
+  /// The direction from a shape to one of the scene along which their hulls were tested last: where the next test
+  /// begins. Any direction is a valid start, so answers do not depend on it.
+  Eigen::Vector3d& axis(int shape, int scene_shape) {
+    if (axes_.empty()) axes_.resize(snapshot_->shapes.size() * snapshot_->scene.size(), Eigen::Vector3d::Zero());
+    return axes_[shape * snapshot_->scene.size() + scene_shape];
   }
   /// Set by place_links().
   const Poses& links() const { return links_; }
@@ -66,6 +74,7 @@ class Placement {
   std::vector<std::uint64_t> pose_stamp_;       ///< `stamp_` of when each was made.
   std::uint64_t stamp_ = 0, fixed_stamp_ = 0;   ///< Number of the current placement; of that of fixed shapes.
   std::vector<char> moves_;                     ///< Per shape.
+  std::vector<Eigen::Vector3d> axes_;           ///< See axis().
 };
 
 }  // namespace mmgrasp::detail

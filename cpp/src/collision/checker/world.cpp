@@ -1,5 +1,8 @@
 #include "mmgrasp/collision/world.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
@@ -21,6 +24,22 @@ void check_shapes(const std::vector<LinkShape>& shapes, const std::string& name)
 
 }  // namespace
 
+double Padding::most() const {
+  double most = std::max({links, attached, objects});
+  for (const auto& [name, padding] : by_name) most = std::max(most, padding);
+  return most;
+}
+
+void Padding::check() const {
+  const auto check_one = [](double padding, const std::string& field) {
+    require(std::isfinite(padding) && padding >= 0, field, padding, "must be finite and >= 0 [m]");
+  };
+  check_one(links, "padding.links");
+  check_one(attached, "padding.attached");
+  check_one(objects, "padding.objects");
+  for (const auto& [name, padding] : by_name) check_one(padding, "padding.by_name['" + name + "']");
+}
+
 void World::add(const std::string& name, const Shape& shape, const Pose& T_world_object) {
   WorldObject object;
   LinkShape only;
@@ -38,7 +57,19 @@ void World::add(const std::string& name, WorldObject object) {
   objects_.emplace(name, std::move(object));
 }
 
+void World::add_field(const std::string& name, const FieldObstacle& obstacle) {
+  require(!name.empty(), "object name", "\"\"", "must not be empty");
+  require(!has(name), "object name", name, "is in use already");
+  obstacle.check();
+  fields_.emplace(name, obstacle);
+}
+
 void World::move(const std::string& name, const Pose& T_world_object) {
+  if (const auto field = fields_.find(name); field != fields_.end()) {
+    check_pose(T_world_object, "object '" + name + "' pose");
+    field->second.T_world_field = T_world_object;
+    return;
+  }
   const auto it = objects_.find(name);
   require(it != objects_.end(), "object name", name,
           attached_.count(name) != 0 ? "is attached; detach it first" : "is not in the world");
@@ -47,12 +78,15 @@ void World::move(const std::string& name, const Pose& T_world_object) {
 }
 
 void World::remove(const std::string& name) {
-  require(objects_.erase(name) + attached_.erase(name) > 0, "object name", name, "is not in the world");
+  require(objects_.erase(name) + attached_.erase(name) + fields_.erase(name) > 0, "object name", name,
+          "is not in the world");
+  forget(name);
 }
 
 void World::attach(const std::string& name, const std::string& link, const Pose& T_link_object,
                    std::set<std::string> touch_links) {
   const auto it = objects_.find(name);
+  require(fields_.count(name) == 0, "object name", name, "is a distance field, which cannot be attached");
   require(it != objects_.end(), "object name", name,
           attached_.count(name) != 0 ? "is attached already" : "is not in the world");
   require(!link.empty(), "link", "\"\"", "must name the robot link that holds '" + name + "'");
@@ -82,8 +116,29 @@ void World::detach(const std::string& name, const Pose& T_world_object) {
   attached_.erase(it);
 }
 
+void World::allow(const std::string& a, const std::string& b) {
+  require(!a.empty() && !b.empty(), "allowed pair", "('" + a + "', '" + b + "')", "must name two bodies");
+  allowed_.insert(std::minmax(a, b));
+}
+
+void World::disallow(const std::string& a, const std::string& b) {
+  require(allowed_.erase(std::minmax(a, b)) > 0, "allowed pair", "('" + a + "', '" + b + "')",
+          "is not among the world's allowed ones");
+}
+
+void World::set_padding(Padding padding) {
+  padding.check();
+  padding_ = std::move(padding);
+}
+
+void World::forget(const std::string& name) {
+  for (auto it = allowed_.begin(); it != allowed_.end();)
+    it = it->first == name || it->second == name ? allowed_.erase(it) : std::next(it);
+  padding_.by_name.erase(name);
+}
+
 bool World::has(const std::string& name) const {
-  return objects_.count(name) + attached_.count(name) > 0;
+  return objects_.count(name) + attached_.count(name) + fields_.count(name) > 0;
 }
 
 }  // namespace mmgrasp

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/checker/pair_tests.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
@@ -38,7 +39,9 @@ class Advance {
     if (snapshot_.options.check_scene && !plan.moving.empty()) {
       const Eigen::VectorXd rates = bounds.shapes.transpose() * way;
       for (int i = 0; i < plan.moving_in_scene; ++i) {
-        for (int k = 0; k < static_cast<int>(snapshot_.scene.size()); ++k) add(plan.moving[i], k, true, rates[i]);
+        for (int k = 0; k < static_cast<int>(snapshot_.scene.size()); ++k) {
+          if (!snapshot_.allowed(plan.moving[i], k)) add(plan.moving[i], k, true, rates[i]);
+        }
       }
     }
   }
@@ -113,11 +116,11 @@ class Advance {
     return std::min(enough, solids_distance(a, T_a, b, T_b, enough + margin).distance - margin);
   }
 
-  Contact contact_of(const Item& item) const {
+  Contact contact_of(const Item& item) {
     return {snapshot_.bodies[snapshot_.shapes[item.shape].body].name,
             item.with_scene ? snapshot_.object_names[snapshot_.scene[item.other].object]
                             : snapshot_.bodies[snapshot_.shapes[item.other].body].name,
-            item.with_scene};
+            item.with_scene, item.with_scene && only_padding_meets(placement_, item.shape, item.other)};
   }
 
   Placement& placement_;

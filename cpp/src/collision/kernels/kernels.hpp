@@ -78,6 +78,11 @@ struct GridView {
 enum CoverAnswer : unsigned { kApart = 0, kMaybe = 1, kOverlap = 2 };
 
 struct Kernels {
+  /// Which of `count` points (x of all, then y, then z; count a multiple of kLanes) lies farthest along `d`; the first
+  /// of equals.
+  int (*farthest)(const double* points, int count, const double* d);
+  /// The same in single precision: no point lies farther by more than its rounding.
+  int (*nearly_farthest)(const float* points, int count, const float* d);
   /// frames: 16 numbers each, columns R0 R1 R2 p of four; frame 0 is given.
   void (*place_frames)(const FrameStep* steps, int count, const double* q, double* frames);
   /// World centre and radius of each sphere, the radius with a slack for single precision: x, y, z and radius in rows

@@ -1,9 +1,6 @@
 #include "collision/narrow/convex.hpp"
 
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
-
+#include "collision/kernels/kernels.hpp"
 #include "collision/narrow/difference.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 
@@ -13,46 +10,14 @@ namespace {
 
 constexpr int kMaxIterations = 128;
 
-int farthest_scalar(const double* x, int count, const Eigen::Vector3d& d) {
-  const double *y = x + count, *z = y + count;
+int farthest_corner(const double* x, const Eigen::Vector3d& d) {
   int best = 0;
   double top = -kInfinity;
-  for (int i = 0; i < count; ++i) {
-    const double value = x[i] * d[0] + y[i] * d[1] + z[i] * d[2];
+  for (int i = 0; i < 3; ++i) {
+    const double value = x[i] * d[0] + x[3 + i] * d[1] + x[6 + i] * d[2];
     if (value > top) top = value, best = i;
   }
   return best;
-}
-
-#if defined(__SSE2__)
-// Two points a step; indices ride along as doubles. Plain SSE2, so every x86-64 machine has it.
-int farthest_sse2(const double* x, int count, const Eigen::Vector3d& d) {
-  const double *y = x + count, *z = y + count;
-  const __m128d dx = _mm_set1_pd(d[0]), dy = _mm_set1_pd(d[1]), dz = _mm_set1_pd(d[2]);
-  __m128d top = _mm_set1_pd(-kInfinity), best = _mm_setzero_pd();
-  __m128d index = _mm_set_pd(1, 0);
-  const __m128d two = _mm_set1_pd(2);
-  for (int i = 0; i < count; i += 2) {
-    const __m128d value =
-        _mm_add_pd(_mm_add_pd(_mm_mul_pd(_mm_loadu_pd(x + i), dx), _mm_mul_pd(_mm_loadu_pd(y + i), dy)),
-                   _mm_mul_pd(_mm_loadu_pd(z + i), dz));
-    const __m128d more = _mm_cmpgt_pd(value, top);
-    top = _mm_max_pd(value, top);
-    best = _mm_or_pd(_mm_and_pd(more, index), _mm_andnot_pd(more, best));
-    index = _mm_add_pd(index, two);
-  }
-  double tops[2], bests[2];
-  _mm_storeu_pd(tops, top);
-  _mm_storeu_pd(bests, best);
-  return static_cast<int>(tops[1] > tops[0] ? bests[1] : bests[0]);
-}
-#endif
-
-int farthest(const double* points, int count, const Eigen::Vector3d& d) {
-#if defined(__SSE2__)
-  if (count % 2 == 0) return farthest_sse2(points, count, d);
-#endif
-  return farthest_scalar(points, count, d);
 }
 
 inline double with_sign(double magnitude, double sign) {
@@ -76,11 +41,18 @@ Eigen::Vector3d Convex::support(const Eigen::Vector3d& d) const {
       return {centre[0] + f * d[0], centre[1] + f * d[1], centre[2] + with_sign(half[2], d[2])};
     }
     case ConvexKind::hull: {
-      const int i = farthest(points, count, d);
+      const int i = count == 3 ? farthest_corner(points, d) : kernels().farthest(points, count, d.data());
       return {points[i], points[count + i], points[2 * count + i]};
     }
   }
   return centre;
+}
+
+Eigen::Vector3d Convex::support_roughly(const Eigen::Vector3d& d) const {
+  if (rough == nullptr) return support(d);
+  const Eigen::Vector3f along = d.cast<float>();
+  const int i = kernels().nearly_farthest(rough, count, along.data());
+  return {points[i], points[count + i], points[2 * count + i]};
 }
 
 bool convex_collide(const Convex& a, const Convex& b, const Rigid& b_in_a, double margin, Eigen::Vector3d& axis) {

@@ -18,10 +18,14 @@ struct Convex {
       Eigen::Vector3d::Zero();     ///< Box: half lengths. Cylinder: (radius, radius, half length). Segment: z.
   double radius = 0;               ///< Rounding [m]; spheres and capsules are made of it.
   const double* points = nullptr;  ///< Hull: x of all points, then y, then z. Owned by someone else.
-  int count = 0;                   ///< Hull: points; a multiple of 2 unless it is 3 (a triangle).
+  const float* rough = nullptr;    ///< The same in single precision, or null.
+  int count = 0;                   ///< Hull: points; a multiple of kLanes unless it is 3 (a triangle).
+  double rough_error = 0;          ///< How much nearer than the farthest point one of support_roughly() may lie [m].
 
   /// A point of the core farthest along d (d need not be a unit vector).
   Eigen::Vector3d support(const Eigen::Vector3d& d) const;
+  /// The same for proofs that count with `rough_error`.
+  Eigen::Vector3d support_roughly(const Eigen::Vector3d& d) const;
 };
 
 /// True when the bodies, b placed at `b_in_a`, come within `margin` of each other. `axis` (frame of a, from b to a) is

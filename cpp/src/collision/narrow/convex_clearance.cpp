@@ -47,27 +47,32 @@ ClearanceKind convex_clearance(const Convex& a, const Convex& b, const Rigid& b_
   return ClearanceKind::apart;
 }
 
-Nearness convex_nearness(const Convex& a, const Convex& b, const Rigid& b_in_a, double bound, double touch) {
-  const double reach = bound + a.radius + b.radius, least = touch + a.radius + b.radius;  // of the cores
-  Eigen::Vector3d axis = a.centre - b_in_a * b.centre;
+Nearness convex_nearness(const Convex& a, const Convex& b, const Rigid& b_in_a, const Closing& closing, double touch,
+                         Eigen::Vector3d& axis) {
+  const double grown = a.radius + b.radius + a.rough_error + b.rough_error;
+  const double least = touch + grown;  // of the cores
+  if (!(axis.squaredNorm() > 1e-20)) axis = a.centre - b_in_a * b.centre;
   if (!(axis.squaredNorm() > 1e-20)) axis = Eigen::Vector3d::UnitX();
   Simplex simplex;
   double best = kInfinity;  // squared length of the simplex's closest point
   bool parted = false;
   for (int i = 0; i < kMaxIterations; ++i) {
-    const SimplexPoint p = difference(a, b, b_in_a, axis);
-    const double along = axis.dot(p.w), squared_axis = axis.squaredNorm();
-    if (along > 0) {
-      if (along * along > reach * reach * squared_axis) return Nearness::beyond;
-      if (along * along > least * least * squared_axis) parted = true;
+    SimplexPoint p;
+    p.on_a = a.support_roughly(-axis);
+    p.on_b = b_in_a * b.support_roughly(b_in_a.R.transpose() * axis);
+    p.w = p.on_a - p.on_b;
+    const double along = axis.dot(p.w), least_along = least * axis.norm();
+    if (along > least_along) {
+      if (along > least_along + closing.along(axis)) return Nearness::beyond;
+      parted = true;
     }
     if (i > 0 && (best - along <= 1e-13 * best || simplex.holds(p.w))) break;
     simplex.add(p);
     if (simplex.reduce()) break;
     const Eigen::Vector3d closest = simplex.closest();
     const double squared = closest.squaredNorm();
-    // A point of the difference lies nearer than the reach: it cannot be beyond.
-    if (parted && squared < reach * reach) return Nearness::near;
+    // A point of the difference lies nearer than that: little hope is left.
+    if (parted && squared < least * std::sqrt(squared) + closing.along(closest)) return Nearness::near;
     if (squared <= touching_clearance(p) * touching_clearance(p) || !(squared < best)) break;
     best = squared;
     axis = closest;

@@ -1,19 +1,23 @@
 #pragma once
 
+#include "collision/narrow/closing.hpp"
 #include "collision/narrow/solid.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 
 namespace mmgrasp::detail {
 
 /// True when a, placed at T_a, and b at T_b touch (or come within the sum of their margins). Closed meshes are solid.
-/// With `more` > 0 [m], false means that they are farther apart by more than that; true proves nothing.
-MMGRASP_EXPORT bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double more = 0);
+/// With `more` > 0 [m], false means that they are farther apart by more than that; true proves nothing. `hulls_meet`:
+/// the hulls around them are known to.
+MMGRASP_EXPORT bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double more = 0,
+                                   bool hulls_meet = false);
 
 class DistanceGrid;
 /// The same answer for two meshes whose bodies are known to be close, sooner: `grid` is that of a and rules out
-/// triangles of b; `hulls_meet`: their hulls are known to meet.
+/// triangles of b; `hulls_meet`: their hulls are known to meet. Where one of them moves (`closing`, world frame), false
+/// means that they do not meet on the way; true proves nothing.
 MMGRASP_EXPORT bool meshes_collide(const Solid& a, const Rigid& T_a, const DistanceGrid& grid, const Solid& b,
-                                   const Rigid& T_b, double more = 0, bool hulls_meet = false);
+                                   const Rigid& T_b, const Closing& closing = {}, bool hulls_meet = false);
 
 /// distance = normal . (on_a - on_b).
 struct SolidClearance {

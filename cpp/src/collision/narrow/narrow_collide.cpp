@@ -1,7 +1,9 @@
 // collide(): whether two placed solids overlap, by pair of kinds.
 #include <algorithm>
 
+#include "collision/narrow/convex_clearance.hpp"
 #include "collision/narrow/distance_grid.hpp"
+#include "collision/narrow/field_query.hpp"
 #include "collision/narrow/narrow.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 
@@ -80,10 +82,11 @@ bool tree_hits_tree(const Solid& a, const Solid& b, const PairFrame& frame, doub
   return false;
 }
 
-// The space a triangle takes, for boxes that do not meet it: its bounds, its plane and the planes through its edges.
+// The space a triangle takes, for boxes and triangles that do not meet it: its bounds, its plane and the planes through
+// its edges, each grown by how far one of the two bodies moves across it.
 class TriangleSpace {
  public:
-  TriangleSpace(const Convex& triangle, const Rigid& placed, double margin) {
+  TriangleSpace(const Convex& triangle, const Rigid& placed, double margin, const Closing& closing) {
     const double* p = triangle.points;
     Eigen::Vector3d corner[3];
     Eigen::AlignedBox3d bounds;
@@ -91,9 +94,18 @@ class TriangleSpace {
       corner[i] = placed * Eigen::Vector3d(p[i], p[3 + i], p[6 + i]);
       bounds.extend(corner[i]);
     }
-    const double grown = margin + 1e-9;
+    const auto grown = [&](const Eigen::Vector3d& unit) {
+      double way = closing.along(unit);
+      if (closing.directed && !closing.first_moves) {
+        double of_corners = 0;
+        for (const Eigen::Vector3d& c : corner) of_corners = std::max(of_corners, closing.along_at(unit, c));
+        way = std::min(way, of_corners);
+      }
+      return margin + way + 1e-9;
+    };
     centre_ = bounds.center();
-    half_ = 0.5 * bounds.sizes() + Eigen::Vector3d::Constant(grown);
+    half_ = 0.5 * bounds.sizes();
+    for (int i = 0; i < 3; ++i) half_[i] += grown(Eigen::Vector3d::Unit(i));
     const Eigen::Vector3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
     add(normal, corner[0], grown);
     add(-normal, corner[0], grown);
@@ -108,13 +120,28 @@ class TriangleSpace {
     return false;
   }
 
+  bool misses(const std::array<double, 9>& corners) const {
+    for (int k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax({corners[3 * k], corners[3 * k + 1], corners[3 * k + 2]});
+      if (low - centre_[k] > half_[k] || centre_[k] - high > half_[k]) return true;
+    }
+    for (int i = 0; i < count_; ++i) {
+      const auto along = [&](int c) {
+        return normal_[i][0] * corners[c] + normal_[i][1] * corners[3 + c] + normal_[i][2] * corners[6 + c];
+      };
+      if (std::min({along(0), along(1), along(2)}) > offset_[i]) return true;
+    }
+    return false;
+  }
+
  private:
   // Slivers have no direction worth trusting.
-  void add(const Eigen::Vector3d& normal, const Eigen::Vector3d& point, double grown) {
+  template <class Grown>
+  void add(const Eigen::Vector3d& normal, const Eigen::Vector3d& point, const Grown& grown) {
     const double length = normal.norm();
     if (!(length > 1e-10 * half_.squaredNorm())) return;
     normal_[count_] = normal / length;
-    offset_[count_] = normal_[count_].dot(point) + grown;
+    offset_[count_] = normal_[count_].dot(point) + grown(normal_[count_]);
     ++count_;
   }
 
@@ -123,9 +150,26 @@ class TriangleSpace {
   int count_ = 0;
 };
 
+// Two triangles that come within the margin and the farthest way of the body that moves. `closing` in the frame of a.
+bool triangles_stay_apart(const Convex& a, const Convex& b, const Rigid& b_in_a, double margin,
+                          const Closing& closing) {
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  ConvexClearance clearance;
+  if (convex_clearance(a, b, b_in_a, kInfinity, axis, clearance) != ClearanceKind::apart) return false;
+  const double* p = closing.first_moves ? a.points : b.points;
+  double way = 0;
+  for (int c = 0; c < 3; ++c) {
+    const Eigen::Vector3d corner(p[c], p[3 + c], p[6 + c]);
+    way = std::max(way, closing.along_at(clearance.normal, closing.first_moves ? corner : b_in_a * corner));
+  }
+  return clearance.distance > margin + way;
+}
+
 // A single triangle (a hull of three points) of another body against the tree.
-bool tree_hits_triangle(const Solid& a, const Convex& triangle, const Rigid& b_in_a, double margin) {
-  const TriangleSpace space(triangle, b_in_a, margin);
+bool tree_hits_triangle(const Solid& a, const Convex& triangle, const Rigid& b_in_a, double margin,
+                        const Closing& closing) {
+  const double reach = margin + closing.most;
+  const TriangleSpace space(triangle, b_in_a, margin, closing);
   int stack[64], size = 0;
   stack[size++] = 0;
   while (size > 0) {
@@ -137,7 +181,10 @@ bool tree_hits_triangle(const Solid& a, const Convex& triangle, const Rigid& b_i
       continue;
     }
     for (int i = node.first; i < node.first + node.count; ++i) {
-      if (pieces_collide(a.piece(i), triangle, b_in_a, margin)) return true;
+      if (a.kind == SolidKind::mesh && space.misses(a.triangles[i])) continue;
+      const Convex piece = a.piece(i);
+      if (!pieces_collide(piece, triangle, b_in_a, reach)) continue;
+      if (!closing.directed || !triangles_stay_apart(piece, triangle, b_in_a, margin, closing)) return true;
     }
   }
   return false;
@@ -166,12 +213,14 @@ bool grid_clears(const DistanceGrid& grid, const Eigen::Vector3d& a, const Eigen
 constexpr int kCuts = 1;
 
 // Triangles of b that the grid of a cannot rule out, against the tree of a.
-bool tree_hits_grid(const Solid& a, const DistanceGrid& grid, const Solid& b, const PairFrame& frame, double margin) {
+bool tree_hits_grid(const Solid& a, const DistanceGrid& grid, const Solid& b, const PairFrame& frame, double margin,
+                    const Closing& closing) {
+  const double reach = margin + closing.most;
   int stack[64], size = 0;
   stack[size++] = 0;
   while (size > 0) {
     const BoxTree::Node& node = b.tree.nodes()[stack[--size]];
-    if (grid.distance(frame.b_in_a * node.centre) > node.half.norm() + margin) continue;
+    if (grid.distance(frame.b_in_a * node.centre) > node.half.norm() + reach) continue;
     if (node.count == 0) {
       stack[size++] = node.first + 1;
       stack[size++] = node.first;
@@ -182,8 +231,8 @@ bool tree_hits_grid(const Solid& a, const DistanceGrid& grid, const Solid& b, co
       const double* p = triangle.points;
       Eigen::Vector3d corner[3];
       for (int c = 0; c < 3; ++c) corner[c] = frame.b_in_a * Eigen::Vector3d(p[c], p[3 + c], p[6 + c]);
-      if (grid_clears(grid, corner[0], corner[1], corner[2], margin, kCuts)) continue;
-      if (tree_hits_triangle(a, triangle, frame.b_in_a, margin)) return true;
+      if (grid_clears(grid, corner[0], corner[1], corner[2], reach, kCuts)) continue;
+      if (tree_hits_triangle(a, triangle, frame.b_in_a, margin, closing)) return true;
     }
   }
   return false;
@@ -224,12 +273,14 @@ bool plane_collides(const Solid& plane, const Solid& b, const Rigid& b_in_a, dou
 
 }  // namespace
 
-bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double more) {
+bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double more, bool hulls_meet) {
   if (a.never_collides() || b.never_collides()) return false;
-  if (a.kind != SolidKind::plane && b.kind == SolidKind::plane) return solids_collide(b, T_b, a, T_a, more);
+  if (a.kind == SolidKind::field) return field_collides(b, T_b, *a.field, T_a, more + a.margin);
+  if (b.kind == SolidKind::field) return field_collides(a, T_a, *b.field, T_b, more + b.margin);
+  if (a.kind != SolidKind::plane && b.kind == SolidKind::plane) return solids_collide(b, T_b, a, T_a, more, hulls_meet);
   const bool a_is_tree = a.kind == SolidKind::mesh || a.kind == SolidKind::voxels;
   const bool b_is_tree = b.kind == SolidKind::mesh || b.kind == SolidKind::voxels;
-  if (!a_is_tree && b_is_tree && a.kind != SolidKind::plane) return solids_collide(b, T_b, a, T_a, more);
+  if (!a_is_tree && b_is_tree && a.kind != SolidKind::plane) return solids_collide(b, T_b, a, T_a, more, hulls_meet);
 
   const PairFrame frame(T_a, T_b);
   const double margin = a.margin + b.margin + more;
@@ -240,7 +291,7 @@ bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigi
   if (a.is_box && b.is_box) return true;
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
   const bool a_bounded = !a_is_tree || a.has_hull, b_bounded = !b_is_tree || b.has_hull;
-  if (a_bounded && b_bounded) {
+  if (a_bounded && b_bounded && !(hulls_meet && a_is_tree)) {
     const bool hit = convex_collide(a.core, b.core, frame.b_in_a, margin, axis);
     if (!hit || (!a_is_tree && !b_is_tree)) return hit;
   }
@@ -253,14 +304,14 @@ bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigi
 }
 
 bool meshes_collide(const Solid& a, const Rigid& T_a, const DistanceGrid& grid, const Solid& b, const Rigid& T_b,
-                    double more, bool hulls_meet) {
+                    const Closing& closing, bool hulls_meet) {
   const PairFrame frame(T_a, T_b);
-  const double margin = a.margin + b.margin + more;
+  const double margin = a.margin + b.margin, reach = margin + closing.most;
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
-  if (!hulls_meet && a.has_hull && b.has_hull && !convex_collide(a.core, b.core, frame.b_in_a, margin, axis))
+  if (!hulls_meet && a.has_hull && b.has_hull && !convex_collide(a.core, b.core, frame.b_in_a, reach, axis))
     return false;
   if (a.has_inner && b.has_inner && convex_collide(a.inner, b.inner, frame.b_in_a, margin, axis)) return true;
-  if (tree_hits_grid(a, grid, b, frame, margin)) return true;
+  if (tree_hits_grid(a, grid, b, frame, margin, closing.seen_from(T_a))) return true;
   return inside(a, b, frame.b_in_a) || inside(b, a, T_b.to(T_a));
 }
 

@@ -1,6 +1,7 @@
 // distance(): signed distance and witness points of two placed solids, by pair of kinds.
 #include <algorithm>
 
+#include "collision/narrow/field_query.hpp"
 #include "collision/narrow/narrow.hpp"
 #include "collision/narrow/tree_clearance.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
@@ -144,7 +145,8 @@ bool find_clearance(const Solid& a, const Rigid& T_a, const Solid& b, const Rigi
 }  // namespace
 
 double boxes_clearance(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b) {
-  if (a.kind == SolidKind::plane || b.kind == SolidKind::plane) return -kInfinity;
+  const auto unbounded = [](const Solid& s) { return s.kind == SolidKind::plane || s.kind == SolidKind::field; };
+  if (unbounded(a) || unbounded(b)) return -kInfinity;
   const Rigid b_in_a = T_a.to(T_b);
   const double clearance =
       box_clearance(a.box_half, b.box_half, b_in_a.R, b_in_a.R.cwiseAbs(), b_in_a * b.box_centre - a.box_centre);
@@ -154,6 +156,7 @@ double boxes_clearance(const Solid& a, const Rigid& T_a, const Solid& b, const R
 SolidClearance solids_distance(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double bound) {
   SolidClearance out;
   if (a.never_collides() || b.never_collides()) return out;
+  if (b.kind == SolidKind::field) return field_distance(a, T_a, *b.field, T_b, bound);
   if (a.kind != SolidKind::plane && b.kind == SolidKind::plane) {
     const SolidClearance clearance = solids_distance(b, T_b, a, T_a, bound);
     return {clearance.distance, clearance.on_b, clearance.on_a, -clearance.normal};

@@ -1,8 +1,11 @@
 #include "collision/narrow/solid.hpp"
 
 #include <map>
+#include <mutex>
 #include <numeric>
 
+#include "collision/narrow/convex_clearance.hpp"
+#include "collision/narrow/field_body.hpp"
 #include "collision/narrow/stages.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -12,12 +15,13 @@ namespace mmgrasp::detail {
 
 namespace {
 
-// Larger hulls cost more than they save as an outer bound.
+// Larger hulls cost more than they save as an outer bound: some of their corners stand for all.
 constexpr std::size_t kMaxHullBound = 400;
+constexpr int kHullDirections = 200;
 
-// x of all points, then y, then z; an even number of points, the last one repeated, for two at a time.
+// x of all points, then y, then z; whole vectors of them, the last point repeated.
 std::vector<double> by_coordinate(const std::vector<Eigen::Vector3d>& points) {
-  const std::size_t count = points.size() + points.size() % 2;
+  const std::size_t count = (points.size() + kLanes - 1) / kLanes * kLanes;
   std::vector<double> out(3 * count);
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Vector3d& p = points[std::min(i, points.size() - 1)];
@@ -34,6 +38,14 @@ void set_hull(Convex& core, const std::vector<double>& points) {
   for (int i = 0; i < core.count; ++i) {
     core.centre += Eigen::Vector3d(points[i], points[core.count + i], points[2 * core.count + i]) / core.count;
   }
+}
+
+// The hull's points in single precision as well. Coordinates and sums of their products are rounded a few times.
+void set_rough(Convex& core, std::vector<float>& rough) {
+  rough.assign(core.points, core.points + 3 * core.count);
+  core.rough = rough.data();
+  for (int i = 0; i < 3 * core.count; ++i)
+    core.rough_error = std::max(core.rough_error, 2e-6 * std::abs(core.points[i]));
 }
 
 // The smaller of two simple choices: around the box, or around the farthest vertex from the box's middle.
@@ -96,7 +108,38 @@ bool set_inner(Solid& solid, const TriangleMesh& mesh, const TriangleMesh& hull,
   return true;
 }
 
-void set_mesh(Solid& solid, const TriangleMesh& mesh, std::vector<double>& hull_points,
+// The farthest corners along directions spread evenly over the sphere.
+std::vector<Eigen::Vector3d> farthest_corners(const std::vector<Eigen::Vector3d>& corners) {
+  std::vector<char> taken(corners.size(), 0);
+  std::vector<Eigen::Vector3d> out;
+  for (int i = 0; i < kHullDirections; ++i) {
+    const double z = 1 - (2 * i + 1.0) / kHullDirections, r = std::sqrt(1 - z * z), turn = i * 2.399963229728653;
+    const Eigen::Vector3d direction(r * std::cos(turn), r * std::sin(turn), z);
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < corners.size(); ++k) {
+      if (direction.dot(corners[k]) > direction.dot(corners[best])) best = k;
+    }
+    if (!taken[best]) out.push_back(corners[best]);
+    taken[best] = 1;
+  }
+  return out;
+}
+
+// How far the corners lie outside a hull at most.
+double farthest_outside(const std::vector<Eigen::Vector3d>& corners, const Convex& hull) {
+  double farthest = 0;
+  ConvexClearance clearance;
+  for (const Eigen::Vector3d& corner : corners) {
+    Convex point;
+    point.centre = corner;
+    Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+    const ClearanceKind kind = convex_clearance(point, hull, Rigid(), kInfinity, axis, clearance);
+    if (kind == ClearanceKind::apart) farthest = std::max(farthest, clearance.distance);
+  }
+  return farthest;
+}
+
+void set_mesh(Solid& solid, const TriangleMesh& mesh, std::vector<double>& hull_points, std::vector<float>& rough,
               std::vector<double>& inner_points) {
   set_mesh_bounds(solid, mesh);
   solid.core.half = solid.box_half;
@@ -104,6 +147,7 @@ void set_mesh(Solid& solid, const TriangleMesh& mesh, std::vector<double>& hull_
     // Its core grows by the margin like a sphere does: within `margin` counts as touching.
     hull_points = by_coordinate(mesh.vertices);
     set_hull(solid.core, hull_points);
+    set_rough(solid.core, rough);
     solid.kind = SolidKind::convex;
     return;
   }
@@ -132,13 +176,15 @@ void set_mesh(Solid& solid, const TriangleMesh& mesh, std::vector<double>& hull_
   }
   try {
     const auto hull = convex_hull(mesh.vertices);
-    if (hull->vertices.size() > kMaxHullBound) return;
-    hull_points = by_coordinate(hull->vertices);
+    const bool whole = hull->vertices.size() <= kMaxHullBound;
+    hull_points = by_coordinate(whole ? hull->vertices : farthest_corners(hull->vertices));
     set_hull(solid.core, hull_points);
+    set_rough(solid.core, rough);
     // The hull's own rounding must not cut anything off.
     solid.core.radius = 1e-6 * solid.box_half.norm();
+    if (!whole) solid.core.radius += farthest_outside(hull->vertices, solid.core);
     solid.has_hull = runs(kHullStage);
-    solid.has_inner = runs(kHullStage) && mesh.closed && set_inner(solid, mesh, *hull, inner_points);
+    solid.has_inner = runs(kHullStage) && mesh.closed && whole && set_inner(solid, mesh, *hull, inner_points);
   } catch (const InvalidInput&) {
     solid.has_hull = false;  // a flat sheet has no hull
   }
@@ -230,6 +276,16 @@ bool ray_meets_box(const BoxTree::Node& node, const Eigen::Vector3d& from, const
 
 }  // namespace
 
+struct Solid::LazyFieldBody {
+  std::once_flag once;
+  std::unique_ptr<const FieldBody> body;
+};
+
+const FieldBody& Solid::field_body() const {
+  std::call_once(field_body_->once, [&] { field_body_->body = std::make_unique<const FieldBody>(*this); });
+  return *field_body_->body;
+}
+
 bool Solid::contains(const Eigen::Vector3d& point) const {
   if (!closed || ((point - box_centre).cwiseAbs() - box_half).maxCoeff() > 0) return false;
   const Eigen::Vector3d direction = ray_direction();
@@ -271,9 +327,10 @@ Convex Solid::piece(int position) const {
 
 std::shared_ptr<const Solid> make_solid(const Shape& shape, double padding) {
   auto solid = std::make_shared<Solid>();
+  solid->field_body_ = std::make_shared<Solid::LazyFieldBody>();
   if (const auto* s = std::get_if<MeshShape>(&shape)) {
     solid->margin = padding;
-    set_mesh(*solid, *s->mesh, solid->hull_points_, solid->inner_points_);
+    set_mesh(*solid, *s->mesh, solid->hull_points_, solid->rough_points_, solid->inner_points_);
   } else if (const auto* s = std::get_if<Voxels>(&shape)) {
     solid->margin = padding;
     set_voxels(*solid, *s);

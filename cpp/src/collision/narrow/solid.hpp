@@ -12,7 +12,10 @@
 
 namespace mmgrasp::detail {
 
-enum class SolidKind { convex, mesh, voxels, plane };
+class FieldBody;
+struct FieldView;
+
+enum class SolidKind { convex, mesh, voxels, plane, field };
 
 /// A shape prepared for collision queries: what takes time is done once here. Immutable, shared between checkers and
 /// threads.
@@ -48,6 +51,11 @@ struct MMGRASP_EXPORT Solid {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< Plane: solid where normal . x <= offset.
   double offset = 0;
 
+  std::shared_ptr<const FieldView> field;  ///< Kind field: an obstacle of the scene, without bounds.
+
+  /// The pieces in which distance fields are asked about the solid, made when first needed. Safe from several threads.
+  const FieldBody& field_body() const;
+
   /// Point inside a closed mesh (winding number along a generic ray, by the tree).
   bool contains(const Eigen::Vector3d& point) const;
   bool never_collides() const { return (kind == SolidKind::mesh || kind == SolidKind::voxels) && tree.empty(); }
@@ -57,7 +65,10 @@ struct MMGRASP_EXPORT Solid {
 
  private:
   friend std::shared_ptr<const Solid> make_solid(const Shape& shape, double padding);
+  struct LazyFieldBody;
   std::vector<double> hull_points_, inner_points_;
+  std::vector<float> rough_points_;
+  std::shared_ptr<LazyFieldBody> field_body_;
 };
 
 /// `padding` grows the shape: primitives exactly (a box gets 2 x padding longer per axis), planes by their offset,

@@ -99,6 +99,27 @@ void NpyWriter::finish(std::uint64_t rows) {
   if (closed != 0) refuse();
 }
 
+namespace {
+
+constexpr std::uint64_t kLargestCopy = 256'000'000;  // Larger files are mapped: a copy would take their size in memory.
+
+/// False, with errno, when the file ends early or cannot be read.
+bool read_all(int file, unsigned char* to, std::uint64_t bytes) {
+  while (bytes > 0) {
+    const ::ssize_t got = ::read(file, to, bytes);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) {
+      if (got == 0) errno = EIO;  // cut short since its size was asked for
+      return false;
+    }
+    to += got;
+    bytes -= static_cast<std::uint64_t>(got);
+  }
+  return true;
+}
+
+}  // namespace
+
 MappedFile::MappedFile(const std::string& path, std::uint64_t bytes) : size_(bytes) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) throw IoError(path + ": cannot be opened (" + std::strerror(errno) + ")");
@@ -111,8 +132,15 @@ MappedFile::MappedFile(const std::string& path, std::uint64_t bytes) : size_(byt
     throw IoError(path + ": " + (found < bytes ? "truncated: " : "bytes after the end: ") + std::to_string(found) +
                   " bytes, " + std::to_string(bytes) + " expected");
   }
-  void* at = ::mmap(nullptr, bytes, PROT_READ, MAP_SHARED, file, 0);
-  const int failure = errno;
+  const bool copied = bytes <= kLargestCopy;
+  void* at = copied ? ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)
+                    : ::mmap(nullptr, bytes, PROT_READ, MAP_SHARED, file, 0);
+  int failure = errno;
+  if (copied && at != MAP_FAILED && !read_all(file, static_cast<unsigned char*>(at), bytes)) {
+    failure = errno;
+    ::munmap(at, bytes);
+    at = MAP_FAILED;
+  }
   ::close(file);
   if (at == MAP_FAILED) throw IoError(path + ": cannot be mapped into memory (" + std::strerror(failure) + ")");
   data_ = static_cast<const unsigned char*>(at);

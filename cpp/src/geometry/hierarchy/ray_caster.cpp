@@ -15,7 +15,8 @@ using detail::PreparedRay;
 using detail::TriangleTree;
 using Eigen::Vector3d;
 
-constexpr int kBlock = 1024;  // rays of a work item
+constexpr std::size_t kBlock = 1024;  // rays of a work item
+constexpr int kBatch = 32;            // rays given to the kernels at once: few enough to stay near
 
 bool prepare(const TriangleTree& tree, const Ray& ray, PreparedRay& out) {
   // A number that is not finite is not 0 even times 0.
@@ -63,6 +64,35 @@ bool crosses(const TriangleTree& tree, const PreparedRay& ray, int packet, int l
   return t >= ray.nearest && t <= ray.farthest;
 }
 
+// Calls tell(index, record) for each ray; no record when it meets nothing.
+template <class Kernel, class Tell>
+void cast_all(const TriangleTree& tree, const std::vector<Ray>& rays, int threads, const Kernel& kernel,
+              const Tell& tell) {
+  parallel_for((rays.size() + kBlock - 1) / kBlock, threads, [&](std::size_t block, int) {
+    PreparedRay prepared[kBatch];
+    detail::RayRecord records[kBatch];
+    std::size_t index[kBatch];
+    int count = 0;
+    const auto cast = [&] {
+      kernel(tree.view(), prepared, count, records);
+      for (int i = 0; i < count; ++i) {
+        tell(index[i], records[i].packet >= 0 ? records + i : nullptr);
+      }
+      count = 0;
+    };
+    const std::size_t end = std::min(rays.size(), (block + 1) * kBlock);
+    for (std::size_t i = block * kBlock; i < end; ++i) {
+      if (!prepare(tree, rays[i], prepared[count])) {
+        tell(i, nullptr);
+        continue;
+      }
+      index[count++] = i;
+      if (count == kBatch) cast();
+    }
+    if (count > 0) cast();
+  });
+}
+
 }  // namespace
 
 RayCaster::RayCaster(const TriangleMesh& mesh) : tree_(std::make_shared<TriangleTree>(mesh)) {}
@@ -104,20 +134,22 @@ bool RayCaster::contains(const Vector3d& point) const {
 }
 
 std::vector<RayHit> RayCaster::closest_hits(const std::vector<Ray>& rays, int threads) const {
-  std::vector<RayHit> hits(rays.size());
-  parallel_for((rays.size() + kBlock - 1) / kBlock, threads, [&](std::size_t block, int) {
-    const std::size_t end = std::min(rays.size(), (block + 1) * kBlock);
-    for (std::size_t i = block * kBlock; i < end; ++i) hits[i] = closest_hit(rays[i]);
-  });
+  std::vector<RayHit> hits;
+  closest_hits(rays, hits, threads);
   return hits;
+}
+
+void RayCaster::closest_hits(const std::vector<Ray>& rays, std::vector<RayHit>& hits, int threads) const {
+  hits.resize(rays.size());
+  cast_all(*tree_, rays, threads, detail::ray_kernels().closest_many, [&](std::size_t i, const detail::RayRecord* met) {
+    hits[i] = met ? make_hit(*tree_, rays[i], met->t, met->packet, met->lane) : RayHit();
+  });
 }
 
 std::vector<char> RayCaster::any_hits(const std::vector<Ray>& rays, int threads) const {
   std::vector<char> hits(rays.size());
-  parallel_for((rays.size() + kBlock - 1) / kBlock, threads, [&](std::size_t block, int) {
-    const std::size_t end = std::min(rays.size(), (block + 1) * kBlock);
-    for (std::size_t i = block * kBlock; i < end; ++i) hits[i] = any_hit(rays[i]);
-  });
+  cast_all(*tree_, rays, threads, detail::ray_kernels().any_many,
+           [&](std::size_t i, const detail::RayRecord* met) { hits[i] = met != nullptr; });
   return hits;
 }
 

@@ -7,9 +7,10 @@
 
 namespace mmgrasp::detail {
 
-constexpr int kTreeWidth = 8;    // children of a node
-constexpr int kPacketWidth = 4;  // triangles of a leaf
-constexpr int kStackSize = 512;  // the builder keeps the tree so flat that 7 entries a level fit
+constexpr int kTreeWidth = 8;                                 // children of a node
+constexpr int kPacketWidth = 4;                               // triangles of a leaf
+constexpr int kMaxDepth = 72;                                 // levels of the deepest tree that the builder makes
+constexpr int kStackSize = kMaxDepth * (kTreeWidth - 1) + 1;  // for those who push all children of a node
 
 /// Eight children with their boxes, in the tree's own coordinates: the mesh fills [-1, 1] along its longest side, and
 /// every box is larger than what it holds by more than the rounding of single precision.
@@ -42,7 +43,7 @@ struct PreparedRay {
 };
 
 struct RayRecord {
-  double t;  // in: the farthest allowed
+  double t = 0;  // in: the farthest allowed
   int triangle = -1, packet = -1, lane = -1;
 };
 
@@ -52,6 +53,10 @@ struct RayKernels {
   bool (*any)(const TreeView& tree, const PreparedRay& ray);
   /// Calls visit(data, packet) for each leaf whose box the ray meets.
   void (*leaves)(const TreeView& tree, const PreparedRay& ray, void (*visit)(void* data, int packet), void* data);
+  /// The nearest triangle of each ray; packet -1: it meets none. Quicker than one by one, with the same answers.
+  void (*closest_many)(const TreeView& tree, const PreparedRay* rays, int count, RayRecord* records);
+  /// Some packet with a triangle that the ray meets, or -1.
+  void (*any_many)(const TreeView& tree, const PreparedRay* rays, int count, RayRecord* records);
 };
 
 /// Those of instruction_set(). Every set gives the same answers.

@@ -155,7 +155,7 @@ bool TriangleTree::prepare(const Vector3d& origin, const Vector3d& direction, do
   ray.axis[0] = (longest + 1) % 3;
   ray.axis[1] = (longest + 2) % 3;
   if (direction[longest] < 0) std::swap(ray.axis[0], ray.axis[1]);
-  ray.shear[2] = 1 / direction[longest];
+  ray.shear[2] = inverse[longest];
   ray.shear[0] = direction[ray.axis[0]] * ray.shear[2];
   ray.shear[1] = direction[ray.axis[1]] * ray.shear[2];
   return true;

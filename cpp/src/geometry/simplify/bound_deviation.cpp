@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 constexpr int kMaxCells = 1'000'000;  // checked before a bound counts as not reached
 constexpr int kPolishCells = 50'000;  // once the limit is kept: spent on a tighter figure
-constexpr double kClose = 1.1;        // a bound this close to the truth is good enough
+constexpr double kTightEnough = 1.1;  // a bound this close to the truth is good enough
 
 /// A cube that may hold points of the solid. No point in it lies farther from the mesh than `bound`.
 struct Cell {
@@ -38,7 +38,7 @@ class DeviationSearch {
       const double bound = std::max(cells_.top().bound, farthest_);
       if (farthest_ > limit) return detail::kInfinity;
       const bool kept = bound <= limit;
-      if (kept && (bound <= kClose * farthest_ || looked_at_ > kPolishCells)) return bound;
+      if (kept && (bound <= kTightEnough * farthest_ || looked_at_ > kPolishCells)) return bound;
       if (looked_at_ > kMaxCells) return bound;
       const Cell cell = cells_.top();
       cells_.pop();

@@ -99,7 +99,7 @@ Refined Refiner::refine(int ix, int iy, double angle, double opening, const TipL
     }
     if (held == 0) continue;
     rows.held += held;
-    rows.spanned += static_cast<std::size_t>(std::lround((right - left) / (opening / points))) + 1;
+    rows.spanned += std::lround((right - left) / (opening / points)) + 1;
     rows.lefts.push_back(left);
     rows.rights.push_back(right);
     rows.left = std::min(rows.left, left);

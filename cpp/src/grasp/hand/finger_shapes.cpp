@@ -118,7 +118,7 @@ Vector3d FingerShapes::outward(const Eigen::VectorXd& values) const {
   return sum / static_cast<double>(centres.size());
 }
 
-void FingerShapes::choose_tips(const Eigen::VectorXd& values, const Vector3d& approach, const Vector3d& closing) {
+bool FingerShapes::choose_tips(const Eigen::VectorXd& values, const Vector3d& approach, const Vector3d& closing) {
   approach_ = approach;
   closing_ = closing;
   const Poses poses = in_tool_frame(values);
@@ -140,7 +140,7 @@ void FingerShapes::choose_tips(const Eigen::VectorXd& values, const Vector3d& ap
     tips_.push_back({static_cast<int>(i), side});
     (side < 0 ? left : right) = true;
   }
-  require(left && right, "hand", robot_.name(), "no two finger tips stand on opposite sides of the tool frame");
+  return left && right;
 }
 
 double FingerShapes::reach(const Eigen::VectorXd& values) const {

@@ -31,9 +31,9 @@ class FingerShapes {
   std::vector<Eigen::Vector3d> leaf_centres(const Eigen::VectorXd& values) const;
   /// From the fingers' first joints to their leaves, on average.
   Eigen::Vector3d outward(const Eigen::VectorXd& values) const;
-  /// Fixes the axes and takes as tips the leaves that reach farthest along the approach. Throws InvalidInput unless
-  /// some stand on either side.
-  void choose_tips(const Eigen::VectorXd& values, const Eigen::Vector3d& approach, const Eigen::Vector3d& closing);
+  /// Fixes the axes and takes as tips the leaves that reach farthest along the approach. False unless some stand on
+  /// either side.
+  bool choose_tips(const Eigen::VectorXd& values, const Eigen::Vector3d& approach, const Eigen::Vector3d& closing);
 
   const std::vector<Tip>& tips() const { return tips_; }
   /// Least of the tips' far ends along the approach [m].

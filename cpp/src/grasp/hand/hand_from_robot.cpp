@@ -1,4 +1,5 @@
 // Hand::from_robot: a hand read from URDF and SRDF, its opening measured by forward kinematics.
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -17,12 +18,15 @@ using Eigen::Vector3d;
 constexpr double kSameOpening = 1e-9;  // a table that deviates less from a line is one [m]
 constexpr double kTurned = 1e-3;       // pads that turn less stay parallel [rad]
 constexpr int kBisections = 60;
+constexpr double kNextToAxis = 0.05;  // directions this near to an axis of the tool frame are that axis [rad]
+constexpr double kOffAxis = 0.35;     // fingers that point farther from every axis tell no approach [rad]
 
 /// The range of a driven joint.
 struct Drive {
   int joint = -1;
   double closed = 0, open = 0;
-  bool spreads = false;  ///< Moves its fingers across the plane in which they close.
+  bool spreads = false;      ///< Moves its fingers across the plane in which they close.
+  bool stated_open = false;  ///< The SRDF says where the hand is open, or closed.
 };
 
 /// SRDF end effector, group or, without a name, every driven joint below the tool's rigid body.
@@ -74,7 +78,8 @@ class Reader {
     shapes_.emplace(robot_, tool_, joints());
     for (const Drive& drive : drives_) value(drive) = (drive.closed + drive.open) / 2;
     find_axes();
-    shapes_->choose_tips(values_, hand_.approach, hand_.closing);
+    if (!shapes_->choose_tips(values_, hand_.approach, hand_.closing))
+      throw unreadable("no two finger tips stand on opposite sides of the tool frame", "closing");
     orient_drives();
     set_range();
     describe();
@@ -98,9 +103,41 @@ class Reader {
               "must be revolute or prismatic");
       require(std::isfinite(joint.lower) && std::isfinite(joint.upper) && joint.lower < joint.upper, field,
               std::to_string(joint.lower) + " to " + std::to_string(joint.upper), "must have limits");
-      drives_.push_back({index, joint.lower, joint.upper, false});
+      drives_.push_back({index, joint.lower, joint.upper});
+    }
+    const auto closed = state_of(robot_, reading_.group, {"closed", "close"});
+    const auto open = state_of(robot_, reading_.group, {"open", "opened"});
+    for (Drive& drive : drives_) {
+      const std::string& name = robot_.joints()[drive.joint].name;
+      const auto from = closed.find(name), to = open.find(name);
+      drive.stated_open = from != closed.end() || to != open.end();
+      if (!drive.stated_open) continue;
+      // The end that is not stated is the limit farther from the one that is.
+      const auto other = [&](double stated) {
+        return stated - drive.closed < drive.open - stated ? drive.open : drive.closed;
+      };
+      const double shut = from != closed.end() ? from->second : other(to->second);
+      drive.open = to != open.end() ? to->second : other(from->second);
+      drive.closed = shut;
     }
     require(!drives_.empty(), "tool_link", hand_.tool_link, "no driven joint was found that moves fingers beside it");
+  }
+
+  /// Why fingers half way between the ends of their joints tell nothing, with what to do about it.
+  InvalidInput unreadable(const std::string& why, const std::string& axis) const {
+    const Drive& widest = *std::max_element(drives_.begin(), drives_.end(), [](const Drive& a, const Drive& b) {
+      return std::abs(a.open - a.closed) < std::abs(b.open - b.closed);
+    });
+    const auto number = [](double x) {
+      const std::string text = std::to_string(x);
+      return text.substr(0, text.size() - 3);
+    };
+    return InvalidInput("hand = " + robot_.name() + ", tool_link = " + hand_.tool_link +
+                        ": half way between the ends of the joints (" + robot_.joints()[widest.joint].name + ": " +
+                        number(widest.closed) + " to " + number(widest.open) + ") " + why +
+                        ". Limits wider than the hand's own let its fingers curl past the palm: narrow them, or name "
+                        "states 'open' and 'closed' of the hand's group in the SRDF; else give `" +
+                        axis + "` or another tool frame");
   }
 
   /// How a drive moves each tip from its lower to its upper end, all others half way.
@@ -124,18 +161,27 @@ class Reader {
       Eigen::Index axis = 0;
       outward.cwiseAbs().maxCoeff(&axis);
       hand_.approach = Vector3d::Unit(axis) * (outward[axis] < 0 ? -1.0 : 1.0);
+      if (!(outward.dot(hand_.approach) > std::cos(kOffAxis) * outward.norm()))
+        throw unreadable("no axis of the tool frame lies along the fingers", "approach");
     }
     if (reading_.closing) {
       hand_.closing = *reading_.closing;
       return;
     }
-    Vector3d moved = Vector3d::Zero();
-    for (const Drive& drive : drives_)
-      for (const Vector3d& move : tip_moves(drive)) moved += move.cwiseAbs();
-    moved -= moved.cwiseProduct(hand_.approach.cwiseAbs());
+    // Across the approach, the direction in which the tips move most: the frame may be turned against the fingers.
+    Eigen::Matrix3d moved = Eigen::Matrix3d::Zero();
+    for (const Drive& drive : drives_) {
+      for (Vector3d move : tip_moves(drive)) {
+        move -= move.dot(hand_.approach) * hand_.approach;
+        moved += move * move.transpose();
+      }
+    }
+    const Vector3d most = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moved).eigenvectors().col(2);
     Eigen::Index axis = 0;
-    moved.maxCoeff(&axis);
-    hand_.closing = Vector3d::Unit(axis);
+    most.cwiseAbs().maxCoeff(&axis);
+    const bool on_axis = std::abs(most[axis]) > std::cos(kNextToAxis);
+    hand_.closing = on_axis ? Vector3d(Vector3d::Unit(axis)) : Vector3d(most[axis] < 0 ? -most : most);
+    hand_.closing = (hand_.closing - hand_.closing.dot(hand_.approach) * hand_.approach).normalized();
   }
 
   /// Turns every drive's range so that `open` is the end at which its tips stand farther from the middle.
@@ -150,14 +196,7 @@ class Reader {
         aside += std::abs(moves[tip.leaf].dot(across));
       }
       drive.spreads = aside > along;
-      if (!drive.spreads && outward < 0) std::swap(drive.closed, drive.open);
-    }
-    const auto closed = state_of(robot_, reading_.group, {"closed", "close"});
-    const auto open = state_of(robot_, reading_.group, {"open", "opened"});
-    for (Drive& drive : drives_) {
-      const std::string& name = robot_.joints()[drive.joint].name;
-      if (const auto at = closed.find(name); at != closed.end()) drive.closed = at->second;
-      if (const auto at = open.find(name); at != open.end()) drive.open = at->second;
+      if (!drive.spreads && !drive.stated_open && outward < 0) std::swap(drive.closed, drive.open);
     }
   }
 

@@ -14,6 +14,8 @@ namespace {
 using detail::ContactPair;
 using detail::ContactPairs;
 
+constexpr double kMostCandidates = 1e6;
+
 struct Candidate {
   Grasp grasp;
   int bin = 0;  ///< Coarse direction of approach and closing axis.
@@ -141,9 +143,12 @@ void check_object(const std::vector<LinkShape>& object) {
 }  // namespace
 
 void GraspSamplerOptions::check() const {
-  require(approaches > 0, "approaches", approaches, "must be positive");
-  require(positions > 0, "positions", positions, "must be positive");
-  require(mesh_samples > 0, "mesh_samples", mesh_samples, "must be positive");
+  require(approaches > 0 && approaches <= 360, "approaches", approaches, "must be in [1, 360] directions");
+  require(positions > 0 && positions <= 100, "positions", positions, "must be in [1, 100] places");
+  require(mesh_samples > 0 && mesh_samples <= 100000, "mesh_samples", mesh_samples, "must be in [1, 100000] points");
+  const double candidates = static_cast<double>(approaches) * std::max(mesh_samples, positions * positions);
+  require(candidates <= kMostCandidates, "approaches", approaches,
+          "must be fewer: approaches times mesh_samples, or times positions squared, must be at most 1e6 candidates");
   require(max_grasps > 0, "max_grasps", max_grasps, "must be positive");
   require(std::isfinite(friction) && friction > 0, "friction", friction, "must be positive and finite");
   require(std::isfinite(standoff), "standoff", standoff, "must be finite [m]");

@@ -3,9 +3,7 @@
 #include <nlopt.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <mutex>
 
 #include "mmgrasp/core/error.hpp"
 #include "optim/nlp/best_iterate.hpp"
@@ -113,20 +111,6 @@ void constraints_of(unsigned m, double* out, unsigned n, const double* x, double
   std::copy(c.data(), c.data() + m, out);
 }
 
-/// NLopt has one generator, so seeding and drawing are one step. Recursive: an objective may solve a problem itself.
-std::recursive_timed_mutex& generator_mutex() {
-  static std::recursive_timed_mutex mutex;
-  return mutex;
-}
-
-/// Waits no longer than the solve may last; false when that is over.
-bool lock_generator(std::unique_lock<std::recursive_timed_mutex>& lock, const SolveClock& clock) {
-  // Not try_lock_for, whose lock on the steady clock ThreadSanitizer does not see.
-  while (!lock.try_lock_until(std::chrono::system_clock::now() + std::chrono::milliseconds(10)))
-    if (clock.over()) return false;
-  return true;
-}
-
 std::vector<double> list(const VectorXd& v) {
   return {v.data(), v.data() + v.size()};
 }
@@ -160,7 +144,7 @@ class NloptSearch : public DerivativeFreeSolver {
     const bool keeps = std::isfinite(result.value) && result.violation <= options.constraint_tolerance;
     result.outcome = clock.stopped()                         ? Outcome::stopped
                      : evaluator.exhausted() || clock.late() ? Outcome::timeout
-                     : !keeps                                ? Outcome::infeasible
+                     : !keeps                                ? Outcome::not_found
                      : converged                             ? Outcome::solved
                                                              : Outcome::approximate;
     result.evaluations = evaluator.evaluations;
@@ -180,11 +164,7 @@ class NloptSearch : public DerivativeFreeSolver {
       message = "nothing to search";
       return true;
     }
-    std::unique_lock lock(generator_mutex(), std::defer_lock);
-    if (algorithm_.random) {
-      if (!lock_generator(lock, clock)) return false;
-      nlopt::srand(options.seed);
-    }
+    if (algorithm_.random) nlopt::srand(options.seed);  // of this thread: NLopt has one generator a thread
     try {
       nlopt::opt solver(algorithm_.id, static_cast<unsigned>(x.size()));
       solver.set_lower_bounds(list(problem.bounds.lower));

@@ -25,7 +25,7 @@ NlpResult judged(NonlinearProblem& problem, const Eigen::VectorXd& last, bool co
     result.outcome = clock.stopped()                ? Outcome::stopped
                      : clock.late() || budget_ended ? Outcome::timeout
                      : keeps                        ? Outcome::approximate
-                                                    : Outcome::infeasible;
+                                                    : Outcome::not_found;
   }
   result.seconds = clock.seconds();
   return result;

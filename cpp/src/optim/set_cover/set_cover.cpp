@@ -36,7 +36,7 @@ double size_of(const SetCoverProblem& problem) {
 }
 
 std::vector<int> elements_left_out(const SetCoverProblem& problem, const std::vector<int>& sets) {
-  std::vector<bool> covered(static_cast<std::size_t>(problem.elements), false);
+  std::vector<bool> covered(problem.elements, false);
   for (int s : sets) {
     for (int e : problem.sets[s]) covered[e] = true;
   }
@@ -63,7 +63,7 @@ struct Part {
 Part part_of(const SetCoverProblem& problem, const std::vector<int>& sets, const std::vector<int>& elements) {
   Part part;
   part.problem.elements = static_cast<int>(elements.size());
-  std::vector<int> new_index(static_cast<std::size_t>(problem.elements), -1);
+  std::vector<int> new_index(problem.elements, -1);
   for (std::size_t i = 0; i < elements.size(); ++i) new_index[elements[i]] = static_cast<int>(i);
   for (int s : sets) {
     std::vector<int> kept;
@@ -82,7 +82,7 @@ Part part_of(const SetCoverProblem& problem, const std::vector<int>& sets, const
 
 /// Elements that no set joins can be covered apart.
 std::vector<std::vector<int>> components(const SetCoverProblem& problem) {
-  std::vector<int> root(static_cast<std::size_t>(problem.elements));
+  std::vector<int> root(problem.elements);
   std::iota(root.begin(), root.end(), 0);
   const auto find = [&root](int e) {
     while (root[e] != e) {
@@ -95,7 +95,7 @@ std::vector<std::vector<int>> components(const SetCoverProblem& problem) {
   for (const auto& set : problem.sets) {
     for (int e : set) root[find(e)] = find(set.front());
   }
-  std::vector<std::vector<int>> lists(static_cast<std::size_t>(problem.elements));
+  std::vector<std::vector<int>> lists(problem.elements);
   for (int e = 0; e < problem.elements; ++e) lists[find(e)].push_back(e);
   lists.erase(std::remove_if(lists.begin(), lists.end(), [](const auto& list) { return list.empty(); }), lists.end());
   return lists;
@@ -103,7 +103,7 @@ std::vector<std::vector<int>> components(const SetCoverProblem& problem) {
 
 class Solver {
  public:
-  explicit Solver(double time_limit) : time_limit_(std::min(time_limit, 1e6)) {}
+  Solver(double time_limit, const Monitor& monitor) : time_limit_(std::min(time_limit, 1e6)), monitor_(monitor) {}
 
   struct Answer {
     std::vector<int> chosen;
@@ -138,7 +138,7 @@ class Solver {
     detail::PricedCover priced = detail::price_set_cover(problem, kPriceSteps);
     detail::search_covers(problem, priced, rounds);
     Answer answer{priced.chosen, priced.bound};
-    if (priced.bound >= priced.cost) return answer;
+    if (priced.bound >= priced.cost || monitor_.stopped()) return answer;
     // Only sets that could be part of a cheaper cover: taking any other lifts the bound to the cost of the one at hand.
     const std::vector<double> reduced = detail::reduced_costs(problem, priced.prices);
     const double bound = detail::bound_by_prices(problem, priced.prices);
@@ -153,7 +153,9 @@ class Solver {
     if (static_cast<double>(useful.size()) < kShrunk * static_cast<double>(problem.sets.size())) {
       return better(problem, answer, lifted(solve(part.problem), part.sets));
     }
-    const detail::BranchAndBoundAnswer branched = detail::branch_and_bound(part.problem, priced.cost, seconds_left());
+    const detail::BranchAndBoundAnswer branched =
+        detail::branch_and_bound(part.problem, priced.cost, seconds_left(), monitor_);
+    if (monitor_.stopped()) return answer;
     Answer inner{priced.chosen, branched.lower_bound};
     if (branched.chosen) inner = lifted({*branched.chosen, branched.lower_bound}, part.sets);
     if (branched.proven) inner.bound = cost_of(problem, inner.chosen);
@@ -181,6 +183,7 @@ class Solver {
   }
 
   detail::TimeLimit time_limit_;
+  const Monitor& monitor_;
 };
 
 }  // namespace
@@ -202,7 +205,7 @@ void SetCoverProblem::check() const {
   }
 }
 
-SetCoverResult solve_set_cover(const SetCoverProblem& problem, double time_limit) {
+SetCoverResult solve_set_cover(const SetCoverProblem& problem, double time_limit, const Monitor& monitor) {
   problem.check();
   require(time_limit > 0, "time_limit", time_limit, "must be > 0");
   SetCoverResult result;
@@ -211,7 +214,7 @@ SetCoverResult solve_set_cover(const SetCoverProblem& problem, double time_limit
     result.outcome = Outcome::infeasible;
     return result;
   }
-  Solver::Answer answer = Solver(time_limit).solve(problem);
+  Solver::Answer answer = Solver(time_limit, monitor).solve(problem);
   std::sort(answer.chosen.begin(), answer.chosen.end());
   result.chosen = std::move(answer.chosen);
   result.cost = cost_of(problem, result.chosen);
@@ -220,7 +223,7 @@ SetCoverResult solve_set_cover(const SetCoverProblem& problem, double time_limit
   }
   const bool proven = answer.bound >= result.cost - 1e-9 * result.cost;  // the same sums in another order
   result.lower_bound = proven ? result.cost : answer.bound;
-  result.outcome = proven ? Outcome::solved : Outcome::approximate;
+  result.outcome = proven ? Outcome::solved : monitor.stopped() ? Outcome::stopped : Outcome::approximate;
   return result;
 }
 

@@ -1,11 +1,19 @@
 #include "optim/set_cover/set_cover_branching.hpp"
 
-#include <coin/Cbc_C_Interface.h>
+#include <pthread.h>
 
+#include <CbcEventHandler.hpp>
+#include <CbcModel.hpp>
+#include <CbcSolver.hpp>
+#include <ClpEventHandler.hpp>
+#include <ClpSimplex.hpp>
+#include <OsiClpSolverInterface.hpp>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <memory>
 #include <mutex>
+#include <new>
+#include <thread>
 
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "optim/set_cover/set_cover_prices.hpp"
@@ -15,14 +23,18 @@ namespace {
 
 constexpr int kNodesWithoutCuts = 800;
 
-/// CBC's command-line layer, which Cbc_solve goes through, keeps process-wide state: one run at a time.
+/// CBC's command-line layer keeps process-wide state: one run at a time. A child that is forked during a run has no
+/// thread that would end it, so it begins with a mutex of its own.
 std::mutex& cbc_mutex() {
-  static std::mutex mutex;
-  return mutex;
+  static std::mutex* mutex = [] {
+    ::pthread_atfork(nullptr, nullptr, [] { new (&cbc_mutex()) std::mutex; });
+    return new std::mutex;
+  }();
+  return *mutex;
 }
 
 bool covers(const SetCoverProblem& problem, const std::vector<int>& sets) {
-  std::vector<bool> covered(static_cast<std::size_t>(problem.elements), false);
+  std::vector<bool> covered(problem.elements, false);
   for (int s : sets) {
     for (int e : problem.sets[s]) covered[e] = true;
   }
@@ -36,9 +48,29 @@ double safe_bound(double bound, const std::vector<double>& costs) {
   return std::max(0.0, all_integral(costs) ? std::ceil(lowered) : lowered);
 }
 
-BranchAndBoundAnswer run_cbc(const SetCoverProblem& problem, double known_cost, bool with_cuts, int max_nodes,
-                             double time_limit) {
-  const std::unique_ptr<Cbc_Model, void (*)(Cbc_Model*)> model(Cbc_newModel(), Cbc_deleteModel);
+/// Ends CBC's search at its next event once the monitor says so.
+class StopAtEvents : public CbcEventHandler {
+ public:
+  explicit StopAtEvents(const Monitor& monitor) : monitor_(&monitor) {}
+  CbcAction event(CbcEvent) override { return monitor_->stopped() ? stop : noAction; }
+  CbcEventHandler* clone() const override { return new StopAtEvents(*this); }
+
+ private:
+  const Monitor* monitor_;
+};
+
+/// The same within one linear programme.
+class StopAtIterations : public ClpEventHandler {
+ public:
+  explicit StopAtIterations(const Monitor& monitor) : monitor_(&monitor) {}
+  int event(Event) override { return monitor_->stopped() ? 5 : -1; }  // 5: stopped by an event; -1: go on
+  ClpEventHandler* clone() const override { return new StopAtIterations(*this); }
+
+ private:
+  const Monitor* monitor_;
+};
+
+void load(const SetCoverProblem& problem, OsiClpSolverInterface& solver) {
   const int columns = static_cast<int>(problem.sets.size());
   std::vector<int> starts{0}, rows;
   for (const auto& set : problem.sets) {
@@ -50,50 +82,73 @@ BranchAndBoundAnswer run_cbc(const SetCoverProblem& problem, double known_cost, 
   const std::vector<double> row_lower(elements, 1.0);
   // No row bound from above is needed; the number of columns is never reached in vain and spares CBC an infinity.
   const std::vector<double> row_upper(elements, static_cast<double>(columns));
-  Cbc_setLogLevel(model.get(), 0);
-  Cbc_setParameter(model.get(), "log", "0");
-  Cbc_setParameter(model.get(), "threads", "0");
-  Cbc_setParameter(model.get(), "timeMode", "elapsed");
-  if (!all_integral(problem.costs)) Cbc_setParameter(model.get(), "increment", "1e-9");
-  Cbc_loadProblem(model.get(), columns, problem.elements, starts.data(), rows.data(), ones.data(), lower.data(),
-                  upper.data(), problem.costs.data(), row_lower.data(), row_upper.data());
-  for (int c = 0; c < columns; ++c) Cbc_setInteger(model.get(), c);
-  Cbc_setAllowableGap(model.get(), 0.0);
-  Cbc_setAllowableFractionGap(model.get(), 0.0);
-  Cbc_setMaximumSeconds(model.get(), time_limit);
-  if (max_nodes >= 0) Cbc_setMaximumNodes(model.get(), max_nodes);
+  solver.setHintParam(OsiDoReducePrint, true, OsiHintTry);
+  solver.messageHandler()->setLogLevel(0);
+  solver.loadProblem(columns, problem.elements, starts.data(), rows.data(), ones.data(), lower.data(), upper.data(),
+                     problem.costs.data(), row_lower.data(), row_upper.data());
+  for (int c = 0; c < columns; ++c) solver.setInteger(c);
+}
+
+int no_callback(CbcModel*, int) {
+  return 0;
+}
+
+BranchAndBoundAnswer run_cbc(const SetCoverProblem& problem, double known_cost, bool with_cuts, int max_nodes,
+                             double time_limit, const Monitor& monitor) {
+  OsiClpSolverInterface solver;
+  load(problem, solver);
+  StopAtIterations stop_at_iterations(monitor);
+  solver.getModelPtr()->passInEventHandler(&stop_at_iterations);
+  CbcModel model(solver);
+  CbcSolverUsefulData data;
+  CbcMain0(model, data);
+  StopAtEvents stop_at_events(monitor);
+  model.passInEventHandler(&stop_at_events);
+  model.setLogLevel(0);
+  model.setAllowableGap(0.0);
+  model.setAllowableFractionGap(0.0);
+  model.setMaximumSeconds(time_limit);
+  if (max_nodes >= 0) model.setMaximumNodes(max_nodes);
+  std::vector<const char*> words = {"mmgrasp", "-log", "0", "-threads", "0", "-timeMode", "elapsed"};
+  if (!all_integral(problem.costs)) words.insert(words.end(), {"-increment", "1e-9"});
   if (!with_cuts) {
-    Cbc_setParameter(model.get(), "cutsOnOff", "off");
-    Cbc_setParameter(model.get(), "heuristicsOnOff", "off");
-    if (all_integral(problem.costs)) Cbc_setCutoff(model.get(), known_cost - 0.5);
+    words.insert(words.end(), {"-cutsOnOff", "off", "-heuristicsOnOff", "off"});
+    if (all_integral(problem.costs)) model.setCutoff(known_cost - 0.5);
   }
-  Cbc_solve(model.get());
+  words.insert(words.end(), {"-solve", "-quit"});
+  CbcMain1(static_cast<int>(words.size()), words.data(), model, no_callback, data);
 
   BranchAndBoundAnswer answer;
-  answer.lower_bound = safe_bound(Cbc_getBestPossibleObjValue(model.get()), problem.costs);
-  if (const double* solution = Cbc_bestSolution(model.get())) {
+  if (monitor.stopped()) return answer;  // what an LP that was broken off says is no proof
+  answer.lower_bound = safe_bound(model.getBestPossibleObjValue(), problem.costs);
+  if (const double* solution = model.bestSolution()) {
     std::vector<int> chosen;
-    for (int c = 0; c < columns; ++c) {
+    for (int c = 0; c < static_cast<int>(problem.sets.size()); ++c) {
       if (solution[c] > 0.5) chosen.push_back(c);
     }
     if (covers(problem, chosen)) answer.chosen = std::move(chosen);
   }
-  answer.proven = Cbc_isProvenOptimal(model.get()) && answer.chosen.has_value();
-  answer.none_cheaper = Cbc_isProvenInfeasible(model.get());
+  answer.proven = model.isProvenOptimal() && answer.chosen.has_value();
+  answer.none_cheaper = model.isProvenInfeasible();
   return answer;
 }
 
 }  // namespace
 
-BranchAndBoundAnswer branch_and_bound(const SetCoverProblem& problem, double known_cost, double time_limit) {
-  const std::lock_guard<std::mutex> lock(cbc_mutex());
+BranchAndBoundAnswer branch_and_bound(const SetCoverProblem& problem, double known_cost, double time_limit,
+                                      const Monitor& monitor) {
   const TimeLimit limit(time_limit);
+  std::unique_lock lock(cbc_mutex(), std::defer_lock);
+  while (!lock.try_lock()) {
+    if (limit.expired() || monitor.stopped()) return {};
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
   // Cutting planes decide sparse problems such as floors full of trays and only cost time on dense ones: nodes are
   // cheap without them, so some are tried first.
-  BranchAndBoundAnswer answer = run_cbc(problem, known_cost, false, kNodesWithoutCuts, time_limit);
+  BranchAndBoundAnswer answer = run_cbc(problem, known_cost, false, kNodesWithoutCuts, limit.seconds_left(), monitor);
   const double left = limit.seconds_left();
-  if (answer.proven || answer.none_cheaper || left <= 0) return answer;
-  BranchAndBoundAnswer second = run_cbc(problem, known_cost, true, -1, left);
+  if (answer.proven || answer.none_cheaper || left <= 0 || monitor.stopped()) return answer;
+  BranchAndBoundAnswer second = run_cbc(problem, known_cost, true, -1, left, monitor);
   second.lower_bound = std::max(second.lower_bound, answer.lower_bound);
   if (!second.chosen) second.chosen = answer.chosen;
   return second;

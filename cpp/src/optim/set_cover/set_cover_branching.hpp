@@ -16,6 +16,7 @@ struct BranchAndBoundAnswer {
 
 /// CBC on the whole problem (costs must be given), no gap allowed, given the cost of a cover known already. Calls wait
 /// for each other.
-BranchAndBoundAnswer branch_and_bound(const SetCoverProblem& problem, double known_cost, double time_limit);
+BranchAndBoundAnswer branch_and_bound(const SetCoverProblem& problem, double known_cost, double time_limit,
+                                      const Monitor& monitor);
 
 }  // namespace mmgrasp::detail

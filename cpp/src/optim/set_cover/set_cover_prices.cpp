@@ -36,7 +36,7 @@ class Greedy {
   std::vector<int> cover(const std::vector<double>& prices, const std::vector<double>& reduced,
                          const std::vector<int>& kept = {}) {
     const std::size_t sets = problem_.sets.size();
-    times_.assign(static_cast<std::size_t>(problem_.elements), 0);
+    times_.assign(problem_.elements, 0);
     missing_.resize(sets);
     above_ = reduced;
     std::priority_queue<Entry> queue;

@@ -29,9 +29,9 @@ class Sharing {
     result.makespan = *std::max_element(result.durations.begin(), result.durations.end());
     result.lower_bound = n_ <= kExactStops ? result.makespan : std::min(bound(), result.makespan);
     if (!std::isfinite(result.makespan)) {
-      result.outcome = std::isfinite(result.lower_bound) ? Outcome::timeout : Outcome::infeasible;
-      result.orders.assign(static_cast<std::size_t>(robots_), {});
-      result.durations.assign(static_cast<std::size_t>(robots_), 0.0);
+      result.outcome = std::isfinite(result.lower_bound) ? Outcome::not_found : Outcome::infeasible;
+      result.orders.assign(robots_, {});
+      result.durations.assign(robots_, 0.0);
     } else {
       const bool proven = result.lower_bound >= result.makespan * (1 - kGain);
       result.outcome = proven ? Outcome::solved : Outcome::approximate;
@@ -60,7 +60,7 @@ class Sharing {
     const std::size_t masks = std::size_t{1} << n_;
     std::vector<double> so_far(masks, detail::kInfinity);
     so_far[0] = 0;
-    std::vector<std::vector<std::size_t>> share(static_cast<std::size_t>(robots_), std::vector<std::size_t>(masks, 0));
+    std::vector<std::vector<std::size_t>> share(robots_, std::vector<std::size_t>(masks, 0));
     for (int robot = 0; robot < robots_; ++robot) {
       const std::vector<double> alone = durations_of_subsets(robot);
       std::vector<double> with(masks, detail::kInfinity);
@@ -76,7 +76,7 @@ class Sharing {
       }
       so_far = std::move(with);
     }
-    Orders orders(static_cast<std::size_t>(robots_));
+    Orders orders(robots_);
     std::size_t mask = masks - 1;
     for (int robot = robots_ - 1; robot >= 0; --robot) {
       const std::size_t own = std::isfinite(so_far.back()) ? share[robot][mask] : mask;
@@ -129,7 +129,7 @@ class Sharing {
 
   /// One tour over all stops, cut where the longest piece is shortest; then stops change robots.
   Orders good() const {
-    std::vector<int> all(static_cast<std::size_t>(n_));
+    std::vector<int> all(n_);
     std::iota(all.begin(), all.end(), 0);
     const std::vector<int> tour = ordered(0, all);
     std::vector<double> best(static_cast<std::size_t>(n_) + 1, detail::kInfinity);
@@ -149,7 +149,7 @@ class Sharing {
       }
       best = std::move(with);
     }
-    Orders orders(static_cast<std::size_t>(robots_));
+    Orders orders(robots_);
     int end = n_;
     for (int robot = robots_ - 1; robot >= 0; --robot) {
       const int begin = robot == 0 ? 0 : cut[robot][end];

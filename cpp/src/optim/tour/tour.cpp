@@ -106,7 +106,7 @@ TourResult shortest_visiting_tour(const Eigen::MatrixXd& lengths) {
     result.proven = exact;
     result.lower_bound = exact ? detail::kInfinity : 0;
     result.order.clear();
-    result.outcome = exact ? Outcome::infeasible : Outcome::timeout;
+    result.outcome = exact ? Outcome::infeasible : Outcome::not_found;
     return result;
   }
   result.lower_bound = exact ? result.length : detail::tour_bound(finite, result.length);

@@ -17,9 +17,9 @@ constexpr double kLastStep = 1e-4;
 /// Shortest spanning tree of symmetric lengths plus prices (Prim); its length and each node's neighbours.
 double spanning_tree(const Eigen::MatrixXd& lengths, const Eigen::VectorXd& prices, Eigen::VectorXi& degrees) {
   const auto n = lengths.rows();
-  std::vector<double> nearest(static_cast<std::size_t>(n), kInfinity);
-  std::vector<Eigen::Index> from(static_cast<std::size_t>(n), 0);
-  std::vector<char> in(static_cast<std::size_t>(n), 0);
+  std::vector<double> nearest(n, kInfinity);
+  std::vector<Eigen::Index> from(n, 0);
+  std::vector<char> in(n, 0);
   degrees = Eigen::VectorXi::Zero(n);
   double total = 0;
   Eigen::Index at = 0;

@@ -22,8 +22,8 @@ std::vector<int> cheapest_insertion(const Eigen::MatrixXd& lengths, int n) {
   };
   std::vector<int> next(static_cast<std::size_t>(n) + 2, -1);
   next[n] = n + 1;
-  std::vector<Gap> best(static_cast<std::size_t>(n));
-  std::vector<char> placed(static_cast<std::size_t>(n), 0);
+  std::vector<Gap> best(n);
+  std::vector<char> placed(n, 0);
   const auto look = [&](int stop, int before) {
     const int after = next[before];
     const double extra = lengths(before, stop) + lengths(stop, after) - lengths(before, after);
@@ -174,10 +174,10 @@ std::vector<int> short_order(const Eigen::MatrixXd& lengths) {
     Way way(lengths, best.order());
     // Three cuts not far apart: what is good elsewhere stays.
     const int span = std::min(n, 30);
-    const int first = 1 + static_cast<int>(rng.index(static_cast<std::size_t>(n - span + 1)));
+    const int first = 1 + static_cast<int>(rng.index(n - span + 1));
     int cuts[3];
     do {
-      for (int& cut : cuts) cut = first + static_cast<int>(rng.index(static_cast<std::size_t>(span + 1)));
+      for (int& cut : cuts) cut = first + static_cast<int>(rng.index(span + 1));
       std::sort(cuts, cuts + 3);
     } while (cuts[0] == cuts[1] || cuts[1] == cuts[2]);
     way.exchange(cuts[0], cuts[1], cuts[2]);

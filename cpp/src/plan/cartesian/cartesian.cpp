@@ -4,9 +4,9 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/robot/detail/whole_turns.hpp"
 #include "mmgrasp/robot/ik_branches.hpp"
 #include "plan/motion/beyond_limits.hpp"
-#include "plan/motion/joint_angles.hpp"
 #include "plan/motion/steered_base.hpp"
 
 namespace mmgrasp {
@@ -21,14 +21,16 @@ class BranchSearch {
 
   CartesianResult run() {
     find_branches();
-    result_.branches = static_cast<int>(branches_.size());
-    for (const auto& q : branches_) {
-      if (result_.tried == options_.max_branches || distance_to(q) >= best_cost_ || monitor_.stopped()) break;
-      try_branch(q);
+    for (const Start& start : starts_) {
+      if (result_.tried == options_.max_branches || distance_to(start.q) >= best_cost_ || monitor_.stopped()) break;
+      // Another turn of a branch draws the same lines: it only helps against joint limits.
+      if (start.branch >= 0 && ended_[start.branch]) continue;
+      const Rejection cause = try_branch(start.q);
+      if (start.branch >= 0) ended_[start.branch] = cause != Rejection::limits;
       monitor_.report("cartesian path", static_cast<double>(++result_.tried) / result_.branches);
     }
-    result_.outcome = result_.path ? Outcome::solved : Outcome::infeasible;
-    if (branches_.empty()) refuse_start();
+    result_.outcome = result_.path ? Outcome::solved : Outcome::not_found;
+    if (starts_.empty()) refuse_start();
     if (monitor_.stopped()) {
       result_.outcome = Outcome::stopped;
       result_.path.reset();
@@ -48,12 +50,21 @@ class BranchSearch {
     };
     IkBranches found = solve_ik_branches(checker_.group(), poses_.front(), ik, allowed, 0, monitor_);
     result_.rejections = found.rejections;
-    branches_ = std::move(found.solutions);
-    if (!near_) return;
-    for (auto& q : branches_) q = turned_to_near(q);
-    std::stable_sort(branches_.begin(), branches_.end(),
-                     [&](const auto& a, const auto& b) { return distance_to(a) < distance_to(b); });
-    if (near_reaches_first_pose() && checker_.is_free(*near_)) branches_.insert(branches_.begin(), *near_);
+    result_.branches = static_cast<int>(found.solutions.size());
+    ended_.assign(found.solutions.size(), 0);
+    const detail::WholeTurns turns(checker_.group());
+    for (std::size_t b = 0; b < found.solutions.size(); ++b) {
+      int turn = 0;
+      for (Eigen::VectorXd& q : turns.of(found.solutions[b], near_ ? *near_ : found.solutions[b]))
+        starts_.push_back({std::move(q), static_cast<int>(b), turn++});
+    }
+    std::stable_sort(starts_.begin(), starts_.end(), [&](const Start& a, const Start& b) {
+      return near_ ? distance_to(a.q) < distance_to(b.q) : a.turn < b.turn;
+    });
+    if (near_ && near_reaches_first_pose() && checker_.is_free(*near_)) {
+      starts_.insert(starts_.begin(), {*near_, -1, 0});
+      ++result_.branches;
+    }
   }
 
   bool near_reaches_first_pose() const {
@@ -81,14 +92,10 @@ class BranchSearch {
     result_.beyond_limits = detail::beyond_limits(checker_.group(), *near_);
   }
 
-  /// The same configuration, its continuous joints turned as near to `near` as whole turns allow.
-  Eigen::VectorXd turned_to_near(const Eigen::VectorXd& q) const {
-    return detail::nearest_turn(checker_.group().wraps(), *near_, q);
-  }
-
   double distance_to(const Eigen::VectorXd& q) const { return near_ ? (q - *near_).norm() : 0; }
 
-  void try_branch(const Eigen::VectorXd& first) {
+  /// What ended the lines; none when they are complete.
+  Rejection try_branch(const Eigen::VectorXd& first) {
     JointPath path{{first}};
     std::vector<int> corners{0};
     const double lines = static_cast<double>(poses_.size() - 1);
@@ -98,23 +105,24 @@ class BranchSearch {
       StraightLineResult line = plan_straight_line(checker_, path.waypoints.back(), poses_[i], options_.line, stop);
       if (line.outcome != Outcome::solved) {
         const double fraction = (static_cast<double>(i - 1) + line.fraction) / lines;
-        if (result_.path || fraction < result_.fraction) return;
+        if (result_.path || fraction < result_.fraction) return line.cause;
         result_.fraction = fraction;
         result_.cause = line.cause;
         result_.contact = std::move(line.contact);
-        return;
+        return line.cause;
       }
       path.waypoints.insert(path.waypoints.end(), line.path->waypoints.begin() + 1, line.path->waypoints.end());
       corners.push_back(static_cast<int>(path.waypoints.size()) - 1);
     }
     const double cost = distance_to(first) + path.length();
-    if (cost >= best_cost_) return;
+    if (cost >= best_cost_) return Rejection::none;
     best_cost_ = cost;
     result_.path = std::move(path);
     result_.corners = std::move(corners);
     result_.fraction = 1;
     result_.cause = Rejection::none;
     result_.contact.reset();
+    return Rejection::none;
   }
 
   static Rejection most(const Rejections& r) {
@@ -129,7 +137,14 @@ class BranchSearch {
   const CartesianOptions& options_;
   const Monitor& monitor_;
   std::optional<Contact> scene_contact_, self_contact_;  ///< Contacts of the first pose's configurations.
-  std::vector<Eigen::VectorXd> branches_;
+  /// A configuration at the first pose.
+  struct Start {
+    Eigen::VectorXd q;
+    int branch;  ///< Of inverse kinematics; -1: `near` itself.
+    int turn;    ///< Which of the branch's turns, the nearest first.
+  };
+  std::vector<Start> starts_;
+  std::vector<char> ended_;  ///< Per branch: its other turns need not be tried.
   double best_cost_ = detail::kInfinity;
   CartesianResult result_;
 };

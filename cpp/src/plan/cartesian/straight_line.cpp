@@ -140,7 +140,7 @@ class LineFollower {
 
   bool fail(Rejection cause) {
     result_.cause = cause;
-    result_.outcome = Outcome::infeasible;
+    result_.outcome = Outcome::not_found;
     return false;
   }
 

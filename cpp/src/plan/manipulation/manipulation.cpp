@@ -44,10 +44,30 @@ Outcome outcome_of(const detail::ManipulationInput& input, bool exhausted, const
   }
   if (result.path) return Outcome::solved;
   if (input.monitor.stopped()) return Outcome::stopped;
-  return exhausted ? Outcome::infeasible : Outcome::timeout;
+  return exhausted ? Outcome::not_found : Outcome::timeout;
 }
 
 }  // namespace
+
+const char* to_string(PlanStage stage) {
+  switch (stage) {
+    case PlanStage::search:
+      return "search";
+    case PlanStage::first_grasps:
+      return "first_grasps";
+    case PlanStage::straight_lines:
+      return "straight_lines";
+    case PlanStage::roadmap:
+      return "roadmap";
+    case PlanStage::refinement:
+      return "refinement";
+    case PlanStage::trees:
+      return "trees";
+    case PlanStage::shortening:
+      return "shortening";
+  }
+  return "?";
+}
 
 void ManipulationProblem::check() const {
   detail::refuse_steered_base(group, "plan_manipulation");
@@ -101,7 +121,7 @@ ManipulationResult detail::plan_manipulation_with(const ManipulationPlanner& pla
   if (roadmap) check_roadmap(roadmap->group(), problem.group);
   ManipulationResult result;
   Stopwatch clock;
-  TransferChecks checks(problem, options.edge, planner.search_steps, resolve_threads(options.threads));
+  TransferChecks checks(problem, options.edge, resolve_threads(options.threads));
   GraspCandidates candidates(problem, options, checks, clock, monitor, result);
   ManipulationInput input{problem, options, roadmap, checks, candidates, on_improvement, monitor, clock};
   const bool exhausted = planner.run(input, result);

@@ -13,8 +13,8 @@ bool run_tuned_rrt_star_mg(ManipulationInput& input, ManipulationResult& result)
 }
 
 constexpr ManipulationPlanner kPlanners[] = {
-    {"prm_star_mg", run_prm_star_mg, 1},
-    {"rrt_star_mg", run_tuned_rrt_star_mg, 8},  // Most edges of its trees are never part of a path.
+    {"prm_star_mg", run_prm_star_mg},
+    {"rrt_star_mg", run_tuned_rrt_star_mg},
 };
 
 }  // namespace

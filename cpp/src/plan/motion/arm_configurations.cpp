@@ -19,7 +19,7 @@ std::vector<Eigen::VectorXd> arm_configurations(const JointGroup& group, const P
                                                 Rejections& rejections) {
   std::vector<Eigen::VectorXd> solutions;
   Rejections seen;
-  if (!maybe_in_reach(group, T_world_tip.translation())) {
+  if (!maybe_in_reach(group, T_world_tip.translation(), options.position_tolerance)) {
     rejections.add(Rejection::unreachable);
     return solutions;
   }

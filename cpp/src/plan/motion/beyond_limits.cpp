@@ -1,6 +1,7 @@
 #include "plan/motion/beyond_limits.hpp"
 
 #include <algorithm>
+#include <iomanip>
 #include <sstream>
 
 namespace mmgrasp::detail {
@@ -10,6 +11,7 @@ std::string beyond_limits(const JointGroup& group, const Eigen::VectorXd& q) {
   const double beyond = (q - group.upper()).cwiseMax(group.lower() - q).maxCoeff(&worst);
   if (!(beyond > 0)) return "";
   std::ostringstream out;
+  out << std::setprecision(9);  // enough to tell the value from the limit
   out << group.names()[worst] << " = " << q[worst] << " is outside of its limits [" << group.lower()[worst] << ", "
       << group.upper()[worst] << "]";
   return out.str();

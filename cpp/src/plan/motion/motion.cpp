@@ -7,24 +7,27 @@
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "mmgrasp/robot/detail/joint_metric.hpp"
 #include "plan/motion/beyond_limits.hpp"
-#include "plan/motion/joint_angles.hpp"
 #include "plan/motion/motion_edges.hpp"
 #include "plan/motion/motion_goals.hpp"
 #include "plan/motion/ompl_bridge.hpp"
+#include "plan/motion/redundant_waypoints.hpp"
 #include "plan/motion/rrt_connect.hpp"
 #include "plan/motion/shortening.hpp"
 
 namespace mmgrasp {
 namespace {
 
-using detail::nearest_turn;
-
 constexpr const char* kOwnPlanner = "rrt_connect";
 constexpr int kMaxSearches = 4;  // Searches at most, when paths fail the final check.
+// OMPL's planners get no more whole turns of goals, the nearest ones: its heuristics look at all goals for each state.
+constexpr std::size_t kMaxOmplGoals = 64;
 constexpr double kNearEnds =
-    detail::kPi / 2;                    // Distance from start and goal within which joints are mostly drawn [rad or m].
-constexpr double kFinalResolution = 8;  // Resolution factor of the check of paths before they are returned.
+    detail::kPi / 2;  // Distance from start and goal within which joints are mostly drawn [rad or m].
+// Resolution factors of the check of paths before they are returned. Proven intervals make it cheap for single paths; a
+// planner that keeps improving checks every edge as finely.
+constexpr double kFinalResolution = 64, kFinalWhileImproving = 8;
 
 void check_planner_name(const std::string& name) {
   if (name == kOwnPlanner) return;
@@ -51,12 +54,13 @@ class MotionSearch {
                const MotionOptions& options, const Monitor& monitor)
       : checker_(checker),
         edges_(checker, options),
-        wraps_(checker.group().wraps()),
+        metric_(checker.group().wraps()),
         start_(start),
         goals_(goals),
         options_(options),
         monitor_(monitor),
         keeps_improving_(keeps_improving(options.planner)),
+        final_resolution_(keeps_improving_ ? kFinalWhileImproving : kFinalResolution),
         queries_before_(checker.queries()) {}
 
   MotionResult run() {
@@ -89,7 +93,7 @@ class MotionSearch {
 
   /// Keeps the allowed goals, nearest first; equally near ones in the caller's order.
   bool find_goals() {
-    ends_ = detail::allowed_goals(edges_, goals_, options_, monitor_, result_.rejections, result_.contacts);
+    ends_ = detail::allowed_goals(edges_, start_, goals_, options_, monitor_, result_.rejections, result_.contacts);
     if (ends_.empty()) {
       for (std::size_t i = 0; i < goals_.configurations.size() && result_.beyond_limits.empty(); ++i)
         result_.beyond_limits = detail::beyond_limits(checker_.group(), goals_.configurations[i]);
@@ -99,17 +103,27 @@ class MotionSearch {
     result_.contacts.clear();
     std::stable_sort(ends_.begin(), ends_.end(),
                      [&](const auto& a, const auto& b) { return distance(a.q) < distance(b.q); });
+    if (options_.planner != kOwnPlanner) drop_far_turns();
     return true;
   }
 
-  double distance(const Eigen::VectorXd& q) const { return (nearest_turn(wraps_, start_, q) - start_).norm(); }
+  void drop_far_turns() {
+    std::size_t kept = 0;
+    const auto is_too_many = [&](const auto& goal) { return ++kept > kMaxOmplGoals && goal.turned; };
+    ends_.erase(std::remove_if(ends_.begin(), ends_.end(), is_too_many), ends_.end());
+  }
+
+  double distance(const Eigen::VectorXd& q) const { return metric_.distance(q, start_); }
   double time_left() const { return options_.time_limit - stopwatch_.seconds(); }
 
   bool try_straight_edges() {
     for (const auto& goal : ends_) {
       if (monitor_.stopped()) return false;
+      // What blocks the way to the nearest turn mostly blocks longer ones, too. But BIT* crashes when it finds a
+      // straight path by itself: rounding makes it prune the goal.
+      if (goal.turned && options_.planner == kOwnPlanner) continue;
       JointPath path{{start_}};
-      edges_.connect(start_, nearest_turn(wraps_, start_, goal.q), path.waypoints);
+      edges_.connect(start_, metric_.nearest(start_, goal.q), path.waypoints);
       if (!is_free(path)) continue;
       result_.stats.length_before_shortening = path.length();
       finish(std::move(path));
@@ -121,21 +135,21 @@ class MotionSearch {
   void search() {
     for (int round = 0; round < kMaxSearches; ++round) {
       // A path that fails the final check has cut an obstacle: later searches check at its resolution.
-      const double resolution = round == 0 && !keeps_improving_ ? 1 : kFinalResolution;
+      const double resolution = round == 0 && !keeps_improving_ ? 1 : final_resolution_;
       const detail::PlannerAnswer answer = run_planner(resolution, round);
       if (monitor_.stopped()) return end(Outcome::stopped);
-      if (!answer.solved) return end(answer.exhausted ? Outcome::infeasible : Outcome::timeout);
+      if (!answer.solved) return end(answer.exhausted ? Outcome::not_found : Outcome::timeout);
       monitor_.report("plan motion", 0.6);
       const JointPath found = continuous(answer.waypoints);
       result_.stats.length_before_shortening = found.length();
       if (options_.shorten && finish_shortened(found, resolution)) return;
       if (monitor_.stopped()) return end(Outcome::stopped);
       if (is_free(found)) {
-        if (options_.shorten && finish_shortened(found, kFinalResolution)) return;
+        if (options_.shorten && finish_shortened(found, final_resolution_)) return;
         return finish(found);
       }
     }
-    end(Outcome::timeout);
+    end(Outcome::not_found);
   }
 
   detail::PlannerAnswer run_planner(double resolution, int round) {
@@ -144,18 +158,26 @@ class MotionSearch {
     query.lower = checker_.group().sample_lower();
     query.upper = checker_.group().sample_upper();
     if (checker_.group().has_base()) bound_base(query);
-    query.wraps = wraps_;
-    query.start = detail::wrapped(wraps_, start_);
+    query.wraps = checker_.group().wraps();
+    // Ends beyond a limit by less than the checker's slack are on it.
+    const auto within = [&](const Eigen::VectorXd& q) -> Eigen::VectorXd {
+      return metric_.wrapped(q).cwiseMax(query.lower).cwiseMin(query.upper);
+    };
+    query.start = within(start_);
     prefer_samples_near_ends(query);
-    for (const auto& goal : ends_) query.goals.push_back(detail::wrapped(wraps_, goal.q));
+    for (const auto& goal : ends_) {
+      query.goals.push_back(within(goal.q));
+      query.turned_goals += goal.turned;
+    }
     query.range = options_.range;
+    query.near_end_probability = options_.near_end_probability;
     query.seed = options_.seed + 7919u * static_cast<unsigned>(round);
     query.max_iterations = options_.max_iterations;
     query.time_limit = std::clamp(time_left(), 1e-3, 1e7);
     query.stopped = [&] { return monitor_.stopped(); };
     query.is_free = [&](const Eigen::VectorXd& q) { return edges_.is_free(q); };
     query.edge_is_free = [&, resolution](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-      return edges_.edge_is_free(a, b, resolution);
+      return edges_.edge_stays_free(a, b, resolution);
     };
     if (edges_.constrained()) query.project = [&](Eigen::VectorXd& q) { return edges_.project(q); };
     if (options_.planner == kOwnPlanner) return detail::rrt_connect(query);
@@ -203,14 +225,14 @@ class MotionSearch {
       const bool last = i + 1 == waypoints.size();
       const Eigen::VectorXd& from = path.waypoints.back();
       const Eigen::VectorXd& to = last ? ends_[nearest_end(waypoints[i])].q : waypoints[i];
-      const Eigen::VectorXd target = nearest_turn(wraps_, from, to);
+      const Eigen::VectorXd target = metric_.nearest(from, to);
       edges_.connect(Eigen::VectorXd(from), target, path.waypoints);
     }
     return path;
   }
 
   std::size_t nearest_end(const Eigen::VectorXd& q) const {
-    const auto off = [&](const auto& goal) { return (nearest_turn(wraps_, q, goal.q) - q).norm(); };
+    const auto off = [&](const auto& goal) { return metric_.distance(goal.q, q); };
     const auto nearest =
         std::min_element(ends_.begin(), ends_.end(), [&](const auto& a, const auto& b) { return off(a) < off(b); });
     return static_cast<std::size_t>(nearest - ends_.begin());
@@ -225,6 +247,11 @@ class MotionSearch {
     shortening.stopped = [&] { return monitor_.stopped() || time_left() < 0; };
     detail::shorten_path(edges_, path, rng, shortening);
     if (monitor_.stopped() || !is_free(path)) return false;
+    if (!edges_.steered()) {
+      detail::remove_redundant_waypoints(path.waypoints, [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+        return !shortening.stopped() && edges_.straight_stays_free(a, b, final_resolution_);
+      });
+    }
     finish(std::move(path));
     return true;
   }
@@ -232,7 +259,7 @@ class MotionSearch {
   bool is_free(const JointPath& path) {
     for (std::size_t i = 0; i + 1 < path.waypoints.size(); ++i) {
       if (monitor_.stopped()) return false;
-      if (!edges_.straight_is_free(path.waypoints[i], path.waypoints[i + 1], kFinalResolution)) return false;
+      if (!edges_.straight_stays_free(path.waypoints[i], path.waypoints[i + 1], final_resolution_)) return false;
     }
     return true;
   }
@@ -248,12 +275,13 @@ class MotionSearch {
 
   CollisionChecker& checker_;
   detail::MotionEdges edges_;
-  const std::vector<bool> wraps_;
+  const detail::JointMetric metric_;
   const Eigen::VectorXd& start_;
   const MotionGoals& goals_;
   const MotionOptions& options_;
   const Monitor& monitor_;
   const bool keeps_improving_;
+  const double final_resolution_;
   const detail::Stopwatch stopwatch_;
   const std::size_t queries_before_;
   std::vector<detail::GoalConfiguration> ends_;
@@ -269,8 +297,10 @@ std::vector<std::string> planner_names() {
   return names;
 }
 
-MotionResult plan_motion_to(CollisionChecker& checker, const Eigen::VectorXd& start, const MotionGoals& goals,
-                            const MotionOptions& options, const Monitor& monitor) {
+namespace {
+
+void check_question(const CollisionChecker& checker, const Eigen::VectorXd& start, const MotionGoals& goals,
+                    const MotionOptions& options) {
   options.check();
   check_planner_name(options.planner);
   checker.group().check_configuration(start, "start");
@@ -285,7 +315,50 @@ MotionResult plan_motion_to(CollisionChecker& checker, const Eigen::VectorXd& st
   for (std::size_t g = 0; g < goals.regions.size(); ++g) {
     goals.regions[g].check("regions[" + std::to_string(g) + "]");
   }
+}
+
+}  // namespace
+
+MotionResult plan_motion_to(CollisionChecker& checker, const Eigen::VectorXd& start, const MotionGoals& goals,
+                            const MotionOptions& options, const Monitor& monitor) {
+  check_question(checker, start, goals, options);
   return MotionSearch(checker, start, goals, options, monitor).run();
+}
+
+MotionResult plan_motion_via(CollisionChecker& checker, const Eigen::VectorXd& start,
+                             const std::vector<Eigen::VectorXd>& via, const MotionGoals& goals,
+                             const MotionOptions& options, const Monitor& monitor) {
+  if (via.empty()) return plan_motion_to(checker, start, goals, options, monitor);
+  check_question(checker, start, goals, options);
+  for (std::size_t i = 0; i < via.size(); ++i)
+    checker.group().check_configuration(via[i], "via[" + std::to_string(i) + "]");
+  const detail::Stopwatch stopwatch;
+  MotionOptions of_segment = options;
+  of_segment.on_improvement = {};  // told of whole paths
+  JointPath path{{start}};
+  MotionStats stats;
+  for (std::size_t segment = 0; segment <= via.size(); ++segment) {
+    MotionGoals ends = goals;
+    if (segment < via.size()) {
+      ends = {};
+      ends.configurations = {via[segment]};
+    }
+    of_segment.time_limit = std::max(1e-3, options.time_limit - stopwatch.seconds());
+    MotionResult found = plan_motion_to(checker, path.waypoints.back(), ends, of_segment, monitor);
+    stats.collision_queries += found.stats.collision_queries;
+    stats.length_before_shortening += found.stats.length_before_shortening;
+    stats.seconds = stopwatch.seconds();
+    found.stats = stats;
+    found.via_reached = static_cast<int>(segment);
+    if (!found.path) return found;
+    path.waypoints.insert(path.waypoints.end(), found.path->waypoints.begin() + 1, found.path->waypoints.end());
+    if (segment < via.size()) continue;
+    found.cost = path.length();
+    found.path = std::move(path);
+    if (options.on_improvement) options.on_improvement({stats.seconds, found.cost, -1, *found.path});
+    return found;
+  }
+  return {};
 }
 
 MotionResult plan_motion(CollisionChecker& checker, const Eigen::VectorXd& start,

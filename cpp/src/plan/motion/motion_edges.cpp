@@ -23,7 +23,7 @@ constexpr double kProjectionDamping = 1e-4;
 MotionEdges::MotionEdges(CollisionChecker& checker, const MotionOptions& options)
     : checker_(checker),
       group_(checker.group()),
-      wraps_(group_.wraps()),
+      metric_(group_.wraps()),
       joint_step_(options.edge_step),
       workspace_step_(options.workspace_step),
       steered_(has_steered_base(group_)),
@@ -64,10 +64,11 @@ bool MotionEdges::is_free(const Eigen::VectorXd& q) {
   return checker_.is_free(q) && (!cone_ || tilt(q) <= cone_->half_angle);
 }
 
-bool MotionEdges::straight_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double resolution) {
+bool MotionEdges::straight_stays_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double resolution,
+                                      bool end_is_free) {
   if (cone_ && !edge_keeps_cone(a, b, resolution)) return false;
   delta_ = b - a;
-  return checker_.edge_is_free(a, b, step(delta_, resolution));
+  return checker_.edge_stays_free(a, b, step(delta_, resolution), end_is_free);
 }
 
 void MotionEdges::connect(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Waypoints& path) const {
@@ -78,16 +79,14 @@ void MotionEdges::connect(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Wa
   append_turn_drive_turn(a, b, path);
 }
 
-bool MotionEdges::edge_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double resolution) {
+bool MotionEdges::edge_stays_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double resolution) {
   target_ = b;
-  for (Eigen::Index i = 0; i < target_.size(); ++i) {
-    if (wraps_[i]) target_[i] = a[i] + shortest_turn(b[i] - a[i]);
-  }
-  if (!steered_) return straight_is_free(a, target_, resolution);
+  for (const int i : metric_.wrapping()) target_[i] = JointMetric::nearest_angle(a[i], b[i]);
+  if (!steered_) return straight_stays_free(a, target_, resolution);
   path_.clear();
   connect(a, target_, path_);
   for (std::size_t i = 0; i < path_.size(); ++i) {
-    if (!straight_is_free(i == 0 ? a : path_[i - 1], path_[i], resolution)) return false;
+    if (!straight_stays_free(i == 0 ? a : path_[i - 1], path_[i], resolution)) return false;
   }
   return true;
 }

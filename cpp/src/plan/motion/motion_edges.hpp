@@ -5,6 +5,7 @@
 
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/plan/motion.hpp"
+#include "mmgrasp/robot/detail/joint_metric.hpp"
 
 namespace mmgrasp::detail {
 
@@ -17,7 +18,6 @@ class MotionEdges {
   MotionEdges(CollisionChecker& checker, const MotionOptions& options);
 
   CollisionChecker& checker() { return checker_; }
-  const std::vector<bool>& wraps() const { return wraps_; }
   /// Edges turn on the spot and drive straight instead of moving all values at once.
   bool steered() const { return steered_; }
   bool constrained() const { return cone_.has_value(); }
@@ -26,12 +26,14 @@ class MotionEdges {
   /// The cause, with Rejection::grasp_filter for a tool outside its cone.
   Rejection rejection(const Eigen::VectorXd& q);
 
-  /// Straight edge between two configurations without wrapping. `resolution` divides the steps of the options.
-  bool straight_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double resolution = 1);
+  /// Straight edge between two configurations without wrapping, but for `a`, which is known to be allowed, and for `b`
+  /// where that is. `resolution` divides the steps of the options.
+  bool straight_stays_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double resolution = 1,
+                           bool end_is_free = false);
   /// Appends the waypoints from `a` to `b` without `a`; the last may differ from `b` by full turns.
   void connect(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Waypoints& path) const;
-  /// The path that connect() gives, angles that wrap the short way round.
-  bool edge_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double resolution = 1);
+  /// The same for the path that connect() gives, angles that wrap the short way round.
+  bool edge_stays_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double resolution = 1);
 
   /// Turns the tool back towards its cone; false when that does not succeed within limits.
   bool project(Eigen::VectorXd& q);
@@ -43,7 +45,7 @@ class MotionEdges {
 
   CollisionChecker& checker_;
   const JointGroup group_;
-  const std::vector<bool> wraps_;
+  const JointMetric metric_;
   const double joint_step_, workspace_step_;
   Eigen::VectorXd bounds_;  ///< Workspace motion per joint motion; empty without `workspace_step`.
   const bool steered_;

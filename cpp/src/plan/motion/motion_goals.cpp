@@ -1,6 +1,9 @@
 #include "plan/motion/motion_goals.hpp"
 
+#include <utility>
+
 #include "mmgrasp/core/random.hpp"
+#include "mmgrasp/robot/detail/whole_turns.hpp"
 #include "mmgrasp/robot/ik.hpp"
 
 namespace mmgrasp::detail {
@@ -16,8 +19,14 @@ Pose drawn_pose(const ToolRegion& region, int sample, Rng& rng) {
 
 class GoalSearch {
  public:
-  GoalSearch(MotionEdges& edges, const MotionOptions& options, Rejections& rejections, std::vector<Contact>& contacts)
-      : edges_(edges), options_(options), rejections_(rejections), contacts_(contacts) {}
+  GoalSearch(MotionEdges& edges, const Eigen::VectorXd& start, const MotionOptions& options, Rejections& rejections,
+             std::vector<Contact>& contacts)
+      : edges_(edges),
+        start_(start),
+        options_(options),
+        rejections_(rejections),
+        contacts_(contacts),
+        turns_(edges.checker().group()) {}
 
   void add_configuration(const Eigen::VectorXd& q, int goal) {
     const Rejection cause = edges_.rejection(q);
@@ -43,7 +52,7 @@ class GoalSearch {
           }
           return why;
         });
-    for (const auto& q : all) found.push_back({q, goal});
+    for (const auto& q : all) add_turns(q, goal);
     if (all.empty()) rejections_.add(cause);
     return !all.empty();
   }
@@ -51,18 +60,32 @@ class GoalSearch {
   std::vector<GoalConfiguration> found;
 
  private:
+  void add_turns(const Eigen::VectorXd& q, int goal) {
+    if (!turns_.any()) {
+      found.push_back({q, goal});
+      return;
+    }
+    bool turned = false;
+    for (Eigen::VectorXd& each : turns_.of(q, start_)) {
+      found.push_back({std::move(each), goal, turned});
+      turned = true;
+    }
+  }
+
   MotionEdges& edges_;
+  const Eigen::VectorXd& start_;
   const MotionOptions& options_;
   Rejections& rejections_;
   std::vector<Contact>& contacts_;
+  const WholeTurns turns_;
 };
 
 }  // namespace
 
-std::vector<GoalConfiguration> allowed_goals(MotionEdges& edges, const MotionGoals& goals, const MotionOptions& options,
-                                             const Monitor& monitor, Rejections& rejections,
-                                             std::vector<Contact>& contacts) {
-  GoalSearch search(edges, options, rejections, contacts);
+std::vector<GoalConfiguration> allowed_goals(MotionEdges& edges, const Eigen::VectorXd& start, const MotionGoals& goals,
+                                             const MotionOptions& options, const Monitor& monitor,
+                                             Rejections& rejections, std::vector<Contact>& contacts) {
+  GoalSearch search(edges, start, options, rejections, contacts);
   int goal = 0;
   for (const auto& q : goals.configurations) search.add_configuration(q, goal++);
   for (const Pose& T : goals.tool_poses) {

@@ -31,6 +31,8 @@ void MotionOptions::check() const {
   require(std::isfinite(edge_step) && edge_step > 0, "edge_step", edge_step, "must be finite and > 0");
   require(workspace_step > 0, "workspace_step", workspace_step, "must be > 0 [m]");
   require(std::isfinite(base_margin) && base_margin > 0, "base_margin", base_margin, "must be finite and > 0");
+  require(near_end_probability >= 0 && near_end_probability < 1, "near_end_probability", near_end_probability,
+          "must be in [0, 1)");
   require(shorten_iterations >= 0, "shorten_iterations", shorten_iterations, "must be >= 0");
   require(ik_solutions > 0, "ik_solutions", ik_solutions, "must be > 0");
   require(region_samples > 0, "region_samples", region_samples, "must be > 0");

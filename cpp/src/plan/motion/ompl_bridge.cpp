@@ -163,6 +163,7 @@ PlannerAnswer solve_with_ompl(const PlannerQuery& query) {
   problem.goal_count = static_cast<int>(query.goals.size());
   problem.goals = goals.data();
   problem.range = query.range;
+  problem.near_end_probability = query.near_end_probability;
   problem.seed = query.seed;
   problem.max_iterations = query.max_iterations;
   problem.time_limit = query.time_limit;

@@ -15,11 +15,14 @@ struct PlannerQuery {
   std::vector<bool> wraps;
   Eigen::VectorXd start;
   std::vector<Eigen::VectorXd> goals;
-  double range = 0;  ///< Longest tree edge; 0: the planner's choice.
+  int turned_goals = 0;             ///< How many of the goals are whole turns of others.
+  double range = 0;                 ///< Longest tree edge; 0: the planner's choice.
+  double near_end_probability = 0;  ///< Chance that a roadmap's sample is drawn around the start or a goal.
   unsigned seed = 1;
   int max_iterations = 1;
   double time_limit = 1;  ///< [s]
   std::function<bool(const Eigen::VectorXd&)> is_free;
+  /// The edge from a configuration that is known to be free.
   std::function<bool(const Eigen::VectorXd&, const Eigen::VectorXd&)> edge_is_free;
   /// Projects a configuration onto the path constraint; false when that fails. Empty: there is none.
   std::function<bool(Eigen::VectorXd&)> project;

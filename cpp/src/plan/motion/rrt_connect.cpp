@@ -7,7 +7,6 @@
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "plan/motion/configuration_tree.hpp"
-#include "plan/motion/joint_angles.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -39,7 +38,8 @@ class Connect {
 
   PlannerAnswer run() {
     for (int i = 0; i < query_.max_iterations && !over(); ++i) {
-      const int growing = trees_[0].size() <= trees_[1].size() ? 0 : 1;
+      // Turns of a goal are no growth of its tree.
+      const int growing = trees_[0].size() <= trees_[1].size() - query_.turned_goals ? 0 : 1;
       draw();
       if (query_.project && !query_.project(sample_)) continue;
       int node = trees_[growing].nearest(sample_);

@@ -10,7 +10,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr int kMaxFailures = 30;        // Shortcuts in a row without a gain after which a path counts as short.
-constexpr double kSmallestGain = 2e-3;  // Relative to the path's length; shortcuts that gain less are not checked.
+constexpr double kSmallestGain = 4e-3;  // Relative to the path's length; shortcuts that gain less are not checked.
 
 using Waypoints = std::vector<Eigen::VectorXd>;
 
@@ -38,10 +38,6 @@ class Shortener {
   }
 
  private:
-  bool free(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-    return edges_.straight_is_free(a, b, options_.resolution);
-  }
-
   static double length(const Waypoints& points) {
     double sum = 0;
     for (std::size_t i = 1; i < points.size(); ++i) sum += (points[i] - points[i - 1]).norm();
@@ -109,9 +105,14 @@ class Shortener {
   bool replace_if_better(const PathPoint& a, const PathPoint& b, const Waypoints& old_stretch, Waypoints new_stretch,
                          double least_gain) {
     if (length(old_stretch) - length(new_stretch) < least_gain) return false;
-    for (std::size_t i = 0; i + 1 < new_stretch.size(); ++i) {
-      if (!free(new_stretch[i], new_stretch[i + 1])) return false;
+    // Most shortcuts are blocked between their ends: those are looked at last. Waypoints are free; a point within an
+    // edge lies between its checks.
+    const std::size_t last = new_stretch.size() - 2;
+    for (std::size_t i = 0; i <= last; ++i) {
+      if (!edges_.straight_stays_free(new_stretch[i], new_stretch[i + 1], options_.resolution, i == last)) return false;
     }
+    if (a.q != waypoints_[a.edge] && !edges_.is_free(a.q)) return false;
+    if (new_stretch.back() != waypoints_[b.edge + 1] && !edges_.is_free(new_stretch.back())) return false;
     Waypoints result(waypoints_.begin(), waypoints_.begin() + a.edge + 1);
     result.insert(result.end(), new_stretch.begin(), new_stretch.end());
     // The new stretch may end whole turns away from where the old one did.

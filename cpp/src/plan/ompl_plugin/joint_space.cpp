@@ -12,8 +12,7 @@ namespace ob = ompl::base;
 namespace {
 
 constexpr double kTwoPi = 2 * M_PI;
-constexpr double kNearEndProbability = 0.2;  // Chance that a roadmap's sample is drawn around the start or a goal.
-constexpr double kLeastBoxShare = 1e-3;      // Smallest box for that, as a share of the bounds.
+constexpr double kLeastBoxShare = 1e-3;  // Smallest box around the start or a goal, as a share of the bounds.
 
 /// Draws from a generator of its own: OMPL's are seeded from one per process, and would differ from run to run.
 class SeededSampler : public ob::StateSampler {
@@ -23,7 +22,8 @@ class SeededSampler : public ob::StateSampler {
 
   void sampleUniform(ob::State* state) override {
     context_->count_draw();
-    if (context_->roadmap() && uniform() < kNearEndProbability) return sample_around_end(state);
+    const double near_end = context_->roadmap() ? context_->problem().near_end_probability : 0;
+    if (near_end > 0 && uniform() < near_end) return sample_around_end(state);
     const auto& bounds = space_->getBounds();
     for (unsigned int i = 0; i < space_->getDimension(); ++i) {
       values(state)[i] = between(bounds.low[i], bounds.high[i]);

@@ -23,7 +23,8 @@ struct MmgraspOmplProblem {
   const double* start;
   int goal_count;
   const double* goals;
-  double range;  ///< Longest tree edge; 0: the planner's own default.
+  double range;                 ///< Longest tree edge; 0: the planner's own default.
+  double near_end_probability;  ///< Chance that a roadmap's sample is drawn around the start or a goal.
   unsigned seed;
   int max_iterations;  ///< States drawn (or planner rounds, where rounds draw none).
   double time_limit;   ///< [s]
@@ -51,5 +52,5 @@ __attribute__((visibility("default"))) const MmgraspOmplApi* mmgrasp_ompl_api();
 
 }  // extern "C"
 
-constexpr int kMmgraspOmplApiVersion = 3;
+constexpr int kMmgraspOmplApiVersion = 4;
 constexpr const char* kMmgraspOmplApiSymbol = "mmgrasp_ompl_api";

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "mmgrasp/core/detail/ball_volume.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/core/random.hpp"
@@ -14,12 +16,13 @@ namespace mmgrasp {
 namespace {
 
 constexpr int kLeafSize = 12;
+constexpr double kConnectedShare = 0.99;  // Of all vertices, in the largest component.
 
 }  // namespace
 
 void RoadmapOptions::check() const {
   require(vertices >= 2 && vertices <= 10'000'000, "vertices", vertices, "must be in [2, 10000000]");
-  require(std::isfinite(gamma) && gamma > 0, "gamma", gamma, "must be finite and > 0");
+  require(std::isfinite(gamma) && gamma >= 0, "gamma", gamma, "must be finite and >= 0");
   require(neighbours >= 0, "neighbours", neighbours, "must be >= 0");
 }
 
@@ -60,8 +63,64 @@ double Roadmap::Data::radius() const {
   return options.gamma * std::pow(std::log(n) / n, 1 / d);
 }
 
+void Roadmap::Data::near_around(const double* q, int neighbours, std::vector<int>& out) const {
+  std::vector<double> image(q, q + vertices.rows());
+  metric.wrap(image.data());
+  const std::vector<int>& wrapping = metric.wrapping();
+  const auto wanted = static_cast<std::size_t>(std::min<Eigen::Index>(neighbours, vertices.cols()));
+  const double r = radius();
+  std::vector<std::pair<double, int>> found;  // Squared distance and vertex; several times where images share one.
+  std::vector<int> hits(wanted);
+  std::vector<double> squared(wanted);
+  std::vector<std::pair<int, double>> within;
+  nanoflann::SearchParams params;
+  params.sorted = false;
+  const auto ask = [&] {
+    if (wanted > 0) {
+      const std::size_t count = tree->knnSearch(image.data(), wanted, hits.data(), squared.data());
+      for (std::size_t i = 0; i < count; ++i) found.emplace_back(squared[i], hits[i]);
+    } else {
+      tree->radiusSearch(image.data(), r * r, within, params);
+      for (const auto& hit : within) found.emplace_back(hit.second, hit.first);
+    }
+  };
+  // `off`: squared distance of the image to the box that holds all vertices.
+  const std::function<void(std::size_t, double)> ask_images = [&](std::size_t k, double off) {
+    if (k == wrapping.size()) return ask();
+    ask_images(k + 1, off);
+    double& value = image[wrapping[k]];
+    const double own = value, beyond = detail::kPi - std::abs(own);
+    off += beyond * beyond;
+    if (wanted == 0 && off >= r * r) return;
+    value += own > 0 ? -detail::kTwoPi : detail::kTwoPi;
+    ask_images(k + 1, off);
+    value = own;
+  };
+  ask_images(0, 0);
+  // Each vertex once, at its least distance.
+  const auto by_vertex = [](const auto& a, const auto& b) {
+    return a.second != b.second ? a.second < b.second : a.first < b.first;
+  };
+  std::sort(found.begin(), found.end(), by_vertex);
+  const auto same = [](const auto& a, const auto& b) { return a.second == b.second; };
+  found.erase(std::unique(found.begin(), found.end(), same), found.end());
+  if (wanted > 0 && found.size() > wanted) {
+    std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(wanted), found.end());
+    found.resize(wanted);
+  }
+  for (const auto& hit : found) out.push_back(hit.second);
+  std::sort(out.begin(), out.end());
+}
+
+int Roadmap::Data::neighbours() const {
+  if (options.neighbours > 0 || options.gamma > 0) return options.neighbours;
+  const double d = static_cast<double>(vertices.rows()), n = static_cast<double>(vertices.cols());
+  return static_cast<int>(std::ceil(std::exp(1.0) * (1 + 1 / d) * std::log(n)));
+}
+
 void Roadmap::Data::near(const double* q, int neighbours, std::vector<int>& out) const {
   out.clear();
+  if (metric.any()) return near_around(q, neighbours, out);
   if (neighbours > 0) {
     const auto wanted = static_cast<std::size_t>(std::min<Eigen::Index>(neighbours, vertices.cols()));
     out.resize(wanted);
@@ -82,7 +141,7 @@ bool Roadmap::Data::join(detail::CancelCheck& cancel, int threads) {
   const auto count = static_cast<std::size_t>(vertices.cols());
   // With a fixed number of neighbours the vertex itself is its nearest one.
   std::vector<std::vector<int>> joined(count);
-  const int wanted = options.neighbours > 0 ? options.neighbours + 1 : 0;
+  const int wanted = neighbours() > 0 ? neighbours() + 1 : 0;
   const auto join_one = [&](std::size_t v, int) {
     cancel.stopped();
     near(vertices.col(static_cast<Eigen::Index>(v)).data(), wanted, joined[v]);
@@ -119,11 +178,38 @@ bool Roadmap::Data::make_arcs(detail::CancelCheck& cancel) {
   for (std::size_t e = 0; e < ends.size(); ++e) {
     if (e % 256 == 0 && cancel.stopped()) return false;
     const auto [a, b] = ends[e];
-    const double length = (vertices.col(a) - vertices.col(b)).norm();
+    const double length = metric.distance(vertices.col(a), vertices.col(b));
     arcs[next[a]++] = {b, static_cast<int>(e), length};
     arcs[next[b]++] = {a, static_cast<int>(e), length};
   }
+  count_components();
   return true;
+}
+
+void Roadmap::Data::count_components() {
+  const auto count = static_cast<std::size_t>(vertices.cols());
+  components = largest_component = 0;
+  std::vector<char> seen(count, 0);
+  std::vector<std::size_t> stack;
+  for (std::size_t start = 0; start < count; ++start) {
+    if (seen[start]) continue;
+    ++components;
+    int members = 0;
+    stack.assign(1, start);
+    seen[start] = 1;
+    while (!stack.empty()) {
+      const std::size_t v = stack.back();
+      stack.pop_back();
+      ++members;
+      for (int arc = first[v]; arc < first[v + 1]; ++arc) {
+        const auto to = static_cast<std::size_t>(arcs[arc].to);
+        if (seen[to]) continue;
+        seen[to] = 1;
+        stack.push_back(to);
+      }
+    }
+    largest_component = std::max(largest_component, members);
+  }
 }
 
 Roadmap::Roadmap(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
@@ -185,11 +271,11 @@ std::pair<int, int> Roadmap::ends(int edge) const {
 void Roadmap::near(const Eigen::VectorXd& q, std::vector<int>& out) const {
   data_->group.check_configuration(q, "q");
   out.clear();
-  if (size() > 0) data_->near(q.data(), options().neighbours, out);
+  if (size() > 0) data_->near(q.data(), data_->neighbours(), out);
 }
 
 double Roadmap::radius() const {
-  return options().neighbours > 0 || size() == 0 ? 0 : data_->radius();
+  return size() == 0 || data_->neighbours() > 0 ? 0 : data_->radius();
 }
 
 RoadmapStatistics Roadmap::statistics() const {
@@ -200,32 +286,21 @@ RoadmapStatistics Roadmap::statistics() const {
       2 * std::pow(1 + 1 / d, 1 / d) * std::pow(out.volume / detail::unit_ball_volume(data_->group.size()), 1 / d);
   if (size() == 0) return out;
   out.mean_degree = 2.0 * edge_count() / size();
-  out.radius = data_->radius();
-  if (options().neighbours > 0) {
-    out.radius = 0;
+  out.components = data_->components;
+  out.largest_component = data_->largest_component;
+  out.neighbours = data_->neighbours();
+  if (out.neighbours == 0) out.radius = data_->radius();
+  if (out.neighbours > 0)
     for (const Arc& arc : data_->arcs) out.radius = std::max(out.radius, arc.length);
-  }
-  std::vector<char> seen(static_cast<std::size_t>(size()), 0);
-  std::vector<int> stack;
-  for (int start = 0; start < size(); ++start) {
-    if (seen[start]) continue;
-    ++out.components;
-    int members = 0;
-    stack.assign(1, start);
-    seen[start] = 1;
-    while (!stack.empty()) {
-      const int v = stack.back();
-      stack.pop_back();
-      ++members;
-      for (const Arc* arc = begin(v); arc != end(v); ++arc) {
-        if (seen[arc->to]) continue;
-        seen[arc->to] = 1;
-        stack.push_back(arc->to);
-      }
-    }
-    out.largest_component = std::max(out.largest_component, members);
-  }
   return out;
+}
+
+std::string Roadmap::warning() const {
+  if (data_->largest_component >= kConnectedShare * size()) return {};
+  return "the roadmap is in " + std::to_string(data_->components) + " pieces, the largest of " +
+         std::to_string(data_->largest_component) + " of " + std::to_string(size()) +
+         " vertices: between pieces no path is found; set gamma = 0 and neighbours = 0 (the defaults), or more "
+         "neighbours";
 }
 
 }  // namespace mmgrasp

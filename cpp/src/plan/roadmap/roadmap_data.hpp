@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mmgrasp/plan/roadmap.hpp"
+#include "mmgrasp/robot/detail/joint_metric.hpp"
 
 namespace mmgrasp {
 
@@ -83,26 +84,35 @@ std::uint64_t kinematics_key(const JointGroup& group);
 }  // namespace detail
 
 struct Roadmap::Data {
-  Data(const JointGroup& group_in, const RoadmapOptions& options_in) : group(group_in), options(options_in) {}
+  Data(const JointGroup& group_in, const RoadmapOptions& options_in)
+      : group(group_in), metric(group_in.wraps()), options(options_in) {}
 
   /// Draws the vertices; false when stopped.
   bool draw(detail::CancelCheck& cancel);
   /// Builds the search tree over the vertices; false when stopped.
   bool index(detail::CancelCheck& cancel);
   double radius() const;
+  /// Nearest vertices that each is joined with; 0: all within radius().
+  int neighbours() const;
   /// The `neighbours` nearest vertices, or with 0 those nearer than radius(); ascending.
   void near(const double* q, int neighbours, std::vector<int>& out) const;
+  /// The same where angles wrap. The search tree knows no angles, so it is asked for each image of q by whole turns
+  /// that can be nearer to a vertex than q in [-pi, pi] is: every such angle has one.
+  void near_around(const double* q, int neighbours, std::vector<int>& out) const;
   /// Joins near vertices; false when stopped.
   bool join(detail::CancelCheck& cancel, int threads);
-  /// Makes the arcs of `ends`; false when stopped.
+  /// Makes the arcs of `ends` and counts the components; false when stopped.
   bool make_arcs(detail::CancelCheck& cancel);
+  void count_components();
 
   JointGroup group;
+  detail::JointMetric metric;
   RoadmapOptions options;
   Eigen::MatrixXd vertices;
   std::vector<std::pair<int, int>> ends;  ///< The two vertices of each edge, the smaller number first.
   std::vector<int> first;                 ///< Arcs of vertex v: first[v] .. first[v + 1].
   std::vector<Arc> arcs;
+  int components = 0, largest_component = 0;  ///< Their number, and the vertices of the largest one.
   std::unique_ptr<detail::ColumnCloud> cloud;
   std::unique_ptr<detail::ColumnTree> tree;
 };

@@ -82,7 +82,7 @@ void CapabilityMap::Data::lay_out() {
 }
 
 void CapabilityMap::Data::complete() {
-  const std::size_t voxels = static_cast<std::size_t>(voxel_count());
+  const std::size_t voxels = voxel_count();
   index.assign(voxels, 0);
   first.assign(voxels + 1, 0);
   rejections = {};

@@ -101,7 +101,7 @@ BranchTable::BranchTable(const JointGroup& arm, int samples) : arm_(arm) {
     arms_.push_back(locked_at(arm, turning_, at));
   }
   for (int s = 0; s < samples; ++s) {
-    std::vector<int> order(static_cast<std::size_t>(samples));
+    std::vector<int> order(samples);
     std::iota(order.begin(), order.end(), 0);
     const auto distance = [&](int other) { return (shares[other] - shares[s]).squaredNorm(); };
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return distance(a) < distance(b); });
@@ -115,7 +115,7 @@ LockedArm BranchTable::lock(const Eigen::VectorXd& q) const {
   return locked_at(arm_, turning_, at);
 }
 
-double BranchTable::fill(const std::array<double, Screws::kMost>& values, const LockedArm& arm,
+double BranchTable::fill(const std::array<double, Screws::kMaxJoints>& values, const LockedArm& arm,
                          Eigen::VectorXd& q) const {
   constexpr double kRounding = 1e-6;  // the solver's and the geometry's; what is accepted is held to limits later
   q = arm.at;

@@ -48,7 +48,7 @@ class BranchTable {
   }
 
  private:
-  double fill(const std::array<double, Screws::kMost>& values, const LockedArm& arm, Eigen::VectorXd& q) const;
+  double fill(const std::array<double, Screws::kMaxJoints>& values, const LockedArm& arm, Eigen::VectorXd& q) const;
 
   JointGroup arm_;
   std::vector<int> locked_, turning_;  ///< Columns.

@@ -1,5 +1,9 @@
 #include "reach/database/hand_probe.hpp"
 
+#include <algorithm>
+#include <set>
+
+#include "mmgrasp/collision/detail/named_bodies.hpp"
 #include "mmgrasp/core/random.hpp"
 
 namespace mmgrasp::detail {
@@ -33,7 +37,7 @@ void append(std::vector<LinkShape>& shapes, const std::vector<LinkShape>& more, 
 }
 
 std::optional<CollisionChecker> probe(const std::vector<LinkShape>& hand, World world) {
-  if (hand.empty() || world.objects().empty()) return std::nullopt;
+  if (hand.empty() || (world.objects().empty() && world.fields().empty())) return std::nullopt;
   // Held objects go wherever the root of this robot of nothing is put.
   static const Robot nothing = Robot::from_strings(
       "<robot name='nothing'><link name='tip'/><link name='end'/><joint name='still' type='revolute'>"
@@ -56,26 +60,34 @@ HandProbe::HandProbe(const JointGroup& arm, const World& world) : still_(Eigen::
   arm.link_poses(0.5 * (arm.sample_lower() + arm.sample_upper()), poses);
   const Pose T_tip_world = poses[arm.tip_link()].inverse();
   std::vector<LinkShape> links, all;
-  for (const int link : hand_links) append(links, robot.links()[link].collisions, T_tip_world * poses[link]);
+  std::set<std::string> names;
+  for (const int link : hand_links) {
+    append(links, robot.links()[link].collisions, T_tip_world * poses[link]);
+    names.insert(robot.links()[link].name);
+  }
   all = links;
   for (const auto& [name, held] : world.attached()) {
     if (!robot.has_link(held.link)) continue;
     const int link = robot.link_index(held.link);
-    if (std::find(hand_links.begin(), hand_links.end(), link) != hand_links.end())
-      append(all, held.shapes, T_tip_world * poses[link] * held.T_link_object);
+    if (std::find(hand_links.begin(), hand_links.end(), link) == hand_links.end()) continue;
+    append(all, held.shapes, T_tip_world * poses[link] * held.T_link_object);
+    names.insert(name);
   }
-  World scene, fixed;
-  for (const auto& [name, object] : world.objects()) scene.add(name, object);
+  const AllowedPairs allowed(robot, world);
+  World fixed;
   for (const int link : fixed_links) {
     bool looked_at = true;
-    for (const int hand : hand_links) looked_at = looked_at && hand != link && !robot.pair_disabled(hand, link);
     const Link& body = robot.links()[link];
+    for (const int hand : hand_links) {
+      looked_at = looked_at && hand != link && !robot.pair_disabled(hand, link) &&
+                  !allowed(robot.links()[hand].name, body.name);
+    }
     std::vector<LinkShape> shapes;
     append(shapes, body.collisions, Pose::Identity());
     if (looked_at && !shapes.empty()) fixed.add(body.name, WorldObject{shapes, poses[link]});
   }
   robot_ = probe(links, std::move(fixed));
-  scene_ = probe(all, std::move(scene));
+  scene_ = probe(all, objects_never_touched(robot, world, names));
 }
 
 HandProbe::HandProbe(const HandProbe& other) : still_(other.still_) {

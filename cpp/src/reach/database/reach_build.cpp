@@ -75,7 +75,7 @@ class Builder {
   /// From the first blocks, so that every sample is measured against the same threshold.
   bool estimate_manipulability() {
     if (options_.min_manipulability <= 0 && options_.thinning <= 0) return !monitor_.stopped();
-    std::vector<double> largest(static_cast<std::size_t>(std::min(kManipulabilityBlocks, blocks_)), 0);
+    std::vector<double> largest(std::min(kManipulabilityBlocks, blocks_), 0);
     const auto work = [&](std::size_t block, int worker) {
       largest[block] = samplers_[worker].largest_manipulability(static_cast<std::int64_t>(block));
     };
@@ -86,7 +86,7 @@ class Builder {
   }
 
   bool sample() {
-    std::vector<std::int64_t> all(static_cast<std::size_t>(shards_));
+    std::vector<std::int64_t> all(shards_);
     std::iota(all.begin(), all.end(), std::int64_t{0});
     return sample(all);
   }

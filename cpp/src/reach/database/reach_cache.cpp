@@ -40,7 +40,10 @@ ReachDatabase ReachDatabase::load_or_build(const JointGroup& arm, const ReachOpt
   if (std::filesystem::exists(path)) {
     try {
       ReachDatabase found = load(path);
-      if (found.key() == key) return found;
+      if (found.key() == key) {
+        found.verify(monitor);
+        return found;
+      }
     } catch (const IoError&) {  // a damaged cache is worth nothing, and costs nothing: build again and replace it
     }
     detail::move_away(path);

@@ -100,13 +100,13 @@ const std::uint16_t* ReachDatabase::Data::stored(std::size_t first, std::size_t 
 }
 
 void ReachDatabase::Data::fill_poses(std::size_t position) const {
-  std::uint8_t state = kNothing;
+  std::uint8_t state = kAbsent;
   if (!pose_state_[position].compare_exchange_strong(state, kBusy, std::memory_order_acquire)) {
     while (state == kBusy) {
       std::this_thread::yield();
       state = pose_state_[position].load(std::memory_order_acquire);
     }
-    if (state == kNothing) fill_poses(position);  // the other one failed; so will this one, and say why
+    if (state == kAbsent) fill_poses(position);  // the other one failed; so will this one, and say why
     return;
   }
   try {
@@ -122,7 +122,7 @@ void ReachDatabase::Data::fill_poses(std::size_t position) const {
         poses_[first + i] = detail::StoredPose(poses[i], cell, options.position_cell);
     }
   } catch (...) {
-    pose_state_[position].store(kNothing, std::memory_order_release);
+    pose_state_[position].store(kAbsent, std::memory_order_release);
     throw;
   }
   pose_state_[position].store(kReady, std::memory_order_release);

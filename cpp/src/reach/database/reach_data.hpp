@@ -157,7 +157,7 @@ struct ReachDatabase::Data {
   }
 
  private:
-  enum PoseState : std::uint8_t { kNothing, kBusy, kReady };
+  enum PoseState : std::uint8_t { kAbsent, kBusy, kReady };
   void fill_poses(std::size_t position) const;
 
   detail::StoredPose* poses_ = nullptr;  // as much as all need; memory is used for what was touched

@@ -166,10 +166,10 @@ Meta read_meta(const std::string& path, ReachDatabase::Data& data) {
   data.joints = data.arm.size();
   read_options(meta.at("options"), data.options, path);
   Meta out;
-  constexpr std::uint64_t kMost = 0xfffffffe;
-  out.positions = count_of(meta.at("position_cells"), kMost, path, "position_cells");
-  out.cells = count_of(meta.at("cells"), kMost, path, "cells");
-  out.size = count_of(meta.at("size"), kMost, path, "size");
+  constexpr std::uint64_t kMaxCount = 0xfffffffe;
+  out.positions = count_of(meta.at("position_cells"), kMaxCount, path, "position_cells");
+  out.cells = count_of(meta.at("cells"), kMaxCount, path, "cells");
+  out.size = count_of(meta.at("size"), kMaxCount, path, "size");
   data.reach = meta.at("reach").number();
   const std::vector<double> low = meta.at("bounds_lower").numbers(), high = meta.at("bounds_upper").numbers();
   data.bounds.setEmpty();

@@ -24,7 +24,7 @@ struct Near {
 /// The `count` nearest seen so far, sorted.
 class Nearest {
  public:
-  Nearest(std::vector<Near>& storage, int count) : found_(storage), count_(static_cast<std::size_t>(count)) {
+  Nearest(std::vector<Near>& storage, int count) : found_(storage), count_(count) {
     found_.clear();
     found_.reserve(count_);
   }
@@ -164,7 +164,7 @@ struct Query {
       if (position.distance + static_cast<float>(rotation_cell.angle) > nearest.worst() + kSlack) break;
       const auto* found = std::lower_bound(begin, end, rotation_cell.id);
       if (found == end || *found != rotation_cell.id) continue;
-      const std::size_t cell = static_cast<std::size_t>(found - data.rotation_ids.begin());
+      const std::size_t cell = found - data.rotation_ids.begin();
       measure(poses, position, data.cell_first[cell], data.cell_first[cell + 1], nearest);
     }
   }

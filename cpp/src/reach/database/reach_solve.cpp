@@ -99,7 +99,7 @@ std::vector<std::vector<Eigen::VectorXd>> solve_reach_batch(const ReachDatabase&
   options.check();
   detail::check_checker(checker, arm);
   const int threads = resolve_threads(options.threads);
-  std::vector<detail::SeededIk> ik(static_cast<std::size_t>(threads), {database, arm, options.ik});
+  std::vector<detail::SeededIk> ik(threads, {database, arm, options.ik});
   std::vector<CollisionChecker> checkers;
   for (int i = 0; checker != nullptr && i < threads; ++i) checkers.push_back(checker->clone());
   std::vector<std::vector<Eigen::VectorXd>> out(T_base_tip.size());

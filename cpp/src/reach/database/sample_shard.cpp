@@ -45,7 +45,7 @@ ShardSampler::ShardSampler(const JointGroup& arm, const StoredArm& stored, const
       rotations_(rotations),
       checker_(std::move(checker)),
       weighs_(options.min_manipulability > 0 || options.thinning > 0),
-      numbers_(static_cast<std::size_t>(kBatch * arm.size())),
+      numbers_(kBatch * arm.size()),
       q_(arm.size(), kBatch),
       chances_(kBatch),
       one_(arm.size()) {}

@@ -73,18 +73,14 @@ void most_different_first(const std::uint16_t* configurations, std::size_t joint
 
 ShardMerge::ShardMerge(const ShardStore& store, std::int64_t shards, std::uint32_t rotation_count, int joints,
                        int max_per_cell)
-    : store_(store),
-      shards_(shards),
-      rotation_count_(rotation_count),
-      joints_(static_cast<std::size_t>(joints)),
-      max_per_cell_(static_cast<std::size_t>(max_per_cell)) {
+    : store_(store), shards_(shards), rotation_count_(rotation_count), joints_(joints), max_per_cell_(max_per_cell) {
   std::map<std::uint64_t, std::uint64_t> records;
   for (std::int64_t shard = 0; shard < shards; ++shard) {
     const ShardRecords& directory = store.directory(shard);
     for (std::size_t p = 0; p < directory.position_keys.size(); ++p)
       records[directory.position_keys[p]] += directory.counts[p];
   }
-  std::vector<std::size_t> cell(static_cast<std::size_t>(shards), 0), record(static_cast<std::size_t>(shards), 0);
+  std::vector<std::size_t> cell(shards, 0), record(shards, 0);
   std::uint64_t in_part = kPartRecords;
   for (const auto& [key, count] : records) {
     if (in_part >= kPartRecords) {

@@ -76,12 +76,7 @@ void read_at(int file, void* to, std::size_t size, std::uint64_t offset, const s
 }  // namespace
 
 ShardStore::ShardStore(const std::string& folder, const std::string& key, std::int64_t shards, int joints)
-    : folder_(folder),
-      key_(key),
-      joints_(static_cast<std::size_t>(joints)),
-      shards_(static_cast<std::size_t>(shards)),
-      records_(static_cast<std::size_t>(shards), 0),
-      present_(static_cast<std::size_t>(shards), 0) {
+    : folder_(folder), key_(key), joints_(joints), shards_(shards), records_(shards, 0), present_(shards, 0) {
   if (folder_.empty()) return;
   for (std::int64_t shard = 0; shard < shards; ++shard) present_[shard] = load(shard);
 }

@@ -35,14 +35,14 @@ std::string short_number(double value) {
 /// In the form that the kinematics kernels read.
 struct StoredArm::Tables {
   std::vector<Segment> segments;
-  Turns turns;
+  Angles angles;
   RootPose root;
   Chain chain;
 };
 
 StoredArm::StoredArm(const JointGroup& arm) {
   const GroupKinematics& kinematics = *arm.data().kinematics;
-  require(kinematics.balls.empty(), "arm", arm.name(), "must not have floating joints on the way to its tip");
+  require(kinematics.spherical.empty(), "arm", arm.name(), "must not have floating joints on the way to its tip");
   robot = arm.robot().name();
   robot_hash = Hasher().add(arm.robot().hash()).hex();
   group = arm.name();
@@ -67,11 +67,12 @@ StoredArm::StoredArm(const JointGroup& arm) {
   }
   for (int i = 0; i < kinematics.chain.segments; ++i) {
     const Segment& segment = kinematics.chain.segment[i];
-    const TurnTable& turns = kinematics.chain.turns;
-    const bool slides = segment.motion == Motion::slide;
-    chain.insert(chain.end(), {segment.p[0], segment.p[1], segment.p[2], segment.turn_cos, segment.turn_sin,
-                               turns.multiplier[i], turns.offset[i], slides ? segment.multiplier : 0.0,
-                               slides ? segment.offset : 0.0, static_cast<double>(segment.column), slides ? 1.0 : 0.0});
+    const AngleTable& angles = kinematics.chain.angles;
+    const bool prismatic = segment.motion == Motion::prismatic;
+    chain.insert(chain.end(),
+                 {segment.p[0], segment.p[1], segment.p[2], segment.tilt_cos, segment.tilt_sin, angles.multiplier[i],
+                  angles.offset[i], prismatic ? segment.multiplier : 0.0, prismatic ? segment.offset : 0.0,
+                  static_cast<double>(segment.column), prismatic ? 1.0 : 0.0});
   }
   root = rows_of(arm.data().root.R, arm.data().root.p);
   tip_pose = rows_of(kinematics.chain.R_tip, kinematics.chain.p_tip);
@@ -98,18 +99,18 @@ void StoredArm::complete() {
     const double* row = &chain[i];
     Segment segment;
     std::copy(row, row + 3, segment.p);
-    segment.turn_cos = row[3];
-    segment.turn_sin = row[4];
+    segment.tilt_cos = row[3];
+    segment.tilt_sin = row[4];
     segment.column = static_cast<int>(row[9]);
-    segment.motion = row[10] != 0 ? Motion::slide : Motion::turn;
+    segment.motion = row[10] != 0 ? Motion::prismatic : Motion::revolute;
     segment.multiplier = row[7];
     segment.offset = row[8];
-    tables->turns.add(segment.column, row[5], row[6]);
+    tables->angles.add(segment.column, row[5], row[6]);
     tables->segments.push_back(segment);
   }
   tables->chain.segments = static_cast<int>(tables->segments.size());
   tables->chain.segment = tables->segments.data();
-  tables->chain.turns = tables->turns.padded();
+  tables->chain.angles = tables->angles.padded();
   tables->chain.columns = size();
   columns_of(tip_pose, tables->chain.R_tip, tables->chain.p_tip);
   columns_of(root, tables->root.R, tables->root.p);

@@ -80,9 +80,9 @@ struct BaseCells {
       first[axis] = static_cast<std::int64_t>(std::floor((low[axis] - database.reach()) / step));
       count[axis] = static_cast<std::int64_t>(std::ceil((high[axis] + database.reach()) / step)) - first[axis] + 1;
     }
-    constexpr double kMost = 2e8;
+    constexpr double kMaxBasePoses = 2e8;
     const double cells = static_cast<double>(count[0]) * static_cast<double>(count[1]) * headings;
-    require(cells < kMost, "step", step, "too small: more than 2e8 base poses over all targets");
+    require(cells < kMaxBasePoses, "step", step, "too small: more than 2e8 base poses over all targets");
   }
 
   std::size_t size() const { return static_cast<std::size_t>(count[0] * count[1] * headings); }

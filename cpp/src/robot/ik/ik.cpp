@@ -186,7 +186,8 @@ IkResult solve_ik(const JointGroup& group, const Pose& T_world_tip, const Eigen:
   group.check_configuration(seed, "seed");
   Search search(group, T_world_tip, seed, options, valid);
   IkResult& result = search.result();
-  if (!detail::maybe_in_reach(group, T_world_tip.translation())) {
+  if (!detail::maybe_in_reach(group, T_world_tip.translation(), options.position_tolerance)) {
+    result.outcome = Outcome::infeasible;
     result.rejections.add(Rejection::unreachable);
     return result;
   }

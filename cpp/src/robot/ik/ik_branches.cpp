@@ -8,6 +8,7 @@
 #include "mmgrasp/robot/detail/ik_candidates.hpp"
 #include "mmgrasp/robot/detail/ik_failure.hpp"
 #include "mmgrasp/robot/detail/ik_starts.hpp"
+#include "mmgrasp/robot/detail/whole_turns.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -22,7 +23,9 @@ void search(const JointGroup& group, const Pose& T_world_tip, int count, const I
   const detail::TimeLimit time_limit(options.time_limit);
   IkWorkspace workspace;
   detail::FailureCause cause;
-  const Eigen::VectorXd middle = Eigen::VectorXd::Zero(group.size());
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(group.size());
+  const Eigen::VectorXd middle = 0.5 * (group.sample_lower() + group.sample_upper());
+  const detail::WholeTurns turns(group);
   std::vector<Eigen::VectorXd> seen;
   const long budget = static_cast<long>(options.restarts + 1) * count;
   for (long i = 0; i < budget && static_cast<int>(branches.solutions.size()) < count; ++i) {
@@ -32,7 +35,9 @@ void search(const JointGroup& group, const Pose& T_world_tip, int count, const I
       branches.rejections.add(cause.of(group, T_world_tip, q, options, workspace));
       continue;
     }
-    detail::unwind(group, middle, q);
+    detail::unwind(group, zero, q);
+    // Descents end in any turn: one posture, one solution.
+    if (turns.any()) q = turns.of(q, middle, 1).at(0);
     bool known = false;
     for (const Eigen::VectorXd& other : seen) known = known || detail::joint_distance(group, q, other) <= kDistinct;
     if (known) continue;
@@ -72,7 +77,7 @@ IkBranches branches_of(const JointGroup& group, const Pose& T_world_tip, int cou
                        const IkOptions& options, const ConfigurationFilter& valid, const Monitor& monitor) {
   detail::check_target(group, T_world_tip, options);
   IkBranches branches;
-  if (!detail::maybe_in_reach(group, T_world_tip.translation())) {
+  if (!detail::maybe_in_reach(group, T_world_tip.translation(), options.position_tolerance)) {
     branches.complete = true;
     branches.rejections.add(Rejection::unreachable);
     return branches;
@@ -92,20 +97,23 @@ IkBranches branches_of(const JointGroup& group, const Pose& T_world_tip, int cou
 }  // namespace
 
 IkBranches solve_ik_branches(const JointGroup& group, const Pose& T_world_tip, const IkOptions& options,
-                             const ConfigurationFilter& valid, int redundant_values, const Monitor& monitor) {
+                             const ConfigurationFilter& valid, int redundant_values, const Monitor& monitor,
+                             bool all_turns) {
   require(redundant_values >= 0, "redundant_values", redundant_values, "must not be negative");
   constexpr int kSearched = 16;
-  return branches_of(group, T_world_tip, kSearched, redundant_values ? redundant_values : kRedundantValues, options,
-                     valid, monitor);
+  IkBranches branches = branches_of(group, T_world_tip, kSearched,
+                                    redundant_values ? redundant_values : kRedundantValues, options, valid, monitor);
+  if (all_turns) branches.solutions = detail::all_whole_turns(group, branches.solutions);
+  return branches;
 }
 
 std::vector<Eigen::VectorXd> solve_ik_all(const JointGroup& group, const Pose& T_world_tip, int count,
-                                          const IkOptions& options, const ConfigurationFilter& valid) {
+                                          const IkOptions& options, const ConfigurationFilter& valid, bool all_turns) {
   require(count >= 0, "count", count, "must not be negative");
   const int values = std::clamp(count, 8, 48);
   std::vector<Eigen::VectorXd> solutions = branches_of(group, T_world_tip, count, values, options, valid, {}).solutions;
   if (static_cast<int>(solutions.size()) > count) solutions.resize(count);
-  return solutions;
+  return all_turns ? detail::all_whole_turns(group, solutions) : solutions;
 }
 
 void spread_apart(const JointGroup& group, std::vector<Eigen::VectorXd>& solutions) {

@@ -110,7 +110,7 @@ Vector3d across(const Vector3d& h) {
 }
 
 void add(Branches& branches, const std::array<double, 6>& values, bool reversed) {
-  if (branches.count == Branches::kMost) return;
+  if (branches.count == Branches::kMaxBranches) return;
   auto& slot = branches.value[branches.count++];
   for (std::size_t i = 0; i < 6; ++i) slot[i] = reversed ? -values[5 - i] : values[i];
 }

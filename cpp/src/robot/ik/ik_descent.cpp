@@ -101,18 +101,18 @@ DescentEnd descend(const JointGroup& group, const Pose& T_world_tip, Eigen::Vect
   }
 }
 
-bool maybe_in_reach(const JointGroup& group, const Eigen::Vector3d& position) {
+bool maybe_in_reach(const JointGroup& group, const Eigen::Vector3d& position, double tolerance) {
   if (group.has_base()) return true;
   const GroupModel& model = *group.data().model;
   const double distance = (position - group.T_world_root() * model.first_joint).norm();
-  return !(distance > model.reach + 1e-6);
+  return !(distance > model.reach + tolerance + 1e-6);
 }
 
 }  // namespace detail
 
 bool refine_ik(const JointGroup& group, const Pose& T_world_tip, Eigen::VectorXd& q, const IkOptions& options,
                IkWorkspace& workspace) {
-  if (!detail::maybe_in_reach(group, T_world_tip.translation())) return false;
+  if (!detail::maybe_in_reach(group, T_world_tip.translation(), options.position_tolerance)) return false;
   return detail::descend(group, T_world_tip, q, options, workspace, true).converged;
 }
 

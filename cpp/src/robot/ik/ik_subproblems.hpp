@@ -31,11 +31,11 @@ inline Eigen::Vector3d turned(const Eigen::Vector3d& axis, double angle, const E
 /// a cos(angle) + b sin(angle) = c. What misses a solution by a little (geometry that is only nearly special, poses at
 /// the border of reach) gives the nearest angle: Newton's method decides about it afterwards.
 inline Angles solve_cosine(double a, double b, double c) {
-  constexpr double kSlack = 1e-3, kNothing = 1e-9;
+  constexpr double kSlack = 1e-3, kDegenerate = 1e-9;
   Angles angles;
   const double r = std::hypot(a, b);
-  if (r < kNothing) {
-    if (std::abs(c) < 1e3 * kNothing) {
+  if (r < kDegenerate) {
+    if (std::abs(c) < 1e3 * kDegenerate) {
       angles.add(0);
       angles.free = true;
     }

@@ -95,11 +95,12 @@ MMGRASP_INLINE void lane_jacobian(const Chain& chain, const Lanes3& arm, LaneScr
     const Segment& segment = chain.segment[i];
     Lanes* column = scratch.J + 6 * segment.column;
     const Lanes3 w = scratch.axis[i] * spread_lanes(segment.multiplier);
-    const bool turns = segment.motion == Motion::turn;
-    const Lanes3 v = turns ? cross(w, arm - scratch.origin[i]) : w;
-    const Lanes3 turning = turns ? w : none;
+    const bool revolute = segment.motion == Motion::revolute;
+    const Lanes3 v = revolute ? cross(w, arm - scratch.origin[i]) : w;
+    const Lanes3 turning = revolute ? w : none;
     if (segment.adds)
-      set_column(column, Lanes3{column[0], column[1], column[2]} + v, Lanes3{column[3], column[4], column[5]} + turning);
+      set_column(column, Lanes3{column[0], column[1], column[2]} + v,
+                 Lanes3{column[3], column[4], column[5]} + turning);
     else
       set_column(column, v, turning);
   }
@@ -111,9 +112,9 @@ MMGRASP_INLINE void lane_jacobian(const Chain& chain, const Lanes3& arm, LaneScr
 }
 
 /// Entry i of the table for every configuration.
-MMGRASP_INLINE void turn_lanes(const TurnTable& turns, int i, const double* q, long stride, Lanes& sine, Lanes& cosine,
-                               LaneBits& large) {
-  const Lanes angle = gather(q, stride, turns.column[i]) * turns.multiplier[i] + turns.offset[i];
+MMGRASP_INLINE void sine_lanes(const AngleTable& angles, int i, const double* q, long stride, Lanes& sine,
+                               Lanes& cosine, LaneBits& large) {
+  const Lanes angle = gather(q, stride, angles.column[i]) * angles.multiplier[i] + angles.offset[i];
   large |= reinterpret_cast<LaneBits>(too_large(angle));
   sincos(angle, sine, cosine);
 }
@@ -128,7 +129,7 @@ MMGRASP_INLINE bool lanes_body(const Chain& chain, const RootPose& root, const d
   Lanes3 p_root = constant(root.p[0], root.p[1], root.p[2]);
   if (chain.base) {
     Lanes s, c;
-    turn_lanes(chain.turns, chain.segments, q, stride, s, c, large);
+    sine_lanes(chain.angles, chain.segments, q, stride, s, c, large);
     const Lanes zero = spread_lanes(0);
     R = {{c, s, zero}, {-s, c, zero}, constant(0, 0, 1)};
     p_root = {gather(q, stride, 0), gather(q, stride, 1), zero};
@@ -137,18 +138,18 @@ MMGRASP_INLINE bool lanes_body(const Chain& chain, const RootPose& root, const d
   for (int i = 0; i < chain.segments; ++i) {
     const Segment& segment = chain.segment[i];
     Lanes s, c;
-    turn_lanes(chain.turns, i, q, stride, s, c, large);
+    sine_lanes(chain.angles, i, q, stride, s, c, large);
     arm = arm + times(R, segment.p);
-    const Lanes turn_c = spread_lanes(segment.turn_cos), turn_s = spread_lanes(segment.turn_sin);
-    const Lanes3 y = R.y * turn_c + R.z * turn_s;
-    R.z = R.z * turn_c - R.y * turn_s;
+    const Lanes tilt_c = spread_lanes(segment.tilt_cos), tilt_s = spread_lanes(segment.tilt_sin);
+    const Lanes3 y = R.y * tilt_c + R.z * tilt_s;
+    R.z = R.z * tilt_c - R.y * tilt_s;
     R.y = y * c - R.x * s;
     R.x = R.x * c + y * s;
     if (kJacobian) {
       scratch.axis[i] = R.z;
       scratch.origin[i] = arm;
     }
-    if (segment.motion == Motion::slide)
+    if (segment.motion == Motion::prismatic)
       arm = arm + R.z * (gather(q, stride, segment.column) * segment.multiplier + segment.offset);
   }
   if (any(reinterpret_cast<Lanes>(large))) return false;

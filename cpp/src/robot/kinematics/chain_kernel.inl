@@ -1,5 +1,6 @@
 // Body of chain_kernel_*.cpp, which set MMGRASP_TARGET (attribute of every function) and MMGRASP_LANES and include it,
-// through chain_batch.inl, inside an unnamed namespace: nothing here may be merged with code for other machines by the linker.
+// through chain_batch.inl, inside an unnamed namespace: nothing here may be merged with code for other machines by the
+// linker.
 
 using Lanes = double __attribute__((vector_size(8 * MMGRASP_LANES)));
 using LaneBits = long long __attribute__((vector_size(8 * MMGRASP_LANES)));
@@ -92,12 +93,12 @@ MMGRASP_INLINE bool any(Lanes mask) {
 }
 
 /// Of all angles of a table for one configuration.
-MMGRASP_INLINE void turn(const TurnTable& turns, const double* q, double* sines, double* cosines) {
+MMGRASP_INLINE void all_sines(const AngleTable& angles, const double* q, double* sines, double* cosines) {
   LaneBits large{};
-  for (int i = 0; i < turns.count; i += MMGRASP_LANES) {
+  for (int i = 0; i < angles.count; i += MMGRASP_LANES) {
     Lanes value;
-    for (int k = 0; k < MMGRASP_LANES; ++k) value[k] = q[turns.column[i + k]];
-    const Lanes angle = value * load_lanes(turns.multiplier + i) + load_lanes(turns.offset + i);
+    for (int k = 0; k < MMGRASP_LANES; ++k) value[k] = q[angles.column[i + k]];
+    const Lanes angle = value * load_lanes(angles.multiplier + i) + load_lanes(angles.offset + i);
     large |= reinterpret_cast<LaneBits>(too_large(angle));
     Lanes s, c;
     sincos(angle, s, c);
@@ -105,7 +106,7 @@ MMGRASP_INLINE void turn(const TurnTable& turns, const double* q, double* sines,
     store_lanes(cosines + i, c);
   }
   if (__builtin_expect(!any(reinterpret_cast<Lanes>(large)), 1)) return;
-  turn_any(turns, q, sines, cosines);
+  any_sines(angles, q, sines, cosines);
 }
 
 struct Axes {
@@ -117,10 +118,10 @@ MMGRASP_INLINE Xyz times(const Axes& R, const double* v) {
 }
 
 template <bool kJacobian>
-MMGRASP_INLINE void single_body(const Chain& chain, const RootPose& root, const double* q, const Ball* balls, double* T,
-                                double* J, long stride) {
-  alignas(64) double sines[kMaxSegments + kTurnBlock], cosines[kMaxSegments + kTurnBlock];
-  turn(chain.turns, q, sines, cosines);
+MMGRASP_INLINE void single_body(const Chain& chain, const RootPose& root, const double* q,
+                                const SphericalMotion* spherical, double* T, double* J, long stride) {
+  alignas(64) double sines[kMaxSegments + kAngleBlock], cosines[kMaxSegments + kAngleBlock];
+  all_sines(chain.angles, q, sines, cosines);
   Axes R;
   Xyz p_root;
   if (chain.base) {
@@ -134,32 +135,32 @@ MMGRASP_INLINE void single_body(const Chain& chain, const RootPose& root, const 
   // Positions are taken from the root, so that a robot far from the world's origin loses no digits.
   Xyz arm = spread(0);
   Xyz axis[kMaxSegments], origin[kMaxSegments];
-  Axes ball_axes[kMaxBalls];
+  Axes spherical_axes[kMaxSpherical];
   for (int i = 0; i < chain.segments; ++i) {
     const Segment& segment = chain.segment[i];
     const double s = sines[i], c = cosines[i];
     arm += times(R, segment.p);
-    if (__builtin_expect(segment.motion == Motion::ball, 0)) {
-      const Xyz y = R.y * spread(segment.turn_cos) + R.z * spread(segment.turn_sin);
-      R.z = R.z * spread(segment.turn_cos) - R.y * spread(segment.turn_sin);
+    if (__builtin_expect(segment.motion == Motion::spherical, 0)) {
+      const Xyz y = R.y * spread(segment.tilt_cos) + R.z * spread(segment.tilt_sin);
+      R.z = R.z * spread(segment.tilt_cos) - R.y * spread(segment.tilt_sin);
       R.y = y;
-      const Ball& ball = balls[segment.ball];
-      ball_axes[segment.ball] = {times(R, ball.axes), times(R, ball.axes + 3), times(R, ball.axes + 6)};
+      const SphericalMotion& motion = spherical[segment.spherical];
+      spherical_axes[segment.spherical] = {times(R, motion.axes), times(R, motion.axes + 3), times(R, motion.axes + 6)};
       origin[i] = arm;
-      R = {times(R, ball.R), times(R, ball.R + 3), times(R, ball.R + 6)};
+      R = {times(R, motion.R), times(R, motion.R + 3), times(R, motion.R + 6)};
       continue;
     }
-    // R times the turn about x times the turn about z, with what does not wait for R multiplied first.
-    const Xyz x = R.x * spread(c) + (R.y * spread(s * segment.turn_cos) + R.z * spread(s * segment.turn_sin));
-    const Xyz y = (R.y * spread(c * segment.turn_cos) + R.z * spread(c * segment.turn_sin)) - R.x * spread(s);
-    R.z = R.z * spread(segment.turn_cos) - R.y * spread(segment.turn_sin);
+    // R times the rotation about x times the one about z, with what does not wait for R multiplied first.
+    const Xyz x = R.x * spread(c) + (R.y * spread(s * segment.tilt_cos) + R.z * spread(s * segment.tilt_sin));
+    const Xyz y = (R.y * spread(c * segment.tilt_cos) + R.z * spread(c * segment.tilt_sin)) - R.x * spread(s);
+    R.z = R.z * spread(segment.tilt_cos) - R.y * spread(segment.tilt_sin);
     R.x = x;
     R.y = y;
     if (kJacobian) {
       axis[i] = R.z;
       origin[i] = arm;
     }
-    if (segment.motion == Motion::slide)
+    if (segment.motion == Motion::prismatic)
       arm += R.z * spread(segment.multiplier * q[segment.column] + segment.offset);
   }
   arm += times(R, chain.p_tip);
@@ -172,23 +173,22 @@ MMGRASP_INLINE void single_body(const Chain& chain, const RootPose& root, const 
   for (int i = 0; i < chain.segments; ++i) {
     const Segment& segment = chain.segment[i];
     double* column = J + segment.column * stride;
-    if (__builtin_expect(segment.motion == Motion::ball, 0)) {
-      const Axes& axes = ball_axes[segment.ball];
+    if (__builtin_expect(segment.motion == Motion::spherical, 0)) {
+      const Axes& axes = spherical_axes[segment.spherical];
       store_column(column, cross(axes.x, arm - origin[i]), axes.x);
       store_column(column + stride, cross(axes.y, arm - origin[i]), axes.y);
       store_column(column + 2 * stride, cross(axes.z, arm - origin[i]), axes.z);
       continue;
     }
     const Xyz w = axis[i] * spread(segment.multiplier);
-    const Xyz v = segment.motion == Motion::turn ? cross(w, arm - origin[i]) : w;
-    const Xyz turning = segment.motion == Motion::turn ? w : spread(0);
+    const Xyz v = segment.motion == Motion::revolute ? cross(w, arm - origin[i]) : w;
+    const Xyz turning = segment.motion == Motion::revolute ? w : spread(0);
     if (segment.adds)
       add_column(column, v, turning);
     else
       store_column(column, v, turning);
   }
-  for (int i = 0; i < chain.still_columns; ++i)
-    store_column(J + chain.still_column[i] * stride, spread(0), spread(0));
+  for (int i = 0; i < chain.still_columns; ++i) store_column(J + chain.still_column[i] * stride, spread(0), spread(0));
   if (chain.base) {
     store_column(J, Xyz{1, 0, 0, 0}, spread(0));
     store_column(J + stride, Xyz{0, 1, 0, 0}, spread(0));
@@ -196,18 +196,18 @@ MMGRASP_INLINE void single_body(const Chain& chain, const RootPose& root, const 
   }
 }
 
-MMGRASP_TARGET void single(const Chain& chain, const RootPose& root, const double* q, const Ball* balls, double* T,
-                           double* J, long stride) {
+MMGRASP_TARGET void single(const Chain& chain, const RootPose& root, const double* q, const SphericalMotion* spherical,
+                           double* T, double* J, long stride) {
   if (J)
-    single_body<true>(chain, root, q, balls, T, J, stride);
+    single_body<true>(chain, root, q, spherical, T, J, stride);
   else
-    single_body<false>(chain, root, q, balls, T, J, stride);
+    single_body<false>(chain, root, q, spherical, T, J, stride);
 }
 
-MMGRASP_TARGET void links(const LinkStep* steps, const int* order, int count, const TurnTable& turns, const double* q,
+MMGRASP_TARGET void links(const LinkStep* steps, const int* order, int count, const AngleTable& angles, const double* q,
                           const double* given, double* T) {
-  alignas(64) double sines[kMaxTurns], cosines[kMaxTurns];
-  turn(turns, q, sines, cosines);
+  alignas(64) double sines[kMaxRevolute], cosines[kMaxRevolute];
+  all_sines(angles, q, sines, cosines);
   for (int i = 0; i < count; ++i) {
     const LinkStep& step = steps[order[i]];
     const double* parent = T + 16 * step.parent;
@@ -216,14 +216,14 @@ MMGRASP_TARGET void links(const LinkStep* steps, const int* order, int count, co
     const double *m = step.A, *p = step.p;
     alignas(32) double local[12];
     switch (step.kind) {
-      case LinkStep::Kind::turn: {
+      case LinkStep::Kind::revolute: {
         const Xyz s = spread(sines[step.index]), c = spread(cosines[step.index]);
         for (int k = 0; k < 12; k += 4)
           store4(local + k, load4(step.A + k) + (s * load4(step.B + k) + c * load4(step.C + k)));
         m = local;
         break;
       }
-      case LinkStep::Kind::slide:
+      case LinkStep::Kind::prismatic:
         store4(local, load4(step.p) + spread(step.multiplier * q[step.column] + step.offset) * load4(step.d));
         p = local;
         break;

@@ -15,9 +15,9 @@ namespace {
 
 const KinematicsKernels kPortableKinematics{MMGRASP_LANES, &single, &batch, &links};
 
-void turn_any(const TurnTable& turns, const double* q, double* sines, double* cosines) {
-  for (int i = 0; i < turns.count; ++i) {
-    const double angle = turns.multiplier[i] * q[turns.column[i]] + turns.offset[i];
+void any_sines(const AngleTable& angles, const double* q, double* sines, double* cosines) {
+  for (int i = 0; i < angles.count; ++i) {
+    const double angle = angles.multiplier[i] * q[angles.column[i]] + angles.offset[i];
     sines[i] = std::sin(angle);
     cosines[i] = std::cos(angle);
   }

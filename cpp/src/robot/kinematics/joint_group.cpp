@@ -10,7 +10,7 @@ namespace mmgrasp {
 
 JointGroup::Data::Data(std::shared_ptr<const detail::GroupModel> of, const Pose& T)
     : model(std::move(of)), T_world_root(T), kinematics(model->kinematics.get()) {
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(kinematics->first_turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(kinematics->first_angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   Eigen::Map<Eigen::Matrix3d>(root.R, 3, 3) = T.linear() * turn;
   Eigen::Map<Eigen::Vector3d>(root.p, 3) = T.translation();
 }

@@ -19,7 +19,7 @@ Eigen::Matrix3d turn_about(const Eigen::Vector3d& axis, double angle) {
 struct Elementary {
   Eigen::Matrix3d R;  ///< From the frame after the motion before.
   Eigen::Vector3d p;
-  Motion motion = Motion::turn;
+  Motion motion = Motion::revolute;
   Drive drive;
 };
 
@@ -34,13 +34,13 @@ struct Path {
     fixed.setIdentity();
     fixed.linear() = align.transpose();
   }
-  void slide(const Eigen::Matrix3d& frame, int axis, const Drive& drive) {
+  void prismatic(const Eigen::Matrix3d& frame, int axis, const Drive& drive) {
     // z, x and y in turn come to lie along the frame's axis.
     Eigen::Matrix3d align;
     align.col(2) = frame.col(axis);
     align.col(0) = frame.col((axis + 1) % 3);
     align.col(1) = frame.col((axis + 2) % 3);
-    add(align, Motion::slide, drive);
+    add(align, Motion::prismatic, drive);
   }
 };
 
@@ -57,20 +57,20 @@ void add_joint(const Joint& joint, const Drive& drive, Path& path) {
       break;
     case JointType::revolute:
     case JointType::continuous:
-      path.add(rotation_from_z(joint.axis), Motion::turn, drive);
+      path.add(rotation_from_z(joint.axis), Motion::revolute, drive);
       break;
     case JointType::prismatic:
-      path.add(rotation_from_z(joint.axis), Motion::slide, drive);
+      path.add(rotation_from_z(joint.axis), Motion::prismatic, drive);
       break;
     case JointType::planar: {
       const Eigen::Matrix3d plane = planar_frame(joint.axis);
-      for (int i = 0; i < 2; ++i) path.slide(plane, i, column(i));
-      path.add(plane, Motion::turn, column(2));
+      for (int i = 0; i < 2; ++i) path.prismatic(plane, i, column(i));
+      path.add(plane, Motion::revolute, column(2));
       break;
     }
     case JointType::floating:
-      for (int i = 0; i < 3; ++i) path.slide(Eigen::Matrix3d::Identity(), i, column(i));
-      path.add(Eigen::Matrix3d::Identity(), Motion::ball, column(3));
+      for (int i = 0; i < 3; ++i) path.prismatic(Eigen::Matrix3d::Identity(), i, column(i));
+      path.add(Eigen::Matrix3d::Identity(), Motion::spherical, column(3));
       break;
   }
 }
@@ -91,29 +91,30 @@ Path path_to_tip(const GroupModel& model) {
   return path;
 }
 
-/// R = Rz(before) Rx(turn) Rz(after).
+/// R = Rz(before) Rx(tilt) Rz(after).
 struct ZxzAngles {
   double before = 0, after = 0;
-  double turn_cos = 1, turn_sin = 0;
+  double tilt_cos = 1, tilt_sin = 0;
 };
 
 ZxzAngles zxz(const Eigen::Matrix3d& R) {
   ZxzAngles angles;
-  angles.turn_cos = R(2, 2);
+  angles.tilt_cos = R(2, 2);
   const double tilt = std::hypot(R(0, 2), R(1, 2));
   if (tilt > 4e-16) {                              // else the axes coincide to rounding, and there is but one angle
-    angles.turn_sin = R(1, 2) > 0 ? -tilt : tilt;  // of the two ways the one with the smaller turn before
-    angles.before = std::atan2(R(0, 2) / angles.turn_sin, -R(1, 2) / angles.turn_sin);
+    angles.tilt_sin = R(1, 2) > 0 ? -tilt : tilt;  // of the two ways the one with the smaller angle before
+    angles.before = std::atan2(R(0, 2) / angles.tilt_sin, -R(1, 2) / angles.tilt_sin);
   }
   const double c = std::cos(angles.before), s = std::sin(angles.before);
-  const Eigen::Vector2d x(c * R(0, 0) + s * R(1, 0), c * R(1, 0) - s * R(0, 0));  // column x before the turn about z
-  angles.after = std::atan2(angles.turn_cos * x[1] + angles.turn_sin * R(2, 0), x[0]);
+  const Eigen::Vector2d x(c * R(0, 0) + s * R(1, 0),
+                          c * R(1, 0) - s * R(0, 0));  // column x before the rotation about z
+  angles.after = std::atan2(angles.tilt_cos * x[1] + angles.tilt_sin * R(2, 0), x[0]);
   return angles;
 }
 
-/// Range of a slide as a length, for the reach bound.
+/// Range of a prismatic joint as a length, for the reach bound.
 double travel(const GroupModel& model, const Elementary& motion) {
-  if (motion.motion != Motion::slide) return 0;
+  if (motion.motion != Motion::prismatic) return 0;
   const double a = motion.drive.multiplier * model.lower[motion.drive.column] + motion.drive.offset;
   const double b = motion.drive.multiplier * model.upper[motion.drive.column] + motion.drive.offset;
   return std::max(std::abs(a), std::abs(b));
@@ -139,16 +140,16 @@ void copy(const Eigen::Matrix3d& R, double* to) {
 
 }  // namespace
 
-int Turns::add(int at_column, double by, double from) {
+int Angles::add(int at_column, double by, double from) {
   column.push_back(at_column);
   multiplier.push_back(by);
   offset.push_back(from);
   return static_cast<int>(column.size()) - 1;
 }
 
-TurnTable Turns::padded() {
+AngleTable Angles::padded() {
   const int count = static_cast<int>(column.size());
-  while (column.size() % kTurnBlock != 0) add(0, 0, 0);
+  while (column.size() % kAngleBlock != 0) add(0, 0, 0);
   return {count, column.data(), multiplier.data(), offset.data()};
 }
 
@@ -160,7 +161,7 @@ void flatten_chain(GroupModel& model, GroupKinematics& kinematics) {
   bound_reach(path, model);
   std::vector<ZxzAngles> angles;
   for (const Elementary& motion : path.motions) angles.push_back(zxz(motion.R));
-  kinematics.first_turn = count > 0 ? angles.front().before : 0.0;
+  kinematics.first_angle = count > 0 ? angles.front().before : 0.0;
   std::vector<bool> seen(model.names.size(), false);
   for (int i = 0; i < model.base_columns(); ++i) seen[i] = true;
   for (int i = 0; i < count; ++i) {
@@ -170,8 +171,8 @@ void flatten_chain(GroupModel& model, GroupKinematics& kinematics) {
     Segment segment;
     const Eigen::Vector3d p = turn_about(Eigen::Vector3d::UnitZ(), -own.before) * motion.p;
     std::copy(p.data(), p.data() + 3, segment.p);
-    segment.turn_cos = own.turn_cos;
-    segment.turn_sin = own.turn_sin;
+    segment.tilt_cos = own.tilt_cos;
+    segment.tilt_sin = own.tilt_sin;
     segment.multiplier = motion.drive.multiplier;
     segment.offset = motion.drive.offset;
     segment.column = motion.drive.column;
@@ -179,27 +180,28 @@ void flatten_chain(GroupModel& model, GroupKinematics& kinematics) {
     segment.adds = seen[segment.column];
     seen[segment.column] = true;
     const double between = wrapped(own.after + next);
-    if (motion.motion == Motion::turn) {
-      kinematics.chain_turn_storage.add(segment.column, segment.multiplier, wrapped(own.after + next + segment.offset));
+    if (motion.motion == Motion::revolute) {
+      kinematics.chain_angle_storage.add(segment.column, segment.multiplier,
+                                         wrapped(own.after + next + segment.offset));
     } else {
-      kinematics.chain_turn_storage.add(0, 0, motion.motion == Motion::slide ? between : 0.0);
+      kinematics.chain_angle_storage.add(0, 0, motion.motion == Motion::prismatic ? between : 0.0);
     }
-    if (motion.motion == Motion::ball) {
-      segment.ball = static_cast<int>(kinematics.balls.size());
-      kinematics.balls.push_back({segment.column, turn_about(Eigen::Vector3d::UnitZ(), own.after),
-                                  turn_about(Eigen::Vector3d::UnitZ(), next)});
+    if (motion.motion == Motion::spherical) {
+      segment.spherical = static_cast<int>(kinematics.spherical.size());
+      kinematics.spherical.push_back({segment.column, turn_about(Eigen::Vector3d::UnitZ(), own.after),
+                                      turn_about(Eigen::Vector3d::UnitZ(), next)});
       for (int k = 0; k < 3; ++k) seen[segment.column + k] = true;
     }
     kinematics.segment_storage.push_back(segment);
   }
-  if (model.has_base) kinematics.chain_turn_storage.add(2, 1, kinematics.first_turn);
+  if (model.has_base) kinematics.chain_angle_storage.add(2, 1, kinematics.first_angle);
   for (std::size_t i = 0; i < seen.size(); ++i)
     if (!seen[i]) kinematics.still_storage.push_back(static_cast<int>(i));
 
   Chain& chain = kinematics.chain;
   chain.segments = count;
   chain.segment = kinematics.segment_storage.data();
-  chain.turns = kinematics.chain_turn_storage.padded();
+  chain.angles = kinematics.chain_angle_storage.padded();
   chain.base = model.has_base;
   chain.columns = static_cast<int>(model.names.size());
   chain.still_columns = static_cast<int>(kinematics.still_storage.size());

@@ -9,36 +9,36 @@
 namespace mmgrasp {
 namespace {
 
-using detail::Ball;
-using detail::BallFrame;
 using detail::GroupKinematics;
 using detail::Mover;
+using detail::SphericalFrame;
+using detail::SphericalMotion;
 
-/// Works out the balls of a chain; most have none, and pay nothing.
-class Balls {
+/// Works out the spherical motions of a chain; most have none, and pay nothing.
+class SphericalMotions {
  public:
-  Balls(const GroupKinematics& kinematics, const double* q) {
-    if (kinematics.balls.empty()) return;
-    for (std::size_t i = 0; i < kinematics.balls.size(); ++i) {
-      const BallFrame& frame = kinematics.balls[i];
+  SphericalMotions(const GroupKinematics& kinematics, const double* q) {
+    if (kinematics.spherical.empty()) return;
+    for (std::size_t i = 0; i < kinematics.spherical.size(); ++i) {
+      const SphericalFrame& frame = kinematics.spherical[i];
       const Eigen::Map<const Eigen::Vector3d> w(q + frame.column);
-      Eigen::Map<Eigen::Matrix3d>(balls_[i].R, 3, 3) = frame.before * detail::rotation_of(w) * frame.after;
-      Eigen::Map<Eigen::Matrix3d>(balls_[i].axes, 3, 3) = frame.before * detail::left_jacobian(w);
+      Eigen::Map<Eigen::Matrix3d>(motions_[i].R, 3, 3) = frame.before * detail::rotation_of(w) * frame.after;
+      Eigen::Map<Eigen::Matrix3d>(motions_[i].axes, 3, 3) = frame.before * detail::left_jacobian(w);
     }
   }
-  const Ball* data() const { return balls_; }
+  const SphericalMotion* data() const { return motions_; }
 
  private:
-  Ball balls_[detail::kMaxBalls];  // not initialised on purpose
+  SphericalMotion motions_[detail::kMaxSpherical];  // not initialised on purpose
 };
 
 }  // namespace
 
 Pose JointGroup::fk(const Eigen::Ref<const Eigen::VectorXd>& q) const {
   Pose T_world_tip;
-  const Balls balls(*data_->kinematics, q.data());
-  detail::kinematics_kernels().single(data_->kinematics->chain, data_->root, q.data(), balls.data(), T_world_tip.data(),
-                                      nullptr, 0);
+  const SphericalMotions spherical(*data_->kinematics, q.data());
+  detail::kinematics_kernels().single(data_->kinematics->chain, data_->root, q.data(), spherical.data(),
+                                      T_world_tip.data(), nullptr, 0);
   return T_world_tip;
 }
 
@@ -51,9 +51,9 @@ Matrix6Xd JointGroup::jacobian(const Eigen::Ref<const Eigen::VectorXd>& q) const
 
 void JointGroup::fk_jacobian(const Eigen::Ref<const Eigen::VectorXd>& q, Pose& T_world_tip,
                              Eigen::Ref<Matrix6Xd> J) const {
-  const Balls balls(*data_->kinematics, q.data());
-  detail::kinematics_kernels().single(data_->kinematics->chain, data_->root, q.data(), balls.data(), T_world_tip.data(),
-                                      J.data(), J.outerStride());
+  const SphericalMotions spherical(*data_->kinematics, q.data());
+  detail::kinematics_kernels().single(data_->kinematics->chain, data_->root, q.data(), spherical.data(),
+                                      T_world_tip.data(), J.data(), J.outerStride());
 }
 
 void JointGroup::link_poses(const Eigen::Ref<const Eigen::VectorXd>& q, Poses& T_world_link, bool moved_only) const {
@@ -71,7 +71,7 @@ void JointGroup::link_poses(const Eigen::Ref<const Eigen::VectorXd>& q, Poses& T
   }
   const std::vector<int>& order = all ? kinematics.all_steps : kinematics.moving_steps;
   detail::kinematics_kernels().links(kinematics.steps.data(), order.data(), static_cast<int>(order.size()),
-                                     kinematics.link_turns, q.data(), given, T_world_link[0].data());
+                                     kinematics.link_angles, q.data(), given, T_world_link[0].data());
 }
 
 Matrix6Xd JointGroup::jacobian(const Eigen::Ref<const Eigen::VectorXd>& q, int link,

@@ -39,15 +39,15 @@ LinkStep link_step(const GroupModel& model, int index, GroupKinematics& kinemati
     case JointType::continuous: {
       // Rodrigues: a a^T + sin [a]x + cos (1 - a a^T), with the fixed rotation multiplied in.
       const Eigen::Matrix3d along = joint.axis * joint.axis.transpose();
-      step.kind = LinkStep::Kind::turn;
-      step.index = kinematics.link_turn_storage.add(drive.column, drive.multiplier, drive.offset);
+      step.kind = LinkStep::Kind::revolute;
+      step.index = kinematics.link_angle_storage.add(drive.column, drive.multiplier, drive.offset);
       copy_columns(R * along, step.A);
       copy_columns(R * cross_matrix(joint.axis), step.B);
       copy_columns(R * (Eigen::Matrix3d::Identity() - along), step.C);
       break;
     }
     case JointType::prismatic:
-      step.kind = LinkStep::Kind::slide;
+      step.kind = LinkStep::Kind::prismatic;
       step.column = drive.column;
       step.multiplier = drive.multiplier;
       step.offset = drive.offset;
@@ -72,8 +72,7 @@ void flatten_links(const GroupModel& model, GroupKinematics& kinematics) {
   if (model.has_base) kinematics.moving_links.push_back(0);
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const Joint& joint = joints[i];
-    const std::size_t link = static_cast<std::size_t>(joint.child_link),
-                      parent = static_cast<std::size_t>(joint.parent_link);
+    const std::size_t link = joint.child_link, parent = joint.parent_link;
     const Drive drive = drive_of(model, static_cast<int>(i));
     kinematics.mover_of_link[link] = kinematics.mover_of_link[parent];
     if (drive.column >= 0) {
@@ -89,9 +88,9 @@ void flatten_links(const GroupModel& model, GroupKinematics& kinematics) {
     }
     kinematics.steps.push_back(link_step(model, static_cast<int>(i), kinematics));
   }
-  kinematics.link_turns = kinematics.link_turn_storage.padded();
-  require(kinematics.link_turns.count <= kMaxTurns - kTurnBlock, "group \"" + model.name + "\" turning joints",
-          kinematics.link_turns.count, "must be at most " + std::to_string(kMaxTurns - kTurnBlock));
+  kinematics.link_angles = kinematics.link_angle_storage.padded();
+  require(kinematics.link_angles.count <= kMaxRevolute - kAngleBlock, "group \"" + model.name + "\" turning joints",
+          kinematics.link_angles.count, "must be at most " + std::to_string(kMaxRevolute - kAngleBlock));
 }
 
 }  // namespace detail

@@ -24,7 +24,7 @@ void run(const JointGroup& group, const Columns& Q, Pose* T, double* J) {
   static_assert(sizeof(Pose) == 16 * sizeof(double), "poses must lie next to each other");
   const detail::GroupKinematics& kinematics = *group.data().kinematics;
   const Eigen::Index m = Q.cols(), per_configuration = 6 * static_cast<Eigen::Index>(group.size());
-  if (!kinematics.balls.empty()) {
+  if (!kinematics.spherical.empty()) {
     for (Eigen::Index i = 0; i < m; ++i) {
       if (J)
         group.fk_jacobian(Q.col(i), T[i], Eigen::Map<Matrix6Xd>(J + i * per_configuration, 6, group.size()));

@@ -12,7 +12,7 @@ namespace mmgrasp {
 namespace {
 
 /// Part of J's largest stretch below which one counts as none: what rounding leaves of a zero.
-constexpr double kNothing = 1e-13;
+constexpr double kRankTolerance = 1e-13;
 /// How far a unit direction may lie off those in which the tool can move and still count as one of them.
 constexpr double kOffRange = 1e-9;
 
@@ -76,7 +76,7 @@ double velocity_manipulability(const JointGroup& group, const Eigen::VectorXd& q
   // Of the joint velocities y that move the tool with z the shortest has length (z^T (J J^T)^-1 z)^(1/2). With
   // J^T P = Q R the condition J y = z reads R^T (Q^T y) = P^T z: the first rows give Q^T y, the rest must agree.
   Eigen::ColPivHouseholderQR<Transposed> qr(jacobian_rows(group, q, z.size()));
-  qr.setThreshold(kNothing);
+  qr.setThreshold(kRankTolerance);
   const Eigen::Index rank = qr.rank(), rest = z.size() - rank;
   if (rank == 0) return 0;
   const SmallVector target = qr.colsPermutation().transpose() * z;
@@ -95,7 +95,7 @@ double force_manipulability(const JointGroup& group, const Eigen::VectorXd& q, c
   const SmallVector z = unit(direction);
   const Transposed Jt = jacobian_rows(group, q, z.size());
   const double torque = (Jt * z).norm();
-  return torque > kNothing * Jt.norm() ? 1 / torque : detail::kInfinity;
+  return torque > kRankTolerance * Jt.norm() ? 1 / torque : detail::kInfinity;
 }
 
 }  // namespace mmgrasp

@@ -35,7 +35,7 @@ Eigen::VectorXd JointTrajectory::at(double time) const {
   if (time <= times.front()) return positions.front();
   if (time >= times.back()) return positions.back();
   const auto upper = std::upper_bound(times.begin(), times.end(), time);
-  const std::size_t b = static_cast<std::size_t>(upper - times.begin()), a = b - 1;
+  const std::size_t b = upper - times.begin(), a = b - 1;
   const double h = times[b] - times[a];
   const double s = (time - times[a]) / h;
   if (velocities.size() != positions.size()) return (1 - s) * positions[a] + s * positions[b];

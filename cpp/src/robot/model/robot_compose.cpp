@@ -41,6 +41,7 @@ void add_prefix(RobotParts& parts, const std::string& prefix) {
   for (GroupDescription& group : parts.groups) {
     group.name = prefix + group.name;
     for (std::string& joint : group.joints) joint = prefix + joint;
+    for (std::string& link : group.links) link = prefix + link;
     for (std::string* link : {&group.base_link, &group.tip_link})
       if (!link->empty()) *link = prefix + *link;
   }

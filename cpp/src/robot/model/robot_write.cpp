@@ -107,7 +107,9 @@ void write_group(std::ostream& out, const GroupDescription& group, const Robot::
     std::vector<std::string> driven;
     for (const Joint* joint : path)
       if (joint->value_index >= 0 && !passive.count(joint->name)) driven.push_back(joint->name);
-    chain = driven == group.joints;
+    std::set<std::string> on_path;
+    for (const Joint* joint : path) on_path.insert(data.links[joint->child_link].name);
+    chain = driven == group.joints && on_path == std::set<std::string>(group.links.begin(), group.links.end());
     if (!chain && path.front()->value_index < 0) written.insert(written.begin(), path.front()->name);
     if (!chain && path.back()->value_index < 0) written.push_back(path.back()->name);
   }
@@ -115,6 +117,11 @@ void write_group(std::ostream& out, const GroupDescription& group, const Robot::
     out << "    <chain" << attribute("base_link", group.base_link) << attribute("tip_link", group.tip_link) << "/>\n";
   } else {
     for (const std::string& joint : written) out << "    <joint" << attribute("name", joint) << "/>\n";
+    for (const std::string& link : group.links) {
+      const int carrier = data.links[data.link_by_name.at(link)].parent_joint;
+      const bool carried = carrier >= 0 && std::count(written.begin(), written.end(), data.joints[carrier].name) > 0;
+      if (!carried) out << "    <link" << attribute("name", link) << "/>\n";
+    }
   }
   out << "  </group>\n";
 }

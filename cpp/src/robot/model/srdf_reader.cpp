@@ -20,6 +20,7 @@ struct Members {
   std::set<int> joints;  // fixed and mimic ones included
   std::string chain_base, chain_tip;
   bool only_chain = true;
+  bool root = false;  // the root link, which no joint carries
 };
 
 DisabledReason reason_from(const std::string& text) {
@@ -182,6 +183,7 @@ class SrdfReader {
   void add_link(const std::string& name, Members& members) {
     const int link = find_link(name);
     if (link > 0) members.joints.insert(carrier(link));
+    if (link == 0) members.root = true;
   }
 
   void add_subgroup(const TiXmlElement& element, const std::string& name, std::set<std::string>& visiting,
@@ -190,12 +192,15 @@ class SrdfReader {
     if (visiting.count(name)) xml_.fail(element, "subgroups must not contain each other in a circle");
     const Members& other = collect(name, visiting);
     members.joints.insert(other.joints.begin(), other.joints.end());
+    members.root = members.root || other.root;
   }
 
   /// Orders the movable joints from base to tip (breadth-first indices do) and finds the ends if the group is a chain.
   GroupDescription describe(const std::string& name, const Members& members) const {
     GroupDescription group;
     group.name = name;
+    if (members.root) group.links.push_back(data_.links.front().name);
+    for (const int index : members.joints) group.links.push_back(data_.links[joint(index).child_link].name);
     std::vector<int> movable;
     for (const int index : members.joints)
       if (joint(index).value_index >= 0 && !passive_.count(index)) {

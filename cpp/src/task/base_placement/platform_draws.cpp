@@ -88,13 +88,13 @@ std::optional<Eigen::VectorXd> PlatformEnd::solve(const Eigen::VectorXd& start, 
   ++counts.draws;
   IkOptions options = descent_;
   if (fixed_base) {
-    options.joint_weights.assign(static_cast<std::size_t>(group_.size()), 1.0);
+    options.joint_weights.assign(group_.size(), 1.0);
     for (std::size_t i = 0; i < 3; ++i) options.joint_weights[i] = 1e12;
     options.position_tolerance *= 0.01;  // putting the base back costs next to nothing of the rest
     options.rotation_tolerance *= 0.01;
   }
   IkResult result = solve_ik(group_, T_world_tip_, start, options);
-  counts.iterations += static_cast<std::size_t>(result.iterations);
+  counts.iterations += result.iterations;
   if (result.outcome != Outcome::solved) {
     counts.rejections += result.rejections;
     return std::nullopt;
@@ -111,7 +111,7 @@ std::optional<Eigen::VectorXd> PlatformEnd::solve(const Eigen::VectorXd& start, 
   Fault fault = fault_of(result.q, cause);
   if (!fixed_base && (fault == Fault::view || fault == Fault::singular) && !slide_.objectives.empty()) {
     const IkResult better = solve_ik(group_, T_world_tip_, result.q, slide_);
-    counts.iterations += static_cast<std::size_t>(better.iterations);
+    counts.iterations += better.iterations;
     if (better.outcome == Outcome::solved) {
       result.q = better.q;
       fault = fault_of(result.q, cause);
@@ -148,7 +148,7 @@ Eigen::VectorXd PlatformEnd::drawn_towards(const Eigen::VectorXd& q, const Eigen
     return Rejection::grasp_filter;
   };
   const IkResult result = solve_ik(group_, T_world_tip_, q, options, valid);
-  counts.iterations += static_cast<std::size_t>(result.iterations);
+  counts.iterations += result.iterations;
   return result.outcome == Outcome::solved ? result.q : q;
 }
 

@@ -33,8 +33,8 @@ class Search {
         place_(checker, problem.T_world_place, problem.place_point, problem.camera, options, 1) {}
 
   PlatformLocations run() {
-    Outcome ended = Outcome::infeasible;
-    for (int round = 1; round <= kRounds && !(best_cost_ <= kNothing); ++round) {
+    Outcome ended = Outcome::not_found;
+    for (int round = 1; round <= kRounds && !(best_cost_ <= kZeroCost); ++round) {
       const auto wanted = static_cast<std::size_t>((options_.samples * round + kRounds - 1) / kRounds);
       if (over(ended) || !fill(pick_, wanted, ended) || !fill(place_, wanted, ended)) break;
       couple();
@@ -45,7 +45,7 @@ class Search {
 
  private:
   static constexpr int kRounds = 10;
-  static constexpr double kNothing = 1e-9;
+  static constexpr double kZeroCost = 1e-9;
   static constexpr std::size_t kPairs = 4;
 
   struct Pair {
@@ -59,7 +59,7 @@ class Search {
       ended = Outcome::stopped;
     else if (seconds > options_.time_limit)
       ended = Outcome::timeout;
-    return ended != Outcome::infeasible;
+    return ended != Outcome::not_found;
   }
 
   /// Draws until `wanted` valid configurations are found; false when the budget ended before the first.
@@ -95,7 +95,7 @@ class Search {
     std::partial_sort(near.begin(), near.begin() + static_cast<long>(kept), near.end(),
                       [](const Pair& a, const Pair& b) { return a.cost < b.cost; });
     for (std::size_t i = 0; i < kept; ++i) offer(near[i].pick, near[i].place);
-    for (std::size_t i = 0; i < kept && best_cost_ > kNothing; ++i) {
+    for (std::size_t i = 0; i < kept && best_cost_ > kZeroCost; ++i) {
       Eigen::VectorXd start = near[i].place;
       start.head<3>() = near[i].pick.head<3>();
       if (const auto q = place_.solve(start, true)) offer(near[i].pick, *q);
@@ -103,12 +103,12 @@ class Search {
       start.head<3>() = near[i].place.head<3>();
       if (const auto q = pick_.solve(start, true)) offer(*q, near[i].place);
     }
-    if (best_cost_ > kNothing && kept > 0) draw_together(near[0]);
+    if (best_cost_ > kZeroCost && kept > 0) draw_together(near[0]);
   }
 
   void draw_together(Pair pair) {
     constexpr int kTimes = 4;
-    for (int i = 0; i < kTimes && best_cost_ > kNothing; ++i) {
+    for (int i = 0; i < kTimes && best_cost_ > kZeroCost; ++i) {
       const double before = pair.cost;
       pair.pick = pick_.drawn_towards(pair.pick, pair.place.head<3>(), options_.turn_weight);
       pair.place = place_.drawn_towards(pair.place, pair.pick.head<3>(), options_.turn_weight);

@@ -6,6 +6,7 @@
 #include "mmgrasp/core/detail/no_time_limit.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/robot/detail/base_workspace.hpp"
 #include "mmgrasp/robot/ik.hpp"
 #include "task/base_region/grasp_search.hpp"
 #include "task/problem/scene.hpp"
@@ -82,6 +83,7 @@ BasePoseEvaluator BasePoseEvaluator::clone() const {
 }
 
 Rejection BasePoseEvaluator::home(const Eigen::Vector3d& base_pose) {
+  if (!detail::in_workspace(impl_->problem().robot.base_limits(), base_pose)) return Rejection::limits;
   impl_->at_rest.set_root(pose_from_planar(base_pose));
   return impl_->at_rest.rejection(impl_->problem().home);
 }

@@ -30,7 +30,7 @@ void GraspTable::find_blocked(const std::vector<PartRef>& parts, const World& wo
   std::vector<CollisionChecker> originals;
   for (double opening : openings_) originals.push_back(hand_checker(*problem_, opening, world));
   const int threads = resolve_threads(problem_->options.threads);
-  std::vector<std::vector<CollisionChecker>> checkers(static_cast<std::size_t>(threads));
+  std::vector<std::vector<CollisionChecker>> checkers(threads);
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(1);
   parallel_for(parts.size(), threads, [&](std::size_t item, int worker) {
     const Part& part = part_of(*problem_, parts[item]);
@@ -39,7 +39,7 @@ void GraspTable::find_blocked(const std::vector<PartRef>& parts, const World& wo
     if (own.empty()) {
       for (const CollisionChecker& checker : originals) own.push_back(checker.clone());
     }
-    const std::size_t begin = static_cast<std::size_t>(first(parts[item]));
+    const std::size_t begin = first(parts[item]);
     for (std::size_t g = 0; g < part.grasps.size(); ++g) {
       if (!blocked_[begin + g]) continue;
       CollisionChecker& checker = own[opening_[begin + g]];

@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "mmgrasp/collision/detail/named_bodies.hpp"
 #include "task/problem/scene.hpp"
 
 namespace mmgrasp::detail {
@@ -23,7 +24,7 @@ std::set<std::string> hand_links(const JointGroup& arm) {
 
 }  // namespace
 
-CollisionChecker hand_checker(const PartSupplyProblem& problem, double opening, World world) {
+CollisionChecker hand_checker(const PartSupplyProblem& problem, double opening, const World& world) {
   const JointGroup arm = arm_with_opening(problem.arm, problem.gripper, opening);
   const std::vector<Pose> T_root_link = arm.robot().link_poses(arm.full_values(problem.home));
   const Pose T_tcp_root = T_root_link[arm.tip_link()].inverse();
@@ -42,15 +43,16 @@ CollisionChecker hand_checker(const PartSupplyProblem& problem, double opening, 
       "<robot name='carrier'><link name='root'/><link name='tcp'/><joint name='turn' type='revolute'><parent "
       "link='root'/><child link='tcp'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' velocity='1' effort='1'/>"
       "</joint></robot>");
+  World scene = objects_never_touched(arm.robot(), world, links);
   if (!hand.shapes.empty()) {
     std::string name = "hand";
-    while (world.has(name)) name += "'";
-    world.add(name, std::move(hand));
-    world.attach(name, "tcp", Pose::Identity());
+    while (scene.has(name)) name += "'";
+    scene.add(name, std::move(hand));
+    scene.attach(name, "tcp", Pose::Identity());
   }
   CheckerOptions scene_only;
   scene_only.check_self = false;
-  return CollisionChecker(carrier.chain("root", "tcp"), world, scene_only);
+  return CollisionChecker(carrier.chain("root", "tcp"), scene, scene_only);
 }
 
 }  // namespace mmgrasp::detail

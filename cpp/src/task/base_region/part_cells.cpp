@@ -28,7 +28,7 @@ void PartCells::add_window(int heading, int x0, int y0, int nx, int ny, const st
 }
 
 bool PartCells::operator[](std::size_t cell) const {
-  const std::size_t row = static_cast<std::size_t>(nx_);
+  const std::size_t row = nx_;
   const int ix = static_cast<int>(cell % row), iy = static_cast<int>(cell / row % static_cast<std::size_t>(ny_)),
             heading = static_cast<int>(cell / row / static_cast<std::size_t>(ny_));
   for (const Window& w : windows_) {
@@ -41,8 +41,7 @@ bool PartCells::operator[](std::size_t cell) const {
 
 std::size_t PartCells::count() const {
   std::size_t sum = 0;
-  for (const Window& w : windows_)
-    sum += static_cast<std::size_t>(std::count(w.flags.begin(), w.flags.end(), std::uint8_t{1}));
+  for (const Window& w : windows_) sum += std::count(w.flags.begin(), w.flags.end(), std::uint8_t{1});
   return sum;
 }
 

@@ -110,7 +110,7 @@ void TrayWindow::add_blocked(const std::vector<BlockedPose>& poses) {
 
 void TrayWindow::resume_without(const std::vector<std::uint8_t>& removed) {
   for (const BlockedPose& pose : blocked_) {
-    const std::size_t slot = static_cast<std::size_t>(pose.slot);
+    const std::size_t slot = pose.slot;
     (pose.corner ? corners_ : centres_)[slot][at(pose.ix, pose.iy)] = 0;
     PartExplanation& total = totals_[slot];
     --total.base_poses_tried;

@@ -5,6 +5,7 @@
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/pose.hpp"
+#include "mmgrasp/robot/detail/base_workspace.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -42,21 +43,27 @@ Extent robot_extent(const JointGroup& arm, const Eigen::VectorXd& home) {
 BaseClearance::BaseClearance(CollisionChecker& checker, const Eigen::VectorXd& home, double check_step)
     : checker_(checker), home_(home), check_step_(check_step) {
   const Extent extent = robot_extent(checker.group(), home);
-  radius_ = extent.radius;
+  const Padding& padding = checker.world().padding();
+  // Grown boxes reach out at their corners by up to sqrt(3) of the padding, the robot's and the object's.
+  const double margin = kMargin + 1.75 * (std::max(checker.options().padding, padding.most()) + padding.most());
+  radius_ = extent.radius + margin;
   for (const auto& [name, object] : checker.world().objects()) {
     Eigen::AlignedBox3d box;
     for (const LinkShape& shape : object.shapes) {
       box.extend(shape_bounds(shape.shape, object.T_world_object * shape.T_link_shape));
     }
-    if (box.min().z() > extent.high + kMargin || box.max().z() < extent.low - kMargin) continue;
+    if (box.min().z() > extent.high + margin || box.max().z() < extent.low - margin) continue;
     obstacles_.emplace_back(Eigen::Vector2d(box.min().head<2>()), Eigen::Vector2d(box.max().head<2>()));
   }
+  // A field may hold something anywhere.
+  const Eigen::Vector2d everywhere = Eigen::Vector2d::Constant(detail::kInfinity);
+  if (!checker.world().fields().empty()) obstacles_.emplace_back(Eigen::Vector2d(-everywhere), everywhere);
   const Rejection here = checker.rejection(home);
   home_is_sound_ = here != Rejection::limits && here != Rejection::self_collision;
 }
 
 bool BaseClearance::nothing_near(const Eigen::Vector2d& position) const {
-  const double reach = (radius_ + kMargin) * (radius_ + kMargin);
+  const double reach = radius_ * radius_;
   for (const Eigen::AlignedBox2d& box : obstacles_) {
     if (!(box.squaredExteriorDistance(position) > reach)) return false;
   }
@@ -64,7 +71,7 @@ bool BaseClearance::nothing_near(const Eigen::Vector2d& position) const {
 }
 
 bool BaseClearance::free(const Eigen::Vector3d& pose) {
-  if (!home_is_sound_) return false;
+  if (!home_is_sound_ || !in_workspace(checker_.group().robot().base_limits(), pose)) return false;
   if (nothing_near(pose.head<2>())) return true;
   checker_.set_root(pose_from_planar(pose));
   return checker_.rejection(home_) == Rejection::none;

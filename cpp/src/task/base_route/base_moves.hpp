@@ -9,7 +9,7 @@
 
 namespace mmgrasp::detail {
 
-/// Whether the whole robot, arm at home, is free of collisions at a base pose; caches the answers at grid poses.
+/// Whether a base pose lies in the workspace of the base and the whole robot, arm at home, is free of collisions there.
 class BaseClearance {
  public:
   BaseClearance(CollisionChecker& checker, const Eigen::VectorXd& home, double check_step);

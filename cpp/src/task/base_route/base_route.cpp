@@ -18,6 +18,7 @@ using detail::direct_ways;
 using detail::way_cost;
 
 constexpr int kShorteningChecks = 400;  // Direct ways tried for shortening.
+constexpr double kMaxCells = 500000;    // Largest number of cells of a floor: with more of them a search ends nowhere.
 
 using Poses3 = std::vector<Eigen::Vector3d>;
 
@@ -107,20 +108,24 @@ BasePath plan_base_route(CollisionChecker& checker, const Eigen::VectorXd& home,
     return path;
   }
   const bool same = (from - to).head<2>().norm() < 1e-9 && std::abs(wrap_angle(from.z() - to.z())) < 1e-9;
-  if (options.base == BaseKind::fixed && !same) return path;
+  if (options.base == BaseKind::fixed && !same) {
+    path.outcome = Outcome::infeasible;
+    return path;
+  }
   const BaseLimits limits = driving_limits(options.base, checker.group().robot().base_limits());
   const Eigen::AlignedBox2d bounds =
       options.bounds.isEmpty() ? detail::floor_bounds(checker.world(), {from, to}) : options.bounds;
-  const BaseSearchSettings settings{options.base, options.resolution, limits.linear_velocity / limits.angular_velocity,
-                                    bounds};
+  const Eigen::Vector2d size = bounds.sizes();
+  const double resolution = std::max(options.resolution, std::sqrt(size.x() * size.y() / kMaxCells));
+  const BaseSearchSettings settings{options.base, resolution, limits.linear_velocity / limits.angular_velocity, bounds};
   Poses3 poses = {from};
   if (!same) {
     auto found = detail::search_base_path(clearance, from, to, settings, monitor);
-    if (!found) {
-      path.outcome = monitor.stopped() ? Outcome::stopped : Outcome::infeasible;
+    if (found.outcome != Outcome::solved) {
+      path.outcome = found.outcome;
       return path;
     }
-    poses = std::move(*found);
+    poses = std::move(found.poses);
     shorten(clearance, settings, poses);
     merge_primitives(options.base, poses);
   }

@@ -13,6 +13,7 @@ namespace {
 constexpr int kHeadings = 16;
 constexpr int kPortals = 15;  // Poses before and behind each end on its own heading line.
 constexpr std::size_t kMaxExpansions = 400000;
+constexpr std::size_t kProbe = 20000;  // Expansions after which the other end is looked at, with as many.
 
 /// Drives that end on lattice points again, one a heading, counterclockwise.
 constexpr std::array<std::array<int, 2>, kHeadings> kDrives = {{{1, 0},
@@ -65,16 +66,18 @@ struct Entry {
 class BaseSearch {
  public:
   BaseSearch(BaseClearance& clearance, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
-             const BaseSearchSettings& settings, const Monitor& monitor)
-      : clearance_(clearance), from_(from), to_(to), settings_(settings), monitor_(monitor) {}
+             const BaseSearchSettings& settings, std::size_t budget, const Monitor& monitor)
+      : clearance_(clearance), from_(from), to_(to), settings_(settings), budget_(budget), monitor_(monitor) {}
 
-  std::optional<std::vector<Eigen::Vector3d>> run() {
-    if (!clearance_.free(from_) || !clearance_.free(to_)) return std::nullopt;
+  FoundBasePath run() {
+    if (!clearance_.free(from_) || !clearance_.free(to_)) return {};
     start_span_ = free_span(from_);
     goal_span_ = free_span(to_);
     const Key start{Key::start, 0, 0, 0};
     open_.push({0, order_++, 0, start, start.packed(), {from_}, true});
-    while (!open_.empty() && expansions_ < kMaxExpansions && !monitor_.stopped()) {
+    while (!open_.empty()) {
+      if (monitor_.stopped()) return {Outcome::stopped, {}};
+      if (expansions_ >= budget_) return {Outcome::timeout, {}};
       const Entry entry = open_.top();
       open_.pop();
       const std::uint64_t id = entry.key.packed();
@@ -82,17 +85,27 @@ class BaseSearch {
       // Edges are checked only when they would be used.
       if (!entry.checked && !way_free(closed_.at(entry.parent).pose, entry.way)) continue;
       closed_[id] = Node{entry.way.back(), entry.parent, entry.way, entry.cost};
-      if (entry.key.kind == Key::goal && entry.key.ix == 0) return trace(id, start.packed());
+      if (entry.key.kind == Key::goal && entry.key.ix == 0) return {Outcome::solved, trace(id, start.packed())};
       ++expansions_;
+      if (expansions_ % kProbe == 0) {
+        if (expansions_ == kProbe && budget_ > kProbe && walled_in(to_)) return {};
+        monitor_.report("route, long search", static_cast<double>(expansions_) / static_cast<double>(budget_));
+      }
       expand(entry.key, closed_[id]);
     }
-    return std::nullopt;
+    return {};
   }
 
  private:
   struct Span {
     int back = 0, ahead = 0;
   };
+
+  /// Whether a short search from an end tries every way without getting out: every primitive can be driven back.
+  bool walled_in(const Eigen::Vector3d& end) {
+    const Eigen::Vector3d& other = end == to_ ? from_ : to_;
+    return BaseSearch(clearance_, end, other, settings_, kProbe, monitor_).run().outcome == Outcome::not_found;
+  }
 
   Eigen::Vector3d portal(const Eigen::Vector3d& end, int k) const {
     const double s = k * settings_.resolution;
@@ -227,6 +240,7 @@ class BaseSearch {
   BaseClearance& clearance_;
   Eigen::Vector3d from_, to_;
   const BaseSearchSettings& settings_;
+  std::size_t budget_;
   const Monitor& monitor_;
   Span start_span_, goal_span_;
   std::priority_queue<Entry> open_;
@@ -238,11 +252,9 @@ class BaseSearch {
 
 }  // namespace
 
-std::optional<std::vector<Eigen::Vector3d>> search_base_path(BaseClearance& clearance, const Eigen::Vector3d& from,
-                                                             const Eigen::Vector3d& to,
-                                                             const BaseSearchSettings& settings,
-                                                             const Monitor& monitor) {
-  return BaseSearch(clearance, from, to, settings, monitor).run();
+FoundBasePath search_base_path(BaseClearance& clearance, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                               const BaseSearchSettings& settings, const Monitor& monitor) {
+  return BaseSearch(clearance, from, to, settings, kMaxExpansions, monitor).run();
 }
 
 }  // namespace mmgrasp::detail

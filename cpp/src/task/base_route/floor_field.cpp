@@ -35,6 +35,13 @@ Eigen::AlignedBox2d floor_bounds(const World& world, const std::vector<Eigen::Ve
       bounds.extend(Eigen::Vector2d(box.max().head<2>()));
     }
   }
+  for (const auto& [name, obstacle] : world.fields()) {
+    const Eigen::AlignedBox3d domain = obstacle.field->properties().domain;
+    if (!domain.min().allFinite() || !domain.max().allFinite()) continue;
+    const Eigen::AlignedBox3d box = domain.transformed(obstacle.T_world_field);
+    bounds.extend(Eigen::Vector2d(box.min().head<2>()));
+    bounds.extend(Eigen::Vector2d(box.max().head<2>()));
+  }
   return {Eigen::Vector2d(bounds.min().array() - kMargin), Eigen::Vector2d(bounds.max().array() + kMargin)};
 }
 

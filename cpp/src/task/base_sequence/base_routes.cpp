@@ -9,6 +9,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr double kPadding = 0.01;  // [m]
+constexpr double kCoarsest = 8;    // Cells at most this much larger than asked for are tried where a search gives up.
 
 std::array<double, 6> key_of(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   return {from.x(), from.y(), from.z(), to.x(), to.y(), to.z()};
@@ -29,18 +30,27 @@ BaseRoutes::BaseRoutes(const PartSupplyProblem& problem, const Monitor& monitor)
       bare_(problem.arm, world_with_parts(problem, all_parts(problem))) {}
 
 BasePath BaseRoutes::plan(CollisionChecker& padded, CollisionChecker& bare, const Eigen::Vector3d& from,
-                          const Eigen::Vector3d& to) const {
-  Monitor quiet;
-  quiet.stop = monitor_.stop;
-  BaseRouteOptions options;
-  options.base = problem_.robot.base();
-  options.resolution = problem_.options.route_resolution;
-  BasePath path = plan_base_route(padded, problem_.home, from, to, options, quiet);
-  if (path.outcome == Outcome::solved || monitor_.stopped()) return path;
-  path = plan_base_route(bare, problem_.home, from, to, options, quiet);
-  if (path.outcome == Outcome::solved || monitor_.stopped()) return path;
-  options.resolution *= 0.5;  // a narrow place may need a finer grid
-  return plan_base_route(bare, problem_.home, from, to, options, quiet);
+                          const Eigen::Vector3d& to, const Monitor& monitor) const {
+  const auto attempt = [&](CollisionChecker& checker, double factor) {
+    BaseRouteOptions options;
+    options.base = problem_.robot.base();
+    options.resolution = factor * problem_.options.route_resolution;
+    return plan_base_route(checker, problem_.home, from, to, options, monitor);
+  };
+  const auto settled = [](const BasePath& path) {
+    return path.outcome == Outcome::solved || path.outcome == Outcome::stopped;
+  };
+  bool gave_up = false;
+  for (double factor = 1; factor <= kCoarsest; factor *= 2) {
+    BasePath path = attempt(padded, factor);
+    if (!settled(path) && path.outcome != Outcome::timeout) path = attempt(bare, factor);
+    if (settled(path)) return path;
+    if (path.outcome != Outcome::timeout) break;
+    gave_up = true;  // larger cells may lead there in the same number of base poses
+  }
+  BasePath path;
+  path.outcome = Outcome::timeout;
+  return gave_up ? path : attempt(bare, 0.5);  // a narrow place may need a finer grid
 }
 
 BasePath BaseRoutes::between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
@@ -55,11 +65,14 @@ void BaseRoutes::prepare(const std::vector<std::pair<Eigen::Vector3d, Eigen::Vec
     if (!known_.count(key_of(from, to))) open.emplace_back(from, to);
   }
   std::vector<BasePath> paths(open.size());
+  Monitor quiet;
+  quiet.stop = monitor_.stop;
+  if (!open.empty()) monitor_.report("route", 0);
   const bool done = parallel_for(
       open.size(), problem_.options.threads,
-      [&](std::size_t item, int) {
+      [&](std::size_t item, int worker) {  // worker 0 is the calling thread, which may report
         CollisionChecker padded = padded_.clone(), bare = bare_.clone();
-        paths[item] = plan(padded, bare, open[item].first, open[item].second);
+        paths[item] = plan(padded, bare, open[item].first, open[item].second, worker == 0 ? monitor_ : quiet);
       },
       monitor_, "route");
   if (!done) return;

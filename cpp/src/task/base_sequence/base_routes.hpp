@@ -28,7 +28,7 @@ class BaseRoutes {
  private:
   using Key = std::array<double, 6>;
   BasePath plan(CollisionChecker& padded, CollisionChecker& bare, const Eigen::Vector3d& from,
-                const Eigen::Vector3d& to) const;
+                const Eigen::Vector3d& to, const Monitor& monitor) const;
 
   const PartSupplyProblem& problem_;
   const Monitor& monitor_;

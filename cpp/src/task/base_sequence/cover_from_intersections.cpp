@@ -74,7 +74,10 @@ StopSet cover_from_intersections(const BaseGrid& grid, const std::vector<Interse
 
 StopSet cover_from_intersections(const BaseGrid& grid, const Intersections& intersections, int trays) {
   StopSet result = cover_from_intersections(grid, intersections.robust, trays);
-  if (!intersections.complete) result.lower_bound = std::min(result.lower_bound, 1);
+  if (!intersections.complete) {
+    result.lower_bound = std::min(result.lower_bound, 1);
+    if (result.outcome == Outcome::infeasible) result.outcome = Outcome::timeout;
+  }
   if (result.outcome == Outcome::solved || result.outcome == Outcome::approximate) {
     const bool proven = static_cast<int>(result.stops.size()) <= result.lower_bound;
     result.outcome = proven ? Outcome::solved : Outcome::approximate;

@@ -14,8 +14,8 @@ class Enumeration {
         allowed_(cost + 1e-9 * cost),
         size_(size),
         count_(count),
-        times_(static_cast<std::size_t>(problem.elements), 0),
-        sets_of_(static_cast<std::size_t>(problem.elements)),
+        times_(problem.elements, 0),
+        sets_of_(problem.elements),
         barred_(problem.sets.size(), 0),
         open_(problem.elements) {
     for (std::size_t s = 0; s < problem.sets.size(); ++s) {

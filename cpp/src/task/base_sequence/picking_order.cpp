@@ -291,7 +291,7 @@ OptimisedOrder optimised_order(const PartRegions& parts, const std::vector<std::
     if (rounds == 0) continue;
     result.smallest_radius = count == 0 ? value.smallest : std::min(result.smallest_radius, value.smallest);
     sum += value.sum;
-    count += static_cast<std::size_t>(rounds);
+    count += rounds;
   }
   result.mean_radius = count > 0 ? sum / static_cast<double>(count) : 0;
   return result;

@@ -17,10 +17,27 @@ using detail::RegionPatches;
 
 constexpr std::size_t kMaxBoxes = 50'000'000;
 constexpr double kRadiusStep = 1e-4;    // [m]: the smallest disc is the largest possible to this.
-constexpr double kSumStep = 1e-3;       // [m]: radii are added up in whole steps.
+constexpr double kSumQuantum = 1e-3;    // [m]: radii are added up in whole steps.
 constexpr int kLevels = 16;             // Radii at which the other discs' candidates are sought.
 constexpr std::size_t kRoutes = 200;    // Equally good sequences whose routes are compared;
 constexpr std::size_t kManyStops = 12;  // a tenth of them beyond so many stops, where routes take longer to find.
+
+/// The steps of the choice among equally few stops. benchmarks/task/run_tie_steps.py compiles this file again without
+/// one, to find out what it is worth.
+enum TieStep : unsigned {
+  kSmallestStep = 1,  ///< The largest smallest disc.
+  kSumStep = 2,       ///< The largest sum of radii.
+  kRouteStep = 4,     ///< The shortest route.
+  kLevelStep = 8      ///< The sum's candidates are sought at a ladder of radii, not at the smallest one alone.
+};
+
+#ifndef MMGRASP_TIE_STEPS_LEFT_OUT
+#define MMGRASP_TIE_STEPS_LEFT_OUT 0
+#endif
+
+constexpr bool runs(TieStep step) {
+  return (static_cast<unsigned>(MMGRASP_TIE_STEPS_LEFT_OUT) & step) == 0;
+}
 
 class LeastStops {
  public:
@@ -34,7 +51,8 @@ class LeastStops {
     StopSet result;
     result.candidates = detail::maximal_intersections(patches_, options_.min_radius, kMaxBoxes, monitor_);
     if (monitor_.stopped()) return stopped(std::move(result));
-    const SetCoverResult cover = solve_set_cover(cover_problem(result.candidates.robust), options_.time_limit);
+    const SetCoverResult cover =
+        solve_set_cover(cover_problem(result.candidates.robust), options_.time_limit, monitor_);
     result.outcome = cover.outcome;
     for (int element : cover.uncoverable) result.unreachable_trays.push_back(patches_.trays()[element]);
     if (cover.outcome == Outcome::infeasible) {
@@ -47,7 +65,7 @@ class LeastStops {
     best_ = stops_of(result.candidates.robust, cover.chosen);
     time_limit_ = detail::TimeLimit(std::min(options_.tie_time_limit, 1e6));
     if (!best_.empty() && result.candidates.complete) {
-      raise_smallest();
+      if (runs(kSmallestStep)) raise_smallest();
       raise_others();
     }
     if (monitor_.stopped()) return stopped(std::move(result));
@@ -94,46 +112,19 @@ class LeastStops {
     return total;
   }
 
-  /// Each tray at one of the chosen places that serve it; where several do, at the one where the discs stay widest. A
-  /// stop never has less room than its place.
+  /// Each tray at the first of the chosen places that serve it. A stop never has less room than its place.
   std::vector<Stop> stops_of(const std::vector<Intersection>& places, const std::vector<int>& chosen) {
-    std::vector<std::vector<int>> holding(element_.size());
-    for (std::size_t c = 0; c < chosen.size(); ++c) {
-      for (TrayId tray : places[chosen[c]].trays) holding[tray].push_back(static_cast<int>(c));
-    }
-    std::vector<std::vector<TrayId>> served(chosen.size());
-    for (TrayId tray : patches_.trays()) {
-      const auto& where = holding[tray];
-      if (where.size() == 1) served[where[0]].push_back(tray);
-    }
-    for (TrayId tray : patches_.trays()) {
-      const auto& where = holding[tray];
-      if (where.size() < 2) continue;
-      int best = -1;
-      double best_loss = 0;
-      for (int c : where) {
-        const double loss = loss_with(served[c], tray);
-        if (best < 0 || loss < best_loss) {
-          best = c;
-          best_loss = loss;
-        }
-      }
-      std::vector<TrayId>& list = served[best];
-      list.insert(std::lower_bound(list.begin(), list.end(), tray), tray);
-    }
+    std::vector<char> served(element_.size(), 0);
     std::vector<Stop> stops;
-    for (std::size_t c = 0; c < served.size(); ++c) {
-      if (!served[c].empty()) stops.push_back(stop_for(served[c], places[chosen[c]]));
+    for (const int place : chosen) {
+      std::vector<TrayId> trays;
+      for (const TrayId tray : places[place].trays) {
+        if (!served[tray]) trays.push_back(tray);
+        served[tray] = 1;
+      }
+      if (!trays.empty()) stops.push_back(stop_for(trays, places[place]));
     }
     return stops;
-  }
-
-  /// A disc of half the radius weighs as much as can be: small discs are what limits.
-  double loss_with(std::vector<TrayId> trays, TrayId tray) {
-    const double before = trays.empty() ? 1e3 : widest(trays).radius;
-    trays.insert(std::lower_bound(trays.begin(), trays.end(), tray), tray);
-    const double after = widest(trays).radius;
-    return 1 / std::max(after, 1e-9) - 1 / std::max(before, 1e-9);
   }
 
   /// `known` serves these trays as well: it is as wide but for a rounding at most.
@@ -154,7 +145,8 @@ class LeastStops {
       const double radius = 0.5 * (low + high);
       const Intersections found = detail::maximal_intersections(patches_, radius, kMaxBoxes, monitor_);
       if (!found.complete) return;
-      const SetCoverResult cover = solve_set_cover(cover_problem(found.robust), std::max(1e-3, seconds_left()));
+      const SetCoverResult cover =
+          solve_set_cover(cover_problem(found.robust), std::max(1e-3, seconds_left()), monitor_);
       const bool as_few = cover.outcome != Outcome::infeasible && cover.chosen.size() <= best_.size();
       if (as_few) {
         best_ = stops_of(found.robust, cover.chosen);
@@ -178,17 +170,17 @@ class LeastStops {
     const std::vector<Intersection> places = places_at_levels();
     if (places.empty()) return;
     const SetCoverProblem problem = weighted(places);
-    const SetCoverResult cover = solve_set_cover(problem, std::max(1e-3, seconds_left()));
+    const SetCoverResult cover = solve_set_cover(problem, std::max(1e-3, seconds_left()), monitor_);
     if (cover.chosen.size() != best_.size()) return;
-    take_if_better(stops_of(places, cover.chosen));
-    if (!options_.route_length || cover.outcome != Outcome::solved) return;
+    if (runs(kSumStep)) take_if_better(stops_of(places, cover.chosen));
+    if (!runs(kRouteStep) || !options_.route_length || cover.outcome != Outcome::solved) return;
     const std::size_t routes = best_.size() > kManyStops ? kRoutes / 10 : kRoutes;
     double length = options_.route_length(best_);
     for (const std::vector<int>& chosen : detail::equal_covers(problem, cover.cost, best_.size(), routes)) {
       if (over()) return;
       std::vector<Stop> stops = stops_of(places, chosen);
       if (smallest(stops) < smallest(best_) - kRadiusStep ||
-          sum(stops) < sum(best_) - kSumStep * static_cast<double>(stops.size()))
+          sum(stops) < sum(best_) - kSumQuantum * static_cast<double>(stops.size()))
         continue;
       const double found = options_.route_length(stops);
       if (!(found < length - 1e-9)) continue;
@@ -209,7 +201,7 @@ class LeastStops {
     for (TrayId tray : patches_.trays()) high = std::max(high, widest({tray}).radius);
     const double step = std::max(0.25 * patches_.grid().resolution, (high - low) / kLevels);
     std::map<std::pair<std::vector<TrayId>, int>, Intersection> found;
-    for (int level = 0; low + level * step <= high; ++level) {
+    for (int level = 0; low + level * step <= high && (level == 0 || runs(kLevelStep)); ++level) {
       Intersections here =
           detail::maximal_intersections(patches_, std::max(0.0, low + level * step), kMaxBoxes, monitor_);
       if (!here.complete || over()) return {};
@@ -228,9 +220,9 @@ class LeastStops {
     SetCoverProblem problem = cover_problem(places);
     double largest = 0;
     for (const Intersection& place : places) largest = std::max(largest, place.radius);
-    const double stop = std::floor(largest / kSumStep) * static_cast<double>(best_.size()) + 1;
+    const double stop = std::floor(largest / kSumQuantum) * static_cast<double>(best_.size()) + 1;
     for (const Intersection& place : places)
-      problem.costs.push_back(stop + std::floor((largest - place.radius) / kSumStep));
+      problem.costs.push_back(stop + std::floor((largest - place.radius) / kSumQuantum));
     return problem;
   }
 

@@ -17,7 +17,7 @@ using Words = std::vector<std::uint64_t>;
 
 std::size_t count_bits(const Words& words) {
   std::size_t count = 0;
-  for (std::uint64_t word : words) count += static_cast<std::size_t>(__builtin_popcountll(word));
+  for (std::uint64_t word : words) count += __builtin_popcountll(word);
   return count;
 }
 
@@ -44,7 +44,7 @@ class LayerGrowth {
 
  private:
   Words pack(const CellMask& cells) const {
-    const std::size_t count = static_cast<std::size_t>(grid_.cells_per_layer());
+    const std::size_t count = grid_.cells_per_layer();
     const std::size_t first = grid_.index(heading_, 0, 0);
     Words words((count + 63) / 64, 0);
     for (std::size_t i = 0; i < count; ++i) {

@@ -46,15 +46,14 @@ class DriveBy {
   DriveByResult run() {
     DriveByResult result;
     if (const auto touching = scene_states_ ? scene_states_->before(0).first_contact(start_) : std::nullopt) {
-      const Contact c = *touching;
       result.outcome = Outcome::invalid_start;
-      result.report = "start: '" + c.a + "' touches '" + c.b + "'";
+      result.report = "start: " + describe(*touching);
       return result;
     }
     std::string missing;
     const std::vector<GraspAssignment> assignments = find_assignments(missing);
     if (assignments.empty()) {
-      result.outcome = monitor_.stopped() ? Outcome::stopped : Outcome::infeasible;
+      result.outcome = monitor_.stopped() ? Outcome::stopped : Outcome::not_found;
       result.report = missing;
       return result;
     }

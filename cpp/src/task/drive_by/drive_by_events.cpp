@@ -31,7 +31,7 @@ std::vector<DriveByEvent> events_of(const WholeBodyTrajectory& t, const World& w
                                     const ConfigurationSequence& sequence) {
   std::vector<DriveByEvent> events;
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
-    const std::size_t at = static_cast<std::size_t>(waypoints[i]);
+    const std::size_t at = waypoints[i];
     if (steps[i].begins) events.emplace_back();
     DriveByEvent& e = events.back();
     const VectorXd rate = configuration_velocity(t.group(), t.positions()[at], t.drive()[at]);

@@ -74,7 +74,7 @@ VectorXd unwound(const JointGroup& group, const VectorXd& from, VectorXd to) {
 GoalConfigurations find_goal_configurations(const JointGroup& group, CollisionChecker* checker, const DriveByTask& task,
                                             const VectorXd& before, const VectorXd& after,
                                             const DriveByOptions& options, unsigned stream, const Monitor& monitor) {
-  const std::size_t each = static_cast<std::size_t>(options.goal_configurations), count = each * task.candidates.size();
+  const std::size_t each = options.goal_configurations, count = each * task.candidates.size();
   GoalConfigurations found;
   const int threads = resolve_threads(options.threads);
   std::vector<CollisionChecker> checkers;

@@ -79,7 +79,7 @@ class BaseWay {
 VectorXd GuidedWay::at(double time) const {
   const auto after = std::upper_bound(times.begin(), times.end(), time);
   if (after == times.end()) return points.back();
-  const std::size_t i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, after - times.begin()));
+  const std::size_t i = std::max<std::ptrdiff_t>(1, after - times.begin());
   const double share = (time - times[i - 1]) / (times[i] - times[i - 1]);
   return points[i - 1] + share * (points[i] - points[i - 1]);
 }

@@ -18,7 +18,7 @@ VectorXd at(const KnownMotion& known, double time) {
   const auto after = std::upper_bound(known.times.begin(), known.times.end(), time);
   if (after == known.times.begin()) return known.positions.front();
   if (after == known.times.end()) return known.positions.back();
-  const std::size_t i = static_cast<std::size_t>(after - known.times.begin());
+  const std::size_t i = after - known.times.begin();
   const double share = (time - known.times[i - 1]) / (known.times[i] - known.times[i - 1]);
   return known.positions[i - 1] + share * (known.positions[i] - known.positions[i - 1]);
 }

@@ -97,8 +97,14 @@ std::string advice(const PartExplanation& part, const Obstruction& o, std::size_
            " short and no move of the tray alone was found that helps: lower obstacles under it or clear more floor";
   }
   if (part.base_poses_tried == 0) {
-    return "the robot at home touches the scene at all " + std::to_string(in_collision) +
-           " base poses around it: clear the floor in front of the tray or choose another home configuration";
+    if (in_collision == 0) {
+      return "no base pose of the grid lies within the arm's reach of the tray: use a finer grid_resolution, a larger "
+             "grid_max_distance, or more samples in the section reach";
+    }
+    return "the robot at home touches the scene or leaves base_limits.workspace (" +
+           metres(problem.robot.base_limits().workspace) + ") at all " + std::to_string(in_collision) +
+           " base poses around it: clear the floor in front of the tray, widen the workspace or choose another home "
+           "configuration";
   }
   if (r.grasp_filter == r.total()) {
     return "the open hand touches the scene or a neighbour at every grasp: give grasps from above, lower the tray's "

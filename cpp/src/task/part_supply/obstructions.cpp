@@ -25,6 +25,13 @@ std::string pose_text(const Eigen::Vector3d& pose) {
   return out.str();
 }
 
+std::string six_digits(double value) {
+  std::ostringstream out;
+  out.precision(6);
+  out << value;
+  return out.str();
+}
+
 Obstruction explain_robustness(const RobustnessResult& check) {
   Obstruction obstruction;
   obstruction.stage = "robustness";
@@ -44,6 +51,16 @@ Obstruction explain_route(const Eigen::Vector3d& pose, const std::string& tray) 
   obstruction.message = std::string("no drive from the start leads to ") +
                         (tray.empty() ? "the goal at " : "the stop at ") + pose_text(pose) +
                         " with the arm at home: widen the way, choose a narrower home, or a finer route_resolution";
+  return obstruction;
+}
+
+Obstruction explain_long_search(const Eigen::Vector3d& pose, const std::string& tray, double resolution) {
+  Obstruction obstruction;
+  obstruction.stage = "route";
+  obstruction.tray = tray;
+  obstruction.message = "the search for a drive to " + std::string(tray.empty() ? "the goal at " : "the stop at ") +
+                        pose_text(pose) + " gave up before it had tried every way: use a coarser route_resolution (" +
+                        six_digits(resolution) + " m now) or widen the way";
   return obstruction;
 }
 

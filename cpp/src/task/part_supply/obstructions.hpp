@@ -20,10 +20,16 @@ Obstruction explain_robustness(const RobustnessResult& check);
 /// Explains that no drive leads to a base pose; `tray` is the one to be served there, empty for the goal.
 Obstruction explain_route(const Eigen::Vector3d& pose, const std::string& tray);
 
+/// Explains that the search for a drive to a base pose gave up; `resolution` is what the route was asked for with [m].
+Obstruction explain_long_search(const Eigen::Vector3d& pose, const std::string& tray, double resolution);
+
 /// Explains that no arm motion was found for this pick from a base pose.
 Obstruction explain_motion(const PartSupplyProblem& problem, const Eigen::Vector3d& base_pose, const Pick& failed);
 
 /// "(x, y, theta)" for messages.
 std::string pose_text(const Eigen::Vector3d& pose);
+
+/// Six significant digits.
+std::string six_digits(double value);
 
 }  // namespace mmgrasp::detail

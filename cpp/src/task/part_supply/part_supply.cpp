@@ -6,6 +6,7 @@
 
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/robot/detail/base_workspace.hpp"
 #include "task/base_region/region_search.hpp"
 #include "task/base_sequence/base_routes.hpp"
 #include "task/part_supply/alternative_base_poses.hpp"
@@ -51,6 +52,10 @@ class StageClock {
 void check_ends(const PartSupplyProblem& problem) {
   CollisionChecker checker(problem.arm, world_with_parts(problem, all_parts(problem)));
   for (const auto& [name, pose] : {std::pair{"start", problem.start}, std::pair{"goal", problem.goal}}) {
+    if (!in_workspace(problem.robot.base_limits(), pose)) {
+      throw InvalidInput(std::string(name) + " = " + pose_text(pose) + ": must lie within base_limits.workspace (" +
+                         six_digits(problem.robot.base_limits().workspace) + " m)");
+    }
     checker.set_root(pose_from_planar(pose));
     if (checker.is_free(problem.home)) continue;
     std::string pairs;
@@ -58,7 +63,7 @@ void check_ends(const PartSupplyProblem& problem) {
     std::size_t named = 0;
     for (const Contact& contact : checker.contacts(problem.home)) {
       if (named++ >= kNamedContacts) break;
-      pairs += (pairs.empty() ? "'" : ", '") + contact.a + "' touches '" + contact.b + "'";
+      pairs += (pairs.empty() ? "" : ", ") + describe(contact);
       self = self || !contact.with_scene;
     }
     if (self) throw InvalidInput("home: " + pairs + "; the robot must be free of self-collision at home");
@@ -124,6 +129,7 @@ class PartSupply {
     plan_.lower_bound = set.lower_bound;
     plan_.proven_minimal = set.outcome == Outcome::solved;
     unreachable_ = std::move(set.unreachable_trays);
+    if (set.outcome == Outcome::timeout) plan_.outcome = Outcome::timeout;
     plan_.intersections =
         plan_intersections(plan_.grid, plan_.regions, options.min_radius, std::move(set.candidates), plan_.stops);
     return set.outcome == Outcome::solved || set.outcome == Outcome::approximate;
@@ -158,7 +164,7 @@ class PartSupply {
     const std::vector<int>& order = visiting.stops;
     if (monitor_.stopped()) return false;
     if (order.size() != plan_.stops.size() || (order.empty() && !goal_is_reached(routes)))
-      return obstructed(explain_route_to(visiting.unreachable));
+      return obstructed_route(routes, problem_.start, visiting.unreachable);
     std::vector<Stop> ordered;
     for (int stop : order) ordered.push_back(plan_.stops[stop]);
     plan_.stops = std::move(ordered);
@@ -169,10 +175,13 @@ class PartSupply {
     return routes.between(problem_.start, problem_.goal).outcome == Outcome::solved;
   }
 
-  /// `stop`: its index, -1 for the goal.
-  Obstruction explain_route_to(int stop) const {
-    if (stop < 0) return explain_route(problem_.goal, "");
-    return explain_route(plan_.stops[stop].pose, plan_.regions[plan_.stops[stop].trays.front()].tray);
+  /// No drive leads to a stop, by its index, or to the goal (-1).
+  bool obstructed_route(BaseRoutes& routes, const Eigen::Vector3d& from, int stop) {
+    const Eigen::Vector3d to = stop < 0 ? problem_.goal : plan_.stops[stop].pose;
+    const std::string tray = stop < 0 ? "" : plan_.regions[plan_.stops[stop].trays.front()].tray;
+    if (routes.between(from, to).outcome != Outcome::timeout) return obstructed(explain_route(to, tray));
+    plan_.outcome = Outcome::timeout;
+    return obstructed(explain_long_search(to, tray, problem_.options.route_resolution));
   }
 
   std::vector<PartRef> remaining(const std::set<PartRef>& picked) const {
@@ -189,18 +198,18 @@ class PartSupply {
     Stop& stop = plan_.stops[index];
     const std::vector<PartRef> left = remaining(picked);
     StopPicks found = plan_stop_picks(problem_, database_, stop.pose, stop.trays, left, monitor_);
-    if (found.outcome == Outcome::infeasible) {
+    if (found.outcome == Outcome::not_found) {
       const StopPicks first = found;
       for (const Stop& other :
            alternative_base_poses(plan_.grid, plan_.regions, stop, problem_.options.positioning_uncertainty,
                                   2 * plan_.grid.resolution, kAlternatives)) {
         if (routes.between(problem_.start, other.pose).outcome != Outcome::solved) continue;
         found = plan_stop_picks(problem_, database_, other.pose, other.trays, left, monitor_);
-        if (found.outcome == Outcome::solved && !still_robust(other)) found.outcome = Outcome::infeasible;
+        if (found.outcome == Outcome::solved && !still_robust(other)) found.outcome = Outcome::not_found;
         if (found.outcome == Outcome::solved) stop = other;
-        if (found.outcome != Outcome::infeasible) break;
+        if (found.outcome != Outcome::not_found) break;
       }
-      if (found.outcome == Outcome::infeasible) {
+      if (found.outcome == Outcome::not_found) {
         for (const Pick& pick : first.picks) obstructed(explain_motion(problem_, stop.pose, pick));
         return false;
       }
@@ -242,7 +251,7 @@ class PartSupply {
       BasePath path = routes.between(legs[i].first, legs[i].second);
       if (monitor_.stopped()) return false;
       if (path.outcome != Outcome::solved)
-        return obstructed(explain_route_to(i < plan_.stops.size() ? static_cast<int>(i) : -1));
+        return obstructed_route(routes, legs[i].first, i < plan_.stops.size() ? static_cast<int>(i) : -1);
       plan_.route.push_back(std::move(path));
     }
     return true;

@@ -79,7 +79,7 @@ RobustnessResult check_robustness(const PartSupplyProblem& problem, const BasePo
                                   const BaseGrid& grid, const std::vector<Stop>& stops,
                                   std::vector<BaseRegion>& regions, const Monitor& monitor) {
   RobustnessResult result;
-  const std::size_t wanted = static_cast<std::size_t>(problem.options.robustness_samples);
+  const std::size_t wanted = problem.options.robustness_samples;
   const std::size_t per_stop = (wanted + kBlock - 1) / kBlock;
   std::vector<Block> blocks(per_stop * stops.size());
   const int threads = resolve_threads(problem.options.threads);

@@ -12,7 +12,8 @@ namespace {
 
 constexpr int kYaws = 12;
 constexpr int kSeeds = 3;
-constexpr double kInside = 0.4;  // Places lie within this part of the bin's size from its middle: clear of its edge.
+constexpr double kPlaceShare =
+    0.4;  // Places lie within this part of the bin's size from its middle: clear of its edge.
 
 double lowest(const Part& part, const Pose& T) {
   double z = kInfinity;
@@ -32,7 +33,7 @@ std::vector<Pose> places_over_bin(const PlaceRegion& bin, const Pose& T_world_ro
       T_world_part.linear() = Eigen::AngleAxisd(kTwoPi * k / kYaws, Eigen::Vector3d::UnitZ()).toRotationMatrix() *
                               part.T_world_part.linear();
       Pose T_bin_part = T_world_bin.inverse() * T_world_part;
-      T_bin_part.translation() = Eigen::Vector3d(kInside * x * bin.size.x(), kInside * y * bin.size.y(), 0);
+      T_bin_part.translation() = Eigen::Vector3d(kPlaceShare * x * bin.size.x(), kPlaceShare * y * bin.size.y(), 0);
       T_bin_part.translation().z() = bin.drop_gap - lowest(part, T_bin_part);
       places.push_back(T_world_bin * T_bin_part);
     }

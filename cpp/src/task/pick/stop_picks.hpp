@@ -9,7 +9,7 @@ namespace mmgrasp::detail {
 /// All picks at one stop, in the order in which they work: nearest part first; a part that its neighbours block comes
 /// later.
 struct StopPicks {
-  Outcome outcome = Outcome::infeasible;
+  Outcome outcome = Outcome::not_found;
   std::vector<Pick> picks;  ///< The picks in order; with no solution, those that failed.
 };
 

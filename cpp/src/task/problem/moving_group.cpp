@@ -103,6 +103,7 @@ PartSupplyProblem group_alone(const PartSupplyProblem& problem, const MovingGrou
   for (const auto& entry : problem.scene.objects()) {
     if (!group.objects.count(entry.first)) alone.scene.remove(entry.first);
   }
+  for (const auto& entry : problem.scene.fields()) alone.scene.remove(entry.first);
   for (TrayId tray : all_trays(alone)) {
     if (!group.trays.count(tray)) alone.trays[tray].parts.clear();
   }

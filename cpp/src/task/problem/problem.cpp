@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <set>
+#include <sstream>
 
 #include "mmgrasp/core/error.hpp"
 
@@ -14,6 +15,12 @@ void require_positive(double value, const std::string& field) {
 
 void require_not_negative(double value, const std::string& field) {
   require(std::isfinite(value) && value >= 0, field, value, "must be finite and not negative");
+}
+
+void require_within(double value, double least, double most, const std::string& field, const std::string& unit) {
+  std::ostringstream rule;
+  rule << "must be in [" << least << ", " << most << "] " << unit;
+  require(value >= least && value <= most, field, value, rule.str());  // false for NaN
 }
 
 void check_part(const Part& part, const std::string& tray) {
@@ -61,16 +68,17 @@ void check_trays(const PartSupplyProblem& problem) {
 }  // namespace
 
 void PartSupplyOptions::check() const {
-  require_positive(grid.resolution, "grid.resolution");
-  require_not_negative(grid.max_distance, "grid.max_distance");
-  require(grid.ik_seeds > 0, "grid.ik_seeds", grid.ik_seeds, "must be positive");
+  require_within(grid.resolution, 1e-3, 10, "grid.resolution", "m");
+  require_within(grid.max_distance, 0, 1000, "grid.max_distance", "m");
+  require_within(grid.ik_seeds, 1, 1000, "grid.ik_seeds", "configurations");
   require_not_negative(positioning_uncertainty, "positioning_uncertainty");
-  require_positive(approach_distance, "approach_distance");
-  require_positive(lift_height, "lift_height");
+  require_within(approach_distance, 1e-3, 10, "approach_distance", "m");
+  require_within(lift_height, 0.01, 10, "lift_height", "m");
   require_positive(motion_time_limit, "motion_time_limit");
-  require_positive(route_resolution, "route_resolution");
-  require(robustness_samples >= 0, "robustness_samples", robustness_samples, "must not be negative");
-  require(threads >= 0, "threads", threads, "must be 0 (all) or positive");
+  require(motion_time_limit <= 86400, "motion_time_limit", motion_time_limit, "must be at most 86400 s");
+  require_within(route_resolution, 1e-3, 100, "route_resolution", "m");
+  require_within(robustness_samples, 0, 1e6, "robustness_samples", "base poses");
+  require_within(threads, 0, 1024, "threads", "(0: all)");
 }
 
 void PartSupplyProblem::check() const {

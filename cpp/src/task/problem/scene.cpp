@@ -1,5 +1,7 @@
 #include "task/problem/scene.hpp"
 
+#include <algorithm>
+
 namespace mmgrasp::detail {
 
 std::vector<TrayId> all_trays(const PartSupplyProblem& problem) {
@@ -28,6 +30,10 @@ std::vector<PartRef> target_parts(const PartSupplyProblem& problem, TrayId tray)
 
 World world_with_parts(const PartSupplyProblem& problem, const std::vector<PartRef>& parts) {
   World world = problem.scene;
+  // A checker refuses pairs that name a part which is not there.
+  for (const PartRef& ref : all_parts(problem)) {
+    if (std::find(parts.begin(), parts.end(), ref) == parts.end()) world.forget(part_of(problem, ref).name);
+  }
   for (const PartRef& ref : parts) {
     const Part& part = part_of(problem, ref);
     WorldObject object;

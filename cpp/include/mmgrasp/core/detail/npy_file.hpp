@@ -54,7 +54,8 @@ class NpyWriter {
   std::size_t open_bytes_ = 0;
 };
 
-/// A whole file in memory, read by the system when touched.
+/// A whole file in memory: up to 256 MB as a copy, which nobody can cut short or change; a larger one read by the
+/// system when touched.
 class MappedFile {
  public:
   /// Throws IoError when the file is missing or not `bytes` long.

@@ -8,35 +8,36 @@ namespace mmgrasp::detail {
 
 constexpr int kMaxColumns = 64;    ///< Most columns of a group: Jacobians live on the stack.
 constexpr int kMaxSegments = 128;  ///< Moving joints on the way from the root to a tip; lets scratch live on the stack.
-constexpr int kMaxTurns = 1024;    ///< Turning joints a group moves anywhere in the robot.
-constexpr int kMaxBalls = 16;      ///< Floating joints on the way to a tip.
-constexpr int kTurnBlock = 8;      ///< Tables of angles are padded to a multiple of this.
+constexpr int kMaxRevolute = 1024;  ///< Revolute joints a group moves anywhere in the robot.
+constexpr int kMaxSpherical = 16;   ///< Floating joints on the way to a tip.
+constexpr int kAngleBlock = 8;      ///< Tables of angles are padded to a multiple of this.
 
 /// Angles that depend on the configuration: multiplier * q[column] + offset.
-struct TurnTable {
+struct AngleTable {
   int count = 0;  ///< Entries that mean something; the rest of the last block is harmless.
   const int* column = nullptr;
   const double* multiplier = nullptr;
   const double* offset = nullptr;
 };
 
-enum class Motion { turn, slide, ball };
+enum class Motion { revolute, prismatic, spherical };
 
-/// One elementary motion on the way to the tip. Any rotation is Rz(a) Rx(b) Rz(c): the turns about z on either side are
-/// folded into the angles of the motions before and after, so that only the turn about x is left between two of them.
+/// One elementary motion on the way to the tip. Any rotation is Rz(a) Rx(b) Rz(c): the rotations about z on either
+/// side are folded into the angles of the motions before and after, so that only the one about x is left between two of
+/// them.
 /// In its own frame a motion goes about or along z.
 struct Segment {
-  double p[3] = {0, 0, 0};            ///< From the frame before, in that frame, before the turn about x.
-  double turn_cos = 1, turn_sin = 0;  ///< Cosine and sine of the turn about x.
-  double multiplier = 1, offset = 0;  ///< Slides: value = multiplier * q[column] + offset. Of turns: see TurnTable.
+  double p[3] = {0, 0, 0};            ///< From the frame before, in that frame, before the rotation about x.
+  double tilt_cos = 1, tilt_sin = 0;  ///< Cosine and sine of the rotation about x.
+  double multiplier = 1, offset = 0;  ///< Prismatic: value = multiplier * q[column] + offset. Revolute: see AngleTable.
   int column = 0;
-  int ball = 0;  ///< Which of the caller's balls.
-  Motion motion = Motion::turn;
+  int spherical = 0;  ///< Which of the motions that the caller worked out.
+  Motion motion = Motion::revolute;
   bool adds = false;  ///< An earlier segment has written this column of the Jacobian.
 };
 
-/// Motion that the caller works out: rotation vectors. Columns of three.
-struct Ball {
+/// Rotation that the caller works out from a rotation vector. Columns of three.
+struct SphericalMotion {
   double R[9];     ///< Rotation, seen from the frame before it.
   double axes[9];  ///< Its left Jacobian: angular velocity per rate of each value.
 };
@@ -44,7 +45,8 @@ struct Ball {
 struct Chain {
   int segments = 0;
   const Segment* segment = nullptr;
-  TurnTable turns;    ///< One entry for each segment (a constant one for slides and balls), then the base's heading.
+  AngleTable angles;  ///< One entry for each segment (a constant one for prismatic and spherical ones), then the base's
+                      ///< heading.
   bool base = false;  ///< Columns 0 to 2 are x, y, theta of the root.
   int columns = 0;
   int still_columns = 0;  ///< Columns that do not move the tip.
@@ -59,25 +61,26 @@ struct RootPose {
 
 /// How a link stands in its parent.
 struct LinkStep {
-  enum class Kind { fixed, turn, slide, given };
+  enum class Kind { fixed, revolute, prismatic, given };
   Kind kind = Kind::fixed;
   int link = 0, parent = 0;
-  int index = 0;  ///< Turn: entry of the turn table. Given: entry of the poses that the caller worked out.
+  int index = 0;  ///< Revolute: entry of the table of angles. Given: entry of the poses that the caller worked out.
   int column = 0;
-  double multiplier = 1, offset = 0;  ///< Slides.
+  double multiplier = 1, offset = 0;  ///< Prismatic.
   double A[12], B[12], C[12];         ///< R = A + sin B + cos C; columns of four, the last entry 0.
-  double p[4], d[4];                  ///< Position and what a slide adds per metre.
+  double p[4], d[4];                  ///< Position and what a prismatic joint adds per metre.
 };
 
 struct KinematicsKernels {
   int lanes;  ///< Configurations that `batch` takes at a time.
   /// `T` receives a 4 x 4 pose, `J` (may be null) 6 x columns with `stride` between columns.
-  void (*single)(const Chain&, const RootPose&, const double* q, const Ball*, double* T, double* J, long stride);
-  /// `blocks` times `lanes` configurations; chains without balls. J (may be null): 6 x columns each, next to each
-  /// other.
+  void (*single)(const Chain&, const RootPose&, const double* q, const SphericalMotion*, double* T, double* J,
+                 long stride);
+  /// `blocks` times `lanes` configurations; chains without spherical motions. J (may be null): 6 x columns each, next
+  /// to each other.
   void (*batch)(const Chain&, const RootPose&, const double* q, long stride, long blocks, double* T, double* J);
   /// Places links in this order; parents stand already. `T` holds 4 x 4 poses by link, `given` by LinkStep::index.
-  void (*links)(const LinkStep* steps, const int* order, int count, const TurnTable&, const double* q,
+  void (*links)(const LinkStep* steps, const int* order, int count, const AngleTable&, const double* q,
                 const double* given, double* T);
 };
 
@@ -91,6 +94,6 @@ extern const KinematicsKernels kAvx512Kinematics;
 #endif
 
 /// For tables with angles beyond what the vector polynomials reduce exactly, or infinite ones.
-void turn_any(const TurnTable&, const double* q, double* sines, double* cosines);
+void any_sines(const AngleTable&, const double* q, double* sines, double* cosines);
 
 }  // namespace mmgrasp::detail

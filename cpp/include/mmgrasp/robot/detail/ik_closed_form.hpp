@@ -14,9 +14,9 @@ Rigid turn_about(const Eigen::Vector3d& h, const Eigen::Vector3d& p, double angl
 /// A chain of turning joints as the product of exponentials E_1 ... E_n = G, with axes as they lie when all joint
 /// values are zero, seen from the root: G = T_root_tip T_root_tip(0)^-1.
 struct Screws {
-  static constexpr int kMost = 7;
+  static constexpr int kMaxJoints = 7;
   int size = 0;
-  std::array<Eigen::Vector3d, kMost> h, p;
+  std::array<Eigen::Vector3d, kMaxJoints> h, p;
   Rigid tip;  ///< T_world_tip at zero.
 };
 
@@ -29,8 +29,8 @@ Screws screws_of(const JointGroup& group);
 
 /// Configurations of every branch; in a singularity that leaves a joint free, of one of its values.
 struct Branches {
-  static constexpr int kMost = 16;
-  std::array<std::array<double, Screws::kMost>, kMost> value;
+  static constexpr int kMaxBranches = 16;
+  std::array<std::array<double, Screws::kMaxJoints>, kMaxBranches> value;
   int count = 0;
   bool free = false;  ///< A joint could take any value.
 };

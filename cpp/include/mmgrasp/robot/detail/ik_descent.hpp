@@ -16,7 +16,8 @@ struct DescentEnd {
 DescentEnd descend(const JointGroup& group, const Pose& T_world_tip, Eigen::VectorXd& q, const IkOptions& options,
                    IkWorkspace& workspace, bool keep_limits);
 
-/// False when the tip surely cannot get to the position: it is farther from the first joint than all links stretched.
-bool maybe_in_reach(const JointGroup& group, const Eigen::Vector3d& position);
+/// False when the tip surely cannot get within `tolerance` [m] of the position: that is farther from the first joint
+/// than all links stretched.
+bool maybe_in_reach(const JointGroup& group, const Eigen::Vector3d& position, double tolerance = 0);
 
 }  // namespace mmgrasp::detail

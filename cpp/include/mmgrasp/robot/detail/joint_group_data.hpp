@@ -12,16 +12,16 @@ namespace detail {
 
 constexpr int kMaxGroupSize = kMaxColumns;  ///< Lets Jacobians live on the stack.
 
-/// Storage of a TurnTable.
-struct Turns {
+/// Storage of an AngleTable.
+struct Angles {
   std::vector<int> column;
   std::vector<double> multiplier, offset;
   int add(int at_column, double by, double from);  ///< Returns the entry's index.
-  TurnTable padded();                              ///< Fills the last block; the table is what the kernels read.
+  AngleTable padded();                             ///< Fills the last block; the table is what the kernels read.
 };
 
-/// A floating joint on the way to the tip, between the turns about z that belong to its neighbours.
-struct BallFrame {
+/// A floating joint on the way to the tip, between the rotations about z that belong to its neighbours.
+struct SphericalFrame {
   int column = 0;
   Eigen::Matrix3d before, after;
 };
@@ -31,7 +31,7 @@ struct Mover {
   int joint = 0;
   int column = 0;
   double multiplier = 1;
-  Eigen::Vector3d axis;  ///< Turn or slide: in the parent link.
+  Eigen::Vector3d axis;  ///< Revolute or prismatic: in the parent link.
   int next = -1;         ///< The mover above it.
 };
 
@@ -43,13 +43,13 @@ struct GroupKinematics {
   GroupKinematics& operator=(const GroupKinematics&) = delete;
 
   Chain chain;
-  double first_turn = 0;  ///< About the root's z, before the chain begins.
-  std::vector<BallFrame> balls;
+  double first_angle = 0;  ///< About the root's z, before the chain begins.
+  std::vector<SphericalFrame> spherical;
 
   std::vector<LinkStep> steps;  ///< Every link but the root, breadth first.
   std::vector<int> all_steps, moving_steps;
   std::vector<int> moving_links;
-  TurnTable link_turns;
+  AngleTable link_angles;
   struct Given {
     int joint, column;
   };
@@ -60,7 +60,7 @@ struct GroupKinematics {
 
   std::vector<Segment> segment_storage;
   std::vector<int> still_storage;
-  Turns chain_turn_storage, link_turn_storage;
+  Angles chain_angle_storage, link_angle_storage;
 };
 
 /// Everything of a group but where its root stands; shared by all its copies.
@@ -106,7 +106,7 @@ struct JointGroup::Data {
   std::shared_ptr<const detail::GroupModel> model;
   Pose T_world_root;
   const detail::GroupKinematics* kinematics;  ///< The model's.
-  detail::RootPose root;                      ///< T_world_root with the chain's first turn.
+  detail::RootPose root;                      ///< T_world_root with the chain's first angle.
 };
 
 }  // namespace mmgrasp

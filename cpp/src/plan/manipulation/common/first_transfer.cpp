@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "mmgrasp/robot/detail/joint_metric.hpp"
 #include "plan/motion/rrt_connect.hpp"
 
 namespace mmgrasp::detail {
@@ -14,11 +15,12 @@ constexpr double kNoTimeLimit = 1e7;    // For RRT-Connect [s]: the time limit o
 
 class FirstTransfer {
  public:
-  FirstTransfer(const ManipulationInput& input, ManipulationResult& result) : input_(input), result_(result) {
+  FirstTransfer(const ManipulationInput& input, ManipulationResult& result)
+      : input_(input), result_(result), metric_(input.problem.group.wraps()) {
     const JointGroup& group = input.problem.group;
     query_.lower = group.sample_lower();
     query_.upper = group.sample_upper();
-    query_.wraps.assign(static_cast<std::size_t>(group.size()), false);  // Angles are not wrapped.
+    query_.wraps = group.wraps();
     query_.time_limit = kNoTimeLimit;
     query_.stopped = [this] { return input_.out_of_time(); };
     query_.edge_is_free = [this](const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return edge_is_free(a, b); };
@@ -43,28 +45,32 @@ class FirstTransfer {
   /// From another start each round, to any of the goals.
   void search(const GraspCandidate& candidate, int budget) {
     grasp_ = candidate.grasp;
-    query_.start = candidate.starts[static_cast<std::size_t>(round_) % candidate.starts.size()];
-    query_.goals = candidate.goals;
+    query_.start = metric_.wrapped(candidate.starts[static_cast<std::size_t>(round_) % candidate.starts.size()]);
+    query_.goals.clear();
+    for (const Eigen::VectorXd& goal : candidate.goals) query_.goals.push_back(metric_.wrapped(goal));
+    query_.turned_goals = candidate.turned_goals;
     if (static_cast<std::size_t>(round_) < candidate.starts.size() && try_straight(candidate)) return;
     query_.seed = input_.options.seed + static_cast<unsigned>(grasp_) + 7919u * static_cast<unsigned>(round_);
     query_.max_iterations = std::min(budget, left_);
     left_ -= query_.max_iterations;
     PlannerAnswer answer = rrt_connect(query_);
-    if (answer.solved) take(candidate, std::move(answer.waypoints));
+    if (answer.solved) take(candidate, std::move(answer.waypoints), PlanStage::first_grasps);
   }
 
   bool try_straight(const GraspCandidate& candidate) {
     for (const Eigen::VectorXd& goal : query_.goals)
-      if (edge_is_free(query_.start, goal) && take(candidate, {query_.start, goal})) return true;
+      if (edge_is_free(query_.start, goal) && take(candidate, {query_.start, goal}, PlanStage::straight_lines))
+        return true;
     return false;
   }
 
   /// False when the path does not pass the final check.
-  bool take(const GraspCandidate& candidate, std::vector<Eigen::VectorXd> waypoints) {
+  bool take(const GraspCandidate& candidate, std::vector<Eigen::VectorXd> waypoints, PlanStage stage) {
     JointPath path{std::move(waypoints)};
+    metric_.unroll(path.waypoints);
     if (input_.checks.blocked_edge(grasp_, path) >= 0) return false;
     const double cost = path.length() + candidate.cost;
-    found_ = {grasp_, cost, std::move(path)};
+    found_ = {grasp_, cost, std::move(path), stage};
     take_path(input_, found_, result_);
     return true;
   }
@@ -72,11 +78,12 @@ class FirstTransfer {
   bool edge_is_free(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
     ++result_.stats.edges_checked_robot;
     ++result_.stats.edges_checked_attached;
-    return input_.checks.edge_is_free(grasp_, a, b);
+    return input_.checks.edge_is_free(grasp_, a, metric_.nearest(a, b));
   }
 
   const ManipulationInput& input_;
   ManipulationResult& result_;
+  const JointMetric metric_;
   PlannerQuery query_;
   TransferPath found_;
   int grasp_ = -1, round_ = 0, left_ = kTotalIterations;

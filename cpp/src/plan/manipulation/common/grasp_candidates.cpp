@@ -7,6 +7,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "plan/manipulation/common/turned_ends.hpp"
 #include "plan/motion/arm_configurations.hpp"
 
 namespace mmgrasp::detail {
@@ -40,7 +41,7 @@ std::vector<int> shuffled(std::size_t count, unsigned seed) {
 double GraspCandidate::straight_cost() const {
   double least = kInfinity;
   for (const Eigen::VectorXd& s : starts)
-    for (const Eigen::VectorXd& g : goals) least = std::min(least, (g - s).norm());
+    for (const Eigen::VectorXd& g : goals) least = std::min(least, metric.distance(g, s));
   return least + cost;
 }
 
@@ -53,7 +54,8 @@ GraspCandidates::GraspCandidates(const ManipulationProblem& problem, const Manip
       clock_(clock),
       monitor_(monitor),
       result_(result),
-      order_(shuffled(problem.grasps.size(), options.seed)) {
+      order_(shuffled(problem.grasps.size(), options.seed)),
+      turns_(problem.group) {
   result_.grasps.assign(order_.size(), {});
 }
 
@@ -61,7 +63,9 @@ bool GraspCandidates::find_more(std::size_t count) {
   if (complete()) return false;
   const double begin = clock_.seconds();
   count = std::min(count, order_.size() - checked_);
-  std::vector<GraspCandidate> checked(count);
+  // Without a path to bound them, ends are turned again later.
+  const bool unbounded = !result_.path && turns_.any();
+  std::vector<GraspCandidate> checked(count), in_one_turn(unbounded ? count : 0);
   std::atomic<bool> late{false};
   const auto work = [&](std::size_t i, int worker) {
     if (clock_.seconds() > options_.time_limit) {
@@ -70,14 +74,39 @@ bool GraspCandidates::find_more(std::size_t count) {
     }
     const int grasp = order_[checked_ + i];
     checked[i] = check(grasp, worker, result_.grasps[grasp]);
+    if (unbounded) in_one_turn[i] = checked[i];
+    add_turned_ends(turns_, problem_.group, bound(), checked[i]);
   };
   const bool whole =
       parallel_for(count, count >= kMinParallelGrasps ? options_.threads : 1, work, monitor_, "grasps") && !late;
-  for (GraspCandidate& candidate : checked)
-    if (!candidate.goals.empty()) found_.push_back(std::move(candidate));
+  for (std::size_t i = 0; i < count; ++i) {
+    if (checked[i].goals.empty()) continue;
+    if (unbounded) unbounded_.push_back(std::move(in_one_turn[i]));
+    found_.push_back(std::move(checked[i]));
+  }
   if (whole) checked_ += count;
   result_.stats.ik_seconds += clock_.seconds() - begin;
   return whole;
+}
+
+bool GraspCandidates::find_rest() {
+  const bool whole = find_more(order_.size());
+  add_left_out_turns();
+  return whole;
+}
+
+double GraspCandidates::bound() const {
+  return result_.path ? result_.cost : kInfinity;
+}
+
+void GraspCandidates::add_left_out_turns() {
+  if (!result_.path) return;
+  for (std::size_t i = 0; i < unbounded_.size(); ++i) {
+    // Those there are stay: the path known may end there.
+    add_turned_ends(turns_, problem_.group, bound(), unbounded_[i]);
+    add_ends(unbounded_[i], found_[i]);
+  }
+  unbounded_.clear();
 }
 
 GraspCandidate GraspCandidates::check(int grasp, int worker, GraspReport& report) {
@@ -85,6 +114,7 @@ GraspCandidate GraspCandidates::check(int grasp, int worker, GraspReport& report
   out.grasp = grasp;
   out.opening = checks_.opening_of(grasp);
   out.cost = problem_.grasps[grasp].cost;
+  out.metric = JointMetric(problem_.group.wraps());
   const auto valid = [&](const Eigen::VectorXd& q) {
     // The object first: it has fewer shapes, and hits the scene in every configuration with this tool pose or in none.
     ReachVerdict verdict{checks_.attached_rejection(worker, grasp, q), false};

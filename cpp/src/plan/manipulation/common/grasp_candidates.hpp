@@ -3,18 +3,23 @@
 #include <vector>
 
 #include "mmgrasp/core/detail/stopwatch.hpp"
+#include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
+#include "mmgrasp/robot/detail/joint_metric.hpp"
+#include "mmgrasp/robot/detail/whole_turns.hpp"
 #include "plan/manipulation/common/transfer_checks.hpp"
 
 namespace mmgrasp::detail {
 
 /// A grasp with arm configurations at both ends.
-struct GraspCandidate {
+struct MMGRASP_EXPORT GraspCandidate {
   int grasp = -1;
   int opening = 0;
   double cost = 0;
   std::vector<Eigen::VectorXd> starts, goals;
+  JointMetric metric;    ///< Of the configurations.
+  int turned_goals = 0;  ///< How many of the goals are whole turns of others.
   /// Least cost any path with this grasp can have: the straight line between its nearest start and goal.
   double straight_cost() const;
 };
@@ -31,7 +36,7 @@ class GraspCandidates {
   const std::vector<GraspCandidate>& found() const { return found_; }
   /// Checks `count` more grasps, or all that are left. False when none was left, or when stopped or out of time.
   bool find_more(std::size_t count);
-  bool find_rest() { return find_more(order_.size()); }
+  bool find_rest();
   /// Every grasp was checked.
   bool complete() const { return checked_ == order_.size(); }
   /// A lower bound on paths with any grasp not yet checked; infinite when all are.
@@ -44,6 +49,10 @@ class GraspCandidates {
 
  private:
   GraspCandidate check(int grasp, int worker, GraspReport& report);
+  /// No path that costs as much is of interest: the result's cost.
+  double bound() const;
+  /// Adds the turns of the ends found before there was a path that bounds them.
+  void add_left_out_turns();
 
   const ManipulationProblem& problem_;
   const ManipulationOptions& options_;
@@ -54,6 +63,8 @@ class GraspCandidates {
   std::vector<int> order_;
   std::size_t checked_ = 0;  ///< How many of order_ were checked.
   std::vector<GraspCandidate> found_;
+  WholeTurns turns_;
+  std::vector<GraspCandidate> unbounded_;  ///< The first of found_, in one turn each, found without a path.
 };
 
 }  // namespace mmgrasp::detail

@@ -9,7 +9,7 @@
 namespace mmgrasp::detail {
 
 GraspEnds::GraspEnds(std::vector<GraspCandidate> candidates)
-    : dimension_(static_cast<int>(candidates.front().starts.front().size())) {
+    : dimension_(static_cast<int>(candidates.front().starts.front().size())), metric_(candidates.front().metric) {
   std::vector<double> straight;
   for (const GraspCandidate& candidate : candidates) straight.push_back(candidate.straight_cost());
   std::vector<std::size_t> order(candidates.size());
@@ -34,7 +34,7 @@ double GraspEnds::distance(int index, int side, const double* q) const {
   const double* value = values_.data() + own.first * dimension_;
   double least = kInfinity;
   for (int k = 0; k < own.count; ++k, value += dimension_)
-    least = std::min(least, squared_distance(value, q, dimension_));
+    least = std::min(least, metric_.squared_distance(value, q, dimension_));
   return std::sqrt(least);
 }
 

@@ -18,6 +18,7 @@ class MMGRASP_EXPORT GraspEnds {
 
   int size() const { return static_cast<int>(candidates_.size()); }
   int dimension() const { return dimension_; }
+  const JointMetric& metric() const { return metric_; }
   /// How many of the first grasps have a straight cost below this.
   int below(double cost) const;
 
@@ -43,17 +44,11 @@ class MMGRASP_EXPORT GraspEnds {
   static std::size_t span(int index, int side) { return static_cast<std::size_t>(2 * index + side); }
 
   int dimension_;
+  JointMetric metric_;
   std::vector<GraspCandidate> candidates_;
   std::vector<double> straight_;
   std::vector<Span> spans_;
   std::vector<double> values_;
 };
-
-/// Euclidean distance of two configurations, squared.
-inline double squared_distance(const double* a, const double* b, int dimension) {
-  double sum = 0;
-  for (int i = 0; i < dimension; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-  return sum;
-}
 
 }  // namespace mmgrasp::detail

@@ -25,13 +25,14 @@ InformedUnion::InformedUnion(const GraspEnds& ends, const Eigen::VectorXd& lower
       box_volume_((upper - lower).prod()),
       cost_(kInfinity),
       grasps_(ends.size()),
-      direction_(ends.dimension() + 1) {
+      direction_(ends.dimension() + 1),
+      goal_(ends.dimension()) {
   for (int g = 0; g < ends.size(); ++g) {
     first_of_.push_back(all_.size());
     for (int s = 0; s < ends.count(g, GraspEnds::kStart); ++s)
       for (int k = 0; k < ends.count(g, GraspEnds::kGoal); ++k) {
-        const double squared =
-            squared_distance(ends.end(g, GraspEnds::kStart, s), ends.end(g, GraspEnds::kGoal, k), ends.dimension());
+        const double squared = ends.metric().squared_distance(ends.end(g, GraspEnds::kStart, s),
+                                                              ends.end(g, GraspEnds::kGoal, k), ends.dimension());
         all_.push_back({g, s, k, std::sqrt(squared), 0});
       }
   }
@@ -62,12 +63,58 @@ void InformedUnion::prepare() {
   for (const Pair& pair : all_) {
     if (pair.grasp >= grasps_) break;
     while (static_cast<int>(first_pair_.size()) <= pair.grasp) first_pair_.push_back(pairs_.size());
-    const double own = ellipsoid_volume(pair);
-    if (!(own > 0)) continue;
-    volumes_[pair.grasp] += own;
-    pairs_.push_back(pair);
-    pairs_.back().volume = sum += own;
+    if (!(ellipsoid_volume(pair) > 0)) continue;
+    const std::size_t first = pairs_.size();
+    append_images(pair);
+    for (std::size_t i = first; i < pairs_.size(); ++i) {
+      const double own = ellipsoid_volume(pairs_[i]);
+      volumes_[pair.grasp] += own;
+      pairs_[i].volume = sum += own;
+    }
   }
+}
+
+void InformedUnion::append_images(const Pair& nearest) {
+  const std::size_t first = pairs_.size();
+  pairs_.push_back(nearest);
+  const double* start = ends_.end(nearest.grasp, GraspEnds::kStart, nearest.start);
+  const double* goal = ends_.end(nearest.grasp, GraspEnds::kGoal, nearest.goal);
+  const std::vector<int>& wrapping = ends_.metric().wrapping();
+  for (std::size_t k = 0; k < wrapping.size(); ++k) {
+    const int i = wrapping[k];
+    const double short_way = std::abs(JointMetric::nearest_angle(start[i], goal[i]) - start[i]);
+    const double long_way = kTwoPi - short_way;
+    const std::size_t count = pairs_.size();
+    for (std::size_t p = first; p < count; ++p) {
+      Pair image = pairs_[p];
+      image.long_ways |= std::uint64_t{1} << k;
+      image.c_min = std::sqrt(image.c_min * image.c_min + long_way * long_way - short_way * short_way);
+      if (ellipsoid_volume(image) > 0) pairs_.push_back(image);
+    }
+  }
+}
+
+const double* InformedUnion::goal_of(const Pair& pair) {
+  const double* goal = ends_.end(pair.grasp, GraspEnds::kGoal, pair.goal);
+  if (!ends_.metric().any()) return goal;
+  const double* start = ends_.end(pair.grasp, GraspEnds::kStart, pair.start);
+  goal_ = Eigen::Map<const Eigen::VectorXd>(goal, ends_.dimension());
+  const std::vector<int>& wrapping = ends_.metric().wrapping();
+  for (std::size_t k = 0; k < wrapping.size(); ++k) {
+    double& value = goal_[wrapping[k]];
+    value = JointMetric::nearest_angle(start[wrapping[k]], value);
+    if (pair.long_ways >> k & 1) value += value > start[wrapping[k]] ? -kTwoPi : kTwoPi;
+  }
+  return goal_.data();
+}
+
+bool InformedUnion::is_representative(const Pair& pair, const double* q) {
+  if (!ends_.metric().any()) return true;
+  const double* start = ends_.end(pair.grasp, GraspEnds::kStart, pair.start);
+  const double* goal = goal_of(pair);
+  for (const int i : ends_.metric().wrapping())
+    if (std::abs(q[i] - start[i]) > kPi || std::abs(goal[i] - q[i]) > kPi) return false;
+  return true;
 }
 
 double InformedUnion::volume(int grasp) {
@@ -95,7 +142,7 @@ void InformedUnion::draw_ellipsoid(Rng& rng, const Pair& pair, double c, double*
   const double length = std::pow(rng.uniform(), 1.0 / d) / std::sqrt(squared);
   const double along = 0.5 * c * length, across = 0.5 * std::sqrt(c * c - pair.c_min * pair.c_min) * length;
   const double* start = ends_.end(pair.grasp, GraspEnds::kStart, pair.start);
-  const double* goal = ends_.end(pair.grasp, GraspEnds::kGoal, pair.goal);
+  const double* goal = goal_of(pair);
   for (int i = 0; i < d; ++i) q[i] = (i == 0 ? along : across) * direction_[i];
   if (pair.c_min > 0) {
     // Any orthogonal map of the first axis onto the long one serves; the reflection is the cheapest. It takes u, the
@@ -123,9 +170,10 @@ bool InformedUnion::in_box(const double* q) const {
 
 bool InformedUnion::in_pair(const Pair& pair, const double* q) const {
   const int d = ends_.dimension();
+  const JointMetric& metric = ends_.metric();
   return ends_.cost(pair.grasp) +
-             std::sqrt(squared_distance(ends_.end(pair.grasp, GraspEnds::kStart, pair.start), q, d)) +
-             std::sqrt(squared_distance(ends_.end(pair.grasp, GraspEnds::kGoal, pair.goal), q, d)) <
+             std::sqrt(metric.squared_distance(ends_.end(pair.grasp, GraspEnds::kStart, pair.start), q, d)) +
+             std::sqrt(metric.squared_distance(ends_.end(pair.grasp, GraspEnds::kGoal, pair.goal), q, d)) <
          cost_;
 }
 
@@ -133,7 +181,7 @@ bool InformedUnion::first_to_contain(std::size_t pair, const double* q) const {
   const int grasp = pairs_[pair].grasp;
   for (int g = 0; g < grasp; ++g)
     if (contains(g, q)) return false;
-  for (std::size_t p = first_pair_[grasp]; p < pair; ++p)
+  for (std::size_t p = first_pair_[grasp]; p < pair && !same_ends(pairs_[p], pairs_[pair]); ++p)
     if (in_pair(pairs_[p], q)) return false;
   return true;
 }
@@ -141,12 +189,12 @@ bool InformedUnion::first_to_contain(std::size_t pair, const double* q) const {
 int InformedUnion::any_containing(Rng& rng, const double* q) const {
   for (int i = 0; i < kRandomGuesses; ++i) {
     const Pair& pair = pairs_[rng.index(pairs_.size())];
-    if (in_pair(pair, q)) return pair.grasp;
+    if (pair.long_ways == 0 && in_pair(pair, q)) return pair.grasp;
   }
   int found = -1;
   std::size_t count = 0;
   for (const Pair& pair : pairs_)
-    if (in_pair(pair, q) && rng.index(++count) == 0) found = pair.grasp;
+    if (pair.long_ways == 0 && in_pair(pair, q) && rng.index(++count) == 0) found = pair.grasp;
   return found;
 }
 
@@ -159,6 +207,7 @@ void InformedUnion::draw_around(Rng& rng, int grasp, double factor, double* q) {
   const std::size_t first = first_of_[grasp];
   const Pair& pair = all_[first + rng.index(first_of_[static_cast<std::size_t>(grasp) + 1] - first)];
   draw_ellipsoid(rng, pair, pair.c_min * factor + kLeastDetour, q);
+  ends_.metric().wrap(q);
   for (Eigen::Index i = 0; i < lower_.size(); ++i) q[i] = std::clamp(q[i], lower_[i], upper_[i]);
 }
 
@@ -181,6 +230,8 @@ int InformedUnion::draw(Rng& rng, double* q) {
                                        [](double value, const Pair& entry) { return value < entry.volume; });
     const auto index = static_cast<std::size_t>(std::min(pair - pairs_.begin(), std::ptrdiff_t(pairs_.size()) - 1));
     draw_ellipsoid(rng, pairs_[index], cost_ - ends_.cost(pairs_[index].grasp), q);
+    if (!is_representative(pairs_[index], q)) continue;
+    ends_.metric().wrap(q);
     if (in_box(q) && first_to_contain(index, q)) {
       const int grasp = any_containing(rng, q);
       // Rounding can leave a draw on the very edge outside of its own ellipsoid.

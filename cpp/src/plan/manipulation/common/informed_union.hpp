@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "mmgrasp/core/random.hpp"
@@ -16,6 +17,11 @@ namespace mmgrasp::detail {
 /// Where the paper keeps a draw from one of a overlapping ellipsoids with probability 1/a, which needs all of them
 /// counted, a draw is kept here when the ellipsoid it was made in is the first of those that contain it: the same
 /// distribution, and the count ends at the first that does.
+///
+/// Where angles wrap, a pair's set is all q with distance(start, q) + distance(q, goal) below the cost. Unrolled, that
+/// is a union of ellipsoids, from the start to every image of the goal by whole turns. A draw from one of them counts
+/// when it is the image of q nearest to the start and the goal's image is the one nearest to it: each q does so once,
+/// so the draws are uniform still, and only the two nearest turns of each angle matter.
 class MMGRASP_EXPORT InformedUnion {
  public:
   InformedUnion(const GraspEnds& ends, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper);
@@ -44,11 +50,20 @@ class MMGRASP_EXPORT InformedUnion {
  private:
   struct Pair {
     int grasp, start, goal;
-    double c_min;   ///< Distance of the two ends.
+    double c_min;   ///< Distance of the start and this image of the goal.
     double volume;  ///< Sum of the volumes up to this pair.
+    /// Bit k is set where the k-th angle that wraps goes the long way round to the goal. 0: the nearest image.
+    std::uint64_t long_ways = 0;
   };
 
+  static bool same_ends(const Pair& a, const Pair& b) { return a.start == b.start && a.goal == b.goal; }
   void prepare();
+  /// Adds a pair to `pairs_`, with all images of its goal that have an ellipsoid.
+  void append_images(const Pair& nearest);
+  /// The goal's image that a pair's ellipsoid ends at; valid until the next call where angles wrap.
+  const double* goal_of(const Pair& pair);
+  /// Of all images of a point of the pair's set, only one in one of the pair's ellipsoids is so.
+  bool is_representative(const Pair& pair, const double* q);
   double ellipsoid_volume(const Pair& pair) const;
   void draw_ellipsoid(Rng& rng, const Pair& pair, double c, double* q);
   bool in_box(const double* q) const;
@@ -62,12 +77,12 @@ class MMGRASP_EXPORT InformedUnion {
   double cost_;
   int grasps_;
   std::vector<Pair> all_;                ///< All pairs, by grasp.
-  std::vector<Pair> pairs_;              ///< Pairs with an ellipsoid, by grasp.
+  std::vector<Pair> pairs_;              ///< Pairs with an ellipsoid, by grasp; images of a goal in a row.
   std::vector<std::size_t> first_of_;    ///< Per grasp: its first pair in `all_`; at the end the number of pairs.
   std::vector<std::size_t> first_pair_;  ///< Per grasp: its first pair in `pairs_`.
   std::vector<double> volumes_;          ///< Per grasp: sum over its ellipsoids.
   bool prepared_ = false;
-  Eigen::VectorXd direction_;  ///< Scratch.
+  Eigen::VectorXd direction_, goal_;  ///< Scratch.
 };
 
 }  // namespace mmgrasp::detail

@@ -33,6 +33,7 @@ struct TransferPath {
   int grasp = -1;
   double cost = kInfinity;  ///< Infinite without a path.
   JointPath path;
+  PlanStage stage = PlanStage::search;
 };
 
 /// Takes a path (checked already) when it is the cheapest so far: fills the result's path, grasp and cost, and calls
@@ -40,12 +41,11 @@ struct TransferPath {
 void take_path(const ManipulationInput& input, TransferPath path, ManipulationResult& result);
 
 /// A planner over many grasps. `run` sets the lower bound, and the path by take_path(); it returns true when its search
-/// was exhaustive, so that without a path there is none. When there is no candidate at all, what it sets and returns
-/// does not matter.
+/// came to its end before the budget did (over its own samples: no proof that there is no path). When there is no
+/// candidate at all, what it sets and returns does not matter.
 struct ManipulationPlanner {
   const char* name;
   bool (*run)(ManipulationInput& input, ManipulationResult& result);
-  double search_steps;  ///< Steps of edge checks during the search, by those of the options.
 };
 
 /// Throws InvalidInput listing the known names.

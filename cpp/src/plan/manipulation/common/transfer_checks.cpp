@@ -9,7 +9,8 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kFinalStep = 0.005;  // Largest joint step of the final check of paths [rad or m].
+constexpr double kFinalStep = 0.005;     // Largest joint step of paths that callers check [rad or m],
+constexpr double kFinalResolution = 16;  // ... and by this share of all steps the final check is finer.
 
 JointGroup with_fingers(const JointGroup& group, const Hand& hand, const Grasp& grasp) {
   Eigen::VectorXd values = group.reference();
@@ -34,17 +35,14 @@ int moved_by(const JointGroup& group, int link) {
 
 }  // namespace
 
-TransferChecks::TransferChecks(const ManipulationProblem& problem, const EdgeOptions& edge, double search_steps,
-                               int workers)
+TransferChecks::TransferChecks(const ManipulationProblem& problem, const EdgeOptions& edge, int workers)
     : problem_(problem),
       edge_(edge),
-      search_edge_(edge),
       path_edge_(edge),
       robot_(static_cast<std::size_t>(workers)),
       attached_(robot_.size()) {
-  search_edge_.joint_step *= search_steps;
-  search_edge_.workspace_step *= search_steps;
-  path_edge_.joint_step = std::min(path_edge_.joint_step, kFinalStep);
+  path_edge_.joint_step = std::min(path_edge_.joint_step, kFinalStep) / kFinalResolution;
+  path_edge_.workspace_step /= kFinalResolution;
   std::map<std::pair<double, std::vector<double>>, int> openings;  // by opening and posture
   for (const Grasp& grasp : problem.grasps) {
     const bool fingers = problem.gripper.has_value();
@@ -69,7 +67,9 @@ TransferChecks::TransferChecks(const ManipulationProblem& problem, const EdgeOpt
 TransferChecks::RobotAlone& TransferChecks::robot(int worker, int opening) {
   auto& slot = robot_[worker][opening];
   if (!slot) {
-    CollisionChecker checker(group(opening), problem_.world);
+    World world = problem_.world;
+    world.forget(problem_.object_name);  // a checker refuses names that are not there
+    CollisionChecker checker(group(opening), world);
     Eigen::VectorXd motion = motion_bounds(checker);
     slot.emplace(RobotAlone{std::move(checker), std::move(motion)});
   }
@@ -130,9 +130,8 @@ bool TransferChecks::robot_is_free(int worker, int opening, const Eigen::VectorX
 }
 bool TransferChecks::robot_edge_is_free(int worker, int opening, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   RobotAlone& own = robot(worker, opening);
-  if (search_edge_.continuous) return check_edge(own.checker, a, b, search_edge_).free;
-  return own.checker.edge_is_free(a, b,
-                                  edge_step(b - a, own.motion, search_edge_.joint_step, search_edge_.workspace_step));
+  if (edge_.continuous) return check_edge(own.checker, a, b, edge_).free;
+  return own.checker.edge_is_free(a, b, edge_step(b - a, own.motion, edge_.joint_step, edge_.workspace_step));
 }
 Rejection TransferChecks::robot_rejection(int worker, int opening, const Eigen::VectorXd& q) {
   return robot(worker, opening).checker.rejection(q);
@@ -146,7 +145,7 @@ bool TransferChecks::attached_is_free(int worker, int grasp, const Eigen::Vector
   return attached(worker, grasp).is_free(q);
 }
 bool TransferChecks::attached_edge_is_free(int worker, int grasp, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  return attached(worker, grasp).edge_is_free(a, b, search_edge_);
+  return attached(worker, grasp).edge_is_free(a, b, edge_);
 }
 Rejection TransferChecks::attached_rejection(int worker, int grasp, const Eigen::VectorXd& q) {
   return attached(worker, grasp).rejection(q);

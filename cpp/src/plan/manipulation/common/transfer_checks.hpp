@@ -20,9 +20,7 @@ namespace mmgrasp::detail {
 /// opening, made when first needed; from grasp to grasp only the object's pose in the hand changes.
 class MMGRASP_EXPORT TransferChecks {
  public:
-  /// Edges are checked for the robot alone, and for the attached object, in steps `search_steps` times as long as
-  /// `edge` says.
-  TransferChecks(const ManipulationProblem& problem, const EdgeOptions& edge, double search_steps, int workers);
+  TransferChecks(const ManipulationProblem& problem, const EdgeOptions& edge, int workers);
 
   int opening_count() const { return static_cast<int>(groups_.size()); }
   int opening_of(int grasp) const { return opening_of_[grasp]; }
@@ -67,7 +65,7 @@ class MMGRASP_EXPORT TransferChecks {
   World world_with(int grasp) const;
 
   const ManipulationProblem& problem_;
-  EdgeOptions edge_, search_edge_, path_edge_;
+  EdgeOptions edge_, path_edge_;
   std::vector<JointGroup> groups_;  ///< One per opening.
   std::vector<int> opening_of_;     ///< Per grasp.
   std::string tip_;

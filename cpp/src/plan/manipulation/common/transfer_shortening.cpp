@@ -28,6 +28,8 @@ void shorten_transfer(const ManipulationInput& input, const TransferPath& path, 
   const double fixed = input.problem.grasps[path.grasp].cost;
   for (const double resolution : {1.0, kSecondResolution}) {
     TransferPath shorter = path;
+    // A path that was not the cheapest before it was shortened is the merit of the stage that found it.
+    if (path.cost <= result.cost) shorter.stage = PlanStage::shortening;
     shortening.resolution = resolution;
     shorten_path(edges, shorter.path, rng, shortening);
     shorter.cost = shorter.path.length() + fixed;

@@ -40,7 +40,7 @@ void GraspGraph::connect(const Roadmap& roadmap, bool straight, double bound) {
     std::vector<int>& own = from_start[s];
     bool used = false;
     for (int g = 0; g < goals(); ++g) {
-      const double length = (goal(g) - start(s)).norm();
+      const double length = candidate.metric.distance(goal(g), start(s));
       if (length > limit) continue;
       used = true;
       goal_used[g] = 1;
@@ -48,13 +48,14 @@ void GraspGraph::connect(const Roadmap& roadmap, bool straight, double bound) {
     }
     if (!used) continue;
     roadmap.near(start(s), near);
-    for (const int v : near) own.push_back(add(vertex_count + s, v, (roadmap.vertices().col(v) - start(s)).norm()));
+    for (const int v : near)
+      own.push_back(add(vertex_count + s, v, candidate.metric.distance(roadmap.vertices().col(v), start(s))));
   }
   for (int g = 0; g < goals(); ++g) {
     if (!goal_used[g]) continue;
     roadmap.near(goal(g), near);
     for (const int v : near)
-      into_goals.push_back(add(v, first_goal() + g, (roadmap.vertices().col(v) - goal(g)).norm()));
+      into_goals.push_back(add(v, first_goal() + g, candidate.metric.distance(roadmap.vertices().col(v), goal(g))));
   }
   std::stable_sort(into_goals.begin(), into_goals.end(), [&](int a, int b) { return links[a].from < links[b].from; });
 }

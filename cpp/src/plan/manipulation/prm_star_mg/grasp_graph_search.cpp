@@ -20,8 +20,11 @@ GraspGraphSearch::GraspGraphSearch(const Roadmap& roadmap)
 
 double GraspGraphSearch::heuristic(int node) const {
   double least = kInfinity;
+  const JointMetric& metric = graph_->candidate.metric;
   const auto nearest = [&](const auto& q) {
-    for (const Eigen::VectorXd& goal : graph_->candidate.goals) least = std::min(least, (goal - q).squaredNorm());
+    for (const Eigen::VectorXd& goal : graph_->candidate.goals)
+      least = std::min(least, metric.any() ? metric.squared_distance(goal.data(), q.data(), static_cast<int>(q.size()))
+                                           : (goal - q).squaredNorm());
   };
   if (node < graph_->vertex_count)
     nearest(roadmap_.vertices().col(node));
@@ -137,7 +140,8 @@ double spliced_cost(const Roadmap& roadmap, const GraspGraph& graph, const std::
   std::unordered_map<int, double> along;  // Cost from the first roadmap vertex of the path.
   double sum = 0;
   for (std::size_t i = 1; i + 1 < nodes.size(); ++i) {
-    if (i > 1) sum += (roadmap.vertices().col(nodes[i]) - roadmap.vertices().col(nodes[i - 1])).norm();
+    if (i > 1)
+      sum += graph.candidate.metric.distance(roadmap.vertices().col(nodes[i]), roadmap.vertices().col(nodes[i - 1]));
     along.emplace(nodes[i], sum);
   }
   // For each exit the best entry before it counts.

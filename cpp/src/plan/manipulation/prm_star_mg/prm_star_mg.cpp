@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "plan/manipulation/common/finish_path.hpp"
 #include "plan/manipulation/common/first_transfer.hpp"
 #include "plan/manipulation/common/transfer_shortening.hpp"
 #include "plan/manipulation/prm_star_mg/roadmap_search.hpp"
@@ -48,11 +49,14 @@ bool run_prm_star_mg(ManipulationInput& input, ManipulationResult& result) {
     roadmap = build_roadmap(input.problem.group, denser, input.monitor, [&] { return input.out_of_time(); });
     if (input.out_of_time()) break;
   }
+  if (roadmap && !roadmap->warning().empty()) result.warnings.push_back(roadmap->warning());
   if (best.cost < first) result.stats.roadmap_cost = best.cost;
   if (result.path) {
-    result.lower_bound = std::min(result.lower_bound, result.cost);
     if (whole && options.shorten) refine_transfer(input, result);
+    if (options.shorten) finish_path(input, result);
+    result.stats.roadmap_bound = std::min(result.stats.roadmap_bound, result.cost);
   }
+  result.lower_bound = std::min(result.path ? result.cost : kInfinity, input.candidates.least_cost());
   return whole;
 }
 

@@ -22,12 +22,13 @@ double max_end_distance(const TransferPath& best, const ManipulationResult& resu
 }  // namespace
 
 RoadmapSearch::RoadmapSearch(const ManipulationInput& input, const Roadmap& roadmap, bool straight, int threads,
-                             TransferPath& best, ManipulationResult& result)
+                             TransferPath& best, ManipulationResult& result, PlanStage stage)
     : input_(input),
       roadmap_(roadmap),
       straight_(straight),
       best_(best),
       result_(result),
+      stage_(stage),
       threads_(resolve_threads(threads)),
       checks_(roadmap, input.checks, robot_caches_, threads_, input.monitor, result.stats) {
   for (const GraspCandidate& candidate : input.candidates.found()) graphs_.emplace_back(roadmap_, candidate);
@@ -40,13 +41,14 @@ RoadmapSearch::RoadmapSearch(const ManipulationInput& input, const Roadmap& road
 
 bool RoadmapSearch::run() {
   const bool whole = input_.candidates.complete() && search_batches();
-  result_.lower_bound = best_.cost;
+  double& bound = result_.stats.roadmap_bound;
+  bound = best_.cost;
   if (!whole) {
-    result_.lower_bound = std::min(result_.lower_bound, input_.candidates.least_cost_left());
-    for (const Entry& open : heap_) result_.lower_bound = std::min(result_.lower_bound, open.key);
+    bound = std::min(bound, input_.candidates.least_cost_left());
+    for (const Entry& open : heap_) bound = std::min(bound, open.key);
     // Grasps whose search has not begun are bounded by their straight lines.
     for (const GraspGraph& graph : graphs_)
-      if (!graph.connected) result_.lower_bound = std::min(result_.lower_bound, graph.candidate.straight_cost());
+      if (!graph.connected) bound = std::min(bound, graph.candidate.straight_cost());
   }
   for (const GraspGraph& graph : graphs_) {
     bool& searched = result_.grasps[graph.candidate.grasp].searched;
@@ -166,12 +168,14 @@ bool RoadmapSearch::accept(int index) {
   if (own.path_cost >= best_.cost) return true;
   JointPath path;
   for (const int node : own.nodes) path.waypoints.push_back(own.configuration(roadmap_, node));
+  own.candidate.metric.unroll(path.waypoints);
   const int blocked = input_.checks.blocked_edge(own.candidate.grasp, path);
   if (blocked >= 0) {
     own.set_step(own.steps[blocked], false);
     return false;
   }
-  best_ = {own.candidate.grasp, own.path_cost, std::move(path)};
+  const PlanStage stage = path.waypoints.size() == 2 ? PlanStage::straight_lines : stage_;
+  best_ = {own.candidate.grasp, own.path_cost, std::move(path), stage};
   take_path(input_, best_, result_);
   return true;
 }

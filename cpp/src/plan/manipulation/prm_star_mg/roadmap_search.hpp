@@ -14,9 +14,9 @@ namespace mmgrasp::detail {
 class RoadmapSearch {
  public:
   /// Searches for paths over the roadmap, or `straight` from start to goal, that cost less than `best`, which they
-  /// replace.
+  /// replace. Paths of one edge are reported as straight lines, others as found by `stage`.
   RoadmapSearch(const ManipulationInput& input, const Roadmap& roadmap, bool straight, int threads, TransferPath& best,
-                ManipulationResult& result);
+                ManipulationResult& result, PlanStage stage = PlanStage::roadmap);
 
   /// False when time ran out before all grasps were searched.
   bool run();
@@ -54,6 +54,7 @@ class RoadmapSearch {
   const bool straight_;
   TransferPath& best_;
   ManipulationResult& result_;
+  const PlanStage stage_;
   int threads_;
   std::vector<EdgeValidityCache> robot_caches_;  ///< One per opening.
   GraspGraphChecks checks_;

@@ -33,9 +33,9 @@ class Refinement {
       if (!roadmap) return;
       // Paths may be longer before they are shortened.
       const double slack = round % 2 == 0 ? kDetourFactor : 1;
-      TransferPath best{result_.grasp_index, slack * result_.cost, *result_.path};
+      TransferPath best{result_.grasp_index, slack * result_.cost, *result_.path, PlanStage::shortening};
       // Straight lines were checked before; a small roadmap is not worth a second thread.
-      RoadmapSearch(input_, *roadmap, false, 1, best, result_).run();
+      RoadmapSearch(input_, *roadmap, false, 1, best, result_, PlanStage::refinement).run();
       shorten_transfer(input_, best, result_, static_cast<unsigned>(round) + 1);
     }
   }
@@ -61,9 +61,9 @@ class Refinement {
 
 void refine_transfer(const ManipulationInput& input, ManipulationResult& result) {
   // The bound holds for the roadmaps before; these paths leave them.
-  const double lower_bound = result.lower_bound;
+  const double bound = result.stats.roadmap_bound;
   Refinement(input, result).run();
-  result.lower_bound = std::min(lower_bound, result.cost);
+  result.stats.roadmap_bound = std::min(bound, result.cost);
 }
 
 }  // namespace mmgrasp::detail

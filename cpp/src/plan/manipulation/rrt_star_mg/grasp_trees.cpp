@@ -18,7 +18,7 @@ GraspTrees::GraspTrees(const GraspEnds& ends)
     : ends_(ends),
       dimension_(static_cast<std::size_t>(ends.dimension())),
       trees_(2 * static_cast<std::size_t>(ends.size())),
-      index_{TreeIndex(ends.dimension()), TreeIndex(ends.dimension())} {
+      index_{TreeIndex(ends.dimension(), ends.metric()), TreeIndex(ends.dimension(), ends.metric())} {
   for (int g = 0; g < ends.size(); ++g)
     for (const int side : {GraspEnds::kStart, GraspEnds::kGoal})
       for (int k = 0; k < ends.count(g, side); ++k)
@@ -123,7 +123,7 @@ bool GraspTrees::has_duplicate(int v) const {
 }
 
 double GraspTrees::distance(int a, int b) const {
-  return std::sqrt(squared_distance(configuration(a), configuration(b), static_cast<int>(dimension_)));
+  return std::sqrt(ends_.metric().squared_distance(configuration(a), configuration(b), static_cast<int>(dimension_)));
 }
 
 bool GraspTrees::is_scanned(int tree) const {
@@ -139,7 +139,7 @@ int GraspTrees::nearest_in_tree(int tree, const double* q) const {
             q, [&](int v) { return vertex(v).tree == tree; }, squared);
   int best = -1;
   each_in_tree(tree, [&](int v) {
-    const double found = squared_distance(at(v), q, static_cast<int>(dimension_));
+    const double found = ends_.metric().squared_distance(at(v), q, static_cast<int>(dimension_));
     if (found >= squared) return;
     squared = found;
     best = v;
@@ -162,7 +162,7 @@ void GraspTrees::near_in_tree(int tree, const double* q, double radius, std::vec
     return;
   }
   each_in_tree(tree, [&](int v) {
-    const double squared = squared_distance(at(v), q, static_cast<int>(dimension_));
+    const double squared = ends_.metric().squared_distance(at(v), q, static_cast<int>(dimension_));
     if (squared < radius * radius) out.push_back({v, std::sqrt(squared)});
   });
 }
@@ -195,7 +195,7 @@ void GraspTrees::check_invariants() const {
     }
     const Vertex& above = vertex(own.parent);
     demand(above.alive && above.tree == own.tree, "a parent that was removed or is of another tree");
-    const double edge = std::sqrt(squared_distance(at(v), at(own.parent), static_cast<int>(dimension_)));
+    const double edge = std::sqrt(ends_.metric().squared_distance(at(v), at(own.parent), static_cast<int>(dimension_)));
     demand(std::abs(own.cost - above.cost - edge) < 1e-9, "a cost that is not the parent's and the edge's");
     int children = 0;
     for (int child = above.first_child; child >= 0; child = vertex(child).next_sibling) children += child == v ? 1 : 0;

@@ -50,7 +50,7 @@ class MMGRASP_EXPORT GraspTrees {
   int find(int tree, int configuration) const;
   /// Another vertex has the same configuration.
   bool has_duplicate(int v) const;
-  /// Euclidean distance of two configurations, and of two vertices.
+  /// Distance of two configurations by the ends' metric, and of two vertices.
   double distance(int a, int b) const;
   double vertex_distance(int a, int b) const { return distance(vertex(a).configuration, vertex(b).configuration); }
 

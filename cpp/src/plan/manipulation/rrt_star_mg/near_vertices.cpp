@@ -35,7 +35,7 @@ double NearVertices::radius(int vertices) const {
 }
 
 // RRT*'s radius for vertices that are uniform in a set of this volume (Karaman and Frazzoli; of the informed set as in
-// Informed RRT* and BIT*) holds 2 (1 + 1/d) log n of them. With 2 n^(1/(d+1)) times as many it is in the end larger
+// Informed RRT* and BIT*) holds a constant times log n of them. With n^(1/(d+1)) times as many it is in the end larger
 // than any constant times (log n / n)^(1/(d+1)), which Solovey and others ask for. Ellipsoids of good paths are thin,
 // and a sphere wider than they are holds fewer: as many of the nearest are kept, too.
 void NearVertices::keep_nearest(int vertices, double volume, std::vector<Near>& near) const {
@@ -43,7 +43,7 @@ void NearVertices::keep_nearest(int vertices, double volume, std::vector<Near>& 
   if (!options_.informed) volume = informed_.box_volume();
   const int dimension = trees_.ends().dimension();
   const double n = std::max(2, vertices), d = dimension;
-  const double joined = 4 * (1 + 1 / d) * std::log(n) * std::pow(n, 1 / (d + 1));
+  const double joined = 0.5 * (d + 1) * std::log(n) * std::pow(n, 1 / (d + 1));
   const auto count = static_cast<std::ptrdiff_t>(std::ceil(joined)) + tuning_.min_near_vertices;
   if (static_cast<std::ptrdiff_t>(near.size()) <= count) return;
   const auto nearer = [](const Near& a, const Near& b) {
@@ -59,7 +59,8 @@ void NearVertices::keep_nearest(int vertices, double volume, std::vector<Near>& 
 void NearVertices::include(int nearest, const double* q, std::vector<Near>& near) const {
   for (const Near& entry : near)
     if (entry.vertex == nearest) return;
-  near.push_back({nearest, std::sqrt(squared_distance(trees_.at(nearest), q, trees_.ends().dimension()))});
+  near.push_back(
+      {nearest, std::sqrt(trees_.ends().metric().squared_distance(trees_.at(nearest), q, trees_.ends().dimension()))});
 }
 
 }  // namespace mmgrasp::detail

@@ -1,12 +1,13 @@
 #include "plan/manipulation/rrt_star_mg/path_shortcutting.hpp"
 
-#include <cstddef>
-#include <vector>
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace mmgrasp::detail {
 namespace {
 
-constexpr double kBeforeEdgeEnd = 0.999;  // New points on an edge keep off the vertex at its end.
+constexpr double kLeastShare = 1e-5;  // Corners are not cut closer than this share of an edge.
 
 }  // namespace
 
@@ -17,6 +18,7 @@ PathShortcutting::PathShortcutting(GraspTrees& trees, TreeChecks& checks, TreeCo
       connections_(connections),
       incumbent_(incumbent),
       tuning_(tuning),
+      moves_(trees.ends().dimension()),
       q_(trees.ends().dimension()) {}
 
 void PathShortcutting::skip_vertices(int grasp) {
@@ -28,10 +30,9 @@ void PathShortcutting::skip_vertices(int grasp) {
   for (const std::vector<int>& branch : path_)
     for (std::size_t i = 0; i + 2 < branch.size(); ++i)
       for (std::size_t k = branch.size() - 1; k > i + 1; --k) {
-        const double length = trees_.vertex_distance(branch[i], branch[k]);
-        if (trees_.vertex(branch[k]).cost + length >= trees_.vertex(branch[i]).cost * (1 - kLeastImprovement)) continue;
+        // Also when that is no shorter: a vertex on a straight line is one corner too many.
         if (!is_free(branch[i], branch[k])) continue;
-        trees_.reparent(branch[i], branch[k], length);
+        trees_.reparent(branch[i], branch[k], trees_.vertex_distance(branch[i], branch[k]));
         break;
       }
   if (!connections_.trace_path(grasp, path_)) return;
@@ -54,45 +55,101 @@ int PathShortcutting::pick_grasp(Rng& rng, int grasps) {
   return connections_.draw_grasp(rng, grasps);
 }
 
-bool PathShortcutting::pick_corner(Rng& rng, const TreeConnections::Branches& path, Corner& out) {
-  const std::size_t corners = path[0].size() + path[1].size() - 2;
-  if (corners == 0) return false;
-  std::size_t at = rng.index(corners);
-  const int side = at < path[0].size() - 1 ? 0 : 1;
-  if (side == 1) at -= path[0].size() - 1;
-  const std::vector<int>& branch = path[side];
-  out = {branch[at + 1], branch[at], at > 0 ? branch[at - 1] : path[1 - side].front(), at == 0};
+int PathShortcutting::improve_randomly(Rng& rng, int grasps) {
+  const int grasp = pick_grasp(rng, grasps);
+  if (grasp < 0) return -1;
+  const int connection = connections_.best(grasp).connection;
+  if (!connections_.trace_path(grasp, path_)) return grasp;
+  vertices_ = connections_.vertices(connection, crossing_);
+  if (vertices_.size() < 3) return -1;
+  const bool improved =
+      rng.uniform() < tuning_.joint_shortcut_probability ? shortcut_some_joints(rng, grasp) : cut_corner(rng, grasp);
+  return improved ? grasp : -1;
+}
+
+bool PathShortcutting::cut_corner(Rng& rng, int grasp) {
+  const std::size_t corner = 1 + rng.index(vertices_.size() - 2);
+  made_.clear();
+  for (const std::size_t neighbour : {corner - 1, corner + 1}) {
+    const double share = draw_share(rng);
+    if (share < 1) made_.push_back(point_between(vertices_[corner], vertices_[neighbour], share));
+  }
+  return replace(grasp, corner - 1, corner + 1);
+}
+
+// An obstacle that holds a corner in some joints leaves it free to move in the others. Corners close to each other can
+// only move together.
+bool PathShortcutting::shortcut_some_joints(Rng& rng, int grasp) {
+  const std::size_t first = rng.index(vertices_.size() - 2);
+  const std::size_t last = first + 2 + rng.index(vertices_.size() - first - 2);
+  const double share = draw_share(rng);
+  const int d = trees_.ends().dimension();
+  for (int k = 0; k < d; ++k) moves_[k] = rng.uniform() < 0.5 ? share : 0;
+  const JointMetric& metric = trees_.ends().metric();
+  std::vector<Eigen::VectorXd> way;
+  for (std::size_t i = first; i <= last; ++i)
+    way.emplace_back(Eigen::Map<const Eigen::VectorXd>(trees_.at(vertices_[i]), d));
+  metric.unroll(way);
+  double whole = 0, passed = 0;
+  for (std::size_t i = first; i < last; ++i) whole += trees_.vertex_distance(vertices_[i], vertices_[i + 1]);
+  made_.clear();
+  for (std::size_t i = first + 1; i < last; ++i) {
+    passed += trees_.vertex_distance(vertices_[i - 1], vertices_[i]);
+    const Eigen::VectorXd &from = way.front(), &to = way.back(), &own = way[i - first];
+    for (int k = 0; k < d; ++k) q_[k] = own[k] + moves_[k] * (from[k] + passed / whole * (to[k] - from[k]) - own[k]);
+    metric.wrap(q_.data());
+    made_.push_back(trees_.add_configuration(q_.data()));
+  }
+  return replace(grasp, first, last);
+}
+
+bool PathShortcutting::replace(int grasp, std::size_t first, std::size_t last) {
+  double gain = 0;
+  for (std::size_t i = first; i < last; ++i) gain += trees_.vertex_distance(vertices_[i], vertices_[i + 1]);
+  made_.insert(made_.begin(), trees_.vertex(vertices_[first]).configuration);
+  made_.push_back(trees_.vertex(vertices_[last]).configuration);
+  for (std::size_t i = 0; i + 1 < made_.size(); ++i) gain -= trees_.distance(made_[i], made_[i + 1]);
+  if (gain < kLeastImprovement * connections_.best(grasp).cost) return false;
+  for (std::size_t i = 1; i + 1 < made_.size(); ++i)
+    if (!checks_.configuration_is_free(grasp, made_[i])) return false;
+  // The edge in the middle first: those of a cut corner beside it are parts of free edges.
+  const std::size_t edges = made_.size() - 1;
+  for (std::size_t k = 0; k < edges; ++k) {
+    const std::size_t i = (k + edges / 2) % edges;
+    if (!checks_.edge_is_verified(grasp, made_[i], made_[i + 1])) return false;
+  }
+  // From the end that is nearer to the root of its tree.
+  const bool from_start = first < crossing_;
+  if (!from_start) {
+    std::reverse(made_.begin(), made_.end());
+    std::swap(first, last);
+  }
+  int at = vertices_[first];
+  for (std::size_t i = 1; i + 1 < made_.size(); ++i)
+    at = trees_.add(at, made_[i], trees_.distance(made_[i - 1], made_[i]));
+  const int end = vertices_[last];
+  if (from_start && last >= crossing_) {
+    connections_.add(at, end);
+  } else {
+    trees_.reparent(end, at, trees_.vertex_distance(at, end));
+  }
   return true;
 }
 
-int PathShortcutting::cut_random_corner(Rng& rng, int grasps) {
-  const int grasp = pick_grasp(rng, grasps);
-  if (grasp < 0) return -1;
-  if (!connections_.trace_path(grasp, path_)) return grasp;
-  Corner at;
-  if (!pick_corner(rng, path_, at)) return -1;
-  // Far from the corner is worth more at first; a path that is nearly shortest can only be cut close to it.
-  const bool near_corner = rng.uniform() < tuning_.near_corner_probability;
-  int points[2];
-  for (int i = 0; i < 2; ++i) {
-    const double drawn = rng.uniform() * rng.uniform();
-    const double share = near_corner ? drawn : 1 - drawn;
-    const double *from = trees_.at(at.corner), *to = trees_.at(i == 0 ? at.before : at.after);
-    for (int k = 0; k < trees_.ends().dimension(); ++k) q_[k] = from[k] + (to[k] - from[k]) * share * kBeforeEdgeEnd;
-    points[i] = trees_.add_configuration(q_.data());
-  }
-  if (!checks_.edge_is_free(grasp, points[0], points[1])) return -1;
-  const auto distance_from = [&](int vertex, int configuration) {
-    return trees_.distance(trees_.vertex(vertex).configuration, configuration);
-  };
-  const int first = trees_.add(at.before, points[0], distance_from(at.before, points[0]));
-  const int second = trees_.add(first, points[1], trees_.distance(points[0], points[1]));
-  if (at.at_connection) {
-    connections_.add(second, at.after);
-  } else {
-    trees_.reparent(at.after, second, distance_from(at.after, points[1]));
-  }
-  return grasp;
+// All orders of magnitude occur: how far from a corner the obstacle is does not matter, and the last thousandth is
+// gained as fast as the first tenth.
+double PathShortcutting::draw_share(Rng& rng) {
+  const double kind = 3 * rng.uniform();
+  if (kind < 1) return 1;
+  return kind < 2 ? rng.uniform() : std::pow(kLeastShare, rng.uniform());
+}
+
+int PathShortcutting::point_between(int from, int to, double share) {
+  const JointMetric& metric = trees_.ends().metric();
+  const double *a = trees_.at(from), *b = trees_.at(to);
+  for (int k = 0; k < trees_.ends().dimension(); ++k) q_[k] = a[k] + (metric.nearest(k, a[k], b[k]) - a[k]) * share;
+  metric.wrap(q_.data());
+  return trees_.add_configuration(q_.data());
 }
 
 }  // namespace mmgrasp::detail

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <vector>
 
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/random.hpp"
@@ -24,22 +26,25 @@ class MMGRASP_EXPORT PathShortcutting {
   /// follow.
   void skip_vertices(int grasp);
 
-  /// Replaces a random corner of the best path, or of another grasp's (only of the first `grasps`, which can still
-  /// win), by an edge between points on both of its sides, when that edge is free. Returns the grasp whose connections
-  /// must be updated, or -1.
-  int cut_random_corner(Rng& rng, int grasps);
+  /// One random shortcut on the best path, or on another grasp's (only of the first `grasps`, which can still win),
+  /// when that is free and makes the path shorter. Returns the grasp whose connections must be updated, or -1.
+  int improve_randomly(Rng& rng, int grasps);
 
  private:
-  /// A corner of a path and its neighbours there; the connection may be between it and the one after it.
-  struct Corner {
-    int before, corner, after;  ///< Vertices.
-    bool at_connection;
-  };
-
   /// The best path's grasp or another one with a path; -1 when that one has lost it.
   int pick_grasp(Rng& rng, int grasps);
-  /// False when the path is a straight line.
-  static bool pick_corner(Rng& rng, const TreeConnections::Branches& path, Corner& out);
+  // On vertices_:
+  /// Replaces a corner by an edge between points on both of its sides.
+  bool cut_corner(Rng& rng, int grasp);
+  /// Moves the vertices between two others towards the straight line between those, in a random choice of joints alone
+  /// (as partial shortcuts, Geraerts and Overmars 2007).
+  bool shortcut_some_joints(Rng& rng, int grasp);
+  /// Puts the configurations `made_` between two vertices in place of those there, when that is free and shorter.
+  bool replace(int grasp, std::size_t first, std::size_t last);
+  /// How far a shortcut goes, in (0, 1].
+  static double draw_share(Rng& rng);
+  /// A new configuration between two vertices.
+  int point_between(int from, int to, double share);
 
   GraspTrees& trees_;
   TreeChecks& checks_;
@@ -47,7 +52,10 @@ class MMGRASP_EXPORT PathShortcutting {
   const Incumbent& incumbent_;
   const RrtStarMgTuning& tuning_;
   TreeConnections::Branches path_;  ///< Scratch.
-  Eigen::VectorXd q_;               ///< Scratch.
+  std::vector<int> vertices_;       ///< Of the path to be improved, from root to root ...
+  std::size_t crossing_ = 0;        ///< ... so many of them in the start's tree.
+  std::vector<int> made_;           ///< Scratch: configurations.
+  Eigen::VectorXd moves_, q_;       ///< Scratch.
 };
 
 }  // namespace mmgrasp::detail

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mmgrasp/core/random.hpp"
+#include "plan/manipulation/common/finish_path.hpp"
 #include "plan/manipulation/common/first_transfer.hpp"
 #include "plan/manipulation/common/informed_union.hpp"
 #include "plan/manipulation/common/transfer_shortening.hpp"
@@ -19,18 +20,20 @@
 #include "plan/manipulation/rrt_star_mg/tree_connections.hpp"
 #include "plan/manipulation/rrt_star_mg/tree_growth.hpp"
 #include "plan/manipulation/rrt_star_mg/tree_pruning.hpp"
+#include "plan/manipulation/rrt_star_mg/tree_repair.hpp"
 #include "plan/manipulation/rrt_star_mg/tree_sampler.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
 constexpr int kReportInterval = 64;  // Samples.
+constexpr int kMaxUnseeded = 500;    // Samples after which the trees get the first path if they have none themselves.
 
 /// Algorithm 5.13. Trees, informed sets and the incumbent are shared by those who sample, grow, connect and improve;
 /// everything else is theirs.
 class RrtStarMg {
  public:
-  /// Over the grasps known now; goes on from the result's path when it has one.
+  /// Over the grasps known now; the result may have a path already.
   RrtStarMg(ManipulationInput& input, ManipulationResult& result, const RrtStarMgTuning& tuning)
       : input_(input),
         result_(result),
@@ -43,6 +46,7 @@ class RrtStarMg {
         near_vertices_(trees_, informed_, options_, tuning),
         connections_(trees_),
         sampler_(trees_, informed_, options_, tuning),
+        repair_(trees_, checks_, near_vertices_, sampler_),
         growth_(trees_, checks_, near_vertices_, incumbent_, options_, tuning),
         connect_trees_(trees_, checks_, near_vertices_, incumbent_, connections_, options_, tuning),
         shortcutting_(trees_, checks_, connections_, incumbent_, tuning),
@@ -50,9 +54,7 @@ class RrtStarMg {
     growth_.on_rewired = [this](int grasp) {
       if (connections_.any(grasp)) update_incumbent(grasp);
     };
-    if (!result.path) return;
-    incumbent_.cost = result.cost;
-    prune_and_reassign(incumbent_, trees_, informed_, sampler_);
+    if (result.path) first_ = {result.grasp_index, result.cost, *result.path};
   }
 
   void run() {
@@ -62,14 +64,16 @@ class RrtStarMg {
     int i = 0;
     for (; i < options_.max_samples && informed_.grasps() > 0 && incumbent_.cost > goal_cost; ++i) {  // Line 6.
       if (input_.out_of_time()) break;
-      // Not before another grasp has a path: the first one may be poor, and trees that have one grow less evenly.
-      if (!incumbent_.in_trees() && result_.path && connections_.any_listed()) seed_tree();
+      // Trees that begin with a path grow where it runs; those that find their own have been everywhere.
+      if (first_.grasp >= 0 && (incumbent_.in_trees() || i == kMaxUnseeded)) seed_tree(std::exchange(first_, {}));
       if (i % kReportInterval == 0) input_.monitor.report("search", static_cast<double>(i) / options_.max_samples);
       sample(options_.bidirectional ? i % 2 : GraspEnds::kStart);  // Line 26: SwapTrees.
     }
     result_.stats.samples += static_cast<std::size_t>(i);
     result_.stats.vertices += static_cast<std::size_t>(trees_.vertex_count());
-    result_.lower_bound = std::min({incumbent_.cost, ends_.straight_cost(0), input_.candidates.least_cost_left()});
+    finish_path(input_, result_);
+    const double best = result_.path ? result_.cost : kInfinity;
+    result_.lower_bound = std::min({best, ends_.straight_cost(0), input_.candidates.least_cost_left()});
     if (options_.keep_trees) append_search_trees(trees_, result_.trees);
   }
 
@@ -138,22 +142,27 @@ class RrtStarMg {
   }
 
   void shortcut() {
-    const int grasp = shortcutting_.cut_random_corner(rng_, informed_.grasps());
+    const int grasp = shortcutting_.improve_randomly(rng_, informed_.grasps());
     if (grasp >= 0) update_incumbent(grasp);
   }
 
-  /// Puts the path that the result had beforehand into the trees of its grasp.
-  void seed_tree() {
+  /// Puts the path that was known beforehand into the trees of its grasp.
+  void seed_tree(const TransferPath& first) {
     int grasp = 0;
-    while (ends_.grasp(grasp) != result_.grasp_index) ++grasp;
-    incumbent_.grasp = grasp;
-    if (grasp >= informed_.grasps()) return;  // The path is the straight line.
-    const std::vector<Eigen::VectorXd>& path = result_.path->waypoints;
+    while (ends_.grasp(grasp) != first.grasp) ++grasp;
+    if (first.cost < incumbent_.cost) {
+      incumbent_ = {first.cost, grasp};
+      prune_and_reassign(incumbent_, trees_, informed_, sampler_);
+    }
+    if (grasp >= informed_.grasps()) return;  // The path is a straight line, or cannot become the best one.
+    std::vector<Eigen::VectorXd> path = first.path.waypoints;
+    ends_.metric().split_long_edges(path);
     int at = trees_.nearest_in_tree(GraspTrees::tree(grasp, GraspEnds::kStart), path.front().data());
     for (std::size_t i = 1; i + 1 < path.size(); ++i)
-      at = trees_.add(at, trees_.add_configuration(path[i].data()), (path[i] - path[i - 1]).norm());
+      at = trees_.add(at, trees_.add_configuration(ends_.metric().wrapped(path[i]).data()),
+                      (path[i] - path[i - 1]).norm());
+    if (connections_.best(grasp).connection < 0) connections_.list_grasp(grasp);
     connections_.add(at, trees_.nearest_in_tree(GraspTrees::tree(grasp, GraspEnds::kGoal), path.back().data()));
-    connections_.list_grasp(grasp);
     update_incumbent(grasp);
     shortcutting_.skip_vertices(grasp);
     update_incumbent(grasp);
@@ -173,8 +182,8 @@ class RrtStarMg {
     }
   }
 
-  /// The final check of a path, which becomes the incumbent when it passes. A blocked edge is cut off otherwise, with
-  /// all that hangs on it: the search stepped over a thin obstacle.
+  /// The final check of a path, which becomes the incumbent when it passes. Otherwise the search stepped over a thin
+  /// obstacle: the blocked edge is taken out, and what was behind it connected anew.
   bool accept(int grasp, int connection) {
     std::size_t crossing = 0;
     const std::vector<int> vertices = connections_.vertices(connection, crossing);
@@ -184,14 +193,16 @@ class RrtStarMg {
       JointPath path;
       for (const int v : vertices)
         path.waypoints.push_back(Eigen::Map<const Eigen::VectorXd>(trees_.at(v), ends_.dimension()));
-      take_path(input_, {ends_.grasp(grasp), incumbent_.cost, std::move(path)}, result_);
+      ends_.metric().unroll(path.waypoints);
+      const PlanStage stage = vertices.size() == 2 ? PlanStage::straight_lines : PlanStage::trees;
+      take_path(input_, {ends_.grasp(grasp), incumbent_.cost, std::move(path), stage}, result_);
       return true;
     }
     const auto edge = static_cast<std::size_t>(blocked);
     if (edge + 1 == crossing) {
       connections_.remove(grasp, connection);
     } else {
-      trees_.remove_below(edge + 1 < crossing ? vertices[edge + 1] : vertices[edge], [](int) {});
+      repair_.reconnect(edge + 1 < crossing ? vertices[edge + 1] : vertices[edge]);
     }
     return false;
   }
@@ -200,6 +211,7 @@ class RrtStarMg {
   ManipulationResult& result_;
   const RrtStarMgOptions options_;
   const RrtStarMgTuning& tuning_;
+  TransferPath first_;  ///< Known beforehand and not in the trees yet; no grasp: none.
   GraspEnds ends_;
   InformedUnion informed_;
   GraspTrees trees_;
@@ -208,6 +220,7 @@ class RrtStarMg {
   NearVertices near_vertices_;
   TreeConnections connections_;
   TreeSampler sampler_;
+  TreeRepair repair_;
   TreeGrowth growth_;
   ConnectTrees connect_trees_;
   PathShortcutting shortcutting_;
@@ -222,6 +235,7 @@ bool run_rrt_star_mg(ManipulationInput& input, ManipulationResult& result, const
   const auto good_enough = [&] { return result.path && result.cost <= input.options.rrt.goal_cost; };
   if (first.grasp >= 0 && !good_enough()) shorten_transfer(input, first, result);
   if (good_enough()) {
+    finish_path(input, result);
     result.lower_bound = std::min(result.cost, candidates.least_cost());
     return false;
   }

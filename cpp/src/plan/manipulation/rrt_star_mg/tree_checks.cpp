@@ -24,10 +24,11 @@ bool TreeChecks::configuration_is_free(int grasp, int configuration) {
 
 // The object first: it is larger than a link as a rule, and hits first.
 bool TreeChecks::edge_is_free(int grasp, int a, int b) {
+  if (blocked_.find(grasp, a, b)) return false;
   const int opening = trees_.ends().opening(grasp);
   const auto known = robot_.find(opening, a, b);
   if (known && !*known) return false;
-  const Eigen::VectorXd from = values(a), to = values(b);
+  const Eigen::VectorXd from = values(a), to = trees_.ends().metric().nearest(from, values(b));
   ++stats_.edges_checked_attached;
   if (!checks_.attached_edge_is_free(0, trees_.ends().grasp(grasp), from, to)) return false;
   if (known) return true;
@@ -38,18 +39,24 @@ bool TreeChecks::edge_is_free(int grasp, int a, int b) {
 }
 
 bool TreeChecks::shortcut_is_free(int grasp, int a, int b) {
-  if (blocked_shortcuts_.find(grasp, a, b)) return false;
   const bool free = edge_is_free(grasp, a, b);
-  if (!free) blocked_shortcuts_.insert(grasp, a, b, false);
+  if (!free) blocked_.insert(grasp, a, b, false);
+  return free;
+}
+
+bool TreeChecks::edge_is_verified(int grasp, int a, int b) {
+  if (verified_.find(grasp, a, b)) return true;
+  if (blocked_.find(grasp, a, b)) return false;
+  const Eigen::VectorXd from = values(a), to = trees_.ends().metric().nearest(from, values(b));
+  const bool free = checks_.path_edge_is_free(trees_.ends().grasp(grasp), from, to);
+  (free ? verified_ : blocked_).insert(grasp, a, b, free);
   return free;
 }
 
 int TreeChecks::blocked_edge(int grasp, const std::vector<int>& vertices) {
   for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
     const int a = trees_.vertex(vertices[i]).configuration, b = trees_.vertex(vertices[i + 1]).configuration;
-    if (verified_.find(grasp, a, b)) continue;
-    if (!checks_.path_edge_is_free(trees_.ends().grasp(grasp), values(a), values(b))) return static_cast<int>(i);
-    verified_.insert(grasp, a, b, true);
+    if (!edge_is_verified(grasp, a, b)) return static_cast<int>(i);
   }
   return -1;
 }

@@ -12,7 +12,8 @@
 namespace mmgrasp::detail {
 
 /// Collision checks of the trees' configurations and of edges between them. What is found out about the robot alone is
-/// kept for all grasps with the same opening, and final checks of a grasp's edges are not repeated.
+/// kept for all grasps with the same opening; final checks of a grasp's edges are not repeated, and an edge that failed
+/// one is blocked from then on.
 class MMGRASP_EXPORT TreeChecks {
  public:
   /// Counts edges in `stats`.
@@ -22,10 +23,12 @@ class MMGRASP_EXPORT TreeChecks {
   bool robot_is_free(int grasp, int configuration);
   /// Robot and object in hand.
   bool configuration_is_free(int grasp, int configuration);
-  /// Robot and object in hand, in the coarse steps of the search. Both configurations are known to be free.
+  /// Robot and object in hand, in the steps of the search. Both configurations are known to be free.
   bool edge_is_free(int grasp, int a, int b);
   /// As edge_is_free(), for shortcuts: the same ones are tried again and again, and those found blocked are cached.
   bool shortcut_is_free(int grasp, int a, int b);
+  /// The final check of an edge.
+  bool edge_is_verified(int grasp, int a, int b);
   /// The first edge of a path through these vertices that does not pass the final check; -1: all do.
   int blocked_edge(int grasp, const std::vector<int>& vertices);
   /// All grasps open the fingers as far: what blocks the robot with one grasp blocks it with all.
@@ -37,9 +40,9 @@ class MMGRASP_EXPORT TreeChecks {
   const GraspTrees& trees_;
   TransferChecks& checks_;
   ManipulationStats& stats_;
-  CollisionCache robot_;              ///< Configurations and edges of the robot alone, by opening.
-  CollisionCache verified_;           ///< Edges that passed the final check, by grasp.
-  CollisionCache blocked_shortcuts_;  ///< Shortcuts that are blocked, by grasp.
+  CollisionCache robot_;     ///< Configurations and edges of the robot alone, by opening.
+  CollisionCache verified_;  ///< Edges that passed the final check, by grasp.
+  CollisionCache blocked_;   ///< Shortcuts that are blocked and edges that failed the final check, by grasp.
 };
 
 }  // namespace mmgrasp::detail

@@ -47,12 +47,14 @@ TreeGrowth::Extension TreeGrowth::extend_cheapest_tree(int side, int configurati
 
 int TreeGrowth::steer(int from, int target) {
   const int d = trees_.ends().dimension();
+  const JointMetric& metric = trees_.ends().metric();
   const double* a = trees_.at(from);
   const double* b = trees_.configuration(target);
-  const double distance = std::sqrt(squared_distance(a, b, d));
+  const double distance = std::sqrt(metric.squared_distance(a, b, d));
   if (distance < kSameConfiguration) return -1;
   if (distance <= options_.step) return target;
-  for (int i = 0; i < d; ++i) q_[i] = a[i] + (b[i] - a[i]) * (options_.step / distance);
+  for (int i = 0; i < d; ++i) q_[i] = a[i] + (metric.nearest(i, a[i], b[i]) - a[i]) * (options_.step / distance);
+  metric.wrap(q_.data());
   return trees_.add_configuration(q_.data());
 }
 
@@ -60,7 +62,9 @@ int TreeGrowth::extend_half(int from, int target) {
   const GraspTrees::Vertex start = trees_.vertex(from);
   const int grasp = GraspTrees::grasp_of(start.tree), d = trees_.ends().dimension();
   const double *a = trees_.at(from), *b = trees_.configuration(target);
-  for (int k = 0; k < d; ++k) q_[k] = 0.5 * (a[k] + b[k]);
+  const JointMetric& metric = trees_.ends().metric();
+  for (int k = 0; k < d; ++k) q_[k] = 0.5 * (a[k] + metric.nearest(k, a[k], b[k]));
+  metric.wrap(q_.data());
   const int half = trees_.add_configuration(q_.data());
   if (!checks_.configuration_is_free(grasp, half) || !checks_.edge_is_free(grasp, start.configuration, half)) return -1;
   return trees_.add(from, half, trees_.distance(start.configuration, half));

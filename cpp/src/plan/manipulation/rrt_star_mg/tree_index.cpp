@@ -1,11 +1,13 @@
 #include "plan/manipulation/rrt_star_mg/tree_index.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace mmgrasp::detail {
 
-TreeIndex::TreeIndex(int dimension)
+TreeIndex::TreeIndex(int dimension, JointMetric metric)
     : dimension_(dimension),
+      metric_(std::move(metric)),
       block_size_(static_cast<std::size_t>(dimension) * kBlock),
       offsets_(static_cast<std::size_t>(dimension), 0.0) {
   nodes_.emplace_back();
@@ -28,6 +30,13 @@ void TreeIndex::put(int block, int id, const double* q) {
 }
 
 void TreeIndex::insert(int id, const double* q) {
+  if (!metric_.any()) return insert_wrapped(id, q);
+  std::vector<double> wrapped(q, q + dimension_);
+  metric_.wrap(wrapped.data());
+  insert_wrapped(id, wrapped.data());
+}
+
+void TreeIndex::insert_wrapped(int id, const double* q) {
   ++size_;
   for (;;) {
     std::size_t at = 0;
@@ -84,7 +93,7 @@ void TreeIndex::split(int index) {
     for (int i = 0; i < block.count; ++i) {
       for (int a = 0; a < dimension_; ++a) q[a] = coordinates(b)[a * kBlock + i];
       --size_;
-      insert(block.ids[i], q.data());
+      insert_wrapped(block.ids[i], q.data());
     }
     blocks_[b].count = 0;
   }

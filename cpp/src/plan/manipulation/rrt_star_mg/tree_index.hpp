@@ -1,21 +1,24 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/export.hpp"
+#include "mmgrasp/robot/detail/joint_metric.hpp"
 
 namespace mmgrasp::detail {
 
 /// Nearest-neighbour search over the vertices of any number of trees: one k-d tree with small buckets that grows and
-/// shrinks with them. Each query says which vertices count.
+/// shrinks with them. Distances are the metric's. Each query says which vertices count.
 class MMGRASP_EXPORT TreeIndex {
  public:
-  explicit TreeIndex(int dimension);
+  explicit TreeIndex(int dimension, JointMetric metric = {});
 
-  /// `id` >= 0, not in the index.
+  /// `id` >= 0, not in the index. Angles that wrap may be given in any turn, in queries too.
   void insert(int id, const double* q);
   void remove(int id);
   std::size_t size() const { return size_; }
@@ -63,22 +66,63 @@ class MMGRASP_EXPORT TreeIndex {
   double* coordinates(int block) { return values_.data() + static_cast<std::size_t>(block) * block_size_; }
   const double* coordinates(int block) const { return values_.data() + static_cast<std::size_t>(block) * block_size_; }
   int new_block();
+  void insert_wrapped(int id, const double* q);
   void put(int block, int id, const double* q);
   void split(int node);
 
   /// Visits cells from the root down, nearer child first; `bound` may decrease meanwhile.
   template <class Visit>
   void search(const double* q, const double& bound, const Visit& visit) const {
-    visit_node(0, q, 0, bound, visit);
+    if (!metric_.any()) return visit_node(0, q, 0, bound, visit);
+    query_.assign(q, q + dimension_);
+    metric_.wrap(query_.data());
+    cell_low_.assign(static_cast<std::size_t>(dimension_), -kPi);
+    cell_high_.assign(static_cast<std::size_t>(dimension_), kPi);
+    visit_node_around(0, query_.data(), 0, bound, visit);
+  }
+
+  /// As visit_node() where angles wrap: a cell may be nearer across the seam than across the plane that cut it off.
+  template <class Visit>
+  void visit_node_around(int index, const double* q, double cell, const double& bound, const Visit& visit) const {
+    const Node& node = nodes_[index];
+    if (node.axis < 0) return visit_leaf(node, q, visit);
+    if (!metric_.wraps(node.axis)) {
+      const double across = q[node.axis] - node.split;
+      const bool below = across < 0;
+      visit_node_around(below ? node.low : node.high, q, cell, bound, visit);
+      return visit_far(below ? node.high : node.low, node.axis, across, q, cell, bound, visit);
+    }
+    const double low = cell_low_[node.axis], high = cell_high_[node.axis];
+    const double to_low = off(q[node.axis], low, node.split), to_high = off(q[node.axis], node.split, high);
+    for (const bool lower : {to_low <= to_high, to_low > to_high}) {
+      (lower ? cell_high_ : cell_low_)[node.axis] = node.split;
+      visit_far(lower ? node.low : node.high, node.axis, lower ? to_low : to_high, q, cell, bound, visit);
+      (lower ? cell_high_ : cell_low_)[node.axis] = lower ? high : low;
+    }
+  }
+
+  /// Visits a child that is `across` away along its parent's axis, if that is near enough.
+  template <class Visit>
+  void visit_far(int child, int axis, double across, const double* q, double cell, const double& bound,
+                 const Visit& visit) const {
+    double& offset = offsets_[axis];
+    const double before = offset, farther = cell - before * before + across * across;
+    if (farther >= bound) return;
+    offset = across;
+    visit_node_around(child, q, farther, bound, visit);
+    offsets_[axis] = before;
+  }
+
+  /// From an angle to an interval of angles, all of them in [-pi, pi].
+  static double off(double angle, double low, double high) {
+    if (angle >= low && angle <= high) return 0;
+    return angle < low ? std::min(low - angle, angle + kTwoPi - high) : std::min(angle - high, low + kTwoPi - angle);
   }
 
   template <class Visit>
   void visit_node(int index, const double* q, double cell, const double& bound, const Visit& visit) const {
     const Node& node = nodes_[index];
-    if (node.axis < 0) {
-      for (int b = node.low; b >= 0; b = blocks_[b].next) visit_block(b, q, visit);
-      return;
-    }
+    if (node.axis < 0) return visit_leaf(node, q, visit);
     const double across = q[node.axis] - node.split;
     const int near = across < 0 ? node.low : node.high, far = across < 0 ? node.high : node.low;
     visit_node(near, q, cell, bound, visit);
@@ -92,23 +136,38 @@ class MMGRASP_EXPORT TreeIndex {
   }
 
   template <class Visit>
+  void visit_leaf(const Node& leaf, const double* q, const Visit& visit) const {
+    for (int b = leaf.low; b >= 0; b = blocks_[b].next) visit_block(b, q, visit);
+  }
+
+  template <class Visit>
   void visit_block(int index, const double* q, const Visit& visit) const {
     const Block& block = blocks_[index];
     const double* values = coordinates(index);
     double squared[kBlock] = {};
-    for (int axis = 0; axis < dimension_; ++axis, values += kBlock)
-      for (int i = 0; i < kBlock; ++i) squared[i] += (values[i] - q[axis]) * (values[i] - q[axis]);
+    for (int axis = 0; axis < dimension_; ++axis, values += kBlock) {
+      if (metric_.wraps(axis)) {
+        for (int i = 0; i < kBlock; ++i) {
+          const double apart = std::abs(values[i] - q[axis]), least = std::min(apart, std::abs(kTwoPi - apart));
+          squared[i] += least * least;
+        }
+      } else {
+        for (int i = 0; i < kBlock; ++i) squared[i] += (values[i] - q[axis]) * (values[i] - q[axis]);
+      }
+    }
     for (int i = 0; i < block.count; ++i) visit(block.ids[i], squared[i]);
   }
 
   int dimension_;
+  JointMetric metric_;
   std::size_t block_size_;
   std::size_t size_ = 0;
   std::vector<Node> nodes_;
   std::vector<Block> blocks_;
-  std::vector<double> values_;           ///< Coordinates per block, one axis after the other.
-  std::vector<Place> places_;            ///< Per id.
-  mutable std::vector<double> offsets_;  ///< Scratch: zero between searches.
+  std::vector<double> values_;                                ///< Coordinates per block, one axis after the other.
+  std::vector<Place> places_;                                 ///< Per id.
+  mutable std::vector<double> offsets_;                       ///< Scratch: zero between searches.
+  mutable std::vector<double> query_, cell_low_, cell_high_;  ///< Scratch where angles wrap.
 };
 
 }  // namespace mmgrasp::detail

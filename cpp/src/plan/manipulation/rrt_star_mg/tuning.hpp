@@ -19,14 +19,15 @@ struct RrtStarMgTuning {
   int max_duplicates = 4;     ///< Vertices of other trees that one new vertex takes over (P2 5.3.2).
 
   // Connections.
+  int max_connections = 8;  ///< Edges from a new vertex to the other tree that are checked.
   /// A grasp whose trees were not connected yet may begin with a path this many times as long as the best one:
   /// shortcutting makes it shorter.
   double first_connection_bound = 1.5;
 
   // Shortcutting.
-  double shortcut_probability = 0.3;     ///< Chance of one random shortcut after each informed sample.
-  double other_grasp_probability = 0.5;  ///< Chance that it is tried on another grasp's path than the best one.
-  double near_corner_probability = 0.5;  ///< Chance that it is cut close to its corner; far from it otherwise.
+  double shortcut_probability = 1;          ///< Chance of one random shortcut after each informed sample.
+  double other_grasp_probability = 0.5;     ///< Chance that it is tried on another grasp's path than the best one.
+  double joint_shortcut_probability = 0.5;  ///< Chance that some joints alone are shortcut, not a corner cut.
 };
 
 constexpr double kSameConfiguration = 1e-9;  ///< Configurations nearer than this are the same [rad or m].

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "mmgrasp/core/detail/rigid.hpp"
+
+namespace mmgrasp::detail {
+
+/// How one of two bodies moves against the other from where it is, over a stretch of an edge, forwards or backwards. No
+/// point of it moves farther than `most` [m]; where `directed` is set, a point p moves along shift + turn x (p -
+/// centre), but for `bend` [m], and a sphere of `radius` about the centre holds the body.
+struct Closing {
+  double most = 0;
+  bool directed = false;
+  bool first_moves = false;  ///< Of the two bodies; the other one stands still.
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero(), shift = Eigen::Vector3d::Zero(), turn = Eigen::Vector3d::Zero();
+  double radius = 0, bend = 0;
+
+  /// How far the body's points move along n, times the length of n.
+  double along(const Eigen::Vector3d& n) const {
+    const double length = n.norm();
+    if (!directed) return most * length;
+    return std::min(most * length, std::abs(n.dot(shift)) + n.cross(turn).norm() * radius + bend * length);
+  }
+  /// The same for one of its points and a unit vector.
+  double along_at(const Eigen::Vector3d& n, const Eigen::Vector3d& point) const {
+    return std::abs(n.dot(shift + turn.cross(point - centre))) + bend;
+  }
+  Closing seen_from(const Rigid& frame) const {
+    Closing out = *this;
+    out.centre = frame.R.transpose() * (centre - frame.t);
+    out.shift = frame.R.transpose() * shift;
+    out.turn = frame.R.transpose() * turn;
+    return out;
+  }
+  Closing swapped() const {
+    Closing out = *this;
+    out.first_moves = !first_moves;
+    return out;
+  }
+};
+
+}  // namespace mmgrasp::detail

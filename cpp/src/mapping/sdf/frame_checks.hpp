@@ -1,0 +1,16 @@
+#pragma once
+
+#include "mapping/sdf/sdf_grid.hpp"
+
+namespace mmgrasp::detail {
+
+/// Throws InvalidInput on what cannot be a frame of this camera.
+void check_frame(const DepthImage& image, const DepthCamera& camera, const FrameUncertainty& uncertainty);
+/// Throws InvalidInput when nothing was measured, or everything out of range and in it at another scale.
+void check_depths(const DepthImage& image);
+/// Compares the frame with the key frame. Throws InvalidInput when its pose fits once it and the key frame's are
+/// inverted; sets agreement and warning.
+void check_pose(const KeyFrame& key_frame, const DepthImage& image, const SdfOptions& options,
+                IntegrationReport& report);
+
+}  // namespace mmgrasp::detail

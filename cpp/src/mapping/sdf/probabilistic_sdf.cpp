@@ -1,0 +1,181 @@
+#include "mmgrasp/mapping/probabilistic_sdf.hpp"
+
+#include <cmath>
+
+#include "mapping/sdf/extract_mesh.hpp"
+#include "mapping/sdf/integrate.hpp"
+#include "mapping/sdf/ray_march.hpp"
+#include "mapping/sdf/sdf_field.hpp"
+#include "mapping/sdf/sdf_file.hpp"
+#include "mapping/sdf/sdf_sampler.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/parallel.hpp"
+
+namespace mmgrasp {
+namespace {
+
+constexpr Eigen::Index kPointsOfItem = 4096, kRaysOfItem = 1024;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+void check_columns(const Eigen::Matrix3Xd& columns, const char* name) {
+  if (columns.allFinite()) return;
+  Eigen::Index i = 0;
+  while (columns.col(i).allFinite()) ++i;
+  throw InvalidInput(std::string(name) + " " + std::to_string(i) + ": must be finite");
+}
+
+/// Calls work(first, last) for pieces of [0, count).
+template <typename Work>
+void by_pieces(Eigen::Index count, Eigen::Index piece, int threads, const Work& work) {
+  parallel_for(static_cast<std::size_t>((count + piece - 1) / piece), threads, [&](std::size_t item, int) {
+    const Eigen::Index first = static_cast<Eigen::Index>(item) * piece;
+    work(first, std::min(count, first + piece));
+  });
+}
+
+}  // namespace
+
+void SdfOptions::check() const {
+  require(std::isfinite(voxel) && voxel > 0, "voxel", voxel, "must be positive and finite [m]");
+  require(std::isfinite(truncation) && truncation >= 3 * voxel * (1 - 1e-9), "truncation", truncation,
+          "must be finite and at least three voxels [m]");
+  require(truncation <= 100 * voxel, "truncation", truncation,
+          "must be at most 100 voxels: finer ones take too much memory [m]");
+  require(max_incidence > 0 && max_incidence < 1.55, "max_incidence", max_incidence,
+          "must be above 0 and below 1.55 [rad]");
+  require(std::isfinite(max_memory) && max_memory > 0, "max_memory", max_memory, "must be positive and finite [bytes]");
+  resolve_threads(threads);
+}
+
+ProbabilisticSdf::ProbabilisticSdf(const SdfOptions& options) {
+  options.check();
+  grid_ = std::make_shared<detail::SdfGrid>(options);
+}
+
+ProbabilisticSdf::ProbabilisticSdf(std::shared_ptr<detail::SdfGrid> grid) : grid_(std::move(grid)) {}
+
+const SdfOptions& ProbabilisticSdf::options() const {
+  return grid_->options;
+}
+
+IntegrationReport ProbabilisticSdf::integrate(const DepthImage& image, const DepthCamera& camera,
+                                              const FrameUncertainty& uncertainty) {
+  // Copies and fields of this map keep what they had.
+  if (grid_.use_count() > 1) grid_ = std::make_shared<detail::SdfGrid>(*grid_);
+  return detail::integrate_frame(*grid_, image, camera, uncertainty);
+}
+
+SdfValues ProbabilisticSdf::query(const Eigen::Matrix3Xd& points, int threads) const {
+  check_columns(points, "point");
+  SdfValues out;
+  out.mean.resize(points.cols());
+  out.sigma.resize(points.cols());
+  out.known.resize(static_cast<std::size_t>(points.cols()));
+  by_pieces(points.cols(), kPointsOfItem, threads, [&](Eigen::Index first, Eigen::Index last) {
+    // Points in any order miss the cache: they are fetched some points ahead.
+    constexpr Eigen::Index kAhead = 12;
+    detail::SdfSampler sampler(*grid_), ahead(*grid_);
+    for (Eigen::Index i = first; i < last; ++i) {
+      if (i + kAhead < last) ahead.prefetch(points.col(i + kAhead));
+      const detail::Sample sample = sampler.at(points.col(i));
+      out.mean[i] = sample.known ? sample.mean : kNaN;
+      out.sigma[i] = sample.known ? std::sqrt(sample.variance) : kNaN;
+      out.known[static_cast<std::size_t>(i)] = sample.known;
+    }
+  });
+  return out;
+}
+
+SdfHits ProbabilisticSdf::cast_rays(const Eigen::Matrix3Xd& origins, const Eigen::Matrix3Xd& directions,
+                                    int threads) const {
+  require(origins.cols() == directions.cols(), "directions", std::to_string(directions.cols()),
+          "must be as many as origins, " + std::to_string(origins.cols()));
+  check_columns(origins, "origin");
+  check_columns(directions, "direction");
+  for (Eigen::Index i = 0; i < directions.cols(); ++i) {
+    if (directions.col(i).isZero(0)) throw InvalidInput("direction " + std::to_string(i) + ": must not be zero");
+  }
+  const Eigen::Index count = origins.cols();
+  SdfHits out;
+  out.hit.assign(static_cast<std::size_t>(count), 0);
+  out.distance.setConstant(count, kNaN);
+  out.point.setConstant(3, count, kNaN);
+  out.normal.setConstant(3, count, kNaN);
+  out.sigma.setConstant(count, kNaN);
+  const Eigen::AlignedBox3d bounds = grid_->bounds();
+  by_pieces(count, kRaysOfItem, threads, [&](Eigen::Index first, Eigen::Index last) {
+    detail::SdfSampler sampler(*grid_);
+    for (Eigen::Index i = first; i < last; ++i) {
+      const double t = detail::first_crossing(*grid_, bounds, sampler, origins.col(i), directions.col(i));
+      if (std::isnan(t)) continue;
+      const Eigen::Vector3d point = origins.col(i) + t * directions.col(i);
+      Eigen::Vector3d normal = sampler.direction(point);
+      if (normal.isZero(0)) normal = -directions.col(i).normalized();  // at the rim of what was seen
+      out.hit[static_cast<std::size_t>(i)] = 1;
+      out.distance[i] = t;
+      out.point.col(i) = point;
+      out.normal.col(i) = normal;
+      out.sigma[i] = std::sqrt(sampler.at(point).variance);
+    }
+  });
+  return out;
+}
+
+SdfMesh ProbabilisticSdf::mesh() const {
+  return detail::extract_mesh(*grid_);
+}
+
+SdfPoints ProbabilisticSdf::points() const {
+  const SdfMesh surface = mesh();
+  const auto& vertices = surface.mesh->vertices;
+  SdfPoints out;
+  const auto count = static_cast<Eigen::Index>(vertices.size());
+  out.point.resize(3, count);
+  out.normal.setZero(3, count);
+  out.sigma = Eigen::Map<const Eigen::VectorXd>(surface.sigma.data(), count);
+  for (Eigen::Index i = 0; i < count; ++i) out.point.col(i) = vertices[static_cast<std::size_t>(i)];
+  // Normals of the triangles around, weighted by their areas.
+  for (const auto& t : surface.mesh->triangles) {
+    const Eigen::Vector3d normal = (vertices[t[1]] - vertices[t[0]]).cross(vertices[t[2]] - vertices[t[0]]);
+    for (const int corner : t) out.normal.col(corner) += normal;
+  }
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const double length = out.normal.col(i).norm();
+    if (length > 0) out.normal.col(i) /= length;
+  }
+  return out;
+}
+
+std::shared_ptr<const DistanceField> ProbabilisticSdf::distance_field(double sigmas, UnknownSpace unknown) const {
+  return std::make_shared<detail::SdfField>(grid_, sigmas, unknown);
+}
+
+int ProbabilisticSdf::frames() const {
+  return grid_->frames;
+}
+
+std::size_t ProbabilisticSdf::blocks() const {
+  return grid_->keys.size();
+}
+
+std::size_t ProbabilisticSdf::memory() const {
+  return grid_->bytes();
+}
+
+Eigen::AlignedBox3d ProbabilisticSdf::bounds() const {
+  return grid_->bounds();
+}
+
+void ProbabilisticSdf::save(const std::string& path) const {
+  detail::write_sdf(*grid_, path);
+}
+
+ProbabilisticSdf ProbabilisticSdf::load(const std::string& path, int threads) {
+  auto grid = detail::read_sdf(path);
+  resolve_threads(threads);
+  grid->options.threads = threads;
+  return ProbabilisticSdf(std::move(grid));
+}
+
+}  // namespace mmgrasp

@@ -1,0 +1,89 @@
+// Compares the widths of the grasps that are used with their parts: pads of the gripper's size must meet the part
+// there.
+#include <algorithm>
+#include <cmath>
+
+#include "verify/context.hpp"
+
+namespace mmgrasp::verify::detail {
+namespace {
+
+constexpr double kThickness = 0.02;  // Of the pads that stand for the fingers [m].
+constexpr double kPoint = 1e-3;      // Size of a pad's middle [m].
+constexpr double kStep = 5e-4;       // A pad comes in by such steps [m].
+constexpr int kHalvings = 12;        // Of the last step.
+constexpr double kPlay = 3e-3;       // How far the width may be off the part's [m],
+constexpr double kShare = 0.1;       // or this share of it.
+
+/// How far from the middle plane of the hand a pad stops when it comes in on one side. `depth` and `width`: its size
+/// along the approach and across approach and closing.
+class Pad {
+ public:
+  Pad(const PlanToCheck& plan, const PlacedBody& part, const Pose& T_object_tcp, double depth, double width)
+      : part_(part) {
+    Eigen::Matrix3d axes;
+    axes << plan.approach, plan.closing, plan.approach.cross(plan.closing);
+    T_object_hand_ = T_object_tcp;
+    T_object_hand_.linear() = T_object_tcp.linear() * axes;
+    LinkShape shape;
+    shape.shape = Box{Eigen::Vector3d(depth, kThickness, width)};
+    pad_ = make_solids({shape}).front();
+  }
+
+  /// What is between two pads that come in from both sides [m].
+  double between(double from) const { return stops_at(1, from) + stops_at(-1, from); }
+
+ private:
+  /// `side`: 1 or -1; `from`: where it starts [m]. A negative answer: it passes through the middle and meets nothing.
+  double stops_at(double side, double from) const {
+    double free = from;
+    while (free > -from && !touches_at(side, free - kStep)) free -= kStep;
+    double blocked = free - kStep;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = 0.5 * (free + blocked);
+      (touches_at(side, middle) ? blocked : free) = middle;
+    }
+    return free;
+  }
+
+  bool touches_at(double side, double distance) const {
+    Pose T = T_object_hand_;
+    T.translate(Eigen::Vector3d(0, side * (distance + 0.5 * kThickness), 0));
+    const Bounds bounds = bounds_at(pad_, T);
+    for (std::size_t i = 0; i < part_.solids.size(); ++i) {
+      if (bounds.intersects(part_.bounds[i]) && touches(pad_, T, part_.solids[i], part_.T_world_shape[i])) return true;
+    }
+    return false;
+  }
+
+  const PlacedBody& part_;
+  Pose T_object_hand_ = Pose::Identity();
+  Solid pad_;
+};
+
+}  // namespace
+
+void check_grasp_widths(const Context& context, Faults& faults) {
+  const PlanToCheck& plan = context.plan;
+  if (!(plan.finger_depth > 0 && plan.finger_width > 0)) return;
+  for (std::size_t pick = 0; pick < plan.picks.size(); ++pick) {
+    const int index = context.pick_part[pick], g = plan.picks[pick].grasp;
+    if (index < 0 || g < 0 || g >= static_cast<int>(plan.parts[index].grasps.size())) continue;  // said at the pick
+    const CheckedPart& part = plan.parts[index];
+    const CheckedGrasp& grasp = part.grasps[g];
+    const PlacedBody body = place_body(part.body.name, part.body.shapes, Pose::Identity());
+    const double from = 0.5 * plan.max_opening + 2 * kPlay, play = std::max(kPlay, kShare * grasp.width);
+    // Where the pads' middles meet the part, or where the first of their edges does: pads are said to be larger than
+    // what the part leaves room for beside a bend.
+    const Pad point(plan, body, grasp.T_object_tcp, kPoint, kPoint);
+    const Pad pad(plan, body, grasp.T_object_tcp, plan.finger_depth, plan.finger_width);
+    if (std::abs(point.between(from) - grasp.width) <= play) continue;
+    const double between = pad.between(from);
+    if (std::abs(between - grasp.width) <= play) continue;
+    faults.push_back({"grasp-width", context.pick_name(pick),
+                      "its grasp says " + text(grasp.width) + " m, pads of " + text(plan.finger_depth) + " x " +
+                          text(plan.finger_width) + " m meet the part at " + text(between) + " m"});
+  }
+}
+
+}  // namespace mmgrasp::verify::detail

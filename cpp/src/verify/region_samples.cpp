@@ -1,0 +1,185 @@
+// Draws base poses in the regions of a plan and beside them: the proof of the least number of stops rests on them.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mmgrasp/core/parallel.hpp"
+#include "verify/context.hpp"
+#include "verify/grasp_search.hpp"
+
+namespace mmgrasp::verify::detail {
+namespace {
+
+constexpr int kTries = 300;         // IK solutions tried for a part: fewer than at the stops, which must be robust.
+constexpr int kBeside = 2;          // Cells so many rows or columns from a region are beside it.
+constexpr double kInside = 0.85;    // Least share of the poses drawn in a region that serve all its parts.
+constexpr double kOutside = 0.5;    // Largest share of the cells beside it that do: planners search less hard.
+constexpr double kClaimed = 0.9;    // Least share of the poses drawn in the disc that a stop claims.
+constexpr std::size_t kFewest = 5;  // Fewer samples than this tell nothing.
+
+struct Cell {
+  int layer, ix, iy;
+};
+
+/// Cells of one region, and those beside it at the headings of its tray.
+class RegionCells {
+ public:
+  RegionCells(const PlanToCheck& plan, const CheckedRegion& region) : grid_(plan.grid), region_(region) {
+    const auto searched = plan.searched.find(region.tray);
+    for (int layer = 0; layer < static_cast<int>(grid_.headings.size()); ++layer) {
+      for (int iy = 0; iy < grid_.ny; ++iy) {
+        for (int ix = 0; ix < grid_.nx; ++ix) {
+          const Cell cell{layer, ix, iy};
+          if (has(layer, ix, iy)) {
+            inside.push_back(cell);
+          } else if (searched != plan.searched.end() && beside_region(cell) && was_searched(cell, searched->second)) {
+            beside.push_back(cell);
+          }
+        }
+      }
+    }
+  }
+
+  /// A place in a cell, from (0, 0), its lower corner, to (1, 1).
+  Eigen::Vector3d pose(const Cell& cell, double x, double y) const {
+    return {grid_.origin.x() + (cell.ix + x) * grid_.resolution, grid_.origin.y() + (cell.iy + y) * grid_.resolution,
+            grid_.headings[cell.layer]};
+  }
+
+  std::vector<Cell> inside, beside;
+
+ private:
+  bool has(int layer, int ix, int iy) const {
+    if (ix < 0 || iy < 0 || ix >= grid_.nx || iy >= grid_.ny) return false;
+    return region_.cells[(static_cast<std::size_t>(layer) * grid_.ny + iy) * grid_.nx + ix] != 0;
+  }
+
+  bool beside_region(const Cell& cell) const {
+    for (const auto& [dx, dy] : {std::pair{kBeside, 0}, {-kBeside, 0}, {0, kBeside}, {0, -kBeside}}) {
+      if (has(cell.layer, cell.ix + dx, cell.iy + dy)) return true;
+    }
+    return false;
+  }
+
+  bool was_searched(const Cell& cell, const CheckedTray& tray) const {
+    const Eigen::Vector3d middle = pose(cell, 0.5, 0.5);
+    const bool listed = std::any_of(tray.headings.begin(), tray.headings.end(),
+                                    [&](double heading) { return std::abs(wrap_angle(heading - middle.z())) <= 1e-6; });
+    return listed && (middle.head<2>() - tray.middle).norm() <= tray.max_distance;
+  }
+
+  const CheckedGrid& grid_;
+  const CheckedRegion& region_;
+};
+
+template <class T>
+std::vector<T> drawn(const std::vector<T>& all, int count, Rng& rng) {
+  std::vector<T> some;
+  for (int i = 0; i < count && !all.empty(); ++i) some.push_back(all[rng.index(all.size())]);
+  return some;
+}
+
+class RegionCheck {
+ public:
+  RegionCheck(const Context& context, Faults& faults, GraspSearch search, Rng rng)
+      : context_(context), plan_(context.plan), faults_(faults), search_(std::move(search)), rng_(rng) {}
+
+  void region(const CheckedRegion& region) {
+    const std::vector<int> parts = wanted_parts(plan_, {region.tray});
+    const std::size_t size =
+        plan_.grid.headings.size() * static_cast<std::size_t>(plan_.grid.nx) * static_cast<std::size_t>(plan_.grid.ny);
+    if (parts.empty() || region.cells.size() != size) return;  // the latter is said at the stops
+    const RegionCells cells(plan_, region);
+    const std::string where = "region of tray '" + region.tray + "'";
+    const int count = context_.options.region_samples;
+    std::size_t good = 0, tried = 0;
+    for (const Cell& cell : drawn(cells.inside, count, rng_)) {
+      if (context_.monitor.stopped()) return;
+      const double x = rng_.uniform(0, 1), y = rng_.uniform(0, 1);
+      good += serves(cells.pose(cell, x, y), parts);
+      ++tried;
+    }
+    if (tried >= kFewest && static_cast<double>(good) < kInside * static_cast<double>(tried)) {
+      faults_.push_back({"region-inflated", where,
+                         "only from " + std::to_string(good) + " of " + std::to_string(tried) +
+                             " base poses drawn in it all parts can be grasped"});
+    }
+    if (plan_.padded) return;
+    good = tried = 0;
+    for (const Cell& cell : drawn(cells.beside, count, rng_)) {
+      if (context_.monitor.stopped()) return;
+      good += whole_cell_serves(cells, cell, parts);
+      ++tried;
+    }
+    if (tried >= kFewest && static_cast<double>(good) > kOutside * static_cast<double>(tried)) {
+      faults_.push_back(
+          {"region-incomplete", where,
+           "from " + std::to_string(good) + " of " + std::to_string(tried) +
+               " cells drawn beside it all parts can be grasped: the least number of stops is not proven"});
+    }
+  }
+
+  /// The disc that a stop claims, beyond its uncertainty disc, which is checked more closely.
+  void stop(std::size_t index) {
+    const CheckedStop& stop = plan_.stops[index];
+    const double least = plan_.positioning_uncertainty;
+    if (!(stop.radius > least + 1e-6)) return;
+    const std::vector<int> parts = wanted_parts(plan_, stop.trays);
+    int good = 0;
+    const int count = 2 * context_.options.region_samples;
+    for (int i = 0; i < count && !context_.monitor.stopped(); ++i) {
+      const double radius = std::sqrt(rng_.uniform(least * least, stop.radius * stop.radius));
+      const double angle = rng_.uniform(-M_PI, M_PI);
+      good += serves(stop.pose + radius * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0), parts);
+    }
+    if (good >= kClaimed * count || context_.monitor.stopped()) return;
+    faults_.push_back({"stop-radius", "stop " + std::to_string(index),
+                       "says that all parts can be grasped within " + text(stop.radius) + " m: between " + text(least) +
+                           " m and there they can from " + std::to_string(good) + " of " + std::to_string(count) +
+                           " base poses"});
+  }
+
+ private:
+  bool serves(const Eigen::Vector3d& pose, const std::vector<int>& parts) {
+    Faults none;
+    return check_workspace(plan_, pose, 0, "", none) && search_.serves(pose, parts);
+  }
+
+  /// At its corners and its middle, as planners look at a cell.
+  bool whole_cell_serves(const RegionCells& cells, const Cell& cell, const std::vector<int>& parts) {
+    constexpr std::array<std::array<double, 2>, 5> kPlaces = {{{0, 0}, {1, 1}, {0, 1}, {1, 0}, {0.5, 0.5}}};
+    return std::all_of(kPlaces.begin(), kPlaces.end(),
+                       [&](const auto& place) { return serves(cells.pose(cell, place[0], place[1]), parts); });
+  }
+
+  const Context& context_;
+  const PlanToCheck& plan_;
+  Faults& faults_;
+  GraspSearch search_;
+  Rng rng_;
+};
+
+}  // namespace
+
+void check_regions(const Context& context, Faults& faults, std::size_t& configurations) {
+  if (context.options.region_samples == 0) return;
+  const std::size_t regions = context.plan.regions.size(), stops = context.plan.stops.size();
+  const Pools pools = planned_holds(context);
+  std::vector<Judge> judges(resolve_threads(context.options.threads), Judge(context.stage));
+  std::vector<Faults> found(regions + stops);
+  const auto work = [&](std::size_t item, int worker) {
+    Judge& judge = judges[worker];
+    const unsigned seed = context.options.seed;
+    GraspSearch search(context, judge, pools, Rng(seed, 2 * item + 1'000'000), kTries);
+    RegionCheck check(context, found[item], std::move(search), Rng(seed, 2 * item + 1'000'001));
+    if (item < regions)
+      check.region(context.plan.regions[item]);
+    else
+      check.stop(item - regions);
+  };
+  parallel_for(found.size(), context.options.threads, work, context.monitor, "regions");
+  for (const Faults& some : found) faults.insert(faults.end(), some.begin(), some.end());
+  for (const Judge& judge : judges) configurations += judge.queries();
+}
+
+}  // namespace mmgrasp::verify::detail

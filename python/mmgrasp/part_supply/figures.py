@@ -1,0 +1,155 @@
+"""What a plan says twice, or can be counted again from it, without kinematics or collisions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+from .._core import verify as checks
+from ..scenario.shapes import shape_to_dict
+from ..scenario.tray_section import WALL
+
+Plan = dict[str, Any]
+_CLOSE = 1e-6  # [m], [rad]
+
+
+def check_figures(plan: Plan) -> list[checks.Fault]:
+    """Faults of a solved plan whose form is that of the schema."""
+    rules = (_hand, _options, _trays, _regions, _intersections, _stops, _answer)
+    return [checks.Fault("bad-figures", where, message) for rule in rules for where, message in rule(plan)]
+
+
+Found = Iterator[tuple[str, str]]
+_SETS = ("intersections", "lost_intersections")
+
+
+def _hand(plan: Plan) -> Found:
+    tool, tip = plan["scenario"]["gripper"]["tcp_link"], plan["scenario"]["arm"]["tip_link"]
+    if tool != tip:
+        yield "scenario.gripper.tcp_link", f"is {tool}, the arm ends at {tip}"
+
+
+def _options(plan: Plan) -> Found:
+    scenario, options = plan["scenario"], plan["scenario"]["options"]
+    if not scenario["obstacles"] and not scenario["trays"]:
+        return
+    known = set(_core._supply_option_table())
+    for key in known ^ set(options):
+        yield f"scenario.options.{key}", "is missing" if key in known else "is no option"
+    pairs = (
+        ("grid_resolution", plan["grid"]["resolution"]),
+        ("positioning_uncertainty", scenario["positioning_uncertainty"]),
+    )
+    for key, value in pairs:
+        if key in options and abs(options[key] - value) > _CLOSE:
+            yield f"scenario.options.{key}", f"is {options[key]:g}, elsewhere the plan says {value:g}"
+
+
+def _same(a: Any, b: Any) -> bool:
+    if isinstance(a, dict):
+        return isinstance(b, dict) and a.keys() == b.keys() and all(_same(a[k], b[k]) for k in a)
+    if isinstance(a, list):
+        return isinstance(b, list) and len(a) == len(b) and all(map(_same, a, b))
+    return abs(a - b) <= _CLOSE if isinstance(a, int | float) and isinstance(b, int | float) else bool(a == b)
+
+
+def _trays(plan: Plan) -> Found:
+    scenario = plan["scenario"]
+    obstacles = {o["name"]: o for o in scenario["obstacles"]}
+    for i, tray in enumerate(scenario["trays"]):
+        where = f"scenario.trays[{i}]"
+        if min(tray["size"][:2]) <= 2 * WALL:
+            yield where, f"leaves no room between walls of {WALL} m"
+            continue
+        walls = [shape_to_dict(shape) for shape in _core.tray_shapes(tray["size"], WALL)]
+        body = obstacles.get(f"tray {tray['name']}")
+        if body is None or not _same([body["pose"], body["shapes"]], [tray["pose"], walls]):
+            yield where, "has no obstacle with its walls, pose and size"
+
+
+def _regions(plan: Plan) -> Found:
+    parts = plan["scenario"]["parts"]
+    trays = [tray["name"] for tray in plan["scenario"]["trays"]]
+    if [region["tray"] for region in plan["regions"]] != trays:
+        yield "regions", "must be one a tray, in the order of the trays"
+        return
+    for i, region in enumerate(plan["regions"]):
+        wanted = [part for part in parts if part["tray"] == region["tray"] and part["target"]]
+        if [e["part"] for e in region["explanations"]] != [part["name"] for part in wanted]:
+            yield f"regions[{i}].explanations", "must be one a target part of the tray, in their order"
+            continue
+        for j, (said, part) in enumerate(zip(region["explanations"], wanted, strict=True)):
+            where = f"regions[{i}].explanations[{j}]"
+            failed = said["base_poses_tried"] - said["base_poses_feasible"]
+            if said["grasps"] != len(part["grasps"]):
+                yield where, f"counts {said['grasps']} grasps, the part has {len(part['grasps'])}"
+            elif failed < 0 or sum(said["rejections"].values()) != failed * said["grasps"]:
+                yield where, "must name one cause for each grasp and base pose that failed"
+
+
+def masks(plan: Plan) -> dict[str, np.ndarray]:
+    """The cells of every region, (headings, ny, nx) bool, by tray."""
+    grid = plan["grid"]
+    found = {}
+    for region in plan["regions"]:
+        mask = np.zeros((len(grid["headings"]), grid["ny"], grid["nx"]), dtype=bool)
+        for layer, runs in region["cells"].items():
+            for iy, first, last in runs:
+                mask[int(layer), iy, first:last] = True
+        found[region["tray"]] = mask
+    return found
+
+
+def _intersections(plan: Plan) -> Found:
+    headings = plan["grid"]["headings"]
+    if any(_turn(a - b) for i, a in enumerate(headings) for b in headings[:i]):
+        yield "grid.headings", "a heading is listed twice"
+    named = [(said["heading"], *said["trays"]) for key in _SETS for said in plan[key]]
+    if len(set(named)) < len(named):
+        yield "intersections", "a set of trays is listed twice at one heading"
+    cells = masks(plan)
+    least = plan["scenario"]["positioning_uncertainty"]
+    for key in _SETS:
+        for i, said in enumerate(plan[key]):
+            where = f"{key}[{i}]"
+            if said["heading"] >= len(plan["grid"]["headings"]) or not set(said["trays"]) <= cells.keys():
+                yield where, "names a heading or a tray that is not there"
+                continue
+            layers = [cells[tray][said["heading"]] for tray in said["trays"]]
+            shared = int(np.logical_and.reduce(layers).sum()) if layers else 0
+            if not layers or shared != said["cells"]:
+                yield where, f"says {said['cells']} cells, its trays share {shared}"
+            elif (said["radius"] < least - _CLOSE) != (key == "lost_intersections"):
+                yield where, f"a disc of {said['radius']:g} m, the positioning uncertainty is {least:g} m"
+
+
+def _stops(plan: Plan) -> Found:
+    for i, stop in enumerate(plan["stops"]):
+        index = stop["intersection"]
+        if not 0 <= index < len(plan["intersections"]):
+            yield f"stops[{i}].intersection", f"is {index}: there are {len(plan['intersections'])} intersections"
+            continue
+        said = plan["intersections"][index]
+        same_heading = said["heading"] < len(plan["grid"]["headings"]) and _turn(
+            plan["grid"]["headings"][said["heading"]] - stop["pose"][2]
+        )
+        if said["trays"] != stop["trays"] or not same_heading:
+            yield f"stops[{i}].intersection", f"intersection {index} has other trays or another heading"
+
+
+def _turn(angle: float) -> bool:
+    """Whether an angle is a whole number of turns."""
+    return abs((angle + np.pi) % (2 * np.pi) - np.pi) <= _CLOSE
+
+
+def _answer(plan: Plan) -> Found:
+    if plan["obstructions"]:
+        yield "obstructions", "must be empty in a plan that is solved"
+    if plan["proven_minimal"] != (plan["lower_bound"] == len(plan["stops"])):
+        yield (
+            "proven_minimal",
+            f"is {plan['proven_minimal']} with {len(plan['stops'])} stops and a lower bound of {plan['lower_bound']}",
+        )

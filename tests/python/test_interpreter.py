@@ -1,0 +1,79 @@
+"""Objects without their constructors, threads when the interpreter ends, several solvers at once."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import threading
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+import mmgrasp as mg
+from mmgrasp import _core
+
+
+def classes(module: ModuleType) -> list[type]:
+    made = [c for c in vars(module).values() if isinstance(c, type) and not issubclass(c, Exception)]
+    return [c for c in made if type(c).__name__ == "pybind11_type" and not hasattr(c, "__setstate__")]
+
+
+@pytest.mark.parametrize("kind", [*classes(_core), *classes(_core.verify)], ids=lambda c: c.__name__)
+def test_objects_are_made_by_their_constructors(kind: type) -> None:
+    with pytest.raises(TypeError):
+        kind.__new__(kind)  # type: ignore[call-overload]
+    with pytest.raises(TypeError):
+        object.__new__(kind)
+
+
+def test_subclasses_and_copies_still_work() -> None:
+    class Named(mg.World):
+        pass
+
+    world = Named()
+    world.add_box("table", (1, 1, 1))
+    assert world.copy().objects == ["table"]
+    assert repr(mg.Box([1, 2, 3]))
+
+
+AT_EXIT = """
+import random, sys, threading, time
+import mmgrasp as mg
+draw = random.Random(1)
+sets = [[i % 300] + [draw.randrange(300) for _ in range(11)] for i in range(900)]
+def work():
+    mg.optim.solve_set_cover(300, sets, time_limit=1000)
+    print("came back")
+threading.Thread(target=work, daemon=True).start()
+time.sleep(0.5)
+print("leaving")
+"""
+
+
+def test_a_daemon_thread_inside_a_long_call_does_not_crash_the_end() -> None:
+    done = subprocess.run([sys.executable, "-c", AT_EXIT], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "leaving\n", "")
+
+
+@pytest.mark.parametrize("solver", ["crs2", "isres", "esch"])
+def test_stochastic_solvers_run_side_by_side_and_repeat(solver: str) -> None:
+    def valley(x: np.ndarray) -> float:
+        return float(np.sum((x - [0.3, -0.2]) ** 2) + 0.1 * np.sin(20 * x[0]))
+
+    def solve() -> Any:
+        return mg.optim.minimize_derivative_free(
+            valley, [0, 0], [-1, -1], [1, 1], solver=solver, seed=7, max_evaluations=300
+        )
+
+    alone = solve()
+    found: list[Any] = []
+    threads = [threading.Thread(target=lambda: found.append(solve())) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert [r.evaluations for r in found] == [alone.evaluations] * 4
+    for result in found:
+        np.testing.assert_array_equal(result.x, alone.x)

@@ -1,0 +1,179 @@
+"""Places to write to: found out before the work, never half written, and a folder holds one plan."""
+
+from __future__ import annotations
+
+import json
+import os
+import stat
+from pathlib import Path
+
+import pytest
+
+import mmgrasp as mg
+from mmgrasp._files import check_file, check_folder, printable, read_text, write_file
+from mmgrasp.cli.output_folder import LIST, OutputFolder
+
+
+def fill(folder: Path, **files: str) -> None:
+    with OutputFolder(folder).filled() as draft:
+        for name, text in files.items():
+            write_file(draft / name.replace("__", "/").replace("_json", ".json").replace("_csv", ".csv"), text)
+
+
+def names(folder: Path) -> set[str]:
+    return {str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file()}
+
+
+def test_a_second_plan_leaves_nothing_of_the_first(tmp_path: Path) -> None:
+    fill(tmp_path, plan_json="1", drive_by_json="1", trajectories__a_csv="1", trajectories__b_csv="1")
+    (tmp_path / "notes.txt").write_text("mine")
+    fill(tmp_path, plan_json="2", trajectories__b_csv="2")
+    assert names(tmp_path) == {"plan.json", "trajectories/b.csv", LIST, "notes.txt"}
+    assert (tmp_path / "plan.json").read_text() == "2"
+    fill(tmp_path, plan_json="3")
+    assert names(tmp_path) == {"plan.json", LIST, "notes.txt"}
+    assert not (tmp_path / "trajectories").exists()
+
+
+def test_what_is_added_replaces_only_its_own(tmp_path: Path) -> None:
+    fill(tmp_path, plan_json="1", trajectories__a_csv="1")
+    with OutputFolder(tmp_path).filled(added=True) as draft:
+        write_file(draft / "plan.json", "2")
+        write_file(draft / "drive_by.json", "2")
+    assert names(tmp_path) == {"plan.json", "trajectories/a.csv", "drive_by.json", LIST}
+    assert (tmp_path / "plan.json").read_text() == "2"
+    fill(tmp_path, plan_json="3")
+    assert names(tmp_path) == {"plan.json", LIST}
+
+
+@pytest.mark.parametrize("name", ["plan.json", "trajectories/pick_00.csv", "stop_3.png", "report.html", LIST])
+def test_files_of_somebody_else_are_not_taken_for_ours(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).parent.mkdir(exist_ok=True)
+    (tmp_path / name).write_text("mine")
+    with pytest.raises(mg.IoError, match="does not list"):
+        OutputFolder(tmp_path)
+    assert (tmp_path / name).read_text() == "mine"
+
+
+@pytest.mark.parametrize("listed", ["../outside", "/etc/hosts", "a/b/c", 3, None, {"a": 1}])
+def test_a_list_that_leads_elsewhere_removes_nothing(tmp_path: Path, listed: object) -> None:
+    outside, folder = tmp_path / "outside", tmp_path / "folder"
+    outside.write_text("mine")
+    folder.mkdir()
+    (folder / LIST).write_text(json.dumps({"format": "mmgrasp-files", "files": [LIST, listed]}))
+    try:
+        fill(folder, plan_json="1")
+    except mg.IoError as error:
+        assert "does not list" in str(error)
+    assert outside.read_text() == "mine"
+    assert Path("/etc/hosts").exists()
+
+
+def test_a_run_that_fails_leaves_the_old_plan(tmp_path: Path) -> None:
+    fill(tmp_path, plan_json="1")
+
+    def broken() -> None:
+        with OutputFolder(tmp_path).filled() as draft:
+            write_file(draft / "plan.json", "2")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        broken()
+    assert names(tmp_path) == {"plan.json", LIST}
+    assert (tmp_path / "plan.json").read_text() == "1"
+
+
+def bad_folders(tmp: Path) -> dict[str, Path]:
+    (tmp / "file").write_text("")
+    (tmp / "loop").symlink_to(tmp / "loop")
+    (tmp / "closed").mkdir()
+    return {
+        "a file": tmp / "file",
+        "below a file": tmp / "file" / "x",
+        "a link loop": tmp / "loop",
+        "a device": Path("/dev/null"),
+        "no room for files": Path("/proc/x"),
+        "a name too long": tmp / ("x" * 5000),
+        "a NUL": tmp / "a\0b",
+    }
+
+
+@pytest.mark.parametrize(
+    "what", ["a file", "below a file", "a link loop", "a device", "no room for files", "a name too long", "a NUL"]
+)
+def test_places_that_cannot_be_written_are_found_at_once(tmp_path: Path, what: str) -> None:
+    with pytest.raises(mg.IoError) as caught:
+        check_folder(bad_folders(tmp_path)[what])
+    assert "cannot be written" in str(caught.value)
+    assert "\0" not in str(caught.value)
+
+
+def test_the_trial_leaves_nothing(tmp_path: Path) -> None:
+    check_folder(tmp_path / "a" / "b")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("place", ["trajectories", "plan.json"])
+def test_folders_in_the_place_of_files_and_files_in_that_of_folders(tmp_path: Path, place: str) -> None:
+    if place == "trajectories":
+        (tmp_path / place).write_text("mine")
+    else:
+        (tmp_path / place).mkdir()
+    with pytest.raises(mg.IoError, match=place):
+        OutputFolder(tmp_path)
+
+
+def test_devices_are_never_replaced(tmp_path: Path) -> None:
+    for path in (Path("/dev/null"), Path("/dev/full")):
+        with pytest.raises(mg.IoError, match="no regular file"):
+            write_file(path, "x")
+        with pytest.raises(mg.IoError, match="no regular file"):
+            check_file(path)
+        assert stat.S_ISCHR(os.stat(path).st_mode)
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(mg.IoError, match="no regular file"):
+        write_file(tmp_path / "pipe", "x")
+
+
+def test_links_stay_links(tmp_path: Path) -> None:
+    (tmp_path / "far").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "far" / "file")
+    write_file(tmp_path / "link", "one")
+    write_file(tmp_path / "link", "two")
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "far" / "file").read_text() == "two"
+
+
+@pytest.mark.parametrize("what", ["device", "pipe", "folder", "large", "latin", "none", "nul"])
+def test_what_cannot_be_read_as_text(tmp_path: Path, what: str) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "large").write_text("x" * 11)
+    (tmp_path / "latin").write_bytes(b"\xe4")
+    path = {"device": Path("/dev/zero"), "nul": tmp_path / "a\0"}.get(what, tmp_path / what)
+    with pytest.raises(mg.IoError):
+        read_text(path, 10)
+
+
+def test_what_would_move_a_terminal_is_written_as_escapes() -> None:
+    assert printable("a\x1b[31mb\ud800\n") == "a\\x1b[31mb\\ud800\n"
+    assert printable("Käfig") == "Käfig"
+
+
+@pytest.mark.slow
+def test_the_cache_is_optional(
+    small_path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    scenario = mg.load_scenario(small_path)
+    scenario.reach = {"samples": 20_000}
+    assert isinstance(scenario.reach_database(), mg.ReachDatabase)
+    assert "set XDG_CACHE_HOME" in caplog.text
+    assert names(tmp_path) == {"file"}
+
+
+def test_a_cache_folder_that_is_not_absolute_is_ignored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", "relative")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert mg.base.cache_folder() == str(tmp_path / ".cache" / "mmgrasp")

@@ -1,0 +1,99 @@
+"""The probabilistic map through the Python door."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mmgrasp as mg
+
+INTRINSICS = mg.mapping.PinholeCamera(width=160, height=120, fx=200.0, fy=200.0, cx=79.5, cy=59.5)
+CAMERA = mg.mapping.DepthCamera(INTRINSICS, mg.mapping.DepthNoise(constant=0.001))
+SCENE = [
+    mg.LinkShape(mg.collision.Plane([0, 0, 1], 0.0)),
+    mg.LinkShape(mg.Box([0.06, 0.05, 0.04]), mg.pose([0, 0, 0.02])),
+]
+
+
+def frame(eye: list[float]) -> mg.mapping.DepthImage:
+    return mg.mapping.render_depth(SCENE, INTRINSICS, mg.mapping.look_down(eye))
+
+
+def test_from_frames_to_answers(tmp_path: Path) -> None:
+    sdf = mg.ProbabilisticSdf(voxel=0.002)
+    report = sdf.integrate(frame([0, 0, 0.35]), CAMERA)
+    assert report.used > 0.9 * report.measured and report.new_blocks == sdf.blocks and report.warning == ""
+    sdf.integrate(frame([0.02, 0.01, 0.35]), CAMERA, pose_covariance=np.diag([1e-6] * 3 + [1e-8] * 3))
+    mean, sigma, known = sdf.query([[0.0, 0.0, 0.04], [0.06, 0.0, 0.001], [0, 0, -0.2]])
+    assert known.tolist() == [True, True, False]
+    assert np.allclose(mean[:2], [0, 0.001], atol=1e-4)
+    assert np.all(sigma[:2] < 0.001) and np.isnan(mean[2])
+    hits = sdf.cast_rays([[0.005, 0.004, 0.3], [0, 0, 0.3]], [[0, 0, -1], [0, 0, 1]])
+    assert hits.hit.tolist() == [True, False]
+    assert np.allclose(hits.point[0], [0.005, 0.004, 0.04], atol=2e-4) and np.allclose(
+        hits.normal[0], [0, 0, 1], atol=0.01
+    )
+    assert hits.distance[0] == pytest.approx(0.26, abs=2e-4) and hits.sigma[0] > 0
+    mesh, sigmas = sdf.mesh()
+    points, normals, sigma = sdf.points()
+    assert len(mesh.vertices) == len(sigmas) == len(points) and np.array_equal(sigmas, sigma)
+    assert np.allclose(np.linalg.norm(normals, axis=1), 1)
+    on_floor = np.abs(points[:, 2]) < 1e-3
+    assert np.mean(on_floor) > 0.5 and np.median(normals[on_floor, 2]) == pytest.approx(1, abs=1e-3)
+    sdf.save(tmp_path / "map.sdf")
+    again = mg.ProbabilisticSdf.load(tmp_path / "map.sdf")
+    assert (again.frames, again.blocks, again.voxel) == (2, sdf.blocks, 0.002)
+    assert np.array_equal(again.points()[0], points)
+
+
+def test_distances_have_a_margin_and_a_rule_for_the_unknown() -> None:
+    sdf = mg.ProbabilisticSdf()
+    sdf.integrate(frame([0, 0, 0.35]), CAMERA)
+    point = [[0.0, 0.0, 0.042]]
+    mean, sigma, _ = sdf.query(point)
+    assert sdf.distances(point, sigmas=3)[0] == pytest.approx(mean[0] - 3 * sigma[0])
+    far = [[1.0, 1.0, 1.0]]
+    assert np.isnan(sdf.distances(far)[0])
+    assert sdf.distances(far, unknown="free")[0] == pytest.approx(sdf.truncation)
+    assert sdf.distances(far, unknown="occupied")[0] == pytest.approx(-sdf.truncation)
+    with pytest.raises(mg.InvalidInput, match="unknown = maybe: must be one of unknown, free, occupied"):
+        sdf.distances(far, unknown="maybe")  # type: ignore[arg-type]
+
+
+def test_what_is_refused_leaves_the_map_alone(tmp_path: Path) -> None:
+    sdf = mg.ProbabilisticSdf()
+    good = frame([0, 0, 0.35])
+    millimetres = mg.mapping.DepthImage(1000 * good.depth, INTRINSICS, good.T_world_camera)
+    with pytest.raises(mg.InvalidInput, match="divided by 1000"):
+        sdf.integrate(millimetres, CAMERA)
+    empty = mg.mapping.DepthImage(np.full((120, 160), np.nan), INTRINSICS)
+    with pytest.raises(mg.InvalidInput, match="no pixel measured"):
+        sdf.integrate(empty, CAMERA)
+    other = mg.mapping.DepthCamera(mg.mapping.PinholeCamera())
+    with pytest.raises(mg.InvalidInput, match="must have the size of camera 'camera', 640 x 480"):
+        sdf.integrate(good, other)
+    with pytest.raises(mg.InvalidInput, match="sigma"):
+        sdf.integrate(good, CAMERA, sigma=np.ones((5, 160)))
+    with pytest.raises(mg.InvalidInput, match="pose_covariance"):
+        sdf.integrate(good, CAMERA, pose_covariance=np.eye(5))
+    with pytest.raises(mg.InvalidInput, match="max_memory = 1 MB"):
+        mg.ProbabilisticSdf(max_memory=1e6).integrate(good, CAMERA)
+    with pytest.raises(mg.InvalidInput, match="must be one of to_plane, along_ray"):
+        mg.ProbabilisticSdf(distance="sideways")  # type: ignore[arg-type]
+    with pytest.raises(mg.InvalidInput, match="voxel"):
+        mg.ProbabilisticSdf(voxel_size=0.002)  # type: ignore[call-arg]
+    assert (sdf.frames, sdf.blocks) == (0, 0)
+    (tmp_path / "map.sdf").write_text("no map at all")
+    with pytest.raises(mg.IoError, match="is no map of mmgrasp"):
+        mg.ProbabilisticSdf.load(tmp_path / "map.sdf")
+
+
+def test_published_noise() -> None:
+    noise = mg.mapping.DepthNoise
+    assert noise.structured_light().sigma(1.0) == pytest.approx(0.0012 + 0.0019 * 0.36)
+    assert noise.stereo(500, 0.1, 0.1).sigma(2.0) == pytest.approx(0.008)
+    assert noise.time_of_flight().sigma(2.0) == pytest.approx(0.0017)
+    with pytest.raises(mg.InvalidInput, match="noise"):
+        mg.mapping.DepthCamera(INTRINSICS, noise(constant=-0.001))

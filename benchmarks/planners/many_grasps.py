@@ -56,7 +56,6 @@ class Enough(Exception):  # noqa: N818 - it is no error
 def ours(planner: str, **settings):
     def run(cell: PipeCell, grasps: list[mg.Grasp], seed: int, given: argparse.Namespace, only_first: bool) -> dict:
         options: dict = {"planner": planner, "seed": seed, "threads": 1, "time_limit": given.seconds, **settings}
-        options["ik_solutions"] = CONFIGURATIONS
         if planner == "prm_star_mg":
             options["roadmap"] = mg.planning.Roadmap.build(cell.arm, seed=seed)
             options["refinements"] = UNLIMITED

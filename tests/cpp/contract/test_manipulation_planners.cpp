@@ -53,7 +53,8 @@ class ManipulationPlanner : public ::testing::TestWithParam<std::string> {
     EXPECT_LT((object_at(result.path->waypoints.back()).matrix() - problem.T_world_goal.matrix()).norm(), 3e-4);
     for (const Eigen::VectorXd& q : result.path->waypoints) EXPECT_TRUE(problem.group.within_limits(q, 1e-9));
     EXPECT_NEAR(result.cost, result.path->length() + grasp.cost, 1e-9);
-    EXPECT_LE(result.lower_bound, result.cost + 1e-9);
+    EXPECT_LE(result.lower_bound, result.stats.postures_bound);
+    EXPECT_LE(result.stats.postures_bound, result.cost + 1e-9);
     ASSERT_FALSE(result.improvements.empty());
     EXPECT_EQ(result.improvements.back().cost, result.cost);
     EXPECT_EQ(result.improvements.back().grasp, result.grasp_index);
@@ -121,7 +122,7 @@ TEST_P(ManipulationPlanner, WithoutObstaclesTheStraightLineIsTaken) {
   const ManipulationResult result = plan_manipulation(problem, options());
   expect_sound(problem, result);
   EXPECT_EQ(result.path->waypoints.size(), 2u);
-  EXPECT_NEAR(result.cost, result.lower_bound, 1e-9);
+  EXPECT_NEAR(result.cost, result.stats.postures_bound, 1e-9);
 }
 
 TEST_P(ManipulationPlanner, AGoalThatIsTheStartCostsNothing) {

@@ -72,8 +72,6 @@ class RrtStarMg {
     result_.stats.samples += static_cast<std::size_t>(i);
     result_.stats.vertices += static_cast<std::size_t>(trees_.vertex_count());
     finish_path(input_, result_);
-    const double best = result_.path ? result_.cost : kInfinity;
-    result_.lower_bound = std::min({best, ends_.straight_cost(0), input_.candidates.least_cost_left()});
     if (options_.keep_trees) append_search_trees(trees_, result_.trees);
   }
 
@@ -236,7 +234,6 @@ bool run_rrt_star_mg(ManipulationInput& input, ManipulationResult& result, const
   if (first.grasp >= 0 && !good_enough()) shorten_transfer(input, first, result);
   if (good_enough()) {
     finish_path(input, result);
-    result.lower_bound = std::min(result.cost, candidates.least_cost());
     return false;
   }
   candidates.find_rest();

@@ -27,7 +27,7 @@ class ManipulationPlanner : public ::testing::TestWithParam<std::string> {
     options.time_limit = 100;  // Not to end a run: the budgets do.
     options.seed = 3;
     options.prm.roadmap.vertices = 300;
-    options.rrt.max_samples = 600;
+    options.rrt.max_iterations = 600;
     return options;
   }
 
@@ -182,7 +182,7 @@ TEST_P(ManipulationPlanner, AnImpossibleProblemEndsByItsBudget) {
 
 TEST_P(ManipulationPlanner, TheCancelTokenEndsIt) {
   ManipulationOptions options = this->options();
-  options.rrt.max_samples = 10000000;
+  options.rrt.max_iterations = 10000000;
   options.prm.roadmap.vertices = 300000;
   Monitor monitor;
   std::thread stopper([&] {
@@ -243,7 +243,7 @@ TEST_P(ManipulationPlanner, ClockAndCancelTokenEndASearchThatHasBegun) {
 
 TEST_P(ManipulationPlanner, StopsWithWhatItHas) {
   ManipulationOptions options = this->options();
-  options.rrt.max_samples = 10000000;
+  options.rrt.max_iterations = 10000000;
   options.prm.max_vertices = 10000000;
   Monitor monitor;
   const ManipulationProblem problem = test::bar_transfer();

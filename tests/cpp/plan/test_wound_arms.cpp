@@ -175,7 +175,7 @@ TEST(WoundArms, TransfersTakeTheNearestTurnsOfBothEnds) {
       options.first_grasps = first_grasps;
       options.prm.roadmap.vertices = 200;
       options.prm.roadmap.neighbours = 8;
-      options.rrt.max_samples = 100;
+      options.rrt.max_iterations = 100;
       const ManipulationResult result = plan_manipulation(problem, options);
       ASSERT_EQ(result.outcome, Outcome::solved) << planner;
       EXPECT_NEAR(result.cost, least, 1e-3) << planner;
@@ -205,7 +205,7 @@ TEST(ContinuousJoints, AFullTurnAtEitherEndChangesNothing) {
       ManipulationOptions options;
       options.planner = planner;
       options.prm.roadmap.vertices = 300;
-      options.rrt.max_samples = 300;
+      options.rrt.max_iterations = 300;
       problem.T_world_start = group.fk(from);
       problem.T_world_goal = group.fk(to);
       const ManipulationResult result = plan_manipulation(problem, options);
@@ -240,7 +240,7 @@ TEST(LowerBounds, HoldForEveryPathAtTheDefaults) {
     for (const Link& link : group.robot().links()) problem.touch_links.insert(link.name);
     ManipulationOptions options;
     options.planner = "rrt_star_mg";
-    options.rrt.max_samples = 1;
+    options.rrt.max_iterations = 1;
     Rng rng(11);
     int done = 0, near = 0;
     while (done < 150) {

@@ -41,7 +41,7 @@ ManipulationOptions options_of(const std::string& planner) {
   options.ik_solutions = 2;
   options.prm.roadmap.vertices = 500;
   options.prm.roadmap.neighbours = 12;
-  options.rrt.max_samples = 1500;
+  options.rrt.max_iterations = 1500;
   return options;
 }
 

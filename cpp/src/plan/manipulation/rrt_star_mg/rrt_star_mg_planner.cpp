@@ -62,11 +62,11 @@ class RrtStarMg {
     if (input_.options.straight) try_straight_lines();
     const double goal_cost = std::min(options_.goal_cost, std::numeric_limits<double>::max());
     int i = 0;
-    for (; i < options_.max_samples && informed_.grasps() > 0 && incumbent_.cost > goal_cost; ++i) {  // Line 6.
+    for (; i < options_.max_iterations && informed_.grasps() > 0 && incumbent_.cost > goal_cost; ++i) {  // Line 6.
       if (input_.out_of_time()) break;
       // Trees that begin with a path grow where it runs; those that find their own have been everywhere.
       if (first_.grasp >= 0 && (incumbent_.in_trees() || i == kMaxUnseeded)) seed_tree(std::exchange(first_, {}));
-      if (i % kReportInterval == 0) input_.monitor.report("search", static_cast<double>(i) / options_.max_samples);
+      if (i % kReportInterval == 0) input_.monitor.report("search", static_cast<double>(i) / options_.max_iterations);
       sample(options_.bidirectional ? i % 2 : GraspEnds::kStart);  // Line 26: SwapTrees.
     }
     result_.stats.samples += static_cast<std::size_t>(i);

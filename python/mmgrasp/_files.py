@@ -94,6 +94,14 @@ def write_file(path: Path, content: str | bytes) -> None:
 
 def read_text(path: Path, most: int) -> str:
     """The text of a regular file of at most `most` bytes; raises IoError otherwise."""
+    try:
+        return read_bytes(path, most).decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise IoError(f"{printable(os.fspath(path))}: is no UTF-8 text (byte {error.start})") from None
+
+
+def read_bytes(path: Path, most: int) -> bytes:
+    """The content of a regular file of at most `most` bytes; raises IoError otherwise."""
     shown = printable(os.fspath(path))
     try:
         with open(path, "rb", opener=_open_now) as file:
@@ -105,9 +113,7 @@ def read_text(path: Path, most: int) -> str:
             data = file.read(most + 1)
         if len(data) > most:
             raise IoError(f"{shown}: cannot be read: is larger than {most} bytes")
-        return data.decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise IoError(f"{shown}: is no UTF-8 text (byte {error.start})") from None
+        return data
     except OSError as error:
         if isinstance(error, IoError):
             raise

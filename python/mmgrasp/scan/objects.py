@@ -1,0 +1,139 @@
+"""What stands on what: the supporting plane of a mapped scene and the objects on it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..mapping import fit_cuboids
+from ..robot import quat_xyzw_from_rotation
+
+FORMAT, VERSION = "mmgrasp-objects", 1
+KNOWN_UP, GUESSED_UP = 0.35, 0.61
+"""How far the supporting plane's normal may be from a direction that is known, and from one that mean_up guesses [rad]."""
+_MOST_POINTS = 400_000
+PLANE, LEFT_OUT = -1, -2  # labels
+
+
+@dataclass(frozen=True)
+class SegmentedObject:
+    """One object on the plane, as a box around it that stands on the plane."""
+
+    T_world_box: np.ndarray
+    """(4, 4) of the box's centre, z along the plane's normal."""
+    size: np.ndarray
+    """(3,) full lengths [m]."""
+    fill: float
+    """Share of the top rectangle that was seen: how box-like it is."""
+
+
+@dataclass(frozen=True)
+class Segmentation:
+    """The supporting plane, normal . x = offset, and what stands on it; no plane: no objects."""
+
+    plane_normal: np.ndarray | None
+    plane_offset: float
+    objects: list[SegmentedObject]
+    labels: np.ndarray = field(repr=False)
+    """(n,) of each point: its object, -1 the plane, -2 left out."""
+
+
+def segment_objects(
+    points: np.ndarray,
+    normals: np.ndarray,
+    *,
+    up: Sequence[float] | np.ndarray | None,
+    eye: np.ndarray,
+    voxel: float,
+    up_angle: float = KNOWN_UP,
+) -> Segmentation:
+    """The dominant plane whose normal is within `up_angle` [rad] of `up` (None: any plane that faces `eye`), and the objects on it.
+
+    `points` and `normals` (n, 3): surface of a map whose voxels have the edge `voxel` [m]. Objects that touch are one.
+    """
+    assert len(points) == len(normals)
+    nothing = Segmentation(None, 0.0, [], np.full(len(points), LEFT_OUT))
+    if len(points) == 0:
+        return nothing
+    leaf = max(0.003, voxel)
+    chosen, cell_of = _thinned(points, leaf)
+    direction = np.zeros(3) if up is None else np.asarray(up, dtype=float)
+    fit = fit_cuboids(
+        points[chosen],
+        up=direction,
+        eye=eye,
+        up_angle=up_angle,
+        plane_tolerance=max(0.008, 2 * voxel),
+        cluster_tolerance=max(0.010, 3 * leaf),
+        leaf=leaf,
+    )
+    if not fit.plane_found:
+        return nothing
+    objects = [SegmentedObject(c.T_world_box, np.asarray(c.size), c.fill) for c in fit.cuboids]
+    return Segmentation(fit.plane_normal, fit.plane_offset, objects, np.asarray(fit.labels)[cell_of])
+
+
+def mean_up(T_world_cameras: Sequence[np.ndarray]) -> np.ndarray | None:
+    """Where up is, guessed from how cameras are held: between the image's up and the way back from the scene.
+
+    Exact for a camera that looks 45 degrees down, 35 degrees off for one that looks 10 or 80 degrees down; the walls it faces
+    are farther off. None where the poses say nothing.
+    """
+    if not T_world_cameras:
+        return None
+    T = np.asarray(T_world_cameras, dtype=float)
+    guess = np.asarray(-(T[:, :3, 1] + T[:, :3, 2]).mean(axis=0))
+    length = float(np.linalg.norm(guess))
+    return guess / length if length > 0.5 else None
+
+
+def _thinned(points: np.ndarray, leaf: float) -> tuple[np.ndarray, np.ndarray]:
+    """The first point of every cell, at most some hundred thousand, and the cell of each point."""
+    while True:
+        cells = np.floor(points / leaf).astype(np.int64)
+        cells -= cells.min(axis=0)
+        spans = cells.max(axis=0) + 1
+        keys = (cells[:, 0] * spans[1] + cells[:, 1]) * spans[2] + cells[:, 2]
+        _, chosen, cell_of = np.unique(keys, return_index=True, return_inverse=True)
+        if len(chosen) <= _MOST_POINTS:
+            return chosen, cell_of.reshape(-1)
+        leaf *= 1.5
+
+
+def objects_to_dict(
+    found: Segmentation, points: np.ndarray, sigmas: np.ndarray, up: np.ndarray | None, how: str
+) -> dict[str, Any]:
+    """The content of objects.json. `how`: where `up` comes from."""
+    rows = []
+    for k, thing in enumerate(found.objects):
+        own = found.labels == k
+        row: dict[str, Any] = {
+            "name": f"object_{k + 1}",
+            "pose": pose_to_dict(thing.T_world_box),
+            "size": thing.size.tolist(),
+            "fill": thing.fill,
+            "points": int(own.sum()),
+        }
+        if own.any():
+            row["bounds"] = {"lower": points[own].min(axis=0).tolist(), "upper": points[own].max(axis=0).tolist()}
+            row["sigma"] = float(np.median(sigmas[own]))
+        rows.append(row)
+    plane = None
+    if found.plane_normal is not None:
+        on = int((found.labels == PLANE).sum())
+        plane = {"normal": found.plane_normal.tolist(), "offset": found.plane_offset, "points": on}
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "up": {"direction": None if up is None else up.tolist(), "from": how},
+        "plane": plane,
+        "objects": rows,
+    }
+
+
+def pose_to_dict(T: np.ndarray) -> dict[str, list[float]]:
+    """{xyz, quat_xyzw} of (4, 4)."""
+    return {"xyz": T[:3, 3].tolist(), "quat_xyzw": np.asarray(quat_xyzw_from_rotation(T[:3, :3])).tolist()}

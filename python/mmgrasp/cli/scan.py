@@ -69,9 +69,10 @@ def _begin(arguments: argparse.Namespace, frames: FrameFolder, folder: OutputFol
         now = getattr(arguments, name)
         if now is not None and now != was:
             flag = "--" + name.replace("_", "-")
+            unit = 1e6 if name == "max_memory" else 1.0
             raise InvalidInput(
-                f"{flag} {now:g}: the map in {printable(str(arguments.out))} was made with {was:g}: leave {flag} out to go on with it, "
-                "or make it anew with --start-over"
+                f"{flag} {now / unit:g}: the map in {printable(str(arguments.out))} was made with {was / unit:g}: "
+                f"leave {flag} out to go on with it, or make it anew with --start-over"
             )
     return scan
 

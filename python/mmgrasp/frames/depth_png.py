@@ -24,12 +24,15 @@ class PngHeader:
     height: int
     bits: int
     colour: int
+    interlaced: bool
 
     def check_depth(self, what: str) -> None:
         """Raises InvalidInput unless it can be a depth image."""
         if self.bits != 16 or self.colour != 0:
             kind = KINDS.get(self.colour, f"colour type {self.colour}")
             raise InvalidInput(f"{what}: is a PNG of {self.bits} bits, {kind}: depth images have 16 bits, greyscale")
+        if self.interlaced:
+            raise InvalidInput(f"{what}: is an interlaced PNG: depth images are written row by row")
         if not 0 < self.width * self.height <= MOST_PIXELS:
             raise InvalidInput(f"{what}: has {self.width} x {self.height} pixels, must have 1 to {MOST_PIXELS}")
 
@@ -44,14 +47,14 @@ def png_header(data: bytes, what: str) -> PngHeader:
     if kind != b"IHDR" or length != 13 or zlib.crc32(data[12:29]) != struct.unpack_from(">I", data, 29)[0]:
         raise InvalidInput(f"{what}: is damaged: its PNG header does not fit its checksum")
     width, height, bits, colour = struct.unpack_from(">IIBB", data, 16)
-    return PngHeader(width, height, bits, colour)
+    return PngHeader(width, height, bits, colour, data[28] != 0)
 
 
 def read_depth_png(data: bytes, what: str) -> np.ndarray:
     """(height, width) uint16 of a whole file. Raises InvalidInput naming `what`."""
     header = png_header(data, what)
     header.check_depth(what)
-    _check_chunks(data, what)
+    _check_rows(_checked_chunks(data, what), header, what)
     from PIL import Image
 
     try:
@@ -64,8 +67,9 @@ def read_depth_png(data: bytes, what: str) -> np.ndarray:
     return pixels.astype(np.uint16)
 
 
-def _check_chunks(data: bytes, what: str) -> None:
-    """Every chunk is whole and fits its checksum, and the last one ends the image."""
+def _checked_chunks(data: bytes, what: str) -> list[bytes]:
+    """The compressed rows; every chunk is whole and fits its checksum, and the last one ends the image."""
+    rows = []
     place = 8
     while place + 12 <= len(data):
         length, kind = struct.unpack_from(">I4s", data, place)
@@ -75,6 +79,21 @@ def _check_chunks(data: bytes, what: str) -> None:
         if zlib.crc32(data[place + 4 : end - 4]) != struct.unpack_from(">I", data, end - 4)[0]:
             raise InvalidInput(f"{what}: is damaged: a checksum at byte {place} is wrong")
         if kind == b"IEND":
-            return
+            return rows
+        if kind == b"IDAT":
+            rows.append(data[place + 8 : end - 4])
         place = end
     raise InvalidInput(f"{what}: is truncated: it ends after {len(data)} bytes within the image")
+
+
+def _check_rows(rows: list[bytes], header: PngHeader, what: str) -> None:
+    """The image has all its rows: Pillow would leave missing ones at 0."""
+    wanted = header.height * (1 + 2 * header.width)
+    stream = zlib.decompressobj()
+    try:
+        found = len(stream.decompress(b"".join(rows), wanted + 1))
+    except zlib.error as error:
+        raise InvalidInput(f"{what}: is damaged: {error}") from None
+    if found != wanted:
+        more = "more" if found > wanted else f"{found}"
+        raise InvalidInput(f"{what}: is damaged: its rows have {more} bytes, {wanted} belong to its size")

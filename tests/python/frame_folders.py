@@ -116,10 +116,10 @@ def write_npz(folder: Path, taken: list[Shot], sensor: str = "camera") -> None:
 WRITERS = {"seven_scenes": write_seven_scenes, "redwood": write_redwood, "tum": write_tum, "npz": write_npz}
 
 
-def write_sensors(folder: Path, lines: str = "", name: str = "camera") -> Path:
+def write_sensors(folder: Path, lines: str = "", name: str = "camera", intrinsics: bool = True) -> Path:
     """A sensors' file with the intrinsics of the rendered frames and more lines for its only sensor."""
     at = ", ".join(f"{key}: {value}" for key, value in INTRINSICS.items())
-    text = f"version: 1\nsensors:\n  {name}:\n    intrinsics: {{{at}}}\n"
+    text = f"version: 1\nsensors:\n  {name}:\n" + (f"    intrinsics: {{{at}}}\n" if intrinsics else "")
     text += "".join(f"    {line}\n" for line in lines.splitlines())
     path = folder / "sensors.yaml"
     path.write_text(text)

@@ -72,7 +72,7 @@ def test_everything_is_written_and_fits_the_map(tmp_path: Path, capsys: pytest.C
     (row,) = summary["sensors"]
     parts = ("used", "out_of_range", "too_noisy", "too_slanted", "without_normal")
     assert row["measured"] == sum(row[key] for key in parts) and row["used"] > 0.8 * row["measured"]
-    assert row["agreement"]["least"] > 0.9
+    assert row["agreement"]["least"] > 0.7
     check_mesh(tmp_path / "map" / "mesh.ply", sdf, sigmas)
     page = (tmp_path / "map" / "report.html").read_text()
     assert page.count("data:image/png;base64,") == 3 and "assumed are the noise" in page
@@ -81,8 +81,7 @@ def test_everything_is_written_and_fits_the_map(tmp_path: Path, capsys: pytest.C
 def check_mesh(path: Path, sdf: mg.ProbabilisticSdf, sigmas: np.ndarray) -> None:
     """Read twice: by the library's own reader, and by hand for what that does not know."""
     mesh, _ = sdf.mesh()
-    read = mg.Mesh.load(path)
-    assert len(read.triangles) == len(mesh.triangles)
+    assert abs(len(mg.Mesh.load(path).triangles) - len(mesh.triangles)) < 10, "the reader drops those without an area"
     content = path.read_bytes()
     header, body = content.split(b"end_header\n", 1)
     kind = np.dtype([("xyz", "<f4", 3), ("rgb", "u1", 3), ("sigma", "<f4")])
@@ -90,7 +89,8 @@ def check_mesh(path: Path, sdf: mg.ProbabilisticSdf, sigmas: np.ndarray) -> None
     assert f"element vertex {len(sigmas)}".encode() in header
     np.testing.assert_allclose(corners["xyz"], mesh.vertices, atol=1e-7)
     np.testing.assert_allclose(corners["sigma"], sigmas, rtol=1e-6)
-    assert len(body) == kind.itemsize * len(sigmas) + 13 * len(mesh.triangles)
+    faces = np.frombuffer(body[kind.itemsize * len(sigmas) :], dtype=[("count", "u1"), ("corners", "<i4", 3)])
+    assert (faces["count"] == 3).all() and np.array_equal(faces["corners"], mesh.triangles)
     brightness = corners["rgb"].astype(int).sum(axis=1)
     assert brightness[np.argmin(sigmas)] < brightness[np.argmax(sigmas)]
 
@@ -107,8 +107,8 @@ def test_objects_stand_where_they_were_put(tmp_path: Path) -> None:
     for row in found["objects"]:
         height = min(wanted, key=lambda h: abs(h - row["size"][2]))
         centre, size = wanted.pop(height)
-        np.testing.assert_allclose(row["pose"]["xyz"], centre, atol=0.006)
-        np.testing.assert_allclose(row["size"], size, atol=0.012)
+        np.testing.assert_allclose(row["pose"]["xyz"], centre, atol=0.004)
+        np.testing.assert_allclose(row["size"], size, atol=0.006)
         lower, upper = (np.array(row["bounds"][key]) for key in ("lower", "upper"))
         assert np.all(lower < centre) and np.all(upper > centre) and row["points"] > 100
     assert not wanted

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..mapping import fit_cuboids
+from ..mapping import FittedCuboid, fit_cuboids
 from ..robot import quat_xyzw_from_rotation
 
 FORMAT, VERSION = "mmgrasp-objects", 1
@@ -72,8 +72,25 @@ def segment_objects(
     )
     if not fit.plane_found:
         return nothing
-    objects = [SegmentedObject(c.T_world_box, np.asarray(c.size), c.fill) for c in fit.cuboids]
-    return Segmentation(fit.plane_normal, fit.plane_offset, objects, np.asarray(fit.labels)[cell_of])
+    labels = np.asarray(fit.labels)[cell_of]
+    objects = [_box_around(points[labels == k], cuboid) for k, cuboid in enumerate(fit.cuboids)]
+    return Segmentation(fit.plane_normal, fit.plane_offset, objects, labels)
+
+
+def _box_around(points: np.ndarray, cuboid: FittedCuboid) -> SegmentedObject:
+    """Turned as the cuboid is, but as wide as the object's points, 2 % left out at either end: a map shows sides, too, which the
+    cuboid of a single view does not count on, most objects are no boxes, and surfaces stick out at their rims.
+    """
+    T = np.array(cuboid.T_world_box)
+    size = np.array(cuboid.size)
+    if len(points):
+        low, high = np.quantile((points - T[:3, 3]) @ T[:3, :2], [0.02, 0.98], axis=0)
+        T[:3, 3] += T[:3, :2] @ ((low + high) / 2)
+        size[:2] = high - low
+    if size[1] > size[0]:  # the longer side is x
+        size[:2] = size[1::-1]
+        T[:3, :2] = np.stack([T[:3, 1], -T[:3, 0]], axis=1)
+    return SegmentedObject(T, size, cuboid.fill)
 
 
 def mean_up(T_world_cameras: Sequence[np.ndarray]) -> np.ndarray | None:

@@ -231,6 +231,8 @@ def test_tum_images_far_from_any_pose_are_named(tmp_path: Path) -> None:
     (tmp_path / "depth.txt").write_text(f"{listed[1]}\n{late} {listed[2].split()[1]}\n2 depth/gone.png\n")
     found = problems(open_frames(tmp_path))
     assert len(found) == 2 and "half a frame" in found["depth/gone.png"]
+    save_png(tmp_path / "depth" / "extra.png", np.ones((120, 160), np.uint16))
+    assert "depth.txt does not name this image" in problems(open_frames(tmp_path))["depth/extra.png"]
     assert "groundtruth.txt has no pose within 0.05 s of its time" in found[listed[2].split()[1]]
     assert "s earlier)" in found[listed[2].split()[1]]
 
@@ -245,6 +247,9 @@ def test_tum_without_depth_txt(name: str, tmp_path: Path) -> None:
         (tmp_path / name).write_text("".join(f"{t} rgb/{t}.png {t} {path}\n" for t, path in rows))
     folder = open_frames(tmp_path)
     assert [frame.name for frame in folder.frames] == [path for _, path in rows] and problems(folder) == {}
+    save_png(tmp_path / "depth" / "extra.png", np.ones((120, 160), np.uint16))
+    foreign = {"depth/extra.png": "depth/extra.png: foreign: its name is no timestamp"}
+    assert problems(open_frames(tmp_path)) == (foreign if name == "none" else {})
 
 
 # --- Redwood --------------------------------------------------------------------------------------------------------------

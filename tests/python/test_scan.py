@@ -34,6 +34,7 @@ from mmgrasp.cli import scan as scan_command
 from mmgrasp.cli.output_folder import LIST
 from mmgrasp.frames import write_npz_frame
 from mmgrasp.frames.poses import rigid
+from mmgrasp.scan.objects import vertex_normals
 
 ALL_FILES = {"map.sdf", "progress.json", "mesh.ply", "objects.json", "report.html", LIST}
 PICTURES = {"surface.png", "objects.png", "sensors.png"}
@@ -67,7 +68,9 @@ def test_everything_is_written_and_fits_the_map(tmp_path: Path, capsys: pytest.C
     summary = json.loads(capsys.readouterr().out)
     assert names(tmp_path / "map") == ALL_FILES | PICTURES
     sdf = mg.ProbabilisticSdf.load(tmp_path / "map" / "map.sdf")
-    points, _, sigmas = sdf.points()
+    points, normals, sigmas = sdf.points()
+    mesh, _ = sdf.mesh()
+    np.testing.assert_allclose(vertex_normals(mesh.vertices, mesh.triangles), normals, atol=1e-9)
     assert summary["map"]["frames"] == summary["added"] == 6 and summary["map"]["vertices"] == len(points)
     (row,) = summary["sensors"]
     parts = ("used", "out_of_range", "too_noisy", "too_slanted", "without_normal")
@@ -390,6 +393,12 @@ def test_other_sensors_do_not_go_on_with_a_map(tmp_path: Path, capfd: pytest.Cap
     assert run(tmp_path / "frames", tmp_path / "map") == 2
     error = capfd.readouterr().err
     assert "systematic = 0.001: the map was made with 0.0" in error and "sensors.yaml:3" in error
+    write_sensors(tmp_path / "frames", name="kinect")
+    assert run(tmp_path / "frames", tmp_path / "map") == 2
+    error = capfd.readouterr().err
+    assert "was integrated as a frame of sensor 'camera', and the sensors are kinect now" in error
+    assert run(tmp_path / "frames", tmp_path / "frames") == 2
+    assert "must be another folder than that of the frames" in capfd.readouterr().err
 
 
 def spoil_version(out: Path) -> None:

@@ -36,7 +36,7 @@ def uninterrupted() -> Iterator[None]:
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.signal(signal.SIGINT, signal.SIG_DFL if before is None else before)  # None: not Python's
     if came:
         signal.raise_signal(signal.SIGINT)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import time
 from dataclasses import asdict
 from pathlib import Path
@@ -25,7 +26,7 @@ from ..scan import (
     segment_objects,
     write_ply,
 )
-from ..scan.objects import GUESSED_UP, KNOWN_UP, Segmentation, objects_to_dict
+from ..scan.objects import GUESSED_UP, KNOWN_UP, Segmentation, objects_to_dict, vertex_normals
 from ..scan.progress_file import PROGRESS_FILE
 from ..scan.summary import scan_summary
 from .console import Reporter
@@ -44,6 +45,8 @@ _MOST_LINES = 10
 
 def run_scan(arguments: argparse.Namespace, console: Console) -> int:
     folder = OutputFolder(arguments.out, SCAN_FILES)
+    if folder.path == Path(os.path.realpath(arguments.frames)):
+        raise InvalidInput(f"--out {arguments.out}: must be another folder than that of the frames")
     with Reporter(console) as report:
         frames = open_frames(arguments.frames, arguments.sensors)
         scan = _begin(arguments, frames, folder)
@@ -109,15 +112,14 @@ def _write(
     with folder.filled() as draft:
         _save(scan, draft, MAP)
     report("mesh", 0.0)
-    mesh, _ = scan.sdf.mesh()
-    report("mesh", 0.5)
-    points, normals, sigmas = scan.sdf.points()
+    mesh, sigmas = scan.sdf.mesh()
+    points, triangles = mesh.vertices, mesh.triangles
     report("objects", 0.0)
-    found, objects = _objects(scan, frames, arguments.up, points, normals, sigmas)
+    found, objects = _objects(scan, frames, arguments.up, points, vertex_normals(points, triangles), sigmas)
     summary = scan_summary(scan, frames, sigmas, objects)
     report("writing", 0.0)
     with folder.filled(added=True) as draft:
-        write_ply(draft / "mesh.ply", mesh.vertices, mesh.triangles, sigmas)
+        write_ply(draft / "mesh.ply", points, triangles, sigmas)
         write_file(draft / "objects.json", json.dumps(objects, indent=1, allow_nan=False) + "\n")
         if not arguments.no_pictures:
             from ..viz.scan_pictures import write_scan_pictures

@@ -46,8 +46,11 @@ def frames(folder: Path, root: Path, sensor: str) -> list[Frame]:
 
 
 def _foreign(folder: Path, root: Path, sensor: str, listed: set[str]) -> list[Frame]:
-    """Images beside the listed ones: said, since a list that was cut short would go unnoticed."""
-    problem = "no list names this image, and its name is no timestamp"
+    """Images beside the listed ones: said, since a list that was cut short would go unnoticed. (Pairs may leave images out.)"""
+    source = _list_of(folder)
+    if source is not None and source.name != LIST:
+        return []
+    problem = f"foreign: {LIST} does not name this image" if source else "foreign: its name is no timestamp"
     return [
         Frame(path.relative_to(root).as_posix(), path, sensor, problem=problem)
         for path in sorted((folder / "depth").glob("*.png"))
@@ -89,9 +92,13 @@ def _read_truth(path: Path) -> tuple[list[float], list[np.ndarray]]:
     return times, [seen[time][1] for time in times]
 
 
+def _list_of(folder: Path) -> Path | None:
+    return next((folder / name for name in (LIST, *PAIRS) if (folder / name).is_file()), None)
+
+
 def _read_list(folder: Path) -> list[tuple[float, str]]:
     """(timestamp, path of the depth image below the folder), each once."""
-    path = next((folder / name for name in (LIST, *PAIRS) if (folder / name).is_file()), None)
+    path = _list_of(folder)
     if path is None:
         images = sorted((folder / "depth").glob("*.png"))
         return [

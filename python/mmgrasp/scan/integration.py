@@ -244,6 +244,7 @@ def _compare_sensors(folder: FrameFolder, scan: Scan) -> None:
         if sensor is None and not folder.from_file and folder.names_sensors:
             sensor = Sensor(name)
         if sensor is None:
+            _check_gone(folder, scan, name)
             continue
         at = was["intrinsics"]
         if sensor.intrinsics is None and at is not None:
@@ -257,6 +258,17 @@ def _compare_sensors(folder: FrameFolder, scan: Scan) -> None:
                     f"{sensor.shown}: {key} = {now[key]}: the map was made with {was.get(key)}: "
                     "put it back, or make the map anew with --start-over"
                 )
+
+
+def _check_gone(folder: FrameFolder, scan: Scan, sensor: str) -> None:
+    """A sensor of the map that nothing describes any more may be gone only together with its frames."""
+    there = {frame.name for frame in folder.frames}
+    frame = next((record.name for record in scan.frames if record.sensor == sensor and record.name in there), None)
+    if frame is not None:
+        raise InvalidInput(
+            f"{frame}: was integrated as a frame of sensor '{sensor}', and the sensors are {', '.join(folder.sensors) or 'unknown'} now: "
+            "put it back, or make the map anew with --start-over"
+        )
 
 
 def _compare_frames(folder: FrameFolder, scan: Scan, progress: Progress) -> None:

@@ -107,6 +107,17 @@ def mean_up(T_world_cameras: Sequence[np.ndarray]) -> np.ndarray | None:
     return guess / length if length > 0.5 else None
 
 
+def vertex_normals(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(n, 3) unit normals, those of the triangles around weighted by their areas; zero where there are none."""
+    corners = vertices[triangles]
+    of_triangle = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    owner = triangles.reshape(-1)
+    sums = [np.bincount(owner, np.repeat(of_triangle[:, k], 3), len(vertices)) for k in range(3)]
+    normals = np.stack(sums, axis=1)
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    return np.asarray(normals / np.where(lengths > 0, lengths, 1))
+
+
 def _thinned(points: np.ndarray, leaf: float) -> tuple[np.ndarray, np.ndarray]:
     """The first point of every cell, at most some hundred thousand, and the cell of each point."""
     while True:

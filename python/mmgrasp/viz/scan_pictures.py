@@ -34,9 +34,8 @@ def write_scan_pictures(
         views = three_views(points, _up(scan, found), _towards_cameras(scan, points))
         seen = []
         for i, view in enumerate(views):
-            if progress:
-                progress("drawing", i / 4)
-            seen.append(look(scan.sdf, view))
+            tell = (lambda share, i=i: progress("drawing", (i + share) / 4)) if progress else None
+            seen.append(look(scan.sdf, view, tell))
         paths.append(write_surface(views, seen, sigmas, out / "surface.png"))
         if found.plane_normal is not None:
             paths.append(write_objects(views, seen, found, out / "objects.png"))

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from .._core import ProbabilisticSdf
+
+_ROWS = 24  # of a picture at a time
 
 
 @dataclass
@@ -77,18 +80,29 @@ def _fitted(
     return View(title, centre, right, down, forward, half_width, half_height, width, height)
 
 
-def look(sdf: ProbabilisticSdf, view: View) -> Seen:
-    """One ray a pixel."""
+def look(sdf: ProbabilisticSdf, view: View, progress: Callable[[float], object] | None = None) -> Seen:
+    """One ray a pixel, some rows at a time, so that Ctrl-C is heard in between."""
     pixel = 2 * view.half_width / view.columns
     x = (np.arange(view.columns) + 0.5) * pixel - view.half_width
     y = (np.arange(view.rows) + 0.5) * pixel - view.half_height
-    across = x[None, :, None] * view.right + y[:, None, None] * view.down
-    origins = (view.centre + across).reshape(-1, 3)
-    hits = sdf.cast_rays(origins, np.broadcast_to(view.forward, origins.shape))
-    normals = np.nan_to_num(hits.normal)
+    seen = Seen(*(np.zeros((view.rows, view.columns), dtype=kind) for kind in (bool, float, float)))
+    for first in range(0, view.rows, _ROWS):
+        rows = slice(first, min(first + _ROWS, view.rows))
+        across = x[None, :, None] * view.right + y[rows, None, None] * view.down
+        origins = (view.centre + across).reshape(-1, 3)
+        hits = sdf.cast_rays(origins, np.broadcast_to(view.forward, origins.shape))
+        shape = (-1, view.columns)
+        seen.hit[rows] = hits.hit.reshape(shape)
+        seen.shade[rows] = _shade(np.nan_to_num(hits.normal), view).reshape(shape)
+        seen.sigma[rows] = hits.sigma.reshape(shape)
+        if progress:
+            progress(rows.stop / view.rows)
+    return seen
+
+
+def _shade(normals: np.ndarray, view: View) -> np.ndarray:
+    """A lamp at the camera and one above its right shoulder."""
     head = np.clip(-(normals @ view.forward), 0, 1)
     light = 0.5 * view.right - 0.6 * view.down - 0.62 * view.forward
     lit = np.clip(normals @ (light / np.linalg.norm(light)), 0, 1)
-    shape = (view.rows, view.columns)
-    shade = np.clip(0.25 + 0.35 * head + 0.42 * lit, 0, 1)
-    return Seen(hits.hit.reshape(shape), shade.reshape(shape), hits.sigma.reshape(shape))
+    return np.asarray(np.clip(0.25 + 0.35 * head + 0.42 * lit, 0, 1))

@@ -55,8 +55,7 @@ def test_every_filter_of_a_png_is_undone() -> None:
     """Five rows, one of each filter, put together by hand."""
     rng = np.random.default_rng(1)
     pixels = rng.integers(0, 65536, (5, 7)).astype(np.uint16)
-    rows = pixels.astype(">u2").tobytes()
-    rows = [np.frombuffer(rows[14 * k : 14 * (k + 1)], np.uint8).astype(int) for k in range(5)]
+    rows = np.frombuffer(pixels.astype(">u2").tobytes(), np.uint8).astype(int).reshape(5, 14)
     data = b""
     for kind, row in enumerate(rows):
         left = np.concatenate([[0, 0], row[:-2]])
@@ -64,9 +63,9 @@ def test_every_filter_of_a_png_is_undone() -> None:
         corner = np.concatenate([[0, 0], up[:-2]])
         guess = left + up - corner
         nearest = np.abs([guess - left, guess - up, guess - corner]).argmin(axis=0)
-        paeth = np.choose(nearest, [left, up, corner])
-        predicted = [np.zeros(14, int), left, up, (left + up) // 2, paeth][kind]
-        data += bytes([kind]) + ((row - predicted) % 256).astype(np.uint8).tobytes()
+        paeth = np.where(nearest == 0, left, np.where(nearest == 1, up, corner))
+        predicted = np.stack([np.zeros(14, int), left, up, (left + up) // 2, paeth])[kind]
+        data += bytes([kind]) + np.asarray((row - predicted) % 256, dtype=np.uint8).tobytes()
     np.testing.assert_array_equal(read_depth_png(png(7, 5, 16, 0, data), "image"), pixels)
 
 
@@ -86,6 +85,11 @@ def spoil_flipped(path: Path) -> None:
     data = bytearray(path.read_bytes())
     data[len(data) // 2] ^= 0xFF
     path.write_bytes(bytes(data))
+
+
+def into_folder(path: Path) -> None:
+    path.unlink()
+    path.mkdir()
 
 
 def interlace(path: Path) -> None:
@@ -110,7 +114,7 @@ BAD_IMAGES: dict[str, tuple[Callable[[Path], object], str]] = {
     "huge": (lambda p: p.write_bytes(png(2**31 - 1, 2**31 - 1, 16, 0, b"")), "pixels, must have 1 to"),
     "all zero": (lambda p: save_png(p, np.zeros((120, 160), np.uint16)), "no pixel is measured"),
     "all invalid": (lambda p: save_png(p, np.full((120, 160), 65535, np.uint16)), "no pixel is measured"),
-    "a folder": (lambda p: (p.unlink(), p.mkdir()), "cannot be read: "),
+    "a folder": (into_folder, "cannot be read: "),
 }
 
 

@@ -69,7 +69,7 @@ def read_depth_png(data: bytes, what: str) -> np.ndarray:
 
 def _checked_chunks(data: bytes, what: str) -> list[bytes]:
     """The compressed rows; every chunk is whole and fits its checksum, and the last one ends the image."""
-    rows = []
+    rows: list[bytes] = []
     place = 8
     while place + 12 <= len(data):
         length, kind = struct.unpack_from(">I4s", data, place)

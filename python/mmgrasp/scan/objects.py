@@ -10,6 +10,7 @@ import numpy as np
 
 from ..mapping import FittedCuboid, fit_cuboids
 from ..robot import quat_xyzw_from_rotation
+from .plane import supporting_plane
 
 FORMAT, VERSION = "mmgrasp-objects", 1
 KNOWN_UP, GUESSED_UP = 0.35, 0.61
@@ -50,7 +51,7 @@ def segment_objects(
     voxel: float,
     up_angle: float = KNOWN_UP,
 ) -> Segmentation:
-    """The dominant plane whose normal is within `up_angle` [rad] of `up` (None: any plane that faces `eye`), and the objects on it.
+    """The largest plane whose normal is within `up_angle` [rad] of `up` (None: any), and the objects on it, seen from `eye`.
 
     `points` and `normals` (n, 3): surface of a map whose voxels have the edge `voxel` [m]. Objects that touch are one.
     """
@@ -58,23 +59,26 @@ def segment_objects(
     nothing = Segmentation(None, 0.0, [], np.full(len(points), LEFT_OUT))
     if len(points) == 0:
         return nothing
+    tolerance = max(0.008, 2 * voxel)
+    plane = supporting_plane(points, normals, None if up is None else np.asarray(up), up_angle, tolerance, 3 * voxel)
+    if plane is None:
+        return nothing
     leaf = max(0.003, voxel)
     chosen, cell_of = _thinned(points, leaf)
-    direction = np.zeros(3) if up is None else np.asarray(up, dtype=float)
-    fit = fit_cuboids(
+    fit = fit_cuboids(  # with the plane's rectangle as a tray without walls
         points[chosen],
-        up=direction,
+        T_world_tray=plane.T_world_plane,
+        tray_size=[*plane.size, 1.0],
+        wall=0.0,
+        wall_margin=0.0,
         eye=eye,
-        up_angle=up_angle,
-        plane_tolerance=max(0.008, 2 * voxel),
+        plane_tolerance=tolerance,
         cluster_tolerance=max(0.010, 3 * leaf),
         leaf=leaf,
     )
-    if not fit.plane_found:
-        return nothing
     labels = np.asarray(fit.labels)[cell_of]
     objects = [_box_around(points[labels == k], cuboid) for k, cuboid in enumerate(fit.cuboids)]
-    return Segmentation(fit.plane_normal, fit.plane_offset, objects, labels)
+    return Segmentation(plane.normal, plane.offset, objects, labels)
 
 
 def _box_around(points: np.ndarray, cuboid: FittedCuboid) -> SegmentedObject:

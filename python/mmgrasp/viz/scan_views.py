@@ -31,6 +31,11 @@ class View:
         return (points - self.centre) @ np.stack([self.right, self.down], axis=1)
 
     @property
+    def pixel(self) -> float:
+        """Edge of a pixel [m]."""
+        return 2 * self.half_width / self.columns
+
+    @property
     def extent(self) -> tuple[float, float, float, float]:
         """As imshow wants it: left, right, bottom, top."""
         return -self.half_width, self.half_width, self.half_height, -self.half_height
@@ -43,6 +48,16 @@ class Seen:
     hit: np.ndarray
     shade: np.ndarray  # in [0, 1]
     sigma: np.ndarray  # [m], NaN where nothing is
+    distance: np.ndarray  # along the rays [m], NaN where nothing is
+
+    def outlines(self, jump: float) -> np.ndarray:
+        """Where the surface ends, or another begins more than `jump` [m] behind it: the nearer side of each such step."""
+        far = np.where(self.hit, self.distance, np.inf)
+        out = np.zeros(far.shape, dtype=bool)
+        for axis in (0, 1):
+            for shift in (1, -1):
+                out |= np.roll(far, shift, axis) > far + jump
+        return out & self.hit
 
 
 def three_views(
@@ -82,10 +97,9 @@ def _fitted(
 
 def look(sdf: ProbabilisticSdf, view: View, progress: Callable[[float], object] | None = None) -> Seen:
     """One ray a pixel, some rows at a time, so that Ctrl-C is heard in between."""
-    pixel = 2 * view.half_width / view.columns
-    x = (np.arange(view.columns) + 0.5) * pixel - view.half_width
-    y = (np.arange(view.rows) + 0.5) * pixel - view.half_height
-    seen = Seen(*(np.zeros((view.rows, view.columns), dtype=kind) for kind in (bool, float, float)))
+    x = (np.arange(view.columns) + 0.5) * view.pixel - view.half_width
+    y = (np.arange(view.rows) + 0.5) * view.pixel - view.half_height
+    seen = Seen(*(np.zeros((view.rows, view.columns), dtype=kind) for kind in (bool, float, float, float)))
     for first in range(0, view.rows, _ROWS):
         rows = slice(first, min(first + _ROWS, view.rows))
         across = x[None, :, None] * view.right + y[rows, None, None] * view.down
@@ -95,6 +109,7 @@ def look(sdf: ProbabilisticSdf, view: View, progress: Callable[[float], object] 
         seen.hit[rows] = hits.hit.reshape(shape)
         seen.shade[rows] = _shade(np.nan_to_num(hits.normal), view).reshape(shape)
         seen.sigma[rows] = hits.sigma.reshape(shape)
+        seen.distance[rows] = hits.distance.reshape(shape)
         if progress:
             progress(rows.stop / view.rows)
     return seen

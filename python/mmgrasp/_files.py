@@ -102,6 +102,14 @@ def read_text(path: Path, most: int) -> str:
 
 def read_bytes(path: Path, most: int) -> bytes:
     """The content of a regular file of at most `most` bytes; raises IoError otherwise."""
+    data = read_head(path, most + 1)
+    if len(data) > most:
+        raise IoError(f"{printable(os.fspath(path))}: cannot be read: is larger than {most} bytes")
+    return data
+
+
+def read_head(path: Path, count: int) -> bytes:
+    """The first `count` bytes of a regular file, or all it has; raises IoError."""
     shown = printable(os.fspath(path))
     try:
         with open(path, "rb", opener=_open_now) as file:
@@ -110,10 +118,7 @@ def read_bytes(path: Path, most: int) -> bytes:
                 raise IoError(f"{shown}: cannot be read: is a folder")
             if not stat.S_ISREG(found.st_mode):
                 raise IoError(f"{shown}: cannot be read: is no regular file")
-            data = file.read(most + 1)
-        if len(data) > most:
-            raise IoError(f"{shown}: cannot be read: is larger than {most} bytes")
-        return data
+            return file.read(count)
     except OSError as error:
         if isinstance(error, IoError):
             raise

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import struct
 import zlib
 from collections.abc import Callable
@@ -92,6 +93,11 @@ def into_folder(path: Path) -> None:
     path.mkdir()
 
 
+def into_pipe(path: Path) -> None:
+    path.unlink()
+    os.mkfifo(path)
+
+
 def interlace(path: Path) -> None:
     data = bytearray(path.read_bytes())
     data[28] = 1
@@ -114,6 +120,7 @@ BAD_IMAGES: dict[str, tuple[Callable[[Path], object], str]] = {
     "huge": (lambda p: p.write_bytes(png(2**31 - 1, 2**31 - 1, 16, 0, b"")), "pixels, must have 1 to"),
     "all zero": (lambda p: save_png(p, np.zeros((120, 160), np.uint16)), "no pixel is measured"),
     "all invalid": (lambda p: save_png(p, np.full((120, 160), 65535, np.uint16)), "no pixel is measured"),
+    "a pipe": (into_pipe, "is no regular file"),
     "a folder": (into_folder, "cannot be read: "),
 }
 
@@ -399,6 +406,8 @@ def test_bad_sensors_files(lines: str, message: str, tmp_path: Path) -> None:
     [
         ("sensors: {}", "version is missing"),
         ("version: 2\nsensors: {a: {}}", "this version of mmgrasp reads version 1"),
+        ('version: 1\nsensors: {"a\\e[31m": {}}', "must have 1 to 200 printable characters"),
+        ('version: 1\nsensors: {"": {}}', "must have 1 to 200 printable characters"),
         ("version: 1\nsensors: {}", "must name at least one sensor"),
         ("version: 1\nsensors: [a]", "must be a mapping"),
         ("just a text", "must be a mapping"),
@@ -492,6 +501,8 @@ def test_folders_that_hold_no_frames(tmp_path: Path) -> None:
     assert "has no layout that is known" in error
     for piece in ("Redwood / Open3D: depth/", "7-Scenes: *.depth.png", "npz: *.npz"):
         assert piece in error
+    write_frames(tmp_path / "sequence", "redwood", 1)
+    assert refused(tmp_path).endswith(f"; try {tmp_path / 'sequence'}")
     assert "is not there" in refused(tmp_path / "none")
     assert "is no folder" in refused(tmp_path / "notes.txt")
     write_frames(tmp_path, "seven_scenes", 1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import signal
 import subprocess
@@ -328,6 +329,21 @@ def test_a_wrong_depth_scale_is_said_with_its_key(
     assert "no frame could be used, 2 looked at" in out and piece in out
     assert f"depth_scale of sensor 'camera' ({tmp_path / 'frames' / 'sensors.yaml'}:3) is {scale:g}" in out
     assert not (tmp_path / "map").exists()
+
+
+def test_names_that_are_no_text(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """File names are bytes: one that is no UTF-8 is integrated, listed, found again, and harms no page or terminal."""
+    frames = tmp_path / "frames"
+    write_frames(frames, "npz", 2)
+    odd = Path(os.fsdecode(os.fsencode(frames) + b"/\xff\x1b[31m<b>.npz"))
+    (frames / "camera_000.npz").rename(odd)
+    (frames / os.fsdecode(b"bad\xfe.npz")).write_bytes(b"")
+    assert run(frames, tmp_path / "map") == 0
+    assert run(frames, tmp_path / "map") == 0
+    printed = capfd.readouterr()
+    assert "(0 new)" in printed.out and "\x1b" not in printed.out + printed.err
+    page = (tmp_path / "map" / "report.html").read_text()
+    assert "bad\\udcfe.npz" in page and "<b>.npz" not in page
 
 
 def test_nothing_usable_keeps_what_an_earlier_run_wrote(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

@@ -12,7 +12,7 @@ from types import ModuleType
 import numpy as np
 
 from .._core import DepthCamera, DepthImage, InvalidInput, IoError
-from .._files import printable
+from .._files import printable, read_head
 from ..scenario.reading import near_miss
 from . import npz, redwood, seven_scenes, tum
 from .depth_png import png_header, read_depth_png
@@ -225,8 +225,12 @@ def _layout_of(folder: Path) -> Layout:
     looked = "; ".join(f"{layout.name}: {layout.looked_for}" for layout in found or LAYOUTS)
     if found:
         raise InvalidInput(f"{shown}: has the layouts of several kinds of data ({looked}): must have one")
-    content = "is empty" if not any(folder.iterdir()) else "has no layout that is known"
-    raise InvalidInput(f"{shown}: {content}; looked for {looked}")
+    inside = sorted(folder.iterdir())
+    content = "has no layout that is known" if inside else "is empty"
+    hint = next(
+        (f"; try {printable(str(p))}" for p in inside if p.is_dir() and any(one.found(p) for one in LAYOUTS)), ""
+    )
+    raise InvalidInput(f"{shown}: {content}; looked for {looked}{hint}")
 
 
 def _with_intrinsics(sensor: Sensor, root: Path, frames: Iterable[Frame]) -> Sensor:
@@ -246,8 +250,8 @@ def _with_intrinsics(sensor: Sensor, root: Path, frames: Iterable[Frame]) -> Sen
 def _size_of(frame: Frame) -> tuple[int, int] | None:
     if frame.problem:
         return None
-    with contextlib.suppress(InvalidInput, IoError, OSError), open(frame.path, "rb") as file:
-        header = png_header(file.read(33), frame.name)
+    with contextlib.suppress(InvalidInput, IoError):
+        header = png_header(read_head(frame.path, 33), frame.name)
         header.check_depth(frame.name)
         return header.width, header.height
     return None

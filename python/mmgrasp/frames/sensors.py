@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .._core import DepthCamera, DepthNoise, InvalidInput, PinholeCamera
-from ..scenario.reading import Node, read_yaml
+from ..scenario.reading import LONGEST_NAME, Node, read_yaml
 from .intrinsics import Intrinsics, read_intrinsics
 from .poses import inverse
 
@@ -99,10 +99,16 @@ def read_sensors(path: Path) -> dict[str, Sensor]:
     """The sensors of a file by name. Messages name file, line, key, value and rule."""
     root = read_yaml(path).root.mapping("version sensors")
     root.read_version(VERSION)
-    sensors = {name: _read_sensor(node, name) for name, node in root["sensors"].items()}
+    sensors = {name: _read_sensor(node, name) for name, node in root["sensors"].items() if _check_name(node, name)}
     if not sensors:
         root["sensors"].fail("must name at least one sensor")
     return sensors
+
+
+def _check_name(node: Node, name: str) -> bool:
+    if not name or len(name) > LONGEST_NAME or not name.isprintable():
+        node.fail(f"the name of a sensor must have 1 to {LONGEST_NAME} printable characters")
+    return True
 
 
 def _read_sensor(node: Node, name: str) -> Sensor:

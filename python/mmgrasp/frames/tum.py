@@ -149,7 +149,8 @@ def _pose_at(time: float, times: list[float], poses: list[np.ndarray]) -> np.nda
 
 
 def _nearest(time: float, times: list[float]) -> str:
-    off = min(times, key=lambda other: abs(other - time)) - time
+    i = bisect.bisect_left(times, time)
+    off = min((other - time for other in times[max(0, i - 1) : i + 1]), key=abs)
     if abs(off) <= FARTHEST_POSE:
         return " on both sides"
     return f" (the nearest is {abs(off):.3f} s {'later' if off > 0 else 'earlier'})"

@@ -7,6 +7,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from .._files import printable
 from .report import CSS, plural, table
 
 PICTURES = (
@@ -115,12 +116,12 @@ def _sensors(summary: dict[str, Any]) -> str:
 
 
 def _skipped(summary: dict[str, Any]) -> str:
-    rows = [[escape(row["frame"]), escape(row["reason"])] for row in summary["skipped"]]
+    rows = [[escape(printable(row["frame"])), escape(row["reason"])] for row in summary["skipped"]]
     return _rows("Frames that were skipped", ["frame", "why"], rows)
 
 
 def _doubtful(summary: dict[str, Any]) -> str:
-    rows = [[escape(row["frame"]), escape(row["warning"])] for row in summary["doubtful"]]
+    rows = [[escape(printable(row["frame"])), escape(row["warning"])] for row in summary["doubtful"]]
     return _rows("Frames in the map that look wrong", ["frame", "what"], rows)
 
 

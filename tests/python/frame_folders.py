@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import pytest
 from PIL import Image
 
 import mmgrasp as mg
-from mmgrasp.frames import write_npz_frame
+from mmgrasp.cli import main
+from mmgrasp.frames import FrameFolder, open_frames, write_npz_frame
 from mmgrasp.robot import quat_xyzw_from_rotation
 
 PINHOLE = mg.mapping.PinholeCamera(width=160, height=120, fx=180.0, fy=180.0, cx=79.5, cy=59.5)
@@ -140,3 +142,36 @@ def direct_map(taken: list[Shot], scale: float, voxel: float = 0.004, truncation
     for shot in taken:
         sdf.integrate(mg.mapping.DepthImage(shot.raw / scale, PINHOLE, shot.T_world_camera), camera)
     return sdf
+
+
+def run(frames: Path, out: Path, *more: str, pictures: bool = False) -> int:
+    """`mmgrasp scan` with voxels that suit the scene; the exit code."""
+    return main(["scan", str(frames), "-o", str(out), *OPTIONS, *([] if pictures else ["--no-pictures"]), *more])
+
+
+def names(folder: Path) -> set[str]:
+    """Files of a folder and below."""
+    return {str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file()}
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """Every file's bytes by its name."""
+    return {name: (folder / name).read_bytes() for name in names(folder)}
+
+
+def problems(folder: FrameFolder) -> dict[str, str]:
+    """What is wrong with each frame of a folder that can not be read."""
+    out = {}
+    for frame in folder.frames:
+        try:
+            folder.read(frame)
+        except mg.Error as error:
+            out[frame.name] = str(error)
+    return out
+
+
+def refused(folder: Path) -> str:
+    """What is said of a folder that cannot be opened."""
+    with pytest.raises(mg.Error) as caught:
+        open_frames(folder)
+    return str(caught.value)

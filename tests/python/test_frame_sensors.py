@@ -23,7 +23,7 @@ from mmgrasp.frames import open_frames
         ("noise: {model: laser}", "must be one of structured_light, time_of_flight, stereo, polynomial"),
         ("noise: {model: structured_light, sigma: 1}", "noise.sigma: unknown key"),
         ("noise: {model: stereo, baseline: 0.05}", "noise: disparity_sigma is missing"),
-        ("noise: {model: polynomial, constant: -1}", "must be a positive standard deviation"),
+        ("noise: {model: polynomial, constant: -1}", "standard deviation"),
         ("systematic: -0.1", "systematic = -0.1: must be >= 0"),
         ("poses: camera_to_map", "must be one of camera_to_world, world_to_camera"),
         ("pose_error: {translation: x}", "must be a number"),

@@ -164,7 +164,11 @@ def _read_noise(node: Node, sensor: Sensor) -> DepthNoise:
         node.mapping("model baseline disparity_sigma" + ("" if sensor.intrinsics else " focal"), keys)
         focal = node["focal"].number(above=0) if "focal" in node else sensor.intrinsics.fx  # type: ignore[union-attr]
         return DepthNoise.stereo(focal, node["baseline"].number(above=0), node["disparity_sigma"].number(above=0))
-    return DepthNoise(**{key: node[key].number() for key in keys.split() if key in node})
+    values = {key: node[key].number() for key in keys.split() if key in node}
+    try:
+        return DepthNoise(**values)
+    except InvalidInput as error:
+        raise InvalidInput(f"{node.place}: {node.name}: {error}") from None
 
 
 def _check_noise(node: Node, sensor: Sensor) -> None:

@@ -157,14 +157,14 @@ def _objects(
 def _print(summary: dict[str, Any], added: int, out: Path, console: Console) -> None:
     made = summary["map"]
     lines = [
-        f"{made['frames']} frames in the map ({added} new): voxels of {1e3 * made['voxel']:g} mm, truncation "
+        f"{made['frames']} frame{'' if made['frames'] == 1 else 's'} in the map ({added} new): voxels of {1e3 * made['voxel']:g} mm, truncation "
         f"{1e3 * made['truncation']:g} mm, {made['blocks']} blocks, {made['bytes'] / 1e6:.0f} MB"
     ]
     if made["sigma_quantiles"]:
         low, middle, high = (1e3 * x for x in made["sigma_quantiles"].values())
         lines.append(f"sigma of the surface: median {middle:.2f} mm, 90 % between {low:.2f} and {high:.2f} mm")
     if summary["plane"]:
-        lines.append(f"{summary['objects']} objects on the supporting plane")
+        lines.append(f"objects on the supporting plane: {summary['objects']}")
     lines += [f"note: {note}" for note in summary["notes"]]
     for key, what, why in (("skipped", "skipped", "reason"), ("doubtful", "doubtful", "warning")):
         rows = summary[key]

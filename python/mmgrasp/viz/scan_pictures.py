@@ -132,35 +132,44 @@ def _corners(T_world_box: np.ndarray, size: np.ndarray) -> np.ndarray:
 def write_contributions(scan: Scan, path: Path) -> Path:
     """What became of each sensor's pixels, and how far its frames agree with what others saw before."""
     names = list(dict.fromkeys(record.sensor for record in scan.frames))
-    figure = _pyplot()(11, 1.5 + 0.45 * len(names) + 2.9)
-    bars, dots = figure.subplots(2, 1, gridspec_kw={"height_ratios": [0.7 + 0.45 * len(names), 2.6]})
+    agree = any(record.agreement is not None for record in scan.frames)
+    heights = [0.7 + 0.45 * len(names)] + ([2.6] if agree else [])
+    figure = _pyplot()(11, 0.8 + 1.1 * sum(heights))
+    panels = figure.subplots(len(heights), 1, gridspec_kw={"height_ratios": heights}, squeeze=False)[:, 0]
     for row, name in enumerate(names):
-        own = [record for record in scan.frames if record.sensor == name]
-        _bar(bars, row, own)
-    bars.set_yticks(range(len(names)), names)
-    bars.set_ylim(len(names) - 0.5, -0.5)
-    bars.set_xlim(0, 100)
-    bars.set_xlabel("share of the measured pixels [%]")
+        _bar(panels[0], row, [record for record in scan.frames if record.sensor == name])
+    panels[0].set_yticks(range(len(names)), names)
+    panels[0].set_ylim(len(names) - 0.5, -0.5)
+    panels[0].set_xlim(0, 100)
+    panels[0].set_xlabel("share of the measured pixels [%]")
     for _, label, colour in CAUSES:
-        bars.barh(0, 0, color=colour, label=label)
-    bars.legend(ncols=len(CAUSES), loc="lower left", bbox_to_anchor=(0, 1.0), frameon=False, fontsize=9)
+        panels[0].barh(0, 0, color=colour, label=label)
+    panels[0].legend(ncols=len(CAUSES), loc="lower left", bbox_to_anchor=(0, 1.0), frameon=False, fontsize=9)
+    if agree:
+        _draw_agreements(panels[1], scan, names)
+    for ax in panels:
+        ax.spines[["top", "right"]].set_visible(False)
+    return _save(figure, path)
+
+
+def _draw_agreements(axes, scan: Scan, names: list[str]) -> None:
+    from matplotlib.ticker import MaxNLocator
+
     for row, name in enumerate(names):
         at = [(i, 100 * r.agreement) for i, r in enumerate(scan.frames) if r.sensor == name and r.agreement is not None]
         colour = TRAY_COLOURS[row % len(TRAY_COLOURS)]
-        dots.plot([i for i, _ in at], [a for _, a in at], ".", color=colour, markersize=7, label=name)
+        axes.plot([i for i, _ in at], [a for _, a in at], ".", color=colour, markersize=7, label=name)
     doubtful = [(i, 100 * r.agreement) for i, r in enumerate(scan.frames) if r.warning and r.agreement is not None]
     if doubtful:
-        dots.plot(*zip(*doubtful, strict=True), "x", color=STOP, markersize=9, label="doubtful pose")
-    dots.set_ylim(-3, 103)
-    dots.set_xlim(-0.5, max(len(scan.frames) - 0.5, 0.5))
-    dots.set_xlabel("frame, in the order of integration")
-    dots.set_ylabel("agreement [%]")
-    dots.grid(axis="y", color="#e4e2dc")
+        axes.plot(*zip(*doubtful, strict=True), "x", color=STOP, markersize=9, label="doubtful pose")
+    axes.set_ylim(-3, 103)
+    axes.set_xlim(-0.5, max(len(scan.frames) - 0.5, 0.5))
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.set_xlabel("frame, in the order of integration")
+    axes.set_ylabel("agreement [%]")
+    axes.grid(axis="y", color="#e4e2dc")
     if len(names) > 1 or doubtful:
-        dots.legend(loc="lower left", fontsize=9)
-    for ax in (bars, dots):
-        ax.spines[["top", "right"]].set_visible(False)
-    return _save(figure, path)
+        axes.legend(loc="lower left", fontsize=9)
 
 
 def _bar(axes, row: int, own: list[FrameRecord]) -> None:

@@ -30,13 +30,7 @@ class OctreeReader {
   OctreeReader(const std::string& path, std::string_view content) : path_(path), content_(content) {}
 
   std::vector<Voxels> read() {
-    read_header();
-    if (announced_ == 0) fail("holds no occupied leaf");
-    nodes_ = 1;
-    binary_ ? read_binary({}) : read_full({});
-    if (nodes_ != announced_) {
-      fail("its header announces " + std::to_string(announced_) + " nodes, it holds " + std::to_string(nodes_));
-    }
+    check();
     if (leaves_.empty()) fail("holds no occupied leaf");
     std::vector<Voxels> result;
     for (auto it = leaves_.rbegin(); it != leaves_.rend(); ++it) {
@@ -44,6 +38,20 @@ class OctreeReader {
     }
     return result;
   }
+
+  /// Goes through the tree.
+  void check() {
+    read_header();
+    if (announced_ == 0) return;
+    nodes_ = 1;
+    binary_ ? read_binary({}) : read_full({});
+    if (nodes_ != announced_) {
+      fail("its header announces " + std::to_string(announced_) + " nodes, it holds " + std::to_string(nodes_));
+    }
+  }
+
+  double resolution() const { return resolution_; }
+  bool binary() const { return binary_; }
 
  private:
   [[noreturn]] void fail(const std::string& reason) const { throw IoError("octree file '" + path_ + "': " + reason); }
@@ -154,6 +162,16 @@ std::vector<Voxels> detail::parse_octree(const std::string& path, std::string_vi
 
 std::vector<Voxels> load_octree(const std::string& path) {
   return detail::parse_octree(path, detail::file_content(path, "octree file"));
+}
+
+OctreeFile read_octree_file(const std::string& path) {
+  OctreeFile out;
+  out.content = detail::file_content(path, "octree file");
+  OctreeReader reader(path, out.content);
+  reader.check();
+  out.resolution = reader.resolution();
+  out.binary = reader.binary();
+  return out;
 }
 
 }  // namespace mmgrasp

@@ -31,7 +31,7 @@ struct MMGRASP_EXPORT OccupancyReport {
   int measured = 0;      ///< Pixels with a depth.
   int used = 0;          ///< Pixels whose ray went into the map.
   int out_of_range = 0;  ///< Nearer or farther than the camera sees.
-  int not_finite = 0;    ///< NaN or infinite: not measured.
+  int invalid = 0;       ///< NaN, infinite or negative, hence not measured.
 };
 
 /// Which cells of an occupancy map are an obstacle.

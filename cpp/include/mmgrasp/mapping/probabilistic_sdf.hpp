@@ -45,6 +45,7 @@ struct MMGRASP_EXPORT IntegrationReport {
   int too_noisy = 0;       ///< Standard deviation above a third of the truncation: cutting would bias the mean.
   int without_normal = 0;  ///< Too few neighbours on the same surface.
   int too_slanted = 0;     ///< Incidence above max_incidence.
+  int invalid = 0;         ///< NaN, infinite or negative, hence not measured.
   int new_blocks = 0;
   /// Share of this frame's pixels that confirm an earlier frame where both see the same place; NaN when they have too
   /// little in common.

@@ -135,8 +135,8 @@ OccupancyReport OccupancyMap::integrate(const DepthImage& image, const DepthCame
   DepthImage frame = image;
   frame.camera = camera.intrinsics;
   OccupancyReport report;
-  for (const float z : frame.depth) report.not_finite += !std::isfinite(z);
   frame.clean();
+  report.invalid = frame.invalid;
   detail::check_depths(frame);
   const Eigen::Vector3d eye = frame.T_world_camera.translation();
   const double range = (kHalf - 1) * impl_->options.resolution;

@@ -15,7 +15,7 @@ constexpr std::size_t kBlocksOfItem = 16;
 constexpr int kPad = 2, kNodes = kBlockSide + 1 + 2 * kPad;
 /// Near sharp edges and corners the map is rounded off, which sigma does not tell: by less than this [voxels], measured
 /// in tests/cpp/mapping/test_obstacle_cells.cpp.
-constexpr double kEdgeRounding = 0.25;
+constexpr double kEdgeRounding = 0.5;
 
 /// What a corner says of the surface's distance.
 struct Corner {

@@ -157,6 +157,7 @@ void bind_occupancy(py::module_& m) {
 }  // namespace
 
 void bind_world_maps(py::module_& m) {
+  m.def("_occupancy_option_table", [] { return option_table(occupancy_fields()); });
   bind_occupancy(m);
   declared<ProbabilisticSdf>(m, "ProbabilisticSdf")
       .def(

@@ -18,6 +18,8 @@ struct OctreeFile {
   std::string content;    ///< Every byte.
   double resolution = 0;  ///< Edge of the smallest cell [m].
   bool binary = false;    ///< .bt; else .ot.
+  long nodes = 0;         ///< Of the tree, inner ones too.
+  std::size_t data = 0;   ///< Where in the content the tree begins.
 };
 
 /// Reads the file for OctoMap's own reader, which trusts what it reads. Throws what load_octree throws, but a tree

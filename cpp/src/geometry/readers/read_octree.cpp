@@ -52,6 +52,8 @@ class OctreeReader {
 
   double resolution() const { return resolution_; }
   bool binary() const { return binary_; }
+  long nodes() const { return nodes_; }
+  std::size_t data() const { return data_; }
 
  private:
   [[noreturn]] void fail(const std::string& reason) const { throw IoError("octree file '" + path_ + "': " + reason); }
@@ -75,7 +77,7 @@ class OctreeReader {
       const std::string_view key = line.substr(0, blank);
       const std::string_view value = blank == std::string_view::npos ? std::string_view() : line.substr(blank + 1);
       if (key == "data") {
-        position_ = begin;
+        data_ = position_ = begin;
         break;
       }
       if (key == "id") id = value;
@@ -146,7 +148,7 @@ class OctreeReader {
 
   const std::string& path_;
   std::string_view content_;
-  std::size_t position_ = 0;
+  std::size_t position_ = 0, data_ = 0;
   bool binary_ = true;
   double resolution_ = 0;
   long announced_ = -1;
@@ -171,6 +173,8 @@ OctreeFile read_octree_file(const std::string& path) {
   reader.check();
   out.resolution = reader.resolution();
   out.binary = reader.binary();
+  out.nodes = reader.nodes();
+  out.data = reader.data();
   return out;
 }
 

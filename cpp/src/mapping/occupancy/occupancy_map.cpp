@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <map>
 #include <sstream>
 
@@ -230,33 +231,30 @@ void OccupancyMap::save(const std::string& path) const {
   if (!binary && !ends_with(path, ".ot")) {
     throw IoError("octree file '" + path + "': its name must end in .bt or .ot");
   }
-  std::ostringstream out;
+  // OctoMap's own writers and readers of whole files talk to the terminal.
+  octomap::OcTree tree = impl_->tree;
+  std::ostringstream data;
   if (binary) {
-    // This reduces every cell to free or occupied.
-    octomap::OcTree copy = impl_->tree;
-    copy.writeBinary(out);
+    tree.toMaxLikelihood();
+    tree.prune();
+    if (tree.getRoot()) tree.writeBinaryNode(data, tree.getRoot());
   } else {
-    impl_->tree.write(out);
+    tree.writeData(data);
   }
-  detail::write_file(path, "octree file", {out.str()});
+  std::ostringstream head;
+  head << (binary ? "# Octomap OcTree binary file\n" : "# Octomap OcTree file\n") << "id OcTree\nsize " << tree.size()
+       << "\nres " << std::setprecision(17) << tree.getResolution() << "\ndata\n";
+  detail::write_file(path, "octree file", {head.str(), data.str()});
 }
 
 OccupancyMap OccupancyMap::load(const std::string& path, OccupancyOptions options) {
   const OctreeFile file = read_octree_file(path);
   options.resolution = file.resolution;
   OccupancyMap out(options);
+  if (file.nodes == 0) return out;
   // OctoMap's readers trust what they read; here it has been checked.
-  std::istringstream in(file.content);
-  if (file.binary) {
-    out.impl_->tree.readBinary(in);
-  } else {
-    const std::unique_ptr<octomap::AbstractOcTree> read(octomap::AbstractOcTree::read(in));
-    auto* const tree = dynamic_cast<octomap::OcTree*>(read.get());
-    if (!tree) throw IoError("octree file '" + path + "': OctoMap does not read it");
-    out.impl_->tree.swapContent(*tree);
-  }
-  out.impl_->tree.setProbHit(options.hit);
-  out.impl_->tree.setProbMiss(options.miss);
+  std::istringstream data(file.content.substr(file.data));
+  file.binary ? out.impl_->tree.readBinaryData(data) : out.impl_->tree.readData(data);
   return out;
 }
 

@@ -39,7 +39,8 @@ def true_scene() -> list[mg.LinkShape]:
     """The table and the objects upon it."""
     shapes = [mg.LinkShape(mg.Box([0.7, 1.0, 0.04]), mg.pose([0.6, 0, TABLE_TOP - 0.02]))]
     for name, (x, y) in OBJECTS.items():
-        shape = mg.LinkShape.mesh(DATA / "meshes/ycb" / name / "textured_simple_reoriented.obj")
+        files = [DATA / "meshes/ycb" / name / f"{file}.obj" for file in ("textured_simple_reoriented", "collision_vhacd")]
+        shape = mg.LinkShape.mesh(next(path for path in files if path.exists()))
         lowest = shape.bounds[0][2]
         shapes.append(mg.LinkShape(shape.shape, mg.pose([x, y, TABLE_TOP - lowest])))
     return shapes

@@ -133,8 +133,11 @@ void bind_occupancy(py::module_& m) {
             return OccupancyMap::load(file, read);
           },
           "path"_a,
-          "Reads an OctoMap file; keywords are those of OccupancyMap, but for the resolution, which is the file's.\n"
-          "Raises IoError when it is missing, another kind of tree, truncated or damaged.")
+          ("Reads an OctoMap file, whose resolution replaces the one given. Raises IoError when it is missing, "
+           "another\n"
+           "kind of tree, truncated or damaged." +
+           option_help(occupancy_fields()))
+              .c_str())
       .def_property_readonly("frames", &OccupancyMap::frames, "Integrated since it was made or loaded.")
       .def_property_readonly("cells", &OccupancyMap::cells, "Leaves, free and occupied.")
       .def_property_readonly("memory", &OccupancyMap::memory, "[bytes]")

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
+from conftest import REPOSITORY
 
 INTRINSICS = mg.mapping.PinholeCamera(width=160, height=120, fx=200.0, fy=200.0, cx=79.5, cy=59.5)
 CAMERA = mg.mapping.DepthCamera(INTRINSICS, mg.mapping.DepthNoise(constant=0.001))
@@ -66,7 +67,8 @@ def test_a_map_is_an_obstacle(sdf: mg.ProbabilisticSdf) -> None:
     assert not free(wider, 0, 0, TOP + 4 * sigma[0]) and free(wider, 0, 0, TOP + 4 * 0.001 + 0.0041)
     cells = sdf.obstacle_cells(4.0)
     assert [v.resolution for v in cells] == sorted(v.resolution for v in cells)
-    assert sum(len(s.shape.centres) for s in wider.shapes_of("scan")) == sum(len(v.centres) for v in cells)  # type: ignore[union-attr]
+    added = [s.shape for s in wider.shapes_of("scan")]
+    assert [len(v.centres) for v in added if isinstance(v, mg.collision.Voxels)] == [len(v.centres) for v in cells]
     # The object is what any other is.
     wider.move("scan", mg.pose([0.5, 0, 0]))
     assert free(wider, 0, 0, TOP) and not free(wider, 0.5, 0, TOP)
@@ -131,5 +133,27 @@ def test_what_was_not_measured_is_counted() -> None:
 
 @pytest.mark.parametrize("constant", [-1.0, 0.0, np.nan, np.inf])
 def test_noise_is_checked_when_made(constant: float) -> None:
-    with pytest.raises(mg.InvalidInput, match="noise.constant"):
+    with pytest.raises(mg.InvalidInput, match=r"noise\.constant"):
         mg.mapping.DepthNoise(constant=constant)
+
+
+def test_an_arm_is_never_free_where_it_touches_what_was_seen(data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Panda at a table with scanned objects, two noisy cameras; benchmarks/mapping/run_obstacle.py does it at full length."""
+    for folder in ("benchmarks/mapping", "benchmarks"):
+        monkeypatch.syspath_prepend(str(REPOSITORY / folder))
+    import run_obstacle as obstacle  # type: ignore[import-not-found]
+
+    robot, arm = obstacle.panda()
+    scene = obstacle.true_scene()
+    Q = np.random.default_rng(3).uniform(arm.lower, arm.upper, (12_000, arm.size))
+    Q = Q[mg.CollisionChecker(robot, mg.World(), group=arm).are_free(Q)]
+    sdf = mg.ProbabilisticSdf(voxel=0.006, truncation=0.03)
+    seen, _ = obstacle.integrate(sdf, scene, 3, seed=2)
+    truth, map_world = mg.World(), mg.World()
+    truth.add_points("seen", seen, 0.001)
+    map_world.add_sdf("map", sdf, sigmas=2.0)
+    touches = ~mg.CollisionChecker(robot, truth, group=arm).are_free(Q)
+    free = mg.CollisionChecker(robot, map_world, group=arm).are_free(Q)
+    assert touches.sum() > 500 and not np.any(free & touches)
+    truly = mg.CollisionChecker(robot, obstacle.world_of(scene), group=arm).are_free(Q)
+    assert np.mean(free[truly]) > 0.95

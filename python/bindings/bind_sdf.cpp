@@ -259,7 +259,7 @@ void bind_sdf(py::module_& m) {
             return sdf_column(field->distances(columns));
           },
           "points"_a, "sigmas"_a = 2.0, "unknown"_a = "unknown",
-          "mean - sigmas * sigma at `points` (n, 3), clipped to the truncation, as collision checks read it [m]. "
+          "mean - sigmas * sigma at `points` (n, 3), clipped to the truncation [m]. "
           "Where\n"
           "no camera saw: NaN, or free or occupied as deep as the truncation.")
       .def(

@@ -4127,7 +4127,7 @@ class ProbabilisticSdf:
         """
     def distances(self, points: numpy.typing.ArrayLike, sigmas: float = 2.0, unknown: typing.Literal['unknown', 'free', 'occupied'] = 'unknown') -> numpy.typing.NDArray[numpy.float64]:
         """
-        mean - sigmas * sigma at `points` (n, 3), clipped to the truncation, as collision checks read it [m]. Where
+        mean - sigmas * sigma at `points` (n, 3), clipped to the truncation [m]. Where
         no camera saw: NaN, or free or occupied as deep as the truncation.
         """
     def integrate(self, image: DepthImage, camera: DepthCamera, *, pose_covariance: numpy.typing.ArrayLike | None = None, sigma: numpy.typing.ArrayLike | None = None) -> IntegrationReport:

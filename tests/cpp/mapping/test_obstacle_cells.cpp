@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "mapping/sdf_scenes.hpp"
+#include "mapping/obstacle_scenes.hpp"
 #include "mmgrasp/collision/add_cells.hpp"
 #include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -14,135 +14,6 @@ using namespace mmgrasp;
 using namespace mmgrasp::test;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
-
-namespace {
-
-/// Cells to look points up in, whatever their sizes.
-class CellSet {
- public:
-  explicit CellSet(const std::vector<Voxels>& sizes) {
-    for (const Voxels& voxels : sizes) {
-      Level level{voxels.resolution, {}};
-      for (const Vector3d& c : *voxels.centres) level.cells.insert(cell(c / voxels.resolution));
-      EXPECT_EQ(level.cells.size(), voxels.centres->size()) << "cells twice";
-      levels_.push_back(std::move(level));
-    }
-  }
-
-  /// Cells are closed: a point on their boundary belongs to them.
-  bool has(const Vector3d& point) const {
-    for (const Level& level : levels_) {
-      for (int k = 0; k < 8; ++k) {
-        const Vector3d side(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-        if (level.cells.count(cell(point / level.edge + 1e-9 * side))) return true;
-      }
-    }
-    return false;
-  }
-  /// The same for a point that lies on no boundary.
-  bool holds(const Vector3d& point) const {
-    for (const Level& level : levels_) {
-      if (level.cells.count(cell(point / level.edge))) return true;
-    }
-    return false;
-  }
-
- private:
-  using Cell = std::array<long, 3>;
-  struct Level {
-    double edge;
-    std::set<Cell> cells;
-  };
-  static Cell cell(const Vector3d& at) {
-    return {std::lround(std::floor(at[0])), std::lround(std::floor(at[1])), std::lround(std::floor(at[2]))};
-  }
-  std::vector<Level> levels_;
-};
-
-SdfObstacleOptions at_sigmas(double sigmas, UnknownSpace unknown = UnknownSpace::free) {
-  SdfObstacleOptions options;
-  options.sigmas = sigmas;
-  options.unknown = unknown;
-  return options;
-}
-
-CellSet cells_of(const ProbabilisticSdf& sdf, double sigmas) {
-  return CellSet(sdf.obstacle_cells(at_sigmas(sigmas)));
-}
-
-Pose placed(const Vector3d& shift, double angle = 0) {
-  Pose T = Pose::Identity();
-  T.linear() = Eigen::AngleAxisd(angle, Vector3d(1, 2, 3).normalized()).matrix();
-  T.translation() = shift;
-  return T;
-}
-
-/// Exact frames of a scene from `views` sides; upwards ones only where it stands on a floor.
-std::vector<DepthImage> exact_frames(const std::vector<PlacedShape>& scene, int views, bool from_above) {
-  std::vector<DepthImage> out;
-  for (int k = 0; k < views; ++k) {
-    Vector3d from = direction_of(k, views);
-    if (from_above) from = Vector3d(from.x(), from.y(), std::abs(from.z()) + 0.3).normalized();
-    if (views == 1) from = Vector3d(0.3, 0.2, 0.9).normalized();
-    out.push_back(frame_of(scene, small_camera(), look_at(0.32 * from, Vector3d::Zero())));
-  }
-  return out;
-}
-
-/// Away from the solid at a point of its surface.
-Vector3d outward(const PlacedShape& placed, const Vector3d& point, double& distance) {
-  const Vector3d p = placed.T_world_shape.inverse() * point;
-  Vector3d best = Vector3d::UnitZ();
-  distance = 1;
-  const auto offer = [&](double off, const Vector3d& normal) {
-    if (std::abs(off) >= distance) return;
-    distance = std::abs(off);
-    best = normal;
-  };
-  if (const auto* box = std::get_if<Box>(&placed.shape)) {
-    if ((p.cwiseAbs() - 0.5 * box->size).maxCoeff() > 1e-5) return best;
-    for (int k = 0; k < 3; ++k) offer(std::abs(p[k]) - 0.5 * box->size[k], Vector3d::Unit(k) * (p[k] > 0 ? 1 : -1));
-  } else if (const auto* sphere = std::get_if<Sphere>(&placed.shape)) {
-    offer(p.norm() - sphere->radius, p.normalized());
-  } else if (const auto* cylinder = std::get_if<Cylinder>(&placed.shape)) {
-    offer(p.head<2>().norm() - cylinder->radius, Vector3d(p.x(), p.y(), 0).normalized());
-    offer(std::abs(p.z()) - 0.5 * cylinder->length, Vector3d::UnitZ() * (p.z() > 0 ? 1 : -1));
-  }
-  return placed.T_world_shape.linear() * best;
-}
-
-struct SeenPoints {
-  int count = 0, outside = 0;
-};
-
-/// The true points of the surface at the centres of pixels that the map uses, and how many of them no cell holds.
-SeenPoints look_up(const std::vector<PlacedShape>& scene, const std::vector<DepthImage>& frames, const CellSet& cells) {
-  SeenPoints out;
-  for (const DepthImage& frame : frames) {
-    for (int v = 0; v < frame.camera.height; ++v) {
-      for (int u = 0; u < frame.camera.width; ++u) {
-        if (!(frame.at(u, v) > 0)) continue;
-        const Vector3d point = frame.point(u, v);
-        const Vector3d ray = (point - frame.T_world_camera.translation()).normalized();
-        double nearest = 1;
-        Vector3d normal = Vector3d::Zero();
-        for (const PlacedShape& shape : scene) {
-          double distance;
-          const Vector3d each = outward(shape, point, distance);
-          if (distance >= nearest) continue;
-          nearest = distance;
-          normal = each;
-        }
-        if (-ray.dot(normal) < std::cos(1.0)) continue;  // SdfOptions::max_incidence is 1.05
-        ++out.count;
-        out.outside += !cells.has(point);
-      }
-    }
-  }
-  return out;
-}
-
-}  // namespace
 
 /// Whatever the noise: where the map itself says that mean - k sigma is zero or less, there is a cell.
 TEST(ObstacleCells, HoldEveryPointThatMayBeSolid) {
@@ -207,16 +78,7 @@ TEST(ObstacleCells, MarginAboveAPlaneInClosedForm) {
 /// Without noise nothing of the true surface that a pixel showed is free, up to edges and rims: primitives and thin
 /// things, from one side or many.
 TEST(ObstacleCells, HoldWhatAnyPixelSaw) {
-  const Pose turned = placed({0.0007, 0.0003, 0.0011}, 0.5);
-  const std::vector<std::vector<PlacedShape>> scenes{
-      {{Box{{0.10, 0.07, 0.05}}, Pose::Identity()}},
-      {{Box{{0.10, 0.07, 0.05}}, turned}},
-      {{Sphere{0.05}, turned}},
-      {{Cylinder{0.03, 0.1}, turned}},
-      {{Cylinder{0.003, 0.2}, turned}},
-      {{Box{{0.12, 0.09, 0.001}}, turned}},
-      {{Box{{0.12, 0.09, 0.003}}, Pose::Identity()}},
-      {{Box{{0.3, 0.25, 0.02}}, placed({0, 0, -0.0103})}, {Box{{0.05, 0.04, 0.04}}, placed({0.001, 0.0005, 0.0203})}}};
+  const auto scenes = primitive_scenes();
   for (const double truncation : {0.006, 0.010}) {
     for (std::size_t s = 0; s < scenes.size(); ++s) {
       for (const int views : {1, 6, 30}) {
@@ -230,6 +92,41 @@ TEST(ObstacleCells, HoldWhatAnyPixelSaw) {
         EXPECT_EQ(seen.outside, 0) << "scene " << s << ", " << views << " views, truncation " << truncation;
       }
     }
+  }
+}
+
+/// With noise of half a voxel, and errors of the poses that the frames were told of: at 2 sigma nothing seen is free,
+/// but for what a pose's error moves sideways at a rim. Without the margin much is.
+TEST(ObstacleCells, TwoSigmaHoldWhatNoisyFramesSaw) {
+  const auto scenes = primitive_scenes();
+  const DepthCamera camera = small_camera(0.001);
+  for (const bool poses : {false, true}) {
+    int count = 0, at_zero = 0, at_two = 0;
+    for (std::size_t s = 0; s < scenes.size(); ++s) {
+      ProbabilisticSdf sdf;
+      const std::vector<DepthImage> frames = exact_frames(scenes[s], 6, s == 7);
+      for (std::size_t k = 0; k < frames.size(); ++k) {
+        DepthImage image = frames[k];
+        Rng rng(5, k);
+        disturb(image, camera, rng);
+        if (poses) {
+          const Vector3d turn = 0.003 * Vector3d(rng.normal(), rng.normal(), rng.normal());
+          image.T_world_camera.linear() =
+              Eigen::AngleAxisd(turn.norm(), turn.normalized()).matrix() * image.T_world_camera.linear();
+          image.T_world_camera.translation() += 0.001 * Vector3d(rng.normal(), rng.normal(), rng.normal());
+        }
+        sdf.integrate(image, camera, FrameUncertainty::of_pose(poses ? 0.001 : 0, poses ? 0.003 : 0));
+      }
+      const SeenPoints without = look_up(scenes[s], frames, cells_of(sdf, 0));
+      count += without.count;
+      at_zero += without.outside;
+      at_two += look_up(scenes[s], frames, cells_of(sdf, 2)).outside;
+    }
+    std::printf("%s: of %d seen points %d outside at 0 sigma, %d at 2\n", poses ? "with pose errors" : "noise alone",
+                count, at_zero, at_two);
+    EXPECT_GT(count, 100000);
+    if (poses) EXPECT_GT(at_zero, 300);
+    EXPECT_LE(at_two, poses ? count / 10000 : 0);
   }
 }
 

@@ -68,8 +68,8 @@ MMGRASP_EXPORT ObjectSegmentation segment_objects(const Eigen::Matrix3Xd& points
 
 /// The same for what one camera sees: labels are one a pixel, row by row, plane and bounds in the world. Throws
 /// InvalidInput also where DepthImage::check() does.
-MMGRASP_EXPORT ObjectSegmentation segment_objects(const DepthImage& image,
-                                                  const ObjectSegmentationOptions& options = {},
-                                                  const std::optional<SupportingPlane>& plane = std::nullopt);
+MMGRASP_EXPORT ObjectSegmentation segment_depth_image(const DepthImage& image,
+                                                      const ObjectSegmentationOptions& options = {},
+                                                      const std::optional<SupportingPlane>& plane = std::nullopt);
 
 }  // namespace mmgrasp

@@ -40,10 +40,11 @@ class ObjectSegmenter {
   }
 
   ObjectSegmentation segment(const std::optional<SupportingPlane>& given) {
+    is_given_ = given.has_value();
     out_.plane = given ? given : find_plane();
     if (!out_.plane) return std::move(out_);
     split_by_plane();
-    if (!given) bound_plane();
+    if (!is_given_) bound_plane();
     part_objects();
     return std::move(out_);
   }
@@ -75,7 +76,9 @@ class ObjectSegmenter {
   void bound_plane() {
     T_plane_world_ = detail::plane_frame(out_.plane->normal, out_.plane->offset).inverse(Eigen::Isometry);
     std::vector<Vector2d> on_plane;
-    for (const int i : out_.plane_inliers) on_plane.push_back((T_plane_world_ * points_.col(i)).head<2>());
+    for (const Vector3d& p : detail::surface_of_plane(points_at(out_.plane_inliers), *out_.plane, options_.patch)) {
+      on_plane.push_back((T_plane_world_ * p).head<2>());
+    }
     hull_ = detail::hull_of(std::move(on_plane));
   }
 
@@ -114,7 +117,7 @@ class ObjectSegmenter {
 
   /// Most of its points lie over the hull of the plane that was found.
   bool stands_on_plane(const std::vector<int>& part) const {
-    if (hull_.empty()) return true;
+    if (is_given_) return true;
     std::size_t inside = 0;
     for (const int i : part) inside += detail::inside_hull(hull_, (T_plane_world_ * points_.col(i)).head<2>());
     return 2 * inside > part.size();
@@ -140,7 +143,8 @@ class ObjectSegmenter {
   Vector3d eye_;
   std::vector<int> measured_, above_;
   Pose T_plane_world_ = Pose::Identity();
-  std::vector<Vector2d> hull_;  ///< Of the plane's points in its frame; empty with a given plane, which has no end.
+  bool is_given_ = false;
+  std::vector<Vector2d> hull_;  ///< Of the plane that was found, in its frame. A given one has no end.
   ObjectSegmentation out_;
 };
 
@@ -175,8 +179,8 @@ ObjectSegmentation segment_objects(const Matrix3Xd& points, const Matrix3Xd& nor
   return ObjectSegmenter(points, normals, options, eye).segment(plane);
 }
 
-ObjectSegmentation segment_objects(const DepthImage& image, const ObjectSegmentationOptions& options,
-                                   const std::optional<SupportingPlane>& plane) {
+ObjectSegmentation segment_depth_image(const DepthImage& image, const ObjectSegmentationOptions& options,
+                                       const std::optional<SupportingPlane>& plane) {
   image.check();
   const PinholeCamera& camera = image.camera;
   Matrix3Xd points = Matrix3Xd::Constant(3, static_cast<Eigen::Index>(camera.width) * camera.height, NAN);

@@ -4,11 +4,46 @@
 #include <cmath>
 
 #include "mapping/pcl_segmentation.hpp"
+#include "mapping/segmentation/surface_cells.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
 using Eigen::Vector3d;
+/// Cosine of the angle between a plane's normal and that of a surface which is part of it.
+constexpr double kAlongPlane = 0.7;
+/// Smaller pieces, by their share of all cells, are not the table.
+constexpr double kSmallPiece = 0.05;
+
+/// Cells that hang together over cells for which `belongs`: the piece of each, or -1, and the pieces' sizes.
+struct Pieces {
+  std::vector<int> piece_of, size;
+};
+
+Pieces pieces_of(const SurfaceCells& cells, const std::vector<char>& belongs) {
+  Pieces out;
+  out.piece_of.assign(cells.size(), -1);
+  std::vector<int> stack;
+  for (int start = 0; start < cells.size(); ++start) {
+    if (!belongs[start] || out.piece_of[start] >= 0) continue;
+    const int piece = static_cast<int>(out.size.size());
+    out.size.push_back(0);
+    out.piece_of[start] = piece;
+    stack.assign(1, start);
+    while (!stack.empty()) {
+      const int c = stack.back();
+      stack.pop_back();
+      ++out.size[piece];
+      for (int k = cells.first_neighbour[c]; k < cells.first_neighbour[c + 1]; ++k) {
+        const int next = cells.neighbours[k];
+        if (!belongs[next] || out.piece_of[next] >= 0) continue;
+        out.piece_of[next] = piece;
+        stack.push_back(next);
+      }
+    }
+  }
+  return out;
+}
 
 /// `found` turned to the side that is up, or nothing when most points lie below it.
 std::optional<SupportingPlane> upward(const FoundPlane& found, const std::vector<Vector3d>& points,
@@ -51,6 +86,21 @@ std::optional<SupportingPlane> find_supporting_plane(const std::vector<Vector3d>
     }
     rest.resize(kept);
   }
+}
+
+std::vector<Vector3d> surface_of_plane(const std::vector<Vector3d>& inliers, const SupportingPlane& plane,
+                                       double cell) {
+  SurfaceCells cells = surface_cells(inliers, cell);
+  fit_normals(inliers, Vector3d::Zero(), cells);
+  std::vector<char> along(cells.size());
+  for (int c = 0; c < cells.size(); ++c) along[c] = std::abs(cells.normal[c].dot(plane.normal)) >= kAlongPlane;
+  const Pieces pieces = pieces_of(cells, along);
+  std::vector<Vector3d> out;
+  for (std::size_t i = 0; i < inliers.size(); ++i) {
+    const int piece = pieces.piece_of[cells.cell_of[i]];
+    if (piece >= 0 && pieces.size[piece] >= kSmallPiece * cells.size()) out.push_back(inliers[i]);
+  }
+  return out;
 }
 
 }  // namespace mmgrasp::detail

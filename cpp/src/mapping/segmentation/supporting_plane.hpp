@@ -14,4 +14,9 @@ std::optional<SupportingPlane> find_supporting_plane(const std::vector<Eigen::Ve
                                                      const ObjectSegmentationOptions& options,
                                                      const Eigen::Vector3d& eye);
 
+/// Of points near a plane those that make its surface: walls, chairs and the like that cross it beside the table have
+/// another direction, or are small pieces apart. `cell` [m] bridges gaps between points.
+std::vector<Eigen::Vector3d> surface_of_plane(const std::vector<Eigen::Vector3d>& inliers, const SupportingPlane& plane,
+                                              double cell);
+
 }  // namespace mmgrasp::detail

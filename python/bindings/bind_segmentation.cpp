@@ -17,6 +17,8 @@ const std::vector<OptionField<ObjectSegmentationOptions>>& segmentation_fields()
       option<O>("min_plane_share", &O::min_plane_share,
                 "planes with a smaller share of the thinned points support nothing"),
       option<O>("max_height", &O::max_height, "points higher above the plane are left out [m]"),
+      option<O>("max_beside", &O::max_beside,
+                "objects farther than this beside a plane that was found are left out [m]"),
       option<O>("patch", &O::patch, "distance of the patches that convexity is judged between [m]; at least 2 leaf"),
       option<O>("concavity", &O::concavity, "creases of up to this angle do not part objects [rad]"),
       option<O>("min_points", &O::min_points, "smaller objects are left out"),

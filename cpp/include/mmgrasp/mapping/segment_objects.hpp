@@ -19,6 +19,7 @@ struct MMGRASP_EXPORT ObjectSegmentationOptions {
   double up_angle = 0.35;         ///< [rad], in (0, pi/2].
   double min_plane_share = 0.15;  ///< Planes with a smaller share of the thinned points support nothing; in [0, 1].
   double max_height = 0.5;        ///< Points higher above the plane are left out [m]; > plane_tolerance.
+  double max_beside = 0.05;       ///< Objects farther than this beside a plane that was found are left out [m]; >= 0.
   double patch = 0.02;            ///< Distance of the patches that convexity is judged between [m]; >= 2 leaf.
   double concavity = 0.45;        ///< Creases of up to this angle do not part objects [rad]; in (0, pi).
   int min_points = 100;           ///< Smaller objects are left out; > 0.
@@ -56,10 +57,10 @@ struct MMGRASP_EXPORT ObjectSegmentation {
 ///
 /// `points`: columns; what is not finite counts as not measured. `normals`: unit normals, away from the solid, one a
 /// point, or none (3, 0): then they are fitted to the points around, towards `eye`, which a scan from several sides has
-/// not. With a `plane` given, every object above it counts; a plane that was found supports what stands over it, not
-/// beside. The same input gives the same answer. Throws InvalidInput on bad options, on normals of another number than
-/// the points or not finite where a point is, on coordinates beyond 1e6 m, on a plane whose normal has not unit length
-/// within 1e-6.
+/// not. What is wholly beside the plane that was found, a chair or a far wall, is left out; a `plane` that is given
+/// has no end. The same input gives the same answer. Throws InvalidInput on bad options, on normals of another number
+/// than the points or not finite where a point is, on coordinates beyond 1e6 m, on a plane whose normal has not unit
+/// length within 1e-6.
 MMGRASP_EXPORT ObjectSegmentation segment_objects(const Eigen::Matrix3Xd& points,
                                                   const Eigen::Matrix3Xd& normals = Eigen::Matrix3Xd(3, 0),
                                                   const ObjectSegmentationOptions& options = {},

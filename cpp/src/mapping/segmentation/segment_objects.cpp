@@ -79,6 +79,7 @@ class ObjectSegmenter {
     for (const Vector3d& p : detail::surface_of_plane(points_at(out_.plane_inliers), *out_.plane, options_.patch)) {
       on_plane.push_back((T_plane_world_ * p).head<2>());
     }
+    for (const Vector2d& p : on_plane) middle_ += p / static_cast<double>(on_plane.size());
     hull_ = detail::hull_of(std::move(on_plane));
   }
 
@@ -101,7 +102,7 @@ class ObjectSegmenter {
       parts[part_of[patches.patch_of[cells.cell_of[k]]]].push_back(above_[k]);
     }
     for (std::vector<int>& part : parts) {
-      if (static_cast<int>(part.size()) >= options_.min_points && stands_on_plane(part)) add_object(std::move(part));
+      if (static_cast<int>(part.size()) >= options_.min_points && is_at_plane(part)) add_object(std::move(part));
     }
     number_objects();
   }
@@ -115,12 +116,14 @@ class ObjectSegmenter {
     out_.warning = "leaf = " + std::to_string(options_.leaf) + ": most points have hardly a neighbour as near as that";
   }
 
-  /// Most of its points lie over the hull of the plane that was found.
-  bool stands_on_plane(const std::vector<int>& part) const {
+  /// Some of it is over the surface of the plane that was found, or as near beside it as options say.
+  bool is_at_plane(const std::vector<int>& part) const {
     if (is_given_) return true;
-    std::size_t inside = 0;
-    for (const int i : part) inside += detail::inside_hull(hull_, (T_plane_world_ * points_.col(i)).head<2>());
-    return 2 * inside > part.size();
+    return std::any_of(part.begin(), part.end(), [&](int i) {
+      const Vector2d p = (T_plane_world_ * points_.col(i)).head<2>();
+      const double off = (p - middle_).norm();
+      return off <= options_.max_beside || detail::inside_hull(hull_, p - options_.max_beside / off * (p - middle_));
+    });
   }
 
   void add_object(std::vector<int> indices) {
@@ -144,7 +147,9 @@ class ObjectSegmenter {
   std::vector<int> measured_, above_;
   Pose T_plane_world_ = Pose::Identity();
   bool is_given_ = false;
-  std::vector<Vector2d> hull_;  ///< Of the plane that was found, in its frame. A given one has no end.
+  /// Of the surface of the plane that was found, in its frame. A given plane has no end.
+  std::vector<Vector2d> hull_;
+  Vector2d middle_ = Vector2d::Zero();
   ObjectSegmentation out_;
 };
 
@@ -159,6 +164,7 @@ void ObjectSegmentationOptions::check() const {
   require(min_plane_share >= 0 && min_plane_share <= 1, "min_plane_share", min_plane_share, "must be in [0, 1]");
   require(std::isfinite(max_height) && max_height > plane_tolerance, "max_height", max_height,
           "must be finite and more than plane_tolerance [m]");
+  require(std::isfinite(max_beside) && max_beside >= 0, "max_beside", max_beside, "must be zero or positive [m]");
   require(std::isfinite(patch) && patch >= 2 * leaf, "patch", patch, "must be finite and at least 2 leaf [m]");
   require(concavity > 0 && concavity < 2 * kHalfPi, "concavity", concavity, "must be in (0, pi) [rad]");
   require(min_points > 0, "min_points", min_points, "must be positive");

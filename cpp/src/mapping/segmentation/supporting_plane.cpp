@@ -10,6 +10,8 @@ namespace mmgrasp::detail {
 namespace {
 
 using Eigen::Vector3d;
+/// Fewer thinned points make no plane that supports anything.
+constexpr std::size_t kFewestPoints = 10;
 /// Cosine of the angle between a plane's normal and that of a surface which is part of it.
 constexpr double kAlongPlane = 0.7;
 /// Smaller pieces, by their share of all cells, are not the table.
@@ -73,7 +75,7 @@ std::optional<SupportingPlane> upward(const FoundPlane& found, const std::vector
 std::optional<SupportingPlane> find_supporting_plane(const std::vector<Vector3d>& points,
                                                      const ObjectSegmentationOptions& options, const Vector3d& eye) {
   std::vector<Vector3d> rest = points;
-  while (true) {
+  while (rest.size() >= kFewestPoints) {
     const FoundPlane found =
         dominant_plane(rest, options.plane_tolerance, options.plane_iterations, options.up, options.up_angle);
     if (!found.found || found.inliers.size() < options.min_plane_share * points.size()) return std::nullopt;
@@ -86,6 +88,7 @@ std::optional<SupportingPlane> find_supporting_plane(const std::vector<Vector3d>
     }
     rest.resize(kept);
   }
+  return std::nullopt;
 }
 
 std::vector<Vector3d> surface_of_plane(const std::vector<Vector3d>& inliers, const SupportingPlane& plane,

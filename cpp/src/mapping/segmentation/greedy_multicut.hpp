@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "mmgrasp/core/export.hpp"
+
 namespace mmgrasp::detail {
 
 /// An edge of a signed graph: the two belong together when the weight is positive, apart when it is negative.
@@ -14,6 +16,6 @@ struct SignedEdge {
 /// again, the two parts whose common edges have the largest sum, while it is positive (greedy additive edge
 /// contraction for the multicut problem: Keuper et al., ICCV 2015). Edges of one pair add up. Returns the part of each
 /// node, numbered by its first node.
-std::vector<int> greedy_multicut(int nodes, const std::vector<SignedEdge>& edges);
+MMGRASP_EXPORT std::vector<int> greedy_multicut(int nodes, const std::vector<SignedEdge>& edges);
 
 }  // namespace mmgrasp::detail

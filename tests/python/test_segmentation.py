@@ -140,20 +140,23 @@ def test_bad_options_are_refused_by_name() -> None:
         mg.mapping.SupportingPlane([0, 0, 0], 0.1)
 
 
-# The figures of docs/methods/mapping.md, a little lowered. A split of which only some scenes are there must be found
-# whole: of the easy scenes, which come first, every object is.
-@pytest.mark.parametrize(("split", "whole", "floor"), [("learn", 45, 0.93), ("test", 66, 0.90)])
+# The figures of docs/methods/mapping.md, a little lowered. Where only some scenes of a split are there, those of its easy
+# groups are judged, in which every object is found.
+@pytest.mark.parametrize(("split", "whole", "floor"), [("learn", 45, 0.93), ("test", 65, 0.91)])
 def test_labelled_scenes(split: str, whole: int, floor: float) -> None:
     bench = benchmark()
     scenes = [scene for scene in bench.scenes(LABELLED) if scene.split == split] if LABELLED.exists() else []
+    if len(scenes) < whole:
+        scenes = [scene for scene in scenes if scene.group in ("boxes", "stacked boxes", "occluded")]
+        floor = 1.0
     if not scenes:
         pytest.skip(f"no {split} scenes in the shared data")
     scores = [bench.score(scene) for scene in scenes]
     found = sum(score.fates["found"] for score in scores)
     objects = sum(score.objects for score in scores)
     assert objects >= len(scenes)
-    assert found >= (floor if len(scenes) >= whole - 1 else 1.0) * objects
-    assert sum(score.spurious for score in scores) <= 0.02 * objects
+    assert found >= floor * objects
+    assert not any(score.spurious for score in scores)
 
 
 def test_what_the_benchmark_counts() -> None:

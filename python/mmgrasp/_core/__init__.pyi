@@ -3437,14 +3437,15 @@ class DriveByTask:
     
     tolerance: (6,) along x, y, z [m] and about them [rad] of the pose's own frame; free: names of axes that do not
     matter, of x, y, z, roll, pitch, yaw; max_tool_speed [m/s] at the task; dwell [s] for which the tool's pose is
-    kept, e.g. while a gripper closes; object: name of the world's object that is held afterwards; the hand may touch it,
-    and it what it stands on, for `touching` intervals before and after. 0: never before the task, nothing after it.
+    kept, e.g. while a gripper closes; object: name of the world's object that is held afterwards: an obstacle for the
+    whole robot, the open hand included, until then; the fingers alone may touch it during the dwell. What rests on something
+    counts as 1 mm higher once it is held.
     
     push: a gripper that closes while the hand moves on (P1 4.3): dict of push_grasp's keywords, approach (3,), an axis of
     the tip's frame, and free_length [m], the straight way before the finger tips reach the object. T_world_tip is then
     the planned grasp; tolerance, free, max_tool_speed and dwell are left out.
     """
-    def __init__(self, T_world_tip: numpy.typing.ArrayLike, *, tolerance: numpy.typing.ArrayLike | None = None, free: collections.abc.Sequence[str] = [], max_tool_speed: float | None = None, dwell: float = 0.0, object: str = '', push: dict[str, typing.Any] | None = None, touching: int = 2) -> None:
+    def __init__(self, T_world_tip: numpy.typing.ArrayLike, *, tolerance: numpy.typing.ArrayLike | None = None, free: collections.abc.Sequence[str] = [], max_tool_speed: float | None = None, dwell: float = 0.0, object: str = '', push: dict[str, typing.Any] | None = None) -> None:
         """
         The class says what the arguments mean; raises InvalidInput naming one that breaks its rule.
         """
@@ -3474,11 +3475,6 @@ class DriveByTask:
     def push(self) -> PushGrasp | typing.Any:
         """
         What push_grasp says: closing time, window, tolerance to the object's position; None without one.
-        """
-    @property
-    def touching(self) -> int:
-        """
-        Intervals before and after the task in which hand and object may touch what they must.
         """
 class WholeBodyTrajectory:
     """

@@ -231,7 +231,7 @@ TEST(SegmentObjects, NothingThereIsNoError) {
   const ObjectSegmentation missing = segment_objects(Matrix3Xd::Constant(3, 500, NAN));
   EXPECT_FALSE(missing.plane.has_value());
   EXPECT_EQ(missing.labels, std::vector<int>(500, -2));
-  const ObjectSegmentation bare = segment_objects(columns(table(0.2)));
+  const ObjectSegmentation bare = segment_objects(columns(table(0.2)), kNoNormals, {}, std::nullopt, {0, 0, 1});
   EXPECT_TRUE(bare.plane.has_value());
   EXPECT_TRUE(bare.objects.empty());
   EXPECT_EQ(bare.plane_inliers.size(), bare.labels.size());
@@ -245,6 +245,7 @@ TEST(SegmentObjects, NoPlaneNoObjects) {
   }
   const ObjectSegmentation found = segment_objects(ball);
   EXPECT_FALSE(found.plane.has_value());
+  EXPECT_NE(found.warning.find("no plane"), std::string::npos);
   EXPECT_TRUE(found.objects.empty());
   EXPECT_TRUE(std::all_of(found.labels.begin(), found.labels.end(), [](int label) { return label == -2; }));
 }
@@ -295,6 +296,29 @@ TEST(SegmentObjects, TheSupportingPlaneIsTheOneWithMostAbove) {
   ASSERT_EQ(raised.objects.size(), 2u);
   EXPECT_GT(raised.objects[0].bounds.min().y(), 0.29);
   EXPECT_GT(raised.objects[1].bounds.min().x(), 0.45);
+}
+
+/// A box whose top is larger than what is seen of the table.
+TEST(SegmentObjects, TheTopOfALargeBoxSupportsNothing) {
+  Surface scene;
+  scene.rectangle({-0.25, -0.25, 0}, {0.5, 0, 0}, {0, 0.15, 0});
+  scene.box({-0.25, -0.1, 0}, {0.25, 0.25, 0.1});
+  const Matrix3Xd points = columns(scene.points), normals = columns(scene.normals);
+  const ObjectSegmentation with_normals = segment_objects(points, normals);
+  ASSERT_TRUE(with_normals.plane.has_value());
+  // RANSAC may tilt the plane as far as the tolerance lets it.
+  const Vector3d middle(0, -0.175, 0);
+  EXPECT_NEAR(with_normals.plane->normal.dot(middle), with_normals.plane->offset, 0.007);
+  EXPECT_GT(with_normals.plane->normal.z(), 0.99);
+  EXPECT_EQ(with_normals.objects.size(), 1u);
+  const ObjectSegmentation seen = segment_objects(points, kNoNormals, {}, std::nullopt, {0, 0, 1});
+  ASSERT_TRUE(seen.plane.has_value());
+  EXPECT_NEAR(seen.plane->normal.dot(middle), seen.plane->offset, 0.007);
+  EXPECT_GT(seen.plane->normal.z(), 0.99);
+  EXPECT_TRUE(seen.warning.empty());
+  const ObjectSegmentation below =
+      segment_objects(points, kNoNormals, {}, SupportingPlane{Vector3d::UnitZ(), 0}, {0, 0, -1});
+  EXPECT_NE(below.warning.find("eye"), std::string::npos);
 }
 
 TEST(SegmentObjects, ALeafBelowThePointsSpacingIsTold) {

@@ -14,7 +14,7 @@ struct MMGRASP_EXPORT ObjectSegmentationOptions {
   double leaf = 0.004;             ///< Cell to which points are thinned [m]; in [1e-5, 1], above the points' spacing.
   double plane_tolerance = 0.007;  ///< Points no farther than this from the supporting plane belong to it [m]; > 0.
   /// Upwards; the supporting plane's normal lies within `up_angle` of it, and most other points lie on that side. Zero:
-  /// any plane will do, and up is the side on which most other points lie.
+  /// any plane will do, and up is away from the solid: as the normals say, without normals to the side of the eye.
   Eigen::Vector3d up = Eigen::Vector3d::Zero();
   double up_angle = 0.35;         ///< [rad], in (0, pi/2].
   double min_plane_share = 0.15;  ///< Planes with a smaller share of the thinned points support nothing; in [0, 1].

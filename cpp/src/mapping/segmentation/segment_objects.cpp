@@ -42,7 +42,10 @@ class ObjectSegmenter {
   ObjectSegmentation segment(const std::optional<SupportingPlane>& given) {
     is_given_ = given.has_value();
     out_.plane = given ? given : find_plane();
-    if (!out_.plane) return std::move(out_);
+    if (!out_.plane) {
+      if (!measured_.empty()) out_.warning = "no plane of a min_plane_share of the points has most others above it";
+      return std::move(out_);
+    }
     split_by_plane();
     if (!is_given_) bound_plane();
     part_objects();
@@ -56,9 +59,18 @@ class ObjectSegmenter {
     return out;
   }
 
+  /// Given normals of the points, or none.
+  std::vector<Vector3d> normals_at(const std::vector<int>& indices) const {
+    std::vector<Vector3d> out;
+    if (normals_.cols() == 0) return out;
+    for (const int i : indices) out.push_back(normals_.col(i));
+    return out;
+  }
+
   std::optional<SupportingPlane> find_plane() const {
-    const detail::SurfaceCells cells = detail::surface_cells(points_at(measured_), options_.leaf);
-    return detail::find_supporting_plane(cells.position, options_, eye_);
+    detail::SurfaceCells cells = detail::surface_cells(points_at(measured_), options_.leaf);
+    if (normals_.cols() > 0) detail::average_normals(normals_at(measured_), cells);
+    return detail::find_supporting_plane(cells, options_, eye_);
   }
 
   void split_by_plane() {
@@ -87,11 +99,12 @@ class ObjectSegmenter {
     const std::vector<Vector3d> standing = points_at(above_);
     detail::SurfaceCells cells = detail::surface_cells(standing, options_.leaf);
     if (normals_.cols() > 0) {
-      std::vector<Vector3d> normals;
-      for (const int i : above_) normals.push_back(normals_.col(i));
-      detail::average_normals(normals, cells);
+      detail::average_normals(normals_at(above_), cells);
     } else {
       detail::fit_normals(standing, eye_, cells);
+      if (out_.plane->normal.dot(eye_) < out_.plane->offset) {
+        out_.warning = "eye: lies below the plane, so the normals that were fitted point into the objects";
+      }
     }
     warn_of_sparse_points(cells);
     const detail::SurfacePatches patches = detail::surface_patches(cells, options_.patch);
@@ -112,7 +125,7 @@ class ObjectSegmenter {
     for (int c = 0; c < cells.size(); ++c) {
       sparse += cells.first_neighbour[c + 1] - cells.first_neighbour[c] <= kFewNeighbours;
     }
-    if (2 * sparse <= cells.size()) return;
+    if (2 * sparse <= cells.size() || !out_.warning.empty()) return;
     out_.warning = "leaf = " + std::to_string(options_.leaf) + ": most points have hardly a neighbour as near as that";
   }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "mapping/pcl_segmentation.hpp"
-#include "mapping/segmentation/surface_cells.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -47,39 +46,43 @@ Pieces pieces_of(const SurfaceCells& cells, const std::vector<char>& belongs) {
   return out;
 }
 
-/// `found` turned to the side that is up, or nothing when most points lie below it.
-std::optional<SupportingPlane> upward(const FoundPlane& found, const std::vector<Vector3d>& points,
-                                      const ObjectSegmentationOptions& options, const Vector3d& eye) {
-  std::ptrdiff_t positive = 0, negative = 0;
-  for (const Vector3d& p : points) {
-    const double height = found.normal.dot(p) - found.offset;
-    positive += height > options.plane_tolerance;
-    negative += height < -options.plane_tolerance;
+/// Positive where `plane`'s normal points up.
+double upwards(const FoundPlane& plane, const SurfaceCells& cells, const ObjectSegmentationOptions& options,
+               const Vector3d& eye) {
+  if (!options.up.isZero()) return plane.normal.dot(options.up);
+  if (cells.normal.empty()) return plane.normal.dot(eye) - plane.offset;
+  double sum = 0;
+  for (int c = 0; c < cells.size(); ++c) {
+    const double height = plane.normal.dot(cells.position[c]) - plane.offset;
+    if (std::abs(height) <= options.plane_tolerance) sum += plane.normal.dot(cells.normal[c]);
   }
-  double side = static_cast<double>(positive - negative);
-  if (!options.up.isZero()) {
-    side = found.normal.dot(options.up);
-  } else if (positive == negative) {
-    side = found.normal.dot(eye) - found.offset;
+  return sum;
+}
+
+/// `found` with its normal upwards, or nothing when most other cells lie below it.
+std::optional<SupportingPlane> supporting(const FoundPlane& found, const SurfaceCells& cells,
+                                          const ObjectSegmentationOptions& options, const Vector3d& eye) {
+  const double sign = upwards(found, cells, options, eye) < 0 ? -1 : 1;
+  const SupportingPlane plane{sign * found.normal, sign * found.offset};
+  std::ptrdiff_t above = 0, below = 0;
+  for (const Vector3d& p : cells.position) {
+    const double height = plane.normal.dot(p) - plane.offset;
+    above += height > options.plane_tolerance;
+    below += height < -options.plane_tolerance;
   }
-  if (side < 0) {
-    if (negative < positive) return std::nullopt;
-    return SupportingPlane{-found.normal, -found.offset};
-  }
-  if (positive < negative) return std::nullopt;
-  return SupportingPlane{found.normal, found.offset};
+  return above >= below ? std::make_optional(plane) : std::nullopt;
 }
 
 }  // namespace
 
-std::optional<SupportingPlane> find_supporting_plane(const std::vector<Vector3d>& points,
+std::optional<SupportingPlane> find_supporting_plane(const SurfaceCells& cells,
                                                      const ObjectSegmentationOptions& options, const Vector3d& eye) {
-  std::vector<Vector3d> rest = points;
+  std::vector<Vector3d> rest = cells.position;
   while (rest.size() >= kFewestPoints) {
     const FoundPlane found =
         dominant_plane(rest, options.plane_tolerance, options.plane_iterations, options.up, options.up_angle);
-    if (!found.found || found.inliers.size() < options.min_plane_share * points.size()) return std::nullopt;
-    if (const auto plane = upward(found, points, options, eye)) return plane;
+    if (!found.found || found.inliers.size() < options.min_plane_share * cells.size()) return std::nullopt;
+    if (const auto plane = supporting(found, cells, options, eye)) return plane;
     std::vector<char> taken(rest.size(), 0);
     for (const int i : found.inliers) taken[i] = 1;
     std::size_t kept = 0;

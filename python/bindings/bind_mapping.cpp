@@ -1,4 +1,5 @@
 #include "bindings.hpp"
+#include "measured_arguments.hpp"
 #include "mmgrasp/geometry/point_cloud.hpp"
 #include "mmgrasp/mapping/depth_image.hpp"
 #include "mmgrasp/mapping/fit_cuboids.hpp"
@@ -8,17 +9,6 @@ namespace mmgrasp::python {
 namespace {
 
 using namespace py::literals;
-
-/// An array of real numbers as T, in which NaN and infinity may stand for what was not measured.
-template <typename T>
-py::array_t<T, py::array::c_style> measured_argument(const py::object& value, const std::string& name) {
-  const auto raw = py::array::ensure(value);
-  if (!raw) PyErr_Clear();
-  if (!raw || std::string("fiu").find(raw.dtype().kind()) == std::string::npos) {
-    throw InvalidInput(name + ": must be an array of real numbers");
-  }
-  return py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(raw);
-}
 
 /// (rows, columns) of float32.
 std::vector<float> image_argument(const py::object& value, const std::string& name, int rows, int columns) {
@@ -35,16 +25,6 @@ py::array_t<float> to_image(const std::vector<float>& values, int rows, int colu
   py::array_t<float> out({rows, columns});
   std::copy(values.begin(), values.end(), out.mutable_data());
   return out;
-}
-
-/// (n, 3) or (rows, columns, 3).
-std::vector<Eigen::Vector3d> points_argument(const py::object& value, const std::string& name) {
-  const auto array = measured_argument<double>(value, name);
-  const bool rows = (array.ndim() == 2 || array.ndim() == 3) && array.shape(array.ndim() - 1) == 3;
-  if (!rows) throw InvalidInput(name + ": must have the shape (n, 3) or (rows, columns, 3)");
-  std::vector<Eigen::Vector3d> points(static_cast<std::size_t>(array.size() / 3));
-  if (!points.empty()) std::copy(array.data(), array.data() + array.size(), points[0].data());
-  return points;
 }
 
 std::vector<PlacedShape> scene_argument(const std::vector<LinkShape>& shapes) {

@@ -10,6 +10,7 @@ void bind_distance_fields(py::module_& m);
 void bind_mapping(py::module_& m);
 void bind_sdf(py::module_& m);
 void bind_world_maps(py::module_& m);
+void bind_segmentation(py::module_& m);
 void bind_graspability(py::module_& m);
 void bind_capability(py::module_& m);
 void bind_trajopt(py::module_& m);
@@ -53,6 +54,7 @@ PYBIND11_MODULE(_core, m) {
   bind_mapping(m);
   bind_sdf(m);
   bind_world_maps(m);
+  bind_segmentation(m);
   bind_graspability(m);
   bind_structure(m);
   bind_verify(m);

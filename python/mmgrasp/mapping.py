@@ -1,4 +1,4 @@
-"""What a camera sees: depth images, height maps, maps of surfaces, point clouds, box-shaped parts, parts that lie at random."""
+"""What a camera sees: depth images, height maps, maps of surfaces, point clouds, objects and box-shaped parts in them, parts that lie at random."""
 
 # Cameras and their images
 from ._core import (
@@ -28,6 +28,15 @@ from ._core import (
     fit_cuboids as fit_cuboids,
     CuboidFit as CuboidFit,
     FittedCuboid as FittedCuboid,
+)
+
+# A plane and the objects that stand on it
+from ._core import (
+    segment_objects as segment_objects,
+    segment_depth_image as segment_depth_image,
+    ObjectSegmentation as ObjectSegmentation,
+    SegmentedObject as SegmentedObject,
+    SupportingPlane as SupportingPlane,
 )
 
 # How parts lie

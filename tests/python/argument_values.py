@@ -247,6 +247,7 @@ OTHERS: dict[str, Any] = {
     "World.add_occupancy.occupancy": occupancy_map,
     "render_depth.scene": lambda: [BOX],
     "random_placement.part": lambda: [BOX],
+    "segment_depth_image.image": depth_frame,
     "make_height_map.image": lambda: mg.mapping.render_depth([BOX], mg.mapping.PinholeCamera(width=8, height=6), POSE),
     "trajectory": lambda: mg.planning.JointTrajectory(["x", "y", "theta"], [0.0, 1.0], np.zeros((2, 3))),
     "sections": lambda: [(0, 1)],

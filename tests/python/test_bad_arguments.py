@@ -26,6 +26,8 @@ OTHER_RULES = (
     "GridDistanceField.values",
     "HeightMap.height",
     "fit_cuboids.points",
+    "segment_objects.points",
+    "segment_objects.normals",
     "LinkShape.mesh.scale",
     "Mesh.load.scale",
     "World.add_mesh.scale",

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "mapping/pcl_segmentation.hpp"
+#include "mapping/plane_frame.hpp"
 #include "mapping/top_rectangle.hpp"
 #include "mmgrasp/core/error.hpp"
 
@@ -24,17 +25,6 @@ void check_tray(const KnownTray& tray) {
   for (int k = 0; k < 3; ++k) require_positive(tray.size[k], "tray.size");
   require(std::isfinite(tray.wall) && tray.wall >= 0, "tray.wall", tray.wall, "must be zero or positive [m]");
   require(2 * tray.wall < tray.size.head<2>().minCoeff(), "tray.wall", tray.wall, "must leave room between the walls");
-}
-
-/// A frame on the supporting plane: z along its normal, so that heights are z.
-Pose frame_of(const Vector3d& normal, double offset) {
-  Pose T = Pose::Identity();
-  int axis = 0;
-  normal.cwiseAbs().minCoeff(&axis);
-  const Vector3d x = (Vector3d::Unit(axis) - normal[axis] * normal).normalized();
-  T.linear() << x, normal.cross(x), normal;
-  T.translation() = offset * normal;
-  return T;
 }
 
 class CuboidFitter {
@@ -63,7 +53,7 @@ class CuboidFitter {
     fit_.plane_found = true;
     fit_.plane_normal = normal;
     fit_.plane_offset = offset;
-    T_world_plane_ = frame_of(normal, offset);
+    T_world_plane_ = detail::plane_frame(normal, offset);
     T_plane_world_ = T_world_plane_.inverse(Eigen::Isometry);
   }
 

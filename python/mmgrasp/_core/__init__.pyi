@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FittedCuboid', 'Grasp', 'GraspReport', 'Graspability', 'GridDistanceField', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotSource', 'SdfHits', 'SearchTree', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FittedCuboid', 'Grasp', 'GraspReport', 'Graspability', 'GridDistanceField', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MotionResult', 'MotionStats', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotSource', 'SdfHits', 'SearchTree', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_objects', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -4278,6 +4278,78 @@ class OccupancyMap:
         """
         Edge of the smallest cell [m].
         """
+class SupportingPlane:
+    """
+    A plane that objects stand on: normal . x = offset.
+    """
+    def __init__(self, normal: numpy.typing.ArrayLike, offset: float) -> None:
+        """
+        `normal` (3,) towards the objects, of any length; `offset` along it [m].
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def normal(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Unit normal (3,), towards the objects.
+        """
+    @property
+    def offset(self) -> float:
+        """
+        normal . x = offset [m]
+        """
+class SegmentedObject:
+    """
+    An object that was found on a plane.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def indices(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Of its points (n,), ascending.
+        """
+    @property
+    def lower(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Lower corner of its points' bounds (3,) [m].
+        """
+    @property
+    def upper(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Upper corner of its points' bounds (3,) [m].
+        """
+class ObjectSegmentation:
+    """
+    The supporting plane, the objects on it, and which point belongs to what.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def labels(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        (n,): the object of each point, -1 the plane, -2 left out or not measured. Images: row by row.
+        """
+    @property
+    def objects(self) -> list[SegmentedObject]:
+        """
+        Those with most points first.
+        """
+    @property
+    def plane(self) -> SupportingPlane | None:
+        """
+        Found or given; None where there is none, and then no objects.
+        """
+    @property
+    def plane_inliers(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Indices (n,) of the points that belong to the plane, ascending.
+        """
+    @property
+    def warning(self) -> str:
+        """
+        What makes the answer doubtful, or empty.
+        """
 class Graspability:
     """
     Grasps, best first, and what became of the other places checked.
@@ -4471,6 +4543,8 @@ def _sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, *
         seed: int = 1  # same seed, same grasps
     """
 def _sdf_option_table() -> dict[str, typing.Any]:
+    ...
+def _segmentation_option_table() -> dict[str, typing.Any]:
     ...
 def _supply_option_table() -> dict[str, typing.Any]:
     ...
@@ -4927,6 +5001,43 @@ def sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, *,
         friction: float = 0.5  # Coulomb coefficient
         standoff: float = 0.0  # how far the tool frame stays outside the object's middle [m]
         seed: int = 1  # same seed, same grasps
+    """
+def segment_depth_image(image: DepthImage, *, plane: SupportingPlane | None = None, up: numpy.typing.ArrayLike | None = None, leaf: float = 0.004, plane_tolerance: float = 0.007, up_angle: float = 0.35, min_plane_share: float = 0.15, max_height: float = 0.5, max_beside: float = 0.05, patch: float = 0.02, concavity: float = 0.45, min_points: int = 100, plane_iterations: int = 1000) -> ObjectSegmentation:
+    """
+    segment_objects for what one camera sees: labels are one a pixel, row by row, plane and bounds in the world.
+    
+    Keyword options:
+        leaf: float = 0.004  # cell to which points are thinned [m]; above the points' spacing
+        plane_tolerance: float = 0.007  # points no farther from the plane belong to it [m]
+        up_angle: float = 0.35  # the plane's normal lies within this of `up` [rad]
+        min_plane_share: float = 0.15  # planes with a smaller share of the thinned points support nothing
+        max_height: float = 0.5  # points higher above the plane are left out [m]
+        max_beside: float = 0.05  # objects farther than this beside a plane that was found are left out [m]
+        patch: float = 0.02  # distance of the patches that convexity is judged between [m]; at least 2 leaf
+        concavity: float = 0.45  # creases of up to this angle do not part objects [rad]
+        min_points: int = 100  # smaller objects are left out
+        plane_iterations: int = 1000  # random planes tried
+    """
+def segment_objects(points: numpy.typing.ArrayLike, normals: numpy.typing.ArrayLike | None = None, *, plane: SupportingPlane | None = None, up: numpy.typing.ArrayLike | None = None, eye: numpy.typing.ArrayLike | None = None, leaf: float = 0.004, plane_tolerance: float = 0.007, up_angle: float = 0.35, min_plane_share: float = 0.15, max_height: float = 0.5, max_beside: float = 0.05, patch: float = 0.02, concavity: float = 0.45, min_points: int = 100, plane_iterations: int = 1000) -> ObjectSegmentation:
+    """
+    Objects that stand on a plane, also ones that touch: they are parted where the surface has creases (Stein et al.,
+    CVPR 2014). `points` (n, 3) or (rows, columns, 3) [m], NaN: not measured; `normals` alike, unit, away from the solid,
+    as ProbabilisticSdf.points() gives them; without, they are fitted to the points and turned to `eye` (default: the
+    origin), which suits a scan from one side. The plane is the largest with most other points above it, its normal near
+    `up` when that is given; or `plane`. The arms of an L are two objects, the inside of a bowl is one of its own. Raises
+    InvalidInput on values out of range.
+    
+    Keyword options:
+        leaf: float = 0.004  # cell to which points are thinned [m]; above the points' spacing
+        plane_tolerance: float = 0.007  # points no farther from the plane belong to it [m]
+        up_angle: float = 0.35  # the plane's normal lies within this of `up` [rad]
+        min_plane_share: float = 0.15  # planes with a smaller share of the thinned points support nothing
+        max_height: float = 0.5  # points higher above the plane are left out [m]
+        max_beside: float = 0.05  # objects farther than this beside a plane that was found are left out [m]
+        patch: float = 0.02  # distance of the patches that convexity is judged between [m]; at least 2 leaf
+        concavity: float = 0.45  # creases of up to this angle do not part objects [rad]
+        min_points: int = 100  # smaller objects are left out
+        plane_iterations: int = 1000  # random planes tried
     """
 def self_distance_objective(checker: CollisionChecker, margin: float = 0.05, weight: float = 1.0) -> IkObjective:
     """

@@ -76,6 +76,12 @@ SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
     ("ProbabilisticSdf", "A map of surfaces, keywords (`SdfOptions`)", _core._sdf_option_table, set()),
     ("OccupancyMap", "An octree of cells, keywords (`OccupancyOptions`)", _core._occupancy_option_table, set()),
     ("fit_cuboids", "Box-shaped parts of a cloud, keywords (`CuboidFitOptions`)", _core._cuboid_option_table, set()),
+    (
+        "segment_objects",
+        "Objects on a plane, keywords also of `segment_depth_image` (`ObjectSegmentationOptions`)",
+        _core._segmentation_option_table,
+        set(),
+    ),
 )
 
 

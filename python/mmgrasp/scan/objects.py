@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from ..mapping import FittedCuboid, fit_cuboids
-from ..robot import quat_xyzw_from_rotation
-from .plane import supporting_plane
+from .. import _core
+from .._core import quat_xyzw_from_rotation
+from .plane import SupportingPlane, supporting_plane
 
 FORMAT, VERSION = "mmgrasp-objects", 1
 KNOWN_UP, GUESSED_UP = 0.35, 0.61
@@ -28,7 +28,7 @@ class SegmentedObject:
     size: np.ndarray
     """(3,) full lengths [m]."""
     fill: float
-    """Share of the top rectangle that was seen: how box-like it is."""
+    """Share of the rectangle over which points were seen: how box-like it is."""
 
 
 @dataclass(frozen=True)
@@ -53,48 +53,84 @@ def segment_objects(
 ) -> Segmentation:
     """The largest plane whose normal is within `up_angle` [rad] of `up` (None: any), and the objects on it, seen from `eye`.
 
-    `points` and `normals` (n, 3): surface of a map whose voxels have the edge `voxel` [m]. Objects that touch are one.
+    `points` and `normals` (n, 3): surface of a map whose voxels have the edge `voxel` [m]. Objects that touch are parted where the surface
+    has creases.
     """
     assert len(points) == len(normals)
     nothing = Segmentation(None, 0.0, [], np.full(len(points), LEFT_OUT))
     if len(points) == 0:
         return nothing
     tolerance = max(0.008, 2 * voxel)
-    plane = supporting_plane(points, normals, None if up is None else np.asarray(up), up_angle, tolerance, 3 * voxel)
-    if plane is None:
+    carrier = supporting_plane(points, normals, None if up is None else np.asarray(up), up_angle, tolerance, 3 * voxel)
+    if carrier is None:
         return nothing
     leaf = max(0.003, voxel)
-    chosen, cell_of = _thinned(points, leaf)
-    fit = fit_cuboids(  # with the plane's rectangle as a tray without walls
-        points[chosen],
-        T_world_tray=plane.T_world_plane,
-        tray_size=[*plane.size, 1.0],
-        wall=0.0,
-        wall_margin=0.0,
+    while leaf**2 * _MOST_POINTS < _area(points, leaf):
+        leaf *= 1.5
+    patch = max(0.02, 10 * leaf)  # depth waves over some voxels; creases between larger patches are the surface's
+    found = _core.segment_objects(
+        points,
+        normals,
+        plane=_core.SupportingPlane(carrier.normal, carrier.offset),
         eye=eye,
-        plane_tolerance=tolerance,
-        cluster_tolerance=max(0.010, 3 * leaf),
         leaf=leaf,
+        patch=patch,
+        min_points=int((1.5 * patch / leaf) ** 2),  # a smaller piece of surface is no object
+        plane_tolerance=tolerance,
     )
-    labels = np.asarray(fit.labels)[cell_of]
-    objects = [_box_around(points[labels == k], cuboid) for k, cuboid in enumerate(fit.cuboids)]
-    return Segmentation(plane.normal, plane.offset, objects, labels)
+    labels = np.asarray(found.labels)
+    kept = [k for k in range(len(found.objects)) if _is_above(points[labels == k], carrier)]
+    renamed = np.full(len(found.objects) + 2, LEFT_OUT)
+    renamed[kept] = np.arange(len(kept))
+    renamed[PLANE] = PLANE
+    labels = renamed[labels]
+    objects = [_box_around(points[labels == k], carrier, 2 * leaf) for k in range(len(kept))]
+    return Segmentation(carrier.normal, carrier.offset, objects, labels)
 
 
-def _box_around(points: np.ndarray, cuboid: FittedCuboid) -> SegmentedObject:
-    """Turned as the cuboid is, but as wide as the object's points, 2 % left out at either end: a map shows sides, too, which the
-    cuboid of a single view does not count on, most objects are no boxes, and surfaces stick out at their rims.
+def _area(points: np.ndarray, leaf: float) -> float:
+    """Of the surface, roughly [m^2]: cells of edge `leaf` that hold points."""
+    return leaf**2 * len(_unique_cells(points, leaf))
+
+
+def _unique_cells(points: np.ndarray, edge: float) -> np.ndarray:
+    cells = np.floor(points / edge).astype(np.int64)
+    cells -= cells.min(axis=0)
+    key = cells[:, 0]
+    for k in range(1, cells.shape[1]):
+        key = key * (cells[:, k].max() + 1) + cells[:, k]
+    return np.unique(key)
+
+
+def _is_above(points: np.ndarray, carrier: SupportingPlane) -> bool:
+    """The middle of the object lies over the surface that was seen of the plane; walls and furniture beside it do not."""
+    T = carrier.T_world_plane
+    middle = (np.median(points, axis=0) - T[:3, 3]) @ T[:3, :2]
+    return bool(np.all(np.abs(middle) <= np.asarray(carrier.size) / 2))
+
+
+def _box_around(points: np.ndarray, carrier: SupportingPlane, cell: float) -> SegmentedObject:
+    """The narrowest upright box, standing on the plane; 2 % of the points are left out at either end of its sides, and above:
+    surfaces stick out at their rims.
     """
-    T = np.array(cuboid.T_world_box)
-    size = np.array(cuboid.size)
-    if len(points):
-        low, high = np.quantile((points - T[:3, 3]) @ T[:3, :2], [0.02, 0.98], axis=0)
-        T[:3, 3] += T[:3, :2] @ ((low + high) / 2)
-        size[:2] = high - low
-    if size[1] > size[0]:  # the longer side is x
-        size[:2] = size[1::-1]
-        T[:3, :2] = np.stack([T[:3, 1], -T[:3, 0]], axis=1)
-    return SegmentedObject(T, size, cuboid.fill)
+    frame = carrier.T_world_plane
+    local = (points - frame[:3, 3]) @ frame[:3, :3]
+    angles = np.radians(np.arange(0, 90, 1.0))
+    sides = np.stack([np.cos(angles), np.sin(angles)])  # (2, k)
+    across = np.stack([-sides[1], sides[0]])
+    spans = [np.quantile(local[:, :2] @ axes, [0.02, 0.98], axis=0) for axes in (sides, across)]
+    best = int(np.argmin((spans[0][1] - spans[0][0]) * (spans[1][1] - spans[1][0])))
+    low, high = (np.array([spans[0][end][best], spans[1][end][best]]) for end in (0, 1))
+    x, y = sides[:, best], across[:, best]
+    if high[1] - low[1] > high[0] - low[0]:  # the longer side is x
+        x, y, low, high = y, -x, np.array([low[1], -high[0]]), np.array([high[1], -low[0]])
+    height = float(np.quantile(local[:, 2], 0.98))
+    middle = (low + high) / 2
+    T = np.eye(4)
+    T[:3, :3] = frame[:3, :3] @ np.array([[x[0], y[0], 0], [x[1], y[1], 0], [0, 0, 1]])
+    T[:3, 3] = frame[:3, 3] + frame[:3, :3] @ [*(middle[0] * x + middle[1] * y), height / 2]
+    seen = len(_unique_cells(local[:, :2], cell)) * cell**2 / float(np.prod(np.maximum(high - low, cell)))
+    return SegmentedObject(T, np.array([*(high - low), height]), min(1.0, seen))
 
 
 def mean_up(T_world_cameras: Sequence[np.ndarray]) -> np.ndarray | None:
@@ -120,19 +156,6 @@ def vertex_normals(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     normals = np.stack(sums, axis=1)
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
     return np.asarray(normals / np.where(lengths > 0, lengths, 1))
-
-
-def _thinned(points: np.ndarray, leaf: float) -> tuple[np.ndarray, np.ndarray]:
-    """The first point of every cell, at most some hundred thousand, and the cell of each point."""
-    while True:
-        cells = np.floor(points / leaf).astype(np.int64)
-        cells -= cells.min(axis=0)
-        spans = cells.max(axis=0) + 1
-        keys = (cells[:, 0] * spans[1] + cells[:, 1]) * spans[2] + cells[:, 2]
-        _, chosen, cell_of = np.unique(keys, return_index=True, return_inverse=True)
-        if len(chosen) <= _MOST_POINTS:
-            return chosen, cell_of.reshape(-1)
-        leaf *= 1.5
 
 
 def objects_to_dict(

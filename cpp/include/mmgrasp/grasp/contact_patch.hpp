@@ -5,17 +5,10 @@
 
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/pose.hpp"
+#include "mmgrasp/grasp/hand_model.hpp"
 #include "mmgrasp/mapping/probabilistic_sdf.hpp"
 
 namespace mmgrasp {
-
-/// The face of a finger that touches: a rectangle. Frame: origin in its middle, z the way it pushes, x along its depth
-/// (the hand's approach for parallel fingers), y along its width.
-struct MMGRASP_EXPORT FingerPad {
-  Pose T_hand_pad = Pose::Identity();
-  double depth = 0.03;  ///< Along x [m], > 0.
-  double width = 0.02;  ///< Along y [m], > 0.
-};
 
 /// What a finger's pad meets if it moves on along its normal.
 struct MMGRASP_EXPORT ContactPatch {

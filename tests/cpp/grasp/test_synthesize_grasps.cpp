@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
-#include <ctime>
 
 #include "mmgrasp/core/error.hpp"
 #include "scanned_object.hpp"
@@ -64,24 +62,18 @@ std::size_t causes(const SynthesisCounts& c) {
 }  // namespace
 
 TEST(SynthesizeGrasps, BoxIsHeldAcrossItsFaces) {
-  const std::clock_t begin = std::clock();
   const GraspSynthesis found = synthesize_grasps(box_map(), test_hand(), on_table());
-  std::printf("cpu %.1f ms, %s\n", 1e3 * (std::clock() - begin) / CLOCKS_PER_SEC, found.summary().c_str());
-  const SynthesisCounts& c0 = found.counts;
-  std::printf(
-      "drawn %zu noopp %zu wide %zu thin %zu tilt %zu | ev %zu missed %zu uneven %zu slip %zu unc %zu coll %zu table "
-      "%zu near %zu\n",
-      c0.drawn, c0.no_opposite, c0.too_wide, c0.too_thin, c0.tilted, c0.evaluated, c0.missed, c0.uneven, c0.slipping,
-      c0.uncertain, c0.collision, c0.table, c0.near_better);
   ASSERT_EQ(found.outcome, Outcome::solved) << found.summary();
   ASSERT_EQ(found.grasps.size(), found.ratings.size());
   EXPECT_LT((found.object.centre - kBoxPose.translation()).norm(), 0.003);
-  EXPECT_NEAR(found.object.longest, 0.07, 0.004);
+  EXPECT_NEAR(found.object.longest, 0.07, 0.006);
   const Hand hand = test_hand();
   for (std::size_t i = 0; i < found.grasps.size(); ++i) {
     const Grasp& grasp = found.grasps[i];
     const GraspRating& rating = found.ratings[i];
-    if (i > 0) EXPECT_LE(grasp.quality, found.grasps[i - 1].quality);
+    if (i > 0) {
+      EXPECT_LE(grasp.quality, found.grasps[i - 1].quality);
+    }
     EXPECT_EQ(grasp.quality, rating.success.probability);
     // Across 40 or 70 mm, closing along the true face's normal within the cone of a coefficient of 0.5.
     const Vector3d axis = kBoxPose.linear().transpose() * grasp.T_object_hand.linear() * hand.closing;
@@ -171,9 +163,11 @@ TEST(SynthesizeGrasps, NeighboursAreKeptClearOf) {
   const ProbabilisticSdf map =
       scan({table_plane(), {Box{kSize}, kBoxPose}, {wall, left}, {wall, right}}, 0.0005, false, 14);
   SynthesisOptions options = on_table();
+  options.samples = 1000;
   options.object = Eigen::AlignedBox3d(Vector3d(-0.06, -0.06, 0), Vector3d(0.08, 0.06, 0.07));
   const GraspSynthesis found = synthesize_grasps(map, test_hand(), options);
   EXPECT_GT(found.counts.collision, 0u);
+  ASSERT_FALSE(found.grasps.empty());
   for (std::size_t i = 0; i < found.grasps.size(); ++i) {
     for (const LinkShape& shape : test_hand().shapes(found.ratings[i].pretouch_opening)) {
       const Pose T = found.grasps[i].T_object_hand * shape.T_link_shape;
@@ -217,7 +211,7 @@ TEST(SynthesizeGrasps, MoreNoiseMakesGraspsLessProbable) {
   options.success.angle_weight = options.success.placement_weight = options.success.centring_weight = 0;
   options.success.certainty_weight = 1;
   double before = 1;
-  for (const double sigma : {0.001, 0.002, 0.003}) {
+  for (const double sigma : {0.0005, 0.001, 0.002}) {
     const GraspSynthesis found = synthesize_grasps(scan(scene, sigma, true), test_hand(), options);
     ASSERT_EQ(found.outcome, Outcome::solved) << found.summary();
     EXPECT_LT(found.grasps[0].quality, before);

@@ -36,6 +36,8 @@ class MMGRASP_EXPORT HandModel {
   virtual std::vector<LinkShape> boxes(const std::vector<double>& shares) const = 0;
   /// One number for each of Hand::groups(), as Grasp::posture has them; empty for hands that the opening describes.
   virtual std::vector<double> posture(const std::vector<double>& shares) const = 0;
+  /// The shares that a pre-touch posture stands for: the opening of hands that it describes [m], else the posture.
+  virtual std::vector<double> shares_of(double opening, const std::vector<double>& posture) const = 0;
   /// Pads keep their directions and move along the closing axis alone: distances follow without new rays.
   virtual bool parallel() const = 0;
 };

@@ -13,9 +13,13 @@
 #include "mmgrasp/grasp/grasp.hpp"
 #include "mmgrasp/grasp/hand_model.hpp"
 #include "mmgrasp/grasp/success_model.hpp"
+#include "mmgrasp/grasp/surface_draws.hpp"
 #include "mmgrasp/mapping/probabilistic_sdf.hpp"
+#include "mmgrasp/robot/ik.hpp"
 
 namespace mmgrasp {
+
+class World;
 
 struct MMGRASP_EXPORT SynthesisOptions {
   int samples = 200;            ///< Grasps evaluated: two thirds spread over the object, the rest around the best; > 0.
@@ -62,6 +66,7 @@ struct MMGRASP_EXPORT GraspRating {
   std::vector<ContactPatch> patches;     ///< One a finger, in the world.
   double pretouch_opening = 0;           ///< Between the pads before closing, P3's g_n [m].
   std::vector<double> pretouch_posture;  ///< The same of hands with several joint groups; see Grasp::posture.
+  std::optional<DrawnSuccess> drawn;     ///< By draw_success(); none: it was not called.
   Eigen::VectorXd q;                     ///< The arm's configuration before closing; empty without an arm.
 };
 
@@ -79,6 +84,11 @@ struct MMGRASP_EXPORT GraspSynthesis {
 /// Configuration of the arm that brings the hand to a pose, or why there is none.
 using ArmReach = std::function<Rejection(const Pose& T_world_hand, Eigen::VectorXd& q)>;
 
+/// An arm whose tip is the hand's tool link, by inverse kinematics from `seed`; with a world free of collisions with it
+/// and with itself, as of now. To be called by one thread at a time. Throws InvalidInput on a seed of another size.
+MMGRASP_EXPORT ArmReach make_arm_reach(const JointGroup& arm, const Eigen::VectorXd& seed, const World* world = nullptr,
+                                       const IkOptions& options = {});
+
 /// Grasps of unknown parts in a map with uncertain surfaces (P3 4.6), most probable by (4.9) first.
 ///
 /// - The first search draws a surface point, finds the opposite wall by a ray, and lets the hand come in along a
@@ -87,7 +97,8 @@ using ArmReach = std::function<Rejection(const Pose& T_world_hand, Eigen::Vector
 /// - The second search shifts the best in the plane of their pads and turns them to face their patches.
 /// - Hands of several joint groups then close finger by finger until each pad is at that distance.
 /// - Hand and map, hand and table must keep apart; then rays are cast again from the final pose, and what does not pass
-///   this check is not returned. With `arm` grasps that it does not reach are left out before the second search.
+///   this check is not returned. With `arm` grasps that it does not reach are left out before the second search;
+///   parallel hands may be turned by half a turn for it.
 ///
 /// Grasp::quality is the probability, Grasp::opening the distance between the pads when they touch. Throws
 /// InvalidInput on options out of range, a map without a surface or without one where the object should be.
@@ -97,5 +108,9 @@ MMGRASP_EXPORT GraspSynthesis synthesize_grasps(const ProbabilisticSdf& map, con
 MMGRASP_EXPORT GraspSynthesis synthesize_grasps(const ProbabilisticSdf& map, const Hand& hand,
                                                 const SynthesisOptions& options = {}, const Monitor& monitor = {},
                                                 const ArmReach& arm = {});
+
+/// Rates every grasp of a synthesis by (4.1) too: sets GraspRating::drawn. `options` are those it was made with.
+MMGRASP_EXPORT void draw_success(const ProbabilisticSdf& map, const HandModel& hand, const SurfaceDrawOptions& draws,
+                                 const SynthesisOptions& options, GraspSynthesis& found);
 
 }  // namespace mmgrasp

@@ -34,6 +34,9 @@ class NumberedHand final : public HandModel {
     return hand_.shapes(opening(shares));
   }
   std::vector<double> posture(const std::vector<double>&) const override { return {}; }
+  std::vector<double> shares_of(double opening, const std::vector<double>&) const override {
+    return {hand_.share_open(opening)};
+  }
   bool parallel() const override { return true; }
 
  private:

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "grasp/synthesis/point_grid.hpp"
 #include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/robot/joint.hpp"
 
@@ -34,11 +34,8 @@ class HandClearance {
   };
   double margin_, largest_ = 0;  ///< Largest radius.
   std::optional<double> table_;
-  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
-  double side_ = 0.008;
-  int n_[3] = {0, 0, 0};
-  std::vector<std::uint32_t> begin_;  ///< First ball of each cell, and one past the last.
-  std::vector<Ball> balls_;           ///< By cell.
+  PointGrid grid_;
+  std::vector<Ball> balls_;  ///< In the grid's order.
 };
 
 }  // namespace mmgrasp::detail

@@ -76,7 +76,7 @@ class Search {
     for (int k = 0; k < kDraws && !sample.evaluated; ++k) {
       ++sample.draws.drawn;
       const std::size_t i = rng.index(surface_.object.size());
-      Vector3d axis = -surface_.object_normal[i];
+      Vector3d axis = -surface_.mean_normal(i);
       // Any line within the friction cone may join the contacts.
       const Eigen::Vector2d tilt = rng.in_disc(options_.success.friction / 2);
       const Vector3d u = axis.unitOrthogonal();
@@ -164,7 +164,18 @@ class Search {
     EvaluatedGrasp& grasp = sample.grasp;
     if (!sample.confirmed) evaluator_.confirm(grasp);
     if (!sample.confirmed && grasp.verdict == Verdict::good && arm_) {
-      const Rejection cause = arm_(grasp.T_world_hand, grasp.q);
+      Rejection cause = arm_(grasp.T_world_hand, grasp.q);
+      if (cause != Rejection::none && hand_.parallel()) {
+        // The same contacts with the fingers exchanged.
+        EvaluatedGrasp turned = grasp;
+        turned.T_world_hand.linear() =
+            grasp.T_world_hand.linear() * Eigen::AngleAxisd(detail::kPi, hand_.hand().approach).toRotationMatrix();
+        std::swap(turned.patches[0], turned.patches[1]);
+        if (arm_(turned.T_world_hand, turned.q) == Rejection::none) {
+          grasp = std::move(turned);
+          cause = Rejection::none;
+        }
+      }
       if (cause != Rejection::none) {
         grasp.verdict = Verdict::arm;
         rejections_.add(cause);
@@ -302,54 +313,6 @@ class Search {
 };
 
 }  // namespace
-
-void SynthesisOptions::check() const {
-  const auto not_negative = [](double value, const char* field) {
-    require(std::isfinite(value) && value >= 0, field, value, "must be zero or positive and finite");
-  };
-  require(samples > 0 && samples <= 1000000, "samples", samples, "must be from 1 to 1000000");
-  require(refined > 0, "refined", refined, "must be positive");
-  not_negative(shift, "shift");
-  require(max_tilt >= 0 && max_tilt <= 3.2, "max_tilt", max_tilt, "must be in [0, pi] [rad]");
-  if (table) require(std::isfinite(*table), "table", *table, "must be finite [m]");
-  not_negative(table_tolerance, "table_tolerance");
-  if (object) {
-    const bool sound = !object->isEmpty() && object->min().allFinite() && object->max().allFinite();
-    require(sound, "object", "box", "its lower corner must be below its upper one, both finite [m]");
-  }
-  not_negative(sigmas, "sigmas");
-  not_negative(margin, "margin");
-  require(approach_distance >= 0 && approach_distance <= 10, "approach_distance", approach_distance,
-          "must be in [0, 10] [m]");
-  not_negative(min_distance, "min_distance");
-  require(max_grasps > 0, "max_grasps", max_grasps, "must be positive");
-  require(threads >= 0, "threads", threads, "must be zero or positive");
-  success.check();
-  patch.check();
-}
-
-std::string GraspSynthesis::summary() const {
-  const auto number = [](std::size_t n) { return std::to_string(n); };
-  if (!grasps.empty())
-    return number(grasps.size()) + " grasps, the best with probability " + std::to_string(grasps[0].quality);
-  if (outcome == Outcome::stopped) return "stopped before any grasp was confirmed";
-  const std::pair<std::size_t, const char*> causes[] = {
-      {counts.no_opposite, "the map has no surface opposite"},
-      {counts.too_wide, "the object is wider there than the hand opens"},
-      {counts.too_thin, "the object is thinner there than the hand closes"},
-      {counts.tilted, "the hand would come in tilted by more than max_tilt"},
-      {counts.missed, "a pad meets too little of the surface"},
-      {counts.uneven, "a pad meets no plane"},
-      {counts.slipping, "no force closure"},
-      {counts.uncertain, "the surface is less certain than max_sigma"},
-      {counts.collision, "the hand touches the map"},
-      {counts.table, "the hand touches the table"},
-      {counts.arm, "the arm does not get there"}};
-  const auto* most = std::max_element(std::begin(causes), std::end(causes),
-                                      [](const auto& a, const auto& b) { return a.first < b.first; });
-  return "no grasp of " + number(counts.drawn) + " surface points drawn and " + number(counts.evaluated) +
-         " grasps evaluated; most often (" + number(most->first) + "): " + most->second;
-}
 
 GraspSynthesis synthesize_grasps(const ProbabilisticSdf& map, const HandModel& hand, const SynthesisOptions& options,
                                  const Monitor& monitor, const ArmReach& arm) {

@@ -17,9 +17,18 @@ class Extraction {
  public:
   explicit Extraction(const SdfGrid& grid) : grid_(grid), sampler_(grid), mesh_(std::make_shared<TriangleMesh>()) {}
 
-  SdfMesh run() {
+  SdfMesh run(const Eigen::AlignedBox3d* within) {
     std::vector<int> order(grid_.keys.size());
     std::iota(order.begin(), order.end(), 0);
+    if (within) {
+      const double side = kBlockSide * grid_.options.voxel;
+      const auto outside = [&](int block) {
+        const BlockKey& key = grid_.keys[block];
+        const Vector3d low = side * Vector3d(key.x, key.y, key.z);
+        return !within->intersects(Eigen::AlignedBox3d(low, low + Vector3d::Constant(side)));
+      };
+      order.erase(std::remove_if(order.begin(), order.end(), outside), order.end());
+    }
     std::sort(order.begin(), order.end(),
               [&](int a, int b) { return grid_.keys[a].packed() < grid_.keys[b].packed(); });
     for (const int block : order) {
@@ -30,7 +39,7 @@ class Extraction {
         }
       }
     }
-    mesh_->closed = closed();
+    mesh_->closed = !within && closed();
     return {mesh_, std::move(sigma_)};
   }
 
@@ -119,8 +128,8 @@ class Extraction {
 
 }  // namespace
 
-SdfMesh extract_mesh(const SdfGrid& grid) {
-  return Extraction(grid).run();
+SdfMesh extract_mesh(const SdfGrid& grid, const Eigen::AlignedBox3d* within) {
+  return Extraction(grid).run(within);
 }
 
 }  // namespace mmgrasp::detail

@@ -26,6 +26,17 @@ from ._core import (
     hand_masks as hand_masks,
 )
 
+# Grasps of unknown parts in a map, and how probable they are (P3 4)
+from ._core import (
+    GraspSynthesis as GraspSynthesis,
+    GraspRating as GraspRating,
+    GraspSuccess as GraspSuccess,
+    DrawnSuccess as DrawnSuccess,
+    ContactPatch as ContactPatch,
+    synthesize_grasps as synthesize_grasps,
+    line_grasp_probability as line_grasp_probability,
+)
+
 # Grasps by pushing, while the hand moves on (P1 4.3)
 from ._core import (
     PushGrasp as PushGrasp,

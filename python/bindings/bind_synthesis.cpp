@@ -2,6 +2,7 @@
 
 #include "bindings.hpp"
 #include "given.hpp"
+#include "mmgrasp/grasp/eigengrasp.hpp"
 #include "mmgrasp/grasp/line_grasp.hpp"
 #include "mmgrasp/grasp/surface_draws.hpp"
 #include "mmgrasp/grasp/synthesize_grasps.hpp"
@@ -164,6 +165,24 @@ std::optional<Eigen::AlignedBox3d> box_argument(const py::object& value) {
 }  // namespace
 
 void bind_synthesis(py::module_& m) {
+  m.def(
+      "eigengrasp_hand",
+      [](const Robot& robot, const std::string& tool_link,
+         const std::vector<std::pair<std::string, std::vector<std::string>>>& groups, const ArrayLike& open,
+         const ArrayLike& closed, const ArrayLike& approach, const std::string& name) {
+        std::vector<EigengraspGroup> made;
+        for (const auto& [group, joints] : groups) made.push_back({group, joints});
+        return eigengrasp_hand(robot, tool_link, made,
+                               {name, vector_argument(open, "open"), vector_argument(closed, "closed")},
+                               vector3_argument(approach, "approach"));
+      },
+      "robot"_a, "tool_link"_a, "groups"_a, py::kw_only(), "open"_a, "closed"_a, "approach"_a = py::make_tuple(0, 0, 1),
+      "name"_a = "type",
+      "A robot hand set up for one type of grasp (P3 4.6.1, Algorithm 3): `groups` are (name, joints) pairs, `open` "
+      "and "
+      "`closed`\nthe values of all their joints in that order. Groups whose values agree keep them. Raises "
+      "InvalidInput on "
+      "unknown joints,\nvalues outside limits, and when no two fingertips close on each other.");
   m.def("_synthesis_option_table", [] { return option_table(synthesis_fields()); });
   bind_success(m);
   bind_result(m);
@@ -180,8 +199,8 @@ void bind_synthesis(py::module_& m) {
   m.def(
       "synthesize_grasps",
       [](const ProbabilisticSdf& map, const Hand& hand, const std::optional<double>& table, const py::object& object,
-         const JointGroup* arm, const World* world, const OptionalArray& arm_seed, int surface_draws,
-         const py::object& progress, const py::kwargs& options) {
+         const Robot* robot, const JointGroup* arm, const World* world, const OptionalArray& arm_seed,
+         int surface_draws, const py::object& progress, const py::kwargs& options) {
         SynthesisCall call = read_options(synthesis_fields(), options, "synthesize_grasps");
         call.search.table = table;
         call.search.object = box_argument(object);
@@ -195,7 +214,7 @@ void bind_synthesis(py::module_& m) {
           reach = make_arm_reach(world ? with_sampled_pairs(*arm) : *arm, seed, world);
         }
         return LongCall(progress).run([&](const Monitor& monitor) {
-          const auto model = make_hand_model(hand);
+          const auto model = robot ? make_hand_model(hand, *robot) : make_hand_model(hand);
           GraspSynthesis found = synthesize_grasps(map, *model, call.search, monitor, reach);
           if (surface_draws > 0) {
             call.draws.draws = surface_draws;
@@ -204,11 +223,14 @@ void bind_synthesis(py::module_& m) {
           return found;
         });
       },
-      "map"_a, "hand"_a, py::kw_only(), "table"_a = py::none(), "object"_a = py::none(), "arm"_a = py::none(),
-      "world"_a = py::none(), "arm_seed"_a = py::none(), "surface_draws"_a = 0, "progress"_a = py::none(),
+      "map"_a, "hand"_a, py::kw_only(), "table"_a = py::none(), "object"_a = py::none(), "robot"_a = py::none(),
+      "arm"_a = py::none(), "world"_a = py::none(), "arm_seed"_a = py::none(), "surface_draws"_a = 0,
+      "progress"_a = py::none(),
       ("Grasps of an unknown part in a ProbabilisticSdf, most probable by P3's model (4.9) first.\n\n`table` is the "
        "height of the level table that it stands on [m], `object` a box (2, 3) that holds it, least and largest\n"
-       "corner [m]; without them all of the map is the part. With `arm`, a group whose tip is the hand's tool link, "
+       "corner [m]; without them all of the map is the part. `robot` has the joints and bodies of a hand "
+       "of\neigengrasp_hand; without it "
+       "the hand is two pads and its boxes. With `arm`, a group whose tip is the hand's tool link, "
        "grasps "
        "are\nleft out that it does not reach, with `world` without collisions, by inverse kinematics from `arm_seed` "
        "(the "

@@ -5,6 +5,7 @@ from ._core import (
     Hand as Hand,
     HandJoint as HandJoint,
     HandBody as HandBody,
+    eigengrasp_hand as eigengrasp_hand,
 )
 
 # Grasps, and where they come from

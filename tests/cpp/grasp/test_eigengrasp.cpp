@@ -134,19 +134,28 @@ TEST(Eigengrasp, PinchOfABoxFingerByFinger) {
   }
 }
 
-TEST(Eigengrasp, ThreeFingersHoldACylinder) {
-  const ProbabilisticSdf map = scan({table_plane(), {Cylinder{0.03, 0.1}, at(0, 0, 0.05)}});
+TEST(Eigengrasp, ThreeFingersHoldABar) {
+  // Long enough for the two fingers 66 mm apart.
+  const Vector3d size(0.05, 0.16, 0.09);
+  const Pose T_bar = at(0, 0, 0.045, 0.4);
+  const ProbabilisticSdf map = scan({table_plane(), {Box{size}, T_bar}});
   SynthesisOptions options;
   options.table = 0.0;
   options.threads = 1;
-  options.patch.min_hits = 0.4;
+  options.samples = 400;
   const auto model = make_hand_model(eigengrasp_hand(sdh(), "tcp", kGroups, kCylindrical), sdh());
   const GraspSynthesis found = synthesize_grasps(map, *model, options);
   ASSERT_EQ(found.outcome, Outcome::solved) << found.summary();
   for (const GraspRating& rating : found.ratings) {
     ASSERT_EQ(rating.patches.size(), 3u);
     EXPECT_TRUE(rating.success.force_closure);
-    for (const ContactPatch& patch : rating.patches) EXPECT_LT(patch.point.head<2>().norm(), 0.0315);
+    int sides[2] = {0, 0};
+    for (const ContactPatch& patch : rating.patches) {
+      const Vector3d p = T_bar.inverse() * patch.point;
+      EXPECT_NEAR(std::abs(p.x()), size.x() / 2, 0.0015);
+      ++sides[p.x() > 0 ? 1 : 0];
+    }
+    EXPECT_EQ(sides[0] * sides[1], 2);  // the thumb on one side, both fingers on the other
   }
 }
 

@@ -45,7 +45,11 @@ class MMGRASP_EXPORT HandModel {
 /// A hand by its numbers: two pads of finger_depth x finger_width, the boxes of Hand::shapes().
 MMGRASP_EXPORT std::shared_ptr<const HandModel> make_hand_model(const Hand& hand);
 
-/// Two virtual fingers: the pads that push the first one's way, and those that push against it (Arbib et al. 1985).
+/// 0 for the pads that push the first one's way, 1 for those that push against it, by the unit vectors along which they
+/// push; what all have in common, as when fingers spread out, does not count.
+MMGRASP_EXPORT std::vector<int> opposed_sides(const std::vector<Eigen::Vector3d>& pushes);
+
+/// Two virtual fingers: the pads of either of opposed_sides() (Arbib et al. 1985).
 struct MMGRASP_EXPORT ClosingLine {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< Between the mean pads of either side, in the tool frame [m].
   Eigen::Vector3d axis = Eigen::Vector3d::UnitY();   ///< From the first side to the other, a unit vector.

@@ -1,5 +1,7 @@
 #include "mmgrasp/grasp/hand_model.hpp"
 
+#include <string>
+
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
@@ -51,18 +53,28 @@ std::shared_ptr<const HandModel> make_hand_model(const Hand& hand) {
   return std::make_shared<NumberedHand>(hand);
 }
 
+std::vector<int> opposed_sides(const std::vector<Vector3d>& pushes) {
+  Vector3d common = Vector3d::Zero();
+  for (const Vector3d& push : pushes) common += push / static_cast<double>(pushes.size());
+  std::vector<int> sides;
+  for (const Vector3d& push : pushes) sides.push_back((push - common).dot(pushes[0] - common) > 0 ? 0 : 1);
+  return sides;
+}
+
 ClosingLine closing_line(const std::vector<FingerPad>& pads) {
   require(pads.size() >= 2, "pads", std::to_string(pads.size()), "a hand needs at least two fingertips");
+  std::vector<Vector3d> pushes;
+  for (const FingerPad& pad : pads) pushes.push_back(pad.T_hand_pad.linear().col(2));
+  const std::vector<int> sides = opposed_sides(pushes);
   Vector3d place[2] = {Vector3d::Zero(), Vector3d::Zero()}, push[2] = {Vector3d::Zero(), Vector3d::Zero()};
   int count[2] = {0, 0};
-  const Vector3d first = pads[0].T_hand_pad.linear().col(2);
-  for (const FingerPad& pad : pads) {
-    const int side = pad.T_hand_pad.linear().col(2).dot(first) > 0 ? 0 : 1;
-    place[side] += pad.T_hand_pad.translation();
-    push[side] += pad.T_hand_pad.linear().col(2);
-    ++count[side];
+  for (std::size_t k = 0; k < pads.size(); ++k) {
+    place[sides[k]] += pads[k].T_hand_pad.translation();
+    push[sides[k]] += pushes[k];
+    ++count[sides[k]];
   }
-  require(count[1] > 0, "pads", std::to_string(pads.size()), "no fingertip pushes against the first one");
+  require(count[0] > 0 && count[1] > 0, "pads", std::to_string(pads.size()),
+          "no fingertip pushes against the first one");
   ClosingLine line;
   const Vector3d a = place[0] / count[0], b = place[1] / count[1];
   line.axis = (push[0].normalized() - push[1].normalized()).normalized();

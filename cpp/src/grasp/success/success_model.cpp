@@ -20,16 +20,17 @@ double angle_between(const Vector3d& a, const Vector3d& b) {
 /// The two ends of the line of contact: of several contacts on one side their mean.
 std::pair<Vector3d, Vector3d> contact_line(const std::vector<ContactPatch>& patches) {
   if (patches.size() == 2) return {patches[0].point, patches[1].point};
-  const Vector3d axis = patches[0].pad_normal;
+  std::vector<Vector3d> pushes;
+  for (const ContactPatch& patch : patches) pushes.push_back(patch.pad_normal);
+  const std::vector<int> sides = opposed_sides(pushes);
   Vector3d sum[2] = {Vector3d::Zero(), Vector3d::Zero()};
   int count[2] = {0, 0};
-  for (const ContactPatch& patch : patches) {
-    const int side = patch.pad_normal.dot(axis) > 0 ? 0 : 1;
-    sum[side] += patch.point;
-    ++count[side];
+  for (std::size_t k = 0; k < patches.size(); ++k) {
+    sum[sides[k]] += patches[k].point;
+    ++count[sides[k]];
   }
   for (int side = 0; side < 2; ++side) sum[side] /= std::max(1, count[side]);
-  return {sum[0], count[1] > 0 ? sum[1] : sum[0]};
+  return {count[0] > 0 ? sum[0] : sum[1], count[1] > 0 ? sum[1] : sum[0]};
 }
 
 }  // namespace

@@ -165,20 +165,21 @@ Verdict GraspEvaluator::centre_by_finger(EvaluatedGrasp& grasp) const {
   const double wanted = hand_.hand().clearance;
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<FingerPad> pads = hand_.pads(grasp.shares);
+    std::vector<Vector3d> pushes;
+    for (const FingerPad& pad : pads) pushes.push_back(pad_direction(pad));
+    const std::vector<int> sides = opposed_sides(pushes);
     std::vector<double> errors;
     double side[2] = {0, 0}, worst = 0;
     int count[2] = {0, 0};
     for (std::size_t k = 0; k < pads.size(); ++k) {
-      const int s = pad_direction(pads[k]).dot(pad_direction(pads[0])) > 0 ? 0 : 1;
       errors.push_back(grasp.patches[k].distance - wanted);
-      side[s] += errors.back();
-      ++count[s];
+      side[sides[k]] += errors.back();
+      ++count[sides[k]];
     }
     const double shift = (side[0] / count[0] - side[1] / count[1]) / 2;
     for (std::size_t k = 0; k < pads.size(); ++k) {
-      const bool first = pad_direction(pads[k]).dot(pad_direction(pads[0])) > 0;
       worst = std::max(worst, std::abs(errors[k]));
-      errors[k] -= first ? shift : -shift;
+      errors[k] -= sides[k] == 0 ? shift : -shift;
     }
     if (worst < kPlaced) break;
     grasp.T_world_hand.translation() += shift * closing_axis(grasp);

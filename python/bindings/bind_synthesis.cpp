@@ -69,10 +69,6 @@ const std::vector<OptionField<SynthesisCall>>& synthesis_fields() {
   return fields;
 }
 
-py::object vector_array(const Eigen::Vector3d& v) {
-  return py::array_t<double>(3, v.data());
-}
-
 void bind_success(py::module_& m) {
   using S = GraspSuccess;
   py::class_<S>(m, "GraspSuccess", "Share of each criterion in a grasp's success (P3 4.5 to 4.9), in [0, 1].")
@@ -84,22 +80,21 @@ void bind_success(py::module_& m) {
       .def_readonly("force_closure", &S::force_closure, "The contact line lies in both friction cones.")
       .def_readonly("probability", &S::probability,
                     "`weighted`; 0 without force closure or where the angle or certainty is 0.")
-      .def("to_dict",
-           [](const S& s) {
-             return py::dict("angle"_a = s.angle, "placement"_a = s.placement, "centring"_a = s.centring,
-                             "certainty"_a = s.certainty, "weighted"_a = s.weighted,
-                             "force_closure"_a = s.force_closure, "probability"_a = s.probability);
-           })
+      .def(
+          "to_dict",
+          [](const S& s) {
+            return py::dict("angle"_a = s.angle, "placement"_a = s.placement, "centring"_a = s.centring,
+                            "certainty"_a = s.certainty, "weighted"_a = s.weighted, "force_closure"_a = s.force_closure,
+                            "probability"_a = s.probability);
+          },
+          "All of it by name.")
       .def("__repr__",
            [](const S& s) { return "GraspSuccess(" + std::string(py::repr(py::float_(s.probability))) + ")"; });
   using P = ContactPatch;
   py::class_<P>(m, "ContactPatch", "What a finger's pad meets if it moves on along its normal, in the world.")
-      .def_property_readonly(
-          "point", [](const P& p) { return vector_array(p.point); }, "Middle of the patch [m].")
-      .def_property_readonly(
-          "normal", [](const P& p) { return vector_array(p.normal); }, "Away from the object.")
-      .def_property_readonly(
-          "pad_normal", [](const P& p) { return vector_array(p.pad_normal); }, "The way the pad pushes.")
+      .def_readonly("point", &P::point, "Middle of the patch [m].")
+      .def_readonly("normal", &P::normal, "Away from the object.")
+      .def_readonly("pad_normal", &P::pad_normal, "The way the pad pushes.")
       .def_readonly("distance", &P::distance, "From the pad, on average [m].")
       .def_readonly("nearest", &P::nearest, "From the pad to what it touches first [m].")
       .def_readonly("sigma", &P::sigma, "Standard deviation of the surface, on average [m].")
@@ -135,6 +130,28 @@ NamedCounts named_counts(const SynthesisCounts& c) {
                   "collision"_a = c.collision, "table"_a = c.table, "arm"_a = c.arm, "near_better"_a = c.near_better);
 }
 
+void bind_line_grasp(py::module_& m) {
+  using L = LineGrasp;
+  py::class_<L>(
+      m, "LineGrasp",
+      "P3's grasp in one dimension (4.4.2, figures 4.5 and 4.6): a parallel gripper on a line, and an object whose "
+      "place is uncertain.")
+      .def(py::init([](double width, double max_opening) {
+             const L made{width, max_opening};
+             made.check();
+             return made;
+           }),
+           "width"_a = L{}.width, "max_opening"_a = L{}.max_opening, "Of the object, and of the gripper [m].")
+      .def_readonly("width", &L::width, "Of the object [m].")
+      .def_readonly("max_opening", &L::max_opening, "Of the gripper [m].")
+      .def("success", &L::success, "opening"_a, "position"_a, "object"_a,
+           "P(S | x, G) of (4.3) and (4.4) for an object at a known place [m].")
+      .def("probability", &L::probability, "opening"_a, "position"_a, "mean"_a, "sigma"_a,
+           "P(S) of (4.1) for an object at N(mean, sigma^2), in closed form.")
+      .def("__repr__",
+           [](const L& l) { return "LineGrasp(width=" + std::string(py::repr(py::float_(l.width))) + ")"; });
+}
+
 void bind_result(py::module_& m) {
   using G = GraspSynthesis;
   py::class_<G>(m, "GraspSynthesis", "Grasps of an unknown part, most probable first, and why others were left out.")
@@ -147,7 +164,7 @@ void bind_result(py::module_& m) {
       .def_property_readonly(
           "arm", [](const G& g) { return to_dict(g.arm); }, "Why the arm did not reach grasps.")
       .def_property_readonly(
-          "object_centre", [](const G& g) { return vector_array(g.object.centre); },
+          "object_centre", [](const G& g) { return g.object.centre; },
           "Middle of the box fitted to the map's points [m].")
       .def_property_readonly(
           "object_longest", [](const G& g) { return g.object.longest; }, "Its longest side [m].")
@@ -155,7 +172,7 @@ void bind_result(py::module_& m) {
       .def("__repr__", [](const G& g) { return "GraspSynthesis(" + g.summary() + ")"; });
 }
 
-std::optional<Eigen::AlignedBox3d> box_argument(const py::object& value) {
+std::optional<Eigen::AlignedBox3d> box_argument(const OptionalArray& value) {
   if (value.is_none()) return {};
   const Eigen::MatrixXd rows = matrix_argument(value, "object", 3);
   require(rows.rows() == 2, "object", std::to_string(rows.rows()) + " rows", "must be two, least and largest corner");
@@ -185,22 +202,13 @@ void bind_synthesis(py::module_& m) {
       "unknown joints,\nvalues outside limits, and when no two fingertips close on each other.");
   m.def("_synthesis_option_table", [] { return option_table(synthesis_fields()); });
   bind_success(m);
+  bind_line_grasp(m);
   bind_result(m);
   m.def(
-      "line_grasp_probability",
-      [](double opening, double position, double mean, double sigma, double width, double max_opening) {
-        return LineGrasp{width, max_opening}.probability(opening, position, mean, sigma);
-      },
-      "opening"_a, "position"_a, "mean"_a, "sigma"_a, py::kw_only(), "width"_a = LineGrasp{}.width,
-      "max_opening"_a = LineGrasp{}.max_opening,
-      "P(S) of P3's grasp in one dimension (4.4.2, figure 4.6), in closed form: a gripper so far open at a position, "
-      "an\n"
-      "object so wide at N(mean, sigma^2) [m].");
-  m.def(
       "synthesize_grasps",
-      [](const ProbabilisticSdf& map, const Hand& hand, const std::optional<double>& table, const py::object& object,
+      [](const ProbabilisticSdf& map, const Hand& hand, const std::optional<double>& table, const OptionalArray& object,
          const Robot* robot, const JointGroup* arm, const World* world, const OptionalArray& arm_seed,
-         int surface_draws, const py::object& progress, const py::kwargs& options) {
+         int surface_draws, const Progress& progress, const py::kwargs& options) {
         SynthesisCall call = read_options(synthesis_fields(), options, "synthesize_grasps");
         call.search.table = table;
         call.search.object = box_argument(object);

@@ -35,7 +35,7 @@ from ._core import (
     DrawnSuccess as DrawnSuccess,
     ContactPatch as ContactPatch,
     synthesize_grasps as synthesize_grasps,
-    line_grasp_probability as line_grasp_probability,
+    LineGrasp as LineGrasp,
 )
 
 # Grasps by pushing, while the hand moves on (P1 4.3)

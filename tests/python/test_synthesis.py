@@ -68,7 +68,9 @@ def test_a_box_and_what_its_grasps_say(box_map: mg.ProbabilisticSdf) -> None:
         assert rating.drawn is not None and 0 < rating.drawn.probability <= rating.drawn.holds <= 1
         assert rating.q is None and grasp.opening < rating.pretouch_opening <= HAND.max_opening
     counts = found.counts
-    lost = sum(counts[k] for k in ("missed", "uneven", "slipping", "uncertain", "collision", "table", "arm", "near_better"))
+    lost = sum(
+        counts[k] for k in ("missed", "uneven", "slipping", "uncertain", "collision", "table", "arm", "near_better")
+    )
     assert counts["evaluated"] == lost + len(found.grasps)
     again = mg.synthesize_grasps(box_map, HAND, table=0.0, threads=1)
     assert [g.quality for g in again.grasps] == [g.quality for g in found.grasps]
@@ -77,15 +79,17 @@ def test_a_box_and_what_its_grasps_say(box_map: mg.ProbabilisticSdf) -> None:
 def test_bad_input_has_one_message(box_map: mg.ProbabilisticSdf) -> None:
     with pytest.raises(mg.InvalidInput, match="map = 0 frames: has no surface"):
         mg.synthesize_grasps(mg.ProbabilisticSdf(), HAND)
-    with pytest.raises(mg.InvalidInput, match="sampels.*samples"):
-        mg.synthesize_grasps(box_map, HAND, sampels=3)
+    with pytest.raises(mg.InvalidInput, match=r"sampels.*samples"):
+        mg.synthesize_grasps(box_map, HAND, **{"sampels": 3})  # type: ignore[arg-type]
     with pytest.raises(mg.InvalidInput, match="sum of the four weights"):
         mg.synthesize_grasps(box_map, HAND, angle_weight=0.9)
     with pytest.raises(mg.InvalidInput, match="world = given: goes with an arm"):
         mg.synthesize_grasps(box_map, HAND, world=mg.World())
     with pytest.raises(mg.InvalidInput, match="object"):
         mg.synthesize_grasps(box_map, HAND, object=[[1, 1, 1], [0, 0, 0]])
-    narrow = mg.Hand("tool", approach=[0, 0, 1], closing=[0, 1, 0], max_opening=0.03, finger_depth=0.02, finger_width=0.018)
+    narrow = mg.Hand(
+        "tool", approach=[0, 0, 1], closing=[0, 1, 0], max_opening=0.03, finger_depth=0.02, finger_width=0.018
+    )
     none = mg.synthesize_grasps(box_map, narrow, table=0.0)
     assert none.outcome == mg.Outcome.not_found and none.grasps == []
     assert none.counts["too_wide"] > none.counts["drawn"] / 3 and "no grasp" in none.summary()
@@ -113,6 +117,24 @@ def test_the_arm_gets_to_what_is_returned(box_map: mg.ProbabilisticSdf) -> None:
     assert far.outcome == mg.Outcome.not_found and far.arm["unreachable"] == far.counts["arm"] > 0
 
 
+def test_a_hand_of_seven_joints_pinches(box_map: mg.ProbabilisticSdf) -> None:
+    """Groups 2, 2, 2, 1; on the part the two tips are as far apart as it is wide, by the robot's own kinematics."""
+    robot = mg.Robot.load(Path(mg.__file__).parent / "assets" / "grippers" / "sdhlike" / "sdhlike.urdf")
+    groups = [(f, [f"{f}_proximal", f"{f}_distal"]) for f in ("thumb", "finger_1", "finger_2")] + [
+        ("spread", ["spread"])
+    ]
+    opened, closed = np.radians([-90, 0, -25, 25, -25, 25, 90]), np.radians([-90, 0, 12, -12, 12, -12, 90])
+    hand = mg.grasping.eigengrasp_hand(robot, "tcp", groups, open=opened, closed=closed, name="pinch")
+    assert hand.max_opening == pytest.approx(2 * (0.033 + 0.0865 * np.sin(np.radians(25)) - 0.012))
+    assert hand.preshape == {"thumb": 1.0, "spread": 1.0}
+    found = mg.synthesize_grasps(box_map, hand, robot=robot, table=0.0)
+    assert found.outcome == mg.Outcome.solved, found.summary()
+    for grasp in found.grasps:
+        poses = robot.link_poses(hand.joint_values(grasp))
+        tips = [(poses[f"finger_{i}_tip"] @ [0, 0, 0.03425, 1])[:3] for i in (1, 2)]
+        assert np.linalg.norm(tips[0] - tips[1]) - 0.024 == pytest.approx(grasp.opening, abs=0.004)
+
+
 @pytest.mark.skipif(not (DATA / "meshes" / "ycb").exists(), reason="no shared data")
 def test_a_ycb_object_is_held_where_its_mesh_is() -> None:
     """Every contact line against the true mesh: its two ends lie on it, with opposed normals."""
@@ -128,6 +150,7 @@ def test_a_ycb_object_is_held_where_its_mesh_is() -> None:
             assert np.min(np.linalg.norm(vertices + offset - patch.point, axis=1)) < 0.006
         # No vertex of the true mesh lies in the open hand.
         for box in HAND.shapes(rating.pretouch_opening):
+            assert isinstance(box.shape, mg.Box)
             T = np.linalg.inv(grasp.T_object_hand @ box.pose)
             inside = np.abs((vertices + offset) @ T[:3, :3].T + T[:3, 3]) < np.asarray(box.shape.size) / 2
             assert not np.any(np.all(inside, axis=1))

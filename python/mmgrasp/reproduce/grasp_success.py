@@ -18,7 +18,7 @@ PROBABILITY = "P(S) at the optimum"
 
 # --- figure 4.6 -------------------------------------------------------------------------------------------------------
 def probability(opening: float, position: float, sigma: float) -> float:
-    return _core.line_grasp_probability(opening, position, 0.0, sigma, width=WIDTH, max_opening=MAX_OPENING)
+    return _core.LineGrasp(WIDTH, MAX_OPENING).probability(opening, position, 0.0, sigma)
 
 
 def by_quadrature(opening: float, position: float, sigma: float) -> float:
@@ -40,7 +40,11 @@ def run_line(context: Context) -> Result:
     for sigma, paper in PAPER.items():
         values = np.array([[probability(u, p, sigma) for u in openings] for p in positions])
         row, column = np.unravel_index(np.argmax(values), values.shape)
-        best = {"opening": float(openings[column]), "position": float(positions[row]), "value": float(values[row, column])}
+        best = {
+            "opening": float(openings[column]),
+            "position": float(positions[row]),
+            "value": float(values[row, column]),
+        }
         out = result.row({"sigma [m]": sigma})
         out[PROBABILITY] = (paper, best["value"])
         out["by quadrature"] = (None, by_quadrature(best["opening"], best["position"], sigma))
@@ -79,7 +83,10 @@ def draw_line(result: dict[str, Any]):
 OBJECTS: dict[str, list[tuple[Any, list[float]]]] = {
     "box": [(_core.Box([0.04, 0.07, 0.06]), [0.0, 0.0, 0.03])],
     "cylinder": [(_core.Cylinder(0.03, 0.09), [0.0, 0.0, 0.045])],
-    "mallet": [(_core.Box([0.14, 0.025, 0.025]), [0.0, 0.0, 0.0125]), (_core.Box([0.03, 0.06, 0.05]), [0.06, 0.0, 0.025])],
+    "mallet": [
+        (_core.Box([0.14, 0.025, 0.025]), [0.0, 0.0, 0.0125]),
+        (_core.Box([0.03, 0.06, 0.05]), [0.06, 0.0, 0.025]),
+    ],
 }
 
 
@@ -134,7 +141,14 @@ def run_samples(context: Context) -> Result:
     items = [{"name": name, "samples": n, "runs": runs} for name in names for n in counts]
     found = context.sweep(measure, items, "p3-figure-4.21")
     result = Result(
-        setup={"objects": names, "runs": runs, "frames": 10, "noise [m]": 0.001, "voxel [m]": 0.002, "gripper opens [m]": 0.09}
+        setup={
+            "objects": names,
+            "runs": runs,
+            "frames": 10,
+            "noise [m]": 0.001,
+            "voxel [m]": 0.002,
+            "gripper opens [m]": 0.09,
+        }
     )
     for item, ours in zip(items, found, strict=True):
         row = result.row({"object": item["name"], "samples": item["samples"]})
@@ -144,7 +158,8 @@ def run_samples(context: Context) -> Result:
     for name in names:
         of = {i["samples"]: o for i, o in zip(items, found, strict=True) if i["name"] == name}
         result.trend(
-            f"{name}: 200 samples reach 95 % of what {counts[-1]} reach", of[200]["best"] >= 0.95 * of[counts[-1]]["best"]
+            f"{name}: 200 samples reach 95 % of what {counts[-1]} reach",
+            of[200]["best"] >= 0.95 * of[counts[-1]]["best"],
         )
         per_sample = (of[counts[-1]]["seconds"] - of[counts[0]]["seconds"]) / (counts[-1] - counts[0])
         line = of[counts[0]]["seconds"] + per_sample * (200 - counts[0])

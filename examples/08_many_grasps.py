@@ -46,7 +46,7 @@ print(f"held {places[worst]:+.2f} m from it alone: {other}")
 
 five = list(range(0, 25, 6))
 by_trees = mg.plan_manipulation(
-    with_grasps([grasps[i] for i in five]), planner="rrt_star_mg", max_samples=200, step=0.3, keep_trees=True
+    with_grasps([grasps[i] for i in five]), planner="rrt_star_mg", max_iterations=200, range=0.3, keep_trees=True
 )
 print(f"by trees, with {len(five)} of the grasps: {by_trees}, {len(by_trees.trees)} trees")
 

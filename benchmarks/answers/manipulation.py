@@ -40,7 +40,7 @@ def prm_star_mg_pipe() -> Answer:
 
 @call
 def rrt_star_mg_pipe() -> Answer:
-    options = {"max_samples": 600, "seed": 1, "time_limit": PATIENT, "threads": threads()}
+    options = {"max_iterations": 600, "seed": 1, "time_limit": PATIENT, "threads": threads()}
     return manipulation(ask(find("plan_manipulation"), pipe_problem(6, 60), planner="rrt_star_mg", **options))
 
 
@@ -93,7 +93,7 @@ def prm_star_mg_bar() -> Answer:
 
 @call
 def rrt_star_mg_bar() -> Answer:
-    options = {"max_samples": 1000, "time_limit": PATIENT, "threads": threads(), "keep_trees": True}
+    options = {"max_iterations": 1000, "time_limit": PATIENT, "threads": threads(), "keep_trees": True}
     found = ask(find("plan_manipulation"), bar_problem(), planner="rrt_star_mg", **options)
     parts, shown = manipulation(found)
     trees = [[tree.vertices, list(tree.parents), list(tree.costs), tree.grasp, tree.from_goal] for tree in found.trees]

@@ -40,7 +40,7 @@ struct Run {
 Run run(const ManipulationProblem& problem, unsigned seed, int samples) {
   ManipulationOptions options;
   options.planner = "rrt_star_mg";
-  options.rrt.max_samples = samples;
+  options.rrt.max_iterations = samples;
   options.time_limit = 1e5;
   options.seed = seed;
   options.threads = 1;

@@ -71,7 +71,7 @@ Measured measure(const JointGroup& group, const Case& which, int runs) {
     ManipulationOptions options;
     options.planner = "rrt_star_mg";
     options.first_grasps = which.first_grasps;
-    options.rrt.max_samples = which.samples;
+    options.rrt.max_iterations = which.samples;
     options.time_limit = 1000;
     options.threads = 1;
     options.seed = static_cast<unsigned>(run);

@@ -90,7 +90,7 @@ Call carry(const ManipulationProblem& problem, const std::string& planner) {
     options.planner = planner;
     options.time_limit = 1e6;
     options.prm.max_vertices = 10'000'000;  // The roadmap is made denser until the end.
-    options.rrt.max_samples = 10'000'000;
+    options.rrt.max_iterations = 10'000'000;
     return plan_manipulation(problem, options, nullptr, monitor).outcome == Outcome::stopped;
   };
 }

@@ -56,12 +56,11 @@ class Enough(Exception):  # noqa: N818 - it is no error
 def ours(planner: str, **settings):
     def run(cell: PipeCell, grasps: list[mg.Grasp], seed: int, given: argparse.Namespace, only_first: bool) -> dict:
         options: dict = {"planner": planner, "seed": seed, "threads": 1, "time_limit": given.seconds, **settings}
-        options["ik_solutions"] = CONFIGURATIONS
         if planner == "prm_star_mg":
             options["roadmap"] = mg.planning.Roadmap.build(cell.arm, seed=seed)
             options["refinements"] = UNLIMITED
         else:
-            options["max_samples"] = UNLIMITED
+            options["max_iterations"] = UNLIMITED
         problem, told = cell.problem(grasps), []
 
         def improved(_) -> None:
@@ -102,7 +101,7 @@ class Ends:
 def plan(cell: PipeCell, grasp: mg.Grasp, start, goals, **options):
     group, world = cell.arm_holding(grasp), cell.world_holding(grasp)
     return mg.plan_motion(
-        cell.robot, group, world, start=start, goal=goals, edge_step=0.02, workspace_step=0.005, **options
+        cell.robot, group, world, start=start, goal=goals, joint_step=0.02, workspace_step=0.005, **options
     )
 
 
@@ -211,7 +210,7 @@ def restarts(cell: PipeCell, grasps: list[mg.Grasp], seed: int, given: argparse.
                 held[i] = cell.arm_holding(grasps[i]), cell.world_holding(grasps[i])
             planned += 1
             found = mg.plan_motion(
-                cell.robot, *held[i], start=start, goal=goals, edge_step=0.02, workspace_step=0.005, seed=seed + 7919 * round_ + i,
+                cell.robot, *held[i], start=start, goal=goals, joint_step=0.02, workspace_step=0.005, seed=seed + 7919 * round_ + i,
                 time_limit=left, max_iterations=budget, shorten=first is not None,
             )  # fmt: skip
             if found.outcome != mg.Outcome.solved:

@@ -182,12 +182,12 @@ void bind_checker(py::module_& m) {
       .def(
           "edge_is_free",
           [](CollisionChecker& c, const ArrayLike& q0, const ArrayLike& q1, const Given<double>& given_step) {
-            const double step = taken(given_step, "step");
-            if (!(step > 0)) throw InvalidInput("step = " + std::to_string(step) + ": must be > 0");
+            const double step = taken(given_step, "joint_step");
+            if (!(step > 0)) throw InvalidInput("joint_step = " + std::to_string(step) + ": must be > 0");
             return c.edge_is_free(configuration(c, q0, "q0"), configuration(c, q1, "q1"), step);
           },
-          py::arg("q0"), py::arg("q1"), py::arg("step") = 0.02,
-          "The straight joint-space edge, checked so finely that no joint moves more than `step` [rad or m].")
+          py::arg("q0"), py::arg("q1"), py::arg("joint_step") = 0.02,
+          "The straight joint-space edge, checked so finely that no joint moves more than `joint_step` [rad or m].")
       .def("__repr__", [](const CollisionChecker& c) {
         return "CollisionChecker('" + c.group().robot().name() + "', group '" + c.group().name() + "', " +
                std::to_string(c.world().objects().size()) + " objects)";

@@ -65,8 +65,8 @@ const Fields& prm_fields() {
 
 const Fields& rrt_fields() {
   static const Fields fields{
-      of_rrt("max_samples", &RrtStarMgOptions::max_samples, "rrt_star_mg: budget in samples"),
-      of_rrt("step", &RrtStarMgOptions::step, "rrt_star_mg: longest edge grown towards a sample [rad or m]"),
+      of_rrt("max_iterations", &RrtStarMgOptions::max_iterations, "rrt_star_mg: budget in samples"),
+      of_rrt("range", &RrtStarMgOptions::range, "rrt_star_mg: longest edge grown towards a sample [rad or m]"),
       of_rrt("rrt_gamma", &RrtStarMgOptions::gamma,
              "rrt_star_mg: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined; 0: about (d + 1) / 2 "
              "n^(1/(d+1)) log n of n"),

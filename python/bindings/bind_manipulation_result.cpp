@@ -24,6 +24,7 @@ StatsDict stats_dict(const ManipulationStats& s) {
       "ik_seconds"_a = s.ik_seconds, "roadmap_seconds"_a = s.roadmap_seconds, "search_seconds"_a = s.search_seconds,
       "graph_searches"_a = s.graph_searches, "nodes_opened"_a = s.nodes_opened, "grasps_searched"_a = s.grasps_searched,
       "roadmap_cost"_a = s.roadmap_cost, "roadmap_bound"_a = s.roadmap_bound,
+      "postures_bound"_a = s.postures_bound,
       "edges_checked_robot"_a = s.edges_checked_robot, "edges_checked_attached"_a = s.edges_checked_attached,
       "samples"_a = s.samples, "vertices"_a = s.vertices, "stages"_a = stages_dict(s.stages));
 }
@@ -127,7 +128,8 @@ void bind_manipulation_result(py::module_& m) {
           "Waypoints (k, n), joined by straight lines; None unless solved.")
       .def_readonly("cost", &ManipulationResult::cost, "Length of the path in joint space plus the grasp's cost.")
       .def_readonly("lower_bound", &ManipulationResult::lower_bound,
-                    "No path with any grasp between these arm postures costs less: the least straight line.")
+                    "No path with any grasp costs less: the least straight line where every arm posture was listed, "
+                    "else also what the tool's way takes at the longest levers. Infinite: proven that there is none.")
       .def_readonly("improvements", &ManipulationResult::improvements, "Every better solution on the way, in order.")
       .def_readonly("grasps", &ManipulationResult::grasps, "A GraspReport for each grasp.")
       .def_readonly("rejections", &ManipulationResult::rejections, "Sum over all grasps and both ends.")

@@ -29,7 +29,7 @@ const std::vector<OptionField<MotionOptions>>& motion_fields() {
       option<O>("near_end_probability", &O::near_end_probability,
                 "roadmap planners: chance to draw around the start or a goal; 0: uniform draws alone"),
       option<O>("base_margin", &O::base_margin, "the base is drawn this far around start and goals [m]"),
-      option<O>("edge_step", &O::edge_step, "largest joint motion between two checks [rad or m]"),
+      option<O>("joint_step", &O::joint_step, "largest joint motion between two checks [rad or m]"),
       option<O>("workspace_step", &O::workspace_step, "largest motion of any robot point between two checks [m]"),
       option<O>("shorten", &O::shorten, "shortcut the path"),
       option<O>("shorten_iterations", &O::shorten_iterations, "tries of the shortening"),

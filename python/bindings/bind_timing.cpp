@@ -56,14 +56,14 @@ void bind_timing(py::module_& m) {
         CollisionChecker checker = taken(given_checker, "checker").clone();
         const TimingOptions read = read_options(timing_fields(), options, "time_parameterize_free");
         const JointPath waypoints{rows_argument(path, "path", checker.group().size())};
-        const double edge_step = taken(given_step, "edge_step");
+        const double joint_step = taken(given_step, "joint_step");
         return LongCall(progress).run([&](const Monitor& monitor) {
-          return time_parameterize_free(checker, waypoints, read, edge_step, monitor);
+          return time_parameterize_free(checker, waypoints, read, joint_step, monitor);
         });
       },
-      "checker"_a, "path"_a, py::kw_only(), "edge_step"_a = 0.01, "progress"_a = py::none(),
+      "checker"_a, "path"_a, py::kw_only(), "joint_step"_a = 0.01, "progress"_a = py::none(),
       ("time_parameterize under the limits of the checker's group, the blended corners checked for collisions too, no "
-       "joint moving\nmore than edge_step between two checks [rad or m]. Without any times when the straight edges of "
+       "joint moving\nmore than joint_step between two checks [rad or m]. Without any times when the straight edges of "
        "the path are not free." +
        option_help(timing_fields()))
           .c_str());

@@ -16,8 +16,8 @@ const std::vector<OptionField<StraightLineOptions>>& line_fields() {
   static const std::vector<OptionField<O>> fields{
       option<O>("position_step", &O::position_step, "largest tool translation between two waypoints [m]"),
       option<O>("rotation_step", &O::rotation_step, "largest tool rotation between two waypoints [rad]"),
-      option<O>("max_joint_step", &O::max_joint_step, "a larger joint motion between two waypoints is a jump"),
-      option<O>("edge_step", &O::edge_step, "largest joint motion between two checks [rad or m]")};
+      option<O>("jump_threshold", &O::jump_threshold, "a larger joint motion between two waypoints is a jump"),
+      option<O>("joint_step", &O::joint_step, "largest joint motion between two checks [rad or m]")};
   return fields;
 }
 
@@ -73,8 +73,8 @@ const std::vector<OptionField<CartesianOptions>>& cartesian_fields() {
   static const std::vector<OptionField<O>> fields{
       option<O>("position_step", &O::line, &L::position_step, "largest tool translation between two waypoints [m]"),
       option<O>("rotation_step", &O::line, &L::rotation_step, "largest tool rotation between two waypoints [rad]"),
-      option<O>("max_joint_step", &O::line, &L::max_joint_step, "a larger joint motion between waypoints is a jump"),
-      option<O>("edge_step", &O::line, &L::edge_step, "largest joint motion between two checks [rad or m]"),
+      option<O>("jump_threshold", &O::line, &L::jump_threshold, "a larger joint motion between waypoints is a jump"),
+      option<O>("joint_step", &O::line, &L::joint_step, "largest joint motion between two checks [rad or m]"),
       option<O>("max_branches", &O::max_branches, "configurations of the first pose that are followed at most")};
   return fields;
 }

@@ -13,8 +13,11 @@ constexpr std::size_t kLongest = 200;  // Characters of a value in a message.
 const std::map<std::string, std::string> kRenamed = {{"attempt_time_limit", "solve_time_limit"},
                                                      {"attempts", "seeds"},
                                                      {"choices", "grasp_assignments"},
+                                                     {"edge_step", "joint_step"},
                                                      {"held_only", "attached_only"},
                                                      {"improved", "on_solution"},
+                                                     {"max_joint_step", "jump_threshold"},
+                                                     {"max_samples", "max_iterations"},
                                                      {"stands", "goal_configurations"},
                                                      {"tool_cone", "orientation_constraint"}};
 

@@ -100,6 +100,7 @@ class ManipulationStats(TypedDict):
     grasps_searched: int
     roadmap_cost: float
     roadmap_bound: float
+    postures_bound: float
     edges_checked_robot: int
     edges_checked_attached: int
     samples: int

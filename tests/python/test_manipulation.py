@@ -248,7 +248,8 @@ def test_options_of_prm_star_mg_are_not_rrt_star_mgs(name: str, value: Any) -> N
 
 
 @pytest.mark.parametrize(
-    ("name", "value"), [("max_samples", 9), ("step", 0.5), ("rrt_gamma", 1.0), ("goal_cost", 2.0), ("keep_trees", True)]
+    ("name", "value"),
+    [("max_iterations", 9), ("range", 0.5), ("rrt_gamma", 1.0), ("goal_cost", 2.0), ("keep_trees", True)],
 )
 def test_options_of_rrt_star_mg_are_not_prm_star_mgs(name: str, value: Any) -> None:
     with pytest.raises(mg.InvalidInput, match=f"{name}: is an option of rrt_star_mg, not of prm_star_mg"):
@@ -262,7 +263,7 @@ def test_a_roadmap_is_of_no_use_to_rrt_star_mg() -> None:
 
 
 def test_trees_are_handed_over_when_asked_for() -> None:
-    given: dict[str, Any] = {"planner": "rrt_star_mg", "max_samples": 500, "time_limit": 100.0}
+    given: dict[str, Any] = {"planner": "rrt_star_mg", "max_iterations": 500, "time_limit": 100.0}
     assert mg.plan_manipulation(problem(), **given).trees == []
     found = mg.plan_manipulation(problem(), keep_trees=True, **given)
     assert {tree.from_goal for tree in found.trees} == {False, True}

@@ -147,7 +147,7 @@ def test_both_arms_carry_every_structure(number: int, robot: str) -> None:
     cell = pipe_cell(number, robot=robot)
     grasps = cell.grasps(500)
     found = mg.plan_manipulation(
-        cell.problem(grasps), planner="rrt_star_mg", max_samples=5000, goal_cost=1e9, time_limit=600.0
+        cell.problem(grasps), planner="rrt_star_mg", max_iterations=5000, goal_cost=1e9, time_limit=600.0
     )
     assert found.outcome == mg.Outcome.solved
     carrier = grasps[found.grasp_index]
@@ -183,7 +183,7 @@ def test_trees_of_good_paths_join_few_of_the_vertices_within_a_step() -> None:
             mg.plan_manipulation(
                 carry,
                 planner="rrt_star_mg",
-                max_samples=6000,
+                max_iterations=6000,
                 rrt_gamma=gamma,
                 exploration=1.0,
                 straight=False,

@@ -51,4 +51,6 @@ def test_paths_of_base_and_arm_stay_free_at_a_finer_step() -> None:
             goal=shelf.configuration(goal, True), time_limit=60.0, seed=3,
         )  # fmt: skip
         assert found.outcome == mg.Outcome.solved
-        assert all(checker.edge_is_free(a, b, step=0.005) for a, b in zip(found.path, found.path[1:], strict=False))
+        assert all(
+            checker.edge_is_free(a, b, joint_step=0.005) for a, b in zip(found.path, found.path[1:], strict=False)
+        )

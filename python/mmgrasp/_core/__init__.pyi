@@ -1252,9 +1252,9 @@ class CollisionChecker:
         """
         Every pair of bodies nearer than `within` [m], nearest first, each with its gradient.
         """
-    def edge_is_free(self, q0: numpy.typing.ArrayLike, q1: numpy.typing.ArrayLike, step: float = 0.02) -> bool:
+    def edge_is_free(self, q0: numpy.typing.ArrayLike, q1: numpy.typing.ArrayLike, joint_step: float = 0.02) -> bool:
         """
-        The straight joint-space edge, checked so finely that no joint moves more than `step` [rad or m].
+        The straight joint-space edge, checked so finely that no joint moves more than `joint_step` [rad or m].
         """
     def first_contact(self, q: numpy.typing.ArrayLike) -> Contact | None:
         """
@@ -2395,7 +2395,7 @@ class ManipulationResult:
     @property
     def lower_bound(self) -> float:
         """
-        No path with any grasp between these arm postures costs less: the least straight line.
+        No path with any grasp costs less: the least straight line where every arm posture was listed, else also what the tool's way takes at the longest levers. Infinite: proven that there is none.
         """
     @property
     def outcome(self) -> Outcome:
@@ -4755,7 +4755,7 @@ def plan_base_route(arm: JointGroup, world: World, *, home: numpy.typing.ArrayLi
     """
     A driveable, collision-free way of the whole robot with its arm at `home`; poses are x, y, theta.
     """
-def plan_cartesian(checker: CollisionChecker, tool_poses: numpy.typing.ArrayLike, near: numpy.typing.ArrayLike | None = None, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, position_step: float = 0.005, rotation_step: float = 0.02, max_joint_step: float = 0.2, edge_step: float = 0.02, max_branches: int = 64) -> CartesianResult:
+def plan_cartesian(checker: CollisionChecker, tool_poses: numpy.typing.ArrayLike, near: numpy.typing.ArrayLike | None = None, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, position_step: float = 0.005, rotation_step: float = 0.02, jump_threshold: float = 0.2, joint_step: float = 0.02, max_branches: int = 64) -> CartesianResult:
     """
     The tip follows straight lines from pose to pose, from the inverse kinematics branch of the first pose that completes
     them with the shortest way, counted from `near` (n,) when that is given. A group that moves a diff_drive base is
@@ -4764,8 +4764,8 @@ def plan_cartesian(checker: CollisionChecker, tool_poses: numpy.typing.ArrayLike
     Keyword options:
         position_step: float = 0.005  # largest tool translation between two waypoints [m]
         rotation_step: float = 0.02  # largest tool rotation between two waypoints [rad]
-        max_joint_step: float = 0.2  # a larger joint motion between waypoints is a jump
-        edge_step: float = 0.02  # largest joint motion between two checks [rad or m]
+        jump_threshold: float = 0.2  # a larger joint motion between waypoints is a jump
+        joint_step: float = 0.02  # largest joint motion between two checks [rad or m]
         max_branches: int = 64  # configurations of the first pose that are followed at most
     """
 def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, waypoints: int = 35, seeds: int = 8, solutions: int = 1, grasp_assignments: int = 8, goal_configurations: int = 64, iterations: int = 1500, time_limit: float = 600.0, jerk_time: float = 0.0, collisions: bool = True, seed: int = 1, threads: int = 1, solver: str = 'ipopt', tolerance: float = 0.0001, max_iterations: int = 150, solve_time_limit: float = 600.0, smoothing: float = 0.01, margin: float = 0.005, look_out: float = 0.15, refinements: int = 6) -> DriveByResult:
@@ -4795,13 +4795,13 @@ def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy
         look_out: float = 0.15  # pairs of bodies nearer than this are constrained [m]
         refinements: int = 6  # times that collision constraints may be added
     """
-def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, padding: float | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 4, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_samples: int = 1000, step: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
+def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, padding: float | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 8, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_iterations: int = 1000, range: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
     """
     Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 chapters 4 and 5). Every grasp is checked. `padding`: in place of that of the problem's world, see World.padding. `on_solution` is called with every better solution (an Improvement); what it raises ends the call.
     
     Keyword options:
         planner: str = 'prm_star_mg'  # a name of manipulation_planner_names()
-        ik_solutions: int = 4  # arm postures tried for each grasp at each end, in all whole turns
+        ik_solutions: int = 8  # arm postures tried for each grasp at each end, in all whole turns
         first_grasps: int = 4  # grasps checked, one by one, before those without a first path are searched again, then twice as many; 0: all before any search
         straight: bool = True  # try straight joint lines from start to goal
         ik_restarts: int = 30  # random starts of arms without a closed form
@@ -4819,8 +4819,8 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         gamma: float = 0.0  # likewise: > 0: vertices nearer than gamma (log n / n)^(1/d) are joined (P2: 4) [rad or m]; 0: the e (1 + 1/d) log n nearest ones
         neighbours: int = 0  # likewise: > 0: that many nearest ones are joined instead
         roadmap_seed: int = 1  # likewise: same seed, same roadmap
-        max_samples: int = 1000  # rrt_star_mg: budget in samples
-        step: float = 1.5  # rrt_star_mg: longest edge grown towards a sample [rad or m]
+        max_iterations: int = 1000  # rrt_star_mg: budget in samples
+        range: float = 1.5  # rrt_star_mg: longest edge grown towards a sample [rad or m]
         rrt_gamma: float = 0.0  # rrt_star_mg: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined; 0: about (d + 1) / 2 n^(1/(d+1)) log n of n
         exploration: float = 0.5  # rrt_star_mg: once solved, chance to grow the drawn grasp's own tree (P2's p_blt)
         bidirectional: bool = True  # rrt_star_mg: trees from both ends
@@ -4828,7 +4828,7 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         goal_cost: float = 0.0  # rrt_star_mg: ends with the first path that costs no more; inf: the first at all
         keep_trees: bool = False  # rrt_star_mg: hand over the trees with the result
     """
-def plan_motion(robot: Robot | CollisionChecker, group: JointGroup | None = None, world: World | None = None, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike | None = None, tool_poses: numpy.typing.ArrayLike | None = None, regions: collections.abc.Sequence[ToolRegion] = [], via: numpy.typing.ArrayLike | None = None, orientation_constraint: OrientationConstraint | None = None, padding: float | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, on_solution: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64], float], typing.Any] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, planner: str = 'rrt_connect', time_limit: float = 5.0, max_iterations: int = 20000, range: float = 0.0, near_end_probability: float = 0.2, base_margin: float = 2.0, edge_step: float = 0.02, workspace_step: float = ..., shorten: bool = True, shorten_iterations: int = 200, ik_solutions: int = 8, region_samples: int = 16, seed: int = 1) -> MotionResult:
+def plan_motion(robot: Robot | CollisionChecker, group: JointGroup | None = None, world: World | None = None, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike | None = None, tool_poses: numpy.typing.ArrayLike | None = None, regions: collections.abc.Sequence[ToolRegion] = [], via: numpy.typing.ArrayLike | None = None, orientation_constraint: OrientationConstraint | None = None, padding: float | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, on_solution: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64], float], typing.Any] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, planner: str = 'rrt_connect', time_limit: float = 5.0, max_iterations: int = 20000, range: float = 0.0, near_end_probability: float = 0.2, base_margin: float = 2.0, joint_step: float = 0.02, workspace_step: float = ..., shorten: bool = True, shorten_iterations: int = 200, ik_solutions: int = 8, region_samples: int = 16, seed: int = 1) -> MotionResult:
     """
     A collision-free path of the group from `start` (n,) to any of its goals: `goal` (n,) or several as (m, n),
     `tool_poses` of the tip, (4, 4) or (m, 4, 4), and `regions` of them, reached by inverse kinematics; by way of the
@@ -4844,7 +4844,7 @@ def plan_motion(robot: Robot | CollisionChecker, group: JointGroup | None = None
         range: float = 0.0  # longest tree edge [rad]; 0: a share of the joint limits's diagonal
         near_end_probability: float = 0.2  # roadmap planners: chance to draw around the start or a goal; 0: uniform draws alone
         base_margin: float = 2.0  # the base is drawn this far around start and goals [m]
-        edge_step: float = 0.02  # largest joint motion between two checks [rad or m]
+        joint_step: float = 0.02  # largest joint motion between two checks [rad or m]
         workspace_step: float = inf  # largest motion of any robot point between two checks [m]
         shorten: bool = True  # shortcut the path
         shorten_iterations: int = 200  # tries of the shortening
@@ -4893,7 +4893,7 @@ def plan_stops_exact(grid: BaseGrid, regions: collections.abc.Sequence[BaseRegio
     """
     The least number of stops over regions (or masks), with proof; among equally few the widest discs, then, with `start` and `goal` (x, y), the shortest route as the crow flies.
     """
-def plan_straight_line(checker: CollisionChecker, start: numpy.typing.ArrayLike, T_world_to: numpy.typing.ArrayLike, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, position_step: float = 0.005, rotation_step: float = 0.02, max_joint_step: float = 0.2, edge_step: float = 0.02) -> StraightLineResult:
+def plan_straight_line(checker: CollisionChecker, start: numpy.typing.ArrayLike, T_world_to: numpy.typing.ArrayLike, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, position_step: float = 0.005, rotation_step: float = 0.02, jump_threshold: float = 0.2, joint_step: float = 0.02) -> StraightLineResult:
     """
     The tool moves on a straight line from the pose of `start` to T_world_to. A group that moves a diff_drive base is
     refused: it could not follow such a path.
@@ -4901,8 +4901,8 @@ def plan_straight_line(checker: CollisionChecker, start: numpy.typing.ArrayLike,
     Keyword options:
         position_step: float = 0.005  # largest tool translation between two waypoints [m]
         rotation_step: float = 0.02  # largest tool rotation between two waypoints [rad]
-        max_joint_step: float = 0.2  # a larger joint motion between two waypoints is a jump
-        edge_step: float = 0.02  # largest joint motion between two checks [rad or m]
+        jump_threshold: float = 0.2  # a larger joint motion between two waypoints is a jump
+        joint_step: float = 0.02  # largest joint motion between two checks [rad or m]
     """
 def planner_names() -> list[str]:
     """
@@ -5111,10 +5111,10 @@ def time_parameterize(path: numpy.typing.ArrayLike, velocity_limits: numpy.typin
         sample_period: float = 0.02  # spacing of the samples [s]
         jerk_limits: numpy.typing.ArrayLike | None = None  # of each joint [rad/s^3]; None: no such limits
     """
-def time_parameterize_free(checker: CollisionChecker, path: numpy.typing.ArrayLike, *, edge_step: float = 0.01, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, max_deviation: float = 0.01, sample_period: float = 0.02, jerk_limits: numpy.typing.ArrayLike | None = None) -> JointTrajectory:
+def time_parameterize_free(checker: CollisionChecker, path: numpy.typing.ArrayLike, *, joint_step: float = 0.01, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, max_deviation: float = 0.01, sample_period: float = 0.02, jerk_limits: numpy.typing.ArrayLike | None = None) -> JointTrajectory:
     """
     time_parameterize under the limits of the checker's group, the blended corners checked for collisions too, no joint moving
-    more than edge_step between two checks [rad or m]. Without any times when the straight edges of the path are not free.
+    more than joint_step between two checks [rad or m]. Without any times when the straight edges of the path are not free.
     
     Keyword options:
         max_deviation: float = 0.01  # corners are blended within this joint distance [rad]

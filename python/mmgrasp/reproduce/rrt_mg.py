@@ -32,7 +32,7 @@ def both_planners(number: int, seed: int, run: int, counts: tuple[int, ...], lar
     for count in counts:
         batch = max(1, count // 5)
         ones = (
-            carry(cell, count, run, planner="rrt_star_mg", max_samples=SAMPLES),
+            carry(cell, count, run, planner="rrt_star_mg", max_iterations=SAMPLES),
             carry(cell, count, run, vertices=1000, batch=batch, lazy_grasps=False),
             carry(cell, count, run, vertices=large, batch=batch, lazy_grasps=False),
         )
@@ -122,7 +122,7 @@ def versions(number: int, seed: int, run: int, counts: tuple[int, ...], samples:
     cell = pipe_cell(number, seed)
     found = {}
     for name, on in (("V1", False), ("V2", True)):
-        options = {"planner": "rrt_star_mg", "max_samples": samples, "bidirectional": on, "informed": on}
+        options = {"planner": "rrt_star_mg", "max_iterations": samples, "bidirectional": on, "informed": on}
         found[name] = [carry(cell, count, run, **options) for count in counts]
     return {"number": number, "seed": seed, "found": found}
 
@@ -193,7 +193,8 @@ TABLE_5_3 = {1.0: (100, 1779, 3.49), 0.5: (100, 2809, 3.49), 0.0: (100, 1213, 3.
 def explorations(number: int, seed: int, run: int, count: int, samples: int) -> dict[str, Any]:
     cell = pipe_cell(number, seed)
     found = [
-        carry(cell, count, run, planner="rrt_star_mg", max_samples=samples, exploration=share) for share in EXPLORATION
+        carry(cell, count, run, planner="rrt_star_mg", max_iterations=samples, exploration=share)
+        for share in EXPLORATION
     ]
     return {"number": number, "seed": seed, "found": found}
 

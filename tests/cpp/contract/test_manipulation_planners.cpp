@@ -27,7 +27,7 @@ class ManipulationPlanner : public ::testing::TestWithParam<std::string> {
     options.time_limit = 100;  // Not to end a run: the budgets do.
     options.seed = 3;
     options.prm.roadmap.vertices = 300;
-    options.rrt.max_samples = 600;
+    options.rrt.max_iterations = 600;
     return options;
   }
 
@@ -53,7 +53,8 @@ class ManipulationPlanner : public ::testing::TestWithParam<std::string> {
     EXPECT_LT((object_at(result.path->waypoints.back()).matrix() - problem.T_world_goal.matrix()).norm(), 3e-4);
     for (const Eigen::VectorXd& q : result.path->waypoints) EXPECT_TRUE(problem.group.within_limits(q, 1e-9));
     EXPECT_NEAR(result.cost, result.path->length() + grasp.cost, 1e-9);
-    EXPECT_LE(result.lower_bound, result.cost + 1e-9);
+    EXPECT_LE(result.lower_bound, result.stats.postures_bound);
+    EXPECT_LE(result.stats.postures_bound, result.cost + 1e-9);
     ASSERT_FALSE(result.improvements.empty());
     EXPECT_EQ(result.improvements.back().cost, result.cost);
     EXPECT_EQ(result.improvements.back().grasp, result.grasp_index);
@@ -121,7 +122,7 @@ TEST_P(ManipulationPlanner, WithoutObstaclesTheStraightLineIsTaken) {
   const ManipulationResult result = plan_manipulation(problem, options());
   expect_sound(problem, result);
   EXPECT_EQ(result.path->waypoints.size(), 2u);
-  EXPECT_NEAR(result.cost, result.lower_bound, 1e-9);
+  EXPECT_NEAR(result.cost, result.stats.postures_bound, 1e-9);
 }
 
 TEST_P(ManipulationPlanner, AGoalThatIsTheStartCostsNothing) {
@@ -181,7 +182,7 @@ TEST_P(ManipulationPlanner, AnImpossibleProblemEndsByItsBudget) {
 
 TEST_P(ManipulationPlanner, TheCancelTokenEndsIt) {
   ManipulationOptions options = this->options();
-  options.rrt.max_samples = 10000000;
+  options.rrt.max_iterations = 10000000;
   options.prm.roadmap.vertices = 300000;
   Monitor monitor;
   std::thread stopper([&] {
@@ -242,7 +243,7 @@ TEST_P(ManipulationPlanner, ClockAndCancelTokenEndASearchThatHasBegun) {
 
 TEST_P(ManipulationPlanner, StopsWithWhatItHas) {
   ManipulationOptions options = this->options();
-  options.rrt.max_samples = 10000000;
+  options.rrt.max_iterations = 10000000;
   options.prm.max_vertices = 10000000;
   Monitor monitor;
   const ManipulationProblem problem = test::bar_transfer();

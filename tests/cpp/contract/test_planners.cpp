@@ -73,7 +73,7 @@ class Planner : public ::testing::TestWithParam<std::string> {
   /// At the promised resolution nothing touches; at a far higher one nothing enters by more than a corner can between
   /// two checks.
   void expect_free(const test::PlanarArm& arm, const JointPath& path, const std::vector<SceneBox>& scene) const {
-    EXPECT_GT(test::fcl_path_clearance(arm, kLength, path, scene, MotionOptions{}.edge_step / 8), 0);
+    EXPECT_GT(test::fcl_path_clearance(arm, kLength, path, scene, MotionOptions{}.joint_step / 8), 0);
     std::vector<SceneBox> core = scene;
     for (auto& box : core) box.size.array() -= 1e-3;
     EXPECT_GT(test::fcl_path_clearance(arm, kLength, path, core, 3e-4), 0);
@@ -146,7 +146,7 @@ TEST_P(Planner, ReportsBetterAndBetterPaths) {
     EXPECT_NEAR(cost, path.length(), 1e-9);
     EXPECT_EQ(path.waypoints.front(), start);
     EXPECT_EQ(path.waypoints.back(), goal);
-    EXPECT_GT(test::fcl_path_clearance(arm, kLength, path, wall, options.edge_step / 8), 0);
+    EXPECT_GT(test::fcl_path_clearance(arm, kLength, path, wall, options.joint_step / 8), 0);
   }
   EXPECT_LE(best, result.cost + 1e-12);
   // Listening changes nothing.
@@ -168,10 +168,10 @@ TEST_P(Planner, PathsOfPlannersThatKeepImprovingPassTheFinalCheck) {
   for (unsigned seed = 1; seed <= 3; ++seed) {
     CollisionChecker checker(thin.group(), test::make_world(plate));
     MotionOptions options = this->options();
-    options.edge_step = 0.08;
+    options.joint_step = 0.08;
     options.seed = seed;
     options.on_improvement = [&](const Improvement& better) {
-      EXPECT_GT(test::fcl_path_clearance(thin, kLength, better.path, core, options.edge_step / 80), 0);
+      EXPECT_GT(test::fcl_path_clearance(thin, kLength, better.path, core, options.joint_step / 80), 0);
     };
     // There is time for one search only when the time limit ends it.
     int searches = 0;

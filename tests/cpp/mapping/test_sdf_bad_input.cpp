@@ -268,6 +268,6 @@ TEST_F(BadFrame, FilesThatAreNoMap) {
     damaged[38 + rng.index(damaged.size() - 38)] ^= static_cast<char>(1 << rng.index(8));
     expect_contains(refused(damaged), "checksum");
   }
-  expect_contains(message([&] { ProbabilisticSdf::load(path); }), "does not exist");
+  expect_contains(message([&] { ProbabilisticSdf::load(folder.file("none.sdf")); }), "does not exist");
   expect_contains(message([&] { sdf.save("/nowhere/at/all/map.sdf"); }), "cannot be written");
 }

@@ -22,7 +22,7 @@ double off_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eig
   return (p - a - t * edge).norm();
 }
 
-void expect_lines(const JointGroup& group, const CartesianResult& result, const Poses& poses, double max_joint_step) {
+void expect_lines(const JointGroup& group, const CartesianResult& result, const Poses& poses, double jump_threshold) {
   ASSERT_TRUE(result.path);
   ASSERT_EQ(result.corners.size(), poses.size());
   EXPECT_EQ(result.corners.front(), 0);
@@ -31,7 +31,7 @@ void expect_lines(const JointGroup& group, const CartesianResult& result, const 
   for (std::size_t line = 0; line + 1 < poses.size(); ++line) {
     for (int i = result.corners[line]; i < result.corners[line + 1]; ++i) {
       const VectorXd &a = result.path->waypoints[i], &b = result.path->waypoints[static_cast<std::size_t>(i) + 1];
-      EXPECT_LE((b - a).cwiseAbs().maxCoeff(), max_joint_step);
+      EXPECT_LE((b - a).cwiseAbs().maxCoeff(), jump_threshold);
       for (int k = 0; k <= 5; ++k) {
         const Pose tool = group.fk(a + k / 5.0 * (b - a));
         EXPECT_LE(off_segment(tool.translation(), poses[line].translation(), poses[line + 1].translation()), 1e-4);
@@ -70,7 +70,7 @@ TEST(Cartesian, EveryBranchIsTriedWhereOneJumps) {
     rescued += !line && result.path;
     EXPECT_FALSE(line && !result.path) << "the first branch would have done";
     if (result.path) {
-      expect_lines(arm.group(), result, poses, CartesianOptions{}.line.max_joint_step);
+      expect_lines(arm.group(), result, poses, CartesianOptions{}.line.jump_threshold);
     } else {
       EXPECT_LT(result.fraction, 1);
       EXPECT_NE(result.cause, Rejection::none);

@@ -14,7 +14,7 @@ using test::TreeSetting;
 TEST(ConnectTrees, TakesTheCheapestEdgeToTheOtherTree) {
   TreeSetting setting(test::three_grasps());
   TreeConnections connections(setting.trees);
-  setting.options.step = 5;
+  setting.options.range = 5;
   setting.options.gamma = 1000;
   ConnectTrees connect(setting.trees, setting.checks, setting.near, setting.incumbent, connections, setting.options,
                        setting.tuning);

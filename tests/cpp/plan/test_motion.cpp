@@ -125,7 +125,7 @@ TEST(PlanMotion, NarrowPassage) {
     options.max_iterations = 200000;
     const MotionResult result = plan_motion(checker, before, {through}, options);
     ASSERT_EQ(result.outcome, Outcome::solved) << seed;
-    EXPECT_GT(test::fcl_path_clearance(arm, kLength, *result.path, scene, MotionOptions{}.edge_step / 8), 0);
+    EXPECT_GT(test::fcl_path_clearance(arm, kLength, *result.path, scene, MotionOptions{}.joint_step / 8), 0);
     EXPECT_LE(result.cost, result.stats.length_before_shortening + 1e-9);
   }
 }
@@ -147,14 +147,14 @@ TEST(PlanMotion, RoadmapsLeaveNarrowEnds) {
       const MotionResult result = plan_motion(checker, inside, {outside}, options);
       if (result.outcome != Outcome::solved) continue;
       ++solved;
-      EXPECT_GT(test::fcl_path_clearance(arm, kLength, *result.path, slot, options.edge_step / 8), 0);
+      EXPECT_GT(test::fcl_path_clearance(arm, kLength, *result.path, slot, options.joint_step / 8), 0);
     }
     EXPECT_EQ(solved, 40) << planner;
   }
 }
 
 TEST(PlanMotion, ThinObstaclesAreNotCut) {
-  // A plate far thinner than what the links move within a coarse edge_step: the final check must catch what slips
+  // A plate far thinner than what the links move within a coarse joint_step: the final check must catch what slips
   // through.
   const test::PlanarArm arm(2, kLength, 0.01);
   const std::vector<SceneBox> scene{{{0.65, 0, 0}, {0.2, 0.001, 0.2}}};
@@ -162,14 +162,14 @@ TEST(PlanMotion, ThinObstaclesAreNotCut) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     CollisionChecker checker(arm.group(), test::make_world(scene));
     MotionOptions options;
-    options.edge_step = 0.08;
+    options.joint_step = 0.08;
     options.seed = seed;
     const MotionResult result = plan_motion(checker, vec({-0.5, 0.1}), {vec({0.5, -0.1})}, options);
     EXPECT_EQ(result.outcome == Outcome::solved, result.path.has_value());
     if (!result.path) continue;
     ++solved;
     // At ten times the resolution of the planner's final check the tip then moves less than the plate is thick.
-    EXPECT_GT(test::fcl_path_clearance(arm, kLength, *result.path, scene, options.edge_step / 80), 0) << seed;
+    EXPECT_GT(test::fcl_path_clearance(arm, kLength, *result.path, scene, options.joint_step / 80), 0) << seed;
   }
   EXPECT_GE(solved, 15);
 }
@@ -190,7 +190,7 @@ TEST(PlanMotion, ContinuousJointsCrossHalfATurn) {
     // The first joint went on upwards; how often the elbow turned is its own business.
     EXPECT_NEAR(result.path->waypoints.back()[0], goal[0] + 2 * M_PI, 1e-12);
     EXPECT_NEAR(std::remainder(result.path->waypoints.back()[1] - goal[1], 2 * M_PI), 0, 1e-12);
-    EXPECT_GT(test::fcl_path_clearance(arm, kLength, *result.path, scene, MotionOptions{}.edge_step / 8), 0);
+    EXPECT_GT(test::fcl_path_clearance(arm, kLength, *result.path, scene, MotionOptions{}.joint_step / 8), 0);
   }
 }
 
@@ -302,7 +302,7 @@ TEST(PlanMotion, RefusesBadInput) {
     EXPECT_THROW(plan_motion(checker, q, {q}, options), InvalidInput) << chance;
   }
   options = {};
-  options.edge_step = 0;
+  options.joint_step = 0;
   EXPECT_THROW(plan_motion(checker, q, {q}, options), InvalidInput);
   options = {};
   options.time_limit = std::nan("");

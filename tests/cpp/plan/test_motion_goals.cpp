@@ -35,7 +35,7 @@ TEST(MotionGoals, AToolPoseIsReached) {
   const VectorXd& end = result.path->waypoints.back();
   EXPECT_LT((arm.tip(end) - Eigen::Vector3d(0.6, 0.8, 0)).norm(), 1e-4);
   EXPECT_NEAR(std::remainder(end.sum() - 1.2, 2 * M_PI), 0, 1e-3);
-  EXPECT_GT(test::fcl_path_clearance(arm, kLength, *result.path, wall, MotionOptions{}.edge_step / 8), 0);
+  EXPECT_GT(test::fcl_path_clearance(arm, kLength, *result.path, wall, MotionOptions{}.joint_step / 8), 0);
 }
 
 TEST(MotionGoals, ARegionIsEnteredWhereItsMiddleIsBlocked) {
@@ -101,7 +101,7 @@ TEST(OrientationConstraint, HoldsAlongThePath) {
       options.orientation_constraint = OrientationConstraint{{2, 0, 0}, {1, 0, 0}, 0.3};
       const MotionResult result = plan_motion(checker, start, {goal}, options);
       ASSERT_EQ(result.outcome, Outcome::solved) << planner;
-      EXPECT_GT(test::fcl_path_clearance(arm, kLength, *result.path, wall, options.edge_step / 8), 0);
+      EXPECT_GT(test::fcl_path_clearance(arm, kLength, *result.path, wall, options.joint_step / 8), 0);
       for (std::size_t i = 0; i + 1 < result.path->waypoints.size(); ++i) {
         for (int k = 0; k <= 50; ++k) {
           const VectorXd q =

@@ -20,7 +20,7 @@ using test::flat_pose;
 ManipulationOptions tree_options(int samples = 1000) {
   ManipulationOptions options;
   options.planner = "rrt_star_mg";
-  options.rrt.max_samples = samples;
+  options.rrt.max_iterations = samples;
   options.ik_solutions = 2;
   options.time_limit = 100;
   return options;
@@ -313,9 +313,9 @@ TEST(RrtStarMg, RefusesNonsense) {
       EXPECT_NE(std::string(error.what()).find(field), std::string::npos) << error.what();
     }
   };
-  refused("max_samples", [](RrtStarMgOptions& o) { o.max_samples = 0; });
-  refused("step", [](RrtStarMgOptions& o) { o.step = 0; });
-  refused("step", [](RrtStarMgOptions& o) { o.step = std::nan(""); });
+  refused("max_iterations", [](RrtStarMgOptions& o) { o.max_iterations = 0; });
+  refused("range", [](RrtStarMgOptions& o) { o.range = 0; });
+  refused("range", [](RrtStarMgOptions& o) { o.range = std::nan(""); });
   refused("gamma", [](RrtStarMgOptions& o) { o.gamma = -1; });
   refused("exploration", [](RrtStarMgOptions& o) { o.exploration = 1.5; });
   refused("goal_cost", [](RrtStarMgOptions& o) { o.goal_cost = std::nan(""); });

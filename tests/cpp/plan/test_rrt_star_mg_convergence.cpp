@@ -22,7 +22,7 @@ constexpr double kStepsShare = 0.003;
 ManipulationOptions tree_options(int samples, unsigned seed) {
   ManipulationOptions options;
   options.planner = "rrt_star_mg";
-  options.rrt.max_samples = samples;
+  options.rrt.max_iterations = samples;
   options.time_limit = 1000;
   options.seed = seed;
   return options;
@@ -70,7 +70,7 @@ std::vector<double> cost_curve(const ManipulationProblem& problem, const Manipul
   double done = 0;
   Monitor monitor;
   monitor.progress = [&](const std::string& stage, double fraction) {
-    if (stage == "search") done = fraction * options.rrt.max_samples;
+    if (stage == "search") done = fraction * options.rrt.max_iterations;
   };
   plan_manipulation(problem, options, nullptr, monitor, [&](const Improvement& better) {
     for (std::size_t i = 0; i < marks.size(); ++i)

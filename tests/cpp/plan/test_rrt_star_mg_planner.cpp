@@ -137,7 +137,7 @@ std::vector<double> exhaustive(const ManipulationProblem& problem, double bound)
 ManipulationOptions options_of(int samples, unsigned seed = 1) {
   ManipulationOptions options;
   options.planner = "rrt_star_mg";
-  options.rrt.max_samples = samples;
+  options.rrt.max_iterations = samples;
   options.seed = seed;
   options.time_limit = 300;
   options.first_grasps = 0;

@@ -57,7 +57,7 @@ Outcome plan_transfer(const JointGroup& group, const std::string& planner) {
   ManipulationOptions options;
   options.planner = planner;
   options.prm.roadmap.vertices = 200;
-  options.rrt.max_samples = 100;
+  options.rrt.max_iterations = 100;
   return plan_manipulation(problem, options).outcome;
 }
 

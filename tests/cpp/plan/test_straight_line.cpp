@@ -26,10 +26,10 @@ double off_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eig
 
 /// Every dense point's tool on the line, its rotation between the two ends', the motion continuous, the end reached.
 void expect_line(const JointGroup& group, const JointPath& path, const Pose& from, const Pose& to,
-                 double max_joint_step) {
+                 double jump_threshold) {
   double last_progress = 0;
   for (std::size_t i = 0; i + 1 < path.waypoints.size(); ++i) {
-    EXPECT_LE((path.waypoints[i + 1] - path.waypoints[i]).cwiseAbs().maxCoeff(), max_joint_step);
+    EXPECT_LE((path.waypoints[i + 1] - path.waypoints[i]).cwiseAbs().maxCoeff(), jump_threshold);
     for (int k = 0; k <= 10; ++k) {
       const Pose tool = group.fk(path.waypoints[i] + k / 10.0 * (path.waypoints[i + 1] - path.waypoints[i]));
       EXPECT_LE(off_segment(tool.translation(), from.translation(), to.translation()), 1e-4);
@@ -80,7 +80,7 @@ TEST(StraightLine, SixAxisArmFollowsLinesAndRotations) {
     EXPECT_EQ(result.fraction, 1.0);
     EXPECT_EQ(result.cause, Rejection::none);
     EXPECT_EQ(result.path->waypoints.front(), q);
-    expect_line(arm.group(), *result.path, from, to, options.max_joint_step);
+    expect_line(arm.group(), *result.path, from, to, options.jump_threshold);
   }
   EXPECT_GE(solved, 25);
 }
@@ -194,7 +194,7 @@ TEST(StraightLine, StepsTooFineToWaitForCanBeStopped) {
   const Pose to = moved(arm.group().fk(q), {0, 0.1, 0});
   StraightLineOptions many_waypoints, many_checks;
   many_waypoints.position_step = 1e-12;
-  many_checks.edge_step = 1e-12;
+  many_checks.joint_step = 1e-12;
   for (const StraightLineOptions& options : {many_waypoints, many_checks}) {
     CollisionChecker checker(arm.group(), World{});
     Monitor monitor;

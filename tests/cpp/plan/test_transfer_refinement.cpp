@@ -68,7 +68,7 @@ TEST(TransferRefinement, EndsWhereNoGraspCanWin) {
   const ManipulationResult result = plan_manipulation(problem, with_refinements(1'000'000'000));
   ASSERT_EQ(result.outcome, Outcome::solved);
   EXPECT_EQ(result.path->waypoints.size(), 2u);
-  EXPECT_EQ(result.cost, result.lower_bound);
+  EXPECT_EQ(result.cost, result.stats.postures_bound);
 }
 
 TEST(TransferRefinement, StopsWithWhatItHas) {

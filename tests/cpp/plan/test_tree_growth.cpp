@@ -16,7 +16,7 @@ using test::TreeSetting;
 class Growing : public ::testing::Test {
  protected:
   explicit Growing(World world = {}) : setting_(test::three_grasps(), std::move(world)) {
-    setting_.options.step = 0.5;
+    setting_.options.range = 0.5;
     setting_.options.gamma = 1000;  // All within a step are near.
   }
 

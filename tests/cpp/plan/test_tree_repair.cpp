@@ -45,7 +45,7 @@ TEST_F(Repair, HangsAVertexAndAllBelowItElsewhere) {
 }
 
 TEST_F(Repair, TurnsABranchWhoseEndAloneHasAnotherWay) {
-  setting_.options.step = 3;  // The way round the post is long.
+  setting_.options.range = 3;  // The way round the post is long.
   const int bent = setting_.add(root_, {-1.5, 2, 0});
   const int cut = setting_.add(root_, {0.7, 0, 0});
   const int middle = setting_.add(cut, {0.8, 0.1, 0}), side = setting_.add(cut, {1.2, 0, 0});

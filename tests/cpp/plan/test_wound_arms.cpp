@@ -5,10 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "mmgrasp/core/random.hpp"
 #include "mmgrasp/plan/cartesian.hpp"
 #include "mmgrasp/plan/manipulation.hpp"
 #include "mmgrasp/plan/motion.hpp"
+#include "mmgrasp/robot/detail/joint_metric.hpp"
 #include "mmgrasp/robot/ik_branches.hpp"
+#include "support/fetchlike.hpp"
 #include "support/limited_arm.hpp"
 #include "support/mesh_robots.hpp"
 
@@ -172,13 +175,88 @@ TEST(WoundArms, TransfersTakeTheNearestTurnsOfBothEnds) {
       options.first_grasps = first_grasps;
       options.prm.roadmap.vertices = 200;
       options.prm.roadmap.neighbours = 8;
-      options.rrt.max_samples = 100;
+      options.rrt.max_iterations = 100;
       const ManipulationResult result = plan_manipulation(problem, options);
       ASSERT_EQ(result.outcome, Outcome::solved) << planner;
       EXPECT_NEAR(result.cost, least, 1e-3) << planner;
       EXPECT_NEAR(result.lower_bound, least, 1e-3) << planner;
       for (const VectorXd& q : result.path->waypoints) EXPECT_TRUE(arm.group.within_limits(q));
     }
+}
+
+/// The pose differs by rounding alone, from which other arm configurations and another path could come.
+TEST(ContinuousJoints, AFullTurnAtEitherEndChangesNothing) {
+  const Robot robot = test::fetchlike(BaseKind::fixed);
+  const JointGroup group = robot.group("arm");
+  World world;
+  world.add("post", Shape(Box{{0.1, 0.1, 2}}), Pose(Eigen::Translation3d(0.6, 0.1, 0.5)));
+  CollisionChecker checker(group, world);
+  LinkShape box;
+  box.shape = Box{{0.01, 0.01, 0.01}};
+  ManipulationProblem problem{group, world, {box}, {}, {}, {{Pose::Identity(), 0, 0}}};
+  for (const Link& link : robot.links()) problem.touch_links.insert(link.name);
+  Rng rng(3);
+  for (int done = 0; done < 6;) {
+    const VectorXd from = rng.uniform(group.sample_lower(), group.sample_upper());
+    const VectorXd to = rng.uniform(group.sample_lower(), group.sample_upper());
+    if (!checker.is_free(from) || !checker.is_free(to)) continue;
+    ++done;
+    for (const char* planner : {"prm_star_mg", "rrt_star_mg"}) {
+      ManipulationOptions options;
+      options.planner = planner;
+      options.prm.roadmap.vertices = 300;
+      options.rrt.max_iterations = 300;
+      problem.T_world_start = group.fk(from);
+      problem.T_world_goal = group.fk(to);
+      const ManipulationResult result = plan_manipulation(problem, options);
+      for (int i = 0; i < group.size(); ++i) {
+        if (!group.wraps()[i]) continue;
+        VectorXd turned_from = from, turned_to = to;
+        turned_from[i] += 2 * M_PI;
+        turned_to[i] -= 4 * M_PI;
+        problem.T_world_start = group.fk(turned_from);
+        problem.T_world_goal = group.fk(turned_to);
+        const ManipulationResult turned = plan_manipulation(problem, options);
+        EXPECT_EQ(turned.outcome, result.outcome) << planner << " " << done << " " << i;
+        EXPECT_EQ(turned.cost, result.cost) << planner << " " << done << " " << i;
+        EXPECT_NEAR(turned.lower_bound, result.lower_bound, 1e-9) << planner << " " << done << " " << i;
+      }
+    }
+  }
+}
+
+/// Any path between two configurations is at least as long as the bound for their tool poses says, at the default
+/// options: no list of arm postures may leave one of them out.
+TEST(LowerBounds, HoldForEveryPathAtTheDefaults) {
+  MMGRASP_NEEDS_SHARED_DATA();
+  const std::vector<testing_support::MeshArm> arms{testing_support::ur5e_arm(), testing_support::panda_arm(),
+                                                   testing_support::omni6_arm()};
+  for (const auto& [name, group, reach, low, high] : arms) {
+    CollisionChecker checker(group, {});
+    const detail::JointMetric metric(group.wraps());
+    LinkShape box;
+    box.shape = Box{{0.01, 0.01, 0.01}};
+    ManipulationProblem problem{group, {}, {box}, {}, {}, {{Pose::Identity(), 0, 0}}};
+    for (const Link& link : group.robot().links()) problem.touch_links.insert(link.name);
+    ManipulationOptions options;
+    options.planner = "rrt_star_mg";
+    options.rrt.max_iterations = 1;
+    Rng rng(11);
+    int done = 0, near = 0;
+    while (done < 150) {
+      const VectorXd from = rng.uniform(group.sample_lower(), group.sample_upper());
+      VectorXd to = rng.uniform(group.sample_lower(), group.sample_upper());
+      if (done % 2) to = from + 0.2 * (to - from);
+      if (!checker.is_free(from) || !checker.is_free(to)) continue;
+      ++done;
+      problem.T_world_start = group.fk(from);
+      problem.T_world_goal = group.fk(to);
+      const ManipulationResult result = plan_manipulation(problem, options);
+      EXPECT_LE(result.lower_bound, metric.distance(from, to) + 1e-4) << name << " " << done;
+      near += result.lower_bound > 0.1 * metric.distance(from, to);
+    }
+    EXPECT_GT(near, 75) << name;  // The bound says something.
+  }
 }
 
 }  // namespace

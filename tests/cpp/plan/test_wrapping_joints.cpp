@@ -41,7 +41,7 @@ ManipulationOptions options_of(const std::string& planner) {
   options.ik_solutions = 2;
   options.prm.roadmap.vertices = 500;
   options.prm.roadmap.neighbours = 12;
-  options.rrt.max_samples = 1500;
+  options.rrt.max_iterations = 1500;
   return options;
 }
 
@@ -76,7 +76,7 @@ TEST_P(WrappingJoints, NoPathCostsLessThanTheBound) {
   const double least = least_distance(problem);
   ASSERT_LT(least, 0.8);
   EXPECT_NEAR(result.cost, least, 1e-3);
-  EXPECT_NEAR(result.lower_bound, least, 1e-3);
+  EXPECT_NEAR(result.stats.postures_bound, least, 1e-3);
   // Any planner's path, from each arm configuration at the start.
   CollisionChecker checker(problem.group, test::carrying(problem, problem.grasps.front()));
   MotionGoals goals;
@@ -84,7 +84,7 @@ TEST_P(WrappingJoints, NoPathCostsLessThanTheBound) {
   for (const VectorXd& start : solve_ik_all(problem.group, problem.T_world_start, 4)) {
     const MotionResult motion = plan_motion_to(checker, start, goals);
     ASSERT_EQ(motion.outcome, Outcome::solved);
-    EXPECT_LE(result.lower_bound, motion.cost + 1e-3);
+    EXPECT_LE(result.stats.postures_bound, motion.cost + 1e-3);
     EXPECT_LE(result.cost, motion.cost + 1e-3);
   }
 }
@@ -97,7 +97,7 @@ TEST_P(WrappingJoints, TurningEverythingChangesNothing) {
     const ManipulationResult result = plan_manipulation(problem, options_of(GetParam()));
     expect_good(problem, result);
     EXPECT_NEAR(result.cost, cost, 1e-3) << angle;
-    EXPECT_NEAR(result.lower_bound, cost, 1e-3) << angle;
+    EXPECT_NEAR(result.stats.postures_bound, cost, 1e-3) << angle;
   }
 }
 
@@ -112,7 +112,7 @@ TEST_P(WrappingJoints, TheSeamIsNoWall) {
     const ManipulationResult result = plan_manipulation(problem, options_of(GetParam()));
     expect_good(problem, result);
     EXPECT_GT(result.cost, 1.1 * least_distance(problem));
-    EXPECT_LE(result.lower_bound, costs.empty() ? result.cost : costs.front());
+    EXPECT_LE(result.stats.postures_bound, costs.empty() ? result.cost : costs.front());
     costs.push_back(result.cost);
     // Past the post, not all the way round.
     EXPECT_LT(result.cost, 4);
@@ -195,7 +195,7 @@ TEST(WrappingJoints, HeadingsOfAnOmniBaseDoToo) {
       const ManipulationResult result = plan_manipulation(problem, options_of(planner));
       expect_good(problem, result);
       EXPECT_NEAR(result.cost, expected, 1e-3) << planner << turns;
-      EXPECT_NEAR(result.lower_bound, expected, 1e-3) << planner << turns;
+      EXPECT_NEAR(result.stats.postures_bound, expected, 1e-3) << planner << turns;
     }
 }
 

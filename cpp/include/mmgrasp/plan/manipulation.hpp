@@ -59,7 +59,7 @@ struct MMGRASP_EXPORT PrmStarMgOptions {
 
 struct MMGRASP_EXPORT ManipulationOptions {
   std::string planner = "prm_star_mg";  ///< A name of manipulation_planner_names().
-  int ik_solutions = 4;                 ///< Arm postures of each grasp at each end at most, in all turns; > 0.
+  int ik_solutions = 8;                 ///< Arm postures of each grasp at each end at most, in all turns; > 0.
   /// A first path is searched for while arm configurations are found, grasp by grasp: after this many grasps the
   /// earlier ones are searched again, then twice as many follow, and so on. 0: all arm configurations before any
   /// search, as in the paper (also for "prm_star_mg" with `straight` or `shorten` off). >= 0.
@@ -103,6 +103,9 @@ struct MMGRASP_EXPORT ManipulationStats {
   /// prm_star_mg: no path over the roadmap, or straight, costs less; at most the result's cost. Infinite: there is
   /// none.
   double roadmap_bound = 0;
+  /// No path between the arm postures that were found, in any of their whole turns, costs less; at most the result's
+  /// cost. Redundant arms have others, of which ManipulationResult::lower_bound speaks too.
+  double postures_bound = 0;
   std::size_t graph_searches = 0;
   /// Nodes pushed to the open lists of graph searches that ran before any path was checked (prm_star_mg, `lazy_grasps`
   /// off). Bounds spliced from the paths of other grasps keep it small (P2 4.3.2.5).
@@ -120,8 +123,10 @@ struct MMGRASP_EXPORT ManipulationResult {
   int grasp_index = -1;
   std::optional<JointPath> path;  ///< Set if and only if solved; checked again at 0.005 rad with the object in hand.
   double cost = 0;                ///< Path length plus the grasp's cost.
-  /// No path with any grasp between these arm postures, in any of their whole turns, costs less: the least straight
-  /// line, angles without limits the short way round. At most `cost`.
+  /// No path with any grasp costs less, whoever plans it. The least straight line between arm postures, in any of their
+  /// whole turns and angles without limits the short way round, where every posture was listed (closed forms of six
+  /// joints with `ik_solutions` enough for all branches); else no more than what the tool's way takes with every joint
+  /// at its longest lever. At most `cost`; infinite when it is proven that there is none.
   double lower_bound = 0;
   std::vector<Improvement> improvements;
   std::vector<std::string> warnings;  ///< What may have kept paths from being found: a roadmap in pieces.

@@ -34,7 +34,7 @@ struct MMGRASP_EXPORT MotionOptions {
   /// hardly joined otherwise; 0: uniform draws alone, as OMPL has them; in [0, 1).
   double near_end_probability = 0.2;
   double base_margin = 2.0;  ///< With base joints: x and y are drawn this far around start and goals [m]; > 0.
-  double edge_step = 0.02;   ///< Largest joint motion between two checks of an edge [rad or m]; > 0.
+  double joint_step = 0.02;  ///< Largest joint motion between two checks of an edge [rad or m]; > 0.
   /// Largest motion of any point of the robot (and of what is attached) between two checks of an edge [m]; > 0,
   /// infinite: no such bound.
   double workspace_step = std::numeric_limits<double>::infinity();

@@ -10,10 +10,10 @@ namespace mmgrasp {
 /// Options of "rrt_star_mg" alone (P2 chapter 5).
 struct MMGRASP_EXPORT RrtStarMgOptions {
   /// Budget in samples, drawn or reassigned to another grasp; in [1, 10 million].
-  int max_samples = 1000;
+  int max_iterations = 1000;
   /// Longest edge grown towards a sample (P2's eta), and longest connection radius [rad or m]; > 0.
-  double step = 1.5;
-  /// > 0: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined, at most `step`. 0: all within the radius that
+  double range = 1.5;
+  /// > 0: vertices nearer than gamma (log n / n)^(1/(d+1)) are joined, at most `range`. 0: all within the radius that
   /// would hold k = (d + 1) / 2 n^(1/(d+1)) log n of n vertices spread evenly in the informed set, and the k nearest at
   /// least.
   double gamma = 0;

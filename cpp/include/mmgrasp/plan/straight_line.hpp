@@ -14,8 +14,8 @@ namespace mmgrasp {
 struct MMGRASP_EXPORT StraightLineOptions {
   double position_step = 0.005;  ///< Largest tool translation between two waypoints [m]; > 0.
   double rotation_step = 0.02;   ///< Largest tool rotation between two waypoints [rad]; > 0.
-  double max_joint_step = 0.2;   ///< A larger joint motion between two waypoints is a jump [rad or m]; > 0.
-  double edge_step = 0.02;       ///< Largest joint motion between two checks of an edge [rad or m]; > 0.
+  double jump_threshold = 0.2;   ///< A larger joint motion between two waypoints is a jump [rad or m]; > 0.
+  double joint_step = 0.02;      ///< Largest joint motion between two checks of an edge [rad or m]; > 0.
   IkOptions ik;
   void check() const;
 };
@@ -32,7 +32,7 @@ struct MMGRASP_EXPORT StraightLineResult {
 
 /// The tool moves on a straight line (rotation by slerp) from the pose of q_start to T_world_to, by dense IK in small
 /// steps. Between waypoints, too, it stays within 1e-4 m of the line (with the default IK tolerance), and edges are
-/// free at an eighth of edge_step. The outcome is solved, not_found, invalid_start or stopped. Throws InvalidInput on
+/// free at an eighth of joint_step. The outcome is solved, not_found, invalid_start or stopped. Throws InvalidInput on
 /// bad lengths, poses or options, and on a group with a diff-drive base, which cannot follow such a path.
 MMGRASP_EXPORT StraightLineResult plan_straight_line(CollisionChecker& checker, const Eigen::VectorXd& q_start,
                                                      const Pose& T_world_to, const StraightLineOptions& options = {},

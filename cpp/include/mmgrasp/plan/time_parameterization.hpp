@@ -37,12 +37,12 @@ MMGRASP_EXPORT JointTrajectory time_parameterize(const JointPath& path, const Ei
                                                  const std::vector<std::string>& names = {},
                                                  const Monitor& monitor = {});
 
-/// time_parameterize whose interpolated trajectory is checked for collisions at `edge_step` [rad or m]: the deviation
+/// time_parameterize whose interpolated trajectory is checked for collisions at `joint_step` [rad or m]: the deviation
 /// of a corner next to one is halved (down to 0, stopping there) until the whole trajectory is free. Returns an empty
 /// trajectory (no times) when the straight edges of the path themselves are not free, and when stopped. Limits and
 /// names are those of the checker's group.
 MMGRASP_EXPORT JointTrajectory time_parameterize_free(CollisionChecker& checker, const JointPath& path,
-                                                      const TimingOptions& options = {}, double edge_step = 0.01,
+                                                      const TimingOptions& options = {}, double joint_step = 0.01,
                                                       const Monitor& monitor = {});
 
 }  // namespace mmgrasp

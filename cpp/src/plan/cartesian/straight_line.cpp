@@ -89,7 +89,7 @@ class LineFollower {
       if (!refine_ik(group_, line_.at(fraction), next, options_.ik, workspace_)) return fail(reach_or_limits(next));
     }
     const Eigen::VectorXd& previous = path_.waypoints.back();
-    if ((next - previous).cwiseAbs().maxCoeff() > options_.max_joint_step) return fail(Rejection::unreachable);
+    if ((next - previous).cwiseAbs().maxCoeff() > options_.jump_threshold) return fail(Rejection::unreachable);
     const double middle = 0.5 * (result_.fraction + fraction);
     if (off_line(0.5 * (previous + next), middle) > std::max(kLineTolerance, 2 * options_.ik.position_tolerance)) {
       if (fraction - result_.fraction < 1.5 * smallest_step_) return fail(Rejection::unreachable);
@@ -123,7 +123,7 @@ class LineFollower {
 
   /// Records the cause when the edge is not free. False when stopped, too.
   bool edge_is_free(const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
-    const double step = options_.edge_step / 8;
+    const double step = options_.joint_step / 8;
     const std::int64_t count = step_count((to - from).cwiseAbs().maxCoeff() / step);
     for (std::int64_t i = 1; i <= count; ++i) {
       if (monitor_.stopped()) return false;
@@ -164,8 +164,8 @@ void StraightLineOptions::check() const {
   };
   positive(position_step, "position_step");
   positive(rotation_step, "rotation_step");
-  positive(max_joint_step, "max_joint_step");
-  positive(edge_step, "edge_step");
+  positive(jump_threshold, "jump_threshold");
+  positive(joint_step, "joint_step");
   ik.check();
 }
 

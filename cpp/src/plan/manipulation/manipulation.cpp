@@ -130,6 +130,8 @@ ManipulationResult detail::plan_manipulation_with(const ManipulationPlanner& pla
     result.rejections += report.start;
     result.rejections += report.goal;
   }
+  result.stats.postures_bound = std::min(result.path ? result.cost : kInfinity, candidates.least_cost());
+  result.lower_bound = std::min(result.stats.postures_bound, candidates.least_cost_elsewhere());
   result.outcome = outcome_of(input, exhausted, result);
   if (result.outcome == Outcome::invalid_start) result.contacts = candidates.first_contacts(false);
   if (result.outcome == Outcome::invalid_goal) result.contacts = candidates.first_contacts(true);

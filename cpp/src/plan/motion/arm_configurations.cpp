@@ -14,14 +14,15 @@ constexpr int kMaxNumericalSolutions = 8;                          // Tried for 
 
 }  // namespace
 
-std::vector<Eigen::VectorXd> arm_configurations(const JointGroup& group, const Pose& T_world_tip, int count,
-                                                const IkOptions& options, const ReachFilter& valid,
-                                                Rejections& rejections) {
-  std::vector<Eigen::VectorXd> solutions;
+ArmConfigurations arm_configurations(const JointGroup& group, const Pose& T_world_tip, int count,
+                                     const IkOptions& options, const ReachFilter& valid, Rejections& rejections) {
+  ArmConfigurations out;
+  std::vector<Eigen::VectorXd>& solutions = out.q;
   Rejections seen;
   if (!maybe_in_reach(group, T_world_tip.translation(), options.position_tolerance)) {
     rejections.add(Rejection::unreachable);
-    return solutions;
+    out.all = true;
+    return out;
   }
   IkOptions numerical = options;
   for (const int values : {kFewRedundantValues, kManyRedundantValues}) {
@@ -40,33 +41,34 @@ std::vector<Eigen::VectorXd> arm_configurations(const JointGroup& group, const P
     }
     spread_apart(group, reaching);
     bool final = false;
-    for (const Eigen::VectorXd& q : reaching) {
-      const ReachVerdict verdict = valid(q);
+    std::size_t looked_at = 0;
+    for (; looked_at < reaching.size() && !final && static_cast<int>(solutions.size()) < count; ++looked_at) {
+      const ReachVerdict verdict = valid(reaching[looked_at]);
       seen.add(verdict.cause);
-      if (verdict.cause == Rejection::none) solutions.push_back(q);
+      if (verdict.cause == Rejection::none) solutions.push_back(reaching[looked_at]);
       final = verdict.final;
-      if (final || static_cast<int>(solutions.size()) == count) break;
     }
-    const bool all_seen = final || (candidates.redundant_joint < 0 && !candidates.free);
+    const bool finite = candidates.redundant_joint < 0 && !candidates.free, all_seen = final || finite;
+    out.all = final || (finite && looked_at == reaching.size());
     if (all_seen || !solutions.empty()) {
       if (candidates.q.empty()) seen.add(Rejection::unreachable);
       rejections += seen;
-      return solutions;
+      return out;
     }
     numerical.restarts = std::min(options.restarts, (kMaxNumericalSolutions + count - 1) / count - 1);
   }
-  bool any = seen.total() > 0, final = false;
+  bool any = seen.total() > 0;
   solutions = solve_ik_all(group, T_world_tip, count, numerical, [&](const Eigen::VectorXd& q) {
     any = true;
-    if (final) return Rejection::scene;
+    if (out.all) return Rejection::scene;
     const ReachVerdict verdict = valid(q);
     seen.add(verdict.cause);
-    final = verdict.final;
+    out.all = verdict.final;
     return verdict.cause;
   });
   if (!any && solutions.empty()) seen.add(Rejection::unreachable);
   rejections += seen;
-  return solutions;
+  return out;
 }
 
 }  // namespace mmgrasp::detail

@@ -24,7 +24,7 @@ MotionEdges::MotionEdges(CollisionChecker& checker, const MotionOptions& options
     : checker_(checker),
       group_(checker.group()),
       metric_(group_.wraps()),
-      joint_step_(options.edge_step),
+      joint_step_(options.joint_step),
       workspace_step_(options.workspace_step),
       steered_(has_steered_base(group_)),
       cone_(options.orientation_constraint) {

@@ -28,7 +28,7 @@ void MotionOptions::check() const {
   require(time_limit > 0, "time_limit", time_limit, "must be > 0");
   require(max_iterations > 0, "max_iterations", max_iterations, "must be > 0");
   require(std::isfinite(range) && range >= 0, "range", range, "must be finite and >= 0");
-  require(std::isfinite(edge_step) && edge_step > 0, "edge_step", edge_step, "must be finite and > 0");
+  require(std::isfinite(joint_step) && joint_step > 0, "joint_step", joint_step, "must be finite and > 0");
   require(workspace_step > 0, "workspace_step", workspace_step, "must be > 0 [m]");
   require(std::isfinite(base_margin) && base_margin > 0, "base_margin", base_margin, "must be finite and > 0");
   require(near_end_probability >= 0 && near_end_probability < 1, "near_end_probability", near_end_probability,

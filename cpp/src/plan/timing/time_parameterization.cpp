@@ -191,11 +191,11 @@ bool tighten(const TimedPath& timed, const Waypoints& blocked, std::vector<doubl
 
 /// Empty when the straight edges are not free. Throws TimingStopped.
 JointTrajectory free_trajectory(CollisionChecker& checker, const TimedPath& timed, double max_deviation,
-                                double edge_step, const Monitor& monitor) {
+                                double joint_step, const Monitor& monitor) {
   std::vector<double> deviations(timed.corner_count(), max_deviation);
   for (;;) {
     JointTrajectory trajectory = timed.trajectory(deviations);
-    const Waypoints blocked = blocked_configurations(checker, trajectory, edge_step, monitor);
+    const Waypoints blocked = blocked_configurations(checker, trajectory, joint_step, monitor);
     trajectory.names = checker.group().names();
     if (blocked.empty()) return trajectory;
     if (!tighten(timed, blocked, deviations, monitor.stop)) return {};
@@ -235,10 +235,10 @@ JointTrajectory time_parameterize(const JointPath& path, const Eigen::VectorXd& 
 }
 
 JointTrajectory time_parameterize_free(CollisionChecker& checker, const JointPath& path, const TimingOptions& options,
-                                       double edge_step, const Monitor& monitor) {
+                                       double joint_step, const Monitor& monitor) {
   options.check();
   check_path(path);
-  require(std::isfinite(edge_step) && edge_step > 0, "edge_step", edge_step, "must be finite and > 0");
+  require(std::isfinite(joint_step) && joint_step > 0, "joint_step", joint_step, "must be finite and > 0");
   const JointGroup& group = checker.group();
   group.check_configuration(path.waypoints.front(), "path.waypoints[0]");
   check_limits(group.velocity_limits(), group.size(), "velocity_limits");
@@ -247,7 +247,7 @@ JointTrajectory time_parameterize_free(CollisionChecker& checker, const JointPat
   const TimedPath timed(without_repeats(path.waypoints), group.velocity_limits(), group.acceleration_limits(), options,
                         monitor);
   try {
-    return free_trajectory(checker, timed, options.max_deviation, edge_step, monitor);
+    return free_trajectory(checker, timed, options.max_deviation, joint_step, monitor);
   } catch (const detail::TimingStopped&) {
     return {};
   }

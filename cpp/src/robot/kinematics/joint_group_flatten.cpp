@@ -130,6 +130,28 @@ void bound_reach(const Path& path, GroupModel& model) {
     model.reach += travel(model, path.motions[i]) + (i > 0 ? path.motions[i].p.norm() : 0.0);
 }
 
+/// The norms of the tip's Jacobian, each column by its longest lever: what lies beyond its joint, stretched out.
+void bound_tip_motion(const Path& path, GroupModel& model) {
+  const auto columns = static_cast<Eigen::Index>(model.names.size());
+  Eigen::VectorXd speed = Eigen::VectorXd::Zero(columns), turn = Eigen::VectorXd::Zero(columns);
+  double lever = path.fixed.translation().norm();
+  for (auto motion = path.motions.rbegin(); motion != path.motions.rend(); ++motion) {
+    const double rate = std::abs(motion->drive.multiplier);
+    const bool slides = motion->motion == Motion::prismatic;
+    // A rotation vector turns no faster than it changes, so that its three columns count as one.
+    speed[motion->drive.column] += rate * (slides ? 1 : lever);
+    if (!slides) turn[motion->drive.column] += rate;
+    lever += travel(model, *motion) + motion->p.norm();
+  }
+  if (model.has_base) {
+    speed[0] = 1;  // With y, at right angles to it.
+    speed[2] = lever;
+    turn[2] = 1;
+  }
+  model.tip_speed = speed.norm();
+  model.tip_turn = turn.norm();
+}
+
 double wrapped(double angle) {
   return std::abs(angle) > kPi ? shortest_turn(angle) : angle;
 }
@@ -159,6 +181,7 @@ void flatten_chain(GroupModel& model, GroupKinematics& kinematics) {
   require(count <= kMaxSegments, "group \"" + model.name + "\" motions on the way to its tip", count,
           "must be at most " + std::to_string(kMaxSegments));
   bound_reach(path, model);
+  bound_tip_motion(path, model);
   std::vector<ZxzAngles> angles;
   for (const Elementary& motion : path.motions) angles.push_back(zxz(motion.R));
   kinematics.first_angle = count > 0 ? angles.front().before : 0.0;

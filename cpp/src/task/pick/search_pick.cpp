@@ -164,7 +164,7 @@ class PickPlanner {
 
   StraightLineOptions line_options() const {
     StraightLineOptions options;
-    options.edge_step = kEdgeStep;
+    options.joint_step = kEdgeStep;
     return options;
   }
 
@@ -175,7 +175,7 @@ class PickPlanner {
     options.max_iterations =
         static_cast<int>(std::clamp(std::ceil(kStatesPerSecond * options.time_limit), 1.0, kMaxStates));
     options.seed = seed_ * 31u + static_cast<unsigned>(stage) + 7u * static_cast<unsigned>(motion_tries_);
-    options.edge_step = kEdgeStep;
+    options.joint_step = kEdgeStep;
     MotionResult result = plan_motion(checker, from, to, options, monitor_);
     if (result.outcome != Outcome::solved) return fell(stage);
     path = std::move(*result.path);

@@ -76,6 +76,8 @@ struct GroupModel {
   std::shared_ptr<const GroupKinematics> kinematics;
   double reach = 0;  ///< Bound on the distance from first_joint (or the root) to the tip [m].
   Eigen::Vector3d first_joint = Eigen::Vector3d::Zero();  ///< Where the chain starts, in the root.
+  /// Bounds on how far the tip moves [m] and turns [rad] along a path of length 1 in joint space.
+  double tip_speed = 0, tip_turn = 0;
 
   explicit GroupModel(Robot r) : robot(std::move(r)) {}
   int base_columns() const { return has_base ? 3 : 0; }

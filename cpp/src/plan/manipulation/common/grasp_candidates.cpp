@@ -7,6 +7,7 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/core/random.hpp"
+#include "mmgrasp/robot/detail/least_motion.hpp"
 #include "plan/manipulation/common/turned_ends.hpp"
 #include "plan/motion/arm_configurations.hpp"
 
@@ -16,9 +17,15 @@ namespace {
 
 constexpr std::size_t kMinParallelGrasps = 16;  // Fewer are checked in one thread.
 
+constexpr double kPoseGrid = 1.0 / (1LL << 36);  // 1.5e-11 of a metre, or of a rotation matrix.
+
+/// On a grid far finer than any tolerance: poses that are equal but for rounding, as when the heading they come from
+/// is turned once, give the same arm configurations and so the same path.
 Pose pose_of_tool(const ManipulationProblem& problem, int grasp, bool at_goal) {
   const Pose& T_world_object = at_goal ? problem.T_world_goal : problem.T_world_start;
-  return T_world_object * problem.grasps[grasp].T_object_hand;
+  Pose T_world_tool = T_world_object * problem.grasps[grasp].T_object_hand;
+  T_world_tool.matrix() = (T_world_tool.matrix() / kPoseGrid).array().round() * kPoseGrid;
+  return T_world_tool;
 }
 
 IkOptions ik_of(const ManipulationOptions& options, int grasp) {
@@ -55,6 +62,7 @@ GraspCandidates::GraspCandidates(const ManipulationProblem& problem, const Manip
       monitor_(monitor),
       result_(result),
       order_(shuffled(problem.grasps.size(), options.seed)),
+      least_cost_elsewhere_(kInfinity),
       turns_(problem.group) {
   result_.grasps.assign(order_.size(), {});
 }
@@ -80,6 +88,8 @@ bool GraspCandidates::find_more(std::size_t count) {
   const bool whole =
       parallel_for(count, count >= kMinParallelGrasps ? options_.threads : 1, work, monitor_, "grasps") && !late;
   for (std::size_t i = 0; i < count; ++i) {
+    if (checked[i].grasp >= 0 && !checked[i].all_postures)
+      least_cost_elsewhere_ = std::min(least_cost_elsewhere_, least_cost_from_anywhere(checked[i].grasp));
     if (checked[i].goals.empty()) continue;
     if (unbounded) unbounded_.push_back(std::move(in_one_turn[i]));
     found_.push_back(std::move(checked[i]));
@@ -127,15 +137,24 @@ GraspCandidate GraspCandidates::check(int grasp, int worker, GraspReport& report
     return verdict;
   };
   const auto one_end = [&](bool at_goal, Rejections& rejections, int& left) {
-    std::vector<Eigen::VectorXd> solutions =
-        arm_configurations(checks_.group(out.opening), pose_of_tool(problem_, grasp, at_goal), options_.ik_solutions,
-                           ik_of(options_, grasp), valid, rejections);
-    left = static_cast<int>(solutions.size());
-    return solutions;
+    ArmConfigurations found = arm_configurations(checks_.group(out.opening), pose_of_tool(problem_, grasp, at_goal),
+                                                 options_.ik_solutions, ik_of(options_, grasp), valid, rejections);
+    left = static_cast<int>(found.q.size());
+    return found;
   };
-  out.starts = one_end(false, report.start, report.start_solutions);
-  if (!out.starts.empty()) out.goals = one_end(true, report.goal, report.goal_solutions);
+  ArmConfigurations starts = one_end(false, report.start, report.start_solutions);
+  out.starts = std::move(starts.q);
+  out.all_postures = starts.all;
+  if (out.starts.empty()) return out;
+  ArmConfigurations goals = one_end(true, report.goal, report.goal_solutions);
+  out.goals = std::move(goals.q);
+  out.all_postures = goals.all && (starts.all || out.goals.empty());
   return out;
+}
+
+double GraspCandidates::least_cost_from_anywhere(int grasp) const {
+  return problem_.grasps[grasp].cost + least_motion(problem_.group, pose_of_tool(problem_, grasp, false),
+                                                    pose_of_tool(problem_, grasp, true), options_.ik);
 }
 
 double GraspCandidates::least_cost_left() const {

@@ -20,6 +20,8 @@ struct MMGRASP_EXPORT GraspCandidate {
   std::vector<Eigen::VectorXd> starts, goals;
   JointMetric metric;    ///< Of the configurations.
   int turned_goals = 0;  ///< How many of the goals are whole turns of others.
+  /// Proven: paths with this grasp begin and end in these arm postures, in any of their turns, and in no others.
+  bool all_postures = false;
   /// Least cost any path with this grasp can have: the straight line between its nearest start and goal.
   double straight_cost() const;
 };
@@ -41,14 +43,19 @@ class GraspCandidates {
   bool complete() const { return checked_ == order_.size(); }
   /// A lower bound on paths with any grasp not yet checked; infinite when all are.
   double least_cost_left() const;
-  /// A lower bound on paths with any grasp: straight lines of those found, grasp costs of those not yet checked.
+  /// A lower bound on paths between the arm postures found, with any grasp: straight lines of those found, grasp costs
+  /// of those not yet checked.
   double least_cost() const;
+  /// A lower bound on paths that begin or end in an arm posture which was not looked at; infinite when all were.
+  double least_cost_elsewhere() const { return least_cost_elsewhere_; }
 
   /// What touches at the start (or goal) with the first grasp that reports a collision there; empty when none does.
   std::vector<Contact> first_contacts(bool at_goal);
 
  private:
   GraspCandidate check(int grasp, int worker, GraspReport& report);
+  /// A lower bound on paths with the grasp, whatever the arm postures at their ends.
+  double least_cost_from_anywhere(int grasp) const;
   /// No path that costs as much is of interest: the result's cost.
   double bound() const;
   /// Adds the turns of the ends found before there was a path that bounds them.
@@ -63,6 +70,7 @@ class GraspCandidates {
   std::vector<int> order_;
   std::size_t checked_ = 0;  ///< How many of order_ were checked.
   std::vector<GraspCandidate> found_;
+  double least_cost_elsewhere_;
   WholeTurns turns_;
   std::vector<GraspCandidate> unbounded_;  ///< The first of found_, in one turn each, found without a path.
 };

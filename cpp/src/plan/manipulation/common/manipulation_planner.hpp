@@ -40,7 +40,7 @@ struct TransferPath {
 /// `on_improvement`.
 void take_path(const ManipulationInput& input, TransferPath path, ManipulationResult& result);
 
-/// A planner over many grasps. `run` sets the lower bound, and the path by take_path(); it returns true when its search
+/// A planner over many grasps. `run` sets the path by take_path(); it returns true when its search
 /// came to its end before the budget did (over its own samples: no proof that there is no path). When there is no
 /// candidate at all, what it sets and returns does not matter.
 struct ManipulationPlanner {

@@ -18,7 +18,7 @@ void shorten_transfer(const ManipulationInput& input, const TransferPath& path, 
                       unsigned round) {
   CollisionChecker checker = input.checks.whole(path.grasp);
   MotionOptions options;
-  options.edge_step = input.options.edge.joint_step;
+  options.joint_step = input.options.edge.joint_step;
   options.workspace_step = input.options.edge.workspace_step;
   MotionEdges edges(checker, options);
   if (edges.steered()) return;

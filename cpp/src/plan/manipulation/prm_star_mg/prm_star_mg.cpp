@@ -56,7 +56,6 @@ bool run_prm_star_mg(ManipulationInput& input, ManipulationResult& result) {
     if (options.shorten) finish_path(input, result);
     result.stats.roadmap_bound = std::min(result.stats.roadmap_bound, result.cost);
   }
-  result.lower_bound = std::min(result.path ? result.cost : kInfinity, input.candidates.least_cost());
   return whole;
 }
 

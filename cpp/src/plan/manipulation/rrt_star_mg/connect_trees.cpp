@@ -35,7 +35,7 @@ ConnectTrees::Attempt ConnectTrees::connect(int vertex) {
   const double* from = trees_.at(nearest);
   const double* to = trees_.at(vertex);
   const double distance = std::sqrt(metric.squared_distance(from, to, d));
-  const double share = distance > options_.step ? options_.step / distance : 1;
+  const double share = distance > options_.range ? options_.range / distance : 1;
   for (int i = 0; i < d; ++i) q_[i] = from[i] + (metric.nearest(i, from[i], to[i]) - from[i]) * share;
   near_vertices_.in_tree(other, q_.data(), nearest, near_);
   for (GraspTrees::Near& entry : near_) {

@@ -29,9 +29,9 @@ void NearVertices::on_side(int side, const double* q, int nearest, std::vector<N
 }
 
 double NearVertices::radius(int vertices) const {
-  if (!(options_.gamma > 0)) return options_.step;
+  if (!(options_.gamma > 0)) return options_.range;
   const double n = std::max(2, vertices);
-  return std::min(options_.gamma * std::pow(std::log(n) / n, 1.0 / (trees_.ends().dimension() + 1)), options_.step);
+  return std::min(options_.gamma * std::pow(std::log(n) / n, 1.0 / (trees_.ends().dimension() + 1)), options_.range);
 }
 
 // RRT*'s radius for vertices that are uniform in a set of this volume (Karaman and Frazzoli; of the informed set as in

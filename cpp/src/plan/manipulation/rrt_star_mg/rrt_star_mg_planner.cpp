@@ -62,18 +62,16 @@ class RrtStarMg {
     if (input_.options.straight) try_straight_lines();
     const double goal_cost = std::min(options_.goal_cost, std::numeric_limits<double>::max());
     int i = 0;
-    for (; i < options_.max_samples && informed_.grasps() > 0 && incumbent_.cost > goal_cost; ++i) {  // Line 6.
+    for (; i < options_.max_iterations && informed_.grasps() > 0 && incumbent_.cost > goal_cost; ++i) {  // Line 6.
       if (input_.out_of_time()) break;
       // Trees that begin with a path grow where it runs; those that find their own have been everywhere.
       if (first_.grasp >= 0 && (incumbent_.in_trees() || i == kMaxUnseeded)) seed_tree(std::exchange(first_, {}));
-      if (i % kReportInterval == 0) input_.monitor.report("search", static_cast<double>(i) / options_.max_samples);
+      if (i % kReportInterval == 0) input_.monitor.report("search", static_cast<double>(i) / options_.max_iterations);
       sample(options_.bidirectional ? i % 2 : GraspEnds::kStart);  // Line 26: SwapTrees.
     }
     result_.stats.samples += static_cast<std::size_t>(i);
     result_.stats.vertices += static_cast<std::size_t>(trees_.vertex_count());
     finish_path(input_, result_);
-    const double best = result_.path ? result_.cost : kInfinity;
-    result_.lower_bound = std::min({best, ends_.straight_cost(0), input_.candidates.least_cost_left()});
     if (options_.keep_trees) append_search_trees(trees_, result_.trees);
   }
 
@@ -236,7 +234,6 @@ bool run_rrt_star_mg(ManipulationInput& input, ManipulationResult& result, const
   if (first.grasp >= 0 && !good_enough()) shorten_transfer(input, first, result);
   if (good_enough()) {
     finish_path(input, result);
-    result.lower_bound = std::min(result.cost, candidates.least_cost());
     return false;
   }
   candidates.find_rest();

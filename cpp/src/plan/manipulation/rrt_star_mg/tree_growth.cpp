@@ -52,8 +52,8 @@ int TreeGrowth::steer(int from, int target) {
   const double* b = trees_.configuration(target);
   const double distance = std::sqrt(metric.squared_distance(a, b, d));
   if (distance < kSameConfiguration) return -1;
-  if (distance <= options_.step) return target;
-  for (int i = 0; i < d; ++i) q_[i] = a[i] + (metric.nearest(i, a[i], b[i]) - a[i]) * (options_.step / distance);
+  if (distance <= options_.range) return target;
+  for (int i = 0; i < d; ++i) q_[i] = a[i] + (metric.nearest(i, a[i], b[i]) - a[i]) * (options_.range / distance);
   metric.wrap(q_.data());
   return trees_.add_configuration(q_.data());
 }

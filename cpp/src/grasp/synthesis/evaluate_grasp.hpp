@@ -12,6 +12,9 @@ namespace mmgrasp::detail {
 /// How the evaluation of a grasp ended.
 enum class Verdict { good, missed, uneven, slipping, uncertain, collision, table, arm };
 
+/// Counts what a grasp was rejected for; nothing for a good one.
+void add_verdict(Verdict verdict, SynthesisCounts& counts);
+
 /// A grasp while it is searched for.
 struct EvaluatedGrasp {
   Pose T_world_hand = Pose::Identity();

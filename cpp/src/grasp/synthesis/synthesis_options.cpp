@@ -1,13 +1,42 @@
-// What surrounds the search: options, summary, rating by drawn surfaces.
+// What surrounds the search: options, counts, summary, rating by drawn surfaces.
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "grasp/synthesis/evaluate_grasp.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/parallel.hpp"
 #include "mmgrasp/grasp/synthesize_grasps.hpp"
 
 namespace mmgrasp {
+
+void detail::add_verdict(Verdict verdict, SynthesisCounts& counts) {
+  switch (verdict) {
+    case Verdict::good:
+      return;
+    case Verdict::missed:
+      ++counts.missed;
+      return;
+    case Verdict::uneven:
+      ++counts.uneven;
+      return;
+    case Verdict::slipping:
+      ++counts.slipping;
+      return;
+    case Verdict::uncertain:
+      ++counts.uncertain;
+      return;
+    case Verdict::collision:
+      ++counts.collision;
+      return;
+    case Verdict::table:
+      ++counts.table;
+      return;
+    case Verdict::arm:
+      ++counts.arm;
+      return;
+  }
+}
 
 void SynthesisOptions::check() const {
   const auto not_negative = [](double value, const char* field) {

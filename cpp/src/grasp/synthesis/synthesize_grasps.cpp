@@ -272,31 +272,7 @@ class Search {
       counts.tilted += sample.draws.tilted;
       if (!sample.evaluated) continue;
       ++counts.evaluated;
-      switch (sample.grasp.verdict) {
-        case Verdict::missed:
-          ++counts.missed;
-          break;
-        case Verdict::uneven:
-          ++counts.uneven;
-          break;
-        case Verdict::slipping:
-          ++counts.slipping;
-          break;
-        case Verdict::uncertain:
-          ++counts.uncertain;
-          break;
-        case Verdict::collision:
-          ++counts.collision;
-          break;
-        case Verdict::table:
-          ++counts.table;
-          break;
-        case Verdict::arm:
-          ++counts.arm;
-          break;
-        case Verdict::good:
-          break;
-      }
+      detail::add_verdict(sample.grasp.verdict, counts);
     }
     out.arm = rejections_;
   }

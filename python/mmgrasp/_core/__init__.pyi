@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FittedCuboid', 'Grasp', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'Graspability', 'GridDistanceField', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotSource', 'SdfHits', 'SearchTree', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'line_grasp_probability', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FittedCuboid', 'Grasp', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'Graspability', 'GridDistanceField', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotSource', 'SdfHits', 'SearchTree', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -4236,7 +4236,9 @@ class GraspSuccess:
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict[str, typing.Any]:
-        ...
+        """
+        All of it by name.
+        """
     @property
     def angle(self) -> float:
         """
@@ -4299,17 +4301,17 @@ class ContactPatch:
         From the pad to what it touches first [m].
         """
     @property
-    def normal(self) -> typing.Any:
+    def normal(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Away from the object.
         """
     @property
-    def pad_normal(self) -> typing.Any:
+    def pad_normal(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         The way the pad pushes.
         """
     @property
-    def point(self) -> typing.Any:
+    def point(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Middle of the patch [m].
         """
@@ -4375,6 +4377,34 @@ class GraspRating:
         """
         Share of each criterion.
         """
+class LineGrasp:
+    """
+    P3's grasp in one dimension (4.4.2, figures 4.5 and 4.6): a parallel gripper on a line, and an object whose place is uncertain.
+    """
+    def __init__(self, width: float = 0.2, max_opening: float = 0.4) -> None:
+        """
+        Of the object, and of the gripper [m].
+        """
+    def __repr__(self) -> str:
+        ...
+    def probability(self, opening: float, position: float, mean: float, sigma: float) -> float:
+        """
+        P(S) of (4.1) for an object at N(mean, sigma^2), in closed form.
+        """
+    def success(self, opening: float, position: float, object: float) -> float:
+        """
+        P(S | x, G) of (4.3) and (4.4) for an object at a known place [m].
+        """
+    @property
+    def max_opening(self) -> float:
+        """
+        Of the gripper [m].
+        """
+    @property
+    def width(self) -> float:
+        """
+        Of the object [m].
+        """
 class GraspSynthesis:
     """
     Grasps of an unknown part, most probable first, and why others were left out.
@@ -4401,7 +4431,7 @@ class GraspSynthesis:
         Most probable first; T_object_hand is the pose in the world.
         """
     @property
-    def object_centre(self) -> typing.Any:
+    def object_centre(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Middle of the box fitted to the map's points [m].
         """
@@ -4697,11 +4727,6 @@ def joint_limit_objective(group: JointGroup, soft_fraction: float = 0.1, weight:
 def joint_velocity(theta: float, platform_velocity: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """
     Velocities of the virtual joints x, y, theta for a platform velocity: the inverse of platform_velocity().
-    """
-def line_grasp_probability(opening: float, position: float, mean: float, sigma: float, *, width: float = 0.2, max_opening: float = 0.4) -> float:
-    """
-    P(S) of P3's grasp in one dimension (4.4.2, figure 4.6), in closed form: a gripper so far open at a position, an
-    object so wide at N(mean, sigma^2) [m].
     """
 def look_down(eye: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """
@@ -5065,7 +5090,7 @@ def solve_set_cover(elements: int, sets: collections.abc.Sequence[collections.ab
     """
     Fewest (or cheapest) sets that cover all of 0..elements-1, with a proof (P1, equation 3.1).
     """
-def synthesize_grasps(map: ProbabilisticSdf, hand: Hand, *, table: float | None = None, object: typing.Any | None = None, robot: Robot | None = None, arm: JointGroup | None = None, world: World | None = None, arm_seed: numpy.typing.ArrayLike | None = None, surface_draws: int = 0, progress: typing.Any | None = None, samples: int = 200, refined: int = 8, shift: float = 0.012, max_tilt: float = 1.05, table_tolerance: float = 0.004, sigmas: float = 2.0, margin: float = 0.002, approach_distance: float = 0.05, min_distance: float = 0.01, max_grasps: int = 20, threads: int = 0, seed: int = 1, friction: float = 0.5, angle_weight: float = 0.6, placement_weight: float = 0.1, centring_weight: float = 0.2, certainty_weight: float = 0.1, placement_scale: float = 0.01, max_sigma: float = 0.005, rays: int = 5, min_hits: float = 0.5, min_inliers: float = 0.8, plane_tolerance: float = 0.002, correlation_length: float = 0.02) -> GraspSynthesis:
+def synthesize_grasps(map: ProbabilisticSdf, hand: Hand, *, table: float | None = None, object: numpy.typing.ArrayLike | None = None, robot: Robot | None = None, arm: JointGroup | None = None, world: World | None = None, arm_seed: numpy.typing.ArrayLike | None = None, surface_draws: int = 0, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, samples: int = 200, refined: int = 8, shift: float = 0.012, max_tilt: float = 1.05, table_tolerance: float = 0.004, sigmas: float = 2.0, margin: float = 0.002, approach_distance: float = 0.05, min_distance: float = 0.01, max_grasps: int = 20, threads: int = 0, seed: int = 1, friction: float = 0.5, angle_weight: float = 0.6, placement_weight: float = 0.1, centring_weight: float = 0.2, certainty_weight: float = 0.1, placement_scale: float = 0.01, max_sigma: float = 0.005, rays: int = 5, min_hits: float = 0.5, min_inliers: float = 0.8, plane_tolerance: float = 0.002, correlation_length: float = 0.02) -> GraspSynthesis:
     """
     Grasps of an unknown part in a ProbabilisticSdf, most probable by P3's model (4.9) first.
     

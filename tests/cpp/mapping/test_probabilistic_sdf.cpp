@@ -58,7 +58,7 @@ Matrix3Xd random_points(int count, double spread) {
 }  // namespace
 
 /// P3 (4.16), (4.17) against weighted least squares over all frames at once, at voxels, in closed form.
-TEST(ProbabilisticSdf, MeshOfABoxIsThatOfItsBlocks) {
+TEST(ProbabilisticSdf, MeshOfABoxIsThatOfItsCells) {
   ProbabilisticSdf sdf;
   const DepthCamera camera = small_camera();
   sdf.integrate(
@@ -69,7 +69,7 @@ TEST(ProbabilisticSdf, MeshOfABoxIsThatOfItsBlocks) {
   const Eigen::AlignedBox3d box(Eigen::Vector3d(0.1 * side, 0.1 * side, -0.02),
                                 Eigen::Vector3d(0.9 * side, 1.9 * side, 0.02));
   const SdfMesh some = sdf.mesh(box);
-  // Triangles with all corners within those blocks, by place.
+  // Triangles with all corners within those cells, by place.
   const auto inside = [&](const TriangleMesh& mesh, const std::array<int, 3>& t) {
     return std::all_of(t.begin(), t.end(), [&](int k) {
       const Eigen::Vector3d& p = mesh.vertices[k];

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "grasp/synthesis/point_grid.hpp"
+#include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/pose.hpp"
 #include "mmgrasp/robot/joint.hpp"
 
@@ -14,7 +15,7 @@ enum class HandContact { none, table, map };
 
 /// Whether a hand's boxes keep apart from points with uncertain places, and from a level table below them. The points
 /// are two voxels apart at most, so that nothing thicker slips between them.
-class HandClearance {
+class MMGRASP_EXPORT HandClearance {
  public:
   /// Each point is a ball of `margin` + `sigmas` times its own sigma [m].
   HandClearance(const std::vector<Eigen::Vector3d>& points, const std::vector<double>& sigma, double sigmas,

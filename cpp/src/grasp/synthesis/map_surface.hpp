@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "grasp/synthesis/point_grid.hpp"
+#include "mmgrasp/core/export.hpp"
 #include "mmgrasp/grasp/success_model.hpp"
 #include "mmgrasp/grasp/synthesize_grasps.hpp"
 #include "mmgrasp/mapping/probabilistic_sdf.hpp"
@@ -13,7 +14,7 @@ namespace mmgrasp::detail {
 
 /// The map's surface points apart: what is to be grasped, and all that a hand may touch. Points of the table are in
 /// neither, the table being a plane, nor are pieces of surface too small to be a body, which noise leaves in the air.
-class MapSurface {
+class MMGRASP_EXPORT MapSurface {
  public:
   /// Throws InvalidInput for a map without a surface, or without one where the object should be.
   MapSurface(const ProbabilisticSdf& map, const SynthesisOptions& options);
@@ -33,6 +34,6 @@ class MapSurface {
 
 /// The box of least ground area among those turned about the vertical axis; `floor` is the height that it stands on, or
 /// NaN: the lowest point.
-ObjectExtent fit_extent(const std::vector<Eigen::Vector3d>& points, double floor);
+MMGRASP_EXPORT ObjectExtent fit_extent(const std::vector<Eigen::Vector3d>& points, double floor);
 
 }  // namespace mmgrasp::detail

@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "mmgrasp/core/export.hpp"
+
 namespace mmgrasp::detail {
 
 /// Points by the cells of a cubic lattice over their bounds.
-class PointGrid {
+class MMGRASP_EXPORT PointGrid {
  public:
   /// `side` of a cell [m]; larger when there would be more than four million.
   PointGrid(const std::vector<Eigen::Vector3d>& points, double side);

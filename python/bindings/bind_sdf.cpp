@@ -78,10 +78,14 @@ void bind_depth_camera(py::module_& m) {
                          "    constant + linear z + quadratic z^2 + slant z^slant_power theta^2 / (pi/2 - theta)^2\n\n"
                          "with z the depth [m] and theta the angle of incidence [rad].")
       .def(py::init([](double constant, double linear, double quadratic, double slant, double slant_power) {
-             return DepthNoise{constant, linear, quadratic, slant, slant_power};
+             const DepthNoise made{constant, linear, quadratic, slant, slant_power};
+             made.check();
+             return made;
            }),
            "constant"_a = usual.constant, "linear"_a = usual.linear, "quadratic"_a = usual.quadratic,
-           "slant"_a = usual.slant, "slant_power"_a = usual.slant_power, "The coefficients; the camera checks them.")
+           "slant"_a = usual.slant, "slant_power"_a = usual.slant_power,
+           "The coefficients. Raises InvalidInput unless they are finite, `slant` is not negative and the standard\n"
+           "deviation is positive at some depth; a camera checks its own range.")
       .def_static("structured_light", &structured_light_noise, "The first Kinect: Nguyen, Izadi, Lovell, 3DIMPVT 2012.")
       .def_static(
           "stereo", &stereo_noise, "focal"_a, "baseline"_a, "disparity_sigma"_a,
@@ -131,6 +135,7 @@ void bind_sdf_results(py::module_& m) {
       .def_readonly("too_noisy", &R::too_noisy, "Standard deviation above a third of the truncation.")
       .def_readonly("without_normal", &R::without_normal, "Too few neighbours on the same surface.")
       .def_readonly("too_slanted", &R::too_slanted, "Incidence above max_incidence.")
+      .def_readonly("invalid", &R::invalid, "NaN, infinite or negative, hence not measured.")
       .def_readonly("new_blocks", &R::new_blocks, "Blocks of 8 x 8 x 8 voxels that the map got.")
       .def_readonly("agreement", &R::agreement,
                     "Share of pixels that confirm an earlier frame where both see the same place; NaN when they have "
@@ -254,7 +259,7 @@ void bind_sdf(py::module_& m) {
             return sdf_column(field->distances(columns));
           },
           "points"_a, "sigmas"_a = 2.0, "unknown"_a = "unknown",
-          "mean - sigmas * sigma at `points` (n, 3), clipped to the truncation, as collision checks read it [m]. "
+          "mean - sigmas * sigma at `points` (n, 3), clipped to the truncation [m]. "
           "Where\n"
           "no camera saw: NaN, or free or occupied as deep as the truncation.")
       .def(

@@ -127,9 +127,9 @@ void bind_drive_by_task(py::module_& m) {
       "matter, of x, y, z, roll, pitch, yaw; max_tool_speed [m/s] at the task; dwell [s] for which "
       "the tool's pose is\n"
       "kept, e.g. while a gripper closes; object: name of the world's object that is held "
-      "afterwards; the hand may touch it,\n"
-      "and it what it stands on, for `touching` intervals before and after. 0: never before the task, nothing after "
-      "it.\n\n"
+      "afterwards: an obstacle for the\n"
+      "whole robot, the open hand included, until then; the fingers alone may touch it during the dwell. What rests on "
+      "something\ncounts as 1 mm higher once it is held.\n\n"
       "push: a gripper that closes while the hand moves on (P1 4.3): dict of push_grasp's keywords, "
       "approach (3,), an axis of\n"
       "the tip's frame, and free_length [m], the straight way before the finger tips reach the "
@@ -137,7 +137,7 @@ void bind_drive_by_task(py::module_& m) {
       "the planned grasp; tolerance, free, max_tool_speed and dwell are left out.")
       .def(py::init([](const ArrayLike& T_world_tip, const OptionalArray& tolerance,
                        const std::vector<std::string>& free, const OptionalNumber& max_tool_speed, double dwell,
-                       const std::string& object, const std::optional<PushKeywords>& push, int touching) {
+                       const std::string& object, const std::optional<PushKeywords>& push) {
              DriveByTask task;
              task.candidates = candidates_argument(T_world_tip);
              if (!tolerance.is_none()) task.tolerance = vector_argument(tolerance, "tolerance", 6);
@@ -152,22 +152,18 @@ void bind_drive_by_task(py::module_& m) {
              task.dwell = finite_argument(dwell, "dwell");
              if (task.dwell < 0) throw InvalidInput("dwell: must be at least 0");
              task.object = object;
-             task.touching = touching;
-             if (touching < 0) throw InvalidInput("touching: must be at least 0");
              if (push) task.push = push_argument(*push);
              return task;
            }),
            py::arg("T_world_tip"), py::kw_only(), py::arg("tolerance") = py::none(),
            py::arg("free") = std::vector<std::string>{}, py::arg("max_tool_speed") = py::none(), py::arg("dwell") = 0.0,
-           py::arg("object") = "", py::arg("push") = py::none(), py::arg("touching") = 2,
+           py::arg("object") = "", py::arg("push") = py::none(),
            "The class says what the arguments mean; raises InvalidInput naming one that breaks its rule.")
       .def_property_readonly(
           "candidates", [](const DriveByTask& t) { return to_array(t.candidates); }, "(m, 4, 4)")
       .def_readonly("max_tool_speed", &DriveByTask::max_tool_speed,
                     "Fastest tool at the task [m/s]; infinite: no limit.")
       .def_readonly("dwell", &DriveByTask::dwell, "Time for which the tool's pose is kept [s].")
-      .def_readonly("touching", &DriveByTask::touching,
-                    "Intervals before and after the task in which hand and object may touch what they must.")
       .def_readonly("object", &DriveByTask::object, "Name of the world's object that is held afterwards; empty: none.")
       .def_property_readonly(
           "push",

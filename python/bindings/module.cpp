@@ -9,6 +9,7 @@ namespace mmgrasp::python {
 void bind_distance_fields(py::module_& m);
 void bind_mapping(py::module_& m);
 void bind_sdf(py::module_& m);
+void bind_world_maps(py::module_& m);
 void bind_graspability(py::module_& m);
 void bind_synthesis(py::module_& m);
 void bind_capability(py::module_& m);
@@ -52,6 +53,7 @@ PYBIND11_MODULE(_core, m) {
   bind_platform_locations(m);
   bind_mapping(m);
   bind_sdf(m);
+  bind_world_maps(m);
   bind_graspability(m);
   bind_synthesis(m);
   bind_structure(m);

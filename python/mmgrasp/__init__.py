@@ -5,7 +5,8 @@ ValueError; IoError, also an OSError); "no solution" is a value: look at a resul
 
 Here are the names that nearly every program needs. Everything else is in a room of its own: `mmgrasp.robot`, `.collision`,
 `.planning`, `.grasping`, `.base`, `.mapping`, `.optim`, `.verify`; `.part_supply` and `.scenario` for the main job. Extras are imported
-by name: `mmgrasp.sim` (physics), `.viz` (pictures), `.cluster` (many processes), `.problems` (benchmarks' problems), `.reproduce`.
+by name: `mmgrasp.frames` (folders of depth images), `.scan` (maps made of them), `.sim` (physics), `.viz` (pictures), `.cluster` (many
+processes), `.problems` (benchmarks' problems), `.reproduce`.
 """
 
 import typing as _typing

@@ -94,6 +94,22 @@ def write_file(path: Path, content: str | bytes) -> None:
 
 def read_text(path: Path, most: int) -> str:
     """The text of a regular file of at most `most` bytes; raises IoError otherwise."""
+    try:
+        return read_bytes(path, most).decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise IoError(f"{printable(os.fspath(path))}: is no UTF-8 text (byte {error.start})") from None
+
+
+def read_bytes(path: Path, most: int) -> bytes:
+    """The content of a regular file of at most `most` bytes; raises IoError otherwise."""
+    data = read_head(path, most + 1)
+    if len(data) > most:
+        raise IoError(f"{printable(os.fspath(path))}: cannot be read: is larger than {most} bytes")
+    return data
+
+
+def read_head(path: Path, count: int) -> bytes:
+    """The first `count` bytes of a regular file, or all it has; raises IoError."""
     shown = printable(os.fspath(path))
     try:
         with open(path, "rb", opener=_open_now) as file:
@@ -102,12 +118,7 @@ def read_text(path: Path, most: int) -> str:
                 raise IoError(f"{shown}: cannot be read: is a folder")
             if not stat.S_ISREG(found.st_mode):
                 raise IoError(f"{shown}: cannot be read: is no regular file")
-            data = file.read(most + 1)
-        if len(data) > most:
-            raise IoError(f"{shown}: cannot be read: is larger than {most} bytes")
-        return data.decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise IoError(f"{shown}: is no UTF-8 text (byte {error.start})") from None
+            return file.read(count)
     except OSError as error:
         if isinstance(error, IoError):
             raise

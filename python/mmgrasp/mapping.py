@@ -17,6 +17,8 @@ from ._core import (
     ProbabilisticSdf as ProbabilisticSdf,
     IntegrationReport as IntegrationReport,
     SdfHits as SdfHits,
+    OccupancyMap as OccupancyMap,
+    OccupancyReport as OccupancyReport,
 )
 
 # Point clouds

@@ -53,6 +53,18 @@ def depth_frame() -> mg.mapping.DepthImage:
     return mg.mapping.DepthImage(np.full((30, 40), 0.3, np.float32), depth_camera().intrinsics)
 
 
+def sdf_map() -> mg.ProbabilisticSdf:
+    sdf = mg.ProbabilisticSdf()
+    sdf.integrate(depth_frame(), depth_camera())
+    return sdf
+
+
+def occupancy_map() -> mg.mapping.OccupancyMap:
+    occupancy = mg.mapping.OccupancyMap()
+    occupancy.integrate(depth_frame(), depth_camera())
+    return occupancy
+
+
 def gripper() -> mg.Hand:
     return mg.Hand("tip", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.05, finger_width=0.02)
 
@@ -97,6 +109,7 @@ VALUES: dict[str, Any] = {
     "origins": np.array([[0.0, 0.0, 1.0], [0.25, 0.0, 1.0]]),
     "directions": np.array([[0.0, 0.0, -1.0], [0.0, 0.5, -1.0]]),
     "pose_covariance": 1e-6 * np.eye(6),
+    "bounds": np.array([[-0.1, -0.1, 0.2], [0.1, 0.1, 0.4]]),
     "ProbabilisticSdf.sigma": np.full((30, 40), 0.001),
     "synthesize_grasps.object": np.array([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]]),
     "synthesize_grasps.arm_seed": Q,
@@ -195,6 +208,7 @@ OBJECTS: dict[str, Any] = {
     "CapabilityMap": capability_map,
     "PinholeCamera": mg.mapping.PinholeCamera,
     "ProbabilisticSdf": mg.ProbabilisticSdf,
+    "OccupancyMap": mg.mapping.OccupancyMap,
     "BaseTracker": lambda: mg.base.BaseTracker(ROBOT),
     "IkObjective": lambda: mg.robot.joint_limit_objective(ARM),
     "IkSeedDatabase": lambda: mg.base.IkSeedDatabase(WHOLE_BODY),
@@ -244,6 +258,12 @@ OTHERS: dict[str, Any] = {
     "camera": mg.mapping.PinholeCamera,
     "ProbabilisticSdf.integrate.camera": depth_camera,
     "ProbabilisticSdf.integrate.image": depth_frame,
+    "OccupancyMap.integrate.camera": depth_camera,
+    "OccupancyMap.integrate.image": depth_frame,
+    "World.add_sdf.name": lambda: "sdf",
+    "World.add_sdf.sdf": sdf_map,
+    "World.add_occupancy.name": lambda: "occupancy",
+    "World.add_occupancy.occupancy": occupancy_map,
     "render_depth.scene": lambda: [BOX],
     "random_placement.part": lambda: [BOX],
     "make_height_map.image": lambda: mg.mapping.render_depth([BOX], mg.mapping.PinholeCamera(width=8, height=6), POSE),

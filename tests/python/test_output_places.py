@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import stat
 from pathlib import Path
 
@@ -44,6 +45,40 @@ def test_what_is_added_replaces_only_its_own(tmp_path: Path) -> None:
     assert (tmp_path / "plan.json").read_text() == "2"
     fill(tmp_path, plan_json="3")
     assert names(tmp_path) == {"plan.json", LIST}
+
+
+def test_a_checkpoint_replaces_the_one_before(tmp_path: Path) -> None:
+    own = ("partial_*.sdf", "progress.json", "map.sdf", LIST)
+    for count in (1, 2):
+        with OutputFolder(tmp_path, own).filled(added=True, replacing="partial_*.sdf") as draft:
+            write_file(draft / f"partial_{count}.sdf", "x")
+            write_file(draft / "progress.json", str(count))
+        assert names(tmp_path) == {f"partial_{count}.sdf", "progress.json", LIST}
+    with OutputFolder(tmp_path, own).filled() as draft:
+        write_file(draft / "map.sdf", "x")
+    assert names(tmp_path) == {"map.sdf", LIST}
+    with pytest.raises(mg.IoError, match=r"holds map.sdf, written by another command"):
+        OutputFolder(tmp_path)
+
+
+def test_ctrl_c_while_files_come_to_their_places_counts_afterwards(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    replace = os.replace
+
+    def interrupted(source: Path, target: Path) -> None:
+        if ".writing." in str(source) and ".writing." not in str(target):
+            signal.raise_signal(signal.SIGINT)
+        replace(source, target)
+
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    monkeypatch.setattr(os, "replace", interrupted)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            fill(tmp_path, plan_json="1", trajectories__a_csv="1")
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert names(tmp_path) == {"plan.json", "trajectories/a.csv", LIST}
 
 
 @pytest.mark.parametrize("name", ["plan.json", "trajectories/pick_00.csv", "stop_3.png", "report.html", LIST])

@@ -97,3 +97,25 @@ def test_published_noise() -> None:
     assert noise.time_of_flight().sigma(2.0) == pytest.approx(0.0017)
     with pytest.raises(mg.InvalidInput, match="noise"):
         mg.mapping.DepthCamera(INTRINSICS, noise(constant=-0.001))
+
+
+def test_rays_meet_a_table_at_any_height_of_the_grid() -> None:
+    """A surface on the border of what a ray's walk takes in one stride (8 blocks of 8 voxels; z = 0 is one) and beside it; the
+    tower makes rays begin well above.
+    """
+    rng = np.random.default_rng(3)
+    wide = mg.mapping.PinholeCamera(width=160, height=120, fx=100.0, fy=100.0, cx=79.5, cy=59.5)
+    for height in (0.0, 0.128, 0.016, 0.003):
+        sdf = mg.ProbabilisticSdf(voxel=0.002)
+        tower = mg.LinkShape(mg.Box([0.04, 0.04, 0.1]), mg.pose([-0.17, 0, height + 0.05]))
+        table = [mg.LinkShape(mg.collision.Plane([0, 0, 1], height)), tower]
+        sdf.integrate(
+            mg.mapping.render_depth(table, wide, mg.mapping.look_down([0, 0, height + 0.3])),
+            mg.mapping.DepthCamera(wide, mg.mapping.DepthNoise(constant=0.0005)),
+        )
+        origins = np.column_stack([rng.uniform(-0.08, 0.08, (4000, 2)), height + rng.uniform(0.1, 0.4, 4000)])
+        directions = np.column_stack([rng.uniform(-0.1, 0.1, (4000, 2)), np.full(4000, -1.0)])
+        directions[::2] *= 1e-4, 1e-4, 1.0
+        hits = sdf.cast_rays(origins, directions)
+        assert hits.hit.mean() == 1.0, height
+        np.testing.assert_allclose(hits.point[:, 2], height, atol=2e-4)

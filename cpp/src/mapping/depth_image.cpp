@@ -16,7 +16,9 @@ void DepthImage::check() const {
 
 void DepthImage::clean() {
   for (float& z : depth) {
-    if (!(z > 0) || std::isinf(z)) z = 0;
+    if (z >= 0 && !std::isinf(z)) continue;
+    z = 0;
+    ++invalid;
   }
 }
 

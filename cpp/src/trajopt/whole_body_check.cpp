@@ -134,13 +134,17 @@ void check_limits(Ledger& ledger, const WholeBodyProblem& problem, const WholeBo
   }
   if (problem.jerk_time <= 0) return;
   ledger.open("jerk", "rad/s^3 or m/s^3", 1e-4);
-  for (std::size_t i = 1; i + 1 < t.size(); ++i) {
-    const double h0 = t.times()[i] - t.times()[i - 1], h1 = t.times()[i + 1] - t.times()[i];
-    const VectorXd jump = (t.drive()[i + 1] - t.drive()[i]) / h1 - (t.drive()[i] - t.drive()[i - 1]) / h0;
-    for (Eigen::Index d = 0; d < a.size(); ++d) {
-      ledger.note(std::abs(jump[d]) / h1 - a[d] / problem.jerk_time, t.times()[i], drives[d]);
-    }
-  }
+  const auto acceleration = [&](std::size_t i) {  // between waypoints i and i + 1
+    return VectorXd((t.drive()[i + 1] - t.drive()[i]) / (t.times()[i + 1] - t.times()[i]));
+  };
+  const auto note_jump = [&](const VectorXd& jump, std::size_t interval, double time) {
+    const double h = t.times()[interval + 1] - t.times()[interval];
+    for (Eigen::Index d = 0; d < a.size(); ++d)
+      ledger.note(std::abs(jump[d]) / h - a[d] / problem.jerk_time, time, drives[d]);
+  };
+  if (problem.starts_at_rest()) note_jump(acceleration(0), 0, 0);
+  for (std::size_t i = 1; i + 1 < t.size(); ++i) note_jump(acceleration(i) - acceleration(i - 1), i, t.times()[i]);
+  if (problem.ends_at_rest()) note_jump(acceleration(t.size() - 2), t.size() - 2, t.duration());
 }
 
 void check_ends(Ledger& ledger, const WholeBodyProblem& problem, const WholeBodyTrajectory& t) {
@@ -166,6 +170,15 @@ void check_ends(Ledger& ledger, const WholeBodyProblem& problem, const WholeBody
   }
 }
 
+/// Where the tip is, in the frame of its target: translation, then twice the quaternion's vector part.
+Vector6d tool_error(const JointGroup& group, const Pose& T_world_target, const VectorXd& q) {
+  const Pose T_target_tip = T_world_target.inverse() * group.fk(q);
+  const Eigen::Vector3d turn = rotation_vector(T_target_tip.linear());
+  Vector6d error;
+  error << T_target_tip.translation(), turn * (turn.norm() > 1e-12 ? 2 * std::sin(turn.norm() / 2) / turn.norm() : 1);
+  return error;
+}
+
 void check_tool(Ledger& ledger, const WholeBodyProblem& problem, const WholeBodyTrajectory& t) {
   if (problem.tool.empty()) return;
   std::vector<Vector6d> errors;
@@ -173,11 +186,7 @@ void check_tool(Ledger& ledger, const WholeBodyProblem& problem, const WholeBody
   for (const ToolConstraint& tool : problem.tool) {
     const std::size_t at = tool.waypoint;
     const VectorXd& q = t.positions()[at];
-    const Pose T_target_tip = tool.T_world_tip.inverse() * problem.group.fk(q);
-    const Eigen::Vector3d turn = rotation_vector(T_target_tip.linear());
-    Vector6d error;
-    error << T_target_tip.translation(), turn * (turn.norm() > 1e-12 ? 2 * std::sin(turn.norm() / 2) / turn.norm() : 1);
-    errors.push_back(error);
+    errors.push_back(tool_error(problem.group, tool.T_world_tip, q));
     const VectorXd rate = configuration_velocity(problem.group, q, t.drive()[at]);
     speeds.push_back(tool.T_world_tip.linear().transpose() * (problem.group.jacobian(q) * rate).head<3>());
   }
@@ -210,20 +219,69 @@ void check_tool(Ledger& ledger, const WholeBodyProblem& problem, const WholeBody
   });
 }
 
-void check_collisions(Ledger& ledger, const std::vector<CollisionChecker*>& checkers,
-                      const std::vector<Sample>& samples) {
-  if (checkers.empty()) return;
-  ledger.open("collision", "m", 0);
+/// Between waypoints that hold the tool to the same pose, it strays by less than what a gripper's grasp allows.
+void check_held_tool(Ledger& ledger, const WholeBodyProblem& problem, const std::vector<Sample>& samples) {
+  constexpr double kShift = 2e-3, kTurn = 0.02;  // [m], [rad]
+  struct Worst {
+    double value = 0, time = 0;
+    std::string what;
+  } shift, turn;
+  const char* axes[] = {"x", "y", "z", "about x", "about y", "about z"};
+  for (std::size_t i = 0; i + 1 < problem.tool.size(); ++i) {
+    const ToolConstraint &from = problem.tool[i], &to = problem.tool[i + 1];
+    if (to.waypoint != from.waypoint + 1 || !from.T_world_tip.isApprox(to.T_world_tip, 1e-12)) continue;
+    for (const Sample& sample : samples) {
+      if (sample.interval != from.waypoint) continue;
+      const Vector6d error = tool_error(problem.group, from.T_world_tip, sample.q);
+      for (int k = 0; k < 6; ++k) {
+        const double lower = std::min(from.lower[k], to.lower[k]), upper = std::max(from.upper[k], to.upper[k]);
+        const double off = outside(error[k], lower, upper);
+        const double value = k < 3 ? off : std::min(off, outside(-error[k], lower, upper));
+        Worst& worst = k < 3 ? shift : turn;
+        if (value > worst.value) worst = {value, sample.time, "tool constraint " + std::to_string(i) + ", " + axes[k]};
+      }
+    }
+  }
+  ledger.open("held tool position", "m", kShift);
+  ledger.note(shift.value, shift.time, shift.what);
+  ledger.open("held tool rotation", "rad", kTurn);
+  ledger.note(turn.value, turn.time, turn.what);
+}
+
+struct Moment {
+  double time;
+  VectorXd q;
+};
+
+/// Straight edges between moments that the motion leaves by less than the clearance that edges ask for.
+void check_edges(Ledger& ledger, CollisionChecker& checker, const WholeBodyTrajectory& t, const Moment& from,
+                 const Moment& to, int splits) {
+  constexpr double kBend = 1e-4;  // [rad] or [m]
+  const Moment middle{0.5 * (from.time + to.time), t.at(0.5 * (from.time + to.time))};
+  if (splits > 0 && (middle.q - 0.5 * (from.q + to.q)).cwiseAbs().maxCoeff() > kBend) {
+    check_edges(ledger, checker, t, from, middle, splits - 1);
+    check_edges(ledger, checker, t, middle, to, splits - 1);
+    return;
+  }
   EdgeOptions edge;
   edge.continuous = true;
+  const EdgeResult r = check_edge(checker, from.q, to.q, edge);
+  if (r.free || !r.contact) return;  // limits are checked elsewhere
+  const VectorXd q = from.q + r.fraction * (to.q - from.q);
+  const double time = from.time + r.fraction * (to.time - from.time);
+  ledger.note(std::max(-checker.distance(q).value, 1e-9), time, r.contact->a + " and " + r.contact->b);
+}
+
+void check_collisions(Ledger& ledger, const std::vector<CollisionChecker*>& checkers, const WholeBodyTrajectory& t,
+                      const std::vector<Sample>& samples) {
+  constexpr int kMostSplits = 6;
+  if (checkers.empty()) return;
+  ledger.open("collision", "m", 0);
   for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
     CollisionChecker* checker = checkers[samples[i].interval];
     if (!checker) continue;
-    const EdgeResult r = check_edge(*checker, samples[i].q, samples[i + 1].q, edge);
-    if (r.free || !r.contact) continue;  // limits are checked elsewhere
-    const VectorXd q = samples[i].q + r.fraction * (samples[i + 1].q - samples[i].q);
-    const double time = samples[i].time + r.fraction * (samples[i + 1].time - samples[i].time);
-    ledger.note(std::max(-checker->distance(q).value, 1e-9), time, r.contact->a + " and " + r.contact->b);
+    check_edges(ledger, *checker, t, {samples[i].time, samples[i].q}, {samples[i + 1].time, samples[i + 1].q},
+                kMostSplits);
   }
 }
 
@@ -237,7 +295,8 @@ std::vector<Violation> check_whole_body(const WholeBodyProblem& problem, const W
   check_limits(ledger, problem, trajectory, samples);
   check_ends(ledger, problem, trajectory);
   check_tool(ledger, problem, trajectory);
-  check_collisions(ledger, checkers, samples);
+  check_held_tool(ledger, problem, samples);
+  check_collisions(ledger, checkers, trajectory, samples);
   return ledger.list();
 }
 

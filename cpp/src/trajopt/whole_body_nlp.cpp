@@ -183,12 +183,17 @@ void WholeBodyNlp::add_limits() {
            {layout_.q(i, c), layout_.v(i, c - (base == BaseKind::diff_drive ? 1 : 0)), h}, group.lower()[c],
            group.upper()[c], "position", group.names()[at]);
     }
-    if (problem_.jerk_time > 0 && i > 0) {
-      for (int d = 0; d < layout_.drives(); ++d) {
-        for (const double sign : {-1.0, 1.0}) {
-          make(std::make_unique<LinearTerm>(std::vector<double>{sign, -sign, -a[d] / problem_.jerk_time}), i,
+    if (problem_.jerk_time <= 0) continue;
+    for (int d = 0; d < layout_.drives(); ++d) {
+      const double rate = a[d] / problem_.jerk_time;
+      for (const double sign : {-1.0, 1.0}) {
+        if (i > 0)
+          make(std::make_unique<LinearTerm>(std::vector<double>{sign, -sign, -rate}), i,
                {layout_.a(i, d), layout_.a(i - 1, d), h}, -kInfinity, 0, "jerk", drive_names(group)[d]);
-        }
+        // From rest and to rest the acceleration begins and ends at 0.
+        if ((i == 0 && problem_.starts_at_rest()) || (i + 1 == problem_.intervals() && problem_.ends_at_rest()))
+          make(std::make_unique<LinearTerm>(std::vector<double>{sign, -rate}), i, {layout_.a(i, d), h}, -kInfinity, 0,
+               "jerk", drive_names(group)[d]);
       }
     }
   }

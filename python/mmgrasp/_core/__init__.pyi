@@ -11,6 +11,7 @@ import os
 import typing
 from . import verify
 __all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FittedCuboid', 'Grasp', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'Graspability', 'GridDistanceField', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotSource', 'SdfHits', 'SearchTree', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FittedCuboid', 'Grasp', 'GraspReport', 'Graspability', 'GridDistanceField', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MotionResult', 'MotionStats', 'ObjectRegions', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotSource', 'SdfHits', 'SearchTree', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -389,6 +390,12 @@ class World:
         """
         STL, OBJ, DAE or PLY; closed meshes are solids, open ones surfaces.
         """
+    def add_occupancy(self, name: str, occupancy: OccupancyMap, unknown: typing.Literal['free', 'occupied'] = 'free', *, bounds: numpy.typing.ArrayLike | None = None, pose: numpy.typing.ArrayLike | None = None) -> None:
+        """
+        The occupied cells of an octree as solid voxels; with `unknown="occupied"` also those that no ray passed,
+        within `bounds` (2, 3) (lower, upper corner [m]; default: those of what is known). Later frames do not
+        change the object. Raises InvalidInput when there is no such cell.
+        """
     def add_octree(self, name: str, path: str | os.PathLike[str], pose: numpy.typing.ArrayLike | None = None) -> None:
         """
         Occupied leaves of an OctoMap file (.bt or .ot) as solid voxels.
@@ -396,6 +403,14 @@ class World:
     def add_points(self, name: str, points: numpy.typing.ArrayLike, resolution: float, pose: numpy.typing.ArrayLike | None = None) -> None:
         """
         Points (m, 3) as the solid cells of edge `resolution` [m] that hold one.
+        """
+    def add_sdf(self, name: str, sdf: ProbabilisticSdf, sigmas: float = 2.0, unknown: typing.Literal['free', 'occupied'] = 'free', *, bounds: numpy.typing.ArrayLike | None = None, pose: numpy.typing.ArrayLike | None = None) -> None:
+        """
+        The surfaces of a map as solid cells of its voxels' lattice: wherever mean - sigmas * sigma may be zero or
+        less, what is known behind, and what these enclose. Later frames do not change the object. With
+        `unknown="occupied"` all of `bounds` (2, 3) (lower, upper corner [m]; default: the map's) that is not
+        known to be in front of a surface, which a map knows only about two voxels deep: for what cameras looked
+        through see add_occupancy(). Raises InvalidInput when nothing is occupied.
         """
     def add_sphere(self, name: str, radius: float, pose: numpy.typing.ArrayLike | None = None) -> None:
         """
@@ -3437,14 +3452,15 @@ class DriveByTask:
     
     tolerance: (6,) along x, y, z [m] and about them [rad] of the pose's own frame; free: names of axes that do not
     matter, of x, y, z, roll, pitch, yaw; max_tool_speed [m/s] at the task; dwell [s] for which the tool's pose is
-    kept, e.g. while a gripper closes; object: name of the world's object that is held afterwards; the hand may touch it,
-    and it what it stands on, for `touching` intervals before and after. 0: never before the task, nothing after it.
+    kept, e.g. while a gripper closes; object: name of the world's object that is held afterwards: an obstacle for the
+    whole robot, the open hand included, until then; the fingers alone may touch it during the dwell. What rests on something
+    counts as 1 mm higher once it is held.
     
     push: a gripper that closes while the hand moves on (P1 4.3): dict of push_grasp's keywords, approach (3,), an axis of
     the tip's frame, and free_length [m], the straight way before the finger tips reach the object. T_world_tip is then
     the planned grasp; tolerance, free, max_tool_speed and dwell are left out.
     """
-    def __init__(self, T_world_tip: numpy.typing.ArrayLike, *, tolerance: numpy.typing.ArrayLike | None = None, free: collections.abc.Sequence[str] = [], max_tool_speed: float | None = None, dwell: float = 0.0, object: str = '', push: dict[str, typing.Any] | None = None, touching: int = 2) -> None:
+    def __init__(self, T_world_tip: numpy.typing.ArrayLike, *, tolerance: numpy.typing.ArrayLike | None = None, free: collections.abc.Sequence[str] = [], max_tool_speed: float | None = None, dwell: float = 0.0, object: str = '', push: dict[str, typing.Any] | None = None) -> None:
         """
         The class says what the arguments mean; raises InvalidInput naming one that breaks its rule.
         """
@@ -3474,11 +3490,6 @@ class DriveByTask:
     def push(self) -> PushGrasp | typing.Any:
         """
         What push_grasp says: closing time, window, tolerance to the object's position; None without one.
-        """
-    @property
-    def touching(self) -> int:
-        """
-        Intervals before and after the task in which hand and object may touch what they must.
         """
 class WholeBodyTrajectory:
     """
@@ -3924,7 +3935,8 @@ class DepthNoise:
         """
     def __init__(self, constant: float = 0.001, linear: float = 0.0, quadratic: float = 0.0, slant: float = 0.0, slant_power: float = 0.0) -> None:
         """
-        The coefficients; the camera checks them.
+        The coefficients. Raises InvalidInput unless they are finite, `slant` is not negative and the standard
+        deviation is positive at some depth; a camera checks its own range.
         """
     def __repr__(self) -> str:
         ...
@@ -4004,6 +4016,11 @@ class IntegrationReport:
     def agreement(self) -> float:
         """
         Share of pixels that confirm an earlier frame where both see the same place; NaN when they have too little in common.
+        """
+    @property
+    def invalid(self) -> int:
+        """
+        NaN, infinite or negative, hence not measured.
         """
     @property
     def measured(self) -> int:
@@ -4107,7 +4124,7 @@ class ProbabilisticSdf:
         """
     def distances(self, points: numpy.typing.ArrayLike, sigmas: float = 2.0, unknown: typing.Literal['unknown', 'free', 'occupied'] = 'unknown') -> numpy.typing.NDArray[numpy.float64]:
         """
-        mean - sigmas * sigma at `points` (n, 3), clipped to the truncation, as collision checks read it [m]. Where
+        mean - sigmas * sigma at `points` (n, 3), clipped to the truncation [m]. Where
         no camera saw: NaN, or free or occupied as deep as the truncation.
         """
     def integrate(self, image: DepthImage, camera: DepthCamera, *, pose_covariance: numpy.typing.ArrayLike | None = None, sigma: numpy.typing.ArrayLike | None = None) -> IntegrationReport:
@@ -4122,6 +4139,10 @@ class ProbabilisticSdf:
     def mesh(self) -> tuple[Mesh, numpy.typing.NDArray[numpy.float64]]:
         """
         (mesh, sigma): the zero level by marching cubes and the standard deviation at each vertex [m].
+        """
+    def obstacle_cells(self, sigmas: float = 2.0, *, unknown: typing.Literal['free', 'occupied'] = 'free', bounds: numpy.typing.ArrayLike | None = None) -> list[Voxels]:
+        """
+        What World.add_sdf() adds: one Voxels per edge length, finest first.
         """
     def points(self) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
@@ -4159,6 +4180,104 @@ class ProbabilisticSdf:
     def voxel(self) -> float:
         """
         Distance of neighbouring voxels [m].
+        """
+class OccupancyReport:
+    """
+    What became of a frame; counts are of pixels.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def invalid(self) -> int:
+        """
+        NaN, infinite or negative, hence not measured.
+        """
+    @property
+    def measured(self) -> int:
+        """
+        Pixels with a depth.
+        """
+    @property
+    def out_of_range(self) -> int:
+        """
+        Nearer or farther than the camera sees.
+        """
+    @property
+    def used(self) -> int:
+        """
+        Pixels whose ray went into the map.
+        """
+class OccupancyMap:
+    """
+    An octree of free, occupied and unknown cells, filled by OctoMap's ray insertion from the depth images that a
+    ProbabilisticSdf takes: surfaces are coarser, and it knows also which space was looked through.
+    """
+    @staticmethod
+    def load(path: str | os.PathLike[str], *, resolution: float = 0.02, hit: float = 0.7, miss: float = 0.4, max_range: float = ...) -> OccupancyMap:
+        """
+        Reads an OctoMap file, whose resolution replaces the one given. Raises IoError when it is missing, another
+        kind of tree, truncated or damaged.
+        
+        Keyword options:
+            resolution: float = 0.02  # edge of the smallest cell [m]
+            hit: float = 0.7  # probability of being occupied that a cell gets from one depth in it; in (0.5, 1)
+            miss: float = 0.4  # the same from a ray through it; in (0, 0.5)
+            max_range: float = inf  # of a longer ray only the first part counts, as free [m]
+        """
+    def __init__(self, *, resolution: float = 0.02, hit: float = 0.7, miss: float = 0.4, max_range: float = ...) -> None:
+        """
+        An empty map.
+        
+        Keyword options:
+            resolution: float = 0.02  # edge of the smallest cell [m]
+            hit: float = 0.7  # probability of being occupied that a cell gets from one depth in it; in (0.5, 1)
+            miss: float = 0.4  # the same from a ray through it; in (0, 0.5)
+            max_range: float = inf  # of a longer ray only the first part counts, as free [m]
+        """
+    def __repr__(self) -> str:
+        ...
+    def integrate(self, image: DepthImage, camera: DepthCamera) -> OccupancyReport:
+        """
+        Casts a ray through every measured pixel in range; every cell changes at most once. Raises InvalidInput,
+        with the map as it was, for an image of another size or other intrinsics than the camera's, nothing
+        measured, a wrong depth scale, a pose that is no rigid motion, ends beyond 32767 cells from the origin.
+        """
+    def obstacle_cells(self, *, unknown: typing.Literal['free', 'occupied'] = 'free', bounds: numpy.typing.ArrayLike | None = None) -> list[Voxels]:
+        """
+        What World.add_occupancy() adds: one Voxels per edge length, finest first.
+        """
+    def query(self, points: numpy.typing.ArrayLike) -> tuple[numpy.typing.NDArray[numpy.bool_], numpy.typing.NDArray[numpy.bool_]]:
+        """
+        (occupied, known) at `points` (n, 3) [m]: free where known and not occupied.
+        """
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """
+        Writes OctoMap's format: .bt (occupied or free) or .ot (with probabilities). Raises IoError naming the file.
+        """
+    @property
+    def bounds(self) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        (lower, upper) corner of the known cells [m]. Raises InvalidInput while nothing is known.
+        """
+    @property
+    def cells(self) -> int:
+        """
+        Leaves, free and occupied.
+        """
+    @property
+    def frames(self) -> int:
+        """
+        Integrated since it was made or loaded.
+        """
+    @property
+    def memory(self) -> int:
+        """
+        [bytes]
+        """
+    @property
+    def resolution(self) -> float:
+        """
+        Edge of the smallest cell [m].
         """
 class Graspability:
     """
@@ -4547,6 +4666,8 @@ def _ik_option_table() -> dict[str, typing.Any]:
 def _manipulation_option_table() -> dict[str, typing.Any]:
     ...
 def _motion_option_table() -> dict[str, typing.Any]:
+    ...
+def _occupancy_option_table() -> dict[str, typing.Any]:
     ...
 def _pipe_grasp_option_table() -> dict[str, typing.Any]:
     ...

@@ -26,7 +26,7 @@ def build_parser() -> argparse.ArgumentParser:
     parser = _Parser(prog="mmgrasp", description="Planning for mobile manipulators.")
     parser.add_argument("--version", action="version", version=f"mmgrasp {_core.__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="command", parser_class=_Parser)
-    for add in (_add_plan, _add_verify, _add_check, _add_reproduce, _add_bench, _add_view):
+    for add in (_add_plan, _add_verify, _add_check, _add_scan, _add_reproduce, _add_bench, _add_view):
         add(commands)
     return parser
 
@@ -95,6 +95,46 @@ def _add_check(commands: Commands) -> None:
     )
     parser.add_argument("--write-srdf", type=_path, metavar="FILE", help="write an SRDF with the computed link pairs")
     parser.add_argument("--json", action="store_true")
+
+
+def _add_scan(commands: Commands) -> None:
+    parser = commands.add_parser(
+        "scan", help="make a map of surfaces from a folder of depth images with poses, and a report"
+    )
+    parser.add_argument(
+        "frames", type=_path, help="folder in the layout of TUM RGB-D, Redwood / Open3D, 7-Scenes or mmgrasp's .npz"
+    )
+    parser.add_argument(
+        "-o",
+        "--out",
+        type=_path,
+        required=True,
+        metavar="DIR",
+        help="folder to write into; a run goes on where it ended",
+    )
+    parser.add_argument(
+        "--sensors",
+        type=_path,
+        metavar="FILE",
+        help="YAML about the cameras (default: sensors.yaml in the folder, if any)",
+    )
+    parser.add_argument(
+        "--voxel", type=_voxel, metavar="M", help="edge of a voxel [m] (default: what a pixel covers, at least 0.002)"
+    )
+    parser.add_argument(
+        "--truncation",
+        type=_voxel,
+        metavar="M",
+        help="how far from a surface distances are kept [m] (default: 5 voxels, more for noisy cameras)",
+    )
+    parser.add_argument(
+        "--every", type=_count(1, 1_000_000, "frames"), default=1, metavar="N", help="take every Nth frame (default 1)"
+    )
+    parser.add_argument("--up", type=_direction, metavar="X,Y,Z", help="where up is in the world of the poses")
+    parser.add_argument("--max-memory", type=_megabytes, metavar="MB", help="largest map in memory [MB] (default 2000)")
+    parser.add_argument("--start-over", action="store_true", help="make the map anew instead of going on with it")
+    parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out of the report")
+    parser.add_argument("--json", action="store_true", help="print the summary as JSON")
 
 
 def _add_reproduce(commands: Commands) -> None:
@@ -185,13 +225,39 @@ _seed = _count(0, 2**31 - 1, "(any)")
 
 
 def _length(text: str) -> float:
-    try:
-        value = float(text) if text.isascii() and "_" not in text else math.nan
-    except ValueError:
-        value = math.nan
+    value = _number(text)
     if not 0 <= value <= 1:
         raise argparse.ArgumentTypeError(f"{text!r}: must be a number from 0 to 1 m")
     return value
+
+
+def _voxel(text: str) -> float:
+    value = _number(text)
+    if not 1e-4 <= value <= 10:
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a number from 0.0001 to 10 m")
+    return value
+
+
+def _megabytes(text: str) -> float:
+    value = _number(text)
+    if not 1 <= value <= 1e7:
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a number from 1 to 10000000 MB")
+    return value * 1e6
+
+
+def _direction(text: str) -> list[float]:
+    values = [_number(part) for part in text.split(",")]
+    if len(values) != 3 or not all(abs(x) <= 1e6 for x in values) or not any(abs(x) > 1e-6 for x in values):
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a direction X,Y,Z other than 0,0,0")
+    return values
+
+
+def _number(text: str) -> float:
+    """NaN for what is none."""
+    try:
+        return float(text) if text.isascii() and "_" not in text else math.nan
+    except ValueError:
+        return math.nan
 
 
 def _package(text: str) -> tuple[str, str]:

@@ -1,6 +1,7 @@
 """The command `mmgrasp`.
 
-Exit codes: 0 done, 1 a plan has faults, a robot cannot be planned for or an exact value of a paper is missed, 2 bad input, 3 no plan was found, 130 Ctrl-C.
+Exit codes: 0 done, 1 a plan has faults, a robot cannot be planned for or an exact value of a paper is missed, 2 bad input, 3 no plan was found or no
+frame could be used, 130 Ctrl-C.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ from .arguments import build_parser
 from .check import check_robot, describe
 from .console import Reporter, open_streams
 from .output_folder import OutputFolder
+from .scan import run_scan
 from .tables import bench_table, drive_by_summary, print_verdict, summary
 
 if TYPE_CHECKING:
@@ -223,6 +225,7 @@ COMMANDS = {
     "plan": run_plan,
     "verify": run_verify,
     "check": run_check,
+    "scan": run_scan,
     "reproduce": run_reproduce,
     "bench": run_bench,
     "view": run_view,
@@ -245,7 +248,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("mmgrasp: the input is nested too deeply", file=sys.stderr)
         return BAD_INPUT
     except MemoryError:
-        print("mmgrasp: out of memory: use a coarser grid, fewer samples or fewer parts", file=sys.stderr)
+        print(
+            "mmgrasp: out of memory: use a coarser grid, larger voxels, fewer samples or fewer parts", file=sys.stderr
+        )
         return BAD_INPUT
     except KeyboardInterrupt:
         print("mmgrasp: interrupted", file=sys.stderr)

@@ -80,6 +80,7 @@ SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
         set(),
     ),
     ("ProbabilisticSdf", "A map of surfaces, keywords (`SdfOptions`)", _core._sdf_option_table, set()),
+    ("OccupancyMap", "An octree of cells, keywords (`OccupancyOptions`)", _core._occupancy_option_table, set()),
     ("fit_cuboids", "Box-shaped parts of a cloud, keywords (`CuboidFitOptions`)", _core._cuboid_option_table, set()),
 )
 

@@ -1,4 +1,4 @@
-"""The folder that `mmgrasp plan` writes: all of one plan and nothing of an older one."""
+"""The folder that `mmgrasp plan` or `mmgrasp scan` writes: all of one run and nothing of an older one."""
 
 from __future__ import annotations
 
@@ -6,31 +6,58 @@ import contextlib
 import json
 import os
 import shutil
+import signal
 import tempfile
+import threading
 from collections.abc import Iterator
+from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
 
 from .._core import InvalidInput, IoError
 from .._files import check_folder, read_text, write_file
 
 LIST = "files.json"
-OWN = ("plan.json", "drive_by.json", "report.html", LIST, "trajectories")
-PICTURES = ("topview.png", "regions.png", "stop_*.png", "pick_*.png")
+PLAN_FILES = (
+    *("plan.json", "drive_by.json", "report.html", LIST, "trajectories"),
+    *("topview.png", "regions.png", "stop_*.png", "pick_*.png"),
+)
 _DRAFT = ".writing."
 _LARGEST_LIST = 100_000_000
 
 
-class OutputFolder:
-    """One folder, made ready before the planning and filled after it.
+@contextlib.contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Ctrl-C within the block counts when it ends. (Only the main thread is ever interrupted.)"""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    came: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_DFL if before is None else before)  # None: not Python's
+    if came:
+        signal.raise_signal(signal.SIGINT)
 
-    Everything is written beside its place and moved there at the end; what files.json lists of an earlier plan goes. A folder that holds
-    files under our names which it does not list is refused: they could be somebody's, and played for the new plan's.
+
+class OutputFolder:
+    """One folder, made ready before the work and filled after it. `own`: patterns of the names that the command writes.
+
+    Everything is written beside its place and moved there at the end; what files.json lists of an earlier run goes. A folder that holds
+    files under our names which it does not list is refused: they could be somebody's, and played for the new run's. So is one
+    whose files.json is that of another command.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, own: tuple[str, ...] = PLAN_FILES) -> None:
         self.path = Path(os.path.realpath(path))
+        self._own = own
         check_folder(self.path)
-        foreign = sorted(self._own_files() - self._listed())
+        listed = self._listed()
+        others = sorted(name for name in listed if not any(fnmatchcase(name.split("/")[0], one) for one in own))
+        if others:
+            raise IoError(f"{path}: holds {others[0]}, written by another command of mmgrasp: choose another folder")
+        foreign = sorted(self._own_files() - listed)
         if foreign:
             names = ", ".join(foreign[:3]) + (f" and {len(foreign) - 3} more" if len(foreign) > 3 else "")
             raise IoError(
@@ -38,10 +65,10 @@ class OutputFolder:
             )
 
     @contextlib.contextmanager
-    def filled(self, *, added: bool = False) -> Iterator[Path]:
+    def filled(self, *, added: bool = False, replacing: str = "") -> Iterator[Path]:
         """A folder to write into; its files come to their places when the block ends without an error.
 
-        `added`: to what this run has written already, instead of in the place of everything.
+        `added`: to what is there already, instead of in the place of everything; older files of the pattern `replacing` go all the same.
         """
         self.path.mkdir(parents=True, exist_ok=True)
         for left in self.path.glob(f"{_DRAFT}*"):  # of a run that was killed
@@ -49,7 +76,8 @@ class OutputFolder:
         draft = Path(tempfile.mkdtemp(dir=self.path, prefix=_DRAFT))
         try:
             yield draft
-            self._take_over(draft, added)
+            with uninterrupted():
+                self._take_over(draft, added, replacing)
         except OSError as error:
             if isinstance(error, IoError):
                 raise
@@ -57,21 +85,19 @@ class OutputFolder:
         finally:
             shutil.rmtree(draft, ignore_errors=True)
 
-    def _take_over(self, draft: Path, added: bool) -> None:
-        new = {str(p.relative_to(draft).as_posix()) for p in draft.rglob("*") if p.is_file()} | {LIST}
+    def _take_over(self, draft: Path, added: bool, replacing: str) -> None:
+        written = {str(p.relative_to(draft).as_posix()) for p in draft.rglob("*") if p.is_file()} | {LIST}
         old = self._listed()
-        replaced = set(new)
-        if added:
-            new |= old
+        new = written | {name for name in old if added and not fnmatchcase(name, replacing)}
         self._write_list(old | new)  # whoever is killed between here and the end leaves only files that are listed
+        for name in sorted(written - {LIST}):
+            (self.path / name).parent.mkdir(exist_ok=True)
+            os.replace(draft / name, self.path / name)
         for name in sorted(old - new):
             with contextlib.suppress(FileNotFoundError):
                 (self.path / name).unlink()
             with contextlib.suppress(OSError):
                 (self.path / name).parent.rmdir()
-        for name in sorted(replaced - {LIST}):
-            (self.path / name).parent.mkdir(exist_ok=True)
-            os.replace(draft / name, self.path / name)
         self._write_list(new)
 
     def _write_list(self, names: set[str]) -> None:
@@ -79,10 +105,10 @@ class OutputFolder:
 
     def _own_files(self) -> set[str]:
         """What lies under names of ours: whatever is in `trajectories`, and links, folders or devices in the place of a file."""
-        found = {p.name for pattern in (*OWN, *PICTURES) for p in self.path.glob(pattern)}
-        found |= {name for name in OWN if os.path.lexists(self.path / name)}
+        found = {p.name for pattern in self._own for p in self.path.glob(pattern)}
+        found |= {name for name in self._own if os.path.lexists(self.path / name)}
         inside = self.path / "trajectories"
-        if inside.is_dir() and not inside.is_symlink():
+        if "trajectories" in found and inside.is_dir() and not inside.is_symlink():
             found.remove("trajectories")
             found |= {f"trajectories/{p.name}" for p in inside.iterdir()}
         return found

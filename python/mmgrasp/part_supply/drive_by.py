@@ -200,7 +200,7 @@ def _in_passing(
     dwell = closing + SETTLING
     tasks = [
         _core.DriveByTask(T_before, tolerance=[0.003] * 3 + [0.02] * 3, max_tool_speed=APPROACH_SPEED),
-        _core.DriveByTask(T_grasp, dwell=dwell, object=part.name, touching=0),
+        _core.DriveByTask(T_grasp, dwell=dwell, object=part.name),
     ]
     # The arm's numbers as the pick before left them: continuous joints may be whole turns from home.
     start = np.array([*here, *merged[0].trajectory.positions[0]])

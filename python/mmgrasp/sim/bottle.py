@@ -52,7 +52,7 @@ class Bottle:
             T_before = T_grasp @ _core.pose([-0.12, 0, 0])
             dwell = (OPENING - 2 * RADIUS) / 0.1 + 0.15
             before = _core.DriveByTask(T_before, tolerance=[0.005] * 3 + [0.03] * 3)
-            return [before, _core.DriveByTask(T_grasp, dwell=dwell, object="bottle", touching=0)]
+            return [before, _core.DriveByTask(T_grasp, dwell=dwell, object="bottle")]
         push = {
             "opening": OPENING,
             "object_width": 2 * RADIUS,

@@ -6,7 +6,9 @@
 #include <limits>
 #include <thread>
 
+#include "mmgrasp/collision/checker.hpp"
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/random.hpp"
 #include "support/fetchlike.hpp"
 #include "support/vec.hpp"
 
@@ -214,9 +216,82 @@ TEST(DriveBy, CarriesThePartItTook) {
   held.attach("part", "gripper_link", T_grasp.inverse() * world.objects().at("part").T_world_object);
   CollisionChecker checker(group, held);
   const auto& t = *r.trajectory;
-  const double from = t.times()[static_cast<std::size_t>(r.events[0].waypoint) + 2];
+  const double from = t.times()[static_cast<std::size_t>(r.events[0].waypoint)];
   for (int i = 0; i <= 400; ++i)
     EXPECT_FALSE(checker.first_contact(t.at(from + (t.duration() - from) * i / 400)).has_value()) << i;
+}
+
+/// A can on a table, at rest on it or a millimetre above: neither arm nor open hand meets it before it is taken, and
+/// table, can and hand keep clear of each other afterwards, at times between all waypoints.
+TEST(DriveBy, NeverGoesThroughThePartItTakes) {
+  const JointGroup closed = test::fetchlike_whole_body();
+  const Robot& robot = closed.robot();
+  const JointGroup group = closed.with_reference(robot.values(
+      {{"torso_lift_joint", 0.2}, {"left_gripper_finger_joint", 0.05}, {"right_gripper_finger_joint", 0.05}}));
+  Rng rng(5);
+  int solved = 0;
+  for (int i = 0; i < 4; ++i) {
+    const double side = i % 2 ? -1 : 1, height = 0.14, gap = i < 2 ? 0 : 1e-3;
+    const double x = rng.uniform(2, 8), y = side * rng.uniform(0.7, 1.3), z = rng.uniform(0.6, 0.9);
+    const Pose T_can = pose_from_xyz_rpy({x, y, z}, {0, 0, side * rng.uniform(0.2, 1.3)});
+    World world;
+    world.add("table", Box{{0.5, 0.5, z - height / 2}}, pose_from_xyz_rpy({x, y, (z - height / 2) / 2}, {0, 0, 0}));
+    world.add("can", Cylinder{0.025, height}, Eigen::Translation3d(0, 0, gap) * T_can);
+    DriveByTask task = grasp_at(T_can * Eigen::Translation3d(-0.05, 0, 0));
+    task.object = "can";
+    task.dwell = i % 2 ? 0 : 0.5;
+    const DriveByResult r = plan_drive_by(group, world, kStart, {task}, {kGoal, kGoal});
+    if (r.outcome != Outcome::solved) continue;
+    ++solved;
+    expect_sound(r, {task});
+    const WholeBodyTrajectory& t = *r.trajectory;
+    const double taken = r.events[0].time, held = r.events[0].held_time;
+    CollisionChecker before(group, world);
+    World carried = world;
+    const VectorXd q = t.at(held);
+    carried.attach("can", "gripper_link",
+                   group.fk(q).inverse() * (Eigen::Translation3d(0, 0, std::max(gap, 1e-3)) * T_can));
+    CollisionChecker after(group, carried);
+    for (int k = 0; k <= 1000; ++k) {
+      const VectorXd ahead = t.at(taken * k / 1000), later = t.at(held + (t.duration() - held) * k / 1000);
+      EXPECT_FALSE(before.first_contact(ahead).has_value()) << i << ": " << describe(*before.first_contact(ahead));
+      EXPECT_FALSE(after.first_contact(later).has_value())
+          << i << " " << k << " " << after.distance(later).value << ": " << describe(*after.first_contact(later));
+    }
+  }
+  EXPECT_GE(solved, 3);
+}
+
+TEST(DriveBy, SaysWhenTheHandTouchesThePartAtTheTask) {
+  const JointGroup closed = test::fetchlike_whole_body();  // Fingers together: they would have to be inside the can.
+  const Pose T_can = pose_from_xyz_rpy({5, -1, 0.75}, {0, 0, -1});
+  World world;
+  world.add("can", Cylinder{0.025, 0.14}, T_can);
+  DriveByTask task = grasp_at(T_can);
+  task.object = "can";
+  const DriveByResult r = plan_drive_by(closed, world, kStart, {task}, {kGoal, kGoal});
+  EXPECT_FALSE(r.usable());
+  EXPECT_NE(r.report.find("touches 'can'"), std::string::npos) << r.report;
+}
+
+/// The base drives on while the tool's pose is kept: also between waypoints, for as long as it dwells.
+TEST(DriveBy, ADwellingToolStaysWhereItIs) {
+  const JointGroup group = test::fetchlike_whole_body();
+  for (const double dwell : {0.6, 1.5, 2.5}) {
+    DriveByTask task = grasp_at(pose_from_xyz_rpy({5, -1, 0.75}, {0, 0.2, -1}));
+    task.dwell = dwell;
+    DriveByOptions options;
+    options.waypoints = 45;
+    const DriveByResult r = plan_drive_by(group, World(), kStart, {task}, {kGoal, kGoal}, options);
+    expect_sound(r, {task});
+    const WholeBodyTrajectory& t = *r.trajectory;
+    const double from = r.events[0].time, to = from + dwell;
+    for (int k = 0; k <= 500; ++k) {
+      const Pose off = task.candidates[0].inverse() * group.fk(t.at(from + (to - from) * k / 500));
+      EXPECT_LT(off.translation().cwiseAbs().maxCoeff(), 2e-3) << dwell;
+      EXPECT_LT(Eigen::AngleAxisd(off.linear()).angle(), 0.03) << dwell;  // 0.02 about each axis
+    }
+  }
 }
 
 TEST(DriveBy, ReturnsTheFastestOfThePlansOfEachCandidate) {

@@ -23,6 +23,8 @@ struct MMGRASP_EXPORT DepthNoise {
 
   /// [m]; `incidence` in [0, pi/2).
   double sigma(double depth, double incidence = 0) const;
+  /// Throws InvalidInput unless the coefficients are finite, slant is not negative and sigma is positive at some depth.
+  void check() const;
   /// Throws InvalidInput unless finite and positive from `nearest` to `farthest` [m].
   void check(double nearest, double farthest) const;
 };

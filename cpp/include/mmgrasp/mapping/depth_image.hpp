@@ -16,9 +16,10 @@ struct MMGRASP_EXPORT DepthImage {
   PinholeCamera camera;
   Pose T_world_camera = Pose::Identity();
   std::vector<float> depth;  ///< width * height, row by row.
+  int invalid = 0;           ///< Pixels that clean() found NaN, infinite or negative.
 
   /// Throws InvalidInput on a bad camera or a wrong number of pixels. NaN, infinity and negative depths mean "nothing
-  /// measured" too: clean() turns them into 0.
+  /// measured" too: clean() turns them into 0 and counts them.
   void check() const;
   void clean();
   float at(int u, int v) const { return depth[static_cast<std::size_t>(v) * camera.width + u]; }

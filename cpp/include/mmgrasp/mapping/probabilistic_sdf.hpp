@@ -11,6 +11,7 @@
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/geometry/distance_field.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
+#include "mmgrasp/geometry/shape.hpp"
 #include "mmgrasp/mapping/depth_camera.hpp"
 #include "mmgrasp/mapping/depth_image.hpp"
 
@@ -44,6 +45,7 @@ struct MMGRASP_EXPORT IntegrationReport {
   int too_noisy = 0;       ///< Standard deviation above a third of the truncation: cutting would bias the mean.
   int without_normal = 0;  ///< Too few neighbours on the same surface.
   int too_slanted = 0;     ///< Incidence above max_incidence.
+  int invalid = 0;         ///< NaN, infinite or negative, hence not measured.
   int new_blocks = 0;
   /// Share of this frame's pixels that confirm an earlier frame where both see the same place; NaN when they have too
   /// little in common.
@@ -80,11 +82,21 @@ struct MMGRASP_EXPORT SdfPoints {
   Eigen::VectorXd sigma;    ///< [m]
 };
 
-/// What a distance field says where no camera saw.
+/// What a map says where no camera saw.
 enum class UnknownSpace {
-  unknown,   ///< NaN: the asker decides.
-  free,      ///< As far as the truncation from any surface.
-  occupied,  ///< As deep as the truncation inside.
+  unknown,   ///< NaN: the asker decides. Distance fields only.
+  free,      ///< Distance fields: as far as the truncation from any surface.
+  occupied,  ///< Distance fields: as deep as the truncation inside.
+};
+
+/// What of a map is an obstacle.
+struct MMGRASP_EXPORT SdfObstacleOptions {
+  double sigmas = 2.0;  ///< Surfaces are taken to lie this many standard deviations nearer; >= 0.
+  /// Space that is not known to be in front of a surface: free or occupied. A map knows what is in front of a surface
+  /// only about two voxels deep; for what cameras looked through see OccupancyMap.
+  UnknownSpace unknown = UnknownSpace::free;
+  Eigen::AlignedBox3d bounds;  ///< Where unknown space is occupied [m]; empty: in the map's bounds.
+  void check() const;
 };
 
 /// A map of surfaces seen by depth cameras: the signed distance of every voxel near a surface, as a normal distribution
@@ -135,10 +147,19 @@ class MMGRASP_EXPORT ProbabilisticSdf {
   /// The mesh's vertices with their normals.
   SdfPoints points() const;
 
+  /// The map as an obstacle of collision checks: solid cells of the voxels' lattice, one entry per edge length, finest
+  /// first; none from a map without a surface. They hold
+  /// - every point where mean - sigmas * sigma, as query() gives them, is zero or less, and the rest of its cell,
+  /// - what is known behind the surface, about two voxels deep,
+  /// - everything that these enclose and no camera saw: a body wholly inside a surface seen all around is not free,
+  /// - with UnknownSpace::occupied all of the bounds that is not known to be in front of a surface.
+  /// Throws InvalidInput on a bad option, naming it. docs/methods/mapping.md says what is proven.
+  std::vector<Voxels> obstacle_cells(const SdfObstacleOptions& options = {}) const;
+
   /// The field mean - sigmas * sigma, so that a surface is nearer than it says with a probability that `sigmas` bounds.
   /// Later frames do not change it. Distances are to seen surfaces: how far unknown space is from a known point is not
-  /// measured, whatever `unknown` says. Not for World::add_field yet: beside carved space, and where sigma changes
-  /// from voxel to voxel, it can exceed the true distance by more than its stated error.
+  /// measured, whatever `unknown` says. Not for World::add_field: beside carved space, and where sigma changes from
+  /// voxel to voxel, it can exceed the true distance by more than its stated error; obstacle_cells() is for that.
   std::shared_ptr<const DistanceField> distance_field(double sigmas = 2.0,
                                                       UnknownSpace unknown = UnknownSpace::unknown) const;
 

@@ -34,11 +34,11 @@ struct MMGRASP_EXPORT DriveByTask {
   double max_tool_speed =
       std::numeric_limits<double>::infinity();  ///< Speed limit of the tip at the task [m/s]; > 0 (P1 4.3).
   double dwell = 0;  ///< The tool's pose is kept that long [s], e.g. while a gripper closes; >= 0.
-  /// Object of the world that is held afterwards, in place of what was held before; empty: none. The hand may touch it
-  /// from `touching` intervals before the task on, and it may touch what it stands on until as many after. 0: the open
-  /// hand keeps clear of it up to the task, and what is held keeps clear of everything from the task on.
+  /// Object of the world that is held afterwards, in place of what was held before; empty: none. It is an obstacle for
+  /// the whole robot, the open hand included, until the task is reached; while the tool dwells there the fingers alone
+  /// may touch it, and once held it keeps clear of everything. One that rests on something counts as 1 mm higher from
+  /// then on.
   std::string object;
-  int touching = 2;                 ///< >= 0
   std::optional<DriveByPush> push;  ///< Without dwell, max_tool_speed, tolerance and free axes.
 };
 

@@ -46,11 +46,14 @@ struct MMGRASP_EXPORT WholeBodyProblem {
   Eigen::VectorXd start_velocity, end_velocity;  ///< Drive velocities (see drive_names); empty: at rest.
   std::vector<WholeBodySegment> segments;        ///< One more than there are tasks in the plain case.
   std::vector<ToolConstraint> tool;              ///< What the tool keeps at which waypoint.
-  /// Shortest time in which an acceleration may go from 0 to its limit [s], >= 0; 0: no limit on jerk.
+  /// Shortest time in which an acceleration may go from 0 to its limit [s], >= 0; 0: no limit on jerk. From rest and
+  /// to rest accelerations begin and end at 0.
   double jerk_time = 0;
 
   int intervals() const;
   int waypoints() const { return intervals() + 1; }
+  bool starts_at_rest() const { return start_velocity.size() == 0 || start_velocity.isZero(); }
+  bool ends_at_rest() const { return end_velocity.size() == 0 || end_velocity.isZero(); }
   /// Waypoint at the end of segment i.
   int segment_end(int segment) const;
   /// Throws InvalidInput naming what is contradictory: lengths, limits, tasks out of order, zero-length segments,

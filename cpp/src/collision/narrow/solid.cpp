@@ -1,8 +1,8 @@
 #include "collision/narrow/solid.hpp"
 
-#include <map>
 #include <mutex>
 #include <numeric>
+#include <unordered_map>
 
 #include "collision/narrow/convex_clearance.hpp"
 #include "collision/narrow/field_body.hpp"
@@ -190,13 +190,22 @@ void set_mesh(Solid& solid, const TriangleMesh& mesh, std::vector<double>& hull_
   }
 }
 
+using CellKey = std::array<long, 3>;
+struct CellKeyHash {
+  std::size_t operator()(const CellKey& key) const {
+    std::uint64_t sum = 0;
+    for (const long each : key) sum = (sum ^ static_cast<std::uint64_t>(each)) * 0x9e3779b97f4a7c15ull;
+    return static_cast<std::size_t>(sum ^ (sum >> 32));
+  }
+};
+
 // One cell of each group of cells that touch (27 neighbours).
 std::vector<Eigen::Vector3d> cell_groups(const std::vector<Eigen::Vector3d>& cells, double resolution) {
-  using Key = std::array<long, 3>;
-  std::map<Key, int> index;
+  std::unordered_map<CellKey, int, CellKeyHash> index;
+  index.reserve(cells.size());
   const auto key = [&](const Eigen::Vector3d& c) {
     const Eigen::Vector3d k = (c / resolution).array().floor();
-    return Key{static_cast<long>(k[0]), static_cast<long>(k[1]), static_cast<long>(k[2])};
+    return CellKey{static_cast<long>(k[0]), static_cast<long>(k[1]), static_cast<long>(k[2])};
   };
   std::vector<int> parent(cells.size());
   std::iota(parent.begin(), parent.end(), 0);
@@ -206,14 +215,17 @@ std::vector<Eigen::Vector3d> cell_groups(const std::vector<Eigen::Vector3d>& cel
   };
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const auto [it, is_new] = index.emplace(key(cells[i]), static_cast<int>(i));
-    if (!is_new) parent[find(static_cast<int>(i))] = find(it->second);
+    if (!is_new) parent[i] = it->second;
   }
   for (const auto& [k, i] : index) {
-    for (int n = 0; n < 27; ++n) {
+    for (int n = 0; n < 13; ++n) {  // the others see this cell as their neighbour
       const auto it = index.find({k[0] + n % 3 - 1, k[1] + n / 3 % 3 - 1, k[2] + n / 9 - 1});
       if (it == index.end()) continue;
       const bool touch = (cells[it->second] - cells[i]).cwiseAbs().maxCoeff() <= resolution * (1 + 1e-9);
-      if (touch) parent[find(it->second)] = find(i);
+      if (!touch) continue;
+      // The group's first cell stands for it.
+      const int one = find(it->second), other = find(i);
+      parent[std::max(one, other)] = std::min(one, other);
     }
   }
   std::vector<Eigen::Vector3d> out;

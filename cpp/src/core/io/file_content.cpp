@@ -24,4 +24,21 @@ std::string file_content(const std::string& path, const std::string& kind) {
   return text;
 }
 
+void write_file(const std::string& path, const std::string& kind, std::initializer_list<std::string_view> parts) {
+  const std::string temporary = path + ".part";
+  const auto fail = [&](const std::string& reason) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw IoError(kind + " '" + path + "': " + reason);
+  };
+  std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
+  if (!file) throw IoError(kind + " '" + path + "': cannot be written");
+  for (const std::string_view part : parts) file.write(part.data(), static_cast<std::streamsize>(part.size()));
+  file.close();
+  if (!file) fail("cannot be written whole");
+  std::error_code error;
+  std::filesystem::rename(temporary, path, error);
+  if (error) fail("cannot be written (" + error.message() + ")");
+}
+
 }  // namespace mmgrasp::detail

@@ -30,13 +30,7 @@ class OctreeReader {
   OctreeReader(const std::string& path, std::string_view content) : path_(path), content_(content) {}
 
   std::vector<Voxels> read() {
-    read_header();
-    if (announced_ == 0) fail("holds no occupied leaf");
-    nodes_ = 1;
-    binary_ ? read_binary({}) : read_full({});
-    if (nodes_ != announced_) {
-      fail("its header announces " + std::to_string(announced_) + " nodes, it holds " + std::to_string(nodes_));
-    }
+    check();
     if (leaves_.empty()) fail("holds no occupied leaf");
     std::vector<Voxels> result;
     for (auto it = leaves_.rbegin(); it != leaves_.rend(); ++it) {
@@ -44,6 +38,22 @@ class OctreeReader {
     }
     return result;
   }
+
+  /// Goes through the tree.
+  void check() {
+    read_header();
+    if (announced_ == 0) return;
+    nodes_ = 1;
+    binary_ ? read_binary({}) : read_full({});
+    if (nodes_ != announced_) {
+      fail("its header announces " + std::to_string(announced_) + " nodes, it holds " + std::to_string(nodes_));
+    }
+  }
+
+  double resolution() const { return resolution_; }
+  bool binary() const { return binary_; }
+  long nodes() const { return nodes_; }
+  std::size_t data() const { return data_; }
 
  private:
   [[noreturn]] void fail(const std::string& reason) const { throw IoError("octree file '" + path_ + "': " + reason); }
@@ -67,7 +77,7 @@ class OctreeReader {
       const std::string_view key = line.substr(0, blank);
       const std::string_view value = blank == std::string_view::npos ? std::string_view() : line.substr(blank + 1);
       if (key == "data") {
-        position_ = begin;
+        data_ = position_ = begin;
         break;
       }
       if (key == "id") id = value;
@@ -138,7 +148,7 @@ class OctreeReader {
 
   const std::string& path_;
   std::string_view content_;
-  std::size_t position_ = 0;
+  std::size_t position_ = 0, data_ = 0;
   bool binary_ = true;
   double resolution_ = 0;
   long announced_ = -1;
@@ -154,6 +164,18 @@ std::vector<Voxels> detail::parse_octree(const std::string& path, std::string_vi
 
 std::vector<Voxels> load_octree(const std::string& path) {
   return detail::parse_octree(path, detail::file_content(path, "octree file"));
+}
+
+OctreeFile read_octree_file(const std::string& path) {
+  OctreeFile out;
+  out.content = detail::file_content(path, "octree file");
+  OctreeReader reader(path, out.content);
+  reader.check();
+  out.resolution = reader.resolution();
+  out.binary = reader.binary();
+  out.nodes = reader.nodes();
+  out.data = reader.data();
+  return out;
 }
 
 }  // namespace mmgrasp

@@ -16,11 +16,19 @@ double DepthNoise::sigma(double depth, double incidence) const {
   return out;
 }
 
-void DepthNoise::check(double nearest, double farthest) const {
+void DepthNoise::check() const {
   const double fields[] = {constant, linear, quadratic, slant, slant_power};
   const char* names[] = {"noise.constant", "noise.linear", "noise.quadratic", "noise.slant", "noise.slant_power"};
   for (int k = 0; k < 5; ++k) require(std::isfinite(fields[k]), names[k], fields[k], "must be finite");
   require(slant >= 0, "noise.slant", slant, "must be zero or positive [m]");
+  // Above zero in front of the camera: at the lens, far away, or at the vertex between.
+  const bool somewhere = constant > 0 || quadratic > 0 || (quadratic == 0 && linear > 0) ||
+                         (quadratic < 0 && linear > 0 && constant > linear * linear / (4 * quadratic));
+  require(somewhere, "noise.constant", constant, "must make a positive standard deviation [m] at some depth");
+}
+
+void DepthNoise::check(double nearest, double farthest) const {
+  check();
   // A parabola is least at an end or at its vertex.
   double least = std::min(sigma(nearest), sigma(farthest));
   const double vertex = quadratic != 0 ? -linear / (2 * quadratic) : nearest;

@@ -82,13 +82,21 @@ void check_pose(const KeyFrame& key_frame, const DepthImage& image, const SdfOpt
   const Agreement given = key_frame.compare(image, T_second.inverse(Eigen::Isometry) * T_first, tolerance);
   const Agreement inverted = key_frame.compare(image, T_second * T_first.inverse(Eigen::Isometry), tolerance);
   // Both ways nearly the same view say nothing.
-  if (inverted.confirmed >= kEnough && inverted.share() > 0.8 && inverted.confirmed > 2 * given.confirmed &&
-      given.share() < 0.5) {
-    throw InvalidInput("T_world_camera: this frame confirms " + percent(given.share()) +
-                       " of what an earlier one saw, but " + percent(inverted.share()) +
-                       " when the poses are inverted: poses must lead from the camera to the world");
+  const bool fits_inverted = inverted.confirmed >= kEnough && inverted.share() > 0.8 &&
+                             inverted.confirmed > 2 * given.confirmed && given.share() < 0.5;
+  const std::string inverted_says = percent(inverted.share()) + " when the poses are inverted";
+  if (given.seen < kEnough) {
+    // Views that hardly overlap, as of a camera that turns on the spot, are not contradicted by what they show.
+    if (fits_inverted)
+      report.warning = "this frame and an earlier one hardly see the same place, but agree on " + inverted_says +
+                       ": do the poses lead from the camera to the world?";
+    return;
   }
-  if (given.seen < kEnough) return;
+  if (fits_inverted) {
+    throw InvalidInput("T_world_camera: this frame confirms " + percent(given.share()) +
+                       " of what an earlier one saw, but " + inverted_says +
+                       ": poses must lead from the camera to the world");
+  }
   report.agreement = given.share();
   if (given.share() < 0.25) {
     report.warning = "this frame confirms only " + percent(given.share()) +

@@ -387,6 +387,7 @@ IntegrationReport integrate_frame(SdfGrid& grid, DepthImage image, const DepthCa
   if (grid.frames > 0) check_pose(grid.key_frame, image, grid.options, checked);
   const FramePlanes frame = frame_planes(image, camera, uncertainty, grid.options);
   IntegrationReport report = frame.report;
+  report.invalid = image.invalid;
   report.agreement = checked.agreement;
   report.warning = checked.warning;
   require(report.too_noisy == 0 || report.used > 0, "truncation", grid.options.truncation,

@@ -4,6 +4,7 @@
 
 #include "mapping/sdf/extract_mesh.hpp"
 #include "mapping/sdf/integrate.hpp"
+#include "mapping/sdf/obstacle_cells.hpp"
 #include "mapping/sdf/ray_march.hpp"
 #include "mapping/sdf/sdf_field.hpp"
 #include "mapping/sdf/sdf_file.hpp"
@@ -149,6 +150,17 @@ SdfPoints ProbabilisticSdf::points() const {
     if (length > 0) out.normal.col(i) /= length;
   }
   return out;
+}
+
+void SdfObstacleOptions::check() const {
+  require(std::isfinite(sigmas) && sigmas >= 0, "sigmas", sigmas, "must be zero or positive and finite");
+  require(unknown != UnknownSpace::unknown, "unknown", "unknown", "must be free or occupied");
+  const bool finite = bounds.isEmpty() || (bounds.min().allFinite() && bounds.max().allFinite());
+  require(finite, "bounds", "infinite or NaN", "must be finite [m]");
+}
+
+std::vector<Voxels> ProbabilisticSdf::obstacle_cells(const SdfObstacleOptions& options) const {
+  return detail::obstacle_cells(*grid_, options);
 }
 
 std::shared_ptr<const DistanceField> ProbabilisticSdf::distance_field(double sigmas, UnknownSpace unknown) const {

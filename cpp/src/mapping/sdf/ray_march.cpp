@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Walks the cells of a lattice along a ray, from t = begin to t = end, through the cells from `first` to `last` on
-/// each axis: a start on a wall belongs to the cell on their side of it.
+/// each axis: a start on a wall belongs to the cell on their side of it, and so does what rounding leaves at the end.
 class CellWalk {
  public:
   CellWalk(const Vector3d& origin, const Vector3d& direction, double side, double begin, double end,
@@ -23,12 +23,13 @@ class CellWalk {
       const double place = std::clamp<double>(std::floor(start[k] / side), low[k], high[k]);
       cell_[k] = static_cast<int>(place);
       step_[k] = direction[k] > 0 ? 1 : -1;
+      past_[k] = direction[k] > 0 ? high[k] + 1 : low[k] - 1;
       delta_[k] = direction[k] != 0 ? side / std::abs(direction[k]) : kInfinity;
       const double wall = (place + (direction[k] > 0 ? 1 : 0)) * side;
       next_[k] = direction[k] != 0 ? std::max(begin, (wall - origin[k]) / direction[k]) : kInfinity;
     }
   }
-  bool done() const { return t_ >= end_; }
+  bool done() const { return t_ >= end_ || left_; }
   BlockKey cell() const { return {cell_[0], cell_[1], cell_[2]}; }
   double begin() const { return t_; }
   double end() const { return std::min({next_[0], next_[1], next_[2], end_}); }
@@ -37,11 +38,13 @@ class CellWalk {
     t_ = next_[k];
     next_[k] += delta_[k];
     cell_[k] += step_[k];
+    left_ = cell_[k] == past_[k];
   }
 
  private:
   double t_, end_, next_[3], delta_[3];
-  int cell_[3], step_[3];
+  int cell_[3], step_[3], past_[3];
+  bool left_ = false;
 };
 
 class Marcher {

@@ -231,27 +231,8 @@ void write_sdf(const SdfGrid& grid, const std::string& path) {
   head.add(kVersion);
   head.add(static_cast<std::uint64_t>(content.size()));
   const std::uint32_t sum = crc32(content.data(), content.size());
-  const std::string temporary = path + ".part";
-  {
-    std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-    if (!file) throw IoError("map '" + path + "': cannot be written");
-    file.write(kMagic, sizeof(kMagic) - 1);
-    file << head.text() << content;
-    file.write(reinterpret_cast<const char*>(&sum), sizeof(sum));
-    file.flush();
-    if (!file) {
-      file.close();
-      std::error_code ignored;
-      std::filesystem::remove(temporary, ignored);
-      throw IoError("map '" + path + "': cannot be written whole");
-    }
-  }
-  std::error_code error;
-  std::filesystem::rename(temporary, path, error);
-  if (!error) return;
-  std::error_code ignored;
-  std::filesystem::remove(temporary, ignored);
-  throw IoError("map '" + path + "': cannot be written (" + error.message() + ")");
+  write_file(path, "map",
+             {{kMagic, sizeof(kMagic) - 1}, head.text(), content, {reinterpret_cast<const char*>(&sum), sizeof(sum)}});
 }
 
 std::shared_ptr<SdfGrid> read_sdf(const std::string& path) {

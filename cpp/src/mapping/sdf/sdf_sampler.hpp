@@ -16,6 +16,7 @@ enum class Seen : std::uint8_t { nothing, free, surface };
 struct Node {
   float mean = 0, variance = 0, systematic = 0;
   Seen seen = Seen::nothing;
+  bool looked_through = false;  ///< Near a surface, but more frames looked through it than saw it so.
 };
 
 /// The map at a point; mean and variance mean something where known.
@@ -53,6 +54,7 @@ class SdfSampler {
       out.variance = variance / (sum * sum);
       out.systematic = systematic / (sum * sum);
       out.seen = Seen::surface;
+      out.looked_through = free > near;
     } else {
       out.mean = static_cast<float>(grid_.options.truncation);
       out.seen = Seen::free;

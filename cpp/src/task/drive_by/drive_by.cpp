@@ -99,15 +99,22 @@ class DriveBy {
     for (std::size_t i = 0; i < steps_.size(); ++i) {
       const VectorXd before = rough_configuration(static_cast<int>(i) - 1, goal),
                      after = rough_configuration(static_cast<int>(i) + 1, goal);
-      CollisionChecker* checker = scene_states_ ? &scene_states_->at(i) : nullptr;
-      goals.push_back(steps_[i].way > 0
-                          ? detail::follow_goal_configurations(group_, checker, steps_[i], goals.back(), monitor_)
-                          : detail::find_goal_configurations(group_, checker, steps_[i], before, after, options_,
-                                                             static_cast<unsigned>(i), monitor_));
+      CollisionChecker* checker = scene_states_ ? &scene_states_->before(i) : nullptr;
+      const auto configurations = [&](CollisionChecker* asked) {
+        return steps_[i].way > 0
+                   ? detail::follow_goal_configurations(group_, asked, steps_[i], goals.at(i - 1), monitor_)
+                   : detail::find_goal_configurations(group_, asked, steps_[i], before, after, options_,
+                                                      static_cast<unsigned>(i), monitor_);
+      };
+      goals.push_back(configurations(checker));
       if (!goals.back().empty()) continue;
       missing = "task " + std::to_string(steps_[i].task) + ": no configuration within the limits" +
                 (scene_states_ ? " and free of collisions" : "") + " brings the tool there (" +
                 std::to_string(options_.goal_configurations) + " tries at a time)";
+      if (!checker) return {};
+      const GoalConfigurations in_reach = configurations(nullptr);
+      const auto contact = in_reach.empty() ? std::nullopt : checker->first_contact(in_reach.front().q);
+      if (contact) missing += "; in the likeliest one " + describe(*contact);
       return {};
     }
     const auto collisions = [&](const ConfigurationSequence& sequence) { return solver_->collisions(sequence); };

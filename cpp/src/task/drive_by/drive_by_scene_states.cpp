@@ -1,8 +1,36 @@
 #include "task/drive_by/drive_by_scene_states.hpp"
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 namespace mmgrasp::detail {
+namespace {
+
+constexpr double kResting = 1e-3;  // What rests on something counts as this much higher once it is held [m].
+
+/// Links of the hand that joints move against the tip.
+std::vector<std::string> finger_links(const JointGroup& group) {
+  const Robot& robot = group.robot();
+  // Up to where a movable joint carries the link.
+  const auto rigid_root = [&](int link) {
+    while (link > 0 && robot.joints()[robot.links()[link].parent_joint].type == JointType::fixed)
+      link = robot.joints()[robot.links()[link].parent_joint].parent_link;
+    return link;
+  };
+  const int palm = rigid_root(group.tip_link());
+  std::vector<std::string> fingers;
+  for (int link = 1; link < static_cast<int>(robot.links().size()); ++link) {
+    int above = rigid_root(link);
+    if (above == palm) continue;
+    while (above > 0 && above != palm) above = robot.joints()[robot.links()[above].parent_joint].parent_link;
+    if (above == palm) fingers.push_back(robot.links()[link].name);
+  }
+  return fingers;
+}
+
+}  // namespace
+
 SceneStates::SceneStates(const JointGroup& group, const World& world, const std::vector<DriveByStep>& tasks)
     : group_(group), world_(world), tasks_(tasks) {}
 
@@ -19,36 +47,40 @@ CollisionChecker& SceneStates::before(std::size_t task) {
 
 CollisionChecker& SceneStates::at(std::size_t task) {
   if (task >= tasks_.size() || tasks_[task].object.empty()) return before(task);
-  return at_.try_emplace(task, group_, left(task + 1)).first->second;
+  World world = left(task);
+  for (const std::string& finger : finger_links(group_)) world.allow(tasks_[task].object, finger);
+  return at_.try_emplace(task, group_, world).first->second;
+}
+
+CollisionChecker SceneStates::holding(std::size_t step, const Eigen::VectorXd& q) const {
+  const std::string& object = tasks_[step].object;
+  const std::string& tip = group_.robot().links()[group_.tip_link()].name;
+  const Pose T_world_object = world_.objects().at(object).T_world_object;
+  const auto held_at = [&](const Pose& T_world_standing) {
+    World world = left(step);
+    world.attach(object, tip, held_pose(tasks_[step], group_.fk(q), T_world_standing));
+    return CollisionChecker(group_, world);
+  };
+  CollisionChecker checker = held_at(T_world_object);
+  const std::vector<Contact> contacts = checker.contacts(q);
+  const bool rests =
+      std::any_of(contacts.begin(), contacts.end(), [&](const Contact& c) { return c.a == object || c.b == object; });
+  if (rests) return held_at(Eigen::Translation3d(0, 0, kResting) * T_world_object);
+  return checker;
 }
 
 std::vector<CollisionChecker*> SceneStates::along(const std::vector<int>& intervals,
                                                   const ConfigurationSequence& sequence) {
   held_.clear();
   std::vector<CollisionChecker*> result;
-  const std::string& tip = group_.robot().links()[group_.tip_link()].name;
   for (std::size_t s = 0; s < intervals.size(); ++s) {
     CollisionChecker* here = &before(s);
-    CollisionChecker *taken = here, *taking = s < tasks_.size() ? &at(s) : here;
-    const int touching_after = s > 0 ? tasks_[s - 1].touching : 0;
-    const int touching_before = s < tasks_.size() ? tasks_[s].touching : 0;
     // A push-grasp may have it between the fingers before its last step.
     std::size_t by = s;
     while (by > 0 && tasks_[by - 1].object.empty() && !tasks_[by - 1].begins) --by;
-    if (by > 0 && !tasks_[by - 1].object.empty()) {
-      World world = left(by - 1);
-      const std::string& object = tasks_[by - 1].object;
-      const Pose T_world_object = world.objects().at(object).T_world_object;
-      world.attach(object, tip, held_pose(tasks_[by - 1], group_.fk(sequence[by - 1].q), T_world_object));
-      here = &held_.try_emplace(s, group_, world).first->second;
-      if (by == s) taken = &at(s - 1);
-    }
-    const int n = intervals[s];
-    for (int i = 0; i < n; ++i) {
-      const bool first = i < touching_after, last = i >= n - touching_before;
-      const bool object = s < tasks_.size() && !tasks_[s].object.empty();
-      result.push_back(first && taken != here ? taken : last && object ? taking : here);
-    }
+    if (by > 0 && !tasks_[by - 1].object.empty())
+      here = &held_.try_emplace(s, holding(by - 1, sequence[by - 1].q)).first->second;
+    result.insert(result.end(), static_cast<std::size_t>(intervals[s]), here);
   }
   return result;
 }

@@ -15,7 +15,7 @@ class SceneStates {
   SceneStates(const JointGroup& group, const World& world, const std::vector<DriveByStep>& tasks);
 
   CollisionChecker& before(std::size_t task);  ///< On the way to a task; earlier parts are gone.
-  CollisionChecker& at(std::size_t task);      ///< While its part is taken: neither there nor held.
+  CollisionChecker& at(std::size_t task);      ///< While its part is taken: it stands there, fingers may touch it.
   /// One checker per interval. Parts are held as the sequence takes them; valid until the next call.
   std::vector<CollisionChecker*> along(const std::vector<int>& intervals, const ConfigurationSequence& sequence);
 
@@ -24,6 +24,8 @@ class SceneStates {
   const World& world_;
   const std::vector<DriveByStep>& tasks_;
   World left(std::size_t task) const;  ///< Without the parts of tasks before this one.
+  /// With the part of a step in the hand, as it was taken in this configuration.
+  CollisionChecker holding(std::size_t step, const Eigen::VectorXd& q) const;
   std::map<std::size_t, CollisionChecker> before_, at_, held_;
 };
 

@@ -1,5 +1,7 @@
 #include "task/drive_by/drive_by_seed.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace mmgrasp::detail {
@@ -21,6 +23,12 @@ void keep_straight(SeededProblem& a, std::size_t segment, const DriveByStep& ste
 }
 
 }  // namespace
+
+int dwell_intervals(double dwell) {
+  constexpr double kLongest = 0.2;  // [s]
+  constexpr double kMost = 100;
+  return static_cast<int>(std::clamp(std::ceil(dwell / kLongest), 4.0, kMost));
+}
 
 VectorXd goal_near(const DriveByGoal& goal, const VectorXd& q) {
   return q.cwiseMax(goal.lower).cwiseMin(goal.upper);
@@ -57,10 +65,12 @@ SeededProblem DriveBySeeds::make(const ConfigurationSequence& sequence, int wayp
     if (steps_[t].dwell <= 0) continue;
     const auto at = static_cast<std::ptrdiff_t>(t) + 1;
     const int end = std::accumulate(a.intervals.begin(), a.intervals.begin() + at, 0);
-    if (checkers) a.checkers.insert(a.checkers.begin() + end, kDwellIntervals, &scene_states_->at(t));
+    const int intervals = dwell_intervals(steps_[t].dwell);
+    if (checkers)
+      a.checkers.insert(a.checkers.begin() + end, static_cast<std::size_t>(intervals), &scene_states_->at(t));
     a.via_points.insert(a.via_points.begin() + at, VectorXd(a.via_points[t + 1]));
     if (route) ways.insert(ways.begin() + at, GuidedWay());
-    a.intervals.insert(a.intervals.begin() + at, kDwellIntervals);
+    a.intervals.insert(a.intervals.begin() + at, intervals);
     a.times.insert(a.times.begin() + at, steps_[t].dwell);
   }
   for (int n : a.intervals) a.problem.segments.push_back({n});
@@ -72,7 +82,7 @@ SeededProblem DriveBySeeds::make(const ConfigurationSequence& sequence, int wayp
     a.problem.segments[++s].min_duration = steps_[t].dwell;
     a.problem.tool.back().velocity_lower.setConstant(-kStill);
     a.problem.tool.back().velocity_upper.setConstant(kStill);
-    for (int k = 1; k <= kDwellIntervals; ++k) {
+    for (int k = 0; k < dwell_intervals(steps_[t].dwell); ++k) {
       a.problem.tool.push_back(a.problem.tool.back());
       ++a.problem.tool.back().waypoint;
     }

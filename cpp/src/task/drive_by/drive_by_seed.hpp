@@ -9,7 +9,8 @@
 
 namespace mmgrasp::detail {
 
-constexpr int kDwellIntervals = 4;  // intervals of a task that takes time
+/// Intervals of a task that takes time: a pose pinned at waypoints 0.2 s apart strays less than 1 mm between them.
+int dwell_intervals(double dwell);
 
 /// A configuration sequence as a problem for the optimiser, with the guess that it starts from.
 struct SeededProblem {

@@ -41,7 +41,7 @@ int DriveBySolver::collisions(const ConfigurationSequence& sequence) {
   std::size_t step = 0;
   for (int i = 1; i < a.problem.intervals(); ++i) {
     while (step < a.waypoints.size() && i > a.waypoints[step]) ++step;
-    count += !scene_states_->at(step).is_free(a.guess.positions[i]);
+    count += !scene_states_->before(step).is_free(a.guess.positions[i]);
   }
   return count;
 }
@@ -92,7 +92,7 @@ CollisionChecker& DriveBySolver::checker_between(const SeededProblem& a, std::si
   const int first = step == 0 ? 0 : a.waypoints[step - 1];
   const int last = step < a.waypoints.size() ? a.waypoints[step] : a.problem.intervals();
   CollisionChecker* held = a.checkers[(first + last) / 2];
-  return held && held->is_free(from) && held->is_free(to) ? *held : scene_states_->at(step);
+  return held && held->is_free(from) && held->is_free(to) ? *held : scene_states_->before(step);
 }
 
 std::optional<DriveByRoute> DriveBySolver::route(const ConfigurationSequence& sequence, const SeededProblem& a,

@@ -103,7 +103,6 @@ void check_tasks(const std::vector<DriveByTask>& tasks, const World& world) {
     require(task.max_tool_speed > 0, field + ".max_tool_speed", task.max_tool_speed, "must be positive");
     require(task.object.empty() || world.objects().count(task.object) > 0, field + ".object", "'" + task.object + "'",
             "must be an object of the world");
-    require(task.touching >= 0, field + ".touching", task.touching, "must be at least 0");
     require(task.dwell >= 0 && std::isfinite(task.dwell), field + ".dwell", task.dwell, "must be at least 0");
     if (task.push) check_push(task, field + ".push");
   }

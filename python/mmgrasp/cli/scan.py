@@ -1,0 +1,188 @@
+"""`mmgrasp scan`: from a folder of depth frames to a map, its mesh, the objects in it and a report."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import time
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+
+from .._core import InvalidInput
+from .._files import printable, write_file
+from ..frames import FrameFolder, open_frames
+from ..scan import (
+    Scan,
+    choose_options,
+    integrate_frames,
+    mean_up,
+    read_scan,
+    scan_to_dict,
+    segment_objects,
+    write_ply,
+)
+from ..scan.objects import GUESSED_UP, KNOWN_UP, Segmentation, objects_to_dict, vertex_normals
+from ..scan.progress_file import PROGRESS_FILE
+from ..scan.summary import scan_summary
+from .console import Reporter
+from .output_folder import LIST, OutputFolder
+
+DONE, NOTHING_USABLE = 0, 3
+MAP = "map.sdf"
+PARTIAL = "partial_*.sdf"
+SCAN_FILES = (
+    *(MAP, PARTIAL, PROGRESS_FILE, "mesh.ply", "objects.json", "report.html", LIST),
+    *("surface.png", "objects.png", "sensors.png"),
+)
+CHECKPOINT_SECONDS = 5.0
+_MOST_LINES = 10
+
+
+def run_scan(arguments: argparse.Namespace, console: Console) -> int:
+    folder = OutputFolder(arguments.out, SCAN_FILES)
+    if folder.path == Path(os.path.realpath(arguments.frames)):
+        raise InvalidInput(f"--out {arguments.out}: must be another folder than that of the frames")
+    with Reporter(console) as report:
+        frames = open_frames(arguments.frames, arguments.sensors)
+        scan = _begin(arguments, frames, folder)
+        added = integrate_frames(frames, scan, arguments.every, report, _Checkpoints(folder))
+        if not scan.frames:
+            _print_nothing(scan, console, arguments.json)
+            return NOTHING_USABLE
+        summary = _write(scan, frames, folder, report, arguments)
+    if arguments.json:
+        print(json.dumps({**summary, "added": added}, indent=1, allow_nan=False))
+    else:
+        _print(summary, added, arguments.out, console)
+    return DONE
+
+
+def _begin(arguments: argparse.Namespace, frames: FrameFolder, folder: OutputFolder) -> Scan:
+    """A new map, or that of an earlier run with the same options."""
+    path = folder.path / PROGRESS_FILE
+    if arguments.start_over or not path.exists():
+        return Scan.begin(choose_options(frames, arguments.voxel, arguments.truncation, arguments.max_memory))
+    scan = read_scan(path)
+    for name, was in asdict(scan.options).items():
+        now = getattr(arguments, name)
+        if now is not None and now != was:
+            flag = "--" + name.replace("_", "-")
+            unit = 1e6 if name == "max_memory" else 1.0
+            raise InvalidInput(
+                f"{flag} {now / unit:g}: the map in {printable(str(arguments.out))} was made with {was / unit:g}: "
+                f"leave {flag} out to go on with it, or make it anew with --start-over"
+            )
+    return scan
+
+
+class _Checkpoints:
+    """Saves the map now and then, with the list of its frames; each one replaces the one before."""
+
+    def __init__(self, folder: OutputFolder) -> None:
+        self._folder = folder
+        self._last = time.monotonic()
+        self._pause = CHECKPOINT_SECONDS
+
+    def __call__(self, scan: Scan) -> None:
+        begun = time.monotonic()
+        if begun - self._last < self._pause:
+            return
+        name = PARTIAL.replace("*", f"{len(scan.frames):06d}")
+        with self._folder.filled(added=True, replacing=PARTIAL) as draft:
+            _save(scan, draft, name)
+        self._last = time.monotonic()
+        self._pause = max(CHECKPOINT_SECONDS, 20 * (self._last - begun))  # large maps take long to save
+
+
+def _save(scan: Scan, draft: Path, name: str) -> None:
+    scan.sdf.save(draft / name)
+    write_file(draft / PROGRESS_FILE, json.dumps(scan_to_dict(scan, name), indent=1) + "\n")
+
+
+def _write(
+    scan: Scan, frames: FrameFolder, folder: OutputFolder, report: Reporter, arguments: argparse.Namespace
+) -> dict[str, Any]:
+    """The map first, so that it is there whatever becomes of the rest; then what is made of it."""
+    report("writing the map", 0.0)
+    with folder.filled() as draft:
+        _save(scan, draft, MAP)
+    report("mesh", 0.0)
+    mesh, sigmas = scan.sdf.mesh()
+    points, triangles = mesh.vertices, mesh.triangles
+    report("objects", 0.0)
+    found, objects = _objects(scan, frames, arguments.up, points, vertex_normals(points, triangles), sigmas)
+    summary = scan_summary(scan, frames, sigmas, objects)
+    report("writing", 0.0)
+    with folder.filled(added=True) as draft:
+        write_ply(draft / "mesh.ply", points, triangles, sigmas)
+        write_file(draft / "objects.json", json.dumps(objects, indent=1, allow_nan=False) + "\n")
+        if not arguments.no_pictures:
+            from ..viz.scan_pictures import write_scan_pictures
+
+            write_scan_pictures(scan, points, sigmas, found, draft, report)
+        from ..viz.scan_report import scan_report_html
+
+        title = printable(str(arguments.frames))
+        write_file(draft / "report.html", scan_report_html(summary, objects, title, draft))
+    report("writing", 1.0)
+    return summary
+
+
+def _objects(
+    scan: Scan,
+    frames: FrameFolder,
+    given: list[float] | None,
+    points: np.ndarray,
+    normals: np.ndarray,
+    sigmas: np.ndarray,
+) -> tuple[Segmentation, dict[str, Any]]:
+    cameras = [np.array(record.T_world_camera) for record in scan.frames]
+    up: np.ndarray | None
+    if given is not None:
+        up, angle, how = np.array(given) / np.linalg.norm(given), KNOWN_UP, "given"
+    elif frames.z_is_up:
+        up, angle, how = np.array([0.0, 0.0, 1.0]), KNOWN_UP, "the world's z was taken"
+    else:
+        up, angle, how = mean_up(cameras), GUESSED_UP, "it was guessed from how the cameras were held"
+    eye = np.mean([T[:3, 3] for T in cameras], axis=0)
+    found = segment_objects(points, normals, up=up, eye=eye, voxel=scan.options.voxel, up_angle=angle)
+    return found, objects_to_dict(found, points, sigmas, up, how)
+
+
+def _print(summary: dict[str, Any], added: int, out: Path, console: Console) -> None:
+    made = summary["map"]
+    lines = [
+        f"{made['frames']} frame{'' if made['frames'] == 1 else 's'} in the map ({added} new): voxels of {1e3 * made['voxel']:g} mm, truncation "
+        f"{1e3 * made['truncation']:g} mm, {made['blocks']} blocks, {made['bytes'] / 1e6:.0f} MB"
+    ]
+    if made["sigma_quantiles"]:
+        low, middle, high = (1e3 * x for x in made["sigma_quantiles"].values())
+        lines.append(f"sigma of the surface: median {middle:.2f} mm, 90 % between {low:.2f} and {high:.2f} mm")
+    if summary["plane"]:
+        lines.append(f"objects on the supporting plane: {summary['objects']}")
+    lines += [f"note: {note}" for note in summary["notes"]]
+    for key, what, why in (("skipped", "skipped", "reason"), ("doubtful", "doubtful", "warning")):
+        rows = summary[key]
+        lines += [f"{what}: {row['frame']}: {row[why]}" for row in rows[:_MOST_LINES]]
+        if len(rows) > _MOST_LINES:
+            lines.append(f"{what}: {len(rows) - _MOST_LINES} more, see the report")
+    lines.append(f"report: {out / 'report.html'}")
+    for line in lines:
+        console.print(printable(line), markup=False, soft_wrap=True)
+
+
+def _print_nothing(scan: Scan, console: Console, as_json: bool) -> None:
+    skipped = [{"frame": frame.name, "reason": frame.reason} for frame in scan.skipped]
+    if as_json:
+        print(json.dumps({"map": None, "skipped": skipped}, indent=1))
+        return
+    console.print(f"no frame could be used, {len(skipped)} looked at", style="bold red", markup=False)
+    for row in skipped[:_MOST_LINES]:
+        console.print(printable(f"- {row['frame']}: {row['reason']}"), markup=False, soft_wrap=True)
+    if len(skipped) > _MOST_LINES:
+        console.print(f"- and {len(skipped) - _MOST_LINES} more", markup=False)

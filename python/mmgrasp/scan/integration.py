@@ -1,0 +1,293 @@
+"""Frames of a folder into one map, each once: what is unfit is named and left out, whole."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from .._core import DepthImage, Error, IntegrationReport, InvalidInput, ProbabilisticSdf, _sdf_option_table
+from .._progress import Progress
+from ..frames import Frame, FrameFolder, LoadedFrame
+from ..frames.frame import frame_bytes
+from ..frames.intrinsics import Intrinsics
+from ..frames.sensors import Sensor
+
+STAGE = "integrating frames"
+DEFAULTS: dict[str, Any] = {name: value for name, (value, _) in _sdf_option_table().items()}
+"""Of the library's options."""
+_MOST_INVERTED = 3
+
+
+@dataclass(frozen=True)
+class ScanOptions:
+    """Resolution and size of a map; see ProbabilisticSdf."""
+
+    voxel: float
+    truncation: float
+    max_memory: float
+
+    def new_map(self) -> ProbabilisticSdf:
+        return ProbabilisticSdf(voxel=self.voxel, truncation=self.truncation, max_memory=self.max_memory)
+
+
+@dataclass(frozen=True)
+class FrameRecord:
+    """A frame that is in the map; counts are of pixels."""
+
+    name: str
+    sensor: str
+    digest: str
+    T_world_camera: list[list[float]]
+    measured: int
+    used: int
+    out_of_range: int
+    too_noisy: int
+    too_slanted: int
+    without_normal: int
+    new_blocks: int
+    agreement: float | None
+    warning: str
+
+
+@dataclass(frozen=True)
+class SkippedFrame:
+    """A frame that is not in the map, and why."""
+
+    name: str
+    sensor: str
+    reason: str
+
+
+@dataclass
+class Scan:
+    """A map and how it came to be."""
+
+    options: ScanOptions
+    sdf: ProbabilisticSdf
+    frames: list[FrameRecord] = field(default_factory=list)
+    skipped: list[SkippedFrame] = field(default_factory=list)
+    sensors: dict[str, dict[str, Any]] = field(default_factory=dict)
+    """As they were when their first frame was integrated."""
+    absent: list[str] = field(default_factory=list)
+    """Frames in the map that are no longer in the folder."""
+
+    @classmethod
+    def begin(cls, options: ScanOptions) -> Scan:
+        """Raises InvalidInput on options out of range."""
+        return cls(options, options.new_map())
+
+
+def integrate_frames(
+    folder: FrameFolder,
+    scan: Scan,
+    every: int = 1,
+    progress: Progress = None,
+    on_frame: Callable[[Scan], object] | None = None,
+) -> int:
+    """Adds what is not yet in the map and returns how many frames that were.
+
+    Takes every `every`-th frame of each sensor. Afterwards `scan.skipped` holds all that were left out. `on_frame` is
+    called after each that was added. Raises InvalidInput, with the map as it was before that frame, when what was integrated
+    earlier has changed, when the map grows too large, and when poses turn out to lead from the world to the camera.
+    """
+    _compare_sensors(folder, scan)
+    _compare_frames(folder, scan, progress)
+    known = {record.name for record in scan.frames}
+    todo = [frame for frame in every_nth(folder.frames, every) if frame.name not in known]
+    scan.skipped = []
+    added = inverted = 0
+    for i, frame in enumerate(todo):
+        if progress:
+            progress(STAGE, i / len(todo))
+        try:
+            record = _add(folder, scan, frame)
+        except Error as error:
+            reason = _advised(folder, frame, str(error))
+            if str(error).startswith("max_memory"):
+                raise InvalidInput(f"{frame.name}: {error}: see --voxel and --max-memory") from None
+            inverted += "when the poses are inverted" in reason
+            if inverted >= _MOST_INVERTED:
+                raise InvalidInput(f"{frame.name}: {reason}; {inverted} frames say so") from None
+            scan.skipped.append(SkippedFrame(frame.name, frame.sensor, reason))
+            continue
+        scan.frames.append(record)
+        added += 1
+        if on_frame:
+            on_frame(scan)
+    if inverted and inverted >= len(scan.frames):
+        raise InvalidInput(scan.skipped[-1].reason)
+    if progress and todo:
+        progress(STAGE, 1.0)
+    return added
+
+
+def every_nth(frames: list[Frame], every: int) -> list[Frame]:
+    """Every nth of each sensor, the first one included."""
+    counts: dict[str, int] = {}
+    out = []
+    for frame in frames:
+        count = counts.get(frame.sensor, 0)
+        counts[frame.sensor] = count + 1
+        if count % every == 0:
+            out.append(frame)
+    return out
+
+
+def choose_options(
+    folder: FrameFolder, voxel: float | None, truncation: float | None, max_memory: float | None
+) -> ScanOptions:
+    """Options as given; the others from the first frame that can be read.
+
+    A voxel is as large as what a pixel covers at the median depth, in whole millimetres, and at least the library's. The truncation
+    is as many voxels as the library's, and more where the noise at the depth that 95 % of the pixels stay below asks for it:
+    depths noisier than a third of it are not used.
+    """
+    if voxel is None or truncation is None:
+        loaded = _first_readable(folder)
+        if loaded is not None:
+            near, far = _depths(loaded.image, loaded.camera.intrinsics.nearest, loaded.camera.intrinsics.farthest)
+            pinhole = loaded.camera.intrinsics
+            if voxel is None:
+                voxel = max(DEFAULTS["voxel"], _whole_mm(near / min(pinhole.fx, pinhole.fy)))
+            if truncation is None:
+                wanted = max(
+                    voxel * DEFAULTS["truncation"] / DEFAULTS["voxel"], _whole_mm(3 * loaded.camera.noise.sigma(far))
+                )
+                truncation = min(wanted, 50 * voxel)
+    voxel = voxel or DEFAULTS["voxel"]
+    truncation = truncation or voxel * DEFAULTS["truncation"] / DEFAULTS["voxel"]
+    return ScanOptions(voxel, round(truncation, 9), max_memory or DEFAULTS["max_memory"])
+
+
+def _whole_mm(length: float) -> float:
+    return math.ceil(length * 1000 - 1e-6) / 1000
+
+
+def _first_readable(folder: FrameFolder) -> LoadedFrame | None:
+    for frame in folder.frames:
+        try:
+            loaded = folder.read(frame)
+        except Error:
+            continue
+        pinhole = loaded.camera.intrinsics
+        if ((loaded.image.depth >= pinhole.nearest) & (loaded.image.depth <= pinhole.farthest)).any():
+            return loaded
+    return None
+
+
+def _depths(image: DepthImage, nearest: float, farthest: float) -> tuple[float, float]:
+    """Median and 95 % quantile of what is in range."""
+    seen = image.depth[(image.depth >= nearest) & (image.depth <= farthest)]
+    return float(np.median(seen)), float(np.quantile(seen, 0.95))
+
+
+def _add(folder: FrameFolder, scan: Scan, frame: Frame) -> FrameRecord:
+    content = frame_bytes(frame)
+    loaded = folder.read(frame, content)
+    report = scan.sdf.integrate(loaded.image, loaded.camera, pose_covariance=loaded.pose_covariance, sigma=loaded.sigma)
+    sensor = loaded.camera.name
+    scan.sensors.setdefault(sensor, described(folder, folder.sensors[sensor]))
+    return _record(frame.name, sensor, content.digest, loaded.image, report)
+
+
+def _record(name: str, sensor: str, digest: str, image: DepthImage, report: IntegrationReport) -> FrameRecord:
+    return FrameRecord(
+        name,
+        sensor,
+        digest,
+        image.T_world_camera.tolist(),
+        report.measured,
+        report.used,
+        report.out_of_range,
+        report.too_noisy,
+        report.too_slanted,
+        report.without_normal,
+        report.new_blocks,
+        None if math.isnan(report.agreement) else report.agreement,
+        report.warning,
+    )
+
+
+def described(folder: FrameFolder, sensor: Sensor) -> dict[str, Any]:
+    """A sensor as plain values, with the depth scale that holds for it."""
+    scale = folder.depth_scale(sensor) if sensor.folder in folder.layouts else sensor.depth_scale
+    return {**sensor.to_dict(), "depth_scale": scale}
+
+
+def _advised(folder: FrameFolder, frame: Frame, reason: str) -> str:
+    """What went wrong, and which key of the sensors' file is about it."""
+    reason = reason.removeprefix(f"{frame.name}: ")
+    sensor = folder.sensors.get(frame.sensor)
+    if sensor is None:
+        return reason
+    if "check the depth scale" in reason:
+        return reason + f"; depth_scale of {sensor.shown} is {folder.depth_scale(sensor):g} units in a metre"
+    if "when the poses are inverted" in reason:
+        now = "world_to_camera" if sensor.inverted else "camera_to_world"
+        return reason + f"; poses of {sensor.shown} is {now}"
+    if "is its median depth, and none is in" in reason:
+        return reason + f"; see range and depth_scale of {sensor.shown}"
+    return reason
+
+
+# --- what was integrated earlier ------------------------------------------------------------------------------------------
+
+
+def _compare_sensors(folder: FrameFolder, scan: Scan) -> None:
+    """Takes over intrinsics that the frames of an earlier run told, and refuses sensors that differ from what they were."""
+    for name, was in scan.sensors.items():
+        sensor = folder.sensors.get(name)
+        if sensor is None and not folder.from_file and folder.names_sensors:
+            sensor = Sensor(name)
+        if sensor is None:
+            _check_gone(folder, scan, name)
+            continue
+        at = was["intrinsics"]
+        if sensor.intrinsics is None and at is not None:
+            sized = Intrinsics(at["fx"], at["fy"], at["cx"], at["cy"], at["width"], at["height"], "progress.json")
+            sensor = Sensor(**{**vars(sensor), "intrinsics": sized})
+        folder.sensors[name] = sensor
+        now = described(folder, sensor)
+        for key in now:
+            if now[key] != was.get(key):
+                raise InvalidInput(
+                    f"{sensor.shown}: {key} = {now[key]}: the map was made with {was.get(key)}: "
+                    "put it back, or make the map anew with --start-over"
+                )
+
+
+def _check_gone(folder: FrameFolder, scan: Scan, sensor: str) -> None:
+    """A sensor of the map that nothing describes any more may be gone only together with its frames."""
+    there = {frame.name for frame in folder.frames}
+    frame = next((record.name for record in scan.frames if record.sensor == sensor and record.name in there), None)
+    if frame is not None:
+        raise InvalidInput(
+            f"{frame}: was integrated as a frame of sensor '{sensor}', and the sensors are {', '.join(folder.sensors) or 'unknown'} now: "
+            "put it back, or make the map anew with --start-over"
+        )
+
+
+def _compare_frames(folder: FrameFolder, scan: Scan, progress: Progress) -> None:
+    """Frames in the map must be what they were; those that are gone are noted."""
+    by_name = {frame.name: frame for frame in folder.frames}
+    scan.absent = []
+    for i, record in enumerate(scan.frames):
+        if progress:
+            progress("checking frames", i / len(scan.frames))
+        frame = by_name.get(record.name)
+        if frame is None:
+            scan.absent.append(record.name)
+            continue
+        try:
+            same = frame_bytes(frame).digest == record.digest
+        except Error:
+            same = False
+        if not same:
+            raise InvalidInput(
+                f"{record.name}: is in the map, but its image or pose has changed since: "
+                "put it back, or make the map anew with --start-over"
+            )

@@ -1,0 +1,65 @@
+"""A scan in numbers: what `mmgrasp scan --json` prints and the report shows."""
+
+from __future__ import annotations
+
+import statistics
+from typing import Any
+
+import numpy as np
+
+from ..frames import FrameFolder
+from .integration import FrameRecord, Scan
+
+PIXELS = ("measured", "used", "out_of_range", "too_noisy", "too_slanted", "without_normal")
+
+
+def scan_summary(scan: Scan, folder: FrameFolder, sigmas: np.ndarray, objects: dict[str, Any]) -> dict[str, Any]:
+    """Plain values; nothing in it depends on when or how often the scan was interrupted."""
+    quantiles = [float(x) for x in np.quantile(sigmas, [0.05, 0.5, 0.95])] if len(sigmas) else []
+    return {
+        "map": {
+            "voxel": scan.options.voxel,
+            "truncation": scan.options.truncation,
+            "frames": len(scan.frames),
+            "blocks": scan.sdf.blocks,
+            "bytes": scan.sdf.memory,
+            "vertices": len(sigmas),
+            "sigma_quantiles": dict(zip(("5 %", "50 %", "95 %"), quantiles, strict=False)),
+        },
+        "sensors": [_sensor_row(scan, name) for name in dict.fromkeys(record.sensor for record in scan.frames)],
+        "skipped": [{"frame": frame.name, "reason": frame.reason} for frame in scan.skipped],
+        "doubtful": [{"frame": r.name, "warning": r.warning} for r in scan.frames if r.warning],
+        "plane": objects["plane"] is not None,
+        "objects": len(objects["objects"]),
+        "notes": notes(scan, folder, objects),
+    }
+
+
+def _sensor_row(scan: Scan, name: str) -> dict[str, Any]:
+    own: list[FrameRecord] = [record for record in scan.frames if record.sensor == name]
+    agreements = [record.agreement for record in own if record.agreement is not None]
+    row: dict[str, Any] = {"name": name, "frames": len(own)}
+    row |= {key: sum(getattr(record, key) for record in own) for key in PIXELS}
+    row["agreement"] = {"median": statistics.median(agreements), "least": min(agreements)} if agreements else None
+    return row | {"described_as": scan.sensors[name]}
+
+
+def notes(scan: Scan, folder: FrameFolder, objects: dict[str, Any]) -> list[str]:
+    """What a reader of the map should know."""
+    out = []
+    if not folder.from_file:
+        names = ", ".join(dict.fromkeys(layout.name for layout in folder.layouts.values()))
+        scales = sorted({row["depth_scale"] for row in scan.sensors.values()})
+        shown = " or ".join(f"{scale:g}" for scale in scales)
+        out.append(
+            f"No sensors.yaml: assumed are the noise of a first Kinect (structured light), the library's range of depths, exact poses, "
+            f"and {shown} units in a metre, as {names} has it. Sigma is as good as that."
+        )
+    if scan.absent:
+        more = f" and {len(scan.absent) - 1} more" if len(scan.absent) > 1 else ""
+        out.append(f"In the map, but no longer in the folder: {scan.absent[0]}{more}.")
+    if objects["plane"] is None:
+        out.append("No supporting plane was found; --up X,Y,Z says where up is.")
+    elif objects["up"]["from"] != "given":
+        out.append(f"Where up is was not given: {objects['up']['from']}; --up X,Y,Z says it.")
+    return out

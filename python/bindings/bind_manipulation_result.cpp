@@ -23,8 +23,7 @@ StatsDict stats_dict(const ManipulationStats& s) {
   return py::dict(
       "ik_seconds"_a = s.ik_seconds, "roadmap_seconds"_a = s.roadmap_seconds, "search_seconds"_a = s.search_seconds,
       "graph_searches"_a = s.graph_searches, "nodes_opened"_a = s.nodes_opened, "grasps_searched"_a = s.grasps_searched,
-      "roadmap_cost"_a = s.roadmap_cost, "roadmap_bound"_a = s.roadmap_bound,
-      "postures_bound"_a = s.postures_bound,
+      "roadmap_cost"_a = s.roadmap_cost, "roadmap_bound"_a = s.roadmap_bound, "postures_bound"_a = s.postures_bound,
       "edges_checked_robot"_a = s.edges_checked_robot, "edges_checked_attached"_a = s.edges_checked_attached,
       "samples"_a = s.samples, "vertices"_a = s.vertices, "stages"_a = stages_dict(s.stages));
 }

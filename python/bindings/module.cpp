@@ -12,6 +12,7 @@ void bind_sdf(py::module_& m);
 void bind_world_maps(py::module_& m);
 void bind_segmentation(py::module_& m);
 void bind_graspability(py::module_& m);
+void bind_synthesis(py::module_& m);
 void bind_capability(py::module_& m);
 void bind_trajopt(py::module_& m);
 void bind_control(py::module_& m);
@@ -56,6 +57,7 @@ PYBIND11_MODULE(_core, m) {
   bind_world_maps(m);
   bind_segmentation(m);
   bind_graspability(m);
+  bind_synthesis(m);
   bind_structure(m);
   bind_verify(m);
   refuse_bare_objects(m);

@@ -59,6 +59,7 @@ from ._core import ProbabilisticSdf as ProbabilisticSdf
 from ._core import (
     Grasp as Grasp,
     Hand as Hand,
+    synthesize_grasps as synthesize_grasps,
     ManipulationProblem as ManipulationProblem,
     plan_manipulation as plan_manipulation,
     DriveByTask as DriveByTask,

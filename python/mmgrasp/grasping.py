@@ -5,6 +5,7 @@ from ._core import (
     Hand as Hand,
     HandJoint as HandJoint,
     HandBody as HandBody,
+    eigengrasp_hand as eigengrasp_hand,
 )
 
 # Grasps, and where they come from
@@ -24,6 +25,17 @@ from ._core import (
     evaluate_graspability as evaluate_graspability,
     graspability_map as graspability_map,
     hand_masks as hand_masks,
+)
+
+# Grasps of unknown parts in a map, and how probable they are (P3 4)
+from ._core import (
+    GraspSynthesis as GraspSynthesis,
+    GraspRating as GraspRating,
+    GraspSuccess as GraspSuccess,
+    DrawnSuccess as DrawnSuccess,
+    ContactPatch as ContactPatch,
+    synthesize_grasps as synthesize_grasps,
+    LineGrasp as LineGrasp,
 )
 
 # Grasps by pushing, while the hand moves on (P1 4.3)

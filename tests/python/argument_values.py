@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -110,6 +111,11 @@ VALUES: dict[str, Any] = {
     "pose_covariance": 1e-6 * np.eye(6),
     "bounds": np.array([[-0.1, -0.1, 0.2], [0.1, 0.1, 0.4]]),
     "ProbabilisticSdf.sigma": np.full((30, 40), 0.001),
+    "synthesize_grasps.object": np.array([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]]),
+    "synthesize_grasps.arm_seed": Q,
+    "eigengrasp_hand.open": np.radians([-90, 0, -25, 25, -25, 25, 90]),
+    "eigengrasp_hand.closed": np.radians([-90, 0, 12, -12, 12, -12, 90]),
+    "eigengrasp_hand.approach": np.array([0.0, 0, 1]),
     "lower": np.array([-1.0, -1.0, 0.0]),
     "plan_object_pick.places": POSE,
     "minimize_derivative_free.guess": np.array([0.5, 0.25]),
@@ -178,6 +184,18 @@ def distance_field() -> mg.collision.GridDistanceField:
     return mg.collision.GridDistanceField(np.ones((3, 3, 3)), [0.0, 0.0, 0.0], 0.5)
 
 
+def wall_map() -> mg.ProbabilisticSdf:
+    sdf = mg.ProbabilisticSdf()
+    sdf.integrate(depth_frame(), depth_camera())
+    return sdf
+
+
+def seven_joint_hand() -> mg.Robot:
+    return mg.Robot.load(Path(mg.__file__).parent / "assets" / "grippers" / "sdhlike" / "sdhlike.urdf")
+
+
+FINGERS = [(f, [f"{f}_proximal", f"{f}_distal"]) for f in ("thumb", "finger_1", "finger_2")] + [("spread", ["spread"])]
+
 OBJECTS: dict[str, Any] = {
     "Robot": lambda: ROBOT,
     "RobotSource": lambda: ROBOT.source,
@@ -210,6 +228,7 @@ COMPANIONS: dict[str, dict[str, Any]] = {
     "plan_stops_exact.goal": {"start": np.array([0.5, 0.25])},
     "plan_stops_exact.start": {"goal": np.array([0.25, 0.5])},
     "fit_cuboids.T_world_tray": {"tray_size": [0.3, 0.4, 0.1]},
+    "synthesize_grasps.arm_seed": {"arm": ARM},
     "JointTrajectory.accelerations": {"velocities": np.zeros((2, 3))},
 }
 OTHERS: dict[str, Any] = {
@@ -265,6 +284,11 @@ OTHERS: dict[str, Any] = {
     "other": lambda: mg.Robot.from_strings('<robot name="s"><link name="a"/></robot>'),
     "parent_link": lambda: "tip",
     "tool_link": lambda: "tip",
+    "synthesize_grasps.map": wall_map,
+    "synthesize_grasps.hand": gripper,
+    "eigengrasp_hand.robot": seven_joint_hand,
+    "eigengrasp_hand.tool_link": lambda: "tcp",
+    "eigengrasp_hand.groups": lambda: FINGERS,
     "Hand.kind": lambda: "parallel",
     "Hand.from_robot.robot": lambda: pipe_robot("tm14like")[0],
     "Hand.from_robot.tool_link": lambda: "gripper_tcp",

@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FittedCuboid', 'Grasp', 'GraspReport', 'Graspability', 'GridDistanceField', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MotionResult', 'MotionStats', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotSource', 'SdfHits', 'SearchTree', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_objects', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FittedCuboid', 'Grasp', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'Graspability', 'GridDistanceField', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MotionResult', 'MotionStats', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotSource', 'SdfHits', 'SearchTree', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_objects', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -4419,6 +4419,227 @@ class RandomPlacement:
         """
         In the order in which they were placed.
         """
+class GraspSuccess:
+    """
+    Share of each criterion in a grasp's success (P3 4.5 to 4.9), in [0, 1].
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict[str, typing.Any]:
+        """
+        All of it by name.
+        """
+    @property
+    def angle(self) -> float:
+        """
+        P_1: the pads face their patches.
+        """
+    @property
+    def centring(self) -> float:
+        """
+        P_3: the contact line passes by the object's middle.
+        """
+    @property
+    def certainty(self) -> float:
+        """
+        P_4: the surface is certain where it is touched.
+        """
+    @property
+    def force_closure(self) -> bool:
+        """
+        The contact line lies in both friction cones.
+        """
+    @property
+    def placement(self) -> float:
+        """
+        P_2: the pads are as far from the surface as wanted.
+        """
+    @property
+    def probability(self) -> float:
+        """
+        `weighted`; 0 without force closure or where the angle or certainty is 0.
+        """
+    @property
+    def weighted(self) -> float:
+        """
+        (4.9) as printed.
+        """
+class ContactPatch:
+    """
+    What a finger's pad meets if it moves on along its normal, in the world.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def distance(self) -> float:
+        """
+        From the pad, on average [m].
+        """
+    @property
+    def hits(self) -> float:
+        """
+        Share of the pad's rays that meet the surface.
+        """
+    @property
+    def inliers(self) -> float:
+        """
+        Share of the hits that lie in the plane.
+        """
+    @property
+    def nearest(self) -> float:
+        """
+        From the pad to what it touches first [m].
+        """
+    @property
+    def normal(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Away from the object.
+        """
+    @property
+    def pad_normal(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The way the pad pushes.
+        """
+    @property
+    def point(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Middle of the patch [m].
+        """
+    @property
+    def sigma(self) -> float:
+        """
+        Standard deviation of the surface, on average [m].
+        """
+class DrawnSuccess:
+    """
+    The whole probability (4.1) by drawing surfaces from the map.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def holds(self) -> float:
+        """
+        Share of the surfaces on which the grasp has force closure.
+        """
+    @property
+    def probability(self) -> float:
+        """
+        Mean success over the drawn surfaces.
+        """
+    @property
+    def standard_error(self) -> float:
+        """
+        Of that mean.
+        """
+class GraspRating:
+    """
+    How a grasp of synthesize_grasps was rated.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def drawn(self) -> DrawnSuccess | None:
+        """
+        The whole probability (4.1); None unless `surface_draws` was given.
+        """
+    @property
+    def patches(self) -> list[ContactPatch]:
+        """
+        One a finger.
+        """
+    @property
+    def pretouch_opening(self) -> float:
+        """
+        Between the pads before they close [m].
+        """
+    @property
+    def pretouch_posture(self) -> list[float]:
+        """
+        The same of hands with several joint groups.
+        """
+    @property
+    def q(self) -> numpy.typing.NDArray[numpy.float64] | None:
+        """
+        The arm's configuration before closing; None without an arm.
+        """
+    @property
+    def success(self) -> GraspSuccess:
+        """
+        Share of each criterion.
+        """
+class LineGrasp:
+    """
+    P3's grasp in one dimension (4.4.2, figures 4.5 and 4.6): a parallel gripper on a line, and an object whose place is uncertain.
+    """
+    def __init__(self, width: float = 0.2, max_opening: float = 0.4) -> None:
+        """
+        Of the object, and of the gripper [m].
+        """
+    def __repr__(self) -> str:
+        ...
+    def probability(self, opening: float, position: float, mean: float, sigma: float) -> float:
+        """
+        P(S) of (4.1) for an object at N(mean, sigma^2), in closed form.
+        """
+    def success(self, opening: float, position: float, object: float) -> float:
+        """
+        P(S | x, G) of (4.3) and (4.4) for an object at a known place [m].
+        """
+    @property
+    def max_opening(self) -> float:
+        """
+        Of the gripper [m].
+        """
+    @property
+    def width(self) -> float:
+        """
+        Of the object [m].
+        """
+class GraspSynthesis:
+    """
+    Grasps of an unknown part, most probable first, and why others were left out.
+    """
+    def __repr__(self) -> str:
+        ...
+    def summary(self) -> str:
+        """
+        One sentence: how many grasps, or what most of those tried failed on.
+        """
+    @property
+    def arm(self) -> dict[str, typing.Any]:
+        """
+        Why the arm did not reach grasps.
+        """
+    @property
+    def counts(self) -> dict[str, int]:
+        """
+        Surface points drawn and grasps evaluated, by what became of them.
+        """
+    @property
+    def grasps(self) -> list[Grasp]:
+        """
+        Most probable first; T_object_hand is the pose in the world.
+        """
+    @property
+    def object_centre(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Middle of the box fitted to the map's points [m].
+        """
+    @property
+    def object_longest(self) -> float:
+        """
+        Its longest side [m].
+        """
+    @property
+    def outcome(self) -> Outcome:
+        """
+        solved, not_found or stopped.
+        """
+    @property
+    def ratings(self) -> list[GraspRating]:
+        """
+        In the same order.
+        """
 class Pipe:
     """
     A pipe structure: straight round sections between nodes in the object's frame (P2 3.2.2).
@@ -4548,6 +4769,8 @@ def _segmentation_option_table() -> dict[str, typing.Any]:
     ...
 def _supply_option_table() -> dict[str, typing.Any]:
     ...
+def _synthesis_option_table() -> dict[str, typing.Any]:
+    ...
 def _timing_option_table() -> dict[str, typing.Any]:
     ...
 def _tracking_option_table() -> dict[str, typing.Any]:
@@ -4607,6 +4830,12 @@ def derivative_free_solver_names() -> list[str]:
 def drive_arc(pose: numpy.typing.ArrayLike, platform_velocity: numpy.typing.ArrayLike, time: float) -> numpy.typing.NDArray[numpy.float64]:
     """
     Base pose (x, y, theta) after `time` [s] at a constant platform velocity (v_x, v_y, omega): the exact arc.
+    """
+def eigengrasp_hand(robot: Robot, tool_link: str, groups: collections.abc.Sequence[tuple[str, collections.abc.Sequence[str]]], *, open: numpy.typing.ArrayLike, closed: numpy.typing.ArrayLike, approach: numpy.typing.ArrayLike = (0, 0, 1), name: str = 'type') -> Hand:
+    """
+    A robot hand set up for one type of grasp (P3 4.6.1, Algorithm 3): `groups` are (name, joints) pairs, `open` and `closed`
+    the values of all their joints in that order. Groups whose values agree keep them. Raises InvalidInput on unknown joints,
+    values outside limits, and when no two fingertips close on each other.
     """
 def evaluate_graspability(map: HeightMap, gripper: Hand, *, image: DepthImage | None = None, margin: float = 0.001, orientations: int = 16, openings: int = 2, layer_step: float = 0.01, lowest: float = 0.003, insertion: float = 0.01, smoothing: float = 0.01, min_contact: float = 0.4, min_distance: float = 0.015, max_grasps: int = 100, threads: int = 0) -> Graspability:
     """
@@ -5091,6 +5320,42 @@ def singularity_objective(group: JointGroup, threshold: float, weight: float = 1
 def solve_set_cover(elements: int, sets: collections.abc.Sequence[collections.abc.Sequence[int]], costs: collections.abc.Sequence[float] = [], *, time_limit: float = 60.0, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> SetCoverResult:
     """
     Fewest (or cheapest) sets that cover all of 0..elements-1, with a proof (P1, equation 3.1).
+    """
+def synthesize_grasps(map: ProbabilisticSdf, hand: Hand, *, table: float | None = None, object: numpy.typing.ArrayLike | None = None, robot: Robot | None = None, arm: JointGroup | None = None, world: World | None = None, arm_seed: numpy.typing.ArrayLike | None = None, surface_draws: int = 0, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, samples: int = 200, refined: int = 8, shift: float = 0.012, max_tilt: float = 1.05, table_tolerance: float = 0.004, sigmas: float = 2.0, margin: float = 0.002, approach_distance: float = 0.05, min_distance: float = 0.01, max_grasps: int = 20, threads: int = 0, seed: int = 1, friction: float = 0.5, angle_weight: float = 0.6, placement_weight: float = 0.1, centring_weight: float = 0.2, certainty_weight: float = 0.1, placement_scale: float = 0.01, max_sigma: float = 0.005, rays: int = 5, min_hits: float = 0.5, min_inliers: float = 0.8, plane_tolerance: float = 0.002, correlation_length: float = 0.02) -> GraspSynthesis:
+    """
+    Grasps of an unknown part in a ProbabilisticSdf, most probable by P3's model (4.9) first.
+    
+    `table` is the height of the level table that it stands on [m], `object` a box (2, 3) that holds it, least and largest
+    corner [m]; without them all of the map is the part. `robot` has the joints and bodies of a hand of
+    eigengrasp_hand; without it the hand is two pads and its boxes. With `arm`, a group whose tip is the hand's tool link, grasps are
+    left out that it does not reach, with `world` without collisions, by inverse kinematics from `arm_seed` (the middle
+    of the limits). `surface_draws` > 0 rates what is returned by (4.1) too. Raises InvalidInput for a map without a surface.
+    
+    Keyword options:
+        samples: int = 200  # grasps evaluated, a third of them around the best of the others
+        refined: int = 8  # grasps around which the second search goes on
+        shift: float = 0.012  # farthest that the second search shifts a grasp [m]
+        max_tilt: float = 1.05  # of the approach against straight down [rad]
+        table_tolerance: float = 0.004  # what the map has up to this above the table is the table [m]
+        sigmas: float = 2.0  # standard deviations of the surface kept free around the hand
+        margin: float = 0.002  # kept free beside them, and above the table [m]
+        approach_distance: float = 0.05  # straight way in that must be free [m]
+        min_distance: float = 0.01  # between returned grasps that close along about one axis [m]
+        max_grasps: int = 20  # best kept
+        threads: int = 0  # 0: all
+        seed: int = 1  # same seed, same grasps
+        friction: float = 0.5  # Coulomb coefficient; P3's theta is 2 atan(friction)
+        angle_weight: float = 0.6  # w_1 of (4.9); the four sum to 1
+        placement_weight: float = 0.1  # w_2: of the pads' distances from the surface
+        centring_weight: float = 0.2  # w_3: of the contact line's distance from the object's middle
+        certainty_weight: float = 0.1  # w_4: of the surface's standard deviation
+        placement_scale: float = 0.01  # sigma_h^2 of (4.6) [m]
+        max_sigma: float = 0.005  # surfaces less certain are not touched [m]
+        rays: int = 5  # along each side of a pad
+        min_hits: float = 0.5  # share of a pad's rays that must meet the surface
+        min_inliers: float = 0.8  # share of the hits that must lie in one plane
+        plane_tolerance: float = 0.002  # farthest that an inlier lies from the plane [m]
+        correlation_length: float = 0.02  # over which the error of the surface changes, for `surface_draws` [m]
     """
 def time_parameterize(path: numpy.typing.ArrayLike, velocity_limits: numpy.typing.ArrayLike, acceleration_limits: numpy.typing.ArrayLike, *, names: collections.abc.Sequence[str] = [], progress: collections.abc.Callable[[str, float], typing.Any] | None = None, max_deviation: float = 0.01, sample_period: float = 0.02, jerk_limits: numpy.typing.ArrayLike | None = None) -> JointTrajectory:
     """

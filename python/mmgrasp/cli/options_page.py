@@ -55,6 +55,12 @@ SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
         set(),
     ),
     (
+        "synthesize_grasps",
+        "Grasps of unknown parts in a map, keywords (`SynthesisOptions`, `SuccessOptions`, `ContactPatchOptions`)",
+        _core._synthesis_option_table,
+        set(),
+    ),
+    (
         "track_base",
         "A base on its plan, keywords; those of `BaseTracker` are the first eight (`BaseTrackingOptions`, `BaseDisturbance`)",
         _core._tracking_option_table,

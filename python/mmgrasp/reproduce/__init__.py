@@ -16,6 +16,7 @@ from . import (
     capability,
     drive_by,
     experiments,
+    grasp_success,
     ik_query,
     physics,
     policies,
@@ -46,6 +47,7 @@ TOPICS = (
     rrt_mg,
     capability,
     shelf,
+    grasp_success,
     drive_by,
     tracking,
     physics,
@@ -59,6 +61,7 @@ ALSO = {
     "p2-figure-4.5": "p2-table-4.2",
     "p2-figure-5.6": "p2-figure-5.5",
     "p3-figure-3.32": "p3-figure-3.31",
+    "p3-figure-4.20": "p3-figure-4.21",
 }
 
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -56,6 +58,33 @@ Matrix3Xd random_points(int count, double spread) {
 }  // namespace
 
 /// P3 (4.16), (4.17) against weighted least squares over all frames at once, at voxels, in closed form.
+TEST(ProbabilisticSdf, MeshOfABoxIsThatOfItsCells) {
+  ProbabilisticSdf sdf;
+  const DepthCamera camera = small_camera();
+  sdf.integrate(
+      frame_of({{Plane{Eigen::Vector3d::UnitZ(), 0.0}, Pose::Identity()}}, camera, look_at({0, 0, 0.3}, {0, 0, 0})),
+      camera);
+  const SdfMesh whole = sdf.mesh();
+  const double side = 8 * sdf.options().voxel;
+  const Eigen::AlignedBox3d box(Eigen::Vector3d(0.1 * side, 0.1 * side, -0.02),
+                                Eigen::Vector3d(0.9 * side, 1.9 * side, 0.02));
+  const SdfMesh some = sdf.mesh(box);
+  // Triangles with all corners within those cells, by place.
+  const auto inside = [&](const TriangleMesh& mesh, const std::array<int, 3>& t) {
+    return std::all_of(t.begin(), t.end(), [&](int k) {
+      const Eigen::Vector3d& p = mesh.vertices[k];
+      return p.x() >= 0 && p.x() <= side && p.y() >= 0 && p.y() <= 2 * side;
+    });
+  };
+  std::size_t expected = 0;
+  for (const auto& t : whole.mesh->triangles) expected += inside(*whole.mesh, t);
+  EXPECT_GT(expected, 100u);
+  EXPECT_EQ(some.mesh->triangles.size(), expected);
+  for (const auto& t : some.mesh->triangles) EXPECT_TRUE(inside(*some.mesh, t));
+  EXPECT_EQ(some.sigma.size(), some.mesh->vertices.size());
+  EXPECT_TRUE(sdf.mesh(Eigen::AlignedBox3d(Eigen::Vector3d(5, 5, 5), Eigen::Vector3d(6, 6, 6))).mesh->vertices.empty());
+}
+
 TEST(ProbabilisticSdf, RecursionIsBatchLeastSquares) {
   ProbabilisticSdf sdf;
   const double depths[] = {0.300, 0.301, 0.2985, 0.3022, 0.2991}, sigmas[] = {0.001, 0.002, 0.0005, 0.003, 0.0012};

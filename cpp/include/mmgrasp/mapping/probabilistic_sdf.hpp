@@ -142,6 +142,8 @@ class MMGRASP_EXPORT ProbabilisticSdf {
 
   /// The zero level by marching cubes, consistent across blocks: closed where the surface was seen all around.
   SdfMesh mesh() const;
+  /// The same of the cells between voxels that the box [m] touches, as an open surface: fast where it is small.
+  SdfMesh mesh(const Eigen::AlignedBox3d& within) const;
   /// The mesh's vertices with their normals.
   SdfPoints points() const;
 

@@ -1,6 +1,7 @@
 #include "mapping/sdf/extract_mesh.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -17,20 +18,40 @@ class Extraction {
  public:
   explicit Extraction(const SdfGrid& grid) : grid_(grid), sampler_(grid), mesh_(std::make_shared<TriangleMesh>()) {}
 
-  SdfMesh run() {
+  SdfMesh run(const Eigen::AlignedBox3d* within) {
     std::vector<int> order(grid_.keys.size());
     std::iota(order.begin(), order.end(), 0);
+    if (within) {
+      const double side = kBlockSide * grid_.options.voxel;
+      const auto outside = [&](int block) {
+        const BlockKey& key = grid_.keys[block];
+        const Vector3d low = side * Vector3d(key.x, key.y, key.z);
+        return !within->intersects(Eigen::AlignedBox3d(low, low + Vector3d::Constant(side)));
+      };
+      order.erase(std::remove_if(order.begin(), order.end(), outside), order.end());
+    }
     std::sort(order.begin(), order.end(),
               [&](int a, int b) { return grid_.keys[a].packed() < grid_.keys[b].packed(); });
     for (const int block : order) {
+      int first[3] = {0, 0, 0}, last[3] = {kBlockSide - 1, kBlockSide - 1, kBlockSide - 1};
+      if (within) {
+        const int corner[3] = {8 * grid_.keys[block].x, 8 * grid_.keys[block].y, 8 * grid_.keys[block].z};
+        for (int k = 0; k < 3; ++k) {
+          const double low = within->min()[k] / grid_.options.voxel - corner[k],
+                       high = within->max()[k] / grid_.options.voxel - corner[k];
+          first[k] = static_cast<int>(std::floor(std::clamp(low, 0.0, 8.0)));
+          last[k] = static_cast<int>(std::floor(std::clamp(high, -1.0, 7.0)));
+        }
+      }
+      if (first[0] > last[0] || first[1] > last[1] || first[2] > last[2]) continue;
       read(block);
-      for (int z = 0; z < kBlockSide; ++z) {
-        for (int y = 0; y < kBlockSide; ++y) {
-          for (int x = 0; x < kBlockSide; ++x) add_cell(block, x, y, z);
+      for (int z = first[2]; z <= last[2]; ++z) {
+        for (int y = first[1]; y <= last[1]; ++y) {
+          for (int x = first[0]; x <= last[0]; ++x) add_cell(block, x, y, z);
         }
       }
     }
-    mesh_->closed = closed();
+    mesh_->closed = !within && closed();
     return {mesh_, std::move(sigma_)};
   }
 
@@ -119,8 +140,8 @@ class Extraction {
 
 }  // namespace
 
-SdfMesh extract_mesh(const SdfGrid& grid) {
-  return Extraction(grid).run();
+SdfMesh extract_mesh(const SdfGrid& grid, const Eigen::AlignedBox3d* within) {
+  return Extraction(grid).run(within);
 }
 
 }  // namespace mmgrasp::detail

@@ -4,7 +4,8 @@
 
 namespace mmgrasp::detail {
 
-/// The zero level with the standard deviation at each vertex; blocks in the order of their keys.
-SdfMesh extract_mesh(const SdfGrid& grid);
+/// The zero level with the standard deviation at each vertex; blocks in the order of their keys. With `within` that of
+/// the cells between voxels alone that the box touches.
+SdfMesh extract_mesh(const SdfGrid& grid, const Eigen::AlignedBox3d* within = nullptr);
 
 }  // namespace mmgrasp::detail

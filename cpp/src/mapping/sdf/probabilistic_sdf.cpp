@@ -127,6 +127,10 @@ SdfMesh ProbabilisticSdf::mesh() const {
   return detail::extract_mesh(*grid_);
 }
 
+SdfMesh ProbabilisticSdf::mesh(const Eigen::AlignedBox3d& within) const {
+  return detail::extract_mesh(*grid_, &within);
+}
+
 SdfPoints ProbabilisticSdf::points() const {
   const SdfMesh surface = mesh();
   const auto& vertices = surface.mesh->vertices;

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <vector>
+
+#include "grasp/synthesis/point_grid.hpp"
+#include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/pose.hpp"
+#include "mmgrasp/robot/joint.hpp"
+
+namespace mmgrasp::detail {
+
+enum class HandContact { none, table, map };
+
+/// Whether a hand's boxes keep apart from points with uncertain places, and from a level table below them. The points
+/// are two voxels apart at most, so that nothing thicker slips between them.
+class MMGRASP_EXPORT HandClearance {
+ public:
+  /// Each point is a ball of `margin` + `sigmas` times its own sigma [m].
+  HandClearance(const std::vector<Eigen::Vector3d>& points, const std::vector<double>& sigma, double sigmas,
+                double margin, const std::optional<double>& table);
+
+  /// The first thing that the boxes, given in the hand's frame, touch.
+  HandContact check(const std::vector<LinkShape>& boxes, const Pose& T_world_hand) const;
+  /// Whether a point lies deeper than this in one of the boxes [m], however uncertain its place.
+  bool pierced(const std::vector<LinkShape>& boxes, const Pose& T_world_hand, double depth) const;
+
+ private:
+  bool touches(const Pose& T_world_box, const Eigen::Vector3d& half, const std::optional<double>& depth) const;
+
+  struct Ball {
+    Eigen::Vector3d centre;
+    double radius;
+  };
+  double margin_, largest_ = 0;  ///< Largest radius.
+  std::optional<double> table_;
+  PointGrid grid_;
+  std::vector<Ball> balls_;  ///< In the grid's order.
+};
+
+}  // namespace mmgrasp::detail

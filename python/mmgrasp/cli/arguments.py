@@ -26,7 +26,7 @@ def build_parser() -> argparse.ArgumentParser:
     parser = _Parser(prog="mmgrasp", description="Planning for mobile manipulators.")
     parser.add_argument("--version", action="version", version=f"mmgrasp {_core.__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="command", parser_class=_Parser)
-    for add in (_add_plan, _add_verify, _add_check, _add_scan, _add_reproduce, _add_bench, _add_view):
+    for add in (_add_plan, _add_verify, _add_check, _add_scan, _add_grasp, _add_reproduce, _add_bench, _add_view):
         add(commands)
     return parser
 
@@ -135,6 +135,27 @@ def _add_scan(commands: Commands) -> None:
     parser.add_argument("--start-over", action="store_true", help="make the map anew instead of going on with it")
     parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out of the report")
     parser.add_argument("--json", action="store_true", help="print the summary as JSON")
+
+
+def _add_grasp(commands: Commands) -> None:
+    parser = commands.add_parser("grasp", help="rank grasps of the objects in a map that `mmgrasp scan` made")
+    parser.add_argument("map", type=_path, help="folder that `mmgrasp scan` wrote")
+    parser.add_argument(
+        "--gripper",
+        required=True,
+        metavar="NAME",
+        help="whose gripper: a shipped profile (tiago, ...), or the file of a robot profile or scenario",
+    )
+    parser.add_argument("--object", metavar="NAME", help="only this object of objects.json")
+    parser.add_argument("-o", "--out", type=_path, metavar="FILE", help="also write all grasps as JSON")
+    parser.add_argument(
+        "--samples", type=_count(1, 100_000, "samples"), default=200, metavar="N", help="grasps tried for an object"
+    )
+    parser.add_argument(
+        "--grasps", type=_count(1, 1000, "grasps"), default=20, metavar="N", help="best kept of an object (default 20)"
+    )
+    parser.add_argument("--seed", type=_seed, default=1, metavar="N", help="same seed, same grasps")
+    parser.add_argument("--json", action="store_true", help="print all grasps as JSON")
 
 
 def _add_reproduce(commands: Commands) -> None:

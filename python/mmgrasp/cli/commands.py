@@ -33,6 +33,7 @@ from ..scenario.reading import Document
 from .arguments import build_parser
 from .check import check_robot, describe
 from .console import Reporter, open_streams
+from .grasp import run_grasp
 from .output_folder import OutputFolder
 from .scan import run_scan
 from .tables import bench_table, drive_by_summary, print_verdict, summary
@@ -226,6 +227,7 @@ COMMANDS = {
     "verify": run_verify,
     "check": run_check,
     "scan": run_scan,
+    "grasp": run_grasp,
     "reproduce": run_reproduce,
     "bench": run_bench,
     "view": run_view,

@@ -5,6 +5,7 @@
 """
 
 from .robot_section import RobotSetup as RobotSetup
+from .robot_section import read_gripper as read_gripper
 from .scenario import Obstacle as Obstacle
 from .scenario import Scenario as Scenario
 from .scenario import load_scenario as load_scenario

@@ -95,12 +95,29 @@ def choose_sections(root: Node, robot_name: str | None) -> RobotSections:
         robot_name = own["name"].string()
     if robot_name is None:
         return RobotSections(own, root["gripper"], root["place_region"])
-    profile = read_yaml(profile_path(robot_name)).root
+    profile = _profile_sections(read_yaml(profile_path(robot_name)).root)
+    if replaced:
+        return profile
+    pick = {key: root[key] if key in root else getattr(profile, key) for key in ("gripper", "place_region")}
+    return RobotSections(profile.robot, pick["gripper"], pick["place_region"])
+
+
+def _profile_sections(profile: Node) -> RobotSections:
     profile["format"].choice("mmgrasp-robot")
     profile.read_version(2)
     profile.mapping("format version robot gripper place_region")
-    pick = {key: root[key] if key in root and not replaced else profile[key] for key in ("gripper", "place_region")}
-    return RobotSections(profile["robot"], pick["gripper"], pick["place_region"])
+    return RobotSections(profile["robot"], profile["gripper"], profile["place_region"])
+
+
+def read_gripper(source: str) -> Hand:
+    """The gripper of a robot profile (name or file) or of a scenario, `asset:...` for a shipped one.
+
+    Raises InvalidInput or IoError with one message that names file, line, key, value and rule.
+    """
+    path = shipped(source) if source.startswith("asset:") else profile_path(source)
+    root = read_yaml(path).root
+    sections = choose_sections(root, None) if "trays" in root else _profile_sections(root)
+    return _read_gripper(sections.gripper, _compose(sections.robot), sections.robot["tcp"].string())
 
 
 def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup:

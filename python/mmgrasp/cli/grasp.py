@@ -1,0 +1,136 @@
+"""`mmgrasp grasp`: ranked grasps of the objects that `mmgrasp scan` found, each with its probability."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from .. import _core
+from .._core import InvalidInput, IoError, Outcome
+from .._files import printable, read_text, write_file
+from ..scan.objects import FORMAT as OBJECTS_FORMAT
+from ..scan.objects import VERSION as OBJECTS_VERSION
+from ..scan.objects import pose_to_dict
+from ..scenario import read_gripper
+from .console import Reporter
+
+FOUND, NOTHING_FOUND = 0, 1
+FORMAT, VERSION = "mmgrasp-grasps", 1
+_LARGEST = 100_000_000  # bytes of objects.json
+_LEVEL = 0.17  # the table may be that far from level [rad]
+_ROOM = 0.01  # around an object's points, within which its surface is taken from the map [m]
+_SHARES = ("angle", "placement", "centring", "certainty")
+
+
+def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
+    hand = read_gripper(arguments.gripper)
+    objects, plane = _read_objects(arguments.map)
+    chosen = _chosen(objects, arguments.object, arguments.map)
+    sdf = _core.ProbabilisticSdf.load(str(arguments.map / "map.sdf"))
+    rows = []
+    with Reporter(console) as report:
+        for k, thing in enumerate(chosen):
+            report("grasps", k / len(chosen))
+            rows.append(_grasps_of(thing, plane, sdf, hand, arguments))
+        report("grasps", 1.0)
+    content = {"format": FORMAT, "version": VERSION, "gripper": arguments.gripper, "objects": rows}
+    if arguments.out is not None:
+        write_file(arguments.out, json.dumps(content, indent=1, allow_nan=False) + "\n")
+    if arguments.json:
+        print(json.dumps(content, indent=1, allow_nan=False))
+    else:
+        _print(rows, arguments.out, console)
+    return FOUND if any(row["grasps"] for row in rows) else NOTHING_FOUND
+
+
+def _read_objects(folder: Path) -> tuple[list[dict[str, Any]], dict[str, Any]]:
+    path = folder / "objects.json"
+    if not path.exists():
+        raise IoError(
+            f"{printable(str(folder))}: holds no objects.json: not a folder that mmgrasp scan wrote to its end"
+        )
+    try:
+        content = json.loads(read_text(path, _LARGEST))
+        known = content["format"] == OBJECTS_FORMAT and content["version"] == OBJECTS_VERSION
+        objects, plane = list(content["objects"]), content["plane"]
+        for thing in objects:
+            np.array([thing["bounds"]["lower"], thing["bounds"]["upper"]], dtype=float).reshape(2, 3)
+    except (ValueError, KeyError, TypeError) as error:
+        raise IoError(f"{printable(str(path))}: is no list of objects of mmgrasp scan: {error}") from None
+    if not known:
+        raise IoError(f"{printable(str(path))}: must have the format {OBJECTS_FORMAT}, version {OBJECTS_VERSION}")
+    if not objects or plane is None:
+        raise InvalidInput(f"{printable(str(path))}: lists no objects: there is nothing to grasp")
+    tilt = float(np.arccos(np.clip(plane["normal"][2], -1, 1)))
+    if tilt > _LEVEL:
+        raise InvalidInput(
+            f"{printable(str(path))}: the supporting plane is tilted by {np.degrees(tilt):.0f} degrees against the world's z, at most "
+            f"{np.degrees(_LEVEL):.0f} will do: give the frames' poses in a world whose z is up"
+        )
+    return objects, plane
+
+
+def _chosen(objects: list[dict[str, Any]], name: str | None, folder: Path) -> list[dict[str, Any]]:
+    if name is None:
+        return objects
+    found = [thing for thing in objects if thing["name"] == name]
+    if not found:
+        names = ", ".join(str(thing["name"]) for thing in objects[:8])
+        raise InvalidInput(f"--object {name}: is no object of {printable(str(folder))}; it has {names}")
+    return found
+
+
+def _grasps_of(
+    thing: dict[str, Any],
+    plane: dict[str, Any],
+    sdf: _core.ProbabilisticSdf,
+    hand: _core.Hand,
+    arguments: argparse.Namespace,
+) -> dict[str, Any]:
+    box = np.array([thing["bounds"]["lower"], thing["bounds"]["upper"]], dtype=float)
+    middle, normal = box.mean(axis=0), np.array(plane["normal"])
+    table = float((plane["offset"] - normal[:2] @ middle[:2]) / normal[2])
+    box += [[-_ROOM], [_ROOM]]
+    found = _core.synthesize_grasps(
+        sdf, hand, table=table, object=box, samples=arguments.samples, seed=arguments.seed, max_grasps=arguments.grasps
+    )
+    if found.outcome == Outcome.stopped:
+        raise KeyboardInterrupt
+    grasps = []
+    for grasp, rating in zip(found.grasps, found.ratings, strict=True):
+        success = rating.success.to_dict()
+        grasps.append(
+            {
+                "T_world_hand": pose_to_dict(grasp.T_object_hand),
+                "opening": grasp.opening,
+                "pretouch_opening": rating.pretouch_opening,
+                "probability": success["probability"],
+                "criteria": {name: success[name] for name in _SHARES},
+            }
+        )
+    return {"name": thing["name"], "summary": found.summary(), "counts": dict(found.counts), "grasps": grasps}
+
+
+def _print(rows: list[dict[str, Any]], out: Path | None, console: Console) -> None:
+    table = Table(title="the best grasp of each object; its probability weighs the criteria")
+    for column in ("object", "grasps", "prob.", "angle", "place", "centre", "sure", "mm"):
+        table.add_column(column, justify="left" if column == "object" else "right", no_wrap=True)
+    for row in rows:
+        name, count = printable(row["name"]), str(len(row["grasps"]))
+        if not row["grasps"]:
+            table.add_row(name, count, *["-"] * (2 + len(_SHARES)))
+            continue
+        best = row["grasps"][0]
+        shares = [f"{best['criteria'][share]:.2f}" for share in _SHARES]
+        table.add_row(name, count, f"{best['probability']:.2f}", *shares, f"{1e3 * best['opening']:.0f}")
+    console.print(table)
+    for row in rows:
+        console.print(printable(f"{row['name']}: {row['summary']}"), markup=False, soft_wrap=True)
+    if out is not None:
+        console.print(f"grasps: {printable(str(out))}", markup=False, soft_wrap=True)

@@ -1,0 +1,91 @@
+"""`mmgrasp grasp` on a map that `mmgrasp scan` made of rendered frames: two boxes of known place and size on a table."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import mmgrasp as mg
+from frame_folders import run, write_frames, write_sensors
+from mmgrasp.cli import main
+
+GRIPPER = "asset:scenarios/storeroom.yaml"
+SIDES = {"large": (np.array([0.10, 0.02]), 0.4, (0.12, 0.08)), "small": (np.array([-0.12, -0.05]), 0.0, (0.06, 0.06))}
+
+
+@pytest.fixture(scope="module")
+def scanned(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("grasp")
+    (folder / "frames").mkdir()
+    write_frames(folder / "frames", "npz", 18)
+    write_sensors(folder / "frames")
+    assert run(folder / "frames", folder / "map", "--voxel", "0.003") == 0
+    return folder / "map"
+
+
+def grasps(folder: Path, capsys: pytest.CaptureFixture[str], *more: str) -> dict[str, Any]:
+    capsys.readouterr()
+    assert main(["grasp", str(folder), "--gripper", GRIPPER, "--json", *more]) == 0
+    content: dict[str, Any] = json.loads(capsys.readouterr().out)
+    return content
+
+
+def test_grasps_close_on_opposite_faces(scanned: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = grasps(scanned, capsys)["objects"]
+    assert len(rows) == 2
+    for row in rows:
+        assert len(row["grasps"]) >= 3
+        probabilities = [grasp["probability"] for grasp in row["grasps"]]
+        assert probabilities == sorted(probabilities, reverse=True) and 0.5 < probabilities[0] <= 1
+        for grasp in row["grasps"]:
+            T = mg.pose(grasp["T_world_hand"]["xyz"], quat_xyzw=grasp["T_world_hand"]["quat_xyzw"])
+            _, yaw, sides = min(SIDES.values(), key=lambda side: float(np.linalg.norm(side[0] - T[:2, 3])))
+            closing = T[:3, 1]
+            across = [abs(closing @ [np.cos(yaw + k * np.pi / 2), np.sin(yaw + k * np.pi / 2), 0]) for k in (0, 1)]
+            axis = int(np.argmax(across))
+            assert across[axis] > np.cos(0.35), (row["name"], closing)
+            # Pads askew to the faces touch them with their edges first.
+            askew = 0.025 * np.tan(np.arccos(min(1.0, across[axis])))
+            assert sides[axis] - 0.004 < grasp["opening"] < sides[axis] / across[axis] + askew + 0.004
+            assert grasp["opening"] < grasp["pretouch_opening"] <= 0.1
+            weights = {"angle": 0.6, "placement": 0.1, "centring": 0.2, "certainty": 0.1}
+            assert grasp["probability"] == pytest.approx(sum(weights[k] * v for k, v in grasp["criteria"].items()))
+
+
+def test_the_table_one_object_and_the_file(scanned: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "grasps.json"
+    assert main(["grasp", str(scanned), "--gripper", GRIPPER, "--object", "object_1", "-o", str(out)]) == 0
+    printed = capsys.readouterr().out
+    assert "object_1" in printed and "object_2" not in printed and "prob." in printed
+    assert [row["name"] for row in json.loads(out.read_text())["objects"]] == ["object_1"]
+    # The same seed gives the same grasps.
+    again = grasps(scanned, capsys, "--object", "object_1")
+    assert again == json.loads(out.read_text())
+
+
+def test_bad_input_is_refused_by_name(scanned: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def refused(*arguments: str) -> str:
+        capsys.readouterr()
+        assert main(["grasp", *arguments]) == 2
+        return capsys.readouterr().err
+
+    assert "did you mean tiago?" in refused(str(scanned), "--gripper", "tiag")
+    assert "it has object_1, object_2" in refused(str(scanned), "--gripper", GRIPPER, "--object", "cup")
+    assert "no objects.json" in refused(str(tmp_path), "--gripper", GRIPPER)
+    bad = tmp_path / "objects.json"
+    content = json.loads((scanned / "objects.json").read_text())
+    for change, words in (
+        ("{", "is no list of objects"),
+        (json.dumps({**content, "version": 9}), "version 1"),
+        (json.dumps({**content, "objects": []}), "lists no objects"),
+        (json.dumps({**content, "objects": [{"name": "cup"}]}), "is no list of objects"),
+        (json.dumps({**content, "plane": {**content["plane"], "normal": [1.0, 0.0, 0.0]}}), "tilted by 90 degrees"),
+    ):
+        bad.write_text(change)
+        assert words in refused(str(tmp_path), "--gripper", GRIPPER), words
+    bad.write_text(json.dumps(content))
+    assert "map.sdf" in refused(str(tmp_path), "--gripper", GRIPPER)

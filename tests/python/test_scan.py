@@ -24,6 +24,7 @@ from frame_folders import (
     SCALES,
     contents,
     direct_map,
+    look_at,
     names,
     run,
     save_png,
@@ -37,7 +38,7 @@ from mmgrasp.cli import scan as scan_command
 from mmgrasp.cli.output_folder import LIST
 from mmgrasp.frames import write_npz_frame
 from mmgrasp.frames.poses import rigid
-from mmgrasp.scan.objects import vertex_normals
+from mmgrasp.scan.objects import segment_objects, vertex_normals
 from mmgrasp.scan.plane import supporting_plane
 
 ALL_FILES = {"map.sdf", "progress.json", "mesh.ply", "objects.json", "report.html", LIST}
@@ -326,3 +327,23 @@ def test_a_slice_through_a_wall_is_no_supporting_plane() -> None:
     anyhow = supporting_plane(points, normals, None, 0.61, 0.008, 0.012)
     assert anyhow is not None
     np.testing.assert_allclose(anyhow.normal, [0, 1, 0], atol=0.01)
+
+
+def test_boxes_that_touch_are_two_objects() -> None:
+    """Side by side, of two heights: one cluster, but there is a crease where they meet."""
+    low, high = ([0.10, 0.08, 0.04], [-0.05, 0.0]), ([0.10, 0.08, 0.10], [0.05, 0.0])
+    scene = [mg.LinkShape(mg.collision.Plane([0, 0, 1], 0.0))]
+    scene += [mg.LinkShape(mg.Box(size), mg.pose([*at, size[2] / 2])) for size, at in (low, high)]
+    sdf = mg.ProbabilisticSdf(voxel=0.003, truncation=0.015)
+    camera = mg.mapping.DepthCamera(PINHOLE, mg.mapping.DepthNoise(constant=0.0005))
+    for k in range(14):
+        eye = np.array([0.35 * np.cos(0.45 * k), 0.35 * np.sin(0.45 * k), 0.36])
+        sdf.integrate(mg.mapping.render_depth(scene, PINHOLE, look_at(eye, np.array([0.0, 0.0, 0.03]))), camera)
+    mesh, _ = sdf.mesh()
+    normals = vertex_normals(mesh.vertices, mesh.triangles)
+    found = segment_objects(mesh.vertices, normals, up=[0, 0, 1], eye=np.array([0, 0, 1.0]), voxel=0.003)
+    assert len(found.objects) == 2
+    for size, at in (low, high):
+        thing = min(found.objects, key=lambda o: float(np.linalg.norm(o.T_world_box[:2, 3] - at)))
+        np.testing.assert_allclose(thing.T_world_box[:2, 3], at, atol=0.006)
+        np.testing.assert_allclose(thing.size, size, atol=0.008)

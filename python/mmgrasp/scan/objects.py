@@ -64,10 +64,10 @@ def segment_objects(
     carrier = supporting_plane(points, normals, None if up is None else np.asarray(up), up_angle, tolerance, 3 * voxel)
     if carrier is None:
         return nothing
-    leaf = max(0.003, voxel)
+    leaf = max(0.004, 4 / 3 * voxel)  # above the spacing of the points
     while leaf**2 * _MOST_POINTS < _area(points, leaf):
         leaf *= 1.5
-    patch = max(0.02, 10 * leaf)  # depth waves over some voxels; creases between larger patches are the surface's
+    patch = max(0.03, 7.5 * leaf)  # depth waves over some voxels; creases between larger patches are the surface's
     found = _core.segment_objects(
         points,
         normals,
@@ -75,7 +75,7 @@ def segment_objects(
         eye=eye,
         leaf=leaf,
         patch=patch,
-        min_points=int((1.5 * patch / leaf) ** 2),  # a smaller piece of surface is no object
+        min_points=int((2 * patch / leaf) ** 2),  # a smaller piece of surface is no object
         plane_tolerance=tolerance,
     )
     labels = np.asarray(found.labels)

@@ -69,6 +69,16 @@ def test_lines_and_timing_can_be_interrupted(name: str) -> None:
     timer.join()
 
 
+@pytest.mark.parametrize("delay", [0.05, 0.12, 0.2, 0.3])
+def test_a_set_cover_is_interrupted_at_any_moment(delay: float) -> None:
+    """CBC has a handler of its own in place while it prepares the problem."""
+    timer = threading.Timer(delay, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        mg.optim.solve_set_cover(300, HARD_COVER, time_limit=20)
+    timer.join()
+
+
 def test_lines_and_timing_tell_their_progress() -> None:
     calls: dict[str, Callable[..., Any]] = {
         "straight line": lambda **k: mg.planning.plan_straight_line(CHECKER, Q, AHEAD, **k),

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <mutex>
 #include <new>
 #include <thread>
@@ -48,26 +49,48 @@ double safe_bound(double bound, const std::vector<double>& costs) {
   return std::max(0.0, all_integral(costs) ? std::ceil(lowered) : lowered);
 }
 
+/// What Ctrl-C calls, kept as it was: CBC puts a handler of its own in place while it prepares a problem, which
+/// swallows the signal.
+class InterruptHandler {
+ public:
+  InterruptHandler() { sigaction(SIGINT, nullptr, &own_); }
+  void restore() const {
+    struct sigaction now {};
+    if (sigaction(SIGINT, nullptr, &now) == 0 && now.sa_handler != own_.sa_handler) sigaction(SIGINT, &own_, nullptr);
+  }
+
+ private:
+  struct sigaction own_ {};
+};
+
 /// Ends CBC's search at its next event once the monitor says so.
 class StopAtEvents : public CbcEventHandler {
  public:
   explicit StopAtEvents(const Monitor& monitor) : monitor_(&monitor) {}
-  CbcAction event(CbcEvent) override { return monitor_->stopped() ? stop : noAction; }
+  CbcAction event(CbcEvent) override {
+    interrupts_.restore();
+    return monitor_->stopped() ? stop : noAction;
+  }
   CbcEventHandler* clone() const override { return new StopAtEvents(*this); }
 
  private:
   const Monitor* monitor_;
+  InterruptHandler interrupts_;
 };
 
 /// The same within one linear programme.
 class StopAtIterations : public ClpEventHandler {
  public:
   explicit StopAtIterations(const Monitor& monitor) : monitor_(&monitor) {}
-  int event(Event) override { return monitor_->stopped() ? 5 : -1; }  // 5: stopped by an event; -1: go on
+  int event(Event) override {
+    interrupts_.restore();
+    return monitor_->stopped() ? 5 : -1;  // 5: stopped by an event; -1: go on
+  }
   ClpEventHandler* clone() const override { return new StopAtIterations(*this); }
 
  private:
   const Monitor* monitor_;
+  InterruptHandler interrupts_;
 };
 
 void load(const SetCoverProblem& problem, OsiClpSolverInterface& solver) {

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <csignal>
 #include <thread>
 
 namespace mmgrasp::python {
@@ -35,22 +34,6 @@ bool is_main_thread() {
   return threading.attr("current_thread")().is(threading.attr("main_thread")());
 }
 
-/// Keeps Ctrl-C Python's while its main thread waits here: CBC puts a handler of its own in place while it prepares a
-/// problem, which swallows the signal.
-class InterruptGuard {
- public:
-  explicit InterruptGuard(bool active) : active_(active && sigaction(SIGINT, nullptr, &own_) == 0) {}
-  void restore() const {
-    struct sigaction now {};
-    if (!active_ || sigaction(SIGINT, nullptr, &now) != 0 || now.sa_handler == own_.sa_handler) return;
-    sigaction(SIGINT, &own_, nullptr);
-  }
-
- private:
-  struct sigaction own_ {};
-  bool active_;
-};
-
 }  // namespace
 
 void end_calls_at_exit() {
@@ -60,7 +43,6 @@ void end_calls_at_exit() {
 bool LongCall::wait() {
   const Waiting waiting;
   const bool may_sleep = !is_main_thread();
-  const InterruptGuard interrupts(!may_sleep);
   while (true) {
     bool done = false;
     {
@@ -71,7 +53,6 @@ bool LongCall::wait() {
       done = done_;
     }
     if (done) return true;
-    interrupts.restore();
     if (PyErr_CheckSignals() != 0) break;
     try {
       hand_over_progress();

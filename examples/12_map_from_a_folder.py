@@ -6,7 +6,7 @@ import numpy as np
 
 import mmgrasp as mg
 from mmgrasp.frames import open_frames, write_npz_frame
-from mmgrasp.scan import Scan, choose_options, integrate_frames, segment_objects
+from mmgrasp.scan import Scan, choose_options, integrate_frames, objects_on_plane
 
 scene = [
     mg.LinkShape(mg.collision.Plane([0, 0, 1], 0.0)),
@@ -32,7 +32,7 @@ print(frames)
 scan = Scan.begin(choose_options(frames, voxel=None, truncation=None, max_memory=None))
 print(f"{integrate_frames(frames, scan)} frames in {scan.sdf}, {len(scan.skipped)} skipped")
 points, normals, sigmas = scan.sdf.points()
-found = segment_objects(points, normals, up=[0, 0, 1], eye=np.array([0, 0, 0.45]), voxel=scan.options.voxel)
+found = objects_on_plane(points, normals, up=[0, 0, 1], eye=np.array([0, 0, 0.45]), voxel=scan.options.voxel)
 print(f"plane at z = {1e3 * found.plane_offset:.1f} mm; sigma of the surface {1e3 * np.median(sigmas):.2f} mm (median)")
 for thing in found.objects:
     print(f"object at {np.round(thing.T_world_box[:3, 3], 3)}, {np.round(1e3 * thing.size)} mm")

@@ -38,7 +38,7 @@ from mmgrasp.cli import scan as scan_command
 from mmgrasp.cli.output_folder import LIST
 from mmgrasp.frames import write_npz_frame
 from mmgrasp.frames.poses import rigid
-from mmgrasp.scan.objects import segment_objects, vertex_normals
+from mmgrasp.scan.objects import objects_on_plane, vertex_normals
 from mmgrasp.scan.plane import supporting_plane
 
 ALL_FILES = {"map.sdf", "progress.json", "mesh.ply", "objects.json", "report.html", LIST}
@@ -341,7 +341,7 @@ def test_boxes_that_touch_are_two_objects() -> None:
         sdf.integrate(mg.mapping.render_depth(scene, PINHOLE, look_at(eye, np.array([0.0, 0.0, 0.03]))), camera)
     mesh, _ = sdf.mesh()
     normals = vertex_normals(mesh.vertices, mesh.triangles)
-    found = segment_objects(mesh.vertices, normals, up=[0, 0, 1], eye=np.array([0, 0, 1.0]), voxel=0.003)
+    found = objects_on_plane(mesh.vertices, normals, up=[0, 0, 1], eye=np.array([0, 0, 1.0]), voxel=0.003)
     assert len(found.objects) == 2
     for size, at in (low, high):
         thing = min(found.objects, key=lambda o: float(np.linalg.norm(o.T_world_box[:2, 3] - at)))

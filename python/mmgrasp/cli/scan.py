@@ -21,9 +21,9 @@ from ..scan import (
     choose_options,
     integrate_frames,
     mean_up,
+    objects_on_plane,
     read_scan,
     scan_to_dict,
-    segment_objects,
     write_ply,
 )
 from ..scan.objects import GUESSED_UP, KNOWN_UP, Segmentation, objects_to_dict, vertex_normals
@@ -150,7 +150,7 @@ def _objects(
     else:
         up, angle, how = mean_up(cameras), GUESSED_UP, "it was guessed from how the cameras were held"
     eye = np.mean([T[:3, 3] for T in cameras], axis=0)
-    found = segment_objects(points, normals, up=up, eye=eye, voxel=scan.options.voxel, up_angle=angle)
+    found = objects_on_plane(points, normals, up=up, eye=eye, voxel=scan.options.voxel, up_angle=angle)
     return found, objects_to_dict(found, points, sigmas, up, how)
 
 

@@ -9,7 +9,7 @@ from .integration import integrate_frames as integrate_frames
 from .objects import Segmentation as Segmentation
 from .objects import SegmentedObject as SegmentedObject
 from .objects import mean_up as mean_up
-from .objects import segment_objects as segment_objects
+from .objects import objects_on_plane as objects_on_plane
 from .ply import write_ply as write_ply
 from .progress_file import read_scan as read_scan
 from .progress_file import scan_to_dict as scan_to_dict

@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import _core
 from .._core import quat_xyzw_from_rotation
-from .plane import SupportingPlane, supporting_plane
+from .plane import SupportingSurface, supporting_plane
 
 FORMAT, VERSION = "mmgrasp-objects", 1
 KNOWN_UP, GUESSED_UP = 0.35, 0.61
@@ -42,7 +42,7 @@ class Segmentation:
     """(n,) of each point: its object, -1 the plane, -2 left out."""
 
 
-def segment_objects(
+def objects_on_plane(
     points: np.ndarray,
     normals: np.ndarray,
     *,
@@ -102,14 +102,14 @@ def _unique_cells(points: np.ndarray, edge: float) -> np.ndarray:
     return np.unique(key)
 
 
-def _is_above(points: np.ndarray, carrier: SupportingPlane) -> bool:
+def _is_above(points: np.ndarray, carrier: SupportingSurface) -> bool:
     """The middle of the object lies over the surface that was seen of the plane; walls and furniture beside it do not."""
     T = carrier.T_world_plane
     middle = (np.median(points, axis=0) - T[:3, 3]) @ T[:3, :2]
     return bool(np.all(np.abs(middle) <= np.asarray(carrier.size) / 2))
 
 
-def _box_around(points: np.ndarray, carrier: SupportingPlane, cell: float) -> SegmentedObject:
+def _box_around(points: np.ndarray, carrier: SupportingSurface, cell: float) -> SegmentedObject:
     """The narrowest upright box, standing on the plane; 2 % of the points are left out at either end of its sides, and above:
     surfaces stick out at their rims.
     """

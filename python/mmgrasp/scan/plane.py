@@ -12,7 +12,7 @@ _LEAST_CELLS = 50
 
 
 @dataclass(frozen=True)
-class SupportingPlane:
+class SupportingSurface:
     """normal . x = offset, with the normal upwards, and a frame on it: z along the normal, in the middle of what was seen."""
 
     normal: np.ndarray
@@ -24,7 +24,7 @@ class SupportingPlane:
 
 def supporting_plane(
     points: np.ndarray, normals: np.ndarray, up: np.ndarray | None, up_angle: float, tolerance: float, cell: float
-) -> SupportingPlane | None:
+) -> SupportingSurface | None:
     """The plane with the largest surface within `tolerance` [m] that faces along it, its normal within `up_angle` [rad] of `up`
     (None: any). `points` and `normals` (n, 3) are averaged over cells of edge `cell` [m], so that area counts. None: there is none.
 
@@ -78,7 +78,7 @@ def _fitted(P: np.ndarray, N: np.ndarray) -> tuple[np.ndarray, float]:
     return normal, float(normal @ middle)
 
 
-def _with_frame(normal: np.ndarray, offset: float, P: np.ndarray) -> SupportingPlane:
+def _with_frame(normal: np.ndarray, offset: float, P: np.ndarray) -> SupportingSurface:
     axis = np.zeros(3)
     axis[np.argmin(np.abs(normal))] = 1
     x = np.cross(axis, normal)
@@ -89,4 +89,4 @@ def _with_frame(normal: np.ndarray, offset: float, P: np.ndarray) -> SupportingP
     T = np.eye(4)
     T[:3, :3] = R
     T[:3, 3] = R @ [*((low + high) / 2), offset]
-    return SupportingPlane(normal, offset, T, high - low)
+    return SupportingSurface(normal, offset, T, high - low)

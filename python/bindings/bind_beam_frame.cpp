@@ -13,8 +13,6 @@ using namespace py::literals;
 
 constexpr char kHeld[] = "Grasp | BeamSupport | list[Grasp | BeamSupport]";
 using Held = Shown<kHeld>;
-constexpr char kSupports[] = "list[BeamSupport]";
-using Supports = Shown<kSupports>;
 
 BeamSupport one_support(const py::handle& value, const std::string& name) {
   if (py::isinstance<BeamSupport>(value)) return py::cast<BeamSupport>(value);
@@ -31,16 +29,16 @@ std::vector<BeamSupport> supports_argument(const py::handle& value, const char* 
   return supports;
 }
 
-BeamMaterial make_material(const Given<double>& density, const Given<double>& E, const Given<double>& G,
-                           const Given<double>& limit) {
+BeamMaterial make_beam_material(const Given<double>& density, const Given<double>& E, const Given<double>& G,
+                                const Given<double>& limit) {
   const BeamMaterial material{taken(density, "density"), taken(E, "youngs_modulus"), taken(G, "shear_modulus"),
                               taken(limit, "stress_limit")};
   material.check();
   return material;
 }
 
-BeamMember make_member(int first, int second, const Given<BeamSection>& section, const Given<BeamMaterial>& material,
-                       const OptionalArray& y_towards) {
+BeamMember make_beam_member(int first, int second, const Given<BeamSection>& section,
+                            const Given<BeamMaterial>& material, const OptionalArray& y_towards) {
   BeamMember member;
   member.nodes = {first, second};
   member.section = taken(section, "section");
@@ -49,8 +47,8 @@ BeamMember make_member(int first, int second, const Given<BeamSection>& section,
   return member;
 }
 
-BeamFrame make_frame(const ArrayLike& nodes, const Given<std::vector<BeamMember>>& members,
-                     const Given<std::vector<NodeLoad>>& loads) {
+BeamFrame make_beam_frame(const ArrayLike& nodes, const Given<std::vector<BeamMember>>& members,
+                          const Given<std::vector<NodeLoad>>& loads) {
   BeamFrame frame;
   for (const Eigen::VectorXd& node : rows_argument(nodes, "nodes", 3)) frame.nodes.emplace_back(node);
   frame.members = taken(members, "members", "BeamMember");
@@ -59,7 +57,8 @@ BeamFrame make_frame(const ArrayLike& nodes, const Given<std::vector<BeamMember>
   return frame;
 }
 
-NodeLoad make_load(const Given<int>& node, const Given<double>& mass, const ArrayLike& force, const ArrayLike& moment) {
+NodeLoad make_node_load(const Given<int>& node, const Given<double>& mass, const ArrayLike& force,
+                        const ArrayLike& moment) {
   NodeLoad load;
   load.node = taken(node, "node");
   load.mass = taken(mass, "mass");
@@ -68,9 +67,9 @@ NodeLoad make_load(const Given<int>& node, const Given<double>& mass, const Arra
   return load;
 }
 
-void bind_parts(py::module_& m) {
+void bind_beam_parts(py::module_& m) {
   py::class_<BeamMaterial>(m, "BeamMaterial", "What a beam is made of.")
-      .def(py::init(&make_material), "density"_a, "youngs_modulus"_a, "shear_modulus"_a, "stress_limit"_a = 0.0,
+      .def(py::init(&make_beam_material), "density"_a, "youngs_modulus"_a, "shear_modulus"_a, "stress_limit"_a = 0.0,
            "[kg/m3], [Pa], [Pa], and the von Mises stress it may bear [Pa] (0: no limit is given).")
       .def_readonly("density", &BeamMaterial::density, "[kg/m3]")
       .def_readonly("youngs_modulus", &BeamMaterial::youngs_modulus, "[Pa]")
@@ -111,7 +110,7 @@ void bind_parts(py::module_& m) {
   py::class_<BeamMember>(m, "BeamMember", "A straight beam welded to its two nodes.")
       .def(py::init([](const Given<int>& first, const Given<int>& second, const Given<BeamSection>& section,
                        const Given<BeamMaterial>& material, const OptionalArray& y_towards) {
-             return make_member(taken(first, "first"), taken(second, "second"), section, material, y_towards);
+             return make_beam_member(taken(first, "first"), taken(second, "second"), section, material, y_towards);
            }),
            "first"_a, "second"_a, "section"_a, "material"_a, "y_towards"_a = py::none(),
            "Nodes by index from 0; `y_towards`: the section's y is this direction turned across the member (None: the\n"
@@ -121,7 +120,7 @@ void bind_parts(py::module_& m) {
       .def_readonly("section", &BeamMember::section, "Its cross section.")
       .def_readonly("material", &BeamMember::material, "What it is made of.");
   py::class_<NodeLoad>(m, "NodeLoad", "What hangs on a node: a mass (valve, flange), a force, a moment.")
-      .def(py::init(&make_load), "node"_a, "mass"_a = 0.0, "force"_a = py::make_tuple(0.0, 0.0, 0.0),
+      .def(py::init(&make_node_load), "node"_a, "mass"_a = 0.0, "force"_a = py::make_tuple(0.0, 0.0, 0.0),
            "moment"_a = py::make_tuple(0.0, 0.0, 0.0),
            "The mass's weight turns with gravity [kg]; force [N] and moment [N m] stay in the object's frame.")
       .def_readonly("node", &NodeLoad::node, "Index of the node.")
@@ -153,7 +152,7 @@ void bind_parts(py::module_& m) {
           "Displacement in x, y, z, rotation about x, y, z.");
 }
 
-void bind_results(py::module_& m) {
+void bind_beam_results(py::module_& m) {
   py::class_<BeamExtreme>(m, "BeamExtreme", "A place on a frame and a value there.")
       .def_readonly("value", &BeamExtreme::value, "[m], [Pa] or a ratio.")
       .def_readonly("member", &BeamExtreme::member, "Index of the member.")
@@ -206,11 +205,11 @@ void bind_results(py::module_& m) {
 }  // namespace
 
 void bind_beam_frame(py::module_& m) {
-  bind_parts(m);
-  bind_results(m);
+  bind_beam_parts(m);
+  bind_beam_results(m);
   py::class_<BeamFrame>(m, "BeamFrame",
                         "Straight Euler-Bernoulli beams welded at nodes, in the object's frame (P2 3.2.3.3.2).")
-      .def(py::init(&make_frame), "nodes"_a, "members"_a, "loads"_a = py::list(),
+      .def(py::init(&make_beam_frame), "nodes"_a, "members"_a, "loads"_a = py::list(),
            "(n, 3) nodes [m], BeamMembers, and NodeLoads. See beam_frame for a Pipe.")
       .def_property_readonly(
           "nodes", [](const BeamFrame& f) { return rows_to_array(f.nodes); }, "(n, 3) in the object's frame [m].")

@@ -4,13 +4,14 @@
 #include "bindings.hpp"
 #include "given.hpp"
 #include "mmgrasp/structure/object_path.hpp"
+#include "mmgrasp/structure/optimize_grasp.hpp"
 #include "plan_arguments.hpp"
 
 namespace mmgrasp::python {
 namespace {
 
 using namespace py::literals;
-using Strings = std::vector<std::string>;
+using LinkNames = std::vector<std::string>;
 
 const std::vector<OptionField<ObjectPathOptions>>& object_path_fields() {
   using O = ObjectPathOptions;
@@ -33,10 +34,70 @@ const std::vector<OptionField<ObjectPathOptions>>& object_path_fields() {
   return fields;
 }
 
-ObjectPathProblem make_problem(const Given<JointGroup>& group, const Given<World>& world,
-                               const Given<std::vector<LinkShape>>& object, const ArrayLike& T_world_object,
-                               const std::optional<Given<Hand>>& gripper, const Given<Strings>& touch_links,
-                               const std::optional<Given<BeamFrame>>& frame, const Given<std::string>& object_name) {
+const std::vector<OptionField<PopulationOptions>>& population_fields() {
+  using O = PopulationOptions;
+  static const std::vector<OptionField<O>> fields{
+      option<O>("population", &O::population, "points a round"),
+      option<O>("max_evaluations", &O::max_evaluations, "budget in grasps"),
+      option<O>("target", &O::target, "ends as solved once a grasp costs no more"),
+      option<O>("seed", &O::seed, "same seed, same answer"),
+      option<O>("elite_sites", &O::elite_sites, "bees: P2's ne"),
+      option<O>("best_sites", &O::best_sites, "bees: P2's nb"),
+      option<O>("elite_recruits", &O::elite_recruits, "bees: P2's nre"),
+      option<O>("recruits", &O::recruits, "bees: P2's nrb"),
+      option<O>("stagnation_limit", &O::stagnation_limit, "bees: rounds without progress until a site is abandoned"),
+      option<O>("neighbourhood", &O::neighbourhood, "bees: its width as a share of each range at first"),
+      option<O>("shrinking", &O::shrinking, "bees: its factor after a round without progress"),
+      option<O>("mutation_rate", &O::mutation_rate, "ga: chance of each variable"),
+      option<O>("mutation_size", &O::mutation_size, "ga: half width as a share of the range"),
+      option<O>("connectivity", &O::connectivity, "pso: share of the others each particle hears of"),
+      option<O>("inertia", &O::inertia, "pso: of velocity"),
+      option<O>("acceleration", &O::acceleration, "pso: P2's c1 and c2")};
+  return fields;
+}
+
+/// Keywords of optimize_grasp: those of the path, and those of the search.
+struct OptimizeGraspOptions {
+  ObjectPathOptions path;
+  PopulationOptions population;
+  void check() const {
+    path.check();
+    population.check();
+  }
+};
+
+const std::vector<OptionField<OptimizeGraspOptions>>& optimize_grasp_fields() {
+  using O = OptimizeGraspOptions;
+  static const std::vector<OptionField<O>> fields = [] {
+    std::vector<OptionField<O>> out;
+    const auto add = [&](const auto& inner, auto member) {
+      for (const auto& f : inner) {
+        out.push_back({f.name, f.type, [f, member](O& o, const py::handle& v) { f.set(o.*member, v); },
+                       [f, member](const O& o) { return f.get(o.*member); }, f.help});
+      }
+    };
+    add(object_path_fields(), &O::path);
+    add(population_fields(), &O::population);
+    return out;
+  }();
+  return fields;
+}
+
+GraspNeighbourhood neighbourhood_argument(const std::string& name) {
+  std::string known;
+  for (const auto kind :
+       {GraspNeighbourhood::independent, GraspNeighbourhood::same_section, GraspNeighbourhood::connected_sections}) {
+    if (name == to_string(kind)) return kind;
+    known += std::string(known.empty() ? "" : ", ") + to_string(kind);
+  }
+  throw InvalidInput("neighbourhood_kind = " + name + ": must be one of " + known);
+}
+
+ObjectPathProblem object_path_problem(const Given<JointGroup>& group, const Given<World>& world,
+                                      const Given<std::vector<LinkShape>>& object, const ArrayLike& T_world_object,
+                                      const std::optional<Given<Hand>>& gripper, const Given<LinkNames>& touch_links,
+                                      const std::optional<Given<BeamFrame>>& frame,
+                                      const Given<std::string>& object_name) {
   ObjectPathProblem problem{with_sampled_pairs(taken(group, "group")),
                             taken(world, "world"),
                             taken(object, "object", "LinkShape"),
@@ -47,13 +108,13 @@ ObjectPathProblem make_problem(const Given<JointGroup>& group, const Given<World
                             taken(object_name, "object_name")};
   if (gripper) problem.gripper = taken(*gripper, "gripper");
   if (frame) problem.frame = taken(*frame, "frame");
-  const Strings links = taken(touch_links, "touch_links", "names of links");
+  const LinkNames links = taken(touch_links, "touch_links", "names of links");
   problem.touch_links = {links.begin(), links.end()};
   problem.check();
   return problem;
 }
 
-py::dict result_dict(const ObjectPathResult& r) {
+py::dict object_path_dict(const ObjectPathResult& r) {
   return py::dict("outcome"_a = to_string(r.outcome), "cost"_a = r.cost, "joint_motion"_a = r.joint_motion,
                   "deflection"_a = r.deflection, "force_manipulability"_a = r.force_manipulability,
                   "path"_a = path_list(r.outcome == Outcome::solved ? std::optional(r.path) : std::nullopt),
@@ -62,7 +123,7 @@ py::dict result_dict(const ObjectPathResult& r) {
                   "configurations"_a = r.configurations);
 }
 
-std::string result_text(const ObjectPathResult& r) {
+std::string object_path_text(const ObjectPathResult& r) {
   if (r.outcome == Outcome::solved) {
     return "ObjectPathResult(solved, cost " + std::string(py::repr(py::float_(r.cost))) + ", " +
            std::to_string(r.path.waypoints.size()) + " waypoints)";
@@ -79,7 +140,7 @@ std::string result_text(const ObjectPathResult& r) {
          " in collision, the first is " + std::to_string(first) + ")";
 }
 
-void bind_result(py::module_& m) {
+void bind_object_path_result(py::module_& m) {
   using R = ObjectPathResult;
   py::class_<R>(m, "ObjectPathResult", "What one grasp costs along a path of the object, and the arm's motion.")
       .def_readonly("outcome", &R::outcome, "solved or not_found.")
@@ -98,19 +159,74 @@ void bind_result(py::module_& m) {
           "rejections", [](const R& r) { return to_dict(r.rejections); }, "Configurations rejected, by cause.")
       .def_readonly("refused_edges", &R::refused_edges, "Motions between poses that collide or leave the path.")
       .def_readonly("configurations", &R::configurations, "Arm configurations found over all poses.")
-      .def("to_dict", &result_dict, "Everything as plain values.")
-      .def("__repr__", &result_text);
+      .def("to_dict", &object_path_dict, "Everything as plain values.")
+      .def("__repr__", &object_path_text);
+}
+
+void bind_optimum(py::module_& m) {
+  using F = FeasibleGrasp;
+  py::class_<F>(m, "FeasibleGrasp", "A grasp with which the whole path can be followed.")
+      .def_readonly("grasp", &F::grasp, "Its cost is that of the path.")
+      .def_readonly("joint_motion", &F::joint_motion, "O1 [rad or m]")
+      .def_readonly("deflection", &F::deflection, "O2 [m]")
+      .def_readonly("force_manipulability", &F::force_manipulability, "O3");
+  using R = GraspOptimum;
+  py::class_<R>(m, "GraspOptimum", "The best grasp that a search found, and all others that will do.")
+      .def_readonly("outcome", &R::outcome,
+                    "approximate: the best seen, no proof that none is better; solved: it meets the target.")
+      .def_property_readonly(
+          "grasp",
+          [](const R& r) { return r.feasible.empty() ? std::optional<Grasp>() : std::optional<Grasp>(r.grasp); },
+          "The best grasp, or None.")
+      .def_readonly("path", &R::path, "As follow_object_path gives it.")
+      .def_readonly("feasible", &R::feasible, "Every feasible grasp seen, the cheapest first.")
+      .def_readonly("front", &R::front, "The Pareto front among them, ascending in O1.")
+      .def_readonly("evaluations", &R::evaluations, "Grasps tried.")
+      .def_readonly("history", &R::history, "Best cost after each of them; infinite while none was feasible.")
+      .def_readonly("unreachable", &R::unreachable, "Of each pose: how many of the grasps tried do not reach it.")
+      .def_readonly("colliding", &R::colliding, "Of each pose: at how many all arm configurations collide.")
+      .def("__repr__", [](const R& r) {
+        return std::string("GraspOptimum(") + to_string(r.outcome) + ", " + std::to_string(r.evaluations) +
+               " grasps tried, " + std::to_string(r.feasible.size()) + " feasible" +
+               (r.feasible.empty() ? "" : ", cost " + std::string(py::repr(py::float_(r.path.cost)))) + ")";
+      });
+  m.def(
+      "optimize_grasp",
+      [](const Given<ObjectPathProblem>& given_problem, const Given<Pipe>& given_pipe,
+         const std::optional<Given<Hand>>& gripper, const Given<std::string>& algorithm,
+         const Given<std::string>& neighbourhood, const Progress& progress, const py::kwargs& keywords) {
+        const ObjectPathProblem problem = taken(given_problem, "problem");
+        const Pipe pipe = taken(given_pipe, "pipe");
+        const OptimizeGraspOptions read = read_options(optimize_grasp_fields(), keywords, "optimize_grasp");
+        GraspSearchOptions options;
+        options.algorithm = taken(algorithm, "algorithm");
+        options.neighbourhood = neighbourhood_argument(taken(neighbourhood, "neighbourhood_kind"));
+        options.population = read.population;
+        if (problem.gripper) options.grasp = pipe_grasp_options(*problem.gripper);
+        if (gripper) options.grasp = pipe_grasp_options(taken(*gripper, "gripper"));
+        return LongCall(progress).run(
+            [&](const Monitor& monitor) { return optimize_grasp(problem, pipe, read.path, options, monitor); });
+      },
+      "problem"_a, "pipe"_a, py::kw_only(), "gripper"_a = py::none(), "algorithm"_a = "bees",
+      "neighbourhood_kind"_a = "connected_sections", "progress"_a = py::none(),
+      ("The grasp of a pipe with the least cost along the path, by a population search: bees, ga or pso (P2 3.4).\n"
+       "`gripper`: axes and opening, the problem's when left out. `neighbourhood_kind` of bees: independent (Str1),\n"
+       "same_section (Str2), connected_sections (Str3)." +
+       option_help(optimize_grasp_fields()))
+          .c_str());
+  m.def("population_search_names", &population_search_names, "Names that optimize_grasp's `algorithm` takes.");
 }
 
 }  // namespace
 
 void bind_object_path(py::module_& m) {
   m.def("_object_path_option_table", [] { return option_table(object_path_fields()); });
-  bind_result(m);
+  m.def("_population_option_table", [] { return option_table(population_fields()); });
+  bind_object_path_result(m);
   using P = ObjectPathProblem;
   py::class_<P>(m, "ObjectPathProblem", "A robot that carries an object along given poses (P2 3.2.1).")
-      .def(py::init(&make_problem), "group"_a, "world"_a, "object"_a, "T_world_object"_a, py::kw_only(),
-           "gripper"_a = py::none(), "touch_links"_a = Strings{}, "frame"_a = py::none(), "object_name"_a = "object",
+      .def(py::init(&object_path_problem), "group"_a, "world"_a, "object"_a, "T_world_object"_a, py::kw_only(),
+           "gripper"_a = py::none(), "touch_links"_a = LinkNames{}, "frame"_a = py::none(), "object_name"_a = "object",
            "`object`: LinkShapes in its own frame; `world` is without it. `T_world_object` (m, 4, 4): where it lies,\n"
            "then where it goes. With `gripper` the fingers open as the grasp says; `frame`: how the object bends.")
       .def_readonly("group", &P::group, "Its tip is the tool frame of grasps.")
@@ -149,6 +265,7 @@ void bind_object_path(py::module_& m) {
        "configurations (P2 3.3.3, Algorithm 3.1), motions between poses checked finely." +
        option_help(object_path_fields()))
           .c_str());
+  bind_optimum(m);
 }
 
 }  // namespace mmgrasp::python

@@ -67,10 +67,14 @@ from ._core import (
     rectangular_section as rectangular_section,
 )
 
-# An object carried along given poses (P2 3.3)
+# An object carried along given poses (P2 3.3), and the grasp that does it best (P2 3.4)
 from ._core import (
     ObjectPathProblem as ObjectPathProblem,
     ObjectPathResult as ObjectPathResult,
     ObjectPathEvaluator as ObjectPathEvaluator,
     follow_object_path as follow_object_path,
+    FeasibleGrasp as FeasibleGrasp,
+    GraspOptimum as GraspOptimum,
+    optimize_grasp as optimize_grasp,
+    population_search_names as population_search_names,
 )

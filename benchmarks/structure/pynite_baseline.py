@@ -20,7 +20,9 @@ def solved(frame: dict) -> FEModel3D:
     model.add_material("m", *frame["material"], 0.3, 0.0)  # weights are given as loads
     for i, node in enumerate(frame["nodes"]):
         model.add_node(f"n{i}", *node)
-    for i, ((a, b), section, weight) in enumerate(zip(frame["members"], frame["sections"], frame["weights"], strict=True)):
+    for i, ((a, b), section, weight) in enumerate(
+        zip(frame["members"], frame["sections"], frame["weights"], strict=True)
+    ):
         model.add_section(f"s{i}", *section)
         model.add_member(f"m{i}", f"n{a}", f"n{b}", "m", f"s{i}")
         for axis, load in zip("XYZ", weight, strict=True):

@@ -122,7 +122,12 @@ def frames_table(count: int, folder: Path) -> str:
         + [f"{theirs['seconds'][-1] / times[-1]:.0f} times faster"],
         ["... one more orientation, largest displacement", "as above", f"{1e6 * more:.1f} us", ""],
     ]
-    head = ["frames", f"PyNite {theirs['version']}", "mmgrasp, through Python", "largest difference over largest displacement"]
+    head = [
+        "frames",
+        f"PyNite {theirs['version']}",
+        "mmgrasp, through Python",
+        "largest difference over largest displacement",
+    ]
     return markdown(head, rows)
 
 
@@ -166,7 +171,15 @@ def paths_table() -> str:
                     kind = feasible if result.outcome == mg.Outcome.solved else fallen
                     kind.append(best_time(lambda e=evaluator, g=grasp: e.evaluate(g), 3))
                 median = [f"{1e3 * statistics.median(kind):.2f} ms" if kind else "-" for kind in (feasible, fallen)]
-                rows.append([robot, name, "checked" if edges else "left out, as P2", f"{len(feasible)} of {len(grasps)}", *median])
+                rows.append(
+                    [
+                        robot,
+                        name,
+                        "checked" if edges else "left out, as P2",
+                        f"{len(feasible)} of {len(grasps)}",
+                        *median,
+                    ]
+                )
     return markdown(["arm", "pipe", "motions between poses", "feasible", "feasible, median", "others, median"], rows)
 
 
@@ -177,7 +190,9 @@ def main() -> None:
     parser.add_argument("--write", action="store_true")
     args = parser.parse_args()
     text = f"Python {platform.python_version()}, one core.\n\n{frames_table(args.frames, args.baselines)}\n\n"
-    text += "One grasp along 30 poses (P2: 26 to 48 ms; goal 0.5 ms for a feasible one), 300 grasps:\n\n" + paths_table()
+    text += (
+        "One grasp along 30 poses (P2: 26 to 48 ms; goal 0.5 ms for a feasible one), 300 grasps:\n\n" + paths_table()
+    )
     show("structure", text, args.write)
 
 

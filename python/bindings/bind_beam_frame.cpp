@@ -11,7 +11,9 @@ namespace {
 
 using namespace py::literals;
 
-constexpr char kHeld[] = "Grasp | BeamSupport | list[Grasp | BeamSupport]";
+constexpr char kHeld[] =
+    "mmgrasp._core.Grasp | mmgrasp._core.BeamSupport | "
+    "collections.abc.Sequence[mmgrasp._core.Grasp | mmgrasp._core.BeamSupport]";
 using Held = Shown<kHeld>;
 
 BeamSupport one_support(const py::handle& value, const std::string& name) {
@@ -172,6 +174,9 @@ void bind_beam_results(py::module_& m) {
       .def_readonly("stress", &BeamState::stress, "Largest von Mises stress [Pa]; None where sections are not known.")
       .def_readonly("over_limit", &BeamState::over_limit,
                     "Largest stress over its material's limit: above 1 it yields. None without a limit.");
+}
+
+void bind_supported_frame(py::module_& m) {
   py::class_<SupportedFrame>(m, "SupportedFrame", "A frame held at some places, factorised once for all orientations.")
       .def(py::init([](const Given<BeamFrame>& frame, const Held& held) {
              return SupportedFrame(taken(frame, "frame"), supports_argument(held, "supports"));
@@ -237,6 +242,7 @@ void bind_beam_frame(py::module_& m) {
         return "BeamFrame(" + std::to_string(f.members.size()) + " members, " + std::to_string(f.nodes.size()) +
                " nodes)";
       });
+  bind_supported_frame(m);
   m.def(
       "beam_frame",
       [](const Given<Pipe>& pipe, const Given<double>& inner, const Given<BeamMaterial>& material) {

@@ -108,7 +108,7 @@ def test_weights_of_p2() -> None:
 
 
 def test_what_cannot_be_is_refused_by_name() -> None:
-    pipe, frame = pipe1()
+    _, frame = pipe1()
     tube, metal = round_section(0.012, 0.010), copper()
     with pytest.raises(mg.InvalidInput, match="inner_diameter"):
         round_section(0.010, 0.012)

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <string>
 
 #include "beam_frames.hpp"
 #include "mmgrasp/collision/checker.hpp"
@@ -108,10 +109,16 @@ struct Enumerated {
 
 TEST(ObjectPath, EqualsEnumeration) {
   int solved = 0, colliding = 0, refused = 0;
-  for (const bool posts : {false, true}) {
-    const ObjectPathProblem problem = arc(5, posts);
+  for (const char* scene : {"empty", "posts", "bead", "strict"}) {
+    ObjectPathProblem problem = arc(5, scene == std::string("posts"));
     ObjectPathOptions options;
     options.all_turns = false;
+    if (scene == std::string("bead")) {  // the pipe passes through it between two poses, at neither of which it touches
+      const Pose &a = problem.T_world_object[2], &b = problem.T_world_object[3];
+      const Vector3d point(0.2, 0.4, 0.15);
+      problem.world.add("bead", Sphere{0.002}, pose_from_xyz_rpy((a * point + b * point) / 2, {0, 0, 0}));
+    }
+    if (scene == std::string("strict")) options.position_tolerance = 8e-4;
     ObjectPathEvaluator evaluator(problem, options);
     for (const Grasp& grasp : some_grasps(60)) {
       const ObjectPathResult found = evaluator.evaluate(grasp);

@@ -40,7 +40,8 @@ struct MMGRASP_EXPORT GraspOptimum {
   Outcome outcome = Outcome::not_found;
   Grasp grasp;            ///< Only with a path.
   ObjectPathResult path;  ///< By follow_object_path: checked more finely than the search does.
-  /// Every feasible grasp seen, the cheapest first: candidates for other planners, which find their cost in them.
+  /// Every grasp that the search found feasible, the cheapest first: candidates for other planners, which find their
+  /// cost in them. The first has passed the finer check, too.
   std::vector<FeasibleGrasp> feasible;
   /// Which of them no other beats in one objective without losing in another (the Pareto front), ascending in O1.
   std::vector<int> front;

@@ -98,9 +98,12 @@ Curve BeamElement::displacement(const Vector12d& ends, const Vector3d& per_lengt
   return R_ * local;
 }
 
-Vector6d BeamElement::section_forces(const Vector12d& ends, const Vector3d& per_length, double x) const {
+Vector12d BeamElement::end_forces(const Vector12d& ends, const Vector3d& per_length) const {
+  return local_ * to_member(ends) - local_end_loads(R_.transpose() * per_length);
+}
+
+Vector6d BeamElement::section_forces(const Vector12d& first, const Vector3d& per_length, double x) const {
   const Vector3d w = R_.transpose() * per_length;
-  const Vector12d first = local_ * to_member(ends) - local_end_loads(w);  // forces of the nodes on the element
   Vector6d cut;
   cut.head<3>() = -(first.head<3>() + x * w);
   cut(3) = -first(3);

@@ -24,8 +24,10 @@ class BeamElement {
   /// Displacement along the element in the object's frame: the cubic of the ends' values and the quartic of the load,
   /// which is the exact solution.
   Curve displacement(const Vector12d& ends, const Eigen::Vector3d& per_length) const;
+  /// What the nodes do to the element's ends, in the member's frame.
+  Vector12d end_forces(const Vector12d& ends, const Eigen::Vector3d& per_length) const;
   /// Forces and moments in the member's frame at a distance x from the first end: N, Vy, Vz, torque, My, Mz.
-  Vector6d section_forces(const Vector12d& ends, const Eigen::Vector3d& per_length, double x) const;
+  Vector6d section_forces(const Vector12d& end_forces, const Eigen::Vector3d& per_length, double x) const;
 
   double length() const { return length_; }
   /// Mass per length [kg/m].

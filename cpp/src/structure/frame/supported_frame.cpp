@@ -48,7 +48,7 @@ struct SupportedFrame::Data {
   const Piece& piece(int member, double distance) const;
   Vector12d ends(const Piece& piece, const Eigen::Vector4d& load) const;
   BeamExtreme longest(const Eigen::Vector4d& load) const;
-  double stress(const Piece& piece, const Vector12d& ends, const Vector3d& weight, double x) const;
+  double stress(const Piece& piece, const Vector12d& end_forces, const Vector3d& weight, double x) const;
   void find_stress(const Eigen::Vector4d& load, const Vector3d& gravity, BeamState& state) const;
 };
 
@@ -198,9 +198,10 @@ BeamExtreme SupportedFrame::Data::longest(const Eigen::Vector4d& load) const {
   return out;
 }
 
-double SupportedFrame::Data::stress(const Piece& piece, const Vector12d& ends, const Vector3d& weight, double x) const {
+double SupportedFrame::Data::stress(const Piece& piece, const Vector12d& end_forces, const Vector3d& weight,
+                                    double x) const {
   const BeamSection& section = frame.members[piece.member].section;
-  const Vector6d cut = piece.element.section_forces(ends, weight, x);
+  const Vector6d cut = piece.element.section_forces(end_forces, weight, x);
   const double about_y = std::abs(cut(4)) * section.z_extent / section.iy;
   const double about_z = std::abs(cut(5)) * section.y_extent / section.iz;
   const double bending = section.round ? std::hypot(about_y, about_z) : about_y + about_z;
@@ -217,22 +218,32 @@ void SupportedFrame::Data::find_stress(const Eigen::Vector4d& load, const Vector
     if (!member.section.stresses_known()) return;
   }
   for (const Piece& piece : pieces) {
-    const Vector12d at_ends = ends(piece, load);
     const Vector3d weight = piece.element.line_density() * gravity;
+    const Vector12d at_ends = piece.element.end_forces(ends(piece, load), weight);
     const double length = piece.element.length();
     const auto value = [&](double x) { return stress(piece, at_ends, weight, x); };
     int top = 0;
-    for (int i = 1; i <= kSteps; ++i) top = value(length * i / kSteps) > value(length * top / kSteps) ? i : top;
+    double largest = value(0);
+    for (int i = 1; i <= kSteps; ++i) {
+      const double here = value(length * i / kSteps);
+      if (here <= largest) continue;
+      largest = here;
+      top = i;
+    }
     double low = length * std::max(0, top - 1) / kSteps, high = length * std::min(kSteps, top + 1) / kSteps;
     double x = length * top / kSteps;
-    for (int i = 0; i < 40; ++i) {  // golden section around the largest of the steps
+    for (int i = 0; i < 30; ++i) {  // golden section around the largest of the steps
       const double a = high - 0.6180339887498949 * (high - low), b = low + 0.6180339887498949 * (high - low);
-      (value(a) < value(b) ? low : high) = value(a) < value(b) ? a : b;
+      const bool rises = value(a) < value(b);
+      (rises ? low : high) = rises ? a : b;
     }
-    if (value((low + high) / 2) > value(x)) x = (low + high) / 2;
-    raise(state.stress, value(x), piece, x);
+    if (value((low + high) / 2) > largest) {
+      x = (low + high) / 2;
+      largest = value(x);
+    }
+    raise(state.stress, largest, piece, x);
     const double limit = frame.members[piece.member].material.stress_limit;
-    if (limit > 0) raise(state.over_limit, value(x) / limit, piece, x);
+    if (limit > 0) raise(state.over_limit, largest / limit, piece, x);
   }
 }
 
@@ -266,7 +277,8 @@ Vector3d SupportedFrame::displacement(const Vector3d& gravity, int member, doubl
 
 Vector6d SupportedFrame::section_forces(const Vector3d& gravity, int member, double distance) const {
   const Piece& piece = data_->piece(member, distance);
-  return piece.element.section_forces(data_->ends(piece, factors(gravity)), piece.element.line_density() * gravity,
+  const Vector3d weight = piece.element.line_density() * gravity;
+  return piece.element.section_forces(piece.element.end_forces(data_->ends(piece, factors(gravity)), weight), weight,
                                       distance - piece.from);
 }
 

@@ -8,7 +8,7 @@ namespace mmgrasp::detail {
 
 /// The grasps of a pipe as unknowns of a search: index among the sections that the hand fits, distance from the margin
 /// kept at the first node, angle, flip.
-class GraspVariables {
+class MMGRASP_EXPORT GraspVariables {
  public:
   /// Throws InvalidInput when the hand fits no section.
   GraspVariables(const Pipe& pipe, const PipeGraspOptions& grasp);

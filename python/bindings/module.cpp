@@ -17,6 +17,8 @@ void bind_capability(py::module_& m);
 void bind_trajopt(py::module_& m);
 void bind_control(py::module_& m);
 void bind_structure(py::module_& m);
+void bind_beam_frame(py::module_& m);
+void bind_object_path(py::module_& m);
 void bind_push_grasp(py::module_& m);
 void bind_manipulation(py::module_& m);
 
@@ -59,6 +61,8 @@ PYBIND11_MODULE(_core, m) {
   bind_graspability(m);
   bind_synthesis(m);
   bind_structure(m);
+  bind_beam_frame(m);
+  bind_object_path(m);
   bind_verify(m);
   refuse_bare_objects(m);
   end_calls_at_exit();

@@ -10,7 +10,7 @@ from typing import Any
 
 from .._core import InvalidInput, __version__
 from .._progress import Progress
-from ..scenario.reading import near_miss
+from ..documents.reading import near_miss
 from . import (
     base_regions,
     capability,

@@ -195,7 +195,7 @@ def test_a_folder_of_mmgrasp_scan_and_bad_input(
     narrow["trays"][0]["scan"] = str(tmp_path / "map")
     with pytest.raises(
         mg.InvalidInput,
-        match=r"trays\[0\]\.scan.*object_1 has no grasp.*wider than the hand opens.*no part has a grasp",
+        match=r"trays\[0\]\.scan.*object_1 has no grasp.*wider there than the hand opens.*no part has a grasp",
     ):
         load_scenario(write(narrow))
     both = copy.deepcopy(values)

@@ -13,8 +13,8 @@ from mmgrasp.reproduce.grasping_trials import area_under_curve, wilson
 
 pytest.importorskip("mujoco")
 
-from mmgrasp.reproduce import unknown_objects  # noqa: E402
-from mmgrasp.sim import Physics, pick_trial  # noqa: E402
+from mmgrasp.reproduce import unknown_objects
+from mmgrasp.sim import Physics, pick_trial
 
 BOX = [mg.LinkShape(mg.Box([0.04, 0.07, 0.06]), mg.pose([0, 0, 0.03]))]
 PLACE = mg.pose([*pick_trial.PLACE, pick_trial.TABLE + 0.0005], rpy=[0, 0, 0.4])

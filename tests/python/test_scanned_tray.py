@@ -204,6 +204,30 @@ def test_a_folder_of_mmgrasp_scan_and_bad_input(
         load_scenario(write(both))
 
 
+def test_frames_that_cannot_be_rendered_are_refused(
+    write: Callable[..., Path], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    values = yaml.safe_load((ASSETS / "scenarios" / "scanned_tray.yaml").read_text())
+
+    def refused(**more: Any) -> str:
+        changed = copy.deepcopy(values)
+        changed["trays"][0]["scan"]["rendered"] |= more
+        with pytest.raises(mg.Error) as error:
+            load_scenario(write(changed))
+        assert "scenario.yaml:" in str(error.value) and "trays[0].scan.rendered" in str(error.value)
+        return str(error.value)
+
+    assert "must hold at least one part" in refused(parts=[])
+    assert "no such part type; did you mean block?" in refused(parts=[{"type": "blck", "xyz": [0, 0]}])
+    assert "must be at most 500" in refused(views=501)
+    assert "must be > 0" in refused(noise=0.0)
+    assert "must be at most 0.02" in refused(noise=0.5)
+    assert "shows no object in tray mixed" in refused(parts=[{"type": "block", "xyz": [0, 0, 5.0]}])
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    assert "set XDG_CACHE_HOME" in refused(seed=7)
+
+
 def test_what_stands_beside_the_parts_is_an_obstacle(planned: mg.scenario.Scenario, tmp_path: Path) -> None:
     """The same map in a scenario that knows nothing of the table's other half: what it shows there becomes a body."""
     assert planned.trays[0].scan is not None

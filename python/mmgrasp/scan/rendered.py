@@ -65,11 +65,8 @@ def rendered_map(
     folder cannot be written.
     """
     made = folder / "map"
-    try:
-        load_map(made)
+    if _readable(made):
         return made
-    except IoError:
-        pass  # not there yet, or damaged
     check_folder(folder.parent)
     folder.parent.mkdir(parents=True, exist_ok=True)
     draft = Path(tempfile.mkdtemp(dir=folder.parent, prefix=".rendering."))
@@ -80,15 +77,24 @@ def rendered_map(
         integrate_frames(frames, scan, progress=progress)
         (draft / "map").mkdir()
         scan.sdf.save(str(draft / "map" / MAP))
-        shutil.rmtree(folder, ignore_errors=True)
+        if folder.exists() and not _readable(made):  # damaged
+            shutil.rmtree(folder)
         try:
             os.rename(draft, folder)
         except OSError:
-            if not made.exists():  # else another process was faster, with the same bytes
+            if not _readable(made):  # else another process was faster, with the same bytes
                 raise
     finally:
         shutil.rmtree(draft, ignore_errors=True)
     return made
+
+
+def _readable(folder: Path) -> bool:
+    try:
+        load_map(folder)
+    except IoError:
+        return False
+    return True
 
 
 def write_frames(

@@ -24,6 +24,7 @@ SIGMAS = 2.0
 SAMPLES, MOST_GRASPS = 800, 40
 """Of synthesize_grasps for each part: base regions want more grasps to choose from than one arm at one place."""
 _WIDTH_PLAY = 0.0025  # pads on the part's columns and on the map's mean may differ by so much [m]
+_MOST_RENDERED = {"views": 500, "distance": 2.0, "noise": 0.02}
 _PAD = 0.0005  # half the side of these pads [m]
 _ROOM = 0.01  # around an object's points, within which its surface is taken from the map [m]
 _HIGHEST = 0.5  # objects reach at most so high above the floor [m]
@@ -158,12 +159,18 @@ class ScanReader:
             node["noise"].number(above=0) if "noise" in node else defaults.noise,
             node["seed"].integer(least=0) if "seed" in node else defaults.seed,
         )
+        for key, highest in _MOST_RENDERED.items():
+            if getattr(tour, key) > highest:
+                node[key].fail(f"must be at most {highest:g}")
         shapes = [*_core.tray_shapes(size, wall), *typed(node["parts"])]
         scene = self._scene + [moved(s, T_world_tray) for s in shapes]
-        key = hashlib.sha256(json.dumps([_core.__version__, vars(tour), *map(_description, scene)]).encode())
+        content = hashlib.sha256(json.dumps([_core.__version__, vars(tour), *map(_description, scene)]).encode())
         target = T_world_tray @ _core.pose([0.0, 0.0, 0.03])
-        folder = Path(_core.cache_folder()) / "scans" / key.hexdigest()[:16]
-        return rendered_map(folder, scene, target, tour, self._progress)
+        folder = Path(_core.cache_folder()) / "scans" / content.hexdigest()[:16]
+        try:
+            return rendered_map(folder, scene, target, tour, self._progress)
+        except (IoError, OSError) as error:
+            node.fail(f"{error}: its frames are kept in the cache: set XDG_CACHE_HOME to a folder that can be written")
 
     def _with_grasps(
         self,

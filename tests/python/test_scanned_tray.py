@@ -20,7 +20,9 @@ from mmgrasp.scenario import load_scenario
 from mmgrasp.scenario.map_bodies import cells_around, large_pieces, merged, rectangles
 
 SCENARIO = "asset:scenarios/scanned_tray.yaml"
-TRUTH = {  # place in the tray, yaw, sides of the box or radius and length
+TRUTH: dict[
+    tuple[float, float], tuple[float, mg.Box | mg.Cylinder]
+] = {  # place in the tray, yaw, sides of the box or radius and length
     (-0.06, -0.12): (0.5, mg.Box([0.05, 0.04, 0.06])),
     (-0.05, 0.02): (0.0, mg.Cylinder(0.025, 0.08)),
     (-0.04, 0.13): (1.2, mg.Box([0.025, 0.06, 0.075])),
@@ -46,7 +48,7 @@ def truth_at(place: np.ndarray) -> tuple[mg.LinkShape, np.ndarray]:
     """The typed part nearest to a place in the world, and where it stands."""
     x, y = min(TRUTH, key=lambda at: float(np.hypot(*(place[:2] - FLOOR[:2] - at))))
     yaw, shape = TRUTH[x, y]
-    height = shape.size[2] if isinstance(shape, mg.Box) else shape.length
+    height = float(shape.size[2]) if isinstance(shape, mg.Box) else shape.length
     return mg.LinkShape(shape), mg.pose([*(FLOOR + [x, y, 0.001 + height / 2])], rpy=[0, 0, yaw])
 
 
@@ -62,9 +64,8 @@ def test_every_part_is_found_where_it_lies(planned: mg.scenario.Scenario) -> Non
         assert (low <= true[0] + 2e-3).all() and (low >= true[0] - 7e-3).all(), (part.name, low, true[0])
         assert (high >= true[1] - 2e-3).all() and (high <= true[1] + 7e-3).all(), (part.name, high, true[1])
         assert all(0 < grasp.quality <= 1 for grasp in part.grasps) and part.grasps[0].quality > 0.8
-        volume = sum(float(np.prod(s.shape.size)) for s in part.shapes)
-        size = getattr(shape.shape, "size", None)
-        solid = float(np.prod(size)) if size is not None else np.pi * 0.025**2 * 0.08
+        volume = sum(float(np.prod(s.shape.size)) for s in part.shapes if isinstance(s.shape, mg.Box))
+        solid = float(np.prod(shape.shape.size)) if isinstance(shape.shape, mg.Box) else np.pi * 0.025**2 * 0.08
         assert solid < volume < 1.35 * solid
 
 

@@ -77,7 +77,12 @@ def attempt(name: str, number: int, seed: int) -> dict[str, Any]:
         rated = _core.synthesize_grasps(full, hand, surface_draws=DRAWS, sigmas=sigmas, **options)
         if rated.grasps:
             break
-    certain = {"certainty_weight": 0.0, "angle_weight": 2 / 3, "placement_weight": 1 / 9, "centring_weight": 2 / 9}
+    certain: dict[str, Any] = {
+        "certainty_weight": 0.0,
+        "angle_weight": 2 / 3,
+        "placement_weight": 1 / 9,
+        "centring_weight": 2 / 9,
+    }
     certain["angle_weight"] = 1 - certain["placement_weight"] - certain["centring_weight"]
     lists = {
         "ours": list(zip(rated.grasps, (r.pretouch_opening for r in rated.ratings), strict=True)),

@@ -111,7 +111,7 @@ def _line(poses: Sequence[np.ndarray]) -> list[np.ndarray] | None:
     for a, b in itertools.pairwise(poses):
         rotation = a[:3, :3].T @ b[:3, :3]
         angle = float(np.arccos(np.clip((np.trace(rotation) - 1) / 2, -1, 1)))
-        steps = max(2, int(np.ceil(max(np.linalg.norm(b[:3, 3] - a[:3, 3]) / _STEP, angle / 0.1))))
+        steps = max(2, int(np.ceil(max(float(np.linalg.norm(b[:3, 3] - a[:3, 3])) / _STEP, angle / 0.1))))
         rows = [q]
         for k in range(1, steps + 1):
             T = a.copy()

@@ -90,7 +90,7 @@ def test_interval_of_a_rate() -> None:
         for p in (low, high):
             if 1e-9 < p < 1 - 1e-9:
                 assert abs(good / count - p) == pytest.approx(1.959964 * np.sqrt(p * (1 - p) / count), rel=1e-6)
-        assert 0 <= low <= good / count <= high <= 1 + 1e-12
+        assert -1e-12 <= low <= good / count + 1e-12 and good / count - 1e-12 <= high <= 1 + 1e-12
     assert wilson(0, 0) == (0.0, 1.0)
 
 

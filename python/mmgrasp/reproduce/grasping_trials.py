@@ -10,13 +10,28 @@ import numpy as np
 from .drawing import OUR_STYLE, PAPER_STYLE, figure
 from .entry import Context, Entry, Result
 from .statements import Pair
-from .unknown_objects import CAUTIOUS, FRICTION, NOISES, OBJECTS, POSE_ERROR, SAMPLES, VIEWS, WAYS, attempt
+from .unknown_objects import (
+    CAUTIOUS,
+    FORCE,
+    FRICTION,
+    NOISES,
+    OBJECTS,
+    POSE_ERROR,
+    ROUGH_FORCE,
+    ROUGH_FRICTION,
+    ROUGH_HAND,
+    SAMPLES,
+    VIEWS,
+    WAYS,
+    attempt,
+)
 
 PAPER = {"success": 187 / 200, "precise": 159 / 200}
 ATTEMPTS = 10
 BINS = (0.0, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 MODELS = {"weighted": "(4.9) weighted", "drawn": "(4.1) drawn surfaces"}
 RESAMPLES = 2000
+FEWEST = 10  # of either outcome, below which nothing is said about ranking
 
 
 def wilson(good: int, count: int) -> tuple[float, float]:
@@ -49,11 +64,23 @@ def _rates(values: dict[str, tuple[Any, Any]], results: list[dict[str, Any]], pa
 
 
 def run(context: Context) -> Result:
+    """Physics as the model has it."""
+    return _run(context, rough=False)
+
+
+def run_rough(context: Context) -> Result:
+    """Friction, gripping force and the hand's place otherwise than the model has them."""
+    return _run(context, rough=True)
+
+
+def _run(context: Context, rough: bool) -> Result:
     from ..sim.scene import mujoco_module
 
     names, attempts = (["box"], 2) if context.quick else (list(OBJECTS), ATTEMPTS)
-    items = [{"name": name, "number": k, "seed": context.seed} for name in names for k in range(attempts)]
-    found = context.sweep(attempt, items, "p3-table-4.1")
+    items = [
+        {"name": name, "number": k, "seed": context.seed, "rough": rough} for name in names for k in range(attempts)
+    ]
+    found = context.sweep(attempt, items, "p3-table-4.1" + "-rough" * rough)
     result = Result(
         setup={
             "objects": names,
@@ -63,7 +90,10 @@ def run(context: Context) -> Result:
             "error of poses [m, rad]": list(POSE_ERROR),
             "samples": SAMPLES,
             "standard deviations kept free, in turn": ", ".join(f"{s:g}" for s in CAUTIOUS),
-            "friction": FRICTION,
+            "friction of the model": FRICTION,
+            "friction": list(ROUGH_FRICTION) if rough else FRICTION,
+            "error of the hand [m, rad]": list(ROUGH_HAND) if rough else [0.0, 0.0],
+            "gripping force [N]": ROUGH_FORCE if rough else FORCE,
             "MuJoCo": mujoco_module().__version__,
         }
     )
@@ -71,12 +101,13 @@ def run(context: Context) -> Result:
         for name in ["all", *names] if len(names) > 1 else ["all"]:
             own = [f["ways"][way] for f in found if name in ("all", f["object"])]
             values = result.row({"way": way, "object or promise": name})
-            _rates(values, own, paper=way == "ours" and name == "all")
+            _rates(values, own, paper=way == "ours" and name == "all" and not rough)
             values["no grasp found"] = (None, float(np.mean([r["index"] is None for r in own])))
     trials = [c for f in found for c in f["calibration"]]
     _calibrate(result, trials)
     if not context.quick:
         _judge(result, found)
+        result.notes.append(losses(found))
     result.drawing = {
         "ways": {way: {k: [bool(f["ways"][way][k]) for f in found] for k in PAPER} for way in WAYS},
         "trials": [{k: (round(v, 4) if isinstance(v, float) else v) for k, v in c.items()} for c in trials],
@@ -106,8 +137,9 @@ def _calibrate(result: Result, trials: list[dict[str, Any]]) -> None:
         _rates(values, trials, paper=False)
         values["mean promise"] = (None, float(promised.mean()))
         for key, name in (("success", "S."), ("precise", "S.w.P.")):
-            area = area_under_curve(promised, np.array([c[key] for c in trials]))
-            values[f"ranks {name} (area under the curve)"] = (None, area if np.isfinite(area) else None)
+            good = np.array([c[key] for c in trials])
+            if min(good.sum(), (~good).sum()) >= FEWEST:
+                values[f"ranks {name} (area under the curve)"] = (None, area_under_curve(promised, good))
             brier = float(np.mean([(c[model] - c[key]) ** 2 for c in trials]))
             values[f"Brier score of {name}"] = (None, brier)
 
@@ -124,6 +156,10 @@ def _judge(result: Result, found: list[dict[str, Any]]) -> None:
     owner = np.array([k for k, _ in trials])
     for key, name in (("success", "S."), ("precise", "S.w.P.")):
         good = np.array([c[key] for _, c in trials])
+        bad = int((~good).sum())
+        if min(bad, len(good) - bad) < FEWEST:
+            result.notes.append(f"Which ranks {name} better: {bad} of {len(good)} grasps failed, too few to tell.")
+            continue
         scores = {m: np.array([c[m] for _, c in trials]) for m in MODELS}
         rng, more = np.random.default_rng(1), []
         rows = [np.flatnonzero(owner == k) for k in range(count)]
@@ -141,7 +177,19 @@ def _judge(result: Result, found: list[dict[str, Any]]) -> None:
         )
 
 
-def draw(result: dict[str, Any]):
+def losses(found: list[dict[str, Any]]) -> str:
+    """Where ours failed, and how often for want of a grasp."""
+    parts = []
+    for name in dict.fromkeys(f["object"] for f in found):
+        own = [f["ways"]["ours"] for f in found if f["object"] == name]
+        failed = [r for r in own if not r["success"]]
+        if failed:
+            none = sum(r["index"] is None for r in failed)
+            parts.append(f"{name} {len(failed)} of {len(own)} ({none} without a grasp that the arm can carry out)")
+    return f"Where ours failed: {', '.join(parts) or 'nowhere'}."
+
+
+def draw(result: dict[str, Any]) -> Any:
     fig, axes = figure(10.0, 4.0, columns=2)
     drawing = result["drawing"]
     for shift, (key, colour, label) in enumerate(
@@ -169,7 +217,7 @@ def draw(result: dict[str, Any]):
             axes[1].errorbar(
                 x,
                 y,
-                [y - below, above - y],
+                np.maximum(0, [y - below, above - y]),
                 color=style["color"],
                 marker=style["marker"],
                 capsize=2,
@@ -182,5 +230,11 @@ def draw(result: dict[str, Any]):
 
 
 ENTRIES = [
-    Entry("p3-table-4.1", "Unknown objects grasped in physics, and what the promised probability is worth", run, draw)
+    Entry("p3-table-4.1", "Unknown objects grasped in physics, and what the promised probability is worth", run, draw),
+    Entry(
+        "p3-table-4.1-rough",
+        "The same where friction, force and the hand's place are not as the model has them",
+        run_rough,
+        draw,
+    ),
 ]

@@ -11,6 +11,9 @@ from .._core import Box, Capsule, Cylinder, Grasp, LinkShape, Sphere
 from .grasp_success import looking_at
 
 FRICTION = 0.5  # of fingers on objects, in physics and in the model
+FORCE = 40.0  # of each finger [N]
+ROUGH_FRICTION, ROUGH_FORCE = (0.15, 0.5), 15.0
+ROUGH_HAND = (0.004, 0.05)  # error of the hand's place along x and y and about the vertical [m, rad]
 NOISES = {"hand": (0.0005, 0.002), "mast": (0.001, 0.006)}  # sigma = constant + quadratic z^2 [m, 1/m]
 POSE_ERROR = (0.001, 0.003)  # of each frame along and about each axis [m, rad]
 VIEWS = 10
@@ -53,8 +56,10 @@ OBJECTS: dict[str, tuple[float, list[LinkShape]]] = {
 }
 
 
-def attempt(name: str, number: int, seed: int) -> dict[str, Any]:
-    """One object at a drawn place: frames, map, a grasp for each way, and what physics made of it."""
+def attempt(name: str, number: int, seed: int, rough: bool = False) -> dict[str, Any]:
+    """One object at a drawn place: frames, map, a grasp for each way, and what physics made of it; `rough`: with friction, gripping
+    force and the hand's place otherwise than the model has them, for all grasps of the attempt alike.
+    """
     from ..sim.pick_trial import PLACE, TABLE
 
     rng = np.random.default_rng([seed, list(OBJECTS).index(name), number])
@@ -90,15 +95,27 @@ def attempt(name: str, number: int, seed: int) -> dict[str, Any]:
         "one view": _found(_core.synthesize_grasps(single, hand, **options)),
         "from above": _from_above(scene, np.array(place), hand, rng),
     }
+    from ..sim.model import Physics
+
+    physics, T_true = Physics(finger_friction=FRICTION, grip_force=FORCE), T
+    if rough:
+        own = np.random.default_rng([seed, list(OBJECTS).index(name), number, 1])
+        physics = Physics(finger_friction=float(own.uniform(*ROUGH_FRICTION)), grip_force=ROUGH_FORCE)
+        aside = ROUGH_HAND[0] * own.standard_normal(
+            2
+        )  # of the hand against the part: the part stands so much elsewhere
+        T_true = (
+            _core.pose([*aside, 0.0]) @ T @ _core.pose([0, 0, 0], rpy=[0, 0, ROUGH_HAND[1] * own.standard_normal()])
+        )
     out: dict[str, Any] = {"object": name, "sigmas": sigmas, "ways": {}, "calibration": []}
     for way, grasps in lists.items():
-        tried = _try_first(grasps, shapes, T, mass)
+        tried = _try_first(grasps, shapes, T_true, mass, physics)
         out["ways"][way] = tried or {"success": False, "precise": False, "moved": None, "turned": None, "index": None}
     chosen = out["ways"]["ours"]["index"]
     rest = [k for k in range(len(rated.grasps)) if k != chosen]
     wanted = [(chosen, out["ways"]["ours"])] if chosen is not None else []
     for k in rng.permutation(rest)[:_EXTRA] if rest else []:
-        again = _try_first([lists["ours"][k]], shapes, T, mass)
+        again = _try_first([lists["ours"][k]], shapes, T_true, mass, physics)
         if again:
             wanted.append((int(k), again))
     for k, result in wanted:
@@ -166,16 +183,15 @@ def _from_above(
 
 
 def _try_first(
-    grasps: list[tuple[Grasp, float]], shapes: list[LinkShape], T: np.ndarray, mass: float
+    grasps: list[tuple[Grasp, float]], shapes: list[LinkShape], T: np.ndarray, mass: float, physics: Any
 ) -> dict[str, Any] | None:
     """The first that the arm can carry out, in physics; None: it can none."""
-    from ..sim.model import Physics
     from ..sim.pick_trial import arm_way, try_grasp
 
     for index, (grasp, opening) in enumerate(grasps):
         way = arm_way(grasp)
         if way is None:
             continue
-        found = try_grasp(shapes, T, mass, way, opening, Physics(finger_friction=FRICTION))
+        found = try_grasp(shapes, T, mass, way, opening, physics)
         return {**vars(found), "index": index}
     return None

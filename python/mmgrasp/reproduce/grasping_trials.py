@@ -203,7 +203,7 @@ def draw(result: dict[str, Any]) -> Any:
             axes[0].plot([x, x], [low, high], color="#222222", linewidth=1)
         axes[0].axhline(PAPER[key], color=colour, linestyle="--", linewidth=1, label=f"P3: {label}")
     axes[0].set(xticks=range(len(drawing["ways"])), xticklabels=list(drawing["ways"]), ylim=(0, 1.05), ylabel="rate")
-    axes[0].legend(frameon=False, ncol=2, fontsize=8, loc="lower left")
+    axes[0].legend(frameon=False, ncol=4, fontsize=8, loc="lower center", bbox_to_anchor=(0.5, 1.0))
     trials = drawing["trials"]
     for model, style in (("weighted", OUR_STYLE), ("drawn", {**PAPER_STYLE, "color": "#2a9d60"})):
         points = []

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import itertools
 import json
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -24,7 +25,7 @@ SIGMAS = 2.0
 SAMPLES, MOST_GRASPS = 800, 40
 """Of synthesize_grasps for each part: base regions want more grasps to choose from than one arm at one place."""
 _WIDTH_PLAY = 0.0025  # pads on the part's columns and on the map's mean may differ by so much [m]
-_MOST_RENDERED = {"views": 500, "distance": 2.0, "noise": 0.02}
+_MOST_RENDERED = {"views": 500, "distance": 2.0, "noise": 0.02, "seed": 1_000_000}
 _PAD = 0.0005  # half the side of these pads [m]
 _ROOM = 0.01  # around an object's points, within which its surface is taken from the map [m]
 _HIGHEST = 0.5  # objects reach at most so high above the floor [m]
@@ -68,13 +69,20 @@ class _LoadedMap:
 class ScanReader:
     """Reads the key `scan` of one tray after another; `rest` is what the maps hold beside their parts."""
 
-    def __init__(self, gripper: Hand, scene: list[LinkShape], find: Any, progress: Progress) -> None:
+    def __init__(self, gripper: Hand, scene: list[LinkShape], find: Callable[[Node], Path], progress: Progress) -> None:
         """`scene`: the typed obstacles in the world, which rendered frames show too; `find`: file that a node names."""
         self._gripper, self._scene, self._find, self._progress = gripper, scene, find, progress
         self._maps: dict[Path, _LoadedMap] = {}
 
     def read(
-        self, node: Node, tray: str, T_world_tray: np.ndarray, size: list[float], wall: float, gap: float, typed: Any
+        self,
+        node: Node,
+        tray: str,
+        T_world_tray: np.ndarray,
+        size: list[float],
+        wall: float,
+        gap: float,
+        typed: Callable[[Node], list[LinkShape]],
     ) -> tuple[list[Part], TrayScan, dict[str, str]]:
         """The parts of a tray, none of them a target yet, and of those without a grasp the reason. `typed(node)` gives the
         shapes in the tray's frame that a rendered map shows."""
@@ -86,11 +94,11 @@ class ScanReader:
             sigmas = node["sigmas"].number(least=0) if "sigmas" in node else SIGMAS
             options = _synthesis_options(node["grasp_options"]) if "grasp_options" in node else {}
             if "map" in node:
-                named, folder = node["map"], Path(self._find(node["map"]))
+                named, folder = node["map"], self._find(node["map"])
             else:
                 named, folder = node["rendered"], self._rendered(node["rendered"], T_world_tray, size, wall, typed)
         else:
-            sigmas, named, folder = SIGMAS, node, Path(self._find(node))
+            sigmas, named, folder = SIGMAS, node, self._find(node)
         made = self._load(named, folder.resolve(), tray, sigmas)
         inner = np.array(size[:2]) - 2 * wall
         inside = objects_in_tray(made.sdf, T_world_tray, inner, _HIGHEST, tolerance(made.sdf))
@@ -150,7 +158,14 @@ class ScanReader:
             node.fail(f"sigmas = {sigmas:g}: tray {made.tray} reads the same map with {made.sigmas:g}")
         return made
 
-    def _rendered(self, node: Node, T_world_tray: np.ndarray, size: list[float], wall: float, typed: Any) -> Path:
+    def _rendered(
+        self,
+        node: Node,
+        T_world_tray: np.ndarray,
+        size: list[float],
+        wall: float,
+        typed: Callable[[Node], list[LinkShape]],
+    ) -> Path:
         node.mapping("parts", "views distance noise seed")
         defaults = Tour()
         tour = Tour(

@@ -94,12 +94,21 @@ Eigen::Vector3d vector3_argument(const py::handle& value, const std::string& nam
   return vector_argument(value, name, 3);
 }
 
-Eigen::MatrixXd matrix_argument(const py::handle& value, const std::string& name, Eigen::Index columns, bool infinite) {
+static Array rows_of_numbers(const py::handle& value, const std::string& name, Eigen::Index columns, bool infinite) {
   const std::string wanted = "(m, " + count_text(columns, "n") + ")";
-  const Array array = numbers(value, name, 2, wanted, infinite);
+  Array array = numbers(value, name, 2, wanted, infinite);
   if (columns >= 0 && array.shape(1) != columns) {
     wrong_shape(name, array, wanted);
   }
+  return array;
+}
+
+py::array_t<double> batch_argument(const py::handle& value, const std::string& name, Eigen::Index columns) {
+  return rows_of_numbers(value, name, columns, false);
+}
+
+Eigen::MatrixXd matrix_argument(const py::handle& value, const std::string& name, Eigen::Index columns, bool infinite) {
+  const Array array = rows_of_numbers(value, name, columns, infinite);
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   return Eigen::Map<const RowMajor>(array.data(), array.shape(0), array.shape(1));
 }

@@ -34,6 +34,9 @@ Eigen::Vector3d vector3_argument(const py::handle& value, const std::string& nam
 /// (m, columns) with finite entries, or with `infinite` also infinite ones; columns < 0 takes any number.
 Eigen::MatrixXd matrix_argument(const py::handle& value, const std::string& name, Eigen::Index columns = -1,
                                 bool infinite = false);
+/// (m, columns) with finite entries, as an array of float64 whose rows lie next to each other; not copied where the
+/// argument is one.
+py::array_t<double> batch_argument(const py::handle& value, const std::string& name, Eigen::Index columns);
 /// (4, 4), a rigid transform. Where the argument may be left out (py::object), None is the identity.
 Pose pose_argument(const ArrayLike& value, const std::string& name);
 Pose pose_argument(const py::object& value, const std::string& name);

@@ -1,3 +1,4 @@
+#include "batch.hpp"
 #include "bindings.hpp"
 #include "given.hpp"
 #include "mmgrasp/collision/checker.hpp"
@@ -102,6 +103,18 @@ Eigen::VectorXd configuration(const CollisionChecker& checker, const ArrayLike& 
   return vector_argument(q, name, checker.group().size());
 }
 
+py::array_t<bool> are_free_of_rows(const CollisionChecker& c, const ArrayLike& Q, int threads) {
+  const auto rows = batch_argument(Q, "Q", c.group().size());
+  const CollisionChecker own = c.clone();
+  py::array_t<bool> out(rows.shape(0));
+  bool* to = out.mutable_data();
+  in_pieces(rows.shape(0), [&](Eigen::Index first, Eigen::Index count) {
+    const std::vector<char> free = are_free(own, columns_of(rows, first, count), threads);
+    std::copy(free.begin(), free.end(), to + first);
+  });
+  return out;
+}
+
 void bind_checker(py::module_& m) {
   m.def("_checker_option_table", [] { return option_table(checker_fields()); });
   m.def("_edge_option_table", [] { return option_table(edge_fields()); });
@@ -150,21 +163,7 @@ void bind_checker(py::module_& m) {
           },
           py::arg("q"), py::arg("within"),
           "Every pair of bodies nearer than `within` [m], nearest first, each with its gradient.")
-      .def(
-          "are_free",
-          [](const CollisionChecker& c, const ArrayLike& Q, int threads) {
-            const Eigen::MatrixXd columns = matrix_argument(Q, "Q", c.group().size()).transpose();
-            const CollisionChecker own = c.clone();
-            std::vector<char> free;
-            {
-              const py::gil_scoped_release release;
-              free = are_free(own, columns, threads);
-            }
-            py::array_t<bool> out(static_cast<py::ssize_t>(free.size()));
-            std::copy(free.begin(), free.end(), out.mutable_data());
-            return out;
-          },
-          py::arg("Q"), py::arg("threads") = 0, "is_free of each row of Q (m, n), as (m,) booleans; 0 threads: all.")
+      .def("are_free", &are_free_of_rows, py::arg("Q"), py::arg("threads") = 0, "is_free of each row of Q (m, n), as (m,) booleans; 0 threads: all.")
       .def(
           "check_edge",
           [](CollisionChecker& c, const ArrayLike& q0, const ArrayLike& q1, const py::kwargs& options) {

@@ -1,6 +1,7 @@
 #include <map>
 #include <optional>
 
+#include "batch.hpp"
 #include "bindings.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
 #include "mmgrasp/robot/kinematics_batch.hpp"
@@ -34,20 +35,42 @@ Eigen::MatrixXd jacobian_at(const JointGroup& g, const ArrayLike& q, const std::
 }
 
 py::array_t<double> jacobian_batch(const JointGroup& g, const ArrayLike& Q) {
-  const Eigen::MatrixXd columns = matrix_argument(Q, "Q", g.size()).transpose();
-  const py::ssize_t m = columns.cols(), n = g.size();
+  const auto rows = batch_argument(Q, "Q", g.size());
+  const py::ssize_t n = g.size();
+  py::array_t<double> out({rows.shape(0), py::ssize_t{6}, n});
+  auto to = out.mutable_unchecked<3>();
   Poses poses;
   Matrix6Xd J;
-  {
-    py::gil_scoped_release release;
-    fk_jacobian_batch(g, columns, poses, J);
-  }
-  py::array_t<double> out({m, py::ssize_t{6}, n});
-  auto to = out.mutable_unchecked<3>();
-  for (py::ssize_t i = 0; i < m; ++i)
-    for (py::ssize_t r = 0; r < 6; ++r)
-      for (py::ssize_t c = 0; c < n; ++c) to(i, r, c) = J(r, i * n + c);
+  in_pieces(rows.shape(0), [&](Eigen::Index first, Eigen::Index count) {
+    fk_jacobian_batch(g, columns_of(rows, first, count), poses, J);
+    for (py::ssize_t i = 0; i < count; ++i)
+      for (py::ssize_t r = 0; r < 6; ++r)
+        for (py::ssize_t c = 0; c < n; ++c) to(first + i, r, c) = J(r, i * n + c);
+  });
   return out;
+}
+
+py::array_t<double> fk_batch_of_rows(const JointGroup& g, const ArrayLike& Q) {
+  using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+  const auto rows = batch_argument(Q, "Q", g.size());
+  py::array_t<double> out({rows.shape(0), py::ssize_t{4}, py::ssize_t{4}});
+  double* to = out.mutable_data();
+  Poses poses;
+  in_pieces(rows.shape(0), [&](Eigen::Index first, Eigen::Index count) {
+    fk_batch(g, columns_of(rows, first, count), poses);
+    for (Eigen::Index i = 0; i < count; ++i)
+      Eigen::Map<RowMajor>(to + 16 * (first + i)) = poses[static_cast<std::size_t>(i)].matrix();
+  });
+  return out;
+}
+
+Eigen::VectorXd manipulability_of_rows(const JointGroup& g, const ArrayLike& Q) {
+  const auto rows = batch_argument(Q, "Q", g.size());
+  Eigen::VectorXd values(rows.shape(0));
+  in_pieces(rows.shape(0), [&](Eigen::Index first, Eigen::Index count) {
+    values.segment(first, count) = manipulability_batch(g, columns_of(rows, first, count));
+  });
+  return values;
 }
 
 void bind_group_class(py::module_& m) {
@@ -122,18 +145,7 @@ void bind_group_class(py::module_& m) {
           py::arg("name"), py::arg("base") = py::none(),
           "The SRDF's group state of this name as a configuration (n,); `base` as in q(). Raises InvalidInput, listing "
           "the\nstates there are, for others.")
-      .def(
-          "fk_batch",
-          [](const JointGroup& g, const ArrayLike& Q) {
-            const Eigen::MatrixXd columns = matrix_argument(Q, "Q", g.size()).transpose();
-            Poses poses;
-            {
-              py::gil_scoped_release release;
-              fk_batch(g, columns, poses);
-            }
-            return to_array(poses);
-          },
-          py::arg("Q"), "(m, 4, 4) for configurations (m, n).")
+      .def("fk_batch", &fk_batch_of_rows, py::arg("Q"), "(m, 4, 4) for configurations (m, n).")
       .def("jacobian", &jacobian_at, py::arg("q"), py::arg("link") = py::none(), py::arg("point") = py::none(),
            "(6, n), world-aligned: linear rows [m/rad, m/m], then angular. At the tip's origin, or at `point` [m] in "
            "the "
@@ -155,14 +167,7 @@ void bind_group_class(py::module_& m) {
           "manipulability",
           [](const JointGroup& g, const ArrayLike& q) { return g.manipulability(configuration(g, q)); }, py::arg("q"),
           "sqrt(det(J J^T)) (Yoshikawa): 0 at singularities, and for groups of fewer than six joints.")
-      .def(
-          "manipulability_batch",
-          [](const JointGroup& g, const ArrayLike& Q) {
-            const Eigen::MatrixXd columns = matrix_argument(Q, "Q", g.size()).transpose();
-            py::gil_scoped_release release;
-            return manipulability_batch(g, columns);
-          },
-          py::arg("Q"), "(m,) for configurations (m, n).")
+      .def("manipulability_batch", &manipulability_of_rows, py::arg("Q"), "(m,) for configurations (m, n).")
       .def(
           "velocity_manipulability",
           [](const JointGroup& g, const ArrayLike& q, const ArrayLike& direction) {

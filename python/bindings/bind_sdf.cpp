@@ -2,6 +2,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "batch.hpp"
 #include "bindings.hpp"
 #include "mmgrasp/mapping/probabilistic_sdf.hpp"
 
@@ -207,12 +208,15 @@ void bind_sdf(py::module_& m) {
       .def(
           "query",
           [](const ProbabilisticSdf& sdf, const ArrayLike& points, int threads) {
-            const Eigen::Matrix3Xd columns = columns_argument(points, "points");
-            SdfValues values;
-            {
-              py::gil_scoped_release release;
-              values = sdf.query(columns, threads);
-            }
+            const auto rows = batch_argument(points, "points", 3);
+            SdfValues values{Eigen::VectorXd(rows.shape(0)), Eigen::VectorXd(rows.shape(0)),
+                             std::vector<std::uint8_t>(static_cast<std::size_t>(rows.shape(0)))};
+            in_pieces(rows.shape(0), [&](Eigen::Index first, Eigen::Index count) {
+              const SdfValues piece = sdf.query(columns_of(rows, first, count), threads);
+              values.mean.segment(first, count) = piece.mean;
+              values.sigma.segment(first, count) = piece.sigma;
+              std::copy(piece.known.begin(), piece.known.end(), values.known.begin() + first);
+            });
             return std::make_tuple(sdf_column(values.mean), sdf_column(values.sigma), sdf_flags(values.known));
           },
           "points"_a, "threads"_a = 0,

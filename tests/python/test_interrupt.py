@@ -28,8 +28,8 @@ def interruptible() -> Iterator[None]:
     signal.signal(signal.SIGINT, before)
 
 
-def interrupt_soon() -> threading.Timer:
-    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+def interrupt_soon(delay: float = 0.5) -> threading.Timer:
+    timer = threading.Timer(delay, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
     return timer
 
@@ -77,6 +77,27 @@ def test_a_set_cover_is_interrupted_at_any_moment(delay: float) -> None:
     with pytest.raises(KeyboardInterrupt):
         mg.optim.solve_set_cover(300, HARD_COVER, time_limit=20)
     timer.join()
+
+
+@pytest.mark.parametrize("batch", [CHECKER.are_free, ARM.fk_batch])
+def test_batches_of_millions_of_rows_can_be_interrupted(batch: Callable[..., Any]) -> None:
+    rows = np.tile(Q, (3_000_000, 1))
+    timer = interrupt_soon(0.05)
+    with pytest.raises(KeyboardInterrupt):
+        for _ in range(100):  # a fast machine may be done with the first
+            batch(rows)
+    timer.join()
+
+
+def test_batches_are_the_same_in_any_pieces() -> None:
+    """They are worked on in pieces of 256 rows and more; the last of a piece has no neighbours."""
+    rows = np.random.default_rng(5).uniform(-2, 2, (2000, len(Q)))
+    for batch in (CHECKER.are_free, ARM.fk_batch, ARM.jacobian_batch, ARM.manipulability_batch):
+        whole = batch(rows)
+        for first, last in ((0, 1), (255, 258), (700, 1999)):
+            assert np.array_equal(batch(rows[first:last]), whole[first:last])
+        assert len(batch(rows[:0])) == 0
+    assert np.array_equal(CHECKER.are_free(rows), [CHECKER.is_free(q) for q in rows])
 
 
 def test_lines_and_timing_tell_their_progress() -> None:

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "mmgrasp/core/error.hpp"
+#include "mmgrasp/robot/joint_group.hpp"
 #include "mmgrasp/robot/robot.hpp"
 
 using namespace mmgrasp;
@@ -101,6 +102,17 @@ std::vector<BadCase> bad_cases() {
       {"zero axis", joint(kLimit + "<axis xyz=\"0 0 0\"/>"), {"<axis>", "\"0 0 0\"", "zero"}},
       {"short axis", joint(kLimit + "<axis xyz=\"0 1\"/>"), {"\"0 1\"", "three numbers"}},
       {"NaN origin", joint(kLimit + "<origin xyz=\"0 nan 0\"/>"), {"<origin>", "joint \"j\"", "finite"}},
+      {"origin with a quaternion",
+       joint(kLimit + "<origin quat_xyzw=\"1 0 0 0\"/>"),
+       {"<origin>", "joint \"j\"", "\"quat_xyzw\"", "xyz, rpy"}},
+      {"misspelt rotation", joint(kLimit + "<origin rpz=\"1 0 0\"/>"), {"\"rpz\"", "did you mean \"rpy\""}},
+      {"misspelt multiplier",
+       robot("<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/><joint name=\"k\" type=\"revolute\"><parent "
+             "link=\"a\"/><child link=\"c\"/>" +
+             kLimit + "</joint><joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/>" + kLimit +
+             "<mimic joint=\"k\" multiplyer=\"-1\"/></joint>"),
+       {"joint \"j\"", "multiplyer", "did you mean \"multiplier\""}},
+      {"misspelt scale", shape("<mesh filename=\"m.stl\" scales=\"1 1 1\"/>"), {"\"scales\"", "filename, scale"}},
       {"far origin", joint(kLimit + "<origin xyz=\"0 1e300 0\"/>"), {"<origin>", "joint \"j\"", "xyz", "1e12"}},
       {"huge axis", joint(kLimit + "<axis xyz=\"1e-200 1e200 0\"/>"), {"<axis>", "1e12"}},
       {"huge sphere", shape("<sphere radius=\"1e308\"/>"), {"radius", "1e+308", "1e12"}},
@@ -166,6 +178,28 @@ TEST(RobotBadInput, HarmlessOddities) {
   EXPECT_EQ(robot.joints()[0].velocity, 1.0);
   EXPECT_EQ(robot.joints()[0].axis, Eigen::Vector3d::UnitZ());
   EXPECT_EQ(robot.report().warnings.size(), 1u);
+}
+
+TEST(RobotBadInput, UnknownLimitsAreWarnings) {
+  const Robot robot = Robot::from_strings(
+      joint("<limit lower=\"0\" upper=\"1\" velocity=\"1\" acceleration=\"2\"/><origin tool:id=\"3\" xyz=\"1 0 0\"/>"));
+  ASSERT_EQ(robot.report().warnings.size(), 1u);
+  EXPECT_NE(robot.report().warnings[0].find("\"acceleration\" is not read"), std::string::npos);
+}
+
+TEST(RobotBadInput, JointsNamedAsTheBase) {
+  std::string urdf = joint(kLimit);
+  for (std::size_t at; (at = urdf.find("\"j\"")) != std::string::npos;) urdf.replace(at, 3, "\"theta\"");
+  RobotOptions options;
+  options.base = BaseKind::diff_drive;
+  const Robot robot = Robot::from_strings(urdf, "", options);
+  EXPECT_EQ(robot.chain("a", "b").names(), (std::vector<std::string>{"theta"}));
+  try {
+    robot.chain("a", "b", true);
+    FAIL() << "a joint named as the base was taken";
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("joint \"theta\""), std::string::npos) << error.what();
+  }
 }
 
 TEST(RobotBadInput, SubgroupsThatDoubleEachOtherStayCheap) {

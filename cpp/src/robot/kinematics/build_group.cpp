@@ -1,6 +1,7 @@
 // Robot::group: a chain of joints, checked and flattened.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "mmgrasp/core/detail/near_name.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
@@ -49,6 +50,16 @@ std::vector<Column> joint_columns(const Joint& joint, int index, double workspac
       return {translation("x"), translation("y"), translation("z"), rotation("rx"), rotation("ry"), rotation("rz")};
     default:
       return {{joint.name, index, joint.lower, joint.upper, v, a, joint.type == JointType::continuous}};
+  }
+}
+
+/// Values are given by name: a joint called "x" beside a base's x would be lost.
+void check_names(const std::vector<Column>& columns, const std::string& group) {
+  std::set<std::string> seen;
+  for (const Column& column : columns) {
+    if (!seen.insert(column.name).second)
+      throw InvalidInput("group \"" + group + "\": joint \"" + column.name +
+                         "\" has the name of another column (a base's are x, y, theta): rename the joint");
   }
 }
 
@@ -119,6 +130,7 @@ JointGroup make_group(const Robot& robot, const std::string& name, const std::ve
   require(size > 0, "group \"" + name + "\" size", size, "must have at least one movable joint");
   require(size <= kMaxGroupSize, "group \"" + name + "\" size", size,
           "must be at most " + std::to_string(kMaxGroupSize));
+  check_names(columns, name);
   set_columns(columns, *model);
   flatten(*model);
   return JointGroup(std::make_shared<JointGroup::Data>(std::move(model), Pose::Identity()));

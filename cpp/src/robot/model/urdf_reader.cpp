@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "mmgrasp/core/detail/near_name.hpp"
 #include "mmgrasp/core/detail/xml_document.hpp"
 #include "mmgrasp/core/error.hpp"
 
@@ -48,9 +49,30 @@ class UrdfReader {
     return name;
   }
 
+  /// Names among an element's attributes that URDF does not give it; those with a prefix are other programs' own.
+  std::vector<std::string> unknown_attributes(const TiXmlElement& element, const std::vector<std::string>& known) {
+    std::vector<std::string> unknown;
+    for (const TiXmlAttribute* a = element.FirstAttribute(); a; a = a->Next()) {
+      const std::string name = a->Name();
+      if (name.find(':') == std::string::npos && std::find(known.begin(), known.end(), name) == known.end())
+        unknown.push_back(name);
+    }
+    return unknown;
+  }
+
+  /// For elements that place or shape something, where a word not understood would be another robot.
+  void only(const TiXmlElement& element, const std::vector<std::string>& known) {
+    for (const std::string& name : unknown_attributes(element, known)) {
+      std::string rule;
+      for (const std::string& other : known) rule += (rule.empty() ? "" : ", ") + other;
+      xml_.fail(element, "attribute \"" + name + "\" is unknown: must be one of " + rule + near_miss(name, known));
+    }
+  }
+
   Pose read_origin(const TiXmlElement& owner) {
     const TiXmlElement* origin = owner.FirstChildElement("origin");
     if (!origin) return Pose::Identity();
+    only(*origin, {"xyz", "rpy"});
     const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
     return pose_from_xyz_rpy(read_vector(*origin, "xyz", zero), read_vector(*origin, "rpy", zero));
   }
@@ -112,10 +134,13 @@ class UrdfReader {
     if (name == "box") {
       shape.shape = read_box(*kind);
     } else if (name == "sphere") {
+      only(*kind, {"radius"});
       shape.shape = Sphere{read_positive(*kind, "radius")};
     } else if (name == "cylinder") {
+      only(*kind, {"radius", "length"});
       shape.shape = Cylinder{read_positive(*kind, "radius"), read_positive(*kind, "length")};
     } else if (name == "capsule") {
+      only(*kind, {"radius", "length"});
       shape.shape = Capsule{read_positive(*kind, "radius"), read_positive(*kind, "length")};
     } else if (name == "mesh") {
       read_mesh(*kind, shape);
@@ -126,6 +151,7 @@ class UrdfReader {
   }
 
   Box read_box(const TiXmlElement& element) {
+    only(element, {"size"});
     const std::string text = xml_.required_text(element, "size");
     const Eigen::Vector3d size = read_vector(element, "size", Eigen::Vector3d::Zero());
     if (!(size.minCoeff() > 0)) xml_.fail(element, "size = \"" + text + "\": every length must be positive");
@@ -133,6 +159,7 @@ class UrdfReader {
   }
 
   void read_mesh(const TiXmlElement& element, LinkShape& shape) {
+    only(element, {"filename", "scale"});
     shape.shape = MeshShape{};
     shape.mesh_uri = xml_.required_text(element, "filename");
     shape.mesh_scale = read_vector(element, "scale", Eigen::Vector3d::Ones());
@@ -171,6 +198,7 @@ class UrdfReader {
   void read_axis(const TiXmlElement& element, Joint& joint) {
     const TiXmlElement* axis = element.FirstChildElement("axis");
     if (!axis || joint.type == JointType::fixed || joint.type == JointType::floating) return;
+    only(*axis, {"xyz"});
     const Eigen::Vector3d value = read_vector(*axis, "xyz", Eigen::Vector3d::UnitX());
     const double norm = value.norm();
     if (!(norm > 1e-9)) xml_.fail(*axis, "xyz = \"" + xml_.text(*axis, "xyz").value_or("") + "\": must not be zero");
@@ -188,6 +216,8 @@ class UrdfReader {
       return;
     }
     if (limit->NextSiblingElement("limit")) warn(element, "has more than one <limit>, the first is used");
+    for (const std::string& name : unknown_attributes(*limit, {"lower", "upper", "velocity", "effort"}))
+      warn(*limit, "attribute \"" + name + "\" is not read");
     if (bounded) {
       joint.lower = xml_.number(*limit, "lower", 0);
       joint.upper = xml_.number(*limit, "upper", 0);
@@ -219,6 +249,7 @@ class UrdfReader {
     if (named.joint.type == JointType::fixed) return warn(mimic, "is ignored: the joint is fixed");
     if (named.joint.value_count() != 1)
       xml_.fail(element, std::string("a ") + to_string(named.joint.type) + " joint cannot mimic another");
+    only(mimic, {"joint", "multiplier", "offset"});
     named.mimic = xml_.required_text(mimic, "joint");
     named.joint.mimic_multiplier = xml_.number(mimic, "multiplier", 1);
     named.joint.mimic_offset = xml_.number(mimic, "offset", 0);

@@ -128,7 +128,9 @@ class DriveByPlan:
 
     def motion(self) -> _core.RobotMotion:
         """The whole round with what is done in passing, as a robot carries it out: arm, base and gripper on one clock."""
-        return RoundMotion(self.plan).make({p.pick: (p.result, MERGED) for p in self.picks if p.used})
+        return RoundMotion(self.plan.scenario, self.plan.plan).make(
+            {p.pick: (p.result, MERGED) for p in self.picks if p.used}
+        )
 
     def plan_to_dict(self) -> dict[str, Any]:
         """The content of plan.json with what is done in passing, so that `mmgrasp verify` checks it as well."""

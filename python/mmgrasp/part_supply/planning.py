@@ -72,7 +72,7 @@ class ScenarioPlan:
 
     def motion(self) -> RobotMotion:
         """The whole round as a robot carries it out: drives, picks and gripper on one clock. Raises InvalidInput without a plan."""
-        return RoundMotion(self).make({})
+        return RoundMotion(self.scenario, self.plan).make({})
 
     def save_trajectories(self, folder: str | os.PathLike[str]) -> list[Path]:
         """One CSV for the whole round, and one per arm motion and per leg of the route, named in the order they are carried out."""

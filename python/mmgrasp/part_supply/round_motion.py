@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 from .. import _core
-from .._core import InvalidInput, Outcome, RobotMotion
-
-if TYPE_CHECKING:
-    from .planning import ScenarioPlan
+from .._core import InvalidInput, Outcome, PartSupplyPlan, RobotMotion
+from ..scenario import Scenario
 
 
 class RoundMotion:
     """Joins the pieces of a round; the gripper moves at the scenario's closing speed while everything else stands."""
 
-    def __init__(self, plan: ScenarioPlan) -> None:
+    def __init__(self, scenario: Scenario, plan: PartSupplyPlan) -> None:
         if plan.outcome != Outcome.solved:
             raise InvalidInput(f"plan: is not solved ({plan.outcome.name})")
-        self.plan, self.setup = plan, plan.scenario.setup
+        self.plan, self.scenario, self.setup = plan, scenario, scenario.setup
         self.motion: RobotMotion | None = None
         self.opening: float | None = None
 
@@ -45,7 +42,7 @@ class RoundMotion:
             self.motion.append(motion)
 
     def _part(self, pick: _core.Pick) -> str:
-        return str(self.plan.scenario.trays[pick.tray].tray.parts[pick.part].name)
+        return str(self.scenario.trays[pick.tray].tray.parts[pick.part].name)
 
     def _pass(self, pick: _core.Pick, result: _core.DriveByResult) -> None:
         self._open_to(pick.motions[0].opening, self._part(pick))

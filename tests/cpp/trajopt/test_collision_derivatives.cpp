@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "mmgrasp/core/random.hpp"
 #include "support/derivatives.hpp"
@@ -137,6 +138,35 @@ TEST_P(CollisionDerivatives, AreOfTheDistancesAlongTheMotion) {
     between += static_cast<Eigen::Index>(term.variables.size()) > passing.group_.size();
   }
   EXPECT_GT(between, 3);
+}
+
+TEST_P(CollisionDerivatives, AskForThePaddingBesideTheMargin) {
+  Passing passing(GetParam());
+  passing.world_.set_padding({0.03, 0.01, 0.02, {}});
+  CollisionChecker padded(passing.group_, passing.world_);
+  detail::CollisionRows rows(std::vector<CollisionChecker*>(kIntervals, &padded), {}, 0.004, 0.5);
+  ASSERT_TRUE(rows.look_along(passing.trajectory()));
+  detail::WholeBodyNlp nlp(passing.problem_, 0.5);
+  const std::size_t others = nlp.terms().size();
+  rows.add_to(nlp, GetParam() == BaseKind::diff_drive);
+  int links = 0;
+  for (std::size_t t = others; t < nlp.terms().size(); ++t) {
+    const detail::Term& term = *nlp.terms()[t];
+    std::istringstream pairs(term.what);
+    std::string pair;
+    for (Eigen::Index row = 0; row < term.rows(); ++row) {
+      std::string a, word, b;
+      pairs >> a >> word >> b;
+      b = b.substr(0, b.find(','));
+      const bool scene = b == "table" || b == "post";
+      const double padding = !scene ? 0 : a == "part" ? 0.03 : 0.05;
+      // Of a pair whose padded corners met farther out, 1.75 times as much.
+      const double asked = term.lower[row] - 0.004;
+      EXPECT_TRUE(std::abs(asked - padding) < 1e-12 || std::abs(asked - 1.75 * padding) < 1e-12) << a << " " << b;
+      links += scene && a != "part";
+    }
+  }
+  EXPECT_GT(links, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Bases, CollisionDerivatives,

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from .._files import write_file
+from ..part_supply.premises import premises, premises_text
 from .style import tray_colour
 from .timeline import Timeline
 from .topview import TOPVIEW_CSS, TopView
@@ -123,11 +124,17 @@ def _headline(plan) -> str:
         drive = sum(leg["duration"] for leg in plan["route"])
         radius = min(stop["radius"] for stop in plan["stops"])
         cards = [
-            (str(len(plan["stops"])), f"stops; fewer than {plan['lower_bound']} is proven impossible"),
+            (
+                str(len(plan["stops"])),
+                f"stops; fewer than {plan['lower_bound']} is proven impossible {premises_text(premises(plan))}",
+            ),
             (str(len(plan["picks"])), "parts picked"),
             (f"{driven:.1f} m", f"driven in {clock(drive)}"),
             (f"{radius:.2f} m", f"smallest disc; {scenario['positioning_uncertainty']:.2f} m asked for"),
-            (f"{100 * plan['robustness_rate']:.1f} %", "of sampled base poses reach every part"),
+            (
+                f"{100 * plan['robustness_rate']:.1f} %",
+                "of the base poses sampled at a stop, at least, reach every part",
+            ),
         ]
     tiles = "".join(f'<div class="card"><b>{escape(a)}</b><span>{escape(b)}</span></div>' for a, b in cards)
     source = escape(scenario.get("name", ""))

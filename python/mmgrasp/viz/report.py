@@ -124,10 +124,7 @@ def _headline(plan) -> str:
         drive = sum(leg["duration"] for leg in plan["route"])
         radius = min(stop["radius"] for stop in plan["stops"])
         cards = [
-            (
-                str(len(plan["stops"])),
-                f"stops; fewer than {plan['lower_bound']} is proven impossible {premises_text(premises(plan))}",
-            ),
+            (str(len(plan["stops"])), f"stops; fewer than {plan['lower_bound']} is proven impossible"),
             (str(len(plan["picks"])), "parts picked"),
             (f"{driven:.1f} m", f"driven in {clock(drive)}"),
             (f"{radius:.2f} m", f"smallest disc; {scenario['positioning_uncertainty']:.2f} m asked for"),
@@ -138,9 +135,12 @@ def _headline(plan) -> str:
         ]
     tiles = "".join(f'<div class="card"><b>{escape(a)}</b><span>{escape(b)}</span></div>' for a, b in cards)
     source = escape(scenario.get("name", ""))
+    proof = ""
+    if plan["outcome"] == "solved" and plan["proven_minimal"]:
+        proof = f"<p class='lead'>The number of stops is proven {escape(premises_text(premises(plan)))}.</p>"
     return (
         f"<h1>{escape(headline(plan))}</h1><p class='lead'>Scenario {source}, planned by mmgrasp "
-        f"{escape(plan['mmgrasp'])}</p><div class='cards'>{tiles}</div>"
+        f"{escape(plan['mmgrasp'])}</p><div class='cards'>{tiles}</div>{proof}"
     )
 
 

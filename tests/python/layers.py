@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable, Iterator
+from graphlib import TopologicalSorter
 from pathlib import Path, PurePosixPath
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -79,6 +80,8 @@ def reduced(edges: set[tuple[str, str]]) -> set[tuple[str, str]]:
     below: dict[str, set[str]] = {}
     for a, b in edges:
         below.setdefault(a, set()).add(b)
+
+    TopologicalSorter(below).prepare()  # raises CycleError, which names a circle
 
     def reaches(a: str, b: str) -> bool:
         return any(c == b or reaches(c, b) for c in below.get(a, ()))

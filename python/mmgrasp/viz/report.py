@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Collection
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -100,7 +101,7 @@ def headline(plan: dict[str, Any]) -> str:
     return f"{plural(len(plan['stops']), 'stop')} {serve} {trays}: {plural(len(plan['picks']), 'part')} in {duration}"
 
 
-def table(head: list[str], rows: list[list[str]], numeric: set[int] = frozenset()) -> str:  # type: ignore[assignment]
+def table(head: list[str], rows: list[list[str]], numeric: Collection[int] = ()) -> str:
     """An HTML table; cells are HTML already."""
 
     def row(cells: list[str], tag: str) -> str:
@@ -111,12 +112,12 @@ def table(head: list[str], rows: list[list[str]], numeric: set[int] = frozenset(
     return f'<div class="scroll"><table><thead>{row(head, "th")}</thead><tbody>{body}</tbody></table></div>'
 
 
-def _tray(plan, name: str) -> str:
+def _tray(plan: dict[str, Any], name: str) -> str:
     names = [tray["name"] for tray in plan["scenario"]["trays"]]
     return f'<span class="dot" style="background:{tray_colour(names.index(name))}"></span>{escape(name)}'
 
 
-def _headline(plan) -> str:
+def _headline(plan: dict[str, Any]) -> str:
     scenario = plan["scenario"]
     driven = sum(leg["length"] for leg in plan["route"])
     cards = []
@@ -144,7 +145,7 @@ def _headline(plan) -> str:
     )
 
 
-def _obstructions(plan) -> str:
+def _obstructions(plan: dict[str, Any]) -> str:
     items = []
     for item in plan["obstructions"]:
         where = f"Tray {item['tray']}" if item["tray"] else "The round"
@@ -159,7 +160,7 @@ def _obstructions(plan) -> str:
     return "<h2>What stands in the way</h2>" + "".join(items) if items else ""
 
 
-def _top_view(plan) -> str:
+def _top_view(plan: dict[str, Any]) -> str:
     note = (
         "Coloured cells: the base can stand anywhere in them and reach every part of that tray. Outlined: cells that the trays of a stop share. Red disc: room around the "
         "stop; dotted: the positioning uncertainty. Rest the pointer on anything for its name."
@@ -167,7 +168,7 @@ def _top_view(plan) -> str:
     return f"<h2>From above</h2>{TopView(plan).svg()}<p class='lead'>{note}</p>"
 
 
-def _stops(plan) -> str:
+def _stops(plan: dict[str, Any]) -> str:
     rows = []
     for number, stop in enumerate(plan["stops"], start=1):
         picks = [p for p in plan["picks"] if p["stop"] == number - 1]
@@ -189,7 +190,7 @@ def _stops(plan) -> str:
     return "<h2>Stops</h2>" + table(head, rows, {3, 4, 5, 6, 7})
 
 
-def _picks(plan) -> str:
+def _picks(plan: dict[str, Any]) -> str:
     kinds = ["transit", "approach", "lift", "transfer", "retreat"]
     rows = []
     for number, pick in enumerate(plan["picks"], start=1):
@@ -203,7 +204,7 @@ def _picks(plan) -> str:
     return "<h2>Picks</h2>" + table(head, rows, {0, 1, 4, 5, 6, 7, 8, 9, 10})
 
 
-def _in_passing(plan) -> str:
+def _in_passing(plan: dict[str, Any]) -> str:
     if "drive_by" not in plan:
         return ""
     speed = plan["scenario"]["gripper"]["closing_speed"]
@@ -223,7 +224,7 @@ def _in_passing(plan) -> str:
     return f"<h2>Parts taken in passing</h2><p class='lead'>{note}</p>" + body
 
 
-def _alternatives(plan) -> str:
+def _alternatives(plan: dict[str, Any]) -> str:
     chosen = {stop["intersection"] for stop in plan["stops"]}
     used = [set(stop["trays"]) for stop in plan["stops"]]
     rows = []
@@ -254,7 +255,7 @@ def _alternatives(plan) -> str:
     )
 
 
-def _candidates(plan) -> str:
+def _candidates(plan: dict[str, Any]) -> str:
     blocks = []
     for region in plan["regions"]:
         cells = sum(end - start for runs in region["cells"].values() for _, start, end in runs)
@@ -274,7 +275,7 @@ def _candidates(plan) -> str:
     return f"<h2>Candidates, tray by tray</h2><p class='lead'>{note}</p>" + "".join(blocks)
 
 
-def _pictures(plan, pictures_dir: Path | None) -> str:
+def _pictures(plan: dict[str, Any], pictures_dir: Path | None) -> str:
     if pictures_dir is None:
         return ""
     figures = []
@@ -290,7 +291,7 @@ def _pictures(plan, pictures_dir: Path | None) -> str:
     return "<h2>Pictures</h2><div class='pictures'>" + "".join(figures) + "</div>" if figures else ""
 
 
-def _timings(plan) -> str:
+def _timings(plan: dict[str, Any]) -> str:
     longest = max((t["seconds"] for t in plan["timings"]), default=0) or 1
     rows = [
         [
@@ -303,7 +304,7 @@ def _timings(plan) -> str:
     return "<h2>Time spent planning</h2>" + table(["stage", "seconds", ""], rows, {1}) if rows else ""
 
 
-def _facts(plan) -> str:
+def _facts(plan: dict[str, Any]) -> str:
     scenario = plan["scenario"]
     gripper = scenario["gripper"]
     rows = [

@@ -207,6 +207,30 @@ TEST(TimeParameterization, AQuarterCircleIsDrivenAtItsCentripetalLimit) {
   EXPECT_LT(trajectory.duration(), arc / slow + slow / (acceleration / std::sqrt(2.0)));
 }
 
+TEST(TimeParameterization, AccelerationsAreThoseOfTheVelocities) {
+  // Chords of a helix that differ by a hundred-thousandth leave straights of a micrometre between their arcs, which take
+  // less time than two samples may lie apart. The third joint rules the speed: accelerations are those of the arcs, and
+  // zero on the straights. Where one that is zero stood for an arc, 51 intervals turned with none at either end.
+  JointPath path;
+  for (int i = 0; i <= 200; ++i) {
+    const double angle = M_PI * (i + (i % 3 == 1 ? 1e-5 : 0.0)) / 200;
+    path.waypoints.push_back(vec({std::cos(angle), std::sin(angle), angle}));
+  }
+  TimingOptions options;
+  options.max_deviation = 2e-4;
+  const VectorXd a = vec({1, 1, 1});
+  const JointTrajectory trajectory = time_parameterize(path, vec({10, 10, 0.9}), a, options);
+  int off = 0;
+  for (std::size_t i = 0; i + 1 < trajectory.times.size(); ++i) {
+    const double h = trajectory.times[i + 1] - trajectory.times[i];
+    const VectorXd mean = (trajectory.velocities[i + 1] - trajectory.velocities[i]) / h;
+    const VectorXd &before = trajectory.accelerations[i], &after = trajectory.accelerations[i + 1];
+    const VectorXd beyond = (before.cwiseMin(after) - mean).cwiseMax(mean - before.cwiseMax(after));
+    if (h > 1e-4 && (beyond.array() > 0.1 * a.array()).any()) ++off;
+  }
+  EXPECT_EQ(off, 0) << "of " << trajectory.times.size();
+}
+
 TEST(TimeParameterization, AStandstillIsOneSample) {
   const JointPath path{{vec({0.2, 0.3}), vec({0.2, 0.3})}};
   const JointTrajectory trajectory = time_parameterize(path, vec({1, 1}), vec({1, 1}));

@@ -49,14 +49,15 @@ class Sampler {
   }
 
  private:
-  /// Jump times and the end, none closer together than cubics can resolve.
+  /// Jump times and the end, none closer together than cubics can resolve. Of jumps that are, the last one stays: a
+  /// sample's acceleration is that of what follows, and what lies between the jumps (a straight of a micrometre between
+  /// two arcs) would stand for a whole interval.
   std::vector<double> break_times() const {
     std::vector<double> times;
-    double last = 0;
     for (double t : timing_.jumps(kJump)) {
-      if (t - last < kSmallestGap || timing_.duration() - t < kSmallestGap) continue;
+      if (t < kSmallestGap || timing_.duration() - t < kSmallestGap) continue;
+      if (!times.empty() && t - times.back() < kSmallestGap) times.pop_back();
       times.push_back(t);
-      last = t;
     }
     times.push_back(timing_.duration());
     return times;

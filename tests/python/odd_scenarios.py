@@ -1,0 +1,110 @@
+"""Odd scenarios drawn at random, planned, and their plans checked: what `plan` calls solved its own `verify` never refuses.
+
+As a script: `odd_scenarios.py [TRIES [SEED [FOLDER]]]` prints what each came to and keeps those that broke the rule.
+"""
+
+from __future__ import annotations
+
+import copy
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import yaml
+
+import mmgrasp as mg
+
+SCENARIOS = Path(mg.__file__).parent / "assets" / "scenarios"
+FACTORS = [0.25, 0.5, 0.8, 0.95, 1.05, 1.25, 2.0, 4.0]
+SHIFTS = [-0.3, -0.1, -0.02, 0.02, 0.1, 0.3]
+# Numbers that odd values cannot make hopeless at once: what they stand for decides how they are changed.
+TOUCHED = ("gripper", "place_region", "positioning_uncertainty", "obstacles", "part_types", "trays", "start", "goal")
+
+
+def numbers(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    """Where the numbers stand, booleans left out."""
+    pairs = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, inner in pairs:
+        yield from numbers(inner, (*path, key))
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        yield path
+
+
+def at(value: Any, path: tuple[Any, ...]) -> Any:
+    for key in path:
+        value = value[key]
+    return value
+
+
+def changed(number: float, draw: Random) -> float:
+    if isinstance(number, int):
+        return max(0, number + draw.choice([-1, 1, 2]))
+    if number == 0 or draw.random() < 0.4:
+        return round(number + draw.choice(SHIFTS), 9)
+    return round(number * draw.choice(FACTORS), 9)
+
+
+def odd_scenario(seed: int) -> dict[str, Any]:
+    """A shipped scenario with one of its trays, two targets, and one to four numbers changed."""
+    draw = Random(seed)
+    scenario = yaml.safe_load((SCENARIOS / draw.choice(["storeroom.yaml", "omni_cell.yaml"])).read_text())
+    tray = copy.deepcopy(draw.choice(scenario["trays"]))
+    if isinstance(tray.get("targets"), list):
+        tray["targets"] = tray["targets"][:2]
+    scenario.update(name=f"odd {seed}", trays=[tray], reach={"samples": 500_000})
+    places = [path for path in numbers(scenario) if path[0] in TOUCHED]
+    for path in draw.sample(places, draw.randint(1, 4)):
+        at(scenario, path[:-1])[path[-1]] = changed(at(scenario, path), draw)
+    if draw.random() < 0.3:
+        scenario["options"] = {**scenario.get("options", {}), "grid_resolution": draw.choice([0.02, 0.08, 0.1])}
+    return scenario
+
+
+def try_out(scenario: dict[str, Any], folder: Path) -> tuple[str, list[str]]:
+    """What became of it ("refused" or the outcome), and the faults of a plan that is called solved."""
+    path = folder / "scenario.yaml"
+    path.write_text(yaml.safe_dump(scenario, sort_keys=False))
+    try:
+        plan = mg.plan_part_supply(path)
+    except mg.Error as error:
+        assert str(error), "an error without a word"
+        return "refused", []
+    if plan.outcome != mg.Outcome.solved:
+        assert str(plan), "no plan without a word"
+        return plan.outcome.name, []
+    verdict = mg.verify_plan(plan.save(folder / "plan.json"), scenario=path)
+    return "solved", [str(fault) for fault in verdict.faults]
+
+
+def main() -> int:
+    tries = int(sys.argv[1]) if len(sys.argv) > 1 else 100
+    seed = int(sys.argv[2]) if len(sys.argv) > 2 else 1
+    kept = Path(sys.argv[3]) if len(sys.argv) > 3 else Path(tempfile.mkdtemp())
+    outcomes: Counter[str] = Counter()
+    broken = 0
+    for number in range(seed, seed + tries):
+        scenario = odd_scenario(number)
+        begun = time.monotonic()
+        with tempfile.TemporaryDirectory() as folder:
+            try:
+                outcome, faults = try_out(scenario, Path(folder))
+            except Exception as error:  # what the search is for
+                outcome, faults = type(error).__name__, [str(error)]
+        outcomes[outcome] += 1
+        took = time.monotonic() - begun
+        if faults or took > 60:
+            print(f"{number}: {outcome} after {took:.0f} s; {len(faults)} faults: {faults[:3]}", flush=True)
+        if faults:
+            broken += 1
+            (kept / f"odd_{number}.yaml").write_text(yaml.safe_dump(scenario, sort_keys=False))
+    print(f"{tries} scenarios from seed {seed}: {dict(outcomes)}; {broken} broke the rule ({kept})")
+    return 1 if broken else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

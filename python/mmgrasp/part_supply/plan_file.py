@@ -18,6 +18,7 @@ from ..documents.reading import Node, read_json
 from ..scenario import Scenario, TraySetup
 from ..scenario.schema import check_schema
 from ..scenario.shapes import pose_to_dict, shape_from_node, shape_to_dict
+from .premises import premises
 
 VERSION = 2
 
@@ -26,7 +27,7 @@ VERSION = 2
 def plan_to_dict(scenario: Scenario, plan: PartSupplyPlan, timings: list[tuple[str, float]]) -> dict[str, Any]:
     """The whole content of plan.json."""
     names = [scenario.trays[tray].tray.name for tray in plan.region_trays]
-    return {
+    content = {
         "format": "mmgrasp-plan",
         "version": VERSION,
         "mmgrasp": _core.__version__,
@@ -61,6 +62,7 @@ def plan_to_dict(scenario: Scenario, plan: PartSupplyPlan, timings: list[tuple[s
         "obstructions": [o.to_dict() for o in plan.obstructions],
         "timings": [{"stage": stage, "seconds": seconds} for stage, seconds in timings],
     }
+    return content | {"premises": premises(content)}
 
 
 def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:

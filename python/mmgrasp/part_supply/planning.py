@@ -15,7 +15,8 @@ from .._core import InvalidInput, Outcome, PartSupplyPlan, PartSupplyProblem, Re
 from .._files import write_file
 from .._progress import Progress
 from ..scenario import Scenario, load_scenario
-from .plan_file import plan_to_dict
+from .plan_file import plan_to_dict, scenario_to_dict
+from .premises import premises
 from .round_motion import RoundMotion
 
 
@@ -59,6 +60,17 @@ class ScenarioPlan:
     def obstructions(self) -> list[_core.Obstruction]:
         """Why there is no plan and what would help; empty when solved."""
         return self.plan.obstructions
+
+    @property
+    def premises(self) -> dict[str, Any]:
+        """What the least number of stops was proven for: headings, cells, grasps, ... (docs/plan_format.md)."""
+        return premises(
+            {
+                "scenario": scenario_to_dict(self.scenario),
+                "grid": {"resolution": self.plan.grid.resolution},
+                "proven_minimal": self.plan.proven_minimal,
+            }
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """The content of plan.json (docs/plan_format.md)."""

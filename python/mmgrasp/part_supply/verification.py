@@ -25,11 +25,16 @@ class PlanVerdict:
     faults: list[checks.Fault]
     rates: list[checks.StopRate] = field(default_factory=list)
     minimal_stops: int = 0
+    """So many stops are enough for the plan's regions."""
     configurations_checked: int = 0
     allowed_collisions: list[tuple[str, str]] = field(default_factory=list)
     """Pairs that the plan's scenario lets touch, so that nobody looked at them."""
     compared_with: str = "the scenario stored in it"
     """The scenario file, or the one stored in the plan when none was given."""
+    lower_bound: int = 0
+    """Fewer stops are proven not to be enough; below `minimal_stops` the least number is not decided."""
+    search_cut: bool = False
+    """The search for regions that trays share ended at its limit, which `lower_bound` allows for."""
 
     @property
     def ok(self) -> bool:
@@ -43,6 +48,8 @@ class PlanVerdict:
             "faults": [f.to_dict() for f in self.faults],
             "rates": [r.to_dict() for r in self.rates],
             "minimal_stops": self.minimal_stops,
+            "lower_bound": self.lower_bound,
+            "search_cut": self.search_cut,
             "configurations_checked": self.configurations_checked,
             "allowed_collisions": [list(pair) for pair in self.allowed_collisions],
             "compared_with": self.compared_with,
@@ -86,6 +93,8 @@ def verify_plan(
         checked.configurations_checked,
         allowed_collisions(root["scenario"]),
         "the scenario stored in it" if scenario is None else os.fspath(scenario),
+        checked.lower_bound,
+        checked.search_cut,
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import _core
 from .._core import Box, Grasp, Hand, LinkShape, Part, Tray
+from .._core import verify as checks
 from ..documents.reading import Node, near_miss
 from .robot_section import find_file
 from .scan_section import ScanReader, TrayScan, moved
@@ -46,6 +47,7 @@ def read_part_types(node: Node, gripper: Hand) -> dict[str, PartType]:
         shapes = read_shapes(entry, find_file)
         if "grasps" in entry:
             grasps, too_wide = _listed_grasps(entry["grasps"], gripper)
+            _check_they_hold(entry["grasps"], name, shapes, grasps, gripper)
         else:
             grasps, too_wide = _core._sample_grasps(shapes, gripper, **_grasp_options(entry))
         types[name] = PartType(shapes, grasps, too_wide, entry)
@@ -83,6 +85,26 @@ def _listed_grasps(node: Node, gripper: Hand) -> tuple[list[Grasp], int]:
         quality = entry["quality"].number(least=0) if "quality" in entry else 1.0
         grasps.append(Grasp(entry["pose"].pose(), width, quality=quality))
     return grasps, too_wide
+
+
+def _check_they_hold(node: Node, name: str, shapes: list[LinkShape], grasps: list[Grasp], gripper: Hand) -> None:
+    """Refuses grasps at which fingers that close from their widest opening meet nothing of the part."""
+    part = checks.CheckedBody(name, shapes, np.eye(4))
+    across = np.cross(gripper.approach, gripper.closing)
+    axes = np.eye(4)
+    axes[:3, :3] = np.column_stack((gripper.approach, gripper.closing, across))
+    pads = [max(gripper.finger_depth, 0.002), gripper.max_opening, max(gripper.finger_width, 0.002)]
+    empty = []
+    for grasp in grasps:
+        between = checks.CheckedBody("between the pads", [LinkShape(Box(pads))], grasp.T_object_hand @ axes)
+        if not checks.overlapping_bodies([part, between]):
+            empty.append(grasp)
+    if empty:
+        x, y, z = empty[0].T_object_hand[:3, 3]
+        node.fail(
+            f"{len(empty)} of {len(grasps)} grasps hold nothing of part type {name}: no part of it is between the fingers, e.g. "
+            f"with the tcp at ({x:.4g}, {y:.4g}, {z:.4g}) m in the part's frame"
+        )
 
 
 def read_tray(node: Node, types: dict[str, PartType], gripper: Hand, scans: ScanReader) -> TraySetup:

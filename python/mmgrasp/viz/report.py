@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from .._files import write_file
+from ..part_supply.premises import premises, premises_text
 from .style import tray_colour
 from .timeline import Timeline
 from .topview import TOPVIEW_CSS, TopView
@@ -128,13 +129,19 @@ def _headline(plan: dict[str, Any]) -> str:
             (str(len(plan["picks"])), "parts picked"),
             (f"{driven:.1f} m", f"driven in {clock(drive)}"),
             (f"{radius:.2f} m", f"smallest disc; {scenario['positioning_uncertainty']:.2f} m asked for"),
-            (f"{100 * plan['robustness_rate']:.1f} %", "of sampled base poses reach every part"),
+            (
+                f"{100 * plan['robustness_rate']:.1f} %",
+                "of the base poses sampled at a stop, at least, reach every part",
+            ),
         ]
     tiles = "".join(f'<div class="card"><b>{escape(a)}</b><span>{escape(b)}</span></div>' for a, b in cards)
     source = escape(scenario.get("name", ""))
+    proof = ""
+    if plan["outcome"] == "solved" and plan["proven_minimal"]:
+        proof = f"<p class='lead'>The number of stops is proven {escape(premises_text(premises(plan)))}.</p>"
     return (
         f"<h1>{escape(headline(plan))}</h1><p class='lead'>Scenario {source}, planned by mmgrasp "
-        f"{escape(plan['mmgrasp'])}</p><div class='cards'>{tiles}</div>"
+        f"{escape(plan['mmgrasp'])}</p><div class='cards'>{tiles}</div>{proof}"
     )
 
 

@@ -119,6 +119,28 @@ def test_what_is_wrong_in_passing_is_found(content: dict[str, Any]) -> None:
     assert "drive-by-pick" in codes(plan)
 
 
+def test_the_whole_round_is_one_motion(passing: mg.part_supply.DriveByPlan) -> None:
+    """As long as is said, with the part taken in passing where its motion has it, and the base on the move then."""
+    motion = passing.motion()
+    (done,) = passing.picks
+    assert motion.duration == pytest.approx(passing.drive_by, abs=1e-6)
+    assert np.allclose(motion.base_poses[0], passing.problem.start)
+    assert np.allclose(motion.base_poses[-1], passing.problem.goal, atol=1e-6)
+    closing = next(e for e in motion.gripper if e["command"] == "close")
+    assert closing["object"] == done.part
+    assert closing["time"] == pytest.approx(done.close_at)
+    opened = next(m.opening for m in passing.plan.picks[done.pick].motions if m.holding)
+    assert closing["opening"] == opened
+    at = int(np.searchsorted(motion.times, closing["time"]))
+    assert np.linalg.norm(motion.base_twists[at, :2]) > 0.02
+    for k in range(len(motion) - 1):  # twists lead from pose to pose
+        h = motion.times[k + 1] - motion.times[k]
+        v = 0.5 * (motion.base_twists[k] + motion.base_twists[k + 1])
+        theta = 0.5 * (motion.base_poses[k, 2] + motion.base_poses[k + 1, 2])
+        way = h * np.array([v[0] * np.cos(theta), v[0] * np.sin(theta), v[2]])
+        assert np.abs(motion.base_poses[k] + way - motion.base_poses[k + 1]).max() < 1e-4
+
+
 def test_what_is_written(
     passing: mg.part_supply.DriveByPlan,
     small_plan: mg.part_supply.ScenarioPlan,
@@ -130,7 +152,8 @@ def test_what_is_written(
     files = {path.name: path for path in passing.save(tmp_path)}
     assert json.loads(files["drive_by.json"].read_text())["saved"] == passing.saved
     assert json.loads(files["plan.json"].read_text()) == json.loads(json.dumps(content))
-    (name,) = [name for name in files if name.endswith(".csv")]
+    (name,) = [name for name in files if name.startswith("drive_by_") and name.endswith(".csv")]
+    assert files["round.csv"].read_text() == passing.motion().to_csv()
     lines = files[name].read_text()
     table = np.genfromtxt(io.StringIO(lines), delimiter=",", names=True, deletechars="", dtype=None, encoding="utf-8")
     problem = small_plan.scenario.problem()

@@ -133,8 +133,8 @@ void bind_robot_motion(py::module_& m) {
       .def_property_readonly("duration", &M::duration, "[s]")
       .def("to_csv", &M::to_csv,
            "Header time, base.x, base.y, base.theta, base.v, base.vy, base.omega, joints, name.velocity, "
-           "name.acceleration, gripper\n"
-           "(what it begins to do up to the row's time).")
+           "name.acceleration, and\n"
+           "gripper, where it does anything (what it begins to do up to the row's time).")
       .def(
           "to_joint_trajectory", [](const M& t) -> MotionMessage { return motion_message(t); },
           "A dict shaped like a ROS trajectory_msgs/JointTrajectory, with base_pose and base_twist at every point, and "

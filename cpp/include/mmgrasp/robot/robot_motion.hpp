@@ -37,7 +37,8 @@ struct MMGRASP_EXPORT RobotMotion {
   /// InvalidInput where they differ.
   void append(const RobotMotion& next);
   /// Header "time,base.x,base.y,base.theta,base.v,base.vy,base.omega,<joint>,...,<joint>.velocity,...,
-  /// <joint>.acceleration,...,gripper": what the gripper begins to do up to the row's time, once. 17 digits.
+  /// <joint>.acceleration,...", and where it does anything ",gripper": what it begins to do up to the row's time, once.
+  /// 17 digits.
   std::string to_csv() const;
 };
 

@@ -80,7 +80,7 @@ std::string RobotMotion::to_csv() const {
   std::string text = "time,base.x,base.y,base.theta,base.v,base.vy,base.omega";
   for (const char* suffix : {"", ".velocity", ".acceleration"})
     for (const std::string& name : joints) text += "," + name + suffix;
-  text += ",gripper\n";
+  text += gripper.empty() ? "\n" : ",gripper\n";
   std::size_t told = 0;
   for (std::size_t i = 0; i < times.size(); ++i) {
     std::string row;
@@ -90,7 +90,7 @@ std::string RobotMotion::to_csv() const {
     for (const auto* rows : {&positions, &velocities, &accelerations})
       append_values(row, (*rows)[i].data(), (*rows)[i].size());
     text.append(row, 1);
-    text += ',';
+    if (!gripper.empty()) text += ',';
     for (bool first = true; told < gripper.size() && (gripper[told].time <= times[i] || i + 1 == times.size());
          ++told, first = false)
       text += std::string(first ? "" : " ") + (gripper[told].closes ? "close" : "open");

@@ -3652,8 +3652,8 @@ class RobotMotion:
         """
     def to_csv(self) -> str:
         """
-        Header time, base.x, base.y, base.theta, base.v, base.vy, base.omega, joints, name.velocity, name.acceleration, gripper
-        (what it begins to do up to the row's time).
+        Header time, base.x, base.y, base.theta, base.v, base.vy, base.omega, joints, name.velocity, name.acceleration, and
+        gripper, where it does anything (what it begins to do up to the row's time).
         """
     def to_joint_trajectory(self) -> mmgrasp._records.MotionMessage:
         """

@@ -263,7 +263,11 @@ void bind_verify(py::module_& top) {
       .def_readonly("faults", &PlanCheckResult::faults, "Empty: the plan holds.")
       .def_readonly("rates", &PlanCheckResult::rates, "One a stop.")
       .def_readonly("minimal_stops", &PlanCheckResult::minimal_stops,
-                    "Least number of stops, found again from the regions.")
+                    "So many stops are enough for the plan's regions: found again.")
+      .def_readonly("lower_bound", &PlanCheckResult::lower_bound,
+                    "Fewer stops are not enough: proven again. Below minimal_stops: the least number is not decided.")
+      .def_readonly("search_cut", &PlanCheckResult::search_cut,
+                    "The search for shared regions ended at its limit, which lower_bound allows for.")
       .def_readonly("configurations_checked", &PlanCheckResult::configurations_checked, "How many were checked.")
       .def_property_readonly(
           "ok", [](const PlanCheckResult& r) { return r.faults.empty(); }, "There are no faults.")
@@ -274,6 +278,7 @@ void bind_verify(py::module_& top) {
             for (const Fault& f : r.faults) faults.append(py::cast(f).attr("to_dict")());
             for (const StopRate& s : r.rates) rates.append(py::cast(s).attr("to_dict")());
             return py::dict("faults"_a = faults, "rates"_a = rates, "minimal_stops"_a = r.minimal_stops,
+                            "lower_bound"_a = r.lower_bound, "search_cut"_a = r.search_cut,
                             "configurations_checked"_a = r.configurations_checked);
           },
           "As a dict of plain numbers, strings and lists, e.g. for JSON.")

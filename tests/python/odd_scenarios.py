@@ -93,7 +93,7 @@ def main() -> int:
         with tempfile.TemporaryDirectory() as folder:
             try:
                 outcome, faults = try_out(scenario, Path(folder))
-            except Exception as error:  # noqa: BLE001  what the search is for
+            except Exception as error:  # what the search is for
                 outcome, faults = type(error).__name__, [str(error)]
         outcomes[outcome] += 1
         took = time.monotonic() - begun

@@ -92,6 +92,11 @@ BAD = [
     ("part_types.bracket.box", [0.14, 0.14, 0.14], ["bracket", "wall"]),
     ("part_types.bracket.grasp_options", {"approachs": 4}, ["approachs", "did you mean approaches?"]),
     ("part_types.bracket.grasp_options", {"friction": -1}, ["grasp_options", "friction"]),
+    (
+        "part_types.bracket.grasps",
+        [{"pose": {"xyz": [0, 0, 0.1]}, "width": 0.03}, {"pose": {"xyz": [0, 0, 0]}, "width": 0.03}],
+        ["part_types.bracket.grasps", "1 of 2 grasps hold nothing of part type bracket", "(0, 0, 0.1)"],
+    ),
     ("trays.0.parts.type", "braket", ["trays[0].parts.type", "did you mean bracket?"]),
     ("trays.0.parts.grid", [3, 0], ["trays[0].parts.grid[1]", ">= 1"]),
     ("trays.0.parts.grid", [3, 40], ["trays[0].parts", "wall"]),

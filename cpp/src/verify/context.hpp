@@ -39,7 +39,7 @@ struct Context {
 bool check_structure(const PlanToCheck& plan, const RobotModel& robot, Faults& faults, ArmSetup& setup,
                      std::vector<int>& finger_links);
 
-/// Used grasps whose widths are those of their parts between the pads (grasp_width.cpp).
+/// Listed grasps that have something between the pads, and used ones of their parts' widths (grasp_width.cpp).
 void check_grasp_widths(const Context& context, Faults& faults);
 /// Which part is picked when and where (picks.cpp).
 void check_pick_list(Context& context, Faults& faults);
@@ -58,6 +58,6 @@ void check_robustness(const Context& context, Faults& faults, std::vector<StopRa
 /// Base poses drawn in the regions and beside them (region_samples.cpp).
 void check_regions(const Context& context, Faults& faults, std::size_t& configurations);
 /// Stops inside their regions, and no smaller cover (minimality.cpp).
-void check_stops(const Context& context, Faults& faults, int& minimal_stops);
+void check_stops(const Context& context, PlanCheckResult& result);
 
 }  // namespace mmgrasp::verify::detail

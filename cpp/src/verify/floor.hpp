@@ -1,14 +1,10 @@
 #pragma once
 
-#include <set>
 #include <vector>
 
 #include "verify/context.hpp"
 
 namespace mmgrasp::verify::detail {
-
-/// Indices of regions (trays).
-using RegionSet = std::set<int>;
 
 /// The regions of a plan as flags over one grid, read through exact distances.
 class Floor {
@@ -32,17 +28,5 @@ class Floor {
   const CheckedGrid& grid_;
   std::vector<const CheckedRegion*> regions_;
 };
-
-/// Every maximal set of regions whose shared floor holds a disc of this radius (> 0) somewhere. Exact for discs of at
-/// most a cell's size. Larger ones are found by halving squares until nothing new can hide in one, down to 1/256 of a
-/// cell, or less far where regions are so ragged that this would take seconds: sets whose discs fit only in places
-/// smaller than that are not found.
-std::vector<RegionSet> common_discs(const Floor& floor, double radius, const Monitor& monitor);
-
-/// Adds a set unless one in the list holds it; drops those that it holds.
-void add_maximal(std::vector<RegionSet>& sets, const RegionSet& set);
-
-/// Least number of sets that cover all of `wanted`, by CBC; -1 when they cannot.
-int smallest_cover(const std::vector<RegionSet>& sets, const RegionSet& wanted);
 
 }  // namespace mmgrasp::verify::detail

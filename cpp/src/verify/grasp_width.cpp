@@ -1,5 +1,5 @@
-// Compares the widths of the grasps that are used with their parts: pads of the gripper's size must meet the part
-// there.
+// Holds grasps against their parts: every one listed must have something of the part between the pads, and those that
+// are used the width at which pads of the gripper's size meet it.
 #include <algorithm>
 #include <cmath>
 
@@ -15,16 +15,22 @@ constexpr int kHalvings = 12;        // Of the last step.
 constexpr double kPlay = 3e-3;       // How far the width may be off the part's [m],
 constexpr double kShare = 0.1;       // or this share of it.
 
+/// The axes of a hand at its tool frame: approach, closing, across.
+Pose hand_axes(const PlanToCheck& plan, const Pose& T_object_tcp) {
+  Eigen::Matrix3d axes;
+  axes << plan.approach, plan.closing, plan.approach.cross(plan.closing);
+  Pose T = T_object_tcp;
+  T.linear() = T_object_tcp.linear() * axes;
+  return T;
+}
+
 /// How far from the middle plane of the hand a pad stops when it comes in on one side. `depth` and `width`: its size
 /// along the approach and across approach and closing.
 class Pad {
  public:
   Pad(const PlanToCheck& plan, const PlacedBody& part, const Pose& T_object_tcp, double depth, double width)
       : part_(part) {
-    Eigen::Matrix3d axes;
-    axes << plan.approach, plan.closing, plan.approach.cross(plan.closing);
-    T_object_hand_ = T_object_tcp;
-    T_object_hand_.linear() = T_object_tcp.linear() * axes;
+    T_object_hand_ = hand_axes(plan, T_object_tcp);
     LinkShape shape;
     shape.shape = Box{Eigen::Vector3d(depth, kThickness, width)};
     pad_ = make_solids({shape}).front();
@@ -61,11 +67,40 @@ class Pad {
   Solid pad_;
 };
 
+/// Whether fingers that close from their widest opening meet anything.
+bool holds_something(const PlanToCheck& plan, const PlacedBody& part, const Pose& T_object_tcp) {
+  LinkShape shape;
+  shape.shape = Box{Eigen::Vector3d(plan.finger_depth, plan.max_opening, plan.finger_width)};
+  const Solid between = make_solids({shape}).front();
+  const Pose T = hand_axes(plan, T_object_tcp);
+  const Bounds bounds = bounds_at(between, T);
+  for (std::size_t i = 0; i < part.solids.size(); ++i) {
+    if (bounds.intersects(part.bounds[i]) && touches(between, T, part.solids[i], part.T_world_shape[i])) return true;
+  }
+  return false;
+}
+
+/// Grasps that hold nothing would let parts pass as graspable, whether they are used or not.
+void check_listed_grasps(const PlanToCheck& plan, Faults& faults) {
+  for (const CheckedPart& part : plan.parts) {
+    if (!part.target) continue;
+    const PlacedBody body = place_body(part.body.name, part.body.shapes, Pose::Identity());
+    const auto empty = std::count_if(part.grasps.begin(), part.grasps.end(), [&](const CheckedGrasp& grasp) {
+      return !holds_something(plan, body, grasp.T_object_tcp);
+    });
+    if (empty == 0) continue;
+    faults.push_back({"grasp-empty", "part '" + part.body.name + "'",
+                      std::to_string(empty) + " of its " + std::to_string(part.grasps.size()) +
+                          " grasps have nothing of it between the fingers"});
+  }
+}
+
 }  // namespace
 
 void check_grasp_widths(const Context& context, Faults& faults) {
   const PlanToCheck& plan = context.plan;
   if (!(plan.finger_depth > 0 && plan.finger_width > 0)) return;
+  check_listed_grasps(plan, faults);
   for (std::size_t pick = 0; pick < plan.picks.size(); ++pick) {
     const int index = context.pick_part[pick], g = plan.picks[pick].grasp;
     if (index < 0 || g < 0 || g >= static_cast<int>(plan.parts[index].grasps.size())) continue;  // said at the pick

@@ -5,12 +5,15 @@
 
 #include "verify/context.hpp"
 #include "verify/floor.hpp"
+#include "verify/shared_discs.hpp"
+#include "verify/smallest_cover.hpp"
 
 namespace mmgrasp::verify::detail {
 namespace {
 
-// Inscribed radii are known to 1e-6 m: a disc that fits within this may be used by the plan, but need not be.
-constexpr double kRadiusBand = 2e-6;
+constexpr double kFigureBand =
+    2e-6;  // [m] Inscribed radii above the uncertainty only describe: they are found to 1e-6 m.
+constexpr double kRounding = 1e-12;  // [m] Of sums such as a radius less the slack.
 
 bool check_grid(const PlanToCheck& plan, Faults& faults) {
   const CheckedGrid& grid = plan.grid;
@@ -61,7 +64,7 @@ class StopsCheck {
     }
   }
 
-  int run() {
+  void run(PlanCheckResult& result) {
     std::vector<RegionSet> own;
     for (std::size_t i = 0; i < plan_.stops.size(); ++i) check_stop(i, own);
     for (std::size_t i = 0; i < plan_.intersections.size(); ++i) check_intersection(i);
@@ -71,12 +74,18 @@ class StopsCheck {
                              ", 1], or the stops would not be robust"});
     }
     check_headings();
-    if (!missing_.empty()) return 0;
-    std::vector<RegionSet> sets = common_discs(floor_, plan_.positioning_uncertainty + kRadiusBand, context_.monitor);
-    for (const RegionSet& set : own) add_maximal(sets, set);
-    const int minimal = smallest_cover(sets, wanted_);
-    judge_count(minimal);
-    return std::max(minimal, 0);
+    if (!missing_.empty()) return;
+    SharedDiscs discs = shared_discs(floor_, plan_.positioning_uncertainty, context_.monitor);
+    for (const RegionSet& set : own) {
+      add_maximal(discs.certain, set);
+      add_maximal(discs.possible, set);
+    }
+    const CoverBounds needed = smallest_cover(discs.possible, wanted_);
+    const CoverBounds enough = discs.certain == discs.possible ? needed : smallest_cover(discs.certain, wanted_);
+    judge_count(needed.lower, enough.upper);
+    result.minimal_stops = std::max(enough.upper, 0);
+    result.lower_bound = std::max(needed.lower, 0);
+    result.search_cut = discs.cut;
   }
 
  private:
@@ -90,7 +99,7 @@ class StopsCheck {
       faults_.push_back({"stop-heading", where, "heading " + text(stop.pose.z()) + " is none of the grid's"});
       return;
     }
-    if (stop.radius < needed - kRadiusBand) {
+    if (stop.radius < needed - kRadiusSlack - kRounding) {
       faults_.push_back(
           {"stop-radius", where,
            "radius " + text(stop.radius) + " m is below the positioning uncertainty " + text(needed) + " m"});
@@ -98,13 +107,13 @@ class StopsCheck {
     const double wanted = std::max(stop.radius, needed);
     RegionSet holding;
     for (int region = 0; region < floor_.regions(); ++region) {
-      if (clearance(region, layer, stop, needed) >= needed - kRadiusBand) holding.insert(region);
+      if (clearance(region, layer, stop, needed) >= needed - kRadiusSlack - kRounding) holding.insert(region);
     }
     for (const std::string& tray : stop.trays) {
       const auto region = region_of_tray_.find(tray);
       if (region == region_of_tray_.end()) continue;
       const double room = clearance(region->second, layer, stop, wanted);
-      if (room >= wanted - kRadiusBand) continue;
+      if (room >= wanted - kFigureBand && room >= needed - kRadiusSlack - kRounding) continue;
       faults_.push_back({"stop-outside-region", where,
                          "a disc of " + text(wanted) + " m is said to lie in the region of tray '" + tray +
                              "', there is room for " + text(room) + " m"});
@@ -142,7 +151,7 @@ class StopsCheck {
     for (std::size_t i = 0; good && i < said.trays.size(); ++i) {
       const auto region = region_of_tray_.find(said.trays[i]);
       good = region != region_of_tray_.end() &&
-             clearance(region->second, layer, said.centre, said.radius) >= said.radius - kRadiusBand;
+             clearance(region->second, layer, said.centre, said.radius) >= said.radius - kFigureBand;
     }
     if (good) return;
     faults_.push_back({"bad-figures", "intersection " + std::to_string(index),
@@ -158,22 +167,25 @@ class StopsCheck {
     return floor_.clearance(region, layer, point, std::min(radius + 1e-3, limit));
   }
 
-  void judge_count(int minimal) {
+  /// At least `least` stops are needed, `enough` suffice; negative: no number of them.
+  void judge_count(int least, int enough) {
     const int stops = static_cast<int>(plan_.stops.size());
-    if (minimal < 0) {
+    if (least < 0) {
       faults_.push_back({"region-too-small", "regions",
                          "some tray's region holds no disc of " + text(plan_.positioning_uncertainty) + " m anywhere"});
       return;
     }
-    if (minimal < stops) {
+    if (enough >= 0 && enough < stops) {
       faults_.push_back(
           {"not-minimal", "stops",
-           std::to_string(stops) + " stops, " + std::to_string(minimal) + " are enough for these regions"});
+           std::to_string(stops) + " stops, " + std::to_string(enough) + " are enough for these regions"});
     }
-    if (plan_.lower_bound != minimal) {
-      faults_.push_back(
-          {"lower-bound", "lower_bound",
-           "says " + std::to_string(plan_.lower_bound) + ", the least number of stops is " + std::to_string(minimal)});
+    if (plan_.lower_bound < least || plan_.lower_bound > (enough < 0 ? stops : enough)) {
+      const std::string range =
+          least == enough ? "the least number of stops is " + std::to_string(least)
+                          : "at least " + std::to_string(least) + " stops are needed, " +
+                                (enough < 0 ? "more was not decided" : std::to_string(enough) + " are enough");
+      faults_.push_back({"lower-bound", "lower_bound", "says " + std::to_string(plan_.lower_bound) + ", " + range});
     }
   }
 
@@ -188,9 +200,9 @@ class StopsCheck {
 
 }  // namespace
 
-void check_stops(const Context& context, Faults& faults, int& minimal_stops) {
-  if (!check_grid(context.plan, faults)) return;
-  minimal_stops = StopsCheck(context, usable_regions(context.plan, faults), faults).run();
+void check_stops(const Context& context, PlanCheckResult& result) {
+  if (!check_grid(context.plan, result.faults)) return;
+  StopsCheck(context, usable_regions(context.plan, result.faults), result.faults).run(result);
 }
 
 }  // namespace mmgrasp::verify::detail

@@ -111,7 +111,7 @@ PlanCheckResult check_plan(const PlanToCheck& plan, const PlanCheckOptions& opti
   check_scene_at_rest(*context.stage, result.faults);
   check_pick_list(context, result.faults);
   check_grasp_widths(context, result.faults);
-  check_stops(context, result.faults, result.minimal_stops);
+  check_stops(context, result);
   check_route(context, result.faults, result.configurations_checked);
   check_arm_motions(context, result.faults, result.configurations_checked);
   check_drive_by(context, result.faults, result.configurations_checked);

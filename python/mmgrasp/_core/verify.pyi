@@ -564,9 +564,14 @@ class PlanCheckResult:
         Empty: the plan holds.
         """
     @property
+    def lower_bound(self) -> int:
+        """
+        Fewer stops are not enough: proven again. Below minimal_stops: the least number is not decided.
+        """
+    @property
     def minimal_stops(self) -> int:
         """
-        Least number of stops, found again from the regions.
+        So many stops are enough for the plan's regions: found again.
         """
     @property
     def ok(self) -> bool:
@@ -577,6 +582,11 @@ class PlanCheckResult:
     def rates(self) -> list[StopRate]:
         """
         One a stop.
+        """
+    @property
+    def search_cut(self) -> bool:
+        """
+        The search for shared regions ended at its limit, which lower_bound allows for.
         """
 def check_path(robot: mmgrasp._core.Robot, joints: collections.abc.Sequence[str], path: numpy.typing.ArrayLike, bodies: collections.abc.Sequence[CheckedBody], *, other_joints: collections.abc.Mapping[str, float] = {}, allowed_collisions: collections.abc.Sequence[tuple[str, str]] = [], joint_step: float = 0.005) -> PathCheckResult:
     """

@@ -10,6 +10,7 @@ from rich.table import Table
 
 from .._files import printable
 from ..part_supply import DriveByPlan, PlanVerdict, ScenarioPlan
+from ..part_supply.premises import premises_text
 
 
 def summary(plan: ScenarioPlan) -> Table:
@@ -37,8 +38,16 @@ def summary(plan: ScenarioPlan) -> Table:
     length = sum(leg.length for leg in plan.route)
     seconds = sum(leg.duration(plan.scenario.setup.robot) for leg in plan.route)
     planning = sum(seconds for _, seconds in plan.timings)
-    table.caption = f"drive {length:.2f} m in {seconds:.1f} s, planned in {planning:.1f} s"
+    table.caption = f"drive {length:.2f} m in {seconds:.1f} s, planned in {planning:.1f} s{_probabilities(plan)}"
+    table.caption += f"\nno fewer stops {premises_text(plan.premises)}" if plan.plan.proven_minimal else ""
     return table
+
+
+def _probabilities(plan: ScenarioPlan) -> str:
+    """Of the grasps that were found in a scan."""
+    trays = plan.scenario.trays
+    found = [trays[p.tray].tray.parts[p.part].grasps[p.grasp].quality for p in plan.picks if trays[p.tray].scan]
+    return f"; grasps of scanned parts succeed with probability {min(found):.2f} to {max(found):.2f}" if found else ""
 
 
 def drive_by_summary(passing: DriveByPlan) -> Table:
@@ -72,7 +81,7 @@ def print_verdict(verdict: PlanVerdict, console: Console) -> None:
     if verdict.ok:
         console.print(
             f"the plan holds: {verdict.configurations_checked} configurations checked, "
-            f"{verdict.minimal_stops} stops are the least{_compared(verdict)}",
+            f"{_least(verdict)}{_compared(verdict)}",
             markup=False,
             soft_wrap=True,
         )
@@ -83,6 +92,14 @@ def print_verdict(verdict: PlanVerdict, console: Console) -> None:
             markup=False,
             soft_wrap=True,
         )
+
+
+def _least(verdict: PlanVerdict) -> str:
+    """What the check proved about the number of stops by its own means."""
+    if verdict.lower_bound == verdict.minimal_stops:
+        return f"{verdict.minimal_stops} stops are the least"
+    cut = ", since the search for shared regions was cut" if verdict.search_cut else ""
+    return f"whether {verdict.minimal_stops} stops are the least was not decided (at least {verdict.lower_bound}){cut}"
 
 
 def _compared(verdict: PlanVerdict) -> str:

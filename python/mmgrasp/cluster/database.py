@@ -33,14 +33,14 @@ def build_database(
     scenario's `reach` section. Parts come back to this machine, where they are put together. Raises InvalidInput, IoError,
     Error.
     """
-    source = named(source)
-    arm, given = _arm(source)
+    place = named(source)
+    arm, given = _arm(place)
     options = {**given, **options}
     options.pop("threads", None)
     key = arm_key(arm)
     count = ReachDatabase.part_count(arm, **options)
     numbers = [list(range(i, min(i + PARTS_A_SHARD, count))) for i in range(0, count, PARTS_A_SHARD)]
-    items = [{"source": source, "key": key, "options": options, "parts": parts} for parts in numbers]
+    items = [{"source": place, "key": key, "options": options, "parts": parts} for parts in numbers]
     partial = Path(f"{os.fspath(path)}.partial")
     partial.parent.mkdir(parents=True, exist_ok=True)
     for files in engine.run(draw_parts, items, progress=progress, stage="reachability database"):

@@ -78,7 +78,7 @@ class Engine:
         }
         of_future = {future.key: key for key, future in futures.items()}
         try:
-            for future in as_completed(futures.values()):
+            for future in as_completed(futures.values()):  # type: ignore[no-untyped-call]
                 key = of_future[future.key]
                 results[key] = future.result()
                 self.store.put(key, results[key])
@@ -171,7 +171,7 @@ def connect(
         else:
             count = workers or len(os.sched_getaffinity(0))
             address = stack.enter_context(
-                LocalCluster(
+                LocalCluster(  # type: ignore[no-untyped-call]
                     n_workers=count,
                     threads_per_worker=1,
                     processes=True,
@@ -180,7 +180,7 @@ def connect(
                 )
             )
         try:
-            client = stack.enter_context(Client(address, timeout=timeout))
+            client = stack.enter_context(Client(address, timeout=timeout))  # type: ignore[no-untyped-call]
         except (OSError, TimeoutError, ValueError) as error:  # ValueError: no address at all
             raise InvalidInput(f"scheduler = {scheduler!r}: cannot be reached: {error}") from None
         engine = Engine(client, store)

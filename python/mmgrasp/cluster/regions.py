@@ -34,13 +34,13 @@ def compute_base_regions(
     with (from each machine's cache); None: a scenario's own `reach` section. Paths must mean the same files on every
     worker: a worker that reads another problem or database refuses its shard. Raises InvalidInput, IoError, Error.
     """
-    source = named(source)
+    place = named(source)
     given = named(database) if isinstance(database, (str, os.PathLike)) else database
-    problem, reach = _load(source, _frozen(given))
+    problem, reach = _load(place, _frozen(given))
     grid = _core.make_base_grid(problem, reach)
     digest = problem_digest(problem, reach)
     trays = range(len(problem.trays))
-    items = [{"source": source, "database": given, "digest": digest, "tray": t} for t in trays]
+    items = [{"source": place, "database": given, "digest": digest, "tray": t} for t in trays]
     regions = engine.run(compute_tray, items, progress=progress, stage="base regions")
     return grid, regions
 
@@ -56,6 +56,7 @@ def compute_tray(source: Any, database: Any, digest: str, tray: int) -> BaseRegi
 
 def alone(problem: PartSupplyProblem, tray: int) -> PartSupplyProblem:
     """The same problem with targets in one tray only."""
+    options: dict[str, Any] = problem.options
     trays = []
     for i, t in enumerate(problem.trays):
         parts = t.parts if i == tray else [_staying(part) for part in t.parts]
@@ -70,7 +71,7 @@ def alone(problem: PartSupplyProblem, tray: int) -> PartSupplyProblem:
         problem.start,
         problem.goal,
         problem.place_region,
-        **problem.options,
+        **options,
     )
 
 

@@ -11,6 +11,7 @@ from .. import _core
 from .._core import verify as checks
 from ..scenario.shapes import shape_to_dict
 from ..scenario.tray_section import WALL
+from .premises import premises
 
 Plan = dict[str, Any]
 _CLOSE = 1e-6  # [m], [rad]
@@ -18,7 +19,7 @@ _CLOSE = 1e-6  # [m], [rad]
 
 def check_figures(plan: Plan) -> list[checks.Fault]:
     """Faults of a solved plan whose form is that of the schema."""
-    rules = (_hand, _options, _trays, _regions, _intersections, _stops, _answer)
+    rules = (_hand, _options, _trays, _regions, _intersections, _stops, _answer, _premises)
     return [checks.Fault("bad-figures", where, message) for rule in rules for where, message in rule(plan)]
 
 
@@ -153,3 +154,12 @@ def _answer(plan: Plan) -> Found:
             "proven_minimal",
             f"is {plan['proven_minimal']} with {len(plan['stops'])} stops and a lower bound of {plan['lower_bound']}",
         )
+
+
+def _premises(plan: Plan) -> Found:
+    said = plan.get("premises")
+    if said is None:  # a plan from before they were told
+        return
+    for key, value in premises(plan).items():
+        if said[key] != value:
+            yield f"premises.{key}", f"is {said[key]!r}, the plan was made with {value!r}"

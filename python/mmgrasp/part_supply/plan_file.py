@@ -14,10 +14,11 @@ from .. import _core
 from .._core import Hand, InvalidInput, PartSupplyPlan, Robot, RobotSource
 from .._core import verify as checks
 from .._files import SCHEMAS, sha256_of
-from ..scenario import Scenario
-from ..scenario.reading import Node, read_json
+from ..documents.reading import Node, read_json
+from ..scenario import Scenario, TraySetup
 from ..scenario.schema import check_schema
 from ..scenario.shapes import pose_to_dict, shape_from_node, shape_to_dict
+from .premises import premises
 
 VERSION = 2
 
@@ -26,7 +27,7 @@ VERSION = 2
 def plan_to_dict(scenario: Scenario, plan: PartSupplyPlan, timings: list[tuple[str, float]]) -> dict[str, Any]:
     """The whole content of plan.json."""
     names = [scenario.trays[tray].tray.name for tray in plan.region_trays]
-    return {
+    content = {
         "format": "mmgrasp-plan",
         "version": VERSION,
         "mmgrasp": _core.__version__,
@@ -61,6 +62,7 @@ def plan_to_dict(scenario: Scenario, plan: PartSupplyPlan, timings: list[tuple[s
         "obstructions": [o.to_dict() for o in plan.obstructions],
         "timings": [{"stage": stage, "seconds": seconds} for stage, seconds in timings],
     }
+    return content | {"premises": premises(content)}
 
 
 def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
@@ -121,7 +123,8 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
             }
             for t in scenario.trays
         ],
-        "parts": [_part(part, t.tray.name) for t in scenario.trays for part in t.tray.parts],
+        "parts": [_part(part, t) for t in scenario.trays for part in t.tray.parts],
+        **({"scans": scans} if (scans := [t.scan.to_dict(t.tray.name) for t in scenario.trays if t.scan]) else {}),
         "options": dict(scenario.problem().options),
         **scenario.rules.to_dict(),
         "reach": {key: scenario.reach.get(key, default) for key, (default, _) in _reach_options().items()},
@@ -176,15 +179,17 @@ def _mesh_files(robot: Robot) -> list[str]:
     return sorted((shapes | {path for u in robot.source.urdfs for path in u["mesh_files"].values()}) - {""})
 
 
-def _part(part: _core.Part, tray: str) -> dict[str, Any]:
+def _part(part: _core.Part, tray: TraySetup) -> dict[str, Any]:
     return {
         "name": part.name,
-        "tray": tray,
+        "tray": tray.tray.name,
         "target": part.target,
         "pose": pose_to_dict(part.T_world_part),
         "shapes": [shape_to_dict(s) for s in part.shapes],
         "grasps": [
-            {"pose": pose_to_dict(g.T_object_hand), "width": g.opening, "quality": g.quality} for g in part.grasps
+            {"pose": pose_to_dict(g.T_object_hand), "width": g.opening, "quality": g.quality}
+            | ({"probability": g.quality} if tray.scan else {})
+            for g in part.grasps
         ]
         if part.target
         else [],

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import io
 import os
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +16,11 @@ from .raster import Camera, render
 from .scene import PlanScene
 from .style import FLOOR, OBSTACLE, PART, ROUTE, STOP, TRAY_BODY, rgb, tray_colour
 from .topview import footprint, outline_edges, shared_cells, stop_intersections
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 
 def write_pictures(plan: dict[str, Any], out_dir: str | Path) -> list[Path]:
@@ -33,7 +39,7 @@ def write_pictures(plan: dict[str, Any], out_dir: str | Path) -> list[Path]:
     return paths
 
 
-def _pyplot():
+def _pyplot() -> Callable[[float, float], Figure]:
     os.environ.setdefault("MPLBACKEND", "Agg")
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -46,7 +52,7 @@ def _pyplot():
     return figure
 
 
-def _save(figure, path: Path) -> Path:
+def _save(figure: Figure, path: Path) -> Path:
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png")
     write_file(path, buffer.getvalue())
@@ -68,14 +74,14 @@ def _extent(grid: dict[str, Any]) -> tuple[float, float, float, float]:
     return x, x + grid["nx"] * h, y, y + grid["ny"] * h
 
 
-def _draw_mask(axes, plan, mask, colour, alpha):
+def _draw_mask(axes: Axes, plan: dict[str, Any], mask: np.ndarray, colour: str, alpha: float) -> None:
     image = np.zeros((*mask.shape, 4))
     image[..., :3] = rgb(colour)
     image[..., 3] = mask * alpha
     axes.imshow(image, origin="lower", extent=_extent(plan["grid"]), interpolation="nearest", zorder=1)
 
 
-def _draw_bodies(axes, plan):
+def _draw_bodies(axes: Axes, plan: dict[str, Any]) -> None:
     from matplotlib.patches import Polygon
 
     scenario = plan["scenario"]
@@ -89,7 +95,7 @@ def _draw_bodies(axes, plan):
             axes.add_patch(Polygon(outline, facecolor=colour, edgecolor="#7a3d08", linewidth=0.3, zorder=3))
 
 
-def _label_tray(axes, tray, index):
+def _label_tray(axes: Axes, tray: dict[str, Any], index: int) -> None:
     x, y = tray["pose"]["xyz"][:2]
     axes.text(
         x, y, tray["name"], ha="center", va="center", color="white", fontsize=9, weight="bold", zorder=8,
@@ -97,7 +103,7 @@ def _label_tray(axes, tray, index):
     )  # fmt: skip
 
 
-def _draw_arrow(axes, pose, colour, length=0.28):
+def _draw_arrow(axes: Axes, pose: Sequence[float], colour: str, length: float = 0.28) -> None:
     dx, dy = length * np.cos(pose[2]), length * np.sin(pose[2])
     axes.annotate(
         "", (pose[0] + dx, pose[1] + dy), (pose[0], pose[1]), zorder=7,
@@ -105,7 +111,7 @@ def _draw_arrow(axes, pose, colour, length=0.28):
     )  # fmt: skip
 
 
-def _room_limits(axes, plan):
+def _room_limits(axes: Axes, plan: dict[str, Any]) -> None:
     points = [np.asarray(plan["scenario"][key][:2], float) for key in ("start", "goal")]
     for obstacle in plan["scenario"]["obstacles"]:
         for outline in footprint(obstacle["shapes"], obstacle["pose"]):
@@ -115,7 +121,6 @@ def _room_limits(axes, plan):
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
     axes.set_aspect("equal")
-    return high - low
 
 
 def write_topview(plan: dict[str, Any], path: Path) -> Path:
@@ -127,7 +132,7 @@ def write_topview(plan: dict[str, Any], path: Path) -> Path:
     axes = figure.add_subplot()
     axes.set_facecolor(FLOOR)
     names = [tray["name"] for tray in plan["scenario"]["trays"]]
-    legend = []
+    legend: list[Artist] = []
     for region in plan["regions"]:
         index = names.index(region["tray"])
         _draw_mask(axes, plan, region_mask(plan, region), tray_colour(index), 0.32)

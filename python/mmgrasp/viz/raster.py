@@ -67,10 +67,19 @@ def render(scene: Scene, camera: Camera, background: str = "#FFFFFF", supersampl
             _draw_body(big, vertices, faces, np.array(colour), body, image, nearness, body_of)
     _draw_outlines(image, nearness, body_of)
     small = image.reshape(camera.height, supersample, camera.width, supersample, 3).mean(axis=(1, 3))
-    return (np.clip(small, 0, 1) * 255 + 0.5).astype(np.uint8)
+    return np.asarray((np.clip(small, 0, 1) * 255 + 0.5).astype(np.uint8))
 
 
-def _draw_body(camera, vertices, faces, colour, body, image, nearness, body_of):
+def _draw_body(
+    camera: Camera,
+    vertices: np.ndarray,
+    faces: np.ndarray,
+    colour: np.ndarray,
+    body: int,
+    image: np.ndarray,
+    nearness: np.ndarray,
+    body_of: np.ndarray,
+) -> None:
     corners = vertices[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1)
@@ -97,7 +106,16 @@ def _draw_body(camera, vertices, faces, colour, body, image, nearness, body_of):
         _draw_triangle(screen[t], low[t], high[t], np.minimum(colour * shade[t], 1.0), body, image, nearness, body_of)
 
 
-def _draw_triangle(corners, low, high, colour, body, image, nearness, body_of):
+def _draw_triangle(
+    corners: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
+    colour: np.ndarray,
+    body: int,
+    image: np.ndarray,
+    nearness: np.ndarray,
+    body_of: np.ndarray,
+) -> None:
     height, width = nearness.shape
     x0, y0 = max(low[0], 0), max(low[1], 0)
     x1, y1 = min(high[0] + 1, width), min(high[1] + 1, height)
@@ -118,7 +136,7 @@ def _draw_triangle(corners, low, high, colour, body, image, nearness, body_of):
     body_of[window][closer] = body
 
 
-def _draw_outlines(image, nearness, body_of):
+def _draw_outlines(image: np.ndarray, nearness: np.ndarray, body_of: np.ndarray) -> None:
     """Darkens pixels where the body or, within one, the depth changes abruptly."""
     edge = np.zeros(nearness.shape, dtype=bool)
     finite = 1 / np.maximum(nearness, 1e-3)

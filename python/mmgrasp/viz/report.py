@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Collection
 from html import escape
 from pathlib import Path
 from typing import Any
 
 from .._files import write_file
+from ..part_supply.premises import premises, premises_text
 from .style import tray_colour
 from .timeline import Timeline
 from .topview import TOPVIEW_CSS, TopView
@@ -99,7 +101,7 @@ def headline(plan: dict[str, Any]) -> str:
     return f"{plural(len(plan['stops']), 'stop')} {serve} {trays}: {plural(len(plan['picks']), 'part')} in {duration}"
 
 
-def table(head: list[str], rows: list[list[str]], numeric: set[int] = frozenset()) -> str:  # type: ignore[assignment]
+def table(head: list[str], rows: list[list[str]], numeric: Collection[int] = ()) -> str:
     """An HTML table; cells are HTML already."""
 
     def row(cells: list[str], tag: str) -> str:
@@ -110,12 +112,12 @@ def table(head: list[str], rows: list[list[str]], numeric: set[int] = frozenset(
     return f'<div class="scroll"><table><thead>{row(head, "th")}</thead><tbody>{body}</tbody></table></div>'
 
 
-def _tray(plan, name: str) -> str:
+def _tray(plan: dict[str, Any], name: str) -> str:
     names = [tray["name"] for tray in plan["scenario"]["trays"]]
     return f'<span class="dot" style="background:{tray_colour(names.index(name))}"></span>{escape(name)}'
 
 
-def _headline(plan) -> str:
+def _headline(plan: dict[str, Any]) -> str:
     scenario = plan["scenario"]
     driven = sum(leg["length"] for leg in plan["route"])
     cards = []
@@ -127,17 +129,23 @@ def _headline(plan) -> str:
             (str(len(plan["picks"])), "parts picked"),
             (f"{driven:.1f} m", f"driven in {clock(drive)}"),
             (f"{radius:.2f} m", f"smallest disc; {scenario['positioning_uncertainty']:.2f} m asked for"),
-            (f"{100 * plan['robustness_rate']:.1f} %", "of sampled base poses reach every part"),
+            (
+                f"{100 * plan['robustness_rate']:.1f} %",
+                "of the base poses sampled at a stop, at least, reach every part",
+            ),
         ]
     tiles = "".join(f'<div class="card"><b>{escape(a)}</b><span>{escape(b)}</span></div>' for a, b in cards)
     source = escape(scenario.get("name", ""))
+    proof = ""
+    if plan["outcome"] == "solved" and plan["proven_minimal"]:
+        proof = f"<p class='lead'>The number of stops is proven {escape(premises_text(premises(plan)))}.</p>"
     return (
         f"<h1>{escape(headline(plan))}</h1><p class='lead'>Scenario {source}, planned by mmgrasp "
-        f"{escape(plan['mmgrasp'])}</p><div class='cards'>{tiles}</div>"
+        f"{escape(plan['mmgrasp'])}</p><div class='cards'>{tiles}</div>{proof}"
     )
 
 
-def _obstructions(plan) -> str:
+def _obstructions(plan: dict[str, Any]) -> str:
     items = []
     for item in plan["obstructions"]:
         where = f"Tray {item['tray']}" if item["tray"] else "The round"
@@ -152,7 +160,7 @@ def _obstructions(plan) -> str:
     return "<h2>What stands in the way</h2>" + "".join(items) if items else ""
 
 
-def _top_view(plan) -> str:
+def _top_view(plan: dict[str, Any]) -> str:
     note = (
         "Coloured cells: the base can stand anywhere in them and reach every part of that tray. Outlined: cells that the trays of a stop share. Red disc: room around the "
         "stop; dotted: the positioning uncertainty. Rest the pointer on anything for its name."
@@ -160,7 +168,7 @@ def _top_view(plan) -> str:
     return f"<h2>From above</h2>{TopView(plan).svg()}<p class='lead'>{note}</p>"
 
 
-def _stops(plan) -> str:
+def _stops(plan: dict[str, Any]) -> str:
     rows = []
     for number, stop in enumerate(plan["stops"], start=1):
         picks = [p for p in plan["picks"] if p["stop"] == number - 1]
@@ -182,21 +190,27 @@ def _stops(plan) -> str:
     return "<h2>Stops</h2>" + table(head, rows, {3, 4, 5, 6, 7})
 
 
-def _picks(plan) -> str:
+def _picks(plan: dict[str, Any]) -> str:
     kinds = ["transit", "approach", "lift", "transfer", "retreat"]
+    parts = {part["name"]: part for part in plan["scenario"]["parts"]}
+    scanned = "scans" in plan["scenario"]
     rows = []
     for number, pick in enumerate(plan["picks"], start=1):
         times = {m["kind"]: m["times"][-1] for m in pick["motions"]}
+        sure = parts[pick["part"]]["grasps"][pick["grasp"]].get("probability")
         rows.append(
             [str(number), str(pick["stop"] + 1), _tray(plan, pick["tray"]), escape(pick["part"]), str(pick["grasp"])]
+            + ([] if not scanned else ["" if sure is None else f"{sure:.2f}"])
             + [f"{times.get(kind, 0):.2f}" for kind in kinds]
             + [f"{sum(times.values()):.2f}"]
         )
     head = ["pick", "stop", "tray", "part", "grasp", *(f"{k} [s]" for k in kinds), "all [s]"]
-    return "<h2>Picks</h2>" + table(head, rows, {0, 1, 4, 5, 6, 7, 8, 9, 10})
+    if scanned:
+        head.insert(5, "probability")
+    return "<h2>Picks</h2>" + table(head, rows, {0, 1, *range(4, len(head))})
 
 
-def _in_passing(plan) -> str:
+def _in_passing(plan: dict[str, Any]) -> str:
     if "drive_by" not in plan:
         return ""
     speed = plan["scenario"]["gripper"]["closing_speed"]
@@ -216,7 +230,7 @@ def _in_passing(plan) -> str:
     return f"<h2>Parts taken in passing</h2><p class='lead'>{note}</p>" + body
 
 
-def _alternatives(plan) -> str:
+def _alternatives(plan: dict[str, Any]) -> str:
     chosen = {stop["intersection"] for stop in plan["stops"]}
     used = [set(stop["trays"]) for stop in plan["stops"]]
     rows = []
@@ -247,7 +261,7 @@ def _alternatives(plan) -> str:
     )
 
 
-def _candidates(plan) -> str:
+def _candidates(plan: dict[str, Any]) -> str:
     blocks = []
     for region in plan["regions"]:
         cells = sum(end - start for runs in region["cells"].values() for _, start, end in runs)
@@ -267,7 +281,7 @@ def _candidates(plan) -> str:
     return f"<h2>Candidates, tray by tray</h2><p class='lead'>{note}</p>" + "".join(blocks)
 
 
-def _pictures(plan, pictures_dir: Path | None) -> str:
+def _pictures(plan: dict[str, Any], pictures_dir: Path | None) -> str:
     if pictures_dir is None:
         return ""
     figures = []
@@ -283,7 +297,7 @@ def _pictures(plan, pictures_dir: Path | None) -> str:
     return "<h2>Pictures</h2><div class='pictures'>" + "".join(figures) + "</div>" if figures else ""
 
 
-def _timings(plan) -> str:
+def _timings(plan: dict[str, Any]) -> str:
     longest = max((t["seconds"] for t in plan["timings"]), default=0) or 1
     rows = [
         [
@@ -296,7 +310,7 @@ def _timings(plan) -> str:
     return "<h2>Time spent planning</h2>" + table(["stage", "seconds", ""], rows, {1}) if rows else ""
 
 
-def _facts(plan) -> str:
+def _facts(plan: dict[str, Any]) -> str:
     scenario = plan["scenario"]
     gripper = scenario["gripper"]
     rows = [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from ..scan.ply import sigma_range
 from .pictures import _pyplot, _save
 from .scan_views import Seen, View, look, three_views
 from .style import STOP, TRAY_COLOURS
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 SURFACE = np.array([0.93, 0.90, 0.85])
 CAUSES = (
@@ -64,15 +68,16 @@ def write_surface(views: list[View], seen: list[Seen], sigmas: np.ndarray, path:
     low, high = (1e3 * x for x in sigma_range(sigmas))
     figure = _pyplot()(14.4, 7.1)
     axes = figure.subplots(2, 3)
-    shown = None
     for k, (view, picture) in enumerate(zip(views, seen, strict=True)):
         axes[0, k].imshow(_shaded(view, picture), extent=view.extent, interpolation="antialiased")
         axes[0, k].set_title(view.title, fontsize=12)
         coloured = np.ma.masked_where(~picture.hit, 1e3 * picture.sigma)
-        shown = axes[1, k].imshow(coloured, extent=view.extent, cmap="viridis", vmin=low, vmax=high)
+        axes[1, k].imshow(coloured, extent=view.extent, cmap="viridis", vmin=low, vmax=high)
         for row in (0, 1):
             _frame(axes[row, k], view)
-    figure.colorbar(shown, ax=axes[1, :], label="sigma of the surface [mm]", fraction=0.025, pad=0.01, extend="both")
+    figure.colorbar(
+        axes[1, 0].images[0], ax=axes[1, :], label="sigma of the surface [mm]", fraction=0.025, pad=0.01, extend="both"
+    )
     return _save(figure, path)
 
 
@@ -84,7 +89,7 @@ def _shaded(view: View, picture: Seen) -> np.ndarray:
     return image
 
 
-def _frame(axes, view: View) -> None:
+def _frame(axes: Axes, view: View) -> None:
     """No axes, but a bar of a round length."""
     axes.set_xticks([])
     axes.set_yticks([])
@@ -152,7 +157,7 @@ def write_contributions(scan: Scan, path: Path) -> Path:
     return _save(figure, path)
 
 
-def _draw_agreements(axes, scan: Scan, names: list[str]) -> None:
+def _draw_agreements(axes: Axes, scan: Scan, names: list[str]) -> None:
     from matplotlib.ticker import MaxNLocator
 
     for row, name in enumerate(names):
@@ -172,7 +177,7 @@ def _draw_agreements(axes, scan: Scan, names: list[str]) -> None:
         axes.legend(loc="lower left", fontsize=9)
 
 
-def _bar(axes, row: int, own: list[FrameRecord]) -> None:
+def _bar(axes: Axes, row: int, own: list[FrameRecord]) -> None:
     measured = sum(record.measured for record in own)
     left = 0.0
     for field, _, colour in CAUSES:

@@ -28,7 +28,7 @@ class View:
 
     def project(self, points: np.ndarray) -> np.ndarray:
         """World points (n, 3) to metres right of and below the middle, (n, 2)."""
-        return (points - self.centre) @ np.stack([self.right, self.down], axis=1)
+        return np.asarray((points - self.centre) @ np.stack([self.right, self.down], axis=1))
 
     @property
     def pixel(self) -> float:
@@ -57,7 +57,7 @@ class Seen:
         for axis in (0, 1):
             for shift in (1, -1):
                 out |= np.roll(far, shift, axis) > far + jump
-        return out & self.hit
+        return np.asarray(out & self.hit)
 
 
 def three_views(

@@ -59,7 +59,7 @@ class PlanScene:
     def part_pose(self, name: str, state: State, links: dict[str, np.ndarray]) -> np.ndarray | None:
         """T_world_part, or None when the part lies in the bin."""
         if state.held and state.held[0] == name:
-            return links[self.plan["scenario"]["gripper"]["tcp_link"]] @ state.held[1]
+            return np.asarray(links[self.plan["scenario"]["gripper"]["tcp_link"]] @ state.held[1])
         return None if name in state.gone else self.bodies.parts[name].pose
 
     def at(self, state: State, floor: bool = True) -> Scene:

@@ -67,16 +67,26 @@ class Timeline:
         self.segments.append(segment)
         return segment.start + segment.duration
 
-    def _add_pick(self, pick, base, parts, gone, clock, passing=None):
+    def _add_pick(
+        self,
+        pick: dict[str, Any],
+        base: np.ndarray,
+        parts: dict[str, Any],
+        gone: frozenset[str],
+        clock: float,
+        passing: dict[str, Any] | None,
+    ) -> float:
         name = pick["part"]
         grasp = parts[name]["grasps"][pick["grasp"]]
         in_hand = (name, np.linalg.inv(stored_pose(grasp["pose"])))
         motions = pick["motions"]
         if passing is not None:
-            held, end = float(passing["closed_at"]), float(passing["times"][-1])
-            coming = Segment(f"drive by {name}", clock, held, "drive-by", (passing, grasp["width"]), None, gone)
-            leaving = Segment(f"drive on with {name}", clock + held, end - held, "drive-by", coming.data, in_hand, gone)
-            leaving.after = held
+            closed, end = float(passing["closed_at"]), float(passing["times"][-1])
+            coming = Segment(f"drive by {name}", clock, closed, "drive-by", (passing, grasp["width"]), None, gone)
+            leaving = Segment(
+                f"drive on with {name}", clock + closed, end - closed, "drive-by", coming.data, in_hand, gone
+            )
+            leaving.after = closed
             clock = self._add(coming)
             clock = self._add(leaving)
             motions = [m for m in motions if m["kind"] in ("transfer", "retreat")]
@@ -140,13 +150,13 @@ class Timeline:
 def along_route(poses: np.ndarray, share: float) -> np.ndarray:
     """Base pose after this share of a leg, metres and radians of turning counted alike."""
     if len(poses) == 1:
-        return poses[0]
+        return np.asarray(poses[0])
     steps = np.diff(poses, axis=0)
     weights = np.hypot(steps[:, 0], steps[:, 1]) + np.abs(steps[:, 2])
     reached = np.concatenate([[0.0], np.cumsum(weights)])
     if reached[-1] <= 0:
-        return poses[-1]
+        return np.asarray(poses[-1])
     where = share * reached[-1]
     index = min(int(np.searchsorted(reached, where, side="right")) - 1, len(steps) - 1)
     local = (where - reached[index]) / weights[index] if weights[index] > 0 else 1.0
-    return poses[index] + min(max(local, 0.0), 1.0) * steps[index]
+    return np.asarray(poses[index] + min(max(local, 0.0), 1.0) * steps[index])

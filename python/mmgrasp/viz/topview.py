@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from html import escape
 from typing import Any
 
@@ -41,9 +42,9 @@ def footprint(shapes: list[dict[str, Any]], pose: dict[str, Any]) -> list[np.nda
 
 def convex_outline(points: np.ndarray) -> np.ndarray:
     """Convex hull of points (n, 2), counter-clockwise (monotone chain)."""
-    ordered = sorted(map(tuple, np.round(points, 9)))
+    ordered = sorted((float(x), float(y)) for x, y in np.round(points, 9))
 
-    def chain(sequence):
+    def chain(sequence: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
         hull: list[tuple[float, float]] = []
         for p in sequence:
             while len(hull) > 1 and _turn(hull[-2], hull[-1], p) <= 0:
@@ -55,7 +56,7 @@ def convex_outline(points: np.ndarray) -> np.ndarray:
     return np.array(outline or ordered[:1])
 
 
-def _turn(o, a, b) -> float:
+def _turn(o: tuple[float, float], a: tuple[float, float], b: tuple[float, float]) -> float:
     return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
 
 
@@ -71,7 +72,7 @@ def shared_cells(plan: dict[str, Any], intersection: dict[str, Any]) -> np.ndarr
     """Cells (ny, nx) that all regions of an intersection share."""
     regions = {region["tray"]: region for region in plan["regions"]}
     masks = [layer_mask(plan, regions[tray], intersection["heading"]) for tray in intersection["trays"]]
-    return np.logical_and.reduce(masks)
+    return np.asarray(np.logical_and.reduce(masks))
 
 
 def outline_edges(mask: np.ndarray) -> list[tuple[int, int, int, int]]:
@@ -115,7 +116,7 @@ class TopView:
         stacked = np.array(points)
         return stacked.min(axis=0) - 0.25, stacked.max(axis=0) + 0.25
 
-    def point(self, xy) -> tuple[float, float]:
+    def point(self, xy: Sequence[float] | np.ndarray) -> tuple[float, float]:
         """World [m] to picture [px]."""
         return (float(xy[0]) - self.low[0]) * SCALE, (self.high[1] - float(xy[1])) * SCALE
 
@@ -212,7 +213,7 @@ class TopView:
                 f'<text x="{x:.1f}" y="{y + 5:.1f}" class="stopnumber">{number}</text></g>'
             )
 
-    def _arrow(self, pose, colour: str, length: float) -> str:
+    def _arrow(self, pose: Sequence[float], colour: str, length: float) -> str:
         x, y = self.point(pose)
         theta = float(pose[2])
         tip = self.point((pose[0] + length * np.cos(theta), pose[1] + length * np.sin(theta)))

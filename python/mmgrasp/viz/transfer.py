@@ -56,7 +56,7 @@ def write_transfer(
 ) -> Path:
     """Renders transfer_scene from in front of the arm, a little above it."""
     start, goal = cell.T_world_start[:3, 3], cell.T_world_goal[:3, 3]
-    towards = (start + goal)[:2] / max(np.linalg.norm((start + goal)[:2]), 1e-6)
+    towards = (start + goal)[:2] / max(float(np.linalg.norm((start + goal)[:2])), 1e-6)
     camera = Camera(
         np.array([*(2.7 * towards), 2.0]), np.array([*(0.2 * towards), 0.22]), width=width, height=height, fov=36.0
     )

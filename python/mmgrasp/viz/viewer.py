@@ -40,7 +40,7 @@ class PlanViewer:
         self._add_controls()
         self.show(0.0)
 
-    def _mesh(self, name, V, F, colour, T=None):
+    def _mesh(self, name: str, V: np.ndarray, F: np.ndarray, colour: str, T: np.ndarray | None = None) -> Any:
         T = np.eye(4) if T is None else T
         return self.server.scene.add_mesh_simple(
             name, V, F, color=rgb(colour), flat_shading=True, position=T[:3, 3], wxyz=_wxyz(T)
@@ -63,7 +63,8 @@ class PlanViewer:
         h = grid["resolution"]
         names = [tray["name"] for tray in self.plan["scenario"]["trays"]]
         for region in self.plan["regions"]:
-            corners, faces = [], []
+            corners: list[tuple[float, float, float]] = []
+            faces: list[tuple[int, int, int]] = []
             height = 0.003 + 0.002 * names.index(region["tray"])
             for runs in region["cells"].values():
                 for iy, start, end in runs:
@@ -102,14 +103,12 @@ class PlanViewer:
         self.label = gui.add_text("now", initial_value="", disabled=True)
         self.playing = False
 
-        @self.play.on_click
-        def _(_event) -> None:
+        def turn(_event: Any) -> None:
             self.playing = not self.playing
             self.play.name = "Pause" if self.playing else "Play"
 
-        @self.slider.on_update
-        def _(_event) -> None:
-            self.show(float(self.slider.value))
+        self.play.on_click(turn)
+        self.slider.on_update(lambda _event: self.show(float(self.slider.value)))
 
     def show(self, when: float) -> None:
         """Moves everything to where it is at this time [s]."""

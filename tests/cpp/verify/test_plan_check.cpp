@@ -242,6 +242,19 @@ TEST(PlanCheck, WidthsAreThoseOfTheParts) {
   }
 }
 
+TEST(PlanCheck, ListedGraspsHoldSomething) {
+  // Pads 2 cm deep around the tcp: 2.9 cm above the middle of a cube of 4 cm they still meet it, 3.1 cm above not.
+  for (const double above : {0.029, 0.031}) {
+    PlanToCheck plan = good_plan();
+    plan.closing = Eigen::Vector3d::UnitX();
+    plan.finger_depth = plan.finger_width = 0.02;
+    plan.parts[0].grasps[1].T_object_tcp = at(0, 0, above);  // no pick uses it
+    EXPECT_EQ(codes_of(plan), above > 0.03 ? Codes{"grasp-empty"} : Codes{}) << above;
+    plan.parts[2].grasps[1].T_object_tcp = at(0, 0, 1);  // this part is to stay
+    EXPECT_EQ(codes_of(plan), above > 0.03 ? Codes{"grasp-empty"} : Codes{}) << above;
+  }
+}
+
 TEST(PlanCheck, BodiesThatOverlap) {
   const std::vector<CheckedBody> bodies = {box("a", {1, 1, 1}, at(0, 0, 0)), box("b", {1, 1, 1}, at(1, 0, 0)),
                                            box("c", {1, 1, 1}, at(0.5, 0.2, 0))};

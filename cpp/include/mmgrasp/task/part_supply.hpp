@@ -56,7 +56,8 @@ struct MMGRASP_EXPORT PartSupplyPlan {
   bool proven_minimal = false;
   std::vector<BasePath> route;  ///< stops.size() + 1 legs, from start to goal.
   std::vector<Pick> picks;      ///< Picks in the order in which they are carried out.
-  double robustness_rate = 0;   ///< Share of sampled base poses at the stops from which all parts stay graspable.
+  /// Share of the base poses drawn at a stop from which all its parts stay graspable: the least of all stops.
+  double robustness_rate = 0;
   std::vector<Obstruction> obstructions;  ///< Empty if and only if solved.
   std::vector<StageTime> timings;
 };

@@ -182,8 +182,9 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 ///   `velocity-limit`, `acceleration-limit`, `discontinuous`, `not-at-rest`, `opening`, `holding`, `self-collision`,
 ///   `scene-collision`, `held-collision`;
 /// - what it is for: `not-straight` (approach, lift), `short-approach`, `grasp-missed`, `grasp-empty` (fewer than two
-///   fingers close on it), `grasp-width` (pads at this width would stand in the part, or clear of it), `no-lift` (or
-///   one that is too low), `release-outside`, `release-tilted`, `release-height`;
+///   fingers close on it, or a listed grasp has nothing between the pads), `grasp-width` (pads at this width would
+///   stand in the part, or clear of it), `no-lift` (or one that is too low), `release-outside`, `release-tilted`,
+///   `release-height`;
 /// - a motion in passing, besides those of arm motions: `drive-by-pick` (not the first of its stop, twice, unknown),
 ///   `closing-time` (outside the motion, or faster than the fingers), `base-limit` (velocity or acceleration of base or
 ///   wheels), `base-off-course` (where its velocities do not lead);
@@ -213,7 +214,9 @@ struct MMGRASP_EXPORT StopRate {
 struct MMGRASP_EXPORT PlanCheckResult {
   std::vector<Fault> faults;  ///< Empty: the plan holds.
   std::vector<StopRate> rates;
-  int minimal_stops = 0;  ///< Found again from the regions.
+  int minimal_stops = 0;    ///< So many stops are enough for the plan's regions: found again.
+  int lower_bound = 0;      ///< Fewer are not: proven again. Below `minimal_stops`: the least number is not decided.
+  bool search_cut = false;  ///< The search for shared regions ended at its limit, which `lower_bound` allows for.
   std::size_t configurations_checked = 0;
 };
 
@@ -224,10 +227,10 @@ struct MMGRASP_EXPORT PlanCheckResult {
 ///
 /// Between samples a motion is the cubic through positions and velocities. Limits on positions hold on all of it (slack
 /// 1e-6), on velocities at the samples (1 %) and between them (5 %), and some motion within 1 % of the acceleration
-/// limits must join each two samples. Discs are known to 2e-6 m: a stop may use one that fits within this, a smaller
-/// cover may not rest on one. Motions join in the numbers as they stand, within a pick and from pick to pick; only home
-/// may be reached whole turns away. Pairs of links that the robot's own description disables are not tested, except
-/// those said to touch never.
+/// limits must join each two samples. A disc lies in a region when nothing outside comes nearer to its middle than its
+/// radius less 1e-9 m, as for the planners: discs that fit exactly count. Motions join in the numbers as they stand,
+/// within a pick and from pick to pick; only home may be reached whole turns away. Pairs of links that the robot's own
+/// description disables are not tested, except those said to touch never.
 MMGRASP_EXPORT PlanCheckResult check_plan(const PlanToCheck& plan, const PlanCheckOptions& options = {},
                                           const Monitor& monitor = {});
 

@@ -32,13 +32,15 @@ std::string six_digits(double value) {
   return out.str();
 }
 
-Obstruction explain_robustness(const RobustnessResult& check) {
+Obstruction explain_robustness(const RobustnessResult& check, const std::vector<Stop>& stops) {
   Obstruction obstruction;
   obstruction.stage = "robustness";
-  obstruction.part = check.worst_part;
+  const std::size_t worst = check.worst_stop();
+  obstruction.part = check.worst_part[worst];
   std::ostringstream message;
-  message << "only " << check.good << " of " << check.samples
-          << " base poses drawn in the uncertainty discs reach every part (worst: '" << check.worst_part
+  message << "only " << check.stops[worst].good << " of " << check.stops[worst].samples
+          << " base poses drawn in the uncertainty disc of the stop at " << pose_text(stops[worst].pose)
+          << " reach every part (worst: '" << obstruction.part
           << "'): use a finer grid.resolution or a smaller positioning_uncertainty";
   obstruction.message = message.str();
   return obstruction;

@@ -14,8 +14,8 @@ Obstruction explain_region(const PartSupplyProblem& problem, const ReachDatabase
                            BasePoseEvaluator& evaluator, const BaseGrid& grid, TrayId tray, const BaseRegion& region,
                            const std::vector<Obstruction>& earlier = {});
 
-/// Explains that too few of the base poses drawn at the stops serve all parts.
-Obstruction explain_robustness(const RobustnessResult& check);
+/// Explains that too few of the base poses drawn at one of these stops serve all its parts.
+Obstruction explain_robustness(const RobustnessResult& check, const std::vector<Stop>& stops);
 
 /// Explains that no drive leads to a base pose; `tray` is the one to be served there, empty for the goal.
 Obstruction explain_route(const Eigen::Vector3d& pose, const std::string& tray);

@@ -21,7 +21,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr int kRobustnessRounds = 5;
-constexpr double kRequiredRate = 0.999;   // Share of sampled base poses that must work in the end.
+constexpr double kRequiredRate = 0.999;   // Share of the base poses drawn at each stop that must work in the end.
 constexpr std::size_t kAlternatives = 4;  // Base poses tried where no motion was found at a stop.
 constexpr std::size_t kNamedContacts = 3;
 
@@ -112,7 +112,7 @@ class PartSupply {
       if (check.stopped) return false;
       plan_.robustness_rate = check.rate();
       if (check.cells_removed == 0 || round + 1 == kRobustnessRounds) {
-        return check.rate() >= kRequiredRate || obstructed(explain_robustness(check));
+        return check.rate() >= kRequiredRate || obstructed(explain_robustness(check, plan_.stops));
       }
     }
   }

@@ -95,12 +95,16 @@ RobustnessResult check_robustness(const PartSupplyProblem& problem, const BasePo
       },
       monitor, "robustness");
   result.stopped = !done || monitor.stopped();
-  std::map<std::string, std::size_t> missed;
-  for (const Block& block : blocks) {
-    result.samples += block.samples;
-    result.good += block.good;
-    for (const Miss& miss : block.misses) {
-      if (++missed[miss.part] > missed[result.worst_part]) result.worst_part = miss.part;
+  result.stops.resize(stops.size());
+  result.worst_part.resize(stops.size());
+  std::vector<std::map<std::string, std::size_t>> missed(stops.size());
+  for (std::size_t item = 0; item < blocks.size(); ++item) {
+    const std::size_t stop = item / per_stop;
+    result.stops[stop].samples += blocks[item].samples;
+    result.stops[stop].good += blocks[item].good;
+    std::string& worst = result.worst_part[stop];
+    for (const Miss& miss : blocks[item].misses) {
+      if (++missed[stop][miss.part] > missed[stop][worst]) worst = miss.part;
       result.cells_removed += remove_cell(grid, miss.pose, regions[miss.tray]);
     }
   }

@@ -1,0 +1,38 @@
+"""What a proven least number of stops rests on: it is the least for these headings, cells, grasps and this search of the arm."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+
+def premises(plan: dict[str, Any]) -> dict[str, Any]:
+    """The section `premises` of a plan.json, from its sections `scenario`, `grid` and `proven_minimal`."""
+    scenario = plan["scenario"]
+    options, reach = scenario["options"], scenario["reach"]
+    return {
+        "headings": {tray["name"]: tray["headings"] for tray in scenario["trays"]},
+        "positioning_uncertainty": scenario["positioning_uncertainty"],
+        "cell": plan["grid"]["resolution"],
+        "max_distance": options.get("grid_max_distance", 0.0),
+        "grasps": sum(len(part["grasps"]) for part in scenario["parts"]),
+        "ik_seeds": options.get("ik_seeds", 0),
+        "database": dict(reach),
+        "search_finished": plan["proven_minimal"],
+    }
+
+
+def premises_text(said: dict[str, Any]) -> str:
+    """The premises as the end of a sentence, e.g. "for base headings of 0° and 90° (each tray at its own), ..."."""
+    by_tray = [sorted({round(math.degrees(h)) % 360 for h in headings}) for headings in said["headings"].values()]
+    angles = sorted({angle for headings in by_tray for angle in headings})
+    own = " (each tray at its own)" if any(headings != angles for headings in by_tray) else ""
+    known = [
+        f"base headings of {' and '.join(f'{angle}°' for angle in angles)}{own}",
+        f"base cells of {100 * said['cell']:g} cm",
+        f"discs of {said['positioning_uncertainty']:g} m",
+        f"{said['grasps']} grasps",
+    ]
+    if "samples" in said["database"]:
+        known.append(f"arm postures sought from a database of {said['database']['samples']:,} draws")
+    return "for " + ", ".join(known)

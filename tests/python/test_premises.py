@@ -1,0 +1,51 @@
+"""The least number of stops: what it is proven for, what the check proves again, and that it says what it cannot decide."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+from rich.console import Console
+
+import mmgrasp as mg
+from mmgrasp.cli.tables import print_verdict
+from mmgrasp.part_supply import PlanVerdict
+from mmgrasp.part_supply.premises import premises_text
+
+
+def test_both_sides_prove_the_least_number(small_plan_dict: dict[str, Any]) -> None:
+    verdict = mg.verify_plan(small_plan_dict)
+    assert verdict.lower_bound == verdict.minimal_stops == small_plan_dict["lower_bound"]
+    assert not verdict.search_cut
+    assert {"lower_bound", "search_cut"} <= verdict.to_dict().keys()
+
+
+def test_undecided_is_said() -> None:
+    verdict = PlanVerdict([], minimal_stops=7, lower_bound=5, search_cut=True)
+    console = Console(record=True, width=200)
+    print_verdict(verdict, console)
+    text = console.export_text()
+    assert "whether 7 stops are the least was not decided (at least 5), since the search" in text
+
+
+def test_premises_of_the_proof(small_plan: mg.part_supply.ScenarioPlan, small_plan_dict: dict[str, Any]) -> None:
+    said = small_plan_dict["premises"]
+    assert said == small_plan.premises
+    grasps = [len(part["grasps"]) for part in small_plan_dict["scenario"]["parts"]]
+    assert said["grasps"] == sum(grasps) > 0
+    assert said["headings"] == {"A": [0.0]}
+    assert (said["cell"], said["positioning_uncertainty"], said["search_finished"]) == (0.05, 0.1, True)
+    assert said["database"]["samples"] == 500_000
+    text = premises_text(said)
+    for piece in (
+        "base headings of 0°",
+        "base cells of 5 cm",
+        "discs of 0.1 m",
+        f"{sum(grasps)} grasps",
+        "500,000 draws",
+    ):
+        assert piece in text
+    plan = copy.deepcopy(small_plan_dict)
+    plan["premises"]["headings"]["A"] = [0.0, 1.5]
+    faults = mg.verify_plan(plan).faults
+    assert [(f.code, f.where) for f in faults] == [("bad-figures", "premises.headings")]

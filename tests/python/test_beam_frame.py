@@ -101,7 +101,7 @@ def test_weights_of_the_shared_comparisons(data: Path) -> None:
 
 
 def test_weights_of_p2() -> None:
-    found = pairwise_weights([[1, 6, 2], [1 / 6, 1, 1 / 4], [1 / 2, 4, 1]])
+    found = pairwise_weights([[1.0, 6.0, 2.0], [1 / 6, 1.0, 1 / 4], [1 / 2, 4.0, 1.0]])
     assert found.weights == pytest.approx([0.587, 0.089, 0.324], abs=5e-4)
     assert found.consistency_ratio == pytest.approx(0.0079, abs=5e-5)
     with pytest.raises(mg.InvalidInput, match="reciprocal"):
@@ -183,8 +183,9 @@ def test_what_falls_says_where() -> None:
     assert "out of reach" in repr(result)
     with pytest.raises(mg.InvalidInput, match="T_world_object"):
         ObjectPathProblem(arm, mg.World(), pipe.shapes(), T[:1])
+    wrong: dict[str, Any] = {"motion_wieght": 1.0}
     with pytest.raises(mg.InvalidInput, match="motion_wieght"):
-        ObjectPathEvaluator(far, motion_wieght=1.0)
+        ObjectPathEvaluator(far, **wrong)
 
 
 def test_the_best_grasp_is_the_cheapest_and_comes_again() -> None:
@@ -231,13 +232,14 @@ def test_best_grasps_are_candidates_of_a_planner() -> None:
 def test_searches_refuse_what_they_do_not_know() -> None:
     problem = arc(3)
     pipe, _ = pipe1()
+    wrong: dict[str, Any] = {"max_evaluation": 5}
     assert population_search_names() == ["bees", "ga", "pso"]
     with pytest.raises(mg.InvalidInput, match="algorithm = ants: must be one of bees, ga, pso"):
         optimize_grasp(problem, pipe, algorithm="ants")
     with pytest.raises(mg.InvalidInput, match="same_section"):
         optimize_grasp(problem, pipe, neighbourhood_kind="same")
     with pytest.raises(mg.InvalidInput, match="did you mean"):
-        optimize_grasp(problem, pipe, max_evaluation=5)
+        optimize_grasp(problem, pipe, **wrong)
     with pytest.raises(mg.InvalidInput, match="recruits of all sites"):
         optimize_grasp(problem, pipe, elite_recruits=100)
     thick = Pipe(pipe.nodes, pipe.sections, 0.2)

@@ -21,7 +21,7 @@ world = mg.World()
 world.add_box("table", [2.6, 2.6, 0.05], mg.pose([0, 0, -0.03]))
 
 # joint motion against sag against force, one over the other in the opposite corner
-preferences = pairwise_weights([[1, 6, 2], [1 / 6, 1, 1 / 4], [1 / 2, 4, 1]])
+preferences = pairwise_weights([[1.0, 6.0, 2.0], [1 / 6, 1.0, 1 / 4], [1 / 2, 4.0, 1.0]])
 motion, deflection, manipulability = preferences.weights
 print(f"weights {preferences.weights.round(3)}, consistency ratio {100 * preferences.consistency_ratio:.2f} %")
 
@@ -44,6 +44,7 @@ if best.grasp is not None:
     print(f"       joint motion {best.path.joint_motion:.2f} rad, sag up to {1000 * max(best.path.sag):.2f} mm")
     print(f"worst: joint motion {worst.joint_motion:.2f} rad, sag {1000 * worst.deflection / 29:.2f} mm on average")
     held = frame.deflection(best.grasp, path[-1])
-    print(f"at the end the pipe bears {held.stress.value / 1e6:.1f} MPa on section {held.stress.member}")
+    if held.stress is not None:
+        print(f"at the end the pipe bears {held.stress.value / 1e6:.1f} MPa on section {held.stress.member}")
     timed = mg.time_parameterize(best.path.path, arm.velocity_limits, arm.acceleration_limits)
     print(f"the motion takes {timed.duration:.2f} s; {len(best.front)} grasps are on the Pareto front")

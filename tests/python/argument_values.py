@@ -172,6 +172,12 @@ VALUES: dict[str, Any] = {
     "IkSeedDatabase.add.q": np.array([0.5, 0.25, 0.75, *Q]),
     "verify.CheckedStop.pose": X_Y_THETA,
     "verify.CheckedRegion.cells": np.ones(12, np.uint8),
+    "BeamMember.y_towards": np.array([0.0, 0, 1]),
+    "gravity": np.array([0.0, 0, -9.81]),
+    "force": np.array([0.0, 0, -1]),
+    "moment": np.array([0.0, 0.5, 0]),
+    "pairwise_weights.comparison": np.ones((3, 3)),
+    "ObjectPathProblem.T_world_object": np.array([POSE, POSE]),
 }
 
 
@@ -188,6 +194,14 @@ def wall_map() -> mg.ProbabilisticSdf:
     sdf = mg.ProbabilisticSdf()
     sdf.integrate(depth_frame(), depth_camera())
     return sdf
+
+
+def beam_member() -> mg.grasping.BeamMember:
+    return mg.grasping.BeamMember(0, 1, mg.grasping.round_section(0.01), mg.grasping.copper())
+
+
+def beam_frame() -> mg.grasping.BeamFrame:
+    return mg.grasping.BeamFrame([[0.0, 0, 0], [0.3, 0, 0]], [beam_member()])
 
 
 def seven_joint_hand() -> mg.Robot:
@@ -214,6 +228,8 @@ OBJECTS: dict[str, Any] = {
     "IkSeedDatabase": lambda: mg.base.IkSeedDatabase(WHOLE_BODY),
     "Roadmap": lambda: mg.planning.Roadmap.build(ARM, vertices=10),
     "JointTrajectory": lambda: mg.time_parameterize([Q, Q / 2], np.ones(3), np.ones(3), names=["i", "j", "k"]),
+    "BeamFrame": beam_frame,
+    "SupportedFrame": lambda: mg.grasping.SupportedFrame(beam_frame(), mg.grasping.BeamSupport(0, 0.0)),
     "PartSupplyProblem": lambda: mg.base.PartSupplyProblem(
         ROBOT, ARM, gripper(), world(), [TRAY], Q, X_Y_THETA, X_Y_THETA, PLACE_REGION
     ),
@@ -232,6 +248,15 @@ COMPANIONS: dict[str, dict[str, Any]] = {
     "JointTrajectory.accelerations": {"velocities": np.zeros((2, 3))},
 }
 OTHERS: dict[str, Any] = {
+    "ObjectPathProblem.object": lambda: [BOX],
+    "BeamMember.first": lambda: 0,
+    "BeamMember.second": lambda: 1,
+    "BeamMember.section": lambda: mg.grasping.round_section(0.01),
+    "BeamMember.material": mg.grasping.copper,
+    "NodeLoad.node": lambda: 0,
+    "BeamFrame.members": lambda: [beam_member()],
+    "BeamFrame.deflection.grasp": lambda: mg.grasping.BeamSupport(0, 0.0),
+    "member": lambda: 0,
     "robot": lambda: ROBOT,
     "urdf": lambda: URDF,
     "World.add_field.name": lambda: "field",

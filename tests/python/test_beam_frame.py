@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
+from conftest import ASSETS
 from mmgrasp.grasping import (
     BeamFrame,
     BeamMaterial,
@@ -25,6 +26,8 @@ from mmgrasp.grasping import (
     beam_frame,
     copper,
     follow_object_path,
+    optimize_grasp,
+    population_search_names,
     rectangular_section,
     round_section,
 )
@@ -98,7 +101,7 @@ def test_weights_of_the_shared_comparisons(data: Path) -> None:
 
 
 def test_weights_of_p2() -> None:
-    found = pairwise_weights([[1, 6, 2], [1 / 6, 1, 1 / 4], [1 / 2, 4, 1]])
+    found = pairwise_weights([[1.0, 6.0, 2.0], [1 / 6, 1.0, 1 / 4], [1 / 2, 4.0, 1.0]])
     assert found.weights == pytest.approx([0.587, 0.089, 0.324], abs=5e-4)
     assert found.consistency_ratio == pytest.approx(0.0079, abs=5e-5)
     with pytest.raises(mg.InvalidInput, match="reciprocal"):
@@ -180,5 +183,75 @@ def test_what_falls_says_where() -> None:
     assert "out of reach" in repr(result)
     with pytest.raises(mg.InvalidInput, match="T_world_object"):
         ObjectPathProblem(arm, mg.World(), pipe.shapes(), T[:1])
+    wrong: dict[str, Any] = {"motion_wieght": 1.0}
     with pytest.raises(mg.InvalidInput, match="motion_wieght"):
-        ObjectPathEvaluator(far, motion_wieght=1.0)
+        ObjectPathEvaluator(far, **wrong)
+
+
+def test_the_best_grasp_is_the_cheapest_and_comes_again() -> None:
+    problem = arc(8)
+    pipe, _ = pipe1()
+    best = optimize_grasp(problem, pipe, max_evaluations=300, seed=3)
+    assert best.outcome == mg.Outcome.approximate
+    assert best.evaluations == 300 == len(best.history)
+    assert best.history == sorted(best.history, reverse=True)
+    costs = [feasible.grasp.cost for feasible in best.feasible]
+    assert costs == sorted(costs) and costs[0] == pytest.approx(best.path.cost, rel=1e-9)
+    assert best.grasp is not None and best.grasp.cost == costs[0]
+    assert 0 in best.front
+    again = optimize_grasp(problem, pipe, max_evaluations=300, seed=3)
+    assert again.history == best.history
+    met = optimize_grasp(problem, pipe, max_evaluations=300, seed=3, target=costs[5])
+    assert met.outcome == mg.Outcome.solved and met.evaluations <= 300
+
+
+def test_sag_alone_asks_for_another_grasp() -> None:
+    problem = arc(8)
+    pipe, _ = pipe1()
+    still = optimize_grasp(problem, pipe, max_evaluations=500, deflection_weight=0.0)
+    stiff = optimize_grasp(problem, pipe, max_evaluations=500, motion_weight=0.0, manipulability_weight=0.0)
+    assert stiff.path.deflection < still.path.deflection
+    assert still.path.joint_motion < stiff.path.joint_motion
+
+
+def test_best_grasps_are_candidates_of_a_planner() -> None:
+    problem = arc(8)
+    pipe, _ = pipe1()
+    _, arm, gripper = pipe_robot("tm14like")
+    best = optimize_grasp(problem, pipe, max_evaluations=200)
+    T = problem.T_world_object
+    candidates = [feasible.grasp for feasible in best.feasible[:5]]
+    task = mg.ManipulationProblem(
+        arm, problem.world, pipe.shapes(), T[0], T[-1], candidates, gripper=gripper, touch_links=sorted(FINGERS)
+    )
+    found = mg.plan_manipulation(task, vertices=200, time_limit=20.0)
+    assert found.outcome == mg.Outcome.solved
+    assert found.cost >= min(grasp.cost for grasp in candidates)
+
+
+def test_searches_refuse_what_they_do_not_know() -> None:
+    problem = arc(3)
+    pipe, _ = pipe1()
+    wrong: dict[str, Any] = {"max_evaluation": 5}
+    assert population_search_names() == ["bees", "ga", "pso"]
+    with pytest.raises(mg.InvalidInput, match="algorithm = ants: must be one of bees, ga, pso"):
+        optimize_grasp(problem, pipe, algorithm="ants")
+    with pytest.raises(mg.InvalidInput, match="same_section"):
+        optimize_grasp(problem, pipe, neighbourhood_kind="same")
+    with pytest.raises(mg.InvalidInput, match="did you mean"):
+        optimize_grasp(problem, pipe, **wrong)
+    with pytest.raises(mg.InvalidInput, match="recruits of all sites"):
+        optimize_grasp(problem, pipe, elite_recruits=100)
+    thick = Pipe(pipe.nodes, pipe.sections, 0.2)
+    with pytest.raises(mg.InvalidInput, match="the hand fits"):
+        optimize_grasp(problem, thick)
+
+
+def test_a_base_that_cannot_go_sideways_is_refused() -> None:
+    robot = mg.Robot.load(
+        ASSETS / "robots/fetchlike/fetchlike.urdf", ASSETS / "robots/fetchlike/fetchlike.srdf", base="diff_drive"
+    )
+    group = robot.group("arm", with_base=True)
+    pipe, _ = pipe1()
+    with pytest.raises(mg.InvalidInput, match="diff_drive"):
+        ObjectPathProblem(group, mg.World(), pipe.shapes(), np.array([np.eye(4)] * 2))

@@ -12,7 +12,8 @@ PairwiseWeights pairwise_weights(const Eigen::MatrixXd& comparison, double max_c
   constexpr double kRandomIndex[] = {0, 0, 0, 0.58, 0.9, 1.12, 1.24, 1.32, 1.41, 1.45, 1.49};  // P2 table 3.1
   const Eigen::Index m = comparison.rows();
   require(comparison.cols() == m && m >= 2 && m <= 10, "comparison",
-          std::to_string(m) + " x " + std::to_string(comparison.cols()), "must be square with 2 to 10 rows");
+          "of shape (" + std::to_string(m) + ", " + std::to_string(comparison.cols()) + ")",
+          "must be square with 2 to 10 rows");
   require(max_consistency_ratio >= 0, "max_consistency_ratio", max_consistency_ratio, "must be zero or positive");
   for (Eigen::Index i = 0; i < m; ++i) {
     for (Eigen::Index j = 0; j < m; ++j) {

@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FittedCuboid', 'Grasp', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'Graspability', 'GridDistanceField', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MotionResult', 'MotionStats', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'SdfHits', 'SearchTree', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_objects', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FeasibleGrasp', 'FittedCuboid', 'Grasp', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'Graspability', 'GridDistanceField', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MotionResult', 'MotionStats', 'NodeLoad', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'SdfHits', 'SearchTree', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'follow_object_path', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_objects', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -943,6 +943,32 @@ class SharedTours:
     def outcome(self) -> Outcome:
         """
         `solved`: proven least; `approximate`: a good one with a bound.
+        """
+class PairwiseWeights:
+    """
+    Weights from pairwise comparisons (Saaty's AHP; P2 3.3.2).
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def consistency_ratio(self) -> float:
+        """
+        Of Saaty; 0: fully consistent.
+        """
+    @property
+    def eigenvector(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The principal eigenvector, Saaty's own; it sums to 1.
+        """
+    @property
+    def largest_eigenvalue(self) -> float:
+        """
+        m for a consistent matrix, else more.
+        """
+    @property
+    def weights(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Averages over normalised columns, as P2 takes them; they sum to 1.
         """
 class RobotSource:
     """
@@ -4800,6 +4826,459 @@ class Pipe:
         """
         First and second node of each section, counted from 0.
         """
+class BeamMaterial:
+    """
+    What a beam is made of.
+    """
+    def __init__(self, density: float, youngs_modulus: float, shear_modulus: float, stress_limit: float = 0.0) -> None:
+        """
+        [kg/m3], [Pa], [Pa], and the von Mises stress it may bear [Pa] (0: no limit is given).
+        """
+    @property
+    def density(self) -> float:
+        """
+        [kg/m3]
+        """
+    @property
+    def shear_modulus(self) -> float:
+        """
+        [Pa]
+        """
+    @property
+    def stress_limit(self) -> float:
+        """
+        [Pa]; 0: none is given.
+        """
+    @property
+    def youngs_modulus(self) -> float:
+        """
+        [Pa]
+        """
+class BeamSection:
+    """
+    Cross section of a beam along x: see round_section and rectangular_section.
+    """
+    def __init__(self, area: float, iy: float, iz: float, torsion: float) -> None:
+        """
+        Any section by its area [m2], second moments about y and z and torsion constant [m4]; no stress is told.
+        """
+    @property
+    def area(self) -> float:
+        """
+        [m2]
+        """
+    @property
+    def iy(self) -> float:
+        """
+        Second moment about y, for bending in z [m4].
+        """
+    @property
+    def iz(self) -> float:
+        """
+        Second moment about z, for bending in y [m4].
+        """
+    @property
+    def torsion(self) -> float:
+        """
+        Torsion constant J [m4].
+        """
+class BeamMember:
+    """
+    A straight beam welded to its two nodes.
+    """
+    def __init__(self, first: int, second: int, section: BeamSection, material: BeamMaterial, y_towards: numpy.typing.ArrayLike | None = None) -> None:
+        """
+        Nodes by index from 0; `y_towards`: the section's y is this direction turned across the member (None: the
+        object's z, or its x for members along z).
+        """
+    @property
+    def material(self) -> BeamMaterial:
+        """
+        What it is made of.
+        """
+    @property
+    def nodes(self) -> tuple[int, int]:
+        """
+        First and second node.
+        """
+    @property
+    def section(self) -> BeamSection:
+        """
+        Its cross section.
+        """
+class NodeLoad:
+    """
+    What hangs on a node: a mass (valve, flange), a force, a moment.
+    """
+    def __init__(self, node: int, mass: float = 0.0, force: numpy.typing.ArrayLike = (0.0, 0.0, 0.0), moment: numpy.typing.ArrayLike = (0.0, 0.0, 0.0)) -> None:
+        """
+        The mass's weight turns with gravity [kg]; force [N] and moment [N m] stay in the object's frame.
+        """
+    @property
+    def force(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        In the object's frame [N].
+        """
+    @property
+    def mass(self) -> float:
+        """
+        [kg]
+        """
+    @property
+    def moment(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        In the object's frame [N m].
+        """
+    @property
+    def node(self) -> int:
+        """
+        Index of the node.
+        """
+class BeamSupport:
+    """
+    Where a frame is held: a hand, a fixture.
+    """
+    def __init__(self, member: int, distance: float, fixed: typing.Annotated[collections.abc.Sequence[bool], "FixedSize(6)"] = (True, True, True, True, True, True)) -> None:
+        """
+        Distance along the member [m]; which of displacement in x, y, z and rotation about them (object's frame)
+        are hindered: all, a clamp.
+        """
+    @property
+    def distance(self) -> float:
+        """
+        From the member's first node [m].
+        """
+    @property
+    def fixed(self) -> list[bool]:
+        """
+        Displacement in x, y, z, rotation about x, y, z.
+        """
+    @property
+    def member(self) -> int:
+        """
+        Index of the member.
+        """
+class BeamExtreme:
+    """
+    A place on a frame and a value there.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def distance(self) -> float:
+        """
+        From the member's first node [m].
+        """
+    @property
+    def member(self) -> int:
+        """
+        Index of the member.
+        """
+    @property
+    def value(self) -> float:
+        """
+        [m], [Pa] or a ratio.
+        """
+class BeamState:
+    """
+    How a held frame bends under one load; all in the object's frame.
+    """
+    @property
+    def displacement(self) -> BeamExtreme:
+        """
+        The largest anywhere along the members [m].
+        """
+    @property
+    def nodes(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 6) displacement [m] and rotation [rad] of each node.
+        """
+    @property
+    def over_limit(self) -> BeamExtreme | None:
+        """
+        Largest stress over its material's limit: above 1 it yields. None without a limit.
+        """
+    @property
+    def reactions(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (supports, 6) force [N] and moment [N m] of each support on the frame.
+        """
+    @property
+    def stress(self) -> BeamExtreme | None:
+        """
+        Largest von Mises stress [Pa]; None where sections are not known.
+        """
+class BeamFrame:
+    """
+    Straight Euler-Bernoulli beams welded at nodes, in the object's frame (P2 3.2.3.3.2).
+    """
+    def __init__(self, nodes: numpy.typing.ArrayLike, members: collections.abc.Sequence[BeamMember], loads: collections.abc.Sequence[NodeLoad] = []) -> None:
+        """
+        (n, 3) nodes [m], BeamMembers, and NodeLoads. See beam_frame for a Pipe.
+        """
+    def __repr__(self) -> str:
+        ...
+    def deflection(self, grasp: Grasp | BeamSupport | collections.abc.Sequence[Grasp | BeamSupport], T_world_object: numpy.typing.ArrayLike, *, gravity: float = 9.81) -> BeamState:
+        """
+        How it bends when it is held there in this pose: by one grasp of a pipe, or by several, or by supports.
+        """
+    def split(self, member: int, distance: float) -> BeamFrame:
+        """
+        The same frame with one node more; it bends as before.
+        """
+    def stiffness(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (6n, 6n) of the free frame, node by node, in the object's frame.
+        """
+    @property
+    def centre_of_mass(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [m]
+        """
+    @property
+    def loads(self) -> list[NodeLoad]:
+        """
+        What hangs on nodes.
+        """
+    @property
+    def mass(self) -> float:
+        """
+        Of members and loads [kg].
+        """
+    @property
+    def members(self) -> list[BeamMember]:
+        """
+        The beams.
+        """
+    @property
+    def nodes(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) in the object's frame [m].
+        """
+class SupportedFrame:
+    """
+    A frame held at some places, factorised once for all orientations.
+    """
+    def __init__(self, frame: BeamFrame, supports: Grasp | BeamSupport | collections.abc.Sequence[Grasp | BeamSupport]) -> None:
+        """
+        Clamped by grasps of a pipe, or held as supports say.
+        """
+    def displacement(self, gravity: numpy.typing.ArrayLike, member: int, distance: float) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) of a point on a member, in the object's frame [m].
+        """
+    def largest_displacement(self, gravity: numpy.typing.ArrayLike) -> BeamExtreme:
+        """
+        Of state(), alone: quicker.
+        """
+    def section_forces(self, gravity: numpy.typing.ArrayLike, member: int, distance: float) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (6,) N, Vy, Vz [N], torque, My, Mz [N m] in the member's frame at a cut.
+        """
+    def state(self, gravity: numpy.typing.ArrayLike) -> BeamState:
+        """
+        Under gravity given in the object's frame [m/s2].
+        """
+class ObjectPathResult:
+    """
+    What one grasp costs along a path of the object, and the arm's motion.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict[str, typing.Any]:
+        """
+        Everything as plain values.
+        """
+    @property
+    def configurations(self) -> int:
+        """
+        Arm configurations found over all poses.
+        """
+    @property
+    def cost(self) -> float:
+        """
+        Weighted sum of the objectives over their scales; 0 unless solved.
+        """
+    @property
+    def deflection(self) -> float:
+        """
+        O2: sum of the largest displacements after the first pose [m].
+        """
+    @property
+    def force_manipulability(self) -> float:
+        """
+        O3: its sum along the tool's motion.
+        """
+    @property
+    def joint_motion(self) -> float:
+        """
+        O1: sum of joint-space distances [rad or m].
+        """
+    @property
+    def outcome(self) -> Outcome:
+        """
+        solved or not_found.
+        """
+    @property
+    def path(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
+        """
+        (poses, n) configurations, or None.
+        """
+    @property
+    def refused_edges(self) -> int:
+        """
+        Motions between poses that collide or leave the path.
+        """
+    @property
+    def rejections(self) -> dict[str, typing.Any]:
+        """
+        Configurations rejected, by cause.
+        """
+    @property
+    def sag(self) -> list[float]:
+        """
+        Largest displacement at each pose [m].
+        """
+    @property
+    def violation(self) -> int:
+        """
+        P2's Cost(C); 0 if and only if solved.
+        """
+    @property
+    def violations(self) -> list[int]:
+        """
+        Of each pose: 2 out of reach, 1 in collision, 0 neither.
+        """
+class ObjectPathProblem:
+    """
+    A robot that carries an object along given poses (P2 3.2.1).
+    """
+    def __init__(self, group: JointGroup, world: World, object: collections.abc.Sequence[LinkShape], T_world_object: numpy.typing.ArrayLike, *, gripper: Hand | None = None, touch_links: collections.abc.Sequence[str] = [], frame: BeamFrame | None = None, object_name: str = 'object') -> None:
+        """
+        `object`: LinkShapes in its own frame; `world` is without it. `T_world_object` (m, 4, 4): where it lies,
+        then where it goes. With `gripper` the fingers open as the grasp says; `frame`: how the object bends.
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def T_world_object(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (m, 4, 4)
+        """
+    @property
+    def group(self) -> JointGroup:
+        """
+        Its tip is the tool frame of grasps.
+        """
+    @property
+    def world(self) -> World:
+        """
+        Without the object.
+        """
+class ObjectPathEvaluator:
+    """
+    Costs many grasps along one path: prepared once. Not for several threads at a time.
+    """
+    def __init__(self, problem: ObjectPathProblem, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81) -> None:
+        """
+        Prepares robot, world and object.
+        
+        Keyword options:
+            motion_weight: float = 0.587  # weight of O1, the joints' motion
+            deflection_weight: float = 0.089  # weight of O2, the largest displacements
+            manipulability_weight: float = 0.324  # weight of O3, the force manipulability
+            motion_scale: float = 1.0  # O1 is divided by it [rad or m]
+            deflection_scale: float = 0.001  # O2 is divided by it [m]
+            manipulability_scale: float = 1.0  # O3 is divided by it
+            max_joint_step: float = 0.5  # more from pose to pose is a jump, refused [rad or m]
+            position_tolerance: float = 0.01  # of the object half way between poses [m]
+            rotation_tolerance: float = 0.05  # of the object half way between poses [rad]
+            edge_step: float = 0.02  # largest joint step between collision checks [rad or m]
+            check_edges: bool = True  # check motions between poses for collisions
+            single_configuration: bool = False  # one arm configuration a pose (P2's single IK)
+            all_turns: bool = True  # joints that may turn more than once come in every turn
+            redundant_values: int = 0  # samples of a seventh joint; 0: chosen
+            gravity: float = 9.81  # along the world's -z [m/s2]
+        """
+    def evaluate(self, grasp: Grasp) -> ObjectPathResult:
+        """
+        The least cost over all arm configurations, or how far the grasp is from allowed.
+        """
+class FeasibleGrasp:
+    """
+    A grasp with which the whole path can be followed.
+    """
+    @property
+    def deflection(self) -> float:
+        """
+        O2 [m]
+        """
+    @property
+    def force_manipulability(self) -> float:
+        """
+        O3
+        """
+    @property
+    def grasp(self) -> Grasp:
+        """
+        Its cost is that of the path.
+        """
+    @property
+    def joint_motion(self) -> float:
+        """
+        O1 [rad or m]
+        """
+class GraspOptimum:
+    """
+    The best grasp that a search found, and all others that will do.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def colliding(self) -> list[int]:
+        """
+        Of each pose: at how many all arm configurations collide.
+        """
+    @property
+    def evaluations(self) -> int:
+        """
+        Grasps tried.
+        """
+    @property
+    def feasible(self) -> list[FeasibleGrasp]:
+        """
+        Every feasible grasp seen, the cheapest first.
+        """
+    @property
+    def front(self) -> list[int]:
+        """
+        The Pareto front among them, ascending in O1.
+        """
+    @property
+    def grasp(self) -> Grasp | None:
+        """
+        The best grasp, or None.
+        """
+    @property
+    def history(self) -> list[float]:
+        """
+        Best cost after each of them; infinite while none was feasible.
+        """
+    @property
+    def outcome(self) -> Outcome:
+        """
+        approximate: the best seen, no proof that none is better; solved: it meets the target.
+        """
+    @property
+    def path(self) -> ObjectPathResult:
+        """
+        As follow_object_path gives it.
+        """
+    @property
+    def unreachable(self) -> list[int]:
+        """
+        Of each pose: how many of the grasps tried do not reach it.
+        """
 def _allowed_bodies(robot: Robot, world: World) -> list[tuple[str, str]]:
     ...
 def _capability_option_table() -> dict[str, typing.Any]:
@@ -4832,11 +5311,15 @@ def _manipulation_option_table() -> dict[str, typing.Any]:
     ...
 def _motion_option_table() -> dict[str, typing.Any]:
     ...
+def _object_path_option_table() -> dict[str, typing.Any]:
+    ...
 def _occupancy_option_table() -> dict[str, typing.Any]:
     ...
 def _pipe_grasp_option_table() -> dict[str, typing.Any]:
     ...
 def _platform_option_table() -> dict[str, typing.Any]:
+    ...
+def _population_option_table() -> dict[str, typing.Any]:
     ...
 def _push_option_table() -> dict[str, typing.Any]:
     ...
@@ -4869,6 +5352,10 @@ def _timing_option_table() -> dict[str, typing.Any]:
     ...
 def _tracking_option_table() -> dict[str, typing.Any]:
     ...
+def beam_frame(pipe: Pipe, inner_diameter: float, material: BeamMaterial) -> BeamFrame:
+    """
+    A pipe as a frame: member i is section i, a tube [m].
+    """
 def cache_folder() -> str:
     """
     $XDG_CACHE_HOME/mmgrasp, or ~/.cache/mmgrasp.
@@ -4912,6 +5399,10 @@ def compute_disabled_pairs(robot: Robot, *, progress: collections.abc.Callable[[
         always_fraction: float = 0.95  # a pair in collision at least this often is called always
         seed: int = 1  # same seed, same pairs
         threads: int = 0  # 0: all
+    """
+def copper() -> BeamMaterial:
+    """
+    The copper of P2 table 3.4, which gives no stress limit.
     """
 def cover_from_intersections(grid: BaseGrid, intersections: collections.abc.Sequence[Intersection], trays: int) -> StopSet:
     """
@@ -4969,6 +5460,28 @@ def fit_cuboids(points: numpy.typing.ArrayLike, *, T_world_tray: numpy.typing.Ar
         leaf: float = 0.003  # cell to which points are thinned for the search [m]
         min_points: int = 60  # smaller clusters are left out
         plane_iterations: int = 1000  # random planes tried
+    """
+def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81) -> ObjectPathResult:
+    """
+    The cheapest motion of the arm that carries the object through all poses with one grasp, over all arm
+    configurations (P2 3.3.3, Algorithm 3.1), motions between poses checked finely.
+    
+    Keyword options:
+        motion_weight: float = 0.587  # weight of O1, the joints' motion
+        deflection_weight: float = 0.089  # weight of O2, the largest displacements
+        manipulability_weight: float = 0.324  # weight of O3, the force manipulability
+        motion_scale: float = 1.0  # O1 is divided by it [rad or m]
+        deflection_scale: float = 0.001  # O2 is divided by it [m]
+        manipulability_scale: float = 1.0  # O3 is divided by it
+        max_joint_step: float = 0.5  # more from pose to pose is a jump, refused [rad or m]
+        position_tolerance: float = 0.01  # of the object half way between poses [m]
+        rotation_tolerance: float = 0.05  # of the object half way between poses [rad]
+        edge_step: float = 0.02  # largest joint step between collision checks [rad or m]
+        check_edges: bool = True  # check motions between poses for collisions
+        single_configuration: bool = False  # one arm configuration a pose (P2's single IK)
+        all_turns: bool = True  # joints that may turn more than once come in every turn
+        redundant_values: int = 0  # samples of a seventh joint; 0: chosen
+        gravity: float = 9.81  # along the world's -z [m/s2]
     """
 def graspability_map(map: HeightMap, gripper: Hand, angle: float, opening: float, tip_height: float, *, margin: float = 0.001, orientations: int = 16, openings: int = 2, layer_step: float = 0.01, lowest: float = 0.003, insertion: float = 0.01, smoothing: float = 0.01, min_contact: float = 0.4, min_distance: float = 0.015, max_grasps: int = 100, threads: int = 0) -> numpy.typing.NDArray[numpy.float32]:
     """
@@ -5060,9 +5573,53 @@ def optimised_order(grid: BaseGrid, cells: collections.abc.Sequence[collections.
     """
     The order in which parts are best picked when the trays of each group share a stop, never worse than `order`. `cells` is [tray][part], bitmaps (headings, ny, nx).
     """
+def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | None = None, algorithm: str = 'bees', neighbourhood_kind: str = 'connected_sections', progress: collections.abc.Callable[[str, float], typing.Any] | None = None, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, population: int = 34, max_evaluations: int = 1530, target: float = -inf, seed: int = 1, elite_sites: int = 1, best_sites: int = 4, elite_recruits: int = 10, recruits: int = 3, stagnation_limit: int = 10, neighbourhood: float = 0.2, shrinking: float = 0.8, mutation_rate: float = 0.3, mutation_size: float = 0.25, connectivity: float = 0.5, inertia: float = 0.7, acceleration: float = 2.0) -> GraspOptimum:
+    """
+    The grasp of a pipe with the least cost along the path, by a population search: bees, ga or pso (P2 3.4).
+    `gripper`: axes and opening, the problem's when left out. `neighbourhood_kind` of bees: independent (Str1),
+    same_section (Str2), connected_sections (Str3).
+    
+    Keyword options:
+        motion_weight: float = 0.587  # weight of O1, the joints' motion
+        deflection_weight: float = 0.089  # weight of O2, the largest displacements
+        manipulability_weight: float = 0.324  # weight of O3, the force manipulability
+        motion_scale: float = 1.0  # O1 is divided by it [rad or m]
+        deflection_scale: float = 0.001  # O2 is divided by it [m]
+        manipulability_scale: float = 1.0  # O3 is divided by it
+        max_joint_step: float = 0.5  # more from pose to pose is a jump, refused [rad or m]
+        position_tolerance: float = 0.01  # of the object half way between poses [m]
+        rotation_tolerance: float = 0.05  # of the object half way between poses [rad]
+        edge_step: float = 0.02  # largest joint step between collision checks [rad or m]
+        check_edges: bool = True  # check motions between poses for collisions
+        single_configuration: bool = False  # one arm configuration a pose (P2's single IK)
+        all_turns: bool = True  # joints that may turn more than once come in every turn
+        redundant_values: int = 0  # samples of a seventh joint; 0: chosen
+        gravity: float = 9.81  # along the world's -z [m/s2]
+        population: int = 34  # points a round
+        max_evaluations: int = 1530  # budget in grasps
+        target: float = -inf  # ends as solved once a grasp costs no more
+        seed: int = 1  # same seed, same answer
+        elite_sites: int = 1  # bees: P2's ne
+        best_sites: int = 4  # bees: P2's nb
+        elite_recruits: int = 10  # bees: P2's nre
+        recruits: int = 3  # bees: P2's nrb
+        stagnation_limit: int = 10  # bees: rounds without progress until a site is abandoned
+        neighbourhood: float = 0.2  # bees: its width as a share of each range at first
+        shrinking: float = 0.8  # bees: its factor after a round without progress
+        mutation_rate: float = 0.3  # ga: chance of each variable
+        mutation_size: float = 0.25  # ga: half width as a share of the range
+        connectivity: float = 0.5  # pso: share of the others each particle hears of
+        inertia: float = 0.7  # pso: of velocity
+        acceleration: float = 2.0  # pso: P2's c1 and c2
+    """
 def paired_order(places: collections.abc.Sequence[numpy.typing.ArrayLike]) -> list[list[int]]:
     """
     P1's heuristic (figure 3.11): parts of neighbouring trays at nearly constant distances go together. `places` is one (m, 2) array of positions a tray; the answer is [tray][round].
+    """
+def pairwise_weights(comparison: numpy.typing.ArrayLike, *, max_consistency_ratio: float = 0.1) -> PairwiseWeights:
+    """
+    Weights by Saaty's AHP: `comparison[i, j]` says how much i is preferred to j, and [j, i] is one over it. A ratio
+    above 10 % is refused, as Saaty advises.
     """
 def plan_base_route(arm: JointGroup, world: World, *, home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, resolution: float = 0.1) -> BasePath:
     """
@@ -5233,6 +5790,10 @@ def platform_velocity(*, left: float, right: float, wheel_separation: float) -> 
     The same of a diff-drive whose wheel rims move at `left` and `right` [m/s]: v = (left + right) / 2,
     omega = (right - left) / wheel_separation (P1 4.11).
     """
+def population_search_names() -> list[str]:
+    """
+    Names that optimize_grasp's `algorithm` takes.
+    """
 def pose(xyz: numpy.typing.ArrayLike, rpy: numpy.typing.ArrayLike | None = None, quat_xyzw: numpy.typing.ArrayLike | None = None) -> numpy.typing.NDArray[numpy.float64]:
     """
     A (4, 4) pose from a position [m] and roll-pitch-yaw (URDF's convention) [rad] or a quaternion (x, y, z, w).
@@ -5286,6 +5847,10 @@ def read_pcd(path: str | os.PathLike[str]) -> PointCloud:
     """
     Reads a PCD file: ascii, binary or binary_compressed. Raises IoError naming file and rule.
     """
+def rectangular_section(y_length: float, z_length: float, wall: float = 0.0) -> BeamSection:
+    """
+    Rectangle by its outer lengths and its wall [m]; without a wall a bar. Torsion of tubes by Bredt (thin walls).
+    """
 def render_depth(scene: collections.abc.Sequence[LinkShape], camera: PinholeCamera, T_world_camera: numpy.typing.ArrayLike, *, noise: float = 0.0, missing: float = 0.0, seed: int = 1, threads: int = 0) -> DepthImage:
     """
     The depth image of shapes whose poses are in the world: one ray a pixel, first surface in front of the camera.
@@ -5303,6 +5868,10 @@ def resting_poses(part: collections.abc.Sequence[LinkShape]) -> list[RestingPose
 def robust_intersections(grid: BaseGrid, regions: collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike], min_radius: float, max_sets: int = 200000) -> Intersections:
     """
     Every set of trays whose shared cells hold a disc of at least `min_radius` [m] (P1 3.4.2).
+    """
+def round_section(outer_diameter: float, inner_diameter: float = 0.0) -> BeamSection:
+    """
+    Tube by its diameters [m]; without an inner one a bar.
     """
 def route_lengths(arm: JointGroup, world: World, *, home: numpy.typing.ArrayLike, positions: numpy.typing.ArrayLike, resolution: float = 0.1, threads: int = 0, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> numpy.typing.NDArray[numpy.float64]:
     """

@@ -39,6 +39,8 @@ Pose half_way(const Pose& a, const Pose& b) {
 }  // namespace
 
 void ObjectPathProblem::check() const {
+  require(!group.has_base() || group.robot().base() != BaseKind::diff_drive, "group", group.name(),
+          "moves a diff_drive base, which cannot go sideways as the object's path may ask; give the arm alone");
   require(!object.empty(), "object", "[]", "must have shapes");
   require(T_world_object.size() >= 2, "T_world_object", std::to_string(T_world_object.size()) + " poses",
           "must be at least two: where the object lies, then where it goes");

@@ -2,6 +2,7 @@
 // checks left out after the other. The answers are hashed, for they must be the same without a stage. Arguments:
 // rounds, and the beginning of the rows to run, each of which then starts with nothing made by the others.
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "collision_case.hpp"
@@ -49,6 +50,18 @@ void run(const bench::Arm& arm, int rounds, const std::string& only) {
     const auto edges = bench::planner_edges(checker, 400, length, 7);
     measure(arm, row, edges.size(), rounds, [&](Digest& digest) {
       for (const auto& [from, to] : edges) digest.add(checker.edge_is_free(from, to, 0.02));
+    });
+  }
+  for (const bool free : {false, true}) {
+    const std::string row = free ? "free edge of 0.5 rad" : "blocked edge of 0.5 rad";
+    if (!wanted(row)) continue;
+    auto edges = bench::planner_edges(checker, 800, 0.5, 11);
+    edges.erase(
+        std::remove_if(edges.begin(), edges.end(),
+                       [&](const auto& edge) { return checker.edge_is_free(edge.first, edge.second, 0.02) != free; }),
+        edges.end());
+    measure(arm, row, edges.size(), rounds, [&](Digest& digest) {
+      for (const auto& [from, to] : edges) digest.add(checker.edge_stays_free(from, to, 0.02));
     });
   }
   if (!wanted("whole plan")) return;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <thread>
 
@@ -82,6 +83,34 @@ TEST(ClearanceTable, NeverOverstatesAndFindsMostClearances) {
   EXPECT_GT(found, 0.95 * narrow);
   EXPECT_GT(wide, 1000);
   EXPECT_EQ(far, wide);
+}
+
+// Both angles move evenly, as along an edge: at none of the places in between may the bodies touch.
+TEST(ClearanceTable, StaysApartOnlyWhereTheyDo) {
+  const Elbows elbows;
+  const ClearanceTable table(elbows.a, elbows.b, elbows.joints());
+  Rng rng(3);
+  int proven = 0, apart = 0, touching = 0;
+  for (int i = 0; i < 300; ++i) {
+    const std::array<double, 2> from{rng.uniform(-7.0, 7.0), rng.uniform(-7.0, 7.0)};
+    const double length = rng.uniform(0.0, 0.03);
+    std::array<double, 2> step{rng.uniform(-length, length), rng.uniform(-length, length)};
+    if (i % 10 == 0) step[i % 20 / 10] = 0;
+    const long first = i % 3, last = first + static_cast<long>(rng.uniform(0, 40));
+    const bool stays = table.stays_apart(from, step, first, last);
+    double least = 1;
+    for (long k = first; k <= last; ++k)
+      least = std::min(least, elbows.clearance(from[0] + static_cast<double>(k) * step[0],
+                                               from[1] + static_cast<double>(k) * step[1]));
+    if (stays) {
+      ASSERT_GT(least, 0) << i;
+    }
+    touching += least == 0;
+    if (least > 0.006) ++apart, proven += stays;
+  }
+  EXPECT_GT(touching, 20);
+  EXPECT_GT(apart, 50);
+  EXPECT_GT(proven, 0.95 * apart);
 }
 
 TEST(ClearanceTable, AnswersDoNotDependOnWhatWasAskedBefore) {

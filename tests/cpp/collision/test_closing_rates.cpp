@@ -98,7 +98,8 @@ Tightness expect_motion_bounded(const JointGroup& group, int draws) {
         rng.uniform(0.001, 0.03) * rng.uniform(-Eigen::VectorXd::Ones(q.size()), Eigen::VectorXd::Ones(q.size()));
     const double reach = rng.uniform(0, 10);
     here.place(q.data());
-    EdgeMotion motion(here, q, q + step, step);
+    EdgeMotion motion;
+    motion.start(here, q, q + step, step);
     const Eigen::Vector3d n = rng.rotation() * Eigen::Vector3d::UnitX();
     // Points of a body, seen from the world or from another body, before and after.
     const auto check = [&](int shape, int other, const Closing& closing) {

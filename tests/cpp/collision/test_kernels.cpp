@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
+#include <cmath>
 #include <vector>
 
 #include "mmgrasp/core/detail/instruction_set.hpp"
@@ -161,6 +163,35 @@ TEST_P(CollisionKernels, FramesEqualProductsOfTransforms) {
   }
 }
 
+// Five joints about z, each on the world: angles near multiples of a quarter turn, wound far up, and beyond what the
+// reduction takes.
+TEST_P(CollisionKernels, FramesTurnByAnyAngle) {
+  Rng random(13);
+  constexpr int kJoints = 5;
+  FrameStep steps[kJoints] = {};
+  for (int i = 0; i < kJoints; ++i) {
+    for (int k = 0; k < 3; ++k) steps[i].R[5 * k] = 1;
+    steps[i].multiplier = 1;
+    steps[i].column = i;
+    steps[i].motion = FrameMotion::revolute;
+  }
+  for (int round = 0; round < 20000; ++round) {
+    double q[kJoints];
+    for (int i = 0; i < kJoints; ++i) {
+      const double largest = std::array<double, 5>{1, 10, 1e3, 9e4, 1e7}[(round + (round % 7 == 0 ? i : 0)) % 5];
+      q[i] = random.uniform(-largest, largest);
+      if (round % 3 == 0) q[i] = std::round(q[i] / (M_PI / 2)) * (M_PI / 2) + (i - 2) * 1e-9;
+    }
+    alignas(32) double frames[16 * (kJoints + 1)] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0};
+    kernels().place_frames(steps, kJoints, q, frames);
+    for (int i = 0; i < kJoints; ++i) {
+      const double* x = frames + 16 * (i + 1);
+      ASSERT_NEAR(x[0], std::cos(q[i]), 4e-16) << q[i];
+      ASSERT_NEAR(x[1], std::sin(q[i]), 4e-16) << q[i];
+    }
+  }
+}
+
 TEST_P(CollisionKernels, SpheresMeetBoxesWhenTheyDo) {
   Rng random(5);
   int met = 0, apart = 0;
@@ -185,12 +216,9 @@ TEST_P(CollisionKernels, SpheresMeetBoxesWhenTheyDo) {
                         static_cast<float>(radius)};
     const SphereRows sphere{numbers, numbers + 1, numbers + 2, numbers + 3};
     std::uint8_t masks[2] = {};
-    float nearest = 0;
-    kernels().spheres_meet_boxes(packs, 2, sphere, 1, masks, &nearest);
-    std::uint8_t without_nearest[2] = {};
-    kernels().spheres_meet_boxes(packs, 2, sphere, 1, without_nearest, nullptr);
-    EXPECT_EQ(masks[0], without_nearest[0]);
-    EXPECT_EQ(masks[1], without_nearest[1]);
+    kernels().spheres_meet_boxes(packs, 2, sphere, 1, masks);
+    float squared[2 * kLanes];
+    const float nearest = kernels().boxes_from_point(packs, 2, *sphere.x, *sphere.y, *sphere.z, squared);
     double least = 1e9;
     for (int i = 0; i < 16; ++i) {
       const double distance = boxes[i].distance(centre);

@@ -61,6 +61,37 @@ TEST(Narrow, SaysWhetherTheClearanceExceedsABound) {
   EXPECT_GT(narrower, 2000);
 }
 
+// The triangle that a convex body is said to hit is hit, and where the bodies do not meet none is.
+TEST(Narrow, TheNamedPieceIsHit) {
+  const auto mesh = std::make_shared<const TriangleMesh>(ring(12, 0.2));
+  const auto a = make_solid(MeshShape{mesh}), padded = make_solid(MeshShape{mesh}, 0.01);
+  const auto can = make_solid(Cylinder{0.04, 0.1}), box = make_solid(Box{{0.1, 0.06, 0.08}});
+  Rng rng(7);
+  int named = 0, missed = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Rigid T_a = random_pose(rng), T_b = random_pose(rng), T_elsewhere = random_pose(rng);
+    for (const Solid* rings : {a.get(), padded.get()}) {
+      for (const Solid* other : {can.get(), box.get()}) {
+        int piece = -1;
+        const bool hit = i % 2 == 0 ? solids_collide(*rings, T_a, *other, T_b, 0, false, &piece)
+                                    : solids_collide(*other, T_b, *rings, T_a, 0, false, &piece);
+        if (piece < 0) continue;
+        ASSERT_TRUE(hit);
+        ASSERT_TRUE(piece_collides(*rings, T_a, *other, T_b, piece));
+        ASSERT_TRUE(piece_collides(*other, T_b, *rings, T_a, piece));
+        ++named;
+        if (solids_collide(*rings, T_a, *other, T_elsewhere)) continue;
+        ASSERT_FALSE(piece_collides(*rings, T_a, *other, T_elsewhere, piece));
+        ++missed;
+      }
+    }
+  }
+  EXPECT_GT(named, 500);
+  EXPECT_GT(missed, 200);
+  EXPECT_FALSE(piece_collides(*can, Rigid(), *box, Rigid(), 0));
+  EXPECT_FALSE(piece_collides(*a, Rigid(), *padded, Rigid(), 0));
+}
+
 // A ring that slides and turns beside another one: what is said to stay apart does, at every point of the way.
 TEST(Narrow, WhatStaysApartOnTheWayDoesNotMeet) {
   const auto large = std::make_shared<const TriangleMesh>(ring(12, 0.2));

@@ -71,6 +71,21 @@ double ClearanceTable::at_least(double first, double second, double wanted) cons
   return best;
 }
 
+bool ClearanceTable::stays_apart(const std::array<double, 2>& from, const std::array<double, 2>& step, long first,
+                                 long last) const {
+  // Rates and clearances are sums of a few numbers.
+  const double each = (joints_.rates[0] * std::abs(step[0]) + joints_.rates[1] * std::abs(step[1])) * (1 + 1e-9);
+  for (long at = first; at <= last;) {
+    const double moved = static_cast<double>(at);
+    const double apart = at_least(from[0] + moved * step[0], from[1] + moved * step[1], each) - kRounding;
+    if (apart <= 0) return false;
+    const double proven = apart / each;
+    if (proven >= static_cast<double>(last - at)) return true;
+    at += 1 + static_cast<long>(proven);
+  }
+  return true;
+}
+
 double ClearanceTable::widest(int level) const {
   return std::min(4 * within_cell_[level], kMaxClearance);
 }

@@ -39,6 +39,8 @@ class MMGRASP_EXPORT ClearanceTable {
   /// A lower bound of the clearance [m], not above 0 where none is known. Coarse cells are read first, then finer ones
   /// until the bound exceeds `wanted` [m] or cannot.
   double at_least(double first, double second, double wanted) const;
+  /// True when the bodies are proven apart at from + k step for every whole k in [first, last]. Both angles.
+  bool stays_apart(const std::array<double, 2>& from, const std::array<double, 2>& step, long first, long last) const;
 
  private:
   static constexpr int kLevels = 3;

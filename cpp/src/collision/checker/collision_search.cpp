@@ -4,11 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "collision/narrow/stages.hpp"
 
 namespace mmgrasp::detail {
+
+namespace {
+
+/// Whether the pair's clearance table proves it apart.
+bool table_parts(const Placement& placement, const ShapePair& pair) {
+  const std::vector<double>& q = placement.configuration();
+  return runs(kTableStage) && pair.clearances &&
+         pair.clearances->at_least(q[pair.columns[0]], q[pair.columns[1]], 0) > 0;
+}
+
+}  // namespace
 
 void CollisionSearch::gather_near(const Placement& placement, int first, int last) {
   const ScenePacks& packs = placement.snapshot().packs;
@@ -26,7 +36,7 @@ void CollisionSearch::gather_near(const Placement& placement, int first, int las
   if (packs.flat()) {
     const int count = packs.count();
     masks_.resize(count * (last - first));
-    kernels().spheres_meet_boxes(packs.data(), count, spheres.from(first), last - first, masks_.data(), nullptr);
+    kernels().spheres_meet_boxes(packs.data(), count, spheres.from(first), last - first, masks_.data());
     for (int s = first; s < last; ++s) {
       for (int k = 0; k < count; ++k) add(s, k, masks_[(s - first) * count + k]);
     }
@@ -37,91 +47,99 @@ void CollisionSearch::gather_near(const Placement& placement, int first, int las
     const float at[4] = {*sphere.x, *sphere.y, *sphere.z, *sphere.radius};
     packs.packs_near(at, [&](int pack) {
       std::uint8_t mask = 0;
-      kernels().spheres_meet_boxes(packs.data() + pack, 1, sphere, 1, &mask, nullptr);
+      kernels().spheres_meet_boxes(packs.data() + pack, 1, sphere, 1, &mask);
       add(s, pack, mask);
       return false;
     });
   }
 }
 
-bool CollisionSearch::body_is_free(Placement& placement, int body, const Closing& closing, bool& proven) {
-  const double motion = closing.most;
+bool CollisionSearch::body_is_free(Placement& placement, int body, EdgeMotion& motion, double reach, bool& proven) {
   const ScenePacks& packs = placement.snapshot().packs;
   const SphereRows sphere = placement.spheres().from(body);
-  const int s = placement.plan().moving[body];
+  const double radius = *sphere.radius;
+  float squared[ScenePacks::kFlat * kLanes];
+  double clearance = -radius;
+  if (packs.flat()) {
+    const float nearest =
+        kernels().boxes_from_point(packs.data(), packs.count(), *sphere.x, *sphere.y, *sphere.z, squared);
+    clearance = std::sqrt(nearest) - radius;
+    if (runs(kSphereStage) && clearance > motion.of_body_anywhere(body, reach)) return true;
+  }
+  const Closing closing = motion.of_body(body, reach);
+  if (runs(kSphereStage) && clearance > closing.most) return true;
   // A body that moves far is only tested where it is: what its sphere, grown by the motion, meets would hardly ever
   // turn out to stay clear.
-  const bool far = motion > kMaxProvenMotion;
-  float grown_radius = runs(kSphereStage) ? static_cast<float>(*sphere.radius + (far ? 0 : motion)) : 1e9f;
-  const SphereRows grown{sphere.x, sphere.y, sphere.z, &grown_radius};
-  const auto hits_any = [&](int pack, unsigned mask) {
-    for (; mask != 0; mask &= mask - 1) {
-      const int other = packs.item(pack, __builtin_ctz(mask));
-      if (far) {
-        if (!detail::scene_collides(placement, s, other)) continue;
-      } else {
-        const CoverAnswer answer = scene_within(placement, s, other, closing);
-        if (answer == kApart) continue;
-        proven = false;
-        if (answer == kMaybe) continue;
-      }
-      last_shape_ = s;
-      last_scene_ = other;
-      return true;
+  const bool far = closing.most > kMaxProvenMotion;
+  const auto grown = static_cast<float>(runs(kSphereStage) ? radius + (far ? 0 : closing.most) : 1e9);
+  const auto hits_near = [&](int pack, const float* distances) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (distances[lane] > grown * grown) continue;
+      if (hits_scene_shape(placement, placement.plan().moving[body], packs.item(pack, lane), closing, far, proven))
+        return true;
     }
     return false;
   };
-  const auto stays_far = [&](float nearest) {
-    return runs(kSphereStage) && std::sqrt(nearest) - *sphere.radius > motion;
-  };
   if (packs.flat()) {
-    std::uint8_t flat_masks[ScenePacks::kFlat];
-    float nearest = std::numeric_limits<float>::infinity();
-    kernels().spheres_meet_boxes(packs.data(), packs.count(), grown, 1, flat_masks, &nearest);
-    if (stays_far(nearest)) return true;
     if (far) proven = false;
     for (int k = 0; k < packs.count(); ++k) {
-      if (hits_any(k, flat_masks[k])) return false;
+      if (hits_near(k, squared + k * kLanes)) return false;
     }
     return true;
   }
-  const float reach[4] = {*sphere.x, *sphere.y, *sphere.z, static_cast<float>(*sphere.radius + motion)};
-  return !packs.packs_near(reach, [&](int pack) {
-    std::uint8_t mask = 0;
-    float nearest = 0;
-    kernels().spheres_meet_boxes(packs.data() + pack, 1, grown, 1, &mask, &nearest);
-    if (stays_far(nearest)) return false;
+  const float around[4] = {*sphere.x, *sphere.y, *sphere.z, static_cast<float>(radius + closing.most)};
+  return !packs.packs_near(around, [&](int pack) {
+    const float nearest = kernels().boxes_from_point(packs.data() + pack, 1, around[0], around[1], around[2], squared);
+    if (runs(kSphereStage) && std::sqrt(nearest) - radius > closing.most) return false;
     if (far) proven = false;
-    return hits_any(pack, mask);
+    return hits_near(pack, squared);
   });
 }
 
-bool CollisionSearch::find_scene_hit(Placement& placement, const std::vector<int>& shapes, int count,
-                                     int first_sphere) {
-  const Snapshot& snapshot = placement.snapshot();
-  const auto found = [&](int s, int other) {
-    last_shape_ = s;
-    last_scene_ = other;
-    return true;
-  };
+bool CollisionSearch::hits_scene_shape(Placement& placement, int shape, int other, const Closing& closing, bool far,
+                                       bool& proven) {
+  if (far) return detail::scene_collides(placement, shape, other) && found_in_scene(shape, other);
+  const CoverAnswer answer = scene_within(placement, shape, other, closing);
+  if (answer == kApart) return false;
+  proven = false;
+  return answer == kOverlap && found_in_scene(shape, other);
+}
+
+bool CollisionSearch::covers_hit_scene(Placement& placement, const std::vector<int>& shapes, int count,
+                                       int first_sphere) {
   gather_near(placement, first_sphere, first_sphere + count);
   unsure_.clear();
   for (const Near& pair : near_) {
     const int s = shapes[pair.shape - first_sphere];
     const CoverAnswer answer = scene_by_covers(placement, s, pair.other);
-    if (answer == kOverlap) return found(s, pair.other);
+    if (answer == kOverlap) return found_in_scene(s, pair.other);
     if (answer == kMaybe) unsure_.push_back({s, pair.other});
   }
+  return false;
+}
+
+bool CollisionSearch::unsure_shapes_hit_scene(Placement& placement, const std::vector<int>& shapes, int count) {
+  const Snapshot& snapshot = placement.snapshot();
+  if (runs(kLastCollisionStage)) {
+    const auto last = std::find_if(unsure_.begin(), unsure_.end(), [&](const Near& pair) {
+      return pair.shape == last_shape_ && pair.other == last_scene_;
+    });
+    if (last != unsure_.end()) std::iter_swap(unsure_.begin(), last);
+  }
   for (const Near& pair : unsure_) {
-    if (scene_collides_exactly(placement, pair.shape, pair.other)) return found(pair.shape, pair.other);
+    if (scene_collides_exactly(placement, pair.shape, pair.other)) return found_in_scene(pair.shape, pair.other);
   }
   for (int i = snapshot.packed; i < static_cast<int>(snapshot.scene.size()); ++i) {
     for (int k = 0; k < count; ++k) {
-      const int s = shapes[k];
-      if (detail::scene_collides(placement, s, i)) return found(s, i);
+      if (detail::scene_collides(placement, shapes[k], i)) return found_in_scene(shapes[k], i);
     }
   }
   return false;
+}
+
+bool CollisionSearch::find_scene_hit(Placement& placement, const std::vector<int>& shapes, int count,
+                                     int first_sphere) {
+  return covers_hit_scene(placement, shapes, count, first_sphere) || unsure_shapes_hit_scene(placement, shapes, count);
 }
 
 bool CollisionSearch::fixed_hits_scene(Placement& placement) {
@@ -154,6 +172,7 @@ bool CollisionSearch::self_collides_for_certain(Placement& placement) {
     const unsigned lanes = runs(kSphereStage) ? pair_masks_[block] : plan.blocks[block].lanes;
     for (unsigned mask = lanes; mask != 0; mask &= mask - 1) {
       const int i = plan.pair_of[block * kLanes + static_cast<std::size_t>(__builtin_ctz(mask))];
+      if (table_parts(placement, plan.varying[i])) continue;
       const CoverAnswer answer = pair_by_covers(placement, plan.varying[i]);
       if (answer == kApart) continue;
       if (answer == kMaybe) {
@@ -172,9 +191,10 @@ bool CollisionSearch::unsure_pairs_collide(Placement& placement) {
     const auto last = std::find(unsure_pairs_.begin(), unsure_pairs_.end(), last_pair_);
     if (last != unsure_pairs_.end()) std::iter_swap(unsure_pairs_.begin(), last);
   }
-  for (const int pair : unsure_pairs_) {
-    if (!pair_collides_exactly(placement, placement.plan().varying[pair])) continue;
-    last_pair_ = pair;
+  for (const int i : unsure_pairs_) {
+    const ShapePair& pair = placement.plan().varying[i];
+    if (!pair_collides_exactly(placement, pair)) continue;
+    last_pair_ = i;
     return true;
   }
   return false;
@@ -185,14 +205,28 @@ bool CollisionSearch::scene_collides(Placement& placement) {
   return *fixed_scene_ || moving_hits_scene(placement);
 }
 
+bool CollisionSearch::last_hits_scene(Placement& placement) {
+  return runs(kLastCollisionStage) && placement.snapshot().options.check_scene && last_shape_ >= 0 &&
+         scene_by_covers(placement, last_shape_, last_scene_) == kOverlap;
+}
+
+bool CollisionSearch::surely_hits_scene(Placement& placement) {
+  if (!placement.snapshot().options.check_scene) return false;
+  const PairPlan& plan = placement.plan();
+  return last_hits_scene(placement) || covers_hit_scene(placement, plan.moving, plan.moving_in_scene, 0);
+}
+
 bool CollisionSearch::is_free(Placement& placement) {
   const CheckerOptions& options = placement.snapshot().options;
-  if (runs(kLastCollisionStage) && options.check_scene && last_shape_ >= 0 &&
-      detail::scene_collides(placement, last_shape_, last_scene_))
-    return false;
-  // What costs most, meshes that come close, is left for last.
+  const PairPlan& plan = placement.plan();
+  if (options.check_scene) {
+    if (!fixed_scene_) fixed_scene_ = fixed_hits_scene(placement);
+    if (*fixed_scene_) return false;
+  }
+  // What costs most is left for last: meshes that come close.
+  if (surely_hits_scene(placement)) return false;
   if (options.check_self && self_collides_for_certain(placement)) return false;
-  if (options.check_scene && scene_collides(placement)) return false;
+  if (options.check_scene && unsure_shapes_hit_scene(placement, plan.moving, plan.moving_in_scene)) return false;
   return !(options.check_self && unsure_pairs_collide(placement));
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "collision/checker/edge_motion.hpp"
 #include "collision/checker/pair_tests.hpp"
 
 namespace mmgrasp::detail {
@@ -17,12 +18,14 @@ class CollisionSearch {
   bool scene_collides(Placement& placement);
   /// Neither of the two, by the options; what collided last is tested first.
   bool is_free(Placement& placement);
+  /// True when covers prove that a moving shape hits the scene: quick. False proves nothing.
+  bool surely_hits_scene(Placement& placement);
   /// The first contact in the order of the plan, self before scene.
   std::optional<Contact> first_contact(Placement& placement);
 
-  /// False when plan().moving[body] hits a bounded shape of the scene. Clears `proven` unless it stays free while it
-  /// moves as said.
-  bool body_is_free(Placement& placement, int body, const Closing& closing, bool& proven);
+  /// False when plan().moving[body] hits a bounded shape of the scene. Clears `proven` unless it stays free up to
+  /// `reach` pieces of the edge away.
+  bool body_is_free(Placement& placement, int body, EdgeMotion& motion, double reach, bool& proven);
   void remember_pair(int varying) { last_pair_ = varying; }
 
   /// Forgets what depends on where the root stands.
@@ -39,6 +42,18 @@ class CollisionSearch {
   void gather_near(const Placement& placement, int first, int last);
   /// The first of `count` shapes of the plan that hits the scene is remembered; false when none does.
   bool find_scene_hit(Placement& placement, const std::vector<int>& shapes, int count, int first_sphere);
+  /// The same by covers alone; pairs that they leave open are left in `unsure_`.
+  bool covers_hit_scene(Placement& placement, const std::vector<int>& shapes, int count, int first_sphere);
+  /// The pairs in `unsure_`, and the unbounded shapes of the scene.
+  bool unsure_shapes_hit_scene(Placement& placement, const std::vector<int>& shapes, int count);
+  bool last_hits_scene(Placement& placement);
+  /// One of them, for body_is_free().
+  bool hits_scene_shape(Placement& placement, int shape, int other, const Closing& closing, bool far, bool& proven);
+  bool found_in_scene(int shape, int other) {
+    last_shape_ = shape;
+    last_scene_ = other;
+    return true;
+  }
   bool fixed_hits_scene(Placement& placement);
   bool moving_hits_scene(Placement& placement);
 

@@ -4,18 +4,23 @@
 
 namespace mmgrasp::detail {
 
-EdgeMotion::EdgeMotion(const Placement& placement, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
-                       const Eigen::VectorXd& step)
-    : placement_(placement),
-      step_(step),
-      along_edge_(placement.plan().rates_along(q0, q1)),
-      rates_(placement.plan().rates.finite ? placement.plan().rates : along_edge_) {
-  const Eigen::VectorXd magnitude = step.cwiseAbs();
-  body_rates_.noalias() = rates_.shapes.transpose() * magnitude;
-  pair_rates_.noalias() = rates_.pairs.transpose() * magnitude;
-  const MovingFrames& frames = placement.plan().frames;
-  if (!frames.bends()) return;
-  MovingFrames::squares(magnitude, half_squares_);
+void EdgeMotion::start(const Placement& placement, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
+                       const Eigen::VectorXd& step) {
+  placement_ = &placement;
+  velocities_valid_ = false;
+  step_ = step;
+  magnitude_ = step.cwiseAbs();
+  const PairPlan& plan = placement.plan();
+  if (!plan.rates.finite) along_edge_ = plan.rates_along(q0, q1);
+  rates_ = plan.rates.finite ? &plan.rates : &along_edge_;
+  body_rates_.noalias() = rates_->shapes.transpose() * magnitude_;
+  pair_rates_.noalias() = rates_->pairs.transpose() * magnitude_;
+  const MovingFrames& frames = plan.frames;
+  if (!frames.bends()) {
+    half_squares_.resize(0);
+    return;
+  }
+  MovingFrames::squares(magnitude_, half_squares_);
   half_squares_ *= 0.5;
   velocities_.resize(static_cast<std::size_t>(frames.count()));
 }
@@ -25,9 +30,9 @@ Closing EdgeMotion::of_body(int body, double reach) {
   out.most = with_slack(body_rates_[body] * reach);
   if (half_squares_.size() == 0 || reach == 0) return out;
   const Velocity& v = velocity(body);
-  out.centre = placement_.sphere_centre(body);
-  add_velocity(v.at(out.centre), v.angular, placement_.spheres().radius[body],
-               rates_.shape_bends.col(body).dot(half_squares_), reach, out);
+  out.centre = placement_->sphere_centre(body);
+  add_velocity(v.at(out.centre), v.angular, placement_->spheres().radius[body],
+               rates_->shape_bends.col(body).dot(half_squares_), reach, out);
   return out;
 }
 
@@ -35,14 +40,14 @@ Closing EdgeMotion::of_pair(int pair, double reach) {
   Closing out;
   out.most = of_pair_anywhere(pair, reach);
   if (half_squares_.size() == 0 || reach == 0) return out;
-  const ShapePair& shapes = placement_.plan().varying[pair];
-  const int sphere = rates_.b_moves[pair] ? shapes.sphere_b : shapes.sphere_a;
-  const int other = rates_.b_moves[pair] ? shapes.sphere_a : shapes.sphere_b;
+  const ShapePair& shapes = placement_->plan().varying[pair];
+  const int sphere = rates_->b_moves[pair] ? shapes.sphere_b : shapes.sphere_a;
+  const int other = rates_->b_moves[pair] ? shapes.sphere_a : shapes.sphere_b;
   const Velocity &v = velocity(sphere), &w = velocity(other);
-  out.first_moves = !rates_.b_moves[pair];
-  out.centre = placement_.sphere_centre(sphere);
-  add_velocity(v.at(out.centre) - w.at(out.centre), v.angular - w.angular, placement_.spheres().radius[sphere],
-               rates_.pair_bends.col(pair).dot(half_squares_), reach, out);
+  out.first_moves = !rates_->b_moves[pair];
+  out.centre = placement_->sphere_centre(sphere);
+  add_velocity(v.at(out.centre) - w.at(out.centre), v.angular - w.angular, placement_->spheres().radius[sphere],
+               rates_->pair_bends.col(pair).dot(half_squares_), reach, out);
   return out;
 }
 
@@ -58,10 +63,10 @@ void EdgeMotion::add_velocity(const Eigen::Vector3d& linear, const Eigen::Vector
 
 void EdgeMotion::find_velocities() {
   velocities_valid_ = true;
-  const MovingFrames& frames = placement_.plan().frames;
+  const MovingFrames& frames = placement_->plan().frames;
   const std::vector<FrameStep>& steps = frames.steps();
   Velocity& root = velocities_[0];
-  root.origin = placement_.frame(0).t;
+  root.origin = placement_->frame(0).t;
   root.linear.setZero();
   root.angular.setZero();
   if (frames.has_base()) {
@@ -72,7 +77,7 @@ void EdgeMotion::find_velocities() {
     const FrameStep& step = steps[i];
     const Velocity& parent = velocities_[step.parent];
     Velocity& own = velocities_[i + 1];
-    const double* frame = placement_.frame_numbers(static_cast<int>(i) + 1);
+    const double* frame = placement_->frame_numbers(static_cast<int>(i) + 1);
     own.origin = Eigen::Map<const Eigen::Vector3d>(frame + 12);
     own.linear = parent.at(own.origin);
     own.angular = parent.angular;

@@ -10,11 +10,11 @@ namespace mmgrasp::detail {
 /// Bounds on how far bodies come from where they are at one check of a straight edge up to other checks of it, in
 /// metres; distances along the edge are in pieces between checks. Two bounds hold, and the lesser is given: the rates
 /// of PairPlan, for any configuration, and the velocity at the check with what the way can bend from it (a Taylor bound
-/// of second order).
+/// of second order). Kept from edge to edge for its memory alone.
 class MMGRASP_EXPORT EdgeMotion {
  public:
-  /// `step`: motion of the joints in one piece.
-  EdgeMotion(const Placement& placement, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
+  /// To be called first, for each edge. `step`: motion of the joints in one piece. The placement must outlive the edge.
+  void start(const Placement& placement, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
              const Eigen::VectorXd& step);
 
   /// To be called when a check was placed.
@@ -24,7 +24,8 @@ class MMGRASP_EXPORT EdgeMotion {
   Closing of_body(int body, double reach);
   /// How much closer the bodies of plan().varying[pair] come to each other.
   Closing of_pair(int pair, double reach);
-  /// The same by the rates alone: quick to come by.
+  /// The farthest of the two by the rates alone: quick to come by.
+  double of_body_anywhere(int body, double reach) const { return with_slack(body_rates_[body] * reach); }
   double of_pair_anywhere(int pair, double reach) const { return with_slack(pair_rates_[pair] * reach); }
 
  private:
@@ -40,15 +41,15 @@ class MMGRASP_EXPORT EdgeMotion {
                            double reach, Closing& out);
   const Velocity& velocity(int sphere) {
     if (!velocities_valid_) find_velocities();
-    return velocities_[placement_.plan().spheres[sphere].frame];
+    return velocities_[placement_->plan().spheres[sphere].frame];
   }
 
-  const Placement& placement_;
-  const Eigen::VectorXd step_;
+  const Placement* placement_ = nullptr;
+  Eigen::VectorXd step_, magnitude_;
   Eigen::VectorXd body_rates_, pair_rates_;  ///< Motion per piece.
   Eigen::VectorXd half_squares_;             ///< Of the joints' motion in one piece; empty where nothing is known.
   MotionRates along_edge_;                   ///< Where those of the plan are not finite.
-  const MotionRates& rates_;
+  const MotionRates* rates_ = nullptr;
   std::vector<Velocity> velocities_;
   bool velocities_valid_ = false;
 };

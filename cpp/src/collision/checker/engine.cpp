@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 
-#include "collision/checker/edge_walk.hpp"
 #include "collision/checker/pair_tests.hpp"
 #include "mmgrasp/collision/detail/edge_steps.hpp"
 #include "mmgrasp/core/error.hpp"
@@ -122,9 +121,8 @@ bool CheckerEngine::edge_stays_free(const Eigen::VectorXd& q0, const Eigen::Vect
   if (!end_is_free && !is_free(q1)) return false;
   const double pieces = edge_pieces((q1 - q0).cwiseAbs().maxCoeff(), step);
   require(pieces < kMaxPieces, "step", step, "must not cut the edge into more than 1e9 pieces");
-  EdgeWalk walk(placement_, search_, q0, q1, static_cast<long>(pieces));
-  const bool free = walk.all_free();
-  queries_ += walk.checks();
+  const bool free = walk_.all_free(placement_, search_, q0, q1, static_cast<long>(pieces));
+  queries_ += walk_.checks();
   return free;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "collision/checker/collision_search.hpp"
+#include "collision/checker/edge_walk.hpp"
 #include "collision/checker/limit_slack.hpp"
 #include "collision/checker/nearest_pair.hpp"
 #include "collision/checker/placement.hpp"
@@ -52,6 +53,7 @@ class CheckerEngine {
   Placement placement_;
   CollisionSearch search_;
   NearestPairSearch nearest_;
+  EdgeWalk walk_;
   std::size_t queries_ = 0;
 };
 

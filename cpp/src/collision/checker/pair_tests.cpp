@@ -116,7 +116,16 @@ bool scene_meets_exactly(Placement& placement, int shape, int scene_shape, doubl
   const Snapshot& snapshot = placement.snapshot();
   const SceneShape& other = snapshot.scene[scene_shape];
   return solids_collide(*snapshot.shapes[shape].padded, placement.pose(shape), *other.solid, other.T_world, motion,
-                        true);
+                        true, motion > 0 ? nullptr : &placement.memory(shape, scene_shape).piece);
+}
+
+// Whether the triangle that hit last hits again: quicker to find out than anything about the hulls.
+bool last_piece_hits(Placement& placement, int shape, int scene_shape) {
+  const int piece = placement.memory(shape, scene_shape).piece;
+  if (piece < 0 || !runs(kLastCollisionStage)) return false;
+  const Snapshot& snapshot = placement.snapshot();
+  const SceneShape& other = snapshot.scene[scene_shape];
+  return piece_collides(*snapshot.shapes[shape].padded, placement.pose(shape), *other.solid, other.T_world, piece);
 }
 
 // Seen from the scene's shape, which stands still, the direction between them lasts longest.
@@ -124,7 +133,7 @@ Nearness hulls_in_scene(Placement& placement, int shape, int scene_shape, const 
   const Snapshot& snapshot = placement.snapshot();
   const SceneShape& other = snapshot.scene[scene_shape];
   return hull_nearness(*other.solid, other.T_world, *snapshot.shapes[shape].padded, placement.pose(shape), closing,
-                       placement.axis(shape, scene_shape));
+                       placement.memory(shape, scene_shape).axis);
 }
 
 }  // namespace
@@ -189,6 +198,7 @@ bool pair_collides_exactly(Placement& placement, const ShapePair& pair) {
 }
 
 bool scene_collides_exactly(Placement& placement, int shape, int scene_shape) {
+  if (last_piece_hits(placement, shape, scene_shape)) return true;
   return hulls_in_scene(placement, shape, scene_shape, {}) == Nearness::touching &&
          scene_meets_exactly(placement, shape, scene_shape, 0);
 }
@@ -244,6 +254,7 @@ CoverAnswer scene_within(Placement& placement, int s, int scene_shape, const Clo
   if (motion <= kMaxExactMotion && !scene_meets_exactly(placement, s, scene_shape, motion)) return kApart;
   const CoverAnswer here = scene_by_covers(placement, s, scene_shape);
   if (here != kMaybe) return here == kOverlap ? kOverlap : kMaybe;
+  if (last_piece_hits(placement, s, scene_shape)) return kOverlap;
   return scene_meets_exactly(placement, s, scene_shape, 0) ? kOverlap : kMaybe;
 }
 

@@ -1,5 +1,7 @@
 #include "collision/checker/placement.hpp"
 
+#include <algorithm>
+
 namespace mmgrasp::detail {
 
 Placement::Placement(std::shared_ptr<const Snapshot> snapshot, std::shared_ptr<const PairPlan> plan,
@@ -7,6 +9,7 @@ Placement::Placement(std::shared_ptr<const Snapshot> snapshot, std::shared_ptr<c
     : snapshot_(std::move(snapshot)),
       plan_(std::move(plan)),
       group_(group),
+      q_(static_cast<std::size_t>(group.size())),
       frames_(16 * static_cast<std::size_t>(plan_->frames.count())),
       sphere_row_(static_cast<int>((plan_->spheres.size() + kLanes - 1) / kLanes * kLanes)),
       shape_centres_(snapshot_->shapes.size(), Eigen::Vector3d::Zero()),
@@ -19,6 +22,7 @@ Placement::Placement(std::shared_ptr<const Snapshot> snapshot, std::shared_ptr<c
 
 void Placement::place(const double* q) {
   ++stamp_;
+  std::copy(q, q + q_.size(), q_.begin());
   const bool first = !frames_valid_;
   if (first) {
     MovingFrames::set(Rigid(group_.T_world_root()), frames_.data());

@@ -38,6 +38,8 @@ class MMGRASP_EXPORT Placement {
     const SphereRows rows = spheres();
     return {rows.x[sphere], rows.y[sphere], rows.z[sphere]};
   }
+  /// The configuration that was placed last.
+  const std::vector<double>& configuration() const { return q_; }
   Rigid frame(int i) const { return MovingFrames::get(frame_numbers(i)); }
   /// Columns of its rotation, then its origin, four numbers each.
   const double* frame_numbers(int i) const { return frames_.data() + 16 * i; }
@@ -46,11 +48,15 @@ class MMGRASP_EXPORT Placement {
     if (pose_stamp_[shape] != (moves_[shape] ? stamp_ : fixed_stamp_)) compute_pose(shape);
     return poses_[shape];
   }
-  /// The direction from a shape to one of the scene along which their hulls were tested last: where the next test
-  /// begins. Any direction is a valid start, so answers do not depend on it.
-  Eigen::Vector3d& axis(int shape, int scene_shape) {
-    if (axes_.empty()) axes_.resize(snapshot_->shapes.size() * snapshot_->scene.size(), Eigen::Vector3d::Zero());
-    return axes_[shape * snapshot_->scene.size() + scene_shape];
+  /// What is remembered of a shape and one of the scene. Answers do not depend on it.
+  struct SceneMemory {
+    Eigen::Vector3d axis =
+        Eigen::Vector3d::Zero();  ///< Along which their hulls were tested last: the next test begins there.
+    int piece = -1;               ///< Triangle that was hit last.
+  };
+  SceneMemory& memory(int shape, int scene_shape) {
+    if (memory_.empty()) memory_.resize(snapshot_->shapes.size() * snapshot_->scene.size());
+    return memory_[shape * snapshot_->scene.size() + scene_shape];
   }
   /// Set by place_links().
   const Poses& links() const { return links_; }
@@ -63,6 +69,7 @@ class MMGRASP_EXPORT Placement {
   std::shared_ptr<const PairPlan> plan_;
   JointGroup group_;
 
+  std::vector<double> q_;
   std::vector<double> frames_;  ///< See Kernels::place_frames.
   bool frames_valid_ = false;
   std::vector<float> sphere_numbers_;  ///< See spheres().
@@ -74,7 +81,7 @@ class MMGRASP_EXPORT Placement {
   std::vector<std::uint64_t> pose_stamp_;       ///< `stamp_` of when each was made.
   std::uint64_t stamp_ = 0, fixed_stamp_ = 0;   ///< Number of the current placement; of that of fixed shapes.
   std::vector<char> moves_;                     ///< Per shape.
-  std::vector<Eigen::Vector3d> axes_;           ///< See axis().
+  std::vector<SceneMemory> memory_;             ///< See memory().
 };
 
 }  // namespace mmgrasp::detail

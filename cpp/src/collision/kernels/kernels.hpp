@@ -88,10 +88,11 @@ struct Kernels {
   /// World centre and radius of each sphere, the radius with a slack for single precision: x, y, z and radius in rows
   /// of `row` numbers.
   void (*place_spheres)(const FrameSphere* spheres, int count, const double* frames, float* out, int row);
-  /// masks[b * packs + k]: which boxes of pack k sphere b meets. nearest[b], unless null: least squared distance of the
-  /// sphere's centre to any box.
+  /// masks[b * packs + k]: which boxes of pack k sphere b meets.
   void (*spheres_meet_boxes)(const BoxPack* packs, int pack_count, const SphereRows& spheres, int sphere_count,
-                             std::uint8_t* masks, float* nearest);
+                             std::uint8_t* masks);
+  /// squared: squared distance of a point to each box, kLanes for each pack. Returns the least of them.
+  float (*boxes_from_point)(const BoxPack* packs, int pack_count, float x, float y, float z, float* squared);
   /// masks[i]: which pairs of block i meet.
   void (*sphere_pairs_meet)(const PairBlock* blocks, int block_count, const SphereRows& spheres, std::uint8_t* masks);
   /// Cover against a box placed in its frame. `grow` is added to the outer radii, `slack` covers rounding. Without

@@ -8,9 +8,13 @@ namespace mmgrasp::detail {
 
 /// True when a, placed at T_a, and b at T_b touch (or come within the sum of their margins). Closed meshes are solid.
 /// With `more` > 0 [m], false means that they are farther apart by more than that; true proves nothing. `hulls_meet`:
-/// the hulls around them are known to.
+/// the hulls around them are known to. `hit_piece` is set to
+/// the triangle or voxel of the one that is found to meet the other one, a convex body.
 MMGRASP_EXPORT bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double more = 0,
-                                   bool hulls_meet = false);
+                                   bool hulls_meet = false, int* hit_piece = nullptr);
+
+/// The same for that piece alone; false where not one of the two is convex and the other one in pieces.
+MMGRASP_EXPORT bool piece_collides(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, int piece);
 
 class DistanceGrid;
 /// The same answer for two meshes whose bodies are known to be close, sooner: `grid` is that of a and rules out

@@ -27,8 +27,8 @@ bool pieces_collide(const Convex& a, const Convex& b, const Rigid& b_in_a, doubl
   return convex_collide(a, b, b_in_a, margin, axis);
 }
 
-// Some triangle or voxel of a against the convex body b.
-bool tree_hits_convex(const Solid& a, const Solid& b, const PairFrame& frame, double margin) {
+// Some triangle or voxel of a against the convex body b; `hit` is set to it.
+bool tree_hits_convex(const Solid& a, const Solid& b, const PairFrame& frame, double margin, int& hit) {
   BoxTree::Node body;
   body.centre = b.box_centre;
   body.half = b.box_half;
@@ -43,7 +43,9 @@ bool tree_hits_convex(const Solid& a, const Solid& b, const PairFrame& frame, do
       continue;
     }
     for (int i = node.first; i < node.first + node.count; ++i) {
-      if (pieces_collide(a.piece(i), b.core, frame.b_in_a, margin)) return true;
+      if (!pieces_collide(a.piece(i), b.core, frame.b_in_a, margin)) continue;
+      hit = i;
+      return true;
     }
   }
   return false;
@@ -273,14 +275,16 @@ bool plane_collides(const Solid& plane, const Solid& b, const Rigid& b_in_a, dou
 
 }  // namespace
 
-bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double more, bool hulls_meet) {
+bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, double more, bool hulls_meet,
+                    int* hit_piece) {
   if (a.never_collides() || b.never_collides()) return false;
   if (a.kind == SolidKind::field) return field_collides(b, T_b, *a.field, T_a, more + a.margin);
   if (b.kind == SolidKind::field) return field_collides(a, T_a, *b.field, T_b, more + b.margin);
-  if (a.kind != SolidKind::plane && b.kind == SolidKind::plane) return solids_collide(b, T_b, a, T_a, more, hulls_meet);
+  if (a.kind != SolidKind::plane && b.kind == SolidKind::plane) return solids_collide(b, T_b, a, T_a, more);
   const bool a_is_tree = a.kind == SolidKind::mesh || a.kind == SolidKind::voxels;
   const bool b_is_tree = b.kind == SolidKind::mesh || b.kind == SolidKind::voxels;
-  if (!a_is_tree && b_is_tree && a.kind != SolidKind::plane) return solids_collide(b, T_b, a, T_a, more, hulls_meet);
+  if (!a_is_tree && b_is_tree && a.kind != SolidKind::plane)
+    return solids_collide(b, T_b, a, T_a, more, hulls_meet, hit_piece);
 
   const PairFrame frame(T_a, T_b);
   const double margin = a.margin + b.margin + more;
@@ -299,8 +303,19 @@ bool solids_collide(const Solid& a, const Rigid& T_a, const Solid& b, const Rigi
     if (convex_collide(a_is_tree ? a.inner : a.core, b_is_tree ? b.inner : b.core, frame.b_in_a, margin, axis))
       return true;
   }
-  if (b_is_tree ? tree_hits_tree(a, b, frame, margin) : tree_hits_convex(a, b, frame, margin)) return true;
+  int hit = -1;
+  if (b_is_tree ? tree_hits_tree(a, b, frame, margin) : tree_hits_convex(a, b, frame, margin, hit)) {
+    if (hit_piece != nullptr) *hit_piece = hit;
+    return true;
+  }
   return inside(a, b, frame.b_in_a) || inside(b, a, T_b.to(T_a));
+}
+
+bool piece_collides(const Solid& a, const Rigid& T_a, const Solid& b, const Rigid& T_b, int piece) {
+  if (a.kind == SolidKind::convex) return b.kind != SolidKind::convex && piece_collides(b, T_b, a, T_a, piece);
+  const bool pieces = a.kind == SolidKind::mesh || a.kind == SolidKind::voxels;
+  return pieces && b.kind == SolidKind::convex &&
+         pieces_collide(a.piece(piece), b.core, T_a.to(T_b), a.margin + b.margin);
 }
 
 bool meshes_collide(const Solid& a, const Rigid& T_a, const DistanceGrid& grid, const Solid& b, const Rigid& T_b,

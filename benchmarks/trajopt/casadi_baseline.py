@@ -1,4 +1,5 @@
-"""The same problem written for casadi: (4.1)-(4.9) with v and omega for the base, eight-point quadrature, same limits.
+"""The same problem written for casadi: (4.1)-(4.9) with v and omega for the base, eight-point quadrature, same limits, same rotation
+error, and Ipopt with the barrier, tolerances and linear solver's settings that our own solve has.
 
 Built once per number of intervals, with the grasp as a parameter; only the solve is timed. Kinematics are taken over from the
 group: fixed transforms between its joints, found from two configurations of each.
@@ -13,6 +14,11 @@ import mmgrasp as mg
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 NODES, WEIGHTS = (NODES + 1) / 2, WEIGHTS / 2
+IPOPT = {
+    "print_level": 0, "sb": "yes", "max_iter": 150, "tol": 1e-4, "constr_viol_tol": 2.5e-9, "mu_strategy": "monotone", "mu_init": 1e-2,
+    "mu_min": 1e-6, "acceptable_tol": 1e-2, "acceptable_constr_viol_tol": 2.5e-9, "acceptable_iter": 5, "bound_relax_factor": 0.0,
+    "mumps_scaling": 0, "mumps_permuting_scaling": 0, "min_refinement_steps": 0,
+}  # fmt: skip
 
 
 class Baseline:
@@ -43,12 +49,29 @@ class Baseline:
         Z = ca.vertcat(ca.horzcat(c, -s, 0), ca.horzcat(s, c, 0), ca.horzcat(0, 0, 1))
         return Z @ R, Z @ p + ca.vertcat(q[0], q[1], 0)
 
+    def turned(self, q, G):
+        """Twice the vector part of the unit quaternion from the target's rotation (a quaternion, w first) to the tip's: 0 at the target alone."""
+
+        def product(a, b):
+            v = a[0] * b[1:] + b[0] * a[1:] + ca.cross(a[1:], b[1:])
+            return ca.vertcat(a[0] * b[0] - ca.dot(a[1:], b[1:]), v)
+
+        def about(axis, angle):
+            return ca.vertcat(ca.cos(angle / 2), ca.sin(angle / 2) * ca.DM(axis))
+
+        x, y, z, w = mg.robot.quat_xyzw_from_rotation(self.group.fk(np.zeros(self.n))[:3, :3])
+        at = ca.DM([w, x, y, z])
+        for i in reversed(range(self.n - 3)):
+            at = product(about(self.axes[i], q[3 + i]), at)
+        at = product(about([0.0, 0.0, 1.0], q[2]), at)
+        return 2 * product(ca.vertcat(G[0], -G[1:]), at)[1:]
+
     def _solver(self, intervals: tuple[int, ...]):
         if intervals in self.solvers:
             return self.solvers[intervals]
         n, N, d = self.n, sum(intervals) + 1, self.n - 1
         Q, U, A = ca.SX.sym("Q", n, N), ca.SX.sym("U", d, N), ca.SX.sym("A", d, N - 1)
-        H, G = ca.SX.sym("H", len(intervals)), ca.SX.sym("G", 4, 4)
+        H, G, turn = ca.SX.sym("H", len(intervals)), ca.SX.sym("G", 4, 4), ca.SX.sym("turn", 4)
         group, limits = self.group, self.group.robot.base_limits
         velocity = np.concatenate([[limits["linear_velocity"], limits["angular_velocity"]], group.velocity_limits[3:]])
         acceleration = np.concatenate(
@@ -80,18 +103,15 @@ class Baseline:
         for i in range(N):
             for side in (-half, half):
                 add(U[0, i] + side * U[1, i], -limits["wheel_velocity"], limits["wheel_velocity"])
-        R, p = self.fk(Q[:, intervals[0]])
-        E = G[:3, :3].T @ R
+        _, p = self.fk(Q[:, intervals[0]])
         add(G[:3, :3].T @ (p - G[:3, 3]), 0, 0)
-        # The usual vector of sines; it is also 0 at 180 degrees, where the answer then does not count.
-        add(ca.vertcat(E[2, 1] - E[1, 2], E[0, 2] - E[2, 0], E[1, 0] - E[0, 1]), 0, 0)
+        add(self.turned(Q[:, intervals[0]], turn), 0, 0)
         x = ca.vertcat(ca.vec(Q), ca.vec(U), ca.vec(A), H)
         smoothing = 1e-2 / (N - 1) * ca.sumsqr(A / ca.repmat(ca.DM(acceleration), 1, N - 1))
         f = sum(H[s] * count for s, count in enumerate(intervals)) + smoothing
         solver = ca.nlpsol(
-            "solver", "ipopt", {"x": x, "f": f, "g": ca.vertcat(*g), "p": ca.vec(G)},
-            {"print_time": False, "ipopt": {"print_level": 0, "sb": "yes", "tol": 1e-4, "constr_viol_tol": 2.5e-9,
-                                            "mu_strategy": "adaptive", "max_iter": 150}},
+            "solver", "ipopt", {"x": x, "f": f, "g": ca.vertcat(*g), "p": ca.vertcat(ca.vec(G), turn)},
+            {"print_time": False, "ipopt": IPOPT},
         )  # fmt: skip
         self.solvers[intervals] = (solver, np.array(low), np.array(high), velocity, acceleration)
         return self.solvers[intervals]
@@ -123,9 +143,10 @@ class Baseline:
         flat = [m.flatten("F") for m in (Q, U, A)]
         bounds = [np.concatenate([low_q.flatten("F"), -high_u.flatten("F"), -high_a.flatten("F"), [1e-4] * len(intervals)]),
                   np.concatenate([high_q.flatten("F"), high_u.flatten("F"), high_a.flatten("F"), [100.0] * len(intervals)])]  # fmt: skip
+        *xyz, w = mg.robot.quat_xyzw_from_rotation(np.asarray(pose)[:3, :3])
         found = solver(
             x0=np.concatenate([*flat, guess["steps"]]), lbx=bounds[0], ubx=bounds[1], lbg=low, ubg=high,
-            p=np.asarray(pose).flatten("F"),
+            p=np.concatenate([np.asarray(pose).flatten("F"), [w, *xyz]]),
         )  # fmt: skip
         x = np.asarray(found["x"]).ravel()
         steps = x[-len(intervals) :]

@@ -96,8 +96,10 @@ def arguments(text: str | None, **integers: int) -> argparse.ArgumentParser:
     return parser
 
 
-def plan(tasks: list[mg.DriveByTask], world: mg.World | None = None, **options: Any) -> mg.planning.DriveByResult:
+def plan(
+    tasks: list[mg.DriveByTask], world: mg.World | None = None, base: str = "diff_drive", **options: Any
+) -> mg.planning.DriveByResult:
     """The motion of the paper's example, past other tasks."""
-    robot, group = whole_body()
+    robot, group = whole_body(base=base)
     ends = {"start": START, "goal": GOAL} | {k: options.pop(k) for k in ("start", "goal") if k in options}
     return mg.plan_drive_by(robot, group, world or mg.World(), tasks=tasks, **ends, **options)

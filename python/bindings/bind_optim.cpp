@@ -1,6 +1,8 @@
 #include "bindings.hpp"
+#include "given.hpp"
 #include "mmgrasp/optim/assignment.hpp"
 #include "mmgrasp/optim/derivative_free.hpp"
+#include "mmgrasp/optim/pairwise_weights.hpp"
 #include "mmgrasp/optim/set_cover.hpp"
 #include "mmgrasp/optim/shared_tours.hpp"
 #include "mmgrasp/optim/tour.hpp"
@@ -210,6 +212,25 @@ void bind_optim(py::module_& m) {
       py::arg("drive_times"), py::arg("stop_times"), py::arg("robots"),
       "Shares stops among robots so that the last is done as early as can be. `drive_times` is (n + 2 k, n + 2 k): "
       "stops, k starts, k goals; infinite: no way.");
+
+  using W = PairwiseWeights;
+  py::class_<W>(m, "PairwiseWeights", "Weights from pairwise comparisons (Saaty's AHP; P2 3.3.2).")
+      .def_readonly("weights", &W::weights, "Averages over normalised columns, as P2 takes them; they sum to 1.")
+      .def_readonly("eigenvector", &W::eigenvector, "The principal eigenvector, Saaty's own; it sums to 1.")
+      .def_readonly("largest_eigenvalue", &W::largest_eigenvalue, "m for a consistent matrix, else more.")
+      .def_readonly("consistency_ratio", &W::consistency_ratio, "Of Saaty; 0: fully consistent.")
+      .def("__repr__", [](const W& w) {
+        return "PairwiseWeights(" + text(w.weights) + ", consistency ratio " +
+               std::string(py::repr(py::float_(w.consistency_ratio))) + ")";
+      });
+  m.def(
+      "pairwise_weights",
+      [](const ArrayLike& comparison, const Given<double>& most) {
+        return pairwise_weights(matrix_argument(comparison, "comparison"), taken(most, "max_consistency_ratio"));
+      },
+      py::arg("comparison"), py::kw_only(), py::arg("max_consistency_ratio") = 0.1,
+      "Weights by Saaty's AHP: `comparison[i, j]` says how much i is preferred to j, and [j, i] is one over it. A ratio"
+      "\nabove 10 % is refused, as Saaty advises.");
 }
 
 }  // namespace mmgrasp::python

@@ -1,52 +1,11 @@
-#include <cmath>
-#include <sstream>
-
 #include "bindings.hpp"
 #include "mmgrasp/robot/trajectory.hpp"
+#include "motion_message.hpp"
 
 namespace mmgrasp::python {
 namespace {
 
 using namespace py::literals;
-
-/// The trajectory's CSV with the standing base in front of the joints: pose and (zero) twist on the same clock.
-std::string csv_with_base(const JointTrajectory& t, const Eigen::Vector3d& base) {
-  std::istringstream lines(t.to_csv());
-  std::ostringstream out, columns;
-  columns.precision(17);
-  columns << "," << base.x() << "," << base.y() << "," << base.z() << ",0,0,0";
-  bool header = true;
-  for (std::string line; std::getline(lines, line); header = false) {
-    const std::size_t comma = line.find(',');
-    out << line.substr(0, comma)
-        << (header ? ",base.x,base.y,base.theta,base.x.velocity,base.y.velocity,base.theta.velocity" : columns.str())
-        << (comma == std::string::npos ? "" : line.substr(comma)) << "\n";
-  }
-  return out.str();
-}
-
-/// The fields of a ROS trajectory_msgs/JointTrajectory, and base pose and twist for each point.
-py::dict joint_trajectory(const JointTrajectory& t, const Eigen::Vector3d& base) {
-  py::list points;
-  for (std::size_t i = 0; i < t.times.size(); ++i) {
-    const auto list = [](const Eigen::VectorXd& v) { return py::cast(v).attr("tolist")(); };
-    std::int64_t sec = static_cast<std::int64_t>(std::floor(t.times[i]));
-    std::int64_t nanosec = std::llround((t.times[i] - static_cast<double>(sec)) * 1e9);
-    if (nanosec == 1'000'000'000) {
-      ++sec;
-      nanosec = 0;
-    }
-    points.append(py::dict("positions"_a = list(t.positions[i]), "velocities"_a = list(t.velocities[i]),
-                           "accelerations"_a = list(t.accelerations[i]), "effort"_a = py::list(),
-                           "time_from_start"_a = py::dict("sec"_a = sec, "nanosec"_a = nanosec),
-                           "base_pose"_a = list(base), "base_twist"_a = std::vector<double>(3, 0.0)));
-  }
-  return py::dict("header"_a = py::dict("frame_id"_a = "world"), "joint_names"_a = t.names, "points"_a = points);
-}
-
-Eigen::Vector3d base_argument(const py::object& base_pose) {
-  return vector3_argument(base_pose, "base_pose");
-}
 
 std::vector<Eigen::VectorXd> samples_argument(const py::handle& value, const char* name, std::size_t rows,
                                               Eigen::Index columns) {
@@ -111,19 +70,19 @@ void bind_trajectory(py::module_& m) {
       .def(
           "to_csv",
           [](const JointTrajectory& t, const OptionalArray& base_pose) {
-            return base_pose.is_none() ? t.to_csv() : csv_with_base(t, base_argument(base_pose));
+            return base_pose.is_none() ? t.to_csv() : robot_motion(t, base_pose_argument(base_pose)).to_csv();
           },
           py::arg("base_pose") = py::none(),
           "Header time, names, name.velocity, ...; one line a sample. With base_pose (x, y, theta) of the standing "
-          "base, its\n"
-          "pose and twist follow the time.")
+          "base, as\n"
+          "RobotMotion writes it.")
       .def(
           "to_joint_trajectory",
           [](const JointTrajectory& t, const OptionalArray& base_pose) {
-            return joint_trajectory(t, base_pose.is_none() ? Eigen::Vector3d::Zero() : base_argument(base_pose));
+            return motion_message(robot_motion(t, base_pose_argument(base_pose)));
           },
           py::arg("base_pose") = py::none(),
-          "A dict shaped like a ROS trajectory_msgs/JointTrajectory, with base_pose and base_twist at every point.")
+          "RobotMotion's message: columns x, y, theta in front are the base's; without them it stands at base_pose.")
       .def(
           "to_dict",
           [](const JointTrajectory& t) {

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <ctime>
 
 #include "bindings.hpp"
 #include "mmgrasp/optim/nlp_solver.hpp"
@@ -334,7 +335,10 @@ void bind_trajopt(py::module_& m) {
         for (const WholeBodySegment& s : first->problem.segments) intervals.push_back(s.intervals);
         const auto solve = [first = *first] {
           const WholeBodyResult r = optimize_whole_body(first.problem, first.guess);
-          return py::make_tuple(r.outcome == Outcome::solved, r.trajectory->duration());
+          const std::clock_t begun = std::clock();
+          check_whole_body(first.problem, *r.trajectory);
+          const double judging = static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
+          return py::make_tuple(r.outcome == Outcome::solved, r.trajectory->duration(), judging, r.iterations);
         };
         return py::dict("positions"_a = rows_to_array(first->guess.positions), "steps"_a = first->guess.steps,
                         "intervals"_a = intervals, "goal"_a = first->problem.goal_lower,
@@ -343,7 +347,9 @@ void bind_trajopt(py::module_& m) {
       py::arg("group"), py::kw_only(), py::arg("start"), py::arg("tasks"), py::arg("goal"), py::arg("waypoints") = 35,
       "Where the first attempt begins, for benchmarks against other optimisers; None when a task is out of reach. "
       "solve() "
-      "takes it from there, judging included: whether it is solved, and the duration.");
+      "takes it from there, judging included: whether it is solved, the duration, processor seconds that judging once "
+      "more "
+      "took, and iterations.");
   bind_trajectory_class(m);
   bind_drive_by_result(m);
   m.def("plan_drive_by", &drive_by, py::arg("robot"), py::arg("group"), py::arg("world"), py::kw_only(),

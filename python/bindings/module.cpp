@@ -15,8 +15,11 @@ void bind_graspability(py::module_& m);
 void bind_synthesis(py::module_& m);
 void bind_capability(py::module_& m);
 void bind_trajopt(py::module_& m);
+void bind_robot_motion(py::module_& m);
 void bind_control(py::module_& m);
 void bind_structure(py::module_& m);
+void bind_beam_frame(py::module_& m);
+void bind_object_path(py::module_& m);
 void bind_push_grasp(py::module_& m);
 void bind_manipulation(py::module_& m);
 
@@ -50,6 +53,7 @@ PYBIND11_MODULE(_core, m) {
   bind_push_grasp(m);
   bind_task(m);
   bind_trajopt(m);
+  bind_robot_motion(m);
   bind_pickle(m);
   bind_platform_locations(m);
   bind_mapping(m);
@@ -59,6 +63,8 @@ PYBIND11_MODULE(_core, m) {
   bind_graspability(m);
   bind_synthesis(m);
   bind_structure(m);
+  bind_beam_frame(m);
+  bind_object_path(m);
   bind_verify(m);
   refuse_bare_objects(m);
   end_calls_at_exit();

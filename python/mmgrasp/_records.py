@@ -142,3 +142,41 @@ class SearchCounts(TypedDict):
     view: int  # rejected because the camera does not see the point
     singular: int  # rejected for their manipulability
     iterations: int
+
+
+class GripperEventRow(TypedDict):
+    """What the gripper does at one time: `RobotMotion.gripper`."""
+
+    time: float  # when it begins [s]
+    duration: float  # [s]
+    command: str  # open or close
+    opening: float | None  # at the end [m]; None: not known
+    object: str  # what is held afterwards, or no longer; may be empty
+
+
+class TimeFromStart(TypedDict):
+    """A ROS builtin_interfaces/Duration."""
+
+    sec: int
+    nanosec: int
+
+
+class MotionPoint(TypedDict):
+    """A ROS trajectory_msgs/JointTrajectoryPoint, and the base."""
+
+    positions: list[float]
+    velocities: list[float]
+    accelerations: list[float]
+    effort: list[float]
+    time_from_start: TimeFromStart
+    base_pose: list[float]  # x, y, theta in the world
+    base_twist: list[float]  # v_x, v_y, omega in the platform's frame
+
+
+class MotionMessage(TypedDict):
+    """`RobotMotion.to_joint_trajectory`: a ROS trajectory_msgs/JointTrajectory with base and gripper."""
+
+    header: dict[str, str]
+    joint_names: list[str]
+    points: list[MotionPoint]
+    gripper: list[GripperEventRow]

@@ -49,3 +49,32 @@ from ._core import (
 
 # Pipes (P2 3.2)
 from ._core import Pipe as Pipe
+
+# Frames of beams and how they bend where they are held (P2 3.2.3.3.2)
+from ._core import (
+    BeamFrame as BeamFrame,
+    BeamMaterial as BeamMaterial,
+    BeamSection as BeamSection,
+    BeamMember as BeamMember,
+    NodeLoad as NodeLoad,
+    BeamSupport as BeamSupport,
+    SupportedFrame as SupportedFrame,
+    BeamState as BeamState,
+    BeamExtreme as BeamExtreme,
+    beam_frame as beam_frame,
+    copper as copper,
+    round_section as round_section,
+    rectangular_section as rectangular_section,
+)
+
+# An object carried along given poses (P2 3.3), and the grasp that does it best (P2 3.4)
+from ._core import (
+    ObjectPathProblem as ObjectPathProblem,
+    ObjectPathResult as ObjectPathResult,
+    ObjectPathEvaluator as ObjectPathEvaluator,
+    follow_object_path as follow_object_path,
+    FeasibleGrasp as FeasibleGrasp,
+    GraspOptimum as GraspOptimum,
+    optimize_grasp as optimize_grasp,
+    population_search_names as population_search_names,
+)

@@ -1,4 +1,4 @@
-"""Optimisation: set covers, tours, assignments and shared stops with proof; search by values without derivatives."""
+"""Optimisation: set covers, tours, assignments and shared stops with proof; search by values without derivatives; weights of objectives."""
 
 from ._core import (
     solve_set_cover as solve_set_cover,
@@ -11,4 +11,6 @@ from ._core import (
     minimize_derivative_free as minimize_derivative_free,
     derivative_free_solver_names as derivative_free_solver_names,
     DerivativeFreeResult as DerivativeFreeResult,
+    pairwise_weights as pairwise_weights,
+    PairwiseWeights as PairwiseWeights,
 )

@@ -56,3 +56,6 @@ from ._core import (
     DriveByResult as DriveByResult,
     WholeBodyTrajectory as WholeBodyTrajectory,
 )
+
+# What a robot carries out: arm, base and gripper on one clock
+from ._core import RobotMotion as RobotMotion

@@ -8,9 +8,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import mmgrasp as mg
+from mmgrasp.documents.reading import read_json
 from mmgrasp.part_supply.figures import check_figures
 from mmgrasp.part_supply.plan_file import check_form, check_names, plan_to_check
-from mmgrasp.scenario.reading import read_json
 
 SCRAPS = [
     *("", " ", "\n", "\t", "-", ":", ": ", "#", "[", "]", "{", "}", ",", '"', "'", "&a ", "*a", "!!str ", "!x ", "|", ">", "?", "%"),

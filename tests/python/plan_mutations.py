@@ -10,10 +10,10 @@ from typing import Any
 
 import mmgrasp as mg
 from mmgrasp._core import verify as checks
+from mmgrasp.documents.reading import Document, read_json
 from mmgrasp.part_supply.figures import check_figures
 from mmgrasp.part_supply.plan_file import check_form, plan_to_check, scenario_to_dict
 from mmgrasp.part_supply.verification import differences
-from mmgrasp.scenario.reading import Document, read_json
 
 Path_ = tuple[str | int, ...]
 REMOVED = object()

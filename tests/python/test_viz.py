@@ -16,8 +16,8 @@ from plan_by_hand import plan_by_hand
 pytest.importorskip("mmgrasp")
 
 from mmgrasp.bodies import SceneBodies, stored_pose
+from mmgrasp.documents.reading import Document
 from mmgrasp.part_supply.plan_file import check_form, check_names, plan_schema
-from mmgrasp.scenario.reading import Document
 from mmgrasp.scenario.schema import NOTES, WORDS
 from mmgrasp.viz import png, raster, report, topview
 from mmgrasp.viz.scene import PlanScene

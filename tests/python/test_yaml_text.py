@@ -7,7 +7,7 @@ import math
 import pytest
 
 import mmgrasp as mg
-from mmgrasp.scenario.yaml_text import parse_yaml
+from mmgrasp.documents.yaml_text import parse_yaml
 
 BOMB = "a: &a [x, x, x, x, x, x, x, x, x, x]\n" + "".join(
     f"{new}: &{new} [{', '.join(['*' + old] * 10)}]\n" for old, new in zip("abcdefgh", "bcdefghi", strict=True)

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "mmgrasp/core/error.hpp"
+#include "structure/section_axes.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -74,13 +75,8 @@ double Pipe::length(int section) const {
 
 Pose Pipe::T_object_section(int section) const {
   const auto [a, b] = sections.at(section);
-  const Vector3d x = (nodes.at(b) - nodes.at(a)).normalized();
-  const bool along_z = std::abs(x.z()) > std::cos(0.06);
-  const Vector3d towards = along_z ? Vector3d::UnitX() : Vector3d::UnitZ();
   Pose T = Pose::Identity();
-  T.linear().col(0) = x;
-  T.linear().col(1) = (towards - towards.dot(x) * x).normalized();
-  T.linear().col(2) = x.cross(T.linear().col(1));
+  T.linear() = detail::section_axes(nodes.at(b) - nodes.at(a));
   T.translation() = nodes.at(a);
   return T;
 }

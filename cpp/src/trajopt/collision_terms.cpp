@@ -16,6 +16,7 @@ constexpr int kRegular = 3;          // samples of each interval
 constexpr double kFar = 2.0;         // distance up to which bodies that have to be separated are checked [m]
 constexpr int kFiner = 10;           // when looking for collisions
 constexpr double kLeastRoom = 2e-4;  // the check takes gaps below 1e-4 m for contact
+constexpr double kCorners = 1.75;    // a padded body's corners are this much farther out than its faces
 
 VectorXd at_sample(const WholeBodyTrajectory& t, int interval, double s) {
   const std::size_t i = interval;
@@ -135,6 +136,16 @@ void CollisionTerm::hessian(const double* x, const double* multipliers, double* 
     for (Eigen::Index j = 0; j <= i; ++j) *out++ = H(i, j);
 }
 
+CollisionRows::CollisionRows(std::vector<CollisionChecker*> checkers, std::vector<int> pinned, double margin,
+                             double look_out)
+    : checkers_(std::move(checkers)), pinned_(std::move(pinned)), margin_(margin), look_out_(look_out) {
+  for (CollisionChecker* checker : checkers_) {
+    if (!checker || bodies_.count(checker) > 0) continue;
+    padding_ = std::max(padding_, 2 * checker->world().padding().most() + checker->options().padding);
+    bodies_.emplace(checker, BodyPadding(checker->group().robot(), checker->world()));
+  }
+}
+
 bool CollisionRows::look_along(const WholeBodyTrajectory& trajectory) {
   bool collides = false;
   for (int i = 0; i < static_cast<int>(checkers_.size()); ++i) {
@@ -146,7 +157,12 @@ bool CollisionRows::look_along(const WholeBodyTrajectory& trajectory) {
       if (checker->is_free(q) || !checker->first_contact(q)) continue;
       collides = true;
       if (k < kFiner) samples_.insert({i, s});
-      for (const DistanceResult& d : checker->distances(q, margin_ + 1e-3)) watched_.insert({d.with_scene, d.a, d.b});
+      const double within = margin_ + 1e-3;
+      for (const DistanceResult& d : checker->distances(q, within + kCorners * padding_)) {
+        if (d.value < within + kCorners * padding_of(*checker, d)) watch(*checker, d);
+      }
+      for (const Contact& c : padding_ > 0 ? checker->contacts(q) : std::vector<Contact>{})
+        if (c.by_padding) corners_.insert({c.with_scene, c.a, c.b});
     }
   }
   if (collides) take_planes(trajectory);
@@ -158,8 +174,8 @@ void CollisionRows::keep_clear(const std::vector<VectorXd>& positions, bool part
   for (int i = 0; i < static_cast<int>(checkers_.size()); ++i) {
     CollisionChecker* checker = checkers_[i];
     if (!checker) continue;
-    for (const DistanceResult& d : checker->distances(positions[i], look_out_))
-      if (d.with_scene && d.gradient.cwiseAbs().maxCoeff() > 0) watched_.insert({true, d.a, d.b});
+    for (const DistanceResult& d : checker->distances(positions[i], look_out_ + kCorners * padding_))
+      if (d.with_scene && d.gradient.cwiseAbs().maxCoeff() > 0) watch(*checker, d);
   }
   const std::map<Pair, double> rooms = rooms_along(positions);
   for (const Sample& sample : regular_samples()) take_planes_at(sample, reference(sample), rooms);
@@ -168,19 +184,42 @@ void CollisionRows::keep_clear(const std::vector<VectorXd>& positions, bool part
 
 std::map<CollisionRows::Pair, double> CollisionRows::rooms_along(const std::vector<VectorXd>& positions) {
   std::map<Pair, double> rooms;
-  for (const Pair& pair : watched_) rooms[pair] = margin_;
+  for (const Pair& pair : watched_) rooms[pair] = margin_ + kept_apart(pair);
   for (int waypoint : pinned_) {
     const int interval = std::min(waypoint, static_cast<int>(checkers_.size()) - 1);
     CollisionChecker* checker = checkers_[interval];
     if (!checker) continue;
     const VectorXd& q = positions[waypoint];
-    for (const DistanceResult& d : checker->distances(q, 2 * margin_ + 1e-6)) {
-      const auto room = rooms.find({d.with_scene, d.a, d.b});
-      if (room != rooms.end() && d.value > 0) room->second = std::min(room->second, 0.5 * d.value);
+    for (const DistanceResult& d : checker->distances(q, 2 * margin_ + kCorners * padding_ + 1e-6)) {
+      const Pair pair{d.with_scene, d.a, d.b};
+      const auto room = rooms.find(pair);
+      if (room == rooms.end() || d.value <= 0) continue;
+      const double padding = std::min(kept_apart(pair), d.value - kLeastRoom);
+      room->second = std::min(room->second, padding + 0.5 * (d.value - padding));
     }
   }
   for (auto& [pair, room] : rooms) room = std::max(room, kLeastRoom);
   return rooms;
+}
+
+double CollisionRows::padding_of(const CollisionChecker& checker, const DistanceResult& d) const {
+  if (padding_ == 0 || !d.with_scene) return 0;
+  const BodyPadding& bodies = bodies_.at(&checker);
+  const bool held = checker.world().attached().count(d.a) > 0;
+  return bodies.object(d.b) + (held ? bodies.attached(d.a) : std::max(checker.options().padding, bodies.link(d.a)));
+}
+
+void CollisionRows::watch(const CollisionChecker& checker, const DistanceResult& d) {
+  const Pair pair{d.with_scene, d.a, d.b};
+  watched_.insert(pair);
+  const double padding = padding_of(checker, d);
+  if (padding > 0) paddings_[pair] = std::max(paddings_[pair], padding);
+}
+
+double CollisionRows::kept_apart(const Pair& pair) const {
+  const auto padding = paddings_.find(pair);
+  if (padding == paddings_.end()) return 0;
+  return padding->second * (corners_.count(pair) > 0 ? kCorners : 1);
 }
 
 std::set<CollisionRows::Sample> CollisionRows::regular_samples() const {
@@ -210,7 +249,7 @@ void CollisionRows::take_planes_at(const Sample& sample, const VectorXd& q, cons
   PlaneMaker here(*checker, q);
   std::optional<PlaneMaker> apart;  // where they are known to be
   std::map<Pair, DistanceResult> known;
-  for (const DistanceResult& d : here.distances(look_out_)) {
+  for (const DistanceResult& d : here.distances(look_out_ + kCorners * padding_)) {
     const Pair pair{d.with_scene, d.a, d.b};
     if (watched_.count(pair) == 0 || std::abs(d.value) < 1e-9) continue;
     if (d.gradient.cwiseAbs().maxCoeff() < 1e-12) continue;  // no joint can separate them
@@ -220,7 +259,8 @@ void CollisionRows::take_planes_at(const Sample& sample, const VectorXd& q, cons
       planes = {here.plane(d, room)};
       continue;
     }
-    if (!planes.empty() && d.value > 0) continue;
+    const double clear = d.value - kept_apart(pair);
+    if (!planes.empty() && clear > 0) continue;
     if (!apart) {
       apart.emplace(*checker, reference(sample));
       for (const DistanceResult& r : apart->distances(kFar)) known[{r.with_scene, r.a, r.b}] = r;
@@ -231,14 +271,14 @@ void CollisionRows::take_planes_at(const Sample& sample, const VectorXd& q, cons
       continue;
     }
     SeparatingPlane parted = apart->plane(r->second, room);
-    if (d.value > 0) {
+    if (clear > 0) {
       planes.push_back(parted);
       continue;
     }
     // Points fixed to the bodies represent whole bodies: the distance they missed is added to what is to be kept, as
     // far as there is room.
     for (SeparatingPlane& plane : planes)
-      plane.margin = std::max(plane.margin, std::min(plane.margin - d.value, 0.8 * gap(plane, apart->q())));
+      plane.margin = std::max(plane.margin, std::min(plane.margin - clear, 0.8 * gap(plane, apart->q())));
     // Whichever of the points in question is further beyond.
     SeparatingPlane touching = here.plane(d, room);
     touching.normal = parted.normal;
@@ -264,7 +304,7 @@ void CollisionRows::add_to(WholeBodyNlp& nlp, bool diff_drive) const {
     if (s > 0) {
       for (int end = i; end <= i + 1; ++end)
         for (int d = 0; d < layout.drives(); ++d) term->variables.push_back(layout.v(end, d));
-      term->variables.push_back(layout.h(layout.segment(i)));
+      term->variables.push_back(layout.h(i));
     }
     nlp.add(std::move(term));
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/collision/detail/named_bodies.hpp"
 #include "mmgrasp/trajopt/whole_body_trajectory.hpp"
 #include "trajopt/interval_point.hpp"
 #include "trajopt/terms.hpp"
@@ -40,12 +41,11 @@ class CollisionTerm : public CurvedTerm {
 };
 
 /// Where which pairs of bodies have to be kept apart; planes are taken anew along every trajectory.
-class CollisionRows {
+class MMGRASP_EXPORT CollisionRows {
  public:
   /// `pinned`: waypoints whose configuration or tool pose is prescribed; bodies that are closer than the margin there
-  /// are given what room they have.
-  CollisionRows(std::vector<CollisionChecker*> checkers, std::vector<int> pinned, double margin, double look_out)
-      : checkers_(std::move(checkers)), pinned_(std::move(pinned)), margin_(margin), look_out_(look_out) {}
+  /// are given what room they have. The paddings of the checkers' worlds are kept beside the margin.
+  CollisionRows(std::vector<CollisionChecker*> checkers, std::vector<int> pinned, double margin, double look_out);
 
   /// Looks along a trajectory; false when nothing collides. Pairs that collide anywhere are constrained from then on
   /// wherever they are within look_out.
@@ -63,14 +63,22 @@ class CollisionRows {
   void take_planes_at(const Sample& sample, const Eigen::VectorXd& q, const std::map<Pair, double>& rooms);
   Eigen::VectorXd reference(const Sample& sample) const;
   std::set<Sample> regular_samples() const;
+  double padding_of(const CollisionChecker& checker, const DistanceResult& d) const;
+  void watch(const CollisionChecker& checker, const DistanceResult& d);
+  /// What the padding of a pair asks for, without the margin [m].
+  double kept_apart(const Pair& pair) const;
   /// The distance that each pair has to keep.
   std::map<Pair, double> rooms_along(const std::vector<Eigen::VectorXd>& positions);
 
   std::vector<CollisionChecker*> checkers_;
   std::vector<int> pinned_;
   double margin_, look_out_;
+  std::map<const CollisionChecker*, BodyPadding> bodies_;
+  double padding_ = 0;  ///< No pair's is larger [m].
   std::set<Pair> watched_;
-  std::set<Sample> samples_;  // samples beside the regular ones
+  std::set<Pair> corners_;           ///< Pairs whose padding met though they were that far apart.
+  std::map<Pair, double> paddings_;  ///< Of watched pairs, where there is any [m].
+  std::set<Sample> samples_;         // samples beside the regular ones
   std::vector<Eigen::VectorXd> reference_;
   std::map<Sample, std::map<Pair, std::vector<SeparatingPlane>>> planes_;
 };

@@ -86,10 +86,11 @@ void check_motion(Ledger& ledger, const WholeBodyTrajectory& t) {
   if (!group.has_base()) return;
   if (diff_drive) {
     ledger.open("nonholonomic", "m/s", 1e-6);
-    for (std::size_t i = 0; i < t.size(); ++i) {
-      const VectorXd& q = t.positions()[i];
-      const VectorXd rate = configuration_velocity(group, q, t.drive()[i]);
-      ledger.note(std::abs(rate[0] * std::sin(q[2]) - rate[1] * std::cos(q[2])), t.times()[i], "sideways");
+    // What the roll-out misses the next waypoint by, along the wheels' axle, had to be slipped.
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      const double theta = t.positions()[i + 1][2], h = t.times()[i + 1] - t.times()[i];
+      const double across = -std::sin(theta) * ends[i][0] + std::cos(theta) * ends[i][1];
+      ledger.note(std::abs(across) / h, t.times()[i], "sideways");
     }
   }
   const std::vector<VectorXd> whole = t.rolled_out(kSteps);
@@ -253,34 +254,51 @@ struct Moment {
   VectorXd q;
 };
 
-/// Straight edges between moments that the motion leaves by less than the clearance that edges ask for.
+/// How far each joint leaves the straight line between two moments of one interval: curves of the third degree, which
+/// are known at three places, go less than a third beyond the farthest of them.
+VectorXd bend_between(const WholeBodyTrajectory& t, const Moment& from, const Moment& to, const Moment& middle) {
+  const VectorXd step = to.q - from.q;
+  VectorXd bend = (middle.q - from.q - 0.5 * step).cwiseAbs();
+  for (const double s : {0.25, 0.75})
+    bend = bend.cwiseMax((t.at((1 - s) * from.time + s * to.time) - from.q - s * step).cwiseAbs());
+  return 4.0 / 3 * bend;
+}
+
+/// Conservative advancement along the straight edge with what the motion strays from it added to what has to be clear;
+/// halves where that is not enough to tell.
 void check_edges(Ledger& ledger, CollisionChecker& checker, const WholeBodyTrajectory& t, const Moment& from,
                  const Moment& to, int splits) {
-  constexpr double kBend = 1e-4;  // [rad] or [m]
+  constexpr double kStraight = 5e-6, kDepth = 1e-3;  // [rad] or [m]; the latter where it is only to tell how deep
+  const JointGroup& group = t.group();
+  const auto inside = [&](const VectorXd& q) {  // limits are checked elsewhere, with their own slack
+    return VectorXd(q.cwiseMax(group.lower()).cwiseMin(group.upper()));
+  };
   const Moment middle{0.5 * (from.time + to.time), t.at(0.5 * (from.time + to.time))};
-  if (splits > 0 && (middle.q - 0.5 * (from.q + to.q)).cwiseAbs().maxCoeff() > kBend) {
+  EdgeOptions edge;
+  edge.continuous = true;
+  edge.bend = bend_between(t, from, to, middle);
+  const VectorXd begin = inside(from.q), end = inside(to.q);
+  const EdgeResult r = check_edge(checker, begin, end, edge);
+  if (r.free) return;
+  const bool collides = r.fraction == 0 && checker.first_contact(begin);
+  if (splits > 0 && edge.bend.maxCoeff() > (collides ? kDepth : kStraight)) {
     check_edges(ledger, checker, t, from, middle, splits - 1);
     check_edges(ledger, checker, t, middle, to, splits - 1);
     return;
   }
-  EdgeOptions edge;
-  edge.continuous = true;
-  const EdgeResult r = check_edge(checker, from.q, to.q, edge);
-  if (r.free || !r.contact) return;  // limits are checked elsewhere
-  const VectorXd q = from.q + r.fraction * (to.q - from.q);
+  const VectorXd q = begin + r.fraction * (end - begin);
   const double time = from.time + r.fraction * (to.time - from.time);
-  ledger.note(std::max(-checker.distance(q).value, 1e-9), time, r.contact->a + " and " + r.contact->b);
+  ledger.note(std::max(-checker.distance(q).value, 1e-9), time,
+              r.contact ? r.contact->a + " and " + r.contact->b : "limits");
 }
 
-void check_collisions(Ledger& ledger, const std::vector<CollisionChecker*>& checkers, const WholeBodyTrajectory& t,
-                      const std::vector<Sample>& samples) {
-  constexpr int kMostSplits = 6;
+void check_collisions(Ledger& ledger, const std::vector<CollisionChecker*>& checkers, const WholeBodyTrajectory& t) {
+  constexpr int kMostSplits = 12;
   if (checkers.empty()) return;
   ledger.open("collision", "m", 0);
-  for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
-    CollisionChecker* checker = checkers[samples[i].interval];
-    if (!checker) continue;
-    check_edges(ledger, *checker, t, {samples[i].time, samples[i].q}, {samples[i + 1].time, samples[i + 1].q},
+  for (std::size_t i = 0; i + 1 < t.size(); ++i) {
+    if (!checkers[i]) continue;
+    check_edges(ledger, *checkers[i], t, {t.times()[i], t.positions()[i]}, {t.times()[i + 1], t.positions()[i + 1]},
                 kMostSplits);
   }
 }
@@ -296,7 +314,7 @@ std::vector<Violation> check_whole_body(const WholeBodyProblem& problem, const W
   check_ends(ledger, problem, trajectory);
   check_tool(ledger, problem, trajectory);
   check_held_tool(ledger, problem, samples);
-  check_collisions(ledger, checkers, trajectory, samples);
+  check_collisions(ledger, checkers, trajectory);
   return ledger.list();
 }
 

@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FittedCuboid', 'Grasp', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'Graspability', 'GridDistanceField', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MotionResult', 'MotionStats', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotSource', 'SdfHits', 'SearchTree', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_objects', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FittedCuboid', 'Grasp', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'Graspability', 'GridDistanceField', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MotionResult', 'MotionStats', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'SdfHits', 'SearchTree', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'paired_order', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'render_depth', 'resting_poses', 'robust_intersections', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_objects', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -1068,8 +1068,8 @@ class JointTrajectory:
         """
     def to_csv(self, base_pose: numpy.typing.ArrayLike | None = None) -> str:
         """
-        Header time, names, name.velocity, ...; one line a sample. With base_pose (x, y, theta) of the standing base, its
-        pose and twist follow the time.
+        Header time, names, name.velocity, ...; one line a sample. With base_pose (x, y, theta) of the standing base, as
+        RobotMotion writes it.
         """
     def to_dict(self) -> dict[str, typing.Any]:
         """
@@ -1077,7 +1077,7 @@ class JointTrajectory:
         """
     def to_joint_trajectory(self, base_pose: numpy.typing.ArrayLike | None = None) -> dict[str, typing.Any]:
         """
-        A dict shaped like a ROS trajectory_msgs/JointTrajectory, with base_pose and base_twist at every point.
+        RobotMotion's message: columns x, y, theta in front are the base's; without them it stands at base_pose.
         """
     @property
     def accelerations(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -3615,6 +3615,100 @@ class DriveByResult:
         By kind of constraint: value (0 when kept), tolerance, unit, time [s], waypoint, what, kept; measured on a roll-out ten times
         finer than the waypoints.
         """
+class RobotMotion:
+    """
+    What a robot carries out: arm, base and gripper on one clock. Made of a trajectory, a drive (`of_drive`) or a motion in
+    passing (`of_drive_by`); `append` joins them. Between points the base's twist is linear in time, the arm a cubic.
+    """
+    @staticmethod
+    def of_drive(path: BasePath, robot: Robot, arm: JointGroup, configuration: numpy.typing.ArrayLike, *, period: float = 0.1) -> RobotMotion:
+        """
+        Of a drive of the robot's base within its limits, `path.duration(robot)` long, with the arm at a configuration (n,);
+        points at most `period` [s] apart.
+        """
+    @staticmethod
+    def of_drive_by(result: DriveByResult, *, openings: collections.abc.Sequence[float] = [], period: float = 0.02) -> RobotMotion:
+        """
+        Of what plan_drive_by found: points at most `period` [s] apart, and the gripper closing at every task that takes
+        an object, to these openings [m], in order; none given: not known.
+        """
+    def __init__(self, trajectory: JointTrajectory, base_pose: numpy.typing.ArrayLike | None = None) -> None:
+        """
+        Of a timed trajectory. Columns x, y, theta, where it begins with them, are the base's; otherwise the base stands at
+        base_pose (x, y, theta), the origin by default.
+        """
+    def __len__(self) -> int:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def append(self, next: RobotMotion) -> None:
+        """
+        Goes on with `next`, whose clock begins where this ends. Raises InvalidInput unless base and joints begin where they are.
+        """
+    def command_gripper(self, command: str, *, opening: float | None = None, duration: float = 0.0, object: str = '') -> None:
+        """
+        At the end, standing still: `open` or `close` to an opening [m], which takes `duration` [s]; object: what is taken or
+        left.
+        """
+    def to_csv(self) -> str:
+        """
+        Header time, base.x, base.y, base.theta, base.v, base.vy, base.omega, joints, name.velocity, name.acceleration, gripper
+        (what it begins to do up to the row's time).
+        """
+    def to_joint_trajectory(self) -> mmgrasp._records.MotionMessage:
+        """
+        A dict shaped like a ROS trajectory_msgs/JointTrajectory, with base_pose and base_twist at every point, and `gripper`
+        on the same clock.
+        """
+    def wait(self, duration: float) -> None:
+        """
+        Base and arm stand still for so long [s].
+        """
+    @property
+    def accelerations(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k, n) [rad/s^2 or m/s^2]
+        """
+    @property
+    def base_poses(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k, 3): x, y [m], theta [rad] in the world; theta is not wrapped.
+        """
+    @property
+    def base_twists(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k, 3): v_x, v_y [m/s], omega [rad/s] in the platform's own frame.
+        """
+    @property
+    def duration(self) -> float:
+        """
+        [s]
+        """
+    @property
+    def gripper(self) -> list[mmgrasp._records.GripperEventRow]:
+        """
+        What the gripper does, in order: time and duration [s], command (open or close), opening [m] or None, object.
+        """
+    @property
+    def joints(self) -> list[str]:
+        """
+        Of the arm, one a column.
+        """
+    @property
+    def positions(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k, n) [rad or m]
+        """
+    @property
+    def times(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k,) [s], from 0
+        """
+    @property
+    def velocities(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k, n) [rad/s or m/s]
+        """
 class PinholeCamera:
     """
     Pinhole camera without distortion: looks along +z, x to the right of the image, y down.
@@ -4726,7 +4820,7 @@ def _edge_option_table() -> dict[str, typing.Any]:
     ...
 def _first_drive_by_guess(group: JointGroup, *, start: numpy.typing.ArrayLike, tasks: collections.abc.Sequence[DriveByTask], goal: numpy.typing.ArrayLike, waypoints: int = 35) -> typing.Any:
     """
-    Where the first attempt begins, for benchmarks against other optimisers; None when a task is out of reach. solve() takes it from there, judging included: whether it is solved, and the duration.
+    Where the first attempt begins, for benchmarks against other optimisers; None when a task is out of reach. solve() takes it from there, judging included: whether it is solved, the duration, processor seconds that judging once more took, and iterations.
     """
 def _grasp_option_table() -> dict[str, typing.Any]:
     ...

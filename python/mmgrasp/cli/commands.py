@@ -19,6 +19,7 @@ from rich.console import Console
 
 from .._core import Error, InvalidInput, Outcome
 from .._files import check_file, check_folder, printable, write_file
+from ..documents.reading import Document
 from ..part_supply import (
     ScenarioPlan,
     plan_drive_by_picks,
@@ -29,7 +30,6 @@ from ..part_supply import (
 )
 from ..part_supply.plan_file import check_names
 from ..scenario import load_scenario
-from ..scenario.reading import Document
 from .arguments import build_parser
 from .check import check_robot, describe
 from .console import Reporter, open_streams

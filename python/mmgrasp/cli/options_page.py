@@ -35,6 +35,13 @@ SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
         _core._timing_option_table,
         set(),
     ),
+    (
+        "follow_object_path",
+        "Keywords of `follow_object_path`, `ObjectPathEvaluator` and `optimize_grasp` (`ObjectPathOptions`)",
+        _core._object_path_option_table,
+        set(),
+    ),
+    ("optimize_grasp", "The search of `optimize_grasp` (`PopulationOptions`)", _core._population_option_table, set()),
     ("roadmap", "Keywords of `Roadmap.build` (`RoadmapOptions`)", _core._roadmap_option_table, set()),
     (
         "plan_manipulation",

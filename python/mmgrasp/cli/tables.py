@@ -38,9 +38,16 @@ def summary(plan: ScenarioPlan) -> Table:
     length = sum(leg.length for leg in plan.route)
     seconds = sum(leg.duration(plan.scenario.setup.robot) for leg in plan.route)
     planning = sum(seconds for _, seconds in plan.timings)
-    table.caption = f"drive {length:.2f} m in {seconds:.1f} s, planned in {planning:.1f} s"
+    table.caption = f"drive {length:.2f} m in {seconds:.1f} s, planned in {planning:.1f} s{_probabilities(plan)}"
     table.caption += f"\nno fewer stops {premises_text(plan.premises)}" if plan.plan.proven_minimal else ""
     return table
+
+
+def _probabilities(plan: ScenarioPlan) -> str:
+    """Of the grasps that were found in a scan."""
+    trays = plan.scenario.trays
+    found = [trays[p.tray].tray.parts[p.part].grasps[p.grasp].quality for p in plan.picks if trays[p.tray].scan]
+    return f"; grasps of scanned parts succeed with probability {min(found):.2f} to {max(found):.2f}" if found else ""
 
 
 def drive_by_summary(passing: DriveByPlan) -> Table:

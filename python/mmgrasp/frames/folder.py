@@ -13,7 +13,7 @@ import numpy as np
 
 from .._core import DepthCamera, DepthImage, InvalidInput, IoError
 from .._files import printable, read_head
-from ..scenario.reading import near_miss
+from ..documents.reading import near_miss
 from . import npz, redwood, seven_scenes, tum
 from .depth_png import png_header, read_depth_png
 from .frame import Frame, FrameBytes, frame_bytes

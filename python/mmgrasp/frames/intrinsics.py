@@ -8,7 +8,7 @@ from pathlib import Path
 
 from .._core import InvalidInput, PinholeCamera
 from .._files import read_text
-from ..scenario.reading import Node, read_json
+from ..documents.reading import Node, read_json
 from .depth_png import MOST_PIXELS
 from .poses import matrix
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from .._core import InvalidInput
 from .._files import write_file
-from ..scenario.reading import near_miss
+from ..documents.reading import near_miss
 from .depth_png import MOST_PIXELS
 from .frame import Frame
 from .intrinsics import Intrinsics

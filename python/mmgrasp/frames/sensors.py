@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .._core import DepthCamera, DepthNoise, InvalidInput, PinholeCamera
-from ..scenario.reading import LONGEST_NAME, Node, read_yaml
+from ..documents.reading import LONGEST_NAME, Node, read_yaml
 from .intrinsics import Intrinsics, read_intrinsics
 from .poses import inverse
 

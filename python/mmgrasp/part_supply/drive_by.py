@@ -21,6 +21,7 @@ from .._core import InvalidInput, JointGroup, Outcome, Pick, World
 from .._files import write_file
 from .._progress import Progress
 from .planning import ScenarioPlan, file_name
+from .round_motion import RoundMotion
 
 SETTLING = 0.1  # fingers press before the part is lifted [s]
 APPROACH_SPEED = (
@@ -125,6 +126,12 @@ class DriveByPlan:
         """The same with the parts taken in passing [s]."""
         return self.stop_and_pick - self.saved
 
+    def motion(self) -> _core.RobotMotion:
+        """The whole round with what is done in passing, as a robot carries it out: arm, base and gripper on one clock."""
+        return RoundMotion(self.plan.scenario, self.plan.plan).make(
+            {p.pick: (p.result, MERGED) for p in self.picks if p.used}
+        )
+
     def plan_to_dict(self) -> dict[str, Any]:
         """The content of plan.json with what is done in passing, so that `mmgrasp verify` checks it as well."""
         motions = [pick.motion() for pick in self.picks if pick.used]
@@ -142,10 +149,12 @@ class DriveByPlan:
         }
 
     def save(self, folder: str | os.PathLike[str]) -> list[Path]:
-        """drive_by.json, plan.json, and one CSV for each motion in passing (x, y, theta first; then wheel speeds, tasks and what is held)."""
+        """drive_by.json, plan.json, a CSV of the whole round, and one for each motion in passing (x, y, theta first; then wheel speeds, tasks and what is held)."""
         written = [Path(folder) / "drive_by.json", Path(folder) / "plan.json"]
         for path, content in zip(written, (self.to_dict(), self.plan_to_dict()), strict=True):
             write_file(path, json.dumps(content, allow_nan=False) + "\n")
+        written.append(Path(folder) / "trajectories" / "round.csv")
+        write_file(written[-1], self.motion().to_csv())
         for pick in self.picks:
             if pick.used:
                 name = file_name(pick.part)

@@ -14,8 +14,8 @@ from .. import _core
 from .._core import Hand, InvalidInput, PartSupplyPlan, Robot, RobotSource
 from .._core import verify as checks
 from .._files import SCHEMAS, sha256_of
-from ..scenario import Scenario
-from ..scenario.reading import Node, read_json
+from ..documents.reading import Node, read_json
+from ..scenario import Scenario, TraySetup
 from ..scenario.schema import check_schema
 from ..scenario.shapes import pose_to_dict, shape_from_node, shape_to_dict
 from .premises import premises
@@ -123,7 +123,8 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
             }
             for t in scenario.trays
         ],
-        "parts": [_part(part, t.tray.name) for t in scenario.trays for part in t.tray.parts],
+        "parts": [_part(part, t) for t in scenario.trays for part in t.tray.parts],
+        **({"scans": scans} if (scans := [t.scan.to_dict(t.tray.name) for t in scenario.trays if t.scan]) else {}),
         "options": dict(scenario.problem().options),
         **scenario.rules.to_dict(),
         "reach": {key: scenario.reach.get(key, default) for key, (default, _) in _reach_options().items()},
@@ -178,15 +179,17 @@ def _mesh_files(robot: Robot) -> list[str]:
     return sorted((shapes | {path for u in robot.source.urdfs for path in u["mesh_files"].values()}) - {""})
 
 
-def _part(part: _core.Part, tray: str) -> dict[str, Any]:
+def _part(part: _core.Part, tray: TraySetup) -> dict[str, Any]:
     return {
         "name": part.name,
-        "tray": tray,
+        "tray": tray.tray.name,
         "target": part.target,
         "pose": pose_to_dict(part.T_world_part),
         "shapes": [shape_to_dict(s) for s in part.shapes],
         "grasps": [
-            {"pose": pose_to_dict(g.T_object_hand), "width": g.opening, "quality": g.quality} for g in part.grasps
+            {"pose": pose_to_dict(g.T_object_hand), "width": g.opening, "quality": g.quality}
+            | ({"probability": g.quality} if tray.scan else {})
+            for g in part.grasps
         ]
         if part.target
         else [],

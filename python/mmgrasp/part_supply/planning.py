@@ -11,12 +11,13 @@ from pathlib import Path
 from typing import Any, overload
 
 from .. import _core
-from .._core import InvalidInput, Outcome, PartSupplyPlan, PartSupplyProblem, ReachDatabase
+from .._core import InvalidInput, Outcome, PartSupplyPlan, PartSupplyProblem, ReachDatabase, RobotMotion
 from .._files import write_file
 from .._progress import Progress
 from ..scenario import Scenario, load_scenario
 from .plan_file import plan_to_dict, scenario_to_dict
 from .premises import premises
+from .round_motion import RoundMotion
 
 
 def file_name(name: str) -> str:
@@ -81,9 +82,16 @@ class ScenarioPlan:
         write_file(target, json.dumps(self.to_dict(), allow_nan=False) + "\n")
         return target
 
+    def motion(self) -> RobotMotion:
+        """The whole round as a robot carries it out: drives, picks and gripper on one clock. Raises InvalidInput without a plan."""
+        return RoundMotion(self.scenario, self.plan).make({})
+
     def save_trajectories(self, folder: str | os.PathLike[str]) -> list[Path]:
-        """One CSV per arm motion and per leg of the route, named in the order they are carried out."""
+        """One CSV for the whole round, and one per arm motion and per leg of the route, named in the order they are carried out."""
         written = []
+        if self.outcome == Outcome.solved:
+            written.append(Path(folder) / "round.csv")
+            write_file(written[0], self.motion().to_csv())
         for i, pick in enumerate(self.picks):
             tray = self.scenario.trays[pick.tray].tray
             part = file_name(tray.parts[pick.part].name)
@@ -91,11 +99,10 @@ class ScenarioPlan:
                 path = Path(folder) / f"pick_{i:02d}_{part}_{j}_{motion.kind}.csv"
                 write_file(path, motion.trajectory.to_csv(base_pose=self.stops[pick.stop].pose))
                 written.append(path)
+        robot, arm, home = self.scenario.setup.robot, self.scenario.setup.arm, self.scenario.setup.home
         for i, leg in enumerate(self.route):
-            path = Path(folder) / f"drive_{i:02d}.csv"
-            rows = [",".join(f"{value:.17g}" for value in pose) for pose in leg.poses]
-            write_file(path, "\n".join(["base.x,base.y,base.theta", *rows]) + "\n")
-            written.append(path)
+            written.append(Path(folder) / f"drive_{i:02d}.csv")
+            write_file(written[-1], RobotMotion.of_drive(leg, robot, arm, home).to_csv())
         return written
 
     def __repr__(self) -> str:

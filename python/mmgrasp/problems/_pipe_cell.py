@@ -25,7 +25,7 @@ from .._core import (
     World,
 )
 from .._files import shipped
-from ..scenario.reading import check_name
+from ..documents.reading import check_name
 
 Pose = NDArray[np.float64]
 ROBOTS = ("tm14like", "kr6like")

@@ -28,7 +28,7 @@ from .._core import (
     World,
     pose,
 )
-from ..scenario.reading import bad_yaml
+from ..documents.reading import bad_yaml
 
 MBM_SETS = ("bookshelf_small", "bookshelf_tall", "bookshelf_thin", "box", "cage", "table_pick", "table_under_pick")
 """The sets of problems that MotionBenchMaker makes for an arm."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from .._core import IoError, Robot, plan_motion
 from .._core.verify import CheckedBody, check_path
-from ..scenario.reading import check_name
+from ..documents.reading import check_name
 from .motion_bench import MBM_SETS, MotionProblem, read_motion_problems
 
 ROBOTS = ("panda", "ur5")

@@ -27,7 +27,7 @@ from .._core import (
     plan_manipulation,
     pose,
 )
-from ..scenario.reading import check_name
+from ..documents.reading import check_name
 from ._pipe_cell import FINGERS, ROBOTS, PipeCell, Pose, pipe_robot, pipe_structures
 
 __all__ = ["FINGERS", "ROBOTS", "PipeCell", "pipe_cell", "pipe_robot", "pipe_structures"]

@@ -10,13 +10,14 @@ from typing import Any
 
 from .._core import InvalidInput, __version__
 from .._progress import Progress
-from ..scenario.reading import near_miss
+from ..documents.reading import near_miss
 from . import (
     base_regions,
     capability,
     drive_by,
     experiments,
     grasp_success,
+    grasping_trials,
     ik_query,
     physics,
     policies,
@@ -48,6 +49,7 @@ TOPICS = (
     capability,
     shelf,
     grasp_success,
+    grasping_trials,
     drive_by,
     tracking,
     physics,

@@ -9,8 +9,10 @@ from typing import Any
 
 from .._files import write_file
 from . import ENTRIES
+from .sources import is_stale, sources_hash, stale_results
 
 FOLDER = "reproduction"
+STALE = "Older than the sources it is made from"
 
 HEAD = """# What the papers print, and what mmgrasp computes
 
@@ -97,6 +99,9 @@ def store(result: dict[str, Any], out: Path) -> Path:
     Seed 1 is the one shown. Those of other seeds are kept beside it, and the page says which statements hold for them.
     """
     folder = out / FOLDER
+    made_from = sources_hash(result["name"], out.absolute().parent)
+    if made_from is not None:
+        result = {**result, "sources": made_from}
     if result["seed"] == 1:
         write_file(folder / f"{result['name']}.json", _one_line_a_key(result))
         write_picture(result, folder / f"{result['name']}.png")
@@ -118,13 +123,22 @@ def _other_seeds(folder: Path, name: str) -> list[str]:
 
 def write_page(out: Path) -> Path:
     """The page of all results stored below the folder, in the order of the table of entries."""
+    repository = out.absolute().parent
     sections = [HEAD.format(folder=FOLDER)]
+    stale = stale_results(out / FOLDER, repository)
+    if stale:
+        sections.append(f"{STALE}: {', '.join(stale)}.\n")
     for name in ENTRIES:
         path = out / FOLDER / f"{name}.json"
         if not path.is_file():
             continue
         picture = f"{FOLDER}/{name}.png"
-        sections.append(markdown(json.loads(path.read_text()), picture if (out / picture).is_file() else None))
+        result = json.loads(path.read_text())
+        section = markdown(result, picture if (out / picture).is_file() else None)
+        if is_stale(result, repository):
+            head, _, rest = section.partition("\n")
+            section = f"{head}\n\n*{STALE}.*\n{rest}"
+        sections.append(section)
         sections += _other_seeds(out / FOLDER, name)
     page = out / "reproduction.md"
     write_file(page, "\n".join(sections))

@@ -236,13 +236,12 @@ def run_speeds(context: Context) -> Result:
                 values[column] = (None, float(np.mean([f[key] for f in solved])) * scale if solved else None)
             values["drive alone [s]"] = (None, alone / share)
             values["base off its way [m]"] = (None, max((f["base error"][k] for f in solved), default=None))
-    kept = [g for f in found if f["solved"] for g in f["grasped"]]
+        kept = [g for f in solved for g in f["grasped"]]
+        result.trend(f"{name}: a motion is planned for at least nine places in ten", len(solved) >= 0.9 * count)
+        result.trend(f"{name}: at least nine executions in ten hold the bottle", sum(kept) >= 0.9 * len(kept) > 0)
     result.trend(
-        "a motion is planned for at least nine places in ten", sum(f["solved"] for f in found) >= 0.9 * len(found)
-    )
-    result.trend("at least nine executions in ten hold the bottle", sum(kept) >= 0.9 * len(kept) > 0)
-    result.trend(
-        "the base drives at more than 0.1 m/s at every grasp", all(f["base speed"] > 0.1 for f in found if f["solved"])
+        "the base drives at more than 0.1 m/s at every grasp, at full speed",
+        all(f["base speed"] > 0.1 for f in found if f["solved"]),
     )
     result.notes.append(
         "The paper shows three trajectories at 1/5 of the planned speed on the robot, open loop. Here random places on the table, tracked, "

@@ -18,7 +18,7 @@ from .. import _core
 from .._core import BaseGrid, Box, Grasp, LinkShape, Part, PartSupplyProblem, ReachDatabase, Tray, World
 from .._files import shipped
 from .._progress import Progress
-from ..scenario.reading import read_yaml
+from ..documents.reading import read_yaml
 from ..scenario.robot_section import RobotSetup, choose_sections, read_setup
 from ..scenario.tray_section import WALL
 

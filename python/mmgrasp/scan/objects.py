@@ -50,8 +50,9 @@ def objects_on_plane(
     eye: np.ndarray,
     voxel: float,
     up_angle: float = KNOWN_UP,
+    carrier: SupportingSurface | None = None,
 ) -> Segmentation:
-    """The largest plane whose normal is within `up_angle` [rad] of `up` (None: any), and the objects on it, seen from `eye`.
+    """The largest plane whose normal is within `up_angle` [rad] of `up` (None: any), or the known one `carrier`, and the objects on it, seen from `eye`.
 
     `points` and `normals` (n, 3): surface of a map whose voxels have the edge `voxel` [m]. Objects that touch are parted where the surface
     has creases.
@@ -61,7 +62,9 @@ def objects_on_plane(
     if len(points) == 0:
         return nothing
     tolerance = max(0.008, 2 * voxel)
-    carrier = supporting_plane(points, normals, None if up is None else np.asarray(up), up_angle, tolerance, 3 * voxel)
+    if carrier is None:
+        wanted = None if up is None else np.asarray(up)
+        carrier = supporting_plane(points, normals, wanted, up_angle, tolerance, 3 * voxel)
     if carrier is None:
         return nothing
     leaf = max(0.004, 4 / 3 * voxel)  # above the spacing of the points

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from .._core import InvalidInput, IoError, ProbabilisticSdf, __version__
-from ..scenario.reading import Node, read_json
+from ..documents.reading import Node, read_json
 from .integration import FrameRecord, Scan, ScanOptions, SkippedFrame
 
 FORMAT, VERSION = "mmgrasp-scan", 1

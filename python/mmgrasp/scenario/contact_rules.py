@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
 from .._core import Robot, World
-from .reading import Node, near_miss
+from ..documents.reading import Node, near_miss
 
 
 @dataclass(frozen=True)

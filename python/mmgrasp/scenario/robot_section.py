@@ -13,7 +13,7 @@ from .. import _core
 from .._core import Box, Hand, HandJoint, InvalidInput, JointGroup, LinkShape, PlaceRegion, Robot
 from .._files import ASSETS, shipped
 from .._progress import Progress
-from .reading import Node, near_miss, read_yaml
+from ..documents.reading import Node, near_miss, read_yaml
 from .shapes import read_shapes
 
 BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation"

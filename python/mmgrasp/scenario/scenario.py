@@ -15,14 +15,15 @@ from .._core import CollisionChecker, InvalidInput, IoError, LinkShape, PartSupp
 from .._core import verify as checks
 from .._files import check_folder, shipped
 from .._progress import Progress
+from ..documents.reading import Node, read_yaml
 from .contact_rules import ContactRules, read_contact_rules
-from .reading import Node, read_yaml
 from .robot_section import RobotSetup, choose_sections, find_file, read_setup
+from .scan_section import ScanReader, moved
 from .shapes import read_shapes
 from .tray_section import PartType, TraySetup, read_part_types, read_tray
 
-TOP_KEYS = "format version name robot start goal positioning_uncertainty trays part_types"
-TOP_OPTIONAL = "gripper place_region obstacles allowed_collisions padding options reach"
+TOP_KEYS = "format version name robot start goal positioning_uncertainty trays"
+TOP_OPTIONAL = "part_types gripper place_region obstacles allowed_collisions padding options reach"
 SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
 
 
@@ -132,10 +133,14 @@ def load_scenario(
     setup = read_setup(choose_sections(root, robot), progress)
     if setup.robot.base == "fixed":
         root["robot"].fail("a part-supply round needs base: diff_drive or omni")
-    types = read_part_types(root["part_types"], setup.gripper)
-    trays = _read_trays(root, types, setup)
+    types = read_part_types(root["part_types"], setup.gripper) if "part_types" in root else {}
+    scans = ScanReader(setup.gripper, _in_world(obstacles), find_file, progress)
+    trays = _read_trays(root, types, setup, scans)
     for tray in trays:
         obstacles.append(Obstacle(f"tray {tray.tray.name}", tray.tray.T_world_tray, tray.walls))
+    typed = [(p.shapes, p.T_world_part) for t in trays if t.scan is None for p in t.tray.parts]
+    for name, shapes in scans.rest([*((o.shapes, o.pose) for o in obstacles), *typed]):
+        obstacles.append(Obstacle(name, np.eye(4), shapes))
     _check_names(root, obstacles, trays)
     rules = read_contact_rules(
         root, setup.robot, [o.name for o in obstacles], [p.name for t in trays for p in t.tray.parts]
@@ -197,8 +202,12 @@ def _read_obstacles(root: Node) -> list[Obstacle]:
     return out
 
 
-def _read_trays(root: Node, types: dict[str, PartType], setup: RobotSetup) -> list[TraySetup]:
-    trays = [read_tray(node, types, setup.gripper) for node in root["trays"].elements()]
+def _in_world(obstacles: list[Obstacle]) -> list[LinkShape]:
+    return [moved(s, o.pose) for o in obstacles for s in o.shapes]
+
+
+def _read_trays(root: Node, types: dict[str, PartType], setup: RobotSetup, scans: ScanReader) -> list[TraySetup]:
+    trays = [read_tray(node, types, setup.gripper, scans) for node in root["trays"].elements()]
     if not any(tray.targets for tray in trays):
         root["trays"].fail("at least one part of one tray must be a target")
     return trays

@@ -6,7 +6,7 @@ import math
 import re
 from typing import Any
 
-from .reading import Node
+from ..documents.reading import Node
 
 _TYPES: dict[str, tuple[type, ...]] = {
     "object": (dict,),

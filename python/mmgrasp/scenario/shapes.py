@@ -11,7 +11,7 @@ import numpy as np
 from .. import _core
 from .._core import Box, Capsule, Cylinder, InvalidInput, LinkShape, Sphere
 from .._files import sha256_of
-from .reading import Node
+from ..documents.reading import Node
 
 KINDS = ("box", "cylinder", "sphere", "mesh")
 

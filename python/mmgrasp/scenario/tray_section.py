@@ -10,12 +10,17 @@ import numpy as np
 from .. import _core
 from .._core import Box, Grasp, Hand, LinkShape, Part, Tray
 from .._core import verify as checks
-from .reading import Node, near_miss
+from ..documents.reading import Node, near_miss
 from .robot_section import find_file
+from .scan_section import ScanReader, TrayScan, moved
 from .shapes import read_shapes
 
 WALL = 0.005  # thickness of a tray's floor and walls [m]
 GAP = 0.001  # parts rest this far above the floor, so that nothing touches at rest [m]
+
+
+Placed = tuple[str, str, np.ndarray]
+"""Name, type and T_tray_part of a typed part."""
 
 
 @dataclass
@@ -31,6 +36,8 @@ class TraySetup:
     tray: Tray
     walls: list[LinkShape]
     targets: list[str] = field(default_factory=list)
+    scan: TrayScan | None = None
+    """Where the parts come from, unless they were typed."""
 
 
 def read_part_types(node: Node, gripper: Hand) -> dict[str, PartType]:
@@ -100,16 +107,62 @@ def _check_they_hold(node: Node, name: str, shapes: list[LinkShape], grasps: lis
         )
 
 
-def read_tray(node: Node, types: dict[str, PartType], gripper: Hand) -> TraySetup:
-    node.mapping("name pose size parts", "headings targets")
+def read_tray(node: Node, types: dict[str, PartType], gripper: Hand, scans: ScanReader) -> TraySetup:
+    node.mapping("name pose size", "parts scan headings targets")
     name, T_world_tray, size = node["name"].label(), node["pose"].pose(), node["size"].numbers(3, above=0)
     if T_world_tray[2, 2] < 1 - 1e-9:
         node["pose"].fail("a tray must stand level (roll and pitch 0)")
     if min(size[:2]) <= 2 * WALL:
         node["size"].fail(f"must leave room between walls of {WALL} m")
-    placed = _grid(node["parts"], types) if isinstance(node["parts"].raw, dict) else _list(node["parts"], types)
+    if ("parts" in node) == ("scan" in node):
+        node.fail("must have either parts or scan")
+    headings = node["headings"].numbers() if "headings" in node else []
+    if "scan" in node:
+        parts, targets, scan = _scanned(node, types, name, T_world_tray, size, scans)
+    else:
+        (parts, targets), scan = _typed(node, types, name, T_world_tray, size, gripper), None
+    return TraySetup(Tray(name, T_world_tray, size, parts, headings), _core.tray_shapes(size, WALL), targets, scan)
+
+
+def _scanned(
+    node: Node, types: dict[str, PartType], name: str, T_world_tray: np.ndarray, size: list[float], scans: ScanReader
+) -> tuple[list[Part], list[str], TrayScan]:
+    def typed(parts: Node) -> list[LinkShape]:
+        return [moved(s, T) for _, kind, T in _placed(parts, types) for s in types[kind].shapes]
+
+    found, scan, reasons = scans.read(node["scan"], name, T_world_tray, size, WALL, GAP, typed)
+    targets = _targets(node, [part.name for part in found], [part.name.removeprefix(f"{name}/") for part in found])
+    for part in found:
+        if part.name in targets and not part.grasps:
+            where = (
+                f"; targets may leave it out ({', '.join(p.name for p in found if p.grasps) or 'no part has a grasp'})"
+            )
+            node["scan"].fail(f"part {part.name} has no grasp: {reasons[part.name]}{where}")
+    parts = [
+        Part(
+            part.name,
+            part.shapes,
+            part.T_world_part,
+            part.grasps,
+            target=part.name in targets,
+            grasps_too_wide=part.grasps_too_wide,
+        )
+        for part in found
+    ]
+    return parts, targets, scan
+
+
+def _placed(node: Node, types: dict[str, PartType]) -> list[Placed]:
+    placed = _grid(node, types) if isinstance(node.raw, dict) else _list(node, types)
     if not placed:
-        node["parts"].fail("a tray must hold at least one part")
+        node.fail("a tray must hold at least one part")
+    return placed
+
+
+def _typed(
+    node: Node, types: dict[str, PartType], name: str, T_world_tray: np.ndarray, size: list[float], gripper: Hand
+) -> tuple[list[Part], list[str]]:
+    placed = _placed(node["parts"], types)
     names = [f"{name}/{own}" for own, _, _ in placed]
     targets = _targets(node, names, [own for own, _, _ in placed])
     parts = []
@@ -127,8 +180,7 @@ def read_tray(node: Node, types: dict[str, PartType], gripper: Hand) -> TraySetu
                 grasps_too_wide=types[kind].too_wide,
             )
         )
-    headings = node["headings"].numbers() if "headings" in node else []
-    return TraySetup(Tray(name, T_world_tray, size, parts, headings), _core.tray_shapes(size, WALL), targets)
+    return parts, targets
 
 
 def _kind(node: Node, types: dict[str, PartType]) -> str:
@@ -147,9 +199,6 @@ def _resting(kind: PartType, x: float, y: float, rpy: list[float]) -> np.ndarray
     T = _core.pose([x, y, 0], rpy=rpy)
     T[2, 3] = GAP - _bounds(kind, T)[0][2]
     return T
-
-
-Placed = tuple[str, str, np.ndarray]
 
 
 def _grid(node: Node, types: dict[str, PartType]) -> list[Placed]:

@@ -15,7 +15,7 @@ import numpy as np
 from .. import _core
 from .._core import Box, JointTrajectory, LinkShape, PushGrasp, World
 from .._files import shipped
-from ..scenario.reading import read_yaml
+from ..documents.reading import read_yaml
 from ..scenario.robot_section import RobotSetup, choose_sections, read_setup
 from .model import SimPart
 from .result import SimResult

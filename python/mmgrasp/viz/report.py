@@ -192,16 +192,22 @@ def _stops(plan: dict[str, Any]) -> str:
 
 def _picks(plan: dict[str, Any]) -> str:
     kinds = ["transit", "approach", "lift", "transfer", "retreat"]
+    parts = {part["name"]: part for part in plan["scenario"]["parts"]}
+    scanned = "scans" in plan["scenario"]
     rows = []
     for number, pick in enumerate(plan["picks"], start=1):
         times = {m["kind"]: m["times"][-1] for m in pick["motions"]}
+        sure = parts[pick["part"]]["grasps"][pick["grasp"]].get("probability")
         rows.append(
             [str(number), str(pick["stop"] + 1), _tray(plan, pick["tray"]), escape(pick["part"]), str(pick["grasp"])]
+            + ([] if not scanned else ["" if sure is None else f"{sure:.2f}"])
             + [f"{times.get(kind, 0):.2f}" for kind in kinds]
             + [f"{sum(times.values()):.2f}"]
         )
     head = ["pick", "stop", "tray", "part", "grasp", *(f"{k} [s]" for k in kinds), "all [s]"]
-    return "<h2>Picks</h2>" + table(head, rows, {0, 1, 4, 5, 6, 7, 8, 9, 10})
+    if scanned:
+        head.insert(5, "probability")
+    return "<h2>Picks</h2>" + table(head, rows, {0, 1, *range(4, len(head))})
 
 
 def _in_passing(plan: dict[str, Any]) -> str:

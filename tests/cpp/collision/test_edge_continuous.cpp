@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mmgrasp/collision/edge.hpp"
+#include "mmgrasp/core/error.hpp"
 #include "mmgrasp/core/random.hpp"
 #include "support/free_body.hpp"
 #include "support/mesh_robots.hpp"
@@ -170,4 +171,31 @@ TEST(EdgeContinuous, AFloatingSphereMeetsAThinWall) {
   q1[1] = 0.4;
   EXPECT_TRUE(check_edge(checker, q0, q1, continuous()).free);
   EXPECT_TRUE(checker.edge_is_free(q0, q1, 0.005));
+}
+
+TEST(EdgeContinuous, MotionsThatLeaveTheLineNeedTheRoomForIt) {
+  // A ball of 1 cm passes a wall at 3 cm; what leaves the line by less than that stays clear of it.
+  const JointGroup group = free_body::group({free_body::link_shape(Sphere{0.01})});
+  World world;
+  world.add("wall", Box{{1, 0.02, 1}}, at(0, 0.05, 0));
+  CollisionChecker checker(group, world);
+  Eigen::VectorXd q0 = Eigen::VectorXd::Zero(6), q1 = q0;
+  q0[0] = -0.3;
+  q1[0] = 0.3;
+  EdgeOptions options = continuous();
+  options.bend = Eigen::VectorXd::Zero(6);
+  for (const double aside : {0.0, 0.02, 0.0298}) {
+    options.bend[1] = aside;
+    EXPECT_TRUE(check_edge(checker, q0, q1, options).free) << aside;
+  }
+  options.bend[1] = 0.03;
+  EXPECT_FALSE(check_edge(checker, q0, q1, options).free);
+  EXPECT_FALSE(check_edge(checker, q0, q0, options).free) << "out and back to the same place";
+  options.bend[1] = 0.02;
+  options.bend[2] = 0.02;  // together they could be 4 cm as far as the bound knows
+  EXPECT_FALSE(check_edge(checker, q0, q1, options).free);
+  options.bend = Eigen::VectorXd::Constant(6, -1);
+  EXPECT_THROW(check_edge(checker, q0, q1, options), InvalidInput);
+  options.bend = Eigen::VectorXd::Zero(2);
+  EXPECT_THROW(check_edge(checker, q0, q1, options), InvalidInput);
 }

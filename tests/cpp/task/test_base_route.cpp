@@ -149,6 +149,26 @@ TEST(BaseRoute, EndsInCollisionAreNamed) {
   EXPECT_EQ(room.plan({2, 0, 0}, {0, 0, 0}).outcome, Outcome::invalid_start);
 }
 
+TEST(BaseRoute, OmniBasesDriveAndTurnOnOneProfile) {
+  BaseLimits limits;
+  limits.linear_velocity = 0.5;
+  limits.linear_acceleration = 0.25;
+  limits.angular_velocity = 1.0;
+  limits.angular_acceleration = 0.19;
+  BasePath path;
+  path.poses = {{0, 0, 0}, {2, 0, 1.9}};
+  // The way's share: at most a quarter a second (2 m at 0.5 m/s), reached by a tenth a second squared (1.9 rad at
+  // 0.19): 1 / 0.25 + 0.25 / 0.1 s. Way and turn by themselves take 6 and 6.3 s, but then not along the straight line.
+  EXPECT_NEAR(base_path_duration(path, BaseKind::omni, limits), 6.5, 1e-9);
+  const RobotMotion motion = base_path_motion(path, BaseKind::omni, limits, {}, Eigen::VectorXd(0));
+  EXPECT_NEAR(motion.duration(), 6.5, 1e-9);
+  for (const Eigen::Vector3d& pose : motion.base_poses) {
+    EXPECT_NEAR(pose.y(), 0, 1e-12);
+    EXPECT_NEAR(pose.z(), 0.95 * pose.x(), 1e-12);
+  }
+  EXPECT_EQ(motion.base_poses.back(), path.poses.back());
+}
+
 TEST(BaseRoute, DurationOfTrapezoids) {
   BaseLimits limits;
   limits.linear_velocity = 0.5;

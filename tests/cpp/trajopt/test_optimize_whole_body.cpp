@@ -89,6 +89,29 @@ TEST(OptimizeWholeBody, SolvesTheExampleOfP1) {
               17 * r.trajectory->times()[1] + 17 * (r.trajectory->times()[34] - r.trajectory->times()[33]), 1e-9);
 }
 
+TEST(CheckWholeBody, TellsSlippingSidewaysFromFallingBehind) {
+  const JointGroup group = test::fetchlike_whole_body();
+  const WholeBodyProblem problem = example(group);
+  const VectorXd middle = 0.5 * (problem.start + problem.goal_lower);
+  const WholeBodyResult r =
+      optimize_whole_body(problem, straight(problem, {problem.start, middle, problem.goal_lower}, 0.6));
+  ASSERT_EQ(r.outcome, Outcome::solved) << r.message;
+  const WholeBodyTrajectory& t = *r.trajectory;
+  constexpr double kOff = 1e-3;
+  for (const bool sideways : {false, true}) {
+    std::vector<VectorXd> positions = t.positions();
+    const double theta = positions.back()[2], h = t.times()[34] - t.times()[33];
+    const double angle = theta + (sideways ? M_PI / 2 : 0);
+    positions.back()[0] += kOff * std::cos(angle);
+    positions.back()[1] += kOff * std::sin(angle);
+    WholeBodyResult spoiled;
+    spoiled.violations = check_whole_body(problem, {group, t.times(), positions, t.drive()});
+    EXPECT_NEAR(violation(spoiled, "nonholonomic").value, sideways ? kOff / h : 0, 1e-6);
+    EXPECT_NEAR(violation(spoiled, "dynamics").value,
+                kOff * std::max(std::abs(std::cos(angle)), std::abs(std::sin(angle))), 1e-6);
+  }
+}
+
 TEST(OptimizeWholeBody, SolvesInTheSameWayWhateverWasSolvedBefore) {
   const JointGroup group = test::fetchlike_whole_body();
   WholeBodyProblem problem = example(group);
@@ -283,6 +306,30 @@ TEST(WholeBodyTrajectory, RollsOutAsAUnicycle) {
   EXPECT_FALSE(found[0].kept());
   EXPECT_EQ(found[0].kind, "dynamics");
   EXPECT_GT(found[0].value, 1e-3);
+}
+
+TEST(OptimizeWholeBody, KeepsThePaddingOfTheWorld) {
+  // A slider pair carries a ball of 5 cm past a post and keeps what the padding asks.
+  const JointGroup group = sliders(2);
+  const Robot ball =
+      group.robot().with_link("ball", "b", Pose::Identity(), {LinkShape{Sphere{0.05}, Pose::Identity()}});
+  const JointGroup carrier = ball.chain("base", "b").with_acceleration_limits(vec({2.0, 0.7}));
+  WholeBodyProblem problem = between(carrier, vec({-0.4, 0.02}), vec({0.4, 0.02}), {24});
+  World world;
+  world.add("post", Sphere{0.1}, Pose::Identity());
+  WholeBodyOptions options;
+  options.margin = 1e-3;
+  for (const double links : {0.0, 0.1, 0.22}) {
+    world.set_padding({links, 0, 0.02, {}});
+    CollisionChecker checker(carrier, world);
+    const std::vector<CollisionChecker*> checkers(24, &checker);
+    WholeBodyGuess guess = straight(problem, {problem.start, problem.goal_lower}, 0.1);
+    const WholeBodyResult r = optimize_whole_body(problem, guess, options, checkers);
+    ASSERT_EQ(r.outcome, Outcome::solved) << r.message << " " << violation(r, "collision").what;
+    double nearest = 1;
+    for (const VectorXd& q : r.trajectory->sampled(49).positions) nearest = std::min(nearest, q.norm() - 0.15);
+    EXPECT_GT(nearest, links + 0.02);
+  }
 }
 
 }  // namespace mmgrasp

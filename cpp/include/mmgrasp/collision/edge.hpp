@@ -17,6 +17,9 @@ struct MMGRASP_EXPORT EdgeOptions {
   /// bodies stay `tolerance` apart.
   bool continuous = false;
   double tolerance = 1e-4;  ///< Continuous only: clearances below this count as contact [m]; > 0.
+  /// Continuous only: the motion is no straight line but leaves it by at most this much in each joint [rad or m]; free
+  /// then holds for all that does. Empty: straight. Entries finite and >= 0.
+  Eigen::VectorXd bend = {};
   void check() const;
 };
 
@@ -28,7 +31,7 @@ struct MMGRASP_EXPORT EdgeResult {
 };
 
 /// Straight joint-space edge (angles are not wrapped), ends included. Throws InvalidInput on a wrong length or a number
-/// that is not finite.
+/// that is not finite, and on a `bend` of another length.
 MMGRASP_EXPORT EdgeResult check_edge(CollisionChecker& checker, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
                                      const EdgeOptions& options = {});
 

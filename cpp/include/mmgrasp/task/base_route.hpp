@@ -8,6 +8,7 @@
 #include "mmgrasp/core/export.hpp"
 #include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/core/outcome.hpp"
+#include "mmgrasp/robot/robot_motion.hpp"
 
 namespace mmgrasp {
 
@@ -54,7 +55,15 @@ MMGRASP_EXPORT Eigen::MatrixXd route_lengths(const CollisionChecker& checker, co
                                              int threads = 0, const Monitor& monitor = {});
 
 /// Time to drive it under the limits (a diff-drive's wheels included) with trapezoidal profiles, stopping at every pose
-/// where the motion changes [s].
+/// where the motion changes [s]. Where an omni base drives and turns at once, both follow one profile, so that it stays
+/// on the straight line that was checked.
 MMGRASP_EXPORT double base_path_duration(const BasePath& path, BaseKind base, const BaseLimits& base_limits);
+
+/// The same drive on its clock, base_path_duration() long, with the arm's `joints` at `q`: points where the
+/// acceleration changes and at most `period` [s] apart. Throws InvalidInput for a path without poses and a period that
+/// is not positive.
+MMGRASP_EXPORT RobotMotion base_path_motion(const BasePath& path, BaseKind base, const BaseLimits& base_limits,
+                                            const std::vector<std::string>& joints, const Eigen::VectorXd& q,
+                                            double period = 0.1);
 
 }  // namespace mmgrasp

@@ -12,6 +12,7 @@
 #include "mmgrasp/core/monitor.hpp"
 #include "mmgrasp/grasp/push_grasp.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
+#include "mmgrasp/robot/robot_motion.hpp"
 #include "mmgrasp/trajopt/optimize_whole_body.hpp"
 
 namespace mmgrasp {
@@ -96,6 +97,12 @@ struct MMGRASP_EXPORT DriveByResult {
 /// The trajectory's to_csv with two columns more: `task`, its index in the row of a task's waypoint, and `held`, the
 /// object in the hand. Throws InvalidInput without a trajectory.
 MMGRASP_EXPORT std::string drive_by_csv(const DriveByResult& result, int between = 0);
+
+/// What a robot carries out: points at the waypoints and at most `period` [s] apart, and the gripper closing at every
+/// task that takes an object, to the next of `openings` [m] (empty: not known). Throws InvalidInput without a
+/// trajectory and for another number of openings.
+MMGRASP_EXPORT RobotMotion drive_by_motion(const DriveByResult& result, const std::vector<double>& openings = {},
+                                           double period = 0.02);
 
 /// Grasping while driving (P1 chapter 4): the fastest motion of base and arm from `start` (at rest) through the tasks,
 /// in order, to the goal (at rest), without stopping for them.

@@ -15,6 +15,9 @@ void EdgeOptions::check() const {
   require(std::isfinite(joint_step) && joint_step > 0, "joint_step", joint_step, "must be finite and > 0 [rad or m]");
   require(workspace_step > 0, "workspace_step", workspace_step, "must be > 0 [m]");
   require(std::isfinite(tolerance) && tolerance > 0, "tolerance", tolerance, "must be finite and > 0 [m]");
+  for (Eigen::Index i = 0; i < bend.size(); ++i)
+    require(std::isfinite(bend[i]) && bend[i] >= 0, "bend[" + std::to_string(i) + "]", bend[i],
+            "must be finite and >= 0 [rad or m]");
 }
 
 namespace {
@@ -51,7 +54,9 @@ EdgeResult check_edge(CollisionChecker& checker, const Eigen::VectorXd& q0, cons
   options.check();
   checker.group().check_configuration(q0, "q0");
   checker.group().check_configuration(q1, "q1");
-  if (options.continuous) return detail::advance_edge(checker.impl_->engine, q0, q1, options.tolerance);
+  require(options.bend.size() == 0 || options.bend.size() == q0.size(), "bend",
+          static_cast<double>(options.bend.size()), "must be empty or hold one value per joint");
+  if (options.continuous) return detail::advance_edge(checker.impl_->engine, q0, q1, options.tolerance, options.bend);
   return stepped_edge(checker, q0, q1, options);
 }
 

@@ -82,12 +82,6 @@ void shorten(BaseClearance& clearance, const BaseSearchSettings& settings, Poses
   }
 }
 
-double trapezoid(double distance, double velocity, double acceleration) {
-  if (distance <= 0) return 0;
-  if (distance * acceleration <= velocity * velocity) return 2 * std::sqrt(distance / acceleration);
-  return distance / velocity + velocity / acceleration;
-}
-
 }  // namespace
 
 void BaseRouteOptions::check() const {
@@ -150,17 +144,6 @@ Eigen::MatrixXd route_lengths(const CollisionChecker& checker, const Eigen::Vect
   if (poses.empty()) return Eigen::MatrixXd(0, 0);
   const detail::FloorField field(checker, home, options.base, poses, options.resolution, threads, monitor);
   return field.complete() ? field.lengths() : Eigen::MatrixXd();
-}
-
-double base_path_duration(const BasePath& path, BaseKind base, const BaseLimits& base_limits) {
-  const BaseLimits limits = driving_limits(base, base_limits);
-  double duration = 0;
-  for (std::size_t i = 1; i < path.poses.size(); ++i) {
-    const Eigen::Vector3d d = path.poses[i] - path.poses[i - 1];
-    duration += std::max(trapezoid(d.head<2>().norm(), limits.linear_velocity, limits.linear_acceleration),
-                         trapezoid(std::abs(d.z()), limits.angular_velocity, limits.angular_acceleration));
-  }
-  return duration;
 }
 
 }  // namespace mmgrasp

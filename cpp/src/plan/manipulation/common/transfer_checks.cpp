@@ -5,20 +5,13 @@
 
 #include "mmgrasp/collision/detail/edge_steps.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/grasp/detail/with_fingers.hpp"
 
 namespace mmgrasp::detail {
 namespace {
 
 constexpr double kFinalStep = 0.005;     // Largest joint step of paths that callers check [rad or m],
 constexpr double kFinalResolution = 16;  // ... and by this share of all steps the final check is finer.
-
-JointGroup with_fingers(const JointGroup& group, const Hand& hand, const Grasp& grasp) {
-  Eigen::VectorXd values = group.reference();
-  const Robot& robot = group.robot();
-  for (const auto& [name, value] : hand.joint_values(grasp))
-    values[robot.joints()[robot.joint_index(name)].value_index] = value;
-  return group.with_reference(values);
-}
 
 /// The nearest joint above a link that the group moves; -1: none.
 int moved_by(const JointGroup& group, int link) {

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "mmgrasp/collision/world.hpp"
+#include "mmgrasp/core/export.hpp"
+#include "mmgrasp/core/outcome.hpp"
+#include "mmgrasp/grasp/grasp.hpp"
+#include "mmgrasp/grasp/hand.hpp"
+#include "mmgrasp/robot/joint_group.hpp"
+#include "mmgrasp/robot/trajectory.hpp"
+#include "mmgrasp/structure/supported_frame.hpp"
+
+namespace mmgrasp {
+
+/// A robot that carries an object along given poses (P2 3.2.1).
+struct MMGRASP_EXPORT ObjectPathProblem {
+  JointGroup group;                    ///< Its tip is the tool frame of grasps.
+  World world;                         ///< Without the object.
+  std::vector<LinkShape> object;       ///< In the object's frame; never empty.
+  Poses T_world_object;                ///< Where it lies, then where it goes: at least two.
+  std::optional<Hand> gripper;         ///< Opens its fingers as each grasp says; none: they stay as the group has them.
+  std::set<std::string> touch_links;   ///< Links that may touch the object; empty: as World::attach says.
+  std::optional<BeamFrame> frame;      ///< How the object bends; none: it is stiff.
+  std::string object_name = "object";  ///< For allowed pairs and paddings of `world`.
+  /// Throws InvalidInput naming field, value and rule.
+  void check() const;
+};
+
+/// Cost(O) = sum of weight times objective over scale. The objectives are P2's (3.2.3.3): the sums over the waypoints
+/// after the first of the joint-space distance from the one before (O1; the plain norm of the formula, not the square
+/// of the text), of the largest displacement of the object (O2), and of the force manipulability along the tool's
+/// motion, a twist in m and rad (O3; 0 where the tool stands still, where P2's direction is undefined).
+struct MMGRASP_EXPORT ObjectPathOptions {
+  /// P2's comparison matrix by P2's method; it prints 0.56, 0.12, 0.32, which belong to another. >= 0.
+  double motion_weight = 0.587, deflection_weight = 0.089, manipulability_weight = 0.324;
+  double motion_scale = 1;          ///< [rad or m]; > 0. P2 adds the objectives as they are, without naming units.
+  double deflection_scale = 1e-3;   ///< [m]; > 0.
+  double manipulability_scale = 1;  ///< > 0.
+  double max_joint_step = 0.5;  ///< From waypoint to waypoint [rad or m]: more is a jump to another arm posture; > 0.
+  double position_tolerance = 0.01;  ///< Half way between waypoints the object is this near to its path [m]; > 0.
+  double rotation_tolerance = 0.05;  ///< And turned by no more than this from it [rad]; > 0.
+  double edge_step = 0.02;           ///< No joint moves more than this between two collision checks [rad or m]; > 0.
+  bool check_edges = true;           ///< Check motions between waypoints, which P2's Algorithm 3.1 leaves out.
+  /// Use the arm configuration nearest to the last one alone, as P2's single-IK variant does (3.5.2.4). The first is
+  /// the one nearest to the middle of the joints' limits.
+  bool single_configuration = false;
+  bool all_turns = true;      ///< Joints that may turn more than once come in every turn.
+  int redundant_values = 0;   ///< Samples of a seventh joint; 0: as solve_ik_branches. >= 0.
+  double gravity = kGravity;  ///< Along the world's -z [m/s2]; >= 0.
+  void check() const;
+};
+
+/// What one grasp costs along a path, and the arm's motion.
+struct MMGRASP_EXPORT ObjectPathResult {
+  Outcome outcome = Outcome::not_found;  ///< solved or not_found.
+  double cost = 0;                       ///< Cost(O); only when solved.
+  double joint_motion = 0;               ///< O1 [rad or m]
+  double deflection = 0;                 ///< O2 [m]
+  double force_manipulability = 0;       ///< O3
+  JointPath path;                        ///< One configuration for each pose; only when solved.
+  std::vector<double> sag;               ///< Largest displacement at each pose [m]; the first is not part of O2.
+  /// Cost(C) of P2 3.3.1: the sum of `violations`, or, when all are zero, the number of gaps that no allowed motion
+  /// bridges. Zero if and only if solved.
+  int violation = 0;
+  /// Of each pose: 2 when no arm configuration reaches it, 1 when all that do collide, else 0.
+  std::vector<int> violations;
+  Rejections rejections;   ///< Configurations rejected, of those that were checked.
+  int refused_edges = 0;   ///< Motions between waypoints that collide or leave the object's path.
+  int configurations = 0;  ///< Arm configurations found over all poses.
+};
+
+/// Costs grasps along one path: prepared once, asked thousands of times. Over all arm configurations at all poses the
+/// least cost is found by dynamic programming, from all first configurations at once. Collisions are checked only along
+/// the best sequence so far; what collides leaves and the next best is found, so the answer is that of checking
+/// everything. Not thread-safe; clones share nothing.
+class MMGRASP_EXPORT ObjectPathEvaluator {
+ public:
+  ObjectPathEvaluator(const ObjectPathProblem& problem, const ObjectPathOptions& options = {});
+  ObjectPathEvaluator(ObjectPathEvaluator&&) noexcept;
+  ObjectPathEvaluator& operator=(ObjectPathEvaluator&&) noexcept;
+  ~ObjectPathEvaluator();
+  ObjectPathEvaluator clone() const;
+
+  const ObjectPathProblem& problem() const;
+  const ObjectPathOptions& options() const;
+  /// Throws InvalidInput for a grasp that is none, or that is on no section of the frame.
+  ObjectPathResult evaluate(const Grasp& grasp);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The cheapest motion of the arm that carries the object through all poses with one grasp; motions between waypoints
+/// are checked at steps of at most 0.005 rad or m, and every waypoint by forward kinematics.
+MMGRASP_EXPORT ObjectPathResult follow_object_path(const ObjectPathProblem& problem, const Grasp& grasp,
+                                                   const ObjectPathOptions& options = {});
+
+}  // namespace mmgrasp

@@ -1,0 +1,177 @@
+#include "mmgrasp/structure/beam_frame.hpp"
+
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "mmgrasp/core/error.hpp"
+#include "structure/frame/beam_element.hpp"
+#include "structure/section_axes.hpp"
+
+namespace mmgrasp {
+namespace {
+
+using Eigen::Vector3d;
+
+std::string entry(const char* list, std::size_t index) {
+  return std::string(list) + "[" + std::to_string(index) + "]";
+}
+
+/// Adds where a rule of a part was broken.
+template <typename Check>
+void checked_in(const std::string& where, const Check& check) {
+  try {
+    check();
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(where + "." + error.what());
+  }
+}
+
+int root(std::vector<int>& parent, int node) {
+  while (parent[node] != node) node = parent[node] = parent[parent[node]];
+  return node;
+}
+
+void check_members(const BeamFrame& frame) {
+  const int count = static_cast<int>(frame.nodes.size());
+  for (std::size_t i = 0; i < frame.members.size(); ++i) {
+    const BeamMember& member = frame.members[i];
+    const auto [a, b] = member.nodes;
+    const std::string value = "(" + std::to_string(a) + ", " + std::to_string(b) + ")";
+    require(a >= 0 && b >= 0 && a < count && b < count, entry("members", i) + ".nodes", value,
+            "must be indices of the " + std::to_string(count) + " nodes, from 0");
+    require(frame.length(static_cast<int>(i)) >= BeamFrame::kShortest, entry("members", i) + ".nodes", value,
+            "its nodes must be at least 1e-6 m apart");
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto [c, d] = frame.members[j].nodes;
+      require(!((a == c && b == d) || (a == d && b == c)), entry("members", i) + ".nodes", value,
+              "joins the same nodes as " + entry("members", j));
+    }
+    checked_in(entry("members", i) + ".section", [&] { member.section.check(); });
+    checked_in(entry("members", i) + ".material", [&] { member.material.check(); });
+    const Vector3d& y = member.y_towards;
+    const Vector3d x = (frame.nodes[b] - frame.nodes[a]).normalized();
+    require(y.allFinite() && (y.isZero(0) || x.cross(y).norm() > 1e-6 * y.norm()), entry("members", i) + ".y_towards",
+            "(" + std::to_string(y.x()) + ", " + std::to_string(y.y()) + ", " + std::to_string(y.z()) + ")",
+            "must be a direction that does not run along the member, or zero");
+  }
+}
+
+void check_connected(const BeamFrame& frame) {
+  std::vector<int> parent(frame.nodes.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  std::vector<bool> used(frame.nodes.size(), false);
+  for (const BeamMember& member : frame.members) {
+    parent[root(parent, member.nodes[0])] = root(parent, member.nodes[1]);
+    used[member.nodes[0]] = used[member.nodes[1]] = true;
+  }
+  for (std::size_t i = 0; i < frame.nodes.size(); ++i) {
+    require(used[i], entry("nodes", i), "of no member", "every node must belong to a member");
+    require(root(parent, static_cast<int>(i)) == root(parent, 0), entry("nodes", i), "not connected to nodes[0]",
+            "a frame is one connected piece");
+  }
+}
+
+}  // namespace
+
+void BeamFrame::check() const {
+  require(!members.empty(), "members", "[]", "a frame has at least one member");
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    require(nodes[i].allFinite(), entry("nodes", i), "not finite", "must be three finite numbers [m]");
+  }
+  check_members(*this);
+  check_connected(*this);
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const NodeLoad& load = loads[i];
+    require(load.node >= 0 && load.node < static_cast<int>(nodes.size()), entry("loads", i) + ".node", load.node,
+            "must be one of the " + std::to_string(nodes.size()) + " nodes, from 0");
+    require(std::isfinite(load.mass) && load.mass >= 0, entry("loads", i) + ".mass", load.mass,
+            "must be zero or positive [kg]");
+    require(load.force.allFinite() && load.moment.allFinite(), entry("loads", i), "not finite",
+            "force [N] and moment [N m] must be finite");
+  }
+}
+
+double BeamFrame::length(int member) const {
+  const auto [a, b] = members.at(member).nodes;
+  return (nodes.at(b) - nodes.at(a)).norm();
+}
+
+Eigen::Matrix3d BeamFrame::R_object_member(int member) const {
+  const auto [a, b] = members.at(member).nodes;
+  const Vector3d along = nodes.at(b) - nodes.at(a), &towards = members[member].y_towards;
+  return towards.isZero(0) ? detail::section_axes(along) : detail::axes_across(along, towards);
+}
+
+double BeamFrame::mass() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    sum += members[i].material.density * members[i].section.area * length(static_cast<int>(i));
+  }
+  for (const NodeLoad& load : loads) sum += load.mass;
+  return sum;
+}
+
+Vector3d BeamFrame::centre_of_mass() const {
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const auto [a, b] = members[i].nodes;
+    const double weight = members[i].material.density * members[i].section.area * length(static_cast<int>(i));
+    sum += weight * (nodes.at(a) + nodes.at(b)) / 2;
+  }
+  for (const NodeLoad& load : loads) sum += load.mass * nodes.at(load.node);
+  const double total = mass();
+  require(total > 0, "mass", total, "a frame without mass has no centre of mass");
+  return sum / total;
+}
+
+BeamFrame BeamFrame::split(int member, double distance) const {
+  require(member >= 0 && member < static_cast<int>(members.size()), "member", member,
+          "must be one of the " + std::to_string(members.size()) + " members");
+  const double whole = length(member);
+  require(distance >= kShortest && distance <= whole - kShortest, "distance", distance,
+          "must lie inside the member of " + std::to_string(whole) + " m");
+  BeamFrame out = *this;
+  const auto [a, b] = members[member].nodes;
+  const int middle = static_cast<int>(nodes.size());
+  out.nodes.emplace_back(nodes[a] + distance / whole * (nodes[b] - nodes[a]));
+  out.members[member].y_towards =
+      R_object_member(member).col(1);  // the rule for y must not see rounding of the new node
+  out.members.push_back(out.members[member]);
+  out.members[member].nodes = {a, middle};
+  out.members.back().nodes = {middle, b};
+  return out;
+}
+
+Eigen::MatrixXd BeamFrame::stiffness() const {
+  check();
+  const auto size = 6 * static_cast<Eigen::Index>(nodes.size());
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(size, size);
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const detail::BeamElement element(members[i], length(static_cast<int>(i)), R_object_member(static_cast<int>(i)));
+    const detail::Matrix12d k = element.stiffness_in_object();
+    for (int p = 0; p < 2; ++p) {
+      for (int q = 0; q < 2; ++q) {
+        K.block<6, 6>(6 * members[i].nodes[p], 6 * members[i].nodes[q]) += k.block<6, 6>(6 * p, 6 * q);
+      }
+    }
+  }
+  return K;
+}
+
+BeamFrame beam_frame(const Pipe& pipe, double inner_diameter, const BeamMaterial& material) {
+  pipe.check();
+  BeamFrame frame;
+  frame.nodes = pipe.nodes;
+  for (std::size_t i = 0; i < pipe.sections.size(); ++i) {
+    BeamMember member;
+    member.nodes = pipe.sections[i];
+    member.section = round_section(pipe.diameters[i], inner_diameter);
+    member.material = material;
+    frame.members.push_back(member);
+  }
+  frame.check();
+  return frame;
+}
+
+}  // namespace mmgrasp

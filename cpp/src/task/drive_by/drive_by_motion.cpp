@@ -1,0 +1,31 @@
+// drive_by_motion(): the trajectory as a robot carries it out, with what the gripper does.
+#include <algorithm>
+#include <cmath>
+
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/task/drive_by.hpp"
+
+namespace mmgrasp {
+
+RobotMotion drive_by_motion(const DriveByResult& result, const std::vector<double>& openings, double period) {
+  require(period > 0, "period", period, "must be positive");
+  if (!result.trajectory) throw InvalidInput("result: there is no trajectory to carry out");
+  const std::vector<double>& times = result.trajectory->times();
+  double longest = 0;
+  for (std::size_t i = 1; i < times.size(); ++i) longest = std::max(longest, times[i] - times[i - 1]);
+  RobotMotion motion = robot_motion(result.trajectory->sampled(static_cast<int>(std::ceil(longest / period)) - 1));
+  for (const DriveByEvent& event : result.events) {
+    if (event.object.empty()) continue;
+    GripperEvent closing;
+    closing.time = event.close_time;
+    closing.duration = std::max(0.0, std::max(event.held_time, event.time) - event.close_time);
+    closing.object = event.object;
+    if (motion.gripper.size() < openings.size()) closing.opening = openings[motion.gripper.size()];
+    motion.gripper.push_back(closing);
+  }
+  require(openings.empty() || openings.size() == motion.gripper.size(), "openings",
+          static_cast<double>(openings.size()), "must be as many as tasks that take an object");
+  return motion;
+}
+
+}  // namespace mmgrasp

@@ -1,0 +1,1 @@
+"""YAML and JSON files as nodes that know file, line and key, so that every message names them."""

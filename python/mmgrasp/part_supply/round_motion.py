@@ -1,0 +1,70 @@
+"""A whole round as a robot carries it out: drives, picks and motions in passing on one clock."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from .. import _core
+from .._core import InvalidInput, Outcome, PartSupplyPlan, RobotMotion
+from ..scenario import Scenario
+
+
+class RoundMotion:
+    """Joins the pieces of a round; the gripper moves at the scenario's closing speed while everything else stands."""
+
+    def __init__(self, scenario: Scenario, plan: PartSupplyPlan) -> None:
+        if plan.outcome != Outcome.solved:
+            raise InvalidInput(f"plan: is not solved ({plan.outcome.name})")
+        self.plan, self.scenario, self.setup = plan, scenario, scenario.setup
+        self.motion: RobotMotion | None = None
+        self.opening: float | None = None
+
+    def make(self, in_passing: Mapping[int, tuple[_core.DriveByResult, Sequence[str]]]) -> RobotMotion:
+        """The round; `in_passing`: for the index of a pick the motion that takes the place of the drive to it and of these of its motions."""
+        plan = self.plan
+        for leg, drive in enumerate(plan.route):
+            picks = [i for i, pick in enumerate(plan.picks) if pick.stop == leg]
+            if not (picks and picks[0] in in_passing):
+                arm = self.motion.positions[-1] if self.motion is not None else self.setup.home
+                self._add(RobotMotion.of_drive(drive, self.setup.robot, self.setup.arm, arm))
+            for i in picks:
+                result, merged = in_passing.get(i, (None, ()))
+                if result is not None:
+                    self._pass(plan.picks[i], result)
+                self._pick(plan.picks[i], merged)
+        assert self.motion is not None
+        return self.motion
+
+    def _add(self, motion: RobotMotion) -> None:
+        if self.motion is None:
+            self.motion = motion
+        else:
+            self.motion.append(motion)
+
+    def _part(self, pick: _core.Pick) -> str:
+        return str(self.scenario.trays[pick.tray].tray.parts[pick.part].name)
+
+    def _pass(self, pick: _core.Pick, result: _core.DriveByResult) -> None:
+        self._open_to(pick.motions[0].opening, self._part(pick))
+        self.opening = next(m.opening for m in pick.motions if m.holding)
+        self._add(RobotMotion.of_drive_by(result, openings=[self.opening]))
+
+    def _pick(self, pick: _core.Pick, left_out: Sequence[str]) -> None:
+        base = self.plan.stops[pick.stop].pose
+        for motion in pick.motions:
+            if motion.kind not in left_out:
+                self._open_to(motion.opening, self._part(pick))
+                self._add(RobotMotion(motion.trajectory, base))
+
+    def _open_to(self, opening: float, part: str) -> None:
+        """Where the hand stands otherwise; what it stands at when the round begins is told as well, and takes no time."""
+        before, self.opening = self.opening, opening
+        if self.motion is None or before == opening:
+            return
+        moved = 0.0 if before is None else opening - before
+        self.motion.command_gripper(
+            "close" if moved < 0 else "open",
+            opening=opening,
+            duration=abs(moved) / self.setup.closing_speed,
+            object="" if before is None else part,
+        )

@@ -1,0 +1,54 @@
+"""Which sources a stored result was made from: a hash goes with it, and the page names results that are older than theirs.
+
+Chapter 4 of P1 so far. What the library beneath it (collisions, kinematics) gives is held by tests of its own and does not count.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Any
+
+_TRAJOPT = (
+    "cpp/src/trajopt", "cpp/include/mmgrasp/trajopt", "cpp/src/task/drive_by", "cpp/include/mmgrasp/task/drive_by.hpp",
+    "cpp/src/optim/nlp", "python/mmgrasp/reproduce/drive_by.py",
+)  # fmt: skip
+_SIM = (*_TRAJOPT, "cpp/src/control", "cpp/src/grasp/push", "python/mmgrasp/sim", "python/mmgrasp/reproduce/physics.py")
+SOURCES: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(
+        ("p1-figure-4.3", "p1-figure-4.4", "p1-figure-4.5", "p1-figure-4.6", "p1-figure-4.13"),
+        _TRAJOPT,
+    ),
+    "p1-figure-4.9": ("cpp/src/control", "python/mmgrasp/reproduce/tracking.py"),
+    "p1-figure-4.10": _SIM,
+    "p1-figure-4.12": _SIM,
+    "p1-table-3.5-drive-by": (*_TRAJOPT, "cpp/src/task/part_supply", "python/mmgrasp/reproduce/three_ways.py"),
+}
+"""By result: folders and files of the repository."""
+
+
+def sources_hash(name: str, repository: Path) -> str | None:
+    """Over the names and contents of all files that a result depends on; None where that is not kept, or not in a repository."""
+    if name not in SOURCES or not (repository / "layers.toml").is_file():
+        return None
+    whole = hashlib.sha256()
+    for place in SOURCES[name]:
+        path = repository / place
+        files = sorted(p for p in path.rglob("*") if p.suffix in (".cpp", ".hpp", ".py")) if path.is_dir() else [path]
+        for file in files:
+            whole.update(str(file.relative_to(repository).as_posix()).encode() + b"\0")
+            whole.update(file.read_bytes() + b"\0")
+    return whole.hexdigest()
+
+
+def is_stale(result: dict[str, Any], repository: Path) -> bool:
+    """Whether a stored result was made from other sources than those that are there; where none are kept, it is not said."""
+    now = sources_hash(result["name"], repository)
+    return now is not None and result.get("sources") != now
+
+
+def stale_results(folder: Path, repository: Path) -> list[str]:
+    """Names of the stored results that are older than their sources, in the order of the table above."""
+    stored = {name: folder / f"{name}.json" for name in SOURCES}
+    return [n for n, p in stored.items() if p.is_file() and is_stale(json.loads(p.read_text()), repository)]

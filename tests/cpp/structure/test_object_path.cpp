@@ -1,0 +1,241 @@
+#include "mmgrasp/structure/object_path.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "beam_frames.hpp"
+#include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/collision/edge.hpp"
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/random.hpp"
+#include "mmgrasp/robot/ik_branches.hpp"
+#include "mmgrasp/robot/manipulability.hpp"
+#include "mmgrasp/structure/pipe_grasps.hpp"
+#include "support/puma_arm.hpp"
+
+namespace mmgrasp {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+/// Pipe1 of P2 along an arc around the arm, with posts that some arm configurations hit.
+ObjectPathProblem arc(int poses, bool posts = true) {
+  static const test::PumaArm arm;
+  const Pipe pipe = figure_3_4();
+  ObjectPathProblem problem{arm.group(), {}, pipe.shapes(), {}, {}, {"l5", "l6"}, figure_3_4_frame(), "pipe"};
+  for (int i = 0; i < poses; ++i) {
+    const double turn = -0.3 + 0.12 * i;
+    problem.T_world_object.push_back(
+        pose_from_xyz_rpy({0.5 * std::cos(turn), 0.5 * std::sin(turn), 0.45 + 0.01 * i}, {0, 0.05 * i, turn}));
+  }
+  if (posts) {
+    problem.world.add("post", Cylinder{0.05, 0.6}, pose_from_xyz_rpy({0.25, 0.22, 0.3}, {0, 0, 0}));
+    problem.world.add("shelf", Box{{0.6, 1.2, 0.04}}, pose_from_xyz_rpy({0.4, 0, 1.02}, {0, 0, 0}));
+  }
+  return problem;
+}
+
+Grasp grasp_at(int section, double length, double angle) {
+  PipeGraspOptions options;
+  options.approach = Vector3d::UnitZ();
+  options.closing = Vector3d::UnitX();
+  return place_pipe_grasp(figure_3_4(), section, length, angle, false, options);
+}
+
+std::vector<Grasp> some_grasps(int count, unsigned seed = 5) {
+  PipeGraspOptions options;
+  options.approach = Vector3d::UnitZ();
+  options.closing = Vector3d::UnitX();
+  options.seed = seed;
+  return sample_pipe_grasps(figure_3_4(), count, options).grasps;
+}
+
+/// Everything checked by itself, all sequences enumerated.
+struct Enumerated {
+  std::vector<int> violations;
+  double cost = std::numeric_limits<double>::infinity();
+  long sequences = 0;
+
+  Enumerated(const ObjectPathProblem& problem, const Grasp& grasp, const ObjectPathOptions& options) {
+    World world = problem.world;
+    world.add("pipe", WorldObject{problem.object, problem.T_world_object[0]});
+    world.attach("pipe", "l6", grasp.T_object_hand.inverse(), problem.touch_links);
+    CollisionChecker checker(problem.group, world);
+    std::vector<std::vector<VectorXd>> layers;
+    for (const Pose& T : problem.T_world_object) {
+      const std::vector<VectorXd> all = solve_ik_branches(problem.group, T * grasp.T_object_hand).solutions;
+      layers.emplace_back();
+      for (const VectorXd& q : all) {
+        if (checker.is_free(q)) layers.back().push_back(q);
+      }
+      violations.push_back(all.empty() ? 2 : layers.back().empty() ? 1 : 0);
+    }
+    const SupportedFrame held(*problem.frame, {beam_support(grasp)});
+    double sag = 0;
+    for (std::size_t i = 1; i < layers.size(); ++i) {
+      sag += held.largest_displacement(gravity_in_object(problem.T_world_object[i])).value;
+    }
+    const std::function<void(std::size_t, const VectorXd&, double)> go_on = [&](std::size_t i, const VectorXd& last,
+                                                                                double so_far) {
+      if (i == layers.size()) {
+        ++sequences;
+        cost = std::min(cost, so_far + options.deflection_weight * sag / options.deflection_scale);
+        return;
+      }
+      for (const VectorXd& q : layers[i]) {
+        if ((q - last).cwiseAbs().maxCoeff() > options.max_joint_step) continue;
+        const Pose middle = problem.group.fk((q + last) / 2) * grasp.T_object_hand.inverse();
+        const Pose &a = problem.T_world_object[i - 1], &b = problem.T_world_object[i];
+        const Eigen::Quaterniond half = Eigen::Quaterniond(a.linear()).slerp(0.5, Eigen::Quaterniond(b.linear()));
+        if ((middle.translation() - (a.translation() + b.translation()) / 2).norm() > options.position_tolerance)
+          continue;
+        if (half.angularDistance(Eigen::Quaterniond(middle.linear())) > options.rotation_tolerance) continue;
+        if (!checker.edge_is_free(last, q, options.edge_step)) continue;
+        const Vector6d motion = pose_difference(a * grasp.T_object_hand, b * grasp.T_object_hand);
+        go_on(i + 1, q,
+              so_far + options.motion_weight * (q - last).norm() +
+                  options.manipulability_weight * force_manipulability(problem.group, q, motion));
+      }
+    };
+    for (const VectorXd& q : layers[0]) go_on(1, q, 0);
+  }
+};
+
+TEST(ObjectPath, EqualsEnumeration) {
+  int solved = 0, colliding = 0, refused = 0;
+  for (const char* scene : {"empty", "posts", "bead", "strict"}) {
+    ObjectPathProblem problem = arc(5, scene == std::string("posts"));
+    ObjectPathOptions options;
+    options.all_turns = false;
+    if (scene == std::string("bead")) {  // the pipe passes through it between two poses, at neither of which it touches
+      const Pose &a = problem.T_world_object[2], &b = problem.T_world_object[3];
+      const Vector3d point(0.2, 0.4, 0.15);
+      problem.world.add("bead", Sphere{0.002}, pose_from_xyz_rpy((a * point + b * point) / 2, {0, 0, 0}));
+    }
+    if (scene == std::string("strict")) options.position_tolerance = 8e-4;
+    ObjectPathEvaluator evaluator(problem, options);
+    for (const Grasp& grasp : some_grasps(60)) {
+      const ObjectPathResult found = evaluator.evaluate(grasp);
+      const Enumerated truth(problem, grasp, options);
+      EXPECT_EQ(found.violations, truth.violations);
+      EXPECT_EQ(found.outcome == Outcome::solved, truth.sequences > 0);
+      EXPECT_EQ(found.violation == 0, truth.sequences > 0);
+      colliding += std::count(truth.violations.begin(), truth.violations.end(), 1) > 0;
+      refused += found.refused_edges;
+      if (found.outcome != Outcome::solved) continue;
+      ++solved;
+      EXPECT_NEAR(found.cost, truth.cost, 1e-9 * truth.cost);
+      EXPECT_EQ(found.path.waypoints.size(), 5u);
+      EXPECT_NEAR(found.joint_motion, found.path.length(), 1e-12);
+    }
+  }
+  EXPECT_GT(solved, 20);
+  EXPECT_GT(colliding, 5);
+  EXPECT_GT(refused, 0);
+}
+
+TEST(ObjectPath, CostIsTheWeightedSumOverScales) {
+  const ObjectPathProblem problem = arc(8, false);
+  ObjectPathOptions options;
+  options.motion_scale = 2;
+  options.deflection_scale = 1e-4;
+  options.manipulability_scale = 0.5;
+  for (const Grasp& grasp : some_grasps(40)) {
+    const ObjectPathResult found = follow_object_path(problem, grasp, options);
+    if (found.outcome != Outcome::solved) continue;
+    EXPECT_NEAR(
+        found.cost,
+        0.587 * found.joint_motion / 2 + 0.089 * found.deflection / 1e-4 + 0.324 * found.force_manipulability / 0.5,
+        1e-12 * found.cost);
+    double sum = 0;
+    for (std::size_t i = 1; i < found.sag.size(); ++i) sum += found.sag[i];
+    EXPECT_NEAR(found.deflection, sum, 1e-15);
+    for (std::size_t i = 0; i < 8; ++i) {
+      const Pose T = problem.group.fk(found.path.waypoints[i]) * grasp.T_object_hand.inverse();
+      EXPECT_LT((T.translation() - problem.T_world_object[i].translation()).norm(), 1e-5);
+      EXPECT_LT(rotation_distance(T, problem.T_world_object[i]), 1e-4);
+    }
+    return;
+  }
+  FAIL() << "no grasp was feasible";
+}
+
+TEST(ObjectPath, SingleConfigurationsNeverCostLess) {
+  const ObjectPathProblem problem = arc(10, false);
+  ObjectPathOptions single;
+  single.single_configuration = true;
+  ObjectPathEvaluator all(problem), one(problem, single);
+  int dearer = 0, both = 0;
+  for (const Grasp& grasp : some_grasps(60)) {
+    const ObjectPathResult a = all.evaluate(grasp), b = one.evaluate(grasp);
+    if (b.outcome != Outcome::solved) continue;
+    ASSERT_EQ(a.outcome, Outcome::solved);
+    ++both;
+    EXPECT_LE(a.cost, b.cost * (1 + 1e-12));
+    dearer += b.cost > 1.001 * a.cost;
+  }
+  EXPECT_GT(both, 10);
+  EXPECT_GT(dearer, 5);
+}
+
+TEST(ObjectPath, TellsJumpsFromReach) {
+  ObjectPathProblem problem = arc(2, false);
+  problem.T_world_object[1] = pose_from_xyz_rpy({-0.3, 0.4, 0.5}, {0, 0, 2.2});  // far away in one step
+  int reached = 0;
+  for (const Grasp& grasp : some_grasps(40)) {
+    const ObjectPathResult found = follow_object_path(problem, grasp);
+    EXPECT_EQ(found.outcome, Outcome::not_found);
+    if (found.violations == std::vector<int>{0, 0}) {
+      ++reached;
+      EXPECT_EQ(found.violation, 1);
+    }
+  }
+  EXPECT_GT(reached, 0);
+  problem.T_world_object[1].translation() = Vector3d(3, 0, 0);
+  const ObjectPathResult far = follow_object_path(problem, grasp_at(2, 0.1, 0));
+  EXPECT_EQ(far.violations[1], 2);
+  EXPECT_GE(far.violation, 2);
+}
+
+TEST(ObjectPath, OneEvaluatorAnswersAsManyDo) {
+  const ObjectPathProblem problem = arc(6);
+  ObjectPathEvaluator shared(problem);
+  std::vector<Grasp> grasps = some_grasps(30);
+  grasps.insert(grasps.end(), grasps.rbegin(), grasps.rend());
+  for (const Grasp& grasp : grasps) {
+    const ObjectPathResult a = shared.evaluate(grasp), b = ObjectPathEvaluator(problem).evaluate(grasp);
+    EXPECT_EQ(a.cost, b.cost);
+    EXPECT_EQ(a.violations, b.violations);
+  }
+}
+
+TEST(ObjectPath, RefusesBadProblems) {
+  ObjectPathProblem problem = arc(3);
+  problem.T_world_object.resize(1);
+  EXPECT_THROW(follow_object_path(problem, grasp_at(0, 0.1, 0)), InvalidInput);
+  problem = arc(3);
+  problem.object.clear();
+  EXPECT_THROW(follow_object_path(problem, grasp_at(0, 0.1, 0)), InvalidInput);
+  problem = arc(3);
+  problem.world.add("pipe", Sphere{0.1}, Pose::Identity());
+  EXPECT_THROW(follow_object_path(problem, grasp_at(0, 0.1, 0)), InvalidInput);
+  problem = arc(3);
+  EXPECT_THROW(follow_object_path(problem, Grasp{}), InvalidInput);  // it bends, but where is it held?
+  problem.frame.reset();
+  EXPECT_NO_THROW(follow_object_path(problem, Grasp{}));
+  ObjectPathOptions options;
+  options.motion_weight = -1;
+  EXPECT_THROW(follow_object_path(problem, grasp_at(0, 0.1, 0), options), InvalidInput);
+  options = {};
+  options.deflection_scale = 0;
+  EXPECT_THROW(follow_object_path(problem, grasp_at(0, 0.1, 0), options), InvalidInput);
+}
+
+}  // namespace
+}  // namespace mmgrasp

@@ -1,0 +1,184 @@
+"""Frames of beams and objects carried along paths at the Python door."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import mmgrasp as mg
+from mmgrasp.grasping import (
+    BeamFrame,
+    BeamMaterial,
+    BeamMember,
+    BeamSection,
+    BeamSupport,
+    NodeLoad,
+    ObjectPathEvaluator,
+    ObjectPathProblem,
+    Pipe,
+    SupportedFrame,
+    beam_frame,
+    copper,
+    follow_object_path,
+    rectangular_section,
+    round_section,
+)
+from mmgrasp.optim import pairwise_weights
+from mmgrasp.problems.pipe_cells import FINGERS, pipe_robot, pipe_structures
+
+
+def pipe1() -> tuple[Pipe, BeamFrame]:
+    pipe = pipe_structures()[5]
+    return pipe, beam_frame(pipe, 0.010, copper())
+
+
+def test_pipe1_weighs_what_p2_gives() -> None:
+    pipe, frame = pipe1()
+    assert pipe.lengths == pytest.approx([0.2, 0.2, 0.15, 0.2, 0.4, 0.1])
+    assert frame.mass * 9.81 == pytest.approx(3.797, abs=5e-4)
+    state = frame.deflection(pipe.grasp(2, 0.05, 0.3), mg.pose([1, 2, 3], rpy=[0.4, 0.5, 0.6]))
+    assert np.linalg.norm(state.reactions[0, :3]) == pytest.approx(3.797, abs=5e-4)
+
+
+def test_orientation_is_what_turns_gravity() -> None:
+    pipe, frame = pipe1()
+    grasp = pipe.grasp(3, 0.1, 0.0)
+    T = mg.pose([0, 0, 0], rpy=[0.3, -1.2, 2.0])
+    held = SupportedFrame(frame, grasp)
+    expected = held.state(T[:3, :3].T @ [0, 0, -9.81])
+    state = frame.deflection(grasp, T)
+    assert state.displacement.value == pytest.approx(expected.displacement.value, rel=1e-12)
+    assert state.nodes == pytest.approx(expected.nodes)
+    turned = frame.deflection(grasp, mg.pose([5, 5, 5], rpy=[0, 0, 1.0]) @ T)  # a heading changes nothing
+    assert turned.displacement.value == pytest.approx(state.displacement.value, rel=1e-9)
+
+
+def test_two_grasps_sag_less_than_either() -> None:
+    pipe, frame = pipe1()
+    one, other = pipe.grasp(0, 0.1, 0.0), pipe.grasp(4, 0.3, 0.0)
+    both = frame.deflection([one, other], np.eye(4))
+    assert both.reactions.shape == (2, 6)
+    single = min(frame.deflection(g, np.eye(4)).displacement.value for g in (one, other))
+    assert both.displacement.value < single
+    assert both.reactions[:, 2].sum() == pytest.approx(3.797, abs=5e-4)
+
+
+def test_logan_5_30_of_the_shared_data(data: Path) -> None:
+    case: dict[str, Any] = json.loads((data / "reference/transcribed/frame_logan530.json").read_text())
+    names = list(case["nodes"])
+    section = BeamSection(case["A"], case["in_plane_I"], case["Iy"], case["J"])  # y is the object's z here
+    material = BeamMaterial(0.0, case["E"], case["G"])
+    members = [BeamMember(names.index(a), names.index(b), section, material) for _, a, b in case["members"]]
+    loads = [NodeLoad(names.index(name), force=[0, load, 0]) for name, _, load in case["loads"]]
+    frame = BeamFrame(list(case["nodes"].values()), members, loads)
+    supports: list[Any] = [BeamSupport(0, 0.0), BeamSupport(4, 360.0)]
+    state = SupportedFrame(frame, supports).state([0, 0, 0])
+    for row, name in zip(state.reactions, case["fixed"], strict=True):
+        expected = case["expected"]["reactions"][name]
+        assert [row[0], row[1], row[5]] == pytest.approx([expected["FX"], expected["FY"], expected["MZ"]], rel=1e-5)
+    assert state.stress is None
+
+
+def test_weights_of_the_shared_comparisons(data: Path) -> None:
+    case: dict[str, Any] = json.loads((data / "reference/transcribed/ahp_drinks.json").read_text())
+    names = sorted({name for a, b, _ in case["drinks"] for name in (a, b)})
+    matrix = np.eye(len(names))
+    for a, b, value in case["drinks"]:
+        i, j = names.index(a), names.index(b)
+        matrix[i, j], matrix[j, i] = value, 1 / value
+    found = pairwise_weights(matrix)
+    wanted = [case["expected"]["weights_4dp"][name] for name in names]
+    assert found.eigenvector == pytest.approx(wanted, abs=5.1e-5)
+    assert found.consistency_ratio == pytest.approx(case["expected"]["consistency_ratio_saaty_RI"], abs=5e-4)
+
+
+def test_weights_of_p2() -> None:
+    found = pairwise_weights([[1, 6, 2], [1 / 6, 1, 1 / 4], [1 / 2, 4, 1]])
+    assert found.weights == pytest.approx([0.587, 0.089, 0.324], abs=5e-4)
+    assert found.consistency_ratio == pytest.approx(0.0079, abs=5e-5)
+    with pytest.raises(mg.InvalidInput, match="reciprocal"):
+        pairwise_weights([[1, 2], [2, 1]])
+    with pytest.raises(mg.InvalidInput, match="10 %"):
+        pairwise_weights([[1, 9, 1 / 9], [1 / 9, 1, 9], [9, 1 / 9, 1]])
+
+
+def test_what_cannot_be_is_refused_by_name() -> None:
+    _, frame = pipe1()
+    tube, metal = round_section(0.012, 0.010), copper()
+    with pytest.raises(mg.InvalidInput, match="inner_diameter"):
+        round_section(0.010, 0.012)
+    with pytest.raises(mg.InvalidInput, match="wall"):
+        rectangular_section(0.02, 0.02, 0.01)
+    with pytest.raises(mg.InvalidInput, match=r"members\[0\].nodes .*apart"):
+        BeamFrame([[0, 0, 0], [0, 0, 0]], [BeamMember(0, 1, tube, metal)])
+    with pytest.raises(mg.InvalidInput, match="one connected piece"):
+        BeamFrame(np.arange(12.0).reshape(4, 3), [BeamMember(0, 1, tube, metal), BeamMember(2, 3, tube, metal)])
+    with pytest.raises(mg.InvalidInput, match=r"members\[0\].nodes .*indices"):
+        BeamFrame([[0, 0, 0], [1, 0, 0]], [BeamMember(0, 7, tube, metal)])
+    with pytest.raises(mg.InvalidInput, match="unstable"):
+        SupportedFrame(frame, [])
+    with pytest.raises(mg.InvalidInput, match="unstable"):
+        SupportedFrame(frame, BeamSupport(0, 0.1, [True, True, True, True, True, False]))
+    with pytest.raises(mg.InvalidInput, match=r"supports\[0\].distance"):
+        frame.deflection(BeamSupport(0, 0.9), np.eye(4))
+    with pytest.raises(mg.InvalidInput, match="provenance"):
+        frame.deflection(mg.Grasp(np.eye(4), 0.01), np.eye(4))
+    with pytest.raises(mg.InvalidInput, match="youngs_modulus"):
+        BeamMaterial(8960, 0, 1)
+
+
+def arc(poses: int, **keywords: Any) -> ObjectPathProblem:
+    _, arm, gripper = pipe_robot("tm14like")
+    pipe, frame = pipe1()
+    turns = np.linspace(-0.6, 0.6, poses)
+    path = [mg.pose([0.6 * math.cos(t), 0.6 * math.sin(t), 0.45], rpy=[0, 0.2 * t, t]) for t in turns]
+    world = mg.World()
+    world.add_box("table", [2.6, 2.6, 0.05], mg.pose([0, 0, -0.03]))
+    given: dict[str, Any] = {"gripper": gripper, "touch_links": sorted(FINGERS), "frame": frame, **keywords}
+    return ObjectPathProblem(arm, world, pipe.shapes(), np.array(path), **given)
+
+
+def test_follow_a_path_with_the_best_of_some_grasps() -> None:
+    problem = arc(12)
+    pipe, frame = pipe1()
+    _, arm, gripper = pipe_robot("tm14like")
+    evaluator = ObjectPathEvaluator(problem)
+    grasps = pipe.sample_grasps(60, gripper=gripper, seed=2)
+    results = [evaluator.evaluate(grasp) for grasp in grasps]
+    solved = [i for i, result in enumerate(results) if result.outcome == mg.Outcome.solved]
+    assert len(solved) > 5
+    assert all((result.violation == 0) == (result.outcome == mg.Outcome.solved) for result in results)
+    best = min(solved, key=lambda i: results[i].cost)
+    found = follow_object_path(problem, grasps[best])
+    assert found.outcome == mg.Outcome.solved
+    assert found.cost >= results[best].cost * (1 - 1e-9)
+    for q, T in zip(found.path, problem.T_world_object, strict=True):
+        assert arm.fk(q) == pytest.approx(T @ grasps[best].T_object_hand, abs=1e-4)
+    sag = [frame.deflection(grasps[best], T).displacement.value for T in problem.T_world_object]
+    assert found.sag == pytest.approx(sag, rel=1e-9)
+    assert found.deflection == pytest.approx(sum(sag[1:]), rel=1e-9)
+    trajectory = mg.time_parameterize(found.path, arm.velocity_limits, arm.acceleration_limits)
+    assert trajectory.duration > 0
+    assert found.to_dict()["outcome"] == "solved"
+
+
+def test_what_falls_says_where() -> None:
+    problem = arc(5)
+    T = problem.T_world_object.copy()
+    T[3, :3, 3] += [5, 0, 0]
+    _, arm, gripper = pipe_robot("tm14like")
+    pipe, _ = pipe1()
+    far = ObjectPathProblem(arm, mg.World(), pipe.shapes(), T, gripper=gripper, touch_links=sorted(FINGERS))
+    result = follow_object_path(far, pipe.grasp(2, 0.05, 0.3, gripper=gripper))
+    assert result.outcome == mg.Outcome.not_found and result.path is None
+    assert result.violations[3] == 2
+    assert "out of reach" in repr(result)
+    with pytest.raises(mg.InvalidInput, match="T_world_object"):
+        ObjectPathProblem(arm, mg.World(), pipe.shapes(), T[:1])
+    with pytest.raises(mg.InvalidInput, match="motion_wieght"):
+        ObjectPathEvaluator(far, motion_wieght=1.0)

@@ -11,9 +11,8 @@
 namespace mmgrasp::verify::detail {
 namespace {
 
-constexpr double kFigureBand =
-    2e-6;  // [m] Inscribed radii above the uncertainty only describe: they are found to 1e-6 m.
-constexpr double kRounding = 1e-12;  // [m] Of sums such as a radius less the slack.
+constexpr double kFigureBand = 2e-6;  // [m] Radii above the uncertainty only describe; planners find them to 1e-6 m.
+constexpr double kRounding = 1e-12;   // [m] Of sums such as a radius less the slack.
 
 bool check_grid(const PlanToCheck& plan, Faults& faults) {
   const CheckedGrid& grid = plan.grid;

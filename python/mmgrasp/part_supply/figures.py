@@ -157,9 +157,6 @@ def _answer(plan: Plan) -> Found:
 
 
 def _premises(plan: Plan) -> Found:
-    said = plan.get("premises")
-    if said is None:  # a plan from before they were told
-        return
     for key, value in premises(plan).items():
-        if said[key] != value:
-            yield f"premises.{key}", f"is {said[key]!r}, the plan was made with {value!r}"
+        if plan["premises"][key] != value:
+            yield f"premises.{key}", f"is {plan['premises'][key]!r}, the plan was made with {value!r}"

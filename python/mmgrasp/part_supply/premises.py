@@ -23,12 +23,12 @@ def premises(plan: dict[str, Any]) -> dict[str, Any]:
 
 
 def premises_text(said: dict[str, Any]) -> str:
-    """The premises as the end of a sentence, e.g. "for base headings of 0° and 90° (each tray at its own), ..."."""
+    """The premises as the end of a sentence, e.g. "for base headings of 0°, 90° (each tray at its own), ..."."""
     by_tray = [sorted({round(math.degrees(h)) % 360 for h in headings}) for headings in said["headings"].values()]
     angles = sorted({angle for headings in by_tray for angle in headings})
     own = " (each tray at its own)" if any(headings != angles for headings in by_tray) else ""
     known = [
-        f"base headings of {' and '.join(f'{angle}°' for angle in angles)}{own}",
+        f"base headings of {', '.join(f'{angle}°' for angle in angles)}{own}",
         f"base cells of {100 * said['cell']:g} cm",
         f"discs of {said['positioning_uncertainty']:g} m",
         f"{said['grasps']} grasps",

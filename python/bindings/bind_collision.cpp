@@ -163,7 +163,8 @@ void bind_checker(py::module_& m) {
           },
           py::arg("q"), py::arg("within"),
           "Every pair of bodies nearer than `within` [m], nearest first, each with its gradient.")
-      .def("are_free", &are_free_of_rows, py::arg("Q"), py::arg("threads") = 0, "is_free of each row of Q (m, n), as (m,) booleans; 0 threads: all.")
+      .def("are_free", &are_free_of_rows, py::arg("Q"), py::arg("threads") = 0,
+           "is_free of each row of Q (m, n), as (m,) booleans; 0 threads: all.")
       .def(
           "check_edge",
           [](CollisionChecker& c, const ArrayLike& q0, const ArrayLike& q1, const py::kwargs& options) {

@@ -52,7 +52,9 @@ def changed(number: float, draw: Random) -> float:
 def odd_scenario(seed: int) -> dict[str, Any]:
     """A shipped scenario with one of its trays, two targets, and one to four numbers changed."""
     draw = Random(seed)
-    scenario = yaml.safe_load((SCENARIOS / draw.choice(["storeroom.yaml", "omni_cell.yaml"])).read_text())
+    scenario: dict[str, Any] = yaml.safe_load(
+        (SCENARIOS / draw.choice(["storeroom.yaml", "omni_cell.yaml"])).read_text()
+    )
     tray = copy.deepcopy(draw.choice(scenario["trays"]))
     if isinstance(tray.get("targets"), list):
         tray["targets"] = tray["targets"][:2]

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 import mmgrasp as mg
 from conftest import ASSETS
+from mmgrasp._records import MotionMessage
 from mmgrasp.planning import RobotMotion
 from mmgrasp.reproduce.drive_by import GOAL, START, whole_body
 
 
-def integrated(message: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
+def integrated(message: MotionMessage) -> tuple[np.ndarray, np.ndarray]:
     """Base poses and joints at the points, from the first one and what the message says of velocities alone.
 
     Twists are linear between points and followed in the platform's own frame in small steps (midpoint rule); joints by the
@@ -43,7 +43,7 @@ def integrated(message: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
     return np.array(poses), np.array(joints)
 
 
-def check(motion: RobotMotion, shift: float = 2e-4, joint: float = 2e-3) -> dict[str, Any]:
+def check(motion: RobotMotion, shift: float = 2e-4, joint: float = 2e-3) -> MotionMessage:
     message = motion.to_joint_trajectory()
     json.dumps(message, allow_nan=False)
     poses, joints = integrated(message)

@@ -208,9 +208,10 @@ TEST(TimeParameterization, AQuarterCircleIsDrivenAtItsCentripetalLimit) {
 }
 
 TEST(TimeParameterization, AccelerationsAreThoseOfTheVelocities) {
-  // Chords of a helix that differ by a hundred-thousandth leave straights of a micrometre between their arcs, which take
-  // less time than two samples may lie apart. The third joint rules the speed: accelerations are those of the arcs, and
-  // zero on the straights. Where one that is zero stood for an arc, 51 intervals turned with none at either end.
+  // Chords of a helix that differ by a hundred-thousandth leave straights of a micrometre between their arcs, which
+  // take less time than two samples may lie apart. The third joint rules the speed: accelerations are those of the
+  // arcs, and zero on the straights. Where one that is zero stood for an arc, 51 intervals turned with none at either
+  // end.
   JointPath path;
   for (int i = 0; i <= 200; ++i) {
     const double angle = M_PI * (i + (i % 3 == 1 ? 1e-5 : 0.0)) / 200;

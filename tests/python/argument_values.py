@@ -136,6 +136,7 @@ VALUES: dict[str, Any] = {
     "route_lengths.positions": np.array([X_Y_THETA, X_Y_THETA]),
     "cells": np.ones((1, 3, 4), np.uint8),
     "base_pose": X_Y_THETA,
+    "RobotMotion.of_drive.configuration": Q,
     "positions": np.ones((2, 3)),
     "velocities": np.ones((2, 3)),
     "accelerations": np.ones((2, 3)),
@@ -293,6 +294,10 @@ OTHERS: dict[str, Any] = {
     "random_placement.part": lambda: [BOX],
     "segment_depth_image.image": depth_frame,
     "make_height_map.image": lambda: mg.mapping.render_depth([BOX], mg.mapping.PinholeCamera(width=8, height=6), POSE),
+    "RobotMotion.trajectory": OBJECTS["JointTrajectory"],
+    "RobotMotion.of_drive.path": lambda: mg.base.plan_base_route(
+        ARM, mg.World(), home=Q, start=[0, 0, 0], goal=[0.5, 0, 0]
+    ),
     "trajectory": lambda: mg.planning.JointTrajectory(["x", "y", "theta"], [0.0, 1.0], np.zeros((2, 3))),
     "sections": lambda: [(0, 1)],
     "objective": lambda: lambda x: float(np.sum(x * x)),

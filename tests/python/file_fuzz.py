@@ -10,7 +10,8 @@ from pathlib import Path
 import mmgrasp as mg
 from mmgrasp.documents.reading import read_json
 from mmgrasp.part_supply.figures import check_figures
-from mmgrasp.part_supply.plan_file import check_form, check_names, plan_to_check
+from mmgrasp.part_supply.plan_file import check_form, check_names
+from mmgrasp.part_supply.plan_reader import plan_to_check
 
 SCRAPS = [
     *("", " ", "\n", "\t", "-", ":", ": ", "#", "[", "]", "{", "}", ",", '"', "'", "&a ", "*a", "!!str ", "!x ", "|", ">", "?", "%"),

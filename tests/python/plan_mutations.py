@@ -12,7 +12,9 @@ import mmgrasp as mg
 from mmgrasp._core import verify as checks
 from mmgrasp.documents.reading import Document, read_json
 from mmgrasp.part_supply.figures import check_figures
-from mmgrasp.part_supply.plan_file import check_form, plan_to_check, scenario_to_dict
+from mmgrasp.part_supply.plan_file import check_form
+from mmgrasp.part_supply.plan_reader import plan_to_check
+from mmgrasp.part_supply.plan_writer import scenario_to_dict
 from mmgrasp.part_supply.verification import differences
 
 Path_ = tuple[str | int, ...]

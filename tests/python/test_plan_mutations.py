@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import mmgrasp as mg
-from mmgrasp.part_supply.plan_file import scenario_to_dict
+from mmgrasp.part_supply.plan_writer import scenario_to_dict
 from plan_mutations import HARMLESS, refuses, survivors
 
 

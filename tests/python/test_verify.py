@@ -16,7 +16,7 @@ import mmgrasp as mg
 from conftest import ASSETS, DATA, REPOSITORY
 from mmgrasp._core import RobotSource
 from mmgrasp._core import verify as checks
-from mmgrasp.part_supply.plan_file import runs_of
+from mmgrasp.part_supply.plan_writer import runs_of
 
 
 def motion(plan: dict[str, Any], kind: str, pick: Any = 0) -> Any:

@@ -8,8 +8,8 @@ from .drive_by import DriveByPick as DriveByPick
 from .drive_by import DriveByPlan as DriveByPlan
 from .drive_by import plan_drive_by_picks as plan_drive_by_picks
 from .plan_file import plan_schema as plan_schema
-from .plan_file import plan_to_check as plan_to_check
 from .plan_file import read_plan as read_plan
+from .plan_reader import plan_to_check as plan_to_check
 from .planning import ScenarioPlan as ScenarioPlan
 from .planning import plan_part_supply as plan_part_supply
 from .verification import PlanVerdict as PlanVerdict

@@ -15,7 +15,7 @@ from .._core import InvalidInput, Outcome, PartSupplyPlan, PartSupplyProblem, Re
 from .._files import write_file
 from .._progress import Progress
 from ..scenario import Scenario, load_scenario
-from .plan_file import plan_to_dict, scenario_to_dict
+from .plan_writer import plan_to_dict, scenario_to_dict
 from .premises import premises
 from .round_motion import RoundMotion
 

@@ -14,7 +14,9 @@ from .._progress import Progress
 from ..documents.reading import Document, read_json
 from ..scenario import load_scenario
 from .figures import check_figures
-from .plan_file import allowed_collisions, check_form, plan_to_check, scenario_to_dict
+from .plan_file import check_form
+from .plan_reader import allowed_collisions, plan_to_check
+from .plan_writer import scenario_to_dict
 from .scan_check import check_scans
 
 

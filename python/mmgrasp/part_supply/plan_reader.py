@@ -1,0 +1,206 @@
+"""plan.json as `verify` takes it: every value is read strictly, with its place in messages."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from .._core import RobotSource
+from .._core import verify as checks
+from .._files import sha256_of
+from ..documents.reading import Node
+from ..scenario.shapes import shape_from_node
+
+
+def plan_to_check(root: Node) -> checks.PlanToCheck:
+    """The plan as the checker takes it; every value is read strictly."""
+    scenario = root["scenario"]
+    robot = scenario["robot"]
+    limits = {key: node.number(above=0) for key, node in robot["base_limits"].items()}
+    for mesh in robot["meshes"].elements():
+        if sha256_of(mesh["file"].string()) != mesh["sha256"].string():
+            mesh["file"].fail("the mesh file has changed since the plan was made")
+    base = robot["base"].choice("diff_drive", "omni")
+    planned = RobotSource(base, base_limits=limits, srdf=robot["srdf"].string())
+    files = {mesh["file"].raw: mesh["file"].raw for mesh in robot["meshes"].elements()}
+    planned.add_urdf(robot["urdf"].string(), origin=f"{root.document.source}: scenario.robot.urdf", mesh_files=files)
+    if "urdfs" in robot:
+        plan = checks.PlanToCheck(_read_source(robot, RobotSource(base, base_limits=limits, srdf=robot["srdf"].raw)))
+        plan.planned_robot = planned
+    else:  # a plan from before these were kept
+        plan = checks.PlanToCheck(planned)
+    _read_arm(plan, scenario)
+    _read_scene(plan, scenario)
+    _read_answer(plan, root)
+    return plan
+
+
+def _text(node: Node) -> str:
+    """A text that may be empty."""
+    return node.raw if node.raw == "" else node.string()
+
+
+def _read_source(robot: Node, source: RobotSource) -> RobotSource:
+    hashed = {mesh["file"].raw for mesh in robot["meshes"].elements()} | {""}
+    for node in robot["urdfs"].elements():
+        node.mapping("urdf origin prefix parent_link pose mesh_files")
+        files = {name: _text(file) for name, file in node["mesh_files"].items()}
+        if not hashed.issuperset(files.values()):
+            node["mesh_files"].fail("every file must be among the robot's meshes")
+        texts = {key: _text(node[key]) for key in ("urdf", "origin", "prefix", "parent_link")}
+        source.add_urdf(**texts, T=node["pose"].pose(), mesh_files=files)
+    for node in robot["links"].elements():
+        shapes = [shape_from_node(shape) for shape in node["shapes"].elements()]
+        source.add_link(node["name"].string(), node["parent_link"].string(), node["pose"].pose(), shapes)
+    return source
+
+
+def _read_arm(plan: checks.PlanToCheck, scenario: Node) -> None:
+    arm, gripper = scenario["arm"], scenario["gripper"]
+    plan.arm_joints = [name.string() for name in arm["joints"].elements()]
+    count = len(plan.arm_joints)
+    plan.velocity_limits = arm["velocity_limits"].numbers(count, above=0)
+    plan.acceleration_limits = arm["acceleration_limits"].numbers(count, above=0)
+    plan.tip_link = arm["tip_link"].string()
+    plan.other_joints = {name: value.number() for name, value in scenario["other_joints"].items()}
+    plan.max_opening = gripper["max_opening"].number(above=0)
+    plan.clearance = gripper["clearance"].number(least=0)
+    plan.approach = np.array(gripper["approach"].numbers(3))
+    plan.fingers = [
+        checks.CheckedFinger(j["name"].string(), j["closed"].number(), j["open"].number())
+        for j in gripper["joints"].elements()
+    ]
+    if "openings" in gripper:
+        plan.openings = gripper["openings"].numbers()
+    plan.closing = np.array(gripper["closing"].numbers(3))
+    plan.finger_depth = gripper["finger_depth"].number(above=0)
+    plan.finger_width = gripper["finger_width"].number(above=0)
+    plan.closing_speed = gripper["closing_speed"].number(above=0)
+    options = scenario["options"]
+    plan.approach_distance = options["approach_distance"].number(above=0)
+    plan.lift_height = options["lift_height"].number(above=0)
+    plan.finger_links = [link.string() for link in gripper["finger_links"].elements()]
+    plan.home = np.array(scenario["home"].numbers(count))
+
+
+def _read_body(node: Node) -> checks.CheckedBody:
+    shapes = [shape_from_node(shape) for shape in node["shapes"].elements()]
+    return checks.CheckedBody(node["name"].string(), shapes, node["pose"].pose())
+
+
+def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
+    plan.start, plan.goal = (np.array(scenario[key].numbers(3)) for key in ("start", "goal"))
+    plan.positioning_uncertainty = scenario["positioning_uncertainty"].number(least=0)
+    place = scenario["place_region"]
+    plan.T_base_bin = place["pose"].pose()
+    plan.bin_size = np.array(place["size"].numbers(2, above=0))
+    plan.drop_gap = place["drop_gap"].number(least=0)
+    plan.obstacles = [_read_body(node) for node in scenario["obstacles"].elements()]
+    plan.trays = [tray["name"].string() for tray in scenario["trays"].elements()]
+    farthest = scenario["options"]["grid_max_distance"].number(least=0) or math.inf
+    plan.searched = {
+        tray["name"].raw: checks.CheckedTray(tray["headings"].numbers(), tray["pose"].pose()[:2, 3], farthest)
+        for tray in scenario["trays"].elements()
+    }
+    parts = []
+    for node in scenario["parts"].elements():
+        grasps = [checks.CheckedGrasp(g["pose"].pose(), g["width"].number(least=0)) for g in node["grasps"].elements()]
+        tray = node["tray"]
+        if tray.string() not in plan.trays:
+            tray.fail("no such tray")
+        parts.append(checks.CheckedPart(_read_body(node), tray.raw, node["target"].boolean(), grasps))
+    plan.parts = parts
+    plan.allowed_collisions = allowed_collisions(scenario)
+    plan.padded = "padding" in scenario
+
+
+def allowed_collisions(scenario: Node) -> list[tuple[str, str]]:
+    """The pairs that may touch, as the section `scenario` of a plan says."""
+    pairs = []
+    for node in scenario["allowed_collisions"].elements() if "allowed_collisions" in scenario else []:
+        names = [name.string() for name in node.elements()]
+        if len(names) != 2:
+            node.fail("must be a pair of names")
+        pairs.append((names[0], names[1]))
+    return pairs
+
+
+def _read_answer(plan: checks.PlanToCheck, root: Node) -> None:
+    grid = root["grid"]
+    nx, ny, headings = grid["nx"].integer(least=1), grid["ny"].integer(least=1), grid["headings"].numbers()
+    plan.grid = checks.CheckedGrid(grid["origin"].numbers(2), grid["resolution"].number(above=0), nx, ny, headings)
+    plan.regions = [
+        checks.CheckedRegion(region["tray"].string(), _cells(region["cells"], len(headings), ny, nx))
+        for region in root["regions"].elements()
+    ]
+    plan.stops = [
+        checks.CheckedStop(s["pose"].numbers(3), s["radius"].number(), [t.string() for t in s["trays"].elements()])
+        for s in root["stops"].elements()
+    ]
+    plan.route = [list(leg["poses"].array(3)) for leg in root["route"].elements()]
+    plan.picks = [_read_pick(node, len(plan.arm_joints)) for node in root["picks"].elements()]
+    if "drive_by" in root.raw:
+        plan.drive_by = [
+            checks.CheckedDriveBy(
+                node["pick"].integer(),
+                node["close_at"].number(),
+                node["closed_at"].number(),
+                _read_motion(node, "drive-by", False, 3 + len(plan.arm_joints)),
+            )
+            for node in root["drive_by"]["motions"].elements()
+        ]
+    plan.lower_bound = root["lower_bound"].integer(least=0)
+    plan.route_figures = [
+        checks.CheckedLegFigures(*(leg[key].number() for key in ("length", "turning", "duration")))
+        for leg in root["route"].elements()
+    ]
+    plan.intersections = [_read_intersection(node, headings) for node in root["intersections"].elements()]
+    plan.robustness_rate = root["robustness_rate"].number()
+
+
+def _read_intersection(node: Node, headings: list[float]) -> checks.CheckedIntersection:
+    index = node["heading"].integer(least=0)
+    if index >= len(headings):
+        node["heading"].fail("must be the index of a heading of the grid")
+    trays = [tray.string() for tray in node["trays"].elements()]
+    return checks.CheckedIntersection(trays, headings[index], node["centre"].numbers(2), node["radius"].number())
+
+
+def _cells(node: Node, layers: int, ny: int, nx: int) -> np.ndarray:
+    if layers * ny * nx > 100_000_000:
+        node.fail("the grid has more than 100 million cells")
+    cells = np.zeros((layers, ny, nx), dtype=np.uint8)
+    for key, runs in node.items():
+        if not (key.isascii() and key.isdigit() and len(key) < 6) or int(key) >= layers:
+            runs.fail("must belong to a heading of the grid")
+        for run in runs.elements():
+            iy, a, b = (
+                (value.integer(least=0) for value in run.elements())
+                if len(run.raw) == 3
+                else run.fail("needs 3 numbers")
+            )
+            if iy >= ny or not a < b <= nx:
+                run.fail("must lie inside the grid")
+            cells[int(key), iy, a:b] = 1
+    return cells.reshape(-1)
+
+
+def _read_motion(node: Node, kind: str, holding: bool, columns: int) -> checks.CheckedMotion:
+    times = node["times"].numbers()
+    if not times:
+        node["times"].fail("must not be empty")
+    rows = [node[key].array(columns) for key in ("positions", "velocities", "accelerations")]
+    if any(len(values) != len(times) for values in rows):
+        node["times"].fail("must be as many as positions, velocities and accelerations")
+    return checks.CheckedMotion(kind, node["opening"].number(), holding, times, *rows)
+
+
+def _read_pick(node: Node, joints: int) -> checks.CheckedPick:
+    motions = [
+        _read_motion(motion, motion["kind"].string(), motion["holding"].boolean(), joints)
+        for motion in node["motions"].elements()
+    ]
+    return checks.CheckedPick(
+        node["stop"].integer(), node["tray"].string(), node["part"].string(), node["grasp"].integer(), motions
+    )

@@ -304,7 +304,7 @@ void CollisionRows::add_to(WholeBodyNlp& nlp, bool diff_drive) const {
     if (s > 0) {
       for (int end = i; end <= i + 1; ++end)
         for (int d = 0; d < layout.drives(); ++d) term->variables.push_back(layout.v(end, d));
-      term->variables.push_back(layout.h(i));
+      term->variables.push_back(layout.h(layout.segment(i)));
     }
     nlp.add(std::move(term));
   }

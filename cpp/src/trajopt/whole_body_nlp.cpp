@@ -18,8 +18,9 @@ constexpr double kLeastStep = 1e-4, kLongestStep = 100;  // [s] of a time step (
 WholeBodyLayout::WholeBodyLayout(const WholeBodyProblem& problem)
     : columns_(problem.group.size()), drives_(static_cast<int>(drive_names(problem.group).size())) {
   for (std::size_t s = 0; s < problem.segments.size(); ++s) {
+    step_.push_back(size_++);
     for (int i = 0; i < problem.segments[s].intervals; ++i) {
-      first_.push_back(++size_);
+      first_.push_back(size_);
       segment_.push_back(static_cast<int>(s));
       size_ += columns_ + 2 * drives_;
     }
@@ -29,8 +30,8 @@ WholeBodyLayout::WholeBodyLayout(const WholeBodyProblem& problem)
 }
 
 std::string WholeBodyLayout::name(int index, const JointGroup& group) const {
-  for (int i = 0; i < intervals(); ++i)
-    if (h(i) == index) return "time step of interval " + std::to_string(i);
+  for (std::size_t s = 0; s < step_.size(); ++s)
+    if (step_[s] == index) return "time step of segment " + std::to_string(s);
   const auto after = std::upper_bound(first_.begin(), first_.end(), index);
   const int waypoint = static_cast<int>(after - first_.begin()) - 1;
   const int at = index - first_[waypoint];
@@ -45,15 +46,12 @@ WholeBodyNlp::WholeBodyNlp(const WholeBodyProblem& problem, double smoothing) : 
   const VectorXd limits = drive_acceleration_limits(problem.group);
   smoothing_ = smoothing / layout_.intervals() * limits.cwiseAbs2().cwiseInverse();
   bound_variables();
+  for (int s = 0; s < static_cast<int>(problem_.segments.size()); ++s) hessian_.add(layout_.h(s), layout_.h(s));
   for (int i = 0; i < layout_.intervals(); ++i)
     for (int d = 0; d < layout_.drives(); ++d) hessian_.add(layout_.a(i, d), layout_.a(i, d));
   add_motion();
   add_limits();
   add_tool();
-}
-
-bool WholeBodyNlp::first_of_segment(int interval) const {
-  return interval == 0 || layout_.segment(interval) != layout_.segment(interval - 1);
 }
 
 void WholeBodyNlp::bound_variables() {
@@ -88,10 +86,9 @@ void WholeBodyNlp::bound_variables() {
     box(layout_.v(0, d), first, first);
     box(layout_.v(last, d), end, end);
   }
-  for (int i = 0; i < layout_.intervals(); ++i) {
-    if (!first_of_segment(i)) continue;  // the others are equal
-    const WholeBodySegment& segment = problem_.segments[layout_.segment(i)];
-    box(layout_.h(i), std::max(kLeastStep, segment.min_duration / segment.intervals),
+  for (std::size_t s = 0; s < problem_.segments.size(); ++s) {
+    const WholeBodySegment& segment = problem_.segments[s];
+    box(layout_.h(static_cast<int>(s)), std::max(kLeastStep, segment.min_duration / segment.intervals),
         std::min(kLongestStep, segment.max_duration / segment.intervals));
   }
 }
@@ -121,12 +118,7 @@ void WholeBodyNlp::add_motion() {
     add(std::move(term));
   };
   for (int i = 0; i < layout_.intervals(); ++i) {
-    const int h = layout_.h(i);
-    if (!first_of_segment(i)) {
-      auto equal = std::make_unique<LinearTerm>(std::vector<double>{1, -1});
-      equal->lower = equal->upper = VectorXd::Zero(1);
-      make(std::move(equal), i, {layout_.h(i - 1), h}, "time step");
-    }
+    const int h = layout_.h(layout_.segment(i));
     const auto zero = [](auto term, int rows) {
       term->lower = term->upper = VectorXd::Zero(rows);
       return term;
@@ -181,7 +173,7 @@ void WholeBodyNlp::add_limits() {
       make(std::make_unique<SquareSum>(), i, {layout_.a(i, 0), layout_.a(i, 1)}, -kInfinity,
            limits.linear_acceleration * limits.linear_acceleration, "acceleration", "base");
     }
-    const int h = layout_.h(i);
+    const int h = layout_.h(layout_.segment(i));
     for (int c = 0; c < layout_.columns(); ++c) {
       // x and y of a base have a workspace of many metres.
       const std::size_t at = c;
@@ -256,7 +248,7 @@ VectorXd WholeBodyNlp::pack(const WholeBodyGuess& guess) const {
           static_cast<double>(guess.drive.size()), "must be empty or hold one per waypoint");
 
   VectorXd x = VectorXd::Zero(layout_.size());
-  for (int i = 0; i < last; ++i) x[layout_.h(i)] = guess.steps[layout_.segment(i)];
+  for (std::size_t s = 0; s < guess.steps.size(); ++s) x[layout_.h(static_cast<int>(s))] = guess.steps[s];
   const auto step = [&](int i) { return guess.steps[layout_.segment(i)]; };
   const auto at = [&](int i) -> const VectorXd& { return guess.positions[i]; };
   const bool diff_drive = moving_base(problem_.group) == BaseKind::diff_drive;
@@ -277,11 +269,9 @@ VectorXd WholeBodyNlp::pack(const WholeBodyGuess& guess) const {
     x.segment(layout_.v(i, 0), layout_.drives()) = drive;
   }
   x = x.cwiseMax(bounds_.lower).cwiseMin(bounds_.upper);
-  for (int i = 1; i < last; ++i)
-    if (!first_of_segment(i)) x[layout_.h(i)] = x[layout_.h(i - 1)];
   for (int i = 0; i < last; ++i)
     for (int d = 0; d < layout_.drives(); ++d)
-      x[layout_.a(i, d)] = (x[layout_.v(i + 1, d)] - x[layout_.v(i, d)]) / x[layout_.h(i)];
+      x[layout_.a(i, d)] = (x[layout_.v(i + 1, d)] - x[layout_.v(i, d)]) / x[layout_.h(layout_.segment(i))];
   return x.cwiseMax(bounds_.lower).cwiseMin(bounds_.upper);
 }
 
@@ -291,8 +281,7 @@ WholeBodyGuess WholeBodyNlp::unpack(const VectorXd& x) const {
     result.positions.push_back(x.segment(layout_.q(i, 0), layout_.columns()));
     result.drive.push_back(x.segment(layout_.v(i, 0), layout_.drives()));
   }
-  for (int i = 0; i < layout_.intervals(); ++i)
-    if (first_of_segment(i)) result.steps.push_back(x[layout_.h(i)]);
+  for (int s = 0; s < static_cast<int>(problem_.segments.size()); ++s) result.steps.push_back(x[layout_.h(s)]);
   return result;
 }
 
@@ -307,7 +296,8 @@ Bounds WholeBodyNlp::constraint_bounds() const {
 
 double WholeBodyNlp::objective(const VectorXd& x) {
   double sum = 0;
-  for (int i = 0; i < layout_.intervals(); ++i) sum += x[layout_.h(i)];
+  for (std::size_t s = 0; s < problem_.segments.size(); ++s)
+    sum += x[layout_.h(static_cast<int>(s))] * problem_.segments[s].intervals;
   for (int i = 0; i < layout_.intervals(); ++i)
     sum += smoothing_.dot(x.segment(layout_.a(i, 0), layout_.drives()).cwiseAbs2());
   return sum;
@@ -315,7 +305,8 @@ double WholeBodyNlp::objective(const VectorXd& x) {
 
 void WholeBodyNlp::gradient(const VectorXd& x, Eigen::Ref<VectorXd> out) {
   out.setZero();
-  for (int i = 0; i < layout_.intervals(); ++i) out[layout_.h(i)] = 1;
+  for (std::size_t s = 0; s < problem_.segments.size(); ++s)
+    out[layout_.h(static_cast<int>(s))] = problem_.segments[s].intervals;
   for (int i = 0; i < layout_.intervals(); ++i) {
     out.segment(layout_.a(i, 0), layout_.drives()) =
         2 * smoothing_.cwiseProduct(x.segment(layout_.a(i, 0), layout_.drives()));
@@ -337,8 +328,10 @@ void WholeBodyNlp::jacobian(const VectorXd& x, Eigen::Ref<VectorXd> values) {
 }
 
 void WholeBodyNlp::hessian(const VectorXd& x, double factor, const VectorXd& multipliers, Eigen::Ref<VectorXd> values) {
+  const Eigen::Index segments = static_cast<Eigen::Index>(problem_.segments.size());
+  values.head(segments).setZero();
   for (int i = 0; i < layout_.intervals(); ++i)
-    values.segment(i * layout_.drives(), layout_.drives()) = 2 * factor * smoothing_;
+    values.segment(segments + i * layout_.drives(), layout_.drives()) = 2 * factor * smoothing_;
   for (std::size_t t = 0; t < terms_.size(); ++t) {
     terms_[t]->hessian(gathered(*terms_[t], x), multipliers.data() + row_at_[t], values.data() + hessian_at_[t]);
   }

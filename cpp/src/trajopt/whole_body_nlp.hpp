@@ -11,8 +11,7 @@
 namespace mmgrasp::detail {
 
 /// The order of a whole-body problem's numbers in one vector: per waypoint q, drive velocity, and (but for the
-/// last) drive acceleration of the interval after it, and before it that interval's time step. Those of one segment are
-/// equal; each interval has its own all the same, so that only neighbours are coupled and orderings find that.
+/// last) drive acceleration of the interval after it; the time step of a segment before its first waypoint.
 class MMGRASP_EXPORT WholeBodyLayout {
  public:
   explicit WholeBodyLayout(const WholeBodyProblem& problem);
@@ -20,7 +19,7 @@ class MMGRASP_EXPORT WholeBodyLayout {
   int q(int waypoint, int column) const { return first_[waypoint] + column; }
   int v(int waypoint, int drive) const { return q(waypoint, columns_) + drive; }
   int a(int waypoint, int drive) const { return v(waypoint, drives_) + drive; }
-  int h(int interval) const { return first_[interval] - 1; }
+  int h(int segment) const { return step_[segment]; }
   /// Segment that the interval after a waypoint belongs to.
   int segment(int interval) const { return segment_[interval]; }
   int columns() const { return columns_; }
@@ -31,7 +30,7 @@ class MMGRASP_EXPORT WholeBodyLayout {
 
  private:
   int columns_, drives_, size_ = 0;
-  std::vector<int> first_, segment_;
+  std::vector<int> first_, step_, segment_;
 };
 
 /// P1's (4.1)-(4.9) as a sparse nonlinear problem.
@@ -60,7 +59,6 @@ class MMGRASP_EXPORT WholeBodyNlp : public NonlinearProblem {
   std::string constraint_name(int index) const override;
 
  private:
-  bool first_of_segment(int interval) const;
   void bound_variables();
   void add_motion();
   void add_limits();

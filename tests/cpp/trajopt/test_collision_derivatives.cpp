@@ -71,7 +71,7 @@ class Passing {
       x.segment(layout.q(i, 0), layout.columns()) = guess_.positions[i];
       x.segment(layout.v(i, 0), layout.drives()) = guess_.drive[i];
     }
-    for (int i = 0; i < kIntervals; ++i) x[layout.h(i)] = kStep;
+    for (int segment = 0; segment < 2; ++segment) x[layout.h(segment)] = kStep;
     return x;
   }
 

@@ -56,7 +56,7 @@ TEST_P(Derivatives, OfTheWholeProblemAreExact) {
   Rng rng(3);
   for (int round = 0; round < 3; ++round) {
     VectorXd x = random_vector(rng, nlp.layout().size(), 1.5);
-    for (int i = 0; i < nlp.layout().intervals(); ++i) x[nlp.layout().h(i)] = rng.uniform(0.2, 1.5);
+    for (int s = 0; s < 2; ++s) x[nlp.layout().h(s)] = rng.uniform(0.2, 1.5);
     const Eigen::Index rows = nlp.constraint_bounds().lower.size();
     test::expect_exact_derivatives(nlp, x, 0.7, random_vector(rng, rows, 1));
   }

@@ -284,7 +284,7 @@ def test_the_command_plans_and_verifies(tmp_path: Path, capsys: pytest.CaptureFi
     out = tmp_path / "scanned"
     scenario = str(ASSETS / "scenarios" / "scanned_tray.yaml")
     assert main(["plan", scenario, "-o", str(out), "--no-pictures"]) == 0
-    assert "grasps of scanned parts succeed with probability 0." in " ".join(capsys.readouterr().out.split())
+    assert "modelled probability of the grasps of scanned parts 0." in " ".join(capsys.readouterr().out.split())
     assert main(["verify", str(out / "plan.json"), "--scenario", scenario]) == 0
     assert "the plan holds" in capsys.readouterr().out
     from mmgrasp.viz.report import report_html

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sized
 from typing import Any
 
 from rich.console import Console
@@ -13,11 +14,16 @@ from ..part_supply import DriveByPlan, PlanVerdict, ScenarioPlan
 from ..part_supply.premises import premises_text
 
 
+def count(items: Sized, word: str) -> str:
+    """ "1 stop", "2 stops"."""
+    return f"{len(items)} {word}{'s' if len(items) != 1 else ''}"
+
+
 def summary(plan: ScenarioPlan) -> Table:
     """Stops of a plan."""
     table = Table(
-        title=f"{escape(plan.scenario.name)}: {len(plan.stops)} stops (proven least {plan.plan.lower_bound}), "
-        f"{len(plan.picks)} picks"
+        title=f"{escape(plan.scenario.name)}: {count(plan.stops, 'stop')} (proven least {plan.plan.lower_bound}), "
+        f"{count(plan.picks, 'pick')}"
     )
     for title in ("stop", "x [m]", "y [m]", "heading [deg]", "free disc [m]", "trays", "picks", "arm time [s]"):
         table.add_column(title, justify="left" if title == "trays" else "right")
@@ -47,7 +53,9 @@ def _probabilities(plan: ScenarioPlan) -> str:
     """Of the grasps that were found in a scan."""
     trays = plan.scenario.trays
     found = [trays[p.tray].tray.parts[p.part].grasps[p.grasp].quality for p in plan.picks if trays[p.tray].scan]
-    return f"; grasps of scanned parts succeed with probability {min(found):.2f} to {max(found):.2f}" if found else ""
+    return (
+        f"; modelled probability of the grasps of scanned parts {min(found):.2f} to {max(found):.2f}" if found else ""
+    )
 
 
 def drive_by_summary(passing: DriveByPlan) -> Table:

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <map>
 #include <optional>
@@ -18,11 +19,14 @@ using Eigen::Vector3d;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 constexpr double kPi = 3.14159265358979323846;
 /// Edges that bend inwards by less are no roots [rad].
-constexpr double kRootBend = 0.35;
+constexpr double kRootBend = 0.5;
 constexpr double kLeastTurns = 2;
-/// Edges of a chain may differ in direction from the helix by this much on average [rad], and in radius by this share
-/// of the pitch.
-constexpr double kDirection = 0.06, kRadius = 0.15;
+/// How well a chain's edges keep their place when the helix is unwound: 1 when all do, near 0 when none does. Two lines
+/// of one thread's root, half a pitch apart at most, still have this much.
+constexpr double kInPhase = 0.6;
+/// Edges of a chain may differ in radius by this share of the pitch (standard deviation).
+constexpr double kRadius = 0.15;
+constexpr int kAxisSteps = 8;
 /// Depth of a thread from root to crest, in pitches; metric threads have 0.61, square ones 0.5.
 constexpr double kDeepest = 1.0;
 
@@ -73,7 +77,7 @@ std::optional<Helix> fit_helix(const FaceGraph& graph, const std::vector<int>& c
   return out;
 }
 
-/// Height, radius and angle of a point in a helix' frame.
+/// Height, radius and direction from the axis of a point in a helix' frame.
 struct Place {
   double height, radius;
   Vector3d outward;
@@ -97,19 +101,56 @@ struct Range {
   }
 };
 
+/// Turns and moves the axis so that the chain's vertices lie at one distance from it (Gauss-Newton), then takes the
+/// pitch from how far they climb along it in all.
+void refine_axis(const FaceGraph& graph, const std::vector<int>& chain, Helix& helix) {
+  for (int step = 0; step < kAxisSteps; ++step) {
+    const Vector3d u = helix.axis.unitOrthogonal(), v = helix.axis.cross(u);
+    // Unknowns: tilt towards u and v, shift along u and v, and the radius.
+    Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
+    Eigen::Matrix<double, 5, 1> right = Eigen::Matrix<double, 5, 1>::Zero();
+    for (const int k : chain) {
+      for (const int vertex : graph.borders[k].vertices) {
+        const Place at = place_at(helix, graph.vertices[vertex]);
+        const double a = at.outward.dot(u), b = at.outward.dot(v);
+        Eigen::Matrix<double, 5, 1> row;
+        row << -at.height * a, -at.height * b, -a, -b, -1;
+        normal += graph.borders[k].length * row * row.transpose();
+        right -= graph.borders[k].length * at.radius * row;
+      }
+    }
+    const Eigen::Matrix<double, 5, 1> change = normal.ldlt().solve(right);
+    if (!change.allFinite()) return;
+    helix.point += change[2] * u + change[3] * v;
+    helix.axis = (helix.axis + change[0] * u + change[1] * v).normalized();
+  }
+  double climbed = 0, turned = 0;
+  for (const int k : chain) {
+    const Vector3d &a = graph.vertices[graph.borders[k].vertices[0]], &b = graph.vertices[graph.borders[k].vertices[1]];
+    const Place at = place_at(helix, 0.5 * (a + b));
+    if (at.radius <= 0) continue;
+    const double turn = (b - a).dot(helix.axis.cross(at.outward)) / at.radius;
+    climbed += turn > 0 ? (b - a).dot(helix.axis) : -(b - a).dot(helix.axis);
+    turned += std::abs(turn);
+  }
+  if (turned > 0) helix.pitch_per_radian = climbed / turned;
+}
+
 /// Whether the chain's edges run along the helix, at one radius, for long enough.
 bool is_thread_root(const FaceGraph& graph, const std::vector<int>& chain, const Helix& helix, Range& heights,
                     double& radius) {
-  double error = 0, length = 0, turned = 0, mean = 0, square = 0;
+  double length = 0, turned = 0, mean = 0, square = 0;
+  std::complex<double> phases = 0;
+  const Vector3d side = helix.axis.unitOrthogonal(), across = helix.axis.cross(side);
   for (const int k : chain) {
     const FaceBorder& b = graph.borders[k];
     const Vector3d u = graph.vertices[b.vertices[0]], v = graph.vertices[b.vertices[1]];
     const Place at = place_at(helix, 0.5 * (u + v));
-    const Vector3d motion = helix.axis.cross(at.outward) * at.radius + helix.pitch_per_radian * helix.axis;
-    if (motion.norm() <= 0 || b.length <= 0) continue;
-    error += b.length * ((v - u) / b.length).cross(motion.normalized()).norm();
+    if (at.radius <= 0) continue;
+    const double angle = std::atan2(at.outward.dot(across), at.outward.dot(side));
+    phases += b.length * std::polar(1.0, angle - at.height / helix.pitch_per_radian);
     length += b.length;
-    turned += std::abs((v - u).dot(helix.axis.cross(at.outward))) / std::max(at.radius, 1e-300);
+    turned += std::abs((v - u).dot(helix.axis.cross(at.outward))) / at.radius;
     const double r = 0.5 * (place_at(helix, u).radius + place_at(helix, v).radius);
     mean += b.length * r;
     square += b.length * r * r;
@@ -122,7 +163,7 @@ bool is_thread_root(const FaceGraph& graph, const std::vector<int>& chain, const
   const double pitch = 2 * kPi * std::abs(helix.pitch_per_radian);
   const double spread = std::sqrt(std::max(0.0, square / length - mean * mean));
   // A ring, straight or rounded, climbs nothing: its heights do not span its turns.
-  return error / length < kDirection && turned > 2 * kPi * kLeastTurns && spread < kRadius * pitch &&
+  return std::abs(phases) > kInPhase * length && turned > 2 * kPi * kLeastTurns && spread < kRadius * pitch &&
          heights.high - heights.low > 0.5 * kLeastTurns * pitch && pitch < 2 * mean && pitch > 0.01 * mean;
 }
 
@@ -165,16 +206,19 @@ std::vector<std::vector<int>> root_chains(const FaceGraph& graph) {
 
 /// The thread around a root: faces no higher or lower than half a pitch beyond it, from the root to the crest.
 std::optional<ScrewThread> thread_around(const FaceGraph& graph, const Helix& helix, const Range& heights, double root) {
-  const double pitch = 2 * kPi * std::abs(helix.pitch_per_radian), slack = 0.02 * pitch + 1e-3 * root;
+  const double pitch = 2 * kPi * std::abs(helix.pitch_per_radian), slack = 0.05 * pitch + 3e-3 * root;
   const auto faces_between = [&](double low, double high) {
     std::vector<int> faces;
     for (int f = 0; f < graph.size(); ++f) {
-      bool inside = true;
+      bool inside = true, beyond = true, at_root = true;
       for (const int v : graph.faces[f]) {
         const Place at = place_at(helix, graph.vertices[v]);
         inside = inside && at.height > heights.low - 0.75 * pitch && at.height < heights.high + 0.75 * pitch &&
                  at.radius >= low - slack && at.radius <= high + slack;
+        beyond = beyond && (at.height < heights.low || at.height > heights.high);
+        at_root = at_root && std::abs(at.radius - root) < slack;
       }
+      if (beyond && at_root) continue;  // the shaft that the thread ends on
       // A plane across the axis is no flank.
       if (inside && std::abs(graph.normals[f].dot(helix.axis)) < 0.985) faces.push_back(f);
     }
@@ -224,7 +268,8 @@ std::vector<ScrewThread> find_threads(const TriangleMesh& mesh) {
   for (const std::vector<int>& chain : chains) {
     const FaceBorder& first = graph.borders[chain.front()];
     if (taken[first.first] || taken[first.second]) continue;  // another start of the same thread
-    const std::optional<Helix> helix = fit_helix(graph, chain);
+    std::optional<Helix> helix = fit_helix(graph, chain);
+    if (helix) refine_axis(graph, chain, *helix);
     Range heights;
     double root = 0;
     if (!helix || !is_thread_root(graph, chain, *helix, heights, root)) continue;

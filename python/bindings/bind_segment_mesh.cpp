@@ -1,6 +1,7 @@
 #include <sstream>
 
 #include "bindings.hpp"
+#include "mmgrasp/geometry/fit_primitives.hpp"
 #include "mmgrasp/geometry/segment_mesh.hpp"
 #include "mmgrasp/geometry/shape_diameter.hpp"
 
@@ -83,10 +84,55 @@ void bind_segmentation_parts(py::module_& m) {
       });
 }
 
+void bind_fitted_primitives(py::module_& m) {
+  py::class_<GraspWidth>(m, "GraspWidth", "A width at which fingers may close on a segment.")
+      .def_readonly("width", &GraspWidth::width, "[m]")
+      .def_property_readonly(
+          "axis", [](const GraspWidth& w) { return Eigen::Vector3d(w.axis); },
+          "Closing direction of a box, axis of a round wall (3,): a unit vector in the mesh's frame.")
+      .def_readonly("covered", &GraspWidth::covered,
+                    "Share of the box' faces (the lesser of the two) or of the turn around the wall that is surface.")
+      .def("__repr__", [](const GraspWidth& w) {
+        return "GraspWidth(" + millimetres(w.width) + " along " + text(w.axis) + ")";
+      });
+  using F = FittedPrimitive;
+  py::class_<F>(m, "FittedPrimitive", "The primitive that stands for a segment (P1, section 5.2.2).")
+      .def_property_readonly(
+          "kind", [](const F& f) { return primitive_kind_name(f.kind); }, "cylinder, box, cone or sphere.")
+      .def_property_readonly(
+          "T_mesh_primitive", [](const F& f) { return to_array(f.T_mesh_primitive); },
+          "(4, 4): centre; z along the axis of a cylinder or cone, which narrows along z.")
+      .def_property_readonly(
+          "size", [](const F& f) { return Eigen::Vector3d(f.size); },
+          "(3,) [m]: lengths of a box; diameter twice and length of a cylinder; diameters at foot and top and length of "
+          "a cone; diameter of a sphere.")
+      .def_readonly("volume", &F::volume, "Of the primitive [m^3].")
+      .def_readonly("hull_volume", &F::hull_volume, "Of the segment's convex hull [m^3].")
+      .def_readonly("deviation", &F::deviation,
+                    "Mean distance of the segment's faces from the primitive's surface that they lie on [m].")
+      .def_readonly("widths", &F::widths, "Most covered first; empty where there is no surface to hold.")
+      .def("__repr__", [](const F& f) {
+        return std::string("FittedPrimitive(") + primitive_kind_name(f.kind) + " of " + text(1e3 * f.size) + " mm, " +
+               std::to_string(f.widths.size()) + " widths)";
+      });
+  m.def(
+      "fit_primitives",
+      [](const MeshShape& mesh, const std::vector<int>& labels) {
+        py::gil_scoped_release release;
+        return fit_primitives(*mesh.mesh, labels);
+      },
+      "mesh"_a, "labels"_a,
+      "The cylinder, box, cone or sphere that stands for each segment of a mesh: the one whose volume is closest to that "
+      "of\nthe segment's convex hull, of those with surface on them (P1, section 5.2.2). `labels` (m,): the segment of "
+      "each face, as\nMeshSegmentation.labels. Inner walls are never offered for grasping, nor are sides of a box with "
+      "nothing on them. Raises\nInvalidInput when there is not one label >= 0 a face.");
+}
+
 }  // namespace
 
 void bind_segment_mesh(py::module_& m) {
   bind_segmentation_parts(m);
+  bind_fitted_primitives(m);
   using S = MeshSegmentation;
   py::class_<S>(m, "MeshSegmentation", "The bodies that a part is composed of, and which face belongs to which.")
       .def_readonly("outcome", &S::outcome, "Solved.")

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "geometry/segmentation/face_graph.hpp"
+#include "geometry/segmentation/refine_models.hpp"
 
 namespace mmgrasp::detail {
 namespace {
@@ -26,7 +27,6 @@ constexpr double kLeastTurns = 2;
 constexpr double kInPhase = 0.6;
 /// Edges of a chain may differ in radius by this share of the pitch (standard deviation).
 constexpr double kRadius = 0.15;
-constexpr int kAxisSteps = 8;
 /// Depth of a thread from root to crest, in pitches; metric threads have 0.61, square ones 0.5.
 constexpr double kDeepest = 1.0;
 
@@ -101,29 +101,27 @@ struct Range {
   }
 };
 
-/// Turns and moves the axis so that the chain's vertices lie at one distance from it (Gauss-Newton), then takes the
-/// pitch from how far they climb along it in all.
+/// Turns and moves the axis so that the chain's vertices lie at one distance from it, then takes the pitch from how far
+/// they climb along it in all.
 void refine_axis(const FaceGraph& graph, const std::vector<int>& chain, Helix& helix) {
-  for (int step = 0; step < kAxisSteps; ++step) {
-    const Vector3d u = helix.axis.unitOrthogonal(), v = helix.axis.cross(u);
-    // Unknowns: tilt towards u and v, shift along u and v, and the radius.
-    Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
-    Eigen::Matrix<double, 5, 1> right = Eigen::Matrix<double, 5, 1>::Zero();
-    for (const int k : chain) {
-      for (const int vertex : graph.borders[k].vertices) {
-        const Place at = place_at(helix, graph.vertices[vertex]);
-        const double a = at.outward.dot(u), b = at.outward.dot(v);
-        Eigen::Matrix<double, 5, 1> row;
-        row << -at.height * a, -at.height * b, -a, -b, -1;
-        normal += graph.borders[k].length * row * row.transpose();
-        right -= graph.borders[k].length * at.radius * row;
-      }
+  std::vector<Vector3d> points;
+  std::vector<double> weights;
+  double sum = 0, length = 0;
+  for (const int k : chain) {
+    for (const int vertex : graph.borders[k].vertices) {
+      points.push_back(graph.vertices[vertex]);
+      weights.push_back(graph.borders[k].length);
+      sum += weights.back() * place_at(helix, points.back()).radius;
+      length += weights.back();
     }
-    const Eigen::Matrix<double, 5, 1> change = normal.ldlt().solve(right);
-    if (!change.allFinite()) return;
-    helix.point += change[2] * u + change[3] * v;
-    helix.axis = (helix.axis + change[0] * u + change[1] * v).normalized();
   }
+  RoundFit cylinder;
+  cylinder.axis = helix.axis;
+  cylinder.point = helix.point;
+  cylinder.radius = sum / length;
+  if (!refine_cylinder(points, weights, cylinder)) return;
+  helix.axis = cylinder.axis;
+  helix.point = cylinder.point;
   double climbed = 0, turned = 0;
   for (const int k : chain) {
     const Vector3d &a = graph.vertices[graph.borders[k].vertices[0]], &b = graph.vertices[graph.borders[k].vertices[1]];

@@ -67,7 +67,8 @@ def with_options(line: str, following: Iterable[str]) -> str:
     if "**kwargs" not in line or not line.lstrip().startswith("def "):
         return line
     options = [
-        f"{o['name']}: {o['type']} = {'...' if o['default'] == 'inf' else o['default']}" for o in listed(following)
+        f"{o['name']}: {o['type']} = {'...' if o['default'] in ('inf', '-inf') else o['default']}"
+        for o in listed(following)
     ]
     if not options and line.startswith("def _"):
         return line.replace("**kwargs", "**kwargs: typing.Any")

@@ -74,15 +74,13 @@ class Bottle:
         world.add(part.name, part.shapes, _core.pose([0, 0, GAP]) @ part.pose)
         group = robot.group("arm_with_torso", tip=setup.gripper.tool_link, with_base=True)
         group = group.with_reference({**setup.other_joints, **setup.gripper.joint_values(OPENING)})
-        ends = {"start": [0.0, 0.0, 0.0, *setup.home], "goal": [WAY, 0.0, 0.0, *setup.home]}
-        found = None
+        start, goal = [0.0, 0.0, 0.0, *setup.home], [WAY, 0.0, 0.0, *setup.home]
+        options.setdefault("waypoints", 55)
         for yaw in SIDES:
-            found = _core.plan_drive_by(
-                robot, group, world, tasks=self.tasks(yaw), **ends, **{"waypoints": 55, **options}
-            )
+            tasks = self.tasks(yaw)
+            found = _core.plan_drive_by(robot, group, world, start=start, tasks=tasks, goal=goal, **options)
             if found.outcome == Outcome.solved:
                 return found, float(found.events[-1]["close_time"])
-        assert found is not None
         return found, 0.0
 
     def simulation(self) -> Simulation:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+
+from .control import RecordedState
 
 
 @dataclass
@@ -53,8 +56,8 @@ class SimResult:
     """Largest distance of the base from its plan [m]; 0 for a base that stands."""
     arm_error: float
     """Largest deviation of a planned joint [rad or m]."""
-    states: list[dict[str, Any]] = field(default_factory=list, repr=False)
-    """time [s]; base (x, y, theta); joints by name; T_world_part of each part by name."""
+    states: list[RecordedState] = field(default_factory=list, repr=False)
+    """Every `frame_period`."""
 
     @property
     def grasped(self) -> bool:
@@ -85,7 +88,7 @@ class ContactLog:
         self.open: dict[tuple[str, str], ContactEvent] = {}
         self.closed: list[ContactEvent] = []
 
-    def step(self, time: float, forces: dict[tuple[str, str], float]) -> None:
+    def step(self, time: float, forces: Mapping[tuple[str, str], float]) -> None:
         for pair, force in forces.items():
             event = self.open.get(pair)
             if event is None or time - event.end > self.patience:

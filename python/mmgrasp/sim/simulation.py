@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .._core import InvalidInput, JointGroup, JointTrajectory
-from .control import Recorder, SceneState
+from .control import RecordedState, Recorder, SceneState
 from .execution import Execution
 from .plan_controller import PlanController
 from .result import ContactLog, PartWatch, SimResult
@@ -23,7 +24,7 @@ class Simulation(SimScene):
         self,
         trajectory: JointTrajectory,
         *,
-        base: Any = (0.0, 0.0, 0.0),
+        base: ArrayLike = (0.0, 0.0, 0.0),
         arm: JointGroup | None = None,
         **execution: Any,
     ) -> SimResult:
@@ -82,7 +83,7 @@ class RunWatch:
             touching = {b if a == watch.name else a for a, b in forces if watch.name in (a, b)}
             watch.step(scene.part_pose(watch.name), T_world_tool, touching, bool(time >= plan.lifted))
 
-    def result(self, states: list[dict[str, Any]]) -> SimResult:
+    def result(self, states: list[RecordedState]) -> SimResult:
         """The verdict on every part, and what happened."""
         plan = self.controller
         lift = plan.how.lift if plan.ascent is not None else 0.0

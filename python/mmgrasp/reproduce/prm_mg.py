@@ -92,7 +92,7 @@ def run_success(context: Context) -> Result:
         )
         values["grasps within reach at both ends"] = (None, mean(d["found"]["open"][-1]["reachable"] for d in mine))
     result.exact(
-        "a solution stays one when grasps are added, and never gets dearer",
+        "a solution stays one when grasps are added, and never gets costlier",
         all(
             b["solved"] and b["cost"] <= a["cost"] + 1e-9
             for d in done

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .._core import InvalidInput, JointGroup, JointTrajectory
 from .control import RecordedState, Recorder, SceneState
-from .execution import Execution
+from .execution import Execution, ExecutionOptions
 from .plan_controller import PlanController
 from .result import ContactLog, PartWatch, SimResult
 from .scene import SimScene
@@ -26,7 +26,7 @@ class Simulation(SimScene):
         *,
         base: ArrayLike = (0.0, 0.0, 0.0),
         arm: JointGroup | None = None,
-        **execution: Any,
+        **execution: Unpack[ExecutionOptions],
     ) -> SimResult:
         """Runs a trajectory: joints by its names, the base by its columns x, y, theta (else it stands at `base`).
 

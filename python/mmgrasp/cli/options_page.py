@@ -42,6 +42,12 @@ SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
         set(),
     ),
     ("optimize_grasp", "The search of `optimize_grasp` (`PopulationOptions`)", _core._population_option_table, set()),
+    (
+        "minimal_grippers",
+        "The least set of grippers, keywords (`MinimalGrippersOptions`)",
+        _core._minimal_grippers_option_table,
+        set(),
+    ),
     ("roadmap", "Keywords of `Roadmap.build` (`RoadmapOptions`)", _core._roadmap_option_table, set()),
     (
         "plan_manipulation",
@@ -111,6 +117,7 @@ SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
 
 
 def options_page() -> str:
+    """docs/options.md."""
     lines = ["# Options of a scenario", "", "Written by `./dev docs` from the library's own defaults.", ""]
     for section, title, table, elsewhere in SECTIONS:
         lines += [f"## `{section}`: {title}", "", "| option | default | meaning |", "|---|---|---|"]

@@ -18,6 +18,7 @@ from . import (
     experiments,
     grasp_success,
     grasping_trials,
+    gripper_sets,
     ik_query,
     physics,
     policies,
@@ -54,6 +55,7 @@ TOPICS = (
     tracking,
     physics,
     three_ways,
+    gripper_sets,
 )
 ENTRIES: dict[str, Entry] = {e.name: e for topic in TOPICS for e in topic.ENTRIES}
 ALSO = {

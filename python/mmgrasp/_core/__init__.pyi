@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FeasibleGrasp', 'FittedCuboid', 'Grasp', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NodeLoad', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'SdfHits', 'SearchTree', 'SegmentRequirement', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'follow_object_path', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_objects', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FeasibleGrasp', 'FittedCuboid', 'FittedPrimitive', 'Grasp', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NodeLoad', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentRequirement', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'fit_primitives', 'follow_object_path', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_mesh', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -4550,6 +4550,171 @@ class ObjectSegmentation:
         """
         What makes the answer doubtful, or empty.
         """
+class ScrewThread:
+    """
+    A screw thread that segment_mesh found.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def T_mesh_thread(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4, 4): z along the axis, origin at the middle of the thread.
+        """
+    @property
+    def crest_radius(self) -> float:
+        """
+        [m]; smaller than the root's in a nut.
+        """
+    @property
+    def faces(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Faces of the mesh (n,), ascending.
+        """
+    @property
+    def length(self) -> float:
+        """
+        Along the axis [m].
+        """
+    @property
+    def pitch(self) -> float:
+        """
+        Along the axis in one turn [m]; positive: right-handed.
+        """
+    @property
+    def root_radius(self) -> float:
+        """
+        [m]
+        """
+class MeshSegment:
+    """
+    One of the simple bodies that a part is composed of.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def area(self) -> float:
+        """
+        [m^2]
+        """
+    @property
+    def diameter(self) -> float:
+        """
+        Median of its faces' shape diameters by area [m].
+        """
+    @property
+    def faces(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Faces of the mesh (n,), ascending.
+        """
+    @property
+    def threaded(self) -> bool:
+        """
+        More than a tenth of its area is screw thread, which must not be grasped.
+        """
+class GraspWidth:
+    """
+    A width at which fingers may close on a segment.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def axis(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Closing direction of a box, axis of a round wall (3,): a unit vector in the mesh's frame.
+        """
+    @property
+    def covered(self) -> float:
+        """
+        Share of the box' faces (the lesser of the two) or of the turn around the wall that is surface.
+        """
+    @property
+    def width(self) -> float:
+        """
+        [m]
+        """
+class FittedPrimitive:
+    """
+    The primitive that stands for a segment (P1, section 5.2.2).
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def T_mesh_primitive(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4, 4): centre; z along the axis of a cylinder or cone, which narrows along z.
+        """
+    @property
+    def deviation(self) -> float:
+        """
+        Mean distance of the segment's faces from the primitive's surface that they lie on [m].
+        """
+    @property
+    def hull_volume(self) -> float:
+        """
+        Of the segment's convex hull [m^3].
+        """
+    @property
+    def kind(self) -> str:
+        """
+        cylinder, box, cone or sphere.
+        """
+    @property
+    def size(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) [m]: lengths of a box; diameter twice and length of a cylinder; diameters at foot and top and length of a cone; diameter of a sphere.
+        """
+    @property
+    def volume(self) -> float:
+        """
+        Of the primitive [m^3].
+        """
+    @property
+    def widths(self) -> list[GraspWidth]:
+        """
+        Most covered first; empty where there is no surface to hold.
+        """
+class MeshSegmentation:
+    """
+    The bodies that a part is composed of, and which face belongs to which.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def clusters(self) -> int:
+        """
+        Gaussians that the diameters called for.
+        """
+    @property
+    def diameters(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Shape diameter of each face (m,) [m]; 0 where it is unknown.
+        """
+    @property
+    def labels(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Segment of each face (m,).
+        """
+    @property
+    def outcome(self) -> Outcome:
+        """
+        Solved.
+        """
+    @property
+    def segments(self) -> list[MeshSegment]:
+        """
+        Largest area first.
+        """
+    @property
+    def threads(self) -> list[ScrewThread]:
+        """
+        Screw threads, largest first.
+        """
+    @property
+    def turned(self) -> bool:
+        """
+        The mesh was inside out (open ones may be) and its faces were turned.
+        """
 class Graspability:
     """
     Grasps, best first, and what became of the other places checked.
@@ -5638,6 +5803,8 @@ def _ik_option_table() -> dict[str, typing.Any]:
     ...
 def _manipulation_option_table() -> dict[str, typing.Any]:
     ...
+def _mesh_segmentation_option_table() -> dict[str, typing.Any]:
+    ...
 def _minimal_grippers_option_table() -> dict[str, typing.Any]:
     ...
 def _motion_option_table() -> dict[str, typing.Any]:
@@ -5674,6 +5841,8 @@ def _sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, *
 def _sdf_option_table() -> dict[str, typing.Any]:
     ...
 def _segmentation_option_table() -> dict[str, typing.Any]:
+    ...
+def _shape_diameter_option_table() -> dict[str, typing.Any]:
     ...
 def _supply_option_table() -> dict[str, typing.Any]:
     ...
@@ -5791,6 +5960,13 @@ def fit_cuboids(points: numpy.typing.ArrayLike, *, T_world_tray: numpy.typing.Ar
         leaf: float = 0.003  # cell to which points are thinned for the search [m]
         min_points: int = 60  # smaller clusters are left out
         plane_iterations: int = 1000  # random planes tried
+    """
+def fit_primitives(mesh: Mesh, labels: numpy.typing.ArrayLike) -> list[FittedPrimitive]:
+    """
+    The cylinder, box, cone or sphere that stands for each segment of a mesh: the one whose volume is closest to that of
+    the segment's convex hull, of those with surface on them (P1, section 5.2.2). `labels` (m,): the segment of each face, as
+    MeshSegmentation.labels. Inner walls are never offered for grasping, nor are sides of a box with nothing on them. Raises
+    InvalidInput when there is not one label >= 0 a face.
     """
 def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81) -> ObjectPathResult:
     """
@@ -6254,6 +6430,28 @@ def segment_depth_image(image: DepthImage, *, plane: SupportingPlane | None = No
         min_points: int = 100  # smaller objects are left out
         plane_iterations: int = 1000  # random planes tried
     """
+def segment_mesh(mesh: Mesh, *, progress: typing.Any | None = None, rays: int = 30, cone: float = 2.0943951023931953, outlier: float = 1.0, ray_lengths: bool = False, max_clusters: int = 8, smoothing: float = 0.3, crease: float = 0.6, min_size: float = 0.02, convexity: float = 0.05, smooth_threads: bool = True, faces: int = 20000, seed: int = 1, threads: int = 0) -> MeshSegmentation:
+    """
+    Cuts the surface of a mechanical part into the simple bodies that it is composed of (P1, section 5.1): by shape diameter
+    (Gaussian mixture, minimum cuts) and where the surface bends inwards; pieces whose hull is no more than the two are joined
+    again, and inner walls go with the outer wall behind them. Raises InvalidInput for a mesh without area or with more than
+    10 million triangles.
+    
+    Keyword options:
+        rays: int = 30  # rays from the middle of each face
+        cone: float = 2.0943951023931953  # full angle of their cone around the inward normal [rad]
+        outlier: float = 1.0  # standard deviations from the median beyond which rays are left out
+        ray_lengths: bool = False  # P1's mean length of the rays, not the width between the surfaces
+        max_clusters: int = 8  # most Gaussians over the logarithms of the diameters
+        smoothing: float = 0.3  # cost of a border between clusters beside faces in the wrong one
+        crease: float = 0.6  # edges that bend inwards by more part segments [rad]
+        min_size: float = 0.02  # narrower segments join a neighbour, as a share of the mesh's diagonal
+        convexity: float = 0.05  # segments join when their hull has at most this share of the smaller one's volume in neither
+        smooth_threads: bool = True  # screw threads count as the cylinder through their crests
+        faces: int = 20000  # larger faces are cut until there are about so many, for the work alone
+        seed: int = 1  # same seed, same segments
+        threads: int = 0  # 0: all
+    """
 def segment_objects(points: numpy.typing.ArrayLike, normals: numpy.typing.ArrayLike | None = None, *, plane: SupportingPlane | None = None, up: numpy.typing.ArrayLike | None = None, eye: numpy.typing.ArrayLike | None = None, leaf: float = 0.004, plane_tolerance: float = 0.007, up_angle: float = 0.35, min_plane_share: float = 0.15, max_height: float = 0.5, max_beside: float = 0.05, patch: float = 0.02, concavity: float = 0.45, min_points: int = 100, plane_iterations: int = 1000) -> ObjectSegmentation:
     """
     Objects that stand on a plane, also ones that touch: they are parted where the surface has creases (Stein et al.,
@@ -6278,6 +6476,19 @@ def segment_objects(points: numpy.typing.ArrayLike, normals: numpy.typing.ArrayL
 def self_distance_objective(checker: CollisionChecker, margin: float = 0.05, weight: float = 1.0) -> IkObjective:
     """
     Weight times the sum of (1 - distance / margin)^2 over pairs of the robot's own links nearer than `margin` [m].
+    """
+def shape_diameters(mesh: Mesh, *, progress: typing.Any | None = None, rays: int = 30, cone: float = 2.0943951023931953, outlier: float = 1.0, ray_lengths: bool = False, threads: int = 0) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Local thickness of a mesh at the middle of each face (m,) [m]; 0 where no ray leaves it. The mean over `rays` in a
+    cone around the inward normal, weighted by the cosine of their angle to it, of the distance between the two ends along
+    the mean of their normals: exact in balls, cylinders, plates and tubes (P1, section 5.1, takes the rays' lengths).
+    
+    Keyword options:
+        rays: int = 30  # rays from the middle of each face
+        cone: float = 2.0943951023931953  # full angle of their cone around the inward normal [rad]
+        outlier: float = 1.0  # standard deviations from the median beyond which rays are left out
+        ray_lengths: bool = False  # P1's mean length of the rays, not the width between the surfaces
+        threads: int = 0  # 0: all
     """
 def share_stops(drive_times: numpy.typing.ArrayLike, stop_times: collections.abc.Sequence[float], robots: int) -> SharedTours:
     """

@@ -26,7 +26,17 @@ def build_parser() -> argparse.ArgumentParser:
     parser = _Parser(prog="mmgrasp", description="Planning for mobile manipulators.")
     parser.add_argument("--version", action="version", version=f"mmgrasp {_core.__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="command", parser_class=_Parser)
-    for add in (_add_plan, _add_verify, _add_check, _add_scan, _add_grasp, _add_segment, _add_reproduce, _add_bench, _add_view):
+    for add in (
+        _add_plan,
+        _add_verify,
+        _add_check,
+        _add_scan,
+        _add_grasp,
+        _add_segment,
+        _add_reproduce,
+        _add_bench,
+        _add_view,
+    ):
         add(commands)
     return parser
 

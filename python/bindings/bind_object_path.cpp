@@ -60,11 +60,23 @@ const std::vector<OptionField<PopulationOptions>>& population_fields() {
 struct OptimizeGraspOptions {
   ObjectPathOptions path;
   PopulationOptions population;
+  GraspSearchOptions search;
   void check() const {
     path.check();
     population.check();
+    search.check();
   }
 };
+
+const std::vector<OptionField<GraspSearchOptions>>& grasp_search_fields() {
+  using O = GraspSearchOptions;
+  static const std::vector<OptionField<O>> fields{
+      option<O>("max_gap", &O::max_gap, "branch_and_bound: ends once no grasp can be cheaper by this share"),
+      option<O>("max_boxes", &O::max_boxes, "branch_and_bound: budget in boxes of grasps"),
+      option<O>("time_limit", &O::time_limit, "branch_and_bound: wall-clock cap [s]"),
+      option<O>("threads", &O::threads, "branch_and_bound: 0: all; the answer does not depend on it")};
+  return fields;
+}
 
 const std::vector<OptionField<OptimizeGraspOptions>>& optimize_grasp_fields() {
   using O = OptimizeGraspOptions;
@@ -78,6 +90,7 @@ const std::vector<OptionField<OptimizeGraspOptions>>& optimize_grasp_fields() {
     };
     add(object_path_fields(), &O::path);
     add(population_fields(), &O::population);
+    add(grasp_search_fields(), &O::search);
     return out;
   }();
   return fields;
@@ -173,7 +186,10 @@ void bind_optimum(py::module_& m) {
   using R = GraspOptimum;
   py::class_<R>(m, "GraspOptimum", "The best grasp that a search found, and all others that will do.")
       .def_readonly("outcome", &R::outcome,
-                    "approximate: the best seen, no proof that none is better; solved: it meets the target.")
+                    "solved: proven to the gap asked for, or it meets the target; approximate: the best seen;\n"
+                    "infeasible: proven that no grasp can follow the path.")
+      .def_readonly("lower_bound", &R::lower_bound, "No grasp costs less; 0 where nothing was proven.")
+      .def_readonly("gap", &R::gap, "How much cheaper another could be at most, as a share of the cost; 1: unknown.")
       .def_property_readonly(
           "grasp",
           [](const R& r) { return r.feasible.empty() ? std::optional<Grasp>() : std::optional<Grasp>(r.grasp); },
@@ -182,13 +198,15 @@ void bind_optimum(py::module_& m) {
       .def_readonly("feasible", &R::feasible, "Every feasible grasp seen, the cheapest first.")
       .def_readonly("front", &R::front, "The Pareto front among them, ascending in O1.")
       .def_readonly("evaluations", &R::evaluations, "Grasps tried.")
+      .def_readonly("boxes", &R::boxes, "Boxes of grasps that branch_and_bound bounded.")
       .def_readonly("history", &R::history, "Best cost after each of them; infinite while none was feasible.")
       .def_readonly("unreachable", &R::unreachable, "Of each pose: how many of the grasps tried do not reach it.")
       .def_readonly("colliding", &R::colliding, "Of each pose: at how many all arm configurations collide.")
       .def("__repr__", [](const R& r) {
         return std::string("GraspOptimum(") + to_string(r.outcome) + ", " + std::to_string(r.evaluations) +
                " grasps tried, " + std::to_string(r.feasible.size()) + " feasible" +
-               (r.feasible.empty() ? "" : ", cost " + std::string(py::repr(py::float_(r.path.cost)))) + ")";
+               (r.feasible.empty() ? "" : ", cost " + std::string(py::repr(py::float_(r.path.cost)))) +
+               (r.lower_bound > 0 ? ", none below " + std::string(py::repr(py::float_(r.lower_bound))) : "") + ")";
       });
   m.def(
       "optimize_grasp",
@@ -198,7 +216,7 @@ void bind_optimum(py::module_& m) {
         const ObjectPathProblem problem = taken(given_problem, "problem");
         const Pipe pipe = taken(given_pipe, "pipe");
         const OptimizeGraspOptions read = read_options(optimize_grasp_fields(), keywords, "optimize_grasp");
-        GraspSearchOptions options;
+        GraspSearchOptions options = read.search;
         options.algorithm = taken(algorithm, "algorithm");
         options.neighbourhood = neighbourhood_argument(taken(neighbourhood, "neighbourhood_kind"));
         options.population = read.population;
@@ -209,12 +227,14 @@ void bind_optimum(py::module_& m) {
       },
       "problem"_a, "pipe"_a, py::kw_only(), "gripper"_a = py::none(), "algorithm"_a = "bees",
       "neighbourhood_kind"_a = "connected_sections", "progress"_a = py::none(),
-      ("The grasp of a pipe with the least cost along the path, by a population search: bees, ga or pso (P2 3.4).\n"
+      ("The grasp of a pipe with the least cost along the path, by a population search: bees, ga or pso (P2 3.4),\n"
+       "or with its optimum proven: branch_and_bound.\n"
        "`gripper`: axes and opening, the problem's when left out. `neighbourhood_kind` of bees: independent (Str1),\n"
        "same_section (Str2), connected_sections (Str3)." +
        option_help(optimize_grasp_fields()))
           .c_str());
-  m.def("population_search_names", &population_search_names, "Names that optimize_grasp's `algorithm` takes.");
+  m.def("population_search_names", &population_search_names, "The population searches among grasp_search_names().");
+  m.def("grasp_search_names", &grasp_search_names, "Names that optimize_grasp's `algorithm` takes.");
 }
 
 }  // namespace

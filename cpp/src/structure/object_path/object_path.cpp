@@ -4,12 +4,11 @@
 #include <cmath>
 #include <map>
 
-#include "mmgrasp/collision/detail/attached_checker.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "mmgrasp/grasp/detail/with_fingers.hpp"
 #include "mmgrasp/robot/ik_branches.hpp"
 #include "structure/object_path/configuration_graph.hpp"
+#include "structure/object_path/held_object.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -77,13 +76,13 @@ void ObjectPathOptions::check() const {
 struct ObjectPathEvaluator::Impl {
   ObjectPathProblem problem;
   ObjectPathOptions options;
-  std::map<std::pair<double, std::vector<double>>, std::pair<JointGroup, detail::AttachedChecker>> holding;
+  detail::HeldObject held{problem};
   IkOptions ik;
   EdgeOptions edge;
-  JointGroup* group = nullptr;
+  const JointGroup* group = nullptr;
   detail::AttachedChecker* checker = nullptr;
 
-  void hold(const Grasp& grasp);
+  Impl(const ObjectPathProblem& given, const ObjectPathOptions& with) : problem(given), options(with) {}
   Configurations find(const Poses& T_world_hand, ObjectPathResult& result) const;
   bool is_free(Configurations& found, std::size_t layer, int i, ObjectPathResult& result);
   void keep_nearest(Configurations& found, ObjectPathResult& result);
@@ -94,23 +93,6 @@ struct ObjectPathEvaluator::Impl {
   void bend(const Grasp& grasp, ObjectPathResult& result) const;
   void finish(const Configurations& found, const ConfigurationGraph::Path& path, ObjectPathResult& result) const;
 };
-
-void ObjectPathEvaluator::Impl::hold(const Grasp& grasp) {
-  const bool fingers = problem.gripper.has_value();
-  const auto key = fingers ? std::pair(grasp.opening, grasp.posture) : std::pair(0.0, std::vector<double>{});
-  auto at = holding.find(key);
-  if (at == holding.end()) {
-    const JointGroup held = fingers ? detail::with_fingers(problem.group, *problem.gripper, grasp) : problem.group;
-    World world = problem.world;
-    world.add(problem.object_name, WorldObject{problem.object, problem.T_world_object[0]});
-    world.attach(problem.object_name, held.robot().links()[held.tip_link()].name, grasp.T_object_hand.inverse(),
-                 problem.touch_links);
-    at = holding.emplace(key, std::pair(held, detail::AttachedChecker(held, world))).first;
-  }
-  group = &at->second.first;
-  checker = &at->second.second;
-  checker->place_attached(grasp.T_object_hand.inverse());
-}
 
 Configurations ObjectPathEvaluator::Impl::find(const Poses& T_world_hand, ObjectPathResult& result) const {
   Configurations found;
@@ -254,7 +236,7 @@ void ObjectPathEvaluator::Impl::finish(const Configurations& found, const Config
 }
 
 ObjectPathEvaluator::ObjectPathEvaluator(const ObjectPathProblem& problem, const ObjectPathOptions& options)
-    : impl_(new Impl{problem, options, {}, {}, {}}) {
+    : impl_(new Impl(problem, options)) {
   problem.check();
   options.check();
   impl_->edge.joint_step = options.edge_step;
@@ -276,7 +258,8 @@ ObjectPathResult ObjectPathEvaluator::evaluate(const Grasp& grasp) {
   checked_pose(grasp.T_object_hand.matrix(), "grasp.T_object_hand");
   Impl& own = *impl_;
   if (own.problem.frame) beam_support(grasp);
-  own.hold(grasp);
+  own.checker = &own.held.hold(grasp);
+  own.group = &own.held.group();
   Poses T_world_hand;
   for (const Pose& T : own.problem.T_world_object) T_world_hand.push_back(T * grasp.T_object_hand);
   ObjectPathResult result;

@@ -35,6 +35,7 @@ from .check import check_robot, describe
 from .console import Reporter, open_streams
 from .grasp import run_grasp
 from .output_folder import OutputFolder
+from .pipe import run_pipe
 from .scan import run_scan
 from .tables import bench_table, drive_by_summary, print_verdict, summary
 
@@ -228,6 +229,7 @@ COMMANDS = {
     "check": run_check,
     "scan": run_scan,
     "grasp": run_grasp,
+    "pipe": run_pipe,
     "reproduce": run_reproduce,
     "bench": run_bench,
     "view": run_view,

@@ -64,6 +64,7 @@ struct MMGRASP_EXPORT GraspOptimum {
   /// Poses in order, each with how many of the grasps tried could not reach it and at how many all arm configurations
   /// collided.
   std::vector<int> unreachable, colliding;
+  std::vector<int> overloaded;  ///< Of each pose: with how many of them the pipe bends or bears more than it may there.
 };
 
 /// Searches the grasps of a pipe (section, length, angle, flip) for the one with the least Cost(O) along the path, by

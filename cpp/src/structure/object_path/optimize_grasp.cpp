@@ -73,7 +73,7 @@ GraspOptimum optimize_grasp(const ObjectPathProblem& problem, const Pipe& pipe, 
   ObjectPathEvaluator evaluator(problem, path_options);
   GraspOptimum out;
   out.unreachable.assign(problem.T_world_object.size(), 0);
-  out.colliding = out.unreachable;
+  out.overloaded = out.colliding = out.unreachable;
   PopulationProblem search;
   search.variables = grasps.variables();
   search.upper = [&](const Eigen::VectorXd& x, int i) {
@@ -89,6 +89,7 @@ GraspOptimum optimize_grasp(const ObjectPathProblem& problem, const Pipe& pipe, 
       out.unreachable[i] += found.violations[i] == 2;
       out.colliding[i] += found.violations[i] == 1;
     }
+    for (const int pose : found.overloaded) ++out.overloaded[pose];
     if (found.outcome == Outcome::solved) {
       grasp.cost = found.cost;
       out.feasible.push_back({grasp, found.joint_motion, found.deflection, found.force_manipulability});

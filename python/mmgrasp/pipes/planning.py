@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -120,7 +119,7 @@ def plan_pipe(problem: PipeProblem, progress: Progress = None) -> PipePlan:
     plan.compared = [follow_object_path(task, grasp, **problem.all_path_options) for grasp in problem.compare]
     if optimum.grasp is None:
         return plan
-    plan.trajectory, plan.path_error = _timed(problem, optimum.grasp, optimum.path.path, progress)
+    plan.trajectory, plan.path_error = timed_motion(problem, optimum.grasp, optimum.path.path, progress)
     plan.waypoint_times = _passing_times(plan.trajectory, optimum.path.path)
     held = SupportedFrame(problem.frame, [optimum.grasp])
     for T, time in zip(problem.T_world_pipe, plan.waypoint_times, strict=True):
@@ -145,8 +144,8 @@ def gravity_in_pipe(problem: PipeProblem, T_world_pipe: np.ndarray) -> np.ndarra
     return down
 
 
-def _timed(
-    problem: PipeProblem, grasp: Grasp, waypoints: np.ndarray, progress: Progress
+def timed_motion(
+    problem: PipeProblem, grasp: Grasp, waypoints: np.ndarray, progress: Progress = None
 ) -> tuple[JointTrajectory, tuple[float, float]]:
     """The motion through the waypoints, along the pipe's path between them where the arm can, else straight in joint space.
 

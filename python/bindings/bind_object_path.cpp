@@ -206,6 +206,9 @@ void bind_optimum(py::module_& m) {
       .def_readonly("history", &R::history, "Best cost after each of them; infinite while none was feasible.")
       .def_readonly("unreachable", &R::unreachable, "Of each pose: how many of the grasps tried do not reach it.")
       .def_readonly("colliding", &R::colliding, "Of each pose: at how many all arm configurations collide.")
+      .def("sag_candidates", &sag_candidates,
+           "Every feasible grasp with its mean sag [m] as its cost: candidates for plan_manipulation, whose `max_length`\n"
+           "then takes the one that sags least among those whose motion is short enough.")
       .def_readonly("overloaded", &R::overloaded,
                     "Of each pose: with how many the pipe bends or bears more than it may.")
       .def("__repr__", [](const R& r) {

@@ -66,6 +66,16 @@ void GraspSearchOptions::check() const {
   grasp.check();
 }
 
+std::vector<Grasp> sag_candidates(const GraspOptimum& optimum) {
+  std::vector<Grasp> grasps;
+  const double poses = std::max(1.0, static_cast<double>(optimum.unreachable.size()) - 1);
+  for (const FeasibleGrasp& found : optimum.feasible) {
+    grasps.push_back(found.grasp);
+    grasps.back().cost = found.deflection / poses;
+  }
+  return grasps;
+}
+
 GraspOptimum optimize_grasp(const ObjectPathProblem& problem, const Pipe& pipe, const ObjectPathOptions& path_options,
                             const GraspSearchOptions& options, const Monitor& monitor) {
   options.check();

@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 
 import mmgrasp as mg
-from mmgrasp.grasping import BeamFrame, BeamMaterial, BeamMember, Pipe, SupportedFrame, beam_frame, copper, round_section
+from mmgrasp.grasping import (
+    BeamFrame,
+    BeamMaterial,
+    BeamMember,
+    Pipe,
+    SupportedFrame,
+    beam_frame,
+    copper,
+    round_section,
+)
 from mmgrasp.problems.pipe_cells import pipe_robot, pipe_structures
 
 pytest.importorskip("mujoco", reason="the simulation needs MuJoCo")
@@ -21,7 +30,9 @@ def largest(points: np.ndarray) -> float:
     return float(np.linalg.norm(points, axis=1).max())
 
 
-@pytest.mark.parametrize(("section", "length", "angle"), [(2, 0.08, 1.0), (4, 0.05, 0.3), (4, 0.3, -2.0), (0, 0.1, 0.5)])
+@pytest.mark.parametrize(
+    ("section", "length", "angle"), [(2, 0.08, 1.0), (4, 0.05, 0.3), (4, 0.3, -2.0), (0, 0.1, 0.5)]
+)
 def test_at_rest_it_bends_as_the_frame_does(section: int, length: float, angle: float) -> None:
     pipe = pipe_structures()[5]  # Pipe1 of P2
     frame, grasp = beam_frame(pipe, 0.010, copper()), pipe.grasp(section, length, angle, gripper=HAND)
@@ -75,7 +86,9 @@ def test_a_slow_motion_leaves_it_as_it_sags_and_a_quick_one_shakes_it() -> None:
 def test_what_it_cannot_be_is_refused() -> None:
     ring = pipe_structures()[6]
     with pytest.raises(mg.InvalidInput, match="closed loops"):
-        FlexiblePipe(beam_frame(ring, 0.01, copper()), ring.grasp(0, 0.1, 0.0, gripper=HAND), ROBOT, ARM, HAND.tool_link)
+        FlexiblePipe(
+            beam_frame(ring, 0.01, copper()), ring.grasp(0, 0.1, 0.0, gripper=HAND), ROBOT, ARM, HAND.tool_link
+        )
     pipe = pipe_structures()[5]
     frame = beam_frame(pipe, 0.010, copper())
     with pytest.raises(mg.InvalidInput, match="must come from a pipe"):

@@ -51,7 +51,9 @@ def test_rotation_vectors_and_rotations_belong_together() -> None:
             axis = rng.normal(size=3)
             vector = angle * axis / np.linalg.norm(axis)
             assert np.allclose(rotation_about(vector) @ rotation_about(vector).T, np.eye(3), atol=1e-12)
-            assert np.allclose(rotation_about(rotation_vector(rotation_about(vector))), rotation_about(vector), atol=1e-7)
+            assert np.allclose(
+                rotation_about(rotation_vector(rotation_about(vector))), rotation_about(vector), atol=1e-7
+            )
             if angle < 3:
                 assert np.allclose(rotation_vector(rotation_about(vector)), vector, atol=1e-8)
 
@@ -276,7 +278,12 @@ def test_the_command_writes_everything_on_one_clock(tmp_path: Path, capsys: pyte
     assert costs == sorted(costs) and costs[0] == pytest.approx(stored["cost"])
     page = (out / "report.html").read_text()
     assert page.count("data:image/png;base64,") == 4 and "http" not in page.replace("http-equiv", "")
-    assert "src=\"data" in page and {p.name for p in out.iterdir()} >= {"deformed.png", "trade_off.png", "sag.png", "motion.png"}
+    assert 'src="data' in page and {p.name for p in out.iterdir()} >= {
+        "deformed.png",
+        "trade_off.png",
+        "sag.png",
+        "motion.png",
+    }
 
 
 def test_the_same_seed_gives_the_same_files(tmp_path: Path) -> None:

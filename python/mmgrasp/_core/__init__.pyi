@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FeasibleGrasp', 'FittedCuboid', 'Grasp', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'Graspability', 'GridDistanceField', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MotionResult', 'MotionStats', 'NodeLoad', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'SdfHits', 'SearchTree', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'follow_object_path', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_objects', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FeasibleGrasp', 'FittedCuboid', 'Grasp', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'Graspability', 'GridDistanceField', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MotionResult', 'MotionStats', 'NodeLoad', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'SdfHits', 'SearchTree', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'follow_object_path', 'grasp_search_names', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_objects', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -5120,6 +5120,11 @@ class ObjectPathResult:
         solved or not_found.
         """
     @property
+    def overloaded(self) -> list[int]:
+        """
+        Poses at which it bends or bears more than it may.
+        """
+    @property
     def path(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         """
         (poses, n) configurations, or None.
@@ -5179,7 +5184,7 @@ class ObjectPathEvaluator:
     """
     Costs many grasps along one path: prepared once. Not for several threads at a time.
     """
-    def __init__(self, problem: ObjectPathProblem, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81) -> None:
+    def __init__(self, problem: ObjectPathProblem, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, max_sag: float = 0.0) -> None:
         """
         Prepares robot, world and object.
         
@@ -5199,6 +5204,7 @@ class ObjectPathEvaluator:
             all_turns: bool = True  # joints that may turn more than once come in every turn
             redundant_values: int = 0  # samples of a seventh joint; 0: chosen
             gravity: float = 9.81  # along the world's -z [m/s2]
+            max_sag: float = 0.0  # largest displacement allowed at any pose [m]; 0: any
         """
     def evaluate(self, grasp: Grasp) -> ObjectPathResult:
         """
@@ -5234,6 +5240,16 @@ class GraspOptimum:
     """
     def __repr__(self) -> str:
         ...
+    def sag_candidates(self) -> list[Grasp]:
+        """
+        Every feasible grasp with its mean sag [m] as its cost: candidates for plan_manipulation, whose `max_length`
+        then takes the one that sags least among those whose motion is short enough.
+        """
+    @property
+    def boxes(self) -> int:
+        """
+        Boxes of grasps that branch_and_bound bounded.
+        """
     @property
     def colliding(self) -> list[int]:
         """
@@ -5255,6 +5271,11 @@ class GraspOptimum:
         The Pareto front among them, ascending in O1.
         """
     @property
+    def gap(self) -> float:
+        """
+        How much cheaper another could be at most, as a share of the cost; 1: unknown.
+        """
+    @property
     def grasp(self) -> Grasp | None:
         """
         The best grasp, or None.
@@ -5265,9 +5286,20 @@ class GraspOptimum:
         Best cost after each of them; infinite while none was feasible.
         """
     @property
+    def lower_bound(self) -> float:
+        """
+        No grasp costs less; 0 where nothing was proven.
+        """
+    @property
     def outcome(self) -> Outcome:
         """
-        approximate: the best seen, no proof that none is better; solved: it meets the target.
+        solved: proven to the gap asked for, or it meets the target; approximate: the best seen;
+        infeasible: proven that no grasp can follow the path.
+        """
+    @property
+    def overloaded(self) -> list[int]:
+        """
+        Of each pose: with how many the pipe bends or bears more than it may.
         """
     @property
     def path(self) -> ObjectPathResult:
@@ -5461,7 +5493,7 @@ def fit_cuboids(points: numpy.typing.ArrayLike, *, T_world_tray: numpy.typing.Ar
         min_points: int = 60  # smaller clusters are left out
         plane_iterations: int = 1000  # random planes tried
     """
-def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81) -> ObjectPathResult:
+def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, max_sag: float = 0.0) -> ObjectPathResult:
     """
     The cheapest motion of the arm that carries the object through all poses with one grasp, over all arm
     configurations (P2 3.3.3, Algorithm 3.1), motions between poses checked finely.
@@ -5482,6 +5514,11 @@ def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weigh
         all_turns: bool = True  # joints that may turn more than once come in every turn
         redundant_values: int = 0  # samples of a seventh joint; 0: chosen
         gravity: float = 9.81  # along the world's -z [m/s2]
+        max_sag: float = 0.0  # largest displacement allowed at any pose [m]; 0: any
+    """
+def grasp_search_names() -> list[str]:
+    """
+    Names that optimize_grasp's `algorithm` takes.
     """
 def graspability_map(map: HeightMap, gripper: Hand, angle: float, opening: float, tip_height: float, *, margin: float = 0.001, orientations: int = 16, openings: int = 2, layer_step: float = 0.01, lowest: float = 0.003, insertion: float = 0.01, smoothing: float = 0.01, min_contact: float = 0.4, min_distance: float = 0.015, max_grasps: int = 100, threads: int = 0) -> numpy.typing.NDArray[numpy.float32]:
     """
@@ -5573,9 +5610,10 @@ def optimised_order(grid: BaseGrid, cells: collections.abc.Sequence[collections.
     """
     The order in which parts are best picked when the trays of each group share a stop, never worse than `order`. `cells` is [tray][part], bitmaps (headings, ny, nx).
     """
-def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | None = None, algorithm: str = 'bees', neighbourhood_kind: str = 'connected_sections', progress: collections.abc.Callable[[str, float], typing.Any] | None = None, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, population: int = 34, max_evaluations: int = 1530, target: float = -inf, seed: int = 1, elite_sites: int = 1, best_sites: int = 4, elite_recruits: int = 10, recruits: int = 3, stagnation_limit: int = 10, neighbourhood: float = 0.2, shrinking: float = 0.8, mutation_rate: float = 0.3, mutation_size: float = 0.25, connectivity: float = 0.5, inertia: float = 0.7, acceleration: float = 2.0) -> GraspOptimum:
+def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | None = None, algorithm: str = 'bees', neighbourhood_kind: str = 'connected_sections', progress: collections.abc.Callable[[str, float], typing.Any] | None = None, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, max_sag: float = 0.0, population: int = 34, max_evaluations: int = 1530, target: float = -inf, seed: int = 1, elite_sites: int = 1, best_sites: int = 4, elite_recruits: int = 10, recruits: int = 3, stagnation_limit: int = 10, neighbourhood: float = 0.2, shrinking: float = 0.8, mutation_rate: float = 0.3, mutation_size: float = 0.25, connectivity: float = 0.5, inertia: float = 0.7, acceleration: float = 2.0, max_gap: float = 0.001, max_boxes: int = 1000000, time_limit: float = 600.0, threads: int = 0) -> GraspOptimum:
     """
-    The grasp of a pipe with the least cost along the path, by a population search: bees, ga or pso (P2 3.4).
+    The grasp of a pipe with the least cost along the path, by a population search: bees, ga or pso (P2 3.4),
+    or with its optimum proven: branch_and_bound.
     `gripper`: axes and opening, the problem's when left out. `neighbourhood_kind` of bees: independent (Str1),
     same_section (Str2), connected_sections (Str3).
     
@@ -5595,6 +5633,7 @@ def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | No
         all_turns: bool = True  # joints that may turn more than once come in every turn
         redundant_values: int = 0  # samples of a seventh joint; 0: chosen
         gravity: float = 9.81  # along the world's -z [m/s2]
+        max_sag: float = 0.0  # largest displacement allowed at any pose [m]; 0: any
         population: int = 34  # points a round
         max_evaluations: int = 1530  # budget in grasps
         target: float = -inf  # ends as solved once a grasp costs no more
@@ -5611,6 +5650,10 @@ def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | No
         connectivity: float = 0.5  # pso: share of the others each particle hears of
         inertia: float = 0.7  # pso: of velocity
         acceleration: float = 2.0  # pso: P2's c1 and c2
+        max_gap: float = 0.001  # branch_and_bound: ends once no grasp can be cheaper by this share
+        max_boxes: int = 1000000  # branch_and_bound: budget in boxes of grasps
+        time_limit: float = 600.0  # branch_and_bound: wall-clock cap [s]
+        threads: int = 0  # branch_and_bound: 0: all; the answer does not depend on it
     """
 def paired_order(places: collections.abc.Sequence[numpy.typing.ArrayLike]) -> list[list[int]]:
     """
@@ -5665,7 +5708,7 @@ def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy
         look_out: float = 0.15  # pairs of bodies nearer than this are constrained [m]
         refinements: int = 6  # times that collision constraints may be added
     """
-def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, padding: float | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 8, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_iterations: int = 1000, range: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
+def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, padding: float | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 8, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, max_length: float = 0.0, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_iterations: int = 1000, range: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
     """
     Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 chapters 4 and 5). Every grasp is checked. `padding`: in place of that of the problem's world, see World.padding. `on_solution` is called with every better solution (an Improvement); what it raises ends the call.
     
@@ -5677,6 +5720,7 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         ik_restarts: int = 30  # random starts of arms without a closed form
         joint_step: float = 0.02  # no joint moves more between two checks of an edge [rad or m]
         workspace_step: float = 0.005  # no point of the robot or the object moves more between two checks [m]
+        max_length: float = 0.0  # the least grasp cost among paths no longer than this; 0: their sum
         time_limit: float = 15.0  # wall-clock cap on IK and search, without the roadmap's building [s]
         seed: int = 1  # same seed, same path
         threads: int = 0  # 0: all; does not change the answer
@@ -5792,7 +5836,7 @@ def platform_velocity(*, left: float, right: float, wheel_separation: float) -> 
     """
 def population_search_names() -> list[str]:
     """
-    Names that optimize_grasp's `algorithm` takes.
+    The population searches among grasp_search_names().
     """
 def pose(xyz: numpy.typing.ArrayLike, rpy: numpy.typing.ArrayLike | None = None, quat_xyzw: numpy.typing.ArrayLike | None = None) -> numpy.typing.NDArray[numpy.float64]:
     """

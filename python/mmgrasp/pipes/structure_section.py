@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TypeVar
 
 from .._core import BeamFrame, BeamMaterial, BeamMember, InvalidInput, NodeLoad, Pipe, copper, round_section
@@ -38,7 +39,7 @@ def read_structure(node: Node, stress_limit: float = 0.0) -> tuple[Pipe, BeamFra
             name.fail(f"no such material{near_miss(name.raw, list(materials))}")
         pairs.append((ends[0], ends[1]))
         diameters.append(outer)
-        section = _made(element, lambda o=outer, i=inner: round_section(o, i))
+        section = _made(element, partial(round_section, outer, inner))
         members.append(BeamMember(ends[0], ends[1], section, materials[name.raw]))
     if not pairs:
         node["sections"].fail("must not be empty")

@@ -154,18 +154,36 @@ class FlexiblePipe:
                 self._rod(end_body, last - end_origin, middle - end_origin, weight)
                 end_body = ET.SubElement(end_body, "body", pos=_text(middle - end_origin))
                 end_origin, last = middle, middle
-                moduli = (material.shear_modulus * section.torsion, *(material.youngs_modulus * i for i in (section.iy, section.iz)))
+                moduli = (
+                    material.shear_modulus * section.torsion,
+                    *(material.youngs_modulus * i for i in (section.iy, section.iz)),
+                )
                 for axis, modulus in zip(ways, moduli, strict=True):
                     name = f"{ROOT}/{len(self._hinges)}"
                     stiffness = modulus / h
                     self._hinges.append((name, stiffness))
-                    ET.SubElement(end_body, "joint", name=name, type="hinge", axis=_text(axis), stiffness=f"{stiffness:.9g}", pos="0 0 0")
+                    ET.SubElement(
+                        end_body,
+                        "joint",
+                        name=name,
+                        type="hinge",
+                        axis=_text(axis),
+                        stiffness=f"{stiffness:.9g}",
+                        pos="0 0 0",
+                    )
                 self._site(end_body, end_origin, middle)
             self._rod(end_body, last - end_origin, branch.end - end_origin, weight)
         self._site(end_body, end_origin, branch.end)
         for load in self.frame.loads:
             if load.node == branch.node and load.mass > 0:
-                ET.SubElement(end_body, "geom", type="sphere", size="0.01", pos=_text(branch.end - end_origin), mass=f"{load.mass:.9g}")
+                ET.SubElement(
+                    end_body,
+                    "geom",
+                    type="sphere",
+                    size="0.01",
+                    pos=_text(branch.end - end_origin),
+                    mass=f"{load.mass:.9g}",
+                )
         for other in self._adjacent[branch.node]:
             if other == branch.member:
                 continue
@@ -185,7 +203,14 @@ class FlexiblePipe:
 
     def _rod(self, body: ET.Element, begin: np.ndarray, end: np.ndarray, weight: float) -> None:
         mass = weight * float(np.linalg.norm(end - begin))
-        ET.SubElement(body, "geom", type="cylinder", fromto=f"{_text(begin)} {_text(end)}", size="0.005", mass=f"{max(mass, 1e-9):.9g}")
+        ET.SubElement(
+            body,
+            "geom",
+            type="cylinder",
+            fromto=f"{_text(begin)} {_text(end)}",
+            size="0.005",
+            mass=f"{max(mass, 1e-9):.9g}",
+        )
 
     def _site(self, body: ET.Element, origin: np.ndarray, point: np.ndarray) -> None:
         name = f"{ROOT}/site/{len(self._sites)}"
@@ -232,9 +257,10 @@ class FlexiblePipe:
 
     def _displacements(self) -> np.ndarray:
         R = self._data.xmat[self._tool].reshape(3, 3) @ np.linalg.inv(self.grasp.T_object_hand)[:3, :3]
-        origin = self._data.xpos[self._tool] + self._data.xmat[self._tool].reshape(3, 3) @ np.linalg.inv(
-            self.grasp.T_object_hand
-        )[:3, 3]
+        origin = (
+            self._data.xpos[self._tool]
+            + self._data.xmat[self._tool].reshape(3, 3) @ np.linalg.inv(self.grasp.T_object_hand)[:3, 3]
+        )
         out: np.ndarray = (self._data.site_xpos[self._site_ids] - origin) @ R - self._rest
         return out
 

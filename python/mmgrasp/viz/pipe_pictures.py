@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
@@ -15,9 +15,6 @@ from .pictures import _pyplot, _save
 from .png import write_png
 from .raster import Camera, Scene, render
 from .style import FLOOR, OBSTACLE, PART, ROBOT, ROBOT_ARM, STOP, TRAY_COLOURS
-
-if TYPE_CHECKING:
-    from mpl_toolkits.mplot3d import Axes3D
 
 POINTS = 25  # drawn along each section
 SHARE = 0.12  # of the pipe's size that the largest drawn displacement has
@@ -73,7 +70,7 @@ def write_deformed(plan: PipePlan, out: Path) -> Path:
     at = largest[1][round(share * (POINTS - 1))]
     drawn = _pyplot()(11, 5.4)
     for number, (elevation, azimuth) in enumerate(((20, -60), (4, 30)), start=1):
-        axes: Axes3D = drawn.add_subplot(1, 2, number, projection="3d")  # type: ignore[assignment]
+        axes: Any = drawn.add_subplot(1, 2, number, projection="3d")
         for i, (straight, bent) in enumerate(sections):
             axes.plot(*straight.T, color="#9AA0A6", linewidth=1.2, linestyle="--", label="not bent" if i == 0 else None)
             axes.plot(*bent.T, color=PART, linewidth=3, label=f"bent, {scale:g} times" if i == 0 else None)
@@ -84,7 +81,8 @@ def write_deformed(plan: PipePlan, out: Path) -> Path:
         axes.tick_params(labelsize=7)
         axes.set_xlabel("x [m]", fontsize=8)
         axes.set_ylabel("y [m]", fontsize=8)
-        axes.set_zlabel("z [m]", fontsize=8)
+        if number == 2:
+            axes.set_zlabel("z [m]", fontsize=8)
     handles, labels = drawn.axes[0].get_legend_handles_labels()
     drawn.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
     drawn.suptitle(

@@ -5,7 +5,11 @@ from __future__ import annotations
 import copy
 import csv
 import json
+import signal
+import subprocess
+import sys
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +24,7 @@ from mmgrasp.cli import main
 from mmgrasp.grasping import BeamSupport, SupportedFrame, optimize_grasp
 from mmgrasp.pipes import PipePlan, arc_poses, line_poses, load_pipe_problem, plan_pipe
 from mmgrasp.pipes.path_section import rotation_about, rotation_vector
+from mmgrasp.pipes.planning import _dense
 
 SHIPPED = ASSETS / "pipes" / "pipe1.yaml"
 
@@ -301,6 +306,41 @@ def test_a_folder_of_somebody_else_is_left_alone(tmp_path: Path, capsys: pytest.
     assert main(["pipe", "pipe1", "-o", str(out)]) == 2
     assert "result.json" in capsys.readouterr().err
     assert (out / "result.json").read_text() == "mine"
+
+
+def test_ctrl_c_ends_it_and_leaves_nothing(tmp_path: Path) -> None:
+    content = shipped()
+    content["options"]["max_evaluations"] = 100_000_000
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "mmgrasp", "pipe", str(written(tmp_path, content)), "-o", str(out)]
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job's children would ignore it
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        signal.signal(signal.SIGINT, before)
+        assert process.stderr is not None
+        for line in process.stderr:
+            if "population" in line:
+                break
+        process.send_signal(signal.SIGINT)
+        rest = process.stderr.read()
+    assert process.returncode == 130
+    assert "interrupted" in rest and "Traceback" not in rest
+    assert not out.exists()
+
+
+def test_a_path_that_the_arm_leaves_between_poses_is_led_straight(plan: PipePlan) -> None:
+    """The pipe's way between poses is straight: half way it is where the mean of both poses is."""
+    assert plan.grasp is not None and plan.trajectory is not None
+    dense = _dense(plan.problem, plan.grasp, np.asarray(plan.optimum.path.path))
+    assert dense is not None
+    T_hand_pipe = np.linalg.inv(plan.grasp.T_object_hand)
+    places = plan.problem.T_world_pipe[:, :3, 3]
+    for q in dense:
+        at = (plan.problem.arm.fk(q) @ T_hand_pipe)[:3, 3]
+        off = []
+        for a, b in pairwise(places):
+            share = np.clip((at - a) @ (b - a) / max(float((b - a) @ (b - a)), 1e-15), 0, 1)
+            off.append(float(np.linalg.norm(at - a - share * (b - a))))
+        assert min(off) < 1e-4
 
 
 def test_an_unknown_name_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -25,6 +25,7 @@ from .problem import PipeProblem
 
 POSITION_STEP, ROTATION_STEP = 0.01, 0.05  # of the pipe between two poses that the arm is computed for [m], [rad]
 CORNER = 0.002  # the timed motion passes this near to each of them, in every joint [rad or m]
+STOP = 1e-4  # or, where that leaves the path, this near [rad or m]
 CHECK_STEP = 0.005  # no joint moves more between two checks of the timed motion [rad or m]
 
 
@@ -153,22 +154,22 @@ def timed_motion(
     """
     arm, world = problem.holding(grasp)
     checker = CollisionChecker(problem.robot, world, group=arm)
-    for path in (_dense(problem, grasp, waypoints), waypoints):
-        if path is None:
-            continue
+    allowed = (
+        float(problem.path_options.get("position_tolerance", 0.01)),
+        float(problem.path_options.get("rotation_tolerance", 0.05)),
+    )
+    dense = _dense(problem, grasp, waypoints)
+    tries = [(dense, CORNER)] if dense is not None else []
+    for path, corner in (*tries, (waypoints, CORNER), (waypoints, STOP)):
         trajectory = time_parameterize(
             path,
             problem.speed * np.asarray(arm.velocity_limits),
             problem.acceleration * np.asarray(arm.acceleration_limits),
             names=arm.names,
-            max_deviation=CORNER,
+            max_deviation=corner,
             progress=progress,
         )
         error = _path_error(problem, grasp, trajectory, waypoints)
-        allowed = (
-            float(problem.path_options.get("position_tolerance", 0.01)),
-            float(problem.path_options.get("rotation_tolerance", 0.05)),
-        )
         if error[0] <= allowed[0] and error[1] <= allowed[1] and _is_free(checker, trajectory):
             return trajectory, error
     raise Error(

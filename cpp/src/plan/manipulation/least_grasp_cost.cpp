@@ -11,9 +11,9 @@
 
 namespace mmgrasp::detail {
 
-/// The shortest path with any of the grasps is found first; while it is short enough, the search goes on with the grasps that
-/// cost less than its grasp does. So a grasp is given up only when a cheaper one has a path, or when the planner finds
-/// none short enough with it and all the cheaper ones together.
+/// The shortest path with any of the grasps is found first; while it is short enough, the search goes on with the
+/// grasps that cost less than its grasp does. So a grasp is given up only when a cheaper one has a path, or when the
+/// planner finds none short enough with it and all the cheaper ones together.
 ManipulationResult plan_least_grasp_cost(const ManipulationProblem& problem, const ManipulationOptions& options,
                                          const Roadmap* roadmap, const Monitor& monitor,
                                          const ImprovementCallback& on_improvement) {

@@ -104,8 +104,8 @@ inline LinearForm arc_cosine(const LinearForm& a) {
   const LinearForm range = LinearForm::between(least, largest);
   if (most >= 1 || std::abs(a.centre) >= 1) return range;
   const double rest = 1 - most * most;
-  const LinearForm f = composed(a, std::acos(a.centre), -1 / std::sqrt(1 - a.centre * a.centre),
-                                most / (rest * std::sqrt(rest)));
+  const LinearForm f =
+      composed(a, std::acos(a.centre), -1 / std::sqrt(1 - a.centre * a.centre), most / (rest * std::sqrt(rest)));
   return f.radius() < range.radius() ? f : range;
 }
 

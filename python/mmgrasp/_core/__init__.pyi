@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FeasibleGrasp', 'FittedCuboid', 'Grasp', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'Graspability', 'GridDistanceField', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MotionResult', 'MotionStats', 'NodeLoad', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'SdfHits', 'SearchTree', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'follow_object_path', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_objects', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FeasibleGrasp', 'FittedCuboid', 'Grasp', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NodeLoad', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'SdfHits', 'SearchTree', 'SegmentRequirement', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'follow_object_path', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_objects', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -5279,6 +5279,248 @@ class GraspOptimum:
         """
         Of each pose: how many of the grasps tried do not reach it.
         """
+class SegmentRequirement:
+    """
+    What a gripper needs to hold one segment of a part in its operation: {F, W, L-, L+} of P1 5.3.4.
+    
+    A part with several graspable segments has several; a gripper that meets one of them takes the part.
+    
+        SegmentRequirement("sleeve", 0.0375, fingers=3, min_finger_length=0.0227)
+    """
+    def __init__(self, part: str, opening: float, *, segment: str = '', fingers: int = 2, min_finger_length: float = 0.0, max_finger_length: float | None = None) -> None:
+        """
+        Part, opening [m], the segment's label, 2 or 3 fingers, limits of their length [m] (None: no upper one).
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def fingers(self) -> int:
+        """
+        2: parallel jaws; 3: centric fingers.
+        """
+    @property
+    def max_finger_length(self) -> float | None:
+        """
+        [m]; None: any.
+        """
+    @property
+    def min_finger_length(self) -> float:
+        """
+        [m]
+        """
+    @property
+    def opening(self) -> float:
+        """
+        Diameter, or distance of the faces in touch [m].
+        """
+    @property
+    def part(self) -> str:
+        """
+        Whose segment it is.
+        """
+    @property
+    def segment(self) -> str:
+        """
+        Its label.
+        """
+class Gripper:
+    """
+    A gripper with straight fingers on a drive: two parallel jaws or three centric fingers (P1 5.2.1).
+    
+    The base frame lies on the mounting face with z towards the tips; the first finger moves along x. The tool frame lies on z, half a pad before the tips.
+    
+        gripper = Gripper(fingers=3, min_opening=0.014, max_opening=0.022, finger_length=0.03)
+        gripper.to_urdf("grippers/centric_22")
+    """
+    def __init__(self, *, name: str = 'gripper', actuator: str = '', fingers: int = 2, min_opening: float = 0.0, max_opening: float = 0.05, finger_length: float = 0.03, finger_width: float = 0.015, finger_thickness: float = 0.008, palm_height: float = 0.04, max_force: float = 50.0, max_speed: float = 0.1) -> None:
+        """
+        Lengths in m, force of each finger in N, its speed in m/s.
+        """
+    def __repr__(self) -> str:
+        ...
+    def finger_mesh(self) -> Mesh:
+        """
+        One finger to print: closed, convex, on the palm at z = 0, its pad in the plane x = 0 [m].
+        """
+    def holds(self, requirement: SegmentRequirement) -> bool:
+        """
+        Whether it holds a segment: (5.2) of P1 with <= in place of <, to 1e-9 m.
+        """
+    def to_dict(self) -> dict[str, typing.Any]:
+        """
+        All fields by name.
+        """
+    def to_urdf(self, folder: str | os.PathLike[str]) -> None:
+        """
+        Writes gripper.urdf, gripper.srdf (group "fingers", states open and closed) and finger.stl into a folder, which is made where it is missing. IoError names the file that cannot be written.
+        """
+    @property
+    def actuator(self) -> str:
+        """
+        Name of the drive, or ''.
+        """
+    @property
+    def finger_length(self) -> float:
+        """
+        From the palm to the tips [m].
+        """
+    @property
+    def finger_thickness(self) -> float:
+        """
+        Along the closing direction [m].
+        """
+    @property
+    def finger_width(self) -> float:
+        """
+        Across approach and closing direction [m].
+        """
+    @property
+    def fingers(self) -> int:
+        """
+        2 or 3.
+        """
+    @property
+    def max_force(self) -> float:
+        """
+        Of each finger's joint [N].
+        """
+    @property
+    def max_opening(self) -> float:
+        """
+        [m]
+        """
+    @property
+    def max_speed(self) -> float:
+        """
+        Of each finger's joint [m/s].
+        """
+    @property
+    def min_opening(self) -> float:
+        """
+        Between the pads, or the diameter that three of them touch [m].
+        """
+    @property
+    def name(self) -> str:
+        """
+        Of its URDF.
+        """
+    @property
+    def pad_length(self) -> float:
+        """
+        Length of the pad along the approach [m].
+        """
+    @property
+    def palm_height(self) -> float:
+        """
+        From the mounting face to the palm [m].
+        """
+class GripperActuator:
+    """
+    A drive that fingers can be mounted on, e.g. an air chuck. Its stroke is fixed, where the opening begins is free.
+    
+        GripperActuator("SMC MHSL3-32D", 0.008, fingers=3)
+    """
+    def __init__(self, name: str, stroke: float, *, fingers: int = 2, max_opening: float | None = None, cost: float = 1.0) -> None:
+        """
+        Name, stroke [m], 2 or 3 fingers, widest opening [m] (None: any), cost of a gripper.
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def cost(self) -> float:
+        """
+        Of a gripper with this drive.
+        """
+    @property
+    def fingers(self) -> int:
+        """
+        2 or 3.
+        """
+    @property
+    def max_opening(self) -> float | None:
+        """
+        As wide as fingers can be mounted [m]; None: any.
+        """
+    @property
+    def name(self) -> str:
+        """
+        As given.
+        """
+    @property
+    def stroke(self) -> float:
+        """
+        Largest less smallest opening [m].
+        """
+class MinimalGrippersResult:
+    """
+    What minimal_grippers found: the set, and which gripper takes which part.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict[str, typing.Any]:
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
+    @property
+    def candidates(self) -> int:
+        """
+        Grippers chosen among, none doing only what another does.
+        """
+    @property
+    def changes(self) -> int:
+        """
+        Of the gripper from part to part.
+        """
+    @property
+    def changes_bound(self) -> int:
+        """
+        Proven: no set of the same cost needs fewer.
+        """
+    @property
+    def cost(self) -> float:
+        """
+        Of the grippers and of the changes.
+        """
+    @property
+    def explanations(self) -> list[str]:
+        """
+        One per uncovered part.
+        """
+    @property
+    def gripper_of_part(self) -> list[int]:
+        """
+        Index into grippers, one per part.
+        """
+    @property
+    def grippers(self) -> list[Gripper]:
+        """
+        In the order of first use.
+        """
+    @property
+    def lower_bound(self) -> float:
+        """
+        Proven: no set of grippers costs less.
+        """
+    @property
+    def outcome(self) -> Outcome:
+        """
+        `solved`: proven in cost and changes; `approximate`: the bounds say what is proven; `infeasible`: see explanations; `stopped`.
+        """
+    @property
+    def parts(self) -> list[str]:
+        """
+        In the order of assembly.
+        """
+    @property
+    def requirement_of_part(self) -> list[int]:
+        """
+        Index into the requirements, one per part.
+        """
+    @property
+    def uncovered(self) -> list[str]:
+        """
+        Parts that no gripper takes.
+        """
 def _allowed_bodies(robot: Robot, world: World) -> list[tuple[str, str]]:
     ...
 def _capability_option_table() -> dict[str, typing.Any]:
@@ -5308,6 +5550,8 @@ def _graspability_option_table() -> dict[str, typing.Any]:
 def _ik_option_table() -> dict[str, typing.Any]:
     ...
 def _manipulation_option_table() -> dict[str, typing.Any]:
+    ...
+def _minimal_grippers_option_table() -> dict[str, typing.Any]:
     ...
 def _motion_option_table() -> dict[str, typing.Any]:
     ...
@@ -5553,6 +5797,19 @@ def manipulation_planner_names() -> list[str]:
 def maximal_intersections(grid: BaseGrid, regions: collections.abc.Sequence[BaseRegion | numpy.typing.ArrayLike], min_radius: float, *, max_boxes: int = 50000000, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> Intersections:
     """
     Those of the robust sets that are part of no other one: enough to prove a least number of stops.
+    """
+def minimal_grippers(requirements: collections.abc.Sequence[SegmentRequirement], actuators: collections.abc.Sequence[GripperActuator], *, grid: tuple[int, int] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, shortest_finger: float = 0.01, longest_finger: float = 0.5, opening_margin: float = 0.0, length_margin: float = 0.0, change_cost: float = 0.0, max_nodes: int = 20000, time_limit: float = 60.0) -> MinimalGrippersResult:
+    """
+    The least set of grippers that takes every part of an assembly, and which one takes which part by which segment (P1 5.3.4, (5.1) and (5.2) with <=). Parts are assembled in the order in which the requirements first name them; of all cheapest sets one with the fewest changes of the gripper is taken. Proven over all grippers; with `grid=(n, m)` only over P1's n openings and m finger lengths.
+    
+    Keyword options:
+        shortest_finger: float = 0.01  # no finger is shorter [m]
+        longest_finger: float = 0.5  # no finger is longer [m]
+        opening_margin: float = 0.0  # stroke kept free beyond the part at either end [m]
+        length_margin: float = 0.0  # kept from either limit of the finger length [m]
+        change_cost: float = 0.0  # of changing the gripper between two parts
+        max_nodes: int = 20000  # of the search for fewest changes
+        time_limit: float = 60.0  # wall-clock cap [s]
     """
 def minimize_derivative_free(objective: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], float], guess: numpy.typing.ArrayLike, lower: numpy.typing.ArrayLike, upper: numpy.typing.ArrayLike, *, solver: str = 'bobyqa', constraints: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], numpy.typing.ArrayLike] | None = None, constraint_count: int = 0, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, tolerance: float = 1e-06, constraint_tolerance: float = 1e-08, max_evaluations: int = 10000, time_limit: float = 30.0, seed: int = 1) -> DerivativeFreeResult:
     """

@@ -48,6 +48,12 @@ SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
         _core._grasp_search_option_table,
         set(),
     ),
+    (
+        "minimal_grippers",
+        "The least set of grippers, keywords (`MinimalGrippersOptions`)",
+        _core._minimal_grippers_option_table,
+        set(),
+    ),
     ("roadmap", "Keywords of `Roadmap.build` (`RoadmapOptions`)", _core._roadmap_option_table, set()),
     (
         "plan_manipulation",

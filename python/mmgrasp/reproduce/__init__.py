@@ -19,6 +19,7 @@ from . import (
     grasp_search,
     grasp_success,
     grasping_trials,
+    gripper_sets,
     ik_query,
     physics,
     policies,
@@ -56,6 +57,7 @@ TOPICS = (
     tracking,
     physics,
     three_ways,
+    gripper_sets,
 )
 ENTRIES: dict[str, Entry] = {e.name: e for topic in TOPICS for e in topic.ENTRIES}
 ALSO = {

@@ -251,6 +251,7 @@ void bind_optimum(py::module_& m) {
 void bind_object_path(py::module_& m) {
   m.def("_object_path_option_table", [] { return option_table(object_path_fields()); });
   m.def("_population_option_table", [] { return option_table(population_fields()); });
+  m.def("_grasp_search_option_table", [] { return option_table(grasp_search_fields()); });
   bind_object_path_result(m);
   using P = ObjectPathProblem;
   py::class_<P>(m, "ObjectPathProblem", "A robot that carries an object along given poses (P2 3.2.1).")

@@ -4,7 +4,7 @@ Units are SI and radians; poses are float64 (4, 4) arrays named T_parent_child. 
 ValueError; IoError, also an OSError); "no solution" is a value: look at a result's `outcome`.
 
 Here are the names that nearly every program needs. Everything else is in a room of its own: `mmgrasp.robot`, `.collision`,
-`.planning`, `.grasping`, `.base`, `.mapping`, `.optim`, `.verify`; `.part_supply` and `.scenario` for the main job. Extras are imported
+`.planning`, `.grasping`, `.base`, `.mapping`, `.optim`, `.gripper_design`, `.verify`; `.part_supply` and `.scenario` for the main job. Extras are imported
 by name: `mmgrasp.frames` (folders of depth images), `.scan` (maps made of them), `.sim` (physics), `.viz` (pictures), `.cluster` (many
 processes), `.problems` (benchmarks' problems), `.reproduce`.
 """
@@ -15,6 +15,7 @@ from . import _core as _core
 from . import base as base
 from . import collision as collision
 from . import grasping as grasping
+from . import gripper_design as gripper_design
 from . import mapping as mapping
 from . import optim as optim
 from . import part_supply as part_supply

@@ -31,7 +31,7 @@ ROOT = {
     *("DriveByTask", "plan_drive_by", "load_scenario", "plan_part_supply", "verify_plan"),
     *("ProbabilisticSdf", "synthesize_grasps"),
 }
-FACADES = ("robot", "collision", "planning", "grasping", "base", "mapping", "optim")
+FACADES = ("robot", "collision", "planning", "grasping", "base", "mapping", "optim", "gripper_design")
 ROOT_ONLY = {"Error", "InvalidInput", "IoError"}  # of every room
 
 

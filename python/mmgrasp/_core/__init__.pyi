@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FeasibleGrasp', 'FittedCuboid', 'Grasp', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'Graspability', 'GridDistanceField', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MotionResult', 'MotionStats', 'NodeLoad', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'SdfHits', 'SearchTree', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'follow_object_path', 'grasp_search_names', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_objects', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FeasibleGrasp', 'FittedCuboid', 'Grasp', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NodeLoad', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'SdfHits', 'SearchTree', 'SegmentRequirement', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'follow_object_path', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_objects', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -5120,11 +5120,6 @@ class ObjectPathResult:
         solved or not_found.
         """
     @property
-    def overloaded(self) -> list[int]:
-        """
-        Poses at which it bends or bears more than it may.
-        """
-    @property
     def path(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         """
         (poses, n) configurations, or None.
@@ -5184,7 +5179,7 @@ class ObjectPathEvaluator:
     """
     Costs many grasps along one path: prepared once. Not for several threads at a time.
     """
-    def __init__(self, problem: ObjectPathProblem, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, max_sag: float = 0.0) -> None:
+    def __init__(self, problem: ObjectPathProblem, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81) -> None:
         """
         Prepares robot, world and object.
         
@@ -5204,7 +5199,6 @@ class ObjectPathEvaluator:
             all_turns: bool = True  # joints that may turn more than once come in every turn
             redundant_values: int = 0  # samples of a seventh joint; 0: chosen
             gravity: float = 9.81  # along the world's -z [m/s2]
-            max_sag: float = 0.0  # largest displacement allowed at any pose [m]; 0: any
         """
     def evaluate(self, grasp: Grasp) -> ObjectPathResult:
         """
@@ -5240,16 +5234,6 @@ class GraspOptimum:
     """
     def __repr__(self) -> str:
         ...
-    def sag_candidates(self) -> list[Grasp]:
-        """
-        Every feasible grasp with its mean sag [m] as its cost: candidates for plan_manipulation, whose `max_length`
-        then takes the one that sags least among those whose motion is short enough.
-        """
-    @property
-    def boxes(self) -> int:
-        """
-        Boxes of grasps that branch_and_bound bounded.
-        """
     @property
     def colliding(self) -> list[int]:
         """
@@ -5271,11 +5255,6 @@ class GraspOptimum:
         The Pareto front among them, ascending in O1.
         """
     @property
-    def gap(self) -> float:
-        """
-        How much cheaper another could be at most, as a share of the cost; 1: unknown.
-        """
-    @property
     def grasp(self) -> Grasp | None:
         """
         The best grasp, or None.
@@ -5286,20 +5265,9 @@ class GraspOptimum:
         Best cost after each of them; infinite while none was feasible.
         """
     @property
-    def lower_bound(self) -> float:
-        """
-        No grasp costs less; 0 where nothing was proven.
-        """
-    @property
     def outcome(self) -> Outcome:
         """
-        solved: proven to the gap asked for, or it meets the target; approximate: the best seen;
-        infeasible: proven that no grasp can follow the path.
-        """
-    @property
-    def overloaded(self) -> list[int]:
-        """
-        Of each pose: with how many the pipe bends or bears more than it may.
+        approximate: the best seen, no proof that none is better; solved: it meets the target.
         """
     @property
     def path(self) -> ObjectPathResult:
@@ -5310,6 +5278,248 @@ class GraspOptimum:
     def unreachable(self) -> list[int]:
         """
         Of each pose: how many of the grasps tried do not reach it.
+        """
+class SegmentRequirement:
+    """
+    What a gripper needs to hold one segment of a part in its operation: {F, W, L-, L+} of P1 5.3.4.
+    
+    A part with several graspable segments has several; a gripper that meets one of them takes the part.
+    
+        SegmentRequirement("sleeve", 0.0375, fingers=3, min_finger_length=0.0227)
+    """
+    def __init__(self, part: str, opening: float, *, segment: str = '', fingers: int = 2, min_finger_length: float = 0.0, max_finger_length: float | None = None) -> None:
+        """
+        Part, opening [m], the segment's label, 2 or 3 fingers, limits of their length [m] (None: no upper one).
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def fingers(self) -> int:
+        """
+        2: parallel jaws; 3: centric fingers.
+        """
+    @property
+    def max_finger_length(self) -> float | None:
+        """
+        [m]; None: any.
+        """
+    @property
+    def min_finger_length(self) -> float:
+        """
+        [m]
+        """
+    @property
+    def opening(self) -> float:
+        """
+        Diameter, or distance of the faces in touch [m].
+        """
+    @property
+    def part(self) -> str:
+        """
+        Whose segment it is.
+        """
+    @property
+    def segment(self) -> str:
+        """
+        Its label.
+        """
+class Gripper:
+    """
+    A gripper with straight fingers on a drive: two parallel jaws or three centric fingers (P1 5.2.1).
+    
+    The base frame lies on the mounting face with z towards the tips; the first finger moves along x. The tool frame lies on z, half a pad before the tips.
+    
+        gripper = Gripper(fingers=3, min_opening=0.014, max_opening=0.022, finger_length=0.03)
+        gripper.to_urdf("grippers/centric_22")
+    """
+    def __init__(self, *, name: str = 'gripper', actuator: str = '', fingers: int = 2, min_opening: float = 0.0, max_opening: float = 0.05, finger_length: float = 0.03, finger_width: float = 0.015, finger_thickness: float = 0.008, palm_height: float = 0.04, max_force: float = 50.0, max_speed: float = 0.1) -> None:
+        """
+        Lengths in m, force of each finger in N, its speed in m/s.
+        """
+    def __repr__(self) -> str:
+        ...
+    def finger_mesh(self) -> Mesh:
+        """
+        One finger to print: closed, convex, on the palm at z = 0, its pad in the plane x = 0 [m].
+        """
+    def holds(self, requirement: SegmentRequirement) -> bool:
+        """
+        Whether it holds a segment: (5.2) of P1 with <= in place of <, to 1e-9 m.
+        """
+    def to_dict(self) -> dict[str, typing.Any]:
+        """
+        All fields by name.
+        """
+    def to_urdf(self, folder: str | os.PathLike[str]) -> None:
+        """
+        Writes gripper.urdf, gripper.srdf (group "fingers", states open and closed) and finger.stl into a folder, which is made where it is missing. IoError names the file that cannot be written.
+        """
+    @property
+    def actuator(self) -> str:
+        """
+        Name of the drive, or ''.
+        """
+    @property
+    def finger_length(self) -> float:
+        """
+        From the palm to the tips [m].
+        """
+    @property
+    def finger_thickness(self) -> float:
+        """
+        Along the closing direction [m].
+        """
+    @property
+    def finger_width(self) -> float:
+        """
+        Across approach and closing direction [m].
+        """
+    @property
+    def fingers(self) -> int:
+        """
+        2 or 3.
+        """
+    @property
+    def max_force(self) -> float:
+        """
+        Of each finger's joint [N].
+        """
+    @property
+    def max_opening(self) -> float:
+        """
+        [m]
+        """
+    @property
+    def max_speed(self) -> float:
+        """
+        Of each finger's joint [m/s].
+        """
+    @property
+    def min_opening(self) -> float:
+        """
+        Between the pads, or the diameter that three of them touch [m].
+        """
+    @property
+    def name(self) -> str:
+        """
+        Of its URDF.
+        """
+    @property
+    def pad_length(self) -> float:
+        """
+        Length of the pad along the approach [m].
+        """
+    @property
+    def palm_height(self) -> float:
+        """
+        From the mounting face to the palm [m].
+        """
+class GripperActuator:
+    """
+    A drive that fingers can be mounted on, e.g. an air chuck. Its stroke is fixed, where the opening begins is free.
+    
+        GripperActuator("SMC MHSL3-32D", 0.008, fingers=3)
+    """
+    def __init__(self, name: str, stroke: float, *, fingers: int = 2, max_opening: float | None = None, cost: float = 1.0) -> None:
+        """
+        Name, stroke [m], 2 or 3 fingers, widest opening [m] (None: any), cost of a gripper.
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def cost(self) -> float:
+        """
+        Of a gripper with this drive.
+        """
+    @property
+    def fingers(self) -> int:
+        """
+        2 or 3.
+        """
+    @property
+    def max_opening(self) -> float | None:
+        """
+        As wide as fingers can be mounted [m]; None: any.
+        """
+    @property
+    def name(self) -> str:
+        """
+        As given.
+        """
+    @property
+    def stroke(self) -> float:
+        """
+        Largest less smallest opening [m].
+        """
+class MinimalGrippersResult:
+    """
+    What minimal_grippers found: the set, and which gripper takes which part.
+    """
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict[str, typing.Any]:
+        """
+        As a dict of plain numbers, strings and lists, e.g. for JSON.
+        """
+    @property
+    def candidates(self) -> int:
+        """
+        Grippers chosen among, none doing only what another does.
+        """
+    @property
+    def changes(self) -> int:
+        """
+        Of the gripper from part to part.
+        """
+    @property
+    def changes_bound(self) -> int:
+        """
+        Proven: no set of the same cost needs fewer.
+        """
+    @property
+    def cost(self) -> float:
+        """
+        Of the grippers and of the changes.
+        """
+    @property
+    def explanations(self) -> list[str]:
+        """
+        One per uncovered part.
+        """
+    @property
+    def gripper_of_part(self) -> list[int]:
+        """
+        Index into grippers, one per part.
+        """
+    @property
+    def grippers(self) -> list[Gripper]:
+        """
+        In the order of first use.
+        """
+    @property
+    def lower_bound(self) -> float:
+        """
+        Proven: no set of grippers costs less.
+        """
+    @property
+    def outcome(self) -> Outcome:
+        """
+        `solved`: proven in cost and changes; `approximate`: the bounds say what is proven; `infeasible`: see explanations; `stopped`.
+        """
+    @property
+    def parts(self) -> list[str]:
+        """
+        In the order of assembly.
+        """
+    @property
+    def requirement_of_part(self) -> list[int]:
+        """
+        Index into the requirements, one per part.
+        """
+    @property
+    def uncovered(self) -> list[str]:
+        """
+        Parts that no gripper takes.
         """
 def _allowed_bodies(robot: Robot, world: World) -> list[tuple[str, str]]:
     ...
@@ -5340,6 +5550,8 @@ def _graspability_option_table() -> dict[str, typing.Any]:
 def _ik_option_table() -> dict[str, typing.Any]:
     ...
 def _manipulation_option_table() -> dict[str, typing.Any]:
+    ...
+def _minimal_grippers_option_table() -> dict[str, typing.Any]:
     ...
 def _motion_option_table() -> dict[str, typing.Any]:
     ...
@@ -5493,7 +5705,7 @@ def fit_cuboids(points: numpy.typing.ArrayLike, *, T_world_tray: numpy.typing.Ar
         min_points: int = 60  # smaller clusters are left out
         plane_iterations: int = 1000  # random planes tried
     """
-def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, max_sag: float = 0.0) -> ObjectPathResult:
+def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81) -> ObjectPathResult:
     """
     The cheapest motion of the arm that carries the object through all poses with one grasp, over all arm
     configurations (P2 3.3.3, Algorithm 3.1), motions between poses checked finely.
@@ -5514,11 +5726,6 @@ def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weigh
         all_turns: bool = True  # joints that may turn more than once come in every turn
         redundant_values: int = 0  # samples of a seventh joint; 0: chosen
         gravity: float = 9.81  # along the world's -z [m/s2]
-        max_sag: float = 0.0  # largest displacement allowed at any pose [m]; 0: any
-    """
-def grasp_search_names() -> list[str]:
-    """
-    Names that optimize_grasp's `algorithm` takes.
     """
 def graspability_map(map: HeightMap, gripper: Hand, angle: float, opening: float, tip_height: float, *, margin: float = 0.001, orientations: int = 16, openings: int = 2, layer_step: float = 0.01, lowest: float = 0.003, insertion: float = 0.01, smoothing: float = 0.01, min_contact: float = 0.4, min_distance: float = 0.015, max_grasps: int = 100, threads: int = 0) -> numpy.typing.NDArray[numpy.float32]:
     """
@@ -5591,6 +5798,19 @@ def maximal_intersections(grid: BaseGrid, regions: collections.abc.Sequence[Base
     """
     Those of the robust sets that are part of no other one: enough to prove a least number of stops.
     """
+def minimal_grippers(requirements: collections.abc.Sequence[SegmentRequirement], actuators: collections.abc.Sequence[GripperActuator], *, grid: tuple[int, int] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, shortest_finger: float = 0.01, longest_finger: float = 0.5, opening_margin: float = 0.0, length_margin: float = 0.0, change_cost: float = 0.0, max_nodes: int = 20000, time_limit: float = 60.0) -> MinimalGrippersResult:
+    """
+    The least set of grippers that takes every part of an assembly, and which one takes which part by which segment (P1 5.3.4, (5.1) and (5.2) with <=). Parts are assembled in the order in which the requirements first name them; of all cheapest sets one with the fewest changes of the gripper is taken. Proven over all grippers; with `grid=(n, m)` only over P1's n openings and m finger lengths.
+    
+    Keyword options:
+        shortest_finger: float = 0.01  # no finger is shorter [m]
+        longest_finger: float = 0.5  # no finger is longer [m]
+        opening_margin: float = 0.0  # stroke kept free beyond the part at either end [m]
+        length_margin: float = 0.0  # kept from either limit of the finger length [m]
+        change_cost: float = 0.0  # of changing the gripper between two parts
+        max_nodes: int = 20000  # of the search for fewest changes
+        time_limit: float = 60.0  # wall-clock cap [s]
+    """
 def minimize_derivative_free(objective: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], float], guess: numpy.typing.ArrayLike, lower: numpy.typing.ArrayLike, upper: numpy.typing.ArrayLike, *, solver: str = 'bobyqa', constraints: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], numpy.typing.ArrayLike] | None = None, constraint_count: int = 0, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, tolerance: float = 1e-06, constraint_tolerance: float = 1e-08, max_evaluations: int = 10000, time_limit: float = 30.0, seed: int = 1) -> DerivativeFreeResult:
     """
     Least value of `objective(x)` for lower <= x <= upper, found by values alone. `x` is a (n,) array; bounds may be infinite for the local solvers (bobyqa, cobyla, nelder_mead, sbplx), not for the global ones (crs2, isres, direct_l, esch). `constraints(x)` gives `constraint_count` numbers that must be at most 0 (cobyla, isres). Values that are not finite are avoided. What a function raises ends the search and is raised here.
@@ -5610,10 +5830,9 @@ def optimised_order(grid: BaseGrid, cells: collections.abc.Sequence[collections.
     """
     The order in which parts are best picked when the trays of each group share a stop, never worse than `order`. `cells` is [tray][part], bitmaps (headings, ny, nx).
     """
-def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | None = None, algorithm: str = 'bees', neighbourhood_kind: str = 'connected_sections', progress: collections.abc.Callable[[str, float], typing.Any] | None = None, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, max_sag: float = 0.0, population: int = 34, max_evaluations: int = 1530, target: float = -inf, seed: int = 1, elite_sites: int = 1, best_sites: int = 4, elite_recruits: int = 10, recruits: int = 3, stagnation_limit: int = 10, neighbourhood: float = 0.2, shrinking: float = 0.8, mutation_rate: float = 0.3, mutation_size: float = 0.25, connectivity: float = 0.5, inertia: float = 0.7, acceleration: float = 2.0, max_gap: float = 0.001, max_boxes: int = 1000000, time_limit: float = 600.0, threads: int = 0) -> GraspOptimum:
+def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | None = None, algorithm: str = 'bees', neighbourhood_kind: str = 'connected_sections', progress: collections.abc.Callable[[str, float], typing.Any] | None = None, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, population: int = 34, max_evaluations: int = 1530, target: float = -inf, seed: int = 1, elite_sites: int = 1, best_sites: int = 4, elite_recruits: int = 10, recruits: int = 3, stagnation_limit: int = 10, neighbourhood: float = 0.2, shrinking: float = 0.8, mutation_rate: float = 0.3, mutation_size: float = 0.25, connectivity: float = 0.5, inertia: float = 0.7, acceleration: float = 2.0) -> GraspOptimum:
     """
-    The grasp of a pipe with the least cost along the path, by a population search: bees, ga or pso (P2 3.4),
-    or with its optimum proven: branch_and_bound.
+    The grasp of a pipe with the least cost along the path, by a population search: bees, ga or pso (P2 3.4).
     `gripper`: axes and opening, the problem's when left out. `neighbourhood_kind` of bees: independent (Str1),
     same_section (Str2), connected_sections (Str3).
     
@@ -5633,7 +5852,6 @@ def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | No
         all_turns: bool = True  # joints that may turn more than once come in every turn
         redundant_values: int = 0  # samples of a seventh joint; 0: chosen
         gravity: float = 9.81  # along the world's -z [m/s2]
-        max_sag: float = 0.0  # largest displacement allowed at any pose [m]; 0: any
         population: int = 34  # points a round
         max_evaluations: int = 1530  # budget in grasps
         target: float = -inf  # ends as solved once a grasp costs no more
@@ -5650,10 +5868,6 @@ def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | No
         connectivity: float = 0.5  # pso: share of the others each particle hears of
         inertia: float = 0.7  # pso: of velocity
         acceleration: float = 2.0  # pso: P2's c1 and c2
-        max_gap: float = 0.001  # branch_and_bound: ends once no grasp can be cheaper by this share
-        max_boxes: int = 1000000  # branch_and_bound: budget in boxes of grasps
-        time_limit: float = 600.0  # branch_and_bound: wall-clock cap [s]
-        threads: int = 0  # branch_and_bound: 0: all; the answer does not depend on it
     """
 def paired_order(places: collections.abc.Sequence[numpy.typing.ArrayLike]) -> list[list[int]]:
     """
@@ -5708,7 +5922,7 @@ def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy
         look_out: float = 0.15  # pairs of bodies nearer than this are constrained [m]
         refinements: int = 6  # times that collision constraints may be added
     """
-def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, padding: float | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 8, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, max_length: float = 0.0, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_iterations: int = 1000, range: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
+def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, padding: float | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 8, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_iterations: int = 1000, range: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
     """
     Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 chapters 4 and 5). Every grasp is checked. `padding`: in place of that of the problem's world, see World.padding. `on_solution` is called with every better solution (an Improvement); what it raises ends the call.
     
@@ -5720,7 +5934,6 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         ik_restarts: int = 30  # random starts of arms without a closed form
         joint_step: float = 0.02  # no joint moves more between two checks of an edge [rad or m]
         workspace_step: float = 0.005  # no point of the robot or the object moves more between two checks [m]
-        max_length: float = 0.0  # the least grasp cost among paths no longer than this; 0: their sum
         time_limit: float = 15.0  # wall-clock cap on IK and search, without the roadmap's building [s]
         seed: int = 1  # same seed, same path
         threads: int = 0  # 0: all; does not change the answer
@@ -5836,7 +6049,7 @@ def platform_velocity(*, left: float, right: float, wheel_separation: float) -> 
     """
 def population_search_names() -> list[str]:
     """
-    The population searches among grasp_search_names().
+    Names that optimize_grasp's `algorithm` takes.
     """
 def pose(xyz: numpy.typing.ArrayLike, rpy: numpy.typing.ArrayLike | None = None, quat_xyzw: numpy.typing.ArrayLike | None = None) -> numpy.typing.NDArray[numpy.float64]:
     """

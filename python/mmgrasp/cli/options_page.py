@@ -42,6 +42,18 @@ SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
         set(),
     ),
     ("optimize_grasp", "The search of `optimize_grasp` (`PopulationOptions`)", _core._population_option_table, set()),
+    (
+        "optimize_grasp_proof",
+        "The proof of `optimize_grasp` (`GraspSearchOptions`)",
+        _core._grasp_search_option_table,
+        set(),
+    ),
+    (
+        "minimal_grippers",
+        "The least set of grippers, keywords (`MinimalGrippersOptions`)",
+        _core._minimal_grippers_option_table,
+        set(),
+    ),
     ("roadmap", "Keywords of `Roadmap.build` (`RoadmapOptions`)", _core._roadmap_option_table, set()),
     (
         "plan_manipulation",

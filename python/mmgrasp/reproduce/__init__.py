@@ -16,8 +16,10 @@ from . import (
     capability,
     drive_by,
     experiments,
+    grasp_search,
     grasp_success,
     grasping_trials,
+    gripper_sets,
     ik_query,
     physics,
     policies,
@@ -44,6 +46,7 @@ TOPICS = (
     policies,
     experiments,
     random_placement,
+    grasp_search,
     prm_mg,
     rrt_mg,
     capability,
@@ -54,12 +57,14 @@ TOPICS = (
     tracking,
     physics,
     three_ways,
+    gripper_sets,
 )
 ENTRIES: dict[str, Entry] = {e.name: e for topic in TOPICS for e in topic.ENTRIES}
 ALSO = {
     "p1-figure-3.13": "p1-table-3.1",
     "p1-figure-3.15": "p1-table-3.1",
     "p1-figure-3.4": "p1-figure-3.5",
+    "p2-table-3.6": "p2-figure-3.11",
     "p2-figure-4.5": "p2-table-4.2",
     "p2-figure-5.6": "p2-figure-5.5",
     "p3-figure-3.32": "p3-figure-3.31",

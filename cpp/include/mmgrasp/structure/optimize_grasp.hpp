@@ -27,11 +27,11 @@ struct MMGRASP_EXPORT GraspSearchOptions {
   std::string algorithm = "bees";
   GraspNeighbourhood neighbourhood = GraspNeighbourhood::connected_sections;
   PopulationOptions population;
-  double max_gap = 1e-3;      ///< branch_and_bound: as a share of the cost; in (0, 1).
-  int max_boxes = 1000000;    ///< branch_and_bound: budget in boxes bounded; > 0.
-  double time_limit = 600;    ///< branch_and_bound: wall-clock cap [s]; > 0.
-  int threads = 0;            ///< branch_and_bound; 0: all. The answer does not depend on it.
-  PipeGraspOptions grasp;  ///< Axes of the hand, widest opening, margin kept from nodes; its sampling is not used.
+  double max_gap = 1e-3;    ///< branch_and_bound: as a share of the cost; in (0, 1).
+  int max_boxes = 1000000;  ///< branch_and_bound: budget in boxes bounded; > 0.
+  double time_limit = 600;  ///< branch_and_bound: wall-clock cap [s]; > 0.
+  int threads = 0;          ///< branch_and_bound; 0: all. The answer does not depend on it.
+  PipeGraspOptions grasp;   ///< Axes of the hand, widest opening, margin kept from nodes; its sampling is not used.
   void check() const;
 };
 
@@ -59,7 +59,7 @@ struct MMGRASP_EXPORT GraspOptimum {
   /// Which of them no other beats in one objective without losing in another (the Pareto front), ascending in O1.
   std::vector<int> front;
   int evaluations = 0;
-  int boxes = 0;  ///< Bounded by branch_and_bound.
+  int boxes = 0;                ///< Bounded by branch_and_bound.
   std::vector<double> history;  ///< Best cost after each evaluation; infinite while nothing was feasible.
   /// Poses in order, each with how many of the grasps tried could not reach it and at how many all arm configurations
   /// collided.

@@ -4,26 +4,6 @@
 
 namespace mmgrasp::detail {
 
-bool Bits::subset_of(const Bits& other) const {
-  for (std::size_t w = 0; w < words_.size(); ++w) {
-    if (words_[w] & ~other.words_[w]) return false;
-  }
-  return true;
-}
-
-int Bits::count() const {
-  int total = 0;
-  for (std::uint64_t word : words_) total += __builtin_popcountll(word);
-  return total;
-}
-
-int Bits::first() const {
-  for (std::size_t w = 0; w < words_.size(); ++w) {
-    if (words_[w]) return static_cast<int>(64 * w) + __builtin_ctzll(words_[w]);
-  }
-  return -1;
-}
-
 namespace {
 
 class Reduction {

@@ -70,6 +70,11 @@ IkEnclosure::IkEnclosure(const JointGroup& group) : group_(group) {
   snap(2, h_[1] * (h_[1].dot(h_[2]) > 0 ? 1 : -1), p_[2]);
   if (!spherical_) snap(3, h_[1] * (h_[1].dot(h_[3]) > 0 ? 1 : -1), p_[3]);
   for (int i = spherical_ ? 3 : 4; i < 6; ++i) snap(i, h_[i], meeting_);
+  if (spherical_ && h_[3].cross(h_[5]).norm() < 1e-9 && std::abs(h_[3].dot(h_[4])) < 1e-9) {
+    wrist_sign_ = h_[3].dot(h_[5]) > 0 ? 1 : -1;
+    off_rotation_ += 1e-8;
+    off_position_ += 1e-8;
+  }
   R_tip_ = s.tip.R;
   t_tip_ = s.tip.t;
 }
@@ -128,21 +133,48 @@ void IkEnclosure::spherical(const FormPose& T, std::vector<FormConfiguration>& o
     const LinearForm product = 0.5 * (LinearForm(from.squaredNorm() + to.squaredNorm()) - reach2);
     for (const LinearForm& third : to_plane(h_[2], to, form(from), product)) {
       const Turn three(third);
-      const LinearForm second =
-          onto(h_[1], turned_point(2, three, false, form(w)) - form(p_[1]), u - form(p_[1]));
+      const LinearForm second = onto(h_[1], turned_point(2, three, false, form(w)) - form(p_[1]), u - form(p_[1]));
       const Turn two(second);
       const auto back = [&](const FormVector& x) {
         return turned(2, three, true, turned(1, two, true, turned(0, one, false, x)));
       };
+      if (wrist_sign_ != 0) {
+        euler_wrist(back(G_turned(T, h_[4].cross(h_[3]))), back(G_turned(T, h_[4])), back(G_turned(T, h_[3])),
+                    {-first, second, third, {}, {}, {}, {}}, out);
+        continue;
+      }
       const FormVector Rh = back(Gh), Ry = back(Gy);
       for (const LinearForm& fifth : to_plane(h_[4], h_[3], form(h_[5]), dot(h_[3], Rh))) {
         const Turn five(fifth);
         const LinearForm fourth = onto(h_[3], turned(4, five, false, form(h_[5])), Rh);
         const Turn four(fourth);
         const LinearForm sixth = onto(h_[5], form(y), turned(4, five, true, turned(3, four, true, Ry)));
-        out.push_back({-first, second, third, fourth, fifth, sixth});
+        out.push_back({-first, second, third, fourth, fifth, sixth, {}});
       }
     }
+  }
+}
+
+/// Of R = Rz(4) Ry(5) Rz(sign 6), whose columns are given, along z (axis 4), y (axis 5) and x = y x z. The entries tell
+/// each angle without going through the others, so errors do not pile up where the wrist is nearly stretched.
+void IkEnclosure::euler_wrist(const FormVector& Rx, const FormVector& Ry, const FormVector& Rz,
+                              const FormConfiguration& arm, std::vector<FormConfiguration>& out) const {
+  const Vector3d z = h_[3], y = h_[4], x = y.cross(z);
+  const LinearForm sum = angle_of(dot(y, Rx) - dot(x, Ry), dot(x, Rx) + dot(y, Ry));
+  const LinearForm cosine5 = dot(z, Rz), across2 = squared(dot(x, Rz)) + squared(dot(y, Rz));
+  if (cosine5.low() > 1 || cosine5.high() < -1) return;
+  LinearForm bent = arc_cosine(cosine5);
+  if (across2.high() > 0) {
+    const LinearForm other = angle_of(square_root(across2), cosine5);
+    if (other.radius() < bent.radius()) bent = other;
+  }
+  for (const double sign : {1.0, -1.0}) {  // of sin(5)
+    FormConfiguration q = arm;
+    q[3] = angle_of(sign * dot(y, Rz), sign * dot(x, Rz));
+    q[4] = sign * bent;
+    q[5] = wrist_sign_ * angle_of(sign * dot(z, Ry), -sign * dot(z, Rx));
+    q[6] = sum;
+    out.push_back(q);
   }
 }
 
@@ -176,9 +208,8 @@ void IkEnclosure::parallel(const FormPose& T, std::vector<FormConfiguration>& ou
           0.5 * (LinearForm(from.squaredNorm() + to.squaredNorm() - along * along) - (reach2 - squared(height)));
       for (const LinearForm& third : to_plane(h_[2], to, form(from), product)) {
         const Turn three(third);
-        const LinearForm second =
-            onto(h, turned_point(2, three, false, form(p_[3])) - form(p_[1]), p4 - form(p_[1]));
-        out.push_back({-first, second, third, sign4 * (sum - second - sign3 * third), fifth, sixth});
+        const LinearForm second = onto(h, turned_point(2, three, false, form(p_[3])) - form(p_[1]), p4 - form(p_[1]));
+        out.push_back({-first, second, third, sign4 * (sum - second - sign3 * third), fifth, sixth, {}});
       }
     }
   }
@@ -223,20 +254,27 @@ std::vector<FormConfiguration> IkEnclosure::within_limits(const FormPose& T) con
   return out;
 }
 
-std::array<LinearForm, 6> IkEnclosure::joint_effects(const FormConfiguration& q, const FormVector& origin,
-                                                     const FormVector& v, const Vector3d& w) const {
-  // The screw of what the tip does, seen from the world's origin, is carried backwards through the joints: joint i
-  // moves the tip by h_i x (tip - p_i) and h_i, in axes that the joints before it have turned.
+std::array<LinearForm, 6> IkEnclosure::joint_effects(const FormConfiguration& q, const FormPose& T, const FormVector& v,
+                                                     const Vector3d& w) const {
+  // Joint i moves the tip by h_i x (tip - p_i) and h_i. What the tip does, as a moment about the world's origin and a
+  // force, is carried through the joints up to the wrist, each time into axes that the joint has not turned yet.
   std::array<LinearForm, 6> effects;
-  FormVector moment = form(w) + cross(origin, v), force = v;  // J^T f = h . (moment about the axis)
-  for (int i = 0; i < 6; ++i) {
-    effects[i] = dot(h_[i], moment) - dot(h_[i], cross(p_[i], force));
+  FormVector moment = form(w) + cross(T.origin, v), force = v;
+  for (int i = 0; i < 5; ++i) {
+    effects[i] = dot(h_[i], moment) - dot(h_[i], cross(form(p_[i]), force));
     const Turn turn(q[i]);
-    // into the axes before the joint: E_i^-1
     const FormVector about = moment - cross(form(p_[i]), force);
     force = turned(i, turn, true, force);
     moment = turned(i, turn, true, about) + cross(form(p_[i]), force);
   }
+  // Axis 6 is fixed in the tip; axes 5 and 6 meet, and 5 crosses 4 at a right angle or does not: what joint 5 does is
+  // within what is left of the moment there.
+  const FormVector there = form(w) + cross(T.origin - G_point(T, meeting_), v);
+  effects[5] = dot(G_turned(T, h_[5]), there);
+  LinearForm rest = squared_norm(there);
+  if (wrist_sign_ != 0) rest -= squared(effects[3]);
+  const double most = std::sqrt(std::max(0.0, rest.high()));
+  if (effects[4].radius() > most) effects[4] = LinearForm::between(-most, most);
   return effects;
 }
 

@@ -20,7 +20,9 @@ struct FormPose {
   }
 };
 
-using FormConfiguration = std::array<LinearForm, 6>;
+/// Six joint values; then, of an arm whose wrist axes 4 and 6 are parallel at zero, value 4 + wrist_sign() * value 6,
+/// up to whole turns: known well where the wrist is stretched and the two are not.
+using FormConfiguration = std::array<LinearForm, 7>;
 
 /// Encloses every configuration of a six-joint arm over a box of poses: the closed forms of inverse kinematics, each
 /// step carried out on linear forms, so none is missed. Arms whose axes 4, 5 and 6 meet and 2 and 3 are parallel, or
@@ -34,9 +36,11 @@ class MMGRASP_EXPORT IkEnclosure {
   std::vector<FormConfiguration> branches(const FormPose& T_world_tip) const;
   /// Each in every whole turn that may lie within limits.
   std::vector<FormConfiguration> within_limits(const FormPose& T_world_tip) const;
-  /// J^T (v, w) at a configuration that puts the tip's origin where `origin` says.
-  std::array<LinearForm, 6> joint_effects(const FormConfiguration& q, const FormVector& origin, const FormVector& v,
+  /// J^T (v, w) at a configuration that puts the tip there.
+  std::array<LinearForm, 6> joint_effects(const FormConfiguration& q, const FormPose& T_world_tip, const FormVector& v,
                                           const Eigen::Vector3d& w) const;
+  /// 1 or -1; 0: there is no sum.
+  int wrist_sign() const { return wrist_sign_; }
 
  private:
   struct Turn {
@@ -49,6 +53,8 @@ class MMGRASP_EXPORT IkEnclosure {
                                    const LinearForm& d) const;
   LinearForm onto(const Eigen::Vector3d& axis, const FormVector& u, const FormVector& v) const;
   void spherical(const FormPose& G_tip, std::vector<FormConfiguration>& out) const;
+  void euler_wrist(const FormVector& Rx, const FormVector& Ry, const FormVector& Rz, const FormConfiguration& arm,
+                   std::vector<FormConfiguration>& out) const;
   void parallel(const FormPose& G_tip, std::vector<FormConfiguration>& out) const;
   FormVector G_turned(const FormPose& T, const Eigen::Vector3d& v) const;
   FormVector G_point(const FormPose& T, const Eigen::Vector3d& x) const;
@@ -59,6 +65,7 @@ class MMGRASP_EXPORT IkEnclosure {
   Eigen::Vector3d t_tip_;
   Eigen::Vector3d meeting_;  ///< Of the wrist's axes (4, 5, 6; or 5, 6).
   bool spherical_ = false;
+  int wrist_sign_ = 0;
   double off_rotation_ = 0, off_position_ = 0;  ///< What snapping and polishing leave.
 };
 

@@ -84,17 +84,26 @@ inline LinearForm sine(const LinearForm& a) {
   return composed(a, std::sin(a.centre), std::cos(a.centre), std::min(1.0, std::abs(std::sin(a.centre)) + r));
 }
 
+/// Of two enclosures of the same the one that leaves less open: a plain range has no slopes, and its width is all
+/// error.
+inline LinearForm sharper(const LinearForm& a, const LinearForm& range) {
+  return a.error < range.error ? a : range;
+}
+
 /// sqrt(a) where a is not negative; its range must reach above 0.
 inline LinearForm square_root(const LinearForm& a) {
-  const double low = a.low(), root = std::sqrt(std::max(0.0, a.centre));
-  if (low <= 0.1 * a.centre) return LinearForm::between(std::sqrt(std::max(0.0, low)), std::sqrt(a.high()));
-  return composed(a, root, 0.5 / root, 0.25 / (low * std::sqrt(low)));
+  const double low = std::max(0.0, a.low()), root = std::sqrt(std::max(0.0, a.centre));
+  const LinearForm range = LinearForm::between(std::sqrt(low), std::sqrt(a.high()));
+  if (low == 0) return range;
+  const LinearForm f = composed(a, root, 0.5 / root, 0.25 / (low * std::sqrt(low)));
+  return f.low() > 0 ? sharper(f, range) : range;  // so that its reciprocal can be taken
 }
 
 /// 1 / a for an a whose range is above 0.
 inline LinearForm reciprocal(const LinearForm& a) {
   const double low = a.low();
-  return composed(a, 1 / a.centre, -1 / (a.centre * a.centre), 2 / (low * low * low));
+  const LinearForm f = composed(a, 1 / a.centre, -1 / (a.centre * a.centre), 2 / (low * low * low));
+  return sharper(f, LinearForm::between(1 / a.high(), 1 / low));
 }
 
 /// acos(a) where a lies in [-1, 1]; the range of a must meet that.
@@ -104,9 +113,9 @@ inline LinearForm arc_cosine(const LinearForm& a) {
   const LinearForm range = LinearForm::between(least, largest);
   if (most >= 1 || std::abs(a.centre) >= 1) return range;
   const double rest = 1 - most * most;
-  const LinearForm f = composed(a, std::acos(a.centre), -1 / std::sqrt(1 - a.centre * a.centre),
-                                most / (rest * std::sqrt(rest)));
-  return f.radius() < range.radius() ? f : range;
+  const LinearForm f =
+      composed(a, std::acos(a.centre), -1 / std::sqrt(1 - a.centre * a.centre), most / (rest * std::sqrt(rest)));
+  return sharper(f, range);
 }
 
 /// Any angle.
@@ -123,7 +132,7 @@ inline LinearForm angle_of(const LinearForm& y, const LinearForm& x) {
   LinearForm f = (x.centre / r2) * y - (y.centre / r2) * x;
   f.centre = angle;
   f.error += off * off / (2 * (r - off) * (r - off));
-  return f.radius() < wide.radius() ? f : wide;
+  return sharper(f, wide);
 }
 
 using FormVector = std::array<LinearForm, 3>;

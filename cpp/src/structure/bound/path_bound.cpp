@@ -6,7 +6,25 @@ namespace mmgrasp::detail {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Vector7 = Eigen::Matrix<double, 7, 1>;
+
+namespace {
+
+/// A bound from below that is linear: the error comes off.
+LinearForm below(LinearForm f) {
+  f.centre -= f.error;
+  f.error = 0;
+  return f;
+}
+
+/// Sum of the errors of a configuration, each weighed.
+double errors(const FormConfiguration& q, const Vector7& weights) {
+  double sum = 0;
+  for (int j = 0; j < 7; ++j) sum += std::abs(weights[j]) * q[j].error;
+  return sum;
+}
+
+}  // namespace
 
 PathBound::PathBound(const ObjectPathProblem& problem, const Pipe& pipe, const ObjectPathOptions& options,
                      const PipeGraspOptions& grasp)
@@ -49,27 +67,83 @@ FormPose PathBound::hand(const GraspBox& box, std::size_t pose) const {
   return T;
 }
 
-/// Encloses the force manipulability (3.3) along the tip's motion from the pose before; error 0: a bound from below.
+/// Bounds the force manipulability (3.3) along the tip's motion from the pose before from below; its error is 0.
 LinearForm PathBound::force(const FormConfiguration& q, const FormPose& before, const FormPose& at,
                             std::size_t pose) const {
-  const FormVector v = at.origin - before.origin;
-  LinearForm length2 = squared_norm(v), effect2;
-  length2 += LinearForm(turns_[pose].squaredNorm());
-  for (const LinearForm& effect : arm_.joint_effects(q, at.origin, v, turns_[pose])) effect2 += squared(effect);
-  if (length2.high() <= 0 || effect2.high() <= 0) return {};
-  const double least = std::sqrt(std::max(0.0, length2.low()) / effect2.high());
-  LinearForm below(least);
-  if (length2.low() > 0.1 * length2.centre && effect2.low() > 0.1 * effect2.centre) {
-    LinearForm linear = square_root(length2) * reciprocal(square_root(effect2));
-    linear.centre -= linear.error;
-    linear.error = 0;
-    if (linear.low() > least) below = linear;
+  const FormVector v = at.origin - before.origin;  // linear without error
+  const Vector3d middle(v[0].centre, v[1].centre, v[2].centre), slope(v[0].slope[0], v[1].slope[0], v[2].slope[0]);
+  const double length = std::hypot(middle.norm(), turns_[pose].norm());
+  if (length < 1e-9) return {};
+  const LinearForm motion(length, middle.dot(slope) / length, 0, 0);  // a norm lies above its tangents
+  LinearForm effect2;
+  for (const LinearForm& effect : arm_.joint_effects(q, at, v, turns_[pose])) effect2 += squared(effect);
+  const LinearForm most = -below(-effect2);
+  if (most.high() <= 0 || motion.low() <= 0) return {};
+  const LinearForm least(motion.low() / std::sqrt(most.high()));
+  if (most.centre <= 0) return least;
+  // 1 / sqrt lies above its tangents, too
+  const double root = 1 / std::sqrt(most.centre);
+  LinearForm inverse = (-0.5 * root / most.centre) * most;
+  inverse.centre = root;
+  const LinearForm product = below(motion * inverse);
+  return inverse.low() > 0 && product.low() > least.centre ? product : least;
+}
+
+/// False when every such motion is a jump.
+bool PathBound::join(const FormConfiguration& from, const FormConfiguration& to, BoxGraph::Edge& edge) const {
+  constexpr double kSlack = 1e-8;
+  const double weight = options_.motion_weight / options_.motion_scale;
+  Vector7 middle;
+  std::array<LinearForm, 7> move{};
+  double least2 = 0;
+  bool known = true;
+  for (int j = 0; j < 6; ++j) {
+    move[j] = to[j] - from[j];
+    if (wraps_[j]) move[j].centre = shortest_turn(move[j].centre);
+    const double radius = move[j].radius(), off = std::abs(move[j].centre);
+    double least = std::max(0.0, off - radius);
+    if (wraps_[j]) {  // the short way may be the other one
+      least = std::min(least, std::max(0.0, kTwoPi - off - radius));
+      known = known && off + radius < kPi;
+    }
+    if (least > options_.max_joint_step + kSlack) return false;
+    least2 += least * least;
+    middle[j] = move[j].centre;
   }
-  return below;
+  edge.estimate = weight * middle.head<6>().norm();
+  edge.centre = weight * std::sqrt(least2);
+  const auto try_direction = [&](const Vector7& u) {
+    LinearForm along;
+    for (int j = 0; j < 7; ++j) along += u[j] * move[j];
+    const double bound = weight * (along.centre - along.error);
+    if (along.low() <= 0 || bound <= edge.centre) return;
+    edge.direction = u;
+    edge.centre = weight * along.centre;
+    for (int k = 0; k < 2; ++k) edge.slope[k] = weight * along.slope[k];
+  };
+  // The sum of joints 4 and 6 over sqrt(2) is one component of the motion in turned axes; the other is left out.
+  const int sign = arm_.wrist_sign();
+  const bool unknown = from[3].error + to[3].error + from[5].error + to[5].error > 0.1;
+  middle[6] = 0;
+  if (known && middle.norm() > 0) try_direction(middle.normalized());
+  if (known && sign != 0 && unknown) {
+    move[6] = to[6] - from[6];
+    move[6].centre = shortest_turn(move[6].centre);
+    if (std::abs(move[6].centre) + move[6].radius() + 2 * options_.max_joint_step < kTwoPi) {
+      Vector7 u;
+      u << middle[0], middle[1], middle[2], 0, middle[4], 0, move[6].centre / std::sqrt(2.0);
+      const double length = u.norm();
+      if (length > 0) {
+        u /= length;
+        u[6] /= std::sqrt(2.0);
+        try_direction(u);
+      }
+    }
+  }
+  return true;
 }
 
 BoxGraph PathBound::graph(const GraspBox& box) const {
-  constexpr double kSlack = 1e-8;
   BoxGraph graph;
   graph.motion_ = options_.motion_weight / options_.motion_scale;
   const double force_weight = options_.manipulability_weight / options_.manipulability_scale;
@@ -89,39 +163,8 @@ BoxGraph PathBound::graph(const GraspBox& box) const {
       if (!from.alive[a]) continue;
       for (int b = 0; b < static_cast<int>(to.q.size()); ++b) {
         BoxGraph::Edge edge{a, b};
-        bool jumps = false;
-        Vector6 middle;
-        double least2 = 0;
-        std::array<LinearForm, 6> move;
-        for (int j = 0; j < 6 && !jumps; ++j) {
-          move[j] = to.q[b][j] - from.q[a][j];
-          if (wraps_[j]) move[j].centre = shortest_turn(move[j].centre);
-          const double radius = move[j].radius();
-          double least = std::max(0.0, std::abs(move[j].centre) - radius);
-          if (wraps_[j] && radius >= kPi) least = 0;
-          // the short way round may be the other one
-          if (wraps_[j]) least = std::min(least, std::max(0.0, kTwoPi - std::abs(move[j].centre) - radius));
-          jumps = least > options_.max_joint_step + kSlack;
-          least2 += least * least;
-          middle[j] = move[j].centre;
-        }
-        if (jumps) continue;
+        if (!join(from.q[a], to.q[b], edge)) continue;
         reached[b] = 1;
-        const double length = middle.norm();
-        edge.estimate = graph.motion_ * length;
-        edge.centre = graph.motion_ * std::sqrt(least2);
-        bool linear = length > 0;
-        for (int j = 0; j < 6; ++j) linear = linear && (!wraps_[j] || std::abs(middle[j]) + move[j].radius() < kPi);
-        if (linear) {
-          const Vector6 u = middle / length;
-          LinearForm along;
-          for (int j = 0; j < 6; ++j) along += u[j] * move[j];
-          if (along.low() > 0) {
-            edge.direction = u;
-            edge.centre = graph.motion_ * length;
-            for (int k = 0; k < 2; ++k) edge.slope[k] = graph.motion_ * along.slope[k];
-          }
-        }
         to.edges.push_back(edge);
       }
     }
@@ -148,8 +191,8 @@ BoxGraph PathBound::graph(const GraspBox& box) const {
     }
   }
   if (sag_) {
-    graph.sag_ = options_.deflection_weight / options_.deflection_scale *
-                 sag_->below(box.section, box.length, box.half_length);
+    graph.sag_ =
+        options_.deflection_weight / options_.deflection_scale * sag_->below(box.section, box.length, box.half_length);
   }
   return graph;
 }
@@ -157,13 +200,12 @@ BoxGraph PathBound::graph(const GraspBox& box) const {
 BoxGraph::Bound BoxGraph::bound() const {
   Bound best;
   if (layers_.empty() || layers_.back().edges.empty()) return best;
-  const auto errors = [&](std::size_t layer, int branch, const Vector6& turn) {
-    double sum = 0;
-    for (int j = 0; j < 6; ++j) sum += std::abs(turn[j]) * layers_[layer].q[branch][j].error;
-    return motion_ * sum;
+  const auto unknown = [&](std::size_t layer, int branch, const Vector7& turn) {
+    return motion_ * errors(layers_[layer].q[branch], turn);
   };
   // The motions' bounds meet in a configuration with the directions of both: what is not known of it counts with their
-  // difference only. Hence the edges are the states. A path's bound is linear over the box, so its least is in a corner.
+  // difference only. Hence the edges are the states. A path's bound is linear over the box, so its least is in a
+  // corner.
   const std::array<std::array<double, 2>, 5> corners{{{-1, -1}, {-1, 1}, {1, -1}, {1, 1}, {0, 0}}};
   for (std::size_t k = 0; k < corners.size(); ++k) {
     const bool middle = k == 4;
@@ -179,13 +221,13 @@ BoxGraph::Bound BoxGraph::bound() const {
         if (!layers_[i].alive[edge.to] || !layers_[i - 1].alive[edge.from]) continue;
         double least = kInfinity;
         if (i == 1) {
-          least = middle ? 0 : -errors(0, edge.from, edge.direction);
+          least = middle ? 0 : -unknown(0, edge.from, edge.direction);
         } else {
           for (std::size_t d = 0; d < cost.size(); ++d) {
             const Edge& last = layers_[i - 1].edges[d];
             if (last.to != edge.from || cost[d] == kInfinity) continue;
             const double through =
-                cost[d] - (middle ? 0 : errors(i - 1, edge.from, Vector6(edge.direction - last.direction)));
+                cost[d] - (middle ? 0 : unknown(i - 1, edge.from, Vector7(edge.direction - last.direction)));
             if (through >= least) continue;
             least = through;
             before[i][e] = static_cast<int>(d);
@@ -193,7 +235,7 @@ BoxGraph::Bound BoxGraph::bound() const {
         }
         if (least == kInfinity) continue;
         next[e] = least + (middle ? edge.estimate : edge.centre + x * edge.slope[0] + y * edge.slope[1]);
-        if (i + 1 == layers_.size() && !middle) next[e] -= errors(i, edge.to, edge.direction);
+        if (i + 1 == layers_.size() && !middle) next[e] -= unknown(i, edge.to, edge.direction);
       }
       cost.swap(next);
     }

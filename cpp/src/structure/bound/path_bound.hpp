@@ -38,7 +38,7 @@ class MMGRASP_EXPORT BoxGraph {
   /// direction.
   struct Edge {
     int from = 0, to = 0;
-    Eigen::Matrix<double, 6, 1> direction = Eigen::Matrix<double, 6, 1>::Zero();
+    Eigen::Matrix<double, 7, 1> direction = Eigen::Matrix<double, 7, 1>::Zero();
     double centre = 0;  ///< What the bound is in the middle, force included, errors left out.
     std::array<double, 2> slope{};
     double estimate = 0;
@@ -64,6 +64,7 @@ class MMGRASP_EXPORT PathBound {
 
  private:
   FormPose hand(const GraspBox& box, std::size_t pose) const;
+  bool join(const FormConfiguration& from, const FormConfiguration& to, BoxGraph::Edge& edge) const;
   LinearForm force(const FormConfiguration& q, const FormPose& before, const FormPose& at, std::size_t pose) const;
 
   Poses T_world_object_;

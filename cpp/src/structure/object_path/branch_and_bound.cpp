@@ -13,9 +13,9 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr int kRound = 16;            // boxes divided at a time, whatever the number of threads
-constexpr double kMetre = 4;          // [rad] An angle as long as a metre along the section when boxes are divided
-constexpr double kSmallest = 1e-7;    // [rad] Half angles below are not divided any more
+constexpr int kRound = 16;          // boxes divided at a time, whatever the number of threads
+constexpr double kMetre = 4;        // [rad] An angle as long as a metre along the section when boxes are divided
+constexpr double kSmallest = 1e-7;  // [rad] Half angles below are not divided any more
 
 struct Node {
   GraspBox box;
@@ -68,7 +68,9 @@ BoxSearch divide_boxes(const ObjectPathProblem& problem, const Pipe& pipe, const
   for (std::size_t i = 0; i < sections.sections().size(); ++i) {
     for (const bool flipped : {false, true}) {
       const double half = sections.room(static_cast<int>(i)) / 2;
-      open.push({{sections.sections()[i], flipped, options.grasp.end_margin + half, half, 0, kPi}, 0, kInfinity,
+      open.push({{sections.sections()[i], flipped, options.grasp.end_margin + half, half, 0, kPi},
+                 0,
+                 kInfinity,
                  out.boxes++});
     }
   }

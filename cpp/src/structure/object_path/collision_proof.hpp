@@ -8,8 +8,8 @@
 
 namespace mmgrasp::detail {
 
-/// Rules out arm configurations that collide wherever in a box of grasps they are: two bodies that overlap in the middle
-/// by more than any of their points moves over the box.
+/// Rules out arm configurations that collide wherever in a box of grasps they are: two bodies that overlap in the
+/// middle by more than any of their points moves over the box.
 class CollisionProof {
  public:
   explicit CollisionProof(const ObjectPathProblem& problem) : held_(problem) {}

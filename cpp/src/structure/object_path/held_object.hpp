@@ -10,8 +10,8 @@
 
 namespace mmgrasp::detail {
 
-/// The object of a path in the hand, as each grasp in turn holds it: a checker for each opening of the fingers, in which
-/// only the object's place changes.
+/// The object of a path in the hand, as each grasp in turn holds it: a checker for each opening of the fingers, in
+/// which only the object's place changes.
 class HeldObject {
  public:
   explicit HeldObject(const ObjectPathProblem& problem) : problem_(problem) {}

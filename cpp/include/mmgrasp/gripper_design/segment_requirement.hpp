@@ -1,0 +1,25 @@
+#pragma once
+
+#include <limits>
+#include <string>
+
+#include "mmgrasp/core/export.hpp"
+
+namespace mmgrasp {
+
+/// What a gripper needs to hold one segment of a part in its operation: C_ij = {F, W, L-, L+} of P1 5.3.4. A part with
+/// several graspable segments has several of these; a gripper that meets one of them takes the part.
+struct MMGRASP_EXPORT SegmentRequirement {
+  std::string part;     ///< Whose segment it is; parts are told apart by this name.
+  std::string segment;  ///< Its label in messages and results; may be empty.
+  int fingers = 2;      ///< 2: parallel jaws; 3: centric fingers.
+  /// Characteristic length [m], > 0: the diameter of the fitted cylinder or the distance of the faces in touch.
+  double opening = 0;
+  double min_finger_length = 0;                                        ///< [m], >= 0.
+  double max_finger_length = std::numeric_limits<double>::infinity();  ///< [m], >= min_finger_length.
+
+  void check() const;        ///< Throws InvalidInput naming part, segment, field, value and rule.
+  std::string name() const;  ///< "part" or "part, segment".
+};
+
+}  // namespace mmgrasp

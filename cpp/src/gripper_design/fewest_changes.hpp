@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "gripper_design/gripper_candidates.hpp"
+
+namespace mmgrasp::detail {
+
+/// Grippers that take every part, and which one takes which part.
+struct GripperChoice {
+  std::vector<int> of_part;  ///< Candidate of each part, in the order of assembly.
+  double gripper_cost = 0;   ///< Of the grippers used.
+  int changes = 0;           ///< From part to part.
+};
+
+struct FewestChanges {
+  GripperChoice best;
+  int changes_bound = 0;  ///< No choice among all candidates needs fewer.
+  bool proven = false;    ///< Nothing costs less, and nothing of the same cost needs fewer changes.
+};
+
+/// Branch and bound over sets of grippers: least cost of grippers and changes, then fewest changes. `known` covers
+/// every part; `least_gripper_cost` is proven: no set that does costs less. Depends on the clock and the monitor only
+/// in when it ends early.
+FewestChanges fewest_changes(const std::vector<GripperCandidate>& candidates, int part_count,
+                             const std::vector<int>& known, double least_gripper_cost,
+                             const MinimalGrippersOptions& options, const Monitor& monitor);
+
+}  // namespace mmgrasp::detail

@@ -1,0 +1,261 @@
+#include "mmgrasp/gripper_design/minimal_grippers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include "gripper_design/fewest_changes.hpp"
+#include "gripper_design/gripper_candidates.hpp"
+#include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/core/detail/stopwatch.hpp"
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/optim/set_cover.hpp"
+
+namespace mmgrasp {
+namespace {
+
+using namespace detail;
+
+constexpr int kMaxRequirements = 100000;
+constexpr int kMaxGrid = 10000;
+
+void check_actuators(const std::vector<GripperActuator>& actuators) {
+  if (actuators.empty()) throw InvalidInput("actuators is empty: name at least one drive");
+  std::set<std::string> names;
+  for (const GripperActuator& a : actuators) {
+    const std::string of = " of actuator '" + a.name + "'";
+    if (a.name.empty()) throw InvalidInput("name of an actuator is empty: every actuator must have one");
+    if (!names.insert(a.name).second) throw InvalidInput("actuator '" + a.name + "' is there twice: names must differ");
+    require(a.fingers == 2 || a.fingers == 3, "fingers" + of, a.fingers, "must be 2 or 3");
+    require(std::isfinite(a.stroke) && a.stroke > 0, "stroke" + of, a.stroke, "must be a positive length [m]");
+    require(a.max_opening >= a.stroke, "max_opening" + of, a.max_opening, "must be at least the stroke [m]");
+    require(std::isfinite(a.cost) && a.cost > 0, "cost" + of, a.cost, "must be positive");
+  }
+}
+
+std::string millimetres(double length) {
+  std::ostringstream out;
+  out.precision(10);
+  out << 1000 * length << " mm";
+  return out.str();
+}
+
+/// Why no drive takes a segment.
+std::string refusal(const SegmentRequirement& requirement, const std::vector<GripperActuator>& actuators,
+                    const MinimalGrippersOptions& options) {
+  const RequiredRange range = required_range(requirement, options);
+  const std::string fingers = std::to_string(requirement.fingers) + " fingers";
+  if (range.shortest > range.longest + 1e-9) {
+    const std::string asked =
+        requirement.max_finger_length < kInfinity
+            ? "from " + millimetres(requirement.min_finger_length) + " to " + millimetres(requirement.max_finger_length)
+            : "from " + millimetres(requirement.min_finger_length);
+    return "its fingers must be " + asked +
+           " long, not within shortest_finger = " + millimetres(options.shortest_finger) +
+           " and longest_finger = " + millimetres(options.longest_finger) +
+           (options.length_margin > 0 ? " with length_margin = " + millimetres(options.length_margin) : "");
+  }
+  double widest = 0;
+  for (const GripperActuator& a : actuators) {
+    if (a.fingers == requirement.fingers) widest = std::max(widest, a.max_opening);
+  }
+  if (widest == 0) return "no actuator has " + fingers;
+  if (range.highest > widest + 1e-9)
+    return "it is " + millimetres(requirement.opening) + " wide, actuators with " + fingers + " open to " +
+           millimetres(widest);
+  return options.grid_openings > 0
+             ? "no gripper on the grid takes it: use a finer grid, or none"
+             : "opening_margin = " + millimetres(options.opening_margin) + " leaves too little of the stroke";
+}
+
+class Problem {
+ public:
+  Problem(const std::vector<SegmentRequirement>& requirements, const std::vector<GripperActuator>& actuators,
+          const MinimalGrippersOptions& options)
+      : requirements_(requirements), actuators_(actuators), options_(options) {
+    std::map<std::string, int> number;
+    for (const SegmentRequirement& r : requirements) {
+      const auto [place, is_new] = number.emplace(r.part, static_cast<int>(parts_.size()));
+      if (is_new) parts_.push_back(r.part);
+      part_of_.push_back(place->second);
+    }
+    candidates_ = gripper_candidates(requirements, part_of_, part_count(), actuators, options);
+  }
+
+  MinimalGrippersResult solve(const Monitor& monitor) const {
+    const TimeLimit clock(options_.time_limit);
+    MinimalGrippersResult result;
+    result.parts = parts_;
+    result.candidates = static_cast<int>(candidates_.size());
+    explain_uncovered(result);
+    if (!result.uncovered.empty()) {
+      result.outcome = Outcome::infeasible;
+      return result;
+    }
+    monitor.report("least set of grippers", 0);
+    const SetCoverResult cover = solve_set_cover(set_cover_problem(), options_.time_limit, monitor);
+    if (cover.chosen.empty()) {
+      result.outcome = cover.outcome;
+      return result;
+    }
+    monitor.report("fewest changes", 0.5);
+    MinimalGrippersOptions rest = options_;
+    rest.time_limit = std::max(clock.seconds_left(), 1e-3);
+    const FewestChanges found =
+        fewest_changes(candidates_, part_count(), cover.chosen, cover.lower_bound, rest, monitor);
+    fill(found.best, result);
+    result.changes_bound = found.proven ? result.changes : found.changes_bound;
+    result.lower_bound = found.proven
+                             ? result.cost
+                             : std::min(result.cost, cover.lower_bound + options_.change_cost * found.changes_bound);
+    const bool at_its_bounds = result.cost <= result.lower_bound + 1e-7 && result.changes == result.changes_bound;
+    result.outcome = found.proven || at_its_bounds ? Outcome::solved
+                     : monitor.stopped()           ? Outcome::stopped
+                                                   : Outcome::approximate;
+    return result;
+  }
+
+ private:
+  int part_count() const { return static_cast<int>(parts_.size()); }
+
+  void explain_uncovered(MinimalGrippersResult& result) const {
+    Bits covered(part_count());
+    for (const GripperCandidate& c : candidates_) covered |= c.parts;
+    for (int p = 0; p < part_count(); ++p) {
+      if (covered.test(p)) continue;
+      std::string why;
+      for (std::size_t r = 0; r < requirements_.size(); ++r) {
+        if (part_of_[r] != p) continue;
+        const std::string label =
+            requirements_[r].segment.empty() ? "" : "segment '" + requirements_[r].segment + "': ";
+        why += (why.empty() ? "" : "; ") + label + refusal(requirements_[r], actuators_, options_);
+      }
+      result.uncovered.push_back(parts_[p]);
+      result.explanations.push_back("part '" + parts_[p] + "': " + why);
+    }
+  }
+
+  SetCoverProblem set_cover_problem() const {
+    SetCoverProblem problem;
+    problem.elements = part_count();
+    for (const GripperCandidate& c : candidates_) {
+      std::vector<int>& set = problem.sets.emplace_back();
+      for (int p = c.parts.first(); p >= 0; p = c.parts.next(p + 1)) set.push_back(p);
+      problem.costs.push_back(c.cost);
+    }
+    return problem;
+  }
+
+  /// The first requirement of a part that a candidate meets.
+  int met_by(const GripperCandidate& candidate, int part) const {
+    for (std::size_t r = 0; r < requirements_.size(); ++r) {
+      if (part_of_[r] == part && meets(actuators_[candidate.actuator], candidate.min_opening, candidate.finger_length,
+                                       requirements_[r], required_range(requirements_[r], options_)))
+        return static_cast<int>(r);
+    }
+    throw std::logic_error("minimal_grippers: a part without its gripper");
+  }
+
+  void fill(const GripperChoice& choice, MinimalGrippersResult& result) const {
+    std::map<int, int> place;  // Candidate to its place in the result.
+    std::vector<int> used;
+    for (int p = 0; p < part_count(); ++p) {
+      const auto [at, is_new] = place.emplace(choice.of_part[p], static_cast<int>(used.size()));
+      if (is_new) used.push_back(choice.of_part[p]);
+      result.gripper_of_part.push_back(at->second);
+      result.requirement_of_part.push_back(met_by(candidates_[choice.of_part[p]], p));
+      result.changes += p > 0 && result.gripper_of_part[p] != result.gripper_of_part[p - 1];
+    }
+    double gripper_cost = 0;
+    for (std::size_t g = 0; g < used.size(); ++g) {
+      gripper_cost += candidates_[used[g]].cost;
+      result.grippers.push_back(gripper_for(candidates_[used[g]], static_cast<int>(g), result));
+    }
+    result.cost = gripper_cost + options_.change_cost * result.changes;
+    check_answer(result);
+  }
+
+  /// The candidate with its stroke set evenly about what it takes, and its fingers as short as that allows.
+  Gripper gripper_for(const GripperCandidate& candidate, int index, const MinimalGrippersResult& result) const {
+    const GripperActuator& actuator = actuators_[candidate.actuator];
+    Gripper gripper;
+    gripper.name = "gripper_" + std::to_string(index + 1);
+    gripper.actuator = actuator.name;
+    gripper.fingers = actuator.fingers;
+    gripper.min_opening = candidate.min_opening;
+    gripper.finger_length = candidate.finger_length;
+    if (options_.grid_openings == 0) {
+      double narrowest = kInfinity, widest = 0;
+      gripper.finger_length = options_.shortest_finger;
+      for (int p = 0; p < part_count(); ++p) {
+        if (result.gripper_of_part[p] != index) continue;
+        const SegmentRequirement& r = requirements_[result.requirement_of_part[p]];
+        narrowest = std::min(narrowest, r.opening);
+        widest = std::max(widest, r.opening);
+        gripper.finger_length = std::max(gripper.finger_length, required_range(r, options_).shortest);
+      }
+      gripper.min_opening =
+          std::max(0.0, std::min((narrowest + widest - actuator.stroke) / 2, actuator.max_opening - actuator.stroke));
+    }
+    gripper.max_opening = gripper.min_opening + actuator.stroke;
+    return gripper;
+  }
+
+  /// Holds the answer against (5.2) once more, part by part.
+  void check_answer(const MinimalGrippersResult& result) const {
+    for (int p = 0; p < part_count(); ++p) {
+      const SegmentRequirement& r = requirements_[result.requirement_of_part[p]];
+      const Gripper& g = result.grippers[result.gripper_of_part[p]];
+      const double opening = options_.opening_margin, length = options_.length_margin;
+      const bool kept = g.holds(r) && r.part == parts_[p] && r.opening + opening <= g.max_opening + 1e-8 &&
+                        std::max(0.0, r.opening - opening) >= g.min_opening - 1e-8 &&
+                        r.min_finger_length + length <= g.finger_length + 1e-8 &&
+                        g.finger_length <= r.max_finger_length - length + 1e-8;
+      if (!kept) throw std::logic_error("minimal_grippers: '" + g.name + "' does not hold '" + r.name() + "'");
+    }
+  }
+
+  const std::vector<SegmentRequirement>& requirements_;
+  const std::vector<GripperActuator>& actuators_;
+  const MinimalGrippersOptions& options_;
+  std::vector<std::string> parts_;
+  std::vector<int> part_of_;  // Of each requirement.
+  std::vector<GripperCandidate> candidates_;
+};
+
+}  // namespace
+
+void MinimalGrippersOptions::check() const {
+  require(std::isfinite(shortest_finger) && shortest_finger > 0, "shortest_finger", shortest_finger,
+          "must be a positive length [m]");
+  require(std::isfinite(longest_finger) && longest_finger >= shortest_finger, "longest_finger", longest_finger,
+          "must be a length of at least shortest_finger [m]");
+  require(std::isfinite(opening_margin) && opening_margin >= 0, "opening_margin", opening_margin,
+          "must be a length of at least 0 [m]");
+  require(std::isfinite(length_margin) && length_margin >= 0, "length_margin", length_margin,
+          "must be a length of at least 0 [m]");
+  require(std::isfinite(change_cost) && change_cost >= 0, "change_cost", change_cost, "must be at least 0");
+  require(grid_openings >= 0 && grid_openings <= kMaxGrid, "grid_openings", grid_openings, "must be from 0 to 10000");
+  require(grid_lengths >= 0 && grid_lengths <= kMaxGrid, "grid_lengths", grid_lengths, "must be from 0 to 10000");
+  require((grid_openings == 0) == (grid_lengths == 0), "grid_lengths", grid_lengths,
+          "must be 0 if and only if grid_openings is");
+  require(max_nodes > 0, "max_nodes", max_nodes, "must be positive");
+  require(time_limit > 0, "time_limit", time_limit, "must be positive [s]");
+}
+
+MinimalGrippersResult minimal_grippers(const std::vector<SegmentRequirement>& requirements,
+                                       const std::vector<GripperActuator>& actuators,
+                                       const MinimalGrippersOptions& options, const Monitor& monitor) {
+  options.check();
+  if (requirements.empty()) throw InvalidInput("requirements is empty: name at least one segment");
+  require(requirements.size() <= kMaxRequirements, "requirements", std::to_string(requirements.size()),
+          "must be at most 100000");
+  for (const SegmentRequirement& r : requirements) r.check();
+  check_actuators(actuators);
+  return Problem(requirements, actuators, options).solve(monitor);
+}
+
+}  // namespace mmgrasp

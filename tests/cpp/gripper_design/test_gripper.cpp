@@ -1,0 +1,113 @@
+#include "mmgrasp/gripper_design/gripper.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "mmgrasp/collision/checker.hpp"
+#include "mmgrasp/collision/world.hpp"
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/geometry/mesh.hpp"
+#include "mmgrasp/grasp/hand.hpp"
+#include "mmgrasp/robot/joint_group.hpp"
+#include "mmgrasp/robot/robot.hpp"
+
+namespace mmgrasp {
+namespace {
+
+std::string folder(const std::string& name) {
+  return (std::filesystem::path(testing::TempDir()) / ("mmgrasp_gripper_" + name)).string();
+}
+
+Gripper centric(double low, double high) {
+  Gripper g;
+  g.name = "centric";
+  g.fingers = 3;
+  g.min_opening = low;
+  g.max_opening = high;
+  return g;
+}
+
+TEST(Gripper, FingersOfJawsAreBoxes) {
+  Gripper g;
+  g.finger_length = 0.04;
+  const auto mesh = g.finger_mesh();
+  EXPECT_TRUE(mesh->closed);
+  EXPECT_NEAR(mesh_volume(*mesh), 0.04 * g.finger_width * g.finger_thickness, 1e-15);
+}
+
+TEST(Gripper, CentricFingersStayInTheirSectors) {
+  for (const double low : {0.0, 0.002, 0.008, 0.014, 0.1}) {
+    const Gripper g = centric(low, low + 0.008);
+    const auto mesh = g.finger_mesh();
+    EXPECT_TRUE(mesh->closed);
+    double widest = 0;
+    for (const Eigen::Vector3d& v : mesh->vertices) {
+      EXPECT_LE(std::abs(v.y()), (low / 2 + v.x()) * std::tan(M_PI / 3) + 1e-12) << low;
+      EXPECT_GE(v.x(), 0);
+      EXPECT_LE(v.x(), g.finger_thickness + 1e-12);
+      widest = std::max(widest, std::abs(v.y()));
+    }
+    if (low > 0.0141) EXPECT_DOUBLE_EQ(widest, g.finger_width / 2);
+  }
+}
+
+/// Radius of the largest ball about a point on the tool's axis that the fingers leave free.
+double free_radius(const Robot& robot, const Gripper& g, double joint) {
+  const JointGroup group = robot.group("fingers");
+  double low = 0, high = 0.2;
+  for (int step = 0; step < 40; ++step) {
+    const double radius = (low + high) / 2;
+    World world;
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation().z() = g.palm_height + g.finger_length - g.pad_length() / 2;
+    world.add("ball", Sphere{radius}, pose);
+    CollisionChecker checker(group, world);
+    (checker.is_free(Eigen::VectorXd::Constant(group.size(), joint)) ? low : high) = radius;
+  }
+  return low;
+}
+
+TEST(Gripper, LoadedGripperOpensAsPromised) {
+  for (Gripper g : {centric(0.014, 0.022), centric(0.1, 0.16), Gripper{}}) {
+    g.finger_length = 0.12;  // So long that the ball meets the fingers before the palm.
+    g.to_urdf(folder(g.name));
+    const Robot robot = Robot::load(folder(g.name) + "/gripper.urdf", folder(g.name) + "/gripper.srdf");
+    const double stroke = (g.max_opening - g.min_opening) / 2;
+    EXPECT_NEAR(2 * free_radius(robot, g, stroke), g.max_opening, 2e-6) << g.fingers;
+    if (g.min_opening > 0) EXPECT_NEAR(2 * free_radius(robot, g, 0), g.min_opening, 2e-6) << g.fingers;
+  }
+}
+
+TEST(Gripper, JawsAreReadAsAHand) {
+  Gripper g;
+  g.name = "jaws";
+  g.min_opening = 0.01;
+  g.to_urdf(folder("hand"));
+  const Hand hand =
+      Hand::from_robot(Robot::load(folder("hand") + "/gripper.urdf", folder("hand") + "/gripper.srdf"), "tool");
+  EXPECT_EQ(hand.kind, ClosingKind::parallel);
+  EXPECT_NEAR(hand.max_opening, g.max_opening, 1e-6);
+  EXPECT_NEAR(hand.min_opening, g.min_opening, 1e-6);
+  EXPECT_LT((hand.approach - Eigen::Vector3d::UnitZ()).norm(), 1e-9);
+  EXPECT_NEAR(std::abs(hand.closing.x()), 1, 1e-9);
+}
+
+TEST(Gripper, Refusals) {
+  const auto refused = [](auto change) {
+    Gripper g;
+    change(g);
+    EXPECT_THROW(g.check(), InvalidInput);
+  };
+  refused([](Gripper& g) { g.name = "<b>"; });
+  refused([](Gripper& g) { g.fingers = 5; });
+  refused([](Gripper& g) { g.min_opening = g.max_opening; });
+  refused([](Gripper& g) { g.min_opening = -0.01; });
+  refused([](Gripper& g) { g.finger_length = 0; });
+  refused([](Gripper& g) { g.finger_thickness = std::nan(""); });
+  EXPECT_THROW(Gripper{}.to_urdf("/proc/no/such"), IoError);
+}
+
+}  // namespace
+}  // namespace mmgrasp

@@ -1,0 +1,285 @@
+#include "mmgrasp/gripper_design/minimal_grippers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "mmgrasp/core/error.hpp"
+#include "mmgrasp/core/random.hpp"
+
+namespace mmgrasp {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+SegmentRequirement segment(const std::string& part, int fingers, double opening, double shortest = 0,
+                           double longest = kInfinite) {
+  return {part, "", fingers, opening, shortest, longest};
+}
+
+/// Figure 5.13 of P1 in millimetres at full size; part 7 has one of its eight segments twice removed: all widths count.
+std::vector<SegmentRequirement> figure_5_13(double scale) {
+  struct Row {
+    const char* part;
+    int fingers;
+    double opening, shortest;
+  };
+  const Row rows[] = {{"1", 3, 227, 0},  {"2", 3, 227, 0},  {"3", 3, 110, 0},   {"4", 3, 25, 0},
+                      {"5", 3, 32, 0},   {"5", 3, 40, 41},  {"6", 3, 18, 0},    {"7", 2, 16.7, 0},
+                      {"7", 2, 19.1, 0}, {"7", 2, 17.2, 0}, {"7", 2, 15.9, 0},  {"7", 2, 16.5, 0},
+                      {"7", 2, 15.8, 0}, {"7", 2, 16.9, 0}, {"7", 2, 18.5, 0},  {"8", 2, 60, 0},
+                      {"8", 3, 40, 50},  {"9", 3, 32, 0},   {"9", 3, 40, 41},   {"10", 2, 17, 4.5},
+                      {"11", 3, 20, 0},  {"12", 2, 15, 0},  {"12", 2, 32.8, 0}, {"13", 3, 37.5, 22.7}};
+  std::vector<SegmentRequirement> out;
+  for (const Row& r : rows) {
+    out.push_back(segment(r.part, r.fingers, 1e-3 * scale * r.opening, 1e-3 * scale * r.shortest));
+  }
+  return out;
+}
+
+const std::vector<GripperActuator> kAirChucks{{"SMC MHF2-12D2", 2, 0.048}, {"SMC MHSL3-32D", 3, 0.008}};
+
+/// Least cost, then fewest changes, by trying every set of grippers at every pair of ends: openings that begin or end
+/// at a segment's width, finger lengths at either limit.
+struct BruteForce {
+  struct Candidate {
+    double cost;
+    unsigned parts;
+  };
+  std::vector<Candidate> candidates;
+  std::vector<std::string> parts;
+
+  BruteForce(const std::vector<SegmentRequirement>& requirements, const std::vector<GripperActuator>& actuators,
+             const MinimalGrippersOptions& options) {
+    for (const auto& r : requirements) {
+      if (std::find(parts.begin(), parts.end(), r.part) == parts.end()) parts.push_back(r.part);
+    }
+    for (const auto& a : actuators) {
+      std::vector<double> lows{0, a.max_opening - a.stroke}, lengths{options.shortest_finger, options.longest_finger};
+      for (const auto& r : requirements) {
+        for (const double low : {r.opening, r.opening - a.stroke}) lows.push_back(low);
+        for (const double length : {r.min_finger_length, r.max_finger_length}) lengths.push_back(length);
+      }
+      for (const double low : lows) {
+        if (low < 0 || !(low + a.stroke <= a.max_opening + 1e-9)) continue;
+        for (const double length : lengths) {
+          if (length < options.shortest_finger || length > options.longest_finger) continue;
+          add(requirements, a, low, length);
+        }
+      }
+    }
+  }
+
+  void add(const std::vector<SegmentRequirement>& requirements, const GripperActuator& a, double low, double length) {
+    unsigned mask = 0;
+    for (const auto& r : requirements) {
+      const bool holds = r.fingers == a.fingers && low <= r.opening + 1e-9 && r.opening <= low + a.stroke + 1e-9 &&
+                         r.min_finger_length <= length && length <= r.max_finger_length;
+      if (holds) mask |= 1u << (std::find(parts.begin(), parts.end(), r.part) - parts.begin());
+    }
+    for (const auto& c : candidates) {
+      if (c.parts == mask && c.cost == a.cost) return;
+    }
+    if (mask) candidates.push_back({a.cost, mask});
+  }
+
+  int changes(const std::vector<int>& chosen) const {
+    std::vector<int> best(chosen.size(), 0);
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      const int least = *std::min_element(best.begin(), best.end());
+      for (std::size_t g = 0; g < chosen.size(); ++g) {
+        const bool takes = candidates[chosen[g]].parts >> p & 1;
+        best[g] = takes ? std::min(best[g], least + (p > 0)) : 1000;
+      }
+    }
+    return *std::min_element(best.begin(), best.end());
+  }
+
+  std::pair<double, int> least(double change_cost) const {
+    std::pair<double, int> best{kInfinite, 0};
+    std::vector<int> chosen;
+    search(0, 0, 0, change_cost, chosen, best);
+    return best;
+  }
+
+  void search(std::size_t next, unsigned covered, double cost, double change_cost, std::vector<int>& chosen,
+              std::pair<double, int>& best) const {
+    if (cost > best.first + 1e-9) return;
+    if (covered == (1u << parts.size()) - 1) {
+      const int needed = changes(chosen);
+      const double total = cost + change_cost * needed;
+      if (total < best.first - 1e-9 || (total < best.first + 1e-9 && needed < best.second)) best = {total, needed};
+    }
+    for (std::size_t g = next; g < candidates.size(); ++g) {
+      chosen.push_back(static_cast<int>(g));
+      search(g + 1, covered | candidates[g].parts, cost + candidates[g].cost, change_cost, chosen, best);
+      chosen.pop_back();
+    }
+  }
+};
+
+void expect_complete(const MinimalGrippersResult& r, const std::vector<SegmentRequirement>& requirements) {
+  ASSERT_EQ(r.gripper_of_part.size(), r.parts.size());
+  int changes = 0;
+  for (std::size_t p = 0; p < r.parts.size(); ++p) {
+    const SegmentRequirement& taken = requirements.at(r.requirement_of_part[p]);
+    EXPECT_EQ(taken.part, r.parts[p]);
+    EXPECT_TRUE(r.grippers.at(r.gripper_of_part[p]).holds(taken)) << taken.name();
+    changes += p > 0 && r.gripper_of_part[p] != r.gripper_of_part[p - 1];
+  }
+  EXPECT_EQ(changes, r.changes);
+}
+
+TEST(MinimalGrippers, FigureFiveThirteenNeedsFiveNotFour) {
+  const auto requirements = figure_5_13(0.55);
+  const MinimalGrippersResult r = minimal_grippers(requirements, kAirChucks);
+  EXPECT_EQ(r.outcome, Outcome::solved);
+  ASSERT_EQ(r.grippers.size(), 5u);
+  EXPECT_DOUBLE_EQ(r.lower_bound, 5);
+  expect_complete(r, requirements);
+
+  // The four that P1 prints, with its finger length: {2, 0, 33, 30}, {3, 14, 22, 30}, {3, 52.5, 60.5, 30},
+  // {3, 116.9, 124.9, 30} leave parts 4, 6 and 11.
+  std::vector<std::string> left_out;
+  for (const std::string& part : r.parts) {
+    bool taken = false;
+    for (const auto& [fingers, low, high] :
+         {std::tuple{2, 0., 33.}, std::tuple{3, 14., 22.}, std::tuple{3, 52.5, 60.5}, std::tuple{3, 116.9, 124.9}}) {
+      Gripper gripper;
+      gripper.fingers = fingers;
+      gripper.min_opening = 1e-3 * low;
+      gripper.max_opening = 1e-3 * high;
+      gripper.finger_length = 0.030;
+      for (const auto& requirement : requirements) taken |= requirement.part == part && gripper.holds(requirement);
+    }
+    if (!taken) left_out.push_back(part);
+  }
+  EXPECT_EQ(left_out, (std::vector<std::string>{"4", "6", "11"}));
+}
+
+TEST(MinimalGrippers, FingerLengthsFollowFromWhatIsTaken) {
+  // Part 13 alone needs fingers of 22.7 mm, part 8 by its cylinder 50 mm: held by its 60 mm faces it needs none.
+  const auto requirements = figure_5_13(1.0);
+  const MinimalGrippersResult r = minimal_grippers(requirements, kAirChucks);
+  for (std::size_t p = 0; p < r.parts.size(); ++p) {
+    if (r.parts[p] == "13") EXPECT_GE(r.grippers[r.gripper_of_part[p]].finger_length, 0.0227);
+  }
+}
+
+TEST(MinimalGrippers, EqualsTryingEverySet) {
+  Rng rng(7);
+  int several_changes = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    std::vector<GripperActuator> actuators{{"jaws", 2, 0.01 * (1 + static_cast<double>(rng.index(3)))},
+                                           {"centric", 3, 0.008}};
+    if (trial % 3 == 1) actuators[0].cost = 1.5;
+    if (trial % 4 == 1) actuators[1].max_opening = 0.05;
+    if (trial % 5 == 1) actuators.push_back({"long jaws", 2, 0.04, kInfinite, 2.5});
+    std::vector<SegmentRequirement> requirements;
+    const int parts = 1 + static_cast<int>(rng.index(7));
+    for (int p = 0; p < parts; ++p) {
+      const int segments = 1 + static_cast<int>(rng.index(2));
+      for (int s = 0; s < segments; ++s) {
+        const double opening = 0.001 * (1 + static_cast<double>(rng.index(60)));
+        const double shortest = trial % 2 ? 0.001 * static_cast<double>(rng.index(40)) : 0.0;
+        const double longest = rng.uniform() < 0.4 ? shortest + 0.001 * static_cast<double>(rng.index(30)) : kInfinite;
+        requirements.push_back(segment(std::to_string(p), rng.uniform() < 0.6 ? 2 : 3, opening, shortest, longest));
+      }
+    }
+    MinimalGrippersOptions options;
+    options.change_cost = trial % 6 == 1 ? 0.3 : 0.0;
+    const BruteForce brute(requirements, actuators, options);
+    const auto [cost, changes] = brute.least(options.change_cost);
+    const MinimalGrippersResult r = minimal_grippers(requirements, actuators, options);
+    if (cost == kInfinite) {
+      EXPECT_EQ(r.outcome, Outcome::infeasible) << trial;
+      EXPECT_EQ(r.uncovered.size(), r.explanations.size());
+      EXPECT_FALSE(r.uncovered.empty());
+      continue;
+    }
+    ASSERT_EQ(r.outcome, Outcome::solved) << trial;
+    EXPECT_NEAR(r.cost, cost, 1e-9) << trial;
+    EXPECT_NEAR(r.lower_bound, cost, 1e-6) << trial;
+    EXPECT_EQ(r.changes, changes) << trial;
+    EXPECT_EQ(r.changes_bound, changes) << trial;
+    expect_complete(r, requirements);
+    several_changes += changes > 1;
+  }
+  EXPECT_GT(several_changes, 60);
+}
+
+TEST(MinimalGrippers, GridIsNeverBetterThanExact) {
+  const auto requirements = figure_5_13(0.55);
+  for (const int n : {2, 5, 20, 100}) {
+    MinimalGrippersOptions options;
+    options.grid_openings = n;
+    options.grid_lengths = 3;
+    const MinimalGrippersResult r = minimal_grippers(requirements, kAirChucks, options);
+    if (r.outcome == Outcome::infeasible) continue;
+    EXPECT_GE(r.grippers.size(), 5u) << n;
+    expect_complete(r, requirements);
+  }
+}
+
+TEST(MinimalGrippers, ChangesCanBePaidForByMoreGrippers) {
+  // Narrow and wide parts in turn: two grippers, five changes; one drive takes both, at twice the price.
+  std::vector<SegmentRequirement> requirements;
+  for (int p = 0; p < 6; ++p) requirements.push_back(segment(std::to_string(p), 2, p % 2 ? 0.05 : 0.01));
+  const std::vector<GripperActuator> actuators{{"short", 2, 0.01}, {"long", 2, 0.05, kInfinite, 2.5}};
+  MinimalGrippersOptions options;
+  const MinimalGrippersResult cheap = minimal_grippers(requirements, actuators, options);
+  EXPECT_EQ(cheap.grippers.size(), 2u);
+  EXPECT_EQ(cheap.changes, 5);
+  options.change_cost = 0.2;
+  const MinimalGrippersResult quick = minimal_grippers(requirements, actuators, options);
+  EXPECT_EQ(quick.grippers.size(), 1u);
+  EXPECT_EQ(quick.changes, 0);
+  EXPECT_DOUBLE_EQ(quick.cost, 2.5);
+}
+
+TEST(MinimalGrippers, EndsOfStrokesAndMargins) {
+  const std::vector<GripperActuator> jaws{{"jaws", 2, 0.010}};
+  const std::vector<SegmentRequirement> requirements{segment("a", 2, 0.020), segment("b", 2, 0.030)};
+  EXPECT_EQ(minimal_grippers(requirements, jaws).grippers.size(), 1u);  // Exactly the stroke apart.
+  MinimalGrippersOptions options;
+  options.opening_margin = 0.0005;
+  EXPECT_EQ(minimal_grippers(requirements, jaws, options).grippers.size(), 2u);
+  options.opening_margin = 0.006;
+  const MinimalGrippersResult none = minimal_grippers(requirements, jaws, options);
+  EXPECT_EQ(none.outcome, Outcome::infeasible);
+  EXPECT_NE(none.explanations.at(0).find("opening_margin"), std::string::npos);
+  options.opening_margin = 0;
+  options.longest_finger = 0.03;
+  const MinimalGrippersResult deep = minimal_grippers({segment("pin", 2, 0.02, 0.041)}, jaws, options);
+  EXPECT_EQ(deep.outcome, Outcome::infeasible);
+  EXPECT_EQ(deep.uncovered, std::vector<std::string>{"pin"});
+  EXPECT_NE(deep.explanations.at(0).find("41 mm"), std::string::npos) << deep.explanations.at(0);
+}
+
+TEST(MinimalGrippers, RefusesWhatCannotBe) {
+  const std::vector<GripperActuator> jaws{{"jaws", 2, 0.010}};
+  EXPECT_THROW(minimal_grippers({}, jaws), InvalidInput);
+  EXPECT_THROW(minimal_grippers({segment("a", 2, 0.02)}, {}), InvalidInput);
+  EXPECT_THROW(minimal_grippers({segment("a", 4, 0.02)}, jaws), InvalidInput);
+  EXPECT_THROW(minimal_grippers({segment("a", 2, -0.02)}, jaws), InvalidInput);
+  EXPECT_THROW(minimal_grippers({segment("a", 2, 0.02, 0.05, 0.04)}, jaws), InvalidInput);
+  EXPECT_THROW(minimal_grippers({segment("a", 2, 0.02)}, {{"jaws", 2, 0.01}, {"jaws", 2, 0.02}}), InvalidInput);
+  MinimalGrippersOptions options;
+  options.grid_openings = 3;
+  EXPECT_THROW(minimal_grippers({segment("a", 2, 0.02)}, jaws, options), InvalidInput);
+}
+
+TEST(MinimalGrippers, StopsWhenAsked) {
+  std::vector<SegmentRequirement> requirements;
+  for (int p = 0; p < 6; ++p) requirements.push_back(segment(std::to_string(p), 2, p % 2 ? 0.05 : 0.01));
+  Monitor monitor;
+  monitor.stop.stop();
+  const MinimalGrippersResult r =
+      minimal_grippers(requirements, {{"short", 2, 0.01}, {"long", 2, 0.05, kInfinite, 2.5}}, {}, monitor);
+  EXPECT_EQ(r.outcome, Outcome::stopped);
+  if (!r.grippers.empty()) expect_complete(r, requirements);
+}
+
+}  // namespace
+}  // namespace mmgrasp

@@ -1,0 +1,87 @@
+"""Grippers for an assembly from Python: the least set, grids, files, mistakes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mmgrasp as mg
+from mmgrasp.gripper_design import Gripper, GripperActuator, SegmentRequirement, minimal_grippers
+from mmgrasp.reproduce.gripper_sets import ACTUATORS, requirements
+
+JAWS = GripperActuator("jaws", 0.01)
+
+
+def test_thirteen_parts_need_five_grippers() -> None:
+    found = minimal_grippers(requirements(), ACTUATORS)
+    assert found.outcome == mg.Outcome.solved
+    assert len(found.grippers) == found.lower_bound == 5
+    for part, gripper, requirement in zip(found.parts, found.gripper_of_part, found.requirement_of_part, strict=True):
+        asked = requirements()[requirement]
+        assert asked.part == part
+        assert found.grippers[gripper].holds(asked)
+    as_dict = found.to_dict()
+    assert as_dict["outcome"] == "solved"
+    assert [g["fingers"] for g in as_dict["grippers"]] == [g.fingers for g in found.grippers]
+    assert repr(found) == "MinimalGrippersResult(solved, 5 grippers, 8 changes)"
+
+
+def test_a_grid_takes_what_its_points_take() -> None:
+    """Two widths, one just a stroke above the other: only a grid that meets both ends needs one gripper."""
+    asked = [SegmentRequirement("a", 0.02), SegmentRequirement("b", 0.03)]
+    assert (
+        len(minimal_grippers(asked, [JAWS], grid=(1, 1)).grippers) == 1
+    )  # P1: the widest segment, where one value does
+    apart = [*asked, SegmentRequirement("c", 0.06)]
+    assert len(minimal_grippers(apart, [JAWS], grid=(4, 1)).grippers) == 2
+    assert len(minimal_grippers(apart, [JAWS]).grippers) == 2
+    assert minimal_grippers(apart, [JAWS], grid=(1, 1)).uncovered == ["a", "b"]
+
+
+def test_parts_that_nothing_takes_say_why() -> None:
+    asked = [
+        SegmentRequirement("pin", 0.005, fingers=3),
+        SegmentRequirement("plate", 0.4, segment="rim"),
+        SegmentRequirement("cap", 0.02, min_finger_length=0.041),
+    ]
+    found = minimal_grippers(asked, [GripperActuator("jaws", 0.01, max_opening=0.1)], longest_finger=0.03)
+    assert found.outcome == mg.Outcome.infeasible
+    assert found.uncovered == ["pin", "plate", "cap"]
+    pin, plate, cap = found.explanations
+    assert pin == "part 'pin': no actuator has 3 fingers"
+    assert plate == "part 'plate': segment 'rim': it is 400 mm wide, actuators with 2 fingers open to 100 mm"
+    assert "from 41 mm" in cap and "longest_finger = 30 mm" in cap
+
+
+def test_files_of_a_gripper_are_a_robot(tmp_path: Path) -> None:
+    gripper = Gripper(name="centric", fingers=3, min_opening=0.014, max_opening=0.022, finger_length=0.05)
+    gripper.to_urdf(tmp_path / "deep" / "centric")
+    robot = mg.Robot.load(tmp_path / "deep/centric/gripper.urdf", srdf=tmp_path / "deep/centric/gripper.srdf")
+    fingers = robot.group("fingers", tip="finger_1")
+    assert fingers.upper == pytest.approx([0.004])
+    opened = fingers.fk(np.array([0.004]))[:3, 3]
+    assert np.hypot(*opened[:2]) == pytest.approx(0.011)
+    assert opened[2] == pytest.approx(gripper.palm_height)
+    mesh = mg.Mesh.load(tmp_path / "deep/centric/finger.stl")
+    assert mesh.closed
+    assert np.asarray(mesh.vertices)[:, 2].max() == pytest.approx(0.05)
+
+
+def test_mistakes_are_named(tmp_path: Path) -> None:
+    with pytest.raises(mg.InvalidInput, match=r"opening of .a, rim. = -0\.01"):
+        SegmentRequirement("a", -0.01, segment="rim")
+    with pytest.raises(mg.InvalidInput, match="fingers = 4"):
+        Gripper(fingers=4)
+    with pytest.raises(mg.InvalidInput, match="stroke of actuator 'j' = 0"):
+        minimal_grippers([SegmentRequirement("a", 0.01)], [GripperActuator("j", 0)])
+    with pytest.raises(mg.InvalidInput, match=r"grid = .*two positive whole numbers"):
+        minimal_grippers([SegmentRequirement("a", 0.01)], [JAWS], grid=(0, 3))
+    with pytest.raises(mg.InvalidInput, match="did you mean change_cost"):
+        minimal_grippers([SegmentRequirement("a", 0.01)], [JAWS], change_costs=1)  # type: ignore[call-arg]
+    with pytest.raises(mg.InvalidInput, match="requirements"):
+        minimal_grippers([0.01], [JAWS])  # type: ignore[list-item]
+    (tmp_path / "file").write_text("")
+    with pytest.raises(mg.IoError, match="file"):
+        Gripper().to_urdf(tmp_path / "file" / "in")

@@ -9,7 +9,7 @@
 #include "mmgrasp/core/random.hpp"
 #include "mmgrasp/robot/ik_branches.hpp"
 #include "mmgrasp/structure/optimize_grasp.hpp"
-#include "structure/bound/path_bound.hpp"
+#include "structure/object_path/path_bound.hpp"
 #include "support/puma_arm.hpp"
 
 namespace mmgrasp {

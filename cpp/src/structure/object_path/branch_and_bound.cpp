@@ -6,9 +6,9 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/detail/stopwatch.hpp"
 #include "mmgrasp/core/parallel.hpp"
-#include "structure/bound/path_bound.hpp"
 #include "structure/object_path/collision_proof.hpp"
 #include "structure/object_path/grasp_variables.hpp"
+#include "structure/object_path/path_bound.hpp"
 
 namespace mmgrasp::detail {
 namespace {

@@ -3,8 +3,8 @@
 #include <map>
 #include <vector>
 
-#include "structure/bound/path_bound.hpp"
 #include "structure/object_path/held_object.hpp"
+#include "structure/object_path/path_bound.hpp"
 
 namespace mmgrasp::detail {
 

@@ -1,4 +1,4 @@
-#include "structure/bound/path_bound.hpp"
+#include "structure/object_path/path_bound.hpp"
 
 #include <algorithm>
 

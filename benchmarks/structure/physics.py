@@ -43,7 +43,9 @@ def rows(name: str) -> list[str]:
         worst = sags.index(max(sags))
         body = FlexiblePipe(problem.frame, grasp, problem.robot, problem.arm, problem.gripper.tool_link)
         at_rest = float((body.at_rest(path.path[worst]) ** 2).sum(axis=1).max() ** 0.5)
-        body = FlexiblePipe(problem.frame, grasp, problem.robot, problem.arm, problem.gripper.tool_link, pieces=3, time_step=2e-4)
+        body = FlexiblePipe(
+            problem.frame, grasp, problem.robot, problem.arm, problem.gripper.tool_link, pieces=3, time_step=2e-4
+        )
         for speed, acceleration in TIMINGS:
             timing = replace(problem, speed=speed, acceleration=acceleration)
             trajectory, _ = timed_motion(timing, grasp, path.path)

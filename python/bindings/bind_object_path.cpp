@@ -132,9 +132,9 @@ py::dict object_path_dict(const ObjectPathResult& r) {
   return py::dict("outcome"_a = to_string(r.outcome), "cost"_a = r.cost, "joint_motion"_a = r.joint_motion,
                   "deflection"_a = r.deflection, "force_manipulability"_a = r.force_manipulability,
                   "path"_a = path_list(r.outcome == Outcome::solved ? std::optional(r.path) : std::nullopt),
-                  "sag"_a = r.sag, "overloaded"_a = r.overloaded, "violation"_a = r.violation, "violations"_a = r.violations,
-                  "rejections"_a = to_dict(r.rejections), "refused_edges"_a = r.refused_edges,
-                  "configurations"_a = r.configurations);
+                  "sag"_a = r.sag, "overloaded"_a = r.overloaded, "violation"_a = r.violation,
+                  "violations"_a = r.violations, "rejections"_a = to_dict(r.rejections),
+                  "refused_edges"_a = r.refused_edges, "configurations"_a = r.configurations);
 }
 
 std::string object_path_text(const ObjectPathResult& r) {
@@ -206,7 +206,8 @@ void bind_optimum(py::module_& m) {
       .def_readonly("unreachable", &R::unreachable, "Of each pose: how many of the grasps tried do not reach it.")
       .def_readonly("colliding", &R::colliding, "Of each pose: at how many all arm configurations collide.")
       .def("sag_candidates", &sag_candidates,
-           "Every feasible grasp with its mean sag [m] as its cost: candidates for plan_manipulation, whose `max_length`\n"
+           "Every feasible grasp with its mean sag [m] as its cost: candidates for plan_manipulation, whose "
+           "`max_length`\n"
            "then takes the one that sags least among those whose motion is short enough.")
       .def_readonly("overloaded", &R::overloaded,
                     "Of each pose: with how many the pipe bends or bears more than it may.")

@@ -2329,7 +2329,7 @@ class SearchTree:
         """
 class Improvement:
     """
-    A better solution on the way.
+    A better solution on the way, as planners report it to `on_solution`.
     """
     def __repr__(self) -> str:
         ...
@@ -2340,12 +2340,12 @@ class Improvement:
     @property
     def cost(self) -> float:
         """
-        Length of the path in joint space plus the grasp's cost.
+        Length of the path in joint space, plus the grasp's cost where there are grasps.
         """
     @property
     def grasp(self) -> int:
         """
-        Index of its grasp.
+        Index of its grasp; -1: the motion has none.
         """
     @property
     def path(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -2360,7 +2360,7 @@ class Improvement:
     @property
     def stage(self) -> str:
         """
-        What found it: first_grasps, straight_lines, roadmap, refinement, trees or shortening.
+        What found it: search (plan_motion), first_grasps, straight_lines, roadmap, refinement, trees or shortening.
         """
 class GraspReport:
     """
@@ -5955,14 +5955,14 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         goal_cost: float = 0.0  # rrt_star_mg: ends with the first path that costs no more; inf: the first at all
         keep_trees: bool = False  # rrt_star_mg: hand over the trees with the result
     """
-def plan_motion(robot: Robot | CollisionChecker, group: JointGroup | None = None, world: World | None = None, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike | None = None, tool_poses: numpy.typing.ArrayLike | None = None, regions: collections.abc.Sequence[ToolRegion] = [], via: numpy.typing.ArrayLike | None = None, orientation_constraint: OrientationConstraint | None = None, padding: float | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, on_solution: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64], float], typing.Any] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, planner: str = 'rrt_connect', time_limit: float = 5.0, max_iterations: int = 20000, range: float = 0.0, near_end_probability: float = 0.2, base_margin: float = 2.0, joint_step: float = 0.02, workspace_step: float = ..., shorten: bool = True, shorten_iterations: int = 200, ik_solutions: int = 8, region_samples: int = 16, seed: int = 1) -> MotionResult:
+def plan_motion(robot: Robot | CollisionChecker, group: JointGroup | None = None, world: World | None = None, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike | None = None, tool_poses: numpy.typing.ArrayLike | None = None, regions: collections.abc.Sequence[ToolRegion] = [], via: numpy.typing.ArrayLike | None = None, orientation_constraint: OrientationConstraint | None = None, padding: float | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, planner: str = 'rrt_connect', time_limit: float = 5.0, max_iterations: int = 20000, range: float = 0.0, near_end_probability: float = 0.2, base_margin: float = 2.0, joint_step: float = 0.02, workspace_step: float = ..., shorten: bool = True, shorten_iterations: int = 200, ik_solutions: int = 8, region_samples: int = 16, seed: int = 1) -> MotionResult:
     """
     A collision-free path of the group from `start` (n,) to any of its goals: `goal` (n,) or several as (m, n),
     `tool_poses` of the tip, (4, 4) or (m, 4, 4), and `regions` of them, reached by inverse kinematics; by way of the
     configurations `via` (k, n), one after the other. A prepared CollisionChecker may stand in place of robot, group
     and world. `orientation_constraint` holds on the whole path. `padding`: in place of the world's own, see
-    World.padding. on_solution(path, cost) is called with each better path. A diff-drive base turns on the spot and
-    drives straight.
+    World.padding. `on_solution` is called with every better path (an Improvement); what it raises ends the call.
+    A diff-drive base turns on the spot and drives straight.
     
     Keyword options:
         planner: str = 'rrt_connect'  # a name of planner_names()

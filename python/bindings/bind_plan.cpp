@@ -197,7 +197,7 @@ void bind_motion(py::module_& m) {
 void bind_plan(py::module_& m) {
   bind_goals(m);
   bind_motion(m);
-  bind_tool_lines(m);
+  bind_cartesian_planning(m);
   bind_timing(m);
 }
 

@@ -10,6 +10,7 @@ import numpy as np
 from .. import _core
 from .._core import Hand, PartSupplyPlan, Robot
 from .._files import sha256_of
+from .._records import AddedLinkRow, UrdfRow
 from ..scenario import Scenario, TraySetup
 from ..scenario.shapes import pose_to_dict, shape_to_dict
 from .plan_file import VERSION
@@ -80,7 +81,7 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
             "acceleration_limits": arm.acceleration_limits.tolist(),
         },
         "gripper": {
-            "tcp_link": gripper.tool_link,
+            "tool_link": gripper.tool_link,
             "approach": gripper.approach.tolist(),
             "closing": gripper.closing.tolist(),
             "max_opening": gripper.max_opening,
@@ -100,7 +101,7 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
         "place_region": {
             "pose": pose_to_dict(place.T_base_bin),
             "size": place.size.tolist(),
-            "drop_gap": place.drop_gap,
+            "drop_height": place.drop_height,
         },
         "obstacles": [
             {"name": o.name, "pose": pose_to_dict(o.pose), "shapes": [shape_to_dict(s) for s in o.shapes]}
@@ -151,12 +152,12 @@ def _headings(tray: _core.Tray) -> list[float]:
     return [float(h) for h in tray.headings] or [math.atan2(front[1], front[0])]
 
 
-def _urdf(source: dict[str, Any]) -> dict[str, Any]:
+def _urdf(source: UrdfRow) -> dict[str, Any]:
     """A URDF as it was given; verify reads it instead of ours."""
     return {key: value for key, value in source.items() if key != "T"} | {"pose": pose_to_dict(source["T"])}
 
 
-def _link(link: dict[str, Any]) -> dict[str, Any]:
+def _link(link: AddedLinkRow) -> dict[str, Any]:
     return {
         "name": link["name"],
         "parent_link": link["parent_link"],
@@ -179,7 +180,7 @@ def _part(part: _core.Part, tray: TraySetup) -> dict[str, Any]:
         "pose": pose_to_dict(part.T_world_part),
         "shapes": [shape_to_dict(s) for s in part.shapes],
         "grasps": [
-            {"pose": pose_to_dict(g.T_object_hand), "width": g.opening, "quality": g.quality}
+            {"pose": pose_to_dict(g.T_object_hand), "opening": g.opening, "quality": g.quality}
             | ({"probability": g.quality} if tray.scan else {})
             for g in part.grasps
         ]

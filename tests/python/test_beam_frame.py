@@ -207,11 +207,9 @@ def test_the_best_grasp_is_the_cheapest_and_comes_again() -> None:
 
 
 def test_the_optimum_is_proven_to_a_gap() -> None:
-    problem = arc(4)
+    problem = arc(8)
     pipe, _ = pipe1()
-    best = optimize_grasp(
-        problem, pipe, algorithm="branch_and_bound", max_evaluations=200, max_gap=0.2, max_boxes=30_000
-    )
+    best = optimize_grasp(problem, pipe, algorithm="branch_and_bound", max_evaluations=200, max_gap=0.2, max_boxes=2000)
     assert best.boxes > 0 and 0 < best.lower_bound <= best.path.cost
     assert best.gap == pytest.approx(1 - best.lower_bound / best.path.cost)
     assert (best.outcome == mg.Outcome.solved) == (best.gap <= 0.2)

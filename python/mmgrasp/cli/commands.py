@@ -37,6 +37,7 @@ from .grasp import run_grasp
 from .output_folder import OutputFolder
 from .pipe import run_pipe
 from .scan import run_scan
+from .segment import run_segment
 from .tables import bench_table, drive_by_summary, print_verdict, summary
 
 if TYPE_CHECKING:
@@ -238,6 +239,7 @@ COMMANDS = {
     "scan": run_scan,
     "grasp": run_grasp,
     "pipe": run_pipe,
+    "segment": run_segment,
     "reproduce": run_reproduce,
     "bench": run_bench,
     "view": run_view,

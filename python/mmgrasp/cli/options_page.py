@@ -107,6 +107,18 @@ SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
         _core._segmentation_option_table,
         set(),
     ),
+    (
+        "segment_mesh",
+        "Segments of a part, keywords of `segment_mesh` (`MeshSegmentationOptions`)",
+        _core._mesh_segmentation_option_table,
+        set(),
+    ),
+    (
+        "shape_diameters",
+        "Local thickness, keywords of `shape_diameters` (`ShapeDiameterOptions`)",
+        _core._shape_diameter_option_table,
+        set(),
+    ),
 )
 
 

@@ -13,7 +13,7 @@ from mmgrasp.problems import random_trays
 
 TRAY = [0.3, 0.4, 0.1]
 part = [mg.LinkShape(mg.Box([0.07, 0.035, 0.03]))]
-gripper = mg.Hand("tcp", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.04, finger_width=0.022)
+gripper = mg.Hand("tool", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.04, finger_width=0.022)
 
 # Grasps of four random fillings together stand for all places a part may lie in.
 scans = [random_trays.scan_random_tray(part, TRAY, gripper, count=12, fill=0.5, seed=seed) for seed in (1, 2, 3, 4)]

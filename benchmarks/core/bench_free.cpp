@@ -38,13 +38,13 @@ bool agree(std::vector<Program>& programs, mmgrasp::CollisionChecker& checker, c
     const bool expected = programs[0].is_free(q);
     for (std::size_t p = 1; p < programs.size(); ++p) {
       if (programs[p].is_free(q) == expected) continue;
-      const double gap = checker.distance(q).value;
-      if (std::abs(gap) < 1e-6) {
+      const double distance = checker.distance(q).value;
+      if (std::abs(distance) < 1e-6) {
         ++unjudged;
         continue;
       }
       std::fprintf(stderr, "%s says %s, mmgrasp the opposite; distance %.9f m\n", programs[p].who.c_str(),
-                   expected ? "hit" : "free", gap);
+                   expected ? "hit" : "free", distance);
       same = false;
     }
   }

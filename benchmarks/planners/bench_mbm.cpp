@@ -106,7 +106,8 @@ int main(int argc, char** argv) {
   }
   for (const auto& [set, programs] : sets) {
     for (const auto& [who, run] : programs) {
-      run.print(set, who, "edges at 5 mm of any link point, 10 s, range a twentieth of the joint box's diagonal");
+      run.print(set, who,
+                "edges at 5 mm of any link point, 10 s, range a twentieth of the diagonal of the joint limits");
     }
   }
   return 0;

@@ -2,7 +2,7 @@
 
     python benchmarks/task/run_tie_steps.py [--build FOLDER]
 
-Compiles plan_stops_exact.cpp again without one step, links it with the other objects of the build, and runs bench_tie_steps. A
+Compiles plan_stops_exact.cpp again with one step struck out, links it with the other objects of the build, and runs bench_tie_steps. A
 step is worth what its absence costs: smallest and mean disc, length of the route, time.
 """
 
@@ -11,18 +11,22 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import re
 import subprocess
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from left_out import library_without
+from left_out import library_edited
 from programs import BUILD, build_programs
 from tables import ROOT, markdown
 
 SOURCE = ROOT / "cpp/src/task/base_sequence/plan_stops_exact.cpp"
+SMALLEST = {"      raise_smallest();\n": ""}
+SUM = {"    take_if_better(stops_of(places, cover.chosen));\n": ""}
+ROUTE = {"if (!options_.route_length ||": "if (true ||"}
+LEVELS = {"low + level * step <= high;": "level == 0;"}
+STEPS = {"smallest": SMALLEST, "sum": SUM, "route": ROUTE, "level": LEVELS, "sum and route": SUM | ROUTE}
 KEYS = {"least_radius": "smallest disc", "mean_radius": "mean disc", "route": "route", "value": "time"}
 
 
@@ -52,11 +56,8 @@ def main() -> int:
         build_programs([], ["bench_tie_steps"])
     whole = measured(build, None)
     rows = []
-    steps = {name: int(bit) for name, bit in re.findall(r"k(\w+)Step = (\d+)", SOURCE.read_text())}
-    both = {"sum and route": steps["Sum"] | steps["Route"]}
-    for name, bits in {**{name.lower(): bit for name, bit in steps.items()}, **both}.items():
-        definition = f"MMGRASP_TIE_STEPS_LEFT_OUT={bits}"
-        lines = measured(build, library_without(f"ties-{bits}", definition, lambda path: path == SOURCE, build))
+    for name, edits in STEPS.items():
+        lines = measured(build, library_edited(f"ties-{name.replace(' ', '-')}", SOURCE, edits, build))
         rows.append([f"without: {name}", *compared(lines, whole)])
     print(markdown(["", *KEYS.values()], rows))
     return 0

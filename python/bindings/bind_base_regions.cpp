@@ -126,8 +126,15 @@ void bind_region_classes(py::module_& m) {
 }
 
 void bind_object_regions(py::module_& m) {
-  py::class_<ObjectRegions>(m, "ObjectRegions",
-                            "The region of every target part alone, kept and updated when parts leave.")
+  py::class_<ObjectRegions>(
+      m, "ObjectRegions",
+      "The region of every target part alone, kept and updated when parts leave: the region of any selection of a "
+      "tray's\n"
+      "parts is an intersection of ready bitmaps (P1 3.4.1, 3.5.1).\n"
+      "\n"
+      "    grid = mg.base.make_base_grid(problem, database)\n"
+      "    regions = mg.base.ObjectRegions.compute(problem, database, grid)\n"
+      "    cells = regions.region(0, regions.parts(0))  # from where all target parts of the first tray can be grasped")
       .def_static(
           "compute",
           [](const PartSupplyProblem& problem, const ReachDatabase& database, const BaseGrid& grid,

@@ -91,7 +91,7 @@ void bind_beam_parts(py::module_& m) {
              return section;
            }),
            "area"_a, "iy"_a, "iz"_a, "torsion"_a,
-           "Any section by its area [m2], second moments about y and z and torsion constant [m4]; no stress is told.")
+           "Any section by its area [m2], second moments about y and z and torsion constant [m4]; no stress is known.")
       .def_readonly("area", &BeamSection::area, "[m2]")
       .def_readonly("iy", &BeamSection::iy, "Second moment about y, for bending in z [m4].")
       .def_readonly("iz", &BeamSection::iz, "Second moment about z, for bending in y [m4].")
@@ -212,8 +212,13 @@ void bind_supported_frame(py::module_& m) {
 void bind_beam_frame(py::module_& m) {
   bind_beam_parts(m);
   bind_beam_results(m);
-  py::class_<BeamFrame>(m, "BeamFrame",
-                        "Straight Euler-Bernoulli beams welded at nodes, in the object's frame (P2 3.2.3.3.2).")
+  py::class_<BeamFrame>(
+      m, "BeamFrame",
+      "Straight Euler-Bernoulli beams welded at nodes, in the object's frame (P2 3.2.3.3.2).\n"
+      "\n"
+      "    pipe = mg.grasping.Pipe([[0, 0, 0], [0.4, 0, 0], [0.4, 0.3, 0]], [[0, 1], [1, 2]], 0.028)\n"
+      "    frame = mg.grasping.beam_frame(pipe, inner_diameter=0.026, material=mg.grasping.copper())\n"
+      "    state = frame.deflection(pipe.grasp(0, 0.2, 0.0), np.eye(4))")
       .def(py::init(&make_beam_frame), "nodes"_a, "members"_a, "loads"_a = py::list(),
            "(n, 3) nodes [m], BeamMembers, and NodeLoads. See beam_frame for a Pipe.")
       .def_property_readonly(

@@ -77,7 +77,10 @@ void bind_map(py::module_& m) {
   py::class_<CapabilityMap>(
       m, "CapabilityMap",
       "The share of tool poses around each point that an arm reaches, with its limits, self-collision and the scene\n"
-      "(P3 3.9.2, equation 3.13). Everything is in the robot's root frame. Immutable.")
+      "(P3 3.9.2, equation 3.13). Everything is in the robot's root frame. Immutable.\n"
+      "\n"
+      "    reached = mg.base.CapabilityMap.build(arm, world, voxel=0.2, poses=50)\n"
+      "    reached.index_at([0.6, 0.0, 0.8])  # share of tool poses around this point, in [0, 1]")
       .def_static(
           "build",
           [](const JointGroup& arm, const std::optional<World>& world, const Progress& progress,

@@ -120,8 +120,13 @@ void bind_checker(py::module_& m) {
   m.def("_edge_option_table", [] { return option_table(edge_fields()); });
   py::class_<CollisionChecker>(
       m, "CollisionChecker",
-      "Collision questions about one group in a snapshot of the world: later changes of the world\n"
-      "are not seen. Links pairs are sampled (and cached) when no SRDF says which never touch.")
+      "Collision questions about one group in a snapshot of the world: later changes of the world are not seen.\n"
+      "\n"
+      "    checker = mg.CollisionChecker(robot, world, arm)\n"
+      "    if checker.is_free(q) and checker.edge_is_free(q, q_goal):\n"
+      "        print(checker.distance(q).value)\n"
+      "\n"
+      "Pairs of links are sampled (and cached) when no SRDF says which never touch.")
       .def(
           py::init([](const Given<Robot>& robot, const Given<World>& world, const Given<JointGroup>& given_group,
                       const py::kwargs& options) {

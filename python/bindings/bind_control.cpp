@@ -112,8 +112,12 @@ void bind_tracking_result(py::module_& m) {
 
 void bind_control(py::module_& m) {
   bind_tracking_result(m);
-  py::class_<BaseTracker>(m, "BaseTracker",
-                          "The feedback law that keeps a base on its plan (P1 4.12 to 4.15), one command a period.")
+  py::class_<BaseTracker>(
+      m, "BaseTracker",
+      "The feedback law that keeps a base on its plan (P1 4.12 to 4.15), one command a period.\n"
+      "\n"
+      "    tracker = mg.base.BaseTracker(robot)\n"
+      "    velocity = tracker.command(planned_now, planned_after_period, measured)  # x, y, theta each")
       .def(py::init([](const Robot& robot, const py::kwargs& options) {
              return BaseTracker(robot.base(), robot.base_limits(),
                                 read_options(tracking_fields(), options, "BaseTracker"));

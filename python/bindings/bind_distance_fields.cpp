@@ -63,13 +63,22 @@ void bind_distance_fields(py::module_& m) {
           "truncation", [](const DistanceField& f) { return f.properties().truncation; },
           "Distances are clipped to this [m].");
   py::class_<MeshDistanceField, DistanceField, std::shared_ptr<MeshDistanceField>>(
-      m, "MeshDistanceField", "The exact distance from a closed mesh.")
+      m, "MeshDistanceField",
+      "The exact distance from a closed mesh, negative inside.\n"
+      "\n"
+      "    field = mg.collision.MeshDistanceField(mesh)\n"
+      "    world.add_field(\"statue\", field, mg.pose([2.0, 1.0, 0.0]))")
       .def(py::init([](const MeshShape& mesh) { return std::make_shared<MeshDistanceField>(*mesh.mesh); }),
            py::arg("mesh"), "Raises InvalidInput for a mesh that is not closed.");
   const GridDistanceField::Grid own;
   py::class_<GridDistanceField, DistanceField, std::shared_ptr<GridDistanceField>>(
       m, "GridDistanceField",
-      "Signed distances at the points of a regular grid, interpolated linearly along each axis between them.")
+      "Signed distances at the points of a regular grid, interpolated linearly along each axis between them.\n"
+      "\n"
+      "    x = np.linspace(-0.5, 0.5, 21)\n"
+      "    values = np.linalg.norm(np.stack(np.meshgrid(x, x, x, indexing=\"ij\")), axis=0) - 0.3  # a sphere\n"
+      "    field = mg.collision.GridDistanceField(values, [-0.5, -0.5, -0.5], 0.05)\n"
+      "    field.distances([[0.0, 0.0, 0.4]])")
       .def(py::init(
                [](const ArrayLike& values, const ArrayLike& origin, double spacing, double error, double truncation) {
                  return std::make_shared<GridDistanceField>(grid_of(values, origin, spacing, error, truncation));

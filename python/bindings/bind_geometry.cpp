@@ -90,7 +90,11 @@ void bind_primitives(py::module_& m) {
 }
 
 void bind_mesh(py::module_& m) {
-  py::class_<MeshShape>(m, "Mesh", "A triangle mesh [m]; closed ones are solids, open ones surfaces.")
+  py::class_<MeshShape>(m, "Mesh",
+                        "A triangle mesh [m]; closed ones are solids, open ones surfaces.\n"
+                        "\n"
+                        "    mesh = mg.Mesh.load(\"bracket.stl\", scale=0.001)\n"
+                        "    mesh.closed, len(mesh.triangles)")
       .def_static(
           "load",
           [](const PathLike& path, const ArrayLike& scale) {

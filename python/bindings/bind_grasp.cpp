@@ -72,8 +72,10 @@ void bind_provenance(py::module_& m) {
 void bind_record(py::module_& m) {
   py::class_<Grasp>(
       m, "Grasp",
-      "One way to hold an object: where the hand stands, how far it is open, what it costs and how good it "
-      "is.")
+      "One way to hold an object: where the hand stands, how far it is open, what it costs and how good it is.\n"
+      "\n"
+      "    grasp = mg.Grasp(mg.pose([0, 0, 0.05], rpy=[0, np.pi / 2, 0]), opening=0.04)\n"
+      "    T_world_hand = T_world_object @ grasp.T_object_hand")
       .def(
           py::init([](const ArrayLike& T_object_hand, const Given<double>& opening, const Given<double>& cost,
                       const Given<double>& quality, std::vector<double> posture) {

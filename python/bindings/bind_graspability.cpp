@@ -7,6 +7,8 @@ namespace {
 
 constexpr char kMaskImages[] = "dict[str, numpy.typing.NDArray[numpy.uint8]]";
 using MaskImages = Shown<kMaskImages>;
+constexpr char kCounts[] = "mmgrasp._records.GraspabilityCounts";
+using CountsDict = Shown<kCounts>;
 
 using namespace py::literals;
 
@@ -32,7 +34,8 @@ const std::vector<OptionField<PlacementOptions>>& placement_fields() {
   static const std::vector<OptionField<O>> fields{
       option<O>("attempts", &O::attempts, "random places tried for each part"),
       option<O>("stack", &O::stack, "a part without a place on the floor may lie on others"),
-      option<O>("gap", &O::gap, "air left between bodies [m]"), option<O>("seed", &O::seed, "same seed, same places")};
+      option<O>("clearance", &O::clearance, "air left between bodies [m]"),
+      option<O>("seed", &O::seed, "same seed, same places")};
   return fields;
 }
 
@@ -41,7 +44,7 @@ void bind_evaluation(py::module_& m) {
       .def_readonly("grasps", &Graspability::grasps, "Best first.")
       .def_property_readonly(
           "counts",
-          [](const Graspability& g) -> NamedCounts {
+          [](const Graspability& g) -> CountsDict {
             return py::dict("tried"_a = g.counts.tried, "too_wide"_a = g.counts.too_wide, "poor"_a = g.counts.poor,
                             "collision"_a = g.counts.collision, "near_better"_a = g.counts.near_better);
           },

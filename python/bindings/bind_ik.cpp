@@ -40,7 +40,7 @@ const std::vector<OptionField<IkOptions>>& ik_fields() {
       option<IkOptions>("rng_seed", &IkOptions::seed, "same seed, same answer"),
       {"joint_weights", "numpy.typing.ArrayLike | None", set_weights,
        [](const IkOptions& o) { return py::cast(o.joint_weights); },
-       "how dear it is to move each joint, > 0; empty: all the same"},
+       "cost of moving each joint, > 0; empty: all the same"},
       {"objectives", "collections.abc.Sequence[IkObjective]", set_objectives,
        [](const IkOptions&) { return py::list(); },
        "costs (IkObjective) that the redundancy lowers once the pose is reached"},

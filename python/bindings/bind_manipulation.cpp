@@ -6,12 +6,10 @@
 #include "mmgrasp/plan/manipulation.hpp"
 #include "padding.hpp"
 #include "plan_arguments.hpp"
+#include "solution_callback.hpp"
 
 namespace mmgrasp::python {
 namespace {
-
-constexpr char kOnImproved[] = "collections.abc.Callable[[mmgrasp._core.Improvement], object] | None";
-using OnImproved = Shown<kOnImproved>;
 
 using namespace py::literals;
 using O = ManipulationOptions;
@@ -114,32 +112,6 @@ void refuse_options_of_others(const py::kwargs& given, bool with_roadmap, const 
   if (with_roadmap && !prm) throw InvalidInput("roadmap:" + rule);
 }
 
-/// Calls Python's `on_solution` from the planning thread; what it raises ends the run and is raised again.
-class Improved {
- public:
-  explicit Improved(py::object callback) : callback_(std::move(callback)) {}
-  ImprovementCallback function(const Monitor& monitor) {
-    if (callback_.is_none()) return {};
-    return [this, stop = monitor.stop](const Improvement& improvement) mutable {
-      const py::gil_scoped_acquire gil;
-      if (error_) return;
-      try {
-        callback_(improvement);
-      } catch (py::error_already_set& error) {
-        error_.emplace(std::move(error));
-        stop.stop();
-      }
-    };
-  }
-  void raise() {
-    if (error_) throw std::move(*error_);
-  }
-
- private:
-  py::object callback_;
-  std::optional<py::error_already_set> error_;
-};
-
 }  // namespace
 
 void bind_manipulation(py::module_& m) {
@@ -151,14 +123,14 @@ void bind_manipulation(py::module_& m) {
   m.def(
       "plan_manipulation",
       [](const Given<ManipulationProblem>& given_problem, const std::optional<Given<Roadmap>>& given_roadmap,
-         const OptionalPadding& padding, const Progress& progress, const OnImproved& on_solution,
+         const OptionalPadding& padding, const Progress& progress, const OnSolution& on_solution,
          const py::kwargs& options) {
         ManipulationProblem problem = taken(given_problem, "problem");
         problem.world = padded(problem.world, padding);
         const Roadmap* roadmap = given_roadmap ? &taken(*given_roadmap, "roadmap") : nullptr;
         const ManipulationOptions read = read_options(manipulation_fields(), options, "plan_manipulation");
         refuse_options_of_others(options, roadmap != nullptr, read.planner);
-        Improved callback(function_argument(on_solution, "on_solution"));
+        SolutionCallback callback(on_solution);
         ManipulationResult result = LongCall(progress).run([&](const Monitor& monitor) {
           return plan_manipulation(problem, read, roadmap, monitor, callback.function(monitor));
         });

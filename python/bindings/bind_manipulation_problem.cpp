@@ -68,8 +68,14 @@ void refuse_unknown(const py::kwargs& unknown, const Strings& known) {
 }  // namespace
 
 void bind_manipulation_problem(py::module_& m) {
-  py::class_<ManipulationProblem>(m, "ManipulationProblem",
-                                  "Moves an object from one pose to another with any of many grasps (P2 4.2).")
+  py::class_<ManipulationProblem>(
+      m, "ManipulationProblem",
+      "Moves an object from one pose to another with any of many grasps (P2 4.2): the planner chooses the grasp.\n"
+      "\n"
+      "    problem = mg.ManipulationProblem(arm, world, shapes, T_world_start, T_world_goal, grasps)\n"
+      "    result = mg.plan_manipulation(problem, time_limit=5.0)\n"
+      "    if result.outcome == mg.Outcome.solved:\n"
+      "        print(result.grasp_index, len(result.path))")
       .def(py::init([](const Given<JointGroup>& group, const Given<World>& world, const ShapeOrShapes& object,
                        const ArrayLike& T_world_start, const ArrayLike& T_world_goal, const GraspsOrPoses& grasps,
                        const std::optional<Given<Hand>>& gripper, const Given<Strings>& touch_links,

@@ -87,19 +87,22 @@ void bind_tree(py::module_& m) {
 }
 
 void bind_result_parts(py::module_& m) {
-  py::class_<Improvement>(m, "Improvement", "A better solution on the way.")
+  py::class_<Improvement>(m, "Improvement", "A better solution on the way, as planners report it to `on_solution`.")
       .def_readonly("seconds", &Improvement::seconds, "Since the call began, the first roadmap's building left out.")
-      .def_readonly("cost", &Improvement::cost, "Length of the path in joint space plus the grasp's cost.")
-      .def_readonly("grasp", &Improvement::grasp, "Index of its grasp.")
+      .def_readonly("cost", &Improvement::cost,
+                    "Length of the path in joint space, plus the grasp's cost where there are grasps.")
+      .def_readonly("grasp", &Improvement::grasp, "Index of its grasp; -1: the motion has none.")
       .def_property_readonly(
           "stage", [](const Improvement& i) { return to_string(i.stage); },
-          "What found it: first_grasps, straight_lines, roadmap, refinement, trees or shortening.")
+          "What found it: search (plan_motion), first_grasps, straight_lines, roadmap, refinement, trees or "
+          "shortening.")
       .def_property_readonly(
           "path", [](const Improvement& i) { return rows_to_array(i.path.waypoints); }, "Waypoints (k, n).")
       .def("to_dict", &improvement_dict, "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const Improvement& i) {
-        return "Improvement(cost " + std::string(py::repr(py::float_(i.cost))) + ", grasp " + std::to_string(i.grasp) +
-               ", by " + to_string(i.stage) + " after " + std::string(py::repr(py::float_(i.seconds))) + " s)";
+        const std::string grasp = i.grasp < 0 ? "" : ", grasp " + std::to_string(i.grasp);
+        return "Improvement(cost " + std::string(py::repr(py::float_(i.cost))) + grasp + ", by " + to_string(i.stage) +
+               " after " + std::string(py::repr(py::float_(i.seconds))) + " s)";
       });
   py::class_<GraspReport>(m, "GraspReport", "What became of one grasp.")
       .def_readonly("start", &GraspReport::start, "Arm configurations rejected at the start, by cause.")

@@ -129,7 +129,10 @@ void bind_images(py::module_& m) {
   m.def(
       "look_down", [](const ArrayLike& eye) { return to_array(look_down(vector3_argument(eye, "eye"))); },
       py::arg("eye"), "T_world_camera of a camera at `eye` [m] that looks straight down, image x along the world's x.");
-  py::class_<HeightMap>(m, "HeightMap", "Heights over square cells, seen along -z of the map's frame [m].")
+  py::class_<HeightMap>(m, "HeightMap",
+                        "Heights over square cells, seen along -z of the map's frame [m].\n"
+                        "\n"
+                        "    heights = mg.mapping.HeightMap(np.zeros((120, 160)), resolution=0.002)")
       .def(py::init([](const ArrayLike& height, double resolution, const OptionalArray& T_world_map) {
              HeightMap map;
              map.height = image_argument(height, "height", -1, -1);

@@ -155,8 +155,7 @@ void bind_object_path_result(py::module_& m) {
       .def_readonly("sag", &R::sag, "Largest displacement at each pose [m].")
       .def_readonly("violation", &R::violation, "P2's Cost(C); 0 if and only if solved.")
       .def_readonly("violations", &R::violations, "Of each pose: 2 out of reach, 1 in collision, 0 neither.")
-      .def_property_readonly(
-          "rejections", [](const R& r) { return to_dict(r.rejections); }, "Configurations rejected, by cause.")
+      .def_readonly("rejections", &R::rejections, "Configurations rejected, by cause.")
       .def_readonly("refused_edges", &R::refused_edges, "Motions between poses that collide or leave the path.")
       .def_readonly("configurations", &R::configurations, "Arm configurations found over all poses.")
       .def("to_dict", &object_path_dict, "Everything as plain values.")

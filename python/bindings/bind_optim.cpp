@@ -78,7 +78,7 @@ void bind_derivative_free(py::module_& m) {
   using Result = DerivativeFreeResult;
   py::class_<Result>(m, "DerivativeFreeResult", "What a search by values alone found.")
       .def_readonly("outcome", &Result::outcome,
-                    "`solved`: converged, constraints kept; `timeout`: the budget or the clock ended it.")
+                    "`solved`: converged, constraints kept; `timeout`: the budget or the time limit ended it.")
       .def_readonly("x", &Result::x, "The best point seen: the least violated, then the cheapest; inside the bounds.")
       .def_readonly("value", &Result::value, "Objective at x.")
       .def_readonly("violation", &Result::violation, "Largest c_i(x), or 0.")

@@ -4,12 +4,11 @@
 #include "padding.hpp"
 #include "plan_arguments.hpp"
 #include "same_robot.hpp"
+#include "solution_callback.hpp"
 
 namespace mmgrasp::python {
 namespace {
 
-constexpr char kOnSolution[] = "collections.abc.Callable[[numpy.typing.NDArray[numpy.float64], float], object] | None";
-using OnSolution = Shown<kOnSolution>;
 constexpr char kRobotOrChecker[] = "mmgrasp._core.Robot | mmgrasp._core.CollisionChecker";
 using RobotOrChecker = Shown<kRobotOrChecker>;
 constexpr char kOptionalGroup[] = "mmgrasp._core.JointGroup | None";
@@ -72,12 +71,7 @@ MotionResult motion(const RobotOrChecker& robot, const OptionalGroup& given_grou
   const JointGroup group = checker.group();
   MotionOptions read = read_options(motion_fields(), options, "plan_motion");
   if (orientation_constraint) read.orientation_constraint = taken(*orientation_constraint, "orientation_constraint");
-  if (!function_argument(on_solution, "on_solution").is_none()) {
-    read.on_improvement = [&](const Improvement& better) {
-      const py::gil_scoped_acquire gil;
-      on_solution(rows_to_array(better.path.waypoints), better.cost);
-    };
-  }
+  SolutionCallback callback(on_solution);
   const Eigen::VectorXd from = vector_argument(start, "start", group.size());
   MotionGoals goals;
   if (!goal.is_none()) goals.configurations = goals_argument(py::reinterpret_borrow<ArrayLike>(goal), group.size());
@@ -88,8 +82,12 @@ MotionResult motion(const RobotOrChecker& robot, const OptionalGroup& given_grou
     throw InvalidInput("goal = None: give goal, tool_poses or regions");
   std::vector<Eigen::VectorXd> waypoints;
   if (!via.is_none()) waypoints = rows_argument(py::reinterpret_borrow<ArrayLike>(via), "via", group.size());
-  return LongCall(progress).run(
-      [&](const Monitor& monitor) { return plan_motion_via(checker, from, waypoints, goals, read, monitor); });
+  MotionResult result = LongCall(progress).run([&](const Monitor& monitor) {
+    read.on_improvement = callback.function(monitor);
+    return plan_motion_via(checker, from, waypoints, goals, read, monitor);
+  });
+  callback.raise();
+  return result;
 }
 
 void bind_goals(py::module_& m) {
@@ -188,8 +186,8 @@ void bind_motion(py::module_& m) {
        "`tool_poses` of the tip, (4, 4) or (m, 4, 4), and `regions` of them, reached by inverse kinematics; by way of "
        "the\nconfigurations `via` (k, n), one after the other. A prepared CollisionChecker may stand in place of "
        "robot, group\nand world. `orientation_constraint` holds on the whole path. `padding`: in place of the world's "
-       "own, see\nWorld.padding. on_solution(path, cost) is called with each better path. A diff-drive base turns on "
-       "the spot and\ndrives straight." +
+       "own, see\nWorld.padding. `on_solution` is called with every better path (an Improvement); what it raises ends "
+       "the call.\nA diff-drive base turns on the spot and drives straight." +
        option_help(motion_fields()))
           .c_str());
 }
@@ -199,7 +197,7 @@ void bind_motion(py::module_& m) {
 void bind_plan(py::module_& m) {
   bind_goals(m);
   bind_motion(m);
-  bind_tool_lines(m);
+  bind_cartesian_planning(m);
   bind_timing(m);
 }
 

@@ -30,8 +30,9 @@ namespace {
 
 py::dict outcome_dict(const ClosingOutcome& o) {
   return py::dict("start"_a = o.start, "both_touch"_a = o.both_touch, "pushed"_a = o.pushed, "swept"_a = o.swept,
-                  "gap"_a = o.gap, "holds"_a = o.holds, "lateral_tolerance"_a = o.lateral_tolerance,
-                  "nearer_tolerance"_a = o.nearer_tolerance, "farther_tolerance"_a = o.farther_tolerance);
+                  "side_clearance"_a = o.side_clearance, "holds"_a = o.holds,
+                  "lateral_tolerance"_a = o.lateral_tolerance, "nearer_tolerance"_a = o.nearer_tolerance,
+                  "farther_tolerance"_a = o.farther_tolerance);
 }
 
 std::string number_repr(double value) {
@@ -51,15 +52,17 @@ void bind_push_grasp(py::module_& m) {
       .def_readonly("both_touch", &O::both_touch, "The same when both fingers touch, were the object not pushed [m].")
       .def_readonly("pushed", &O::pushed, "How far the object slides before the palm [m].")
       .def_readonly("swept", &O::swept, "How far the tool goes beyond the planned grasp pose [m].")
-      .def_readonly("gap", &O::gap, "Free space on either side of a centred object as the tips pass it [m].")
+      .def_readonly("side_clearance", &O::side_clearance,
+                    "Free space on either side of a centred object as the tips pass it [m].")
       .def_readonly("holds", &O::holds, "An object standing where planned is held.")
       .def_readonly("lateral_tolerance", &O::lateral_tolerance, "It may stand this far to a side [m]; < 0: none.")
       .def_readonly("nearer_tolerance", &O::nearer_tolerance, "It may stand this much nearer [m].")
       .def_readonly("farther_tolerance", &O::farther_tolerance, "It may stand this much farther [m].")
       .def("to_dict", &outcome_dict, "As a dict of plain numbers, strings and lists, e.g. for JSON.")
       .def("__repr__", [](const O& o) {
-        return "ClosingOutcome(starts at " + number_repr(o.start) + " m, gap " + number_repr(o.gap) + " m, pushed " +
-               number_repr(o.pushed) + (o.holds ? " m, holds)" : " m, does not hold)");
+        return "ClosingOutcome(starts at " + number_repr(o.start) + " m, side clearance " +
+               number_repr(o.side_clearance) + " m, pushed " + number_repr(o.pushed) +
+               (o.holds ? " m, holds)" : " m, does not hold)");
       });
   py::class_<G>(m, "PushGrasp", "Closing windows of a grasp in passing, and both strategies of P1's figure 4.7.")
       .def_readonly("closing_time", &G::closing_time, "[s]")

@@ -210,8 +210,14 @@ void check_reach_options(const py::kwargs& options) {
 
 void bind_reach(py::module_& m) {
   m.def("_reach_option_table", [] { return option_table(reach_fields()); });
-  py::class_<ReachDatabase> database(
-      m, "ReachDatabase", "Sampled arm configurations free of self-collision, in cells of the tool pose (P1 3.2.1).");
+  py::class_<ReachDatabase> database(m, "ReachDatabase",
+                                     "Sampled arm configurations free of self-collision, in cells of the tool pose (P1 "
+                                     "3.2.1): good first guesses for\n"
+                                     "inverse kinematics, and quick answers to \"out of reach\".\n"
+                                     "\n"
+                                     "    database = mg.ReachDatabase.build(arm, samples=100_000)\n"
+                                     "    database.save(\"reach\")\n"
+                                     "    guesses = database.query(T_base_tip)  # (m, n), m = 0: out of reach");
   database
       .def_static(
           "build",

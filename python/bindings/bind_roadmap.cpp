@@ -51,10 +51,13 @@ py::dict roadmap_dict(const Roadmap& roadmap) {
 
 void bind_roadmap(py::module_& m) {
   m.def("_roadmap_option_table", [] { return option_table(roadmap_fields()); });
-  py::class_<Roadmap>(
-      m, "Roadmap",
-      "Configurations of a group drawn from its joint limits and joined when near, without any collision "
-      "check: it serves every grasp, object and scene (P2 4.3.2.1). Immutable.")
+  py::class_<Roadmap>(m, "Roadmap",
+                      "Configurations of a group drawn from its joint limits and joined when near, without any "
+                      "collision check: it serves\n"
+                      "every grasp, object and scene (P2 4.3.2.1). Immutable.\n"
+                      "\n"
+                      "    roadmap = mg.planning.Roadmap.build(arm, vertices=2000)\n"
+                      "    roadmap.statistics[\"largest_component\"]")
       .def_static(
           "build",
           [](const Given<JointGroup>& given_group, const Progress& progress, const py::kwargs& options) {
@@ -98,7 +101,7 @@ void bind_roadmap(py::module_& m) {
       .def_property_readonly(
           "statistics", &statistics_dict,
           "Mean degree, connected parts, the largest one's vertices, nearest ones joined, connection "
-          "radius, the joint box's volume, and the gamma that PRM* asks for.")
+          "radius, the volume of the joint limits, and the gamma that PRM* asks for.")
       .def_property_readonly("warning", &Roadmap::warning,
                              "What to set when less than 99 % of the vertices hang together; empty otherwise.")
       .def("to_dict", &roadmap_dict, "As a dict of plain numbers, strings and lists, e.g. for JSON.")

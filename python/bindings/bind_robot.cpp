@@ -161,10 +161,12 @@ JointGroup make_group(const Robot& robot, const OptionalText& name, const Option
   return robot.chain(py::cast<std::string>(base_link), tip_name, with_base);
 }
 
-constexpr char kDicts[] = "list[dict[str, typing.Any]]";
-using Dicts = Shown<kDicts>;
+constexpr char kUrdfRows[] = "list[mmgrasp._records.UrdfRow]";
+using UrdfRows = Shown<kUrdfRows>;
+constexpr char kAddedLinkRows[] = "list[mmgrasp._records.AddedLinkRow]";
+using AddedLinkRows = Shown<kAddedLinkRows>;
 
-Dicts urdf_dicts(const RobotSource& source) {
+UrdfRows urdf_dicts(const RobotSource& source) {
   py::list out;
   for (const UrdfSource& u : source.urdfs) {
     out.append(py::dict("urdf"_a = u.urdf, "origin"_a = u.origin, "prefix"_a = u.prefix,
@@ -174,7 +176,7 @@ Dicts urdf_dicts(const RobotSource& source) {
   return out;
 }
 
-Dicts added_link_dicts(const RobotSource& source) {
+AddedLinkRows added_link_dicts(const RobotSource& source) {
   py::list out;
   for (const AddedLink& link : source.added_links) {
     out.append(py::dict("name"_a = link.name, "parent_link"_a = link.parent_link, "T"_a = to_array(link.T_parent_link),

@@ -12,8 +12,6 @@ using namespace py::literals;
 
 constexpr char kGripperRows[] = "list[mmgrasp._records.GripperEventRow]";
 using GripperRows = Shown<kGripperRows>;
-constexpr char kMotionMessage[] = "mmgrasp._records.MotionMessage";
-using MotionMessage = Shown<kMotionMessage>;
 
 py::object plain(const Eigen::VectorXd& values) {
   return py::cast(values).attr("tolist")();
@@ -64,7 +62,7 @@ std::optional<Eigen::Vector3d> base_pose_argument(const OptionalArray& base_pose
   return vector3_argument(base_pose, "base_pose");
 }
 
-py::dict motion_message(const RobotMotion& motion) {
+MotionMessage motion_message(const RobotMotion& motion) {
   py::list points;
   for (std::size_t i = 0; i < motion.times.size(); ++i) {
     points.append(py::dict("positions"_a = plain(motion.positions[i]), "velocities"_a = plain(motion.velocities[i]),
@@ -136,7 +134,7 @@ void bind_robot_motion(py::module_& m) {
            "name.acceleration, and\n"
            "gripper, where it does anything (what it begins to do up to the row's time).")
       .def(
-          "to_joint_trajectory", [](const M& t) -> MotionMessage { return motion_message(t); },
+          "to_joint_trajectory", &motion_message,
           "A dict shaped like a ROS trajectory_msgs/JointTrajectory, with base_pose and base_twist at every point, and "
           "`gripper`\n"
           "on the same clock.")

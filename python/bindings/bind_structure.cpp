@@ -70,7 +70,10 @@ Pipe make_pipe(const ArrayLike& nodes, const Given<Sections>& sections, const Gi
 void bind_structure(py::module_& m) {
   m.def("_pipe_grasp_option_table", [] { return option_table(pipe_grasp_fields()); });
   py::class_<Pipe>(m, "Pipe",
-                   "A pipe structure: straight round sections between nodes in the object's frame (P2 3.2.2).")
+                   "A pipe structure: straight round sections between nodes in the object's frame (P2 3.2.2).\n"
+                   "\n"
+                   "    pipe = mg.grasping.Pipe([[0, 0, 0], [0.4, 0, 0], [0.4, 0.3, 0]], [[0, 1], [1, 2]], 0.028)\n"
+                   "    grasps = pipe.sample_grasps(500)")
       .def(py::init(&make_pipe), py::arg("nodes"), py::arg("sections"), py::arg("diameters"),
            "(n, 3) nodes [m], pairs of node indices from 0, and outer diameters [m]: one for all or one a section.")
       .def_property_readonly(

@@ -123,7 +123,10 @@ void bind_success(py::module_& m) {
            [](const R& r) { return "GraspRating(" + std::string(py::repr(py::float_(r.success.probability))) + ")"; });
 }
 
-NamedCounts named_counts(const SynthesisCounts& c) {
+constexpr char kCounts[] = "mmgrasp._records.SynthesisCounts";
+using CountsDict = Shown<kCounts>;
+
+CountsDict counts_dict(const SynthesisCounts& c) {
   return py::dict("drawn"_a = c.drawn, "no_opposite"_a = c.no_opposite, "too_wide"_a = c.too_wide,
                   "too_thin"_a = c.too_thin, "tilted"_a = c.tilted, "evaluated"_a = c.evaluated, "missed"_a = c.missed,
                   "uneven"_a = c.uneven, "slipping"_a = c.slipping, "uncertain"_a = c.uncertain,
@@ -159,10 +162,9 @@ void bind_result(py::module_& m) {
       .def_readonly("grasps", &G::grasps, "Most probable first; T_object_hand is the pose in the world.")
       .def_readonly("ratings", &G::ratings, "In the same order.")
       .def_property_readonly(
-          "counts", [](const G& g) -> NamedCounts { return named_counts(g.counts); },
+          "counts", [](const G& g) -> CountsDict { return counts_dict(g.counts); },
           "Surface points drawn and grasps evaluated, by what became of them.")
-      .def_property_readonly(
-          "arm", [](const G& g) { return to_dict(g.arm); }, "Why the arm did not reach grasps.")
+      .def_readonly("arm", &G::arm, "Why the arm did not reach grasps.")
       .def_property_readonly(
           "object_centre", [](const G& g) { return g.object.centre; },
           "Middle of the box fitted to the map's points [m].")

@@ -104,20 +104,27 @@ void bind_problem(py::module_& m) {
       .def("__repr__",
            [](const Tray& t) { return "Tray('" + t.name + "', " + std::to_string(t.parts.size()) + " parts)"; });
   py::class_<PlaceRegion>(m, "PlaceRegion", "Where picked parts go: a bin fixed to the robot.")
-      .def(py::init([](const ArrayLike& T_base_bin, const ArrayLike& size, double drop_gap) {
+      .def(py::init([](const ArrayLike& T_base_bin, const ArrayLike& size, double drop_height) {
              return PlaceRegion{pose_argument(T_base_bin, "T_base_bin"), vector2_argument(size, "size"),
-                                finite_argument(drop_gap, "drop_gap")};
+                                finite_argument(drop_height, "drop_height")};
            }),
-           py::arg("T_base_bin"), py::arg("size"), py::arg("drop_gap") = PlaceRegion{}.drop_gap,
+           py::arg("T_base_bin"), py::arg("size"), py::arg("drop_height") = PlaceRegion{}.drop_height,
            "`T_base_bin` (4, 4): middle of the bin's top plane in the robot's root frame, z up; `size` (2,): inner x "
-           "and y\n[m], > 0; `drop_gap`: how far above the top plane a part is released [m], >= 0.")
+           "and y\n[m], > 0; `drop_height`: how far above the top plane a part is released [m], >= 0.")
       .def_property_readonly(
           "T_base_bin", [](const PlaceRegion& c) { return to_array(c.T_base_bin); },
           "Middle of the bin's top plane in the robot's root frame (4, 4), z up.")
       .def_readonly("size", &PlaceRegion::size, "Inner x and y (2,) [m].")
-      .def_readonly("drop_gap", &PlaceRegion::drop_gap,
+      .def_readonly("drop_height", &PlaceRegion::drop_height,
                     "A part is released with its lowest point so far above the bin's top plane [m].");
-  py::class_<PartSupplyProblem>(m, "PartSupplyProblem", "Everything the part-supply planner needs.")
+  py::class_<PartSupplyProblem>(m, "PartSupplyProblem",
+                                "Everything the part-supply planner needs: the robot and its hand, the room, the trays "
+                                "with their parts, and where parts\n"
+                                "go. `mmgrasp.load_scenario(path).problem()` makes one of a scenario file.\n"
+                                "\n"
+                                "    problem = mg.load_scenario(\"storeroom.yaml\").problem()\n"
+                                "    database = mg.ReachDatabase.build(problem.arm)\n"
+                                "    plan = mg.base.plan_part_supply(problem, database)")
       .def(py::init([](const Robot& robot, const JointGroup& arm, const Hand& gripper, const World& scene,
                        std::vector<Tray> trays, const ArrayLike& home, const ArrayLike& start, const ArrayLike& goal,
                        const PlaceRegion& place_region, const py::kwargs& options) {

@@ -46,7 +46,13 @@ JointTrajectory make_trajectory(const std::vector<std::string>& names, const Arr
 }  // namespace
 
 void bind_trajectory(py::module_& m) {
-  py::class_<JointTrajectory>(m, "JointTrajectory", "A path on a clock; cubic Hermite between samples.")
+  py::class_<JointTrajectory>(
+      m, "JointTrajectory",
+      "A path on a clock; cubic Hermite between samples.\n"
+      "\n"
+      "    motion = mg.time_parameterize(path, arm.velocity_limits, arm.acceleration_limits, names=arm.names)\n"
+      "    q = motion.at(motion.duration / 2)\n"
+      "    motion.to_csv()")
       .def(py::init(&make_trajectory), py::arg("names"), py::arg("times"), py::arg("positions"),
            py::arg("velocities") = py::none(), py::arg("accelerations") = py::none(),
            "From samples: times (k,) from 0 and increasing [s], positions (k, n), and if given velocities and "

@@ -123,6 +123,7 @@ void bind_drive_by_task(py::module_& m) {
       m, "DriveByTask",
       "Something the tool does on the way: T_world_tip, (4, 4), or candidates (m, 4, 4) of which "
       "any will do.\n\n"
+      "    task = mg.DriveByTask(mg.pose([2.0, -0.8, 0.75]), dwell=0.5, free=[\"yaw\"])\n\n"
       "tolerance: (6,) along x, y, z [m] and about them [rad] of the pose's own frame; free: names "
       "of axes that do not\n"
       "matter, of x, y, z, roll, pitch, yaw; max_tool_speed [m/s] at the task; dwell [s] for which "

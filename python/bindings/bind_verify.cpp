@@ -33,11 +33,11 @@ void bind_checked_parts(py::module_& m) {
       .def(py::init(&body), py::arg("name"), py::arg("shapes"), py::arg("pose"),
            "`pose` (4, 4): T_world_body; `shapes` in its frame.");
   py::class_<CheckedGrasp>(m, "CheckedGrasp", "A grasp of a part as the plan file describes it.")
-      .def(py::init([](const ArrayLike& pose, double width) {
-             return CheckedGrasp{pose_argument(pose, "grasp pose"), width};
+      .def(py::init([](const ArrayLike& pose, double opening) {
+             return CheckedGrasp{pose_argument(pose, "grasp pose"), opening};
            }),
-           py::arg("pose"), py::arg("width"),
-           "`pose` (4, 4): T_object_tcp; `width`: opening of the fingers while holding [m].");
+           py::arg("pose"), py::arg("opening"),
+           "`pose` (4, 4): T_object_hand; `opening`: between the pads while holding [m].");
   py::class_<CheckedPart>(m, "CheckedPart", "A part and the grasps that a plan may use.")
       .def(py::init([](CheckedBody b, std::string tray, bool target, std::vector<CheckedGrasp> grasps) {
              return CheckedPart{std::move(b), std::move(tray), target, std::move(grasps)};
@@ -126,7 +126,14 @@ void bind_checked_tray(py::module_& m) {
 }
 
 void bind_plan_to_check(py::module_& m) {
-  py::class_<PlanToCheck>(m, "PlanToCheck", "A whole plan as read from plan.json.")
+  py::class_<PlanToCheck>(m, "PlanToCheck",
+                          "A whole plan as read from plan.json: what the checker needs to know, and what is claimed. "
+                          "`mmgrasp.verify_plan` makes\n"
+                          "one of a file.\n"
+                          "\n"
+                          "    verdict = mg.verify_plan(\"out/storeroom/plan.json\")\n"
+                          "    for fault in verdict.faults:\n"
+                          "        print(fault.code, fault.where, fault.message)")
       .def(py::init<RobotSource>(), py::arg("robot"), "Of this robot; everything else is set afterwards.")
       .def_readwrite("robot", &PlanToCheck::robot, "What the robot really is: its URDFs as they were given.")
       .def_readwrite("planned_robot", &PlanToCheck::planned_robot,
@@ -162,7 +169,7 @@ void bind_plan_to_check(py::module_& m) {
           [](PlanToCheck& p, const ArrayLike& T) { p.T_base_bin = pose_argument(T, "T_base_bin"); },
           "Middle of the bin's top plane in the robot's root frame (4, 4), z up.")
       .def_readwrite("bin_size", &PlanToCheck::bin_size, "Inner x and y (2,) [m].")
-      .def_readwrite("drop_gap", &PlanToCheck::drop_gap,
+      .def_readwrite("drop_height", &PlanToCheck::drop_height,
                      "Height above the bin's top plane at which parts are released [m].")
       .def_readwrite("obstacles", &PlanToCheck::obstacles, "Bodies of the scene.")
       .def_readwrite("parts", &PlanToCheck::parts, "All parts, targets and others.")

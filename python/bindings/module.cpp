@@ -25,10 +25,39 @@ void bind_push_grasp(py::module_& m);
 void bind_manipulation(py::module_& m);
 
 void declare_classes(py::module_& m) {
-  py::class_<Robot>(m, "Robot", "A robot as URDF and SRDF describe it. Immutable; joints and links by name.");
-  py::class_<JointGroup>(m, "JointGroup", "Joints that are planned together, and a tip. Immutable.");
-  py::class_<World>(m, "World",
-                    "Named rigid bodies around the robot, and what it holds. Poses are T_world_object, (4, 4).");
+  py::class_<Robot>(m, "Robot",
+                    "A robot as URDF and SRDF describe it: links, joints, collision shapes, groups, pairs that need no "
+                    "collision check.\n"
+                    "Immutable; joints and links by name.\n"
+                    "\n"
+                    "    robot = mg.Robot.load(\"robot.urdf\", \"robot.srdf\", base=\"diff_drive\")\n"
+                    "    arm = robot.group(\"arm\", tip=\"gripper_tcp\")\n"
+                    "    robot.links, arm.names");
+  py::class_<JointGroup>(
+      m, "JointGroup",
+      "Joints that are planned together, and a tip: where configurations, limits and kinematics are. Immutable.\n"
+      "\n"
+      "    q = arm.q({\"elbow_joint\": 1.2})\n"
+      "    T_world_tip = arm.fk(q)\n"
+      "    found = arm.ik(T_world_tip, seed=q)\n"
+      "    if found.outcome == mg.Outcome.solved:\n"
+      "        print(found.q, found.position_error)\n"
+      "\n"
+      "Configurations are arrays (n,): base joints x, y, theta first when the group has them (`with_base=True`), then "
+      "the chain in\n"
+      "order. All other joints stay at the group's reference values.");
+  py::class_<World>(
+      m, "World",
+      "What stands around the robot and what it holds: named rigid bodies, and who may touch whom. Poses are\n"
+      "T_world_object, (4, 4).\n"
+      "\n"
+      "    world = mg.World()\n"
+      "    world.add_box(\"table\", size=(1.2, 0.6, 0.04), pose=mg.pose([1.0, 0, 0.7]))\n"
+      "    world.add(\"cup\", mg.Cylinder(0.04, 0.1), mg.pose([1.0, 0, 0.775]))\n"
+      "    world.allow(\"cup\", \"table\")\n"
+      "    world.attach(\"cup\", \"gripper_link\", mg.pose([0.1, 0, 0]))  # from now on it moves with the link\n"
+      "\n"
+      "A checker or planner keeps the world that it was given: later changes do not reach it.");
 }
 
 }  // namespace mmgrasp::python

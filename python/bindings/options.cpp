@@ -14,6 +14,7 @@ const std::map<std::string, std::string> kRenamed = {{"attempt_time_limit", "sol
                                                      {"attempts", "seeds"},
                                                      {"choices", "grasp_assignments"},
                                                      {"edge_step", "joint_step"},
+                                                     {"gap", "clearance"},
                                                      {"held_only", "attached_only"},
                                                      {"improved", "on_solution"},
                                                      {"max_joint_step", "jump_threshold"},

@@ -6,10 +6,13 @@
 namespace mmgrasp::python {
 
 namespace annotations {
-inline constexpr char kPadding[] = "float | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]]";
+inline constexpr char kPadding[] =
+    "float | mmgrasp._records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, "
+    "float]]";
 inline constexpr char kOptionalPadding[] =
-    "float | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None";
-inline constexpr char kPaddingDict[] = "dict[str, typing.Any]";
+    "float | mmgrasp._records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, "
+    "float]] | None";
+inline constexpr char kPaddingDict[] = "mmgrasp._records.WorldPadding";
 }  // namespace annotations
 
 using PaddingLike = Shown<annotations::kPadding>;

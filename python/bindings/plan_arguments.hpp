@@ -16,7 +16,7 @@ MaybeFloats path_array(const std::optional<JointPath>& path);
 /// The same as lists, for to_dict().
 py::object path_list(const std::optional<JointPath>& path);
 
-void bind_tool_lines(py::module_& m);
+void bind_cartesian_planning(py::module_& m);
 void bind_timing(py::module_& m);
 void bind_roadmap(py::module_& m);
 void bind_manipulation_problem(py::module_& m);

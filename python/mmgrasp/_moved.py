@@ -21,6 +21,8 @@ RENAMED = {
     "ToolCone": "mmgrasp.planning.OrientationConstraint",
     "least_stops": "mmgrasp.base.plan_stops_exact",
     "minimal_stops": "mmgrasp.base.cover_from_intersections",
+    "line_grasp_probability": "mmgrasp.grasping.LineGrasp",
+    "push_grasp_tasks": "mmgrasp.DriveByTask",
     "solve_part_supply": "mmgrasp.plan_part_supply",
     "drive_by": "mmgrasp.part_supply.drive_by",
     "plan_file": "mmgrasp.part_supply.plan_file",

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import TypedDict
 
+from numpy import float64
+from numpy.typing import NDArray
+
 from . import _core
 
 
@@ -57,6 +60,35 @@ class EndEffectorRow(TypedDict):
     name: str
     group: str
     parent_link: str
+
+
+class UrdfRow(TypedDict):
+    """One URDF of `RobotSource.urdfs`: the arguments of add_urdf."""
+
+    urdf: str  # its text
+    origin: str  # the file it came from, for messages
+    prefix: str  # of every name in it
+    parent_link: str  # empty: its root is the robot's
+    T: NDArray[float64]  # T_parent_root (4, 4)
+    mesh_files: dict[str, str]  # files by the URDF's mesh filenames; an empty one leaves the mesh out
+
+
+class AddedLinkRow(TypedDict):
+    """One link of `RobotSource.added_links`: the arguments of add_link."""
+
+    name: str
+    parent_link: str
+    T: NDArray[float64]  # T_parent_link (4, 4)
+    shapes: list[_core.LinkShape]
+
+
+class WorldPadding(TypedDict):
+    """How far bodies are grown where the robot meets the scene [m]: `World.padding`."""
+
+    links: float  # the robot's
+    attached: float  # what it holds
+    objects: float  # the scene's
+    by_name: dict[str, float]  # of a link, an object or an SRDF group, in place of the others
 
 
 class MeshStandIn(TypedDict):
@@ -152,6 +184,35 @@ class GripperEventRow(TypedDict):
     command: str  # open or close
     opening: float | None  # at the end [m]; None: not known
     object: str  # what is held afterwards, or no longer; may be empty
+
+
+class GraspabilityCounts(TypedDict):
+    """Places of the fingertips that were checked, and those rejected by cause: `Graspability.counts`."""
+
+    tried: int  # local maxima of graspability
+    too_wide: int  # no room for the fingers once the hand is centred on the part
+    poor: int  # the pads would meet too little of it, or two parts at once
+    collision: int  # the hand, centred and opened for the part, would touch something
+    near_better: int  # a better one lies beside it, or max_grasps better ones exist
+
+
+class SynthesisCounts(TypedDict):
+    """What became of the surface points drawn and the grasps evaluated: `GraspSynthesis.counts`."""
+
+    drawn: int  # surface points, of which one grasp each was to be made
+    no_opposite: int  # no surface on the other side
+    too_wide: int  # wider there than the hand opens
+    too_thin: int  # thinner than the hand closes
+    tilted: int  # an approach beyond max_tilt
+    evaluated: int  # grasps, those of the second search included
+    missed: int  # a pad meets too little of the surface, or the hand does not fit around it
+    uneven: int  # a pad meets no plane
+    slipping: int  # outside the friction cones
+    uncertain: int  # surface less certain than max_sigma
+    collision: int  # the hand touches the map, open, on its way in or while it closes
+    table: int  # the hand touches the table
+    arm: int  # not reached by the arm; `GraspSynthesis.arm` says why
+    near_better: int  # a better one lies beside it, or max_grasps better ones exist
 
 
 class TimeFromStart(TypedDict):

@@ -58,7 +58,7 @@ def region(tray: str, iy: range, start: int, end: int) -> dict[str, Any]:
 def plan_by_hand() -> dict[str, Any]:
     """Two trays served from one stop at (1, 1), one part each; the first in 2 m, heading along x."""
     grid = {"origin": [0.0, 0.0], "resolution": 0.1, "nx": 30, "ny": 30, "headings": [0.0]}
-    grasp = {"pose": pose(0, 0, 0), "width": 0.04, "quality": 1.0}
+    grasp = {"pose": pose(0, 0, 0), "opening": 0.04, "quality": 1.0}
     parts = [
         {"name": f"{tray}/brick_0", "tray": tray, "target": True, "pose": pose(1.7, y, 0.9), "shapes": box(0.04, 0.04, 0.04), "grasps": [grasp]}
         for tray, y in (("A", 1.0), ("B & C", 1.4))
@@ -71,16 +71,16 @@ def plan_by_hand() -> dict[str, Any]:
         {"stop": 0, "tray": p["tray"], "part": p["name"], "grasp": 0, "motions": copy.deepcopy(motions)} for p in parts
     ]
     return {
-        "format": "mmgrasp-plan", "version": 2, "mmgrasp": "0.0.0", "outcome": "solved",
+        "format": "mmgrasp-plan", "version": 3, "mmgrasp": "0.0.0", "outcome": "solved",
         "scenario": {
             "name": "by hand", "source": "",
             "robot": {"urdf": URDF, "srdf": "", "base": "diff_drive", "base_limits": {}, "meshes": []},
             "arm": {"joints": ["lift", "turn"], "tip_link": "tcp", "velocity_limits": [0.2, 1.0], "acceleration_limits": [1, 4]},
-            "gripper": {"tcp_link": "tcp", "approach": [1, 0, 0], "closing": [0, 1, 0], "max_opening": 0.1, "finger_depth": 0.03,
+            "gripper": {"tool_link": "tcp", "approach": [1, 0, 0], "closing": [0, 1, 0], "max_opening": 0.1, "finger_depth": 0.03,
                         "finger_width": 0.02, "clearance": 0.005, "closing_speed": 0.1, "joints": [], "finger_links": []},
             "other_joints": {}, "home": home, "start": [0.3, 0.3, 0.0], "goal": [2.5, 0.3, 0.0],
             "positioning_uncertainty": 0.1,
-            "place_region": {"pose": pose(0, 0, 0.3), "size": [0.2, 0.2], "drop_gap": 0.03},
+            "place_region": {"pose": pose(0, 0, 0.3), "size": [0.2, 0.2], "drop_height": 0.03},
             "obstacles": [{"name": "table", "pose": pose(1.7, 1.2, 0.4), "shapes": box(0.4, 1.0, 0.8)},
                           {"name": "tray A", "pose": pose(1.7, 1.0, 0.85), "shapes": box(0.3, 0.3, 0.1)}],
             "trays": [{"name": "A", "pose": pose(1.7, 1.0, 0.8), "size": [0.3, 0.3, 0.1], "headings": [0.0]},

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from types import ModuleType
+from typing import Any
 
 OPTION = re.compile(r"^\s+(?P<name>\w+): (?P<type>.+?) = (?P<default>.+?)  # ")
 
@@ -67,7 +68,8 @@ def with_options(line: str, following: Iterable[str]) -> str:
     if "**kwargs" not in line or not line.lstrip().startswith("def "):
         return line
     options = [
-        f"{o['name']}: {o['type']} = {'...' if o['default'] == 'inf' else o['default']}" for o in listed(following)
+        f"{o['name']}: {o['type']} = {'...' if o['default'] in ('inf', '-inf') else o['default']}"
+        for o in listed(following)
     ]
     if not options and line.startswith("def _"):
         return line.replace("**kwargs", "**kwargs: typing.Any")
@@ -87,6 +89,23 @@ def listed(following: Iterable[str]) -> list[re.Match[str]]:
         if option := OPTION.match(line):
             found.append(option)
     return found
+
+
+def option_types(calls: Mapping[str, tuple[str, Any, Sequence[str]]]) -> str:
+    """A module with a TypedDict of the options of each call: by type name, what it is called, the call, names left out."""
+    lines = [
+        '"""The options of calls as types, for functions that pass keywords on. Written by `./dev stubs`."""', "",
+        "from typing import TypedDict",
+    ]  # fmt: skip
+    for name, (said, call, left_out) in calls.items():
+        lines += ["", "", f"class {name}(TypedDict, total=False):", f'    """Keyword options of {said}: defaults and meaning are there."""', ""]  # fmt: skip
+        options = [found for line in (call.__doc__ or "").splitlines() if (found := OPTION.match(line))]
+        assert options, said
+        kinds = {o["name"]: o["type"].replace("numpy.typing.", "") for o in options}
+        lines += [f"    {option}: {kind}" for option, kind in kinds.items() if option not in left_out]
+    if any("ArrayLike" in line for line in lines):
+        lines[3:3] = ["", "from numpy.typing import ArrayLike"]
+    return "\n".join(lines) + "\n"
 
 
 def with_members(lines: list[str], module: ModuleType) -> list[str]:

@@ -256,7 +256,7 @@ def test_redwood_frames_by_number(tmp_path: Path) -> None:
     assert [frame.name[-5] for frame in folder.frames] == ["0", "1", "3"]
     np.testing.assert_array_equal(folder.read(folder.frames[2]).image.T_world_camera, taken[3].T_world_camera)
     (tmp_path / "depth" / "00000.png").unlink()
-    assert "has 4 poses for 2 numbered images in depth/: which belongs to which cannot be told" in refused(tmp_path)
+    assert "has 4 poses for 2 numbered images in depth/: which belongs to which is not known" in refused(tmp_path)
 
 
 def test_redwood_numbers_from_one_and_a_foreign_image(tmp_path: Path) -> None:

@@ -77,11 +77,11 @@ def test_scans_of_random_trays() -> None:
     parts = random_trays.parts_of_grasps("tray", union, gripper(), T_world_tray)
     assert len({part.name for part in parts}) == len(union)
     for part, grasp in zip(parts, union, strict=True):
-        tcp = part.T_world_part @ part.grasps[0].T_object_hand
-        assert np.allclose(tcp, T_world_tray @ grasp.T_object_hand)
+        T_world_hand = part.T_world_part @ part.grasps[0].T_object_hand
+        assert np.allclose(T_world_hand, T_world_tray @ grasp.T_object_hand)
         other = part.T_world_part @ part.grasps[1].T_object_hand
-        assert np.allclose(other[:3, 0], tcp[:3, 0])  # the same approach,
-        assert np.allclose(other[:3, 1], -tcp[:3, 1])  # the fingers change places
+        assert np.allclose(other[:3, 0], T_world_hand[:3, 0])  # the same approach,
+        assert np.allclose(other[:3, 1], -T_world_hand[:3, 1])  # the fingers change places
         bead = np.linalg.inv(T_world_tray) @ part.T_world_part @ part.shapes[0].pose
         assert np.allclose(bead[:3, 3], [0, 0, -0.0025])  # inside the tray's floor
 
@@ -174,3 +174,8 @@ def test_parts_at_given_poses_are_grasped_where_they_lie() -> None:
         assert near
         assert max(near, key=lambda g: g.quality).opening == pytest.approx(0.035, abs=0.006)
     assert all(min(np.linalg.norm(g.T_object_hand[:2, 3] - p[:2, 3]) for p in poses) < 0.06 for g in scan.grasps)
+
+
+def test_the_old_name_of_an_option_is_refused_with_the_new_one() -> None:
+    with pytest.raises(mg.InvalidInput, match=r"gap.*it is called clearance now"):
+        mg.mapping.random_placement([mg.LinkShape(mg.Box([0.02, 0.02, 0.02]))], [0.3, 0.2, 0.1], gap=0.001)  # type: ignore[call-arg]

@@ -6,7 +6,7 @@ import itertools
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -87,18 +87,23 @@ def test_a_cone_holds_and_better_paths_are_reported(robot: mg.Robot, arm: mg.rob
         planner="rrt_star",
         max_iterations=1500,
         time_limit=100,
-        on_solution=lambda path, cost: costs.append((cost, np.linalg.norm(np.diff(path, axis=0), axis=1).sum())),
+        on_solution=lambda better: costs.append(
+            (better.cost, np.linalg.norm(np.diff(better.path, axis=0), axis=1).sum(), better.stage, better.grasp)
+        ),
     )
     assert len(costs) >= 2
     assert all(b[0] < a[0] for a, b in itertools.pairwise(costs))
-    assert all(cost == pytest.approx(length) for cost, length in costs)
+    assert all(cost == pytest.approx(length) for cost, length, *_ in costs)
+    assert {(stage, grasp) for *_, stage, grasp in costs} == {("search", -1)}
     assert costs[-1][0] <= found.cost + 1e-9
 
-    def fail(path: Any, cost: Any) -> None:
+    def fail(better: mg.planning.Improvement) -> None:
         raise RuntimeError("enough")
 
     with pytest.raises(RuntimeError, match="enough"):
         mg.plan_motion(robot, arm, world, start=START, goal=GOAL, on_solution=fail)
+    with pytest.raises(mg.InvalidInput, match=r"on_solution = .*must take one argument, an Improvement"):
+        mg.plan_motion(robot, arm, world, start=START, goal=GOAL, on_solution=cast(Any, lambda path, cost: None))
 
 
 def test_lines_from_pose_to_pose() -> None:

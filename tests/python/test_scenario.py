@@ -41,8 +41,10 @@ BAD = [
     # path, value, pieces of the message
     ("format", "mmgrasp-plan", ["format", "mmgrasp-scenario"]),
     ("format", REMOVE, ["format"]),
-    ("version", 1, ["version", "1", "reads version 2"]),
+    ("version", 1, ["version", "1", "reads version 3"]),
     ("carry", {}, ["unknown key; it is called place_region now"]),
+    ("robot.tcp", "gripper_tcp", ["robot.tcp", "unknown key; it is called tool_link now"]),
+    ("place_region.drop_gap", 0.03, ["place_region.drop_gap", "unknown key; it is called drop_height now"]),
     ("traays", [], ["traays", "did you mean trays?"]),
     ("start", REMOVE, ["start is missing"]),
     ("start", [0, 0], ["start", "3 numbers"]),
@@ -57,7 +59,7 @@ BAD = [
     ("robot.base", "fixed", ["robot", "diff_drive"]),
     ("robot.group", "arm_with_torsoo", ["robot.group", "did you mean arm_with_torso?"]),
     ("robot.group", {"base_link": "nowhere"}, ["robot.group.base_link", "nowhere", "no such link"]),
-    ("robot.tcp", "gripper_tpc", ["robot.tcp", "did you mean gripper_tcp?"]),
+    ("robot.tool_link", "gripper_tpc", ["robot.tool_link", "did you mean gripper_tcp?"]),
     ("robot.home.elbow", 1.0, ["robot.home.elbow", "elbow_flex_joint"]),
     ("robot.home.elbow_flex_joint", REMOVE, ["robot.home", "elbow_flex_joint"]),
     ("robot.home.shoulder_lift_joint", 9.0, ["shoulder_lift_joint", "9.0", "must be in"]),
@@ -94,7 +96,7 @@ BAD = [
     ("part_types.bracket.grasp_options", {"friction": -1}, ["grasp_options", "friction"]),
     (
         "part_types.bracket.grasps",
-        [{"pose": {"xyz": [0, 0, 0.1]}, "width": 0.03}, {"pose": {"xyz": [0, 0, 0]}, "width": 0.03}],
+        [{"pose": {"xyz": [0, 0, 0.1]}, "opening": 0.03}, {"pose": {"xyz": [0, 0, 0]}, "opening": 0.03}],
         ["part_types.bracket.grasps", "1 of 2 grasps hold nothing of part type bracket", "(0, 0, 0.1)"],
     ),
     ("trays.0.parts.type", "braket", ["trays[0].parts.type", "did you mean bracket?"]),
@@ -253,7 +255,7 @@ def test_parts_lie_where_the_grid_says(small_path: Path) -> None:
 def test_listed_parts_and_own_grasps(small: dict[str, Any], write: Callable[..., Path]) -> None:
     scenario = copy.deepcopy(small)
     pose = {"xyz": [0, 0, 0.01], "rpy": [0, math.pi / 2, 0]}
-    scenario["part_types"]["bracket"]["grasps"] = [{"pose": pose, "width": 0.03}, {"pose": pose, "width": 0.2}]
+    scenario["part_types"]["bracket"]["grasps"] = [{"pose": pose, "opening": 0.03}, {"pose": pose, "opening": 0.2}]
     scenario["trays"][0]["parts"] = [
         {"type": "bracket", "xyz": [0.05, 0.0], "rpy": [0, 0, 0.3], "name": "left"},
         {"type": "bracket", "xyz": [-0.05, 0.0, 0.1]},
@@ -286,10 +288,15 @@ def test_shipped_scenarios_keep_the_schema(name: str) -> None:
     jsonschema.validate(yaml.safe_load((ASSETS / "scenarios" / name).read_text()), schema)
 
 
-def test_a_file_of_version_1_says_what_its_keys_are_called_now(
+def test_a_file_of_an_older_version_says_what_its_keys_are_called_now(
     small: dict[str, Any], write: Callable[..., Path]
 ) -> None:
+    inner = copy.deepcopy(small) | {"version": 2}
+    inner["robot"]["tcp"] = inner["robot"].pop("tool_link")
+    inner["place_region"]["drop_gap"] = 0.03
+    with pytest.raises(mg.InvalidInput, match="reads version 3: tcp is tool_link, drop_gap is drop_height now"):
+        mg.load_scenario(write(inner))
     old = {**small, "version": 1}
     old["carry"] = old.pop("place_region")
-    with pytest.raises(mg.InvalidInput, match="reads version 2: carry is place_region now"):
+    with pytest.raises(mg.InvalidInput, match="reads version 3: carry is place_region now"):
         mg.load_scenario(write(old))

@@ -196,7 +196,7 @@ def test_wrong_input_is_refused_by_name() -> None:
         with pytest.raises(mg.InvalidInput, match=next(iter(bad))):
             world.run(approach(), arm=arm(), **bad)
     with pytest.raises(mg.InvalidInput, match="spede"):
-        world.run(approach(), spede=1)
+        world.run(approach(), spede=1)  # type: ignore[call-arg]
     with pytest.raises(mg.InvalidInput, match="elbow"):
         world.run(mg.planning.JointTrajectory(["elbow"], [0, 1], [[0], [1]]))
     with pytest.raises(mg.InvalidInput, match="without the base"):
@@ -271,8 +271,7 @@ def test_the_plan_knows_where_the_bottle_lies_in_the_hand() -> None:
     assert found.outcome == mg.Outcome.solved, found.report
     (event,) = found.events
     assert event["object"] == "bottle"
-    quiet = {"travel_noise": 0.0, "position_noise": 0.0, "heading_noise": 0.0}
-    run = bottle.run(found, close_at, hold=0.5, **quiet)
+    run = bottle.run(found, close_at, hold=0.5, travel_noise=0.0, position_noise=0.0, heading_noise=0.0)
     assert run.grasped, run.parts["bottle"].cause
     hand_of = bottle.simulation().gripper
     assert hand_of is not None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import get_type_hints
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import pytest
 import mmgrasp as mg
 from mmgrasp import sim
 from mmgrasp.sim.control import body_to_world
+from mmgrasp.sim.execution import ExecutionOptions
 from sim_scenes import arm, box, gripper, robot, table
 
 pytest.importorskip("mujoco", reason="MuJoCo is not installed (pip install 'mmgrasp[sim]')")
@@ -163,3 +165,8 @@ def test_physics_that_diverges_is_told() -> None:
 def test_wrong_starts_are_refused(base: list[float], joints: dict[str, float], message: str) -> None:
     with pytest.raises(mg.InvalidInput, match=message):
         scene().reset(np.array(base), joints)
+
+
+def test_the_type_of_keywords_has_the_fields_of_execution() -> None:
+    kinds, fields = get_type_hints(ExecutionOptions), get_type_hints(sim.Execution)
+    assert kinds == fields

@@ -10,9 +10,19 @@ from pathlib import Path
 import pytest
 
 from mmgrasp import _core
-from stub_text import precise, with_none, with_options
+from stub_text import option_types, precise, with_none, with_options
 
 STUBS = Path(__file__).resolve().parents[2] / "python" / "mmgrasp" / "_core"
+OPTIONS = STUBS.parent / "_options.py"
+PASSED_ON = {
+    "CheckOptions": ("verify.check_plan", _core.verify.check_plan, ()),
+    "CheckerOptions": ("CollisionChecker", _core.CollisionChecker.__init__, ()),
+    "DriveByOptions": ("plan_drive_by", _core.plan_drive_by, ()),
+    "GraspabilityOptions": ("evaluate_graspability", _core.evaluate_graspability, ()),
+    "MotionOptions": ("plan_motion", _core.plan_motion, ("seed",)),
+    "ReachOptions": ("ReachDatabase.build", _core.ReachDatabase.build, ()),
+}
+"""Type, call and options left out, for Python's functions that pass keywords on."""
 
 
 def generate(folder: Path) -> dict[str, str]:
@@ -55,6 +65,10 @@ def test_stubs_are_up_to_date(tmp_path: Path) -> None:
     assert made.keys() == committed.keys()
     for name, text in made.items():
         assert text == committed[name], f"{name} is out of date: ./dev stubs"
+
+
+def test_types_of_options_are_up_to_date() -> None:
+    assert OPTIONS.read_text() == option_types(PASSED_ON), f"{OPTIONS.name} is out of date: ./dev stubs"
 
 
 def test_no_annotation_says_nothing() -> None:
@@ -107,3 +121,5 @@ if __name__ == "__main__":
         for name, text in generate(Path(folder)).items():
             (STUBS / name).write_text(text)
             print(STUBS / name)
+    OPTIONS.write_text(option_types(PASSED_ON))
+    print(OPTIONS)

@@ -114,7 +114,7 @@ def test_the_arm_gets_to_what_is_returned(box_map: mg.ProbabilisticSdf) -> None:
         assert np.allclose(placed.fk(rating.q), grasp.T_object_hand, atol=2e-4)
     base[:3, 3] = [-5.0, 0.0, 0.0]
     far = mg.synthesize_grasps(box_map, hand, table=0.0, arm=arm.at(base), samples=60)
-    assert far.outcome == mg.Outcome.not_found and far.arm["unreachable"] == far.counts["arm"] > 0
+    assert far.outcome == mg.Outcome.not_found and far.arm.unreachable == far.counts["arm"] > 0
 
 
 def test_a_hand_of_seven_joints_pinches(box_map: mg.ProbabilisticSdf) -> None:

@@ -84,7 +84,7 @@ def test_timeline_adds_up_and_knows_where_things_are() -> None:
     assert reach_half.arm == pytest.approx([0.2, 0.25]) and reach_half.held is None
     lifting = timeline.state_at(4.0 + 3.0 + GRIP_TIME + 0.5)
     assert lifting.held is not None and lifting.held[0] == "A/brick_0"
-    assert timeline.state_at(timeline.duration).gone == {"A/brick_0", "B & C/brick_0"}
+    assert timeline.state_at(timeline.duration).removed == {"A/brick_0", "B & C/brick_0"}
     times = timeline.grasp_times()
     assert [row for row, _ in times] == [0, 0] and [time for _, time in times] == pytest.approx([7.0, 15.5])
 

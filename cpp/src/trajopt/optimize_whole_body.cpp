@@ -12,7 +12,7 @@ namespace mmgrasp {
 namespace {
 
 constexpr double kBarrier = 1e-2;  // the first; durations are of the order of 10 s
-constexpr double kRepair = 1e-2;   // barrier with which a solution is mended
+constexpr double kRepair = 1e-2;   // barrier with which a solution is repaired
 
 std::shared_ptr<const WholeBodyTrajectory> trajectory_of(const WholeBodyProblem& problem,
                                                          const detail::WholeBodyNlp& nlp, const Eigen::VectorXd& x) {

@@ -97,7 +97,7 @@ class PickCheck {
   void check_openings() {
     for (int kind = 0; kind < kKinds; ++kind) {
       const CheckedMotion& m = motion(kind);
-      const double width = grasp_->width;
+      const double width = grasp_->opening;
       if (!(m.opening >= -kOpening && m.opening <= plan_.max_opening + kOpening)) {
         fault("opening", name(kind), text(m.opening) + " m is outside [0, " + text(plan_.max_opening) + "]");
       } else if (is_holding(kind) && std::abs(m.opening - width) > kOpening) {
@@ -150,7 +150,7 @@ class PickCheck {
     const Pose& T_world_part = part_->body.T_world_body;
     const Pose T_world_grasp = judge_.tip(motion(kApproach).positions.back());
     T_tip_part_ = T_world_grasp.inverse() * T_world_part;
-    check_grasp_reached(context_, T_world_part * grasp_->T_object_tcp, T_world_grasp, name(kApproach), faults_);
+    check_grasp_reached(context_, T_world_part * grasp_->T_object_hand, T_world_grasp, name(kApproach), faults_);
     check_approach(context_, judge_.tip(motion(kApproach).positions.front()), T_world_grasp, name(kApproach), faults_);
     check_lift(context_, judge_.tip(motion(kLift).positions.front()), judge_.tip(motion(kLift).positions.back()),
                name(kLift), faults_);
@@ -165,13 +165,13 @@ class PickCheck {
     walk(kApproach);
     const Eigen::VectorXd& at_grasp = motion(kApproach).positions.back();
     judge_.hold(body_, T_tip_part_);
-    hand_.check_grip(at_grasp, grasp_->width, context_.pick_name(index_));
-    hand_.check_fingers(at_grasp, motion(kApproach).opening, grasp_->width,
+    hand_.check_grip(at_grasp, grasp_->opening, context_.pick_name(index_));
+    hand_.check_fingers(at_grasp, motion(kApproach).opening, grasp_->opening,
                         context_.pick_name(index_) + ", fingers closing");
     walk(kLift);
     walk(kTransfer);
     judge_.drop();
-    hand_.check_fingers(motion(kTransfer).positions.back(), grasp_->width, motion(kRetreat).opening,
+    hand_.check_fingers(motion(kTransfer).positions.back(), grasp_->opening, motion(kRetreat).opening,
                         context_.pick_name(index_) + ", fingers opening over the bin");
     walk(kRetreat);
     hand_.check_fingers(plan_.home, motion(kRetreat).opening, 0,

@@ -39,8 +39,8 @@ struct Context {
 bool check_structure(const PlanToCheck& plan, const RobotModel& robot, Faults& faults, ArmSetup& setup,
                      std::vector<int>& finger_links);
 
-/// Listed grasps that have something between the pads, and used ones of their parts' widths (grasp_width.cpp).
-void check_grasp_widths(const Context& context, Faults& faults);
+/// Listed grasps that have something between the pads, and used ones of their parts' widths (grasp_opening.cpp).
+void check_grasp_openings(const Context& context, Faults& faults);
 /// Which part is picked when and where (picks.cpp).
 void check_pick_list(Context& context, Faults& faults);
 /// The five motions of each pick (arm_motions.cpp).

@@ -48,8 +48,8 @@ class DriveByCheck {
     for (const VectorXd& row : motion_.accelerations)
       if (row.size() != motion_.positions.front().size()) return fault("motion-shape", "accelerations are too few");
     part_ = &plan_.parts[context_.pick_part[drive_by_.pick]];
-    width_ = part_->grasps[pick.grasp].width;
-    T_world_grasp_ = part_->body.T_world_body * part_->grasps[pick.grasp].T_object_tcp;
+    width_ = part_->grasps[pick.grasp].opening;
+    T_world_grasp_ = part_->body.T_world_body * part_->grasps[pick.grasp].T_object_hand;
     check_motion_limits(context_, judge_.kinematics(), arm_of(motion_), where_, faults_);
     check_base_course(plan_, motion_, where_, faults_);
     check_ends(pick);

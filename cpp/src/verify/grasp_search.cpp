@@ -63,10 +63,10 @@ bool GraspSearch::serves(const Eigen::Vector3d& base_pose, const std::vector<int
 bool GraspSearch::try_hold(int part, Hold& hold) {
   const CheckedPart& p = context_.plan.parts[part];
   const CheckedGrasp& grasp = p.grasps[hold.grasp];
-  if (grasp.width > context_.plan.max_opening + 1e-6) return false;
-  const Pose T_root_tip = judge_.T_world_root().inverse() * p.body.T_world_body * grasp.T_object_tcp;
+  if (grasp.opening > context_.plan.max_opening + 1e-6) return false;
+  const Pose T_root_tip = judge_.T_world_root().inverse() * p.body.T_world_body * grasp.T_object_hand;
   if (!solve_tip_pose(judge_.kinematics(), T_root_tip, tolerance_, hold.arm)) return false;
-  return !judge_.touch(hold.arm, context_.pregrasp_opening(grasp.width));
+  return !judge_.touch(hold.arm, context_.pregrasp_opening(grasp.opening));
 }
 
 /// Other grasps from what the pools know, then from anywhere.

@@ -10,12 +10,12 @@
 namespace mmgrasp::verify::detail {
 namespace {
 
-constexpr int kTries = 300;         // IK solutions tried for a part: fewer than at the stops, which must be robust.
-constexpr int kBeside = 2;          // Cells so many rows or columns from a region are beside it.
-constexpr double kInside = 0.85;    // Least share of the poses drawn in a region that serve all its parts.
-constexpr double kOutside = 0.5;    // Largest share of the cells beside it that do: planners search less hard.
-constexpr double kClaimed = 0.9;    // Least share of the poses drawn in the disc that a stop claims.
-constexpr std::size_t kFewest = 5;  // Fewer samples than this tell nothing.
+constexpr int kTries = 300;             // IK solutions tried for a part: fewer than at the stops, which must be robust.
+constexpr int kBeside = 2;              // Cells so many rows or columns from a region are beside it.
+constexpr double kLeastServing = 0.85;  // Least share of the poses drawn in a region that serve all its parts.
+constexpr double kOutside = 0.5;        // Largest share of the cells beside it that do: planners search less hard.
+constexpr double kClaimed = 0.9;        // Least share of the poses drawn in the disc that a stop claims.
+constexpr std::size_t kFewest = 5;      // Fewer samples than this tell nothing.
 
 struct Cell {
   int layer, ix, iy;
@@ -99,7 +99,7 @@ class RegionCheck {
       good += serves(cells.pose(cell, x, y), parts);
       ++tried;
     }
-    if (tried >= kFewest && static_cast<double>(good) < kInside * static_cast<double>(tried)) {
+    if (tried >= kFewest && static_cast<double>(good) < kLeastServing * static_cast<double>(tried)) {
       faults_.push_back({"region-inflated", where,
                          "only from " + std::to_string(good) + " of " + std::to_string(tried) +
                              " base poses drawn in it all parts can be grasped"});

@@ -145,7 +145,7 @@ void Structure::scalars() {
   need(is_pose(plan.T_base_bin), "place_region", "the bin's pose is not a finite rigid transform");
   need(finite(Eigen::VectorXd(plan.bin_size)) && plan.bin_size.minCoeff() > 0, "place_region",
        "the bin's size must be positive");
-  need(finite(plan.drop_gap) && plan.drop_gap >= 0, "place_region", "drop_gap must not be negative");
+  need(finite(plan.drop_height) && plan.drop_height >= 0, "place_region", "drop_height must not be negative");
   need(finite(plan.closing_speed) && plan.closing_speed > 0, "closing_speed", "must be positive");
   for (std::size_t i = 0; i < plan.stops.size(); ++i) {
     need(finite(Eigen::VectorXd(plan.stops[i].pose)) && finite(plan.stops[i].radius), "stop " + std::to_string(i),
@@ -176,8 +176,8 @@ void Structure::scene() {
     need(trays.count(part.tray) > 0, where, "its tray '" + part.tray + "' is unknown");
     for (std::size_t i = 0; i < part.grasps.size(); ++i) {
       const CheckedGrasp& grasp = part.grasps[i];
-      need(is_pose(grasp.T_object_tcp) && finite(grasp.width) && grasp.width >= 0, where,
-           "grasp " + std::to_string(i) + ": its pose is not rigid or its width is not a number >= 0");
+      need(is_pose(grasp.T_object_hand) && finite(grasp.opening) && grasp.opening >= 0, where,
+           "grasp " + std::to_string(i) + ": its pose is not rigid or its opening is not a number >= 0");
     }
   }
   for (const auto& [a, b] : plan.allowed_collisions) {

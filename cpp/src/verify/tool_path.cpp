@@ -76,10 +76,10 @@ void check_release(const Context& context, const CheckedPart& part, const Pose& 
     faults.push_back({"release-tilted", where, "the part is let go tilted by " + text(tilt) + " rad from how it lay"});
   }
   const double height = lowest_z(part.body.shapes, T_world_bin.inverse() * T_world_released);
-  if (height < -kBelowGap || height > plan.drop_gap + kAboveGap) {
+  if (height < -kBelowGap || height > plan.drop_height + kAboveGap) {
     faults.push_back({"release-height", where,
                       "the part's lowest point is " + text(height) + " m over the bin's top, allowed is [" +
-                          text(-kBelowGap) + ", " + text(plan.drop_gap + kAboveGap) + "]"});
+                          text(-kBelowGap) + ", " + text(plan.drop_height + kAboveGap) + "]"});
   }
 }
 

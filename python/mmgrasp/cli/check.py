@@ -28,9 +28,11 @@ class RobotCheck:
 
     @property
     def ok(self) -> bool:
+        """No problem was found; doubts do not count."""
         return not self.problems
 
     def to_dict(self) -> dict[str, Any]:
+        """Plain values, as `mmgrasp check --json` prints them."""
         robot = self.robot
         return {
             "ok": self.ok,

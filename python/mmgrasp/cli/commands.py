@@ -45,6 +45,7 @@ DONE, FAULTY, BAD_INPUT, NO_PLAN, INTERRUPTED = 0, 1, 2, 3, 130
 
 
 def run_plan(arguments: argparse.Namespace, console: Console) -> int:
+    """`mmgrasp plan`: plans a scenario and writes what it found; the exit code."""
     folder = OutputFolder(arguments.out)
     with Reporter(console) as report:
         scenario = load_scenario(
@@ -73,6 +74,7 @@ def run_plan(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def exit_code(outcome: Outcome) -> int:
+    """Of an outcome."""
     return {
         Outcome.solved: DONE,
         Outcome.stopped: INTERRUPTED,
@@ -100,12 +102,14 @@ def write_outputs(plan: ScenarioPlan, out: Path, report: Callable[[str, float], 
 
 
 def report_page(content: dict[str, Any], pictures: Path) -> str:
+    """The report of a plan, with the pictures of a folder."""
     from ..viz.report import report_html
 
     return str(report_html(content, pictures))
 
 
 def run_verify(arguments: argparse.Namespace, console: Console) -> int:
+    """`mmgrasp verify`: checks a plan; the exit code."""
     options = {key: value for key in ("samples", "threads") if (value := getattr(arguments, key)) is not None}
     with Reporter(console) as report:
         verdict = verify_plan(
@@ -119,6 +123,7 @@ def run_verify(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def run_check(arguments: argparse.Namespace, console: Console) -> int:
+    """`mmgrasp check`: looks at a robot; the exit code."""
     if arguments.write_srdf is not None:
         check_file(arguments.write_srdf)
     with Reporter(console) as report:
@@ -138,6 +143,7 @@ def run_check(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def run_view(arguments: argparse.Namespace, console: Console) -> int:
+    """`mmgrasp view`: a plan in the browser; the exit code."""
     content = read_plan(arguments.plan)
     root = Document(str(arguments.plan), content, {}).root  # says what is wrong with a damaged plan before it is drawn
     check_names(root)
@@ -160,6 +166,7 @@ def run_view(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def run_bench(arguments: argparse.Namespace, console: Console) -> int:
+    """`mmgrasp bench`: plans the queries of a motion benchmark; the exit code."""
     from ..problems.motion_bench import MBM_SETS
     from ..problems.motion_bench_run import holds, run_motion_bench
 
@@ -184,6 +191,7 @@ def run_bench(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def run_reproduce(arguments: argparse.Namespace, console: Console) -> int:
+    """`mmgrasp reproduce`: papers' tables beside ours; the exit code."""
     from .. import reproduce as again
     from ..reproduce.page import markdown, store
 
@@ -235,6 +243,7 @@ COMMANDS = {
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
+    """The command; its exit code. Errors of the user are one line on stderr."""
     open_streams()
     parsed = build_parser().parse_args(arguments)
     console = Console(highlight=False)

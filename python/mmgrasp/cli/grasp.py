@@ -29,6 +29,7 @@ _SHARES = ("angle", "placement", "centring", "certainty")
 
 
 def run_grasp(arguments: argparse.Namespace, console: Console) -> int:
+    """`mmgrasp grasp`: ranked grasps of the objects in a map; the exit code."""
     hand = read_gripper(arguments.gripper)
     objects, plane = _read_objects(arguments.map)
     chosen = _chosen(objects, arguments.object, arguments.map)

@@ -105,6 +105,7 @@ SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
 
 
 def options_page() -> str:
+    """docs/options.md."""
     lines = ["# Options of a scenario", "", "Written by `./dev docs` from the library's own defaults.", ""]
     for section, title, table, elsewhere in SECTIONS:
         lines += [f"## `{section}`: {title}", "", "| option | default | meaning |", "|---|---|---|"]

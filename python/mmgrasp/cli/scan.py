@@ -44,6 +44,7 @@ _MOST_LINES = 10
 
 
 def run_scan(arguments: argparse.Namespace, console: Console) -> int:
+    """`mmgrasp scan`: depth frames to a map with its objects; the exit code."""
     folder = OutputFolder(arguments.out, SCAN_FILES)
     if folder.path == Path(os.path.realpath(arguments.frames)):
         raise InvalidInput(f"--out {arguments.out}: must be another folder than that of the frames")

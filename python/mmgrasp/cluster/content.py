@@ -21,6 +21,7 @@ class Hasher:
         self._hash = hashlib.sha256()
 
     def add(self, value: Any, where: str = "value") -> Hasher:
+        """Takes a value in, containers and files by their contents; raises InvalidInput for what has none."""
         if value is None or isinstance(value, (bool, int, str)):
             self._put(type(value).__name__, repr(value).encode())
         elif isinstance(value, float):
@@ -53,6 +54,7 @@ class Hasher:
         self._hash.update(data)
 
     def hex(self) -> str:
+        """Over all that was taken in, 32 digits."""
         return self._hash.hexdigest()[:32]
 
 

@@ -6,10 +6,11 @@ import functools
 import os
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 from .._core import Error, InvalidInput, JointGroup, ReachDatabase
 from .._files import write_file
+from .._options import ReachOptions
 from .._progress import Progress
 from ..scenario import Scenario, load_scenario
 from .content import arm_key
@@ -25,7 +26,7 @@ def build_database(
     *,
     engine: Engine,
     progress: Progress = None,
-    **options: Any,
+    **options: Unpack[ReachOptions],
 ) -> ReachDatabase:
     """What ReachDatabase.build_to gives at `path`, bit for bit, its parts drawn on the engine.
 
@@ -35,18 +36,18 @@ def build_database(
     """
     place = named(source)
     arm, given = _arm(place)
-    options = {**given, **options}
-    options.pop("threads", None)
+    keywords: dict[str, Any] = {**given, **options}
+    keywords.pop("threads", None)
     key = arm_key(arm)
-    count = ReachDatabase.part_count(arm, **options)
+    count = ReachDatabase.part_count(arm, **keywords)
     numbers = [list(range(i, min(i + PARTS_A_SHARD, count))) for i in range(0, count, PARTS_A_SHARD)]
-    items = [{"source": place, "key": key, "options": options, "parts": parts} for parts in numbers]
+    items = [{"source": place, "key": key, "options": keywords, "parts": parts} for parts in numbers]
     partial = Path(f"{os.fspath(path)}.partial")
     partial.parent.mkdir(parents=True, exist_ok=True)
     for files in engine.run(draw_parts, items, progress=progress, stage="reachability database"):
         for name, content in files.items():
             write_file(partial / name, content)
-    return ReachDatabase.build_to(os.fspath(path), arm, progress=progress, **options)
+    return ReachDatabase.build_to(os.fspath(path), arm, progress=progress, **keywords)
 
 
 def draw_parts(source: Any, key: str, options: dict[str, Any], parts: list[int]) -> dict[str, bytes]:

@@ -141,6 +141,7 @@ def run_shard(key: str, code: str, run: str, function: Callable[..., Any], item:
 
 
 def default_folder() -> Path:
+    """Where shards are kept unless a folder is given."""
     return Path(_core.cache_folder()) / "shards"
 
 

@@ -18,7 +18,8 @@ from .engine import Engine
 class ProblemSource(Protocol):
     """A frozen dataclass of plain values that makes the same problem on every machine (mmgrasp.reproduce.setup.Row)."""
 
-    def problem(self) -> PartSupplyProblem: ...
+    def problem(self) -> PartSupplyProblem:
+        """The problem, made where it is needed."""
 
 
 def compute_base_regions(
@@ -82,6 +83,7 @@ def _staying(part: Part) -> Part:
 
 
 def named(path: Any) -> Any:
+    """A path in full, so that workers in other folders find it; anything else as it is."""
     return (
         str(Path(path).resolve())
         if isinstance(path, (str, os.PathLike)) and not str(path).startswith("asset:")

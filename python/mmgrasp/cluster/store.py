@@ -20,6 +20,7 @@ class ShardStore:
         self._kept: dict[str, Any] = {}  # without a folder
 
     def path(self, key: str) -> Path | None:
+        """File of a shard; None without a folder."""
         return None if self.folder is None else self.folder / key[:2] / f"{key}.shard"
 
     def get(self, key: str) -> tuple[bool, Any]:
@@ -37,6 +38,7 @@ class ShardStore:
         return True, pickle.loads(payload)
 
     def put(self, key: str, result: Any) -> None:
+        """Keeps a result: in its file, written whole or not at all, or in memory."""
         path = self.path(key)
         if path is None:
             self._kept[key] = result

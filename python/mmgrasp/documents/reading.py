@@ -27,8 +27,14 @@ DEEPEST = 50  # levels of a file
 LARGEST_SCENARIO = 4_000_000  # [bytes]
 LARGEST_PLAN = 1_000_000_000  # [bytes]
 
-RENAMED = {"carry": "place_region"}
-"""Keys of version 1 of the files by what they are called since version 2."""
+RENAMED = {
+    "carry": "place_region",
+    "tcp": "tool_link",
+    "tcp_link": "tool_link",
+    "drop_gap": "drop_height",
+    "width": "opening",  # of a grasp
+}
+"""Keys of versions 1 and 2 of scenarios, robot profiles and plans by what they are called now."""
 
 
 def near_miss(wrong: str, known: list[str]) -> str:
@@ -61,6 +67,7 @@ class Document:
 
     @property
     def root(self) -> Node:
+        """The whole of it."""
         return Node(self, self.raw, ())
 
 
@@ -74,6 +81,7 @@ class Node:
 
     @property
     def name(self) -> str:
+        """Its keys from the top, e.g. trays[2].pose."""
         text = ""
         for key in self.path:
             text += f"[{key}]" if isinstance(key, int) else (f".{key}" if text else key)
@@ -81,6 +89,7 @@ class Node:
 
     @property
     def place(self) -> str:
+        """Its file and line, as far as they are known."""
         path = self.path
         while path and path not in self.document.lines:
             path = path[:-1]
@@ -88,6 +97,7 @@ class Node:
         return f"{self.document.source}:{line}" if line else self.document.source
 
     def fail(self, rule: str) -> NoReturn:
+        """Raises InvalidInput: place, name, value and the rule that it breaks."""
         shown = _SHORT.repr(self.raw)
         raise InvalidInput(f"{self.place}: {self.name} = {shown}: {rule}")
 
@@ -106,21 +116,24 @@ class Node:
         return self
 
     def refuse_key(self, known: list[str]) -> NoReturn:
+        """Raises InvalidInput for an unknown key, with its new name or the nearest known one."""
         key = str(self.path[-1])
         new = RENAMED.get(key)
         hint = f"; it is called {new} now" if new in known else near_miss(key, known)
         raise InvalidInput(f"{self.place}: {self.name}: unknown key{hint}")
 
-    def read_version(self, current: int) -> None:
-        """Of a file: its key `version` must be the current one."""
+    def read_version(self, current: int, renamed: Mapping[str, str] | None = None) -> None:
+        """Of a file: its key `version` must be the current one; of keys of older ones says what they are called now."""
         if self["version"].integer() != current:
-            old = ", ".join(f"{old} is {new}" for old, new in RENAMED.items() if old in self.raw)
+            used = _keys(self.raw)
+            old = ", ".join(f"{old} is {new}" for old, new in (renamed or {}).items() if old in used)
             self["version"].fail(f"this version of mmgrasp reads version {current}" + (f": {old} now" if old else ""))
 
     def __contains__(self, key: str) -> bool:
         return isinstance(self.raw, Mapping) and key in self.raw
 
     def child(self, key: Key) -> Node:
+        """What stands at a key or index; it must be there."""
         return Node(self.document, self.raw[key], (*self.path, key))
 
     def __getitem__(self, key: str) -> Node:
@@ -131,6 +144,7 @@ class Node:
         return self.child(key)
 
     def items(self) -> Iterator[tuple[str, Node]]:
+        """Keys and values of a mapping."""
         if not isinstance(self.raw, Mapping):
             self.fail("must be a mapping")
         for key in self.raw:
@@ -140,12 +154,14 @@ class Node:
 
     # --- lists ----------------------------------------------------------------------------------------------------
     def elements(self) -> list[Node]:
+        """Of a list."""
         if not isinstance(self.raw, list):
             self.fail("must be a list")
         return [self.child(i) for i in range(len(self.raw))]
 
     # --- scalars --------------------------------------------------------------------------------------------------
     def number(self, *, above: float | None = None, least: float | None = None) -> float:
+        """A finite number within bounds."""
         value = self.raw
         if isinstance(value, bool) or not isinstance(value, int | float):
             self.fail("must be a number")
@@ -162,6 +178,7 @@ class Node:
         return float(value)
 
     def integer(self, *, least: int | None = None) -> int:
+        """A whole number within bounds."""
         value = self.raw
         if isinstance(value, bool) or not isinstance(value, int):
             self.fail("must be a whole number")
@@ -172,11 +189,13 @@ class Node:
         return value
 
     def boolean(self) -> bool:
+        """true or false."""
         if not isinstance(self.raw, bool):
             self.fail("must be true or false")
         return self.raw
 
     def string(self) -> str:
+        """A text that is not empty."""
         if not isinstance(self.raw, str) or not self.raw:
             self.fail("must be a text that is not empty")
         return self.raw
@@ -191,12 +210,14 @@ class Node:
         return value
 
     def choice(self, *known: str) -> str:
+        """One of the known words."""
         value = self.string()
         if value not in known:
             self.fail("must be one of " + ", ".join(known))
         return value
 
     def numbers(self, count: int | None = None, *, above: float | None = None) -> list[float]:
+        """A list of numbers, of this length if one is given."""
         elements = self.elements()
         if count is not None and len(elements) != count:
             self.fail(f"must be a list of {count} numbers")
@@ -226,6 +247,13 @@ class Node:
                 self["quat_xyzw"].fail("must have norm 1")
             return pose(xyz, quat_xyzw=quat)
         return pose(xyz, rpy=self["rpy"].numbers(3) if "rpy" in self else [0, 0, 0])
+
+
+def _keys(raw: Any) -> set[str]:
+    """Of all mappings in a document."""
+    if isinstance(raw, Mapping):
+        return {str(key) for key in raw}.union(*map(_keys, raw.values()))
+    return set().union(*map(_keys, raw)) if isinstance(raw, list) else set()
 
 
 def read_yaml(path: Path) -> Document:

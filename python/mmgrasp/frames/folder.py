@@ -37,12 +37,15 @@ class Layout:
 
     @property
     def depth_scale(self) -> float:
+        """Units of a depth image in a metre."""
         return float(self.reader.DEPTH_SCALE)
 
     def found(self, folder: Path) -> bool:
+        """Whether a folder looks like this layout."""
         return bool(self.reader.found(folder))
 
     def frames(self, folder: Path, root: Path, sensor: str) -> list[Frame]:
+        """Frames of a folder in order; raises IoError or InvalidInput where they do not fit."""
         listed: list[Frame] = self.reader.frames(folder, root, sensor)
         return listed
 

@@ -57,6 +57,7 @@ class Intrinsics:
         return replace(self, width=width, height=height).check()
 
     def camera(self, nearest: float, farthest: float) -> PinholeCamera:
+        """The camera, once the size of its images is known."""
         assert self.width is not None and self.height is not None
         return PinholeCamera(self.width, self.height, self.fx, self.fy, self.cx, self.cy, nearest, farthest)
 

@@ -37,6 +37,7 @@ class NpzFrame:
 
 
 def found(folder: Path) -> bool:
+    """Whether a folder holds .npz files."""
     return any(folder.glob("*.npz"))
 
 

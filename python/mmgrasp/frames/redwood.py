@@ -18,6 +18,7 @@ _LARGEST = 500_000_000  # [bytes]
 
 
 def found(folder: Path) -> bool:
+    """Whether a folder has depth/ and a trajectory."""
     return (folder / "depth").is_dir() and any(folder.glob("*.log"))
 
 
@@ -92,6 +93,6 @@ def _indices(images: list[Path], poses: dict[int, np.ndarray | str], path: Path)
         if own == list(range(1, len(own) + 1)) and len(own) > len(poses):
             return [number - 1 for number in own]
     raise InvalidInput(
-        f"{path}: has {len(poses)} poses for {len(images)} numbered images in depth/: which belongs to which cannot be told; "
+        f"{path}: has {len(poses)} poses for {len(images)} numbered images in depth/: which belongs to which is not known; "
         "number the images from 0, or let there be as many"
     )

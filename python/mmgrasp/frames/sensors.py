@@ -52,6 +52,7 @@ class Sensor:
 
     @property
     def shown(self) -> str:
+        """Its name and where it is described, for messages."""
         return f"sensor '{self.name}'" + (f" ({self.place})" if self.place else "")
 
     def camera(self) -> DepthCamera:

@@ -12,6 +12,7 @@ BESIDE = (".color.png", ".rgb.png")  # other images that belong to a frame
 
 
 def found(folder: Path) -> bool:
+    """Whether a folder has images or poses named as 7-Scenes does."""
     return any(folder.glob(f"*{IMAGE}")) or any(folder.glob(f"*{POSE}"))
 
 

@@ -22,6 +22,7 @@ _LARGEST = 500_000_000  # [bytes]
 
 
 def found(folder: Path) -> bool:
+    """Whether a folder has a ground truth as TUM RGB-D does."""
     return (folder / TRUTH).is_file()
 
 

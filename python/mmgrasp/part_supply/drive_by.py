@@ -12,13 +12,14 @@ import json
 import os
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
 from .. import _core
 from .._core import InvalidInput, JointGroup, Outcome, Pick, World
 from .._files import write_file
+from .._options import DriveByOptions
 from .._progress import Progress
 from .planning import ScenarioPlan, file_name
 from .round_motion import RoundMotion
@@ -163,7 +164,9 @@ class DriveByPlan:
         return written
 
 
-def plan_drive_by_picks(plan: ScenarioPlan, *, progress: Progress = None, **options: Any) -> DriveByPlan:
+def plan_drive_by_picks(
+    plan: ScenarioPlan, *, progress: Progress = None, **options: Unpack[DriveByOptions]
+) -> DriveByPlan:
     """Tries to take the first part at each stop in passing. Keywords are those of `plan_drive_by`.
 
     Raises InvalidInput for a plan that is not solved and for a robot that does not drive.
@@ -174,13 +177,13 @@ def plan_drive_by_picks(plan: ScenarioPlan, *, progress: Progress = None, **opti
     if problem.robot.base == "fixed":
         raise InvalidInput("plan: the robot has a fixed base")
     out = DriveByPlan(plan, problem)
-    gone: set[tuple[int, int]] = set()
+    removed: set[tuple[int, int]] = set()
     here = np.asarray(problem.start, float)
     for leg, stop in enumerate(plan.stops):
         picks = [i for i, pick in enumerate(plan.picks) if pick.stop == leg]
         if picks:
-            out.picks.append(_in_passing(plan, problem, leg, here, picks[0], gone, progress, options))
-        gone.update((plan.picks[i].tray, plan.picks[i].part) for i in picks)
+            out.picks.append(_in_passing(plan, problem, leg, here, picks[0], removed, progress, options))
+        removed.update((plan.picks[i].tray, plan.picks[i].part) for i in picks)
         here = np.asarray(stop.pose, float)
     return out
 
@@ -191,9 +194,9 @@ def _in_passing(
     leg: int,
     here: np.ndarray,
     index: int,
-    gone: set[tuple[int, int]],
+    removed: set[tuple[int, int]],
     progress: Progress,
-    options: dict[str, Any],
+    options: DriveByOptions,
 ) -> DriveByPick:
     pick = plan.picks[index]
     part = problem.trays[pick.tray].parts[pick.part]
@@ -214,12 +217,12 @@ def _in_passing(
     # The arm's numbers as the pick before left them: continuous joints may be whole turns from home.
     start = np.array([*here, *merged[0].trajectory.positions[0]])
     stage = f"drive-by {leg + 1} of {len(plan.stops)}: {part.name}"
-    group, world = _moving_group(plan, problem, opening), _world(problem, gone)
+    group, world = _moving_group(plan, problem, opening), _world(problem, removed)
     told = progress and (lambda _, fraction: progress(stage, fraction))
     known = _one_after_the_other(plan.route[leg].poses, plan.route[leg].duration(problem.robot), merged, dwell)
     reports = []
     for waypoints in [options["waypoints"]] if "waypoints" in options else WAYPOINTS:
-        keywords = {**options, "waypoints": waypoints}
+        keywords: DriveByOptions = {**options, "waypoints": waypoints}
         result = _core.shorten_drive_by(group, world, tasks=tasks, **known, progress=told, **keywords)
         reports.append(result.report)
         if result.outcome == Outcome.solved:
@@ -307,12 +310,12 @@ def _moving_group(plan: ScenarioPlan, problem: _core.PartSupplyProblem, opening:
     return group.with_reference(joints)
 
 
-def _world(problem: _core.PartSupplyProblem, gone: set[tuple[int, int]]) -> World:
+def _world(problem: _core.PartSupplyProblem, removed: set[tuple[int, int]]) -> World:
     """Scene and the parts still in place."""
     world = problem.scene.copy()
     for t, tray in enumerate(problem.trays):
         for p, part in enumerate(tray.parts):
-            if (t, p) in gone:
+            if (t, p) in removed:
                 world.forget(part.name)
             else:
                 world.add(part.name, part.shapes, part.T_world_part)

@@ -28,9 +28,9 @@ _SETS = ("intersections", "lost_intersections")
 
 
 def _hand(plan: Plan) -> Found:
-    tool, tip = plan["scenario"]["gripper"]["tcp_link"], plan["scenario"]["arm"]["tip_link"]
+    tool, tip = plan["scenario"]["gripper"]["tool_link"], plan["scenario"]["arm"]["tip_link"]
     if tool != tip:
-        yield "scenario.gripper.tcp_link", f"is {tool}, the arm ends at {tip}"
+        yield "scenario.gripper.tool_link", f"is {tool}, the arm ends at {tip}"
 
 
 def _options(plan: Plan) -> Found:

@@ -9,10 +9,10 @@ from typing import Any
 
 from .._core import InvalidInput
 from .._files import SCHEMAS
-from ..documents.reading import Node, read_json
+from ..documents.reading import RENAMED, Node, read_json
 from ..scenario.schema import check_schema
 
-VERSION = 2
+VERSION = 3
 
 
 def read_plan(path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -24,10 +24,11 @@ def read_plan(path: str | os.PathLike[str]) -> dict[str, Any]:
 
 
 def check_header(root: Node) -> None:
+    """Raises InvalidInput unless format and version are those of a plan that this version reads."""
     if not isinstance(root.raw, dict) or "format" not in root.raw:
         raise InvalidInput(f"{root.document.source}: is no plan: the key format: mmgrasp-plan is missing")
     root["format"].choice("mmgrasp-plan")
-    root.read_version(VERSION)
+    root.read_version(VERSION, RENAMED)
 
 
 def check_form(root: Node) -> None:

@@ -95,7 +95,7 @@ def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
     place = scenario["place_region"]
     plan.T_base_bin = place["pose"].pose()
     plan.bin_size = np.array(place["size"].numbers(2, above=0))
-    plan.drop_gap = place["drop_gap"].number(least=0)
+    plan.drop_height = place["drop_height"].number(least=0)
     plan.obstacles = [_read_body(node) for node in scenario["obstacles"].elements()]
     plan.trays = [tray["name"].string() for tray in scenario["trays"].elements()]
     farthest = scenario["options"]["grid_max_distance"].number(least=0) or math.inf
@@ -105,7 +105,9 @@ def _read_scene(plan: checks.PlanToCheck, scenario: Node) -> None:
     }
     parts = []
     for node in scenario["parts"].elements():
-        grasps = [checks.CheckedGrasp(g["pose"].pose(), g["width"].number(least=0)) for g in node["grasps"].elements()]
+        grasps = [
+            checks.CheckedGrasp(g["pose"].pose(), g["opening"].number(least=0)) for g in node["grasps"].elements()
+        ]
         tray = node["tray"]
         if tray.string() not in plan.trays:
             tray.fail("no such tray")

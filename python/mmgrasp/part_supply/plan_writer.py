@@ -80,7 +80,7 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
             "acceleration_limits": arm.acceleration_limits.tolist(),
         },
         "gripper": {
-            "tcp_link": gripper.tool_link,
+            "tool_link": gripper.tool_link,
             "approach": gripper.approach.tolist(),
             "closing": gripper.closing.tolist(),
             "max_opening": gripper.max_opening,
@@ -100,7 +100,7 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
         "place_region": {
             "pose": pose_to_dict(place.T_base_bin),
             "size": place.size.tolist(),
-            "drop_gap": place.drop_gap,
+            "drop_height": place.drop_height,
         },
         "obstacles": [
             {"name": o.name, "pose": pose_to_dict(o.pose), "shapes": [shape_to_dict(s) for s in o.shapes]}
@@ -179,7 +179,7 @@ def _part(part: _core.Part, tray: TraySetup) -> dict[str, Any]:
         "pose": pose_to_dict(part.T_world_part),
         "shapes": [shape_to_dict(s) for s in part.shapes],
         "grasps": [
-            {"pose": pose_to_dict(g.T_object_hand), "width": g.opening, "quality": g.quality}
+            {"pose": pose_to_dict(g.T_object_hand), "opening": g.opening, "quality": g.quality}
             | ({"probability": g.quality} if tray.scan else {})
             for g in part.grasps
         ]

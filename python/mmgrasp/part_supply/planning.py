@@ -16,7 +16,7 @@ from .._files import write_file
 from .._progress import Progress
 from ..scenario import Scenario, load_scenario
 from .plan_writer import plan_to_dict, scenario_to_dict
-from .premises import premises
+from .premises import Premises, premises
 from .round_motion import RoundMotion
 
 
@@ -62,7 +62,7 @@ class ScenarioPlan:
         return self.plan.obstructions
 
     @property
-    def premises(self) -> dict[str, Any]:
+    def premises(self) -> Premises:
         """What the least number of stops was proven for: headings, cells, grasps, ... (docs/plan_format.md)."""
         return premises(
             {

@@ -3,10 +3,23 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, TypedDict
 
 
-def premises(plan: dict[str, Any]) -> dict[str, Any]:
+class Premises(TypedDict):
+    """What a proven least number of stops holds for: the section `premises` of plan.json (docs/plan_format.md)."""
+
+    headings: dict[str, list[float]]  # of the base, by tray [rad]
+    positioning_uncertainty: float  # radius of the discs [m]
+    cell: float  # edge of the base grid's cells [m]
+    max_distance: float  # of cells from the tray's middle [m]; 0: as far as the arm reaches
+    grasps: int  # of all parts
+    ik_seeds: int  # configurations of the database refined for each grasp and base pose
+    database: dict[str, Any]  # options of the reachability database, as the scenario has them
+    search_finished: bool  # the proof was
+
+
+def premises(plan: dict[str, Any]) -> Premises:
     """The section `premises` of a plan.json, from its sections `scenario`, `grid` and `proven_minimal`."""
     scenario = plan["scenario"]
     options, reach = scenario["options"], scenario["reach"]
@@ -22,7 +35,7 @@ def premises(plan: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def premises_text(said: dict[str, Any]) -> str:
+def premises_text(said: Premises) -> str:
     """The premises as the end of a sentence, e.g. "for base headings of 0°, 90° (each tray at its own), ..."."""
     by_tray = [sorted({round(math.degrees(h)) % 360 for h in headings}) for headings in said["headings"].values()]
     angles = sorted({angle for headings in by_tray for angle in headings})

@@ -110,7 +110,7 @@ def _improbable(root: Node, scan: Node, sdf: ProbabilisticSdf) -> list[checks.Fa
         if "probability" not in grasp:
             faults.append(checks.Fault("grasp-probability", where, "its grasp of a scanned part has no probability"))
             continue
-        claimed, width = grasp["probability"].number(least=0), grasp["width"].number(least=0)
+        claimed, width = grasp["probability"].number(least=0), grasp["opening"].number(least=0)
         found = _pads(root, scan, part, grasp, sdf)
         if found is None:
             faults.append(
@@ -123,7 +123,7 @@ def _improbable(root: Node, scan: Node, sdf: ProbabilisticSdf) -> list[checks.Fa
             faults.append(checks.Fault("grasp-probability", where, text))
         if abs(between - width) > _MOST_WIDER:
             text = f"its grasp says {width:.4f} m, in the map the pads meet the part at {between:.4f} m"
-            faults.append(checks.Fault("grasp-width", where, text))
+            faults.append(checks.Fault("grasp-opening", where, text))
     return faults
 
 
@@ -136,7 +136,7 @@ def _pads(root: Node, scan: Node, part: Node, grasp: Node, sdf: ProbabilisticSdf
     T = T_world_part @ grasp["pose"].pose()
     approach, closing = (np.array(gripper[key].numbers(3)) for key in ("approach", "closing"))
     clearance = gripper["clearance"].number(least=0)
-    wide = min(grasp["width"].number() + 2 * clearance, gripper["max_opening"].number())
+    wide = min(grasp["opening"].number() + 2 * clearance, gripper["max_opening"].number())
     n = int(options["rays"])
     steps = (np.arange(n) + 0.5) / n - 0.5
     u, v = np.meshgrid(

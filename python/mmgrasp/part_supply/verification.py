@@ -6,10 +6,11 @@ import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 from .._core import InvalidInput
 from .._core import verify as checks
+from .._options import CheckOptions
 from .._progress import Progress
 from ..documents.reading import Document, read_json
 from ..scenario import load_scenario
@@ -64,7 +65,7 @@ def verify_plan(
     scenario: str | os.PathLike[str] | None = None,
     robot: str | None = None,
     progress: Progress = None,
-    **options: Any,
+    **options: Unpack[CheckOptions],
 ) -> PlanVerdict:
     """Checks a plan given as plan.json or as its content, against the scenario stored in it.
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 import yaml
@@ -28,6 +28,7 @@ from .._core import (
     World,
     pose,
 )
+from .._options import CheckerOptions
 from ..documents.reading import bad_yaml
 
 MBM_SETS = ("bookshelf_small", "bookshelf_tall", "bookshelf_thin", "box", "cage", "table_pick", "table_under_pick")
@@ -88,7 +89,7 @@ class MotionProblem:
         movable = set(robot.joints) - set(group.names)
         return robot, group.with_reference({name: value for name, value in self.start.items() if name in movable})
 
-    def checker(self, robot: Robot, **options: Any) -> CollisionChecker:
+    def checker(self, robot: Robot, **options: Unpack[CheckerOptions]) -> CollisionChecker:
         """Checks the problem's group (see setting()) in its scene; options as CollisionChecker's."""
         robot, group = self.setting(robot)
         return CollisionChecker(robot, self.world_of(robot), group=group, **options)

@@ -7,12 +7,13 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
 from .._core import IoError, Robot, plan_motion
 from .._core.verify import CheckedBody, check_path
+from .._options import MotionOptions
 from ..documents.reading import check_name
 from .motion_bench import MBM_SETS, MotionProblem, read_motion_problems
 
@@ -77,7 +78,7 @@ def run_set(
     problems: Iterable[MotionProblem],
     seeds: Sequence[int] = (1,),
     verify_step: float = 0.005,
-    **options: Any,
+    **options: Unpack[MotionOptions],
 ) -> SetResult:
     """Solves each problem with each seed; options as plan_motion's."""
     for problem, seed in itertools.product(problems, seeds):
@@ -106,7 +107,7 @@ def run_motion_bench(
     limit: int = 50,
     seeds: Sequence[int] = (1,),
     progress: Callable[[str, float], None] | None = None,
-    **options: Any,
+    **options: Unpack[MotionOptions],
 ) -> list[SetResult]:
     """Every set of every robot; `data` holds robots/<name>_vamp and planning/vamp_<name>."""
     for name in sets:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,6 +26,7 @@ from .._core import (
     RandomPlacement,
     Sphere,
 )
+from .._options import GraspabilityOptions
 
 BORDER = 0.06  # seen around a tray, since fingers may stand beside it [m]
 MARKER = 0.001  # radius of the body that stands for a grasp [m]
@@ -41,6 +42,7 @@ class TrayScan:
 
     @property
     def grasps(self) -> list[Grasp]:
+        """Of all parts seen, in the world."""
         return self.found.grasps
 
 
@@ -65,7 +67,7 @@ def scan_random_tray(
     camera_height: float = 0.8,
     noise: float = 0.0005,
     resolution: float = 0.002,
-    **options: Any,
+    **options: Unpack[GraspabilityOptions],
 ) -> RandomTrayScan:
     """Fills a tray at random, renders it from above its middle and evaluates graspability.
 
@@ -105,7 +107,7 @@ def scan_tray(
     T_tray_camera: ArrayLike | None = None,
     noise: float = 0.0005,
     resolution: float = 0.002,
-    **options: Any,
+    **options: Unpack[GraspabilityOptions],
 ) -> TrayScan:
     """Renders a tray in which parts lie at `poses` (T_tray_part each) and evaluates graspability.
 

@@ -6,12 +6,15 @@ import itertools
 import math
 import statistics
 import time
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .. import _core
 from .drawing import figure, paper_and_ours
 from .entry import Context, Entry, Result
 from .setup import RESOLUTION, Row, database, describe, reach_samples
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 PAPER = {
     (1, 1): (306, 0.22),
@@ -62,16 +65,18 @@ def run(context: Context) -> Result:
     sizes = [(1, 1), (1, 2), (2, 2), (3, 4)] if context.quick else list(PAPER)
     samples = reach_samples(context.quick)
     repeats = 1 if context.quick else 3
-    items = [{"row": Row(objects=size), "samples": samples, "repeats": repeats} for size in sizes]
+    rows = [Row(objects=size) for size in sizes]
+    items = [{"row": row, "samples": samples, "repeats": repeats} for row in rows]
     database(Row(), samples, progress=context.progress)
     found = context.sweep(measure, items, "p1-table-3.1")
-    alone = context.sweep(measure, [{**item, "row": item["row"].with_(threads=1)} for item in items], "one thread")
+    single_thread = [{"row": row.with_(threads=1), "samples": samples, "repeats": repeats} for row in rows]
+    alone = context.sweep(measure, single_thread, "one thread")
     result = Result(setup=describe(Row(), samples, "objects", "trays"))
     for size, ours, single in zip(sizes, found, alone, strict=True):
-        cells, seconds = PAPER[size]
+        paper_cells, paper_seconds = PAPER[size]
         values = result.row({"objects": f"{size[0]}x{size[1]}"})
-        values[CELLS] = (cells, ours["cells"])
-        values[TIME] = (seconds, ours["seconds"])
+        values[CELLS] = (paper_cells, ours["cells"])
+        values[TIME] = (paper_seconds, ours["seconds"])
         values["objects' regions kept (s)"] = (None, ours["kept seconds"])
         values["one thread (s)"] = (None, single["seconds"])
         values["radius of the inscribed circle (m)"] = (None, ours["radius"])
@@ -101,7 +106,7 @@ def run(context: Context) -> Result:
     return result
 
 
-def draw(result: dict[str, Any]):
+def draw(result: dict[str, Any]) -> Figure:
     """Figures 3.13 and 3.15."""
     objects = [row["values"]["objects"]["ours"] for row in result["rows"]]
     fig, axes = figure(9.0, 3.6, columns=2)

@@ -7,7 +7,7 @@ camera are not described there by numbers; ours are stated in each result's set-
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
@@ -26,7 +26,19 @@ TABLE_TOP = {"height": 0.75, "thickness": 0.04, "depth": 0.8, "width": 1.6}  # [
 NEAR, FAR = 0.40, 1.25  # from the robot's middle to the table's edge [m]
 OBJECT_BEHIND_EDGE = 0.15  # [m]
 UP_TO_THE_FAR_OBJECT = (1.6, 1.0, 2.6)  # the grid's upper corner, so that its end takes nothing away there [m]
-SHELF = {"boards": [0.40, 0.75, 1.10, 1.45], "depth": 0.40, "width": 0.90, "thickness": 0.02, "front": 0.60}  # [m]
+
+
+class ShelfSizes(TypedDict):
+    """Of the shelf and where it stands [m]."""
+
+    boards: list[float]  # heights
+    depth: float
+    width: float
+    thickness: float
+    front: float  # from the robot's middle
+
+
+SHELF: ShelfSizes = {"boards": [0.40, 0.75, 1.10, 1.45], "depth": 0.40, "width": 0.90, "thickness": 0.02, "front": 0.60}
 
 
 def _robot() -> Robot:

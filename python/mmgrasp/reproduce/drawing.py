@@ -4,24 +4,40 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
+from .._core import BaseGrid
 from ..viz.style import TRAY_COLOURS as TRAY_COLOURS
 
-PAPER_STYLE = {"color": "#8a8f98", "marker": "s", "linestyle": "--", "label": "paper"}
-OUR_STYLE = {"color": "#1f6fb4", "marker": "o", "linestyle": "-", "label": "ours"}
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 
-def figure(width: float, height: float, columns: int = 1, rows: int = 1):
+class LineStyle(TypedDict):
+    """Keywords of matplotlib's plot."""
+
+    color: str
+    marker: str
+    linestyle: str
+    label: str
+
+
+PAPER_STYLE: LineStyle = {"color": "#8a8f98", "marker": "s", "linestyle": "--", "label": "paper"}
+OUR_STYLE: LineStyle = {"color": "#1f6fb4", "marker": "o", "linestyle": "-", "label": "ours"}
+
+
+def figure(width: float, height: float, columns: int = 1, rows: int = 1) -> tuple[Figure, list[Axes]]:
+    """A figure of this size [inch] and its axes, row by row."""
     os.environ.setdefault("MPLBACKEND", "Agg")
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     made = Figure(figsize=(width, height), dpi=110, layout="constrained")
     FigureCanvasAgg(made)
-    axes = made.subplots(rows, columns, squeeze=False).ravel()
+    axes = list(made.subplots(rows, columns, squeeze=False).ravel())
     for axis in axes:
         axis.grid(True, color="#e4e6ea", linewidth=0.8)
         axis.set_axisbelow(True)
@@ -29,7 +45,7 @@ def figure(width: float, height: float, columns: int = 1, rows: int = 1):
     return made, axes
 
 
-def paper_and_ours(axis, x: Sequence[Any], rows: Sequence[dict[str, Any]], name: str) -> None:
+def paper_and_ours(axis: Axes, x: Sequence[Any], rows: Sequence[dict[str, Any]], name: str) -> None:
     """One column of a table over x; what is not printed is left out."""
     for side, style in (("paper", PAPER_STYLE), ("ours", OUR_STYLE)):
         points = [
@@ -51,7 +67,7 @@ def cells_to_runs(cells: np.ndarray) -> list[list[int]]:
     return runs
 
 
-def draw_cells(axis, grid: dict[str, Any], runs: list[list[int]], colour: str, alpha: float = 0.45) -> None:
+def draw_cells(axis: Axes, grid: dict[str, Any], runs: list[list[int]], colour: str, alpha: float = 0.45) -> None:
     """Runs of cells as filled bars in the world's x and y, the row of trays from left to right."""
     from matplotlib.patches import Rectangle
 
@@ -64,5 +80,5 @@ def draw_cells(axis, grid: dict[str, Any], runs: list[list[int]], colour: str, a
         )
 
 
-def grid_values(grid) -> dict[str, Any]:
+def grid_values(grid: BaseGrid) -> dict[str, Any]:
     return {"resolution": grid.resolution, "origin": [float(v) for v in grid.origin], "nx": grid.nx, "ny": grid.ny}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import itertools
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from .. import _core
 from .._files import shipped
 from .drawing import figure
 from .entry import Context, Entry, Result
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 # P1 4.2. The convention of G's angles is not printed: roll, pitch, yaw, as 3.2.1 has it.
 START = [0.0] * 10
@@ -138,7 +141,7 @@ def run_trajectory(context: Context) -> Result:
     return result
 
 
-def draw_trajectory(result: dict[str, Any]):
+def draw_trajectory(result: dict[str, Any]) -> Figure:
     fig, axes = figure(11.0, 4.6, columns=5, rows=2)
     drawing = result["drawing"]
     for axis, name, line in zip(axes, drawing["names"], drawing["positions"], strict=True):
@@ -189,7 +192,7 @@ def run_nonholonomic(context: Context) -> Result:
     return result
 
 
-def draw_nonholonomic(result: dict[str, Any]):
+def draw_nonholonomic(result: dict[str, Any]) -> Figure:
     fig, (axis,) = figure(6.0, 3.2)
     drawing = result["drawing"]
     axis.semilogy(drawing["times"], np.maximum(drawing["violation"], 1e-18), "o-", color="#1f6fb4", label="ours")
@@ -220,7 +223,7 @@ def run_times(context: Context) -> Result:
     for solver, name in (("ipopt", "Ipopt"), ("slsqp", "SLSQP")):
         outcomes = [o["outcome"] for i, o in zip(items, found, strict=True) if i["solver"] == solver]
         result.exact(f"{name} solves every size", all(outcome == "solved" for outcome in outcomes))
-    fine = [o["duration"] for i, o in zip(items, found, strict=True) if i["solver"] == "ipopt" and i["waypoints"] >= 50]
+    fine = [ours["duration"] for n, ours in zip(sizes["ipopt"], found, strict=False) if n >= 50]  # Ipopt's come first
     if fine:
         result.trend("from 50 waypoints up durations agree within 2 %", max(fine) <= 1.02 * min(fine))
     result.notes.append(
@@ -230,7 +233,7 @@ def run_times(context: Context) -> Result:
     return result
 
 
-def draw_times(result: dict[str, Any]):
+def draw_times(result: dict[str, Any]) -> Figure:
     fig, (axis,) = figure(6.0, 3.6)
     for solver, colour, marker in (("ipopt", "#1f6fb4", "o"), ("slsqp", "#8a8f98", "s")):
         rows = [r for r in result["rows"] if r["key"]["solver"] == solver]
@@ -269,7 +272,7 @@ def run_two_grasps(context: Context) -> Result:
     return result
 
 
-def draw_two_grasps(result: dict[str, Any]):
+def draw_two_grasps(result: dict[str, Any]) -> Figure:
     fig, axes = figure(9.0, 3.4, columns=2)
     for axis, (name, lines) in zip(axes, result["drawing"].items(), strict=True):
         axis.plot(*lines["base"], color="#8a8f98", label="base")
@@ -322,12 +325,14 @@ def run_discontinuity(context: Context) -> Result:
     return result
 
 
-def draw_discontinuity(result: dict[str, Any]):
+def draw_discontinuity(result: dict[str, Any]) -> Figure:
+    from matplotlib.ticker import MaxNLocator
+
     fig, (axis,) = figure(6.0, 3.2)
     drawing = result["drawing"]
     axis.step(drawing["shifts"], drawing["intervals"], color="#8a8f98", label="common: nearest interval")
     axis.axhline(drawing["waypoint"], color="#1f6fb4", label="a waypoint of its own")
-    axis.yaxis.get_major_locator().set_params(integer=True)
+    axis.yaxis.set_major_locator(MaxNLocator(integer=True))
     axis.set(xlabel="shift of the whole way [m]", ylabel="waypoint the task depends on")
     axis.legend(frameon=False)
     return fig

@@ -38,7 +38,7 @@ class Context:
     progress: Progress = None
     run_sweep: Sweep = sweep_here
 
-    def sweep(self, function: Callable[..., dict[str, Any]], items: Iterable[dict[str, Any]], stage: str) -> list:
+    def sweep(self, function: Callable[..., dict[str, Any]], items: Iterable[dict[str, Any]], stage: str) -> list[Any]:
         """A measurement for each item, in their order; here or on a cluster."""
         return self.run_sweep(function, list(items), progress=self.progress, stage=stage)
 

@@ -7,7 +7,7 @@ stand where its positioning error takes it.
 from __future__ import annotations
 
 import statistics
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from .entry import Context, Entry, Result
 from .rows import SPACING
 from .scanned_trays import SCANS, parts_from, random_scan
 from .setup import UNCERTAINTY, Row, database, describe, reach_samples
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 TRAYS = (1, 2, 4)
 MIDDLES = tuple(round((tray - 1) * SPACING, 6) for tray in TRAYS)
@@ -82,7 +85,7 @@ def _missed(rng: np.random.Generator, problem: _core.PartSupplyProblem, target: 
     moving = problem.robot.group("arm", tip=problem.gripper.tool_link, with_base=True)
     checker = _core.CollisionChecker(problem.robot, problem.scene, group=moving)
     while True:
-        pose = target + [*rng.normal(0.0, UNCERTAINTY / np.sqrt(np.pi / 2), 2), 0.0]
+        pose: np.ndarray = target + [*rng.normal(0.0, UNCERTAINTY / np.sqrt(np.pi / 2), 2), 0.0]
         if checker.is_free([*pose, *problem.home]):
             return pose
 
@@ -120,7 +123,7 @@ def _braces(trays: list[int]) -> str:
     return "{" + ",".join(map(str, trays)) + "}"
 
 
-def draw_experiment(result: dict[str, Any]):
+def draw_experiment(result: dict[str, Any]) -> Figure:
     """Figures 3.18 and 3.19 from above."""
     from matplotlib.patches import Rectangle
 
@@ -131,12 +134,16 @@ def draw_experiment(result: dict[str, Any]):
         y = drawing["middles"][i]
         axis.add_patch(Rectangle((y - 0.2, -0.15), 0.4, 0.3, fill=False, edgecolor=TRAY_COLOURS[i], linewidth=1.5))
         axis.annotate(str(TRAYS[i]), (y, 0), ha="center", va="center", color=TRAY_COLOURS[i])
-    for name, style in (
-        ("baseline", {"color": "#8a8f98", "marker": "s"}),
-        ("stops", {"color": "#C1121F", "marker": "o"}),
-    ):
+    for name, colour, marker in (("baseline", "#8a8f98", "s"), ("stops", "#C1121F", "o")):
         x, y = [p[1] for p in drawing[name]], [p[0] for p in drawing[name]]
-        axis.plot(x, y, linestyle="none", label="planned stops" if name == "stops" else "baseline", **style)
+        axis.plot(
+            x,
+            y,
+            linestyle="none",
+            color=colour,
+            marker=marker,
+            label="planned stops" if name == "stops" else "baseline",
+        )
     axis.set(xlabel="along the row [m]", ylabel="towards the trays [m]", aspect="equal", ylim=(-1.3, 0.7))
     axis.set(xlim=(min(drawing["middles"]) - 1.1, max(drawing["middles"]) + 1.1))
     axis.legend(frameon=False, loc="upper left")

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import time
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .. import _core
 from .drawing import PAPER_STYLE, figure
 from .entry import Context, Entry, Result
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 WIDTH, MAX_OPENING = 0.2, 0.4
 PAPER = {0.3: 0.13, 0.03: 0.76}
@@ -64,7 +67,7 @@ def run_line(context: Context) -> Result:
     return result
 
 
-def draw_line(result: dict[str, Any]):
+def draw_line(result: dict[str, Any]) -> Figure:
     drawing = result["drawing"]
     fig, axes = figure(9.0, 3.6, columns=2)
     for axis, (sigma, found) in zip(axes, drawing["contours"].items(), strict=True):
@@ -176,7 +179,7 @@ def run_samples(context: Context) -> Result:
     return result
 
 
-def draw_samples(result: dict[str, Any]):
+def draw_samples(result: dict[str, Any]) -> Figure:
     fig, axes = figure(9.0, 3.6, columns=2)
     for axis, column in zip(axes, ("processor time [s]", "maximum success probability"), strict=True):
         for name in result["setup"]["objects"]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from .._progress import Progress
 from .drawing import figure
 from .entry import Context, Entry, Result
 from .setup import Row, database, robot_setup
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 POSE = (0.6, 0.0, 0.8, 0.0, 0.5, 0.5)  # x, y, z [m], roll, pitch, yaw [rad]
 PAPER_POSES, PAPER_VOXELS, PAPER_FOUND = 92_000_000, 2_000_000, 151
@@ -114,7 +117,7 @@ def run(context: Context) -> Result:
     return result
 
 
-def draw(result: dict[str, Any]):
+def draw(result: dict[str, Any]) -> Figure:
     fig, axes = figure(9.0, 4.0, columns=2)
     for axis, (a, b), names in zip(axes, ((0, 2), (0, 1)), (("x", "z"), ("x", "y")), strict=True):
         for line in result["drawing"]["arms"]:

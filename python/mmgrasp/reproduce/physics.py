@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .._core import Outcome
 from .drawing import OUR_STYLE, PAPER_STYLE, figure
 from .entry import Context, Entry, Result
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 SHARES = (0.2, 0.5, 1.0)
 ERRORS = (0.0, 0.005, 0.010, 0.015, 0.020, 0.025, 0.030)
@@ -101,7 +104,7 @@ def run(context: Context) -> Result:
             "trials": len(items),
         }
     )
-    curves: dict[str, list] = {}
+    curves: dict[str, list[list[float]]] = {}
     for share in sorted({i["share"] for i in items}):
         for error in sorted({i["error"] for i in items}):
             values = result.row({"speed": share, "position error [mm]": round(1000 * error, 1)})
@@ -149,10 +152,13 @@ def run(context: Context) -> Result:
     return result
 
 
-def draw(result: dict[str, Any]):
+def draw(result: dict[str, Any]) -> Figure:
     """Figure 4.10 from the recorded states, and the success curves below."""
-    from ..sim.bottle import Bottle, robot_setup
-    from ..sim.pictures import Camera, Painter
+    from ..sim.bottle import Bottle
+    from ..sim.control import RecordedState
+    from ..sim.passing import robot_setup
+    from ..sim.pictures import Painter
+    from ..viz.raster import Camera
 
     bottle, setup = Bottle(), robot_setup()
     painter = Painter(setup.robot, setup.gripper, bottle.scene(), [bottle.part()])
@@ -168,7 +174,13 @@ def draw(result: dict[str, Any]):
         row, column = divmod(i, columns)
         axis = fig.add_subplot(grid[row, column * len(shares) : (column + 1) * len(shares)])
         camera = Camera(np.array([2.2, -2.9, 1.7]), np.array([2.0, -0.4, 0.65]), 340, 270, fov=46)
-        axis.imshow(painter.picture({**state, "parts": {"bottle": np.array(state["bottle"])}}, camera))
+        recorded: RecordedState = {
+            "time": state["time"],
+            "base": state["base"],
+            "joints": state["joints"],
+            "parts": {"bottle": np.array(state["bottle"])},
+        }
+        axis.imshow(painter.picture(recorded, camera))
         axis.set_title(f"({i + 1}) {state['time']:.2f} s", fontsize=9)
         axis.axis("off")
     for k, share in enumerate(shares):
@@ -176,7 +188,14 @@ def draw(result: dict[str, Any]):
         axis.grid(True, color="#e4e6ea", linewidth=0.8)
         for name, style in (("plain closing", PAPER_STYLE), ("push-grasp", OUR_STYLE)):
             line = np.array(curves[f"{share} {name}"])
-            axis.plot(line[:, 0], 100 * line[:, 1], **{**style, "label": name})
+            axis.plot(
+                line[:, 0],
+                100 * line[:, 1],
+                color=style["color"],
+                marker=style["marker"],
+                linestyle=style["linestyle"],
+                label=name,
+            )
         axis.set(xlabel="position error [mm]", ylabel="grasped [%]", ylim=(-5, 105), title=f"speed x {share}")
         axis.legend(frameon=False, fontsize=8)
     return fig

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -81,16 +81,16 @@ def seeds_of(context: Context) -> range:
     return range(SEEDS * (context.seed - 1) + 1, SEEDS * context.seed + 1)
 
 
-def paired(done: Iterable[dict[str, Any]], values: Callable[[Any], tuple[float | None, float | None]]) -> list[Pair]:
+def paired(done: Iterable[dict[str, Any]], values: Iterable[tuple[float | None, float | None]]) -> list[Pair]:
     """Of each run, which says where it belongs, two values: first the one that is to be larger."""
-    return [Pair(d["seed"], d["number"], *values(d)) for d in done]
+    return [Pair(d["seed"], d["number"], *two) for d, two in zip(done, values, strict=True)]
 
 
-def by_seed(done: Iterable[dict[str, Any]], value: Callable[[Any], float]) -> str:
-    """Means over the runs of each seed, in words."""
+def by_seed(done: Iterable[dict[str, Any]], values: Iterable[float]) -> str:
+    """Means of the runs' values over each seed, in words."""
     found: dict[int, list[float]] = {}
-    for d in done:
-        found.setdefault(d["seed"], []).append(value(d))
+    for d, value in zip(done, values, strict=True):
+        found.setdefault(d["seed"], []).append(value)
     return ", ".join(f"{np.mean(values):.3g}" for values in found.values())
 
 

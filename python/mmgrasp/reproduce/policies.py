@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
@@ -23,6 +23,9 @@ from .scanned_trays import (
 )
 from .setup import UNCERTAINTY, Row, database, describe, grid_of, reach_samples
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 PAPER = {
     "Reg/ALL": ("Reliable", 0.100, "OK", "Yes"),
     "Reg/updateR": ("Reliable", 0.155, "OK", "Yes"),
@@ -36,6 +39,16 @@ BETTER = "Reg/updateT, optimised order"
 ONLINE = 1.0  # a round's stops must be known in this time [s]
 
 Cells = list[list[np.ndarray]]  # [tray][part]
+
+
+class Limits(TypedDict):
+    """Keywords of run_policy."""
+
+    min_radius: float
+    online_limit: float
+
+
+LIMITS: Limits = {"min_radius": UNCERTAINTY, "online_limit": ONLINE}
 
 
 def told(result: _core.PolicyResult, held: list[float]) -> dict[str, Any]:
@@ -69,8 +82,7 @@ def regular(row: Row, samples: int) -> dict[str, Any]:
     cells: Cells = [[objects.region(t, [k]) for k in every] for t in trays]
     middles = row.tray_middles()
     paired = _core.paired_order([row.object_places() + [0.0, middles[t]] for t in trays])
-    limits = {"min_radius": UNCERTAINTY, "online_limit": ONLINE}
-    static = _core.run_policy(grid, cells, paired, "all", **limits)
+    static = _core.run_policy(grid, cells, paired, "all", **LIMITS)
     groups = [tuple(stop.trays) for stop in static.rounds[0].stops]
     best = _core.optimised_order(grid, cells, groups, paired)
     out = {}
@@ -78,7 +90,7 @@ def regular(row: Row, samples: int) -> dict[str, Any]:
         *((f"Reg/{name}", paired, policy) for name, policy in POLICIES.items()),
         (BETTER, best.order, "targets"),
     ]:
-        ran = static if policy == "all" else _core.run_policy(grid, cells, order, policy, **limits)
+        ran = static if policy == "all" else _core.run_policy(grid, cells, order, policy, **LIMITS)
         held = []
         for i in every:
             chosen = {"all": list(every), "remaining": None, "targets": None}[policy]
@@ -121,10 +133,10 @@ def randomly(row: Row, samples: int, seed: int) -> dict[str, Any]:
 
     for fill in FILLS:
         estimated(fill)  # known offline (P1 3.5.2)
-    out, groups = {}, []
+    out: dict[str, dict[str, Any]] = {}
+    groups: list[tuple[int, ...]] = []
     for name, planned in {"ALL": lambda i: estimated(100), "updateR": left, "updateT": coming}.items():
-        limits = {"min_radius": UNCERTAINTY, "online_limit": ONLINE}
-        ran = _core.run_policy(grid, cells, order, POLICIES[name], planned=planned, **limits)
+        ran = _core.run_policy(grid, cells, order, POLICIES[name], planned=planned, **LIMITS)
         groups = groups or [tuple(stop.trays) for stop in ran.rounds[0].stops]
         served = [[g for g in (tuple(t for t in g if order[t][i] >= 0) for g in groups) if g] for i in range(COUNT)]
         held = [held_radius(grid, planned(i), served[i]) for i in range(COUNT) if served[i]]
@@ -186,7 +198,7 @@ def run(context: Context) -> Result:
     return result
 
 
-def draw(result: dict[str, Any]):
+def draw(result: dict[str, Any]) -> Figure:
     fig, axes = figure(9.0, 3.4, columns=2)
     colours = {"ALL": "#8a8f98", "updateR": "#1f6fb4", "updateT": "#d9822b", "updateT, optimised order": "#b8405e"}
     for axis, placement in zip(axes, ("Reg", "Rand"), strict=True):

@@ -79,17 +79,20 @@ def run_success(context: Context) -> Result:
             values[column] = (SUCCESS[count] if way == "open" else None, rate)
             if way == "open":
                 rates.append(rate)
-                values["of each seed"] = (None, by_seed(done, lambda d, k=k: d["found"]["open"][k]["solved"]))
+                values["of each seed"] = (None, by_seed(done, [d["found"]["open"][k]["solved"] for d in done]))
         values["grasps within reach at both ends"] = (None, mean(d["found"]["open"][k]["reachable"] for d in done))
     for number in problems:
         values = result.row({"grasps": f"problem {number}"})
         mine = [d for d in done if d["number"] == number]
         for way, column in COLUMNS.items():
             values[column] = (None, mean(float(f["solved"]) for d in mine for f in d["found"][way]))
-        values["of each seed"] = (None, by_seed(mine, lambda d: np.mean([f["solved"] for f in d["found"]["open"]])))
+        values["of each seed"] = (
+            None,
+            by_seed(mine, [float(np.mean([f["solved"] for f in d["found"]["open"]])) for d in mine]),
+        )
         values["grasps within reach at both ends"] = (None, mean(d["found"]["open"][-1]["reachable"] for d in mine))
     result.exact(
-        "a solution stays one when grasps are added, and never gets dearer",
+        "a solution stays one when grasps are added, and never gets costlier",
         all(
             b["solved"] and b["cost"] <= a["cost"] + 1e-9
             for d in done
@@ -101,12 +104,14 @@ def run_success(context: Context) -> Result:
     for way, column in COLUMNS.items():
         result.statement(
             f"{column}: {counts[-1]} grasps less {counts[0]}",
-            paired(done, lambda d, way=way: (d["found"][way][-1]["solved"], d["found"][way][0]["solved"])),
+            paired(done, [(d["found"][way][-1]["solved"], d["found"][way][0]["solved"]) for d in done]),
         )
     for style in ("open", "narrow"):
         result.statement(
             f"{style} cells, {counts[-1]} grasps: roadmap as it ships less gamma 4",
-            paired(done, lambda d, s=style: (d["found"][f"{s}, shipped"][-1]["solved"], d["found"][s][-1]["solved"])),
+            paired(
+                done, [(d["found"][f"{style}, shipped"][-1]["solved"], d["found"][style][-1]["solved"]) for d in done]
+            ),
         )
     if not context.quick:
         result.trend(
@@ -164,7 +169,8 @@ def run_variants(context: Context) -> Result:
         for k, count in enumerate(counts)
         if all(d["found"][name][k]["solved"] for name in names)
     ]
-    for number in [*problems, "average"]:
+    keys: list[int | str] = [*problems, "average"]
+    for number in keys:
         mine = [d for d in kept if number in ("average", d["number"])]
         for i, name in enumerate(names):
             values = result.row({"problem": number, "variant": "batch, lazy over grasps" if name == "ours" else name})
@@ -187,7 +193,7 @@ def run_variants(context: Context) -> Result:
     ):
         result.statement(
             f"{key}, {larger} less {smaller}",
-            paired(kept, lambda d, key=key, a=larger, b=smaller: (d[a][key], d[b][key])),
+            paired(kept, [(d[larger][key], d[smaller][key]) for d in kept]),
             clock=key != "first cost",
         )
     result.trend(
@@ -291,7 +297,7 @@ def run_batches(context: Context) -> Result:
     total = [[d["found"][k]["total time"] for d in done] for k in range(len(sizes))]
     result.statement(
         "cost of the first solution, smallest batch less largest",
-        paired(done, lambda d: (d["found"][0]["first cost"], d["found"][-1]["first cost"])),
+        paired(done, [(d["found"][0]["first cost"], d["found"][-1]["first cost"]) for d in done]),
     )
     result.exact(
         "every batch size finds the same optimum",
@@ -304,9 +310,8 @@ def run_batches(context: Context) -> Result:
             20 <= sizes[best] <= 1000,
             clock=True,
         )
-    result.setup = describe(
-        context, runs, problems, grasps=count, **{"runs solved": len(done)}, **describe_roadmap(context, vertices)
-    )
+    result.setup = describe(context, runs, problems, grasps=count)
+    result.setup |= {"runs solved": len(done), **describe_roadmap(context, vertices)}
     return result
 
 

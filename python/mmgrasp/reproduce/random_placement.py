@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from .drawing import figure
 from .entry import Context, Entry, Result
 from .scanned_trays import COUNT, FILLS, REGULAR, SCANS, SETUP, part_cells, parts_from, random_scan
 from .setup import Row, database, describe, grid_of, reach_samples
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def measure(row: Row, samples: int, seed: int, fill: int) -> dict[str, Any]:
@@ -78,7 +81,7 @@ def run(context: Context) -> Result:
     return result
 
 
-def draw(result: dict[str, Any]):
+def draw(result: dict[str, Any]) -> Figure:
     fig, (axis,) = figure(6.0, 3.4)
     for fill, shade in zip(FILLS, ("#123f66", "#1f6fb4", "#6aa9dc", "#b5d4ee"), strict=True):
         rows = [row for row in result["rows"] if row["key"]["fill [%]"] == fill]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,6 +10,9 @@ from .. import _core
 from .drawing import TRAY_COLOURS, figure
 from .entry import Context, Entry, Result
 from .setup import UNCERTAINTY
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 # The figure prints no lengths. These circles (middles on a line, one radius) have what its text states: regions 1, 2 and 3
 # share a place that is also all that 1 and 3 share, and whose disc is too small; 1-2, 2-3 and 3-4 share more; 5 is alone.
@@ -59,7 +62,7 @@ def run(context: Context) -> Result:
     return result
 
 
-def draw(result: dict[str, Any]):
+def draw(result: dict[str, Any]) -> Figure:
     from matplotlib.patches import Circle
 
     fig, (axis,) = figure(9.0, 3.4)

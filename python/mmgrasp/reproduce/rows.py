@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import time
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from .. import _core
 from .drawing import figure, paper_and_ours
 from .entry import Context, Entry, Result
 from .setup import UNCERTAINTY, Row, database, describe, reach_samples
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 # Fixed beforehand from our figure 3.14: neighbours share a robust place, trays two apart do not.
 SPACING = 0.40
@@ -68,7 +71,7 @@ def plan(row: Row, samples: int) -> dict[str, Any]:
 
 def _straight_lengths(problem: _core.PartSupplyProblem, stops: list[_core.Stop]) -> np.ndarray:
     points = np.array([s.pose[:2] for s in stops] + [problem.start[:2], problem.goal[:2]])
-    return np.linalg.norm(points[:, None] - points[None], axis=2)
+    return np.asarray(np.linalg.norm(points[:, None] - points[None], axis=2))
 
 
 def pair_radius(row: Row, samples: int) -> dict[str, Any]:
@@ -126,7 +129,7 @@ def run_distance(context: Context) -> Result:
     return result
 
 
-def draw_distance(result: dict[str, Any]):
+def draw_distance(result: dict[str, Any]) -> Figure:
     fig, (axis,) = figure(6.0, 3.6)
     x = [row["key"]["distance [m]"] for row in result["rows"]]
     paper_and_ours(axis, x, result["rows"], "radius [m]")
@@ -220,10 +223,10 @@ def run_rows(context: Context) -> Result:
 
 
 def _linear(counts: list[int], found: list[dict[str, Any]]) -> bool:
-    return found[-1]["seconds"] / counts[-1] <= 2 * found[0]["seconds"] / counts[0]
+    return bool(found[-1]["seconds"] / counts[-1] <= 2 * found[0]["seconds"] / counts[0])
 
 
-def draw_rows(result: dict[str, Any]):
+def draw_rows(result: dict[str, Any]) -> Figure:
     """Figure 3.16."""
     fig, axes = figure(9.0, 3.6, columns=2)
     x = [row["key"]["trays"] for row in result["rows"]]
@@ -275,7 +278,7 @@ def run_spacings(context: Context) -> Result:
     return result
 
 
-def draw_spacings(result: dict[str, Any]):
+def draw_spacings(result: dict[str, Any]) -> Figure:
     fig, (axis,) = figure(6.0, 3.4)
     x = [row["key"]["spacing [m]"] for row in result["rows"]]
     paper_and_ours(axis, x, result["rows"], SIZE)

@@ -81,12 +81,12 @@ def run_compared(context: Context) -> Result:
     for name in PLANNERS[1:]:
         result.statement(
             f"success rate, RRT*-MG less {name}",
-            paired(each, lambda d, name=name: (d["RRT*-MG"]["solved"], d[name]["solved"])),
+            paired(each, [(d["RRT*-MG"]["solved"], d[name]["solved"]) for d in each]),
         )
         for key, what in (("cost", "best cost"), ("first time", "time to first solution [s]")):
             result.statement(
                 f"{what}, {name} less RRT*-MG where both succeed",
-                paired(each, lambda d, name=name, key=key: (d[name][key], d["RRT*-MG"][key])),
+                paired(each, [(d[name][key], d["RRT*-MG"][key]) for d in each]),
                 clock=key != "cost",
             )
     result.setup = describe(context, runs, problems, samples=SAMPLES, **describe_roadmap(context, large))
@@ -122,8 +122,10 @@ def versions(number: int, seed: int, run: int, counts: tuple[int, ...], samples:
     cell = pipe_cell(number, seed)
     found = {}
     for name, on in (("V1", False), ("V2", True)):
-        options = {"planner": "rrt_star_mg", "max_iterations": samples, "bidirectional": on, "informed": on}
-        found[name] = [carry(cell, count, run, **options) for count in counts]
+        found[name] = [
+            carry(cell, count, run, planner="rrt_star_mg", max_iterations=samples, bidirectional=on, informed=on)
+            for count in counts
+        ]
     return {"number": number, "seed": seed, "found": found}
 
 
@@ -144,7 +146,7 @@ def run_versions(context: Context) -> Result:
             values[column] = (p, o)
         values["success rate of each seed [%]"] = (
             None,
-            by_seed(done, lambda d, name=name: 100 * np.mean([one["solved"] for one in d["found"][name]])),
+            by_seed(done, [100 * float(np.mean([one["solved"] for one in d["found"][name]])) for d in done]),
         )
         values["runs"] = (None, len(flat[name]))
     each = [
@@ -152,11 +154,11 @@ def run_versions(context: Context) -> Result:
         for d in done
         for k in range(len(counts))
     ]
-    result.statement("success rate, V2 less V1", paired(each, lambda d: (d["V2"]["solved"], d["V1"]["solved"])))
+    result.statement("success rate, V2 less V1", paired(each, [(d["V2"]["solved"], d["V1"]["solved"]) for d in each]))
     for key in ("first time", "first cost", "cost"):
         result.statement(
             f"{key}, V1 less V2 where both succeed",
-            paired(each, lambda d, key=key: (d["V1"][key], d["V2"][key])),
+            paired(each, [(d["V1"][key], d["V2"][key]) for d in each]),
             clock="time" in key,
         )
     if not context.quick:
@@ -199,7 +201,9 @@ def explorations(number: int, seed: int, run: int, count: int, samples: int) -> 
     return {"number": number, "seed": seed, "found": found}
 
 
-def _explored(context: Context, name: str, problems: list[int], runs: int, paper: dict[float, tuple]) -> Result:
+def _explored(
+    context: Context, name: str, problems: list[int], runs: int, paper: dict[float, tuple[int, int, float]]
+) -> Result:
     count, samples = (100, 1000) if context.quick else (2000, 20000)
     items = [i | {"count": count, "samples": samples} for i in items_of(context, problems, runs)]
     done = context.sweep(explorations, items, name)
@@ -217,7 +221,7 @@ def _explored(context: Context, name: str, problems: list[int], runs: int, paper
         a, b = (k, 1) if paper[share][2] > paper[0.5][2] else (1, k)
         result.statement(
             f"cost, p_blt {EXPLORATION[a]:g} less {EXPLORATION[b]:g}",
-            paired(done, lambda d, a=a, b=b: (d["found"][a]["cost"], d["found"][b]["cost"])),
+            paired(done, [(d["found"][a]["cost"], d["found"][b]["cost"]) for d in done]),
         )
     if not context.quick:
         for key, values in result.rows:

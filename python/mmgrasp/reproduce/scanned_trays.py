@@ -64,6 +64,8 @@ def emptied_best_first(row: Row, tray: int, seed: int) -> list[Grasp | None]:
     return taken
 
 
-def part_cells(row: Row, parts: Sequence[Sequence[Part]], reach: _core.ReachDatabase, grid: _core.BaseGrid):
+def part_cells(
+    row: Row, parts: Sequence[Sequence[Part]], reach: _core.ReachDatabase, grid: _core.BaseGrid
+) -> _core.ObjectRegions:
     """[tray][part]: the cells from which that part can be grasped."""
     return _core.ObjectRegions.compute(row.problem(parts), reach, grid)

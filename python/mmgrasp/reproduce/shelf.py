@@ -169,7 +169,7 @@ def _run(context: Context, with_base: bool) -> Result:
             values[f"goal {g + 1} [%]"] = (paper[theirs][g], 100 * float(np.mean(solved)))
         rates[planner] = 100 * float(np.mean([d["solved"] for d in mine]))
         values["average [%]"] = (sum(paper[theirs]) / len(CLEARANCES), rates[planner])
-        values["of each seed [%]"] = (None, by_seed(mine, lambda d: 100 * d["solved"]))
+        values["of each seed [%]"] = (None, by_seed(mine, [100.0 * d["solved"] for d in mine]))
         values[f"solved within {SOON:g} s [%]"] = (None, 100 * float(np.mean([_soon(d) for d in mine])))
         times = [d["seconds"] for d in mine if d["solved"]]
         values["median time when solved [s]"] = (None, float(np.median(times)) if times else None)
@@ -208,7 +208,7 @@ def _run(context: Context, with_base: bool) -> Result:
 
 
 def _soon(done: dict[str, Any]) -> bool:
-    return done["solved"] and done["seconds"] <= SOON
+    return bool(done["solved"] and done["seconds"] <= SOON)
 
 
 def _pairs(done: list[dict[str, Any]], more: str, less: str) -> list[Pair]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,6 +11,9 @@ from .. import _core
 from .drawing import TRAY_COLOURS, cells_to_runs, draw_cells, figure, grid_values
 from .entry import Context, Entry, Result
 from .setup import Row, database, describe, reach_samples
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 # Four trays in a row at which trays up to two apart share places and the outer two do not: the paper's intersections.
 SPACING = 0.40
@@ -148,7 +151,7 @@ def run(context: Context) -> Result:
     return result
 
 
-def draw(result: dict[str, Any]):
+def draw(result: dict[str, Any]) -> Figure:
     """Figures 3.4 and 3.5."""
     from matplotlib.patches import Rectangle
 

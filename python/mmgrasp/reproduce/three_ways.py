@@ -97,14 +97,15 @@ def run(context: Context) -> Result:
     result = Result(setup=describe(row, samples, "spacing [m]", "trays"))
     result.setup["trays"] = f"1, 2 and 4 of a row {SPACING} m apart, one object each"
     result.setup["closing speed [m/s]"] = CLOSING_SPEED
-    whole = []
+    whole: list[float] = []
     for name, ours in (("a stop at each tray", three), ("minimal sequence", least)):
         values = result.row({"way": name})
-        whole.append(ours["driving"] + ours["picking"] if ours["solved"] else None)
+        if ours["solved"]:
+            whole.append(ours["driving"] + ours["picking"])
         values["stops"] = (None, ours.get("stops"))
         values["driving [s]"] = (None, ours.get("driving"))
         values["arm while standing [s]"] = (None, ours.get("picking"))
-        values["whole time [s]"] = (None, whole[-1])
+        values["whole time [s]"] = (None, whole[-1] if ours["solved"] else None)
     values = result.row({"way": "drive-by"})
     values["stops"] = (None, 0 if drive_by["solved"] else None)
     values["whole time [s]"] = (None, drive_by.get("duration"))

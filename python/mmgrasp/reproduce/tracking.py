@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
@@ -11,10 +11,25 @@ from .drawing import figure
 from .entry import Context, Entry, Result
 from .setup import robot_setup
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 LENGTH, DETOUR, SECONDS = 10.0, 1.2, 20.13  # P1 4.2: from x = 0 to x = 10 m past an object at y = -2 m, in 20.13 s
 PERIOD = 0.02
 ACCELERATION = 0.5  # [m/s^2]
-DISTURBANCE = {
+
+
+class Disturbance(TypedDict):
+    """Keywords of track_base."""
+
+    slip_left: float
+    slip_right: float
+    travel_noise: float
+    position_noise: float
+    heading_noise: float
+
+
+DISTURBANCE: Disturbance = {
     "slip_left": 0.03,
     "slip_right": 0.01,
     "travel_noise": 0.01,
@@ -101,7 +116,7 @@ def run(context: Context) -> Result:
     return result
 
 
-def draw(result: dict[str, Any]):
+def draw(result: dict[str, Any]) -> Figure:
     """The planned way and one run of each kind, from above."""
     fig, axes = figure(9.0, 3.4, columns=2)
     planned = np.array(result["drawing"]["planned"])

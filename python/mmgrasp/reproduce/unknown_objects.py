@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import numpy as np
@@ -70,29 +71,33 @@ def attempt(name: str, number: int, seed: int, rough: bool = False) -> dict[str,
     frames = [_frame(scene, np.array(place), k, rng) for k in range(VIEWS)]
     full, single = _map(frames), _map(frames[:1])
     hand = _hand()
-    options = {
-        "table": TABLE,
-        "friction": FRICTION,
-        "samples": SAMPLES,
-        "max_grasps": 40,
-        "seed": number + 1,
-        "threads": 1,
-    }
+    search = functools.partial(
+        _core.synthesize_grasps,
+        hand=hand,
+        table=TABLE,
+        friction=FRICTION,
+        samples=SAMPLES,
+        max_grasps=40,
+        seed=number + 1,
+        threads=1,
+    )
     for sigmas in CAUTIOUS:  # the most cautious that leaves a grasp
-        rated = _core.synthesize_grasps(full, hand, surface_draws=DRAWS, sigmas=sigmas, **options)
+        rated = search(full, surface_draws=DRAWS, sigmas=sigmas)
         if rated.grasps:
             break
-    certain: dict[str, Any] = {
-        "certainty_weight": 0.0,
-        "angle_weight": 2 / 3,
-        "placement_weight": 1 / 9,
-        "centring_weight": 2 / 9,
-    }
-    certain["angle_weight"] = 1 - certain["placement_weight"] - certain["centring_weight"]
+    mean_only = search(
+        full,
+        sigmas=0.0,
+        max_sigma=1.0,
+        certainty_weight=0.0,
+        angle_weight=1 - 1 / 9 - 2 / 9,
+        placement_weight=1 / 9,
+        centring_weight=2 / 9,
+    )
     lists = {
         "ours": list(zip(rated.grasps, (r.pretouch_opening for r in rated.ratings), strict=True)),
-        "mean only": _found(_core.synthesize_grasps(full, hand, sigmas=0.0, max_sigma=1.0, **certain, **options)),
-        "one view": _found(_core.synthesize_grasps(single, hand, **options)),
+        "mean only": _found(mean_only),
+        "one view": _found(search(single)),
         "from above": _from_above(scene, np.array(place), hand, rng),
     }
     from ..sim.model import Physics

@@ -31,6 +31,7 @@ class ScanOptions:
     max_memory: float
 
     def new_map(self) -> ProbabilisticSdf:
+        """An empty map with these options."""
         return ProbabilisticSdf(voxel=self.voxel, truncation=self.truncation, max_memory=self.max_memory)
 
 

@@ -13,11 +13,11 @@ from .. import _core
 from .._core import Box, Hand, HandJoint, InvalidInput, JointGroup, LinkShape, PlaceRegion, Robot
 from .._files import ASSETS, shipped
 from .._progress import Progress
-from ..documents.reading import Node, near_miss, read_yaml
+from ..documents.reading import RENAMED, Node, near_miss, read_yaml
 from .shapes import read_shapes
 
 BASE_LIMITS = "linear_velocity angular_velocity linear_acceleration angular_acceleration workspace wheel_velocity wheel_separation"
-ROBOT_KEYS = "urdf srdf packages xacro_args base base_limits mount frames group tcp joints home"
+ROBOT_KEYS = "urdf srdf packages xacro_args base base_limits mount frames group tool_link joints home"
 BIN_LINK = "place_bin"
 
 
@@ -104,7 +104,7 @@ def choose_sections(root: Node, robot_name: str | None) -> RobotSections:
 
 def _profile_sections(profile: Node) -> RobotSections:
     profile["format"].choice("mmgrasp-robot")
-    profile.read_version(2)
+    profile.read_version(3, RENAMED)
     profile.mapping("format version robot gripper place_region")
     return RobotSections(profile["robot"], profile["gripper"], profile["place_region"])
 
@@ -117,28 +117,28 @@ def read_gripper(source: str) -> Hand:
     path = shipped(source) if source.startswith("asset:") else profile_path(source)
     root = read_yaml(path).root
     sections = choose_sections(root, None) if "trays" in root else _profile_sections(root)
-    return _read_gripper(sections.gripper, _compose(sections.robot), sections.robot["tcp"].string())
+    return _read_gripper(sections.gripper, _compose(sections.robot), sections.robot["tool_link"].string())
 
 
 def read_setup(sections: RobotSections, progress: Progress = None) -> RobotSetup:
     """Composes the robot, finds which of its links can never touch, and sets up its arm, gripper and bin."""
-    node = sections.robot.mapping("urdf group tcp home", ROBOT_KEYS)
+    node = sections.robot.mapping("urdf group tool_link home", ROBOT_KEYS)
     robot = _compose(node)
-    tcp = node["tcp"].string()
-    _link(robot, node["tcp"])
-    gripper = _read_gripper(sections.gripper, robot, tcp)
+    tool_link = node["tool_link"].string()
+    _link(robot, node["tool_link"])
+    gripper = _read_gripper(sections.gripper, robot, tool_link)
     robot, bin_pose = _add_bin(robot, sections.place_region)
     robot = _core.with_sampled_pairs(robot, progress=progress)
 
     other = {name: _joint_value(robot, name, value) for name, value in _named_numbers(node, "joints")}
     closed = gripper.joint_values(0.0)
-    arm = _read_group(robot, node["group"], tcp)
+    arm = _read_group(robot, node["group"], tool_link)
     _check_joint_owners(sections, arm)
     arm = arm.with_reference({**other, **closed})
     home = _read_home(node["home"], arm)
     _fixed_to_root(arm, sections.place_region["parent"], home)
     if "finger_links" in sections.gripper:
-        _check_finger_links(sections.gripper["finger_links"], arm, tcp, home)
+        _check_finger_links(sections.gripper["finger_links"], arm, tool_link, home)
     speed = sections.gripper["closing_speed"].number(above=0) if "closing_speed" in sections.gripper else 0.1
     place_region = _read_place_region(sections.place_region, bin_pose)
     return RobotSetup(robot, arm, gripper, place_region, home, other, speed)
@@ -202,18 +202,18 @@ def _joint_value(robot: Robot, name: str, node: Node) -> float:
     return value
 
 
-def _read_group(robot: Robot, node: Node, tcp: str) -> JointGroup:
+def _read_group(robot: Robot, node: Node, tool_link: str) -> JointGroup:
     make: dict[str, Any]
     if isinstance(node.raw, str):
         if node.raw not in robot.groups:
             node.fail(f"the SRDF has no such group{near_miss(node.raw, list(robot.groups) or ['(none)'])}")
-        make = {"name": node.raw, "tip": tcp}
+        make = {"name": node.raw, "tip": tool_link}
     else:
         node.mapping("base_link", "tip_link")
         for key in ("base_link", "tip_link"):
             if key in node:
                 _link(robot, node[key])
-        make = {"base_link": node["base_link"].string(), "tip": tcp}
+        make = {"base_link": node["base_link"].string(), "tip": tool_link}
     try:
         return robot.group(**make)
     except InvalidInput as error:
@@ -235,9 +235,9 @@ def _read_home(node: Node, arm: JointGroup) -> np.ndarray:
     return home
 
 
-def _read_gripper(node: Node, robot: Robot, tcp: str) -> Hand:
+def _read_gripper(node: Node, robot: Robot, tool_link: str) -> Hand:
     if "from_robot" in node:
-        return _gripper_from_robot(node, robot, tcp)
+        return _gripper_from_robot(node, robot, tool_link)
     node.mapping(
         "approach closing max_opening finger_depth finger_width joints finger_links", "clearance closing_speed"
     )
@@ -260,7 +260,7 @@ def _read_gripper(node: Node, robot: Robot, tcp: str) -> Hand:
         sizes["clearance"] = node["clearance"].number(least=0)
     axes = _axes(node)
     return Hand(
-        tcp,
+        tool_link,
         approach=axes["approach"],
         closing=axes["closing"],
         joints=joints,
@@ -270,38 +270,38 @@ def _read_gripper(node: Node, robot: Robot, tcp: str) -> Hand:
 
 
 def _axes(node: Node) -> dict[str, Any]:
-    """The axes `approach` and `closing` of the tcp frame, as far as they are given."""
+    """The axes `approach` and `closing` of the tool frame, as far as they are given."""
     axes: dict[str, Any] = {}
     for key in ("approach", "closing"):
         if key not in node:
             continue
         axis = np.array(node[key].numbers(3))
         if abs(np.linalg.norm(axis) - 1) > 1e-6:
-            node[key].fail("must be a unit axis of the tcp frame")
+            node[key].fail("must be a unit axis of the tool frame")
         axes[key] = axis
     if len(axes) == 2 and abs(axes["approach"] @ axes["closing"]) > 1e-6:
         node["closing"].fail("must be orthogonal to approach")
     return axes
 
 
-def _gripper_from_robot(node: Node, robot: Robot, tcp: str) -> Hand:
+def _gripper_from_robot(node: Node, robot: Robot, tool_link: str) -> Hand:
     """A hand measured on the robot's own shapes; what the section states goes first."""
     node.mapping("from_robot", "approach closing clearance closing_speed")
     source = node["from_robot"]
     if source.raw is not True and not isinstance(source.raw, str):
-        source.fail("must be an SRDF end effector or group, or true: every joint below the tcp's body")
+        source.fail("must be an SRDF end effector or group, or true: every joint below the tool frame's body")
     stated = _axes(node)
     if "clearance" in node:
         stated["clearance"] = node["clearance"].number(least=0)
     try:
-        return Hand.from_robot(robot, tcp, group="" if source.raw is True else source.string(), **stated)
+        return Hand.from_robot(robot, tool_link, group="" if source.raw is True else source.string(), **stated)
     except InvalidInput as error:
         node.fail(str(error))
 
 
 def _add_bin(robot: Robot, node: Node) -> tuple[Robot, np.ndarray]:
     """The robot with the bin's solid box as a link; the link's frame is the middle of the box's top face."""
-    node.mapping("parent pose size", "drop_gap")
+    node.mapping("parent pose size", "drop_height")
     _link(robot, node["parent"])
     size = node["size"].numbers(3, above=0)
     parent, T_parent_bin = node["parent"].string(), node["pose"].pose()
@@ -315,7 +315,7 @@ def _add_bin(robot: Robot, node: Node) -> tuple[Robot, np.ndarray]:
 
 def _read_place_region(node: Node, T_root_bin: np.ndarray) -> PlaceRegion:
     size = node["size"].numbers(3, above=0)
-    options = {"drop_gap": node["drop_gap"].number(least=0)} if "drop_gap" in node else {}
+    options = {"drop_height": node["drop_height"].number(least=0)} if "drop_height" in node else {}
     return PlaceRegion(T_root_bin, size[:2], **options)
 
 
@@ -338,13 +338,13 @@ def _moved(arm: JointGroup, home: np.ndarray) -> np.ndarray:
     return moved
 
 
-def _check_finger_links(node: Node, arm: JointGroup, tcp: str, home: np.ndarray) -> None:
+def _check_finger_links(node: Node, arm: JointGroup, tool_link: str, home: np.ndarray) -> None:
     """Fingers belong to the hand: they keep their place beside the tool frame whatever the arm does."""
     before, after = arm.link_poses(home), arm.link_poses(_moved(arm, home))
     for link in node.elements():
-        beside = [np.linalg.inv(poses[tcp]) @ poses[link.raw] for poses in (before, after)]
+        beside = [np.linalg.inv(poses[tool_link]) @ poses[link.raw] for poses in (before, after)]
         if np.abs(beside[0] - beside[1]).max() > 1e-9:
-            link.fail("is no part of the hand: it does not move with the tcp")
+            link.fail("is no part of the hand: it does not move with the tool frame")
 
 
 def _fixed_to_root(arm: JointGroup, node: Node, home: np.ndarray) -> None:

@@ -15,7 +15,7 @@ from .._core import CollisionChecker, InvalidInput, IoError, LinkShape, PartSupp
 from .._core import verify as checks
 from .._files import check_folder, shipped
 from .._progress import Progress
-from ..documents.reading import Node, read_yaml
+from ..documents.reading import RENAMED, Node, read_yaml
 from .contact_rules import ContactRules, read_contact_rules
 from .robot_section import RobotSetup, choose_sections, find_file, read_setup
 from .scan_section import ScanReader, moved
@@ -29,6 +29,8 @@ SHAPE_KEYS = "box cylinder sphere mesh shapes scale"
 
 @dataclass
 class Obstacle:
+    """A body of the room, as the scenario's `obstacles` describe it."""
+
     name: str
     pose: np.ndarray
     shapes: list[LinkShape]
@@ -172,7 +174,7 @@ def _check_header(root: Node) -> None:
     if not isinstance(root.raw, dict) or "format" not in root.raw:
         raise InvalidInput(f"{root.document.source}: is no scenario: the key format: mmgrasp-scenario is missing")
     root["format"].choice("mmgrasp-scenario")
-    root.read_version(2)
+    root.read_version(3, RENAMED)
     root.mapping(TOP_KEYS, TOP_OPTIONAL)
 
 

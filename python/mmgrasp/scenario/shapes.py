@@ -61,6 +61,7 @@ def _one(node: Node, find_file: Callable[[Node], Path], placed: bool) -> LinkSha
 
 
 def pose_to_dict(T: np.ndarray) -> dict[str, list[float]]:
+    """xyz and quat_xyzw of a pose (4, 4)."""
     xyz, quat = _core.pose_to_xyz_quat(T)
     return {"xyz": xyz.tolist(), "quat_xyzw": quat.tolist()}
 

@@ -25,6 +25,8 @@ Placed = tuple[str, str, np.ndarray]
 
 @dataclass
 class PartType:
+    """One of `part_types`: shapes, and grasps or how to sample them."""
+
     shapes: list[LinkShape]
     grasps: list[Grasp]
     too_wide: int
@@ -33,6 +35,8 @@ class PartType:
 
 @dataclass
 class TraySetup:
+    """One of `trays`: the tray with its parts, and what their types are."""
+
     tray: Tray
     walls: list[LinkShape]
     targets: list[str] = field(default_factory=list)
@@ -41,6 +45,7 @@ class TraySetup:
 
 
 def read_part_types(node: Node, gripper: Hand) -> dict[str, PartType]:
+    """The section `part_types`; raises InvalidInput for grasps that hold nothing."""
     types = {}
     for name, entry in node.items():
         entry.mapping("", "box cylinder sphere mesh shapes scale grasps grasp_options")
@@ -71,19 +76,19 @@ def _grasp_options(entry: Node) -> dict[str, Any]:
 
 
 def _any_gripper() -> Hand:
-    return Hand("tcp", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.03, finger_width=0.02)
+    return Hand("tool", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.03, finger_width=0.02)
 
 
 def _listed_grasps(node: Node, gripper: Hand) -> tuple[list[Grasp], int]:
     grasps, too_wide = [], 0
     for entry in node.elements():
-        entry.mapping("pose width", "quality")
-        width = entry["width"].number(least=0)
-        if width > gripper.max_opening:
+        entry.mapping("pose opening", "quality")
+        opening = entry["opening"].number(least=0)
+        if opening > gripper.max_opening:
             too_wide += 1
             continue
         quality = entry["quality"].number(least=0) if "quality" in entry else 1.0
-        grasps.append(Grasp(entry["pose"].pose(), width, quality=quality))
+        grasps.append(Grasp(entry["pose"].pose(), opening, quality=quality))
     return grasps, too_wide
 
 
@@ -103,11 +108,12 @@ def _check_they_hold(node: Node, name: str, shapes: list[LinkShape], grasps: lis
         x, y, z = empty[0].T_object_hand[:3, 3]
         node.fail(
             f"{len(empty)} of {len(grasps)} grasps hold nothing of part type {name}: no part of it is between the fingers, e.g. "
-            f"with the tcp at ({x:.4g}, {y:.4g}, {z:.4g}) m in the part's frame"
+            f"with the tool frame at ({x:.4g}, {y:.4g}, {z:.4g}) m in the part's frame"
         )
 
 
 def read_tray(node: Node, types: dict[str, PartType], gripper: Hand, scans: ScanReader) -> TraySetup:
+    """One tray of the section `trays`."""
     node.mapping("name pose size", "parts scan headings targets")
     name, T_world_tray, size = node["name"].label(), node["pose"].pose(), node["size"].numbers(3, above=0)
     if T_world_tray[2, 2] < 1 - 1e-9:

@@ -11,6 +11,7 @@ Closed loops: give `SimScene.drive` a controller of your own (see `sim.control`)
 from .control import Command as Command
 from .control import Controller as Controller
 from .control import Observer as Observer
+from .control import RecordedState as RecordedState
 from .control import Recorder as Recorder
 from .control import SceneState as SceneState
 from .execution import Execution as Execution

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
-from typing import Any
+from typing import Unpack
 
 import numpy as np
 
 from .. import _core
 from .._core import Cylinder, LinkShape, Outcome, Robot, World
+from .._options import DriveByOptions
+from .execution import ExecutionOptions
 from .model import SimPart
 from .passing import FINGERS, TIPS, robot_setup
 from .result import SimResult
@@ -18,7 +20,7 @@ from .simulation import Simulation
 TABLE = 0.70  # height of the top [m]
 RADIUS, HEIGHT = 0.028, 0.16  # of the bottle [m]
 DEPTH = TIPS + RADIUS  # engagement at the grasp [m]
-GAP = 0.001  # a planner takes what touches for a collision [m]
+CLEARANCE = 0.001  # a planner takes what touches for a collision [m]
 OPENING = 0.08  # of the hand as it comes [m]
 GRASP_HEIGHT = 0.07  # above the table [m]
 WAY = 4.0  # from start to goal, straight ahead [m]
@@ -37,11 +39,13 @@ class Bottle:
     """Push-grasp with the hand at TOOL_SPEED, or with the hand still while the base drives on."""
 
     def scene(self) -> World:
+        """The table."""
         scene = World()
         scene.add_box("table", [1.4, 0.5, TABLE], _core.pose([2.0, -0.9, TABLE / 2]))
         return scene
 
     def part(self) -> SimPart:
+        """The bottle, standing on it."""
         pose = _core.pose([self.x, self.y, TABLE + HEIGHT / 2])
         return SimPart("bottle", [LinkShape(Cylinder(RADIUS, HEIGHT))], pose, mass=0.3)
 
@@ -65,35 +69,40 @@ class Bottle:
         }
         return [_core.DriveByTask(T_grasp, object="bottle", push=push)]
 
-    def plan(self, **options: Any) -> tuple[_core.DriveByResult, float]:
+    def plan(self, **options: Unpack[DriveByOptions]) -> tuple[_core.DriveByResult, float]:
         """The motion and the time at which the hand begins to close [s]; the first direction that works is taken."""
         setup = robot_setup()
         robot = planned_robot()
         world = self.scene()
         part = self.part()
-        world.add(part.name, part.shapes, _core.pose([0, 0, GAP]) @ part.pose)
+        world.add(part.name, part.shapes, _core.pose([0, 0, CLEARANCE]) @ part.pose)
         group = robot.group("arm_with_torso", tip=setup.gripper.tool_link, with_base=True)
         group = group.with_reference({**setup.other_joints, **setup.gripper.joint_values(OPENING)})
-        ends = {"start": [0.0, 0.0, 0.0, *setup.home], "goal": [WAY, 0.0, 0.0, *setup.home]}
-        found = None
+        start, goal = [0.0, 0.0, 0.0, *setup.home], [WAY, 0.0, 0.0, *setup.home]
+        options.setdefault("waypoints", 55)
         for yaw in SIDES:
-            found = _core.plan_drive_by(
-                robot, group, world, tasks=self.tasks(yaw), **ends, **{"waypoints": 55, **options}
-            )
+            tasks = self.tasks(yaw)
+            found = _core.plan_drive_by(robot, group, world, start=start, tasks=tasks, goal=goal, **options)
             if found.outcome == Outcome.solved:
                 return found, float(found.events[-1]["close_time"])
-        assert found is not None
         return found, 0.0
 
     def simulation(self) -> Simulation:
+        """Robot, table and bottle in physics."""
         setup = robot_setup()
         return Simulation(setup.robot, self.scene(), [self.part()], gripper=setup.gripper, joints=setup.other_joints)
 
-    def run(self, found: _core.DriveByResult, close_at: float, **execution: Any) -> SimResult:
+    def run(self, found: _core.DriveByResult, close_at: float, /, **execution: Unpack[ExecutionOptions]) -> SimResult:
         """The motion carried out with a little noise of wheels and localisation; the bottle rides along, then 2 s more."""
-        noise = {"travel_noise": 0.003, "position_noise": 0.002, "heading_noise": 0.002}
-        trajectory = found.trajectory.sampled(between=9)
-        return self.simulation().run(trajectory, close_at=close_at, opening=OPENING, **{**noise, **execution})
+        keywords: ExecutionOptions = {
+            "close_at": close_at,
+            "opening": OPENING,
+            "travel_noise": 0.003,
+            "position_noise": 0.002,
+            "heading_noise": 0.002,
+            **execution,
+        }
+        return self.simulation().run(found.trajectory.sampled(between=9), **keywords)
 
 
 @functools.cache

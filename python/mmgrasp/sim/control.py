@@ -23,10 +23,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from .model import SimPart
+
+
+class RecordedState(TypedDict):
+    """Where everything was at one time: what pictures and replays are made of."""
+
+    time: float  # [s]
+    base: list[float]  # x, y, theta
+    joints: dict[str, float]  # driven ones [rad or m]
+    parts: dict[str, NDArray[np.float64]]  # T_world_part (4, 4)
 
 
 class SceneState(Protocol):
@@ -37,7 +48,7 @@ class SceneState(Protocol):
         """Driven joints by name."""
 
     @property
-    def parts(self) -> Mapping[str, Any]:
+    def parts(self) -> Mapping[str, SimPart]:
         """Loose parts by name."""
 
     def base_pose(self) -> NDArray[np.float64]:
@@ -99,7 +110,7 @@ class Recorder:
 
     def __init__(self, period: float):
         self.period = period
-        self.states: list[dict[str, Any]] = []
+        self.states: list[RecordedState] = []
         self._next = 0.0
 
     def before(self, step: int, time: float, scene: SceneState) -> None:

@@ -3,11 +3,30 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 
 from .._core import InvalidInput
+
+
+class ExecutionOptions(TypedDict, total=False):
+    """Keywords of `Simulation.run`: the fields of Execution, where their meaning is."""
+
+    speed: float
+    close_at: float | None
+    opening: float | None
+    closing_speed: float
+    lift: float
+    lift_time: float
+    hold: float
+    tracking: dict[str, Any]
+    slip: tuple[float, float]
+    travel_noise: float
+    position_noise: float
+    heading_noise: float
+    frame_period: float
+    seed: int
 
 
 @dataclass

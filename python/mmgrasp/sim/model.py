@@ -11,9 +11,24 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .. import _core
-from .._core import Hand, HandJoint, InvalidInput, LinkShape, Robot, World
+from .._core import (
+    Box,
+    Capsule,
+    Cylinder,
+    Hand,
+    HandJoint,
+    InvalidInput,
+    LinkShape,
+    Mesh,
+    Plane,
+    Robot,
+    Sphere,
+    Voxels,
+    World,
+)
 from ..bodies import SceneBodies
 
 ROBOT, SCENE, PART, FLOOR = 1, 2, 4, 8
@@ -134,13 +149,13 @@ class _Builder:
         self.fingers = [j.name for j in gripper.joints] if gripper else []
         self.coupled = _coupling(gripper) if gripper else {}
         for obstacle in bodies.obstacles:
-            element = ET.SubElement(world, "body", name=f"scene/{obstacle.name}", **_placed(obstacle.pose))
+            element = ET.SubElement(world, "body", {"name": f"scene/{obstacle.name}", **_placed(obstacle.pose)})
             for shape in obstacle.shapes:
                 self._shape(element, shape, obstacle.name, SCENE, physics.scene_friction)
         self._robot(world, finger_links)
         for part in bodies.parts.values():
             loose[part.name].check()
-            element = ET.SubElement(world, "body", name=f"part/{part.name}", **_placed(part.pose))
+            element = ET.SubElement(world, "body", {"name": f"part/{part.name}", **_placed(part.pose)})
             ET.SubElement(element, "freejoint", name=f"part/{part.name}")
             for shape in part.shapes:
                 self._shape(element, shape, part.name, PART, loose[part.name].friction)
@@ -148,16 +163,16 @@ class _Builder:
 
     def _robot(self, world: ET.Element, finger_links: set[str]) -> None:
         urdf = ET.fromstring(self.robot.to_urdf())
-        links = {link.get("name"): link for link in urdf.findall("link")}
+        links = {_attribute(link, "name"): link for link in urdf.findall("link")}
         joints: dict[str, list[ET.Element]] = {}
         for joint in urdf.findall("joint"):
-            joints.setdefault(joint.find("parent").get("link"), []).append(joint)
+            joints.setdefault(_attribute(_child(joint, "parent"), "link"), []).append(joint)
         actuators = ET.Element("actuator")
         equality = ET.Element("equality")
 
         def add(parent: ET.Element, name: str, joint: ET.Element | None) -> None:
             T = np.eye(4) if joint is None else _origin(joint)
-            body = ET.SubElement(parent, "body", name=f"link/{name}", gravcomp="1", **_placed(T))
+            body = ET.SubElement(parent, "body", {"name": f"link/{name}", "gravcomp": "1", **_placed(T)})
             if joint is not None:
                 self._joint(body, joint, actuators, equality)
             elif self.robot.base != "fixed":
@@ -170,7 +185,7 @@ class _Builder:
             for shape in self.robot.collisions(name):
                 self._shape(body, shape, name, ROBOT, friction)
             for child in joints.get(name, []):
-                add(body, child.find("child").get("link"), child)
+                add(body, _attribute(_child(child, "child"), "link"), child)
 
         add(world, self.robot.links[0], None)
         if self.robot.base != "fixed":
@@ -184,7 +199,7 @@ class _Builder:
         self.root.append(actuators)
 
     def _joint(self, body: ET.Element, joint: ET.Element, actuators: ET.Element, equality: ET.Element) -> None:
-        name, kind = joint.get("name"), joint.get("type")
+        name, kind = _attribute(joint, "name"), _attribute(joint, "type")
         if kind == "fixed":
             return
         if kind not in JOINT_TYPES:
@@ -196,7 +211,7 @@ class _Builder:
             "joint",
             name=name,
             type=JOINT_TYPES[kind],
-            axis=axis.get("xyz") if axis is not None else "1 0 0",
+            axis=_attribute(axis, "xyz") if axis is not None else "1 0 0",
             armature="0.05",
         )
         if kind != "continuous" and limit is not None:
@@ -204,7 +219,7 @@ class _Builder:
         mimic = joint.find("mimic")
         if mimic is not None:
             line = f"{mimic.get('offset', '0')} {mimic.get('multiplier', '1')} 0 0 0"
-            ET.SubElement(equality, "joint", joint1=name, joint2=mimic.get("joint"), polycoef=line)
+            ET.SubElement(equality, "joint", joint1=name, joint2=_attribute(mimic, "joint"), polycoef=line)
             return
         force = float(limit.get("effort", "0")) if limit is not None else 0.0
         if name in self.fingers:
@@ -217,49 +232,62 @@ class _Builder:
 
     def _inertia(self, body: ET.Element, link: ET.Element, joint: ET.Element | None) -> None:
         inertial = link.find("inertial")
-        if inertial is not None and inertial.find("mass") is not None and float(inertial.find("mass").get("value")) > 0:
-            T, tensor = _origin(inertial), inertial.find("inertia")
+        has_mass = inertial is not None and inertial.find("mass") is not None
+        if inertial is not None and has_mass and float(_attribute(_child(inertial, "mass"), "value")) > 0:
+            T, tensor = _origin(inertial), _child(inertial, "inertia")
             about = [float(tensor.get(k, "0")) for k in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")]
             xx, yy, zz, xy, xz, yz = about
             turned = T[:3, :3] @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ T[:3, :3].T
             full = [turned[0, 0], turned[1, 1], turned[2, 2], turned[0, 1], turned[0, 2], turned[1, 2]]
-            mass = inertial.find("mass").get("value")
+            mass = _attribute(_child(inertial, "mass"), "value")
             ET.SubElement(body, "inertial", pos=_text(T[:3, 3]), mass=mass, fullinertia=_text(full))
-        elif not self.robot.collisions(link.get("name")) and joint is not None and joint.get("type") != "fixed":
+        elif not self.robot.collisions(_attribute(link, "name")) and joint is not None and joint.get("type") != "fixed":
             ET.SubElement(body, "inertial", pos="0 0 0", mass="0.01", diaginertia="1e-5 1e-5 1e-5")
 
     def _shape(self, body: ET.Element, shape: LinkShape, owner: str, group: int, friction: float) -> None:
-        s, kind, at = shape.shape, shape.kind, _placed(shape.pose)
-        if kind == "box":
+        s, at = shape.shape, _placed(shape.pose)
+        if isinstance(s, Box):
             self._geom(body, owner, group, friction, type="box", size=_text(np.asarray(s.size) / 2), **at)
-        elif kind == "sphere":
+        elif isinstance(s, Sphere):
             self._geom(body, owner, group, friction, type="sphere", size=_text([s.radius]), **at)
-        elif kind in ("cylinder", "capsule"):
-            self._geom(body, owner, group, friction, type=kind, size=_text([s.radius, s.length / 2]), **at)
-        elif kind == "plane":
+        elif isinstance(s, Cylinder | Capsule):
+            self._geom(body, owner, group, friction, type=shape.kind, size=_text([s.radius, s.length / 2]), **at)
+        elif isinstance(s, Plane):
             T = shape.pose @ _plane_frame(np.asarray(s.normal), s.offset)
             self._geom(body, owner, group, friction, type="plane", size="20 20 1", **_placed(T))
-        elif kind == "mesh":
+        elif isinstance(s, Mesh):
             name = f"mesh{self.meshes}"
             self.meshes += 1
             ET.SubElement(self.asset, "mesh", name=name, vertex=_text(np.asarray(s.vertices).ravel()))
             self._geom(body, owner, group, friction, type="mesh", mesh=name, **at)
-        elif kind == "voxels":
+        elif isinstance(s, Voxels):
             for centre in s.centres:
                 T = shape.pose.copy()
                 T[:3, 3] += T[:3, :3] @ centre
                 size = _text([s.resolution / 2] * 3)
                 self._geom(body, owner, group, friction, type="box", size=size, **_placed(T))
         else:
-            raise InvalidInput(f"shape '{kind}' of '{owner}': the simulation has none such")
+            raise InvalidInput(f"shape '{shape.kind}' of '{owner}': the simulation has none such")
 
     def _geom(self, body: ET.Element, owner: str, group: int, friction: float, **attributes: str) -> None:
         name = f"geom{len(self.built.owner)}"
         self.built.owner[name] = owner
-        ET.SubElement(
-            body, "geom", name=name, contype=str(group), conaffinity=str(COLLIDES[group]),
-            friction=_text((friction, 0.005, 0.0001)), **attributes,
-        )  # fmt: skip
+        given = {"name": name, "contype": str(group), "conaffinity": str(COLLIDES[group])}
+        ET.SubElement(body, "geom", {**given, "friction": _text((friction, 0.005, 0.0001)), **attributes})
+
+
+def _child(element: ET.Element, tag: str) -> ET.Element:
+    found = element.find(tag)
+    if found is None:
+        raise InvalidInput(f"<{element.tag} name='{element.get('name', '')}'>: has no <{tag}>")
+    return found
+
+
+def _attribute(element: ET.Element, name: str) -> str:
+    found = element.get(name)
+    if found is None:
+        raise InvalidInput(f"<{element.tag}>: has no attribute '{name}'")
+    return found
 
 
 def _coupling(hand: Hand) -> dict[str, tuple[str, str]]:
@@ -274,7 +302,7 @@ def _coupling(hand: Hand) -> dict[str, tuple[str, str]]:
     return lines
 
 
-def _text(values) -> str:
+def _text(values: ArrayLike) -> str:
     return " ".join(repr(float(v)) for v in np.atleast_1d(values))
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
-from typing import Any
+from typing import Unpack
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from .._core import Box, JointTrajectory, LinkShape, PushGrasp, World
 from .._files import shipped
 from ..documents.reading import read_yaml
 from ..scenario.robot_section import RobotSetup, choose_sections, read_setup
+from .execution import ExecutionOptions
 from .model import SimPart
 from .result import SimResult
 from .simulation import Simulation
@@ -50,6 +51,7 @@ class Passing:
 
     @property
     def speed(self) -> float:
+        """Of base and hand [m/s]."""
         return self.share * FULL_SPEED
 
     def closing(self) -> PushGrasp:
@@ -97,25 +99,33 @@ class Passing:
         return JointTrajectory(["x", "y", "theta", *arm.names], times, rows), close_at
 
     def scene(self) -> World:
+        """The table."""
         scene = World()
         scene.add_box("table", [3.0, 0.5, TABLE], _core.pose([PLACE[0], PLACE[1] - 0.1, TABLE / 2]))
         return scene
 
     def part(self) -> SimPart:
+        """The box where it really stands."""
         pose = _core.pose([PLACE[0] + self.along, PLACE[1] + self.aside, TABLE + SIZE[2] / 2])
         return SimPart("box", [LinkShape(Box(list(SIZE)))], pose, mass=0.2)
 
     def simulation(self) -> Simulation:
+        """Robot, table and box in physics."""
         setup = robot_setup()
         return Simulation(setup.robot, self.scene(), [self.part()], gripper=setup.gripper)
 
-    def run(self, simulation: Simulation | None = None, **execution: Any) -> SimResult:
+    def run(self, simulation: Simulation | None = None, **execution: Unpack[ExecutionOptions]) -> SimResult:
         """Executes the plan with a little noise of wheels and localisation."""
         trajectory, close_at = self.plan()
-        noise = {"travel_noise": 0.002, "position_noise": 0.001, "heading_noise": 0.001}
-        return (simulation or self.simulation()).run(
-            trajectory, arm=posture()[0], close_at=close_at, seed=self.seed, **{**noise, **execution}
-        )
+        keywords: ExecutionOptions = {
+            "close_at": close_at,
+            "seed": self.seed,
+            "travel_noise": 0.002,
+            "position_noise": 0.001,
+            "heading_noise": 0.001,
+            **execution,
+        }
+        return (simulation or self.simulation()).run(trajectory, arm=posture()[0], **keywords)
 
 
 @functools.cache

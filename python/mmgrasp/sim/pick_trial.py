@@ -37,14 +37,15 @@ def robot_setup() -> RobotSetup:
     path = shipped("asset:scenarios/omni_cell.yaml")
     raw = read_yaml(path).root.raw
     raw["robot"] |= {
-        "frames": [{"name": "fingertips", "parent": raw["robot"]["tcp"], "pose": {"xyz": [TIP, 0.0, 0.0]}}],
-        "tcp": "fingertips",
+        "frames": [{"name": "fingertips", "parent": raw["robot"]["tool_link"], "pose": {"xyz": [TIP, 0.0, 0.0]}}],
+        "tool_link": "fingertips",
     }
     raw["gripper"]["finger_depth"] = PAD
     return read_setup(choose_sections(Document(str(path), raw, {}).root, None))
 
 
 def table_world() -> World:
+    """The table's top."""
     world = World()
     world.add_box("table", [0.4, 0.8, 0.03], _core.pose([PLACE[0], PLACE[1], TABLE - 0.015]))
     return world

@@ -9,7 +9,6 @@ from __future__ import annotations
 import io
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -20,6 +19,7 @@ from ..bodies import SceneBodies, floor_tiles
 from ..viz.png import write_png
 from ..viz.raster import Camera, Scene, render
 from ..viz.style import FLOOR, OBSTACLE, PART, ROBOT, ROBOT_ARM
+from .control import RecordedState
 from .model import BASE_JOINTS, SimPart
 from .result import SimResult
 from .simulation import Simulation
@@ -35,7 +35,7 @@ class Painter:
         self.fingers = set(gripper.finger_links) if gripper else set()
         self.limits = {j["name"]: (j["lower"], j["upper"]) for j in robot.joint_table}
 
-    def picture(self, state: dict[str, Any], camera: Camera) -> np.ndarray:
+    def picture(self, state: RecordedState, camera: Camera) -> np.ndarray:
         """uint8 (height, width, 3)."""
         scene = Scene()
         middle = np.asarray(camera.target, float)[:2]
@@ -61,18 +61,18 @@ def planned_states(
     *,
     joints: dict[str, float] | None = None,
     held: tuple[str, float, str] | None = None,
-) -> list[dict[str, Any]]:
+) -> list[RecordedState]:
     """States for a Painter from the plan alone, without physics.
 
     `joints` stand where a trajectory does not move them. `held` = (part, time, link): the part moves with the link from then on.
     """
 
-    def state(time: float) -> dict[str, Any]:
+    def state(time: float) -> RecordedState:
         q = dict(zip(trajectory.names, map(float, trajectory.at(time)), strict=True))
         base = [q.pop(n, 0.0) for n in ("x", "y", "theta")]
         return {"time": float(time), "base": base, "joints": {**(joints or {}), **q}, "parts": {}}
 
-    def link_pose(of: dict[str, Any], link: str) -> np.ndarray:
+    def link_pose(of: RecordedState, link: str) -> np.ndarray:
         x, y, theta = of["base"]
         return robot.link_poses(of["joints"], _core.pose([x, y, 0], rpy=[0, 0, theta]))[link]
 
@@ -115,7 +115,7 @@ def frames(
     return [painter.picture(state, camera) for state in states]
 
 
-def _mujoco_frames(sim: Simulation, states: list[dict[str, Any]], camera: Camera) -> list[np.ndarray]:
+def _mujoco_frames(sim: Simulation, states: list[RecordedState], camera: Camera) -> list[np.ndarray]:
     mujoco = sim.mujoco
     try:
         made = mujoco.Renderer(sim.model, camera.height, camera.width)

@@ -126,7 +126,7 @@ class PlanController:
         for name, column in self.columns.items():
             reference[name][:moving] = samples[:, column]
             reference[name][moving:] = samples[-1, column]
-        if self.ascent is not None:
+        if self.ascent is not None and self.arm is not None:
             share = np.clip((times - self.lift_at) / self.how.lift_time, 0.0, 1.0)
             share = share**3 * (10 - 15 * share + 6 * share**2)  # at rest at both ends
             for i, name in enumerate(self.arm.names):

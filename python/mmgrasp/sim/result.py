@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+
+from .control import RecordedState
 
 
 @dataclass
@@ -53,8 +56,8 @@ class SimResult:
     """Largest distance of the base from its plan [m]; 0 for a base that stands."""
     arm_error: float
     """Largest deviation of a planned joint [rad or m]."""
-    states: list[dict[str, Any]] = field(default_factory=list, repr=False)
-    """time [s]; base (x, y, theta); joints by name; T_world_part of each part by name."""
+    states: list[RecordedState] = field(default_factory=list, repr=False)
+    """Every `frame_period`."""
 
     @property
     def grasped(self) -> bool:
@@ -78,17 +81,18 @@ class SimResult:
 
 
 class ContactLog:
-    """Joins contacts of single steps to events; gaps shorter than `patience` [s] do not end one."""
+    """Joins contacts of single steps to events; gaps shorter than `longest_break` [s] do not end one."""
 
-    def __init__(self, patience: float = 0.05):
-        self.patience = patience
+    def __init__(self, longest_break: float = 0.05):
+        self.longest_break = longest_break
         self.open: dict[tuple[str, str], ContactEvent] = {}
         self.closed: list[ContactEvent] = []
 
-    def step(self, time: float, forces: dict[tuple[str, str], float]) -> None:
+    def step(self, time: float, forces: Mapping[tuple[str, str], float]) -> None:
+        """Takes in the normal forces [N] of the pairs that touch at a time [s]."""
         for pair, force in forces.items():
             event = self.open.get(pair)
-            if event is None or time - event.end > self.patience:
+            if event is None or time - event.end > self.longest_break:
                 if event is not None:
                     self.closed.append(event)
                 event = self.open[pair] = ContactEvent(*pair, time, time, 0.0)
@@ -96,6 +100,7 @@ class ContactLog:
             event.peak_force = max(event.peak_force, force)
 
     def events(self) -> list[ContactEvent]:
+        """All contacts by their beginning."""
         return sorted([*self.closed, *self.open.values()], key=lambda e: (e.begin, e.a, e.b))
 
 
@@ -128,6 +133,7 @@ class PartWatch:
             self.other = min(others)
 
     def verdict(self, T_world_part: np.ndarray, lift: float) -> PartMotion:
+        """Whether it was grasped, at the end of a run whose tool rose by `lift` [m]."""
         seen = T_world_part if self.squeezed is None else self.squeezed
         displacement = float(np.linalg.norm((seen - self.start)[:2, 3]))
         rise = float(T_world_part[2, 3] - self.start[2, 3])

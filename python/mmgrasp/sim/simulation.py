@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Unpack
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .._core import InvalidInput, JointGroup, JointTrajectory
-from .control import Recorder, SceneState
-from .execution import Execution
+from .control import RecordedState, Recorder, SceneState
+from .execution import Execution, ExecutionOptions
 from .plan_controller import PlanController
 from .result import ContactLog, PartWatch, SimResult
 from .scene import SimScene
@@ -23,9 +24,9 @@ class Simulation(SimScene):
         self,
         trajectory: JointTrajectory,
         *,
-        base: Any = (0.0, 0.0, 0.0),
+        base: ArrayLike = (0.0, 0.0, 0.0),
         arm: JointGroup | None = None,
-        **execution: Any,
+        **execution: Unpack[ExecutionOptions],
     ) -> SimResult:
         """Runs a trajectory: joints by its names, the base by its columns x, y, theta (else it stands at `base`).
 
@@ -82,7 +83,7 @@ class RunWatch:
             touching = {b if a == watch.name else a for a, b in forces if watch.name in (a, b)}
             watch.step(scene.part_pose(watch.name), T_world_tool, touching, bool(time >= plan.lifted))
 
-    def result(self, states: list[dict[str, Any]]) -> SimResult:
+    def result(self, states: list[RecordedState]) -> SimResult:
         """The verdict on every part, and what happened."""
         plan = self.controller
         lift = plan.how.lift if plan.ascent is not None else 0.0

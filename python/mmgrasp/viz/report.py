@@ -218,7 +218,7 @@ def _in_passing(plan: dict[str, Any]) -> str:
     for motion in plan["drive_by"]["motions"]:
         pick = plan["picks"][motion["pick"]]
         part = next(p for p in plan["scenario"]["parts"] if p["name"] == pick["part"])
-        closing = (motion["opening"] - part["grasps"][pick["grasp"]]["width"]) / speed
+        closing = (motion["opening"] - part["grasps"][pick["grasp"]]["opening"]) / speed
         arm = sum(m["times"][-1] for m in pick["motions"] if m["kind"] in ("transit", "approach", "lift"))
         stopping = plan["route"][pick["stop"]]["duration"] + arm + closing
         now = motion["times"][-1]

@@ -19,8 +19,8 @@ class State:
     base: np.ndarray  # x, y, theta
     arm: np.ndarray  # configuration of the arm's joints
     opening: float  # of the fingers [m]
-    held: tuple[str, np.ndarray] | None = None  # part name and T_tcp_part
-    gone: frozenset[str] = frozenset()  # parts in the bin
+    held: tuple[str, np.ndarray] | None = None  # part name and T_hand_part
+    removed: frozenset[str] = frozenset()  # parts in the bin
 
 
 @dataclass
@@ -33,7 +33,7 @@ class Segment:
     kind: str  # "drive", "motion", "grip" or "drive-by"
     data: Any
     held: tuple[str, np.ndarray] | None = None
-    gone: frozenset[str] = frozenset()
+    removed: frozenset[str] = frozenset()
     base: np.ndarray = field(default_factory=lambda: np.zeros(3))
     opening: float = 0.0
     after: float = 0.0  # of the motion's own clock, where the segment begins [s]
@@ -47,7 +47,7 @@ class Timeline:
         self.home = np.asarray(plan["scenario"]["home"], float)
         self.segments: list[Segment] = []
         parts = {part["name"]: part for part in plan["scenario"]["parts"]}
-        gone: frozenset[str] = frozenset()
+        removed: frozenset[str] = frozenset()
         clock = 0.0
         stops = plan["stops"]
         passing = {motion["pick"]: motion for motion in plan.get("drive_by", {"motions": []})["motions"]}
@@ -56,11 +56,13 @@ class Timeline:
             picks = [(i, pick) for i, pick in enumerate(plan["picks"]) if pick["stop"] == index]
             if not picks or picks[0][0] not in passing:
                 poses = np.asarray(leg["poses"], float).reshape(-1, 3)
-                clock = self._add(Segment(f"drive to {goal}", clock, float(leg["duration"]), "drive", poses, gone=gone))
+                clock = self._add(
+                    Segment(f"drive to {goal}", clock, float(leg["duration"]), "drive", poses, removed=removed)
+                )
             for i, pick in picks:
                 base = np.asarray(stops[index]["pose"], float)
-                clock = self._add_pick(pick, base, parts, gone, clock, passing.get(i))
-                gone = gone | {pick["part"]}
+                clock = self._add_pick(pick, base, parts, removed, clock, passing.get(i))
+                removed = removed | {pick["part"]}
         self.duration = clock
 
     def _add(self, segment: Segment) -> float:
@@ -72,7 +74,7 @@ class Timeline:
         pick: dict[str, Any],
         base: np.ndarray,
         parts: dict[str, Any],
-        gone: frozenset[str],
+        removed: frozenset[str],
         clock: float,
         passing: dict[str, Any] | None,
     ) -> float:
@@ -82,9 +84,9 @@ class Timeline:
         motions = pick["motions"]
         if passing is not None:
             closed, end = float(passing["closed_at"]), float(passing["times"][-1])
-            coming = Segment(f"drive by {name}", clock, closed, "drive-by", (passing, grasp["width"]), None, gone)
+            coming = Segment(f"drive by {name}", clock, closed, "drive-by", (passing, grasp["opening"]), None, removed)
             leaving = Segment(
-                f"drive on with {name}", clock + closed, end - closed, "drive-by", coming.data, in_hand, gone
+                f"drive on with {name}", clock + closed, end - closed, "drive-by", coming.data, in_hand, removed
             )
             leaving.after = closed
             clock = self._add(coming)
@@ -92,14 +94,14 @@ class Timeline:
             motions = [m for m in motions if m["kind"] in ("transfer", "retreat")]
         for motion in motions:
             held = in_hand if motion["holding"] else None
-            binned = gone | {name} if motion["kind"] == "retreat" else gone
+            binned = removed | {name} if motion["kind"] == "retreat" else removed
             label = f"{motion['kind']} {name}"
             segment = Segment(label, clock, float(motion["times"][-1]), "motion", motion, held, binned, base)
             segment.opening = float(motion["opening"])
             clock = self._add(segment)
             if motion["kind"] in ("approach", "transfer"):
                 word = "grasp" if motion["kind"] == "approach" else "release"
-                grip = Segment(f"{word} {name}", clock, GRIP_TIME, "grip", motion, None, gone, base)
+                grip = Segment(f"{word} {name}", clock, GRIP_TIME, "grip", motion, None, removed, base)
                 grip.held = in_hand if word == "release" else None
                 grip.opening = float(motion["opening"])
                 clock = self._add(grip)
@@ -120,19 +122,19 @@ class Timeline:
         local = min(max(time - segment.start, 0.0), segment.duration)
         if segment.kind == "drive":
             share = local / segment.duration if segment.duration > 0 else 1.0
-            return State(along_route(segment.data, share), self.home, 0.0, None, segment.gone)
+            return State(along_route(segment.data, share), self.home, 0.0, None, segment.removed)
         if segment.kind == "drive-by":
             motion, width = segment.data
             when = segment.after + local
             row = [np.interp(when, motion["times"], column) for column in np.transpose(motion["positions"])]
             opening = np.interp(when, [motion["close_at"], motion["closed_at"]], [motion["opening"], width])
-            return State(np.array(row[:3]), np.array(row[3:]), float(opening), segment.held, segment.gone)
+            return State(np.array(row[:3]), np.array(row[3:]), float(opening), segment.held, segment.removed)
         motion = segment.data
         times = np.asarray(motion["times"], float)
         positions = np.asarray(motion["positions"], float)
         when = local if segment.kind == "motion" else times[-1]
         arm = np.array([np.interp(when, times, positions[:, j]) for j in range(positions.shape[1])])
-        return State(segment.base, arm, segment.opening, segment.held, segment.gone)
+        return State(segment.base, arm, segment.opening, segment.held, segment.removed)
 
     def grasp_times(self) -> list[tuple[int, float]]:
         """(stop index, time at which the part is reached), one for each pick."""

@@ -38,18 +38,15 @@ Robot two_arms() {
 
 // Returns how many clearances changed by more than half of what the bound allows.
 int expect_bounded(const JointGroup& group, int draws) {
-  const Snapshot snapshot(group.robot(), World(), CheckerOptions());
-  const PairPlan plan(snapshot, group);
+  const auto snapshot = std::make_shared<const Snapshot>(group.robot(), World(), CheckerOptions());
+  const auto shared_plan = std::make_shared<const PairPlan>(*snapshot, group);
+  const PairPlan& plan = *shared_plan;
   EXPECT_TRUE(plan.rates.finite);
-  std::vector<double> frames(16 * static_cast<std::size_t>(plan.frames.count()));
-  MovingFrames::set(Rigid(), frames.data());
+  Placement placement(snapshot, shared_plan, group);
   const auto clearance = [&](const ShapePair& pair, const Eigen::VectorXd& q) {
-    plan.frames.place(q.data(), frames.data());
-    const auto pose = [&](int s) {
-      return MovingFrames::get(frames.data() + 16 * plan.placed[s].frame) * plan.placed[s].in_frame;
-    };
-    return solids_distance(*snapshot.shapes[pair.a].solid, pose(pair.a), *snapshot.shapes[pair.b].solid, pose(pair.b))
-        .distance;
+    placement.place(q.data());
+    const Solid &a = *snapshot->shapes[pair.a].solid, &b = *snapshot->shapes[pair.b].solid;
+    return solids_distance(a, placement.pose(pair.a), b, placement.pose(pair.b)).distance;
   };
   Rng rng(5);
   int close = 0;

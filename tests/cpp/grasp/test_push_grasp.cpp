@@ -165,10 +165,10 @@ TEST(PushGrasp, FigureFourSevenInNumbers) {
   p.max_push = 0.3;
   const PushGrasp found = push_grasp(p);
   EXPECT_NEAR(found.closing_time, 0.5, 1e-12);
-  EXPECT_NEAR(found.plain.gap, 0.1 * 0.06 / (2 * 0.5), 1e-12);
+  EXPECT_NEAR(found.plain.side_clearance, 0.1 * 0.06 / (2 * 0.5), 1e-12);
   EXPECT_NEAR(found.plain.both_touch, 0.06, 1e-12);
   EXPECT_EQ(found.plain.pushed, 0);
-  EXPECT_NEAR(found.push.gap, 0.025, 1e-12);
+  EXPECT_NEAR(found.push.side_clearance, 0.025, 1e-12);
   EXPECT_GE(found.push.start, 0);
   EXPECT_NEAR(found.push.both_touch, found.push.start + 0.25, 1e-12);
   EXPECT_NEAR(found.push.pushed, found.push.both_touch - 0.12, 1e-12);

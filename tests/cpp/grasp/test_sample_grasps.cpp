@@ -99,7 +99,7 @@ TEST(SampleGrasps, EveryGraspComesWithItsFlip) {
   }
 }
 
-TEST(SampleGrasps, StandoffMovesTheTcpBackAlongTheApproach) {
+TEST(SampleGrasps, StandoffMovesTheToolFrameBackAlongTheApproach) {
   const Hand gripper = wide_gripper();
   GraspSamplerOptions options = all_kept();
   options.positions = 1;

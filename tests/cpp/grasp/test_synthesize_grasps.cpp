@@ -106,7 +106,7 @@ TEST(SynthesizeGrasps, EverySampleIsCountedOnce) {
     EXPECT_EQ(c.evaluated, causes(c) + found.grasps.size());
     EXPECT_LE(c.evaluated, 200u);
     EXPECT_GE(c.drawn, c.no_opposite + c.too_wide + c.too_thin + c.tilted);
-    // What was drawn and not turned down was evaluated in the first search; the second adds at most a third.
+    // What was drawn and not rejected was evaluated in the first search; the second adds at most a third.
     EXPECT_LE(c.drawn - c.no_opposite - c.too_wide - c.too_thin - c.tilted, c.evaluated);
   }
 }

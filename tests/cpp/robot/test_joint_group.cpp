@@ -167,8 +167,8 @@ TEST(JointGroup, TipMayBeAnyLinkTheLastJointCarries) {
   const JointGroup flange = robot.group("panda_arm"), tcp = robot.group("panda_arm", "tcp");
   Rng rng(8);
   const Eigen::VectorXd q = random_configuration(flange, rng);
-  const Pose T_flange_tcp = pose_from_xyz_rpy({0, 0, 0.1034}, {0, 0, -M_PI / 4});
-  EXPECT_LT((tcp.fk(q).matrix() - (flange.fk(q) * T_flange_tcp).matrix()).norm(), 1e-9);  // URDF prints pi/4 rounded
+  const Pose T_flange_hand = pose_from_xyz_rpy({0, 0, 0.1034}, {0, 0, -M_PI / 4});
+  EXPECT_LT((tcp.fk(q).matrix() - (flange.fk(q) * T_flange_hand).matrix()).norm(), 1e-9);  // URDF prints pi/4 rounded
   EXPECT_NO_THROW(robot.group("panda_arm", "panda_leftfinger"));
   EXPECT_THROW(robot.group("panda_arm", "panda_link3"), InvalidInput);
   EXPECT_THROW(robot.group("panda_arm", "no_such_link"), InvalidInput);

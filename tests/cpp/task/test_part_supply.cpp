@@ -39,7 +39,7 @@ verify::PlanToCheck to_check(const PartSupplyProblem& problem, const PartSupplyP
   check.positioning_uncertainty = problem.options.positioning_uncertainty;
   check.T_base_bin = problem.place_region.T_base_bin;
   check.bin_size = problem.place_region.size;
-  check.drop_gap = problem.place_region.drop_gap;
+  check.drop_height = problem.place_region.drop_height;
   for (const auto& [name, object] : problem.scene.objects())
     check.obstacles.push_back({name, object.shapes, object.T_world_object});
   for (const Tray& tray : problem.trays) {

@@ -47,10 +47,10 @@ TEST(Pick, AnObjectInNoTrayIsGraspedLiftedAndPutDown) {
   const auto& transfer = pick.motions[3].trajectory.positions;
   EXPECT_EQ(pick.motions[0].trajectory.positions.front(), problem.home);
   EXPECT_LT(distance(problem.arm.fk(approach.back()), T_world_pin * problem.grasps[pick.grasp].T_object_hand), 2e-3);
-  const Pose T_tcp_pin = problem.arm.fk(lift.front()).inverse() * T_world_pin;
-  const Pose T_world_lifted = problem.arm.fk(lift.back()) * T_tcp_pin;
+  const Pose T_hand_pin = problem.arm.fk(lift.front()).inverse() * T_world_pin;
+  const Pose T_world_lifted = problem.arm.fk(lift.back()) * T_hand_pin;
   EXPECT_LT(distance(T_world_lifted, Pose(Eigen::Translation3d(0, 0, 0.08) * T_world_pin)), 2e-3);
-  EXPECT_LT(distance(problem.arm.fk(transfer.back()) * T_tcp_pin, problem.places[0]), 2e-3);
+  EXPECT_LT(distance(problem.arm.fk(transfer.back()) * T_hand_pin, problem.places[0]), 2e-3);
   const Eigen::VectorXd turned = pick.motions[4].trajectory.positions.back() - problem.home;
   EXPECT_LT(turned.head<5>().norm(), 1e-6);  // the last joint turns without limits
   for (std::size_t i = 0; i < pick.motions.size(); ++i) EXPECT_EQ(pick.motions[i].holding, i == 2 || i == 3);

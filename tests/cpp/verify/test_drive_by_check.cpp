@@ -43,7 +43,7 @@ PlanToCheck passing_plan(double follows = 1, double duration_scale = 1) {
   passing.pick = 0;
   CheckedMotion& m = passing.motion;
   m.kind = "drive-by";
-  m.opening = plan.parts[0].grasps[0].width + 0.02;
+  m.opening = plan.parts[0].grasps[0].opening + 0.02;
   m.times = {0};
   m.positions = {row(plan.start.x(), plan.home)};
   m.velocities = {VectorXd::Zero(8)};
@@ -126,7 +126,7 @@ TEST(DriveByCheck, WhatItMeetsOnItsWay) {
 
 TEST(DriveByCheck, TheClosedHandMustNotComeToThePart) {
   PlanToCheck plan = passing_plan();
-  plan.drive_by[0].motion.opening = plan.parts[0].grasps[0].width - 0.01;
+  plan.drive_by[0].motion.opening = plan.parts[0].grasps[0].opening - 0.01;
   EXPECT_TRUE(codes_of(plan).count("opening"));
 }
 

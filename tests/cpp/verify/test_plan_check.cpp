@@ -82,7 +82,7 @@ TEST(PlanCheck, OneFingerHoldsNothing) {
   plan.fingers[0].open = 0.05;
   EXPECT_FALSE(codes_of(plan).count("grasp-empty"));
   for (CheckedPart& part : plan.parts) {
-    for (CheckedGrasp& grasp : part.grasps) grasp.width = 0.08;
+    for (CheckedGrasp& grasp : part.grasps) grasp.opening = 0.08;
   }
   EXPECT_TRUE(codes_of(plan).count("grasp-empty"));
 }
@@ -135,7 +135,7 @@ TEST(PlanCheck, ObstacleThatOnlyTheHeldPartHits) {
   // Under the carried cube, beside the fingers (20 mm wide), between table and bin: only the cube's edge (x +- 20 mm)
   // reaches over it, and only when the arm is back at the release.
   PlanToCheck plan = good_plan();
-  const Eigen::Vector3d bin(0.5, 0, kBinTop + kDropGap + 0.5 * kCube);
+  const Eigen::Vector3d bin(0.5, 0, kBinTop + kDropHeight + 0.5 * kCube);
   plan.obstacles.push_back(box("pin", {0.002, 0.002, 0.02}, at(bin.x() - 0.017, bin.y(), bin.z())));
   const Codes found = codes_of(plan);
   EXPECT_TRUE(found.count("held-collision"));
@@ -193,13 +193,13 @@ TEST(PlanCheck, LinkInsideClosedMeshCollides) {
 
 TEST(PlanCheck, GraspPoseMoved) {
   PlanToCheck plan = good_plan();
-  plan.parts[0].grasps[0].T_object_tcp.translation().x() += 1.2e-4;  // the tolerance is 1e-4
+  plan.parts[0].grasps[0].T_object_hand.translation().x() += 1.2e-4;  // the tolerance is 1e-4
   EXPECT_EQ(codes_of(plan), Codes{"grasp-missed"});
   plan = good_plan();
-  plan.parts[0].grasps[0].T_object_tcp.translation().x() += 0.8e-4;
+  plan.parts[0].grasps[0].T_object_hand.translation().x() += 0.8e-4;
   EXPECT_TRUE(codes_of(plan).empty());
   plan = good_plan();
-  plan.parts[0].grasps[0].T_object_tcp.rotate(Eigen::AngleAxisd(0.0012, Eigen::Vector3d::UnitZ()));
+  plan.parts[0].grasps[0].T_object_hand.rotate(Eigen::AngleAxisd(0.0012, Eigen::Vector3d::UnitZ()));
   EXPECT_EQ(codes_of(plan), Codes{"grasp-missed"});
 }
 
@@ -237,8 +237,8 @@ TEST(PlanCheck, WidthsAreThoseOfTheParts) {
     plan = good_plan();
     plan.closing = Eigen::Vector3d::UnitX();
     plan.finger_depth = plan.finger_width = 0.02;
-    plan.parts[0].grasps[0].width *= factor;
-    EXPECT_TRUE(codes_of(plan).count("grasp-width")) << factor;
+    plan.parts[0].grasps[0].opening *= factor;
+    EXPECT_TRUE(codes_of(plan).count("grasp-opening")) << factor;
   }
 }
 
@@ -248,9 +248,9 @@ TEST(PlanCheck, ListedGraspsHoldSomething) {
     PlanToCheck plan = good_plan();
     plan.closing = Eigen::Vector3d::UnitX();
     plan.finger_depth = plan.finger_width = 0.02;
-    plan.parts[0].grasps[1].T_object_tcp = at(0, 0, above);  // no pick uses it
+    plan.parts[0].grasps[1].T_object_hand = at(0, 0, above);  // no pick uses it
     EXPECT_EQ(codes_of(plan), above > 0.03 ? Codes{"grasp-empty"} : Codes{}) << above;
-    plan.parts[2].grasps[1].T_object_tcp = at(0, 0, 1);  // this part is to stay
+    plan.parts[2].grasps[1].T_object_hand = at(0, 0, 1);  // this part is to stay
     EXPECT_EQ(codes_of(plan), above > 0.03 ? Codes{"grasp-empty"} : Codes{}) << above;
   }
 }
@@ -331,7 +331,7 @@ TEST(PlanCheck, UnusableDataIsMalformed) {
   plans[9].parts[0].body.T_world_body.translation().x() = nan;
   plans[10].finger_links = {"thumb"};
   plans[11].stops[0].pose.z() = nan;
-  plans[12].parts[0].grasps[0].width = -1;
+  plans[12].parts[0].grasps[0].opening = -1;
   plans[13].arm_joints[0] = "finger_mirror";
   for (std::size_t i = 0; i < plans.size(); ++i) EXPECT_EQ(codes_of(plans[i]), Codes{"malformed"}) << i;
 }
@@ -358,7 +358,7 @@ std::vector<double*> numbers_of(PlanToCheck& plan) {
   std::vector<double*> numbers{&plan.max_opening,
                                &plan.clearance,
                                &plan.positioning_uncertainty,
-                               &plan.drop_gap,
+                               &plan.drop_height,
                                &plan.bin_size.x(),
                                &plan.start.x(),
                                &plan.goal.z(),
@@ -373,8 +373,8 @@ std::vector<double*> numbers_of(PlanToCheck& plan) {
                                &plan.T_base_bin.matrix()(0, 3),
                                &plan.T_base_bin.matrix()(1, 1),
                                &plan.parts[0].body.T_world_body.matrix()(2, 3),
-                               &plan.parts[0].grasps[0].width,
-                               &plan.parts[0].grasps[0].T_object_tcp.matrix()(0, 0),
+                               &plan.parts[0].grasps[0].opening,
+                               &plan.parts[0].grasps[0].T_object_hand.matrix()(0, 0),
                                &plan.obstacles[1].T_world_body.matrix()(1, 3),
                                &plan.stops[0].pose.x(),
                                &plan.stops[1].radius,

@@ -20,7 +20,7 @@ constexpr double kCube = 0.04;  // Edge of a part [m].
 constexpr double kTableTop = 0.50;
 constexpr double kPartZ = kTableTop + 0.001 + 0.5 * kCube;
 constexpr double kBinTop = 0.40;
-constexpr double kDropGap = 0.03;
+constexpr double kDropHeight = 0.03;
 constexpr double kHandAbove = 0.02;  // Origin of the hand over the tcp [m].
 
 /// Joints z, x, y (prismatic), tilt (about y), yaw (about z): the hand's origin lies at (0.1 + x, y, 0.9 + z) in the
@@ -116,9 +116,9 @@ inline CheckedPick make_pick(const PlanToCheck& plan, int stop, int part_index, 
   const Eigen::Vector3d grasp = part.body.T_world_body.translation() + how.grasp_height * up;
   const Eigen::VectorXd at_grasp = over(base, grasp), lifted = over(base, grasp + how.lift * up);
   const Eigen::VectorXd above = over(base, grasp + 0.08 * up + how.approach_dx * Eigen::Vector3d::UnitX());
-  Eigen::VectorXd release = joints(kBinTop + kDropGap + 0.5 * kCube + how.grasp_height + kHandAbove - 0.9, 0, 0);
+  Eigen::VectorXd release = joints(kBinTop + kDropHeight + 0.5 * kCube + how.grasp_height + kHandAbove - 0.9, 0, 0);
   release += joints(how.release_dz, how.release_dx, 0, how.release_tilt);
-  const double width = part.grasps[0].width, wide = width + 0.02;
+  const double width = part.grasps[0].opening, wide = width + 0.02;
   return {stop,
           part.tray,
           part.body.name,
@@ -162,7 +162,7 @@ inline void add_robot_data(PlanToCheck& plan) {
   plan.finger_links = {"left", "right"};
   plan.home = joints(0.3, 0, 0);
   plan.T_base_bin = at(0.1, 0, kBinTop);
-  plan.drop_gap = kDropGap;
+  plan.drop_height = kDropHeight;
 }
 
 inline void add_scene(PlanToCheck& plan, const Variation& how) {

@@ -41,7 +41,18 @@ struct MMGRASP_EXPORT Padding {
   void check() const;
 };
 
-/// Scene as plain values: a copy is a snapshot. Names are unique over objects, attached objects and fields.
+/// What stands around the robot and what it holds: named rigid bodies, and rules about who may touch whom.
+///
+///     World world;
+///     world.add("table", Box{{1.2, 0.6, 0.04}}, pose_from_xyz_rpy({1, 0, 0.7}, {0, 0, 0}));
+///     world.add("cup", Cylinder{0.04, 0.1}, pose_from_xyz_rpy({1, 0, 0.78}, {0, 0, 0}));
+///     world.allow("cup", "table");              // these two may touch
+///     world.attach("cup", "hand", T_hand_cup);  // from now on it moves with the hand
+///
+/// - A World is plain values: a copy is a snapshot, and checkers keep the copy that they were made with.
+/// - Names are unique over objects, attached objects and fields.
+/// - A distance field is an obstacle of its own kind (add_field): maps of cameras, for example.
+/// - Padding grows bodies where the robot meets the scene, never the robot against itself.
 class MMGRASP_EXPORT World {
  public:
   /// Throws InvalidInput on a name in use, an invalid shape or a pose that is not finite.

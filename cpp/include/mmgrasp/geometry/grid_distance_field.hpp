@@ -9,6 +9,12 @@ namespace mmgrasp {
 
 /// Signed distances at the points of a regular grid; between them they are interpolated linearly along each axis.
 ///
+///     GridDistanceField::Grid grid;
+///     grid.size = {{100, 100, 50}};
+///     grid.values = distances;  // z changes fastest
+///     const GridDistanceField field(grid);
+///     const double clearance = field.distance({0.5, 0.5, 0.2});  // NaN: not known
+///
 /// Known inside the grid, where none of the up to eight points around is NaN. The distance changes by at most the way
 /// walked, so what is interpolated is off by at most sqrt(3) / 2 of the spacing, in the middle of a cell; with the
 /// error of the values themselves that is the error the field states. Near flat surfaces it is far smaller.

@@ -10,7 +10,11 @@
 
 namespace mmgrasp {
 
-/// Indexed triangles [m]. Immutable once shared (`std::shared_ptr<const TriangleMesh>`).
+/// Indexed triangles [m]: a solid when closed, else a surface. Immutable once shared (`std::shared_ptr<const
+/// TriangleMesh>`).
+///
+///     const auto mesh = load_mesh("bracket.stl");
+///     if (!mesh->closed) std::cout << mesh->source << " is open: points inside it are free\n";
 struct MMGRASP_EXPORT TriangleMesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<int, 3>> triangles;
@@ -21,7 +25,7 @@ struct MMGRASP_EXPORT TriangleMesh {
   std::string source;   ///< File it came from, or empty.
 };
 
-/// What the loader found and did, told to the user by `mmgrasp check`.
+/// What the loader found and did, reported to the user by `mmgrasp check`.
 struct MMGRASP_EXPORT MeshReport {
   std::string path;
   int vertices_read = 0;

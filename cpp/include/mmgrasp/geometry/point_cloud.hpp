@@ -20,8 +20,8 @@ struct MMGRASP_EXPORT PointCloud {
 };
 
 /// Reads a PCD file (ascii, binary or binary_compressed) with the fields x, y and z; other fields but "label" are
-/// skipped. More ascii rows than announced are read and told in `warning`. Throws IoError naming the file and the rule
-/// when it is missing, truncated, damaged or without coordinates; coordinates that are not finite become NaN.
+/// skipped. More ascii rows than announced are read and reported in `warning`. Throws IoError naming the file and the
+/// rule when it is missing, truncated, damaged or without coordinates; coordinates that are not finite become NaN.
 MMGRASP_EXPORT PointCloud read_pcd(const std::string& path);
 
 /// Writes a PCD file of the version 0.7, binary, with x, y and z as 32-bit numbers and label where the cloud has some.

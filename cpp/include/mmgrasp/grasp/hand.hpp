@@ -65,7 +65,7 @@ struct MMGRASP_EXPORT HandReading {
 ///     hand.joints = {{"left_finger_joint", 0.0, 0.05}, {"right_finger_joint", 0.0, 0.05}};
 ///     hand.joint_values(0.04);                      // {left_finger_joint: 0.02, right_finger_joint: 0.02}
 ///
-///     Hand read = Hand::from_robot(robot, "tcp");   // from URDF and SRDF, measured by forward kinematics
+///     Hand read = Hand::from_robot(robot, "tool");   // from URDF and SRDF, measured by forward kinematics
 struct MMGRASP_EXPORT Hand {
   std::string tool_link;                                ///< Robot link whose frame is the tool frame.
   Eigen::Vector3d approach = Eigen::Vector3d::UnitX();  ///< Unit axis of the tool frame along which the hand moves in.

@@ -34,7 +34,7 @@ struct MMGRASP_EXPORT ClosingOutcome {
   double both_touch = 0;         ///< The same when both fingers touch, were the object not pushed [m].
   double pushed = 0;             ///< How far the object slides before the palm until then [m].
   double swept = 0;              ///< How far the tool goes beyond the planned grasp pose until then [m].
-  double gap = 0;                ///< Free space on either side of a centred object as the tips pass it [m].
+  double side_clearance = 0;     ///< Free space on either side of a centred object as the tips pass it [m].
   bool holds = false;            ///< An object standing where planned is held, and pushed no farther than allowed.
   double lateral_tolerance = 0;  ///< An object standing where planned may lie this far off to a side [m]; < 0: none.
   double nearer_tolerance = 0;   ///< It may stand this much nearer, at the problem's lateral error [m]; < 0: none.

@@ -10,6 +10,9 @@
 namespace mmgrasp {
 
 /// Heights over a rectangle of square cells, seen along -z of its frame: a depth image without perspective.
+///
+///     const HeightMap map = make_height_map(image, T_world_tray, {0.4, 0.3});
+///     const float height = map.height[map.index(10, 20)];  // NaN: not seen
 struct MMGRASP_EXPORT HeightMap {
   Pose T_world_map = Pose::Identity();  ///< Middle of the rectangle at height 0, z up.
   double resolution = 0.002;            ///< Edge of a cell [m], > 0.

@@ -34,8 +34,8 @@ struct MMGRASP_EXPORT DerivativeFreeOptions {
 };
 
 struct MMGRASP_EXPORT DerivativeFreeResult {
-  /// solved: converged, constraints kept (a global solver proves nothing beyond that). timeout: the budget or the clock
-  /// ended it. stopped. not_found: converged where constraints are broken. approximate: rounding ended it early.
+  /// solved: converged, constraints kept (a global solver proves nothing beyond that). timeout: the budget or the time
+  /// limit ended it. stopped. not_found: converged where constraints are broken. approximate: rounding ended it early.
   Outcome outcome = Outcome::not_found;
   Eigen::VectorXd x;     ///< The best point seen: the least violated, then the cheapest. Inside the bounds.
   double value = 0;      ///< f(x); infinite when f was defined nowhere.
@@ -50,9 +50,9 @@ struct MMGRASP_EXPORT DerivativeFreeResult {
 ///     DerivativeFreeProblem problem{{lower, upper}, [&](const Eigen::VectorXd& x) { return cost(x); }};
 ///     const auto result = minimize_derivative_free("bobyqa", problem, guess);
 ///
-/// An exception thrown by a function ends the solve and reaches the caller. The cancel token and the clock end it at
-/// the next evaluation. Solvers may be called from several threads; those that draw random numbers wait for each other,
-/// because NLopt has one generator.
+/// An exception thrown by a function ends the solve and reaches the caller. The cancel token and the time limit end it
+/// at the next evaluation. Solvers may be called from several threads; those that draw random numbers wait for each
+/// other, because NLopt has one generator.
 class MMGRASP_EXPORT DerivativeFreeSolver {
  public:
   virtual ~DerivativeFreeSolver();

@@ -24,9 +24,13 @@ struct MMGRASP_EXPORT Bounds {
   Eigen::VectorXd lower, upper;
 };
 
-/// min f(x) subject to lower <= x <= upper and lower <= c(x) <= upper, twice differentiable. Solvers call it from the
-/// thread they were called from, with x of the right length (finite or not); values that are not finite are taken as
-/// "undefined here". Not thread-safe.
+/// min f(x) subject to lower <= x <= upper and lower <= c(x) <= upper, twice differentiable. Derive from it, then:
+///
+///     Rosenbrock problem;
+///     const NlpResult result = make_nlp_solver("ipopt")->solve(problem, x0);
+///
+/// Solvers call it from the thread they were called from, with x of the right length (finite or not); values that are
+/// not finite are taken as "undefined here". Not thread-safe.
 class MMGRASP_EXPORT NonlinearProblem {
  public:
   virtual ~NonlinearProblem();

@@ -10,6 +10,8 @@ namespace mmgrasp {
 
 /// 0-1 programme of P1 (3.1): choose as few (or as cheap) sets as possible so that every element is covered.
 ///
+///     const SetCoverResult result = solve_set_cover({4, {{0, 1}, {2, 3}, {1, 2}}, {}});  // sets 0 and 1, proven least
+///
 /// "As few sets as possible, and of those the best" is one problem: costs 1 + p_s with penalties p_s >= 0 that sum to
 /// less than 1 over all sets, e.g. p_s = (1 - r_s / r_max) / (2 n) for n sets that should have large radii r_s. Then no
 /// saving in penalties pays for another set. Totals that differ by less than about 1e-7 may count as equal.

@@ -33,19 +33,23 @@ struct MMGRASP_EXPORT CapabilityOptions {
   void check() const;
 };
 
-/// How many of the tool poses around a point the arm reaches (P3 3.9.2). Space is cut into voxels with an inscribed
-/// sphere each. Tool poses stand on the sphere, spread evenly, pointing at its centre, and each is tried by inverse
-/// kinematics that minds joint limits, self-collision and the scene. The reachability index of a voxel is the share
-/// that is reached (equation 3.13). What counts as reached carries a configuration that was checked; what does not was
-/// searched in closed form over sampled values of the joints that a pose leaves free, from the solutions of
-/// neighbouring poses, and along the border of what is reached by further values and by Newton's method from what stuck
-/// out of the limits least (docs/methods/capability_map.md). Arms without closed form are searched by Newton's method
-/// from a reachability database.
+/// How many of the tool poses around a point the arm reaches (P3 3.9.2).
 ///
-/// Directions follow a spherical Fibonacci lattice. Each direction takes `rolls` rolls evenly apart, and their start
-/// goes round by an irrational step from one direction to the next, so that with one roll a voxel's poses sample rolls
-/// evenly, too (P3 says nothing of rolls). All poses are in the root frame of the robot; the map moves with it.
-/// Immutable; safe to share.
+///     const CapabilityMap map = CapabilityMap::build(arm, world);
+///     const double share = map.index_at({0.6, 0.0, 0.8});          // reachability index (3.13), in [0, 1]
+///     const CapabilityMap later = map.restricted(arm, fuller_world);  // an obstacle has come
+///
+/// - Space is cut into voxels with an inscribed sphere each. Tool poses stand on the sphere, spread evenly, pointing at
+///   its centre; each is tried by inverse kinematics that minds joint limits, self-collision and the scene.
+/// - What counts as reached carries a configuration that was checked. What does not was searched in closed form over
+///   sampled values of the joints that a pose leaves free, from the solutions of neighbouring poses, and along the
+///   border of what is reached by further values and by Newton's method from what stuck out of the limits least
+///   (docs/methods/capability_map.md). Arms without closed form are searched by Newton's method from a reachability
+///   database.
+/// - Directions follow a spherical Fibonacci lattice. Each takes `rolls` rolls evenly apart, and their start goes round
+///   by an irrational step from one direction to the next, so that with one roll a voxel's poses sample rolls evenly,
+///   too (P3 says nothing of rolls).
+/// - All poses are in the root frame of the robot; the map moves with it. Immutable; safe to share.
 class MMGRASP_EXPORT CapabilityMap {
  public:
   /// `arm` must not have base joints; a lift may be among its joints. What the robot holds is the world's. Throws

@@ -28,12 +28,19 @@ struct MMGRASP_EXPORT ReachOptions {
   void check() const;
 };
 
-/// Sampled arm configurations, free of self-collision, binned by tool pose into six-dimensional cells (P1 3.2.1).
-/// Positions are floored (the cell at 0 is no wider than the others); rotations are binned in cells of nearly equal
-/// size that stay neighbourhoods everywhere, unlike roll-pitch-yaw voxels near pitch +-90 degrees. A joint takes 16
-/// bits between its limits (continuous joints: in [-pi, pi]), and it is these configurations that are drawn, checked
-/// and binned: nothing is rounded afterwards. On disk a database is a folder of numpy arrays with a meta.json
-/// (docs/methods/reach.md), mapped into memory. Immutable after build or load; safe to share between threads.
+/// Sampled arm configurations, free of self-collision, binned by tool pose into six-dimensional cells (P1 3.2.1): good
+/// first guesses for inverse kinematics, and quick answers to "out of reach".
+///
+///     const ReachDatabase database = ReachDatabase::load_or_build(arm, {}, "cache");
+///     Eigen::MatrixXd seeds;
+///     const int found = database.nearest(T_base_tip, 8, seeds);  // one configuration a column; 0: out of reach
+///
+/// - Positions are floored (the cell at 0 is no wider than the others); rotations are binned in cells of nearly equal
+///   size that stay neighbourhoods everywhere, unlike roll-pitch-yaw voxels near pitch +-90 degrees.
+/// - A joint takes 16 bits between its limits (continuous joints: in [-pi, pi]), and it is these configurations that
+///   are drawn, checked and binned: nothing is rounded afterwards.
+/// - On disk a database is a folder of numpy arrays with a meta.json (docs/methods/reach.md), mapped into memory.
+/// - Immutable after build or load; safe to share between threads.
 class MMGRASP_EXPORT ReachDatabase {
  public:
   /// `arm` must not have base joints; poses are in the robot's root frame, wherever the arm's root stands. Samples

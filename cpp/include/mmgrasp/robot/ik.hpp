@@ -23,7 +23,7 @@ struct MMGRASP_EXPORT IkOptions {
   int restarts = 30;                 ///< Random restarts after the seed; >= 0
   double time_limit = 1.0;           ///< Wall-clock cap [s]; > 0
   unsigned seed = 1;                 ///< Same seed, same answer.
-  /// How dear it is to move each joint, > 0, one per joint of the group; empty: all the same (weighted least squares).
+  /// Cost of moving each joint, > 0, one per joint of the group; empty: all the same (weighted least squares).
   std::vector<double> joint_weights;
   /// What the redundancy is used for: costs that are lowered in the null space (P3 3.3-3.5, 5.7). Empty: nothing.
   IkObjectives objectives;

@@ -10,8 +10,14 @@
 
 namespace mmgrasp {
 
-/// A cost of configurations that inverse kinematics lowers with the freedom that the pose leaves (P3 3.5:
-/// q_p = (I - J^+ J) xi, xi the sum of the negative gradients). Immutable and safe to share between threads.
+/// A cost of configurations that inverse kinematics lowers with the freedom that the pose leaves (P3 3.5: q_p = (I -
+/// J^+ J) xi, xi the sum of the negative gradients).
+///
+///     IkOptions options;
+///     options.objectives = {make_joint_limit_objective(arm)};
+///     const IkResult found = solve_ik(arm, T_world_tip, seed, options);
+///
+/// Immutable and safe to share between threads.
 class MMGRASP_EXPORT IkObjective {
  public:
   explicit IkObjective(int size) : size_(size) {}

@@ -11,12 +11,18 @@
 
 namespace mmgrasp {
 
-/// Some joints of a robot that are planned together, and a tip. Configuration: base joints x, y, theta first when the
-/// group has them, then the chain in order. A planar joint has three columns, "<joint>/x", "<joint>/y" and
-/// "<joint>/theta"; a floating one six, "<joint>/x", "/y", "/z" and its rotation vector "/rx", "/ry", "/rz". Their
-/// translations lie in the base's workspace bound, the entries of a rotation vector in [-pi, pi]; theta wraps. All
-/// other joints stay at the group's reference values; without base joints the root stands at `T_world_root`. Immutable,
-/// cheap to copy, safe to share between threads.
+/// Some joints of a robot that are planned together, and a tip: where its configurations, limits and kinematics are.
+///
+///     const JointGroup arm = robot.group("arm", "tool");
+///     const Pose T_world_tool = arm.fk(q);
+///     const IkResult found = solve_ik(arm, T_world_tool, seed);
+///
+/// - Configuration: base joints x, y, theta first when the group has them, then the chain in order.
+/// - A planar joint has three columns, "<joint>/x", "<joint>/y" and "<joint>/theta"; a floating one six, "<joint>/x",
+///   "/y", "/z" and its rotation vector "/rx", "/ry", "/rz". Their translations lie in the base's workspace bound, the
+///   entries of a rotation vector in [-pi, pi]; theta wraps.
+/// - All other joints stay at the group's reference values; without base joints the root stands at `T_world_root`.
+/// - Immutable, cheap to copy, safe to share between threads.
 class MMGRASP_EXPORT JointGroup {
  public:
   const Robot& robot() const;

@@ -51,7 +51,14 @@ struct MMGRASP_EXPORT EndEffectorDescription {
 class JointGroup;
 
 /// A robot as URDF and SRDF describe it: links, joints, collision shapes, groups, pairs that need no collision check.
-/// Immutable and cheap to copy (shared data). Links and joints are indexed in breadth-first order, root link first.
+///
+///     const Robot robot = Robot::load("panda.urdf", "panda.srdf");
+///     const JointGroup arm = robot.group("panda_arm");
+///     const Robot equipped = robot.with_link("tool", "panda_hand", T_hand_tool);
+///
+/// - Immutable and cheap to copy (shared data): mount(), with_link() and with_disabled_pairs() give new robots.
+/// - Links and joints are indexed in breadth-first order, root link first.
+/// - RobotOptions::base says whether it stands, drives (diff_drive) or glides (omni); a moving base adds x, y, theta.
 class MMGRASP_EXPORT Robot {
  public:
   /// Reads files. Throws IoError / InvalidInput naming file, element, value and rule. An empty srdf_path means none;

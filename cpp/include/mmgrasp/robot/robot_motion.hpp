@@ -22,6 +22,11 @@ struct MMGRASP_EXPORT GripperEvent {
 
 /// What a robot carries out: arm, base and gripper on one clock, from 0. Between points arm velocities are interpolated
 /// as in JointTrajectory, the base's twist linearly.
+///
+///     RobotMotion motion = robot_motion(approach, base_pose);
+///     motion.wait(0.5);                            // the fingers close
+///     motion.append(robot_motion(lift, base_pose));  // must begin where the motion stands
+///     write(motion.to_csv());
 struct MMGRASP_EXPORT RobotMotion {
   std::vector<std::string> joints;  ///< Of the arm; one per column.
   std::vector<double> times;        ///< [s], from 0, strictly increasing.

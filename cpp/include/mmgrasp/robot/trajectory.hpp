@@ -14,7 +14,10 @@ struct MMGRASP_EXPORT JointPath {
   double length() const;  ///< Sum of Euclidean joint distances.
 };
 
-/// A path on a clock.
+/// A path on a clock: configurations with their times, and velocities and accelerations where they are known.
+///
+///     const JointTrajectory motion = time_parameterize(path, velocity_limits, acceleration_limits);
+///     for (double t = 0; t <= motion.duration(); t += 0.01) send(motion.at(t));
 struct MMGRASP_EXPORT JointTrajectory {
   std::vector<std::string> names;  ///< One per column of the configurations.
   std::vector<double> times;       ///< [s], from 0, strictly increasing.

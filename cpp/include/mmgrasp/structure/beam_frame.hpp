@@ -31,6 +31,10 @@ struct MMGRASP_EXPORT NodeLoad {
 
 /// A frame of straight Euler-Bernoulli beams, welded at nodes, in the object's frame (P2 3.2.3.3.2): linear elastic,
 /// small displacements, no shear deformation. SupportedFrame says how it bends.
+///
+///     BeamFrame frame = beam_frame(pipe, 0.026, copper());
+///     frame.loads.push_back({valve_node, 0.4});  // a valve of 0.4 kg
+///     const double mass = frame.mass();
 struct MMGRASP_EXPORT BeamFrame {
   std::vector<Eigen::Vector3d> nodes;  ///< [m]
   std::vector<BeamMember> members;

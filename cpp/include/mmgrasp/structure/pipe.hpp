@@ -18,6 +18,9 @@ enum class PipeEnds {
 
 /// A pipe structure (P2 3.2.2): straight round sections between nodes, all in the object's frame. Unlike P2's matrix
 /// the indices of nodes count from 0.
+///
+///     const Pipe pipe{{{0, 0, 0}, {0.4, 0, 0}, {0.4, 0.3, 0}}, {{0, 1}, {1, 2}}, {0.028, 0.028}};
+///     const SampledGrasps grasps = sample_pipe_grasps(pipe, 500);
 struct MMGRASP_EXPORT Pipe {
   std::vector<Eigen::Vector3d> nodes;        ///< [m]
   std::vector<std::array<int, 2>> sections;  ///< First and second node of each section.

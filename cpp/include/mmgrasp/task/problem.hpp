@@ -34,11 +34,12 @@ struct MMGRASP_EXPORT Tray {
 };
 
 /// Where picked parts go: a bin fixed to the robot. A part is released level (as it lay in the tray, turned about the
-/// vertical only) with its lowest point `drop_gap` above the bin's top plane and its origin inside the bin's rectangle.
+/// vertical only) with its lowest point `drop_height` above the bin's top plane and its origin inside the bin's
+/// rectangle.
 struct MMGRASP_EXPORT PlaceRegion {
   Pose T_base_bin = Pose::Identity();                ///< Middle of the bin's top plane in the root frame, z up.
   Eigen::Vector2d size = Eigen::Vector2d(0.3, 0.3);  ///< Inner x and y [m], > 0.
-  double drop_gap = 0.03;                            ///< [m], >= 0
+  double drop_height = 0.03;                         ///< [m], >= 0
 };
 
 struct MMGRASP_EXPORT BaseGridOptions {
@@ -63,9 +64,18 @@ struct MMGRASP_EXPORT PartSupplyOptions {
   void check() const;
 };
 
-/// Everything the part-supply planner needs. The scene holds obstacles, tables, trays; parts are kept apart because
-/// they are removed one by one. `arm` has no base joints; its reference holds the other joints (head, ...) and the
-/// fingers at rest.
+/// Everything the part-supply planner needs: the robot and its hand, the room, the trays with their parts, and where
+/// parts go.
+///
+///     PartSupplyProblem problem{robot, arm, hand, room, trays, home};
+///     problem.place_region.T_base_bin = T_base_bin;
+///     problem.options.positioning_uncertainty = 0.05;
+///     const PartSupplyPlan plan = plan_part_supply(problem, ReachDatabase::build(arm));
+///
+/// - The scene holds obstacles, tables, trays; parts are kept apart because they are removed one by one.
+/// - `arm` has no base joints; its reference holds the other joints (head, ...) and the fingers at rest.
+/// - Stops are planned so that they still work when the base comes to stand anywhere in the disc of
+///   `options.positioning_uncertainty` about them.
 struct MMGRASP_EXPORT PartSupplyProblem {
   Robot robot;
   JointGroup arm;

@@ -33,10 +33,19 @@ struct MMGRASP_EXPORT WholeBodySegment {
 };
 
 /// P1's problem (4.1)-(4.9): the fastest motion of base and arm through `tool` constraints, under the limits of the
-/// group and of the robot's base. The variables are configuration and velocity at the waypoints; accelerations are
-/// constant between them, so that joints follow (4.6) exactly. A diff-drive base is described by driving speed v and
-/// turning rate omega: it never slips sideways (4.5), and x and y follow from integrating v and omega, linear between
-/// waypoints.
+/// group and of the robot's base.
+///
+///     WholeBodyProblem problem(robot.group("arm", "tool", true));
+///     problem.start = start;
+///     problem.goal_lower = problem.goal_upper = goal;
+///     problem.segments = {{20, 0.0}, {20, 0.0}};  // intervals before and after the waypoint of the grasp
+///     problem.tool = {grasp};
+///     const WholeBodyResult result = optimize_whole_body(problem, guess);
+///
+/// - The variables are configuration and velocity at the waypoints; accelerations are constant between them, so that
+///   joints follow (4.6) exactly.
+/// - A diff-drive base is described by driving speed v and turning rate omega: it never slips sideways (4.5), and x and
+///   y follow from integrating v and omega, linear between waypoints.
 struct MMGRASP_EXPORT WholeBodyProblem {
   explicit WholeBodyProblem(JointGroup g) : group(std::move(g)) {}
 

@@ -23,8 +23,8 @@ struct MMGRASP_EXPORT CheckedBody {
 };
 
 struct MMGRASP_EXPORT CheckedGrasp {
-  Pose T_object_tcp = Pose::Identity();
-  double width = 0;
+  Pose T_object_hand = Pose::Identity();
+  double opening = 0;  ///< Between the pads while holding [m].
 };
 
 struct MMGRASP_EXPORT CheckedPart {
@@ -105,7 +105,13 @@ struct MMGRASP_EXPORT CheckedIntersection {
 /// Two that may touch: links, obstacles or parts by their names.
 using CheckedPair = std::pair<std::string, std::string>;
 
-/// A whole plan, as read from plan.json. Knows nothing of how it was made.
+/// A whole plan, as read from plan.json: what the checker needs to know of robot, room and parts, and what is claimed.
+/// Knows nothing of how it was made.
+///
+///     PlanToCheck plan(source);  // the URDFs, unread
+///     plan.parts = parts;
+///     plan.stops = stops;
+///     for (const Fault& fault : check_plan(plan).faults) std::cout << fault.code << ": " << fault.message << "\n";
 struct MMGRASP_EXPORT PlanToCheck {
   explicit PlanToCheck(RobotSource checked_robot) : robot(std::move(checked_robot)) {}
 
@@ -131,7 +137,7 @@ struct MMGRASP_EXPORT PlanToCheck {
   double positioning_uncertainty = 0.1;
   Pose T_base_bin = Pose::Identity();
   Eigen::Vector2d bin_size = Eigen::Vector2d(0.3, 0.3);
-  double drop_gap = 0.03;
+  double drop_height = 0.03;
   std::vector<CheckedBody> obstacles;
   std::vector<CheckedPart> parts;
   std::vector<CheckedPair> allowed_collisions;  ///< Not looked at: what else these touch is.
@@ -182,7 +188,7 @@ struct MMGRASP_EXPORT PlanCheckOptions {
 ///   `velocity-limit`, `acceleration-limit`, `discontinuous`, `not-at-rest`, `opening`, `holding`, `self-collision`,
 ///   `scene-collision`, `held-collision`;
 /// - what it is for: `not-straight` (approach, lift), `short-approach`, `grasp-missed`, `grasp-empty` (fewer than two
-///   fingers close on it, or a listed grasp has nothing between the pads), `grasp-width` (pads at this width would
+///   fingers close on it, or a listed grasp has nothing between the pads), `grasp-opening` (pads at this width would
 ///   stand in the part, or clear of it), `no-lift` (or one that is too low), `release-outside`, `release-tilted`,
 ///   `release-height`;
 /// - a motion in passing, besides those of arm motions: `drive-by-pick` (not the first of its stop, twice, unknown),

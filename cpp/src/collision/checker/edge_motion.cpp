@@ -15,14 +15,14 @@ void EdgeMotion::start(const Placement& placement, const Eigen::VectorXd& q0, co
   rates_ = plan.rates.finite ? &plan.rates : &along_edge_;
   body_rates_.noalias() = rates_->shapes.transpose() * magnitude_;
   pair_rates_.noalias() = rates_->pairs.transpose() * magnitude_;
-  const MovingFrames& frames = plan.frames;
-  if (!frames.bends()) {
+  const MotionBounds& bounds = plan.frame_bounds;
+  if (!bounds.bends()) {
     half_squares_.resize(0);
     return;
   }
-  MovingFrames::squares(magnitude_, half_squares_);
+  MotionBounds::squares(magnitude_, half_squares_);
   half_squares_ *= 0.5;
-  velocities_.resize(static_cast<std::size_t>(frames.count()));
+  velocities_.resize(static_cast<std::size_t>(bounds.tree().frames));
 }
 
 Closing EdgeMotion::of_body(int body, double reach) {
@@ -63,26 +63,24 @@ void EdgeMotion::add_velocity(const Eigen::Vector3d& linear, const Eigen::Vector
 
 void EdgeMotion::find_velocities() {
   velocities_valid_ = true;
-  const MovingFrames& frames = placement_->plan().frames;
-  const std::vector<FrameStep>& steps = frames.steps();
+  const MotionBounds& bounds = placement_->plan().frame_bounds;
   Velocity& root = velocities_[0];
   root.origin = placement_->frame(0).t;
   root.linear.setZero();
   root.angular.setZero();
-  if (frames.has_base()) {
+  if (bounds.has_base()) {
     root.linear.head<2>() = step_.head<2>();
     root.angular[2] = step_[2];
   }
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    const FrameStep& step = steps[i];
-    const Velocity& parent = velocities_[step.parent];
-    Velocity& own = velocities_[i + 1];
-    const double* frame = placement_->frame_numbers(static_cast<int>(i) + 1);
-    own.origin = Eigen::Map<const Eigen::Vector3d>(frame + 12);
+  for (const ElementaryMotion& motion : bounds.tree().motions) {
+    const Velocity& parent = velocities_[motion.parent];
+    Velocity& own = velocities_[motion.frame];
+    const Rigid frame = placement_->frame(motion.frame);
+    own.origin = frame.t;
     own.linear = parent.at(own.origin);
     own.angular = parent.angular;
-    (step.motion == FrameMotion::prismatic ? own.linear : own.angular) +=
-        step.multiplier * step_[step.column] * Eigen::Map<const Eigen::Vector3d>(frame + 8);
+    (motion.motion == Motion::prismatic ? own.linear : own.angular) +=
+        motion.drive.multiplier * step_[motion.drive.column] * (frame.R * motion.axis);
   }
 }
 

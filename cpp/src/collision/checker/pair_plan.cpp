@@ -52,7 +52,7 @@ std::vector<int> rigid_assemblies(const Robot& robot) {
 }
 
 PairPlan::PairPlan(const Snapshot& snapshot, const JointGroup& group)
-    : frames(group),
+    : frame_bounds(group),
       // Limits are kept up to kLimitSlack.
       largest_(group.lower().cwiseAbs().cwiseMax(group.upper().cwiseAbs()) +
                Eigen::VectorXd::Constant(group.size(), kLimitSlack)) {
@@ -91,7 +91,8 @@ void PairPlan::sort_shapes(const Snapshot& snapshot, const JointGroup& group) {
 
 void PairPlan::place_shape(const Snapshot& snapshot, int s) {
   const BodyShape& shape = snapshot.shapes[s];
-  placed[s] = {frames.frame_of(shape.link), frames.link_in_frame(shape.link) * shape.in_link};
+  const FrameTree& tree = frame_bounds.tree();
+  placed[s] = {tree.frame_of_link[shape.link], tree.link_in_frame[shape.link] * shape.in_link};
   if (sphere_of[s] < 0) return;
   const Eigen::Vector3d centre = placed[s].in_frame * shape.padded->sphere_centre;
   spheres[sphere_of[s]] = {{centre[0], centre[1], centre[2]}, shape.padded->sphere_radius, placed[s].frame};
@@ -129,27 +130,29 @@ void PairPlan::find_clearance_tables(const Snapshot& snapshot) {
     const BodyShape &a = snapshot.shapes[pair.a], &b = snapshot.shapes[pair.b];
     if (a.solid->kind != SolidKind::mesh || b.solid->kind != SolidKind::mesh) continue;
     if (snapshot.bodies[a.body].attached || snapshot.bodies[b.body].attached) continue;
-    // Frames are numbered from the root outwards.
+    // Links are numbered from the root outwards.
     const bool b_outer = placed[pair.b].frame > placed[pair.a].frame;
     const PlacedShape &inner = placed[b_outer ? pair.a : pair.b], &outer = placed[b_outer ? pair.b : pair.a];
-    if (outer.frame == 0) continue;
-    const FrameStep& second = frames.steps()[outer.frame - 1];
-    if (second.parent == 0) continue;
-    const FrameStep& first = frames.steps()[second.parent - 1];
-    const auto plain = [](const FrameStep& s) {
-      return s.motion == FrameMotion::revolute && s.multiplier == 1 && s.offset == 0;
+    const std::vector<const ElementaryMotion*> above = frame_bounds.tree().motions_above(outer.frame);
+    if (above.size() < 2 || above[1]->parent != inner.frame) continue;
+    const ElementaryMotion &first = *above[1], &second = *above[0];
+    const auto plain = [](const ElementaryMotion& m) {
+      return m.motion == Motion::revolute && m.drive.multiplier == 1 && m.drive.offset == 0;
     };
-    if (first.parent != inner.frame || !plain(first) || !plain(second)) continue;
+    if (!plain(first) || !plain(second)) continue;
     // No prismatic joint lies between the two, so no limit has a part in this.
-    const Eigen::VectorXd closing = pair_rates(pair, Eigen::VectorXd::Zero(frames.columns()));
+    const Eigen::VectorXd closing = pair_rates(pair, Eigen::VectorXd::Zero(frame_bounds.columns()));
     RevolutePair joints;
-    joints.before = inner.in_frame.to(MovingFrames::rest(first));
-    joints.between = MovingFrames::rest(second);
-    joints.after = outer.in_frame;
-    joints.rates = {closing[first.column], closing[second.column]};
+    // The table's joints turn about z.
+    const Rigid first_z(rotation_from_z(first.axis), Eigen::Vector3d::Zero());
+    const Rigid second_z(rotation_from_z(second.axis), Eigen::Vector3d::Zero());
+    joints.before = inner.in_frame.to(first.rest * first_z);
+    joints.between = first_z.to(second.rest * second_z);
+    joints.after = second_z.to(outer.in_frame);
+    joints.rates = {closing[first.drive.column], closing[second.drive.column]};
     pair.clearances = b_outer ? shared_clearance_table({a.solid, a.bounds}, {b.solid, b.bounds}, joints)
                               : shared_clearance_table({b.solid, b.bounds}, {a.solid, a.bounds}, joints);
-    pair.columns = {first.column, second.column};
+    pair.columns = {first.drive.column, second.drive.column};
   }
 }
 
@@ -178,12 +181,12 @@ MotionRates PairPlan::rates_along(const Eigen::VectorXd& q0, const Eigen::Vector
 }
 
 Eigen::VectorXd PairPlan::pair_rates(const ShapePair& pair, const Eigen::VectorXd& largest) const {
-  return frames.closing_rates(spheres[pair.sphere_a], spheres[pair.sphere_b], largest);
+  return frame_bounds.closing_rates(spheres[pair.sphere_a], spheres[pair.sphere_b], largest);
 }
 
 MotionRates PairPlan::bound_motion(const Eigen::VectorXd& largest) const {
   MotionRates out;
-  const Eigen::Index columns = largest.size(), squares = frames.bends() ? columns * (columns + 1) / 2 : 0;
+  const Eigen::Index columns = largest.size(), squares = frame_bounds.bends() ? columns * (columns + 1) / 2 : 0;
   out.shapes.resize(columns, static_cast<Eigen::Index>(moving.size()));
   out.shape_bends.resize(squares, out.shapes.cols());
   out.pairs.resize(columns, static_cast<Eigen::Index>(varying.size()));
@@ -197,16 +200,16 @@ MotionRates PairPlan::bound_motion(const Eigen::VectorXd& largest) const {
 }
 
 void PairPlan::bound_shape(MotionRates& out, Eigen::Index i, const Eigen::VectorXd& largest) const {
-  out.shapes.col(i) = frames.point_rates(spheres[i], largest);
-  if (frames.bends()) out.shape_bends.col(i) = frames.point_bends(spheres[i], largest);
+  out.shapes.col(i) = frame_bounds.point_rates(spheres[i], largest);
+  if (frame_bounds.bends()) out.shape_bends.col(i) = frame_bounds.point_bends(spheres[i], largest);
 }
 
 void PairPlan::bound_pair(MotionRates& out, Eigen::Index i, const Eigen::VectorXd& largest) const {
   const ShapePair& pair = varying[i];
   out.pairs.col(i) = pair_rates(pair, largest);
-  if (!frames.bends()) return;
+  if (!frame_bounds.bends()) return;
   bool b_moves = false;
-  out.pair_bends.col(i) = frames.closing_bends(spheres[pair.sphere_a], spheres[pair.sphere_b], largest, b_moves);
+  out.pair_bends.col(i) = frame_bounds.closing_bends(spheres[pair.sphere_a], spheres[pair.sphere_b], largest, b_moves);
   out.b_moves[i] = b_moves;
 }
 

@@ -6,7 +6,7 @@
 
 #include "collision/checker/bodies.hpp"
 #include "collision/checker/clearance_table.hpp"
-#include "collision/checker/moving_frames.hpp"
+#include "collision/checker/motion_bounds.hpp"
 
 namespace mmgrasp::detail {
 
@@ -30,8 +30,8 @@ struct PlacedShape {
 /// other, per unit of each column (rows) [m/rad or m/m].
 struct MotionRates {
   Eigen::MatrixXd shapes, pairs;
-  Eigen::MatrixXd shape_bends, pair_bends;  ///< See MovingFrames::point_bends(); empty where there are none.
-  std::vector<char> b_moves;                ///< Per varying pair; see MovingFrames::closing_bends().
+  Eigen::MatrixXd shape_bends, pair_bends;  ///< See MotionBounds::point_bends(); empty where there are none.
+  std::vector<char> b_moves;                ///< Per varying pair; see MotionBounds::closing_bends().
   bool finite = true;
 };
 
@@ -40,7 +40,7 @@ struct MotionRates {
 struct MMGRASP_EXPORT PairPlan {
   PairPlan(const Snapshot& snapshot, const JointGroup& group);
 
-  MovingFrames frames;
+  MotionBounds frame_bounds;
   std::vector<PlacedShape> placed;   ///< Per shape.
   std::vector<FrameSphere> spheres;  ///< Around the shapes in `moving`, then in `fixed`, in their order, with padding.
   std::vector<int> sphere_of;        ///< Per shape: its place in `spheres`, or -1.

@@ -10,7 +10,7 @@ Placement::Placement(std::shared_ptr<const Snapshot> snapshot, std::shared_ptr<c
       plan_(std::move(plan)),
       group_(group),
       q_(static_cast<std::size_t>(group.size())),
-      frames_(16 * static_cast<std::size_t>(plan_->frames.count())),
+      frames_(static_cast<std::size_t>(plan_->frame_bounds.tree().frames), Pose::Identity()),
       sphere_row_(static_cast<int>((plan_->spheres.size() + kLanes - 1) / kLanes * kLanes)),
       shape_centres_(snapshot_->shapes.size(), Eigen::Vector3d::Zero()),
       poses_(snapshot_->shapes.size()),
@@ -25,24 +25,26 @@ void Placement::place(const double* q) {
   std::copy(q, q + q_.size(), q_.begin());
   const bool first = !frames_valid_;
   if (first) {
-    MovingFrames::set(Rigid(group_.T_world_root()), frames_.data());
+    frames_[0] = group_.T_world_root();
     fixed_stamp_ = stamp_;
     frames_valid_ = true;
   }
-  plan_->frames.place(q, frames_.data());
+  if (group_.has_base()) frames_[0] = pose_from_planar({q[0], q[1], q[2]});
+  const GroupKinematics& kinematics = *group_.data().kinematics;
+  double* numbers = frames_[0].data();
+  kinematics.place_frames(q, numbers);
   const std::size_t count = first ? plan_->spheres.size() : plan_->moving.size();
-  kernels().place_spheres(plan_->spheres.data(), static_cast<int>(count), frames_.data(), sphere_numbers_.data(),
-                          sphere_row_);
+  kernels().place_spheres(plan_->spheres.data(), static_cast<int>(count), numbers, sphere_numbers_.data(), sphere_row_);
 }
 
 void Placement::place_links(const Eigen::VectorXd& q) {
   place(q.data());
   const bool first = !links_valid_;
-  group_.link_poses(q, links_, links_valid_);
+  group_.data().kinematics->place_other_links(links_valid_, frames_[0].data());
   links_valid_ = true;
   const auto place_centre = [&](int s) {
     const BodyShape& shape = snapshot_->shapes[s];
-    const Pose& T = links_[shape.link];
+    const Pose& T = frames_[shape.link];
     shape_centres_[s].noalias() = T.linear() * shape.sphere_centre + T.translation();
   };
   for (const int s : plan_->moving) place_centre(s);

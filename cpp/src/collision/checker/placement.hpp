@@ -40,9 +40,7 @@ class MMGRASP_EXPORT Placement {
   }
   /// The configuration that was placed last.
   const std::vector<double>& configuration() const { return q_; }
-  Rigid frame(int i) const { return MovingFrames::get(frame_numbers(i)); }
-  /// Columns of its rotation, then its origin, four numbers each.
-  const double* frame_numbers(int i) const { return frames_.data() + 16 * i; }
+  Rigid frame(int i) const { return Rigid(frames_[i]); }
   /// T_world_shape.
   const Rigid& pose(int shape) {
     if (pose_stamp_[shape] != (moves_[shape] ? stamp_ : fixed_stamp_)) compute_pose(shape);
@@ -58,8 +56,8 @@ class MMGRASP_EXPORT Placement {
     if (memory_.empty()) memory_.resize(snapshot_->shapes.size() * snapshot_->scene.size());
     return memory_[shape * snapshot_->scene.size() + scene_shape];
   }
-  /// Set by place_links().
-  const Poses& links() const { return links_; }
+  /// By link, set by place_links().
+  const Poses& links() const { return frames_; }
   const Eigen::Vector3d& shape_centre(int shape) const { return shape_centres_[shape]; }
 
  private:
@@ -70,11 +68,10 @@ class MMGRASP_EXPORT Placement {
   JointGroup group_;
 
   std::vector<double> q_;
-  std::vector<double> frames_;  ///< See Kernels::place_frames.
+  Poses frames_;  ///< By frame number of the group's FrameTree, which for links is their index.
   bool frames_valid_ = false;
   std::vector<float> sphere_numbers_;  ///< See spheres().
   int sphere_row_;                     ///< Spheres of the plan, rounded up to whole lanes.
-  Poses links_;
   bool links_valid_ = false;
   std::vector<Eigen::Vector3d> shape_centres_;  ///< Centres of the bounding spheres, world frame.
   std::vector<Rigid> poses_;                    ///< T_world_shape, made when first needed.

@@ -32,19 +32,6 @@ struct PairBlock {
   std::uint8_t lanes;  ///< Which of them make pairs.
 };
 
-/// How a frame moves: about its own z, along it, or by a rotation vector (three columns).
-enum class FrameMotion { revolute, prismatic, spherical };
-
-/// A joint's frame on its way down the tree: turned so that the joint moves about or along its own z.
-struct FrameStep {
-  double R[12];  ///< Three columns of four numbers, the fourth 0: this frame before it moves, in its parent.
-  double p[4];
-  double multiplier, offset;  ///< Joint value = multiplier * q[column] + offset.
-  int parent;                 ///< Frame number; frame 0 is the root. Step i makes frame i + 1.
-  int column;
-  FrameMotion motion;
-};
-
 /// A bounding sphere that moves with a frame.
 struct FrameSphere {
   double p[3];
@@ -83,10 +70,8 @@ struct Kernels {
   int (*farthest)(const double* points, int count, const double* d);
   /// The same in single precision: no point lies farther by more than its rounding.
   int (*nearly_farthest)(const float* points, int count, const float* d);
-  /// frames: 16 numbers each, columns R0 R1 R2 p of four; frame 0 is given.
-  void (*place_frames)(const FrameStep* steps, int count, const double* q, double* frames);
   /// World centre and radius of each sphere, the radius with a slack for single precision: x, y, z and radius in rows
-  /// of `row` numbers.
+  /// of `row` numbers. frames: 4 x 4 poses, column by column.
   void (*place_spheres)(const FrameSphere* spheres, int count, const double* frames, float* out, int row);
   /// masks[b * packs + k]: which boxes of pack k sphere b meets.
   void (*spheres_meet_boxes)(const BoxPack* packs, int pack_count, const SphereRows& spheres, int sphere_count,

@@ -71,8 +71,8 @@ ClosingOutcome closing_outcome(const PushGraspProblem& problem, double start) {
   out.swept = std::max(0.0, out.both_touch - p.planned_depth);
   // Closed already when the tips arrive: they meet the object's face.
   const double passing = std::min(p.opening, p.opening + p.closing_speed * start / p.tool_speed);
-  out.gap = (std::max(passing, 0.0) - p.object_width) / 2;
-  out.lateral_tolerance = out.gap - p.clearance;
+  out.side_clearance = (std::max(passing, 0.0) - p.object_width) / 2;
+  out.lateral_tolerance = out.side_clearance - p.clearance;
   out.holds = out.lateral_tolerance >= 0 && out.both_touch >= p.grip_depth && out.pushed <= p.max_push;
   out.nearer_tolerance = p.finger_length + p.max_push - out.both_touch;
   out.farther_tolerance = std::min(out.both_touch - p.grip_depth, start - passing_start(p, p.lateral_error));

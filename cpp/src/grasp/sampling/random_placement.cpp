@@ -57,7 +57,7 @@ class Placer {
   Placer(const std::vector<LinkShape>& part, const Vector3d& tray_size, double wall, const PlacementOptions& options)
       : part_(part),
         size_(tray_size),
-        inner_(tray_size.head<2>() / 2 - Vector2d::Constant(wall + options.gap)),
+        inner_(tray_size.head<2>() / 2 - Vector2d::Constant(wall + options.clearance)),
         options_(options),
         rests_(resting_poses(part)),
         rng_(options.seed) {
@@ -122,7 +122,7 @@ class Placer {
     if (free.minCoeff() < 0) return std::nullopt;
     T.translation().head<2>() += Vector2d(rx, ry).cwiseProduct(free) - inner_ - box.min().head<2>();
     // The primitives stand for themselves: a cylinder's hull has its facets a little inside.
-    T.translation().z() += -box.min().z() + options_.gap;
+    T.translation().z() += -box.min().z() + options_.clearance;
     if (!on_others) {
       if (!settles(T, T.translation().z())) return std::nullopt;
     } else {
@@ -145,10 +145,10 @@ class Placer {
     while (z > floor) {
       // Moving by less than the distance is safe; so is a small step that is found free, past a wall close by.
       const double before = z, distance = checker_->distance(configuration(T)).value;
-      z = std::max(floor, z - std::max(distance - options_.gap / 2, kSmallStep));
+      z = std::max(floor, z - std::max(distance - options_.clearance / 2, kSmallStep));
       if (is_free(T)) continue;
       double low = z, high = before;
-      while (high - low > options_.gap / 4) {
+      while (high - low > options_.clearance / 4) {
         z = (low + high) / 2;
         is_free(T) ? high = z : low = z;
       }
@@ -182,7 +182,7 @@ class Placer {
 void PlacementOptions::check() const {
   require(count >= 0, "count", count, "must be zero or positive");
   require(attempts > 0, "attempts", attempts, "must be positive");
-  require(std::isfinite(gap) && gap > 0, "gap", gap, "must be positive and finite [m]");
+  require(std::isfinite(clearance) && clearance > 0, "clearance", clearance, "must be positive and finite [m]");
 }
 
 std::vector<LinkShape> tray_shapes(const Vector3d& size, double wall) {

@@ -11,7 +11,7 @@
 namespace mmgrasp::detail {
 namespace {
 
-constexpr int kPatience = 30;     // Steps without a better bound before the step length is halved.
+constexpr int kStallLimit = 30;   // Steps without a better bound before the step length is halved.
 constexpr int kGreedyEvery = 10;  // Steps between two covers.
 constexpr std::uint64_t kSearchSeed = 1;
 constexpr double kFirstStep = 1.0;
@@ -205,7 +205,7 @@ PricedCover price_set_cover(const SetCoverProblem& problem, int max_steps) {
       best.bound = bound;
       best.prices = prices;
     }
-    if (++since > kPatience) {
+    if (++since > kStallLimit) {
       since = 0;
       step *= 0.5;
       prices = best.prices;

@@ -11,7 +11,7 @@ namespace mmgrasp::detail {
 namespace {
 
 constexpr int kMaxSteps = 1000;
-constexpr int kPatience = 20;
+constexpr int kStallLimit = 20;
 constexpr double kLastStep = 1e-4;
 
 /// Shortest spanning tree of symmetric lengths plus prices (Prim); its length and each node's neighbours.
@@ -69,7 +69,7 @@ double tree_bound(const Eigen::MatrixXd& lengths, double reached) {
     }
     const Eigen::VectorXd off = (degrees - wanted).cast<double>();
     if (off.squaredNorm() == 0 || best >= reached) break;
-    if (++since > kPatience) {
+    if (++since > kStallLimit) {
       since = 0;
       step *= 0.5;
       prices = best_prices;

@@ -132,7 +132,7 @@ class Builder {
           keep(at, search.found(), 0);
         } else {
           state_[at].cause = static_cast<std::uint8_t>(search.cause());
-          state_[at].settled = search.hopeless() || (table_.known() && table_.free_joints() == 0);
+          state_[at].settled = search.out_of_reach() || (table_.known() && table_.free_joints() == 0);
         }
       }
     }
@@ -209,7 +209,7 @@ class Builder {
   bool sweep_border(const std::vector<std::size_t>& border, int sweep) {
     const auto n = static_cast<std::size_t>(arm_.size());
     std::vector<std::uint8_t> result(border.size());
-    std::vector<std::uint8_t> hopeless(border.size());
+    std::vector<std::uint8_t> out_of_reach(border.size());
     std::vector<float> q(border.size() * n);
     const std::size_t blocks = (border.size() + kBorderBlock - 1) / kBorderBlock;
     const auto work = [&](std::size_t block, int worker) {
@@ -221,7 +221,7 @@ class Builder {
           std::copy(search.found().data(), search.found().data() + n, q.begin() + static_cast<long>(i * n));
         } else {
           result[i] = static_cast<std::uint8_t>(search.cause());
-          hopeless[i] = search.hopeless();
+          out_of_reach[i] = search.out_of_reach();
         }
       }
     };
@@ -229,7 +229,7 @@ class Builder {
     for (std::size_t i = 0; i < border.size(); ++i) {
       State& state = state_[border[i]];
       state.searched = true;
-      state.settled = hopeless[i];
+      state.settled = out_of_reach[i];
       if (result[i] == static_cast<std::uint8_t>(Rejection::none))
         keep(border[i], Eigen::Map<const Eigen::VectorXf>(q.data() + i * n, static_cast<long>(n)), sweep);
       else

@@ -42,7 +42,7 @@ bool PoseSearch::start(const Pose& T_world_tip, std::uint64_t number) {
   motion_ = Rigid(T_world_tip);
   number_ = number;
   cause_ = Rejection::unreachable;
-  hopeless_ = hand_asked_ = false;
+  out_of_reach_ = hand_asked_ = false;
   sample_ = -1;
   outside_.fill(kInfinity);
   return maybe_in_reach(arm_, T_world_tip.translation());
@@ -54,11 +54,11 @@ bool PoseSearch::refused(Rejection cause) {
     hand_asked_ = true;
     const Rejection hand = hand_.rejection(target_);
     if (hand != Rejection::none) {
-      hopeless_ = true;
+      out_of_reach_ = true;
       cause_ = hand;
     }
   }
-  return hopeless_;
+  return out_of_reach_;
 }
 
 bool PoseSearch::accept(Eigen::VectorXd& q) {
@@ -103,13 +103,13 @@ bool PoseSearch::accept(Eigen::VectorXd& q) {
 bool PoseSearch::try_samples_near(int sample, int count) {
   for (const int s : table_.order(sample)) {
     if (s < count && try_samples(s, s + 1)) return true;
-    if (hopeless_) return false;
+    if (out_of_reach_) return false;
   }
   return false;
 }
 
 bool PoseSearch::try_samples(int first, int last) {
-  for (int s = first; s < last && !hopeless_; ++s) {
+  for (int s = first; s < last && !out_of_reach_; ++s) {
     if (!try_branches(table_[s])) continue;
     sample_ = s;
     return true;
@@ -118,7 +118,7 @@ bool PoseSearch::try_samples(int first, int last) {
 }
 
 bool PoseSearch::try_locked(const Eigen::VectorXd& q) {
-  return !hopeless_ && try_branches(table_.lock(q));
+  return !out_of_reach_ && try_branches(table_.lock(q));
 }
 
 bool PoseSearch::try_branches(const LockedArm& arm) {
@@ -130,7 +130,7 @@ bool PoseSearch::try_branches(const LockedArm& arm) {
       return false;
     }
     found = accept(q);
-    return found || hopeless_;
+    return found || out_of_reach_;
   });
   return found;
 }
@@ -151,7 +151,7 @@ bool PoseSearch::try_nearly_inside(int iterations) {
 }
 
 bool PoseSearch::try_descent(const Eigen::VectorXd& q, int iterations) {
-  if (hopeless_) return false;
+  if (out_of_reach_) return false;
   q_ = q;
   ik_.max_iterations = iterations;
   if (!descend(arm_, target_, q_, ik_, workspace_, true).converged) return false;
@@ -162,7 +162,7 @@ bool PoseSearch::try_descent(const Eigen::VectorXd& q, int iterations) {
 
 bool PoseSearch::try_random_descents(int count, int iterations) {
   Rng rng(seed_, number_);
-  for (int i = 0; i < count && !hopeless_; ++i)
+  for (int i = 0; i < count && !out_of_reach_; ++i)
     if (try_descent(rng.uniform(arm_.sample_lower(), arm_.sample_upper()), iterations)) return true;
   return false;
 }

@@ -18,13 +18,13 @@ class PoseSearch {
   /// Starts on a pose; `number` picks its random numbers. False when the position is surely out of reach.
   bool start(const Pose& T_world_tip, std::uint64_t number);
   /// The pose is refused for good: the hand alone collides.
-  bool hopeless() const { return hopeless_; }
+  bool out_of_reach() const { return out_of_reach_; }
   /// The most hopeful failure so far: scene before self-collision before limits before reach.
   Rejection cause() const { return cause_; }
   /// The configuration found: rounded to 32-bit floats inside limits, confirmed by forward kinematics, free.
   const Eigen::VectorXf& found() const { return found_; }
 
-  // Each true when it found a configuration; none tries anything once the pose is hopeless.
+  // Each true when it found a configuration; none tries anything once the pose is out of reach.
   bool try_samples(int first, int last);         ///< Entries of the table.
   bool try_samples_near(int sample, int count);  ///< The entries below `count`, nearest to `sample` first.
   int sample() const { return sample_; }         ///< The entry that found it; -1 when none did.
@@ -36,7 +36,7 @@ class PoseSearch {
   /// Refuses the pose for a cause known beforehand.
   void settle(Rejection cause) {
     cause_ = cause;
-    hopeless_ = true;
+    out_of_reach_ = true;
   }
   /// Whether q itself, which reaches the pose, is free.
   bool try_configuration(const Eigen::VectorXd& q);
@@ -58,7 +58,7 @@ class PoseSearch {
   Rigid motion_;
   std::uint64_t number_ = 0;
   Rejection cause_ = Rejection::unreachable;
-  bool hopeless_ = false, hand_asked_ = false;
+  bool out_of_reach_ = false, hand_asked_ = false;
   int sample_ = -1;
   std::array<double, 3> outside_{};        ///< How far the nearest branches outside stuck out [rad] ...
   std::array<Eigen::VectorXd, 3> nearly_;  ///< ... and these, clamped.

@@ -17,7 +17,7 @@ constexpr double kDampingPerError =
     0.03;  // damping = this x squared error: gauss-newton near the goal, gradient far away
 constexpr double kLeastDamping = 1e-10;
 constexpr double kLongestStep = 1.0;  // [rad or m] per joint and iteration
-constexpr int kPatience = 8;          // iterations in which the error must shrink ...
+constexpr int kStallLimit = 8;        // iterations in which the error must shrink ...
 constexpr double kShrink = 0.8;       // ... to this part, else the descent sits in a local minimum
 
 void clamp(const JointGroup& group, Eigen::VectorXd& q) {
@@ -90,7 +90,7 @@ DescentEnd descend(const JointGroup& group, const Pose& T_world_tip, Eigen::Vect
         end.position_error <= options.position_tolerance && end.rotation_error <= options.rotation_tolerance;
     if (end.converged || end.iterations >= options.max_iterations) return end;
     const double squared = error.squaredNorm();
-    if (end.iterations % kPatience == 0) {
+    if (end.iterations % kStallLimit == 0) {
       if (!(squared < kShrink * checkpoint)) return end;
       checkpoint = squared;
     }

@@ -104,8 +104,8 @@ Pose standing_pose(const GroupModel& model, const Joint& joint) {
 }
 
 void flatten(GroupModel& model) {
-  auto kinematics = std::make_shared<GroupKinematics>();
-  flatten_links(model, *kinematics);
+  auto kinematics = std::make_shared<GroupKinematics>(model);
+  flatten_frames(model, *kinematics);
   flatten_chain(model, *kinematics);
   model.kinematics = std::move(kinematics);
 }

@@ -204,39 +204,44 @@ MMGRASP_TARGET void single(const Chain& chain, const RootPose& root, const doubl
     single_body<false>(chain, root, q, spherical, T, J, stride);
 }
 
-MMGRASP_TARGET void links(const LinkStep* steps, const int* order, int count, const AngleTable& angles, const double* q,
-                          const double* given, double* T) {
+MMGRASP_INLINE void times_columns(const Axes& R, const double* m, double* out) {
+  store4(out, times(R, m));
+  store4(out + 4, times(R, m + 4));
+  store4(out + 8, times(R, m + 8));
+}
+
+MMGRASP_TARGET void frames(const FrameStep* steps, int count, const AngleTable& angles, const double* q, double* T) {
   alignas(64) double sines[kMaxRevolute], cosines[kMaxRevolute];
   all_sines(angles, q, sines, cosines);
-  for (int i = 0; i < count; ++i) {
-    const LinkStep& step = steps[order[i]];
-    const double* parent = T + 16 * step.parent;
-    double* child = T + 16 * step.link;
+  for (const FrameStep* step = steps; step != steps + count; ++step) {
+    const double* parent = T + 16 * step->parent;
+    double* child = T + 16 * step->frame;
     const Axes R{load4(parent), load4(parent + 4), load4(parent + 8)};
-    const double *m = step.A, *p = step.p;
+    const double *m = step->A, *p = step->p;
     alignas(32) double local[12];
-    switch (step.kind) {
-      case LinkStep::Kind::revolute: {
-        const Xyz s = spread(sines[step.index]), c = spread(cosines[step.index]);
+    switch (step->kind) {
+      case FrameStep::Kind::revolute: {
+        const Xyz s = spread(sines[step->angle]), c = spread(cosines[step->angle]);
         for (int k = 0; k < 12; k += 4)
-          store4(local + k, load4(step.A + k) + (s * load4(step.B + k) + c * load4(step.C + k)));
+          store4(local + k, load4(step->A + k) + (s * load4(step->B + k) + c * load4(step->C + k)));
         m = local;
         break;
       }
-      case LinkStep::Kind::prismatic:
-        store4(local, load4(step.p) + spread(step.multiplier * q[step.column] + step.offset) * load4(step.d));
+      case FrameStep::Kind::prismatic:
+        store4(local, load4(step->p) + spread(step->multiplier * q[step->column] + step->offset) * load4(step->d));
         p = local;
         break;
-      case LinkStep::Kind::given:
-        m = given + 16 * step.index;
-        p = m + 12;
+      case FrameStep::Kind::spherical: {
+        alignas(32) double turn[12];
+        rotation_columns(q + step->column, turn);
+        times_columns({load4(step->A), load4(step->A + 4), load4(step->A + 8)}, turn, local);
+        m = local;
         break;
-      case LinkStep::Kind::fixed:
+      }
+      case FrameStep::Kind::fixed:
         break;
     }
-    store4(child, times(R, m));
-    store4(child + 4, times(R, m + 4));
-    store4(child + 8, times(R, m + 8));
+    times_columns(R, m, child);
     store4(child + 12, load4(parent + 12) + times(R, p));
   }
 }

@@ -12,7 +12,7 @@ namespace {
 
 }  // namespace
 
-const KinematicsKernels kAvx2Kinematics{MMGRASP_LANES, &single, &batch, &links};
+const KinematicsKernels kAvx2Kinematics{MMGRASP_LANES, &single, &batch, &frames};
 
 }  // namespace mmgrasp::detail
 #endif

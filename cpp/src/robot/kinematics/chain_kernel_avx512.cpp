@@ -12,7 +12,7 @@ namespace {
 
 }  // namespace
 
-const KinematicsKernels kAvx512Kinematics{MMGRASP_LANES, &single, &batch, &links};
+const KinematicsKernels kAvx512Kinematics{MMGRASP_LANES, &single, &batch, &frames};
 
 }  // namespace mmgrasp::detail
 #endif

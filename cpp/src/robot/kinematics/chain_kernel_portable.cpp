@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "mmgrasp/robot/detail/chain_kernel.hpp"
+#include "robot/model/joint_motion.hpp"
 
 #define MMGRASP_TARGET
 #define MMGRASP_LANES 2
@@ -13,7 +14,7 @@ namespace {
 
 }  // namespace
 
-const KinematicsKernels kPortableKinematics{MMGRASP_LANES, &single, &batch, &links};
+const KinematicsKernels kPortableKinematics{MMGRASP_LANES, &single, &batch, &frames};
 
 void any_sines(const AngleTable& angles, const double* q, double* sines, double* cosines) {
   for (int i = 0; i < angles.count; ++i) {
@@ -21,6 +22,12 @@ void any_sines(const AngleTable& angles, const double* q, double* sines, double*
     sines[i] = std::sin(angle);
     cosines[i] = std::cos(angle);
   }
+}
+
+void rotation_columns(const double* rotation_vector, double* R) {
+  Eigen::Map<Eigen::Matrix<double, 4, 3>> columns(R);
+  columns.topRows<3>() = rotation_of(Eigen::Map<const Eigen::Vector3d>(rotation_vector));
+  columns.row(3).setZero();
 }
 
 }  // namespace mmgrasp::detail

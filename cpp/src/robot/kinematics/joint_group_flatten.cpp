@@ -5,7 +5,6 @@
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 #include "mmgrasp/robot/detail/joint_group_data.hpp"
-#include "robot/model/joint_motion.hpp"
 
 namespace mmgrasp {
 namespace detail {
@@ -15,79 +14,32 @@ Eigen::Matrix3d turn_about(const Eigen::Vector3d& axis, double angle) {
   return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
 }
 
-/// One motion about or along z of its frame, before the chain is flat.
-struct Elementary {
+/// A motion about or along z of its own frame.
+struct AlongZ {
   Eigen::Matrix3d R;  ///< From the frame after the motion before.
   Eigen::Vector3d p;
   Motion motion = Motion::revolute;
   Drive drive;
 };
 
-/// Collects motions; what stands still between them is gathered in `fixed`.
 struct Path {
-  std::vector<Elementary> motions;
-  Pose fixed = Pose::Identity();
-
-  /// A motion along or about the z axis of `align`, seen from where the path has come to.
-  void add(const Eigen::Matrix3d& align, Motion motion, const Drive& drive) {
-    motions.push_back({fixed.linear() * align, fixed.translation(), motion, drive});
-    fixed.setIdentity();
-    fixed.linear() = align.transpose();
-  }
-  void prismatic(const Eigen::Matrix3d& frame, int axis, const Drive& drive) {
-    // z, x and y in turn come to lie along the frame's axis.
-    Eigen::Matrix3d align;
-    align.col(2) = frame.col(axis);
-    align.col(0) = frame.col((axis + 1) % 3);
-    align.col(1) = frame.col((axis + 2) % 3);
-    add(align, Motion::prismatic, drive);
-  }
+  std::vector<AlongZ> motions;
+  Rigid tip;  ///< In the frame after the last motion.
 };
 
-Eigen::Matrix3d rotation_from_z(const Eigen::Vector3d& axis) {
-  if (axis == -Eigen::Vector3d::UnitZ()) return Eigen::Vector3d(1, -1, -1).asDiagonal();
-  return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
-}
-
-void add_joint(const Joint& joint, const Drive& drive, Path& path) {
-  path.fixed = path.fixed * joint.T_parent_joint;
-  const auto column = [&](int i) { return Drive{drive.column + i, 1, 0}; };
-  switch (joint.type) {
-    case JointType::fixed:
-      break;
-    case JointType::revolute:
-    case JointType::continuous:
-      path.add(rotation_from_z(joint.axis), Motion::revolute, drive);
-      break;
-    case JointType::prismatic:
-      path.add(rotation_from_z(joint.axis), Motion::prismatic, drive);
-      break;
-    case JointType::planar: {
-      const Eigen::Matrix3d plane = planar_frame(joint.axis);
-      for (int i = 0; i < 2; ++i) path.prismatic(plane, i, column(i));
-      path.add(plane, Motion::revolute, column(2));
-      break;
-    }
-    case JointType::floating:
-      for (int i = 0; i < 3; ++i) path.prismatic(Eigen::Matrix3d::Identity(), i, column(i));
-      path.add(Eigen::Matrix3d::Identity(), Motion::spherical, column(3));
-      break;
-  }
-}
-
-Path path_to_tip(const GroupModel& model) {
-  const std::vector<Joint>& joints = model.robot.joints();
-  std::vector<int> way;
-  for (int link = model.tip_link; link > 0; link = joints[link - 1].parent_link) way.push_back(link - 1);
+/// The motions of the tree that move the tip, each frame turned so that its axis is z.
+Path path_to_tip(const GroupModel& model, const FrameTree& tree) {
+  const int tip_frame = tree.frame_of_link[model.tip_link];
+  const std::vector<const ElementaryMotion*> above = tree.motions_above(tip_frame);
   Path path;
-  for (auto index = way.rbegin(); index != way.rend(); ++index) {
-    const Joint& joint = joints[*index];
-    const Drive drive = drive_of(model, *index);
-    if (drive.column < 0)
-      path.fixed = path.fixed * standing_pose(model, joint);
-    else
-      add_joint(joint, drive, path);
+  Eigen::Matrix3d turned = Eigen::Matrix3d::Identity();  // the frame before, to what the tree calls that frame
+  for (auto it = above.rbegin(); it != above.rend(); ++it) {
+    const ElementaryMotion& motion = **it;
+    const Rigid rest = Rigid(turned.transpose(), Eigen::Vector3d::Zero()) * motion.rest;
+    turned = rotation_from_z(motion.axis);
+    path.motions.push_back({rest.R * turned, rest.t, motion.motion, motion.drive});
   }
+  path.tip = Rigid(turned.transpose(), Eigen::Vector3d::Zero()) * tree.link_in_frame[model.tip_link];
   return path;
 }
 
@@ -113,7 +65,7 @@ ZxzAngles zxz(const Eigen::Matrix3d& R) {
 }
 
 /// Range of a prismatic joint as a length, for the reach bound.
-double travel(const GroupModel& model, const Elementary& motion) {
+double travel(const GroupModel& model, const AlongZ& motion) {
   if (motion.motion != Motion::prismatic) return 0;
   const double a = motion.drive.multiplier * model.lower[motion.drive.column] + motion.drive.offset;
   const double b = motion.drive.multiplier * model.upper[motion.drive.column] + motion.drive.offset;
@@ -121,7 +73,7 @@ double travel(const GroupModel& model, const Elementary& motion) {
 }
 
 void bound_reach(const Path& path, GroupModel& model) {
-  const Eigen::Vector3d p_tip = path.fixed.translation();
+  const Eigen::Vector3d p_tip = path.tip.t;
   model.reach = 0;
   model.first_joint = path.motions.empty() ? p_tip : path.motions.front().p;
   if (path.motions.empty()) return;
@@ -134,7 +86,7 @@ void bound_reach(const Path& path, GroupModel& model) {
 void bound_tip_motion(const Path& path, GroupModel& model) {
   const auto columns = static_cast<Eigen::Index>(model.names.size());
   Eigen::VectorXd speed = Eigen::VectorXd::Zero(columns), turn = Eigen::VectorXd::Zero(columns);
-  double lever = path.fixed.translation().norm();
+  double lever = path.tip.t.norm();
   for (auto motion = path.motions.rbegin(); motion != path.motions.rend(); ++motion) {
     const double rate = std::abs(motion->drive.multiplier);
     const bool slides = motion->motion == Motion::prismatic;
@@ -176,19 +128,19 @@ AngleTable Angles::padded() {
 }
 
 void flatten_chain(GroupModel& model, GroupKinematics& kinematics) {
-  const Path path = path_to_tip(model);
+  const Path path = path_to_tip(model, kinematics.tree);
   const int count = static_cast<int>(path.motions.size());
   require(count <= kMaxSegments, "group \"" + model.name + "\" motions on the way to its tip", count,
           "must be at most " + std::to_string(kMaxSegments));
   bound_reach(path, model);
   bound_tip_motion(path, model);
   std::vector<ZxzAngles> angles;
-  for (const Elementary& motion : path.motions) angles.push_back(zxz(motion.R));
+  for (const AlongZ& motion : path.motions) angles.push_back(zxz(motion.R));
   kinematics.first_angle = count > 0 ? angles.front().before : 0.0;
   std::vector<bool> seen(model.names.size(), false);
   for (int i = 0; i < model.base_columns(); ++i) seen[i] = true;
   for (int i = 0; i < count; ++i) {
-    const Elementary& motion = path.motions[i];
+    const AlongZ& motion = path.motions[i];
     const ZxzAngles& own = angles[i];
     const double next = i + 1 < count ? angles[i + 1].before : 0.0;
     Segment segment;
@@ -229,8 +181,8 @@ void flatten_chain(GroupModel& model, GroupKinematics& kinematics) {
   chain.columns = static_cast<int>(model.names.size());
   chain.still_columns = static_cast<int>(kinematics.still_storage.size());
   chain.still_column = kinematics.still_storage.data();
-  copy(path.fixed.linear(), chain.R_tip);
-  std::copy(path.fixed.translation().data(), path.fixed.translation().data() + 3, chain.p_tip);
+  copy(path.tip.R, chain.R_tip);
+  std::copy(path.tip.t.data(), path.tip.t.data() + 3, chain.p_tip);
 }
 
 }  // namespace detail

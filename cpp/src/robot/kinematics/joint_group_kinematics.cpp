@@ -62,16 +62,13 @@ void JointGroup::link_poses(const Eigen::Ref<const Eigen::VectorXd>& q, Poses& T
   const bool all = !moved_only || T_world_link.size() != count;
   if (T_world_link.size() != count) T_world_link.assign(count, Pose::Identity());
   if (all || has_base()) T_world_link[0] = has_base() ? pose_from_planar(q.head<3>()) : data_->T_world_root;
-  alignas(32) double given[16 * (detail::kMaxColumns / 3 + 1)];
-  for (std::size_t i = 0; i < kinematics.given.size(); ++i) {
-    const Joint& joint = robot().joints()[kinematics.given[i].joint];
-    Eigen::Map<Eigen::Matrix4d>(given + 16 * i) =
-        (joint.T_parent_joint * detail::joint_motion(joint, q.data() + kinematics.given[i].column)).matrix();
-    given[16 * i + 15] = 0;
-  }
-  const std::vector<int>& order = all ? kinematics.all_steps : kinematics.moving_steps;
-  detail::kinematics_kernels().links(kinematics.steps.data(), order.data(), static_cast<int>(order.size()),
-                                     kinematics.link_angles, q.data(), given, T_world_link[0].data());
+  // Planar and floating joints have frames that are no links.
+  const auto frames = static_cast<std::size_t>(kinematics.tree.frames);
+  if (frames != count) T_world_link.resize(frames, Pose::Identity());
+  double* numbers = T_world_link[0].data();
+  kinematics.place_frames(q.data(), numbers);
+  kinematics.place_other_links(!all, numbers);
+  if (frames != count) T_world_link.resize(count);
 }
 
 Matrix6Xd JointGroup::jacobian(const Eigen::Ref<const Eigen::VectorXd>& q, int link,

@@ -73,17 +73,17 @@ const GraspSearch::PlacedGrasp& GraspSearch::placed(double heading, const Part& 
   }
   PlacedGrasp& result = placed_[grasp];
   if (result.slice == nullptr) {
-    result.T_root_tcp = pose_from_planar(Eigen::Vector3d(0, 0, heading)).inverse() *
-                        (part.T_world_part * part.grasps[index].T_object_hand);
-    result.slice = &tables_->seeds->slice(result.T_root_tcp.linear(), result.T_root_tcp.translation().z());
+    result.T_root_hand = pose_from_planar(Eigen::Vector3d(0, 0, heading)).inverse() *
+                         (part.T_world_part * part.grasps[index].T_object_hand);
+    result.slice = &tables_->seeds->slice(result.T_root_hand.linear(), result.T_root_hand.translation().z());
   }
   return result;
 }
 
 /// From one seed to the pose, in `q_`. True when it arrives; `cause` is then what the checker says.
-bool GraspSearch::solve_from(const double* seed, const Pose& T_base_tcp, CollisionChecker& checker, Rejection& cause) {
+bool GraspSearch::solve_from(const double* seed, const Pose& T_base_hand, CollisionChecker& checker, Rejection& cause) {
   q_ = Eigen::Map<const Eigen::VectorXd>(seed, tables_->arm.size());
-  if (!ik_.solve(T_base_tcp, q_)) return false;
+  if (!ik_.solve(T_base_hand, q_)) return false;
   cause = checker.rejection(q_);
   return true;
 }
@@ -92,10 +92,10 @@ Rejection GraspSearch::try_grasp(const Eigen::Vector3d& base_pose, const Part& p
                                  bool any_order) {
   const PlacedGrasp& at_heading = placed(base_pose.z(), part, index, grasp);
   const double c = std::cos(base_pose.z()), s = std::sin(base_pose.z());
-  Pose T_base_tcp = at_heading.T_root_tcp;
-  T_base_tcp.translation().x() -= c * base_pose.x() + s * base_pose.y();
-  T_base_tcp.translation().y() -= c * base_pose.y() - s * base_pose.x();
-  const double x = T_base_tcp.translation().x(), y = T_base_tcp.translation().y();
+  Pose T_base_hand = at_heading.T_root_hand;
+  T_base_hand.translation().x() -= c * base_pose.x() + s * base_pose.y();
+  T_base_hand.translation().y() -= c * base_pose.y() - s * base_pose.x();
+  const double x = T_base_hand.translation().x(), y = T_base_hand.translation().y();
   const IkSeedGrid& seeds = *tables_->seeds;
   std::array<int, 2> cell;
   IkSeedGrid::Node* node = at_heading.slice->find(x, y, cell);
@@ -106,7 +106,7 @@ Rejection GraspSearch::try_grasp(const Eigen::Vector3d& base_pose, const Part& p
   rejected_count_ = 0;
   const auto tried = [&](const double* seed) {
     Rejection cause;
-    if (!solve_from(seed, T_base_tcp, checker, cause)) return false;
+    if (!solve_from(seed, T_base_hand, checker, cause)) return false;
     arrived = true;
     if (cause == Rejection::none) return true;
     if (stage(cause) > stage(worst)) worst = cause;
@@ -126,7 +126,7 @@ Rejection GraspSearch::try_grasp(const Eigen::Vector3d& base_pose, const Part& p
       return Rejection::none;
     }
   }
-  if (seeds.closed_form()) return try_branches(T_base_tcp, checker, worst);
+  if (seeds.closed_form()) return try_branches(T_base_hand, checker, worst);
   if (arrived) return worst;
   if (try_neighbours(*at_heading.slice, cell, x, y, tried)) return Rejection::none;
   if (arrived) return worst;
@@ -145,8 +145,8 @@ bool GraspSearch::was_rejected(const Eigen::VectorXd& q) const {
 }
 
 /// Every branch of the pose itself but those that were rejected already: after this nothing is left to find.
-Rejection GraspSearch::try_branches(const Pose& T_base_tcp, CollisionChecker& checker, Rejection worst) {
-  const IkBranches branches = tables_->seeds->branches(T_base_tcp);
+Rejection GraspSearch::try_branches(const Pose& T_base_hand, CollisionChecker& checker, Rejection worst) {
+  const IkBranches branches = tables_->seeds->branches(T_base_hand);
   if (worst == Rejection::unreachable && branches.rejections.limits > 0) worst = Rejection::limits;
   for (const Eigen::VectorXd& branch : branches.solutions) {
     if (was_rejected(branch)) continue;

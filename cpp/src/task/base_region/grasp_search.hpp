@@ -43,13 +43,13 @@ class GraspSearch {
   /// A grasp as it is for one heading of the base, with the base in the origin.
   struct PlacedGrasp {
     IkSeedGrid::Slice* slice = nullptr;
-    Pose T_root_tcp;
+    Pose T_root_hand;
   };
 
   const PlacedGrasp& placed(double heading, const Part& part, int index, int grasp);
   Rejection try_grasp(const Eigen::Vector3d& base_pose, const Part& part, int index, int grasp, bool any_order);
-  bool solve_from(const double* seed, const Pose& T_base_tcp, CollisionChecker& checker, Rejection& cause);
-  Rejection try_branches(const Pose& T_base_tcp, CollisionChecker& checker, Rejection worst);
+  bool solve_from(const double* seed, const Pose& T_base_hand, CollisionChecker& checker, Rejection& cause);
+  Rejection try_branches(const Pose& T_base_hand, CollisionChecker& checker, Rejection worst);
   bool was_rejected(const Eigen::VectorXd& q) const;
   template <class Try>
   bool try_neighbours(IkSeedGrid::Slice& slice, const std::array<int, 2>& cell, double x, double y, const Try& tried);

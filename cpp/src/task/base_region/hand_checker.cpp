@@ -27,14 +27,14 @@ std::set<std::string> hand_links(const JointGroup& arm) {
 CollisionChecker hand_checker(const PartSupplyProblem& problem, double opening, const World& world) {
   const JointGroup arm = arm_with_opening(problem.arm, problem.gripper, opening);
   const std::vector<Pose> T_root_link = arm.robot().link_poses(arm.full_values(problem.home));
-  const Pose T_tcp_root = T_root_link[arm.tip_link()].inverse();
+  const Pose T_hand_root = T_root_link[arm.tip_link()].inverse();
   WorldObject hand;
   const std::set<std::string> links = hand_links(arm);
   for (std::size_t i = 0; i < arm.robot().links().size(); ++i) {
     const Link& link = arm.robot().links()[i];
     if (links.count(link.name) == 0) continue;
     for (LinkShape shape : link.collisions) {
-      shape.T_link_shape = T_tcp_root * T_root_link[i] * shape.T_link_shape;
+      shape.T_link_shape = T_hand_root * T_root_link[i] * shape.T_link_shape;
       hand.shapes.push_back(shape);
     }
   }

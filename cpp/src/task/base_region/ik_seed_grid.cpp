@@ -53,12 +53,12 @@ IkSeedGrid::IkSeedGrid(const JointGroup& arm, const ReachDatabase& database, int
   ik_.time_limit = kNoTimeLimit;
 }
 
-IkBranches IkSeedGrid::branches(const Pose& T_base_tcp) const {
+IkBranches IkSeedGrid::branches(const Pose& T_base_hand) const {
   // Where a singularity makes the closed form fall back on random starts, their number ends the search.
   IkOptions options;
   options.restarts = 0;
   options.time_limit = kNoTimeLimit;
-  return solve_ik_branches(arm_, T_base_tcp, options);
+  return solve_ik_branches(arm_, T_base_hand, options);
 }
 
 IkSeedGrid::Slice& IkSeedGrid::slice(const Eigen::Matrix3d& R, double z) const {

@@ -74,7 +74,7 @@ class IkSeedGrid {
   /// True when branches() gives every configuration of a pose.
   bool closed_form() const { return closed_form_; }
   /// All configurations of a pose itself, with closed_form() only.
-  IkBranches branches(const Pose& T_base_tcp) const;
+  IkBranches branches(const Pose& T_base_hand) const;
   /// The slice for a tool orientation and height in the root frame. It lives as long as the grid.
   Slice& slice(const Eigen::Matrix3d& R, double z) const;
 

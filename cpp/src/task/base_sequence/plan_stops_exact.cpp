@@ -22,23 +22,6 @@ constexpr int kLevels = 16;             // Radii at which the other discs' candi
 constexpr std::size_t kRoutes = 200;    // Equally good sequences whose routes are compared;
 constexpr std::size_t kManyStops = 12;  // a tenth of them beyond so many stops, where routes take longer to find.
 
-/// The steps of the choice among equally few stops. benchmarks/task/run_tie_steps.py compiles this file again without
-/// one, to find out what it is worth.
-enum TieStep : unsigned {
-  kSmallestStep = 1,  ///< The largest smallest disc.
-  kSumStep = 2,       ///< The largest sum of radii.
-  kRouteStep = 4,     ///< The shortest route.
-  kLevelStep = 8      ///< The sum's candidates are sought at a ladder of radii, not at the smallest one alone.
-};
-
-#ifndef MMGRASP_TIE_STEPS_LEFT_OUT
-#define MMGRASP_TIE_STEPS_LEFT_OUT 0
-#endif
-
-constexpr bool runs(TieStep step) {
-  return (static_cast<unsigned>(MMGRASP_TIE_STEPS_LEFT_OUT) & step) == 0;
-}
-
 class LeastStops {
  public:
   LeastStops(const BaseGrid& grid, const std::vector<BaseRegion>& regions, const StopOptions& options,
@@ -65,7 +48,7 @@ class LeastStops {
     best_ = stops_of(result.candidates.robust, cover.chosen);
     time_limit_ = detail::TimeLimit(std::min(options_.tie_time_limit, 1e6));
     if (!best_.empty() && result.candidates.complete) {
-      if (runs(kSmallestStep)) raise_smallest();
+      raise_smallest();
       raise_others();
     }
     if (monitor_.stopped()) return stopped(std::move(result));
@@ -172,8 +155,8 @@ class LeastStops {
     const SetCoverProblem problem = weighted(places);
     const SetCoverResult cover = solve_set_cover(problem, std::max(1e-3, seconds_left()), monitor_);
     if (cover.chosen.size() != best_.size()) return;
-    if (runs(kSumStep)) take_if_better(stops_of(places, cover.chosen));
-    if (!runs(kRouteStep) || !options_.route_length || cover.outcome != Outcome::solved) return;
+    take_if_better(stops_of(places, cover.chosen));
+    if (!options_.route_length || cover.outcome != Outcome::solved) return;
     const std::size_t routes = best_.size() > kManyStops ? kRoutes / 10 : kRoutes;
     double length = options_.route_length(best_);
     for (const std::vector<int>& chosen : detail::equal_covers(problem, cover.cost, best_.size(), routes)) {
@@ -201,7 +184,7 @@ class LeastStops {
     for (TrayId tray : patches_.trays()) high = std::max(high, widest({tray}).radius);
     const double step = std::max(0.25 * patches_.grid().resolution, (high - low) / kLevels);
     std::map<std::pair<std::vector<TrayId>, int>, Intersection> found;
-    for (int level = 0; low + level * step <= high && (level == 0 || runs(kLevelStep)); ++level) {
+    for (int level = 0; low + level * step <= high; ++level) {
       Intersections here =
           detail::maximal_intersections(patches_, std::max(0.0, low + level * step), kMaxBoxes, monitor_);
       if (!here.complete || over()) return {};

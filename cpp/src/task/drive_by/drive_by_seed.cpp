@@ -26,8 +26,8 @@ void keep_straight(SeededProblem& a, std::size_t segment, const DriveByStep& ste
 
 int dwell_intervals(double dwell) {
   constexpr double kLongest = 0.2;  // [s]
-  constexpr double kMost = 100;
-  return static_cast<int>(std::clamp(std::ceil(dwell / kLongest), 4.0, kMost));
+  constexpr double kMostIntervals = 100;
+  return static_cast<int>(std::clamp(std::ceil(dwell / kLongest), 4.0, kMostIntervals));
 }
 
 VectorXd goal_near(const DriveByGoal& goal, const VectorXd& q) {

@@ -42,10 +42,10 @@ CollisionChecker& PickScene::after(double opening) {
   return kept(after_, gone_, opening);
 }
 
-CollisionChecker PickScene::holding(double opening, const Pose& T_tcp_object) const {
+CollisionChecker PickScene::holding(double opening, const Pose& T_hand_object) const {
   World world = problem_.world;
   const std::vector<std::string>& fingers = problem_.gripper.finger_links;
-  world.attach(problem_.object, problem_.gripper.tool_link, T_tcp_object,
+  world.attach(problem_.object, problem_.gripper.tool_link, T_hand_object,
                std::set<std::string>(fingers.begin(), fingers.end()));
   return CollisionChecker(arm(opening), world);
 }

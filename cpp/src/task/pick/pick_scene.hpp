@@ -18,8 +18,8 @@ class PickScene {
   CollisionChecker& before(double opening);
   /// Object gone.
   CollisionChecker& after(double opening);
-  /// Object held; `T_tcp_object` changes from grasp to grasp, so this one is not kept.
-  CollisionChecker holding(double opening, const Pose& T_tcp_object) const;
+  /// Object held; `T_hand_object` changes from grasp to grasp, so this one is not kept.
+  CollisionChecker holding(double opening, const Pose& T_hand_object) const;
 
   /// The fingers can take every opening between two with the arm at q, among what the checker knows.
   bool fingers_free(const CollisionChecker& checker, const Eigen::VectorXd& q, double from, double to) const;

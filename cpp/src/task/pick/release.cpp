@@ -34,7 +34,7 @@ std::vector<Pose> places_over_bin(const PlaceRegion& bin, const Pose& T_world_ro
                               part.T_world_part.linear();
       Pose T_bin_part = T_world_bin.inverse() * T_world_part;
       T_bin_part.translation() = Eigen::Vector3d(kPlaceShare * x * bin.size.x(), kPlaceShare * y * bin.size.y(), 0);
-      T_bin_part.translation().z() = bin.drop_gap - lowest(part, T_bin_part);
+      T_bin_part.translation().z() = bin.drop_height - lowest(part, T_bin_part);
       places.push_back(T_world_bin * T_bin_part);
     }
   }
@@ -42,10 +42,10 @@ std::vector<Pose> places_over_bin(const PlaceRegion& bin, const Pose& T_world_ro
 }
 
 std::vector<Eigen::VectorXd> release_configurations(const ReachDatabase& database, CollisionChecker& holding,
-                                                    const std::vector<Pose>& places, const Pose& T_tcp_object,
+                                                    const std::vector<Pose>& places, const Pose& T_hand_object,
                                                     const Eigen::VectorXd& from, std::size_t count,
                                                     Rejections& rejections) {
-  const Pose T_object_tcp = T_tcp_object.inverse();
+  const Pose T_object_hand = T_hand_object.inverse();
   const JointGroup& arm = holding.group();
   const Pose T_root_world = arm.T_world_root().inverse();
   IkOptions ik;
@@ -54,13 +54,13 @@ std::vector<Eigen::VectorXd> release_configurations(const ReachDatabase& databas
   std::vector<Eigen::VectorXd> found;
   for (const Pose& T_world_object : places) {
     if (found.size() >= count) break;
-    const Pose T_world_tcp = T_world_object * T_object_tcp;
-    const int near = database.nearest(T_root_world * T_world_tcp, kSeeds, seeds);
+    const Pose T_world_hand = T_world_object * T_object_hand;
+    const int near = database.nearest(T_root_world * T_world_hand, kSeeds, seeds);
     if (near == 0) rejections.add(Rejection::unreachable);
     for (int i = 0; i < near; ++i) {
       Eigen::VectorXd q = seeds.col(i).head(arm.size());
       const Rejection cause =
-          refine_ik(arm, T_world_tcp, q, ik, workspace) ? holding.rejection(q) : Rejection::unreachable;
+          refine_ik(arm, T_world_hand, q, ik, workspace) ? holding.rejection(q) : Rejection::unreachable;
       if (cause == Rejection::none) {
         turn_towards(arm, from, q);
         found.push_back(q);

@@ -9,14 +9,14 @@
 namespace mmgrasp::detail {
 
 /// World poses of a part at which it hangs level over the bin: turned about the vertical by any of several yaws, its
-/// origin at several places inside the bin's rectangle, its lowest point `drop_gap` over the bin's top. The bin's
+/// origin at several places inside the bin's rectangle, its lowest point `drop_height` over the bin's top. The bin's
 /// middle comes first.
 std::vector<Pose> places_over_bin(const PlaceRegion& bin, const Pose& T_world_root, const Part& part);
 
 /// Collision-free configurations that hold an object at some of these world poses, up to `count`, those nearest to
 /// `from` first; `rejections` counts why others fell.
 std::vector<Eigen::VectorXd> release_configurations(const ReachDatabase& database, CollisionChecker& holding,
-                                                    const std::vector<Pose>& places, const Pose& T_tcp_object,
+                                                    const std::vector<Pose>& places, const Pose& T_hand_object,
                                                     const Eigen::VectorXd& from, std::size_t count,
                                                     Rejections& rejections);
 

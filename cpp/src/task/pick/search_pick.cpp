@@ -75,11 +75,11 @@ class PickPlanner {
     return false;
   }
 
-  Pose T_world_tcp(int grasp) const { return T_world_object_ * problem_.grasps[grasp].T_object_hand; }
+  Pose T_world_hand(int grasp) const { return T_world_object_ * problem_.grasps[grasp].T_object_hand; }
 
   /// Free configurations at the grasp, nearest to home first. Second round: from random starts instead of the database.
   std::vector<Eigen::VectorXd> grasp_configurations(int grasp, int round, CollisionChecker& checker) {
-    const Pose T = T_world_tcp(grasp);
+    const Pose T = T_world_hand(grasp);
     std::vector<Eigen::VectorXd> found;
     const auto judge = [&](Eigen::VectorXd q) {
       turn_towards(checker.group(), problem_.home, q);
@@ -90,9 +90,9 @@ class PickPlanner {
       pick_.rejections.add(cause);
       if (cause == Rejection::none) found.push_back(q);
     };
-    const Pose T_base_tcp = problem_.arm.T_world_root().inverse() * T;
+    const Pose T_base_hand = problem_.arm.T_world_root().inverse() * T;
     if (round == 0) {
-      const int count = database_.nearest(T_base_tcp, std::max(kConfigurations, problem_.options.ik_seeds), seeds_);
+      const int count = database_.nearest(T_base_hand, std::max(kConfigurations, problem_.options.ik_seeds), seeds_);
       if (count == 0) pick_.rejections.add(Rejection::unreachable);
       for (int i = 0; i < count; ++i) {
         Eigen::VectorXd q = seeds_.col(i).head(problem_.arm.size());
@@ -130,15 +130,15 @@ class PickPlanner {
 
   bool try_configuration(int grasp, const Eigen::VectorXd& q, CollisionChecker& before, double width, double opening) {
     Paths paths;
-    Pose T_pre = T_world_tcp(grasp);
+    Pose T_pre = T_world_hand(grasp);
     T_pre.translation() -= problem_.options.approach_distance * (T_pre.linear() * problem_.gripper.approach);
     const StraightLineResult back = plan_straight_line(before, q, T_pre, line_options());
     if (back.outcome != Outcome::solved) return fell(kApproach);
     paths.approach = reversed(*back.path);
 
     const Pose T_grasp = before.group().fk(q);
-    const Pose T_tcp_object = T_grasp.inverse() * T_world_object_;
-    CollisionChecker holding = scene_.holding(width, T_tcp_object);
+    const Pose T_hand_object = T_grasp.inverse() * T_world_object_;
+    CollisionChecker holding = scene_.holding(width, T_hand_object);
     if (!scene_.fingers_free(holding, q, opening, width)) return fell(kClose);
     Pose T_lifted = T_grasp;
     T_lifted.translation().z() += problem_.options.lift_height;
@@ -150,7 +150,7 @@ class PickPlanner {
     std::vector<Eigen::VectorXd> releases;
     if (!problem_.places.empty()) {
       for (const Eigen::VectorXd& some :
-           release_configurations(database_, holding, problem_.places, T_tcp_object, paths.lift.waypoints.back(),
+           release_configurations(database_, holding, problem_.places, T_hand_object, paths.lift.waypoints.back(),
                                   kReleases, pick_.rejections)) {
         if (scene_.fingers_free(after, some, width, opening)) releases.push_back(some);
       }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mmgrasp/core/detail/instruction_set.hpp"
+#include "mmgrasp/core/export.hpp"
 
 /// The arithmetic of kinematics on plain arrays, compiled once for every instruction set. No Eigen type passes through
 /// here: wider registers would change the alignment that Eigen's types were given elsewhere.
@@ -59,16 +60,17 @@ struct RootPose {
   double R[9], p[3];
 };
 
-/// How a link stands in its parent.
-struct LinkStep {
-  enum class Kind { fixed, revolute, prismatic, given };
+/// How a frame stands in its parent: R = A + sin B + cos C for a revolute motion, A times the rotation by a rotation
+/// vector for a spherical one, A for the others.
+struct FrameStep {
+  enum class Kind { fixed, revolute, prismatic, spherical };
   Kind kind = Kind::fixed;
-  int link = 0, parent = 0;
-  int index = 0;  ///< Revolute: entry of the table of angles. Given: entry of the poses that the caller worked out.
-  int column = 0;
+  int frame = 0, parent = 0;
+  int angle = 0;                      ///< Revolute: entry of the table of angles.
+  int column = 0;                     ///< Prismatic, and the first of three columns of a spherical motion.
   double multiplier = 1, offset = 0;  ///< Prismatic.
-  double A[12], B[12], C[12];         ///< R = A + sin B + cos C; columns of four, the last entry 0.
-  double p[4], d[4];                  ///< Position and what a prismatic joint adds per metre.
+  double A[12], B[12], C[12];         ///< Columns of four, the last entry 0.
+  double p[4], d[4];                  ///< Position and what a prismatic motion adds per metre.
 };
 
 struct KinematicsKernels {
@@ -79,13 +81,12 @@ struct KinematicsKernels {
   /// `blocks` times `lanes` configurations; chains without spherical motions. J (may be null): 6 x columns each, next
   /// to each other.
   void (*batch)(const Chain&, const RootPose&, const double* q, long stride, long blocks, double* T, double* J);
-  /// Places links in this order; parents stand already. `T` holds 4 x 4 poses by link, `given` by LinkStep::index.
-  void (*links)(const LinkStep* steps, const int* order, int count, const AngleTable&, const double* q,
-                const double* given, double* T);
+  /// Places frames in this order; parents stand already. `T` holds 4 x 4 poses by frame number.
+  void (*frames)(const FrameStep* steps, int count, const AngleTable&, const double* q, double* T);
 };
 
 /// The fastest that this machine can run, unless use_instruction_set() chose another.
-const KinematicsKernels& kinematics_kernels();
+MMGRASP_EXPORT const KinematicsKernels& kinematics_kernels();
 
 extern const KinematicsKernels kPortableKinematics;
 #ifdef MMGRASP_X86_KERNELS
@@ -95,5 +96,7 @@ extern const KinematicsKernels kAvx512Kinematics;
 
 /// For tables with angles beyond what the vector polynomials reduce exactly, or infinite ones.
 void any_sines(const AngleTable&, const double* q, double* sines, double* cosines);
+/// The rotation by a rotation vector, columns of four.
+void rotation_columns(const double* rotation_vector, double* R);
 
 }  // namespace mmgrasp::detail

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mmgrasp/robot/detail/chain_kernel.hpp"
+#include "mmgrasp/robot/detail/frame_tree.hpp"
 #include "mmgrasp/robot/joint_group.hpp"
 
 namespace mmgrasp {
@@ -35,32 +36,42 @@ struct Mover {
   int next = -1;         ///< The mover above it.
 };
 
-/// Where the configuration goes: the chain to the tip and every link, flat. Not copied, so that the tables may point
-/// into their storage.
+/// The kinematics of a group: its tree of frames, and what the kernels read, made from it: the chain to the tip, and a
+/// step for each frame and each link. Not copied, so that the tables may point into their storage.
 struct GroupKinematics {
-  GroupKinematics() = default;
+  explicit GroupKinematics(const GroupModel& model) : tree(model) {}
   GroupKinematics(const GroupKinematics&) = delete;
   GroupKinematics& operator=(const GroupKinematics&) = delete;
+
+  FrameTree tree;
 
   Chain chain;
   double first_angle = 0;  ///< About the root's z, before the chain begins.
   std::vector<SphericalFrame> spherical;
 
-  std::vector<LinkStep> steps;  ///< Every link but the root, breadth first.
-  std::vector<int> all_steps, moving_steps;
+  /// The tree's motions in their order, then the other links that move, then those that stand.
+  std::vector<FrameStep> steps;
+  int moving_steps = 0;
   std::vector<int> moving_links;
-  AngleTable link_angles;
-  struct Given {
-    int joint, column;
-  };
-  std::vector<Given> given;  ///< Planar and floating joints of the group.
+  AngleTable frame_angles;
 
   std::vector<Mover> movers;
   std::vector<int> mover_of_link;  ///< The nearest one above or at each link; -1: nothing but the base moves it.
 
   std::vector<Segment> segment_storage;
   std::vector<int> still_storage;
-  Angles chain_angle_storage, link_angle_storage;
+  Angles chain_angle_storage, frame_angle_storage;
+
+  /// Places the tree's frames. T: 4 x 4 poses by frame number, the root's in place.
+  void place_frames(const double* q, double* T) const {
+    kinematics_kernels().frames(steps.data(), static_cast<int>(tree.motions.size()), frame_angles, q, T);
+  }
+  /// Places the other links, or those of them that move, once the frames are.
+  void place_other_links(bool moving_only, double* T) const {
+    const auto first = static_cast<int>(tree.motions.size());
+    const int last = moving_only ? moving_steps : static_cast<int>(steps.size());
+    kinematics_kernels().frames(steps.data() + first, last - first, AngleTable(), nullptr, T);
+  }
 };
 
 /// Everything of a group but where its root stands; shared by all its copies.
@@ -86,16 +97,11 @@ struct GroupModel {
 /// Fills the kinematics from robot, joints, limits, tip and reference.
 void flatten(GroupModel& model);
 
-/// How one robot joint depends on the configuration; column -1 when it stands still.
-struct Drive {
-  int column = -1;
-  double multiplier = 1, offset = 0;
-};
 Drive drive_of(const GroupModel& model, int joint);
 /// T_parent_child of a joint that stands at the reference.
 Pose standing_pose(const GroupModel& model, const Joint& joint);
 void flatten_chain(GroupModel& model, GroupKinematics& kinematics);
-void flatten_links(const GroupModel& model, GroupKinematics& kinematics);
+void flatten_frames(const GroupModel& model, GroupKinematics& kinematics);
 
 /// Joint indices must be movable and not mimic; `tip_link` any link.
 JointGroup make_group(const Robot& robot, const std::string& name, const std::vector<int>& joints, int tip_link,

@@ -62,12 +62,12 @@ int PathShortcutting::improve_randomly(Rng& rng, int grasps) {
   if (!connections_.trace_path(grasp, path_)) return grasp;
   vertices_ = connections_.vertices(connection, crossing_);
   if (vertices_.size() < 3) return -1;
-  const bool improved =
-      rng.uniform() < tuning_.joint_shortcut_probability ? shortcut_some_joints(rng, grasp) : cut_corner(rng, grasp);
+  const bool improved = rng.uniform() < tuning_.joint_shortcut_probability ? shortcut_some_joints(rng, grasp)
+                                                                           : shortcut_corner(rng, grasp);
   return improved ? grasp : -1;
 }
 
-bool PathShortcutting::cut_corner(Rng& rng, int grasp) {
+bool PathShortcutting::shortcut_corner(Rng& rng, int grasp) {
   const std::size_t corner = 1 + rng.index(vertices_.size() - 2);
   made_.clear();
   for (const std::size_t neighbour : {corner - 1, corner + 1}) {

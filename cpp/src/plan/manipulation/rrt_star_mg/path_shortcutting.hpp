@@ -35,7 +35,7 @@ class MMGRASP_EXPORT PathShortcutting {
   int pick_grasp(Rng& rng, int grasps);
   // On vertices_:
   /// Replaces a corner by an edge between points on both of its sides.
-  bool cut_corner(Rng& rng, int grasp);
+  bool shortcut_corner(Rng& rng, int grasp);
   /// Moves the vertices between two others towards the straight line between those, in a random choice of joints alone
   /// (as partial shortcuts, Geraerts and Overmars 2007).
   bool shortcut_some_joints(Rng& rng, int grasp);

@@ -135,7 +135,7 @@ void bind_cartesian(py::module_& m) {
 
 }  // namespace
 
-void bind_tool_lines(py::module_& m) {
+void bind_cartesian_planning(py::module_& m) {
   m.def("_cartesian_option_table", [] { return option_table(cartesian_fields()); });
   bind_line(m);
   bind_cartesian(m);

@@ -1,34 +1,24 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "collision/kernels/kernels.hpp"
-#include "mmgrasp/core/detail/rigid.hpp"
-#include "mmgrasp/robot/joint_group.hpp"
+#include "mmgrasp/robot/detail/joint_group_data.hpp"
 
 namespace mmgrasp::detail {
 
-/// Forward kinematics for collision checks: one frame for each joint the group moves, links rigidly joined to it (or
-/// attached at the reference) folded in. Frame 0 is the robot's root. Immutable.
-class MMGRASP_EXPORT MovingFrames {
+/// Bounds on how bodies that stand in the frames of a group move as the joints do, from the tree of frames alone: they
+/// hold in every configuration within the values given. Immutable.
+class MMGRASP_EXPORT MotionBounds {
  public:
-  explicit MovingFrames(const JointGroup& group);
+  explicit MotionBounds(const JointGroup& group);
 
-  int count() const { return static_cast<int>(steps_.size()) + 1; }
+  const FrameTree& tree() const { return kinematics_->tree; }
   bool has_base() const { return has_base_; }
-  int frame_of(int link) const { return frame_of_[link]; }
-  const Rigid& link_in_frame(int link) const { return link_in_frame_[link]; }
-
-  /// frames: 16 numbers each (see Kernels::place_frames). The root must have been set unless the group has the base.
-  void place(const double* q, double* frames) const;
-  static void set(const Rigid& T, double* frame);
-  static Rigid get(const double* frame);
-
-  const std::vector<FrameStep>& steps() const { return steps_; }
-  /// A joint's frame in its parent's while the joint is at zero.
-  static Rigid rest(const FrameStep& step);
   /// Numbers in a configuration.
   int columns() const { return columns_; }
+
   /// Bound on how fast any point within a sphere moves in the world, per unit of each column [m/rad or m/m], while no
   /// column exceeds `largest` in magnitude.
   Eigen::VectorXd point_rates(const FrameSphere& sphere, const Eigen::VectorXd& largest) const;
@@ -64,14 +54,12 @@ class MMGRASP_EXPORT MovingFrames {
   void joints_between(const FrameSphere& a, const FrameSphere& b, const Eigen::VectorXd& largest,
                       std::vector<JointReach>& of_a, std::vector<JointReach>& of_b) const;
   Eigen::VectorXd bends_of(const std::vector<JointReach>& joints) const;
-  /// The last frame on both ways to the root.
-  int common_frame(int a, int b) const;
+  /// The motions between two frames: up from the first one, then down to the second one; `up`: how many go up.
+  std::vector<const ElementaryMotion*> motions_between(int from, int to, std::size_t& up) const;
 
+  std::shared_ptr<const GroupKinematics> kinematics_;
   bool has_base_, bends_ = true;
   int columns_;
-  std::vector<FrameStep> steps_;
-  std::vector<int> frame_of_;
-  std::vector<Rigid> link_in_frame_;
 };
 
 }  // namespace mmgrasp::detail

@@ -16,11 +16,11 @@ constexpr double kPlay = 3e-3;       // How far the width may be off the part's 
 constexpr double kShare = 0.1;       // or this share of it.
 
 /// The axes of a hand at its tool frame: approach, closing, across.
-Pose hand_axes(const PlanToCheck& plan, const Pose& T_object_tcp) {
+Pose hand_axes(const PlanToCheck& plan, const Pose& T_object_hand) {
   Eigen::Matrix3d axes;
   axes << plan.approach, plan.closing, plan.approach.cross(plan.closing);
-  Pose T = T_object_tcp;
-  T.linear() = T_object_tcp.linear() * axes;
+  Pose T = T_object_hand;
+  T.linear() = T_object_hand.linear() * axes;
   return T;
 }
 
@@ -28,9 +28,9 @@ Pose hand_axes(const PlanToCheck& plan, const Pose& T_object_tcp) {
 /// along the approach and across approach and closing.
 class Pad {
  public:
-  Pad(const PlanToCheck& plan, const PlacedBody& part, const Pose& T_object_tcp, double depth, double width)
+  Pad(const PlanToCheck& plan, const PlacedBody& part, const Pose& T_object_hand, double depth, double width)
       : part_(part) {
-    T_object_hand_ = hand_axes(plan, T_object_tcp);
+    T_object_pads_ = hand_axes(plan, T_object_hand);
     LinkShape shape;
     shape.shape = Box{Eigen::Vector3d(depth, kThickness, width)};
     pad_ = make_solids({shape}).front();
@@ -53,7 +53,7 @@ class Pad {
   }
 
   bool touches_at(double side, double distance) const {
-    Pose T = T_object_hand_;
+    Pose T = T_object_pads_;
     T.translate(Eigen::Vector3d(0, side * (distance + 0.5 * kThickness), 0));
     const Bounds bounds = bounds_at(pad_, T);
     for (std::size_t i = 0; i < part_.solids.size(); ++i) {
@@ -63,16 +63,16 @@ class Pad {
   }
 
   const PlacedBody& part_;
-  Pose T_object_hand_ = Pose::Identity();
+  Pose T_object_pads_ = Pose::Identity();
   Solid pad_;
 };
 
 /// Whether fingers that close from their widest opening meet anything.
-bool holds_something(const PlanToCheck& plan, const PlacedBody& part, const Pose& T_object_tcp) {
+bool holds_something(const PlanToCheck& plan, const PlacedBody& part, const Pose& T_object_hand) {
   LinkShape shape;
   shape.shape = Box{Eigen::Vector3d(plan.finger_depth, plan.max_opening, plan.finger_width)};
   const Solid between = make_solids({shape}).front();
-  const Pose T = hand_axes(plan, T_object_tcp);
+  const Pose T = hand_axes(plan, T_object_hand);
   const Bounds bounds = bounds_at(between, T);
   for (std::size_t i = 0; i < part.solids.size(); ++i) {
     if (bounds.intersects(part.bounds[i]) && touches(between, T, part.solids[i], part.T_world_shape[i])) return true;
@@ -86,7 +86,7 @@ void check_listed_grasps(const PlanToCheck& plan, Faults& faults) {
     if (!part.target) continue;
     const PlacedBody body = place_body(part.body.name, part.body.shapes, Pose::Identity());
     const auto empty = std::count_if(part.grasps.begin(), part.grasps.end(), [&](const CheckedGrasp& grasp) {
-      return !holds_something(plan, body, grasp.T_object_tcp);
+      return !holds_something(plan, body, grasp.T_object_hand);
     });
     if (empty == 0) continue;
     faults.push_back({"grasp-empty", "part '" + part.body.name + "'",
@@ -97,7 +97,7 @@ void check_listed_grasps(const PlanToCheck& plan, Faults& faults) {
 
 }  // namespace
 
-void check_grasp_widths(const Context& context, Faults& faults) {
+void check_grasp_openings(const Context& context, Faults& faults) {
   const PlanToCheck& plan = context.plan;
   if (!(plan.finger_depth > 0 && plan.finger_width > 0)) return;
   check_listed_grasps(plan, faults);
@@ -107,16 +107,16 @@ void check_grasp_widths(const Context& context, Faults& faults) {
     const CheckedPart& part = plan.parts[index];
     const CheckedGrasp& grasp = part.grasps[g];
     const PlacedBody body = place_body(part.body.name, part.body.shapes, Pose::Identity());
-    const double from = 0.5 * plan.max_opening + 2 * kPlay, play = std::max(kPlay, kShare * grasp.width);
+    const double from = 0.5 * plan.max_opening + 2 * kPlay, play = std::max(kPlay, kShare * grasp.opening);
     // Where the pads' middles meet the part, or where the first of their edges does: pads are said to be larger than
     // what the part leaves room for beside a bend.
-    const Pad point(plan, body, grasp.T_object_tcp, kPoint, kPoint);
-    const Pad pad(plan, body, grasp.T_object_tcp, plan.finger_depth, plan.finger_width);
-    if (std::abs(point.between(from) - grasp.width) <= play) continue;
+    const Pad point(plan, body, grasp.T_object_hand, kPoint, kPoint);
+    const Pad pad(plan, body, grasp.T_object_hand, plan.finger_depth, plan.finger_width);
+    if (std::abs(point.between(from) - grasp.opening) <= play) continue;
     const double between = pad.between(from);
-    if (std::abs(between - grasp.width) <= play) continue;
-    faults.push_back({"grasp-width", context.pick_name(pick),
-                      "its grasp says " + text(grasp.width) + " m, pads of " + text(plan.finger_depth) + " x " +
+    if (std::abs(between - grasp.opening) <= play) continue;
+    faults.push_back({"grasp-opening", context.pick_name(pick),
+                      "its grasp says " + text(grasp.opening) + " m, pads of " + text(plan.finger_depth) + " x " +
                           text(plan.finger_width) + " m meet the part at " + text(between) + " m"});
   }
 }

@@ -6,12 +6,14 @@
 #include <cmath>
 #include <utility>
 
+#include "grasp/assembly/clip_polygon.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
 namespace {
 
+using detail::HalfPlane;
 using detail::kInfinity;
 using detail::kTwoPi;
 
@@ -19,20 +21,14 @@ constexpr double kTouching = 1e-6;  // [m]
 constexpr int kPalmCorners = 96;    // Of the polygon around the palm; 0.05 % larger.
 constexpr int kMaxLooks = 1000000;
 
-/// n . p <= d in the plane of the finger tips.
-struct Side {
-  Eigen::Vector2d n;
-  double d;
-};
-
 /// A convex outline, endless along the approach.
 class Column {
  public:
-  explicit Column(std::vector<Side> sides) : sides_(std::move(sides)) {}
+  explicit Column(std::vector<HalfPlane> sides) : sides_(std::move(sides)) {}
 
   Column grown(double margin) const {
     Column out = *this;
-    for (Side& side : out.sides_) side.d += margin;
+    for (HalfPlane& side : out.sides_) side.d += margin;
     return out;
   }
 
@@ -44,16 +40,9 @@ class Column {
 
   /// The part of a triangle inside: least and largest height, or nothing.
   bool heights(const std::array<Eigen::Vector3d, 3>& triangle, double& low, double& high) const {
-    std::vector<Eigen::Vector3d> polygon(triangle.begin(), triangle.end()), cut;
-    for (const Side& side : sides_) {
-      cut.clear();
-      for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Eigen::Vector3d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-        const double da = side.n.dot(a.head<2>()) - side.d, db = side.n.dot(b.head<2>()) - side.d;
-        if (da <= 0) cut.push_back(a);
-        if ((da < 0 && db > 0) || (da > 0 && db < 0)) cut.push_back(a + da / (da - db) * (b - a));
-      }
-      polygon.swap(cut);
+    std::vector<Eigen::Vector3d> polygon(triangle.begin(), triangle.end());
+    for (const HalfPlane& side : sides_) {
+      polygon = detail::clip_polygon(polygon, side);
       if (polygon.empty()) return false;
     }
     low = kInfinity;
@@ -76,7 +65,7 @@ class Column {
   std::vector<Eigen::Vector2d> corners() const {
     std::vector<Eigen::Vector2d> out;
     for (std::size_t i = 0; i < sides_.size(); ++i) {
-      const Side &a = sides_[i], &b = sides_[(i + 1) % sides_.size()];
+      const HalfPlane &a = sides_[i], &b = sides_[(i + 1) % sides_.size()];
       Eigen::Matrix2d lines;
       lines << a.n.transpose(), b.n.transpose();
       out.push_back(lines.inverse() * Eigen::Vector2d(a.d, b.d));
@@ -84,7 +73,7 @@ class Column {
     return out;
   }
 
-  std::vector<Side> sides_;  // In turning order.
+  std::vector<HalfPlane> sides_;  // In turning order.
 };
 
 /// A finger between `from` and `to` off the axis; number `i` of `grasp.fingers`.
@@ -96,7 +85,7 @@ Column finger(const AssemblyGrasp& grasp, int i, double from, double to) {
 }
 
 Column palm(const AssemblyGrasp& grasp) {
-  std::vector<Side> sides;
+  std::vector<HalfPlane> sides;
   for (int i = 0; i < kPalmCorners; ++i) {
     const double turn = kTwoPi * i / kPalmCorners;
     sides.push_back({{std::cos(turn), std::sin(turn)}, grasp.palm_radius - kTouching});

@@ -2,6 +2,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "given.hpp"
+#include "mmgrasp/grasp/assembly_grasps.hpp"
 #include "mmgrasp/grasp/finger_length_range.hpp"
 #include "plan_arguments.hpp"
 
@@ -103,11 +104,74 @@ void bind_assembly_grasp(py::module_& m) {
       });
 }
 
+const std::vector<OptionField<AssemblyGraspOptions>>& assembly_grasp_fields() {
+  using O = AssemblyGraspOptions;
+  static const std::vector<OptionField<O>> fields{
+      option<O>("facet_angle", &O::facet_angle, "faces of one facet bend no more from its largest [rad]"),
+      option<O>("parallel_angle", &O::parallel_angle, "facets between jaws are off parallel by no more [rad]"),
+      option<O>("directions", &O::directions, "approaches about the closing axis, or turns of centric fingers"),
+      option<O>("min_contact", &O::min_contact, "pads overlap the segment by at least this, along the approach [m]"),
+      option<O>("pad_length", &O::pad_length, "of a pad along the approach [m]"),
+      option<O>("max_opening", &O::max_opening, "wider segments are left out [m]"),
+      option<O>("finger_width", &O::finger_width, "across approach and closing direction [m]"),
+      option<O>("finger_thickness", &O::finger_thickness, "along the closing direction [m]"),
+      option<O>("clearance", &O::clearance, "by which each finger opens to approach and to let go [m]"),
+      option<O>("palm_margin", &O::palm_margin, "the palm reaches beyond the open fingers by this [m]")};
+  return fields;
+}
+
+void bind_candidates(py::module_& m) {
+  py::class_<Facet>(m, "Facet", "A nearly plane piece of a surface (P1 5.3.3, planar clustering).")
+      .def_readonly("faces", &Facet::faces, "Triangles of the mesh, ascending.")
+      .def_readonly("normal", &Facet::normal, "Outwards, weighted by area, (3,).")
+      .def_readonly("centre", &Facet::centre, "Of area [m], (3,).")
+      .def_readonly("area", &Facet::area, "[m2]")
+      .def("__repr__", [](const Facet& f) { return "Facet(" + std::to_string(f.faces.size()) + " faces)"; });
+  m.def("_assembly_grasp_option_table", [] { return option_table(assembly_grasp_fields()); });
+  m.def(
+      "planar_facets",
+      [](const Given<MeshShape>& mesh, const std::vector<int>& faces, const Given<double>& angle) {
+        return planar_facets(*taken(mesh, "mesh").mesh, faces, taken(angle, "angle"));
+      },
+      "mesh"_a, "faces"_a = std::vector<int>{}, py::kw_only(), "angle"_a = 0.1,
+      "Nearly plane pieces of a mesh, or of some of its faces (none: all), largest first: each grows from the largest "
+      "face left, as long as faces bend no more than `angle` [rad] from it.");
+  m.def(
+      "jaw_grasps",
+      [](const Given<MeshShape>& mesh, const std::vector<int>& faces, const py::kwargs& keywords) {
+        const auto options = read_options(assembly_grasp_fields(), keywords, "jaw_grasps");
+        const MeshShape shape = taken(mesh, "mesh");
+        const py::gil_scoped_release release;
+        return jaw_grasps(*shape.mesh, faces, options);
+      },
+      "mesh"_a, "faces"_a = std::vector<int>{},
+      ("Grasps by two parallel jaws: opposite, nearly parallel facets of a segment (`faces`; none: the whole mesh) "
+       "whose "
+       "shadows overlap, approached from every direction across the closing axis, at up to three depths (P1 5.3.3)." +
+       option_help(assembly_grasp_fields()))
+          .c_str());
+  m.def(
+      "centric_grasps",
+      [](const ArrayLike& T_mesh_cylinder, const Given<double>& diameter, const Given<double>& low,
+         const Given<double>& high, const py::kwargs& keywords) {
+        const auto options = read_options(assembly_grasp_fields(), keywords, "centric_grasps");
+        const CylinderFit cylinder{pose_argument(T_mesh_cylinder, "T_mesh_cylinder"), taken(diameter, "diameter"),
+                                   taken(low, "low"), taken(high, "high")};
+        return centric_grasps(cylinder, options);
+      },
+      "T_mesh_cylinder"_a, "diameter"_a, "low"_a, "high"_a,
+      ("Grasps by three centric fingers along the z axis of a cylinder that ends at `low` and `high` on it [m], from "
+       "either end, fingers turned in steps, at up to three depths (P1 5.2.3)." +
+       option_help(assembly_grasp_fields()))
+          .c_str());
+}
+
 }  // namespace
 
 void bind_assembly(py::module_& m) {
   bind_operation(m);
   bind_assembly_grasp(m);
+  bind_candidates(m);
   m.def(
       "finger_length_range",
       [](const Given<AssemblyGrasp>& grasp, const Given<AssemblyOperation>& operation, const Given<double>& step) {

@@ -11,6 +11,7 @@ void bind_mapping(py::module_& m);
 void bind_sdf(py::module_& m);
 void bind_world_maps(py::module_& m);
 void bind_segmentation(py::module_& m);
+void bind_segment_mesh(py::module_& m);
 void bind_graspability(py::module_& m);
 void bind_synthesis(py::module_& m);
 void bind_capability(py::module_& m);
@@ -91,6 +92,7 @@ PYBIND11_MODULE(_core, m) {
   bind_sdf(m);
   bind_world_maps(m);
   bind_segmentation(m);
+  bind_segment_mesh(m);
   bind_graspability(m);
   bind_synthesis(m);
   bind_structure(m);

@@ -35,6 +35,8 @@ def check(value: object, annotation: Any, place: str) -> None:
     elif origin is types.UnionType:
         if value is not None:
             check(value, arguments[0], place)
+    elif origin is np.ndarray:
+        assert isinstance(value, np.ndarray) and value.dtype == typing.get_args(arguments[1])[0], place
     else:
         assert type(value) is annotation, f"{place} = {value!r}"
 
@@ -51,6 +53,41 @@ def test_robot(robot: mg.Robot) -> None:
     check(robot.groups, dict[str, _records.GroupRow], "groups")
     check(robot.end_effectors, list[_records.EndEffectorRow], "end_effectors")
     assert robot.joint_table and robot.groups and robot.end_effectors
+    source = robot.with_link("camera", robot.links[0], np.eye(4), [mg.LinkShape(mg.Sphere(0.01))]).source
+    check(source.urdfs, list[_records.UrdfRow], "urdfs")
+    check(source.added_links, list[_records.AddedLinkRow], "added_links")
+    assert source.urdfs and source.added_links
+
+
+def test_world() -> None:
+    world = mg.World()
+    world.add_box("table", (1, 1, 1), np.eye(4))
+    world.padding = {"links": 0.01, "by_name": {"table": 0.0}}
+    check(world.padding, _records.WorldPadding, "padding")
+    again = mg.World()
+    again.padding = world.padding
+    assert again.padding == world.padding == {"links": 0.01, "attached": 0.0, "objects": 0.0, "by_name": {"table": 0.0}}
+
+
+def test_counts_of_grasps_in_maps() -> None:
+    hand = mg.Hand("tool", approach=[1, 0, 0], closing=[0, 1, 0], max_opening=0.1, finger_depth=0.04, finger_width=0.02)
+    height = np.zeros((60, 60), np.float32)
+    height[25:35, 20:40] = 0.03
+    found = mg.grasping.evaluate_graspability(mg.mapping.HeightMap(height, 0.004), hand)
+    check(found.counts, _records.GraspabilityCounts, "counts")
+    sdf = mg.ProbabilisticSdf()
+    camera = mg.mapping.DepthCamera(mg.mapping.PinholeCamera())
+    eye = mg.mapping.look_down([0, 0, 0.5])
+    scene = [mg.LinkShape(mg.Box([0.6, 0.6, 0.02])), mg.LinkShape(mg.Box([0.04, 0.08, 0.06]), mg.pose([0, 0, 0.04]))]
+    sdf.integrate(mg.mapping.render_depth(scene, mg.mapping.PinholeCamera(), eye), camera)
+    synthesis = mg.synthesize_grasps(sdf, hand, table=0.01)
+    check(synthesis.counts, _records.SynthesisCounts, "counts")
+    assert synthesis.counts["drawn"] > 0
+
+
+def test_message_of_a_trajectory() -> None:
+    motion = mg.time_parameterize([[0.0], [1.0]], [1.0], [1.0], names=["a"])
+    check(motion.to_joint_trajectory(), _records.MotionMessage, "message")
 
 
 def test_mesh(tmp_path: typing.Any) -> None:

@@ -25,7 +25,12 @@ class IoError(Error, OSError):
     """
 class Robot:
     """
-    A robot as URDF and SRDF describe it. Immutable; joints and links by name.
+    A robot as URDF and SRDF describe it: links, joints, collision shapes, groups, pairs that need no collision check.
+    Immutable; joints and links by name.
+    
+        robot = mg.Robot.load("robot.urdf", "robot.srdf", base="diff_drive")
+        arm = robot.group("arm", tip="gripper_tcp")
+        robot.links, arm.names
     """
     @staticmethod
     def from_strings(urdf: str, srdf: str = '', package_dirs: collections.abc.Mapping[str, str | os.PathLike[str]] | None = None, base: str = 'fixed', *, base_limits: collections.abc.Mapping[str, float | None] | None = None, load_meshes: bool = True, allow_missing_meshes: bool = False, mesh_tolerance: float = 0.0, origin: str = '<string>') -> Robot:
@@ -169,7 +174,16 @@ class Robot:
         """
 class JointGroup:
     """
-    Joints that are planned together, and a tip. Immutable.
+    Joints that are planned together, and a tip: where configurations, limits and kinematics are. Immutable.
+    
+        q = arm.q({"elbow_joint": 1.2})
+        T_world_tip = arm.fk(q)
+        found = arm.ik(T_world_tip, seed=q)
+        if found.outcome == mg.Outcome.solved:
+            print(found.q, found.position_error)
+    
+    Configurations are arrays (n,): base joints x, y, theta first when the group has them (`with_base=True`), then the chain in
+    order. All other joints stay at the group's reference values.
     """
     def __len__(self) -> int:
         ...
@@ -204,7 +218,7 @@ class JointGroup:
             restarts: int = 30  # random restarts after the seed
             time_limit: float = 1.0  # wall-clock cap [s]
             rng_seed: int = 1  # same seed, same answer
-            joint_weights: numpy.typing.ArrayLike | None = []  # how dear it is to move each joint, > 0; empty: all the same
+            joint_weights: numpy.typing.ArrayLike | None = []  # cost of moving each joint, > 0; empty: all the same
             objectives: collections.abc.Sequence[IkObjective] = []  # costs (IkObjective) that the redundancy lowers once the pose is reached
             objective_iterations: int = 50  # steps along the solutions
         """
@@ -220,7 +234,7 @@ class JointGroup:
             restarts: int = 30  # random restarts after the seed
             time_limit: float = 1.0  # wall-clock cap [s]
             rng_seed: int = 1  # same seed, same answer
-            joint_weights: numpy.typing.ArrayLike | None = []  # how dear it is to move each joint, > 0; empty: all the same
+            joint_weights: numpy.typing.ArrayLike | None = []  # cost of moving each joint, > 0; empty: all the same
             objectives: collections.abc.Sequence[IkObjective] = []  # costs (IkObjective) that the redundancy lowers once the pose is reached
             objective_iterations: int = 50  # steps along the solutions
         """
@@ -239,7 +253,7 @@ class JointGroup:
             restarts: int = 30  # random restarts after the seed
             time_limit: float = 1.0  # wall-clock cap [s]
             rng_seed: int = 1  # same seed, same answer
-            joint_weights: numpy.typing.ArrayLike | None = []  # how dear it is to move each joint, > 0; empty: all the same
+            joint_weights: numpy.typing.ArrayLike | None = []  # cost of moving each joint, > 0; empty: all the same
             objectives: collections.abc.Sequence[IkObjective] = []  # costs (IkObjective) that the redundancy lowers once the pose is reached
             objective_iterations: int = 50  # steps along the solutions
         """
@@ -358,7 +372,16 @@ class JointGroup:
         """
 class World:
     """
-    Named rigid bodies around the robot, and what it holds. Poses are T_world_object, (4, 4).
+    What stands around the robot and what it holds: named rigid bodies, and who may touch whom. Poses are
+    T_world_object, (4, 4).
+    
+        world = mg.World()
+        world.add_box("table", size=(1.2, 0.6, 0.04), pose=mg.pose([1.0, 0, 0.7]))
+        world.add("cup", mg.Cylinder(0.04, 0.1), mg.pose([1.0, 0, 0.775]))
+        world.allow("cup", "table")
+        world.attach("cup", "gripper_link", mg.pose([0.1, 0, 0]))  # from now on it moves with the link
+    
+    A checker or planner keeps the world that it was given: later changes do not reach it.
     """
     def __contains__(self, arg0: str) -> bool:
         ...
@@ -478,14 +501,14 @@ class World:
         Names of the scene's objects.
         """
     @property
-    def padding(self) -> dict[str, typing.Any]:
+    def padding(self) -> mmgrasp._records.WorldPadding:
         """
         How far bodies are grown where the robot (with what it holds) meets the scene [m]; never within the robot. A
         number is for all links; a dict has the keys `links`, `attached`, `objects` and `by_name` (link, object or
         SRDF group to its own padding, in place of the others).
         """
     @padding.setter
-    def padding(self, arg1: float | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]]) -> None:
+    def padding(self, arg1: float | mmgrasp._records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]]) -> None:
         ...
 class Outcome(enum.Enum):
     """
@@ -662,6 +685,9 @@ class Voxels:
 class Mesh:
     """
     A triangle mesh [m]; closed ones are solids, open ones surfaces.
+    
+        mesh = mg.Mesh.load("bracket.stl", scale=0.001)
+        mesh.closed, len(mesh.triangles)
     """
     @staticmethod
     def load(path: str | os.PathLike[str], scale: numpy.typing.ArrayLike = 1.0) -> Mesh:
@@ -778,7 +804,10 @@ class DistanceField:
         """
 class MeshDistanceField(DistanceField):
     """
-    The exact distance from a closed mesh.
+    The exact distance from a closed mesh, negative inside.
+    
+        field = mg.collision.MeshDistanceField(mesh)
+        world.add_field("statue", field, mg.pose([2.0, 1.0, 0.0]))
     """
     def __init__(self, mesh: Mesh) -> None:
         """
@@ -787,6 +816,11 @@ class MeshDistanceField(DistanceField):
 class GridDistanceField(DistanceField):
     """
     Signed distances at the points of a regular grid, interpolated linearly along each axis between them.
+    
+        x = np.linspace(-0.5, 0.5, 21)
+        values = np.linalg.norm(np.stack(np.meshgrid(x, x, x, indexing="ij")), axis=0) - 0.3  # a sphere
+        field = mg.collision.GridDistanceField(values, [-0.5, -0.5, -0.5], 0.05)
+        field.distances([[0.0, 0.0, 0.4]])
     """
     def __init__(self, values: numpy.typing.ArrayLike, origin: numpy.typing.ArrayLike, spacing: float, *, error: float = 0.0, truncation: float = ...) -> None:
         """
@@ -817,7 +851,7 @@ class DerivativeFreeResult:
     @property
     def outcome(self) -> Outcome:
         """
-        `solved`: converged, constraints kept; `timeout`: the budget or the clock ended it.
+        `solved`: converged, constraints kept; `timeout`: the budget or the time limit ended it.
         """
     @property
     def seconds(self) -> float:
@@ -989,12 +1023,12 @@ class RobotSource:
         robot's root). `mesh_files` maps the URDF's mesh filenames to files; an empty one leaves the mesh out.
         """
     @property
-    def added_links(self) -> list[dict[str, typing.Any]]:
+    def added_links(self) -> list[mmgrasp._records.AddedLinkRow]:
         """
         As dicts with the arguments of add_link.
         """
     @property
-    def urdfs(self) -> list[dict[str, typing.Any]]:
+    def urdfs(self) -> list[mmgrasp._records.UrdfRow]:
         """
         As dicts with the arguments of add_urdf.
         """
@@ -1078,6 +1112,10 @@ class IkBranches:
 class JointTrajectory:
     """
     A path on a clock; cubic Hermite between samples.
+    
+        motion = mg.time_parameterize(path, arm.velocity_limits, arm.acceleration_limits, names=arm.names)
+        q = motion.at(motion.duration / 2)
+        motion.to_csv()
     """
     def __init__(self, names: collections.abc.Sequence[str], times: numpy.typing.ArrayLike, positions: numpy.typing.ArrayLike, velocities: numpy.typing.ArrayLike | None = None, accelerations: numpy.typing.ArrayLike | None = None) -> None:
         """
@@ -1101,7 +1139,7 @@ class JointTrajectory:
         """
         As a dict of plain numbers, strings and lists, e.g. for JSON.
         """
-    def to_joint_trajectory(self, base_pose: numpy.typing.ArrayLike | None = None) -> dict[str, typing.Any]:
+    def to_joint_trajectory(self, base_pose: numpy.typing.ArrayLike | None = None) -> mmgrasp._records.MotionMessage:
         """
         RobotMotion's message: columns x, y, theta in front are the base's; without them it stands at base_pose.
         """
@@ -1246,8 +1284,13 @@ class EdgeResult:
         """
 class CollisionChecker:
     """
-    Collision questions about one group in a snapshot of the world: later changes of the world
-    are not seen. Links pairs are sampled (and cached) when no SRDF says which never touch.
+    Collision questions about one group in a snapshot of the world: later changes of the world are not seen.
+    
+        checker = mg.CollisionChecker(robot, world, arm)
+        if checker.is_free(q) and checker.edge_is_free(q, q_goal):
+            print(checker.distance(q).value)
+    
+    Pairs of links are sampled (and cached) when no SRDF says which never touch.
     """
     def __init__(self, robot: Robot, world: World, group: JointGroup, *, padding: float = 0.0, check_self: bool = True, check_scene: bool = True, attached_only: bool = False) -> None:
         """
@@ -1335,7 +1378,12 @@ class IkObjective:
         """
 class ReachDatabase:
     """
-    Sampled arm configurations free of self-collision, in cells of the tool pose (P1 3.2.1).
+    Sampled arm configurations free of self-collision, in cells of the tool pose (P1 3.2.1): good first guesses for
+    inverse kinematics, and quick answers to "out of reach".
+    
+        database = mg.ReachDatabase.build(arm, samples=100_000)
+        database.save("reach")
+        guesses = database.query(T_base_tip)  # (m, n), m = 0: out of reach
     """
     @staticmethod
     def build(arm: JointGroup, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, samples: int = 2000000, position_cell: float = 0.1, rotation_cell: float = 0.55, max_per_cell: int = 16, min_manipulability: float = 0.02, thinning: float = 0.0, seed: int = 1, threads: int = 0) -> ReachDatabase:
@@ -1566,6 +1614,9 @@ class CapabilityMap:
     """
     The share of tool poses around each point that an arm reaches, with its limits, self-collision and the scene
     (P3 3.9.2, equation 3.13). Everything is in the robot's root frame. Immutable.
+    
+        reached = mg.base.CapabilityMap.build(arm, world, voxel=0.2, poses=50)
+        reached.index_at([0.6, 0.0, 0.8])  # share of tool poses around this point, in [0, 1]
     """
     @staticmethod
     def build(arm: JointGroup, world: World | None = None, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, lower: numpy.typing.ArrayLike = (-1.0, -1.0, 0.0), upper: numpy.typing.ArrayLike = (1.0, 1.0, 2.6), voxel: float = 0.1, poses: int = 200, rolls: int = 1, approach: numpy.typing.ArrayLike = (0.0, 0.0, 1.0), samples: int = 0, sweeps: int = 4, restarts: int = 0, padding: float = 0.0, seed: int = 1, threads: int = 0) -> CapabilityMap:
@@ -1760,6 +1811,9 @@ class HeightMapProvenance:
 class Grasp:
     """
     One way to hold an object: where the hand stands, how far it is open, what it costs and how good it is.
+    
+        grasp = mg.Grasp(mg.pose([0, 0, 0.05], rpy=[0, np.pi / 2, 0]), opening=0.04)
+        T_world_hand = T_world_object @ grasp.T_object_hand
     """
     def __init__(self, T_object_hand: numpy.typing.ArrayLike, opening: float = 0.0, *, cost: float = 0.0, quality: float = 1.0, posture: collections.abc.Sequence[float] = []) -> None:
         """
@@ -2193,7 +2247,11 @@ class CartesianResult:
         """
 class Roadmap:
     """
-    Configurations of a group drawn from its joint limits and joined when near, without any collision check: it serves every grasp, object and scene (P2 4.3.2.1). Immutable.
+    Configurations of a group drawn from its joint limits and joined when near, without any collision check: it serves
+    every grasp, object and scene (P2 4.3.2.1). Immutable.
+    
+        roadmap = mg.planning.Roadmap.build(arm, vertices=2000)
+        roadmap.statistics["largest_component"]
     """
     @staticmethod
     def build(group: JointGroup, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, seed: int = 1) -> Roadmap:
@@ -2235,7 +2293,7 @@ class Roadmap:
     @property
     def statistics(self) -> mmgrasp._records.RoadmapStatistics:
         """
-        Mean degree, connected parts, the largest one's vertices, nearest ones joined, connection radius, the joint box's volume, and the gamma that PRM* asks for.
+        Mean degree, connected parts, the largest one's vertices, nearest ones joined, connection radius, the volume of the joint limits, and the gamma that PRM* asks for.
         """
     @property
     def vertices(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -2249,7 +2307,12 @@ class Roadmap:
         """
 class ManipulationProblem:
     """
-    Moves an object from one pose to another with any of many grasps (P2 4.2).
+    Moves an object from one pose to another with any of many grasps (P2 4.2): the planner chooses the grasp.
+    
+        problem = mg.ManipulationProblem(arm, world, shapes, T_world_start, T_world_goal, grasps)
+        result = mg.plan_manipulation(problem, time_limit=5.0)
+        if result.outcome == mg.Outcome.solved:
+            print(result.grasp_index, len(result.path))
     """
     def __init__(self, group: JointGroup, world: World, object: LinkShape | collections.abc.Sequence[LinkShape], T_world_start: numpy.typing.ArrayLike, T_world_goal: numpy.typing.ArrayLike, grasps: collections.abc.Sequence[Grasp] | numpy.typing.ArrayLike, *, gripper: Hand | None = None, touch_links: collections.abc.Sequence[str] = [], object_name: str = 'object') -> None:
         """
@@ -2329,7 +2392,7 @@ class SearchTree:
         """
 class Improvement:
     """
-    A better solution on the way.
+    A better solution on the way, as planners report it to `on_solution`.
     """
     def __repr__(self) -> str:
         ...
@@ -2340,12 +2403,12 @@ class Improvement:
     @property
     def cost(self) -> float:
         """
-        Length of the path in joint space plus the grasp's cost.
+        Length of the path in joint space, plus the grasp's cost where there are grasps.
         """
     @property
     def grasp(self) -> int:
         """
-        Index of its grasp.
+        Index of its grasp; -1: the motion has none.
         """
     @property
     def path(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -2360,7 +2423,7 @@ class Improvement:
     @property
     def stage(self) -> str:
         """
-        What found it: first_grasps, straight_lines, roadmap, refinement, trees or shortening.
+        What found it: search (plan_motion), first_grasps, straight_lines, roadmap, refinement, trees or shortening.
         """
 class GraspReport:
     """
@@ -2530,6 +2593,9 @@ class BaseTrackingResult:
 class BaseTracker:
     """
     The feedback law that keeps a base on its plan (P1 4.12 to 4.15), one command a period.
+    
+        tracker = mg.base.BaseTracker(robot)
+        velocity = tracker.command(planned_now, planned_after_period, measured)  # x, y, theta each
     """
     def __init__(self, robot: Robot, *, kp: float = 2.0, ki: float = 0.1, kd: float = 0.3, offset: float = 0.2, period: float = 0.02, feed_forward: bool = True, feedback: bool = True, settle: float = 0.0) -> None:
         """
@@ -2584,11 +2650,6 @@ class ClosingOutcome:
         It may stand this much farther [m].
         """
     @property
-    def gap(self) -> float:
-        """
-        Free space on either side of a centred object as the tips pass it [m].
-        """
-    @property
     def holds(self) -> bool:
         """
         An object standing where planned is held.
@@ -2607,6 +2668,11 @@ class ClosingOutcome:
     def pushed(self) -> float:
         """
         How far the object slides before the palm [m].
+        """
+    @property
+    def side_clearance(self) -> float:
+        """
+        Free space on either side of a centred object as the tips pass it [m].
         """
     @property
     def start(self) -> float:
@@ -2749,10 +2815,10 @@ class PlaceRegion:
     """
     Where picked parts go: a bin fixed to the robot.
     """
-    def __init__(self, T_base_bin: numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, drop_gap: float = 0.03) -> None:
+    def __init__(self, T_base_bin: numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, drop_height: float = 0.03) -> None:
         """
         `T_base_bin` (4, 4): middle of the bin's top plane in the robot's root frame, z up; `size` (2,): inner x and y
-        [m], > 0; `drop_gap`: how far above the top plane a part is released [m], >= 0.
+        [m], > 0; `drop_height`: how far above the top plane a part is released [m], >= 0.
         """
     @property
     def T_base_bin(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -2760,7 +2826,7 @@ class PlaceRegion:
         Middle of the bin's top plane in the robot's root frame (4, 4), z up.
         """
     @property
-    def drop_gap(self) -> float:
+    def drop_height(self) -> float:
         """
         A part is released with its lowest point so far above the bin's top plane [m].
         """
@@ -2771,7 +2837,12 @@ class PlaceRegion:
         """
 class PartSupplyProblem:
     """
-    Everything the part-supply planner needs.
+    Everything the part-supply planner needs: the robot and its hand, the room, the trays with their parts, and where parts
+    go. `mmgrasp.load_scenario(path).problem()` makes one of a scenario file.
+    
+        problem = mg.load_scenario("storeroom.yaml").problem()
+        database = mg.ReachDatabase.build(problem.arm)
+        plan = mg.base.plan_part_supply(problem, database)
     """
     def __init__(self, robot: Robot, arm: JointGroup, gripper: Hand, scene: World, trays: collections.abc.Sequence[Tray], home: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike, place_region: PlaceRegion, *, grid_resolution: float = 0.05, grid_max_distance: float = 0.0, ik_seeds: int = 8, positioning_uncertainty: float = 0.1, approach_distance: float = 0.08, lift_height: float = 0.12, motion_time_limit: float = 5.0, route_resolution: float = 0.1, robustness_samples: int = 2000, seed: int = 1, threads: int = 0) -> None:
         """
@@ -2968,7 +3039,12 @@ class BaseRegion:
         """
 class ObjectRegions:
     """
-    The region of every target part alone, kept and updated when parts leave.
+    The region of every target part alone, kept and updated when parts leave: the region of any selection of a tray's
+    parts is an intersection of ready bitmaps (P1 3.4.1, 3.5.1).
+    
+        grid = mg.base.make_base_grid(problem, database)
+        regions = mg.base.ObjectRegions.compute(problem, database, grid)
+        cells = regions.region(0, regions.parts(0))  # from where all target parts of the first tray can be grasped
     """
     @staticmethod
     def compute(problem: PartSupplyProblem, database: ReachDatabase, grid: BaseGrid, *, progress: collections.abc.Callable[[str, float], typing.Any] | None = None) -> ObjectRegions:
@@ -3475,6 +3551,8 @@ class DriveByTask:
     """
     Something the tool does on the way: T_world_tip, (4, 4), or candidates (m, 4, 4) of which any will do.
     
+        task = mg.DriveByTask(mg.pose([2.0, -0.8, 0.75]), dwell=0.5, free=["yaw"])
+    
     tolerance: (6,) along x, y, z [m] and about them [rad] of the pose's own frame; free: names of axes that do not
     matter, of x, y, z, roll, pitch, yaw; max_tool_speed [m/s] at the task; dwell [s] for which the tool's pose is
     kept, e.g. while a gripper closes; object: name of the world's object that is held afterwards: an obstacle for the
@@ -3935,6 +4013,8 @@ class DepthImage:
 class HeightMap:
     """
     Heights over square cells, seen along -z of the map's frame [m].
+    
+        heights = mg.mapping.HeightMap(np.zeros((120, 160)), resolution=0.002)
     """
     def __init__(self, height: numpy.typing.ArrayLike, resolution: float, T_world_map: numpy.typing.ArrayLike | None = None) -> None:
         """
@@ -4477,7 +4557,7 @@ class Graspability:
     def __repr__(self) -> str:
         ...
     @property
-    def counts(self) -> dict[str, int]:
+    def counts(self) -> mmgrasp._records.GraspabilityCounts:
         """
         Places checked (tried) and rejected: too_wide, poor, collision, near_better.
         """
@@ -4726,12 +4806,12 @@ class GraspSynthesis:
         One sentence: how many grasps, or what most of those tried failed on.
         """
     @property
-    def arm(self) -> dict[str, typing.Any]:
+    def arm(self) -> Rejections:
         """
         Why the arm did not reach grasps.
         """
     @property
-    def counts(self) -> dict[str, int]:
+    def counts(self) -> mmgrasp._records.SynthesisCounts:
         """
         Surface points drawn and grasps evaluated, by what became of them.
         """
@@ -4763,6 +4843,9 @@ class GraspSynthesis:
 class Pipe:
     """
     A pipe structure: straight round sections between nodes in the object's frame (P2 3.2.2).
+    
+        pipe = mg.grasping.Pipe([[0, 0, 0], [0.4, 0, 0], [0.4, 0.3, 0]], [[0, 1], [1, 2]], 0.028)
+        grasps = pipe.sample_grasps(500)
     """
     def __init__(self, nodes: numpy.typing.ArrayLike, sections: collections.abc.Sequence[typing.Annotated[collections.abc.Sequence[int], "FixedSize(2)"]], diameters: float | collections.abc.Sequence[float]) -> None:
         """
@@ -4860,7 +4943,7 @@ class BeamSection:
     """
     def __init__(self, area: float, iy: float, iz: float, torsion: float) -> None:
         """
-        Any section by its area [m2], second moments about y and z and torsion constant [m4]; no stress is told.
+        Any section by its area [m2], second moments about y and z and torsion constant [m4]; no stress is known.
         """
     @property
     def area(self) -> float:
@@ -5011,6 +5094,10 @@ class BeamState:
 class BeamFrame:
     """
     Straight Euler-Bernoulli beams welded at nodes, in the object's frame (P2 3.2.3.3.2).
+    
+        pipe = mg.grasping.Pipe([[0, 0, 0], [0.4, 0, 0], [0.4, 0.3, 0]], [[0, 1], [1, 2]], 0.028)
+        frame = mg.grasping.beam_frame(pipe, inner_diameter=0.026, material=mg.grasping.copper())
+        state = frame.deflection(pipe.grasp(0, 0.2, 0.0), np.eye(4))
     """
     def __init__(self, nodes: numpy.typing.ArrayLike, members: collections.abc.Sequence[BeamMember], loads: collections.abc.Sequence[NodeLoad] = []) -> None:
         """
@@ -5130,7 +5217,7 @@ class ObjectPathResult:
         Motions between poses that collide or leave the path.
         """
     @property
-    def rejections(self) -> dict[str, typing.Any]:
+    def rejections(self) -> Rejections:
         """
         Configurations rejected, by cause.
         """
@@ -5922,7 +6009,7 @@ def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy
         look_out: float = 0.15  # pairs of bodies nearer than this are constrained [m]
         refinements: int = 6  # times that collision constraints may be added
     """
-def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, padding: float | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 8, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_iterations: int = 1000, range: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
+def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, padding: float | mmgrasp._records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 8, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_iterations: int = 1000, range: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
     """
     Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 chapters 4 and 5). Every grasp is checked. `padding`: in place of that of the problem's world, see World.padding. `on_solution` is called with every better solution (an Improvement); what it raises ends the call.
     
@@ -5955,14 +6042,14 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         goal_cost: float = 0.0  # rrt_star_mg: ends with the first path that costs no more; inf: the first at all
         keep_trees: bool = False  # rrt_star_mg: hand over the trees with the result
     """
-def plan_motion(robot: Robot | CollisionChecker, group: JointGroup | None = None, world: World | None = None, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike | None = None, tool_poses: numpy.typing.ArrayLike | None = None, regions: collections.abc.Sequence[ToolRegion] = [], via: numpy.typing.ArrayLike | None = None, orientation_constraint: OrientationConstraint | None = None, padding: float | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, on_solution: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64], float], typing.Any] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, planner: str = 'rrt_connect', time_limit: float = 5.0, max_iterations: int = 20000, range: float = 0.0, near_end_probability: float = 0.2, base_margin: float = 2.0, joint_step: float = 0.02, workspace_step: float = ..., shorten: bool = True, shorten_iterations: int = 200, ik_solutions: int = 8, region_samples: int = 16, seed: int = 1) -> MotionResult:
+def plan_motion(robot: Robot | CollisionChecker, group: JointGroup | None = None, world: World | None = None, *, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike | None = None, tool_poses: numpy.typing.ArrayLike | None = None, regions: collections.abc.Sequence[ToolRegion] = [], via: numpy.typing.ArrayLike | None = None, orientation_constraint: OrientationConstraint | None = None, padding: float | mmgrasp._records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, planner: str = 'rrt_connect', time_limit: float = 5.0, max_iterations: int = 20000, range: float = 0.0, near_end_probability: float = 0.2, base_margin: float = 2.0, joint_step: float = 0.02, workspace_step: float = ..., shorten: bool = True, shorten_iterations: int = 200, ik_solutions: int = 8, region_samples: int = 16, seed: int = 1) -> MotionResult:
     """
     A collision-free path of the group from `start` (n,) to any of its goals: `goal` (n,) or several as (m, n),
     `tool_poses` of the tip, (4, 4) or (m, 4, 4), and `regions` of them, reached by inverse kinematics; by way of the
     configurations `via` (k, n), one after the other. A prepared CollisionChecker may stand in place of robot, group
     and world. `orientation_constraint` holds on the whole path. `padding`: in place of the world's own, see
-    World.padding. on_solution(path, cost) is called with each better path. A diff-drive base turns on the spot and
-    drives straight.
+    World.padding. `on_solution` is called with every better path (an Improvement); what it raises ends the call.
+    A diff-drive base turns on the spot and drives straight.
     
     Keyword options:
         planner: str = 'rrt_connect'  # a name of planner_names()
@@ -6089,7 +6176,7 @@ def quat_xyzw_from_rotation(R: numpy.typing.ArrayLike) -> numpy.typing.NDArray[n
     """
     Quaternion (x, y, z, w) of a (3, 3) rotation.
     """
-def random_placement(part: collections.abc.Sequence[LinkShape], tray_size: numpy.typing.ArrayLike, *, count: int = 12, fill: float = 1.0, wall: float = 0.005, attempts: int = 100, stack: bool = True, gap: float = 0.0005, seed: int = 1) -> RandomPlacement:
+def random_placement(part: collections.abc.Sequence[LinkShape], tray_size: numpy.typing.ArrayLike, *, count: int = 12, fill: float = 1.0, wall: float = 0.005, attempts: int = 100, stack: bool = True, clearance: float = 0.0005, seed: int = 1) -> RandomPlacement:
     """
     Alike parts lying in a tray at random (P1 3.5.2), let down one after another without touching; `fill` is the share
     of `count` that is there. The tray's frame is the middle of its floor, `tray_size` are outer lengths.
@@ -6097,7 +6184,7 @@ def random_placement(part: collections.abc.Sequence[LinkShape], tray_size: numpy
     Keyword options:
         attempts: int = 100  # random places tried for each part
         stack: bool = True  # a part without a place on the floor may lie on others
-        gap: float = 0.0005  # air left between bodies [m]
+        clearance: float = 0.0005  # air left between bodies [m]
         seed: int = 1  # same seed, same places
     """
 def read_pcd(path: str | os.PathLike[str]) -> PointCloud:

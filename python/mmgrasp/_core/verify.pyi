@@ -20,9 +20,9 @@ class CheckedGrasp:
     """
     A grasp of a part as the plan file describes it.
     """
-    def __init__(self, pose: numpy.typing.ArrayLike, width: float) -> None:
+    def __init__(self, pose: numpy.typing.ArrayLike, opening: float) -> None:
         """
-        `pose` (4, 4): T_object_tcp; `width`: opening of the fingers while holding [m].
+        `pose` (4, 4): T_object_hand; `opening`: between the pads while holding [m].
         """
 class CheckedPart:
     """
@@ -117,7 +117,12 @@ class CheckedTray:
         """
 class PlanToCheck:
     """
-    A whole plan as read from plan.json.
+    A whole plan as read from plan.json: what the checker needs to know, and what is claimed. `mmgrasp.verify_plan` makes
+    one of a file.
+    
+        verdict = mg.verify_plan("out/storeroom/plan.json")
+        for fault in verdict.faults:
+            print(fault.code, fault.where, fault.message)
     """
     def __init__(self, robot: mmgrasp._core.RobotSource) -> None:
         """
@@ -212,12 +217,12 @@ class PlanToCheck:
     def drive_by(self, arg0: collections.abc.Sequence[CheckedDriveBy]) -> None:
         ...
     @property
-    def drop_gap(self) -> float:
+    def drop_height(self) -> float:
         """
         Height above the bin's top plane at which parts are released [m].
         """
-    @drop_gap.setter
-    def drop_gap(self, arg0: float) -> None:
+    @drop_height.setter
+    def drop_height(self, arg0: float) -> None:
         ...
     @property
     def finger_depth(self) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 from .. import _core
 from .._core import Hand, PartSupplyPlan, Robot
 from .._files import sha256_of
+from .._records import AddedLinkRow, UrdfRow
 from ..scenario import Scenario, TraySetup
 from ..scenario.shapes import pose_to_dict, shape_to_dict
 from .plan_file import VERSION
@@ -151,12 +152,12 @@ def _headings(tray: _core.Tray) -> list[float]:
     return [float(h) for h in tray.headings] or [math.atan2(front[1], front[0])]
 
 
-def _urdf(source: dict[str, Any]) -> dict[str, Any]:
+def _urdf(source: UrdfRow) -> dict[str, Any]:
     """A URDF as it was given; verify reads it instead of ours."""
     return {key: value for key, value in source.items() if key != "T"} | {"pose": pose_to_dict(source["T"])}
 
 
-def _link(link: dict[str, Any]) -> dict[str, Any]:
+def _link(link: AddedLinkRow) -> dict[str, Any]:
     return {
         "name": link["name"],
         "parent_link": link["parent_link"],

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <sstream>
 
 #include "bindings.hpp"
@@ -117,9 +118,16 @@ void bind_fitted_primitives(py::module_& m) {
       });
   m.def(
       "fit_primitives",
-      [](const MeshShape& mesh, const std::vector<int>& labels) {
+      [](const MeshShape& mesh, const ArrayLike& labels) {
+        const Eigen::VectorXd values = vector_argument(labels, "labels");
+        std::vector<int> numbers;
+        for (Eigen::Index i = 0; i < values.size(); ++i) {
+          require(values[i] == std::floor(values[i]) && std::abs(values[i]) < 1e9, "labels[" + std::to_string(i) + "]",
+                  values[i], "must be a whole number");
+          numbers.push_back(static_cast<int>(values[i]));
+        }
         py::gil_scoped_release release;
-        return fit_primitives(*mesh.mesh, labels);
+        return fit_primitives(*mesh.mesh, numbers);
       },
       "mesh"_a, "labels"_a,
       "The cylinder, box, cone or sphere that stands for each segment of a mesh: the one whose volume is closest to that "
@@ -143,6 +151,7 @@ void bind_segment_mesh(py::module_& m) {
           "Shape diameter of each face (m,) [m]; 0 where it is unknown.")
       .def_readonly("segments", &S::segments, "Largest area first.")
       .def_readonly("threads", &S::threads, "Screw threads, largest first.")
+      .def_readonly("turned", &S::turned, "The mesh was inside out (open ones may be) and its faces were turned.")
       .def_readonly("clusters", &S::clusters, "Gaussians that the diameters called for.")
       .def("__repr__", [](const S& s) {
         return "MeshSegmentation(" + std::to_string(s.segments.size()) + " segments of " +

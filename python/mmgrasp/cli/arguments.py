@@ -26,7 +26,7 @@ def build_parser() -> argparse.ArgumentParser:
     parser = _Parser(prog="mmgrasp", description="Planning for mobile manipulators.")
     parser.add_argument("--version", action="version", version=f"mmgrasp {_core.__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="command", parser_class=_Parser)
-    for add in (_add_plan, _add_verify, _add_check, _add_scan, _add_grasp, _add_reproduce, _add_bench, _add_view):
+    for add in (_add_plan, _add_verify, _add_check, _add_scan, _add_grasp, _add_segment, _add_reproduce, _add_bench, _add_view):
         add(commands)
     return parser
 
@@ -156,6 +156,21 @@ def _add_grasp(commands: Commands) -> None:
     )
     parser.add_argument("--seed", type=_seed, default=1, metavar="N", help="same seed, same grasps")
     parser.add_argument("--json", action="store_true", help="print all grasps as JSON")
+
+
+def _add_segment(commands: Commands) -> None:
+    parser = commands.add_parser(
+        "segment", help="cut a part into the simple bodies it is composed of, and say where it can be held"
+    )
+    parser.add_argument("mesh", type=_path, help="STL, OBJ, PLY or DAE")
+    parser.add_argument("-o", "--out", type=_path, metavar="DIR", help="folder for segments.json and the pictures")
+    parser.add_argument(
+        "--unit", choices=["m", "cm", "mm", "inch"], default="m", help="what one unit of the file is (default m)"
+    )
+    parser.add_argument("--seed", type=_seed, default=1, metavar="N", help="same seed, same segments")
+    parser.add_argument("--threads", type=_threads, default=0, metavar="N", help="0: all (default)")
+    parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out")
+    parser.add_argument("--json", action="store_true", help="print segments.json instead of the table")
 
 
 def _add_reproduce(commands: Commands) -> None:

@@ -36,6 +36,7 @@ from .console import Reporter, open_streams
 from .grasp import run_grasp
 from .output_folder import OutputFolder
 from .scan import run_scan
+from .segment import run_segment
 from .tables import bench_table, drive_by_summary, print_verdict, summary
 
 if TYPE_CHECKING:
@@ -236,6 +237,7 @@ COMMANDS = {
     "check": run_check,
     "scan": run_scan,
     "grasp": run_grasp,
+    "segment": run_segment,
     "reproduce": run_reproduce,
     "bench": run_bench,
     "view": run_view,

@@ -48,12 +48,14 @@ struct MMGRASP_EXPORT MeshSegmentation {
   std::vector<MeshSegment> segments;   ///< Largest area first.
   std::vector<ScrewThread> threads;    ///< Largest first.
   int clusters = 0;                    ///< Gaussians that the data called for.
+  bool turned = false;                 ///< The mesh was inside out (open ones may be) and its faces were turned.
 };
 
 /// Cuts the surface of a mechanical part into the simple bodies that it is composed of (P1, section 5.1): faces are
 /// clustered by shape diameter (Gaussian mixture; minimum cuts over the edges), parted where the surface bends inwards,
 /// and joined again where the hull of two segments is no more than the two. Inner walls (holes, bores, grooves'
-/// sides) go with the outer wall behind them. Throws InvalidInput for a mesh without area or with more than 10 million
+/// sides) go with the outer wall behind them. An open mesh whose faces enclose a negative volume around its middle counts
+/// as inside out. Throws InvalidInput for a mesh without area or with more than 10 million
 /// triangles.
 MMGRASP_EXPORT MeshSegmentation segment_mesh(const TriangleMesh& mesh, const MeshSegmentationOptions& options = {},
                                              const Monitor& monitor = {});

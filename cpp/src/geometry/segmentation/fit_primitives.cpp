@@ -8,6 +8,7 @@
 #include <string>
 
 #include "geometry/segmentation/segment_surface.hpp"
+#include "geometry/segmentation/turn_outwards.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
@@ -198,8 +199,10 @@ std::vector<FittedPrimitive> fit_primitives(const TriangleMesh& mesh, const std:
     segments[labels[f]].push_back(static_cast<int>(f));
   }
   std::vector<FittedPrimitive> out;
+  TriangleMesh outward = mesh;
+  detail::turn_outwards(outward);
   for (const std::vector<int>& faces : segments) {
-    const SegmentSurface surface = detail::segment_surface(mesh, faces);
+    const SegmentSurface surface = detail::segment_surface(outward, faces);
     const double hull_volume = surface.hull.volume * std::pow(surface.scale, 3);
     FittedPrimitive best = detail::box_candidate(surface);
     for (FittedPrimitive& round : detail::round_candidates(surface)) {

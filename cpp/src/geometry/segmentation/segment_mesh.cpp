@@ -12,6 +12,7 @@
 #include "geometry/segmentation/inner_walls.hpp"
 #include "geometry/segmentation/join_regions.hpp"
 #include "geometry/segmentation/surface_creases.hpp"
+#include "geometry/segmentation/turn_outwards.hpp"
 #include "mmgrasp/core/error.hpp"
 
 namespace mmgrasp {
@@ -167,9 +168,10 @@ MeshSegmentation segment_mesh(const TriangleMesh& mesh, const MeshSegmentationOp
     return nothing;
   };
   TriangleMesh smooth = mesh;
+  out.turned = detail::turn_outwards(smooth);
   if (options.smooth_threads) {
     monitor.report("threads", 0);
-    out.threads = detail::find_threads(mesh);
+    out.threads = detail::find_threads(smooth);
     for (const ScrewThread& thread : out.threads) detail::smooth_thread(thread, smooth);
   }
   const std::size_t most = std::max<std::size_t>(4 * static_cast<std::size_t>(options.faces), mesh.triangles.size());

@@ -34,6 +34,7 @@ from .arguments import build_parser
 from .check import check_robot, describe
 from .console import Reporter, open_streams
 from .grasp import run_grasp
+from .grippers import run_grippers
 from .output_folder import OutputFolder
 from .scan import run_scan
 from .segment import run_segment
@@ -238,6 +239,7 @@ COMMANDS = {
     "scan": run_scan,
     "grasp": run_grasp,
     "segment": run_segment,
+    "grippers": run_grippers,
     "reproduce": run_reproduce,
     "bench": run_bench,
     "view": run_view,

@@ -49,9 +49,7 @@ def result_to_dict(plan: GripperPlan) -> dict[str, Any]:
             }
             for f in plan.fates
         ],
-        "requirements": [
-            _requirement(r, g) for r, g in zip(plan.requirements, plan.grasps, strict=True)
-        ],
+        "requirements": [_requirement(r, g) for r, g in zip(plan.requirements, plan.grasps, strict=True)],
     }
     if result is None:
         return out

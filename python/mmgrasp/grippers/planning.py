@@ -75,7 +75,12 @@ class GripperPlan:
 
     @property
     def solved(self) -> bool:
-        return self.result is not None and not self.missing and not self.result.uncovered and not any(self.rehearsed.values())
+        return (
+            self.result is not None
+            and not self.missing
+            and not self.result.uncovered
+            and not any(self.rehearsed.values())
+        )
 
 
 def operation_of(assembly: Assembly, step: AssemblyStep) -> AssemblyOperation:
@@ -186,8 +191,10 @@ def _try_grasps(
             causes[f"fingers meet {lengths.longest_by}"] += 1
         elif shortest > longest:
             limit = "longest" if lengths.shortest > fingers.longest else "shortest"
-            causes[f"fingers of {1e3 * lengths.shortest:.4g} mm or more are asked by {lengths.shortest_by}, {limit} is "
-                   f"{1e3 * getattr(fingers, limit):.4g} mm"] += 1
+            causes[
+                f"fingers of {1e3 * lengths.shortest:.4g} mm or more are asked by {lengths.shortest_by}, {limit} is "
+                f"{1e3 * getattr(fingers, limit):.4g} mm"
+            ] += 1
         else:
             fate.free += 1
             found.append((round(grasp.opening, 6), lengths, grasp))
@@ -218,7 +225,9 @@ def _undominated(
     """Of each opening the grasps whose lengths no other one's hold; the first of equals."""
     kept: list[tuple[float, FingerLengthRange, AssemblyGrasp]] = []
     for opening, lengths, grasp in sorted(found, key=lambda f: (f[0], f[1].shortest, -f[1].longest)):
-        if not any(o == opening and k.shortest <= lengths.shortest and k.longest >= lengths.longest for o, k, _ in kept):
+        if not any(
+            o == opening and k.shortest <= lengths.shortest and k.longest >= lengths.longest for o, k, _ in kept
+        ):
             kept.append((opening, lengths, grasp))
     return kept
 

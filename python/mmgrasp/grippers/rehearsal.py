@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import tempfile
 from pathlib import Path
 
@@ -87,7 +88,7 @@ def _configuration(T: NDArray[np.float64]) -> NDArray[np.float64]:
 def _between(path: list[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
     """Poses along straight lines and even turns, no farther apart than STEP and TURN."""
     out = [path[0]]
-    for a, b in zip(path, path[1:], strict=False):
+    for a, b in itertools.pairwise(path):
         turn = _rotation_vector(a[:3, :3].T @ b[:3, :3])
         angle = float(np.linalg.norm(turn))
         looks = max(1, int(np.ceil(max(np.linalg.norm(b[:3, 3] - a[:3, 3]) / STEP, angle / TURN))))

@@ -36,9 +36,7 @@ def write_gripper_pictures(plan: GripperPlan, out: Path, report: Callable[[str, 
         report("pictures", i / (len(names) + len(steps)))
         mesh, labels = plan.assembly.parts[name].mesh, np.asarray(plan.segmentations[name].labels)
         vertices, triangles = np.asarray(mesh.vertices), np.asarray(mesh.triangles)
-        bodies: list[Body] = [
-            (vertices, triangles[labels == s], segment_colour(int(s))) for s in np.unique(labels)
-        ]
+        bodies: list[Body] = [(vertices, triangles[labels == s], segment_colour(int(s))) for s in np.unique(labels)]
         paths.append(write_png(out / picture_name("segments", name), two_sides(bodies)))
     for i in range(len(steps)):
         report("pictures", (len(names) + i) / (len(names) + len(steps)))

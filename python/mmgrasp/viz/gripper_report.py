@@ -15,7 +15,13 @@ from .report import CSS, plural, table
 def gripper_report_html(plan: GripperPlan, pictures: Path | None) -> str:
     """The page as text; pictures in the folder are embedded."""
     name = escape(plan.assembly.name)
-    sections = [_headline(plan), _obstacles(plan), _grippers(plan), _operations(plan, pictures), _segments(plan, pictures)]
+    sections = [
+        _headline(plan),
+        _obstacles(plan),
+        _grippers(plan),
+        _operations(plan, pictures),
+        _segments(plan, pictures),
+    ]
     return (
         '<!doctype html><html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
@@ -129,4 +135,3 @@ def _figure(pictures: Path | None, file: str, caption: str) -> str:
     data = base64.b64encode(path.read_bytes()).decode()
     text = escape(caption)
     return f'<figure><img alt="{text}" src="data:image/png;base64,{data}"><figcaption>{text}</figcaption></figure>'
-

@@ -26,7 +26,7 @@ def build_parser() -> argparse.ArgumentParser:
     parser = _Parser(prog="mmgrasp", description="Planning for mobile manipulators.")
     parser.add_argument("--version", action="version", version=f"mmgrasp {_core.__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="command", parser_class=_Parser)
-    adders = (_add_plan, _add_verify, _add_check, _add_scan, _add_grasp, _add_pipe, _add_segment)
+    adders = (_add_plan, _add_verify, _add_check, _add_scan, _add_grasp, _add_pipe, _add_segment, _add_grippers)
     for add in (*adders, _add_reproduce, _add_bench, _add_view):
         add(commands)
     return parser
@@ -175,6 +175,8 @@ def _add_pipe(commands: Commands) -> None:
     parser.add_argument("--seed", type=_seed, metavar="N", help="same seed, same grasp")
     parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out of the report")
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
+
+
 def _add_segment(commands: Commands) -> None:
     parser = commands.add_parser(
         "segment", help="cut a part into the simple bodies it is composed of, and say where it can be held"
@@ -188,6 +190,14 @@ def _add_segment(commands: Commands) -> None:
     parser.add_argument("--threads", type=_threads, default=0, metavar="N", help="0: all (default)")
     parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out")
     parser.add_argument("--json", action="store_true", help="print segments.json instead of the table")
+
+
+def _add_grippers(commands: Commands) -> None:
+    parser = commands.add_parser("grippers", help="find the least set of grippers for an assembly, from its meshes")
+    parser.add_argument("assembly", type=str, help="assembly file (YAML), or the name of a shipped one (pulley)")
+    parser.add_argument("-o", "--out", type=_path, required=True, metavar="DIR", help="folder to write into")
+    parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out of the report")
+    parser.add_argument("--json", action="store_true", help="print the result as JSON")
 
 
 def _add_reproduce(commands: Commands) -> None:

@@ -34,6 +34,7 @@ from .arguments import build_parser
 from .check import check_robot, describe
 from .console import Reporter, open_streams
 from .grasp import run_grasp
+from .grippers import run_grippers
 from .output_folder import OutputFolder
 from .pipe import run_pipe
 from .scan import run_scan
@@ -240,6 +241,7 @@ COMMANDS = {
     "grasp": run_grasp,
     "pipe": run_pipe,
     "segment": run_segment,
+    "grippers": run_grippers,
     "reproduce": run_reproduce,
     "bench": run_bench,
     "view": run_view,

@@ -49,6 +49,12 @@ SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
         set(),
     ),
     (
+        "assembly_grasps",
+        "Grasps of an assembly's parts, keywords of `jaw_grasps` and `centric_grasps` (`AssemblyGraspOptions`)",
+        _core._assembly_grasp_option_table,
+        set(),
+    ),
+    (
         "minimal_grippers",
         "The least set of grippers, keywords (`MinimalGrippersOptions`)",
         _core._minimal_grippers_option_table,

@@ -10,7 +10,7 @@ import numpy.typing
 import os
 import typing
 from . import verify
-__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FeasibleGrasp', 'FittedCuboid', 'Grasp', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NodeLoad', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'SdfHits', 'SearchTree', 'SegmentRequirement', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'follow_object_path', 'grasp_search_names', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_objects', 'self_distance_objective', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
+__all__: list[str] = ['BaseGrid', 'BasePath', 'BasePlacement', 'BaseRegion', 'BaseTracker', 'BaseTrackingResult', 'BeamExtreme', 'BeamFrame', 'BeamMaterial', 'BeamMember', 'BeamSection', 'BeamState', 'BeamSupport', 'Box', 'CapabilityMap', 'Capsule', 'CartesianResult', 'ClosingOutcome', 'CollisionChecker', 'Contact', 'ContactPairProvenance', 'ContactPatch', 'CuboidFit', 'Cylinder', 'DepthCamera', 'DepthImage', 'DepthNoise', 'DerivativeFreeResult', 'DistanceField', 'DistanceResult', 'DrawnSuccess', 'DriveByResult', 'DriveByTask', 'EdgeResult', 'Error', 'FeasibleGrasp', 'FittedCuboid', 'FittedPrimitive', 'Grasp', 'GraspOptimum', 'GraspRating', 'GraspReport', 'GraspSuccess', 'GraspSynthesis', 'GraspWidth', 'Graspability', 'GridDistanceField', 'Gripper', 'GripperActuator', 'Hand', 'HandBody', 'HandJoint', 'HeightMap', 'HeightMapProvenance', 'IkBranches', 'IkObjective', 'IkResult', 'IkSeedDatabase', 'Improvement', 'IntegrationReport', 'Intersection', 'Intersections', 'InvalidInput', 'IoError', 'JointGroup', 'JointTrajectory', 'LineGrasp', 'LinkShape', 'ManipulationProblem', 'ManipulationResult', 'Mesh', 'MeshDistanceField', 'MeshSegment', 'MeshSegmentation', 'MinimalGrippersResult', 'MotionResult', 'MotionStats', 'NodeLoad', 'ObjectPathEvaluator', 'ObjectPathProblem', 'ObjectPathResult', 'ObjectRegions', 'ObjectSegmentation', 'Obstruction', 'OccupancyMap', 'OccupancyReport', 'OptimisedOrder', 'OrientationConstraint', 'Outcome', 'PairwiseWeights', 'Part', 'PartExplanation', 'PartSupplyPlan', 'PartSupplyProblem', 'Pick', 'PickMotion', 'PinholeCamera', 'Pipe', 'PipeProvenance', 'PlaceRegion', 'PlacedPart', 'Plane', 'PlatformLocations', 'PointCloud', 'PolicyResult', 'PolicyRound', 'ProbabilisticSdf', 'PushGrasp', 'RandomPlacement', 'ReachDatabase', 'Rejection', 'Rejections', 'RestingPose', 'Roadmap', 'Robot', 'RobotMotion', 'RobotSource', 'ScrewThread', 'SdfHits', 'SearchTree', 'SegmentRequirement', 'SegmentedObject', 'SetCoverResult', 'SharedTours', 'Sphere', 'Stop', 'StopSet', 'StraightLineResult', 'SupportedFrame', 'SupportingPlane', 'ToolRegion', 'TourResult', 'Tray', 'Voxels', 'WholeBodyTrajectory', 'World', 'beam_frame', 'cache_folder', 'camera_view_objective', 'cheapest_assignment', 'closing_outcome', 'compute_base_regions', 'compute_disabled_pairs', 'copper', 'cover_from_intersections', 'derivative_free_solver_names', 'drive_arc', 'eigengrasp_hand', 'evaluate_graspability', 'find_package', 'fit_cuboids', 'fit_primitives', 'follow_object_path', 'graspability_map', 'hand_masks', 'inscribed_circle', 'joint_limit_objective', 'joint_velocity', 'look_down', 'make_base_grid', 'make_height_map', 'manipulation_planner_names', 'maximal_intersections', 'minimal_grippers', 'minimize_derivative_free', 'nlp_solver_names', 'optimised_order', 'optimize_grasp', 'paired_order', 'pairwise_weights', 'plan_base_route', 'plan_cartesian', 'plan_drive_by', 'plan_manipulation', 'plan_motion', 'plan_object_pick', 'plan_part_supply', 'plan_pick', 'plan_platform_locations', 'plan_stops_exact', 'plan_straight_line', 'planner_names', 'platform_velocity', 'population_search_names', 'pose', 'pose_to_xyz_quat', 'pose_to_xyz_rpy', 'push_grasp', 'push_speed_limit', 'quat_xyzw_from_rotation', 'random_placement', 'read_pcd', 'rectangular_section', 'render_depth', 'resting_poses', 'robust_intersections', 'round_section', 'route_lengths', 'run_policy', 'sample_grasps', 'segment_depth_image', 'segment_mesh', 'segment_objects', 'self_distance_objective', 'shape_diameters', 'share_stops', 'shorten_drive_by', 'shortest_visiting_tour', 'simplify_mesh', 'singularity_objective', 'solve_set_cover', 'synthesize_grasps', 'time_parameterize', 'time_parameterize_free', 'track_base', 'tray_shapes', 'verify', 'wheel_speeds', 'with_sampled_pairs']
 class Error(Exception):
     """
     Base of all errors of mmgrasp.
@@ -4550,6 +4550,171 @@ class ObjectSegmentation:
         """
         What makes the answer doubtful, or empty.
         """
+class ScrewThread:
+    """
+    A screw thread that segment_mesh found.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def T_mesh_thread(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4, 4): z along the axis, origin at the middle of the thread.
+        """
+    @property
+    def crest_radius(self) -> float:
+        """
+        [m]; smaller than the root's in a nut.
+        """
+    @property
+    def faces(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Faces of the mesh (n,), ascending.
+        """
+    @property
+    def length(self) -> float:
+        """
+        Along the axis [m].
+        """
+    @property
+    def pitch(self) -> float:
+        """
+        Along the axis in one turn [m]; positive: right-handed.
+        """
+    @property
+    def root_radius(self) -> float:
+        """
+        [m]
+        """
+class MeshSegment:
+    """
+    One of the simple bodies that a part is composed of.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def area(self) -> float:
+        """
+        [m^2]
+        """
+    @property
+    def diameter(self) -> float:
+        """
+        Median of its faces' shape diameters by area [m].
+        """
+    @property
+    def faces(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Faces of the mesh (n,), ascending.
+        """
+    @property
+    def threaded(self) -> bool:
+        """
+        More than a tenth of its area is screw thread, which must not be grasped.
+        """
+class GraspWidth:
+    """
+    A width at which fingers may close on a segment.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def axis(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Closing direction of a box, axis of a round wall (3,): a unit vector in the mesh's frame.
+        """
+    @property
+    def covered(self) -> float:
+        """
+        Share of the box' faces (the lesser of the two) or of the turn around the wall that is surface.
+        """
+    @property
+    def width(self) -> float:
+        """
+        [m]
+        """
+class FittedPrimitive:
+    """
+    The primitive that stands for a segment (P1, section 5.2.2).
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def T_mesh_primitive(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4, 4): centre; z along the axis of a cylinder or cone, which narrows along z.
+        """
+    @property
+    def deviation(self) -> float:
+        """
+        Mean distance of the segment's faces from the primitive's surface that they lie on [m].
+        """
+    @property
+    def hull_volume(self) -> float:
+        """
+        Of the segment's convex hull [m^3].
+        """
+    @property
+    def kind(self) -> str:
+        """
+        cylinder, box, cone or sphere.
+        """
+    @property
+    def size(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) [m]: lengths of a box; diameter twice and length of a cylinder; diameters at foot and top and length of a cone; diameter of a sphere.
+        """
+    @property
+    def volume(self) -> float:
+        """
+        Of the primitive [m^3].
+        """
+    @property
+    def widths(self) -> list[GraspWidth]:
+        """
+        Most covered first; empty where there is no surface to hold.
+        """
+class MeshSegmentation:
+    """
+    The bodies that a part is composed of, and which face belongs to which.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def clusters(self) -> int:
+        """
+        Gaussians that the diameters called for.
+        """
+    @property
+    def diameters(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Shape diameter of each face (m,) [m]; 0 where it is unknown.
+        """
+    @property
+    def labels(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Segment of each face (m,).
+        """
+    @property
+    def outcome(self) -> Outcome:
+        """
+        Solved.
+        """
+    @property
+    def segments(self) -> list[MeshSegment]:
+        """
+        Largest area first.
+        """
+    @property
+    def threads(self) -> list[ScrewThread]:
+        """
+        Screw threads, largest first.
+        """
+    @property
+    def turned(self) -> bool:
+        """
+        The mesh was inside out (open ones may be) and its faces were turned.
+        """
 class Graspability:
     """
     Grasps, best first, and what became of the other places checked.
@@ -5207,11 +5372,6 @@ class ObjectPathResult:
         solved or not_found.
         """
     @property
-    def overloaded(self) -> list[int]:
-        """
-        Poses at which it bends or bears more than it may.
-        """
-    @property
     def path(self) -> numpy.typing.NDArray[numpy.float64] | typing.Any:
         """
         (poses, n) configurations, or None.
@@ -5271,7 +5431,7 @@ class ObjectPathEvaluator:
     """
     Costs many grasps along one path: prepared once. Not for several threads at a time.
     """
-    def __init__(self, problem: ObjectPathProblem, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, max_sag: float = 0.0) -> None:
+    def __init__(self, problem: ObjectPathProblem, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81) -> None:
         """
         Prepares robot, world and object.
         
@@ -5291,7 +5451,6 @@ class ObjectPathEvaluator:
             all_turns: bool = True  # joints that may turn more than once come in every turn
             redundant_values: int = 0  # samples of a seventh joint; 0: chosen
             gravity: float = 9.81  # along the world's -z [m/s2]
-            max_sag: float = 0.0  # largest displacement allowed at any pose [m]; 0: any
         """
     def evaluate(self, grasp: Grasp) -> ObjectPathResult:
         """
@@ -5327,16 +5486,6 @@ class GraspOptimum:
     """
     def __repr__(self) -> str:
         ...
-    def sag_candidates(self) -> list[Grasp]:
-        """
-        Every feasible grasp with its mean sag [m] as its cost: candidates for plan_manipulation, whose `max_length`
-        then takes the one that sags least among those whose motion is short enough.
-        """
-    @property
-    def boxes(self) -> int:
-        """
-        Boxes of grasps that branch_and_bound bounded.
-        """
     @property
     def colliding(self) -> list[int]:
         """
@@ -5358,11 +5507,6 @@ class GraspOptimum:
         The Pareto front among them, ascending in O1.
         """
     @property
-    def gap(self) -> float:
-        """
-        How much cheaper another could be at most, as a share of the cost; 1: unknown.
-        """
-    @property
     def grasp(self) -> Grasp | None:
         """
         The best grasp, or None.
@@ -5373,20 +5517,9 @@ class GraspOptimum:
         Best cost after each of them; infinite while none was feasible.
         """
     @property
-    def lower_bound(self) -> float:
-        """
-        No grasp costs less; 0 where nothing was proven.
-        """
-    @property
     def outcome(self) -> Outcome:
         """
-        solved: proven to the gap asked for, or it meets the target; approximate: the best seen;
-        infeasible: proven that no grasp can follow the path.
-        """
-    @property
-    def overloaded(self) -> list[int]:
-        """
-        Of each pose: with how many the pipe bends or bears more than it may.
+        approximate: the best seen, no proof that none is better; solved: it meets the target.
         """
     @property
     def path(self) -> ObjectPathResult:
@@ -5664,13 +5797,13 @@ def _first_drive_by_guess(group: JointGroup, *, start: numpy.typing.ArrayLike, t
     """
 def _grasp_option_table() -> dict[str, typing.Any]:
     ...
-def _grasp_search_option_table() -> dict[str, typing.Any]:
-    ...
 def _graspability_option_table() -> dict[str, typing.Any]:
     ...
 def _ik_option_table() -> dict[str, typing.Any]:
     ...
 def _manipulation_option_table() -> dict[str, typing.Any]:
+    ...
+def _mesh_segmentation_option_table() -> dict[str, typing.Any]:
     ...
 def _minimal_grippers_option_table() -> dict[str, typing.Any]:
     ...
@@ -5708,6 +5841,8 @@ def _sample_grasps(object: collections.abc.Sequence[LinkShape], gripper: Hand, *
 def _sdf_option_table() -> dict[str, typing.Any]:
     ...
 def _segmentation_option_table() -> dict[str, typing.Any]:
+    ...
+def _shape_diameter_option_table() -> dict[str, typing.Any]:
     ...
 def _supply_option_table() -> dict[str, typing.Any]:
     ...
@@ -5826,7 +5961,14 @@ def fit_cuboids(points: numpy.typing.ArrayLike, *, T_world_tray: numpy.typing.Ar
         min_points: int = 60  # smaller clusters are left out
         plane_iterations: int = 1000  # random planes tried
     """
-def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, max_sag: float = 0.0) -> ObjectPathResult:
+def fit_primitives(mesh: Mesh, labels: numpy.typing.ArrayLike) -> list[FittedPrimitive]:
+    """
+    The cylinder, box, cone or sphere that stands for each segment of a mesh: the one whose volume is closest to that of
+    the segment's convex hull, of those with surface on them (P1, section 5.2.2). `labels` (m,): the segment of each face, as
+    MeshSegmentation.labels. Inner walls are never offered for grasping, nor are sides of a box with nothing on them. Raises
+    InvalidInput when there is not one label >= 0 a face.
+    """
+def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81) -> ObjectPathResult:
     """
     The cheapest motion of the arm that carries the object through all poses with one grasp, over all arm
     configurations (P2 3.3.3, Algorithm 3.1), motions between poses checked finely.
@@ -5847,11 +5989,6 @@ def follow_object_path(problem: ObjectPathProblem, grasp: Grasp, *, motion_weigh
         all_turns: bool = True  # joints that may turn more than once come in every turn
         redundant_values: int = 0  # samples of a seventh joint; 0: chosen
         gravity: float = 9.81  # along the world's -z [m/s2]
-        max_sag: float = 0.0  # largest displacement allowed at any pose [m]; 0: any
-    """
-def grasp_search_names() -> list[str]:
-    """
-    Names that optimize_grasp's `algorithm` takes.
     """
 def graspability_map(map: HeightMap, gripper: Hand, angle: float, opening: float, tip_height: float, *, margin: float = 0.001, orientations: int = 16, openings: int = 2, layer_step: float = 0.01, lowest: float = 0.003, insertion: float = 0.01, smoothing: float = 0.01, min_contact: float = 0.4, min_distance: float = 0.015, max_grasps: int = 100, threads: int = 0) -> numpy.typing.NDArray[numpy.float32]:
     """
@@ -5956,10 +6093,9 @@ def optimised_order(grid: BaseGrid, cells: collections.abc.Sequence[collections.
     """
     The order in which parts are best picked when the trays of each group share a stop, never worse than `order`. `cells` is [tray][part], bitmaps (headings, ny, nx).
     """
-def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | None = None, algorithm: str = 'bees', neighbourhood_kind: str = 'connected_sections', progress: collections.abc.Callable[[str, float], typing.Any] | None = None, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, max_sag: float = 0.0, population: int = 34, max_evaluations: int = 1530, target: float = ..., seed: int = 1, elite_sites: int = 1, best_sites: int = 4, elite_recruits: int = 10, recruits: int = 3, stagnation_limit: int = 10, neighbourhood: float = 0.2, shrinking: float = 0.8, mutation_rate: float = 0.3, mutation_size: float = 0.25, connectivity: float = 0.5, inertia: float = 0.7, acceleration: float = 2.0, max_gap: float = 0.001, max_boxes: int = 1000000, time_limit: float = 600.0, threads: int = 0) -> GraspOptimum:
+def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | None = None, algorithm: str = 'bees', neighbourhood_kind: str = 'connected_sections', progress: collections.abc.Callable[[str, float], typing.Any] | None = None, motion_weight: float = 0.587, deflection_weight: float = 0.089, manipulability_weight: float = 0.324, motion_scale: float = 1.0, deflection_scale: float = 0.001, manipulability_scale: float = 1.0, max_joint_step: float = 0.5, position_tolerance: float = 0.01, rotation_tolerance: float = 0.05, edge_step: float = 0.02, check_edges: bool = True, single_configuration: bool = False, all_turns: bool = True, redundant_values: int = 0, gravity: float = 9.81, population: int = 34, max_evaluations: int = 1530, target: float = ..., seed: int = 1, elite_sites: int = 1, best_sites: int = 4, elite_recruits: int = 10, recruits: int = 3, stagnation_limit: int = 10, neighbourhood: float = 0.2, shrinking: float = 0.8, mutation_rate: float = 0.3, mutation_size: float = 0.25, connectivity: float = 0.5, inertia: float = 0.7, acceleration: float = 2.0) -> GraspOptimum:
     """
-    The grasp of a pipe with the least cost along the path, by a population search: bees, ga or pso (P2 3.4),
-    or with its optimum proven: branch_and_bound.
+    The grasp of a pipe with the least cost along the path, by a population search: bees, ga or pso (P2 3.4).
     `gripper`: axes and opening, the problem's when left out. `neighbourhood_kind` of bees: independent (Str1),
     same_section (Str2), connected_sections (Str3).
     
@@ -5979,7 +6115,6 @@ def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | No
         all_turns: bool = True  # joints that may turn more than once come in every turn
         redundant_values: int = 0  # samples of a seventh joint; 0: chosen
         gravity: float = 9.81  # along the world's -z [m/s2]
-        max_sag: float = 0.0  # largest displacement allowed at any pose [m]; 0: any
         population: int = 34  # points a round
         max_evaluations: int = 1530  # budget in grasps
         target: float = -inf  # ends as solved once a grasp costs no more
@@ -5996,10 +6131,6 @@ def optimize_grasp(problem: ObjectPathProblem, pipe: Pipe, *, gripper: Hand | No
         connectivity: float = 0.5  # pso: share of the others each particle hears of
         inertia: float = 0.7  # pso: of velocity
         acceleration: float = 2.0  # pso: P2's c1 and c2
-        max_gap: float = 0.001  # branch_and_bound: ends once no grasp can be cheaper by this share
-        max_boxes: int = 1000000  # branch_and_bound: budget in boxes of grasps
-        time_limit: float = 600.0  # branch_and_bound: wall-clock cap [s]
-        threads: int = 0  # branch_and_bound: 0: all; the answer does not depend on it
     """
 def paired_order(places: collections.abc.Sequence[numpy.typing.ArrayLike]) -> list[list[int]]:
     """
@@ -6054,7 +6185,7 @@ def plan_drive_by(robot: Robot, group: JointGroup, world: World, *, start: numpy
         look_out: float = 0.15  # pairs of bodies nearer than this are constrained [m]
         refinements: int = 6  # times that collision constraints may be added
     """
-def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, padding: float | mmgrasp._records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 8, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, max_length: float = 0.0, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_iterations: int = 1000, range: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
+def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None = None, padding: float | mmgrasp._records.WorldPadding | collections.abc.Mapping[str, float | collections.abc.Mapping[str, float]] | None = None, progress: collections.abc.Callable[[str, float], typing.Any] | None = None, on_solution: collections.abc.Callable[[Improvement], typing.Any] | None = None, planner: str = 'prm_star_mg', ik_solutions: int = 8, first_grasps: int = 4, straight: bool = True, ik_restarts: int = 30, joint_step: float = 0.02, workspace_step: float = 0.005, time_limit: float = 15.0, seed: int = 1, threads: int = 0, batch: int = 0, lazy_grasps: bool = True, max_vertices: int = 0, shorten: bool = True, refinements: int = 4, vertices: int = 5000, gamma: float = 0.0, neighbours: int = 0, roadmap_seed: int = 1, max_iterations: int = 1000, range: float = 1.5, rrt_gamma: float = 0.0, exploration: float = 0.5, bidirectional: bool = True, informed: bool = True, goal_cost: float = 0.0, keep_trees: bool = False) -> ManipulationResult:
     """
     Collision-free path of the group that carries the object from start to goal with the best of the grasps (P2 chapters 4 and 5). Every grasp is checked. `padding`: in place of that of the problem's world, see World.padding. `on_solution` is called with every better solution (an Improvement); what it raises ends the call.
     
@@ -6066,7 +6197,6 @@ def plan_manipulation(problem: ManipulationProblem, *, roadmap: Roadmap | None =
         ik_restarts: int = 30  # random starts of arms without a closed form
         joint_step: float = 0.02  # no joint moves more between two checks of an edge [rad or m]
         workspace_step: float = 0.005  # no point of the robot or the object moves more between two checks [m]
-        max_length: float = 0.0  # the least grasp cost among paths no longer than this; 0: their sum
         time_limit: float = 15.0  # wall-clock cap on IK and search, without the roadmap's building [s]
         seed: int = 1  # same seed, same path
         threads: int = 0  # 0: all; does not change the answer
@@ -6182,7 +6312,7 @@ def platform_velocity(*, left: float, right: float, wheel_separation: float) -> 
     """
 def population_search_names() -> list[str]:
     """
-    The population searches among grasp_search_names().
+    Names that optimize_grasp's `algorithm` takes.
     """
 def pose(xyz: numpy.typing.ArrayLike, rpy: numpy.typing.ArrayLike | None = None, quat_xyzw: numpy.typing.ArrayLike | None = None) -> numpy.typing.NDArray[numpy.float64]:
     """
@@ -6300,6 +6430,28 @@ def segment_depth_image(image: DepthImage, *, plane: SupportingPlane | None = No
         min_points: int = 100  # smaller objects are left out
         plane_iterations: int = 1000  # random planes tried
     """
+def segment_mesh(mesh: Mesh, *, progress: typing.Any | None = None, rays: int = 30, cone: float = 2.0943951023931953, outlier: float = 1.0, ray_lengths: bool = False, max_clusters: int = 8, smoothing: float = 0.3, crease: float = 0.6, min_size: float = 0.02, convexity: float = 0.05, smooth_threads: bool = True, faces: int = 20000, seed: int = 1, threads: int = 0) -> MeshSegmentation:
+    """
+    Cuts the surface of a mechanical part into the simple bodies that it is composed of (P1, section 5.1): by shape diameter
+    (Gaussian mixture, minimum cuts) and where the surface bends inwards; pieces whose hull is no more than the two are joined
+    again, and inner walls go with the outer wall behind them. Raises InvalidInput for a mesh without area or with more than
+    10 million triangles.
+    
+    Keyword options:
+        rays: int = 30  # rays from the middle of each face
+        cone: float = 2.0943951023931953  # full angle of their cone around the inward normal [rad]
+        outlier: float = 1.0  # standard deviations from the median beyond which rays are left out
+        ray_lengths: bool = False  # P1's mean length of the rays, not the width between the surfaces
+        max_clusters: int = 8  # most Gaussians over the logarithms of the diameters
+        smoothing: float = 0.3  # cost of a border between clusters beside faces in the wrong one
+        crease: float = 0.6  # edges that bend inwards by more part segments [rad]
+        min_size: float = 0.02  # narrower segments join a neighbour, as a share of the mesh's diagonal
+        convexity: float = 0.05  # segments join when their hull has at most this share of the smaller one's volume in neither
+        smooth_threads: bool = True  # screw threads count as the cylinder through their crests
+        faces: int = 20000  # larger faces are cut until there are about so many, for the work alone
+        seed: int = 1  # same seed, same segments
+        threads: int = 0  # 0: all
+    """
 def segment_objects(points: numpy.typing.ArrayLike, normals: numpy.typing.ArrayLike | None = None, *, plane: SupportingPlane | None = None, up: numpy.typing.ArrayLike | None = None, eye: numpy.typing.ArrayLike | None = None, leaf: float = 0.004, plane_tolerance: float = 0.007, up_angle: float = 0.35, min_plane_share: float = 0.15, max_height: float = 0.5, max_beside: float = 0.05, patch: float = 0.02, concavity: float = 0.45, min_points: int = 100, plane_iterations: int = 1000) -> ObjectSegmentation:
     """
     Objects that stand on a plane, also ones that touch: they are parted where the surface has creases (Stein et al.,
@@ -6324,6 +6476,19 @@ def segment_objects(points: numpy.typing.ArrayLike, normals: numpy.typing.ArrayL
 def self_distance_objective(checker: CollisionChecker, margin: float = 0.05, weight: float = 1.0) -> IkObjective:
     """
     Weight times the sum of (1 - distance / margin)^2 over pairs of the robot's own links nearer than `margin` [m].
+    """
+def shape_diameters(mesh: Mesh, *, progress: typing.Any | None = None, rays: int = 30, cone: float = 2.0943951023931953, outlier: float = 1.0, ray_lengths: bool = False, threads: int = 0) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Local thickness of a mesh at the middle of each face (m,) [m]; 0 where no ray leaves it. The mean over `rays` in a
+    cone around the inward normal, weighted by the cosine of their angle to it, of the distance between the two ends along
+    the mean of their normals: exact in balls, cylinders, plates and tubes (P1, section 5.1, takes the rays' lengths).
+    
+    Keyword options:
+        rays: int = 30  # rays from the middle of each face
+        cone: float = 2.0943951023931953  # full angle of their cone around the inward normal [rad]
+        outlier: float = 1.0  # standard deviations from the median beyond which rays are left out
+        ray_lengths: bool = False  # P1's mean length of the rays, not the width between the surfaces
+        threads: int = 0  # 0: all
     """
 def share_stops(drive_times: numpy.typing.ArrayLike, stop_times: collections.abc.Sequence[float], robots: int) -> SharedTours:
     """

@@ -1,6 +1,7 @@
 #include "geometry/segmentation/join_regions.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
@@ -13,8 +14,15 @@ namespace {
 /// What the estimate of a volume may be wrong by, as a share of the joined hull.
 constexpr double kVolumeError = 0.004;
 
+/// Regions of which at least this share lies on the hull of both, no deeper than this share of the hull's size, join too:
+/// flat sides of one box have no volume of their own.
+constexpr double kOnHull = 0.95, kDepth = 0.005;
+/// Faces of a region that are asked for it.
+constexpr std::size_t kMostAsked = 300;
+
 struct Region {
   double area = 0;
+  std::vector<Eigen::Vector3d> middles;  ///< Of some of its faces, spread over its area.
   std::map<int, double> around;  ///< Length of the border with each neighbour [m].
   RegionHull hull;
   bool alive = true;
@@ -31,9 +39,18 @@ class RegionJoiner {
   RegionJoiner(const FaceGraph& graph, int count, const std::vector<int>& labels) : regions_(count), into_(count) {
     for (int r = 0; r < count; ++r) into_[r] = r;
     std::vector<std::vector<int>> vertices(count);
+    std::vector<double> all(count, 0), next(count, 0);
+    for (int f = 0; f < graph.size(); ++f) {
+      if (labels[f] >= 0) all[labels[f]] += graph.areas[f];
+    }
     for (int f = 0; f < graph.size(); ++f) {
       if (labels[f] < 0) continue;
-      regions_[labels[f]].area += graph.areas[f];
+      Region& region = regions_[labels[f]];
+      region.area += graph.areas[f];
+      if (region.area >= next[labels[f]]) {
+        region.middles.push_back(graph.centres[f]);
+        next[labels[f]] += all[labels[f]] / kMostAsked;
+      }
       for (const int v : graph.faces[f]) vertices[labels[f]].push_back(v);
     }
     for (int r = 0; r < count; ++r) {
@@ -117,17 +134,30 @@ class RegionJoiner {
   }
 
  private:
-  /// How much more of the joined hull is uncovered than may be, as a share of it; joined where it is not above 0.
+  /// How much more of the joined hull is uncovered than may be, as a share of it; joined where it is not above 0. Below
+  /// -0.5 where both lie on that hull.
   static double excess(const Region& a, const Region& b, double convexity) {
     RegionHull hull;
     const double open = uncovered_volume(a.hull, b.hull, &hull);
     if (hull.volume <= 0) return std::numeric_limits<double>::infinity();
+    if (share_on(hull, a) >= kOnHull && share_on(hull, b) >= kOnHull) return -1;
     return (open - convexity * std::min(a.hull.volume, b.hull.volume)) / hull.volume - kVolumeError;
+  }
+
+  static double share_on(const RegionHull& hull, const Region& region) {
+    const double depth = kDepth * std::cbrt(hull.volume);
+    std::size_t on = 0;
+    for (const Eigen::Vector3d& x : region.middles) {
+      on += std::any_of(hull.planes.begin(), hull.planes.end(),
+                        [&](const Eigen::Vector4d& p) { return p.head<3>().dot(x) > p.w() - depth; });
+    }
+    return region.middles.empty() ? 0 : static_cast<double>(on) / static_cast<double>(region.middles.size());
   }
 
   void join(int kept, int gone) {
     Region &a = regions_[kept], &b = regions_[gone];
     a.area += b.area;
+    a.middles.insert(a.middles.end(), b.middles.begin(), b.middles.end());
     std::vector<Eigen::Vector3d> points = a.hull.points;
     points.insert(points.end(), b.hull.points.begin(), b.hull.points.end());
     a.hull = region_hull(points);

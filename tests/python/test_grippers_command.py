@@ -34,12 +34,12 @@ def changed(tmp_path: Path, **changes: Any) -> Path:
 
 
 def test_turned_parts_are_solids() -> None:
-    ring = turned([[0.01, 0], [0.02, 0], [0.02, 0.005], [0.01, 0.005]])
+    ring = turned([[0.01, 0.0], [0.02, 0.0], [0.02, 0.005], [0.01, 0.005]])
     assert ring.closed
     sides = 64
     area = sides / 2 * np.sin(2 * np.pi / sides) * (0.02**2 - 0.01**2)
     assert ring.volume == pytest.approx(area * 0.005)
-    cone = turned([[0, 0], [0.01, 0], [0, 0.03]])
+    cone = turned([[0.0, 0.0], [0.01, 0.0], [0.0, 0.03]])
     assert cone.closed
     assert block([0.1, 0.2, 0.3]).volume == pytest.approx(0.006)
 

@@ -60,7 +60,7 @@ def test_widths_of_composed_parts(tmp_path: Path) -> None:
 
 def test_thread_is_found_and_nothing_else_is(tmp_path: Path) -> None:
     part = stepped_shaft(np.random.default_rng((7, 13)), bore=False, fillets=False, threaded=True)
-    mesh, truth, found = segmented(part, 0.0, 0, tmp_path)
+    _mesh, truth, found = segmented(part, 0.0, 0, tmp_path)
     (thread,) = found.threads
     crest = part.widths[-1][0] / 2
     assert 1e3 * thread.pitch == pytest.approx(1.5, rel=0.01)

@@ -91,7 +91,7 @@ def _between(path: list[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
     for a, b in itertools.pairwise(path):
         turn = _rotation_vector(a[:3, :3].T @ b[:3, :3])
         angle = float(np.linalg.norm(turn))
-        looks = max(1, int(np.ceil(max(np.linalg.norm(b[:3, 3] - a[:3, 3]) / STEP, angle / TURN))))
+        looks = max(1, int(np.ceil(max(float(np.linalg.norm(b[:3, 3] - a[:3, 3])) / STEP, angle / TURN))))
         for k in range(1, looks + 1):
             T = np.eye(4)
             T[:3, 3] = a[:3, 3] + k / looks * (b[:3, 3] - a[:3, 3])

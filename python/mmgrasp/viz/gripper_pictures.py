@@ -7,19 +7,16 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import _core
 from .._core import Gripper
 from ..grippers.planning import GripperPlan
 from .png import write_png
-from .raster import Camera, Scene, render
-from .segment_pictures import segment_colour
+from .segment_pictures import coloured, segment_colour
 from .style import OBSTACLE, PART, ROBOT_ARM
+from .two_sides import FROM_ABOVE_AND_ASIDE, Body, Points, two_sides
 
 SIDE = 520
-Points = NDArray[np.float64]
-Body = tuple[Points, NDArray[np.int64], str]
 
 
 def picture_name(kind: str, name: str) -> str:
@@ -36,11 +33,16 @@ def write_gripper_pictures(plan: GripperPlan, out: Path, report: Callable[[str, 
         report("pictures", i / (len(names) + len(steps)))
         mesh, labels = plan.assembly.parts[name].mesh, np.asarray(plan.segmentations[name].labels)
         vertices, triangles = np.asarray(mesh.vertices), np.asarray(mesh.triangles)
-        bodies: list[Body] = [(vertices, triangles[labels == s], segment_colour(int(s))) for s in np.unique(labels)]
-        paths.append(write_png(out / picture_name("segments", name), two_sides(bodies)))
+        bodies = coloured(vertices, triangles, labels, segment_colour)
+        paths.append(write_png(out / picture_name("segments", name), two_sides(bodies, side=SIDE)))
     for i in range(len(steps)):
         report("pictures", (len(names) + i) / (len(names) + len(steps)))
-        paths.append(write_png(out / picture_name("operation", steps[i].name), two_sides(operation_bodies(plan, i))))
+        paths.append(
+            write_png(
+                out / picture_name("operation", steps[i].name),
+                two_sides(operation_bodies(plan, i), FROM_ABOVE_AND_ASIDE, SIDE),
+            )
+        )
     return paths
 
 
@@ -76,20 +78,6 @@ def gripper_bodies(gripper: Gripper, opening: float, T_tips: Points) -> list[Bod
     caps = np.concatenate([np.stack([0 * k, n, k], axis=1), np.stack([0 * k, k, n], axis=1) + sides])
     bodies.append((_moved(T_tips, np.concatenate([low, high])), np.concatenate([walls, caps]), ROBOT_ARM))
     return bodies
-
-
-def two_sides(bodies: list[Body]) -> NDArray[np.uint8]:
-    """From above and from below or the other side, fitted."""
-    every = np.concatenate([vertices for vertices, _, _ in bodies])
-    low, high = every.min(axis=0), every.max(axis=0)
-    scene = Scene()
-    for vertices, faces, colour in bodies:
-        scene.add((vertices - (low + high) / 2) / np.linalg.norm(high - low), faces, colour)
-    views = []
-    for direction in ([1.0, -1.2, 0.7], [-1.2, -1.0, 0.15]):
-        eye = 1.7 * np.array(direction) / np.linalg.norm(direction)
-        views.append(render(scene, Camera(eye, np.zeros(3), SIDE, SIDE)))
-    return np.concatenate(views, axis=1)
 
 
 def _moved(T: Points, points: Points) -> Points:

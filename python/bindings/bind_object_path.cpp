@@ -30,7 +30,8 @@ const std::vector<OptionField<ObjectPathOptions>>& object_path_fields() {
       option<O>("single_configuration", &O::single_configuration, "one arm configuration a pose (P2's single IK)"),
       option<O>("all_turns", &O::all_turns, "joints that may turn more than once come in every turn"),
       option<O>("redundant_values", &O::redundant_values, "samples of a seventh joint; 0: chosen"),
-      option<O>("gravity", &O::gravity, "along the world's -z [m/s2]")};
+      option<O>("gravity", &O::gravity, "along the world's -z [m/s2]"),
+      option<O>("max_sag", &O::max_sag, "largest displacement allowed at any pose [m]; 0: any")};
   return fields;
 }
 
@@ -60,11 +61,23 @@ const std::vector<OptionField<PopulationOptions>>& population_fields() {
 struct OptimizeGraspOptions {
   ObjectPathOptions path;
   PopulationOptions population;
+  GraspSearchOptions search;
   void check() const {
     path.check();
     population.check();
+    search.check();
   }
 };
+
+const std::vector<OptionField<GraspSearchOptions>>& grasp_search_fields() {
+  using O = GraspSearchOptions;
+  static const std::vector<OptionField<O>> fields{
+      option<O>("max_gap", &O::max_gap, "branch_and_bound: ends once no grasp can be cheaper by this share"),
+      option<O>("max_boxes", &O::max_boxes, "branch_and_bound: budget in boxes of grasps"),
+      option<O>("time_limit", &O::time_limit, "branch_and_bound: wall-clock cap [s]"),
+      option<O>("threads", &O::threads, "branch_and_bound: 0: all; the answer does not depend on it")};
+  return fields;
+}
 
 const std::vector<OptionField<OptimizeGraspOptions>>& optimize_grasp_fields() {
   using O = OptimizeGraspOptions;
@@ -78,6 +91,7 @@ const std::vector<OptionField<OptimizeGraspOptions>>& optimize_grasp_fields() {
     };
     add(object_path_fields(), &O::path);
     add(population_fields(), &O::population);
+    add(grasp_search_fields(), &O::search);
     return out;
   }();
   return fields;
@@ -118,9 +132,9 @@ py::dict object_path_dict(const ObjectPathResult& r) {
   return py::dict("outcome"_a = to_string(r.outcome), "cost"_a = r.cost, "joint_motion"_a = r.joint_motion,
                   "deflection"_a = r.deflection, "force_manipulability"_a = r.force_manipulability,
                   "path"_a = path_list(r.outcome == Outcome::solved ? std::optional(r.path) : std::nullopt),
-                  "sag"_a = r.sag, "violation"_a = r.violation, "violations"_a = r.violations,
-                  "rejections"_a = to_dict(r.rejections), "refused_edges"_a = r.refused_edges,
-                  "configurations"_a = r.configurations);
+                  "sag"_a = r.sag, "overloaded"_a = r.overloaded, "violation"_a = r.violation,
+                  "violations"_a = r.violations, "rejections"_a = to_dict(r.rejections),
+                  "refused_edges"_a = r.refused_edges, "configurations"_a = r.configurations);
 }
 
 std::string object_path_text(const ObjectPathResult& r) {
@@ -135,9 +149,11 @@ std::string object_path_text(const ObjectPathResult& r) {
     if (r.violations[i] && first < 0) first = static_cast<int>(i);
   }
   std::string out = "ObjectPathResult(not_found, violation " + std::to_string(r.violation);
-  if (first < 0) return out + ": every pose is reached, but no motion joins them)";
+  const std::string bent =
+      r.overloaded.empty() ? "" : ", the object is overloaded at " + std::to_string(r.overloaded.size());
+  if (first < 0) return out + ": every pose is reached" + (bent.empty() ? ", but no motion joins them)" : bent + ")");
   return out + ": " + std::to_string(unreachable) + " poses out of reach, " + std::to_string(collide) +
-         " in collision, the first is " + std::to_string(first) + ")";
+         " in collision, the first is " + std::to_string(first) + bent + ")";
 }
 
 void bind_object_path_result(py::module_& m) {
@@ -153,6 +169,7 @@ void bind_object_path_result(py::module_& m) {
           [](const R& r) { return path_array(r.outcome == Outcome::solved ? std::optional(r.path) : std::nullopt); },
           "(poses, n) configurations, or None.")
       .def_readonly("sag", &R::sag, "Largest displacement at each pose [m].")
+      .def_readonly("overloaded", &R::overloaded, "Poses at which it bends or bears more than it may.")
       .def_readonly("violation", &R::violation, "P2's Cost(C); 0 if and only if solved.")
       .def_readonly("violations", &R::violations, "Of each pose: 2 out of reach, 1 in collision, 0 neither.")
       .def_readonly("rejections", &R::rejections, "Configurations rejected, by cause.")
@@ -172,7 +189,10 @@ void bind_optimum(py::module_& m) {
   using R = GraspOptimum;
   py::class_<R>(m, "GraspOptimum", "The best grasp that a search found, and all others that will do.")
       .def_readonly("outcome", &R::outcome,
-                    "approximate: the best seen, no proof that none is better; solved: it meets the target.")
+                    "solved: proven to the gap asked for, or it meets the target; approximate: the best seen;\n"
+                    "infeasible: proven that no grasp can follow the path.")
+      .def_readonly("lower_bound", &R::lower_bound, "No grasp costs less; 0 where nothing was proven.")
+      .def_readonly("gap", &R::gap, "How much cheaper another could be at most, as a share of the cost; 1: unknown.")
       .def_property_readonly(
           "grasp",
           [](const R& r) { return r.feasible.empty() ? std::optional<Grasp>() : std::optional<Grasp>(r.grasp); },
@@ -181,13 +201,21 @@ void bind_optimum(py::module_& m) {
       .def_readonly("feasible", &R::feasible, "Every feasible grasp seen, the cheapest first.")
       .def_readonly("front", &R::front, "The Pareto front among them, ascending in O1.")
       .def_readonly("evaluations", &R::evaluations, "Grasps tried.")
+      .def_readonly("boxes", &R::boxes, "Boxes of grasps that branch_and_bound bounded.")
       .def_readonly("history", &R::history, "Best cost after each of them; infinite while none was feasible.")
       .def_readonly("unreachable", &R::unreachable, "Of each pose: how many of the grasps tried do not reach it.")
       .def_readonly("colliding", &R::colliding, "Of each pose: at how many all arm configurations collide.")
+      .def("sag_candidates", &sag_candidates,
+           "Every feasible grasp with its mean sag [m] as its cost: candidates for plan_manipulation, whose "
+           "`max_length`\n"
+           "then takes the one that sags least among those whose motion is short enough.")
+      .def_readonly("overloaded", &R::overloaded,
+                    "Of each pose: with how many the pipe bends or bears more than it may.")
       .def("__repr__", [](const R& r) {
         return std::string("GraspOptimum(") + to_string(r.outcome) + ", " + std::to_string(r.evaluations) +
                " grasps tried, " + std::to_string(r.feasible.size()) + " feasible" +
-               (r.feasible.empty() ? "" : ", cost " + std::string(py::repr(py::float_(r.path.cost)))) + ")";
+               (r.feasible.empty() ? "" : ", cost " + std::string(py::repr(py::float_(r.path.cost)))) +
+               (r.lower_bound > 0 ? ", none below " + std::string(py::repr(py::float_(r.lower_bound))) : "") + ")";
       });
   m.def(
       "optimize_grasp",
@@ -197,7 +225,7 @@ void bind_optimum(py::module_& m) {
         const ObjectPathProblem problem = taken(given_problem, "problem");
         const Pipe pipe = taken(given_pipe, "pipe");
         const OptimizeGraspOptions read = read_options(optimize_grasp_fields(), keywords, "optimize_grasp");
-        GraspSearchOptions options;
+        GraspSearchOptions options = read.search;
         options.algorithm = taken(algorithm, "algorithm");
         options.neighbourhood = neighbourhood_argument(taken(neighbourhood, "neighbourhood_kind"));
         options.population = read.population;
@@ -208,12 +236,14 @@ void bind_optimum(py::module_& m) {
       },
       "problem"_a, "pipe"_a, py::kw_only(), "gripper"_a = py::none(), "algorithm"_a = "bees",
       "neighbourhood_kind"_a = "connected_sections", "progress"_a = py::none(),
-      ("The grasp of a pipe with the least cost along the path, by a population search: bees, ga or pso (P2 3.4).\n"
+      ("The grasp of a pipe with the least cost along the path, by a population search: bees, ga or pso (P2 3.4),\n"
+       "or with its optimum proven: branch_and_bound.\n"
        "`gripper`: axes and opening, the problem's when left out. `neighbourhood_kind` of bees: independent (Str1),\n"
        "same_section (Str2), connected_sections (Str3)." +
        option_help(optimize_grasp_fields()))
           .c_str());
-  m.def("population_search_names", &population_search_names, "Names that optimize_grasp's `algorithm` takes.");
+  m.def("population_search_names", &population_search_names, "The population searches among grasp_search_names().");
+  m.def("grasp_search_names", &grasp_search_names, "Names that optimize_grasp's `algorithm` takes.");
 }
 
 }  // namespace
@@ -221,6 +251,7 @@ void bind_optimum(py::module_& m) {
 void bind_object_path(py::module_& m) {
   m.def("_object_path_option_table", [] { return option_table(object_path_fields()); });
   m.def("_population_option_table", [] { return option_table(population_fields()); });
+  m.def("_grasp_search_option_table", [] { return option_table(grasp_search_fields()); });
   bind_object_path_result(m);
   using P = ObjectPathProblem;
   py::class_<P>(m, "ObjectPathProblem", "A robot that carries an object along given poses (P2 3.2.1).")

@@ -93,9 +93,8 @@ void bind_fitted_primitives(py::module_& m) {
           "Closing direction of a box, axis of a round wall (3,): a unit vector in the mesh's frame.")
       .def_readonly("covered", &GraspWidth::covered,
                     "Share of the box' faces (the lesser of the two) or of the turn around the wall that is surface.")
-      .def("__repr__", [](const GraspWidth& w) {
-        return "GraspWidth(" + millimetres(w.width) + " along " + text(w.axis) + ")";
-      });
+      .def("__repr__",
+           [](const GraspWidth& w) { return "GraspWidth(" + millimetres(w.width) + " along " + text(w.axis) + ")"; });
   using F = FittedPrimitive;
   py::class_<F>(m, "FittedPrimitive", "The primitive that stands for a segment (P1, section 5.2.2).")
       .def_property_readonly(
@@ -105,7 +104,8 @@ void bind_fitted_primitives(py::module_& m) {
           "(4, 4): centre; z along the axis of a cylinder or cone, which narrows along z.")
       .def_property_readonly(
           "size", [](const F& f) { return Eigen::Vector3d(f.size); },
-          "(3,) [m]: lengths of a box; diameter twice and length of a cylinder; diameters at foot and top and length of "
+          "(3,) [m]: lengths of a box; diameter twice and length of a cylinder; diameters at foot and top and length "
+          "of "
           "a cone; diameter of a sphere.")
       .def_readonly("volume", &F::volume, "Of the primitive [m^3].")
       .def_readonly("hull_volume", &F::hull_volume, "Of the segment's convex hull [m^3].")
@@ -130,7 +130,8 @@ void bind_fitted_primitives(py::module_& m) {
         return fit_primitives(*mesh.mesh, numbers);
       },
       "mesh"_a, "labels"_a,
-      "The cylinder, box, cone or sphere that stands for each segment of a mesh: the one whose volume is closest to that "
+      "The cylinder, box, cone or sphere that stands for each segment of a mesh: the one whose volume is closest to "
+      "that "
       "of\nthe segment's convex hull, of those with surface on them (P1, section 5.2.2). `labels` (m,): the segment of "
       "each face, as\nMeshSegmentation.labels. Inner walls are never offered for grasping, nor are sides of a box with "
       "nothing on them. Raises\nInvalidInput when there is not one label >= 0 a face.");
@@ -164,8 +165,7 @@ void bind_segment_mesh(py::module_& m) {
       [](const MeshShape& mesh, const py::object& progress, const py::kwargs& options) {
         const ShapeDiameterOptions read = read_options(diameter_fields(), options, "shape_diameters");
         LongCall call(progress);
-        return flat_array(
-            call.run([&](const Monitor& monitor) { return shape_diameters(*mesh.mesh, read, monitor); }));
+        return flat_array(call.run([&](const Monitor& monitor) { return shape_diameters(*mesh.mesh, read, monitor); }));
       },
       "mesh"_a, py::kw_only(), "progress"_a = py::none(),
       ("Local thickness of a mesh at the middle of each face (m,) [m]; 0 where no ray leaves it. The mean over `rays` "
@@ -182,7 +182,8 @@ void bind_segment_mesh(py::module_& m) {
         return call.run([&](const Monitor& monitor) { return segment_mesh(*mesh.mesh, read, monitor); });
       },
       "mesh"_a, py::kw_only(), "progress"_a = py::none(),
-      ("Cuts the surface of a mechanical part into the simple bodies that it is composed of (P1, section 5.1): by shape "
+      ("Cuts the surface of a mechanical part into the simple bodies that it is composed of (P1, section 5.1): by "
+       "shape "
        "diameter\n(Gaussian mixture, minimum cuts) and where the surface bends inwards; pieces whose hull is no more "
        "than the two are joined\nagain, and inner walls go with the outer wall behind them. Raises InvalidInput for a "
        "mesh without area or with more than\n10 million triangles." +

@@ -21,6 +21,7 @@ void bind_control(py::module_& m);
 void bind_structure(py::module_& m);
 void bind_beam_frame(py::module_& m);
 void bind_object_path(py::module_& m);
+void bind_assembly(py::module_& m);
 void bind_gripper_design(py::module_& m);
 void bind_push_grasp(py::module_& m);
 void bind_manipulation(py::module_& m);
@@ -97,6 +98,7 @@ PYBIND11_MODULE(_core, m) {
   bind_structure(m);
   bind_beam_frame(m);
   bind_object_path(m);
+  bind_assembly(m);
   bind_gripper_design(m);
   bind_verify(m);
   refuse_bare_objects(m);

@@ -26,6 +26,7 @@ from mmgrasp.grasping import (
     beam_frame,
     copper,
     follow_object_path,
+    grasp_search_names,
     optimize_grasp,
     population_search_names,
     rectangular_section,
@@ -203,6 +204,24 @@ def test_the_best_grasp_is_the_cheapest_and_comes_again() -> None:
     assert again.history == best.history
     met = optimize_grasp(problem, pipe, max_evaluations=300, seed=3, target=costs[5])
     assert met.outcome == mg.Outcome.solved and met.evaluations <= 300
+
+
+def test_the_optimum_is_proven_to_a_gap() -> None:
+    problem = arc(8)
+    pipe, _ = pipe1()
+    best = optimize_grasp(problem, pipe, algorithm="branch_and_bound", max_evaluations=200, max_gap=0.2, max_boxes=2000)
+    assert best.boxes > 0 and 0 < best.lower_bound <= best.path.cost
+    assert best.gap == pytest.approx(1 - best.lower_bound / best.path.cost)
+    assert (best.outcome == mg.Outcome.solved) == (best.gap <= 0.2)
+    assert "none below" in repr(best)
+    for seed in (1, 2):
+        other = optimize_grasp(problem, pipe, max_evaluations=300, seed=seed)
+        assert other.path.cost >= best.lower_bound
+        assert (other.lower_bound, other.gap, other.boxes) == (0, 1, 0)
+    assert grasp_search_names() == [*population_search_names(), "branch_and_bound"]
+    for wrong, rule in (("max_gap", 0.0), ("max_boxes", 0), ("time_limit", 0.0), ("threads", -1)):
+        with pytest.raises(mg.InvalidInput, match=wrong):
+            optimize_grasp(problem, pipe, algorithm="branch_and_bound", **{wrong: rule})
 
 
 def test_sag_alone_asks_for_another_grasp() -> None:

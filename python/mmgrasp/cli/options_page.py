@@ -43,6 +43,18 @@ SECTIONS: tuple[tuple[str, str, Table, set[str]], ...] = (
     ),
     ("optimize_grasp", "The search of `optimize_grasp` (`PopulationOptions`)", _core._population_option_table, set()),
     (
+        "optimize_grasp_proof",
+        "The proof of `optimize_grasp` (`GraspSearchOptions`)",
+        _core._grasp_search_option_table,
+        set(),
+    ),
+    (
+        "assembly_grasps",
+        "Grasps of an assembly's parts, keywords of `jaw_grasps` and `centric_grasps` (`AssemblyGraspOptions`)",
+        _core._assembly_grasp_option_table,
+        set(),
+    ),
+    (
         "minimal_grippers",
         "The least set of grippers, keywords (`MinimalGrippersOptions`)",
         _core._minimal_grippers_option_table,

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import colorsys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 from .png import write_png
-from .raster import Camera, Scene, render
 from .style import TRAY_COLOURS
+from .two_sides import Body, two_sides
 
 _SHADES = 12
-_SIDE = 620
 
 
 def segment_colour(index: int) -> str:
@@ -22,11 +22,18 @@ def segment_colour(index: int) -> str:
     return _hex(colorsys.hsv_to_rgb((0.618 * index) % 1, 0.45, 0.8))
 
 
+def coloured(
+    vertices: np.ndarray, triangles: np.ndarray, groups: np.ndarray, colour: Callable[[int], str]
+) -> list[Body]:
+    """One body for each group of triangles."""
+    return [(vertices, triangles[groups == group], colour(int(group))) for group in np.unique(groups)]
+
+
 def write_segment_pictures(
     vertices: np.ndarray, triangles: np.ndarray, labels: np.ndarray, diameters: np.ndarray, folder: Path
 ) -> None:
     """segments.png, a colour a segment, and diameters.png, thin (blue) to thick (red) by rank."""
-    write_png(folder / "segments.png", _two_sides(vertices, triangles, labels, segment_colour))
+    write_png(folder / "segments.png", two_sides(coloured(vertices, triangles, labels, segment_colour)))
     shades = np.zeros(len(labels), dtype=int)
     if np.ptp(diameters) > 0:
         share = (np.log(np.maximum(diameters, 1e-9)) - np.log(np.quantile(diameters[diameters > 0], 0.02))) / max(
@@ -37,21 +44,7 @@ def write_segment_pictures(
     def shade(index: int) -> str:
         return _hex(colorsys.hsv_to_rgb(0.66 * (1 - index / (_SHADES - 1)), 0.75, 0.9))
 
-    write_png(folder / "diameters.png", _two_sides(vertices, triangles, shades, shade))
-
-
-def _two_sides(vertices: np.ndarray, triangles: np.ndarray, groups: np.ndarray, colour: object) -> np.ndarray:
-    assert callable(colour)
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
-    points = (vertices - (low + high) / 2) / np.linalg.norm(high - low)  # the renderer is made for rooms
-    scene = Scene()
-    for group in np.unique(groups):
-        scene.add(points, triangles[groups == group], colour(int(group)))
-    views = []
-    for direction in ([1.0, -1.2, 0.8], [-1.0, 1.2, -0.8]):
-        eye = 1.6 * np.array(direction) / np.linalg.norm(direction)
-        views.append(render(scene, Camera(eye, np.zeros(3), _SIDE, _SIDE)))
-    return np.concatenate(views, axis=1)
+    write_png(folder / "diameters.png", two_sides(coloured(vertices, triangles, shades, shade)))
 
 
 def _hex(colour: tuple[float, float, float]) -> str:

@@ -71,7 +71,8 @@ std::shared_ptr<const TriangleMesh> turned(const std::vector<std::pair<double, d
   std::vector<Eigen::Vector3d> v{{0, 0, profile.front().second}};
   std::vector<std::array<int, 3>> t;
   for (const auto& [r, z] : profile) {
-    for (int s = 0; s < sides; ++s) v.emplace_back(r * std::cos(2 * kPi * s / sides), r * std::sin(2 * kPi * s / sides), z);
+    for (int s = 0; s < sides; ++s)
+      v.emplace_back(r * std::cos(2 * kPi * s / sides), r * std::sin(2 * kPi * s / sides), z);
   }
   const int top = static_cast<int>(v.size()), rings = static_cast<int>(profile.size());
   v.emplace_back(0, 0, profile.back().second);

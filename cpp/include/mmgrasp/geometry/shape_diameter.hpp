@@ -10,12 +10,12 @@ namespace mmgrasp {
 
 /// How the shape diameter is measured (P1, section 5.1; Shapira, Shamir and Cohen-Or 2008).
 struct MMGRASP_EXPORT ShapeDiameterOptions {
-  int rays = 30;                      ///< From the middle of each face into the solid; in [1, 1000].
-  double cone = 2.0943951023931953;   ///< Full angle of their cone around the inward normal [rad]; in (0, pi).
-  double outlier = 1.0;               ///< Rays whose width differs from the median by more standard deviations are left out; > 0.
-  bool ray_lengths = false;           ///< P1's mean length of the rays instead of the width between the two surfaces.
-  int threads = 0;                    ///< 0: all.
-  void check() const;                 ///< Throws InvalidInput naming field, value and rule.
+  int rays = 30;                     ///< From the middle of each face into the solid; in [1, 1000].
+  double cone = 2.0943951023931953;  ///< Full angle of their cone around the inward normal [rad]; in (0, pi).
+  double outlier = 1.0;  ///< Rays whose width differs from the median by more standard deviations are left out; > 0.
+  bool ray_lengths = false;  ///< P1's mean length of the rays instead of the width between the two surfaces.
+  int threads = 0;           ///< 0: all.
+  void check() const;        ///< Throws InvalidInput naming field, value and rule.
 };
 
 /// Local thickness of a solid at the middle of each face [m]; 0 where no ray leaves the solid (holes in the surface).

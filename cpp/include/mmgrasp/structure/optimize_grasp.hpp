@@ -21,12 +21,22 @@ enum class GraspNeighbourhood {
 MMGRASP_EXPORT const char* to_string(GraspNeighbourhood neighbourhood);
 
 struct MMGRASP_EXPORT GraspSearchOptions {
-  std::string algorithm = "bees";  ///< A name of population_search_names().
+  /// A name of population_search_names(), or "branch_and_bound": bees first, then boxes of grasps are divided until
+  /// none can be cheaper by more than max_gap. For arms of six joints whose axes 2 and 3 are parallel and 4, 5 and 6
+  /// meet, or 2, 3 and 4 are parallel and 5 and 6 meet.
+  std::string algorithm = "bees";
   GraspNeighbourhood neighbourhood = GraspNeighbourhood::connected_sections;
   PopulationOptions population;
-  PipeGraspOptions grasp;  ///< Axes of the hand, widest opening, margin kept from nodes; its sampling is not used.
+  double max_gap = 1e-3;    ///< branch_and_bound: as a share of the cost; in (0, 1).
+  int max_boxes = 1000000;  ///< branch_and_bound: budget in boxes bounded; > 0.
+  double time_limit = 600;  ///< branch_and_bound: wall-clock cap [s]; > 0.
+  int threads = 0;          ///< branch_and_bound; 0: all. The answer does not depend on it.
+  PipeGraspOptions grasp;   ///< Axes of the hand, widest opening, margin kept from nodes; its sampling is not used.
   void check() const;
 };
+
+/// Names that GraspSearchOptions::algorithm takes.
+MMGRASP_EXPORT std::vector<std::string> grasp_search_names();
 
 /// A grasp with which the whole path can be followed.
 struct MMGRASP_EXPORT FeasibleGrasp {
@@ -35,9 +45,12 @@ struct MMGRASP_EXPORT FeasibleGrasp {
 };
 
 struct MMGRASP_EXPORT GraspOptimum {
-  /// approximate: the best of the search, without a proof that none is better. solved: it meets the target. not_found,
-  /// stopped.
+  /// solved: no grasp is cheaper by more than max_gap, or it meets the target. approximate: the best of the search,
+  /// proven only as far as `gap` says. infeasible: proven that no grasp can do it. not_found, stopped.
   Outcome outcome = Outcome::not_found;
+  /// No grasp of the pipe costs less; 0 where nothing was proven, infinite when none can follow the path.
+  double lower_bound = 0;
+  double gap = 1;         ///< How much cheaper another grasp could be at most, as a share of the cost found.
   Grasp grasp;            ///< Only with a path.
   ObjectPathResult path;  ///< By follow_object_path: checked more finely than the search does.
   /// Every grasp that the search found feasible, the cheapest first: candidates for other planners, which find their
@@ -46,11 +59,17 @@ struct MMGRASP_EXPORT GraspOptimum {
   /// Which of them no other beats in one objective without losing in another (the Pareto front), ascending in O1.
   std::vector<int> front;
   int evaluations = 0;
+  int boxes = 0;                ///< Bounded by branch_and_bound.
   std::vector<double> history;  ///< Best cost after each evaluation; infinite while nothing was feasible.
   /// Poses in order, each with how many of the grasps tried could not reach it and at how many all arm configurations
   /// collided.
   std::vector<int> unreachable, colliding;
+  std::vector<int> overloaded;  ///< Of each pose: with how many of them the pipe bends or bears more than it may there.
 };
+
+/// The feasible grasps, each with its mean sag after the first pose [m] as its cost: for plan_manipulation with
+/// ManipulationOptions::max_length, which takes the one that sags least among those whose motion is short enough.
+MMGRASP_EXPORT std::vector<Grasp> sag_candidates(const GraspOptimum& optimum);
 
 /// Searches the grasps of a pipe (section, length, angle, flip) for the one with the least Cost(O) along the path, by
 /// P2's rules of comparison (3.3.1, Algorithm 3.2). Throws InvalidInput when no section is narrow and long enough for

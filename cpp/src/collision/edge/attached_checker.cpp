@@ -67,4 +67,14 @@ bool AttachedChecker::edge_is_free(const Eigen::VectorXd& q0, const Eigen::Vecto
   return impl_->engine.is_free(q0) && impl_->engine.edge_stays_free(q0, q1, step);
 }
 
+DistanceResult AttachedChecker::distance(const Eigen::VectorXd& q) {
+  check_configuration(impl_->engine.group(), q, "q");
+  return impl_->engine.distance(q, false);
+}
+
+const Eigen::VectorXd& AttachedChecker::motion_bounds() {
+  impl_->update_bounds();
+  return impl_->motion_bounds;
+}
+
 }  // namespace mmgrasp::detail

@@ -74,13 +74,13 @@ class ExpansionGraph {
     }
     const auto arc_index = boost::get(boost::edge_index, graph_);
     const auto node_index = boost::get(boost::vertex_index, graph_);
-    boost::boykov_kolmogorov_max_flow(
-        graph_, boost::make_iterator_property_map(capacity_.begin(), arc_index),
-        boost::make_iterator_property_map(residual_.begin(), arc_index),
-        boost::make_iterator_property_map(reverse_arcs_.begin(), arc_index),
-        boost::make_iterator_property_map(predecessor_.begin(), node_index),
-        boost::make_iterator_property_map(color_.begin(), node_index),
-        boost::make_iterator_property_map(distance_.begin(), node_index), node_index, source(), sink());
+    boost::boykov_kolmogorov_max_flow(graph_, boost::make_iterator_property_map(capacity_.begin(), arc_index),
+                                      boost::make_iterator_property_map(residual_.begin(), arc_index),
+                                      boost::make_iterator_property_map(reverse_arcs_.begin(), arc_index),
+                                      boost::make_iterator_property_map(predecessor_.begin(), node_index),
+                                      boost::make_iterator_property_map(color_.begin(), node_index),
+                                      boost::make_iterator_property_map(distance_.begin(), node_index), node_index,
+                                      source(), sink());
     // The source's tree is the side of the cut that keeps; its black is that tree's colour.
     for (int v = 0; v < nodes_; ++v) {
       if (color_[v] != boost::black_color) labels[v] = alpha;

@@ -17,6 +17,7 @@ struct LabelLink {
 std::vector<int> alpha_expansion(const Eigen::MatrixXd& costs, const std::vector<LabelLink>& links);
 
 /// The total of some labels.
-double labelling_cost(const Eigen::MatrixXd& costs, const std::vector<LabelLink>& links, const std::vector<int>& labels);
+double labelling_cost(const Eigen::MatrixXd& costs, const std::vector<LabelLink>& links,
+                      const std::vector<int>& labels);
 
 }  // namespace mmgrasp::detail

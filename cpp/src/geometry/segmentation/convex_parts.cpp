@@ -112,7 +112,8 @@ double uncovered_volume(const RegionHull& a, const RegionHull& b, RegionHull* jo
   int outside = 0;
   for (int k = 0; k < kSamples; ++k) {
     const double at = (k + 0.5) / kSamples * total;
-    const std::size_t t = std::min<std::size_t>(sums.size() - 1, std::upper_bound(sums.begin(), sums.end(), at) - sums.begin());
+    const std::size_t t =
+        std::min<std::size_t>(sums.size() - 1, std::upper_bound(sums.begin(), sums.end(), at) - sums.begin());
     const Vector3d u = hull.points[hull.triangles[t][0]], v = hull.points[hull.triangles[t][1]],
                    w = hull.points[hull.triangles[t][2]];
     // Even over the triangle, and by the cube root towards it.

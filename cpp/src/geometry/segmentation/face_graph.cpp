@@ -106,8 +106,8 @@ void FaceGraph::measure() {
     const Vector3d beyond = centres[b.face] - vertices[a.low];
     const Vector3d behind = centres[a.face] - vertices[a.low];
     const bool crease = normals[a.face].dot(beyond) + normals[b.face].dot(behind) > 0;
-    borders.push_back({a.face, b.face, (vertices[a.low] - vertices[a.high]).norm(), crease ? -angle : angle,
-                       {a.low, a.high}});
+    borders.push_back(
+        {a.face, b.face, (vertices[a.low] - vertices[a.high]).norm(), crease ? -angle : angle, {a.low, a.high}});
     ++i;  // both are taken
   }
   first_border.assign(n + 1, 0);

@@ -69,7 +69,8 @@ std::optional<Helix> fit_helix(const FaceGraph& graph, const std::vector<int>& c
   Matrix6d system = Matrix6d::Zero();
   for (const int k : chain) {
     const FaceBorder& b = graph.borders[k];
-    const Vector3d u = (graph.vertices[b.vertices[0]] - middle) / size, v = (graph.vertices[b.vertices[1]] - middle) / size;
+    const Vector3d u = (graph.vertices[b.vertices[0]] - middle) / size,
+                   v = (graph.vertices[b.vertices[1]] - middle) / size;
     if ((v - u).norm() <= 0) continue;
     // direction x (moment + axis x x) = 0
     const Eigen::Matrix3d along = cross((v - u).normalized());
@@ -176,8 +177,8 @@ std::complex<double> unwound(const std::vector<Turn>& turns, double per_metre) {
   return sum;
 }
 
-/// The pitch at which the edges, unwound, come to lie at one angle, and those edges. Nothing where they do not: edges of
-/// rings are spread evenly over the turn whatever the pitch, and so are edges that noise makes.
+/// The pitch at which the edges, unwound, come to lie at one angle, and those edges. Nothing where they do not: edges
+/// of rings are spread evenly over the turn whatever the pitch, and so are edges that noise makes.
 std::optional<std::vector<int>> edges_in_phase(const FaceGraph& graph, const std::vector<int>& edges, Helix& helix) {
   const Vector3d side = helix.axis.unitOrthogonal(), across = helix.axis.cross(side);
   std::vector<Turn> turns;
@@ -285,7 +286,8 @@ std::vector<std::vector<int>> root_chains(const FaceGraph& graph) {
 }
 
 /// The thread around a root: faces no higher or lower than half a pitch beyond it, from the root to the crest.
-std::optional<ScrewThread> thread_around(const FaceGraph& graph, const Helix& helix, const Range& heights, double root) {
+std::optional<ScrewThread> thread_around(const FaceGraph& graph, const Helix& helix, const Range& heights,
+                                         double root) {
   const double pitch = 2 * kPi * std::abs(helix.pitch_per_radian), slack = 0.05 * pitch + 3e-3 * root;
   const auto faces_between = [&](double low, double high) {
     std::vector<int> faces;

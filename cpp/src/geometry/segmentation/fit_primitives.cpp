@@ -24,7 +24,8 @@ constexpr double kParallel = 0.99, kOnBox = 0.02;
 constexpr double kLeastCover = 0.1;
 constexpr int kDirections = 64;
 
-/// The direction that most of the area faces, to both sides, of those across `axis` (zero: any). Zero when there is none.
+/// The direction that most of the area faces, to both sides, of those across `axis` (zero: any). Zero when there is
+/// none.
 Vector3d main_normal(const SegmentSurface& s, const Vector3d& axis) {
   Vector3d best = Vector3d::Zero();
   double most = 0;
@@ -139,7 +140,8 @@ SegmentSurface segment_surface(const TriangleMesh& mesh, const std::vector<int>&
       }
       const Vector3d normal = sum.norm() > 0 ? Vector3d(sum.normalized()) : out.face_normals[k];
       if (normal.isZero()) continue;
-      const bool known = std::any_of(found.begin(), found.end(), [&](const Vector3d& n) { return n.dot(normal) > 0.999; });
+      const bool known =
+          std::any_of(found.begin(), found.end(), [&](const Vector3d& n) { return n.dot(normal) > 0.999; });
       if (known) continue;
       found.push_back(normal);
       out.points.push_back(p);
@@ -180,10 +182,14 @@ FittedPrimitive box_candidate(const SegmentSurface& s) {
 
 const char* primitive_kind_name(PrimitiveKind kind) {
   switch (kind) {
-    case PrimitiveKind::cylinder: return "cylinder";
-    case PrimitiveKind::box: return "box";
-    case PrimitiveKind::cone: return "cone";
-    case PrimitiveKind::sphere: return "sphere";
+    case PrimitiveKind::cylinder:
+      return "cylinder";
+    case PrimitiveKind::box:
+      return "box";
+    case PrimitiveKind::cone:
+      return "cone";
+    case PrimitiveKind::sphere:
+      return "sphere";
   }
   return "";
 }

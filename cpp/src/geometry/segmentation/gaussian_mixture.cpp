@@ -75,7 +75,8 @@ GaussianMixture first_guess(const Bins& bins, int components, double least_sigma
     spread += bins.weight[i] * nearest * nearest;
   }
   GaussianMixture out;
-  for (const double c : centres) out.components.push_back({1.0 / components, c, std::max(least_sigma, std::sqrt(spread))});
+  for (const double c : centres)
+    out.components.push_back({1.0 / components, c, std::max(least_sigma, std::sqrt(spread))});
   return out;
 }
 
@@ -137,7 +138,8 @@ GaussianMixture fit_mixture(const std::vector<double>& samples, const std::vecto
       best = std::move(mixture);
     }
   }
-  std::sort(best.components.begin(), best.components.end(), [](const auto& a, const auto& b) { return a.mean < b.mean; });
+  std::sort(best.components.begin(), best.components.end(),
+            [](const auto& a, const auto& b) { return a.mean < b.mean; });
   return best;
 }
 

@@ -15,8 +15,8 @@ struct InnerWalls {
 
 InnerWalls find_inner_walls(const FaceGraph& graph, int threads);
 
-/// Gives inner faces the label of the region on the other side of their wall, with borders that are short; those without
-/// one take part as the others do.
+/// Gives inner faces the label of the region on the other side of their wall, with borders that are short; those
+/// without one take part as the others do.
 void label_inner_walls(const FaceGraph& graph, const InnerWalls& walls, int count, std::vector<int>& labels);
 
 }  // namespace mmgrasp::detail

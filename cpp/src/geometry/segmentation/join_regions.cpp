@@ -14,8 +14,8 @@ namespace {
 /// What the estimate of a volume may be wrong by, as a share of the joined hull.
 constexpr double kVolumeError = 0.004;
 
-/// Regions of which at least this share lies on the hull of both, no deeper than this share of the hull's size, join too:
-/// flat sides of one box have no volume of their own.
+/// Regions of which at least this share lies on the hull of both, no deeper than this share of the hull's size, join
+/// too: flat sides of one box have no volume of their own.
 constexpr double kOnHull = 0.95, kDepth = 0.005;
 /// Faces of a region that are asked for it.
 constexpr std::size_t kMostAsked = 300;
@@ -23,7 +23,7 @@ constexpr std::size_t kMostAsked = 300;
 struct Region {
   double area = 0;
   std::vector<Eigen::Vector3d> middles;  ///< Of some of its faces, spread over its area.
-  std::map<int, double> around;  ///< Length of the border with each neighbour [m].
+  std::map<int, double> around;          ///< Length of the border with each neighbour [m].
   RegionHull hull;
   bool alive = true;
   /// Twice the area over the length of the border: its width where it is long, half its radius where it is round.
@@ -104,7 +104,8 @@ class RegionJoiner {
           const std::pair<int, int> pair{static_cast<int>(r), other};
           if (pair.first > other) continue;
           auto at = known.find(pair);
-          if (at == known.end()) at = known.emplace(pair, excess(regions_[pair.first], regions_[other], convexity)).first;
+          if (at == known.end())
+            at = known.emplace(pair, excess(regions_[pair.first], regions_[other], convexity)).first;
           if (at->second >= least) continue;
           least = at->second;
           best = pair;

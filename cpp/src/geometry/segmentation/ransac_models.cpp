@@ -13,8 +13,8 @@ constexpr double kNormalWeight = 0.1;
 
 }  // namespace
 
-std::vector<int> points_on_model(const std::vector<Eigen::Vector3d>& points, const std::vector<Eigen::Vector3d>& normals,
-                                 RoundModel model, double tolerance) {
+std::vector<int> points_on_model(const std::vector<Eigen::Vector3d>& points,
+                                 const std::vector<Eigen::Vector3d>& normals, RoundModel model, double tolerance) {
   if (points.size() < 5) return {};
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
   pcl::PointCloud<pcl::Normal>::Ptr directions(new pcl::PointCloud<pcl::Normal>);

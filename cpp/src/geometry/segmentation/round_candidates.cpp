@@ -151,8 +151,8 @@ std::vector<FittedPrimitive> round_candidates(const SegmentSurface& s) {
       if (fit) {
         const Cover cover = cover_of(s, *fit);
         const bool sphere = fit->kind == RoundFit::Kind::sphere;
-        const bool enough = sphere ? cover.area > kLeastSphere * 4 * kPi * fit->radius * fit->radius
-                                   : cover.turn >= kLeastTurn;
+        const bool enough =
+            sphere ? cover.area > kLeastSphere * 4 * kPi * fit->radius * fit->radius : cover.turn >= kLeastTurn;
         if (enough && cover.area > kLeastShare * s.area) out.push_back(placed(s, *fit, cover));
       }
       std::vector<char> gone(points.size(), 0);

@@ -76,7 +76,8 @@ void gather_pieces(const FaceGraph& graph, const std::vector<int>& labels, const
     std::vector<std::pair<int, double>> shares;
     double sum = 0, area = 0;
     for (const int piece : pieces[f]) {
-      const auto at = std::find_if(shares.begin(), shares.end(), [&](const auto& s) { return s.first == labels[piece]; });
+      const auto at =
+          std::find_if(shares.begin(), shares.end(), [&](const auto& s) { return s.first == labels[piece]; });
       if (at == shares.end()) {
         shares.emplace_back(labels[piece], graph.areas[piece]);
       } else {

@@ -4,12 +4,11 @@
 #include <cmath>
 #include <map>
 
-#include "mmgrasp/collision/detail/attached_checker.hpp"
 #include "mmgrasp/core/detail/numbers.hpp"
 #include "mmgrasp/core/error.hpp"
-#include "mmgrasp/grasp/detail/with_fingers.hpp"
 #include "mmgrasp/robot/ik_branches.hpp"
 #include "structure/object_path/configuration_graph.hpp"
+#include "structure/object_path/held_object.hpp"
 
 namespace mmgrasp {
 namespace {
@@ -71,19 +70,21 @@ void ObjectPathOptions::check() const {
   positive(rotation_tolerance, "rotation_tolerance");
   positive(edge_step, "edge_step");
   weight(gravity, "gravity");
+  weight(max_sag, "max_sag");
   require(redundant_values >= 0, "redundant_values", redundant_values, "must not be negative");
 }
 
 struct ObjectPathEvaluator::Impl {
   ObjectPathProblem problem;
   ObjectPathOptions options;
-  std::map<std::pair<double, std::vector<double>>, std::pair<JointGroup, detail::AttachedChecker>> holding;
+  detail::HeldObject held{problem};
   IkOptions ik;
   EdgeOptions edge;
-  JointGroup* group = nullptr;
+  const JointGroup* group = nullptr;
   detail::AttachedChecker* checker = nullptr;
+  bool stress_limited = false;  ///< Some member's material has a limit.
 
-  void hold(const Grasp& grasp);
+  Impl(const ObjectPathProblem& given, const ObjectPathOptions& with) : problem(given), options(with) {}
   Configurations find(const Poses& T_world_hand, ObjectPathResult& result) const;
   bool is_free(Configurations& found, std::size_t layer, int i, ObjectPathResult& result);
   void keep_nearest(Configurations& found, ObjectPathResult& result);
@@ -94,23 +95,6 @@ struct ObjectPathEvaluator::Impl {
   void bend(const Grasp& grasp, ObjectPathResult& result) const;
   void finish(const Configurations& found, const ConfigurationGraph::Path& path, ObjectPathResult& result) const;
 };
-
-void ObjectPathEvaluator::Impl::hold(const Grasp& grasp) {
-  const bool fingers = problem.gripper.has_value();
-  const auto key = fingers ? std::pair(grasp.opening, grasp.posture) : std::pair(0.0, std::vector<double>{});
-  auto at = holding.find(key);
-  if (at == holding.end()) {
-    const JointGroup held = fingers ? detail::with_fingers(problem.group, *problem.gripper, grasp) : problem.group;
-    World world = problem.world;
-    world.add(problem.object_name, WorldObject{problem.object, problem.T_world_object[0]});
-    world.attach(problem.object_name, held.robot().links()[held.tip_link()].name, grasp.T_object_hand.inverse(),
-                 problem.touch_links);
-    at = holding.emplace(key, std::pair(held, detail::AttachedChecker(held, world))).first;
-  }
-  group = &at->second.first;
-  checker = &at->second.second;
-  checker->place_attached(grasp.T_object_hand.inverse());
-}
 
 Configurations ObjectPathEvaluator::Impl::find(const Poses& T_world_hand, ObjectPathResult& result) const {
   Configurations found;
@@ -231,7 +215,18 @@ void ObjectPathEvaluator::Impl::bend(const Grasp& grasp, ObjectPathResult& resul
   if (!problem.frame) return;
   const SupportedFrame held(*problem.frame, {beam_support(grasp)});
   for (const Pose& T : problem.T_world_object) {
-    result.sag.push_back(held.largest_displacement(gravity_in_object(T, options.gravity)).value);
+    const Eigen::Vector3d gravity = gravity_in_object(T, options.gravity);
+    bool yields = false;
+    if (stress_limited) {
+      const BeamState state = held.state(gravity);
+      result.sag.push_back(state.displacement.value);
+      yields = state.over_limit && state.over_limit->value > 1;
+    } else {
+      result.sag.push_back(held.largest_displacement(gravity).value);
+    }
+    if (yields || (options.max_sag > 0 && result.sag.back() > options.max_sag)) {
+      result.overloaded.push_back(static_cast<int>(result.sag.size()) - 1);
+    }
   }
   for (std::size_t i = 1; i < result.sag.size(); ++i) result.deflection += result.sag[i];
 }
@@ -254,10 +249,17 @@ void ObjectPathEvaluator::Impl::finish(const Configurations& found, const Config
 }
 
 ObjectPathEvaluator::ObjectPathEvaluator(const ObjectPathProblem& problem, const ObjectPathOptions& options)
-    : impl_(new Impl{problem, options, {}, {}, {}}) {
+    : impl_(new Impl(problem, options)) {
   problem.check();
   options.check();
   impl_->edge.joint_step = options.edge_step;
+  if (!problem.frame) {
+    require(options.max_sag == 0, "max_sag", options.max_sag, "needs the problem's frame, which says how it bends");
+    return;
+  }
+  for (const BeamMember& member : problem.frame->members) {
+    if (member.material.stress_limit > 0) impl_->stress_limited = true;
+  }
 }
 ObjectPathEvaluator::ObjectPathEvaluator(ObjectPathEvaluator&&) noexcept = default;
 ObjectPathEvaluator& ObjectPathEvaluator::operator=(ObjectPathEvaluator&&) noexcept = default;
@@ -276,7 +278,8 @@ ObjectPathResult ObjectPathEvaluator::evaluate(const Grasp& grasp) {
   checked_pose(grasp.T_object_hand.matrix(), "grasp.T_object_hand");
   Impl& own = *impl_;
   if (own.problem.frame) beam_support(grasp);
-  own.hold(grasp);
+  own.checker = &own.held.hold(grasp);
+  own.group = &own.held.group();
   Poses T_world_hand;
   for (const Pose& T : own.problem.T_world_object) T_world_hand.push_back(T * grasp.T_object_hand);
   ObjectPathResult result;
@@ -285,8 +288,11 @@ ObjectPathResult ObjectPathEvaluator::evaluate(const Grasp& grasp) {
   const auto violated = [&] {
     result.violation = 0;
     for (const int violation : result.violations) result.violation += violation;
+    result.violation += static_cast<int>(result.overloaded.size());
     return result.violation > 0;
   };
+  const bool limited = own.stress_limited || own.options.max_sag > 0;
+  if (limited) own.bend(grasp, result);
   const bool unreachable = violated();
   if (unreachable || own.options.single_configuration) {
     if (unreachable) {
@@ -318,7 +324,7 @@ ObjectPathResult ObjectPathEvaluator::evaluate(const Grasp& grasp) {
       stands = false;
     }
     if (!stands) continue;
-    own.bend(grasp, result);
+    if (!limited) own.bend(grasp, result);
     own.finish(found, path, result);
     return result;
   }

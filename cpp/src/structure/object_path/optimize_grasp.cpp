@@ -4,10 +4,15 @@
 #include <cmath>
 #include <numeric>
 
+#include "mmgrasp/core/detail/numbers.hpp"
+#include "mmgrasp/core/error.hpp"
+#include "structure/object_path/branch_and_bound.hpp"
 #include "structure/object_path/grasp_variables.hpp"
 
 namespace mmgrasp {
 namespace {
+
+constexpr const char* kBranchAndBound = "branch_and_bound";
 
 /// Neither other objective grows where one shrinks: indices of those that no other is at least as good as in all.
 std::vector<int> pareto_front(const std::vector<FeasibleGrasp>& all) {
@@ -41,10 +46,34 @@ const char* to_string(GraspNeighbourhood neighbourhood) {
   }
 }
 
+std::vector<std::string> grasp_search_names() {
+  std::vector<std::string> names = population_search_names();
+  names.emplace_back(kBranchAndBound);
+  return names;
+}
+
 void GraspSearchOptions::check() const {
-  make_population_search(algorithm);
+  const std::vector<std::string> names = grasp_search_names();
+  std::string known;
+  for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+  require(std::find(names.begin(), names.end(), algorithm) != names.end(), "algorithm", algorithm,
+          "must be one of " + known);
+  require(max_gap > 0 && max_gap < 1, "max_gap", max_gap, "must be in (0, 1)");
+  require(max_boxes > 0, "max_boxes", max_boxes, "must be positive");
+  require(time_limit > 0, "time_limit", time_limit, "must be positive [s]");
+  require(threads >= 0, "threads", threads, "must not be negative");
   population.check();
   grasp.check();
+}
+
+std::vector<Grasp> sag_candidates(const GraspOptimum& optimum) {
+  std::vector<Grasp> grasps;
+  const double poses = std::max(1.0, static_cast<double>(optimum.unreachable.size()) - 1);
+  for (const FeasibleGrasp& found : optimum.feasible) {
+    grasps.push_back(found.grasp);
+    grasps.back().cost = found.deflection / poses;
+  }
+  return grasps;
 }
 
 GraspOptimum optimize_grasp(const ObjectPathProblem& problem, const Pipe& pipe, const ObjectPathOptions& path_options,
@@ -54,7 +83,7 @@ GraspOptimum optimize_grasp(const ObjectPathProblem& problem, const Pipe& pipe, 
   ObjectPathEvaluator evaluator(problem, path_options);
   GraspOptimum out;
   out.unreachable.assign(problem.T_world_object.size(), 0);
-  out.colliding = out.unreachable;
+  out.overloaded = out.colliding = out.unreachable;
   PopulationProblem search;
   search.variables = grasps.variables();
   search.upper = [&](const Eigen::VectorXd& x, int i) {
@@ -70,34 +99,51 @@ GraspOptimum optimize_grasp(const ObjectPathProblem& problem, const Pipe& pipe, 
       out.unreachable[i] += found.violations[i] == 2;
       out.colliding[i] += found.violations[i] == 1;
     }
+    for (const int pose : found.overloaded) ++out.overloaded[pose];
     if (found.outcome == Outcome::solved) {
       grasp.cost = found.cost;
       out.feasible.push_back({grasp, found.joint_motion, found.deflection, found.force_manipulability});
     }
     return ConstrainedValue{static_cast<double>(found.violation), found.cost};
   };
-  const PopulationResult found = make_population_search(options.algorithm)->solve(search, options.population, monitor);
+  const bool prove = options.algorithm == kBranchAndBound;
+  const PopulationResult found =
+      make_population_search(prove ? "bees" : options.algorithm)->solve(search, options.population, monitor);
   out.evaluations = found.evaluations;
   out.history = found.history;
   std::stable_sort(out.feasible.begin(), out.feasible.end(),
                    [](const FeasibleGrasp& a, const FeasibleGrasp& b) { return a.grasp.cost < b.grasp.cost; });
   // What fails the finer check is no candidate for anyone; the cheapest that passes is the answer.
-  while (!out.feasible.empty()) {
-    ObjectPathResult path = follow_object_path(problem, out.feasible.front().grasp, path_options);
-    if (path.outcome == Outcome::solved) {
-      out.path = std::move(path);
-      break;
+  const auto check_first = [&] {
+    while (!out.feasible.empty()) {
+      out.path = follow_object_path(problem, out.feasible.front().grasp, path_options);
+      if (out.path.outcome == Outcome::solved) return;
+      out.feasible.erase(out.feasible.begin());
     }
-    out.feasible.erase(out.feasible.begin());
+  };
+  check_first();
+  bool stopped = found.outcome == Outcome::stopped;
+  if (prove && !stopped) {
+    const double cost = out.feasible.empty() ? detail::kInfinity : out.path.cost;
+    const detail::BoxSearch boxes = detail::divide_boxes(problem, pipe, path_options, options, cost, monitor);
+    out.feasible.insert(out.feasible.begin(), boxes.found.rbegin(), boxes.found.rend());
+    if (!boxes.found.empty()) check_first();
+    out.lower_bound = boxes.lower_bound;
+    out.boxes = boxes.boxes;
+    out.evaluations += boxes.evaluations;
+    stopped = boxes.stopped;
   }
   out.front = pareto_front(out.feasible);
   if (out.feasible.empty()) {
-    out.outcome = found.outcome == Outcome::stopped ? Outcome::stopped : Outcome::not_found;
+    out.gap = 1;
+    const bool proven = out.lower_bound == detail::kInfinity;
+    out.outcome = stopped ? Outcome::stopped : proven ? Outcome::infeasible : Outcome::not_found;
     return out;
   }
   out.grasp = out.feasible.front().grasp;
-  out.outcome = out.path.cost <= options.population.target ? Outcome::solved : Outcome::approximate;
-  if (found.outcome == Outcome::stopped) out.outcome = Outcome::stopped;
+  out.gap = out.path.cost > 0 ? std::max(0.0, 1 - out.lower_bound / out.path.cost) : 0;
+  const bool good = out.gap <= options.max_gap || out.path.cost <= options.population.target;
+  out.outcome = stopped ? Outcome::stopped : good ? Outcome::solved : Outcome::approximate;
   return out;
 }
 

@@ -1,0 +1,227 @@
+"""What the tables of P2 chapter 3 share: three pipes along paths, their optima, and runs of five searches in nine settings.
+
+P2 prints neither its paths nor its cell. Here the KR 6-like arm carries each pipe of table 3.3 along an arc of eleven poses
+(its text counts ten waypoints), above a table and past a column. As in its Algorithm 3.1 motions between poses are not
+checked for collisions. A run has found the optimum when its cost is within 0.1 % of the best that branch and bound, a
+longer search or any run knows of.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+import time
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+from .._core import ObjectPathProblem, Outcome, World, beam_frame, copper, optimize_grasp, pose
+from ..problems.pipe_cells import FINGERS, pipe_robot, pipe_structures
+from .entry import Context
+from .statements import Pair
+
+PIPES = {"Pipe1": 6, "Pipe2": 5, "Pipe3": 8}  # numbers of the structures
+POSES = 11
+BUDGET = 1530  # P2 3.5.1
+WITHIN = 1e-3  # of the optimum
+METHODS = ("Str1", "Str2", "Str3", "GA", "PSO")
+STRATEGIES = {"Str1": "independent", "Str2": "same_section", "Str3": "connected_sections"}
+# P2 table 3.5: elite recruits, best sites, recruits, share of scouts [%], population; one elite site in all.
+SETTINGS = {
+    1: (12, 7, 3, 10, 34),
+    2: (15, 7, 5, 10, 51),
+    3: (20, 15, 5, 10, 102),
+    4: (12, 5, 3, 30, 34),
+    5: (15, 6, 4, 30, 51),
+    6: (20, 11, 5, 30, 102),
+    7: (10, 4, 3, 45, 34),
+    8: (12, 5, 4, 45, 51),
+    9: (15, 9, 5, 45, 102),
+}
+_RATES = (0.2, 0.3, 0.4)  # of mutation
+_CONNECTIVITY = (0.1, 0.5, 1.0)
+
+
+def options_of(method: str, setting: int) -> dict[str, Any]:
+    """Keywords of optimize_grasp for one of the nine settings of a method (P2 3.5.1)."""
+    elite, best, recruits, _, population = SETTINGS[setting]
+    third = (setting - 1) // 3
+    if method == "GA":
+        return {"algorithm": "ga", "population": population, "mutation_rate": _RATES[third]}
+    if method == "PSO":
+        return {"algorithm": "pso", "population": population, "connectivity": _CONNECTIVITY[third]}
+    return {
+        "algorithm": "bees",
+        "neighbourhood_kind": STRATEGIES[method],
+        "population": population,
+        "elite_sites": 1,
+        "elite_recruits": elite,
+        "best_sites": best,
+        "recruits": recruits,
+    }
+
+
+@functools.cache
+def path_problem(pipe: str) -> ObjectPathProblem:
+    _, arm, gripper = pipe_robot("kr6like")
+    structure = pipe_structures()[PIPES[pipe] - 1]
+    world = World()
+    world.add_box("table", [2.6, 2.6, 0.05], pose([0, 0, -0.03]))
+    world.add_cylinder("column", 0.05, 0.3, pose([0.2625, 0, 0.15]))
+    path = []
+    for s in np.linspace(0, 1, POSES):
+        turn = 1.2 * (s - 0.5)
+        at = [0.45 * np.cos(turn), 0.45 * np.sin(turn), 0.34 + 0.08 * np.sin(np.pi * s)]
+        path.append(pose(at, rpy=[0.3 * s, 0.4 * s, turn]))
+    return ObjectPathProblem(
+        arm,
+        world,
+        structure.shapes(),
+        np.array(path),
+        gripper=gripper,
+        touch_links=sorted(FINGERS),
+        frame=beam_frame(structure, 0.010, copper()),
+        object_name="pipe",
+    )
+
+
+def search(pipe: str, **options: Any) -> _core.GraspOptimum:
+    return optimize_grasp(path_problem(pipe), pipe_structures()[PIPES[pipe] - 1], check_edges=False, **options)
+
+
+def optimum(pipe: str, seed: int, boxes: int, evaluations: int) -> dict[str, Any]:
+    """The best grasp of branch and bound and of a search with many times P2's budget, and what is proven of it."""
+    begun = time.perf_counter()
+    proven = search(pipe, algorithm="branch_and_bound", max_boxes=boxes, time_limit=1e6, seed=seed, threads=1)
+    seconds = time.perf_counter() - begun
+    longer = search(pipe, max_evaluations=evaluations, seed=seed + 1000)
+    best = min((r for r in (proven, longer) if r.grasp is not None), key=lambda r: r.path.cost)
+    held = best.grasp.provenance
+    return {
+        "cost": best.path.cost,
+        "lower bound": proven.lower_bound,
+        "boxes": proven.boxes,
+        "seconds": seconds,
+        "grasp": [held.section + 1, 1000 * held.length, float(np.degrees(held.angle)), 180 if held.flipped else 0],
+        "motion": best.path.joint_motion,
+        "deflection": best.path.deflection,
+        "force": best.path.force_manipulability,
+        "path": best.path.path.tolist(),
+        "front": len(best.front),
+    }
+
+
+def runs_of(pipe: str, method: str, setting: int, runs: int, seed: int, target: float) -> dict[str, Any]:
+    """Runs that differ in their seed; each ends at the target or when the budget is spent."""
+
+    def one(run: int) -> tuple[Any, float]:
+        begun = time.perf_counter()
+        seeds = 10_000 * seed + 100 * setting + run
+        result = search(pipe, max_evaluations=BUDGET, target=target, seed=seeds, **options_of(method, setting))
+        return result, time.perf_counter() - begun
+
+    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+        done = list(pool.map(one, range(runs)))
+    return {
+        "pipe": pipe,
+        "method": method,
+        "setting": setting,
+        "evaluations": [result.evaluations for result, _ in done],
+        "seconds": [seconds for _, seconds in done],
+        "cost": [result.path.cost if result.grasp is not None else None for result, _ in done],
+        "solved": [result.outcome == Outcome.solved for result, _ in done],
+    }
+
+
+def scale_of(context: Context) -> tuple[list[str], list[int], int, int, int]:
+    """Pipes, settings, runs of each, boxes of branch and bound, evaluations of the longer search."""
+    if context.quick:
+        return ["Pipe1", "Pipe2"], [1, 5, 9], 2, 3000, 4000
+    return list(PIPES), list(SETTINGS), 50, 60_000, 30_000
+
+
+_KEPT: dict[tuple[str, bool, int], Any] = {}
+
+
+def optima(context: Context) -> dict[str, dict[str, Any]]:
+    """Of each pipe; once for all tables of a process."""
+    key = (context.quick, context.seed)
+    if ("optima", *key) not in _KEPT:
+        pipes, _, _, boxes, evaluations = scale_of(context)
+        items = [{"pipe": p, "seed": context.seed, "boxes": boxes, "evaluations": evaluations} for p in pipes]
+        _KEPT["optima", *key] = dict(zip(pipes, context.sweep(optimum, items, "optima"), strict=True))
+    return _KEPT["optima", *key]
+
+
+def all_runs(context: Context) -> list[dict[str, Any]]:
+    """Every method in every setting on every pipe; once for all tables of a process."""
+    key = (context.quick, context.seed)
+    if ("runs", *key) not in _KEPT:
+        pipes, settings, runs, _, _ = scale_of(context)
+        known = optima(context)
+        items = [
+            {
+                "pipe": pipe,
+                "method": method,
+                "setting": setting,
+                "runs": runs,
+                "seed": context.seed,
+                "target": (1 + WITHIN) * known[pipe]["cost"],
+            }
+            for pipe in pipes
+            for method in METHODS
+            for setting in settings
+        ]
+        _KEPT["runs", *key] = context.sweep(runs_of, items, "searches")
+    return _KEPT["runs", *key]
+
+
+def pairs(done: list[dict[str, Any]], value: str, larger: str, smaller: str) -> list[Pair]:
+    """Two methods on the same pipe in the same setting: means over the runs."""
+    by = {(d["pipe"], d["setting"], d["method"]): float(np.mean(d[value])) for d in done}
+    cells = sorted({key[:2] for key in by})
+    return [Pair(0, cell, by.get((*cell, larger)), by.get((*cell, smaller))) for cell in cells]
+
+
+def pairs_of_settings(
+    done: list[dict[str, Any]], value: str, method: str, larger: int, smaller: int, which: int
+) -> list[Pair]:
+    """One method in settings that differ in one entry of SETTINGS (`which`: 3 scouts, 4 population)."""
+    by = {
+        (d["pipe"], SETTINGS[d["setting"]][7 - which], SETTINGS[d["setting"]][which]): float(np.mean(d[value]))
+        for d in done
+        if d["method"] == method
+    }
+    cells = sorted({key[:2] for key in by})
+    return [Pair(0, cell, by.get((*cell, larger)), by.get((*cell, smaller))) for cell in cells]
+
+
+def interval(hits: int, count: int) -> str:
+    """Wilson's 95 % interval of a share, in per cent."""
+    if count == 0:
+        return "-"
+    z, share = 1.959964, hits / count
+    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
+    half = z * np.sqrt(share * (1 - share) / count + z * z / (4 * count * count)) / (1 + z * z / count)
+    return f"{100 * max(0.0, middle - half):.1f} to {100 * min(1.0, middle + half):.1f}"
+
+
+def describe(context: Context) -> dict[str, Any]:
+    pipes, settings, runs, _, _ = scale_of(context)
+    known = optima(context)
+    return {
+        "arm": "the shipped KR 6-like one with its gripper for pipes",
+        "pipes": ", ".join(pipes),
+        "poses": POSES,
+        "settings": ", ".join(map(str, settings)),
+        "runs of each": runs,
+        "most evaluations": BUDGET,
+        "optimum": ", ".join(
+            f"{p} {known[p]['cost']:.4f} (no grasp below {known[p]['lower bound']:.4f} by branch and bound)"
+            for p in pipes
+        ),
+        "weights": "0.587, 0.089, 0.324; per rad, mm and 1",
+        "threads": 1,
+    }

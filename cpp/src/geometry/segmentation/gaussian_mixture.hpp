@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "mmgrasp/core/export.hpp"
+
 namespace mmgrasp::detail {
 
 /// A sum of Gaussians over the real line.
@@ -19,7 +21,7 @@ struct GaussianMixture {
 /// Fits mixtures of 1 to `most` components to weighted samples by expectation-maximisation from k-means++ centres
 /// (Arthur and Vassilvitskii 2007) and returns the one with the least Bayesian information criterion, for which the
 /// samples count as `count` independent ones. No sigma falls below `least_sigma`.
-GaussianMixture fit_mixture(const std::vector<double>& samples, const std::vector<double>& weights, int most,
-                            double least_sigma, double count, unsigned seed);
+MMGRASP_EXPORT GaussianMixture fit_mixture(const std::vector<double>& samples, const std::vector<double>& weights,
+                                           int most, double least_sigma, double count, unsigned seed);
 
 }  // namespace mmgrasp::detail

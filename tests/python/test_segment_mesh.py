@@ -24,7 +24,9 @@ def as_mesh(vertices: np.ndarray, triangles: np.ndarray, path: Path) -> mg.Mesh:
     return mg.Mesh.load(path)
 
 
-def segmented(part: Part, noise: float, seed: int, folder: Path) -> tuple[mg.Mesh, np.ndarray, mg.grasping.MeshSegmentation]:
+def segmented(
+    part: Part, noise: float, seed: int, folder: Path
+) -> tuple[mg.Mesh, np.ndarray, mg.grasping.MeshSegmentation]:
     vertices, triangles, truth = part.mesh(EDGE, noise, seed)
     mesh = as_mesh(vertices, triangles, folder / "part.ply")
     assert len(mesh.triangles) == len(truth)
@@ -60,7 +62,7 @@ def test_widths_of_composed_parts(tmp_path: Path) -> None:
 
 def test_thread_is_found_and_nothing_else_is(tmp_path: Path) -> None:
     part = stepped_shaft(np.random.default_rng((7, 13)), bore=False, fillets=False, threaded=True)
-    _mesh, truth, found = segmented(part, 0.0, 0, tmp_path)
+    _, truth, found = segmented(part, 0.0, 0, tmp_path)
     (thread,) = found.threads
     crest = part.widths[-1][0] / 2
     assert 1e3 * thread.pitch == pytest.approx(1.5, rel=0.01)

@@ -1,5 +1,8 @@
 #include <sstream>
 
+#include <array>
+#include <cmath>
+
 #include "bindings.hpp"
 #include "mmgrasp/geometry/mesh.hpp"
 #include "mmgrasp/geometry/shape.hpp"
@@ -102,6 +105,25 @@ void bind_mesh(py::module_& m) {
           },
           py::arg("path"), py::arg("scale") = 1.0,
           "Reads STL, OBJ, DAE or PLY. `scale` is a number or one per axis. Raises IoError naming file and place.")
+      .def_static(
+          "from_arrays",
+          [](const ArrayLike& vertices, const ArrayLike& triangles) {
+            std::vector<Eigen::Vector3d> points;
+            for (const Eigen::VectorXd& p : rows_argument(vertices, "vertices", 3)) points.emplace_back(p);
+            std::vector<std::array<int, 3>> faces;
+            for (const Eigen::VectorXd& row : rows_argument(triangles, "triangles", 3)) {
+              std::array<int, 3>& face = faces.emplace_back();
+              for (int i = 0; i < 3; ++i) {
+                require(row[i] == std::floor(row[i]) && std::abs(row[i]) < 1e9, "triangles", row[i],
+                        "must be whole numbers");
+                face[i] = static_cast<int>(row[i]);
+              }
+            }
+            return MeshShape{make_mesh(points, faces)};
+          },
+          py::arg("vertices"), py::arg("triangles"),
+          "From vertices (n, 3) [m] and their numbers (m, 3), cleaned as a file's: equal vertices merge, triangles "
+          "without area go, closed meshes are turned outwards. Raises InvalidInput for numbers out of range.")
       .def_property_readonly(
           "closed", [](const MeshShape& s) { return s.mesh->closed; }, "A solid; open meshes are surfaces.")
       .def_property_readonly(

@@ -60,7 +60,7 @@ def cone(radius: float, top: float, low: float, high: float) -> tuple[m3.Manifol
 
     def inside(p: np.ndarray) -> np.ndarray:
         share = (p[:, 2] - low) / (high - low)
-        return (np.hypot(p[:, 0], p[:, 1]) < radius + share * (top - radius)) & (share > 0) & (share < 1)
+        return np.asarray((np.hypot(p[:, 0], p[:, 1]) < radius + share * (top - radius)) & (share > 0) & (share < 1))
 
     return solid, inside
 
@@ -217,19 +217,19 @@ def composed_parts(count: int = 50, seed: int = 7) -> list[tuple[Part, float]]:
     out = []
     for k in range(count):
         rng = np.random.default_rng((seed, k))
-        kinds: list[Callable[[], Part]] = [
-            lambda rng=rng: stepped_shaft(rng, False, False, False),
-            lambda rng=rng: stepped_shaft(rng, True, False, False),
-            lambda rng=rng: stepped_shaft(rng, False, True, False),
-            lambda rng=rng: stepped_shaft(rng, False, False, True),
-            lambda rng=rng: plate_with_bosses(rng),
-            lambda rng=rng: block_with_pegs(rng),
-            lambda rng=rng: flanged_bush(rng),
-            lambda rng=rng: bolt(rng),
-            lambda rng=rng: pulley(rng),
-            lambda rng=rng: ball_rod(rng),
+        kinds: list[Callable[[np.random.Generator], Part]] = [
+            lambda rng: stepped_shaft(rng, False, False, False),
+            lambda rng: stepped_shaft(rng, True, False, False),
+            lambda rng: stepped_shaft(rng, False, True, False),
+            lambda rng: stepped_shaft(rng, False, False, True),
+            plate_with_bosses,
+            block_with_pegs,
+            flanged_bush,
+            bolt,
+            pulley,
+            ball_rod,
         ]
-        out.append((kinds[k % len(kinds)](), 0.02 if (k // len(kinds)) % 2 else 0.0))
+        out.append((kinds[k % len(kinds)](rng), 0.02 if (k // len(kinds)) % 2 else 0.0))
     return out
 
 
@@ -243,4 +243,4 @@ def faces_right(truth: np.ndarray, found: np.ndarray) -> float:
         row, column = np.unravel_index(table.argmax(), table.shape)
         right += table[row, column]
         table[row, :] = table[:, column] = 0
-    return right / counted.sum()
+    return float(right / counted.sum())

@@ -221,7 +221,7 @@ def test_the_optimum_is_proven_to_a_gap() -> None:
     assert grasp_search_names() == [*population_search_names(), "branch_and_bound"]
     for wrong, rule in (("max_gap", 0.0), ("max_boxes", 0), ("time_limit", 0.0), ("threads", -1)):
         with pytest.raises(mg.InvalidInput, match=wrong):
-            optimize_grasp(problem, pipe, algorithm="branch_and_bound", **{wrong: rule})
+            optimize_grasp(problem, pipe, algorithm="branch_and_bound", **{wrong: rule})  # type: ignore[arg-type]
 
 
 def test_sag_alone_asks_for_another_grasp() -> None:

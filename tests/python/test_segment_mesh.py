@@ -108,4 +108,4 @@ def test_bad_input() -> None:
     with pytest.raises(mg.InvalidInput, match="crease"):
         mg.grasping.segment_mesh(mesh, crease=0)
     with pytest.raises(mg.InvalidInput, match="smoothing"):
-        mg.grasping.segment_mesh(mesh, smooting=1)
+        mg.grasping.segment_mesh(mesh, smooting=1)  # type: ignore[call-arg]

@@ -690,6 +690,11 @@ class Mesh:
         mesh.closed, len(mesh.triangles)
     """
     @staticmethod
+    def from_arrays(vertices: numpy.typing.ArrayLike, triangles: numpy.typing.ArrayLike) -> Mesh:
+        """
+        From vertices (n, 3) [m] and their numbers (m, 3), cleaned as a file's: equal vertices merge, triangles without area go, closed meshes are turned outwards. Raises InvalidInput for numbers out of range.
+        """
+    @staticmethod
     def load(path: str | os.PathLike[str], scale: numpy.typing.ArrayLike = 1.0) -> Mesh:
         """
         Reads STL, OBJ, DAE or PLY. `scale` is a number or one per axis. Raises IoError naming file and place.

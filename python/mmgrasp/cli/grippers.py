@@ -10,7 +10,7 @@ from rich.console import Console
 from .._core import Outcome
 from .._files import printable, write_file
 from ..grippers.assembly_file import load_assembly
-from ..grippers.output import GRIPPER_FILES, result_to_dict, write_results
+from ..grippers.output import GRIPPER_FILES, GRIPPER_FOLDERS, result_to_dict, write_results
 from ..grippers.planning import GripperPlan, plan_grippers
 from .console import Reporter
 from .output_folder import OutputFolder
@@ -19,7 +19,7 @@ DONE, NO_PLAN, INTERRUPTED = 0, 3, 130
 
 
 def run_grippers(arguments: argparse.Namespace, console: Console) -> int:
-    folder = OutputFolder(arguments.out, GRIPPER_FILES)
+    folder = OutputFolder(arguments.out, GRIPPER_FILES, GRIPPER_FOLDERS)
     with Reporter(console) as report:
         report("reading", 0.0)
         plan = plan_grippers(load_assembly(arguments.assembly), progress=report)

@@ -42,16 +42,18 @@ def uninterrupted() -> Iterator[None]:
 
 
 class OutputFolder:
-    """One folder, made ready before the work and filled after it. `own`: patterns of the names that the command writes.
+    """One folder, made ready before the work and filled after it. `own`: patterns of the names that the command writes, `folder`:
+    which of them are folders of files.
 
     Everything is written beside its place and moved there at the end; what files.json lists of an earlier run goes. A folder that holds
     files under our names which it does not list is refused: they could be somebody's, and played for the new run's. So is one
     whose files.json is that of another command.
     """
 
-    def __init__(self, path: Path, own: tuple[str, ...] = PLAN_FILES) -> None:
+    def __init__(self, path: Path, own: tuple[str, ...] = PLAN_FILES, folder: str = "trajectories") -> None:
         self.path = Path(os.path.realpath(path))
         self._own = own
+        self._folder = folder
         check_folder(self.path)
         listed = self._listed()
         others = sorted(name for name in listed if not any(fnmatchcase(name.split("/")[0], one) for one in own))
@@ -104,13 +106,14 @@ class OutputFolder:
         write_file(self.path / LIST, json.dumps({"format": "mmgrasp-files", "files": sorted(names)}, indent=1) + "\n")
 
     def _own_files(self) -> set[str]:
-        """What lies under names of ours: whatever is in `trajectories`, and links, folders or devices in the place of a file."""
+        """What lies under names of ours: whatever is in folders of ours, and links, folders or devices in the place of a file."""
         found = {p.name for pattern in self._own for p in self.path.glob(pattern)}
         found |= {name for name in self._own if os.path.lexists(self.path / name)}
-        inside = self.path / "trajectories"
-        if "trajectories" in found and inside.is_dir() and not inside.is_symlink():
-            found.remove("trajectories")
-            found |= {f"trajectories/{p.name}" for p in inside.iterdir()}
+        for name in sorted(found):
+            inside = self.path / name
+            if fnmatchcase(name, self._folder) and inside.is_dir() and not inside.is_symlink():
+                found.remove(name)
+                found |= {f"{name}/{p.name}" for p in inside.iterdir()}
         return found
 
     def _listed(self) -> set[str]:

@@ -56,8 +56,8 @@ class FingerChoice:
     clearance: float = 0.002
     shortest: float = 0.01
     longest: float = 0.15
-    opening_margin: float = 0.0
-    length_margin: float = 0.0
+    opening_margin: float = 0.001
+    length_margin: float = 0.001
     min_contact: float = 0.003
     directions: int = 12
 
@@ -144,7 +144,7 @@ def _read_part(node: Node, scale: float, unit: str) -> AssemblyPart:
         node.fail("must have one of mesh, turned and box")
     source = ""
     if kinds == ["mesh"]:
-        source = find_file(node["mesh"])
+        source = str(find_file(node["mesh"]))
         mesh = Mesh.load(source, [scale] * 3)
     elif kinds == ["turned"]:
         mesh = _turned(node["turned"], scale)

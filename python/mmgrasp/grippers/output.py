@@ -13,15 +13,16 @@ from .._core import AssemblyGrasp, SegmentRequirement
 from .._files import write_file
 from .planning import GripperPlan
 
-GRIPPER_FILES = ("result.json", "report.html", "files.json", "grippers", "operation_*.png", "segments_*.png")
+GRIPPER_FOLDERS = "gripper_*"
+GRIPPER_FILES = ("result.json", "report.html", "files.json", GRIPPER_FOLDERS, "operation_*.png", "segments_*.png")
 
 
 def write_results(plan: GripperPlan, folder: Path) -> None:
-    """result.json, and grippers/<name>/ with gripper.urdf, gripper.srdf and finger.stl for each gripper."""
+    """result.json, and gripper_<number>/ with gripper.urdf, gripper.srdf and finger.stl for each gripper."""
     write_file(folder / "result.json", json.dumps(result_to_dict(plan), indent=1, allow_nan=False) + "\n")
     if plan.result is not None:
         for gripper in plan.result.grippers:
-            gripper.to_urdf(folder / "grippers" / gripper.name)
+            gripper.to_urdf(folder / gripper.name)
 
 
 def result_to_dict(plan: GripperPlan) -> dict[str, Any]:

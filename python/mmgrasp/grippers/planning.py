@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import collections
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -205,7 +206,7 @@ def _try_grasps(
         fate.refused = f"{cause} ({count} of {fate.tried} grasps)"
     for opening, lengths, grasp in _undominated(found):
         fate.requirements.append(len(plan.requirements))
-        longest = lengths.longest if np.isfinite(lengths.longest) else None
+        upper = lengths.longest if np.isfinite(lengths.longest) else None
         plan.requirements.append(
             SegmentRequirement(
                 fate.step,
@@ -213,7 +214,7 @@ def _try_grasps(
                 segment=f"{fate.part}, segment {fate.segment}",
                 fingers=fate.fingers,
                 min_finger_length=lengths.shortest,
-                max_finger_length=longest,
+                max_finger_length=upper,
             )
         )
         plan.grasps.append(grasp)
@@ -239,7 +240,7 @@ def _candidates(
     choice = plan.assembly.fingers
     drives = [a for a in plan.assembly.actuators if a.fingers == fate.fingers]
     widest = [a.max_opening for a in drives]
-    options = {
+    options: dict[str, Any] = {
         "directions": choice.directions,
         "min_contact": choice.min_contact,
         "pad_length": max(0.02, choice.min_contact),

@@ -31,7 +31,7 @@ def turned(profile: ArrayLike, sides: int = SIDES) -> Mesh:
             k = (i + 1) % sides
             faces += [(lower[i], lower[k], upper[k]), (lower[i], upper[k], upper[i])]
     kept = [f for f in faces if len(set(f)) == 3]
-    return Mesh(np.array(vertices), np.array(kept))
+    return Mesh.from_arrays(np.array(vertices), np.array(kept))
 
 
 def block(size: ArrayLike) -> Mesh:
@@ -39,4 +39,4 @@ def block(size: ArrayLike) -> Mesh:
     x, y, z = np.asarray(size, dtype=float) / 2
     corners = np.array([(i * x, j * y, k * z) for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    return Mesh(corners, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]))
+    return Mesh.from_arrays(corners, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]))

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._core import ObjectPathProblem, Outcome, World, beam_frame, copper, optimize_grasp, pose
+from .._core import ObjectPathProblem, Outcome, PipeProvenance, World, beam_frame, copper, optimize_grasp, pose
 from ..problems.pipe_cells import FINGERS, pipe_robot, pipe_structures
 from .entry import Context
 from .statements import Pair
@@ -100,7 +100,9 @@ def optimum(pipe: str, seed: int, boxes: int, evaluations: int) -> dict[str, Any
     seconds = time.perf_counter() - begun
     longer = search(pipe, max_evaluations=evaluations, seed=seed + 1000)
     best = min((r for r in (proven, longer) if r.grasp is not None), key=lambda r: r.path.cost)
+    assert best.grasp is not None
     held = best.grasp.provenance
+    assert isinstance(held, PipeProvenance)
     return {
         "cost": best.path.cost,
         "lower bound": proven.lower_bound,
@@ -154,7 +156,8 @@ def optima(context: Context) -> dict[str, dict[str, Any]]:
         pipes, _, _, boxes, evaluations = scale_of(context)
         items = [{"pipe": p, "seed": context.seed, "boxes": boxes, "evaluations": evaluations} for p in pipes]
         _KEPT["optima", *key] = dict(zip(pipes, context.sweep(optimum, items, "optima"), strict=True))
-    return _KEPT["optima", *key]
+    kept: dict[str, dict[str, Any]] = _KEPT["optima", *key]
+    return kept
 
 
 def all_runs(context: Context) -> list[dict[str, Any]]:
@@ -177,7 +180,8 @@ def all_runs(context: Context) -> list[dict[str, Any]]:
             for setting in settings
         ]
         _KEPT["runs", *key] = context.sweep(runs_of, items, "searches")
-    return _KEPT["runs", *key]
+    kept: list[dict[str, Any]] = _KEPT["runs", *key]
+    return kept
 
 
 def pairs(done: list[dict[str, Any]], value: str, larger: str, smaller: str) -> list[Pair]:

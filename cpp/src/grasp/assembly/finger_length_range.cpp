@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "grasp/assembly/clip_polygon.hpp"
@@ -118,11 +119,12 @@ class Range {
     for (const PlacedMesh& part : operation_.active) {
       look(part, from_active * part.pose, from_active * part.pose, opening_, true, 0, "the grasp");
     }
-    for (std::size_t i = 0; i + 1 < operation_.motion.size(); ++i)
-      follow(operation_.motion[i], operation_.motion[i + 1]);
     const Eigen::Isometry3d at_end = from_passive(operation_.motion.back());
     for (const PlacedMesh& part : operation_.passive) {
       look(part, at_end * part.pose, at_end * part.pose, opening_, true, 0, "the end");
+    }
+    for (std::size_t i = 0; i + 1 < operation_.motion.size(); ++i) {
+      follow(operation_.motion[i], operation_.motion[i + 1]);
     }
     range_.free = range_.shortest <= range_.longest;
     range_.longest = std::max(range_.longest, 0.0);
@@ -151,7 +153,7 @@ class Range {
       throw InvalidInput("step = " + std::to_string(step_) + ": the motion would be looked at more than 1000000 times");
     const int looks = std::max(1, static_cast<int>(count));
     const Pose tool_a = from * grasp_.T_active_tool, tool_b = to * grasp_.T_active_tool;
-    for (int k = 0; k <= looks; ++k) {
+    for (int k = 0; k <= looks && range_.shortest <= range_.longest; ++k) {
       const double s = static_cast<double>(k) / looks;
       Pose tool = Pose::Identity();
       tool.translation() = (1 - s) * tool_a.translation() + s * tool_b.translation();
@@ -180,8 +182,13 @@ class Range {
   /// allow nothing above their tips.
   void look(const PlacedMesh& part, const Eigen::Isometry3d& a, const Eigen::Isometry3d& b,
             const std::vector<Column>& fingers, bool passing, double margin, const char* when) {
+    if (range_.shortest > range_.longest) return;
     const double rise = b.translation().z() - a.translation().z();
     const double up = std::max(rise, 0.0), down = std::min(rise, 0.0);
+    const Eigen::AlignedBox3d& box = box_of(part);
+    const Eigen::Vector3d centre = a * box.center();
+    const double radius = box.diagonal().norm() / 2, outer = std::sqrt(2.0) * reach_ + margin + radius;
+    if (centre.z() + radius + up + margin <= kTouching || centre.head<2>().norm() > outer) return;
     const Column palm = palm_.grown(margin);
     std::vector<Column> grown;
     for (const Column& c : fingers) grown.push_back(c.grown(margin));
@@ -205,9 +212,17 @@ class Range {
     const Eigen::Isometry3d back = a.inverse();
     for (const Column& c : grown) {  // A tip deep inside meets no surface.
       const Eigen::Vector2d middle = c.middle();
-      if (mesh_contains(*part.mesh, back * Eigen::Vector3d(middle.x(), middle.y(), kTouching)))
-        block(-kInfinity, kInfinity, passing, part, when);
+      const Eigen::Vector3d tip = back * Eigen::Vector3d(middle.x(), middle.y(), kTouching);
+      if (box.contains(tip) && mesh_contains(*part.mesh, tip)) block(-kInfinity, kInfinity, passing, part, when);
     }
+  }
+
+  const Eigen::AlignedBox3d& box_of(const PlacedMesh& part) {
+    const auto [place, is_new] = boxes_.try_emplace(part.mesh.get());
+    if (is_new) {
+      for (const Eigen::Vector3d& v : part.mesh->vertices) place->second.extend(v);
+    }
+    return place->second;
   }
 
   /// The palm's outline has something up to this height.
@@ -233,6 +248,7 @@ class Range {
   Column palm_;
   std::vector<Column> closed_, opening_;
   double reach_ = 0;
+  std::map<const TriangleMesh*, Eigen::AlignedBox3d> boxes_;
   FingerLengthRange range_;
 };
 
